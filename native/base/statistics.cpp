@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/statistics.h"
+
+namespace granita {
+namespace {
+
+constexpr std::array kCounterNames = {
+    "primitives_opened",   "primitives_split",    "primitives_culled",     "grids_diced",
+    "grids_culled",        "grids_shaded",        "grids_opacity_shaded",  "points_diced",
+    "points_shaded",       "micropolygons",       "micropolygons_dropped", "samples_total",
+    "sample_tests_static", "sample_tests_moving", "sample_hits",           "fragments_stored",
+    "buckets_moving",      "buckets_transparent", "gl_primitives",         "gl_passes",
+    "rays_shadow",         "rays_occlusion",      "texture_lookups"};
+static_assert(kCounterNames.size() == static_cast<std::size_t>(Counter::kCount));
+
+constexpr std::array kStageNames = {"open",  "split",   "dice", "hide",
+                                    "shade", "resolve", "film", "ray_build"};
+static_assert(kStageNames.size() == static_cast<std::size_t>(Stage::kCount));
+
+}  // namespace
+
+const char* counter_name(Counter counter) {
+    return kCounterNames[static_cast<int>(counter)];
+}
+const char* stage_name(Stage stage) {
+    return kStageNames[static_cast<int>(stage)];
+}
+
+void Statistics::add_seconds(Stage stage, double seconds) {
+    m_nanoseconds[static_cast<int>(stage)].fetch_add(static_cast<std::uint64_t>(seconds * 1e9),
+                                                     std::memory_order_relaxed);
+}
+
+double Statistics::seconds(Stage stage) const {
+    return 1e-9 * static_cast<double>(m_nanoseconds[static_cast<int>(stage)].load());
+}
+
+void Statistics::peak_grid_bytes(std::uint64_t bytes) {
+    auto peak = m_peak_grid_bytes.load(std::memory_order_relaxed);
+    while (bytes > peak && !m_peak_grid_bytes.compare_exchange_weak(peak, bytes)) {
+    }
+}
+
+std::vector<std::pair<std::string, double>> Statistics::list() const {
+    std::vector<std::pair<std::string, double>> list;
+    for (int i = 0; i < static_cast<int>(Counter::kCount); ++i)
+        list.emplace_back(kCounterNames[i], static_cast<double>(m_counters[i].load()));
+    for (int i = 0; i < static_cast<int>(Stage::kCount); ++i)
+        list.emplace_back(std::string("seconds_") + kStageNames[i],
+                          1e-9 * static_cast<double>(m_nanoseconds[i].load()));
+    list.emplace_back("peak_grid_bytes", static_cast<double>(m_peak_grid_bytes.load()));
+    return list;
+}
+
+}  // namespace granita

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Counters and stage timers of one frame.  One table names them all (statistics.cpp); the JSON of
+// `--granita-stats` uses the same names.  Hot loops count locally and add once a grid or bucket.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace granita {
+
+enum class Counter {
+    PrimitivesOpened,  ///< base faces whose primitive was made
+    PrimitivesSplit,   ///< split() calls
+    PrimitivesCulled,  ///< culled by bound: off screen or behind the hierarchical depth, counted a
+                       ///< bucket
+    GridsDiced,
+    GridsCulled,         ///< diced grids that the hierarchical depth rejected, counted a bucket
+    GridsShaded,         ///< radiance run
+    GridsOpacityShaded,  ///< opacity run before visibility
+    PointsDiced,
+    PointsShaded,
+    Micropolygons,         ///< at the hider, counted once a bucket that tests them
+    MicropolygonsDropped,  ///< non-finite, counted and reported
+    SamplesTotal,
+    SampleTestsStatic,  ///< point-in-micropolygon tests without motion or lens
+    SampleTestsMoving,  ///< with motion, lens or both
+    SampleHits,         ///< tests that covered the sample (before the depth comparison)
+    FragmentsStored,    ///< transparent list entries
+    BucketsMoving,      ///< buckets that met any motion or lens blur
+    BucketsTransparent,
+    GlPrimitives,  ///< triangles drawn by the raster executor
+    GlPasses,
+    RaysShadow,
+    RaysOcclusion,
+    TextureLookups,
+    kCount
+};
+
+enum class Stage { Open, Split, Dice, Hide, Shade, Resolve, Film, RayBuild, kCount };
+
+const char* counter_name(Counter counter);
+const char* stage_name(Stage stage);
+
+/// Thread-safe, relaxed: totals are read after the frame.
+class Statistics {
+  public:
+    void add(Counter counter, std::uint64_t n = 1) {
+        m_counters[static_cast<int>(counter)].fetch_add(n, std::memory_order_relaxed);
+    }
+    std::uint64_t get(Counter counter) const {
+        return m_counters[static_cast<int>(counter)].load(std::memory_order_relaxed);
+    }
+    void add_seconds(Stage stage, double seconds);
+    /// Summed over threads.
+    double seconds(Stage stage) const;
+    /// The largest value given, e.g. bytes of live grids.
+    void peak_grid_bytes(std::uint64_t bytes);
+    std::uint64_t peak_grid_bytes() const { return m_peak_grid_bytes.load(); }
+    /// Name and value of everything above, seconds as "seconds_<stage>".
+    std::vector<std::pair<std::string, double>> list() const;
+
+  private:
+    std::array<std::atomic<std::uint64_t>, static_cast<int>(Counter::kCount)> m_counters{};
+    std::array<std::atomic<std::uint64_t>, static_cast<int>(Stage::kCount)> m_nanoseconds{};
+    std::atomic<std::uint64_t> m_peak_grid_bytes{0};
+};
+
+/// Adds the life time of the object to a stage.
+class StageTimer {
+  public:
+    StageTimer(Statistics& statistics, Stage stage)
+        : m_statistics(statistics), m_stage(stage), m_start(std::chrono::steady_clock::now()) {}
+    ~StageTimer() {
+        m_statistics.add_seconds(
+            m_stage,
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count());
+    }
+    StageTimer(const StageTimer&) = delete;
+    StageTimer& operator=(const StageTimer&) = delete;
+
+  private:
+    Statistics& m_statistics;
+    Stage m_stage;
+    std::chrono::steady_clock::time_point m_start;
+};
+
+}  // namespace granita

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The interface of Reyes: bound, split, dice (paper 9.3.2; Cook, Carpenter and Catmull 1987).
+//
+//   auto opened = open_instance(view, instance_index, report);      // once a frame and instance
+//   for face in 0 .. opened->primitive_count():
+//       bounds = opened->bounds(face)                                 // cheap, no allocation kept
+//       primitive = opened->primitive(face)
+//       while (!primitive->diceable()) primitive->split() ...
+//       grid = primitive->dice()
+//
+// Everything depends on primitive, camera and rates alone (decision 1), never on who asks.  Shared
+// borders of neighbouring primitives are diced from edge data alone and their vertices are
+// bit-identical at every knot. All methods are const and thread-safe.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/report.h"
+#include "dice/grid.h"
+#include "scene/scene.h"
+
+namespace granita {
+
+/// What dicing needs of the frame; built once a frame.
+struct View;
+
+class Primitive {
+  public:
+    virtual ~Primitive() = default;
+    virtual RasterBounds bounds() const = 0;
+    virtual GridKey key() const = 0;
+    virtual bool diceable() const = 0;
+    /// At least two children, in a fixed order, that tile this one exactly.
+    virtual std::vector<std::unique_ptr<Primitive>> split() const = 0;
+    /// Positions, shading state and the material's attributes; never shaded.  nullptr when every
+    /// vertex is non-finite.
+    virtual std::unique_ptr<Grid> dice() const = 0;
+};
+
+/// An instance's geometry in camera space at its knots, ready to hand out primitives.
+class OpenedInstance {
+  public:
+    virtual ~OpenedInstance() = default;
+    virtual std::size_t primitive_count() const = 0;
+    virtual RasterBounds bounds(std::size_t primitive) const = 0;
+    virtual std::unique_ptr<Primitive> primitive(std::size_t primitive) const = 0;
+    virtual std::uint64_t bytes() const = 0;
+};
+
+}  // namespace granita

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The frame as splitting and dicing see it: projection, camera knots, rates, and which attributes
+// each material wants at grid vertices.
+#pragma once
+
+#include <vector>
+
+#include "base/statistics.h"
+#include "geometry/attribute_request.h"
+#include "math/projection.h"
+#include "scene/scene.h"
+
+namespace granita {
+
+/// What a material's displacement does while dicing: a hook (decision 6) and its bound, metres in
+/// world space. `displace` moves vertices along their normals: object-space scale is already in `p`
+/// (camera space, metres).
+struct DisplacementHook {
+    float bound = 0.0f;     ///< largest distance a vertex can move, metres
+    float constant = 0.0f;  ///< the one program of today: displace by this along the normal, metres
+};
+
+struct View {
+    const Scene* scene = nullptr;
+    Statistics* statistics = nullptr;
+    Projection projection;
+    std::vector<std::vector<AttributeRequest>>
+        requests;                                ///< [materials + 1], the last for material -1
+    std::vector<DisplacementHook> displacement;  ///< [materials + 1]; empty = none
+
+    /// The rectangle of the frame that can be asked for: pixels whose samples reach the crop
+    /// through the filter. Dicing rates of what lies outside the whole frame may be coarser; never
+    /// depends on the crop.
+    float raster_x0 = 0, raster_y0 = 0, raster_x1 = 0, raster_y1 = 0;
+};
+
+}  // namespace granita

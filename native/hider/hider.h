@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Visibility of one bucket: one interface, several executors (design, section 5).
+//
+//   auto hider = make_hider(executor, frame, tiles);
+//   for primitives from front to back:  if (!hider->occluded(bounds)) ... hider->hide(grid)
+//   for (TileStore& tile : hider->finish()) ...        // the samples, for compositing
+//
+// `hide` reads positions, and opacity where Grid::opacity_varies; never radiance: shading comes
+// after visibility. An object of this class belongs to one task; the frame is shared and immutable.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/statistics.h"
+#include "dice/grid.h"
+#include "hider/sample_store.h"
+#include "hider/sample_table.h"
+#include "math/projection.h"
+
+namespace granita {
+
+struct HiderFrame {
+    const SampleTable* table = nullptr;
+    Projection projection;
+    Statistics* statistics = nullptr;
+};
+
+class Hider {
+  public:
+    virtual ~Hider() = default;
+    /// True only if nothing inside the bounds can be seen by any sample of the bucket, given what
+    /// was hidden so far.
+    virtual bool occluded(const RasterBounds& bounds) const = 0;
+    virtual void hide(const Grid& grid) = 0;
+    /// In raster order of tiles.  No hide() afterwards.
+    virtual std::vector<TileStore>& finish() = 0;
+    virtual const GridPool& pool() const = 0;
+    /// The samples of a tile of finish(), by index: made with exactly the needs that the bucket
+    /// met.
+    virtual const TileSamples& tile_samples(std::size_t tile_index) const = 0;
+};
+
+/// `tiles`: rectangle in tile coordinates; `pixels`: only samples of these pixels count (the crop
+/// and its apron).
+std::unique_ptr<Hider> make_reference_hider(const HiderFrame& frame, const Rect& tiles,
+                                            const Rect& pixels);
+std::unique_ptr<Hider> make_simd_hider(const HiderFrame& frame, const Rect& tiles,
+                                       const Rect& pixels);
+
+}  // namespace granita

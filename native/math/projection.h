@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Camera space -> raster space, perspective and orthographic, with a thin lens; the one place that
+// knows the formula.  Camera space: x right, y up, z forward, metres.  Raster: pixels, origin lower
+// left.
+//
+// A camera-space point P = (x, y, z) is seen from lens point L = (lx, ly) (metres, in the lens
+// plane) at
+//   perspective   X = cx + sx * (x + lx * (z / focus - 1)) / z
+//   orthographic  X = cx + sx * (x + lx * (z / focus - 1))
+// (thin lens: Potmesil and Chakravarty 1981; hider-research 5.3).  Both are kept homogeneous, h =
+// (X*w, Y*w, w) with w = z or w = 1, which is linear in P: motion interpolates h and nothing is
+// ever divided before coverage.
+#pragma once
+
+#include "math/vec.h"
+
+namespace granita {
+
+struct Projection {
+    bool perspective = true;
+    Vec2d scale{1.0};   ///< sx, sy: pixels per unit slope (perspective) or per metre (orthographic)
+    Vec2d center{0.0};  ///< cx, cy: where the optical axis meets the raster, pixels
+    double near_clip = 0.01, far_clip = 1000.0;  ///< camera-space z, metres
+    double lens_radius = 0.0;                    ///< metres; 0 = pinhole
+    double focus = 10.0;                         ///< camera-space z of the sharp plane, metres
+
+    bool has_lens() const { return lens_radius > 0.0; }
+
+    /// Homogeneous raster coordinates relative to `origin` (pixels), subtracted in double and
+    /// rounded once (decision 2): a tile's own coordinates keep sub-pixel bits at pixel 16,000.
+    Vec3f homogeneous(const Vec3f& p, const Vec2d& origin) const {
+        const double w = perspective ? static_cast<double>(p.z) : 1.0;
+        return {static_cast<float>(scale.x * p.x + (center.x - origin.x) * w),
+                static_cast<float>(scale.y * p.y + (center.y - origin.y) * w),
+                static_cast<float>(w)};
+    }
+
+    /// Raster shift of h.x, h.y per unit-disc lens coordinate: h.x += u * lens_shear(z), in h's
+    /// units (X*w). x and y scales differ only by pixel aspect.
+    Vec2f lens_shear(float z) const {
+        const double c = lens_radius * (static_cast<double>(z) / focus - 1.0);
+        return {static_cast<float>(scale.x * c), static_cast<float>(scale.y * c)};
+    }
+
+    /// Larger is nearer: 1/z in perspective, -z in orthographic; affine in raster space over a
+    /// plane.
+    float depth_key(float z) const { return perspective ? 1.0f / z : -z; }
+    float depth_from_key(float key) const { return perspective ? 1.0f / key : -key; }
+};
+
+}  // namespace granita

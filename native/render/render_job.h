@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One frame being rendered on its own threads; finished tiles leave through one queue (decision
+// 14).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/report.h"
+#include "base/statistics.h"
+#include "film/film.h"
+#include "scene/scene.h"
+
+namespace granita {
+
+class RenderJob {
+  public:
+    /// Starts at once.  The scene is shared and immutable.
+    explicit RenderJob(std::shared_ptr<const Scene> scene);
+    /// Cancels and joins.
+    ~RenderJob();
+
+    /// Finished tiles; waits at most `seconds` for the first.
+    std::vector<Tile> take_tiles(double seconds);
+    bool done() const;  ///< no tile will come any more and the threads are idle
+    double fraction() const;
+    /// Buckets done and in all, for "Sample k/n".
+    long buckets_done() const;
+    long buckets_total() const;
+    void cancel();
+    /// Joins; rethrows the first failure (SceneError, GlError, Cancelled, ...).
+    void finish();
+
+    const Statistics& statistics() const;
+    const Report& report() const;
+    std::string device() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace granita

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "math/projection.h"
+
+namespace granita {
+
+/// The camera over the shutter.  Knots are equidistant in t in [0, 1].
+struct Camera {
+    std::string name;
+    std::vector<Mat4d>
+        world_from_camera;        ///< [K], camera space as in projection.h (z forward), no scale
+    Projection projection;        ///< lens at the frame time
+    int blades = 0;               ///< 0..2 = round
+    float blade_rotation = 0.0f;  ///< radians
+    float lens_ratio =
+        1.0f;  ///< > 1 narrows the lens in x (anamorphic), as Blender's aperture_ratio
+};
+
+}  // namespace granita

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Geometry as Python hands it over: validated plain data, object space, shared by its instances.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace granita {
+
+enum class Domain { Point, Face, Corner };
+enum class AttributeKind { Generic, Uv, Color };
+
+struct Attribute {
+    std::string name;
+    Domain domain = Domain::Point;
+    AttributeKind kind = AttributeKind::Generic;
+    int width = 1;              ///< floats an element, 1 to 4
+    std::vector<float> values;  ///< [elements of the domain][width]
+};
+
+enum class SubdivisionScheme { CatmullClark, Simple };
+enum class SubdivisionBoundary { EdgeAndCorner, EdgeOnly };
+/// Blender's uv_smooth choices, which are OpenSubdiv's face-varying interpolation options.
+enum class SubdivisionUv {
+    None,
+    PreserveCorners,
+    PreserveCornersAndJunctions,
+    PreserveCornersJunctionsAndConcave,
+    PreserveBoundaries,
+    All
+};
+
+struct Subdivision {
+    SubdivisionScheme scheme = SubdivisionScheme::CatmullClark;
+    SubdivisionBoundary boundary = SubdivisionBoundary::EdgeOnly;
+    SubdivisionUv uv = SubdivisionUv::PreserveBoundaries;
+    std::vector<std::int32_t> crease_verts;  ///< [2 E] vertex pairs of creased edges
+    std::vector<float> crease_values;        ///< [E] OpenSubdiv sharpness, >= 10 = infinitely sharp
+    std::vector<float> vertex_creases;       ///< [V] or empty
+};
+
+/// A polygon mesh, or the cage of a subdivision surface.
+struct GeometryData {
+    std::string name;  ///< Blender's, for messages: "mesh 'Cube'"
+    int knots = 1;
+    std::vector<Vec3f> points;  ///< [knots][V] object space, metres
+    std::size_t vertex_count() const { return points.size() / static_cast<std::size_t>(knots); }
+    std::vector<std::int32_t> face_sizes;      ///< [F] corners a face, >= 3
+    std::vector<std::int32_t> corner_verts;    ///< [C]
+    std::vector<std::int32_t> material_index;  ///< [F] slot of the instance; empty = all 0
+    std::vector<std::uint8_t> smooth;          ///< [F]; empty = all flat
+    std::vector<Vec3f>
+        corner_normals;  ///< [C] at the frame time, unit, object space; empty = from smooth
+    std::vector<Attribute> attributes;
+    bool is_subdivision = false;
+    Subdivision subdivision;
+
+    std::size_t face_count() const { return face_sizes.size(); }
+    const Attribute* find_attribute(const std::string& attribute_name) const;
+    /// The UV map that is active for render (first of kind Uv); nullptr when there is none.
+    const Attribute* default_uv() const;
+    const Attribute* default_color() const;
+};
+
+}  // namespace granita

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+#include "scene/node_graph.h"
+
+namespace granita {
+
+enum class LightKind { Point, Sun, Spot, Area };
+enum class AreaShape { Square, Rectangle, Disk, Ellipse };
+
+/// Units are Blender's: point, spot and area in watts of radiant flux, sun in W/m^2.
+struct Light {
+    std::string name;
+    LightKind kind = LightKind::Point;
+    std::vector<Mat4d> world_from_light;  ///< [K] Blender's light space: shines along -z
+    Vec3f color{1.0f};
+    float energy = 0.0f;
+    float radius = 0.0f;     ///< point, spot: metres
+    float sun_angle = 0.0f;  ///< radians, full angle
+    float spot_size = 0.0f;  ///< radians, full cone
+    float spot_blend = 0.0f;
+    AreaShape shape = AreaShape::Square;
+    Vec2f size{1.0f};  ///< area: metres, before the matrix's scale
+    float spread = 3.14159265f;
+    bool casts_shadow = true;
+    bool visible_diffuse = true, visible_glossy = true;
+    float diffuse_factor = 1.0f, specular_factor = 1.0f;
+};
+
+struct World {
+    std::string name;
+    NodeGraph graph;           ///< surface: a Background; node -1 = black
+    bool lights_scene = true;  ///< false where the view layer drops the world (use_sky off)
+};
+
+}  // namespace granita

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A material's or world's node graph as Python hands it over: groups, reroutes and mutes are
+// already flattened, constants folded, sockets renamed to Blender 4's identifiers.  Nodes are in
+// evaluation order: a link always points to an earlier node.
+#pragma once
+
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace granita {
+
+struct NodeLink {
+    int node = -1;       ///< index in NodeGraph::nodes, smaller than the reader's own
+    std::string output;  ///< socket identifier, e.g. "Color", "Fac", "BSDF"
+};
+
+/// Unlinked constant (scalar in x; vector in xyz; colour in rgb(a)) or link.
+using NodeInput = std::variant<Vec4f, NodeLink>;
+using NodeProperty = std::variant<double, std::string, std::vector<float>>;
+
+struct Node {
+    std::string type;  ///< Blender's bl_idname, e.g. "ShaderNodeBsdfPrincipled"
+    std::string name;  ///< for messages
+    std::map<std::string, NodeInput> inputs;
+    std::map<std::string, NodeProperty>
+        properties;  ///< enums as their identifiers, e.g. operation = "MULTIPLY"
+};
+
+struct NodeGraph {
+    std::vector<Node> nodes;
+    NodeLink surface;       ///< node -1 = none
+    NodeLink displacement;  ///< node -1 = none
+};
+
+struct Material {
+    std::string name;
+    int index = 0;  ///< pass_index
+    NodeGraph graph;
+};
+
+/// An image that nodes refer to by name.  Either a file (OpenImageIO reads it, tiled and cached) or
+/// pixels.
+struct Image {
+    std::string name;
+    std::string path;                 ///< absolute; empty when pixels are given
+    std::string colorspace = "sRGB";  ///< Blender's colorspace_settings.name
+    std::string alpha_mode = "STRAIGHT";
+    int width = 0, height = 0;
+    std::vector<float> pixels;  ///< [height][width][4], lower-left first, scene-linear, or empty
+};
+
+}  // namespace granita

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The settings of a frame (design, section 3: names are API).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "math/bounds.h"
+
+namespace granita {
+
+enum class Sampling { Independent, Interleaved, Regular };
+enum class Device { Auto, Cpu, Gpu };
+/// Reference: brute force in double (tests).  Simd: the CPU default.  Raster: the paper's, OpenGL.
+enum class Executor { Auto, Reference, Simd, Raster };
+enum class FilterKind {
+    Box,
+    Tent,
+    Gaussian,
+    BlackmanHarris,
+    Mitchell,
+    CatmullRom,
+    Lanczos,
+    Bspline
+};
+
+struct Options {
+    int width = 0, height = 0;  ///< full frame, pixels
+    Rect crop;                  ///< what is rendered, inside the frame
+    int frame = 0;
+    int samples = 64;
+    Sampling sampling = Sampling::Independent;
+    int time_samples = 0;
+    FilterKind pixel_filter = FilterKind::BlackmanHarris;
+    float filter_width = 1.5f;
+    float dicing_rate = 1.0f, shading_rate = 0.0f;
+    int grid_size = 256;
+    int bucket_size = 64;
+    float opacity_threshold = 0.996f;
+    std::uint32_t seed =
+        0;  ///< of the sample table, the frame already mixed in where animate_seed is on
+    int light_samples = 8;  ///< shadow rays a light and shading point, for lights with a size
+    Device device = Device::Auto;
+    Executor executor = Executor::Auto;  ///< overrides device; tests and benches
+    int threads = 0;                     ///< 0 = all
+    bool film_transparent = false;
+    bool depth_pass = false;
+    float frame_time =
+        0.5f;  ///< shutter time of Blender's frame: 0, 1/2 or 1; shading happens there
+    std::vector<float> shutter_curve;  ///< opening over t in [0, 1], equidistant; empty = box
+};
+
+}  // namespace granita

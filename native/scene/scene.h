@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One frame, complete and immutable: what Python hands over (docs/scene_snapshot.md).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/camera.h"
+#include "scene/geometry_data.h"
+#include "scene/light.h"
+#include "scene/node_graph.h"
+#include "scene/options.h"
+
+namespace granita {
+
+struct Instance {
+    std::string name;
+    int geometry = 0;
+    std::vector<Mat4d> world_from_object;  ///< [K] equidistant knots; one = static
+    std::vector<std::int32_t>
+        materials;  ///< [slots] index in Scene::materials, -1 = none (Blender's default grey)
+    bool visible_camera = true;
+    bool casts_shadow = true;
+    bool holdout = false;
+    int object_index = 0;  ///< pass_index
+    float random = 0.0f;
+    std::uint32_t key = 0;  ///< rank of the persistent identity: orders micropolygons (decision 3)
+};
+
+struct Scene {
+    Options options;
+    Camera camera;
+    std::vector<GeometryData> geometries;
+    std::vector<Instance> instances;
+    std::vector<Material> materials;
+    std::vector<Image> images;
+    std::vector<Light> lights;
+    World world;
+};
+
+}  // namespace granita

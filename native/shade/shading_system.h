@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Materials, lights and world of a frame, compiled once, run over grids (design, section 6).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/report.h"
+#include "base/statistics.h"
+#include "dice/grid.h"
+#include "dice/view.h"
+#include "scene/scene.h"
+
+namespace granita {
+
+class ShadingSystem {
+  public:
+    /// Compiles every material's programs (displacement, opacity, radiance: decision 6); unknown
+    /// nodes are reported once by material and node and replaced by their nearest kin.  Builds the
+    /// ray scene only if something needs rays.
+    ShadingSystem(const Scene& scene, Statistics& statistics, Report& report,
+                  const Progress& progress);
+    ~ShadingSystem();
+
+    /// For View: [materials + 1], the last for "no material".
+    const std::vector<std::vector<AttributeRequest>>& requests() const;
+    const std::vector<DisplacementHook>& displacement() const;
+
+    /// Whether opacity must run before visibility (it is not the constant 1).  -1 = no material.
+    bool opacity_varies(int material) const;
+    /// Fills Grid::opacity and opacity_varies.  Thread-safe for different grids.
+    void shade_opacity(Grid& grid) const;
+    /// Fills Grid::radiance (premultiplied by opacity, plus emission).  Thread-safe for different
+    /// grids.
+    void shade_radiance(Grid& grid) const;
+
+    /// The world as the camera sees it.  `directions` [n] unit, world space; `spread` radians a
+    /// direction stands for (texture filtering).  Fills `out` [n].
+    void background(const std::vector<Vec3f>& directions, float spread,
+                    std::vector<Vec3f>& out) const;
+    /// The world's colour is one constant: `background` of any one direction.
+    bool background_is_constant() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace granita
