@@ -26,6 +26,8 @@ struct Lobe {
     Distribution distribution = Distribution::Ggx;
     FresnelKind fresnel = FresnelKind::None;
     bool multiscatter = false;     ///< glossy: energy compensation as Cycles' MULTI_GGX
+    bool burley = false;  ///< diffuse: Burley's (2012) retro-reflection with `roughness`, as
+                          ///< Principled before Blender 4
     std::vector<Vec3f> weight;     ///< [n]
     std::vector<Vec3f> normal;     ///< [n] unit, facing the viewer as Cycles ensures
     std::vector<float> roughness;  ///< [n] diffuse: Oren-Nayar sigma socket; glossy: the socket's
