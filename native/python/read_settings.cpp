@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options and camera of the snapshot.
+#include <algorithm>
+
+#include "hider/sample_table.h"
+#include "python/snapshot.h"
+
+namespace granita::python {
+namespace {
+
+int in_range(const Record& record, const char* key, int value, int lo, int hi) {
+    if (value < lo || value > hi)
+        record.fail(std::string("'") + key + "' is " + std::to_string(value) + ", expected " +
+                    std::to_string(lo) + " to " + std::to_string(hi));
+    return value;
+}
+
+float at_least(const Record& record, const char* key, double value, double lo) {
+    if (!(value >= lo))
+        record.fail(std::string("'") + key + "' is " + std::to_string(value) +
+                    ", expected at least " + std::to_string(lo));
+    return static_cast<float>(value);
+}
+
+}  // namespace
+
+void read_options(const Record& r, Options& o) {
+    constexpr int kMaxPixels = 65536;
+    o.width = in_range(r, "width", r.integer("width", 0), 1, kMaxPixels);
+    o.height = in_range(r, "height", r.integer("height", 0), 1, kMaxPixels);
+    o.crop = {0, 0, o.width, o.height};
+    if (const auto crop = r.values<std::int32_t>("crop", {4}); !crop.empty()) {
+        o.crop = Rect{crop[0], crop[1], crop[2], crop[3]};
+        if (o.crop.intersect({0, 0, o.width, o.height}) != o.crop || o.crop.empty())
+            r.fail("'crop' must be a rectangle of at least one pixel inside the frame");
+    }
+    o.frame = r.integer("frame", 0);
+    o.samples = in_range(r, "samples", r.integer("samples", o.samples), 1, 4096);
+    o.sampling = static_cast<Sampling>(choice(r, "sampling", r.text("sampling", "INDEPENDENT"),
+                                              {"INDEPENDENT", "INTERLEAVED", "REGULAR"}));
+    o.time_samples = in_range(r, "time_samples", r.integer("time_samples", 0), 0, 65536);
+    o.pixel_filter =
+        static_cast<FilterKind>(choice(r, "pixel_filter", r.text("pixel_filter", "BLACKMAN_HARRIS"),
+                                       {"BOX", "TENT", "GAUSSIAN", "BLACKMAN_HARRIS", "MITCHELL",
+                                        "CATMULL_ROM", "LANCZOS", "BSPLINE"}));
+    o.filter_width = at_least(r, "filter_width", r.number("filter_width", o.filter_width), 0.01);
+    o.dicing_rate = at_least(r, "dicing_rate", r.number("dicing_rate", o.dicing_rate), 0.01);
+    o.shading_rate = at_least(r, "shading_rate", r.number("shading_rate", o.shading_rate), 0.0);
+    o.grid_size = in_range(r, "grid_size", r.integer("grid_size", o.grid_size), 1, 65536);
+    o.bucket_size =
+        in_range(r, "bucket_size", r.integer("bucket_size", o.bucket_size), kTileSize, 4096);
+    if (o.bucket_size % kTileSize) r.fail("'bucket_size' must be a multiple of 16 pixels");
+    o.opacity_threshold =
+        at_least(r, "opacity_threshold", r.number("opacity_threshold", o.opacity_threshold), 0.0);
+    o.seed = static_cast<std::uint32_t>(r.integer("seed", 0));
+    o.light_samples =
+        in_range(r, "light_samples", r.integer("light_samples", o.light_samples), 1, 65536);
+    o.device =
+        static_cast<Device>(choice(r, "device", r.text("device", "AUTO"), {"AUTO", "CPU", "GPU"}));
+    o.executor = static_cast<Executor>(
+        choice(r, "executor", r.text("executor", "AUTO"), {"AUTO", "REFERENCE", "SIMD", "RASTER"}));
+    o.threads = in_range(r, "threads", r.integer("threads", 0), 0, 1024);
+    o.film_transparent = r.boolean("film_transparent", false);
+    o.depth_pass = r.boolean("depth_pass", false);
+    o.frame_time = static_cast<float>(r.number("frame_time", 0.5));
+    if (o.frame_time < 0.0f || o.frame_time > 1.0f) r.fail("'frame_time' must be between 0 and 1");
+    o.shutter_curve = r.values<float>("shutter_curve", {-1});
+}
+
+void read_camera(const Record& r, Camera& camera) {
+    camera.name = r.text("name", "Camera");
+    camera.world_from_camera = matrices(r, "world_from_camera");
+    if (camera.world_from_camera.empty()) r.fail("'world_from_camera' must hold at least one knot");
+    Projection& p = camera.projection;
+    p.perspective =
+        choice(r, "kind", r.text("kind", "PERSPECTIVE"), {"PERSPECTIVE", "ORTHOGRAPHIC"}) == 0;
+    p.scale = r.pair("scale");
+    if (!(p.scale.x > 0.0 && p.scale.y > 0.0)) r.fail("'scale' must be positive");
+    p.center = r.pair("center");
+    if (r.has("clip")) {
+        const Vec2d clip = r.pair("clip");
+        p.near_clip = clip.x;
+        p.far_clip = clip.y;
+    }
+    if (p.perspective && !(p.near_clip > 0.0)) r.fail("the near clip must be greater than 0");
+    if (!(p.far_clip > p.near_clip)) r.fail("the far clip must lie behind the near clip");
+    p.lens_radius = at_least(r, "lens_radius", r.number("lens_radius", 0.0), 0.0);
+    p.focus = r.number("focus_distance", p.focus);
+    if (p.has_lens() && !(p.focus > 0.0)) r.fail("the focus distance must be greater than 0");
+    camera.blades = r.integer("blades", 0);
+    camera.blade_rotation = static_cast<float>(r.number("blade_rotation", 0.0));
+    camera.lens_ratio = static_cast<float>(r.number("lens_ratio", 1.0));
+    if (!(camera.lens_ratio > 0.0f)) r.fail("the aperture ratio must be greater than 0");
+}
+
+}  // namespace granita::python

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/snapshot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace granita::python {
+namespace {
+
+std::string shape_text(const std::vector<py::ssize_t>& shape) {
+    std::string text = "[";
+    for (const auto n : shape)
+        text += (text.size() > 1 ? ", " : "") + (n < 0 ? "any" : std::to_string(n));
+    return text + "]";
+}
+
+}  // namespace
+
+void Record::fail(const std::string& message) const {
+    throw SceneError(m_datablock, message);
+}
+
+bool Record::has(const char* key) const {
+    return m_dict.contains(key) && !m_dict[key].is_none();
+}
+
+py::object Record::get(const char* key) const {
+    if (!has(key)) fail(std::string("'") + key + "' is missing");
+    return m_dict[key];
+}
+
+double Record::number(const char* key) const {
+    try {
+        const double value = py::cast<double>(get(key));
+        if (!std::isfinite(value)) fail(std::string("'") + key + "' must be finite");
+        return value;
+    } catch (const py::cast_error&) {
+        fail(std::string("'") + key + "' must be a number");
+    }
+}
+
+double Record::number(const char* key, double fallback) const {
+    return has(key) ? number(key) : fallback;
+}
+
+int Record::integer(const char* key, int fallback) const {
+    if (!has(key)) return fallback;
+    const double value = number(key);
+    if (value != std::floor(value) || std::abs(value) > 2147483647.0)
+        fail(std::string("'") + key + "' must be a whole number");
+    return static_cast<int>(value);
+}
+
+bool Record::boolean(const char* key, bool fallback) const {
+    return has(key) ? number(key) != 0.0 : fallback;
+}
+
+std::string Record::text(const char* key) const {
+    try {
+        return py::cast<std::string>(get(key));
+    } catch (const py::cast_error&) {
+        fail(std::string("'") + key + "' must be text");
+    }
+}
+
+std::string Record::text(const char* key, const std::string& fallback) const {
+    return has(key) ? text(key) : fallback;
+}
+
+Vec2d Record::pair(const char* key) const {
+    const auto v = values<double>(key, {2});
+    if (v.size() != 2) fail(std::string("'") + key + "' is missing");
+    return {v[0], v[1]};
+}
+
+py::list Record::list(const char* key) const {
+    if (!has(key)) return py::list();
+    try {
+        return py::cast<py::list>(get(key));
+    } catch (const py::cast_error&) {
+        fail(std::string("'") + key + "' must be a list");
+    }
+}
+
+Record Record::record(const char* key) const {
+    const py::object value = get(key);
+    if (!py::isinstance<py::dict>(value)) fail(std::string("'") + key + "' must be a dict");
+    return {py::cast<py::dict>(value), m_datablock + " " + key};
+}
+
+template <class T>
+py::array_t<T, py::array::c_style | py::array::forcecast> Record::array(
+    const char* key, const std::vector<py::ssize_t>& shape) const {
+    const std::string name = std::string("'") + key + "'";
+    const auto any = py::array::ensure(get(key));
+    if (!any) {
+        PyErr_Clear();
+        fail(name + " must be an array");
+    }
+    const char kind = any.dtype().kind();
+    const bool is_integer = kind == 'i' || kind == 'u' || kind == 'b';
+    // An empty list arrives as float64.
+    if (!(is_integer || (kind == 'f' && (std::is_floating_point_v<T> || any.size() == 0))))
+        fail(name + " has dtype " + py::cast<std::string>(py::str(any.dtype())) + ", expected " +
+             (std::is_floating_point_v<T> ? "floats" : "integers"));
+    bool matches = any.ndim() == static_cast<py::ssize_t>(shape.size());
+    for (py::ssize_t i = 0; matches && i < any.ndim(); ++i)
+        matches = shape[i] < 0 || any.shape(i) == shape[i];
+    if (!matches) {
+        std::vector<py::ssize_t> given(any.shape(), any.shape() + any.ndim());
+        fail(name + " must have shape " + shape_text(shape) + ", has " + shape_text(given));
+    }
+    return py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(any);
+}
+
+template <class T>
+std::vector<T> Record::values(const char* key, const std::vector<py::ssize_t>& shape) const {
+    if (!has(key)) return {};
+    const auto a = array<T>(key, shape);
+    return {a.data(), a.data() + a.size()};
+}
+
+template std::vector<float> Record::values(const char*, const std::vector<py::ssize_t>&) const;
+template std::vector<double> Record::values(const char*, const std::vector<py::ssize_t>&) const;
+template std::vector<std::int32_t> Record::values(const char*,
+                                                  const std::vector<py::ssize_t>&) const;
+template std::vector<std::uint32_t> Record::values(const char*,
+                                                   const std::vector<py::ssize_t>&) const;
+template std::vector<std::uint8_t> Record::values(const char*,
+                                                  const std::vector<py::ssize_t>&) const;
+template py::array_t<float, py::array::c_style | py::array::forcecast> Record::array(
+    const char*, const std::vector<py::ssize_t>&) const;
+template py::array_t<double, py::array::c_style | py::array::forcecast> Record::array(
+    const char*, const std::vector<py::ssize_t>&) const;
+
+int choice(const Record& record, const char* key, const std::string& value,
+           const std::vector<const char*>& identifiers) {
+    for (std::size_t i = 0; i < identifiers.size(); ++i)
+        if (value == identifiers[i]) return static_cast<int>(i);
+    std::string known;
+    for (const char* identifier : identifiers)
+        known += std::string(known.empty() ? "" : ", ") + identifier;
+    record.fail(std::string("'") + key + "' is '" + value + "', expected one of " + known);
+}
+
+std::vector<Mat4d> matrices(const Record& record, const char* key) {
+    const auto a = record.array<double>(key, {-1, 4, 4});
+    std::vector<Mat4d> list(static_cast<std::size_t>(a.shape(0)));
+    const double* m = a.data();
+    for (Mat4d& matrix : list) {
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 4; ++column) {
+                if (!std::isfinite(*m))
+                    record.fail(std::string("'") + key + "' holds a value that is not finite");
+                matrix[column][row] = *m++;
+            }
+    }
+    return list;
+}
+
+std::shared_ptr<const Scene> read_scene(const py::dict& snapshot) {
+    const Record root(snapshot, "scene");
+    auto scene = std::make_shared<Scene>();
+    read_options(root.record("options"), scene->options);
+    const Record camera = root.record("camera");
+    read_camera(Record(py::cast<py::dict>(root.get("camera")),
+                       "camera '" + camera.text("name", "Camera") + "'"),
+                scene->camera);
+
+    const auto read_list = [&](const char* key, const char* kind, auto& target, auto read) {
+        for (const py::handle item : root.list(key)) {
+            if (!py::isinstance<py::dict>(item))
+                root.fail(std::string("'") + key + "' must hold dicts");
+            const auto dict = py::reinterpret_borrow<py::dict>(item);
+            const std::string name = Record(dict, kind).text("name");
+            // Geometry names already say what they are ("mesh 'Cube'").
+            const bool named = name.find('\'') != std::string::npos;
+            target.emplace_back();
+            target.back().name = name;
+            read(Record(dict, named ? name : std::string(kind) + " '" + name + "'"), target.back());
+        }
+    };
+    read_list("geometries", "mesh", scene->geometries, read_geometry);
+    read_list("materials", "material", scene->materials, [](const Record& r, Material& m) {
+        m.index = r.integer("index", 0);
+        read_graph(r, m.graph);
+    });
+    read_list("images", "image", scene->images, read_image);
+    read_list("lights", "light", scene->lights, read_light);
+    if (root.has("world")) {
+        const Record world = root.record("world");
+        scene->world.name = world.text("name", "World");
+        scene->world.lights_scene = world.boolean("lights_scene", true);
+        read_graph(world, scene->world.graph);
+    }
+    if (root.has("instances")) read_instances(root.record("instances"), *scene);
+    return scene;
+}
+
+}  // namespace granita::python

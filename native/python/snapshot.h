@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reading the snapshot dict (docs/scene_snapshot.md): every access is checked and every error names
+// the datablock.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "scene/scene.h"
+
+namespace granita::python {
+
+namespace py = pybind11;
+
+/// One dict of the snapshot together with the name that errors carry.
+class Record {
+  public:
+    Record(py::dict dict, std::string datablock)
+        : m_dict(std::move(dict)), m_datablock(std::move(datablock)) {}
+
+    const std::string& datablock() const { return m_datablock; }
+    bool has(const char* key) const;
+    py::object get(const char* key) const;  ///< throws SceneError when absent
+
+    double number(const char* key) const;
+    double number(const char* key, double fallback) const;
+    int integer(const char* key, int fallback) const;
+    bool boolean(const char* key, bool fallback) const;
+    std::string text(const char* key) const;
+    std::string text(const char* key, const std::string& fallback) const;
+    Vec2d pair(const char* key) const;
+    py::list list(const char* key) const;  ///< absent = empty
+    Record record(const char* key) const;
+
+    /// A C-contiguous array of element type T (converted from any numeric dtype of the same kind),
+    /// whose shape is `shape` where -1 stands for any length.
+    template <class T>
+    py::array_t<T, py::array::c_style | py::array::forcecast> array(
+        const char* key, const std::vector<py::ssize_t>& shape) const;
+    /// The same as a vector; absent = empty.
+    template <class T>
+    std::vector<T> values(const char* key, const std::vector<py::ssize_t>& shape) const;
+
+    [[noreturn]] void fail(const std::string& message) const;
+
+  private:
+    py::dict m_dict;
+    std::string m_datablock;
+};
+
+/// The index of `text` in the identifiers, or a SceneError that lists them.
+int choice(const Record& record, const char* key, const std::string& value,
+           const std::vector<const char*>& identifiers);
+
+/// [n,4,4] row-major f64 -> matrices; checked finite.
+std::vector<Mat4d> matrices(const Record& record, const char* key);
+
+void read_options(const Record& record, Options& options);
+void read_camera(const Record& record, Camera& camera);
+void read_geometry(const Record& record, GeometryData& geometry);
+void read_instances(const Record& record, Scene& scene);
+void read_graph(const Record& record, NodeGraph& graph);
+void read_light(const Record& record, Light& light);
+void read_image(const Record& record, Image& image);
+std::shared_ptr<const Scene> read_scene(const py::dict& snapshot);
+
+void bind_errors(py::module_& module);
+void bind_render(py::module_& module);
+
+}  // namespace granita::python

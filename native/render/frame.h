@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything that the buckets of one frame share; built once, then only read.
+#pragma once
+
+#include <memory>
+
+#include "base/progress.h"
+#include "film/film.h"
+#include "hider/hider.h"
+#include "render/frame_geometry.h"
+#include "shade/shading_system.h"
+
+namespace granita {
+
+struct Frame {
+    Frame(const Scene& scene, Statistics& statistics, Report& report, const Progress& progress);
+
+    const Scene& scene;
+    Statistics& statistics;
+    Report& report;
+    const Progress& progress;
+    ShadingSystem shading;
+    View view;
+    SampleTable table;
+    HiderFrame hider;
+    Film film;
+    BucketLayout layout;
+    FrameGeometry geometry;
+    Executor executor;  ///< the one chosen; never Auto
+    Vec3f constant_background{0.0f};
+};
+
+}  // namespace granita

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/geometry_node.h"
+
+namespace granita {
+namespace {
+
+std::atomic<std::uint64_t> live_grid_bytes{0};
+
+}  // namespace
+
+SharedGrid::SharedGrid(std::unique_ptr<Grid> grid, Statistics& statistics)
+    : m_grid(std::move(grid)), m_statistics(statistics), m_bytes(m_grid->bytes()) {
+    m_statistics.peak_grid_bytes(live_grid_bytes.fetch_add(m_bytes) + m_bytes);
+}
+
+SharedGrid::~SharedGrid() {
+    live_grid_bytes.fetch_sub(m_bytes);
+}
+
+void SharedGrid::ensure_opacity(const ShadingSystem& shading) {
+    std::call_once(m_opacity, [&] {
+        const StageTimer timer(m_statistics, Stage::Shade);
+        shading.shade_opacity(*m_grid);
+        m_statistics.add(Counter::GridsOpacityShaded);
+    });
+}
+
+void SharedGrid::ensure_radiance(const ShadingSystem& shading) {
+    std::call_once(m_radiance, [&] {
+        const StageTimer timer(m_statistics, Stage::Shade);
+        shading.shade_radiance(*m_grid);
+        m_statistics.add(Counter::GridsShaded);
+        m_statistics.add(Counter::PointsShaded, static_cast<std::uint64_t>(m_grid->vertex_count()));
+    });
+}
+
+std::shared_ptr<SharedGrid> dice_counted(const Primitive& primitive, Statistics& statistics) {
+    const StageTimer timer(statistics, Stage::Dice);
+    auto grid = primitive.dice();
+    if (!grid) return nullptr;
+    statistics.add(Counter::GridsDiced);
+    statistics.add(Counter::PointsDiced, static_cast<std::uint64_t>(grid->vertex_count()));
+    return std::make_shared<SharedGrid>(std::move(grid), statistics);
+}
+
+std::vector<std::unique_ptr<Primitive>> split_counted(const Primitive& primitive,
+                                                      Statistics& statistics) {
+    const StageTimer timer(statistics, Stage::Split);
+    statistics.add(Counter::PrimitivesSplit);
+    return primitive.split();
+}
+
+GeometryNode::GeometryNode(std::unique_ptr<Primitive> primitive, const RasterBounds& bounds,
+                           const BucketLayout& layout, const GeometryNode* parent)
+    : m_bounds(bounds),
+      m_buckets(layout.range(bounds)),
+      m_layout_width(layout.buckets().width()),
+      m_layout_x0(layout.buckets().x0),
+      m_layout_y0(layout.buckets().y0),
+      m_primitive(std::move(primitive)) {
+    if (parent) m_buckets = m_buckets.intersect(parent->m_buckets);
+    if (m_buckets.empty()) {
+        m_buckets = {};
+        return;
+    }
+    m_released.assign(static_cast<std::size_t>(m_buckets.width() * m_buckets.height()), false);
+    m_left = m_released.size();
+    if (!parent) return;
+    // Buckets that were done with the parent before it was split will never come here.
+    for (int y = m_buckets.y0; y < m_buckets.y1; ++y)
+        for (int x = m_buckets.x0; x < m_buckets.x1; ++x) {
+            const int bucket = layout.index(x, y);
+            if (parent->m_released[parent->bit(bucket)]) {
+                m_released[bit(bucket)] = true;
+                --m_left;
+            }
+        }
+}
+
+std::size_t GeometryNode::bit(int bucket) const {
+    const int x = m_layout_x0 + bucket % m_layout_width, y = m_layout_y0 + bucket / m_layout_width;
+    return static_cast<std::size_t>((y - m_buckets.y0) * m_buckets.width() + x - m_buckets.x0);
+}
+
+GeometryNode::Content GeometryNode::expand(const BucketLayout& layout, Statistics& statistics) {
+    const std::lock_guard lock(m_mutex);
+    if (!m_expanded) {
+        if (m_primitive->diceable()) {
+            m_content.grid = dice_counted(*m_primitive, statistics);
+        } else {
+            for (auto& child : split_counted(*m_primitive, statistics)) {
+                const RasterBounds bounds = child->bounds();
+                auto node = std::make_shared<GeometryNode>(std::move(child), bounds, layout, this);
+                if (node->m_left > 0) m_content.children.push_back(std::move(node));
+            }
+        }
+        m_primitive.reset();
+        m_expanded = true;
+    }
+    return m_content;
+}
+
+void GeometryNode::release(int bucket) {
+    Content freed;  // destroyed outside the lock
+    std::vector<std::shared_ptr<GeometryNode>> children;
+    {
+        const std::lock_guard lock(m_mutex);
+        const int x = m_layout_x0 + bucket % m_layout_width;
+        const int y = m_layout_y0 + bucket / m_layout_width;
+        if (x < m_buckets.x0 || x >= m_buckets.x1 || y < m_buckets.y0 || y >= m_buckets.y1) return;
+        if (m_released[bit(bucket)]) return;
+        m_released[bit(bucket)] = true;
+        children = m_content.children;
+        if (--m_left == 0) {
+            freed = std::move(m_content);
+            m_content = {};
+            m_primitive.reset();
+            m_expanded = true;
+        }
+    }
+    for (const auto& child : children) child->release(bucket);
+}
+
+}  // namespace granita

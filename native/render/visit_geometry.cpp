@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/visit_geometry.h"
+
+#include <algorithm>
+#include <queue>
+
+namespace granita {
+namespace {
+
+enum class Kind { Instance, Face, Node, Local };
+
+/// Something with a bound, waiting for its turn.
+struct Entry {
+    float nearest_key = 0;
+    std::uint64_t order = 0;  ///< of insertion; breaks ties
+    Kind kind = Kind::Instance;
+    std::uint32_t index = 0;                        ///< Instance: instance; Face: primitive
+    std::shared_ptr<FrameGeometry::Opened> opened;  ///< Face
+    std::shared_ptr<GeometryNode> node;             ///< Node
+    std::shared_ptr<Primitive> primitive;           ///< Local: wanted by this bucket alone
+    RasterBounds bounds;
+
+    bool operator<(const Entry& other) const {
+        if (nearest_key != other.nearest_key) return nearest_key < other.nearest_key;
+        return order > other.order;
+    }
+};
+
+class Visit {
+  public:
+    Visit(Frame& frame, int bucket, const Hider& hider,
+          const std::function<void(std::shared_ptr<SharedGrid>)>& hide)
+        : m_frame(frame),
+          m_bucket(bucket),
+          m_pixels(frame.layout.pixels(bucket)),
+          m_hider(hider),
+          m_hide(hide) {}
+
+    void run() {
+        for (const std::uint32_t instance : m_frame.geometry.instances(m_bucket)) {
+            Entry entry;
+            entry.kind = Kind::Instance;
+            entry.index = instance;
+            push(std::move(entry), m_frame.geometry.bounds(instance));
+        }
+        while (!m_heap.empty()) {
+            m_frame.progress.check();
+            std::pop_heap(m_heap.begin(), m_heap.end());
+            const Entry entry = std::move(m_heap.back());
+            m_heap.pop_back();
+            if (m_hider.occluded(entry.bounds)) {
+                m_frame.statistics.add(Counter::PrimitivesCulled);
+                continue;
+            }
+            visit(entry);
+        }
+    }
+
+  private:
+    void push(Entry entry, const RasterBounds& bounds) {
+        if (!touches(bounds)) return;
+        entry.bounds = bounds;
+        entry.nearest_key = bounds.nearest_key;
+        entry.order = m_order++;
+        m_heap.push_back(std::move(entry));
+        std::push_heap(m_heap.begin(), m_heap.end());
+    }
+
+    bool touches(const RasterBounds& b) const {
+        return b.visible && b.x0 <= static_cast<float>(m_pixels.x1) &&
+               b.x1 >= static_cast<float>(m_pixels.x0) && b.y0 <= static_cast<float>(m_pixels.y1) &&
+               b.y1 >= static_cast<float>(m_pixels.y0);
+    }
+
+    void visit(const Entry& entry) {
+        switch (entry.kind) {
+            case Kind::Instance:
+                return visit_instance(entry.index);
+            case Kind::Face:
+                return visit_face(entry);
+            case Kind::Node:
+                return visit_node(*entry.node);
+            case Kind::Local:
+                return visit_primitive(*entry.primitive);
+        }
+    }
+
+    void visit_instance(std::uint32_t instance) {
+        const auto opened = m_frame.geometry.open(instance);
+        for (const std::uint32_t face : m_frame.geometry.faces(*opened, m_bucket)) {
+            Entry entry;
+            entry.kind = Kind::Face;
+            entry.index = face;
+            entry.opened = opened;
+            push(std::move(entry), opened->bounds[face]);
+        }
+    }
+
+    void visit_face(const Entry& entry) {
+        if (auto node = m_frame.geometry.node(*entry.opened, entry.index)) return visit_node(*node);
+        m_frame.statistics.add(Counter::PrimitivesOpened);
+        visit_primitive(*entry.opened->geometry->primitive(entry.index));
+    }
+
+    void visit_node(GeometryNode& node) {
+        auto content = node.expand(m_frame.layout, m_frame.statistics);
+        for (auto& child : content.children) {
+            const RasterBounds bounds = child->bounds();
+            Entry entry;
+            entry.kind = Kind::Node;
+            entry.node = std::move(child);
+            push(std::move(entry), bounds);
+        }
+        if (content.grid) hide(std::move(content.grid));
+    }
+
+    void visit_primitive(const Primitive& primitive) {
+        if (primitive.diceable()) {
+            if (auto grid = dice_counted(primitive, m_frame.statistics)) hide(std::move(grid));
+            return;
+        }
+        for (auto& child : split_counted(primitive, m_frame.statistics)) {
+            const RasterBounds bounds = child->bounds();
+            Entry entry;
+            entry.kind = Kind::Local;
+            entry.primitive = std::move(child);
+            push(std::move(entry), bounds);
+        }
+    }
+
+    void hide(std::shared_ptr<SharedGrid> grid) {
+        if (!touches(grid->grid().bounds)) return;
+        if (m_hider.occluded(grid->grid().bounds)) {
+            m_frame.statistics.add(Counter::GridsCulled);
+            return;
+        }
+        m_hide(std::move(grid));
+    }
+
+    Frame& m_frame;
+    const int m_bucket;
+    const Rect m_pixels;
+    const Hider& m_hider;
+    const std::function<void(std::shared_ptr<SharedGrid>)>& m_hide;
+    std::vector<Entry> m_heap;
+    std::uint64_t m_order = 0;
+};
+
+}  // namespace
+
+void visit_geometry(Frame& frame, int bucket, const Hider& hider,
+                    const std::function<void(std::shared_ptr<SharedGrid>)>& hide) {
+    Visit(frame, bucket, hider, hide).run();
+}
+
+}  // namespace granita
