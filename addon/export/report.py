@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What export has to say to the artist: named, deduplicated, in the order in which it was met.
+
+A problem that the frame survives is an entry of the `Report`.  One that it does not survive is an
+`ExportError`.  Nothing is dropped without one or the other.
+"""
+
+
+class ExportError(Exception):
+    """The frame cannot be rendered.  The text names the datablock: "scene 'Scene': no camera"."""
+
+    def __init__(self, datablock, message):
+        super().__init__(f"{datablock}: {message}")
+        self.datablock = datablock
+        self.message = message
+
+
+class Cancelled(Exception):
+    """The user ended the render while the scene was being read."""
+
+
+class Report:
+    """Recoverable problems.  Calling it is the same as `warn`, so it serves as a plain callback."""
+
+    def __init__(self):
+        self._counts = {}
+
+    def warn(self, datablock, message):
+        """Notes one problem.
+
+        Args:
+            datablock: kind and name, "mesh 'Cube'".
+            message: what is wrong and what happens instead, without the name.
+        """
+        key = (datablock, message)
+        self._counts[key] = self._counts.get(key, 0) + 1
+
+    __call__ = warn
+
+    def entries(self):
+        """[(datablock, message, times met)], each pair once."""
+        return [(datablock, message, count) for (datablock, message), count in self._counts.items()]
+
+    def __len__(self):
+        return len(self._counts)
