@@ -58,13 +58,16 @@ struct Grid {
     std::vector<Vec3f> dp_du, dp_dv;      ///< [vertices] change of P over one grid step
     std::vector<GridAttribute> attributes;
 
-    RasterBounds bounds;  ///< swept over shutter and lens
-    bool motion = false;  ///< knots differ
+    RasterBounds bounds;   ///< swept over shutter and lens
+    bool motion = false;   ///< knots differ
+    bool holdout = false;  ///< Instance::holdout: hides what is behind and cuts alpha, adds nothing
     std::uint64_t bytes() const;
 
     // Slots, filled once by shade.
     bool opacity_varies = false;  ///< opacity holds values; otherwise the grid is opaque
-    std::vector<Vec3f> opacity;   ///< [vertices]
+    bool additive =
+        false;  ///< may have radiance where its opacity is 0: such points are not dropped
+    std::vector<Vec3f> opacity;  ///< [vertices]
     std::vector<Vec3f>
         radiance;  ///< [vertices] premultiplied by opacity, plus emission; linear, unclamped
 
