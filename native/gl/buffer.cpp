@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gl/buffer.h"
+
+#include <algorithm>
+#include <string>
+
+#include "gl/gl_check.h"
+
+namespace granita::gl {
+namespace {
+
+GLuint create() {
+    GLuint name = 0;
+    glCreateBuffers(1, &name);
+    return name;
+}
+
+}  // namespace
+
+Buffer::Buffer(std::size_t size, const void* data) : m_handle(create()), m_size(size) {
+    // Storage of no bytes is an error in OpenGL; an empty list is none for us.
+    const auto bytes = static_cast<GLsizeiptr>(std::max<std::size_t>(size, 4));
+    glNamedBufferStorage(name(), bytes, size == 0 ? nullptr : data, 0);
+    check("making a buffer of " + std::to_string(size) + " bytes");
+}
+
+void Buffer::bind_storage(GLuint binding) const {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name());
+}
+
+void Buffer::read_bytes(void* out) const {
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    if (m_size > 0) glGetNamedBufferSubData(name(), 0, static_cast<GLsizeiptr>(m_size), out);
+    check("reading a buffer");
+}
+
+}  // namespace granita::gl

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "gl/handle.h"
+
+namespace granita::gl {
+
+/// Memory of the device, of a fixed size in bytes.
+class Buffer {
+  public:
+    Buffer() = default;
+    /// Copies `size` bytes from `data`; nullptr leaves them undefined.
+    Buffer(std::size_t size, const void* data);
+
+    template <class T>
+    static Buffer of(const std::vector<T>& values) {
+        return Buffer(values.size() * sizeof(T), values.data());
+    }
+    /// Waits for the device.
+    template <class T>
+    std::vector<T> read() const {
+        std::vector<T> values(m_size / sizeof(T));
+        read_bytes(values.data());
+        return values;
+    }
+
+    std::size_t size() const { return m_size; }
+    GLuint name() const { return m_handle.name(); }
+    /// As the shader storage block of that binding.
+    void bind_storage(GLuint binding) const;
+
+  private:
+    void read_bytes(void* out) const;
+    static void destroy(GLuint name) { glDeleteBuffers(1, &name); }
+    Handle<&Buffer::destroy> m_handle;
+    std::size_t m_size = 0;
+};
+
+}  // namespace granita::gl

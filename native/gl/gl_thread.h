@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One thread owns OpenGL (decision 14): it makes the context and runs the jobs of other threads in
+// the order of their arrival.
+//
+//   GlThread thread;                                   // GlError: no usable OpenGL
+//   auto pixels = thread.run([&] { ...OpenGL...; return pixels; });   // exceptions come back
+//
+// Everything that owns an OpenGL name is made and destroyed inside a job.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <type_traits>
+
+#include "gl/egl_context.h"
+
+namespace granita::gl {
+
+class GlThread {
+  public:
+    /// Returns once the context exists.
+    explicit GlThread(const ContextOptions& options = {});
+    /// Runs what is queued, then destroys the context.
+    ~GlThread();
+    GlThread(const GlThread&) = delete;
+    GlThread& operator=(const GlThread&) = delete;
+
+    const ContextInfo& info() const { return m_info; }
+
+    /// Any thread.  The future carries the job's result or exception.
+    template <class Job>
+    auto submit(Job job) -> std::future<std::invoke_result_t<Job&>> {
+        using Result = std::invoke_result_t<Job&>;
+        auto task = std::make_shared<std::packaged_task<Result()>>(std::move(job));
+        auto result = task->get_future();
+        if (std::this_thread::get_id() == m_thread.get_id())
+            (*task)();  // a job that waits for a job must not wait for itself
+        else
+            push([task] { (*task)(); });
+        return result;
+    }
+
+    /// submit() and wait.
+    template <class Job>
+    auto run(Job job) -> std::invoke_result_t<Job&> {
+        return submit(std::move(job)).get();
+    }
+
+  private:
+    void push(std::function<void()> job);
+    void work(const ContextOptions& options, std::promise<ContextInfo>& started);
+
+    ContextInfo m_info;
+    std::mutex m_mutex;
+    std::condition_variable m_wake;
+    std::deque<std::function<void()>> m_jobs;
+    bool m_stop = false;
+    std::thread m_thread;
+};
+
+}  // namespace granita::gl

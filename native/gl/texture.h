@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "gl/handle.h"
+
+namespace granita::gl {
+
+/// A rectangle of texels, [y * height][x]; row 0 is the lowest.
+struct TexelRect {
+    int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// A 2-D texture of one level.
+class Texture {
+  public:
+    Texture() = default;
+    /// `format`: sized, e.g. GL_RGBA32F.  Throws GlError beyond the driver's limits.
+    Texture(GLenum format, int width, int height);
+
+    int width() const { return m_width; }
+    int height() const { return m_height; }
+    GLuint name() const { return m_handle.name(); }
+    void bind(GLuint unit) const { glBindTextureUnit(unit, name()); }
+
+    /// Texels of a part, row by row; waits for the device.  `components` is GL_RGBA,
+    /// GL_RED_INTEGER, GL_DEPTH_COMPONENT..., T its type (float or uint32_t).
+    template <class T>
+    std::vector<T> read(const TexelRect& rect, GLenum components, int component_count) const {
+        std::vector<T> texels(static_cast<std::size_t>(rect.width) * rect.height * component_count);
+        const GLenum type = static_cast<T>(0.5f) == static_cast<T>(0) ? GL_UNSIGNED_INT : GL_FLOAT;
+        read_texels(rect, components, type, texels.size() * sizeof(T), texels.data());
+        return texels;
+    }
+
+  private:
+    void read_texels(const TexelRect& rect, GLenum components, GLenum type, std::size_t bytes,
+                     void* out) const;
+    static void destroy(GLuint name) { glDeleteTextures(1, &name); }
+    Handle<&Texture::destroy> m_handle;
+    int m_width = 0, m_height = 0;
+};
+
+}  // namespace granita::gl
