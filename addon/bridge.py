@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The way to the native library: the only importer of `granita_core`.
+
+The module lies inside the add-on's folder (an installed package) or on Python's path (a build
+tree, a wheel).  It is imported when it is first needed, so that a missing or foreign build is a
+message in the panel and at render, never a failed registration.
+"""
+
+import importlib
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+from .export.report import Cancelled
+
+MODULE = "granita_core"
+
+
+class NativeModuleMissing(Exception):
+    """`granita_core` cannot be loaded; the text says why and what to do."""
+
+
+class DeviceError(Exception):
+    """OpenGL or EGL failed or is absent."""
+
+
+class RenderError(Exception):
+    """The native library refused the scene or failed; the text names the datablock."""
+
+
+def load():
+    """Returns the module `granita_core`.  Raises NativeModuleMissing."""
+    for name, package in ((f".{MODULE}", __package__), (MODULE, None)):
+        absolute = f"{package}{name}" if package else name
+        try:
+            return importlib.import_module(name, package)
+        except ModuleNotFoundError as error:
+            if error.name != absolute:
+                raise NativeModuleMissing(f"{MODULE} cannot be loaded: {error}") from error
+        except ImportError as error:
+            raise NativeModuleMissing(f"{MODULE} cannot be loaded: {error}") from error
+    raise NativeModuleMissing(_why_missing())
+
+
+def problem():
+    """What stops the native module from being used, for the panel; "" when nothing does."""
+    try:
+        load()
+    except NativeModuleMissing as error:
+        return str(error)
+    return ""
+
+
+def _why_missing():
+    here = (
+        f"Python {sys.version_info.major}.{sys.version_info.minor} ({sys.implementation.cache_tag})"
+    )
+    folders = [Path(__file__).parent, *(Path(entry) for entry in sys.path if entry)]
+    found = sorted({file.name for folder in folders for file in folder.glob(f"{MODULE}.*")})
+    if found:
+        return (
+            f"the native module {found[0]} was built for another Python: this Blender runs {here}"
+        )
+    return f"the native module {MODULE} is not installed: install a Granita package for {here}"
+
+
+@contextmanager
+def rendering(snapshot):
+    """Renders a scene snapshot (docs/scene_snapshot.md): yields the running granita_core.Render.
+
+    On a normal exit the job is finished and its first failure raised; on any other it is
+    cancelled.  Native exceptions arrive as those of this file.
+    """
+    core = load()
+    try:
+        job = core.Render(core.Scene(snapshot))
+        try:
+            yield job
+        except BaseException:
+            job.cancel()
+            raise
+        job.finish()
+    except core.Cancelled as error:
+        raise Cancelled from error
+    except core.GlError as error:
+        raise DeviceError(str(error)) from error
+    except core.Error as error:
+        raise RenderError(str(error)) from error

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render engine as Blender sees it: forwards, and turns every failure into exit code 1.
+
+No exception leaves `render()`: Blender would print it, save a black frame and exit with 0, or
+crash while saving a float file.  `report({'ERROR'})` alone makes `blender -b` stop without a file
+and exit with 1; `error_set` adds the banner in the window.
+"""
+
+import traceback
+
+import bpy
+
+from . import bridge, command_line, final_render, frame_statistics, passes
+from .export.report import Cancelled, ExportError
+
+ENGINE_ID = "GRANITA"
+
+# Failures whose text says all an artist can use; any other is a fault of ours and gets a traceback.
+_EXPLAINED = (
+    ExportError,
+    bridge.NativeModuleMissing,
+    bridge.RenderError,
+    command_line.CommandLineError,
+    final_render.SettingsError,
+    frame_statistics.StatisticsFileError,
+)
+
+
+class GranitaRenderEngine(bpy.types.RenderEngine):
+    bl_idname = ENGINE_ID
+    bl_label = "Granita"
+    bl_use_preview = False
+    bl_use_postprocess = True  # else the compositor and the normal way of saving are skipped
+    bl_use_eevee_viewport = True
+    bl_use_shading_nodes_custom = False  # Cycles' and EEVEE's nodes are ours
+    bl_use_gpu_context = False
+
+    def __init__(self, *args, **kwargs):
+        super().__init__(*args, **kwargs)
+        self.frame_statistics = frame_statistics.FrameStatistics()
+
+    def update_render_passes(self, scene=None, renderlayer=None):
+        passes.register(self, scene, renderlayer)
+
+    def render(self, depsgraph):
+        try:
+            final_render.render(self, depsgraph, self.frame_statistics)
+        except Cancelled:
+            self.frame_statistics.discard()
+            if not self.test_break():
+                self._fail("the render stopped without being asked to")
+        except _EXPLAINED as error:
+            self._fail(str(error))
+        except KeyboardInterrupt:
+            self._fail("interrupted")
+        except Exception as error:
+            traceback.print_exc()
+            self._fail(f"{type(error).__name__}: {error}")
+
+    def render_frame_finish(self):
+        try:
+            self.frame_statistics.write(command_line.parse().stats)
+        except _EXPLAINED as error:
+            self._fail(str(error))
+
+    def _fail(self, text):
+        self.frame_statistics.discard()
+        self.report({"ERROR"}, text)
+        self.error_set(text)
+
+
+def register():
+    bpy.utils.register_class(GranitaRenderEngine)
+
+
+def unregister():
+    bpy.utils.unregister_class(GranitaRenderEngine)

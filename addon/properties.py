@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`scene.granita`: the settings that Blender itself does not have.
+
+The names and the numbers of the enumerations are API: files keep them.
+"""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+
+# A bucket is a set of 16-pixel tiles.
+TILE_PIXELS = 16
+
+
+def _round_bucket_size(settings, _context):
+    rounded = max(TILE_PIXELS, round(settings.bucket_size / TILE_PIXELS) * TILE_PIXELS)
+    if settings.bucket_size != rounded:
+        settings.bucket_size = rounded
+
+
+class GranitaSceneSettings(bpy.types.PropertyGroup):
+    device: EnumProperty(
+        name="Device",
+        description="What computes the picture",
+        items=(
+            ("AUTO", "Automatic", "The graphics card where there is a usable one, else the CPU", 0),
+            ("CPU", "CPU", "All processor cores that Blender may use", 1),
+            (
+                "GPU",
+                "GPU",
+                "The graphics card through OpenGL 4.5; without one the CPU, with a warning",
+                2,
+            ),
+        ),
+        default="AUTO",
+        options=set(),
+    )
+    samples: IntProperty(
+        name="Samples",
+        description="Visibility samples a pixel, each with its own place, time and lens point. "
+        "More samples: less noise in edges, motion blur and depth of field",
+        default=64,
+        min=1,
+        max=65536,
+        soft_max=1024,
+    )
+    sampling: EnumProperty(
+        name="Sampling",
+        description="How time and lens points are shared between samples",
+        items=(
+            ("INDEPENDENT", "Independent", "Every sample has its own time and lens point", 0),
+            (
+                "INTERLEAVED",
+                "Interleaved",
+                "A few hundred times and lens points, spread over neighbouring pixels",
+                1,
+            ),
+            (
+                "REGULAR",
+                "Regular",
+                "A square lattice in the pixel, repeated at each of the time samples",
+                2,
+            ),
+        ),
+        default="INDEPENDENT",
+    )
+    time_samples: IntProperty(
+        name="Time Samples",
+        description="Regular sampling: moments (and lens points) at which the lattice is repeated; "
+        "0 = chosen from the filter and the motion",
+        default=0,
+        min=0,
+        max=4096,
+    )
+    pixel_filter: EnumProperty(
+        name="Pixel Filter",
+        description="How samples are averaged into pixels",
+        items=(
+            ("BOX", "Box", "Plain average: hard and aliased", 0),
+            ("TENT", "Tent", "Linear falloff (natural width 2)", 1),
+            ("GAUSSIAN", "Gaussian", "Soft", 2),
+            ("BLACKMAN_HARRIS", "Blackman-Harris", "Soft, with less ringing; the usual choice", 3),
+            ("MITCHELL", "Mitchell", "Slightly sharpening (natural width 4)", 4),
+            ("CATMULL_ROM", "Catmull-Rom", "Sharpening (natural width 4)", 5),
+            ("LANCZOS", "Lanczos", "Strongly sharpening, may ring (natural width 6)", 6),
+            ("BSPLINE", "B-Spline", "Very soft, never rings (natural width 4)", 7),
+        ),
+        default="BLACKMAN_HARRIS",
+    )
+    filter_width: FloatProperty(
+        name="Filter Width",
+        description="Width of the pixel filter, in pixels. Box, Gaussian and Blackman-Harris: "
+        "the number means what it means in Cycles; the others: the whole support",
+        default=1.5,
+        min=0.01,
+        max=32.0,
+        soft_max=10.0,
+        precision=2,
+    )
+    light_samples: IntProperty(
+        name="Light Samples",
+        description="Shadow rays from each shaded point to each light that has a size",
+        default=8,
+        min=1,
+        max=4096,
+        soft_max=64,
+    )
+    seed: IntProperty(
+        name="Seed",
+        description="Another number gives another pattern of noise",
+        default=0,
+        min=0,
+    )
+    animate_seed: BoolProperty(
+        name="Animate Seed",
+        description="Another pattern of noise in every frame",
+        default=False,
+        options=set(),
+    )
+    dicing_rate: FloatProperty(
+        name="Dicing Rate",
+        description="Edge length of a micropolygon, in pixels. Smaller: finer geometry and "
+        "displacement, more memory and time",
+        default=1.0,
+        min=0.05,
+        max=100.0,
+        soft_min=0.25,
+        soft_max=8.0,
+        precision=2,
+    )
+    shading_rate: FloatProperty(
+        name="Shading Rate",
+        description="Distance between shaded points, in pixels; 0 = at the micropolygons' corners",
+        default=0.0,
+        min=0.0,
+        max=100.0,
+        soft_max=8.0,
+        precision=2,
+    )
+    grid_size: IntProperty(
+        name="Grid Size",
+        description="Most micropolygons in a grid, the unit that is shaded at once",
+        default=256,
+        min=1,
+        max=65536,
+        options=set(),
+    )
+    bucket_size: IntProperty(
+        name="Bucket Size",
+        description="Edge of the square that a thread renders at a time, in pixels: a multiple of "
+        "16. It changes memory and time, never the picture",
+        default=64,
+        min=TILE_PIXELS,
+        max=1024,
+        step=TILE_PIXELS,
+        options=set(),
+        update=_round_bucket_size,
+    )
+    opacity_threshold: FloatProperty(
+        name="Opacity Threshold",
+        description="Surfaces behind this much accumulated opacity (0 to 1) are ignored; 1 = never",
+        default=0.996,
+        min=0.0,
+        max=1.0,
+        precision=3,
+    )
+    motion_steps: IntProperty(
+        name="Motion Steps",
+        description="Most moments in the shutter at which moving and deforming geometry is read, "
+        "rounded up to an odd number; between them it moves linearly",
+        default=3,
+        min=1,
+        max=129,
+        soft_max=33,
+        options=set(),
+    )
+
+
+def register():
+    bpy.utils.register_class(GranitaSceneSettings)
+    bpy.types.Scene.granita = PointerProperty(type=GranitaSceneSettings)
+
+
+def unregister():
+    del bpy.types.Scene.granita
+    bpy.utils.unregister_class(GranitaSceneSettings)

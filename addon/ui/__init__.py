@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels: Granita's own, and Blender's that serve it as they are."""
+
+from . import render_panels, stock_panels, view_layer_panels
+
+_PARTS = (render_panels, view_layer_panels, stock_panels)
+
+
+def register():
+    for part in _PARTS:
+        part.register()
+
+
+def unregister():
+    for part in reversed(_PARTS):
+        part.unregister()

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render tab: scene.granita, and the settings of Blender that have no common panel."""
+
+import bpy
+
+from .. import bridge
+from .problem import draw_problem
+
+
+def shutter_position_owner(scene):
+    """Blender 4.2 moved `motion_blur_position` out of Cycles' settings; None where neither is."""
+    for owner in (scene.render, getattr(scene, "cycles", None)):
+        if hasattr(owner, "motion_blur_position"):
+            return owner
+    return None
+
+
+class RenderPanel:
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "render"
+    COMPAT_ENGINES = {"GRANITA"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine in cls.COMPAT_ENGINES
+
+    def column(self):
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        return self.layout.column()
+
+
+class GRANITA_RENDER_PT_device(RenderPanel, bpy.types.Panel):
+    bl_label = "Granita"
+    bl_options = {"HIDE_HEADER"}
+
+    def draw(self, context):
+        column = self.column()
+        problem = bridge.problem()
+        if problem:
+            draw_problem(column, problem)
+        column.prop(context.scene.granita, "device")
+
+
+class GRANITA_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
+    bl_label = "Sampling"
+
+    def draw(self, context):
+        settings = context.scene.granita
+        column = self.column()
+        column.prop(settings, "samples")
+        column.prop(settings, "sampling")
+        if settings.sampling == "REGULAR":
+            column.prop(settings, "time_samples")
+        column.prop(settings, "light_samples")
+        column.prop(settings, "opacity_threshold")
+        row = column.row(align=True)
+        row.prop(settings, "seed")
+        row.prop(settings, "animate_seed", text="", icon="TIME")
+
+
+class GRANITA_RENDER_PT_geometry(RenderPanel, bpy.types.Panel):
+    bl_label = "Geometry"
+
+    def draw(self, context):
+        settings = context.scene.granita
+        column = self.column()
+        column.prop(settings, "dicing_rate")
+        column.prop(settings, "shading_rate")
+
+
+class GRANITA_RENDER_PT_motion_blur(RenderPanel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        scene = context.scene
+        column = self.column()
+        column.active = scene.render.use_motion_blur
+        owner = shutter_position_owner(scene)
+        if owner is not None:
+            column.prop(owner, "motion_blur_position", text="Position")
+        column.prop(scene.render, "motion_blur_shutter")
+        column.prop(scene.granita, "motion_steps")
+
+
+class GRANITA_RENDER_PT_shutter_curve(RenderPanel, bpy.types.Panel):
+    bl_label = "Shutter Curve"
+    bl_parent_id = "GRANITA_RENDER_PT_motion_blur"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        render = context.scene.render
+        column = self.layout.column()
+        column.active = render.use_motion_blur
+        column.template_curve_mapping(render, "motion_blur_shutter_curve")
+        row = column.row(align=True)
+        for shape, icon in (
+            ("SMOOTH", "SMOOTHCURVE"),
+            ("ROUND", "SPHERECURVE"),
+            ("ROOT", "ROOTCURVE"),
+            ("SHARP", "SHARPCURVE"),
+            ("LINE", "LINCURVE"),
+            ("MAX", "NOCURVE"),
+        ):
+            row.operator("render.shutter_curve_preset", icon=icon, text="").shape = shape
+
+
+class GRANITA_RENDER_PT_film(RenderPanel, bpy.types.Panel):
+    bl_label = "Film"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        settings = context.scene.granita
+        column = self.column()
+        column.prop(settings, "pixel_filter")
+        column.prop(settings, "filter_width")
+        column.prop(context.scene.render, "film_transparent", text="Transparent")
+
+
+class GRANITA_RENDER_PT_performance(RenderPanel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        render = context.scene.render
+        settings = context.scene.granita
+        column = self.column()
+        column.prop(render, "threads_mode")
+        threads = column.column()
+        threads.enabled = render.threads_mode == "FIXED"
+        threads.prop(render, "threads")
+        column.prop(settings, "bucket_size")
+        column.prop(settings, "grid_size")
+        column.prop(render, "use_persistent_data", text="Persistent Data")
+
+
+_CLASSES = (
+    GRANITA_RENDER_PT_device,
+    GRANITA_RENDER_PT_sampling,
+    GRANITA_RENDER_PT_geometry,
+    GRANITA_RENDER_PT_motion_blur,
+    GRANITA_RENDER_PT_shutter_curve,
+    GRANITA_RENDER_PT_film,
+    GRANITA_RENDER_PT_performance,
+)
+
+
+def register():
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)
