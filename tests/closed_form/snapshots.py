@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Small scenes as snapshots (docs/scene_snapshot.md), for tests against closed forms.
+
+The orthographic camera maps world x, y to raster pixels one to one and looks along +z, so geometry is given in
+pixels.  The perspective camera sits at the origin, looks along +z and has focal length `focal` in pixels.
+"""
+
+import numpy as np
+
+
+def orthographic(size, **options):
+    """Snapshot without geometry, `size` = (width, height) pixels."""
+    return _snapshot(size, {"kind": "ORTHOGRAPHIC", "scale": (1, 1), "center": (0, 0), "clip": (0.01, 1e4)}, options)
+
+
+def perspective(size, focal, center=None, clip=(0.1, 1e5), **options):
+    center = center or (size[0] / 2, size[1] / 2)
+    return _snapshot(size, {"kind": "PERSPECTIVE", "scale": (focal, focal), "center": center, "clip": clip}, options)
+
+
+def _snapshot(size, camera, options):
+    camera = {"name": "Camera", "world_from_camera": np.eye(4)[None], **camera}
+    defaults = {"pixel_filter": "BOX", "filter_width": 1.0, "film_transparent": True, "opacity_threshold": 1.0}
+    return {
+        "options": {"width": size[0], "height": size[1], **defaults, **options},
+        "camera": camera,
+        "geometries": [],
+        "instances": {"name": [], "geometry": [], "knots": [], "world_from_object": [], "slots": [], "materials": []},
+        "materials": [],
+    }
+
+
+def emission(snapshot, color=(1, 1, 1), alpha=None):
+    """Adds a material that emits `color`, mixed with Transparent by `alpha`; returns its index."""
+    nodes = [{"type": "ShaderNodeEmission", "inputs": {"Color": (*color, 1), "Strength": 1.0}}]
+    surface = (0, "Emission")
+    if alpha is not None:
+        nodes.append({"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1, 1, 1, 1)}})
+        inputs = {"Fac": float(alpha), "Shader": ("LINK", 1, "BSDF"), "Shader_001": ("LINK", 0, "Emission")}
+        nodes.append({"type": "ShaderNodeMixShader", "inputs": inputs})
+        surface = (2, "Shader")
+    index = len(snapshot["materials"])
+    snapshot["materials"].append({"name": f"Emission {index}", "nodes": nodes, "surface": surface})
+    return index
+
+
+def mesh(snapshot, points, faces, material=None, transforms=None, **extra):
+    """Adds a mesh and one instance of it.
+
+    points: [V,3] or [K,V,3]; faces: list of vertex index lists; transforms: [K,4,4] world_from_object, default identity.
+    """
+    points = np.asarray(points, np.float32)
+    if points.ndim == 2:
+        points = points[None]
+    index = len(snapshot["geometries"])
+    snapshot["geometries"].append(
+        {
+            "name": f"mesh 'Mesh {index}'",
+            "points": points,
+            "face_sizes": np.array([len(f) for f in faces], np.int32),
+            "corner_verts": np.array([v for f in faces for v in f], np.int32),
+            **extra,
+        }
+    )
+    instance(snapshot, index, material, transforms)
+    return index
+
+
+def instance(snapshot, geometry, material=None, transforms=None):
+    transforms = np.eye(4)[None] if transforms is None else np.asarray(transforms, float)
+    table = snapshot["instances"]
+    table["name"].append(f"Object {len(table['name'])}")
+    table["geometry"].append(geometry)
+    table["knots"].append(len(transforms))
+    table["world_from_object"].extend(transforms)
+    table["slots"].append(1)
+    table["materials"].append(-1 if material is None else material)
+
+
+def rectangle(x0, y0, x1, y1, z=1.0):
+    return [(x0, y0, z), (x1, y0, z), (x1, y1, z), (x0, y1, z)]
+
+
+def quad(snapshot, points, material=None, **kwargs):
+    return mesh(snapshot, points, [(0, 1, 2, 3)], material, **kwargs)
+
+
+def disc(radius, center=(0, 0), z=1.0, sides=512):
+    """A regular polygon of the disc's area: its outline is within radius * 2e-5 of the circle's for 512 sides."""
+    angle = np.arange(sides) * 2 * np.pi / sides
+    r = radius * np.sqrt(2 * np.pi / sides / np.sin(2 * np.pi / sides))
+    x, y = center[0] + r * np.cos(angle), center[1] + r * np.sin(angle)
+    return np.stack([x, y, np.full_like(x, z)], 1), [tuple(range(sides))]
+
+
+def translation(x, y=0.0, z=0.0):
+    m = np.eye(4)
+    m[:3, 3] = (x, y, z)
+    return m
+
+
+def render(snapshot):
+    import granita_core
+
+    table = snapshot["instances"]
+    packed = {
+        "name": table["name"],
+        "geometry": np.array(table["geometry"], np.int32),
+        "knots": np.array(table["knots"], np.int32),
+        "world_from_object": np.array(table["world_from_object"], float).reshape(-1, 4, 4),
+        "slots": np.array(table["slots"], np.int32),
+        "materials": np.array(table["materials"], np.int32),
+    }
+    return granita_core.render({**snapshot, "instances": packed})
+
+
+def alpha(snapshot):
+    """The alpha channel, [h,w]."""
+    return render(snapshot)["combined"][..., 3]

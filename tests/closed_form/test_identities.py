@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The picture is a function of the scene and the sample table: metamorphic identities, bit for bit (design, section 1)."""
+
+import numpy as np
+import pytest
+import snapshots as s
+
+
+def busy_scene(executor, **options):
+    """Moving, transparent, overlapping and lens-blurred things in perspective."""
+    random = np.random.default_rng(7)
+    options = {"samples": 16, "pixel_filter": "MITCHELL", "filter_width": 4.0, **options}
+    snapshot = s.perspective((96, 72), 90.0, executor=executor, **options)
+    snapshot["camera"].update(lens_radius=0.02, focus_distance=4.0)
+    materials = [s.emission(snapshot, c, a) for c, a in [((1, 0.2, 0), None), ((0, 1, 0.3), 0.4), ((0.1, 0.2, 1), None)]]
+    for i in range(24):
+        z = random.uniform(2, 8)
+        center = random.uniform(-0.5, 0.5, 2) * z
+        corners = center + random.uniform(-0.8, 0.8, (4, 2))
+        points = np.concatenate([corners, z + random.uniform(-0.4, 0.4, (4, 1))], 1)
+        motion = random.uniform(-0.3, 0.3, 3) if i % 2 else np.zeros(3)
+        s.quad(snapshot, points, materials[i % 3], transforms=[s.translation(*-motion), s.translation(*motion)])
+    return snapshot
+
+
+@pytest.mark.parametrize(
+    "change", [{"bucket_size": 16}, {"bucket_size": 128}, {"threads": 1}, {"threads": 3}], ids=str
+)
+def test_buckets_and_threads_change_no_bit(executor, change):
+    base = s.render(busy_scene(executor))["combined"]
+    assert np.ptp(base[..., 3]) > 0.5
+    assert np.array_equal(base, s.render(busy_scene(executor, **change))["combined"])
+
+
+@pytest.mark.parametrize("crop", [(0, 0, 96, 1), (13, 17, 64, 41), (95, 71, 96, 72)])
+def test_crop_changes_no_bit(executor, crop):
+    whole = s.render(busy_scene(executor))["combined"]
+    part = s.render(busy_scene(executor, crop=np.array(crop, np.int32)))["combined"]
+    assert np.array_equal(whole[crop[1] : crop[3], crop[0] : crop[2]], part)
+
+
+def test_hidden_and_off_screen_geometry_changes_no_bit(executor):
+    """M6: things behind an opaque wall, off screen, behind the camera, or degenerate."""
+
+    def scene(extra):
+        snapshot = busy_scene(executor)
+        wall = s.emission(snapshot, (0.3, 0.3, 0.3))
+        s.quad(snapshot, [(-90, -90, 20), (90, -90, 20), (90, 90, 20), (-90, 90, 20)], wall)
+        if extra:
+            for dx, dz in [(0, 30), (500, 3), (0, -5)]:
+                s.quad(snapshot, [(dx - 1, -1, dz), (dx + 1, -1, dz), (dx + 1, 1, dz), (dx - 1, 1, dz)], wall)
+            s.quad(snapshot, [(0, 0, 3)] * 4, wall)
+        return s.render(snapshot)["combined"]
+
+    assert np.array_equal(scene(False), scene(True))
+
+
+def test_order_of_objects_changes_no_bit(executor):
+    """M8 holds where identities do: each object keeps its key."""
+
+    def scene(reverse):
+        snapshot = s.orthographic((32, 32), samples=16, executor=executor)
+        items = [(s.rectangle(2 + i, 3 + i, 20 + i, 18 + i, 10 - i), (i / 5, 1 - i / 5, 0.5)) for i in range(6)]
+        for points, color in reversed(items) if reverse else items:
+            s.quad(snapshot, points, s.emission(snapshot, color))
+        return s.render(snapshot)["combined"]
+
+    assert np.array_equal(scene(False), scene(True))
+
+
+def test_far_from_the_origin_nothing_changes(executor):
+    """Case 48: camera and scene shifted by 1e8 m together; differences are composed in double, relative to the camera."""
+
+    def scene(shift):
+        snapshot = s.perspective((48, 48), 40.0, samples=16, executor=executor)
+        offset = np.array([shift, -shift, 0.5 * shift])
+        snapshot["camera"]["world_from_camera"] = s.translation(*offset)[None]
+        motion = [s.translation(*(offset + (-0.25, 0, 4))), s.translation(*(offset + (0.25, 0.125, 4)))]
+        s.quad(snapshot, s.rectangle(-1, -1, 1, 1, 0), s.emission(snapshot), transforms=motion)
+        return s.render(snapshot)["combined"]
+
+    assert np.array_equal(scene(0.0), scene(2.0**26))
+
+
+def test_area_and_centroid_of_anything_translating(executor):
+    """I0 and I1: with a box filter, the sum of alpha is the projected area, the centroid moves by the mean motion."""
+    snapshot = s.orthographic((64, 64), samples=256, executor=executor)
+    points = [(10, 12, 1), (25, 9, 1), (30, 28, 1), (18, 22, 1), (8, 30, 1)]  # concave
+    transforms = [s.translation(0, 0), s.translation(12, 20)]
+    s.mesh(snapshot, points, [(0, 1, 2, 3, 4)], s.emission(snapshot), transforms=transforms)
+    image = s.alpha(snapshot)
+    p = np.array(points)[:, :2]
+    x, y = p.T
+    cross = x * np.roll(y, -1) - np.roll(x, -1) * y
+    area = cross.sum() / 2
+    center = np.array([((x + np.roll(x, -1)) * cross).sum(), ((y + np.roll(y, -1)) * cross).sum()]) / (6 * area)
+    assert abs(image.sum() - area) <= 2e-3 * area
+    ys, xs = np.mgrid[0:64, 0:64] + 0.5
+    found = np.array([(image * xs).sum(), (image * ys).sum()]) / image.sum()
+    assert np.abs(found - center - (6, 10)).max() <= 0.02
