@@ -52,15 +52,11 @@ def problem():
 
 
 def _why_missing():
-    here = (
-        f"Python {sys.version_info.major}.{sys.version_info.minor} ({sys.implementation.cache_tag})"
-    )
+    here = f"Python {sys.version_info.major}.{sys.version_info.minor}"
     folders = [Path(__file__).parent, *(Path(entry) for entry in sys.path if entry)]
     found = sorted({file.name for folder in folders for file in folder.glob(f"{MODULE}.*")})
     if found:
-        return (
-            f"the native module {found[0]} was built for another Python: this Blender runs {here}"
-        )
+        return f"the native module {found[0]} is not for {here}, which runs here"
     return f"the native module {MODULE} is not installed: install a Granita package for {here}"
 
 

@@ -19,6 +19,7 @@ ENGINE_ID = "GRANITA"
 _EXPLAINED = (
     ExportError,
     bridge.NativeModuleMissing,
+    bridge.DeviceError,
     bridge.RenderError,
     command_line.CommandLineError,
     final_render.SettingsError,
@@ -44,7 +45,9 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph):
         try:
-            final_render.render(self, depsgraph, self.frame_statistics)
+            options = command_line.parse()
+            self.frame_statistics.open(options.stats)
+            final_render.FinalRender(self, depsgraph, options).run(self.frame_statistics)
         except Cancelled:
             self.frame_statistics.discard()
             if not self.test_break():
@@ -59,7 +62,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
 
     def render_frame_finish(self):
         try:
-            self.frame_statistics.write(command_line.parse().stats)
+            self.frame_statistics.write()
         except _EXPLAINED as error:
             self._fail(str(error))
 

@@ -7,7 +7,7 @@ threads and hands finished tiles over through one queue, waited for with the GIL
 
 from time import perf_counter
 
-from . import bridge, command_line, frame_statistics, passes
+from . import bridge, passes
 from .export import export_frame
 from .export.report import Cancelled, Report
 from .status_line import StatusLine
@@ -20,106 +20,104 @@ class SettingsError(Exception):
     """The scene asks for what Granita cannot do; the text names it."""
 
 
-def render(engine, depsgraph, statistics):
-    """Renders `depsgraph`'s view layer into `engine`'s result and adds its cost to `statistics`.
+class FinalRender:
+    """Lives for one call of the engine's `render()`.
 
-    Raises Cancelled, or an exception whose text names the cause.
+    `run` raises Cancelled, or an exception whose text names the cause; what the frame survived has
+    then been told to the artist.
     """
-    started = perf_counter()
-    options = command_line.parse()
-    if options.stats:
-        frame_statistics.check_writable(options.stats)
-    bridge.load()
-    scene = depsgraph.scene
-    if scene.render.use_multiview:
-        raise SettingsError(f"scene '{scene.name}': stereoscopy is not supported")
 
-    status = StatusLine(engine)
-    report = Report()
-
-    def check_cancel():
-        if engine.test_break():
-            raise Cancelled
-        status.exporting()
-
-    try:
-        layer = _Layer(depsgraph)
-        settings = depsgraph.scene_eval.granita
-        snapshot = export_frame(engine, depsgraph, settings, report, check_cancel)
-        _apply(options, snapshot["options"])
-        seconds = {"export": perf_counter() - started}
-        if not scene.render.use_persistent_data:
-            # From here on nothing may touch the depsgraph.
-            engine.free_blender_memory()
-        job = _render_somewhere(engine, layer, snapshot, seconds, report, status)
-        seconds["total"] = perf_counter() - started
-        warnings = report.entries() + job.warnings()
-        statistics.add_layer(layer, snapshot["options"], job, seconds, warnings)
-    finally:
-        _tell(engine, report.entries())
-
-
-class _Layer:
-    """What is needed of the view layer after Blender's memory was freed."""
-
-    def __init__(self, depsgraph):
-        self.name = depsgraph.view_layer.name
-        self.scene_name = depsgraph.scene.name
+    def __init__(self, engine, depsgraph, options):
+        """`options`: of the command line; they win over the file."""
+        self.engine = engine
+        self.depsgraph = depsgraph
+        self.options = options
+        self.scene = depsgraph.scene.name
+        self.layer = depsgraph.view_layer.name
         self.passes = passes.wanted(depsgraph.view_layer)
+        self.status = StatusLine(engine)
+        self.report = Report()
+        self.seconds = {}
 
+    def run(self, statistics):
+        """Renders into the engine's result and adds the cost to `statistics`."""
+        started = perf_counter()
+        bridge.load()
+        try:
+            snapshot = self._export()
+            job = self._render(snapshot)
+            self.seconds["total"] = perf_counter() - started
+            warnings = self.report.entries() + job.warnings()
+            statistics.add_layer(self, snapshot["options"], job, warnings)
+        finally:
+            self._tell(self.report.entries())
 
-def _apply(command_line_options, snapshot_options):
-    """The command line wins over the file."""
-    if command_line_options.device is not None:
-        snapshot_options["device"] = command_line_options.device
-    if command_line_options.threads is not None:
-        snapshot_options["threads"] = command_line_options.threads
+    def _export(self):
+        started = perf_counter()
+        render = self.depsgraph.scene.render
+        if render.use_multiview:
+            raise SettingsError(f"scene '{self.scene}': stereoscopy is not supported")
 
+        settings = self.depsgraph.scene_eval.granita
+        snapshot = export_frame(self.engine, self.depsgraph, settings, self.report, self._exporting)
+        if self.options.device is not None:
+            snapshot["options"]["device"] = self.options.device
+        if self.options.threads is not None:
+            snapshot["options"]["threads"] = self.options.threads
 
-def _render_somewhere(engine, layer, snapshot, seconds, report, status):
-    """On the device asked for; without a usable one on the CPU, which is said when it was asked for."""
-    try:
-        return _run(engine, layer, snapshot, seconds, report, status)
-    except bridge.DeviceError as error:
-        asked = snapshot["options"]["device"]
-        if asked == "CPU":
-            raise bridge.RenderError(str(error)) from error
-        if asked == "GPU":
-            report.warn(
-                f"scene '{layer.scene_name}'", f"rendered on the CPU, no usable GPU: {error}"
-            )
-    snapshot["options"]["device"] = "CPU"
-    return _run(engine, layer, snapshot, seconds, report, status)
+        self.depsgraph = None  # the next call frees it
+        if not render.use_persistent_data:
+            self.engine.free_blender_memory()
+        self.seconds["export"] = perf_counter() - started
+        return snapshot
 
+    def _exporting(self):
+        """Called often by the export."""
+        if self.engine.test_break():
+            raise Cancelled
+        self.status.exporting()
 
-def _run(engine, layer, snapshot, seconds, report, status):
-    """Runs one native job to its end and returns it."""
-    started = perf_counter()
-    job = None
-    try:
-        with bridge.rendering(snapshot) as job:
-            seconds["scene"] = perf_counter() - started
-            origin = snapshot["options"]["crop"][:2]
-            while not job.done():
-                _deliver(engine, job, POLL_SECONDS, layer, origin)
-                if engine.test_break():
-                    raise Cancelled
-                engine.update_progress(job.fraction)
-                status.rendering(job)
-            _deliver(engine, job, 0.0, layer, origin)
-    finally:
-        if job is not None:
-            _tell(engine, job.warnings())
-    seconds["render"] = perf_counter() - started - seconds["scene"]
-    return job
+    def _render(self, snapshot):
+        """On the device asked for; on the CPU where that is not to be had, which is said if it was
+        asked for by name."""
+        try:
+            return self._run_job(snapshot)
+        except bridge.DeviceError as error:
+            asked = snapshot["options"]["device"]
+            if asked == "CPU":
+                raise
+            if asked == "GPU":
+                message = f"rendered on the CPU, no usable GPU: {error}"
+                self.report.warn(f"scene '{self.scene}'", message)
+        snapshot["options"]["device"] = "CPU"
+        return self._run_job(snapshot)
 
+    def _run_job(self, snapshot):
+        """Runs one native job to its end and returns it."""
+        started = perf_counter()
+        job = None
+        try:
+            with bridge.rendering(snapshot) as job:
+                self.seconds["scene"] = perf_counter() - started
+                origin = snapshot["options"]["crop"][:2]
+                while not job.done():
+                    self._deliver(job.take_tiles(POLL_SECONDS), origin)
+                    if self.engine.test_break():
+                        raise Cancelled
+                    self.engine.update_progress(job.fraction)
+                    self.status.rendering(job)
+                self._deliver(job.take_tiles(0.0), origin)
+        finally:
+            if job is not None:
+                self._tell(job.warnings())
+        self.seconds["render"] = perf_counter() - started - self.seconds["scene"]
+        return job
 
-def _tell(engine, warnings):
-    for datablock, message, count in warnings:
-        times = f" ({count} times)" if count > 1 else ""
-        engine.report({"WARNING"}, f"{datablock}: {message}{times}")
+    def _deliver(self, tiles, origin):
+        for tile in tiles:
+            passes.deliver(self.engine, tile, self.passes, self.layer, origin)
 
-
-def _deliver(engine, job, seconds, layer, origin):
-    for tile in job.take_tiles(seconds):
-        passes.deliver(engine, tile, layer.passes, layer.name, origin)
+    def _tell(self, warnings):
+        for datablock, message, count in warnings:
+            times = f" ({count} times)" if count > 1 else ""
+            self.engine.report({"WARNING"}, f"{datablock}: {message}{times}")

@@ -23,18 +23,26 @@ class FrameStatistics:
     """Collects the view layers of a frame, then writes them as one line."""
 
     def __init__(self):
+        self._path = None
         self._record = None
 
-    def add_layer(self, layer, options, job, seconds, warnings):
+    def open(self, path):
+        """`path` of the file to append to, or None.  Raises StatisticsFileError at once, before a
+        frame is spent on a file that cannot be written."""
+        self._path = path
+        if path is not None:
+            self._append("")
+
+    def add_layer(self, layer, options, job, warnings):
         """Adds a finished native job.
 
-        `layer`: has name and scene_name; `options`: the snapshot's; `seconds`: by name;
+        `layer`: has layer, scene (names) and seconds (by name); `options`: the snapshot's;
         `warnings`: triples (datablock, message, count).
         """
         if self._record is None or self._record["frame"] != options["frame"]:
             self._record = {
                 "frame": int(options["frame"]),
-                "scene": layer.scene_name,
+                "scene": layer.scene,
                 "view_layers": [],
                 "width": int(options["width"]),
                 "height": int(options["height"]),
@@ -45,8 +53,8 @@ class FrameStatistics:
                 "warnings": [],
             }
         record = self._record
-        record["view_layers"].append(layer.name)
-        for name, value in seconds.items():
+        record["view_layers"].append(layer.layer)
+        for name, value in layer.seconds.items():
             record["seconds"][name] = record["seconds"].get(name, 0.0) + value
         for name, value in job.statistics().items():
             merge = max if name.startswith("peak_") else sum
@@ -59,30 +67,21 @@ class FrameStatistics:
         """Forgets a frame that was not finished."""
         self._record = None
 
-    def write(self, path):
-        """Appends the frame to `path` ("" or None: nowhere) and starts anew.
-
-        Raises StatisticsFileError.
-        """
+    def write(self):
+        """Appends the frame to the file and starts anew.  Raises StatisticsFileError."""
         record, self._record = self._record, None
-        if record is not None and path:
+        if record is not None and self._path is not None:
             record["peak_resident_bytes"] = _peak_resident_bytes()
-            _append(path, json.dumps(record, default=float) + "\n")
+            self._append(json.dumps(record, default=float) + "\n")
 
-
-def check_writable(path):
-    """Raises StatisticsFileError before a frame is spent on a file that cannot be written."""
-    _append(path, "")
-
-
-def _append(path, text):
-    try:
-        with open(path, "a", encoding="utf-8") as file:
-            file.write(text)
-    except OSError as error:
-        raise StatisticsFileError(
-            f"statistics file '{path}' cannot be written: {error.strerror}"
-        ) from error
+    def _append(self, text):
+        try:
+            with open(self._path, "a", encoding="utf-8") as file:
+                file.write(text)
+        except OSError as error:
+            raise StatisticsFileError(
+                f"statistics file '{self._path}' cannot be written: {error.strerror}"
+            ) from error
 
 
 def _peak_resident_bytes():

@@ -27,7 +27,7 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
             (
                 "GPU",
                 "GPU",
-                "The graphics card through OpenGL 4.5; without one the CPU, with a warning",
+                "OpenGL 4.5; without it the CPU, with a warning",
                 2,
             ),
         ),
@@ -51,13 +51,13 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
             (
                 "INTERLEAVED",
                 "Interleaved",
-                "A few hundred times and lens points, spread over neighbouring pixels",
+                "A few hundred times and lens points, shared",
                 1,
             ),
             (
                 "REGULAR",
                 "Regular",
-                "A square lattice in the pixel, repeated at each of the time samples",
+                "The same square lattice at every time sample",
                 2,
             ),
         ),
