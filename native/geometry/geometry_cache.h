@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the instances of a geometry share, built when the first of them asks.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "base/report.h"
+#include "geometry/shared_geometry.h"
+#include "math/bounds.h"
+#include "scene/scene.h"
+
+namespace granita {
+
+/// Thread-safe; one a frame.
+class GeometryCache {
+  public:
+    /// Object-space boxes of the finite points, one a knot of the geometry.
+    std::shared_ptr<const std::vector<Bounds3f>> boxes(const Scene& scene, std::size_t geometry);
+    std::shared_ptr<const SharedGeometry> shared(const Scene& scene, std::size_t geometry,
+                                                 Report& report);
+
+  private:
+    struct Entry {
+        std::once_flag boxes_once, shared_once;
+        std::shared_ptr<const std::vector<Bounds3f>> boxes;
+        std::shared_ptr<const SharedGeometry> shared;
+    };
+    Entry& entry(std::size_t geometry);
+
+    std::mutex m_mutex;
+    std::map<std::size_t, Entry> m_entries;
+};
+
+}  // namespace granita

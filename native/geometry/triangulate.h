@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A polygon in space as triangles: ears are cut on its best-fit plane, so that concave polygons are
+// filled exactly once (Meisters 1975).
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace granita {
+
+struct Triangulation {
+    /// Corner numbers of the polygon, counter-clockwise as the polygon; always n - 2 of them.
+    std::vector<std::array<int, 3>> triangles;
+    /// False: the polygon crosses itself or has no area; the triangles are then a fan.
+    bool simple = true;
+};
+
+/// Twice the area times the unit normal of a closed polygon, planar or not (Newell's sum).
+Vec3d newell_normal(std::span<const Vec3f> polygon);
+
+/// Four corners in convex position as seen along their own normal: a bilinear patch does not fold.
+bool is_convex_quad(std::span<const Vec3f> quad);
+
+/// `polygon` has n >= 3 finite corners.
+Triangulation triangulate(std::span<const Vec3f> polygon);
+
+}  // namespace granita
