@@ -25,14 +25,17 @@ struct Lobe {
     LobeKind kind = LobeKind::Diffuse;
     Distribution distribution = Distribution::Ggx;
     FresnelKind fresnel = FresnelKind::None;
-    bool multiscatter = false;     ///< glossy: energy compensation as Cycles' MULTI_GGX
-    bool burley = false;  ///< diffuse: Burley's (2012) retro-reflection with `roughness`, as
-                          ///< Principled before Blender 4
-    std::vector<Vec3f> weight;     ///< [n]
-    std::vector<Vec3f> normal;     ///< [n] unit, facing the viewer as Cycles ensures
+    bool multiscatter = false;       ///< glossy: energy compensation as Cycles' MULTI_GGX
+    bool separable_masking = false;  ///< glossy: Smith's masking of view and light multiplied, as
+                                     ///< Cycles before Blender 4; else height-correlated
+    bool burley = false;        ///< diffuse: Burley's (2012) retro-reflection with `roughness`, as
+                                ///< Principled before Blender 4
+    std::vector<Vec3f> weight;  ///< [n]
+    std::vector<Vec3f> normal;  ///< [n] unit, facing the viewer as Cycles ensures
     std::vector<float> roughness;  ///< [n] diffuse: Oren-Nayar sigma socket; glossy: the socket's
                                    ///< value (alpha = roughness^2)
-    std::vector<Vec3f> f0, f90;    ///< [n] empty for FresnelKind::None
+    std::vector<Vec3f> f0, f90;    ///< [n] FresnelKind::None and diffuse lobes: f90 empty, f0 empty
+                                   ///< or the lobe's colour, which energy compensation saturates
     std::vector<float> ior;        ///< [n] Dielectric only
 };
 

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light that arrives straight from lamps and the world and leaves along the view: the lighting of
+// a grid (design, section 6).
+//
+//   DirectLight light(scene, world, statistics, report, progress);   // once a frame
+//   radiance = light.reflect(points, closure, grid.key);             // any thread, any grid
+//
+// Soft lights and lobes are both sampled and combined by the balance heuristic over all samples of
+// a point (Veach 1997, 9.2.2), so that mirrors see lamps and rough surfaces see small suns without
+// fireflies.  `Options::light_samples` is the number of samples a soft light, a world image and all
+// lobes together take at a point; hard lights take one.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/report.h"
+#include "base/statistics.h"
+#include "dice/grid.h"
+#include "scene/scene.h"
+#include "shade/environment.h"
+#include "shade/lobe.h"
+#include "shade/shadow_opacity.h"
+
+namespace granita {
+
+class DirectLight {
+  public:
+    /// Bakes the world and, if any light or the world shines, builds the ray scene.  `world` is kept
+    /// and called from any thread; the scene must outlive this.  Without `opacity` every surface
+    /// casts a full shadow.  Throws Cancelled.
+    DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics, Report& report,
+                const Progress& progress, ShadowOpacity opacity = {});
+    ~DirectLight();
+
+    /// Radiance reflected by the closure's lobes towards the view, [points.count].
+    std::vector<Vec3f> reflect(const ShadingPoints& points, const SurfaceClosure& closure,
+                               const GridKey& seed) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace granita

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Values are built from the first node to the last, once a shift; closures from the last to the
+// first, so that a node shared by several mixes has all its weight when its turn comes.  No
+// recursion: graphs come thousands of nodes deep.  What no result needs is dropped at the end by
+// Program, so a slice is nothing but another set of roots.
+#include "shade/node_compiler.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "shade/node_registry.h"
+
+namespace granita {
+
+namespace {
+
+std::vector<bool> reachable_nodes(const NodeGraph& graph, const std::string& owner) {
+    std::vector<bool> reachable(graph.nodes.size());
+    const auto check = [&](const NodeLink& link, std::size_t limit) {
+        if (link.node < 0 || static_cast<std::size_t>(link.node) >= limit)
+            throw SceneError(owner, "a node link does not point to an earlier node");
+        reachable[link.node] = true;
+    };
+    if (graph.surface.node >= 0) check(graph.surface, graph.nodes.size());
+    for (std::size_t i = graph.nodes.size(); i-- > 0;) {
+        if (!reachable[i]) continue;
+        for (const auto& [name, input] : graph.nodes[i].inputs) {
+            if (const auto* link = std::get_if<NodeLink>(&input)) check(*link, i);
+        }
+    }
+    return reachable;
+}
+
+/// Magenta is what Cycles shows where something is missing; unknown values are neutral instead, so
+/// that one exotic node does not spoil a material.
+void warn_about_kin(NodeBuilder& b, const NodeKind* kind) {
+    const std::string& type = b.node().type;
+    if (!kind) {
+        b.warn(type + " is not supported; its outputs are zero");
+    } else if (kind->kin) {
+        b.warn(type + " is not supported; rendered as " + kind->kin);
+    }
+}
+
+void push_root(std::vector<int>& roots, int slot) {
+    if (slot >= 0) roots.push_back(slot);
+}
+
+std::vector<int> roots_of(const SurfaceSources& sources) {
+    std::vector<int> roots;
+    push_root(roots, sources.emission.slot);
+    push_root(roots, sources.transparency.slot);
+    for (const LobeSource& lobe : sources.lobes) {
+        for (const int slot : {lobe.weight.slot, lobe.normal.slot, lobe.roughness.slot,
+                               lobe.f0.slot, lobe.f90.slot, lobe.ior.slot})
+            push_root(roots, slot);
+    }
+    return roots;
+}
+
+/// Keeps the requests that some live load reads; a shifted load asks for derivatives.
+std::vector<AttributeRequest> used_requests(std::vector<AttributeRequest> all,
+                                            std::vector<Program*> programs) {
+    std::vector<bool> used(all.size());
+    for (const Program* program : programs) {
+        for (const Load& load : program->loads()) {
+            used[load.request] = true;
+            if (load.shift != Shift::None) all[load.request].derivatives = true;
+        }
+    }
+    std::vector<AttributeRequest> kept;
+    std::vector<int> number(all.size(), -1);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!used[i]) continue;
+        number[i] = static_cast<int>(kept.size());
+        kept.push_back(all[i]);
+    }
+    for (Program* program : programs) program->renumber_requests(number);
+    return kept;
+}
+
+}  // namespace
+
+CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, TextureStore& textures,
+                                Report& report, const std::string& owner, bool is_world) {
+    ProgramBuilder builder{.scene = scene,
+                           .textures = textures,
+                           .report = report,
+                           .owner = owner,
+                           .is_world = is_world};
+    builder.outputs.resize(graph.nodes.size());
+    const std::vector<bool> reachable = reachable_nodes(graph, owner);
+
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+        if (!reachable[i]) continue;
+        const NodeKind* kind = find_node_kind(graph.nodes[i].type);
+        // The shifted values first: the value at the point may need their differences.
+        for (const Shift shift : {Shift::U, Shift::V, Shift::None}) {
+            NodeBuilder b(builder, graph.nodes[i], i, shift);
+            if (shift == Shift::None) warn_about_kin(b, kind);
+            if (kind && kind->build) kind->build(b);
+        }
+    }
+
+    SurfaceBuilder surface(graph.nodes.size());
+    if (graph.surface.node >= 0) {
+        const auto root = static_cast<std::size_t>(graph.surface.node);
+        NodeBuilder b(builder, graph.nodes[root], root, Shift::None);
+        surface.add_weight(b, graph.surface, {-1, 1.0f});
+    }
+    for (std::size_t i = graph.nodes.size(); i-- > 0;) {
+        if (surface.weight(i).is(0.0f)) continue;
+        NodeBuilder b(builder, graph.nodes[i], i, Shift::None);
+        const NodeKind* kind = find_node_kind(graph.nodes[i].type);
+        if (kind && kind->build_closure) {
+            kind->build_closure(b, surface, surface.weight(i));
+        } else if (kind && kind->build) {
+            // A colour in a shader socket emits, as in Blender.
+            const NodeOutputs& outputs = builder.outputs[i][0];
+            const auto found = outputs.find(surface.output(i));
+            if (found == outputs.end()) continue;
+            const NodeOutput& from = found->second;
+            const VectorSource color =
+                from.kind == SocketKind::Number
+                    ? b.map<Vec3f>([](float x) { return Vec3f(x); }, from.number)
+                    : from.vector;
+            surface.add_emission(b, scaled(b, color, surface.weight(i)));
+        }
+    }
+
+    CompiledSurface compiled;
+    compiled.radiance.sources = surface.sources();
+    compiled.radiance.program = Program(builder.loads, builder.steps, builder.floats_a_point,
+                                        roots_of(compiled.radiance.sources));
+    compiled.transparency = surface.sources().transparency;
+    std::vector<int> opacity_roots;
+    push_root(opacity_roots, compiled.transparency.slot);
+    compiled.opacity_program =
+        Program(builder.loads, builder.steps, builder.floats_a_point, opacity_roots);
+    compiled.requests =
+        used_requests(builder.requests, {&compiled.radiance.program, &compiled.opacity_program});
+    return compiled;
+}
+
+}  // namespace granita

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The build functions of all nodes, one file a node or a family; node_registry.cpp names them.
+#pragma once
+
+#include "shade/surface_builder.h"
+
+namespace granita {
+
+// closures
+void build_emission(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_background(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_diffuse(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_glossy(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_transparent(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_mix_shader(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_add_shader(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_principled(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+
+// values
+void build_image_texture(NodeBuilder&);
+void build_environment_texture(NodeBuilder&);
+void build_uv_map(NodeBuilder&);
+void build_texture_coordinate(NodeBuilder&);
+void build_geometry(NodeBuilder&);
+void build_mapping(NodeBuilder&);
+void build_mix_rgb(NodeBuilder&);
+void build_mix(NodeBuilder&);
+void build_math(NodeBuilder&);
+void build_vector_math(NodeBuilder&);
+void build_map_range(NodeBuilder&);
+void build_clamp(NodeBuilder&);
+void build_color_ramp(NodeBuilder&);
+void build_rgb_curves(NodeBuilder&);
+void build_normal_map(NodeBuilder&);
+void build_bump(NodeBuilder&);
+void build_attribute(NodeBuilder&);
+void build_color_attribute(NodeBuilder&);
+void build_value(NodeBuilder&);
+void build_rgb(NodeBuilder&);
+void build_separate_color(NodeBuilder&);
+void build_combine_color(NodeBuilder&);
+void build_separate_xyz(NodeBuilder&);
+void build_combine_xyz(NodeBuilder&);
+void build_gamma(NodeBuilder&);
+void build_invert(NodeBuilder&);
+void build_bright_contrast(NodeBuilder&);
+void build_hue_saturation(NodeBuilder&);
+void build_rgb_to_bw(NodeBuilder&);
+void build_fresnel(NodeBuilder&);
+void build_layer_weight(NodeBuilder&);
+void build_light_path(NodeBuilder&);
+void build_object_info(NodeBuilder&);
+void build_camera_data(NodeBuilder&);
+void build_checker(NodeBuilder&);
+void build_gradient(NodeBuilder&);
+void build_noise(NodeBuilder&);
+
+}  // namespace granita

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/shading_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace granita {
+
+Mat4d matrix_at(const std::vector<Mat4d>& knots, double time) {
+    if (knots.empty()) return Mat4d(1.0);
+    const double place = std::clamp(time, 0.0, 1.0) * static_cast<double>(knots.size() - 1);
+    const auto before = std::min(static_cast<std::size_t>(place), knots.size() - 1);
+    const auto after = std::min(before + 1, knots.size() - 1);
+    const double t = place - static_cast<double>(before);
+    if (t == 0.0) return knots[before];
+    return knots[before] * (1.0 - t) + knots[after] * t;
+}
+
+ShadingCamera::ShadingCamera(const Scene& scene)
+    : world_from_camera(matrix_at(scene.camera.world_from_camera, scene.options.frame_time)),
+      perspective(scene.camera.projection.perspective) {}
+
+ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
+    const auto n = static_cast<std::size_t>(grid.vertex_count());
+    const Mat3f rotation(camera.world_from_camera);
+    ShadingPoints points;
+    points.count = n;
+    points.p.resize(n);
+    points.normal.resize(n);
+    points.geometric_normal.resize(n);
+    points.view.resize(n);
+    points.dp_du.resize(n);
+    points.dp_dv.resize(n);
+    points.backfacing.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec3f& p = grid.shading_p()[i];
+        const float length = glm::length(p);
+        const Vec3f view = camera.perspective && length > 0.0f ? -p / length : Vec3f(0, 0, -1);
+        // The surface itself decides which side is seen; the shading normal follows (Cycles).
+        const float side = glm::dot(grid.geometric_normal[i], view) < 0.0f ? -1.0f : 1.0f;
+        points.p[i] = rotation * p;
+        points.normal[i] = rotation * grid.normal[i] * side;
+        points.geometric_normal[i] = rotation * grid.geometric_normal[i] * side;
+        points.view[i] = rotation * view;
+        points.dp_du[i] = rotation * grid.dp_du[i];
+        points.dp_dv[i] = rotation * grid.dp_dv[i];
+        points.backfacing[i] = side < 0.0f;
+    }
+    return points;
+}
+
+}  // namespace granita

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/shading_system.h"
+
+#include <algorithm>
+
+#include "shade/direct_light.h"
+#include "shade/node_compiler.h"
+#include "shade/shading_points.h"
+
+namespace granita {
+
+namespace {
+
+/// Blender's look for a slot without a material.
+NodeGraph default_material() {
+    NodeGraph graph;
+    Node diffuse{"ShaderNodeBsdfDiffuse", "Default", {}, {}};
+    diffuse.inputs["Color"] = Vec4f(0.8f, 0.8f, 0.8f, 1.0f);
+    graph.nodes.push_back(std::move(diffuse));
+    graph.surface = {0, "BSDF"};
+    return graph;
+}
+
+template <class T>
+std::vector<T> values_of(const Run& run, const Source<T>& source) {
+    const Column<T> column = run.read(source);
+    std::vector<T> values(run.count());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = column[i];
+    return values;
+}
+
+SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources) {
+    SurfaceClosure closure;
+    for (const LobeSource& from : sources.lobes) {
+        Lobe lobe;
+        lobe.kind = from.kind;
+        lobe.distribution = from.distribution;
+        lobe.fresnel = from.fresnel;
+        lobe.multiscatter = from.multiscatter;
+        lobe.separable_masking = from.separable_masking;
+        lobe.burley = from.burley;
+        lobe.weight = values_of(run, from.weight);
+        lobe.normal = values_of(run, from.normal);
+        lobe.roughness = values_of(run, from.roughness);
+        if (from.fresnel != FresnelKind::None || from.multiscatter)
+            lobe.f0 = values_of(run, from.f0);
+        if (from.fresnel != FresnelKind::None) lobe.f90 = values_of(run, from.f90);
+        if (from.fresnel == FresnelKind::Dielectric) lobe.ior = values_of(run, from.ior);
+        closure.lobes.push_back(std::move(lobe));
+    }
+    if (!sources.emission.is(Vec3f(0.0f))) closure.emission = values_of(run, sources.emission);
+    if (!sources.transparency.is(Vec3f(0.0f)))
+        closure.transparency = values_of(run, sources.transparency);
+    return closure;
+}
+
+}  // namespace
+
+struct ShadingSystem::Impl {
+    const Scene& scene;
+    Statistics& statistics;
+    TextureStore textures;
+    ShadingCamera camera;
+    std::vector<CompiledSurface> materials;  ///< [materials + 1]
+    std::vector<std::vector<AttributeRequest>> requests;
+    std::vector<DisplacementHook> displacement;
+    CompiledSurface world;
+    std::unique_ptr<DirectLight> light;
+
+    Impl(const Scene& s, Statistics& stats, Report& report, const Progress& progress)
+        : scene(s), statistics(stats), textures(s, stats, report), camera(s) {
+        for (const Material& material : scene.materials) {
+            progress.check();
+            const std::string owner = "material '" + material.name + "'";
+            materials.push_back(
+                compile_surface(material.graph, scene, textures, report, owner, false));
+            if (material.graph.displacement.node >= 0)
+                report.warn(owner, "displacement is not supported yet; the surface stays smooth");
+        }
+        materials.push_back(
+            compile_surface(default_material(), scene, textures, report, "no material", false));
+        for (const CompiledSurface& material : materials) requests.push_back(material.requests);
+        displacement.resize(materials.size());
+        world = compile_surface(scene.world.graph, scene, textures, report,
+                                "world '" + scene.world.name + "'", true);
+        light = std::make_unique<DirectLight>(
+            scene,
+            [this](const std::vector<Vec3f>& directions, float spread, std::vector<Vec3f>& out) {
+                background(directions, spread, out);
+            },
+            statistics, report, progress);
+    }
+
+    const CompiledSurface& material(int index) const {
+        return index < 0 ? materials.back() : materials[index];
+    }
+
+    ShadingInput input(const Grid& grid, const ShadingPoints& points) const {
+        ShadingInput in;
+        in.points = &points;
+        in.attributes = &grid.attributes;
+        in.instance = &scene.instances[grid.instance];
+        in.object_from_world = Mat3f(glm::inverse(
+            Mat3d(matrix_at(in.instance->world_from_object, scene.options.frame_time))));
+        return in;
+    }
+
+    void background(const std::vector<Vec3f>& directions, float spread,
+                    std::vector<Vec3f>& out) const {
+        if (world.radiance.sources.emission.is_constant()) {
+            out.assign(directions.size(), world.radiance.sources.emission.constant);
+            return;
+        }
+        ShadingPoints points;
+        points.count = directions.size();
+        points.p = directions;
+        ShadingInput in;
+        in.points = &points;
+        in.spread = spread;
+        Run run = world.radiance.program.prepare(in, points.count);
+        world.radiance.program.execute(run);
+        out = values_of(run, world.radiance.sources.emission);
+    }
+};
+
+ShadingSystem::ShadingSystem(const Scene& scene, Statistics& statistics, Report& report,
+                             const Progress& progress)
+    : m_impl(std::make_unique<Impl>(scene, statistics, report, progress)) {}
+
+ShadingSystem::~ShadingSystem() = default;
+
+const std::vector<std::vector<AttributeRequest>>& ShadingSystem::requests() const {
+    return m_impl->requests;
+}
+
+const std::vector<DisplacementHook>& ShadingSystem::displacement() const {
+    return m_impl->displacement;
+}
+
+bool ShadingSystem::opacity_varies(int material) const {
+    return !m_impl->material(material).transparency.is(Vec3f(0.0f));
+}
+
+void ShadingSystem::shade_opacity(Grid& grid) const {
+    if (!opacity_varies(grid.material)) return;
+    const CompiledSurface& material = m_impl->material(grid.material);
+    const ShadingPoints points = shading_points(grid, m_impl->camera);
+    const ShadingInput input = m_impl->input(grid, points);
+    Run run = material.opacity_program.prepare(input, points.count);
+    material.opacity_program.execute(run);
+    grid.opacity = values_of(run, material.transparency);
+    for (Vec3f& opacity : grid.opacity)
+        opacity = glm::clamp(Vec3f(1.0f) - opacity, Vec3f(0.0f), Vec3f(1.0f));
+    grid.opacity_varies = std::any_of(grid.opacity.begin(), grid.opacity.end(),
+                                      [](const Vec3f& opacity) { return opacity != Vec3f(1.0f); });
+    grid.additive = material.radiance.sources.additive;
+    m_impl->statistics.add(Counter::GridsOpacityShaded);
+}
+
+void ShadingSystem::shade_radiance(Grid& grid) const {
+    const CompiledSurface& material = m_impl->material(grid.material);
+    const ShadingPoints points = shading_points(grid, m_impl->camera);
+    const ShadingInput input = m_impl->input(grid, points);
+    const SurfaceProgram& surface = material.radiance;
+    Run run = surface.program.prepare(input, points.count);
+    surface.program.execute(run);
+    const SurfaceClosure closure = closure_of(run, surface.sources);
+    std::vector<Vec3f> radiance = closure.lobes.empty()
+                                      ? std::vector<Vec3f>(points.count, Vec3f(0.0f))
+                                      : m_impl->light->reflect(points, closure, grid.key);
+    for (std::size_t i = 0; i < closure.emission.size(); ++i) radiance[i] += closure.emission[i];
+    grid.radiance = std::move(radiance);
+    m_impl->statistics.add(Counter::GridsShaded);
+    m_impl->statistics.add(Counter::PointsShaded, points.count);
+}
+
+void ShadingSystem::background(const std::vector<Vec3f>& directions, float spread,
+                               std::vector<Vec3f>& out) const {
+    m_impl->background(directions, spread, out);
+}
+
+bool ShadingSystem::background_is_constant() const {
+    return m_impl->world.radiance.sources.emission.is_constant();
+}
+
+}  // namespace granita

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/texture.h"
+
+#include <OpenImageIO/imagecache.h>
+#include <OpenImageIO/texture.h>
+
+#include <algorithm>
+#include <map>
+
+#include "shade/texture_input.h"
+#include "shade/texture_pyramid.h"
+
+namespace granita {
+
+namespace {
+
+/// Decoded tiles kept in memory, all images together.
+constexpr float kCacheMegabytes = 512.0f;
+constexpr int kOpenFiles = 64;
+const Vec4f kMagenta(1.0f, 0.0f, 1.0f, 1.0f);
+
+class MissingTexture final : public Texture {
+  public:
+    void look_up(const TextureMode&, const std::vector<TexturePlace>& places,
+                 std::vector<Vec4f>& out) const override {
+        out.assign(places.size(), kMagenta);
+    }
+};
+
+OIIO::TextureOpt options_for(const TextureMode& mode) {
+    OIIO::TextureOpt options;
+    const auto wrap = mode.extension == TextureExtension::Repeat   ? OIIO::TextureOpt::WrapPeriodic
+                      : mode.extension == TextureExtension::Mirror ? OIIO::TextureOpt::WrapMirror
+                                                                   : OIIO::TextureOpt::WrapClamp;
+    options.swrap = options.twrap = wrap;
+    options.interpmode = mode.filter == TextureFilter::Closest ? OIIO::TextureOpt::InterpClosest
+                         : mode.filter == TextureFilter::Cubic ? OIIO::TextureOpt::InterpBicubic
+                                                               : OIIO::TextureOpt::InterpBilinear;
+    options.mipmode = OIIO::TextureOpt::MipModeAniso;
+    options.anisotropic = 16;
+    return options;
+}
+
+class CachedTexture final : public Texture {
+  public:
+    CachedTexture(const Image& image, TexelKind kind, OIIO::TextureSystem& system,
+                  OIIO::ImageCache& cache, Statistics& statistics, Report& report)
+        : m_image(image),
+          m_kind(kind),
+          m_registration(image, cache),
+          m_system(system),
+          m_handle(system.get_texture_handle(OIIO::ustring(m_registration.name()))),
+          m_statistics(statistics),
+          m_report(report) {}
+
+    void look_up(const TextureMode& mode, const std::vector<TexturePlace>& places,
+                 std::vector<Vec4f>& out) const override {
+        out.resize(places.size());
+        auto* thread = m_system.get_perthread_info();
+        OIIO::TextureOpt options = options_for(mode);
+        std::uint64_t failures = 0;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const TexturePlace& place = places[i];
+            const Vec2f p = place.center;
+            if (!(std::abs(p.x) < 1e6f && std::abs(p.y) < 1e6f)) {  // also catches NaN
+                out[i] = Vec4f(0.0f);
+                continue;
+            }
+            if (mode.extension == TextureExtension::Clip &&
+                (p.x < 0.0f || p.x > 1.0f || p.y < 0.0f || p.y > 1.0f)) {
+                out[i] = Vec4f(0.0f);
+                continue;
+            }
+            // OpenImageIO's t runs downward.
+            Vec4f texel;
+            if (!m_system.texture(m_handle, thread, options, p.x, 1.0f - p.y, place.along_u.x,
+                                  -place.along_u.y, place.along_v.x, -place.along_v.y, 4,
+                                  &texel.x)) {
+                ++failures;
+                out[i] = kMagenta;
+                continue;
+            }
+            if (mode.unassociate && texel.w != 0.0f && texel.w != 1.0f)
+                texel = Vec4f(Vec3f(texel) / texel.w, texel.w);
+            if (is_encoded(m_kind))
+                texel = Vec4f(linear_from_srgb(texel.x), linear_from_srgb(texel.y),
+                              linear_from_srgb(texel.z), texel.w);
+            out[i] = texel;
+        }
+        m_statistics.add(Counter::TextureLookups, places.size());
+        if (failures) {
+            m_system.geterror();  // the text differs by tile: one message for the artist
+            m_report.warn("image '" + m_image.name + "'",
+                          "cannot be read completely, shown magenta: " + m_image.path, failures);
+        }
+    }
+
+  private:
+    const Image& m_image;
+    TexelKind m_kind;
+    TextureRegistration m_registration;
+    OIIO::TextureSystem& m_system;
+    OIIO::TextureSystem::TextureHandle* m_handle;
+    Statistics& m_statistics;
+    Report& m_report;
+};
+
+}  // namespace
+
+struct TextureStore::Impl {
+    const Scene& scene;
+    Statistics& statistics;
+    Report& report;
+    OIIO::ImageCache* cache;
+    OIIO::TextureSystem* system;
+    std::map<std::string, std::shared_ptr<const Texture>> textures;
+
+    Impl(const Scene& s, Statistics& stats, Report& r)
+        : scene(s), statistics(stats), report(r), cache(OIIO::ImageCache::create(false)) {
+        cache->attribute("max_memory_MB", kCacheMegabytes);
+        cache->attribute("max_open_files", kOpenFiles);
+        cache->attribute("autotile", 64);
+        cache->attribute("deduplicate", 0);
+        system = OIIO::TextureSystem::create(false, cache);
+    }
+    ~Impl() {
+        textures.clear();
+        OIIO::TextureSystem::destroy(system);
+        OIIO::ImageCache::destroy(cache);
+    }
+};
+
+TextureStore::TextureStore(const Scene& scene, Statistics& statistics, Report& report)
+    : m_impl(std::make_unique<Impl>(scene, statistics, report)) {}
+
+TextureStore::~TextureStore() = default;
+
+std::shared_ptr<const Texture> TextureStore::find(const std::string& name,
+                                                  const std::string& user) {
+    const auto known = m_impl->textures.find(name);
+    if (known != m_impl->textures.end()) return known->second;
+    std::shared_ptr<const Texture>& texture = m_impl->textures[name];
+    texture = std::make_shared<MissingTexture>();
+    const auto& images = m_impl->scene.images;
+    const auto image = std::find_if(images.begin(), images.end(),
+                                    [&](const Image& candidate) { return candidate.name == name; });
+    if (image == images.end()) {
+        m_impl->report.warn(user, "image '" + name + "' is not in the scene, shown magenta");
+        return texture;
+    }
+    const TextureHeader header = read_texture_header(*image);
+    if (!header.error.empty()) {
+        m_impl->report.warn("image '" + name + "'",
+                            "cannot be read, shown magenta: " + image->path);
+        return texture;
+    }
+    texture = std::make_shared<CachedTexture>(*image, header.kind, *m_impl->system, *m_impl->cache,
+                                              m_impl->statistics, m_impl->report);
+    return texture;
+}
+
+}  // namespace granita
