@@ -10,6 +10,7 @@ from time import perf_counter
 from . import bridge, passes
 from .export import export_frame
 from .export.report import Cancelled, Report
+from .properties import TILE_PIXELS
 from .status_line import StatusLine
 
 # Seconds between two looks at the cancel flag; well below the .5 s that an artist notices.
@@ -60,10 +61,12 @@ class FinalRender:
 
         settings = self.depsgraph.scene_eval.granita
         snapshot = export_frame(self.engine, self.depsgraph, settings, self.report, self._exporting)
+        options = snapshot["options"]
+        options["bucket_size"] = -(-options["bucket_size"] // TILE_PIXELS) * TILE_PIXELS
         if self.options.device is not None:
-            snapshot["options"]["device"] = self.options.device
+            options["device"] = self.options.device
         if self.options.threads is not None:
-            snapshot["options"]["threads"] = self.options.threads
+            options["threads"] = self.options.threads
 
         self.depsgraph = None  # the next call frees it
         if not render.use_persistent_data:

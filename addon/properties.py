@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`scene.granita`: the settings that Blender itself does not have.
 
-The names and the numbers of the enumerations are API: files keep them.
+The names and the numbers of the enumerations are API: files keep them.  No property has an
+`update` callback: with one, Blender 4.2 as a Python module crashes when it ends.
 """
 
 import bpy
@@ -9,12 +10,6 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 
 # A bucket is a set of 16-pixel tiles.
 TILE_PIXELS = 16
-
-
-def _round_bucket_size(settings, _context):
-    rounded = max(TILE_PIXELS, round(settings.bucket_size / TILE_PIXELS) * TILE_PIXELS)
-    if settings.bucket_size != rounded:
-        settings.bucket_size = rounded
 
 
 class GranitaSceneSettings(bpy.types.PropertyGroup):
@@ -147,13 +142,12 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
     bucket_size: IntProperty(
         name="Bucket Size",
         description="Edge of the square that a thread renders at a time, in pixels: a multiple of "
-        "16. It changes memory and time, never the picture",
+        "16 (others are rounded up). It changes memory and time, never the picture",
         default=64,
         min=TILE_PIXELS,
         max=1024,
         step=TILE_PIXELS,
         options=set(),
-        update=_round_bucket_size,
     )
     opacity_threshold: FloatProperty(
         name="Opacity Threshold",

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fixtures of the tests that run inside Blender (run_in_blender.py)."""
+
+import bpy
+import exr
+import pytest
+import scene_parts
+
+
+@pytest.fixture
+def scene():
+    """An empty scene of factory settings, 64 by 48 pixels, rendered by Granita."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    scene = bpy.context.scene
+    scene.render.engine = "GRANITA"
+    scene.render.resolution_x = 64
+    scene.render.resolution_y = 48
+    scene.granita.samples = 4
+    scene.granita.device = "CPU"
+    yield scene
+    # A scene left to the engine would keep its class from being unregistered.
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+
+
+@pytest.fixture
+def render(tmp_path):
+    """render(scene) -> {"Layer.Pass.Channel": float32 [height, width], lower-left first}.
+
+    The way of F12 and a saved file: Blender's own result, through a multilayer OpenEXR file.
+    """
+
+    def render_to_arrays(scene, name="frame"):
+        scene_parts.multilayer_exr(scene)
+        scene.render.filepath = str(tmp_path / f"{name}.exr")
+        bpy.ops.render.render(write_still=True, scene=scene.name)
+        return exr.read(scene.render.filepath)
+
+    return render_to_arrays

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs pytest inside a Blender, with this tree's add-on enabled; ends with pytest's exit code.
+
+    blender -b --factory-startup --python run_in_blender.py -- [pytest arguments]
+    python run_in_blender.py -- [pytest arguments]        where Blender is the module `bpy`
+
+Without a path among the arguments all of tests/blender runs.  The native module is taken from
+Python's path, else from the tree's build folder.
+"""
+
+import atexit
+import importlib.util
+import os
+import shutil
+import sys
+import tempfile
+import traceback
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+
+
+def private_scripts():
+    """A scripts folder that links to the add-on: for this Blender and for those it starts."""
+    scripts = Path(tempfile.mkdtemp(prefix="granita-scripts-"))
+    atexit.register(shutil.rmtree, scripts, ignore_errors=True)
+    (scripts / "addons").mkdir()
+    (scripts / "addons" / "granita").symlink_to(ROOT / "addon")
+    os.environ["BLENDER_USER_SCRIPTS"] = str(scripts)
+    os.environ["BLENDER_USER_CONFIG"] = str(scripts / "config")
+    sys.path.insert(0, str(scripts / "addons"))
+
+
+def find_native_module():
+    if importlib.util.find_spec("granita_core"):
+        return
+    for module in sorted((ROOT / "build").rglob("granita_core*.so")):
+        folder = str(module.parent)
+        sys.path.insert(0, folder)
+        path = [folder, os.environ.get("PYTHONPATH", "")]
+        os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, path))
+        return
+
+
+def enable_addon():
+    import addon_utils
+
+    if addon_utils.enable("granita", default_set=True) is None:
+        raise RuntimeError("the add-on did not register")
+
+
+def leave_engine():
+    """An engine class still registered, or in use, at the end of a `bpy` process may hang it."""
+    import bpy
+
+    for scene in bpy.data.scenes:
+        scene.render.engine = "CYCLES"
+    if hasattr(bpy.types.Scene, "granita"):
+        import addon_utils
+
+        addon_utils.disable("granita")
+
+
+def main(arguments):
+    import bpy  # noqa: F401  (first: Blender's own modules are found through it)
+
+    private_scripts()
+    find_native_module()
+    enable_addon()
+    import pytest
+
+    if not any(Path(argument.split("::")[0]).exists() for argument in arguments):
+        arguments = [*arguments, str(HERE)]
+    try:
+        return int(
+            pytest.main(["--rootdir", str(ROOT), "-c", str(ROOT / "pyproject.toml"), *arguments])
+        )
+    finally:
+        leave_engine()
+
+
+if __name__ == "__main__":
+    own = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
+    try:
+        code = main(own)
+    except Exception:
+        traceback.print_exc()
+        code = 1
+    sys.stdout.flush()
+    sys.exit(code)

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What test scenes are made of: plain data calls, the same in every Blender."""
+
+import bpy
+
+
+def multilayer_exr(scene):
+    """Float passes without compression, as exr.py reads them."""
+    image = scene.render.image_settings
+    if hasattr(image, "media_type"):  # Blender 5 asks for the medium first
+        image.media_type = "MULTI_LAYER_IMAGE"
+    image.file_format = "OPEN_EXR_MULTILAYER"
+    image.color_depth = "32"
+    image.exr_codec = "NONE"
+    if hasattr(image, "use_exr_interleave"):  # else Blender 5 writes a part a pass
+        image.use_exr_interleave = True
+
+
+def add_object(scene, name, data, location=(0.0, 0.0, 0.0)):
+    thing = bpy.data.objects.new(name, data)
+    thing.location = location
+    scene.collection.objects.link(thing)
+    return thing
+
+
+def add_camera(scene, location=(0.0, 0.0, 5.0), ortho_scale=None):
+    """Looks along -z of the world; orthographic where `ortho_scale` (metres) is given."""
+    camera = bpy.data.cameras.new("Camera")
+    if ortho_scale is not None:
+        camera.type = "ORTHO"
+        camera.ortho_scale = ortho_scale
+    scene.camera = add_object(scene, "Camera", camera, location)
+    return scene.camera
+
+
+def add_mesh(scene, name, vertices, faces, location=(0.0, 0.0, 0.0), material=None):
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(vertices, [], faces)
+    if material is not None:
+        mesh.materials.append(material)
+    return add_object(scene, name, mesh, location)
+
+
+def add_square(scene, name="Square", size=2.0, location=(0.0, 0.0, 0.0), material=None):
+    """Faces +z."""
+    h = size / 2
+    corners = [(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)]
+    return add_mesh(scene, name, corners, [(0, 1, 2, 3)], location, material)
+
+
+def emission(name, color, strength=1.0):
+    """A material whose pixels are `color` (linear RGB) times `strength`."""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.clear()
+    emit = nodes.new("ShaderNodeEmission")
+    emit.inputs["Color"].default_value = (*color, 1.0)
+    emit.inputs["Strength"].default_value = strength
+    output = nodes.new("ShaderNodeOutputMaterial")
+    links.new(emit.outputs["Emission"], output.inputs["Surface"])
+    return material
