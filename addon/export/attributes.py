@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Values that a mesh carries on its points, faces and corners: UV maps, colours, named attributes."""
+
+import numpy as np
+
+from .snapshot import Attribute
+
+# Blender's data type -> (member of an element, components, dtype that `foreach_get` copies fastest)
+_LAYOUT = {
+    "FLOAT": ("value", 1, np.float32),
+    "INT": ("value", 1, np.int32),
+    "INT8": ("value", 1, np.int32),
+    "BOOLEAN": ("value", 1, np.bool_),
+    "FLOAT2": ("vector", 2, np.float32),
+    "FLOAT_VECTOR": ("vector", 3, np.float32),
+    "FLOAT_COLOR": ("color", 4, np.float32),
+    "BYTE_COLOR": ("color", 4, np.float32),
+    "INT16_2D": ("value", 2, np.int32),
+    "INT32_2D": ("value", 2, np.int32),
+    "QUATERNION": ("value", 4, np.float32),
+}
+_DOMAINS = ("POINT", "FACE", "CORNER")
+
+
+def requested_names(materials):
+    """Names that exported materials look up on the mesh: a set of str.
+
+    Args:
+        materials: the snapshot's material records.
+    """
+    return {
+        name
+        for material in materials
+        for node in material.get("nodes", ())
+        for key, name in node.get("properties", {}).items()
+        if key == "attribute_name" and name
+    }
+
+
+def mesh_attributes(mesh, label, requested, report):
+    """Every UV map and colour attribute, and the generic attributes asked for.
+
+    Args:
+        mesh: evaluated Mesh.
+        label: the mesh's name for messages.
+        requested: names of generic attributes.
+        report: called with (datablock, message).
+
+    Returns:
+        list of Attribute, the UV map and the colour that are active for render first among theirs.
+    """
+    found = _uv_maps(mesh) + _colors(mesh)
+    taken = {attribute.name for attribute in found}
+    for name in sorted(requested - taken):
+        attribute = mesh.attributes.get(name)
+        if attribute is None:
+            continue
+        values = _values(attribute)
+        if values is None or attribute.domain not in _DOMAINS:
+            report(
+                label,
+                f"attribute '{name}' ({attribute.data_type} on {attribute.domain}) cannot be shaded",
+            )
+            continue
+        found.append(Attribute(name, attribute.domain, "GENERIC", values))
+    return found
+
+
+def _uv_maps(mesh):
+    layers = sorted(mesh.uv_layers, key=lambda layer: not layer.active_render)
+    maps = []
+    for layer in layers:
+        values = np.empty((len(mesh.loops), 2), dtype=np.float32)
+        # Blender 3.5 made UV maps plain vectors, which are copied in one go.
+        if hasattr(layer, "uv"):
+            layer.uv.foreach_get("vector", values.reshape(-1))
+        else:
+            layer.data.foreach_get("uv", values.reshape(-1))
+        maps.append(Attribute(layer.name, "CORNER", "UV", values))
+    return maps
+
+
+def _colors(mesh):
+    layers = list(mesh.color_attributes)
+    active = mesh.color_attributes.render_color_index
+    if 0 <= active < len(layers):
+        layers.insert(0, layers.pop(active))
+    return [Attribute(layer.name, layer.domain, "COLOR", _values(layer)) for layer in layers]
+
+
+def _values(attribute):
+    """float32 [elements, components], colours linear; None for types that hold no numbers."""
+    if attribute.data_type not in _LAYOUT:
+        return None
+    member, width, dtype = _LAYOUT[attribute.data_type]
+    values = np.empty(len(attribute.data) * width, dtype=dtype)
+    attribute.data.foreach_get(member, values)
+    return values.reshape(-1, width).astype(np.float32, copy=False)

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One walk over `depsgraph.object_instances`: everything that is placed in the scene, at one time.
+
+The rules of that iterator, each learnt the hard way:
+- Curves, text, surfaces and metaballs come twice: as themselves, and as an instance of type MESH.
+  Only the mesh counts.
+- The object of an instance is a temporary; only `instance_object` and `parent` outlive the step.
+- Left early, it leaks the rest of the list: it is always drained.
+- Touching `.data` of an object whose Subsurf is last makes Blender subdivide: cages are found first.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .identity import combine, name_hash
+from .report import Cancelled
+from .subdivision import Cage, find_cage, simplify_level
+from .transforms import from_columns
+
+_POLL_EVERY = 1024
+
+# What the twin of type MESH stands for, or what has no surface.
+_NOT_SEEN = {
+    "ARMATURE",
+    "CAMERA",
+    "CURVE",
+    "EMPTY",
+    "FONT",
+    "GPENCIL",
+    "GREASEPENCIL",
+    "LATTICE",
+    "LIGHT_PROBE",
+    "META",
+    "SPEAKER",
+    "SURFACE",
+}
+
+
+@dataclass
+class Kind:
+    """What instances share that differ in their place alone."""
+
+    type: str  # "MESH" or "LIGHT"
+    name: str
+    source: object  # evaluated Object
+    parent: object  # evaluated Object that instances it, or None
+    data: object = None  # evaluated Mesh; None for a cage and for lights
+    cage: Cage = None
+    materials: list = field(default_factory=list)  # of evaluated Material or None, one a slot
+
+    @property
+    def label(self):
+        """Name of the geometry for messages."""
+        original = self.source.original
+        if original.type == "MESH":
+            return f"mesh '{original.data.name}'"
+        return f"object '{original.name}'"
+
+    def geometry_key(self):
+        """Equal for kinds that have one geometry."""
+        if self.cage is None:
+            return self.data.as_pointer()
+        return self.cage.sharing or (self.source.as_pointer(), "CAGE")
+
+
+@dataclass
+class Visit:
+    """n placed things at one time."""
+
+    kinds: list  # of Kind
+    kind: np.ndarray  # int32 [n], index in `kinds`
+    matrices: np.ndarray  # float64 [n, 4, 4], world from object
+    identity: np.ndarray  # uint64 [n], unique, the same at every time and in every frame
+    random: np.ndarray  # uint32 [n], Blender's random id; 0 where it is no instance
+    is_instance: np.ndarray  # bool [n]
+
+
+def visit(depsgraph, report, check_cancel):
+    """Walks once.
+
+    Args:
+        depsgraph: evaluated.
+        report: called with (datablock, message).
+        check_cancel: true when the user has cancelled.
+
+    Raises:
+        Cancelled, or what check_cancel raises.
+    """
+    instances = depsgraph.object_instances
+    count = len(instances)
+    matrices = _column(instances, "matrix_world", count, 16, np.float32)
+    is_instance = _column(instances, "is_instance", count, 1, np.bool_)
+    shows_self = _column(instances, "show_self", count, 1, np.bool_)
+    random = _column(instances, "random_id", count, 1, np.int32)
+    persistent = _column(instances, "persistent_id", count, 8, np.int32).reshape(-1, 8)
+
+    walk = _Walk(depsgraph, report)
+    kind = [-1] * count
+    iterator = iter(instances)
+    try:
+        for i, (instance, duplicate, seen) in enumerate(
+            zip(iterator, is_instance.tolist(), shows_self.tolist())
+        ):
+            if i % _POLL_EVERY == 0 and check_cancel():
+                raise Cancelled
+            if seen:
+                kind[i] = walk.kind_of(instance, duplicate)
+    finally:
+        for _ in iterator:
+            pass
+
+    kind = np.array(kind, dtype=np.int32)
+    taken = np.flatnonzero(kind >= 0)
+    kind = kind[taken]
+    hashes = np.array([name_hash(k) for k in walk.kinds], dtype=np.uint64)
+    return Visit(
+        kinds=walk.kinds,
+        kind=kind,
+        matrices=from_columns(matrices)[taken],
+        identity=combine(hashes[kind] if len(kind) else np.zeros(0, np.uint64), persistent[taken]),
+        random=random[taken].view(np.uint32),
+        is_instance=is_instance[taken],
+    )
+
+
+def _column(instances, name, count, width, dtype):
+    values = np.zeros(count * width, dtype=dtype)
+    if count:
+        instances.foreach_get(name, values)
+    return values
+
+
+class _Walk:
+    """Sorts instances into kinds; everything slow happens once a kind."""
+
+    def __init__(self, depsgraph, report):
+        self.kinds = []
+        self._report = report
+        self._mode = depsgraph.mode
+        self._simplify = simplify_level(depsgraph.scene_eval.render, depsgraph.mode)
+        self._index = {}
+        self._cages = {}
+
+    def kind_of(self, instance, duplicate):
+        """Index in `kinds`, or -1 for what is not rendered."""
+        shown = instance.object
+        kind_type = shown.type
+        if kind_type not in ("MESH", "LIGHT"):
+            if kind_type not in _NOT_SEEN:
+                self._report(
+                    f"object '{shown.name}'", f"objects of type {kind_type} are not rendered"
+                )
+            return -1
+        source = instance.instance_object if duplicate else shown
+        parent = instance.parent if duplicate else None
+        cage = data = None
+        if kind_type == "MESH":
+            cage = self._cage(source)
+            # An instance may be a mesh that the object's own nodes made, not the object itself.
+            if cage is None or (duplicate and self._may_make_instances(source)):
+                data = shown.data
+                if data is None:
+                    return -1
+                if cage is not None and data.as_pointer() == source.data.as_pointer():
+                    data = None
+                elif cage is not None:
+                    cage = None
+        key = (
+            source.as_pointer(),
+            parent.as_pointer() if parent is not None else 0,
+            data.as_pointer() if data is not None else 0,
+        )
+        index = self._index.get(key)
+        if index is None:
+            index = self._index[key] = len(self.kinds)
+            materials = (
+                [slot.material for slot in shown.material_slots] if kind_type == "MESH" else []
+            )
+            self.kinds.append(Kind(kind_type, shown.name, source, parent, data, cage, materials))
+            self._warn_of_hair(source)
+        return index
+
+    def _cage(self, source):
+        pointer = source.as_pointer()
+        if pointer not in self._cages:
+            self._cages[pointer] = (
+                find_cage(source, self._mode, self._simplify) if source.type == "MESH" else None
+            )
+        return self._cages[pointer]
+
+    @staticmethod
+    def _may_make_instances(source):
+        return any(modifier.type == "NODES" for modifier in source.modifiers)
+
+    def _warn_of_hair(self, source):
+        for system in source.particle_systems:
+            settings = system.settings
+            if settings.type == "HAIR" and settings.render_type == "PATH":
+                self._report(f"object '{source.name}'", f"hair '{system.name}' is not rendered")

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The distinct geometries of a visit, each read once."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .mesh import Topology, read_geometry
+from .report import Cancelled
+from .snapshot import Geometry
+from .subdivision import Cage, cage_mesh, subdivision_record
+
+
+@dataclass
+class GeometrySource:
+    """A geometry, and how to find it again at another time."""
+
+    geometry: Geometry
+    topology: Topology
+    cage: Cage  # or None
+    example: int  # index of one thing of the visit that has it
+    pointers: frozenset  # addresses of original datablocks that it is made from
+    deforms: bool  # false where the object's deformation blur is switched off
+
+
+def read_geometries(scan, requested, depsgraph, report, check_cancel):
+    """Reads every mesh of a visit.
+
+    Args:
+        scan: depsgraph.Visit at the depsgraph's time.
+        requested: names of generic attributes that materials ask for.
+        depsgraph: evaluated.
+        report: called with (datablock, message).
+        check_cancel: true when the user has cancelled.
+
+    Returns:
+        (list of GeometrySource, int32 [kinds]: index in it, -1 for what has no faces).
+    """
+    of_kind = np.full(len(scan.kinds), -1, dtype=np.int32)
+    examples = np.zeros(len(scan.kinds), dtype=int)
+    examples[scan.kind[::-1]] = np.arange(len(scan.kind))[::-1]
+    sources, index = [], {}
+    for number, kind in enumerate(scan.kinds):
+        if kind.type != "MESH":
+            continue
+        if check_cancel():
+            raise Cancelled
+        key = kind.geometry_key()
+        if key not in index:
+            source = _read(kind, int(examples[number]), requested, depsgraph, report)
+            index[key] = len(sources) if source else -1
+            if source:
+                sources.append(source)
+        of_kind[number] = index[key]
+    return sources, of_kind
+
+
+def _read(kind, example, requested, depsgraph, report):
+    if kind.cage is None:
+        found = read_geometry(kind.data, kind.label, requested, report)
+    else:
+        with cage_mesh(kind.source, kind.cage, depsgraph) as mesh:
+            record = subdivision_record(kind.cage, mesh)
+            found = read_geometry(mesh, kind.label, requested, report, record)
+    if found is None:
+        return None
+    original = kind.source.original
+    pointers = {original.as_pointer()}
+    if original.data is not None:
+        pointers.add(original.data.as_pointer())
+    cycles = getattr(kind.source, "cycles", None)
+    deforms = getattr(cycles, "use_motion_blur", True) and getattr(
+        cycles, "use_deform_motion", True
+    )
+    return GeometrySource(*found, kind.cage, example, frozenset(pointers), deforms)

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Placed geometries -> the snapshot's arrays."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .identity import random_of_name, short_keys
+from .snapshot import Instances
+from .transforms import has_area, is_finite
+
+VISIBLE_CAMERA = 1
+CASTS_SHADOW = 2
+HOLDOUT = 4
+
+
+@dataclass
+class KindTable:
+    """What instances take from their kind, one entry a kind."""
+
+    name: list  # of str
+    geometry: np.ndarray  # int32, -1 = none
+    flags: np.ndarray  # uint32
+    object_index: np.ndarray  # int32
+    slots: list  # of int32 arrays, material indices
+
+
+def kind_table(kinds, view_layer, geometry, slots):
+    """Copies what is wanted of each kind while its objects are alive.
+
+    Args:
+        kinds: list of depsgraph.Kind.
+        view_layer: original; holds the holdouts and the indirect-only collections.
+        geometry: int32 [kinds].
+        slots: of `collect_materials`.
+    """
+    return KindTable(
+        name=[kind.name for kind in kinds],
+        geometry=geometry,
+        flags=np.array([_flags(kind, view_layer) for kind in kinds], dtype=np.uint32),
+        object_index=np.array([kind.source.pass_index for kind in kinds], dtype=np.int32),
+        slots=slots,
+    )
+
+
+def _flags(kind, view_layer):
+    """What the object and what instances it allow, and the layer's wishes.
+
+    Holdout and indirect-only belong to objects and to collections of the view layer; an instance
+    takes both from what instances it.
+    """
+    owners = [kind.source] + ([kind.parent] if kind.parent is not None else [])
+    placed = owners[-1].original
+    flags = 0
+    if all(owner.visible_camera for owner in owners) and not placed.indirect_only_get(
+        view_layer=view_layer
+    ):
+        flags |= VISIBLE_CAMERA
+    if all(owner.visible_shadow for owner in owners):
+        flags |= CASTS_SHADOW
+    if placed.holdout_get(view_layer=view_layer):
+        flags |= HOLDOUT
+    return flags
+
+
+def collect_materials(kinds, override):
+    """Materials of all kinds, each once.
+
+    Args:
+        kinds: list of Kind.
+        override: Material that replaces all, or None.
+
+    Returns:
+        (list of Material, list of int32 arrays: indices of a kind's slots, -1 = none).
+    """
+    materials, index, slots = [], {}, []
+
+    def number(material):
+        material = override or material
+        if material is None:
+            return -1
+        pointer = material.as_pointer()
+        if pointer not in index:
+            index[pointer] = len(materials)
+            materials.append(material)
+        return index[pointer]
+
+    for kind in kinds:
+        wanted = kind.materials or ([override] if override and kind.type == "MESH" else [])
+        slots.append(np.array([number(material) for material in wanted], dtype=np.int32))
+    return materials, slots
+
+
+def usable(scan, table, report):
+    """Indices of what can be rendered: has a geometry and a place.
+
+    Args:
+        scan: depsgraph.Visit.
+        table: KindTable.
+        report: called with (datablock, message).
+    """
+    placed = table.geometry[scan.kind] >= 0
+    finite = is_finite(scan.matrices)
+    for i in np.flatnonzero(placed & ~finite):
+        report(f"object '{table.name[scan.kind[i]]}'", "its transform is not finite: left out")
+    return np.flatnonzero(placed & finite)
+
+
+def build_instances(scan, chosen, table, motion, report):
+    """The snapshot's instances.
+
+    Args:
+        scan: depsgraph.Visit at the frame.
+        chosen: int [n], which of its things.
+        table: KindTable.
+        motion: float64 [K, len(scan.kind), 4, 4] at the knots, or None.
+        report: called with (datablock, message).
+    """
+    kind = scan.kind[chosen]
+    names = [table.name[k] for k in kind]
+    matrices, knots = knot_table(
+        scan.matrices[chosen], None if motion is None else motion[:, chosen]
+    )
+    _warn_of_points(names, matrices, knots, report)
+    random = scan.random[chosen] / float(0xFFFFFFFF)
+    for i in np.flatnonzero(~scan.is_instance[chosen]):
+        random[i] = random_of_name(names[i])
+    return Instances(
+        name=names,
+        geometry=table.geometry[kind],
+        knots=knots,
+        world_from_object=matrices,
+        slots=np.array([len(slots) for slots in table.slots], dtype=np.int32)[kind],
+        materials=np.concatenate([*(table.slots[k] for k in kind), np.zeros(0, dtype=np.int32)]),
+        flags=table.flags[kind],
+        object_index=table.object_index[kind],
+        random=random.astype(np.float32),
+        key=short_keys(scan.identity[chosen]),
+    )
+
+
+def _warn_of_points(names, matrices, knots, report):
+    """Names what is scaled to nothing over the whole shutter; it has no area to render."""
+    if len(names) == 0:
+        return
+    seen = np.logical_or.reduceat(has_area(matrices), np.cumsum(knots) - knots)
+    for i in np.flatnonzero(~seen):
+        report(f"object '{names[i]}'", "is scaled to nothing: not visible")
+
+
+def knot_table(matrices, motion):
+    """All matrices in one table, instance after instance; what stands still has one.
+
+    Args:
+        matrices: float64 [n, 4, 4] at the frame.
+        motion: float64 [K, n, 4, 4], or None.
+
+    Returns:
+        (float64 [sum of knots, 4, 4], int32 [n] knots).
+    """
+    count = len(matrices)
+    if motion is None or count == 0:
+        return matrices, np.ones(count, dtype=np.int32)
+    moves = (motion != matrices[None]).any(axis=(0, 2, 3))
+    knots = np.where(moves, len(motion), 1).astype(np.int32)
+    first = np.cumsum(knots) - knots
+    table = np.empty((int(knots.sum()), 4, 4))
+    table[first[~moves]] = matrices[~moves]
+    for k, at_knot in enumerate(motion):
+        table[first[moves] + k] = at_knot[moves]
+    return table, knots

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Evaluated meshes -> arrays, by `foreach_get` alone.
+
+Buffers have Blender's own type (float32, int32, bool): any other leaves the fast path.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .attributes import mesh_attributes
+from .snapshot import Geometry
+
+
+@dataclass(frozen=True)
+class Topology:
+    """Which vertices make which faces: what must not change for deformation to be motion."""
+
+    vertex_count: int
+    corner_verts: np.ndarray  # int32 [C]
+    face_sizes: np.ndarray  # int32 [F]
+
+    def matches(self, other):
+        return (
+            self.vertex_count == other.vertex_count
+            and np.array_equal(self.corner_verts, other.corner_verts)
+            and np.array_equal(self.face_sizes, other.face_sizes)
+        )
+
+
+def read_topology(mesh):
+    """Topology of a mesh, as Blender has it."""
+    corner_verts = np.empty(len(mesh.loops), dtype=np.int32)
+    attribute = mesh.attributes.get(".corner_vert")
+    if attribute is not None:
+        attribute.data.foreach_get("value", corner_verts)
+    else:
+        mesh.loops.foreach_get("vertex_index", corner_verts)
+    face_sizes = np.empty(len(mesh.polygons), dtype=np.int32)
+    mesh.polygons.foreach_get("loop_total", face_sizes)
+    return Topology(len(mesh.vertices), corner_verts, face_sizes)
+
+
+def read_points(mesh):
+    """float32 [V, 3], object space."""
+    points = np.empty((len(mesh.vertices), 3), dtype=np.float32)
+    attribute = mesh.attributes.get("position")
+    if attribute is not None:
+        attribute.data.foreach_get("vector", points.reshape(-1))
+    else:
+        mesh.vertices.foreach_get("co", points.reshape(-1))
+    return points
+
+
+def read_geometry(mesh, label, requested, report, subdivision=None):
+    """One geometry with one knot.
+
+    Args:
+        mesh: evaluated Mesh.
+        label: its name for messages, "mesh 'Cube'".
+        requested: names of generic attributes that materials ask for.
+        report: called with (datablock, message).
+        subdivision: record of a cage, or None.
+
+    Returns:
+        (Geometry, Topology of the mesh as Blender has it), or None where there is no face to see.
+    """
+    topology = read_topology(mesh)
+    if len(topology.face_sizes) == 0:
+        return None
+    geometry = Geometry(
+        name=label,
+        points=read_points(mesh)[None],
+        face_sizes=topology.face_sizes,
+        corner_verts=topology.corner_verts,
+        material_index=_material_index(mesh),
+        smooth=_smooth(mesh),
+        attributes=mesh_attributes(mesh, label, requested, report),
+        subdivision=subdivision,
+    )
+    if subdivision is None:
+        geometry.corner_normals = _corner_normals(mesh, geometry.smooth)
+    _drop_broken_faces(geometry, report)
+    return (geometry, topology) if len(geometry.face_sizes) else None
+
+
+def _material_index(mesh):
+    values = np.empty(len(mesh.polygons), dtype=np.int32)
+    mesh.polygons.foreach_get("material_index", values)
+    return values if values.any() else None
+
+
+def _smooth(mesh):
+    values = np.empty(len(mesh.polygons), dtype=np.bool_)
+    mesh.polygons.foreach_get("use_smooth", values)
+    return values.view(np.uint8) if values.any() else None
+
+
+def _corner_normals(mesh, smooth):
+    """float32 [C, 3] where faces' smooth flags do not say it all; otherwise None.
+
+    From Blender 4.1 on the mesh says so itself: CORNER means custom normals, sharp edges, or flat
+    faces beside smooth ones.  Before, normals are split only with Auto Smooth.
+    """
+    normals = np.empty((len(mesh.loops), 3), dtype=np.float32)
+    if hasattr(mesh, "normals_domain"):
+        if mesh.normals_domain != "CORNER":
+            return None
+        mesh.corner_normals.foreach_get("vector", normals.reshape(-1))
+    else:
+        if not mesh.use_auto_smooth or smooth is None:
+            return None
+        # On the evaluated mesh: the layer is the render's own, and is freed at once.
+        mesh.calc_normals_split()
+        mesh.loops.foreach_get("normal", normals.reshape(-1))
+        mesh.free_normals_split()
+    return normals
+
+
+def _drop_broken_faces(geometry, report):
+    """Takes out faces with vertices that are not finite, or with less than three corners."""
+    bad_points = ~np.isfinite(geometry.points[0]).all(axis=1)
+    few_corners = geometry.face_sizes < 3
+    if not bad_points.any() and not few_corners.any():
+        return
+    face_of_corner = np.repeat(np.arange(len(geometry.face_sizes)), geometry.face_sizes)
+    bad_faces = few_corners.copy()
+    bad_faces[face_of_corner[bad_points[geometry.corner_verts]]] = True
+    if bad_points.any():
+        report(
+            geometry.name,
+            f"{np.count_nonzero(bad_points)} vertices are not finite: "
+            f"{np.count_nonzero(bad_faces & ~few_corners)} faces left out",
+        )
+        geometry.points[0][bad_points] = 0.0
+    if few_corners.any():
+        report(
+            geometry.name,
+            f"{np.count_nonzero(few_corners)} faces have less than three corners: left out",
+        )
+    faces, corners = ~bad_faces, ~bad_faces[face_of_corner]
+    keep = {"FACE": faces, "CORNER": corners}
+    geometry.face_sizes = geometry.face_sizes[faces]
+    geometry.corner_verts = geometry.corner_verts[corners]
+    for name, mask in (("material_index", faces), ("smooth", faces), ("corner_normals", corners)):
+        values = getattr(geometry, name)
+        if values is not None:
+            setattr(geometry, name, np.ascontiguousarray(values[mask]))
+    for attribute in geometry.attributes:
+        if attribute.domain in keep:
+            attribute.values = np.ascontiguousarray(attribute.values[keep[attribute.domain]])

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A Subsurf modifier that is last is not tessellated by Blender: its cage is exported instead.
+
+Python always sees the subdivided mesh.  But the flags of modifiers on the *evaluated* object belong
+to the render alone: with the last one switched off, `to_mesh` evaluates the stack anew and returns
+the deformed cage.  `foreach_set` is used because it runs no update callback.
+"""
+
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+
+# Blender's creases run from 0 to 1; OpenSubdiv's sharpness is 10 times their square, and 10 is
+# infinitely sharp.
+MAX_SHARPNESS = 10.0
+
+_SCHEMES = {"CATMULL_CLARK": "CATMULL_CLARK", "SIMPLE": "SIMPLE"}
+
+
+@dataclass(frozen=True)
+class Cage:
+    """How to get at the cage of one object.
+
+    `index` is the modifier's place in the stack, `flag` the name of the switch that counts,
+    `sharing` a key: objects of one mesh with equal keys have the same cage (None: unknown).
+    """
+
+    index: int
+    flag: str
+    settings: tuple
+    sharing: object
+
+    @property
+    def use_creases(self):
+        return self.settings[3]
+
+
+def find_cage(evaluated, mode, simplify_level):
+    """The Cage of an object, or None where Blender's own mesh is the right one.
+
+    Args:
+        evaluated: evaluated mesh object.
+        mode: the depsgraph's, "RENDER" or "VIEWPORT".
+        simplify_level: most levels that the scene allows.
+    """
+    suffix = "render" if mode == "RENDER" else "viewport"
+    flag = f"show_{suffix}"
+    enabled = [i for i, modifier in enumerate(evaluated.modifiers) if getattr(modifier, flag)]
+    if not enabled or evaluated.modifiers[enabled[-1]].type != "SUBSURF":
+        return None
+    modifier = evaluated.modifiers[enabled[-1]]
+    levels = modifier.render_levels if mode == "RENDER" else modifier.levels
+    if min(levels, simplify_level) < 1 or modifier.subdivision_type not in _SCHEMES:
+        return None
+    # Particles and instances on vertices or faces sit on the subdivided mesh.
+    if len(evaluated.particle_systems) or evaluated.instance_type in {"VERTS", "FACES"}:
+        return None
+    original_mesh = evaluated.original.data
+    if getattr(modifier, "use_custom_normals", False) and original_mesh.has_custom_normals:
+        return None
+    settings = (
+        _SCHEMES[modifier.subdivision_type],
+        modifier.boundary_smooth,
+        modifier.uv_smooth,
+        modifier.use_creases,
+    )
+    is_pure = len(enabled) == 1 and original_mesh.shape_keys is None
+    sharing = (original_mesh.as_pointer(), settings) if is_pure else None
+    return Cage(enabled[-1], flag, settings, sharing)
+
+
+def simplify_level(render, mode):
+    """Most subdivision levels that Simplify allows."""
+    if not render.use_simplify:
+        return 100
+    return render.simplify_subdivision_render if mode == "RENDER" else render.simplify_subdivision
+
+
+@contextmanager
+def cage_mesh(evaluated, cage, depsgraph):
+    """The deformed cage as a temporary Mesh; gone, and the modifier back on, afterwards."""
+    modifiers = evaluated.modifiers
+    flags = np.zeros(len(modifiers), dtype=np.bool_)
+    modifiers.foreach_get(cage.flag, flags)
+    without = flags.copy()
+    without[cage.index] = False
+    modifiers.foreach_set(cage.flag, without)
+    try:
+        yield evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
+    finally:
+        evaluated.to_mesh_clear()
+        modifiers.foreach_set(cage.flag, flags)
+
+
+def sharpness(crease):
+    """OpenSubdiv's sharpness of Blender's creases, elementwise."""
+    crease = np.clip(crease, 0.0, 1.0)
+    return (MAX_SHARPNESS * crease * crease).astype(np.float32)
+
+
+def subdivision_record(cage, mesh):
+    """The snapshot's `subdivision` of a cage mesh."""
+    scheme, boundary, uv_smooth, use_creases = cage.settings
+    record = {"scheme": scheme, "boundary": boundary, "uv_smooth": uv_smooth}
+    if not use_creases:
+        return record
+    edges = _creases(mesh, "crease_edge", "edge_creases", len(mesh.edges))
+    if edges is not None and edges.any():
+        creased = np.flatnonzero(edges > 0.0)
+        verts = np.empty(len(mesh.edges) * 2, dtype=np.int32)
+        mesh.edges.foreach_get("vertices", verts)
+        record["crease_verts"] = np.ascontiguousarray(verts.reshape(-1, 2)[creased])
+        record["crease_values"] = sharpness(edges[creased])
+    points = _creases(mesh, "crease_vert", "vertex_creases", len(mesh.vertices))
+    if points is not None and points.any():
+        record["vertex_creases"] = sharpness(points)
+    return record
+
+
+def _creases(mesh, attribute_name, legacy_name, count):
+    """float32 [count], 0 to 1, or None.  They became attributes in Blender 4.0."""
+    attribute = mesh.attributes.get(attribute_name)
+    if attribute is None and attribute_name == "crease_edge" and count:
+        if hasattr(mesh.edges[0], "crease"):
+            values = np.empty(count, dtype=np.float32)
+            mesh.edges.foreach_get("crease", values)
+            return values
+    if attribute is None:
+        layers = getattr(mesh, legacy_name, None)
+        if layers is None or len(layers) == 0 or not hasattr(layers[0], "data"):
+            return None
+        attribute = layers[0]
+    values = np.empty(count, dtype=np.float32)
+    attribute.data.foreach_get("value", values)
+    return values
