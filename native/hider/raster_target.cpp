@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hider/raster_target.h"
+
+#include <string>
+
+#include "base/error.h"
+#include "gl/gl_check.h"
+#include "gl/shader_source.h"
+#include "shaders/shared/raster_layout.h"
+
+namespace granita {
+namespace {
+
+constexpr int kLargestCell = 64;  ///< pixels; the apron's share falls with it, memory grows
+constexpr int kSmallestCell = 16;
+constexpr int kWantedTexels = 2048;  ///< side: 64 MiB of colour and 16 of depth
+
+int choose_cell(const RasterFilter& filter, int max_texture_size) {
+    const auto side = [&](int cell) { return (cell + 2 * filter.apron()) * filter.lattice; };
+    int cell = kLargestCell;
+    while (cell > kSmallestCell && side(cell) > std::min(kWantedTexels, max_texture_size))
+        cell /= 2;
+    if (side(cell) > max_texture_size)
+        throw GlError("the pixel filter needs a target of " + std::to_string(side(cell)) +
+                      " texels a side, the device offers " + std::to_string(max_texture_size));
+    return cell;
+}
+
+gl::Program filter_program(const RasterFilter& filter, const std::string& axis) {
+    const gl::Defines defines{
+        {"TAPS", filter_taps(filter)}, {"LATTICE", std::to_string(filter.lattice)}, {"AXIS", axis}};
+    return gl::Program("pixel filter along " + axis,
+                       {{GL_VERTEX_SHADER, gl::shader_source("resolve/screen.vert")},
+                        {GL_FRAGMENT_SHADER, gl::shader_source("resolve/filter.frag", defines)}});
+}
+
+int floor_to(int value, int step) {
+    return (value >= 0 ? value : value - step + 1) / step * step;
+}
+
+}  // namespace
+
+RasterTarget::RasterTarget(const RasterFilter& filter, int max_texture_size)
+    : m_lattice(filter.lattice),
+      m_apron(filter.apron()),
+      m_cell(choose_cell(filter, max_texture_size)) {
+    const int side = pixel_size() * m_lattice;
+    m_radiance = gl::Texture(GL_RGBA32F, side, side);
+    m_depth = gl::Texture(GL_DEPTH_COMPONENT32F, side, side);
+    m_rows = gl::Texture(GL_RGBA32F, m_cell, side);
+    m_pixels = gl::Texture(GL_RGBA32F, m_cell, m_cell);
+    m_radiance_target = gl::Framebuffer(&m_radiance, &m_depth);
+    m_rows_target = gl::Framebuffer(&m_rows, nullptr);
+    m_pixels_target = gl::Framebuffer(&m_pixels, nullptr);
+    m_filter_x = filter_program(filter, "ivec2(1, 0)");
+    m_filter_y = filter_program(filter, "ivec2(0, 1)");
+}
+
+std::vector<RasterCell> RasterTarget::cells(const Rect& pixels) const {
+    std::vector<RasterCell> cells;
+    for (int y = floor_to(pixels.y0, m_cell); y < pixels.y1; y += m_cell)
+        for (int x = floor_to(pixels.x0, m_cell); x < pixels.x1; x += m_cell) {
+            RasterCell cell;
+            cell.corner = {x - m_apron, y - m_apron};
+            cell.pixels = pixels.intersect({x, y, x + m_cell, y + m_cell});
+            cell.samples = {cell.pixels.x0 - m_apron, cell.pixels.y0 - m_apron,
+                            cell.pixels.x1 + m_apron, cell.pixels.y1 + m_apron};
+            cell.texels = {(cell.samples.x0 - cell.corner.x) * m_lattice,
+                           (cell.samples.y0 - cell.corner.y) * m_lattice,
+                           cell.samples.width() * m_lattice, cell.samples.height() * m_lattice};
+            if (!cell.pixels.empty()) cells.push_back(cell);
+        }
+    return cells;
+}
+
+void RasterTarget::bind(const gl::Framebuffer& framebuffer, const RasterCell& cell) const {
+    const int side = pixel_size() * m_lattice;
+    framebuffer.bind();
+    glViewport(0, 0, side, side);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(cell.texels.x, cell.texels.y, cell.texels.width, cell.texels.height);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
+    glDepthRangef(0.0f, 1.0f);
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
+}
+
+void RasterTarget::begin_radiance(const RasterCell& cell, const Vec4f& background,
+                                  float farthest) const {
+    bind(m_radiance_target, cell);
+    glClearNamedFramebufferfv(m_radiance_target.name(), GL_COLOR, 0, &background.x);
+    glClearNamedFramebufferfv(m_radiance_target.name(), GL_DEPTH, 0, &farthest);
+}
+
+void RasterTarget::begin_surfaces(const RasterCell& cell, float farthest) {
+    if (m_surfaces.name() == 0) {
+        m_surfaces = gl::Texture(GL_R32UI, m_depth.width(), m_depth.height());
+        m_surfaces_target = gl::Framebuffer(&m_surfaces, &m_depth);
+    }
+    bind(m_surfaces_target, cell);
+    const GLuint none = 0;
+    glClearNamedFramebufferuiv(m_surfaces_target.name(), GL_COLOR, 0, &none);
+    glClearNamedFramebufferfv(m_surfaces_target.name(), GL_DEPTH, 0, &farthest);
+}
+
+std::vector<Vec4f> RasterTarget::resolve(const RasterCell& cell) const {
+    const Rect& p = cell.pixels;
+    const int left = p.x0 - cell.corner.x - m_apron, low = p.y0 - cell.corner.y - m_apron;
+    const int apron_texels = m_apron * m_lattice;
+    glDisable(GL_DEPTH_TEST);
+    m_no_attributes.bind();
+
+    m_rows_target.bind();
+    m_filter_x.use();
+    glUniform2i(FILTER_ORIGIN, apron_texels, 0);
+    m_radiance.bind(FILTER_SOURCE);
+    glViewport(0, 0, m_rows.width(), m_rows.height());
+    glScissor(left, cell.texels.y, p.width(), cell.texels.height);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+
+    m_pixels_target.bind();
+    m_filter_y.use();
+    glUniform2i(FILTER_ORIGIN, 0, apron_texels);
+    m_rows.bind(FILTER_SOURCE);
+    glViewport(0, 0, m_pixels.width(), m_pixels.height());
+    glScissor(left, low, p.width(), p.height());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    gl::check("filtering a cell");
+
+    const auto floats = m_pixels.read<float>({left, low, p.width(), p.height()}, GL_RGBA, 4);
+    std::vector<Vec4f> pixels(floats.size() / 4);
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        pixels[i] = {floats[4 * i], floats[4 * i + 1], floats[4 * i + 2], floats[4 * i + 3]};
+    return pixels;
+}
+
+gl::TexelRect RasterTarget::own_texels(const RasterCell& cell) const {
+    return {(cell.pixels.x0 - cell.corner.x) * m_lattice,
+            (cell.pixels.y0 - cell.corner.y) * m_lattice, cell.pixels.width() * m_lattice,
+            cell.pixels.height() * m_lattice};
+}
+
+std::vector<std::uint32_t> RasterTarget::read_surfaces(const RasterCell& cell) const {
+    return m_surfaces.read<std::uint32_t>(own_texels(cell), GL_RED_INTEGER, 1);
+}
+
+std::vector<float> RasterTarget::read_depth(const RasterCell& cell) const {
+    return m_depth.read<float>(own_texels(cell), GL_DEPTH_COMPONENT, 1);
+}
+
+}  // namespace granita
