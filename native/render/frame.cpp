@@ -33,7 +33,7 @@ Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& fra
       view(make_view(scene, statistics, shading,
                      PixelFilter(scene.options.pixel_filter, scene.options.filter_width))),
       table(scene.options, scene.camera),
-      hider{&table, view.projection, &statistics},
+      hider{&table, view.projection, &statistics, &scene, &report},
       film(scene.options),
       layout(film.sample_pixels(), scene.options.bucket_size),
       geometry(view, layout, report),

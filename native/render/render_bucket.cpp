@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/render_bucket.h"
+
+#include "hider/composite.h"
+#include "render/background.h"
+#include "render/visit_geometry.h"
+
+namespace granita {
+namespace {
+
+/// The bucket's share of the frame's geometry is given back on every path.
+class Release {
+  public:
+    Release(FrameGeometry& geometry, int bucket) : m_geometry(geometry), m_bucket(bucket) {}
+    ~Release() { m_geometry.release(m_bucket); }
+    Release(const Release&) = delete;
+    Release& operator=(const Release&) = delete;
+
+  private:
+    FrameGeometry& m_geometry;
+    int m_bucket;
+};
+
+std::unique_ptr<Hider> make_hider(const Frame& frame, int bucket) {
+    const Rect tiles = frame.layout.tiles(bucket), pixels = frame.layout.pixels(bucket);
+    return frame.executor == Executor::Reference ? make_reference_hider(frame.hider, tiles, pixels)
+                                                 : make_simd_hider(frame.hider, tiles, pixels);
+}
+
+/// Slots (arrival order) of the grids that some sample has seen.
+std::vector<bool> seen_grids(const std::vector<TileStore>& stores, const GridPool& pool) {
+    std::vector<bool> seen(pool.size(), false);
+    // Neighbouring samples see neighbouring micropolygons: ask again only when the id leaves the
+    // last grid.
+    SurfaceId lo = 0, hi = 0;
+    const auto mark = [&](SurfaceId id) {
+        if (id == kNoSurface || (id >= lo && id < hi)) return;
+        const GridPool::Place place = pool.locate(id);
+        lo = id - static_cast<SurfaceId>(place.micropolygon);
+        hi = lo + static_cast<SurfaceId>(place.grid->micropolygon_count());
+        seen[place.slot] = true;
+    };
+    for (const TileStore& store : stores) {
+        for (const SurfaceId id : store.id) mark(id);
+        for (const Fragment& fragment : store.fragments) mark(fragment.id);
+    }
+    return seen;
+}
+
+/// Composites and filters every tile.
+std::vector<TileContribution> resolve(Frame& frame, std::vector<TileStore>& stores,
+                                      const Hider& hider) {
+    const Options& options = frame.scene.options;
+    const CompositeSettings settings{frame.view.projection, options.opacity_threshold,
+                                     options.film_transparent};
+    std::vector<TileContribution> contributions;
+    contributions.reserve(stores.size());
+    for (std::size_t i = 0; i < stores.size(); ++i) {
+        frame.progress.check();
+        const TileSamples& samples = hider.tile_samples(i);
+        std::vector<Vec3f> background{Vec3f(0.0f)};
+        if (!options.film_transparent) {
+            const StageTimer timer(frame.statistics, Stage::Shade);
+            background = tile_background(frame.scene.camera, frame.table, frame.shading,
+                                         frame.constant_background, stores[i]);
+        }
+        const StageTimer timer(frame.statistics, Stage::Resolve);
+        const auto colors = composite_tile(stores[i], samples, hider.pool(), background, settings);
+        contributions.push_back(frame.film.filter_tile(stores[i].tile, samples, colors));
+    }
+    return contributions;
+}
+
+}  // namespace
+
+std::vector<Tile> render_bucket(Frame& frame, int bucket) {
+    const Release release(frame.geometry, bucket);
+    std::vector<std::shared_ptr<SharedGrid>> grids;  // in the hider's arrival order
+    const auto hider = make_hider(frame, bucket);
+
+    visit_geometry(frame, bucket, *hider, [&](std::shared_ptr<SharedGrid> grid) {
+        if (frame.shading.opacity_varies(grid->grid().material))
+            grid->ensure_opacity(frame.shading);
+        const StageTimer timer(frame.statistics, Stage::Hide);
+        hider->hide(grid->grid());
+        grids.push_back(std::move(grid));
+    });
+    std::vector<TileStore>* stores = nullptr;
+    std::vector<bool> seen;
+    {
+        const StageTimer timer(frame.statistics, Stage::Hide);
+        stores = &hider->finish();
+        seen = seen_grids(*stores, hider->pool());
+    }
+    for (std::size_t slot = 0; slot < grids.size(); ++slot) {
+        frame.progress.check();
+        if (seen[slot]) grids[slot]->ensure_radiance(frame.shading);
+    }
+    auto contributions = resolve(frame, *stores, *hider);
+    const StageTimer timer(frame.statistics, Stage::Film);
+    return frame.film.add(std::move(contributions));
+}
+
+}  // namespace granita
