@@ -4,22 +4,16 @@
 // so no bit depends on bucket size, order, threads or crop.
 #pragma once
 
-#include <map>
+#include <memory>
 #include <mutex>
 #include <vector>
 
 #include "film/filter.h"
+#include "hider/sample_store.h"
 #include "hider/sample_table.h"
 #include "math/bounds.h"
 
 namespace granita {
-
-/// A composited sample, premultiplied.
-struct SampleColor {
-    Vec3f color{0.0f};
-    float alpha = 0.0f;
-    float depth = 0.0f;  ///< camera z of the nearest surface, metres; infinity = none
-};
 
 /// A finished rectangle of the picture.
 struct Tile {
@@ -34,27 +28,45 @@ struct TileContribution {
     Rect rect;                  ///< pixels it reaches, cut to the crop
     std::vector<Vec4f> sum;     ///< sum of w * (rgb, a)
     std::vector<float> weight;  ///< sum of w
-    std::vector<float> depth;   ///< of the pixels inside the tile; empty without the pass
+    Rect own;                   ///< pixels inside the tile, cut to the crop
+    std::vector<float> depth;   ///< [own] or empty without the pass
 };
 
+/// A sample weighs w = f(dx) f(dy) / (samples of its pixel): pixels with more samples do not pull
+/// their neighbours (hard case 7).  A pixel is sum(w c) / sum(w): the ratio makes what is constant
+/// come out constant under any filter and any sample pattern, at the price of a bias that vanishes
+/// with the number of samples.
 class Film {
   public:
     explicit Film(const Options& options);
+    ~Film();
     /// Pixels whose samples are needed: the crop grown by the filter's radius (may reach outside
     /// the frame).
-    Rect sample_pixels() const;
-    /// `colors` [256 * samples], in sample index order of the tile.
+    Rect sample_pixels() const { return m_sample_pixels; }
+    /// `colors` [256 * samples], in sample index order of the tile.  Thread-safe.
     TileContribution filter_tile(Vec2i tile, const TileSamples& samples,
                                  const std::vector<SampleColor>& colors) const;
-    /// Thread-safe.  Returns the pixels (of `bucket_size` squares cut to the crop) that became
-    /// complete.
+    /// Thread-safe.  Every tile that overlaps sample_pixels() arrives exactly once, in any order.
+    /// Returns the pixels (of `bucket_size` squares cut to the crop) that became complete.
+    ///
+    /// Depth is not filtered: a pixel takes the sample nearest to its centre, as Cycles takes one
+    /// sample; kNoDepth where that sees nothing.
     std::vector<Tile> add(std::vector<TileContribution> contributions);
+
+    static constexpr float kNoDepth = 1e10f;  ///< Cycles' value
 
   private:
     struct Pending;
+    Rect reach(Vec2i tile) const;
+    Tile finish_cell(const Rect& cell,
+                     std::vector<std::shared_ptr<const TileContribution>> parts) const;
+
     Options m_options;
     PixelFilter m_filter;
+    std::vector<float> m_table;  ///< the filter over distance, linear in between
+    Rect m_sample_pixels;
     std::mutex m_mutex;
+    std::unique_ptr<Pending> m_pending;
 };
 
 }  // namespace granita

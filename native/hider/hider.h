@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/report.h"
 #include "base/statistics.h"
 #include "dice/grid.h"
 #include "hider/sample_store.h"
@@ -24,6 +25,9 @@ struct HiderFrame {
     const SampleTable* table = nullptr;
     Projection projection;
     Statistics* statistics = nullptr;
+    /// Where dropped micropolygons are named; both or neither.
+    const Scene* scene = nullptr;
+    Report* report = nullptr;
 };
 
 class Hider {

@@ -53,4 +53,11 @@ struct TileStore {
                                       ///< descending, before)
 };
 
+/// A composited sample, premultiplied.
+struct SampleColor {
+    Vec3f color{0.0f};
+    float alpha = 0.0f;
+    float depth = 0.0f;  ///< camera z of the nearest surface, metres; infinity = none
+};
+
 }  // namespace granita

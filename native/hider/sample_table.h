@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "hider/lens_shape.h"
+#include "hider/shutter_warp.h"
 #include "math/bounds.h"
 #include "scene/scene.h"
 
@@ -27,21 +29,36 @@ struct SampleNeeds {
     bool lens = false;
 };
 
+/// INDEPENDENT: every sample its own place, time and lens point (sample_bits.h).
+/// INTERLEAVED: places as INDEPENDENT; (t, u, v) from at most 1024 classes that repeat over squares
+/// of 1 to 8 pixels (Keller and Heidrich 2001).
+/// REGULAR: sample = pass * lattice^2 + cell; the lattice is the square nearest to
+/// Options::samples, and all pixels share a pass's time and lens point (the paper, 9.3.5). Passes:
+/// Options::time_samples (0 = 16) if the frame has motion or a lens, else 1.
 class SampleTable {
   public:
-    SampleTable(const Options& options, const Camera& camera);
+    /// `frame`: what any bucket of the frame may need; the number of samples of REGULAR depends on
+    /// it. Throws SceneError for counts that 32 bits cannot index.
+    SampleTable(const Options& options, const Camera& camera, SampleNeeds frame = {true, true});
+    /// A pixel's samples.
     int samples() const { return m_samples; }
     Sampling sampling() const { return m_sampling; }
+    int lattice() const { return m_lattice; }  ///< REGULAR: cells along a pixel's side
+    std::uint32_t seed() const { return m_seed; }
+    /// Makes x and y, and of t, u, v what is needed; the same bits whatever else is asked for.
     void fill_tile(Vec2i tile, SampleNeeds needs, TileSamples& out) const;
+    const LensShape& lens() const { return m_lens; }
 
   private:
-    int m_samples;  ///< REGULAR: lattice * lattice
+    void fill_regular(SampleNeeds needs, TileSamples& out) const;
+    void fill_dimension(Vec2i tile, int dimension, std::vector<float>& out) const;
+
+    int m_samples, m_lattice = 0;
     Sampling m_sampling;
     std::uint32_t m_seed;
-    std::vector<float>
-        m_shutter;  ///< inverse of the shutter curve's integral, tabulated; empty = box
-    int m_blades;
-    float m_blade_rotation, m_lens_ratio;
+    int m_class_pixels = 1;  ///< INTERLEAVED: side of the square of pixels that holds every class
+    ShutterWarp m_shutter;
+    LensShape m_lens;
 };
 
 }  // namespace granita

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "film/film.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+
+namespace granita {
+namespace {
+
+int floor_div(int a, int b) {
+    return a >= 0 ? a / b : -((b - 1 - a) / b);
+}
+Rect cells_over(const Rect& pixels, int size) {
+    return {floor_div(pixels.x0, size), floor_div(pixels.y0, size),
+            floor_div(pixels.x1 - 1, size) + 1, floor_div(pixels.y1 - 1, size) + 1};
+}
+Rect cell_pixels(int x, int y, int size) {
+    return {x * size, y * size, (x + 1) * size, (y + 1) * size};
+}
+
+/// Pixels of which samples in [x0, x1) can reach the centre; also the other way round: pixels whose
+/// samples can reach the centres in [x0, x1).
+Rect grown(const Rect& r, float radius) {
+    const int d = static_cast<int>(std::ceil(radius - 0.5f));
+    const int more = std::max(d, 0);
+    return {r.x0 - more, r.y0 - more, r.x1 + more, r.y1 + more};
+}
+
+}  // namespace
+
+/// Output squares that wait for tiles.
+struct Film::Pending {
+    struct Cell {
+        Rect rect;
+        int missing = 0;
+        std::vector<std::shared_ptr<const TileContribution>> parts;
+    };
+    Rect cells;
+    std::vector<Cell> list;
+    Cell& at(int x, int y) { return list[(y - cells.y0) * cells.width() + x - cells.x0]; }
+};
+
+Film::~Film() = default;
+
+Film::Film(const Options& options)
+    : m_options(options),
+      m_filter(options.pixel_filter, options.filter_width),
+      m_sample_pixels(options.crop.empty() ? Rect{} : grown(options.crop, m_filter.radius())),
+      m_pending(std::make_unique<Pending>()) {
+    GRANITA_CHECK(options.bucket_size > 0);
+    // Linear between 4096 steps a radius: the largest error is h^2 / 8 max|f''| < 1e-6.
+    constexpr int kSteps = 4096;
+    m_table.resize(kSteps + 2, 0.0f);
+    for (int i = 0; i < kSteps; ++i)
+        m_table[i] = m_filter.evaluate(m_filter.radius() * static_cast<float>(i) / kSteps);
+
+    if (options.crop.empty()) return;
+    m_pending->cells = cells_over(options.crop, options.bucket_size);
+    const Rect& cells = m_pending->cells;
+    for (int y = cells.y0; y < cells.y1; ++y)
+        for (int x = cells.x0; x < cells.x1; ++x) {
+            Pending::Cell& cell = m_pending->list.emplace_back();
+            cell.rect = cell_pixels(x, y, options.bucket_size).intersect(options.crop);
+            const Rect tiles = cells_over(grown(cell.rect, m_filter.radius()), kTileSize);
+            cell.missing = tiles.width() * tiles.height();
+        }
+}
+
+Rect Film::reach(Vec2i tile) const {
+    const Rect pixels = cell_pixels(tile.x, tile.y, kTileSize).intersect(m_sample_pixels);
+    return pixels.empty() ? Rect{} : grown(pixels, m_filter.radius()).intersect(m_options.crop);
+}
+
+std::vector<Tile> Film::add(std::vector<TileContribution> contributions) {
+    struct Complete {
+        Rect rect;
+        std::vector<std::shared_ptr<const TileContribution>> parts;
+    };
+    std::vector<Complete> complete;
+    {
+        const std::lock_guard lock(m_mutex);
+        for (TileContribution& contribution : contributions) {
+            if (contribution.rect.empty()) continue;
+            const auto part = std::make_shared<const TileContribution>(std::move(contribution));
+            const Rect cells = cells_over(part->rect, m_options.bucket_size);
+            for (int y = cells.y0; y < cells.y1; ++y)
+                for (int x = cells.x0; x < cells.x1; ++x) {
+                    Pending::Cell& cell = m_pending->at(x, y);
+                    GRANITA_CHECK(cell.missing > 0);
+                    cell.parts.push_back(part);
+                    if (--cell.missing == 0) complete.push_back({cell.rect, std::move(cell.parts)});
+                }
+        }
+    }
+    std::vector<Tile> tiles;
+    for (Complete& c : complete) tiles.push_back(finish_cell(c.rect, std::move(c.parts)));
+    return tiles;
+}
+
+Tile Film::finish_cell(const Rect& cell,
+                       std::vector<std::shared_ptr<const TileContribution>> parts) const {
+    std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) {
+        return a->tile.y != b->tile.y ? a->tile.y < b->tile.y : a->tile.x < b->tile.x;
+    });
+    Tile out;
+    out.rect = cell;
+    const std::size_t count = static_cast<std::size_t>(cell.width()) * cell.height();
+    out.combined.assign(count, Vec4f(0.0f));
+    if (m_options.depth_pass) out.depth.assign(count, kNoDepth);
+    std::vector<float> weight(count, 0.0f);
+    for (const auto& part : parts) {
+        const Rect r = part->rect.intersect(cell);
+        for (int y = r.y0; y < r.y1; ++y)
+            for (int x = r.x0; x < r.x1; ++x) {
+                const std::size_t to = (y - cell.y0) * cell.width() + x - cell.x0;
+                const std::size_t from =
+                    (y - part->rect.y0) * part->rect.width() + x - part->rect.x0;
+                out.combined[to] += part->sum[from];
+                weight[to] += part->weight[from];
+            }
+        if (part->depth.empty()) continue;
+        const Rect own = part->own.intersect(cell);
+        for (int y = own.y0; y < own.y1; ++y)
+            for (int x = own.x0; x < own.x1; ++x)
+                out.depth[(y - cell.y0) * cell.width() + x - cell.x0] =
+                    part->depth[(y - part->own.y0) * part->own.width() + x - part->own.x0];
+    }
+    // The weights of a pixel sum to about 1.  Filters much narrower than the samples' spacing may
+    // find none, and negative lobes under few samples may nearly cancel: then the sum stands.
+    constexpr float kLeastWeight = 1.0f / 16;
+    for (std::size_t i = 0; i < count; ++i)
+        if (weight[i] > kLeastWeight) out.combined[i] /= weight[i];
+    return out;
+}
+
+}  // namespace granita

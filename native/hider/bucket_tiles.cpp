@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hider/bucket_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hider/micropolygon.h"
+
+namespace granita {
+namespace {
+
+/// floor(x / tile) within [lo, hi]; infinities clamp, NaN takes `if_nan`.
+int clamped_tile(float x, int lo, int hi, int if_nan) {
+    if (std::isnan(x)) return if_nan;
+    const double tile = std::floor(static_cast<double>(x) / kTileSize);
+    return static_cast<int>(std::clamp(tile, static_cast<double>(lo), static_cast<double>(hi)));
+}
+
+}  // namespace
+
+DepthRange depth_range(const Projection& p) {
+    const auto key = [&](double z) { return static_cast<float>(p.perspective ? 1.0 / z : -z); };
+    return {p.perspective, key(p.far_clip), key(p.near_clip)};
+}
+
+BucketTiles::BucketTiles(const HiderFrame& frame, const Rect& tiles, const Rect& pixels)
+    : m_frame(frame), m_tiles(tiles), m_pixels(pixels) {
+    const SampleNeeds needs{false, frame.projection.has_lens()};
+    for (int y = tiles.y0; y < tiles.y1; ++y)
+        for (int x = tiles.x0; x < tiles.x1; ++x) {
+            TileStore& store = m_stores.emplace_back();
+            store.tile = {x, y};
+            frame.table->fill_tile(store.tile, needs, m_samples.emplace_back());
+            store.key.assign(m_samples.back().x.size(), -std::numeric_limits<float>::infinity());
+            store.id.assign(m_samples.back().x.size(), kNoSurface);
+        }
+    m_needs.assign(m_stores.size(), needs);
+}
+
+Rect BucketTiles::touched(const RasterBounds& b) const {
+    if (!b.visible || b.x1 < static_cast<float>(m_pixels.x0) ||
+        b.y1 < static_cast<float>(m_pixels.y0) || b.x0 > static_cast<float>(m_pixels.x1) ||
+        b.y0 > static_cast<float>(m_pixels.y1))
+        return {};
+    return {clamped_tile(b.x0, m_tiles.x0, m_tiles.x1 - 1, m_tiles.x0),
+            clamped_tile(b.y0, m_tiles.y0, m_tiles.y1 - 1, m_tiles.y0),
+            clamped_tile(b.x1, m_tiles.x0, m_tiles.x1 - 1, m_tiles.x1 - 1) + 1,
+            clamped_tile(b.y1, m_tiles.y0, m_tiles.y1 - 1, m_tiles.y1 - 1) + 1};
+}
+
+Rect BucketTiles::local_pixels(std::size_t i) const {
+    const Vec2i corner = m_stores[i].tile * kTileSize;
+    return Rect{0, 0, kTileSize, kTileSize}.intersect(
+        {m_pixels.x0 - corner.x, m_pixels.y0 - corner.y, m_pixels.x1 - corner.x,
+         m_pixels.y1 - corner.y});
+}
+
+void BucketTiles::need_time(std::size_t i) {
+    if (m_needs[i].time) return;
+    m_needs[i].time = true;
+    m_frame.table->fill_tile(m_stores[i].tile, m_needs[i], m_samples[i]);
+}
+
+void BucketTiles::drop_hidden_fragments(std::size_t i) {
+    TileStore& store = m_stores[i];
+    std::erase_if(store.fragments, [&](const Fragment& f) {
+        const SurfaceId opaque = store.id[f.sample];
+        return opaque != kNoSurface && !wins(f.key, f.id, store.key[f.sample], opaque);
+    });
+}
+
+void BucketTiles::report_dropped(const Grid& grid, std::uint64_t dropped) const {
+    if (dropped == 0) return;
+    if (m_frame.statistics) m_frame.statistics->add(Counter::MicropolygonsDropped, dropped);
+    if (m_frame.report && m_frame.scene)
+        m_frame.report->warn("object '" + m_frame.scene->instances.at(grid.instance).name + "'",
+                             "micropolygons with a vertex that is not finite were left out",
+                             dropped);
+}
+
+}  // namespace granita

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From what the hider saw to one colour a sample: sort the fragments, interpolate shading at the
+// sample's own place, time and lens point, put the layers over each other.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "hider/hider.h"
+#include "hider/sample_store.h"
+#include "hider/sample_table.h"
+#include "math/projection.h"
+
+namespace granita {
+
+struct CompositeSettings {
+    Projection projection;
+    /// A sample's list ends after the fragment that brings the smallest channel of accumulated
+    /// opacity here; 1 = never.  What was accumulated stays as it is.
+    float opacity_threshold = 1.0f;
+    bool film_transparent = false;  ///< no background; alpha is what covers it
+};
+
+/// [256 * samples] colours in sample order.  `background`: premultiplied radiance behind
+/// everything: one value, or one a sample; not read where the film is transparent.
+///
+/// Layers from front to back, each channel by itself: C += T c, O += a T, T -= a T, in double.
+/// Interpolated opacity is clamped to [0, 1] here and nowhere earlier; radiance is not clamped.
+/// Alpha is the mean of the three opacities without those of holdout surfaces; with a background it
+/// is 1 less what holdouts cut out.  Depth is that of the first layer.
+std::vector<SampleColor> composite_tile(TileStore& store, const TileSamples& samples,
+                                        const GridPool& pool, std::span<const Vec3f> background,
+                                        const CompositeSettings& settings);
+
+}  // namespace granita

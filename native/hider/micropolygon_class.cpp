@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hider/micropolygon_class.h"
+
+#include "hider/micropolygon.h"
+
+namespace granita {
+namespace {
+
+std::uint8_t opacity_class(const Grid& grid, const Grid::Corners& c) {
+    bool opaque = true, clear = true;
+    for (const int v : {c.v0, c.v1, c.v2, c.v3})
+        for (int channel = 0; channel < 3; ++channel) {
+            opaque = opaque && grid.opacity[v][channel] >= 1.0f;
+            clear = clear && grid.opacity[v][channel] <= 0.0f;
+        }
+    if (opaque) return kTriangleA | kTriangleB;
+    if (clear && !grid.additive) return 0;
+    return kTriangleA | kTriangleB | kTransparent;
+}
+
+}  // namespace
+
+GridClasses classify(const Grid& grid) {
+    const int vertices = grid.vertex_count();
+    const int knots = grid.motion ? grid.knots : 1;
+    std::vector<char> finite(vertices, 1);
+    for (int k = 0; k < knots; ++k)
+        for (int v = 0; v < vertices; ++v)
+            finite[v] = finite[v] && is_finite(grid.positions[k * vertices + v]);
+
+    const auto coincide = [&](int a, int b) {
+        for (int k = 0; k < knots; ++k)
+            if (grid.positions[k * vertices + a] != grid.positions[k * vertices + b]) return false;
+        return true;
+    };
+
+    GridClasses out;
+    out.classes.resize(grid.micropolygon_count());
+    for (int m = 0; m < grid.micropolygon_count(); ++m) {
+        const Grid::Corners c = grid.corners(m);
+        if (!(finite[c.v0] && finite[c.v1] && finite[c.v2] && finite[c.v3])) {
+            ++out.dropped;
+            continue;
+        }
+        std::uint8_t kind =
+            grid.opacity_varies ? opacity_class(grid, c) : std::uint8_t{kTriangleA | kTriangleB};
+        const bool diagonal = coincide(c.v0, c.v2);
+        if (diagonal || coincide(c.v0, c.v1) || coincide(c.v1, c.v2)) kind &= ~kTriangleA;
+        if (diagonal || coincide(c.v2, c.v3) || coincide(c.v3, c.v0)) kind &= ~kTriangleB;
+        if ((kind & (kTriangleA | kTriangleB)) == 0) kind = 0;
+        out.classes[m] = kind;
+        out.transparent = out.transparent || (kind & kTransparent);
+    }
+    return out;
+}
+
+}  // namespace granita

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "dice/grid.h"
+
+namespace granita {
+
+/// What the hider does with a micropolygon: Triangles bits plus kTransparent; 0 = nothing.
+inline constexpr std::uint8_t kTransparent = 4;
+
+struct GridClasses {
+    std::vector<std::uint8_t> classes;  ///< [micropolygons]
+    std::uint64_t dropped = 0;          ///< micropolygons with a vertex that is not finite
+    bool transparent = false;           ///< any
+};
+
+/// Triangles whose corners coincide at every knot have no area and are left out; so are
+/// micropolygons with opacity 0 at all corners, unless the grid is additive.  Opacity of at least 1
+/// in all channels of all corners is opaque.
+GridClasses classify(const Grid& grid);
+
+}  // namespace granita

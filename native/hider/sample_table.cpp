@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hider/sample_table.h"
+
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+#include "hider/sample_bits.h"
+
+namespace granita {
+namespace {
+
+constexpr int kPixels = kTileSize * kTileSize;
+constexpr int kBlockBits = 7;      ///< blocks of 128 pixels (decision 15)
+constexpr int kMaxClasses = 1024;  ///< of INTERLEAVED
+constexpr int kDefaultPasses = 16;
+enum Dimension { kX, kY, kT, kU, kV };
+
+int nearest_square_side(int samples) {
+    int side = static_cast<int>(std::sqrt(static_cast<double>(samples)));
+    if (samples - side * side > (side + 1) * (side + 1) - samples) ++side;
+    return side < 1 ? 1 : side;
+}
+
+int class_pixels(int samples) {
+    int side = 8;
+    while (side > 1 && side * side * samples > kMaxClasses) side /= 2;
+    return side;
+}
+
+float fraction24(std::uint32_t bits) {
+    return static_cast<float>(static_cast<std::int32_t>(bits >> 8)) * 0x1p-24f;
+}
+float fraction20(std::uint32_t bits) {
+    return static_cast<float>(static_cast<std::int32_t>(bits >> 12)) * 0x1p-20f;
+}
+
+/// sobol_reversed(first), sobol_reversed(first + 1), ...: from one to the next all direction
+/// numbers up to the lowest zero bit toggle.
+void sobol_run(std::uint32_t first, int dimension, int count, std::uint32_t* out) {
+    std::uint32_t toggle[32], sum = 0;
+    for (int i = 0; i < 32; ++i)
+        toggle[i] = sum ^=
+            dimension == 0 ? 1u << i : bits::kSobolReversed[(dimension - 1) * 32 + i];
+    std::uint32_t x = bits::sobol_reversed(first, static_cast<std::uint32_t>(dimension));
+    for (int i = 0; i < count; ++i) {
+        out[i] = x;
+        x ^= toggle[std::countr_one(first + static_cast<std::uint32_t>(i))];
+    }
+}
+
+}  // namespace
+
+SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNeeds frame)
+    : m_samples(options.samples),
+      m_sampling(options.sampling),
+      m_seed(options.seed),
+      m_shutter(options.shutter_curve),
+      m_lens(camera.blades, camera.blade_rotation, camera.lens_ratio) {
+    if (options.samples < 1 || options.samples > 1 << 16)
+        throw SceneError("render settings",
+                         "samples must be 1 to 65536, not " + std::to_string(options.samples));
+    if (options.time_samples < 0 || options.time_samples > 2048)
+        throw SceneError("render settings", "time_samples must be 0 to 2048, not " +
+                                                std::to_string(options.time_samples));
+    if (m_sampling == Sampling::Interleaved) m_class_pixels = class_pixels(m_samples);
+    if (m_sampling == Sampling::Regular) {
+        m_lattice = nearest_square_side(m_samples);
+        const bool blur = frame.time || (frame.lens && camera.projection.has_lens());
+        const int passes = !blur ? 1 : options.time_samples ? options.time_samples : kDefaultPasses;
+        m_samples = m_lattice * m_lattice * passes;
+    }
+}
+
+void SampleTable::fill_tile(Vec2i tile, SampleNeeds needs, TileSamples& out) const {
+    out.samples = m_samples;
+    const std::size_t count = static_cast<std::size_t>(kPixels) * m_samples;
+    out.x.resize(count);
+    out.y.resize(count);
+    out.t.resize(needs.time ? count : 0);
+    out.u.resize(needs.lens ? count : 0);
+    out.v.resize(needs.lens ? count : 0);
+    if (m_sampling == Sampling::Regular) {
+        fill_regular(needs, out);
+    } else {
+        fill_dimension(tile, kX, out.x);
+        fill_dimension(tile, kY, out.y);
+        if (needs.time) fill_dimension(tile, kT, out.t);
+        if (needs.lens) {
+            fill_dimension(tile, kU, out.u);
+            fill_dimension(tile, kV, out.v);
+        }
+    }
+    if (needs.time && !m_shutter.is_box())
+        for (float& t : out.t) t = m_shutter.time(t);
+    if (needs.lens) m_lens.map(out.u.data(), out.v.data(), count);
+}
+
+void SampleTable::fill_dimension(Vec2i tile, int dimension, std::vector<float>& out) const {
+    const bool in_classes = m_sampling == Sampling::Interleaved && dimension >= kT;
+    const std::uint32_t mask = in_classes ? m_class_pixels - 1 : (1 << kBlockBits) - 1;
+    const int x0 = tile.x * kTileSize, y0 = tile.y * kTileSize;
+    // A tile lies in one block; shifts of negative pixels round down.
+    const std::uint32_t block =
+        in_classes ? bits::hash(m_seed)
+                   : bits::block_seed(m_seed, static_cast<std::uint32_t>(x0 >> kBlockBits),
+                                      static_cast<std::uint32_t>(y0 >> kBlockBits));
+    const std::uint32_t seed = bits::dimension_seed(block, static_cast<std::uint32_t>(dimension));
+    std::vector<std::uint32_t> run(static_cast<std::size_t>(m_samples));
+    for (int p = 0; p < kPixels; ++p) {
+        const int x = p % kTileSize, y = p / kTileSize;
+        const std::uint32_t place = bits::morton(static_cast<std::uint32_t>(x0 + x) & mask,
+                                                 static_cast<std::uint32_t>(y0 + y) & mask);
+        sobol_run(place * static_cast<std::uint32_t>(m_samples), dimension, m_samples, run.data());
+        float* const values = out.data() + static_cast<std::size_t>(p) * m_samples;
+        if (dimension <= kY) {
+            const auto corner = static_cast<float>(dimension == kX ? x : y);
+            for (int s = 0; s < m_samples; ++s)
+                values[s] = corner + fraction20(bits::owen(run[s], seed));
+        } else {
+            for (int s = 0; s < m_samples; ++s) values[s] = fraction24(bits::owen(run[s], seed));
+        }
+    }
+}
+
+void SampleTable::fill_regular(SampleNeeds needs, TileSamples& out) const {
+    const int cells = m_lattice * m_lattice;
+    const auto lattice = static_cast<std::uint32_t>(m_lattice);
+    const auto passes = static_cast<std::uint32_t>(m_samples / cells);
+    for (int p = 0; p < kPixels; ++p)
+        for (int s = 0; s < m_samples; ++s) {
+            const std::size_t i = static_cast<std::size_t>(p) * m_samples + s;
+            const auto cell = static_cast<std::uint32_t>(s % cells);
+            const auto pass = static_cast<std::uint32_t>(s / cells);
+            out.x[i] = static_cast<float>(p % kTileSize) +
+                       static_cast<float>(bits::cell_center(cell % lattice, lattice)) * 0x1p-20f;
+            out.y[i] = static_cast<float>(p / kTileSize) +
+                       static_cast<float>(bits::cell_center(cell / lattice, lattice)) * 0x1p-20f;
+            if (needs.time)
+                out.t[i] = static_cast<float>(bits::cell_center(pass, passes)) * 0x1p-20f;
+            if (needs.lens) {
+                // With t a Hammersley set: the lens points of any stretch of the shutter are
+                // spread.
+                out.u[i] = fraction24(bits::reverse_bits(pass));
+                out.v[i] = fraction24(bits::reverse_bits(bits::sobol_reversed(pass, 1)));
+            }
+        }
+}
+
+}  // namespace granita

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "hider/micropolygon.h"
+#include "hider/sample_store.h"
+#include "hider/sample_table.h"
+#include "math/projection.h"
+
+namespace granita {
+
+/// Three vertices of a grid and their weights: where a sample meets a micropolygon.
+struct SurfacePoint {
+    const Grid* grid = nullptr;
+    int vertex[3] = {0, 0, 0};
+    float weight[3] = {1.0f, 0.0f, 0.0f};
+
+    Vec3f operator()(const std::vector<Vec3f>& values) const {
+        return weight[0] * values[vertex[0]] + weight[1] * values[vertex[1]] +
+               weight[2] * values[vertex[2]];
+    }
+};
+
+/// Finds again where the samples of one tile meet the surfaces that the hider stored, with the
+/// hider's own arithmetic.  A sample that rounding puts outside takes the nearest point inside.
+class SurfaceInterpolator {
+  public:
+    SurfaceInterpolator(const Projection& projection, Vec2i tile, const TileSamples& samples,
+                        const GridPool& pool);
+    SurfacePoint locate(std::uint32_t sample, SurfaceId id);
+
+  private:
+    void load(SurfaceId id);
+
+    Projection m_projection;
+    Vec2d m_origin;
+    const TileSamples& m_samples;
+    const GridPool& m_pool;
+    float m_inverse_focus, m_lens_x, m_lens_y;
+
+    SurfaceId m_loaded = kNoSurface;  ///< neighbouring samples mostly ask for the same one
+    const Grid* m_grid = nullptr;
+    int m_vertex[4] = {};
+    Corner<float> m_static[4];
+};
+
+}  // namespace granita
