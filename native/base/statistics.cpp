@@ -49,6 +49,7 @@ std::vector<std::pair<std::string, double>> Statistics::list() const {
         list.emplace_back(std::string("seconds_") + kStageNames[i],
                           1e-9 * static_cast<double>(m_nanoseconds[i].load()));
     list.emplace_back("peak_grid_bytes", static_cast<double>(m_peak_grid_bytes.load()));
+    list.emplace_back("peak_ray_bytes", static_cast<double>(m_peak_ray_bytes.load()));
     return list;
 }
 

@@ -19,10 +19,12 @@ struct Light {
     std::vector<Mat4d> world_from_light;  ///< [K] Blender's light space: shines along -z
     Vec3f color{1.0f};
     float energy = 0.0f;
-    float radius = 0.0f;     ///< point, spot: metres
-    float sun_angle = 0.0f;  ///< radians, full angle
-    float spot_size = 0.0f;  ///< radians, full cone
+    float radius = 0.0f;       ///< point, spot: metres
+    bool soft_falloff = true;  ///< a radius means a disc that faces the point; false: a sphere
+    float sun_angle = 0.0f;    ///< radians, full angle
+    float spot_size = 0.0f;    ///< radians, full cone
     float spot_blend = 0.0f;
+    bool spot_cosine = false;  ///< dimmed by the cosine to the axis, as Cycles before Blender 3.5
     AreaShape shape = AreaShape::Square;
     Vec2f size{1.0f};  ///< area: metres, before the matrix's scale
     float spread = 3.14159265f;

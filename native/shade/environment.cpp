@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/environment.h"
+
+#include <algorithm>
+#include <numbers>
+#include <numeric>
+
+#include "shade/sampling.h"
+
+namespace granita {
+namespace {
+
+Vec3f equirectangular_direction(double u, double v) {
+    const double phi = (2.0 * u - 1.0) * std::numbers::pi, theta = v * std::numbers::pi;
+    const double s = std::sin(theta);
+    return {static_cast<float>(std::cos(phi) * s), static_cast<float>(std::sin(phi) * s),
+            static_cast<float>(std::cos(theta))};
+}
+
+Vec2f equirectangular_point(const Vec3f& d) {
+    const float u = 0.5f + std::atan2(d.y, d.x) * (0.5f * kInversePi);
+    // atan2 keeps its bits near the poles, where acos has none.
+    const float v = std::atan2(std::sqrt(d.x * d.x + d.y * d.y), d.z) * kInversePi;
+    return {std::clamp(u, 0.0f, 1.0f), std::clamp(v, 0.0f, 1.0f)};
+}
+
+float luminance(const Vec3f& c) {
+    return std::max(0.0f, 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z);
+}
+
+/// Running sums of `values` scaled to end at exactly 1; false when all are 0.
+bool accumulate(const double* values, int count, float* distribution) {
+    const double total = std::accumulate(values, values + count, 0.0);
+    double sum = 0.0;
+    for (int i = 0; i < count; ++i) {
+        distribution[i] = total > 0.0 ? static_cast<float>(sum / total) : 0.0f;
+        sum += values[i];
+    }
+    distribution[count] = 1.0f;
+    return total > 0.0;
+}
+
+/// The interval that holds x and where in it.
+struct Located {
+    int index;
+    float fraction, width;
+};
+
+Located locate(const float* distribution, int count, float x) {
+    const float* above = std::upper_bound(distribution, distribution + count + 1, x);
+    const int index = std::clamp(static_cast<int>(above - distribution) - 1, 0, count - 1);
+    const float width = distribution[index + 1] - distribution[index];
+    const float fraction = width > 0.0f ? (x - distribution[index]) / width : 0.5f;
+    return {index, std::clamp(fraction, 0.0f, 0.999999f), width};
+}
+
+}  // namespace
+
+Environment::Environment(const WorldEvaluator& world, int height)
+    : m_width(2 * height), m_height(height) {
+    const auto texels = static_cast<std::size_t>(m_width) * static_cast<std::size_t>(m_height);
+    std::vector<Vec3f> directions(texels), radiance;
+    for (int row = 0, k = 0; row < m_height; ++row)
+        for (int column = 0; column < m_width; ++column, ++k)
+            directions[k] =
+                equirectangular_direction((column + 0.5) / m_width, (row + 0.5) / m_height);
+    world(directions, texel_angle(), radiance);
+    for (Vec3f& c : radiance)
+        if (!is_finite(c)) {
+            c = Vec3f(0.0f);
+            ++m_broken;
+        }
+    m_constant = std::all_of(radiance.begin(), radiance.end(),
+                             [&](const Vec3f& c) { return c == radiance[0]; });
+    m_constant_radiance = radiance[0];
+    m_black = m_constant && luminance(radiance[0]) <= 0.0f;
+    if (m_constant) return;
+
+    m_rows.resize(static_cast<std::size_t>(m_height) + 1);
+    m_columns.resize(static_cast<std::size_t>(m_height) * (m_width + 1));
+    std::vector<double> rows(m_height), columns(m_width);
+    for (int row = 0; row < m_height; ++row) {
+        const Vec3f* line = radiance.data() + static_cast<std::size_t>(row) * m_width;
+        for (int column = 0; column < m_width; ++column) {
+            // The larger of the texel and its neighbours: what a filtered texture brings across a
+            // texel's border is never sampled with too small a density.
+            double largest = 0.0;
+            for (int dy = -1; dy <= 1; ++dy) {
+                const int y = std::clamp(row + dy, 0, m_height - 1) - row;
+                for (int dx = -1; dx <= 1; ++dx) {
+                    const int x = (column + dx + m_width) % m_width;
+                    const Vec3f& c = line[static_cast<std::ptrdiff_t>(y) * m_width + x];
+                    const double l = luminance(c);
+                    largest = std::max(largest, (dx == 0 && dy == 0) ? l : 0.5 * l);
+                }
+            }
+            columns[column] = largest;
+        }
+        rows[row] = std::accumulate(columns.begin(), columns.end(), 0.0) *
+                    std::sin((row + 0.5) * std::numbers::pi / m_height);
+        accumulate(columns.data(), m_width,
+                   m_columns.data() + static_cast<std::size_t>(row) * (m_width + 1));
+    }
+    m_black = !accumulate(rows.data(), m_height, m_rows.data());
+}
+
+float Environment::texel_angle() const {
+    return kPi / static_cast<float>(m_height);
+}
+
+std::size_t Environment::bytes() const {
+    return (m_rows.size() + m_columns.size()) * sizeof(float);
+}
+
+Vec3f Environment::sample(const Vec2f& u, float& pdf) const {
+    const Located row = locate(m_rows.data(), m_height, u.y);
+    const float* line = m_columns.data() + static_cast<std::size_t>(row.index) * (m_width + 1);
+    const Located column = locate(line, m_width, u.x);
+    const float x = (static_cast<float>(column.index) + column.fraction) / m_width;
+    const float y = (static_cast<float>(row.index) + row.fraction) / m_height;
+    const float sine = std::sin(y * kPi);
+    const float density = row.width * column.width * static_cast<float>(m_width) * m_height;
+    pdf = sine > 0.0f ? density / (2.0f * kPi * kPi * sine) : 0.0f;
+    return equirectangular_direction(x, y);
+}
+
+float Environment::pdf(const Vec3f& direction) const {
+    const Vec2f p = equirectangular_point(direction);
+    const int row = std::min(static_cast<int>(p.y * m_height), m_height - 1);
+    const int column = std::min(static_cast<int>(p.x * m_width), m_width - 1);
+    const float* line = m_columns.data() + static_cast<std::size_t>(row) * (m_width + 1);
+    const float sine = std::sqrt(direction.x * direction.x + direction.y * direction.y);
+    const float density = (m_rows[row + 1] - m_rows[row]) * (line[column + 1] - line[column]) *
+                          static_cast<float>(m_width) * m_height;
+    return sine > 0.0f ? density / (2.0f * kPi * kPi * sine) : 0.0f;
+}
+
+}  // namespace granita

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A light of the scene as shading points see it: what arrives from where.  Shading space (world
+// axes, origin at the camera of the frame time), Blender's units as Cycles converts them:
+//
+//   point, spot   radiant intensity P / (4 pi); soft ones a disc of that radius that faces the
+//   point
+//                 (or a sphere of radiance P / (4 pi^2 r^2)), so that the irradiance at distance d
+//                 is P / (4 pi d^2)
+//   sun           irradiance P across the direction, spread over its angle
+//   area          radiance P / (pi A) on the front side, whatever the shape
+#pragma once
+
+#include <memory>
+
+#include "math/vec.h"
+#include "scene/light.h"
+
+namespace granita {
+
+/// Light that arrives at a point from one direction.
+struct LightSample {
+    Vec3f direction{0.0f};  ///< unit, from the point to the light
+    float distance = 0.0f;  ///< metres; infinite for suns
+    Vec3f radiance{0.0f};   ///< of hard lights: the irradiance across the direction
+    float pdf = 0.0f;       ///< per solid angle; 1 of hard lights
+};
+
+class LightSource {
+  public:
+    virtual ~LightSource() = default;
+    /// Without a size: one direction a point, never met by a ray.
+    virtual bool is_hard() const = 0;
+    /// False when nothing arrives at `p` along the sampled direction.
+    virtual bool sample(const Vec3f& p, const Vec2f& u, LightSample& sample) const = 0;
+    /// What arrives at `p` from `direction`; its pdf is that of sample().  False when the ray
+    /// misses the light or it sends nothing.
+    virtual bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const = 0;
+};
+
+/// `frame_time`: shutter time at which the light stands; `origin`: the camera's world position.
+std::unique_ptr<LightSource> make_light_source(const Light& light, float frame_time,
+                                               const Vec3d& origin);
+
+// The kinds, one file each.
+struct LightFrame {
+    Vec3f position;     ///< shading space
+    Mat3d axes;         ///< world_from_light without translation, scale included
+    Vec3f direction;    ///< unit, where the light shines: -z of the light
+    Vec3f power{0.0f};  ///< colour times energy
+};
+std::unique_ptr<LightSource> make_point_light(const Light& light, const LightFrame& frame);
+std::unique_ptr<LightSource> make_sun_light(const Light& light, const LightFrame& frame);
+std::unique_ptr<LightSource> make_area_light(const Light& light, const LightFrame& frame);
+
+}  // namespace granita

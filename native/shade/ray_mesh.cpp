@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/ray_mesh.h"
+
+#include <opensubdiv/bfr/surface.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace granita {
+namespace {
+
+namespace Bfr = OpenSubdiv::Bfr;
+
+/// Cells a side of a patch, so that no geometry takes more than some ten million triangles.
+int cells_a_side(std::size_t patches) {
+    if (patches <= 40'000) return 8;
+    return patches <= 400'000 ? 4 : 2;
+}
+
+Report& no_report() {
+    // What cannot be diced is reported by dicing, which reads the same data.
+    static Report report;
+    return report;
+}
+
+}  // namespace
+
+RayMesh::RayMesh(const GeometryData& data, float frame_time, const Progress& progress)
+    : m_shared(data, frame_time, no_report()) {
+    if (m_shared.subdivision() != nullptr)
+        add_limit_surface(progress);
+    else
+        add_polygons();
+    for (const Vec3f& p : m_points)
+        if (is_finite(p))
+            m_extent = std::max({m_extent, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+}
+
+void RayMesh::add_polygons() {
+    const GeometryData& data = m_shared.data();
+    const auto& patches = m_shared.patches();
+    m_points.assign(m_shared.frame_points().begin(), m_shared.frame_points().end());
+    m_triangles.reserve(2 * patches.size());
+    m_patches.reserve(2 * patches.size());
+    for (std::uint32_t k = 0; k < patches.size(); ++k) {
+        const BasePatch& patch = patches[k];
+        std::array<std::uint32_t, 4> v;
+        for (std::size_t i = 0; i < 4; ++i)
+            v[i] = static_cast<std::uint32_t>(data.corner_verts[patch.corner[i]]);
+        m_triangles.push_back({v[0], v[1], v[2]});
+        m_patches.push_back(2 * k);
+        if (patch.kind != PatchKind::Quad) continue;
+        m_triangles.push_back({v[0], v[2], v[3]});
+        m_patches.push_back(2 * k + 1);
+        const Vec3f twist = m_points[v[0]] - m_points[v[1]] + m_points[v[2]] - m_points[v[3]];
+        const float error = 0.25f * glm::length(twist);
+        // Rounding alone twists a flat quad: that is the business of extent().
+        if (error <= 1e-6f * glm::length(m_points[v[0]] - m_points[v[2]])) continue;
+        if (m_errors.empty()) m_errors.assign(data.face_count(), 0.0f);
+        m_errors[patch.face] = std::max(m_errors[patch.face], error);
+    }
+}
+
+void RayMesh::add_limit_surface(const Progress& progress) {
+    const auto& patches = m_shared.patches();
+    const int side = m_side = cells_a_side(patches.size());
+    const auto line = static_cast<std::size_t>(side) + 1;
+    const auto cells = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+    m_points.resize(patches.size() * line * line);
+    m_triangles.resize(patches.size() * 2 * cells);
+    std::vector<float> errors(patches.size(), 0.0f);
+    const auto* cage = reinterpret_cast<const float*>(m_shared.frame_points().data());
+    const auto& factory = m_shared.subdivision()->factory();
+
+    const auto evaluate = [&](std::size_t k) {
+        const BasePatch& patch = patches[k];
+        Vec3f* points = m_points.data() + k * line * line;
+        Bfr::Surface<float> surface;
+        if (!factory.InitVertexSurface(static_cast<int>(patch.face), &surface)) {
+            std::fill_n(points, line * line, Vec3f(std::nanf("")));  // a hole: Embree skips it
+            return;
+        }
+        std::vector<float> control(static_cast<std::size_t>(surface.GetNumPatchPoints()) * 3);
+        surface.PreparePatchPoints(cage, 3, control.data(), 3);
+        for (std::size_t j = 0; j < line; ++j)
+            for (std::size_t i = 0; i < line; ++i) {
+                float st[2] = {static_cast<float>(i) / static_cast<float>(side),
+                               static_cast<float>(j) / static_cast<float>(side)};
+                float uv[2] = {st[0], st[1]};
+                if (patch.kind == PatchKind::SubFace)
+                    surface.GetParameterization().ConvertNormalizedSubFaceToCoord(
+                        static_cast<int>(patch.sub), st, uv);
+                surface.Evaluate(uv, control.data(), 3, &points[j * line + i].x);
+            }
+        // A chord misses a curve by an eighth of its second difference, a cell's diagonal by a
+        // quarter of its twist.
+        const auto at = [&](std::size_t i, std::size_t j) { return points[j * line + i]; };
+        float bend_u = 0.0f, bend_v = 0.0f, twist = 0.0f;
+        for (std::size_t j = 0; j < line; ++j)
+            for (std::size_t i = 0; i < line; ++i) {
+                if (i > 0 && i + 1 < line)
+                    bend_u = std::max(bend_u,
+                                      glm::length(at(i - 1, j) - 2.0f * at(i, j) + at(i + 1, j)));
+                if (j > 0 && j + 1 < line)
+                    bend_v = std::max(bend_v,
+                                      glm::length(at(i, j - 1) - 2.0f * at(i, j) + at(i, j + 1)));
+                if (i + 1 < line && j + 1 < line)
+                    twist = std::max(twist, glm::length(at(i, j) - at(i + 1, j) + at(i + 1, j + 1) -
+                                                        at(i, j + 1)));
+            }
+        errors[k] = 0.125f * (bend_u + bend_v) + 0.25f * twist;
+        auto* triangles = m_triangles.data() + k * 2 * cells;
+        for (std::size_t j = 0; j + 1 < line; ++j)
+            for (std::size_t i = 0; i + 1 < line; ++i) {
+                const auto v = static_cast<std::uint32_t>(k * line * line + j * line + i);
+                const auto above = v + static_cast<std::uint32_t>(line);
+                *triangles++ = {v, v + 1, above + 1};
+                *triangles++ = {v, above + 1, above};
+            }
+    };
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), 256),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          progress.check();
+                          for (std::size_t k = range.begin(); k != range.end(); ++k) evaluate(k);
+                      });
+    m_errors.assign(m_shared.data().face_count(), 0.0f);
+    for (std::size_t k = 0; k < patches.size(); ++k)
+        m_errors[patches[k].face] = std::max(m_errors[patches[k].face], errors[k]);
+}
+
+void RayMesh::release_triangles() {
+    m_points = {};
+    m_triangles = {};
+}
+
+float RayMesh::error(std::uint32_t face) const {
+    return face < m_errors.size() ? m_errors[face] : 0.0f;
+}
+
+std::size_t RayMesh::patch_of(std::uint32_t triangle) const {
+    if (!m_patches.empty()) return m_patches[triangle] / 2;
+    return triangle / (2 * static_cast<std::uint32_t>(m_side * m_side));
+}
+
+std::uint32_t RayMesh::face(std::uint32_t triangle) const {
+    return m_shared.patches()[patch_of(triangle)].face;
+}
+
+void RayMesh::locate(std::uint32_t triangle, float u, float v, ShadowHit& hit) const {
+    const BasePatch& patch = m_shared.patches()[patch_of(triangle)];
+    hit.face = patch.face;
+    if (!m_patches.empty()) {  // the triangle's corners are corners of the face
+        const bool second = (m_patches[triangle] & 1u) != 0;
+        hit.add(patch.corner[0], 1.0f - u - v);
+        hit.add(patch.corner[second ? 2 : 1], u);
+        hit.add(patch.corner[second ? 3 : 2], v);
+        return;
+    }
+    const auto cells = static_cast<std::uint32_t>(m_side * m_side);
+    const std::uint32_t cell = triangle % (2 * cells) / 2,
+                        side = static_cast<std::uint32_t>(m_side);
+    const bool second = (triangle & 1u) != 0;
+    const float s = (static_cast<float>(cell % side) + u + (second ? 0.0f : v)) / m_side;
+    const float t = (static_cast<float>(cell / side) + v + (second ? u : 0.0f)) / m_side;
+    const float w[4] = {(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t};
+    if (patch.kind == PatchKind::Quad) {
+        for (std::size_t i = 0; i < 4; ++i) hit.add(patch.corner[i], w[i]);
+        return;
+    }
+    // A sub-face of an n-gon: its own corner, the middles of two edges, the centre.
+    const std::uint32_t first = m_shared.first_corner(patch.face);
+    const auto n = static_cast<std::uint32_t>(m_shared.data().face_sizes[patch.face]);
+    for (std::uint32_t i = 0; i < n; ++i) {
+        float weight = w[2] / static_cast<float>(n);
+        if (i == patch.sub) weight += w[0] + 0.5f * (w[1] + w[3]);
+        if (i == (patch.sub + 1) % n) weight += 0.5f * w[1];
+        if (i == (patch.sub + n - 1) % n) weight += 0.5f * w[3];
+        hit.add(first + i, weight);
+    }
+}
+
+std::size_t RayMesh::bytes() const {
+    return m_points.size() * sizeof(Vec3f) + m_triangles.size() * sizeof(m_triangles[0]) +
+           (m_patches.size() + m_errors.size()) * 4 + m_shared.bytes();
+}
+
+}  // namespace granita

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scene as shadow rays see it: view-independent triangles, one Embree scene a geometry,
+// instanced, in shading space (world axes, origin at the camera of the frame time; decision 12).
+#pragma once
+
+#include <memory>
+
+#include "base/progress.h"
+#include "dice/grid.h"
+#include "scene/scene.h"
+#include "shade/shadow_opacity.h"
+
+namespace granita {
+
+class RayScene {
+  public:
+    /// `origin`: the camera's world position.  Only instances that cast shadows are in it.  Throws
+    /// Cancelled, or SceneError naming the geometry that Embree could not take.
+    RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacity,
+             const Progress& progress);
+    ~RayScene();
+
+    bool empty() const;
+    std::size_t bytes() const;
+
+    /// Where a ray from a grid's point `p` must start so as to clear the grid's own triangles:
+    /// lifted along the geometric normal by the rounding of positions and by the largest distance
+    /// between the surface and its triangles.
+    Vec3f lift(const GridKey& key, const Vec3f& p, const Vec3f& geometric_normal) const;
+
+    /// Share of light that passes along the segment, per channel.  `direction` is unit.
+    Vec3f transmittance(const Vec3f& start, const Vec3f& direction, float distance) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace granita

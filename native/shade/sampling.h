@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Deterministic sample points and the maps from the unit square that lighting uses.  Everything is
+// a function of its arguments: the same grid gets the same points on any thread, in any bucket.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "dice/grid.h"
+#include "math/vec.h"
+
+namespace granita {
+
+constexpr float kPi = 3.14159265358979f;
+constexpr float kInversePi = 0.318309886183791f;
+
+/// Mixes all bits (the finaliser of MurmurHash3, Appleby 2008).
+inline std::uint64_t mix_bits(std::uint64_t x) {
+    x = (x ^ (x >> 33)) * 0xff51afd7ed558ccdULL;
+    x = (x ^ (x >> 33)) * 0xc4ceb9fe1a85ec53ULL;
+    return x ^ (x >> 33);
+}
+
+/// Seed of a grid, from its identity alone (decision 3).
+inline std::uint64_t grid_seed(const GridKey& key, std::uint32_t frame_seed) {
+    const auto face = (static_cast<std::uint64_t>(key.instance) << 32) | key.face;
+    return mix_bits(mix_bits(face + 0x9e3779b97f4a7c15ULL * (frame_seed + 1ULL)) ^ key.path);
+}
+
+/// The first two dimensions of Sobol's sequence, Owen-scrambled by hashing (Laine and Karras 2011;
+/// Burley 2020).  Any power-of-two prefix is a (0, m, 2)-net: stratified in every elementary
+/// interval.
+class SobolPoints {
+  public:
+    explicit SobolPoints(std::uint64_t seed)
+        : m_seed_x(static_cast<std::uint32_t>(mix_bits(seed))),
+          m_seed_y(static_cast<std::uint32_t>(mix_bits(seed + 0x632be59bd9b4e019ULL))) {}
+
+    /// In [0, 1)^2.
+    Vec2f operator()(std::uint32_t index) const {
+        std::uint32_t y = 0;
+        for (std::uint32_t i = index, v = 1u << 31; i != 0; i >>= 1, v ^= v >> 1)
+            if (i & 1u) y ^= v;
+        // van der Corput is the bit reversal of the index, which Owen's scramble wants anyway.
+        return {unit(reverse(scramble(index, m_seed_x))),
+                unit(reverse(scramble(reverse(y), m_seed_y)))};
+    }
+
+  private:
+    static std::uint32_t reverse(std::uint32_t x) {
+        x = (x << 16) | (x >> 16);
+        x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
+        x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+        x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+        return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+    }
+    /// Each bit is flipped by a hash of the bits below it: a nested scramble of the reversed word.
+    static std::uint32_t scramble(std::uint32_t x, std::uint32_t seed) {
+        x ^= x * 0x3d20adeau;
+        x += seed;
+        x *= (seed >> 16) | 1u;
+        x ^= x * 0x05526c56u;
+        x ^= x * 0x53a22864u;
+        return x;
+    }
+    static float unit(std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
+
+    std::uint32_t m_seed_x, m_seed_y;
+};
+
+/// Axes x, y that make (x, y, n) a right-handed orthonormal frame (Duff et al. 2017).
+struct Frame {
+    Vec3f x, y, n;
+    explicit Frame(const Vec3f& normal) : n(normal) {
+        const float sign = std::copysign(1.0f, n.z);
+        const float a = -1.0f / (sign + n.z);
+        const float b = n.x * n.y * a;
+        x = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
+        y = {b, sign + n.y * n.y * a, -n.y};
+    }
+    Vec3f to_world(const Vec3f& v) const { return v.x * x + v.y * y + v.z * n; }
+    Vec3f to_local(const Vec3f& v) const {
+        return {glm::dot(v, x), glm::dot(v, y), glm::dot(v, n)};
+    }
+};
+
+/// Unit disc, area-preserving and with low distortion (Shirley and Chiu 1997).
+inline Vec2f sample_disc(const Vec2f& u) {
+    const float a = 2.0f * u.x - 1.0f, b = 2.0f * u.y - 1.0f;
+    if (a == 0.0f && b == 0.0f) return Vec2f(0.0f);
+    const bool wide = std::abs(a) > std::abs(b);
+    const float r = wide ? a : b;
+    const float phi = wide ? 0.25f * kPi * (b / a) : 0.5f * kPi - 0.25f * kPi * (a / b);
+    return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+/// Local frame, density cos / pi.
+inline Vec3f sample_cosine_hemisphere(const Vec2f& u) {
+    const Vec2f d = sample_disc(u);
+    return {d.x, d.y, std::sqrt(std::max(0.0f, 1.0f - d.x * d.x - d.y * d.y))};
+}
+
+/// Local frame, uniform in the cone about +z; density 1 / (2 pi one_minus_cos).
+inline Vec3f sample_cone(const Vec2f& u, float one_minus_cos) {
+    const Vec2f d = sample_disc(u);
+    const float h = one_minus_cos * (d.x * d.x + d.y * d.y);  // 1 - cos of this direction
+    const float scale = std::sqrt(one_minus_cos * std::max(0.0f, 2.0f - h));
+    return {d.x * scale, d.y * scale, 1.0f - h};
+}
+
+}  // namespace granita
