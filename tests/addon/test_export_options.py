@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shutter times, borders and seeds worked out by hand."""
+
+import pytest
+from export.camera import Frame
+from export.options import border, mixed_seed, shutter
+from export.report import ExportError, Report
+
+
+@pytest.mark.parametrize(
+    "length, position, steps, offsets, frame_knot, time",
+    [
+        (0.5, "CENTER", 3, (-0.25, 0.0, 0.25), 1, 0.5),
+        (0.5, "START", 3, (0.0, 0.25, 0.5), 0, 0.0),
+        (0.5, "END", 3, (-0.5, -0.25, 0.0), 2, 1.0),
+        (1.0, "CENTER", 4, (-0.5, -0.25, 0.0, 0.25, 0.5), 2, 0.5),
+        (2.0, "START", 2, (0.0, 1.0, 2.0), 0, 0.0),
+        (0.5, "CENTER", 1, (0.0,), 0, 0.5),
+        (0.0, "END", 5, (0.0,), 0, 1.0),
+    ],
+)
+def test_shutter_knots(length, position, steps, offsets, frame_knot, time):
+    made = shutter(length, position, steps)
+    assert made.offsets == pytest.approx(offsets)
+    assert made.offsets[made.frame_knot] == 0.0
+    assert (made.frame_knot, made.frame_time) == (frame_knot, time)
+
+
+def test_border_truncates():
+    # Sizes that Blender itself gave for this frame and border: 49 by 31.
+    assert border(Frame(101, 67), 0.26, 0.25, 0.75, 0.713) == (26, 16, 75, 47)
+
+
+def test_border_multiplies_in_single_precision():
+    # .7 is .69999999 in single precision, but ten times it rounds to 7.
+    assert border(Frame(10, 10), 0.0, 0.0, 0.699999988079071, 1.0)[2] == 7
+
+
+def test_border_stays_inside_the_frame():
+    assert border(Frame(10, 10), -1.0, 0.0, 3.0, 1.0) == (0, 0, 10, 10)
+
+
+def test_mixed_seeds_differ_from_frame_to_frame_and_fit_31_bits():
+    seeds = [mixed_seed(seed, frame) for seed in range(20) for frame in range(-50, 50)]
+    assert len(set(seeds)) == len(seeds)
+    assert all(0 <= seed < 2**31 for seed in seeds)
+
+
+def test_report_counts_each_message_once():
+    report = Report()
+    report("mesh 'A'", "broken")
+    report.warn("mesh 'B'", "broken")
+    report.warn("mesh 'A'", "broken")
+    assert report.entries() == [("mesh 'A'", "broken", 2), ("mesh 'B'", "broken", 1)]
+    assert len(report) == 2
+
+
+def test_error_names_the_datablock():
+    assert str(ExportError("scene 'S'", "has no camera")) == "scene 'S': has no camera"
