@@ -25,8 +25,8 @@ int clamped_cell(float x, int size, int lo, int hi) {
 
 }  // namespace
 
-BucketLayout::BucketLayout(const Rect& sample_pixels, int bucket_size)
-    : m_pixels(sample_pixels), m_size(bucket_size) {
+BucketLayout::BucketLayout(const Rect& pixels, int bucket_size, int apron)
+    : m_pixels(pixels), m_size(bucket_size), m_apron(apron) {
     GRANITA_CHECK_EQ(bucket_size % kTileSize, 0);
     m_buckets = {floor_div(m_pixels.x0, m_size), floor_div(m_pixels.y0, m_size),
                  ceil_div(m_pixels.x1, m_size), ceil_div(m_pixels.y1, m_size)};
@@ -38,6 +38,11 @@ Rect BucketLayout::pixels(int index) const {
     return Rect{x * m_size, y * m_size, (x + 1) * m_size, (y + 1) * m_size}.intersect(m_pixels);
 }
 
+Rect BucketLayout::reach(int index) const {
+    const Rect p = pixels(index);
+    return {p.x0 - m_apron, p.y0 - m_apron, p.x1 + m_apron, p.y1 + m_apron};
+}
+
 Rect BucketLayout::tiles(int index) const {
     const Rect p = pixels(index);
     return {floor_div(p.x0, kTileSize), floor_div(p.y0, kTileSize), ceil_div(p.x1, kTileSize),
@@ -45,15 +50,18 @@ Rect BucketLayout::tiles(int index) const {
 }
 
 Rect BucketLayout::range(const RasterBounds& bounds) const {
-    if (!bounds.visible || !(bounds.x1 >= static_cast<float>(m_pixels.x0)) ||
-        !(bounds.y1 >= static_cast<float>(m_pixels.y0)) ||
-        !(bounds.x0 <= static_cast<float>(m_pixels.x1)) ||
-        !(bounds.y0 <= static_cast<float>(m_pixels.y1)))
-        return {};
-    return {clamped_cell(bounds.x0, m_size, m_buckets.x0, m_buckets.x1 - 1),
-            clamped_cell(bounds.y0, m_size, m_buckets.y0, m_buckets.y1 - 1),
-            clamped_cell(bounds.x1, m_size, m_buckets.x0, m_buckets.x1 - 1) + 1,
-            clamped_cell(bounds.y1, m_size, m_buckets.y0, m_buckets.y1 - 1) + 1};
+    const auto apron = static_cast<float>(m_apron);
+    const float x0 = bounds.x0 - apron, y0 = bounds.y0 - apron, x1 = bounds.x1 + apron,
+                y1 = bounds.y1 + apron;
+    // Written so that NaN is outside.
+    const bool inside =
+        x1 >= static_cast<float>(m_pixels.x0) && y1 >= static_cast<float>(m_pixels.y0) &&
+        x0 <= static_cast<float>(m_pixels.x1) && y0 <= static_cast<float>(m_pixels.y1);
+    if (!bounds.visible || !inside) return {};
+    return {clamped_cell(x0, m_size, m_buckets.x0, m_buckets.x1 - 1),
+            clamped_cell(y0, m_size, m_buckets.y0, m_buckets.y1 - 1),
+            clamped_cell(x1, m_size, m_buckets.x0, m_buckets.x1 - 1) + 1,
+            clamped_cell(y1, m_size, m_buckets.y0, m_buckets.y1 - 1) + 1};
 }
 
 std::vector<int> BucketLayout::spiral() const {

@@ -11,9 +11,11 @@ namespace granita {
 
 class BucketLayout {
   public:
-    /// `sample_pixels`: pixels whose samples are needed (crop and filter apron); `bucket_size`:
-    /// pixels, a multiple of the tile size.
-    BucketLayout(const Rect& sample_pixels, int bucket_size);
+    /// `pixels`: what the buckets tile; `bucket_size`: pixels, a multiple of the tile size;
+    /// `apron`: pixels around its own whose geometry a bucket wants too.  The CPU executors tile
+    /// the crop with its filter apron and need no other apron (film merges); the raster executor
+    /// tiles the crop and filters by itself.
+    BucketLayout(const Rect& pixels, int bucket_size, int apron = 0);
 
     int count() const { return m_buckets.width() * m_buckets.height(); }
     /// The whole layout in bucket coordinates.
@@ -23,6 +25,8 @@ class BucketLayout {
     }
     /// Pixels of a bucket that are needed.
     Rect pixels(int index) const;
+    /// pixels(index) with the apron.
+    Rect reach(int index) const;
     /// Tiles that cover pixels(index), in tile coordinates.
     Rect tiles(int index) const;
     /// Buckets that a swept bound can touch, in bucket coordinates; empty if none.
@@ -32,7 +36,7 @@ class BucketLayout {
 
   private:
     Rect m_pixels;
-    int m_size;
+    int m_size, m_apron;
     Rect m_buckets;
 };
 

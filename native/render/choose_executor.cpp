@@ -1,22 +1,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/choose_executor.h"
 
-namespace granita {
+#include <algorithm>
 
-Executor choose_executor(const Options& options) {
-    if (options.executor != Executor::Auto) return options.executor;
-    return Executor::Simd;
+#include "base/error.h"
+
+namespace granita {
+namespace {
+
+/// What keeps the raster executor from rendering the scene; empty = nothing.
+std::string raster_obstacle(const Scene& scene, const ShadingSystem& shading) {
+    if (scene.options.sampling != Sampling::Regular) return "sampling is not Regular";
+    if (scene.camera.projection.has_lens()) return "the camera has depth of field";
+    const bool moves =
+        scene.camera.world_from_camera.size() > 1 ||
+        std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& i) {
+            return i.world_from_object.size() > 1 ||
+                   scene.geometries[static_cast<std::size_t>(i.geometry)].knots > 1;
+        });
+    if (moves) return "something moves";
+    for (int m = -1; m < static_cast<int>(scene.materials.size()); ++m)
+        if (shading.opacity_varies(m)) return "a material is transparent";
+    for (const Instance& instance : scene.instances)
+        if (instance.holdout) return "there is a holdout";
+    if (!scene.options.film_transparent && !shading.background_is_constant())
+        return "the world is not one colour";
+    return {};
 }
 
-std::string executor_name(Executor executor) {
-    switch (executor) {
-        case Executor::Reference:
-            return "CPU (reference)";
-        case Executor::Raster:
-            return "GPU (raster)";
-        default:
-            return "CPU (simd)";
+ExecutorChoice cpu(Executor executor) {
+    return {executor, nullptr, executor == Executor::Reference ? "CPU (reference)" : "CPU (simd)"};
+}
+
+ExecutorChoice raster() {
+    ExecutorChoice choice{Executor::Raster, std::make_unique<gl::GlThread>(), {}};
+    choice.device = "GPU (raster, " + choice.gl->info().renderer + ")";
+    return choice;
+}
+
+}  // namespace
+
+ExecutorChoice choose_executor(const Scene& scene, const ShadingSystem& shading, Report& report) {
+    const Options& options = scene.options;
+    if (options.executor == Executor::Raster) {
+        if (const std::string obstacle = raster_obstacle(scene, shading); !obstacle.empty())
+            throw SceneError("render settings",
+                             "the raster executor cannot render this: " + obstacle);
+        return raster();
     }
+    if (options.executor != Executor::Auto) return cpu(options.executor);
+    if (options.device != Device::Gpu) return cpu(Executor::Simd);
+    try {
+        const std::string obstacle = raster_obstacle(scene, shading);
+        if (obstacle.empty()) return raster();
+        report.warn("render settings", "the GPU was asked for, the CPU renders: " + obstacle);
+    } catch (const GlError& error) {
+        report.warn("render settings",
+                    std::string("the GPU was asked for, the CPU renders: ") + error.what());
+    }
+    return cpu(Executor::Simd);
 }
 
 }  // namespace granita

@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which executor renders the frame, and what to call it.
+// Which executor renders the frame.
 #pragma once
 
+#include <memory>
 #include <string>
 
-#include "scene/options.h"
+#include "base/report.h"
+#include "gl/gl_thread.h"
+#include "scene/scene.h"
+#include "shade/shading_system.h"
 
 namespace granita {
 
-/// Never Auto.  An explicit Options::executor wins over the device.
-Executor choose_executor(const Options& options);
-/// For statistics and the artist, e.g. "CPU (simd)".
-std::string executor_name(Executor executor);
+struct ExecutorChoice {
+    Executor executor = Executor::Simd;  ///< never Auto
+    std::unique_ptr<gl::GlThread> gl;    ///< Raster only
+    std::string device;                  ///< for statistics and the artist, e.g. "CPU (simd)"
+};
+
+/// An explicit Options::executor wins over the device, and throws SceneError or GlError where it
+/// cannot be had. A device that cannot do what the scene needs is replaced by the CPU, with a
+/// warning that says why.
+ExecutorChoice choose_executor(const Scene& scene, const ShadingSystem& shading, Report& report);
 
 }  // namespace granita

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/frame.h"
 
-#include "render/choose_executor.h"
+#include "render/raster_bucket.h"
 
 namespace granita {
 namespace {
@@ -21,6 +21,22 @@ View make_view(const Scene& scene, Statistics& statistics, const ShadingSystem& 
     return view;
 }
 
+Vec3f constant_background_of(const ShadingSystem& shading) {
+    if (!shading.background_is_constant()) return Vec3f(0.0f);
+    std::vector<Vec3f> color;
+    shading.background({Vec3f(0, 0, 1)}, 0.0f, color);
+    return color.at(0);
+}
+
+/// The film merges what CPU buckets contribute to each other's pixels; raster buckets filter by
+/// themselves.
+BucketLayout make_layout(const Scene& scene, const Film& film, bool is_raster) {
+    const Options& options = scene.options;
+    if (!is_raster) return BucketLayout(film.sample_pixels(), options.bucket_size);
+    return BucketLayout(options.crop, options.bucket_size,
+                        options.crop.x0 - film.sample_pixels().x0);
+}
+
 }  // namespace
 
 Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& frame_report,
@@ -34,15 +50,15 @@ Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& fra
                      PixelFilter(scene.options.pixel_filter, scene.options.filter_width))),
       table(scene.options, scene.camera),
       hider{&table, view.projection, &statistics, &scene, &report},
+      constant_background(constant_background_of(shading)),
+      choice(choose_executor(scene, shading, report)),
+      raster(choice.executor == Executor::Raster
+                 ? std::make_unique<RasterHider>(*choice.gl,
+                                                 make_raster_frame(scene, view.projection, table,
+                                                                   constant_background, statistics))
+                 : nullptr),
       film(scene.options),
-      layout(film.sample_pixels(), scene.options.bucket_size),
-      geometry(view, layout, report),
-      executor(choose_executor(scene.options)) {
-    if (shading.background_is_constant()) {
-        std::vector<Vec3f> color;
-        shading.background({Vec3f(0, 0, 1)}, 0.0f, color);
-        constant_background = color.at(0);
-    }
-}
+      layout(make_layout(scene, film, raster != nullptr)),
+      geometry(view, layout, report) {}
 
 }  // namespace granita

@@ -7,6 +7,8 @@
 #include "base/progress.h"
 #include "film/film.h"
 #include "hider/hider.h"
+#include "hider/raster_hider.h"
+#include "render/choose_executor.h"
 #include "render/frame_geometry.h"
 #include "shade/shading_system.h"
 
@@ -23,11 +25,12 @@ struct Frame {
     View view;
     SampleTable table;
     HiderFrame hider;
+    Vec3f constant_background{0.0f};
+    ExecutorChoice choice;
+    std::unique_ptr<RasterHider> raster;  ///< only where it was chosen
     Film film;
     BucketLayout layout;
     FrameGeometry geometry;
-    Executor executor;  ///< the one chosen; never Auto
-    Vec3f constant_background{0.0f};
 };
 
 }  // namespace granita

@@ -3,6 +3,7 @@
 
 #include "hider/composite.h"
 #include "render/background.h"
+#include "render/raster_bucket.h"
 #include "render/visit_geometry.h"
 
 namespace granita {
@@ -23,8 +24,9 @@ class Release {
 
 std::unique_ptr<Hider> make_hider(const Frame& frame, int bucket) {
     const Rect tiles = frame.layout.tiles(bucket), pixels = frame.layout.pixels(bucket);
-    return frame.executor == Executor::Reference ? make_reference_hider(frame.hider, tiles, pixels)
-                                                 : make_simd_hider(frame.hider, tiles, pixels);
+    return frame.choice.executor == Executor::Reference
+               ? make_reference_hider(frame.hider, tiles, pixels)
+               : make_simd_hider(frame.hider, tiles, pixels);
 }
 
 /// Slots (arrival order) of the grids that some sample has seen.
@@ -75,10 +77,12 @@ std::vector<TileContribution> resolve(Frame& frame, std::vector<TileStore>& stor
 
 std::vector<Tile> render_bucket(Frame& frame, int bucket) {
     const Release release(frame.geometry, bucket);
+    if (frame.raster) return {raster_bucket(frame, bucket)};
     std::vector<std::shared_ptr<SharedGrid>> grids;  // in the hider's arrival order
     const auto hider = make_hider(frame, bucket);
 
-    visit_geometry(frame, bucket, *hider, [&](std::shared_ptr<SharedGrid> grid) {
+    const auto occluded = [&](const RasterBounds& bounds) { return hider->occluded(bounds); };
+    visit_geometry(frame, bucket, occluded, [&](std::shared_ptr<SharedGrid> grid) {
         if (frame.shading.opacity_varies(grid->grid().material))
             grid->ensure_opacity(frame.shading);
         const StageTimer timer(frame.statistics, Stage::Hide);

@@ -13,7 +13,6 @@
 #include <thread>
 
 #include "base/progress.h"
-#include "render/choose_executor.h"
 #include "render/frame.h"
 #include "render/render_bucket.h"
 
@@ -58,8 +57,11 @@ struct RenderJob::Impl {
             // Embree and OpenImageIO use TBB: the artist's thread limit holds for them too.
             const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(threads));
-            device = executor_name(choose_executor(scene->options));
             Frame frame(*scene, statistics, report, progress);
+            {
+                const std::lock_guard lock(mutex);
+                device = frame.choice.device;
+            }
             progress.set_total(frame.layout.count());
             const std::vector<int> order = frame.layout.spiral();
             std::atomic<std::size_t> next{0};

@@ -28,12 +28,12 @@ struct Entry {
 
 class Visit {
   public:
-    Visit(Frame& frame, int bucket, const Hider& hider,
+    Visit(Frame& frame, int bucket, const Occlusion& occlusion,
           const std::function<void(std::shared_ptr<SharedGrid>)>& hide)
         : m_frame(frame),
           m_bucket(bucket),
-          m_pixels(frame.layout.pixels(bucket)),
-          m_hider(hider),
+          m_reach(frame.layout.reach(bucket)),
+          m_occlusion(occlusion),
           m_hide(hide) {}
 
     void run() {
@@ -48,7 +48,7 @@ class Visit {
             std::pop_heap(m_heap.begin(), m_heap.end());
             const Entry entry = std::move(m_heap.back());
             m_heap.pop_back();
-            if (m_hider.occluded(entry.bounds)) {
+            if (m_occlusion(entry.bounds)) {
                 m_frame.statistics.add(Counter::PrimitivesCulled);
                 continue;
             }
@@ -67,9 +67,9 @@ class Visit {
     }
 
     bool touches(const RasterBounds& b) const {
-        return b.visible && b.x0 <= static_cast<float>(m_pixels.x1) &&
-               b.x1 >= static_cast<float>(m_pixels.x0) && b.y0 <= static_cast<float>(m_pixels.y1) &&
-               b.y1 >= static_cast<float>(m_pixels.y0);
+        return b.visible && b.x0 <= static_cast<float>(m_reach.x1) &&
+               b.x1 >= static_cast<float>(m_reach.x0) && b.y0 <= static_cast<float>(m_reach.y1) &&
+               b.y1 >= static_cast<float>(m_reach.y0);
     }
 
     void visit(const Entry& entry) {
@@ -130,7 +130,7 @@ class Visit {
 
     void hide(std::shared_ptr<SharedGrid> grid) {
         if (!touches(grid->grid().bounds)) return;
-        if (m_hider.occluded(grid->grid().bounds)) {
+        if (m_occlusion(grid->grid().bounds)) {
             m_frame.statistics.add(Counter::GridsCulled);
             return;
         }
@@ -139,8 +139,8 @@ class Visit {
 
     Frame& m_frame;
     const int m_bucket;
-    const Rect m_pixels;
-    const Hider& m_hider;
+    const Rect m_reach;
+    const Occlusion& m_occlusion;
     const std::function<void(std::shared_ptr<SharedGrid>)>& m_hide;
     std::vector<Entry> m_heap;
     std::uint64_t m_order = 0;
@@ -148,9 +148,9 @@ class Visit {
 
 }  // namespace
 
-void visit_geometry(Frame& frame, int bucket, const Hider& hider,
+void visit_geometry(Frame& frame, int bucket, const Occlusion& occlusion,
                     const std::function<void(std::shared_ptr<SharedGrid>)>& hide) {
-    Visit(frame, bucket, hider, hide).run();
+    Visit(frame, bucket, occlusion, hide).run();
 }
 
 }  // namespace granita

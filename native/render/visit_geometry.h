@@ -15,9 +15,12 @@
 
 namespace granita {
 
-/// Calls `hide` with every grid of the bucket that the hider does not yet occlude, roughly from
+/// Whether nothing inside the bounds can still be seen in the bucket.
+using Occlusion = std::function<bool(const RasterBounds&)>;
+
+/// Calls `hide` with every grid of the bucket that is not yet occluded, roughly from
 /// front to back. The order follows depth keys, then keys of identity: the same in every run.
-void visit_geometry(Frame& frame, int bucket, const Hider& hider,
+void visit_geometry(Frame& frame, int bucket, const Occlusion& occlusion,
                     const std::function<void(std::shared_ptr<SharedGrid>)>& hide);
 
 }  // namespace granita
