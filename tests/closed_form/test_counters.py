@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cost follows need: what the statistics must show."""
+
+import numpy as np
+import pytest
+import snapshots as s
+
+
+def statistics(snapshot):
+    return s.render(snapshot)["statistics"]
+
+
+def layers(executor, order):
+    snapshot = s.orthographic((96, 96), samples=16, executor=executor)
+    material = s.emission(snapshot)
+    for z in order:
+        s.quad(snapshot, s.rectangle(-5, -5, 101, 101, 1.0 + z), material)
+    return statistics(snapshot)
+
+
+def test_hidden_layers_are_not_shaded(executor):
+    """Ten opaque layers in shuffled order shade at most 1.3 times the front layer's points."""
+    order = list(np.random.default_rng(3).permutation(10))
+    front, all_layers = layers(executor, [0]), layers(executor, order)
+    assert front["points_shaded"] > 90 * 90
+    assert all_layers["points_shaded"] <= 1.3 * front["points_shaded"]
+
+
+def sphere_cage():
+    points = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    return np.array(points, float), faces
+
+
+def test_concentric_spheres_shade_the_outer_one(executor):
+    def scene(radii):
+        snapshot = s.perspective((96, 96), 150.0, samples=16, executor=executor)
+        material = s.emission(snapshot)
+        points, faces = sphere_cage()
+        for radius in radii:
+            s.mesh(
+                snapshot,
+                points * radius,
+                faces,
+                material,
+                transforms=[s.translation(0, 0, 5)],
+                subdivision={"scheme": "CATMULL_CLARK"},
+            )
+        return statistics(snapshot)
+
+    outer, nested = scene([1.2]), scene([0.9, 1.2, 0.6, 1.05, 0.75])
+    assert nested["points_shaded"] <= 1.3 * outer["points_shaded"]
+
+
+def test_still_and_opaque_scenes_pay_for_neither_motion_nor_lists(executor):
+    result = layers(executor, [0, 1])
+    assert result["sample_tests_moving"] == 0
+    assert result["buckets_moving"] == 0
+    assert result["fragments_stored"] == 0
+    assert result["buckets_transparent"] == 0
+    assert result["rays_shadow"] == 0 and result["rays_occlusion"] == 0
+
+
+def test_a_moving_thing_costs_motion_only_in_its_buckets(executor):
+    snapshot = s.orthographic((256, 64), samples=16, executor=executor, bucket_size=32)
+    material = s.emission(snapshot)
+    s.quad(snapshot, s.rectangle(0, 0, 256, 64, 5), material)
+    s.quad(snapshot, s.rectangle(4, 4, 20, 20), material, transforms=[s.translation(0), s.translation(6)])
+    result = statistics(snapshot)
+    assert 1 <= result["buckets_moving"] <= 2
+
+
+@pytest.mark.parametrize("distance, bound", [(2000.0, 64), (1e6, 4)])
+def test_far_objects_are_not_finely_diced(executor, distance, bound):
+    """A cube of 2 m under a focal length of 2000 px: its faces are distance-limited to few micropolygons."""
+    snapshot = s.perspective((64, 64), 2000.0, clip=(0.1, 1e9), samples=4, executor=executor)
+    points, faces = sphere_cage()
+    s.mesh(snapshot, points, faces, s.emission(snapshot), transforms=[s.translation(0, 0, distance)])
+    result = statistics(snapshot)
+    # Projected side: 4000 / distance px. Six faces, at most (sqrt(2) * side)^2 + 1 micropolygons of 1 px each and double.
+    assert result["points_diced"] <= 6 * 4 * bound
+
+
+def test_off_screen_geometry_is_never_opened(executor):
+    snapshot = s.orthographic((32, 32), samples=4, executor=executor)
+    material = s.emission(snapshot)
+    s.quad(snapshot, s.rectangle(0, 0, 10, 10), material)
+    near = statistics(snapshot)
+    s.quad(snapshot, s.rectangle(1000, 1000, 9000, 9000), material)
+    assert statistics(snapshot)["points_diced"] == near["points_diced"]
