@@ -74,12 +74,13 @@ def read_geometry(mesh, label, requested, report, subdivision=None):
         face_sizes=topology.face_sizes,
         corner_verts=topology.corner_verts,
         material_index=_material_index(mesh),
-        smooth=_smooth(mesh),
         attributes=mesh_attributes(mesh, label, requested, report),
         subdivision=subdivision,
     )
     if subdivision is None:
-        geometry.corner_normals = _corner_normals(mesh, geometry.smooth)
+        geometry.smooth, geometry.corner_normals = _shading(mesh)
+    else:
+        geometry.smooth = _smooth(mesh)
     _drop_broken_faces(geometry, report)
     return (geometry, topology) if len(geometry.face_sizes) else None
 
@@ -96,25 +97,33 @@ def _smooth(mesh):
     return values.view(np.uint8) if values.any() else None
 
 
-def _corner_normals(mesh, smooth):
-    """float32 [C, 3] where faces' smooth flags do not say it all; otherwise None.
+def _shading(mesh):
+    """(uint8 [F] or None, float32 [C, 3] or None): smooth flags, and normals where these do not
+    say it all.
 
     From Blender 4.1 on the mesh says so itself: CORNER means custom normals, sharp edges, or flat
     faces beside smooth ones.  Before, normals are split only with Auto Smooth.
     """
-    normals = np.empty((len(mesh.loops), 3), dtype=np.float32)
     if hasattr(mesh, "normals_domain"):
-        if mesh.normals_domain != "CORNER":
-            return None
-        mesh.corner_normals.foreach_get("vector", normals.reshape(-1))
-    else:
-        if not mesh.use_auto_smooth or smooth is None:
-            return None
-        # On the evaluated mesh: the layer is the render's own, and is freed at once.
-        mesh.calc_normals_split()
-        mesh.loops.foreach_get("normal", normals.reshape(-1))
-        mesh.free_normals_split()
-    return normals
+        if mesh.normals_domain == "FACE":
+            return None, None
+        if mesh.normals_domain == "POINT":
+            return np.ones(len(mesh.polygons), dtype=np.uint8), None
+        return _smooth(mesh), _vectors(mesh.corner_normals, "vector")
+    smooth = _smooth(mesh)
+    if not mesh.use_auto_smooth or smooth is None:
+        return smooth, None
+    # On the evaluated mesh: the layer is the render's own, and is freed at once.
+    mesh.calc_normals_split()
+    normals = _vectors(mesh.loops, "normal")
+    mesh.free_normals_split()
+    return smooth, normals
+
+
+def _vectors(collection, member):
+    values = np.empty((len(collection), 3), dtype=np.float32)
+    collection.foreach_get(member, values.reshape(-1))
+    return values
 
 
 def _drop_broken_faces(geometry, report):
