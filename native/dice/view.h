@@ -3,10 +3,12 @@
 // each material wants at grid vertices.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "base/statistics.h"
 #include "geometry/attribute_request.h"
+#include "geometry/geometry_cache.h"
 #include "math/projection.h"
 #include "scene/scene.h"
 
@@ -32,6 +34,9 @@ struct View {
     /// through the filter. Dicing rates of what lies outside the whole frame may be coarser; never
     /// depends on the crop.
     float raster_x0 = 0, raster_y0 = 0, raster_x1 = 0, raster_y1 = 0;
+
+    /// What instances of one geometry share, built when first asked for.
+    std::shared_ptr<GeometryCache> geometries = std::make_shared<GeometryCache>();
 };
 
 }  // namespace granita

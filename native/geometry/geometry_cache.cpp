@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/geometry_cache.h"
 
+#include "geometry/shared_geometry.h"
+
 namespace granita {
 
 GeometryCache::Entry& GeometryCache::entry(std::size_t geometry) {

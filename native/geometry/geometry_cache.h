@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "base/report.h"
-#include "geometry/shared_geometry.h"
 #include "math/bounds.h"
 #include "scene/scene.h"
 
 namespace granita {
+
+class SharedGeometry;
 
 /// Thread-safe; one a frame.
 class GeometryCache {

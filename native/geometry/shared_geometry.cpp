@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "geometry/subdivision_topology.h"
 #include "geometry/triangulate.h"
 #include "geometry/vertex_normals.h"
 
@@ -53,6 +54,8 @@ SharedGeometry::SharedGeometry(const GeometryData& data, float frame_time, Repor
     if (!m_subdivision && smooth && data.corner_normals.empty())
         m_vertex_normals = granita::vertex_normals(data, m_frame_points);
 }
+
+SharedGeometry::~SharedGeometry() = default;
 
 void SharedGeometry::find_frame_points(float frame_time) {
     const std::size_t n = m_data->vertex_count();

@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "base/report.h"
-#include "geometry/subdivision_topology.h"
 #include "math/bounds.h"
 #include "scene/geometry_data.h"
 
 namespace granita {
+
+class SubdivisionTopology;
 
 /// A patch is a quad domain (u, v) of a face:
 ///   Quad      the face itself: corner 0 at (0,0), 1 at (1,0), 2 at (1,1), 3 at (0,1)
@@ -34,6 +35,7 @@ class SharedGeometry {
   public:
     /// Reports what had to be left out by the geometry's name.
     SharedGeometry(const GeometryData& data, float frame_time, Report& report);
+    ~SharedGeometry();
 
     const GeometryData& data() const { return *m_data; }
     const std::vector<BasePatch>& patches() const { return m_patches; }

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/edge_rate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace granita {
+namespace {
+
+constexpr double kSag = 0.1;
+constexpr double kShortest = 0.5;
+/// Pixels outside the frame for one more pixel of target length.
+constexpr double kOutside = 8.0;
+/// Halves this equal are taken for equal all the way down: lengths may then leave their range by as
+/// much.
+constexpr double kEqual = 0.05;
+
+}  // namespace
+
+/// The raster box of an edge over all knots and lens points.
+struct EdgeRate::Swept {
+    double x0 = std::numeric_limits<double>::infinity(), x1 = -x0, y0 = x0, y1 = -x0;
+    bool clipped = false;
+    bool seen = false;
+};
+
+EdgeRate::EdgeRate(const View& view)
+    : m_projection(view.projection),
+      m_rate(view.scene->options.dicing_rate),
+      m_width(view.scene->options.width),
+      m_height(view.scene->options.height),
+      m_near(std::max(view.projection.near_clip, 1e-9)) {}
+
+void EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b, double& length) const {
+    Vec3d p(a), q(b);
+    if (p.z < m_near && q.z < m_near) {
+        swept.clipped = true;
+        return;
+    }
+    if (p.z < m_near || q.z < m_near) {
+        const Vec3d cut = p + (q - p) * ((m_near - p.z) / (q.z - p.z));
+        (p.z < m_near ? p : q) = cut;
+        swept.clipped = true;
+    }
+    double x[2], y[2];
+    const Vec3d* ends[2] = {&p, &q};
+    for (int i = 0; i < 2; ++i) {
+        const double z = ends[i]->z, w = m_projection.perspective ? 1.0 / z : 1.0;
+        x[i] = m_projection.center.x + m_projection.scale.x * ends[i]->x * w;
+        y[i] = m_projection.center.y + m_projection.scale.y * ends[i]->y * w;
+        const double reach =
+            m_projection.has_lens()
+                ? m_projection.lens_radius * std::abs(z / m_projection.focus - 1.0) * w
+                : 0.0;
+        swept.x0 = std::min(swept.x0, x[i] - m_projection.scale.x * reach);
+        swept.x1 = std::max(swept.x1, x[i] + m_projection.scale.x * reach);
+        swept.y0 = std::min(swept.y0, y[i] - m_projection.scale.y * reach);
+        swept.y1 = std::max(swept.y1, y[i] + m_projection.scale.y * reach);
+    }
+    swept.seen = true;
+    length = std::hypot(x[1] - x[0], y[1] - y[0]);
+}
+
+double EdgeRate::target(const Swept& swept) const {
+    const double dx = std::max({0.0, -swept.x1, swept.x0 - m_width});
+    const double dy = std::max({0.0, -swept.y1, swept.y0 - m_height});
+    return m_rate + std::max(dx, dy) / kOutside;
+}
+
+bool EdgeRate::stays_whole(const Vec3f* start, const Vec3f* end, int knots) const {
+    Swept swept;
+    double longest = 0.0;
+    for (int k = 0; k < knots; ++k) {
+        double length = 0.0;
+        add(swept, start[k], end[k], length);
+        longest = std::max(longest, length);
+    }
+    return !swept.seen || !(longest > M_SQRT2 * target(swept));
+}
+
+int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots,
+                     int budget) const {
+    if (budget <= 0) return 0;
+    Swept swept;
+    double longest = 0.0, sag = 0.0;
+    bool equal = true;
+    for (int k = 0; k < knots; ++k) {
+        double first = 0.0, second = 0.0, chord = 0.0;
+        add(swept, start[k], middle[k], first);
+        add(swept, middle[k], end[k], second);
+        add(swept, start[k], end[k], chord);
+        const double length = first + second;
+        longest = std::max(longest, length);
+        if (std::abs(first - second) > kEqual * std::max(first, second)) equal = false;
+        // The height of the triangle start, middle, end over its chord, by Heron's formula.
+        const double s = 0.5 * (length + chord);
+        const double area2 = s * (s - first) * (s - second) * (s - chord);
+        const double height =
+            chord > 0.25 * length ? 2.0 * std::sqrt(std::max(area2, 0.0)) / chord : 0.5 * length;
+        sag = std::max(sag, height);
+    }
+    if (!swept.seen) return 0;
+    const double wanted = target(swept), coarser = wanted / m_rate;
+    const bool bent = sag > kSag * coarser && longest > kShortest * coarser;
+    if (!(longest > M_SQRT2 * wanted) && !bent) return 0;
+    // A straight piece's halves are never longer than itself; a bent one's are looked at anew until
+    // it is nearly straight.
+    const bool inside = swept.x0 > -m_width && swept.x1 < 2.0 * m_width && swept.y0 > -m_height &&
+                        swept.y1 < 2.0 * m_height;
+    if (!equal || swept.clipped || !inside || sag > 0.05 * longest) return kAdaptive;
+    int levels = 1;
+    while (levels < budget && std::ldexp(longest, -levels) > M_SQRT2 * wanted) ++levels;
+    while (levels < budget && std::ldexp(sag, -2 * levels) > kSag &&
+           std::ldexp(longest, -levels) > kShortest)
+        ++levels;
+    return levels;
+}
+
+}  // namespace granita

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How finely an edge is diced: a binary tree over the edge, decided from the edge alone, so that
+// neighbours agree without asking each other (Fisher et al. 2009, "DiagSplit", section 3).
+//
+// A piece of an edge is bisected at its parametric middle while
+//   its projected length exceeds sqrt(2) * target, so that lengths end in
+//   (target / sqrt(2), sqrt(2) * target], or
+//   its middle lies more than kSag pixels off its chord and it is longer than kShortest pixels.
+// Lengths are the largest over all knots.  target is the dicing rate inside the frame and grows by
+// an eighth of a pixel for each pixel that the piece's swept bound lies outside of it.  What lies
+// behind the near plane has no length: it is never seen.
+#pragma once
+
+#include <cstdint>
+
+#include "dice/view.h"
+
+namespace granita {
+
+class EdgeRate {
+  public:
+    explicit EdgeRate(const View& view);
+
+    /// A piece stays whole, has a uniform tree of so many levels below it, or is adaptive: bisected
+    /// once, its halves looked at anew.
+    static constexpr int kAdaptive = -1;
+
+    /// `start`, `middle`, `end` [knots] camera space, in the edge's own direction.  At most
+    /// `budget` levels.
+    int levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots,
+               int budget) const;
+    /// The same for a straight piece that is probably short enough: true where levels() is 0.
+    bool stays_whole(const Vec3f* start, const Vec3f* end, int knots) const;
+
+  private:
+    struct Swept;
+    void add(Swept& swept, const Vec3f& a, const Vec3f& b, double& length) const;
+    double target(const Swept& swept) const;
+
+    const Projection& m_projection;
+    double m_rate, m_width, m_height;
+    double m_near;
+};
+
+}  // namespace granita

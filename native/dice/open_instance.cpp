@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/open_instance.h"
+
+#include <algorithm>
+
+#include "dice/knots.h"
+#include "dice/opened_polygons.h"
+#include "dice/raster_bound.h"
+#include "geometry/geometry_cache.h"
+#include "geometry/shared_geometry.h"
+
+namespace granita {
+namespace {
+
+/// A box that holds a geometry's points at a time between its knots.
+Bounds3f box_at(const std::vector<Bounds3f>& boxes, const KnotTime& t) {
+    Bounds3f box = boxes[t.knot];
+    if (t.fraction > 0.0) box.add(boxes[t.knot + 1]);
+    return box;
+}
+
+void add_transformed(Bounds3f& sum, const Mat4d& m, const Bounds3f& box) {
+    if (box.empty()) return;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3d p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                      corner & 4 ? box.hi.z : box.lo.z);
+        sum.add(Vec3f(transform_point(m, p)));
+    }
+}
+
+float displacement_bound(const View& view, const Instance& instance) {
+    if (view.displacement.empty()) return 0.0f;
+    float bound = instance.materials.empty() ? view.displacement.back().bound : 0.0f;
+    for (const std::int32_t m : instance.materials)
+        bound = std::max(bound, m < 0 ? view.displacement.back().bound
+                                      : view.displacement[static_cast<std::size_t>(m)].bound);
+    return bound;
+}
+
+class Nothing final : public OpenedInstance {
+  public:
+    std::size_t primitive_count() const override { return 0; }
+    RasterBounds bounds(std::size_t) const override { return {}; }
+    std::unique_ptr<Primitive> primitive(std::size_t) const override { return nullptr; }
+    std::uint64_t bytes() const override { return sizeof(*this); }
+};
+
+}  // namespace
+
+RasterBounds instance_bounds(const View& view, std::size_t index) {
+    const Instance& instance = view.scene->instances[index];
+    const std::size_t geometry = static_cast<std::size_t>(instance.geometry);
+    const GeometryData& data = view.scene->geometries[geometry];
+    const auto boxes = view.geometries->boxes(*view.scene, geometry);
+    const Knots knots = combine_knots(*view.scene, instance, data, data.knots == 1);
+    if (!knots.finite) return {};
+    Bounds3f box;
+    for (int k = 0; k < knots.count; ++k)
+        add_transformed(box, knots.camera_from_object[static_cast<std::size_t>(k)],
+                        box_at(*boxes, knot_time(k, knots.count - 1, data.knots)));
+    if (box.empty()) return {};
+    const Vec3f largest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
+    box.grow(4e-6f * std::max({largest.x, largest.y, largest.z}) +
+             displacement_bound(view, instance));
+    return raster_bound(view.projection, box);
+}
+
+std::shared_ptr<const OpenedInstance> open_instance(const View& view, std::size_t index,
+                                                    Report& report) {
+    const Instance& instance = view.scene->instances[index];
+    const std::size_t geometry = static_cast<std::size_t>(instance.geometry);
+    const GeometryData& data = view.scene->geometries[geometry];
+    auto shared = view.geometries->shared(*view.scene, geometry, report);
+    Knots knots = combine_knots(*view.scene, instance, data, shared->is_static());
+    if (!knots.finite) {
+        report.warn(instance.name, "has a transform that is not finite and is left out");
+        return std::make_shared<Nothing>();
+    }
+    if (knots.capped)
+        report.warn(instance.name,
+                    "its motion knots and its camera's have too few in common: the motion is "
+                    "approximated by " +
+                        std::to_string(kMaxKnots - 1) + " segments");
+    if (shared->patches().empty()) return std::make_shared<Nothing>();
+    return std::make_shared<OpenedPolygons>(view, index, std::move(shared), std::move(knots),
+                                            report);
+}
+
+}  // namespace granita

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/opened_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dice/patch.h"
+
+namespace granita {
+namespace {
+
+double orientation_of(const Mat4d& m) {
+    return glm::determinant(Mat3d(m)) < 0.0 ? -1.0 : 1.0;
+}
+
+}  // namespace
+
+Vec3d unit_or(const Vec3d& v, const Vec3d& otherwise) {
+    const double length = glm::length(v);
+    return length > 0.0 && std::isfinite(length) ? v / length : otherwise;
+}
+
+OpenedMesh::OpenedMesh(const View& view, std::size_t instance,
+                       std::shared_ptr<const SharedGeometry> shared, Knots knots, Report& report)
+    : m_view(&view),
+      m_instance(&view.scene->instances[instance]),
+      m_instance_index(instance),
+      m_shared(std::move(shared)),
+      m_knots(std::move(knots)),
+      m_report(&report),
+      m_rate(view),
+      m_vertex_count(data().vertex_count()) {
+    transform_points();
+    for (const Mat4d& m : m_knots.camera_from_object) m_orientation.push_back(orientation_of(m));
+    m_frame_orientation = orientation_of(m_knots.frame_camera_from_object);
+    // The cofactor matrix times the orientation is the inverse transpose up to a positive factor,
+    // and it exists for scale 0 too.
+    const Mat3d m(m_knots.frame_camera_from_object);
+    m_camera_from_object_normal =
+        m_frame_orientation *
+        Mat3d(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+    find_displacement();
+}
+
+void OpenedMesh::transform_points() {
+    const GeometryData& d = data();
+    const bool deforms = !m_shared->is_static();
+    m_points.resize(static_cast<std::size_t>(m_knots.count) * m_vertex_count);
+    for (int k = 0; k < m_knots.count; ++k) {
+        const Mat4d& m = m_knots.camera_from_object[static_cast<std::size_t>(k)];
+        const KnotTime t = knot_time(k, m_knots.count - 1, deforms ? d.knots : 1);
+        const Vec3f* from = &d.points[t.knot * m_vertex_count];
+        const Vec3f* next = t.fraction > 0.0 ? from + m_vertex_count : from;
+        Vec3f* to = &m_points[static_cast<std::size_t>(k) * m_vertex_count];
+        for (std::size_t v = 0; v < m_vertex_count; ++v) {
+            const Vec3d p = t.fraction > 0.0
+                                ? Vec3d(from[v]) * (1.0 - t.fraction) + Vec3d(next[v]) * t.fraction
+                                : Vec3d(from[v]);
+            to[v] = Vec3f(transform_point(m, p));
+        }
+    }
+    // Knots that all came out equal, such as a thing parented to the moving camera, cost nothing.
+    for (int k = 1; k < m_knots.count; ++k)
+        if (!std::equal(m_points.begin(),
+                        m_points.begin() + static_cast<std::ptrdiff_t>(m_vertex_count),
+                        m_points.begin() + static_cast<std::ptrdiff_t>(m_vertex_count) * k))
+            return;
+    m_knots.count = 1;
+    m_knots.frame_knot = 0;
+    m_knots.frame_fraction = 0.0;
+    m_knots.camera_from_object.resize(1);
+    m_points.resize(m_vertex_count);
+    m_points.shrink_to_fit();
+}
+
+void OpenedMesh::find_displacement() {
+    const auto moves = [this](int material) {
+        const DisplacementHook hook = displacement(material);
+        return hook.constant != 0.0f;
+    };
+    for (const std::int32_t material : m_instance->materials) m_displaced |= moves(material);
+    if (m_instance->materials.empty()) m_displaced = moves(-1);
+    if (!m_displaced) return;
+    constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
+    std::vector<std::int32_t> lowest(m_vertex_count, kNone);
+    m_vertex_displacement.assign(m_vertex_count, 0.0f);
+    std::size_t corner = 0;
+    for (std::uint32_t face = 0; face < data().face_count(); ++face) {
+        const std::int32_t slot = data().material_index.empty() ? 0 : data().material_index[face];
+        for (std::int32_t i = 0; i < data().face_sizes[face]; ++i) {
+            const std::size_t v = static_cast<std::size_t>(data().corner_verts[corner++]);
+            if (slot >= lowest[v]) continue;
+            lowest[v] = slot;
+            m_vertex_displacement[v] = displacement(material(face)).constant;
+        }
+    }
+}
+
+int OpenedMesh::material(std::uint32_t face) const {
+    const std::vector<std::int32_t>& slots = m_instance->materials;
+    if (slots.empty()) return -1;
+    const std::int32_t slot = data().material_index.empty() ? 0 : data().material_index[face];
+    // A face may keep the slot of a material that is gone: Blender takes the last one there is.
+    return slots[static_cast<std::size_t>(
+        std::clamp<std::int32_t>(slot, 0, static_cast<std::int32_t>(slots.size()) - 1))];
+}
+
+const std::vector<AttributeRequest>& OpenedMesh::requests(int material) const {
+    static const std::vector<AttributeRequest> none;
+    if (m_view->requests.empty()) return none;
+    return material < 0 ? m_view->requests.back()
+                        : m_view->requests[static_cast<std::size_t>(material)];
+}
+
+DisplacementHook OpenedMesh::displacement(int material) const {
+    if (m_view->displacement.empty()) return {};
+    return material < 0 ? m_view->displacement.back()
+                        : m_view->displacement[static_cast<std::size_t>(material)];
+}
+
+Vec3d OpenedMesh::camera_normal(const Vec3f& normal_object) const {
+    return m_camera_from_object_normal * Vec3d(normal_object);
+}
+
+RasterBounds OpenedMesh::bounds(std::size_t primitive) const {
+    const BasePatch& patch = m_shared->patches()[primitive];
+    static const Vec2d triangle[4] = {{0, 0}, {1, 0}, {0, 1}, {0, 1}};
+    static const Vec2d quad[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    return patch_bounds(*this, patch, patch.kind == PatchKind::Triangle ? triangle : quad);
+}
+
+std::unique_ptr<Primitive> OpenedMesh::primitive(std::size_t primitive) const {
+    if (m_view->statistics) m_view->statistics->add(Counter::PrimitivesOpened);
+    return Patch::open(shared_from_this(), m_shared->patches()[primitive]);
+}
+
+std::uint64_t OpenedMesh::bytes() const {
+    return sizeof(*this) + sizeof(Vec3f) * m_points.size() +
+           sizeof(float) * m_vertex_displacement.size();
+}
+
+}  // namespace granita

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A mesh in camera space at its knots: what patches ask of the surface they lie on.  Polygons and
+// subdivision surfaces are its two kinds.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dice/edge_rate.h"
+#include "dice/knots.h"
+#include "dice/primitive.h"
+#include "dice/side.h"
+#include "dice/view.h"
+#include "geometry/shared_geometry.h"
+
+namespace granita {
+
+/// The surface at n points (u, v) of a patch, camera space.  Derivatives by u and v, not by steps.
+struct SurfaceSamples {
+    std::vector<Vec3f> positions;         ///< [knots][n], not displaced
+    std::vector<Vec3f> su, sv;            ///< [n] at the frame time
+    std::vector<Vec3f> normal;            ///< [n] unit, shading, at the frame time
+    std::vector<Vec3f> geometric_normal;  ///< [n] unit, at the frame time
+    std::vector<Vec3f> offset;            ///< [knots][n] displacement; empty when not displaced
+};
+
+class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<OpenedMesh> {
+  public:
+    /// Faces' corner places in (u, v) and their four sides, classified, ready to split and dice.
+    struct Start {
+        Vec2d corner_uv[4];
+        Side sides[4];  ///< bottom (0 to 1), right (1 to 2), top (3 to 2), left (0 to 3)
+    };
+
+    OpenedMesh(const View& view, std::size_t instance, std::shared_ptr<const SharedGeometry> shared,
+               Knots knots, Report& report);
+
+    std::size_t primitive_count() const override { return m_shared->patches().size(); }
+    RasterBounds bounds(std::size_t primitive) const override;
+    std::unique_ptr<Primitive> primitive(std::size_t primitive) const override;
+    std::uint64_t bytes() const override;
+
+    virtual Start start(const BasePatch& patch, int budget) const = 0;
+    /// Base edges are straight in camera space: their two ends tell their length.
+    virtual bool straight_edges() const = 0;
+    /// Conservative over all knots, not displaced, for the patch inside `corner_uv`.
+    virtual Bounds3f swept_box(const BasePatch& patch, const Vec2d* corner_uv) const = 0;
+    virtual void edge_point(const EdgeRef& edge, double t, EdgePoint& out) const = 0;
+    virtual void surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const = 0;
+    virtual void sample(const BasePatch& patch, std::span<const Vec2d> uv,
+                        SurfaceSamples& out) const = 0;
+    /// `values`, `du`, `dv` [n][request.width]; derivatives by u and v.
+    virtual void attribute(const BasePatch& patch, const AttributeRequest& request,
+                           std::span<const Vec2d> uv, std::vector<float>& values,
+                           std::vector<float>& du, std::vector<float>& dv) const = 0;
+
+    const View& view() const { return *m_view; }
+    const Instance& instance() const { return *m_instance; }
+    std::size_t instance_index() const { return m_instance_index; }
+    const SharedGeometry& shared() const { return *m_shared; }
+    const GeometryData& data() const { return m_shared->data(); }
+    const Knots& knots() const { return m_knots; }
+    int knot_count() const { return m_knots.count; }
+    const EdgeRate& rate() const { return m_rate; }
+    Report& report() const { return *m_report; }
+
+    /// Index in Scene::materials, -1 = none.
+    int material(std::uint32_t face) const;
+    const std::vector<AttributeRequest>& requests(int material) const;
+    /// Any material of the instance displaces.
+    bool displaced() const { return m_displaced; }
+    DisplacementHook displacement(int material) const;
+
+  protected:
+    const Vec3f& point(int knot, std::size_t vertex) const {
+        return m_points[static_cast<std::size_t>(knot) * m_vertex_count + vertex];
+    }
+    std::int32_t vertex_of(std::uint32_t corner) const { return data().corner_verts[corner]; }
+    /// Of a vertex, metres along the normal: the lowest slot that touches it decides (decision 10).
+    float vertex_displacement(std::size_t vertex) const { return m_vertex_displacement[vertex]; }
+    /// From a knot's values to the frame time.
+    Vec3d at_frame(const Vec3d& knot, const Vec3d& next) const {
+        return knot * (1.0 - m_knots.frame_fraction) + next * m_knots.frame_fraction;
+    }
+    /// -1 where the matrix mirrors (camera space itself is left-handed): turns cross products
+    /// outward.
+    double orientation(int knot) const { return m_orientation[static_cast<std::size_t>(knot)]; }
+    double frame_orientation() const { return m_frame_orientation; }
+    /// Object-space normals to camera space at the frame time.
+    Vec3d camera_normal(const Vec3f& normal_object) const;
+
+  private:
+    void transform_points();
+    void find_displacement();
+
+    const View* m_view;
+    const Instance* m_instance;
+    std::size_t m_instance_index;
+    std::shared_ptr<const SharedGeometry> m_shared;
+    Knots m_knots;
+    Report* m_report;
+    EdgeRate m_rate;
+    std::size_t m_vertex_count;
+    std::vector<Vec3f> m_points;  ///< [knots][V] camera space
+    std::vector<double> m_orientation;
+    double m_frame_orientation = 1.0;
+    Mat3d m_camera_from_object_normal{1.0};
+    bool m_displaced = false;
+    std::vector<float> m_vertex_displacement;
+};
+
+/// Unit, or `otherwise` where there is no direction.
+Vec3d unit_or(const Vec3d& v, const Vec3d& otherwise);
+
+}  // namespace granita

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/opened_polygons.h"
+
+#include <algorithm>
+
+#include "dice/corner_values.h"
+#include "geometry/vertex_normals.h"
+
+namespace granita {
+namespace {
+
+Vec3d blend(const Vec3d* p, const std::array<double, 4>& w) {
+    return p[0] * w[0] + p[1] * w[1] + p[2] * w[2] + p[3] * w[3];
+}
+
+/// Any direction will do for a face without area: it covers nothing.
+const Vec3d kTowardsCamera(0.0, 0.0, -1.0);
+
+}  // namespace
+
+OpenedPolygons::OpenedPolygons(const View& view, std::size_t instance,
+                               std::shared_ptr<const SharedGeometry> shared, Knots knots,
+                               Report& report)
+    : OpenedMesh(view, instance, std::move(shared), std::move(knots), report) {
+    if (!displaced()) return;
+    const std::size_t n = data().vertex_count();
+    for (int k = 0; k < knot_count(); ++k) {
+        std::vector<Vec3f> normals = granita::vertex_normals(data(), {&point(k, 0), n});
+        for (Vec3f& normal : normals) normal *= static_cast<float>(orientation(k));
+        m_directions.insert(m_directions.end(), normals.begin(), normals.end());
+    }
+}
+
+OpenedMesh::Start OpenedPolygons::start(const BasePatch& patch, int budget) const {
+    const SideWalker walk(*this, patch);
+    const int n = patch.kind == PatchKind::Triangle ? 3 : 4;
+    std::uint32_t vertex[4];
+    for (int i = 0; i < n; ++i) vertex[i] = static_cast<std::uint32_t>(vertex_of(patch.corner[i]));
+    Side around[4];  // side i leaves corner i
+    for (int i = 0; i < n; ++i) {
+        const std::uint32_t a = vertex[i], b = vertex[(i + 1) % n];
+        around[i].edge = {std::min(a, b), std::max(a, b)};
+        around[i].reversed = a > b;
+        around[i].budget = static_cast<std::uint8_t>(budget);
+        walk.classify(around[i]);
+    }
+    Start start;
+    if (n == 4) {
+        static const Vec2d corner_uv[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+        std::copy_n(corner_uv, 4, start.corner_uv);
+        std::copy_n(around, 4, start.sides);
+    } else {
+        // The coarsest edge becomes the bottom: opposite to it the patch narrows to a point.
+        static const Vec2d corner_uv[3] = {{0, 0}, {1, 0}, {0, 1}};
+        const auto levels = [&](int i) {
+            return around[i].levels < 0 ? budget + 1 : static_cast<int>(around[i].levels);
+        };
+        int base = 0;
+        for (int i = 1; i < 3; ++i)
+            if (levels(i) < levels(base)) base = i;
+        for (int i = 0; i < 4; ++i) start.corner_uv[i] = corner_uv[(base + std::min(i, 2)) % 3];
+        start.sides[0] = around[base];
+        start.sides[1] = around[(base + 1) % 3];
+        start.sides[2].collapsed = true;
+        start.sides[3] = around[(base + 2) % 3];
+    }
+    start.sides[3].reversed = !start.sides[3].reversed;
+    if (n == 4) start.sides[2].reversed = !start.sides[2].reversed;
+    return start;
+}
+
+OpenedPolygons::Corners OpenedPolygons::corners(const BasePatch& patch, int knot) const {
+    Corners corners;
+    for (int i = 0; i < 4; ++i)
+        corners.p[i] = point(knot, static_cast<std::size_t>(vertex_of(patch.corner[i])));
+    return corners;
+}
+
+Bounds3f OpenedPolygons::swept_box(const BasePatch& patch, const Vec2d* corner_uv) const {
+    Vec2d uv[4];
+    std::copy_n(corner_uv, 4, uv);
+    if (patch.kind != PatchKind::Triangle) {
+        // A bilinear patch lies in the hull of the corners of any (u, v) rectangle around it.
+        Vec2d lo = uv[0], hi = uv[0];
+        for (const Vec2d& c : uv) lo = glm::min(lo, c), hi = glm::max(hi, c);
+        uv[0] = lo, uv[1] = {hi.x, lo.y}, uv[2] = hi, uv[3] = {lo.x, hi.y};
+    }
+    Bounds3f box;
+    for (int k = 0; k < knot_count(); ++k) {
+        const Corners at = corners(patch, k);
+        for (const Vec2d& c : uv) box.add(Vec3f(blend(at.p, CornerWeights(patch.kind, c).w)));
+    }
+    return box;
+}
+
+void OpenedPolygons::edge_point(const EdgeRef& edge, double t, EdgePoint& out) const {
+    for (int k = 0; k < knot_count(); ++k)
+        out.p[k] = Vec3f(Vec3d(point(k, edge.a)) * (1.0 - t) + Vec3d(point(k, edge.b)) * t);
+    if (!displaced()) return;
+    const double amount = vertex_displacement(edge.a) * (1.0 - t) + vertex_displacement(edge.b) * t;
+    const std::size_t n = data().vertex_count();
+    for (int k = 0; k < knot_count(); ++k) {
+        const Vec3f* directions = &m_directions[static_cast<std::size_t>(k) * n];
+        const Vec3d along = Vec3d(directions[edge.a]) * (1.0 - t) + Vec3d(directions[edge.b]) * t;
+        out.offset[k] = Vec3f(amount * unit_or(along, kTowardsCamera));
+    }
+}
+
+bool OpenedPolygons::smooth(std::uint32_t face) const {
+    return !data().smooth.empty() && data().smooth[face];
+}
+
+Vec3d OpenedPolygons::face_direction(const Corners& at, const CornerWeights& weights) const {
+    const Vec3d cross = glm::cross(blend(at.p, weights.du), blend(at.p, weights.dv));
+    // At a corner where two vertices coincide the quad's own normal stands in.
+    const Vec3d across = glm::cross(at.p[2] - at.p[0], at.p[3] - at.p[1]);
+    return unit_or(cross, unit_or(across, kTowardsCamera));
+}
+
+Vec3d OpenedPolygons::direction(const BasePatch& patch, int knot, const CornerWeights& weights,
+                                const Corners& at) const {
+    const Vec3d flat = orientation(knot) * face_direction(at, weights);
+    if (!smooth(patch.face)) return flat;
+    const Vec3f* normals = &m_directions[static_cast<std::size_t>(knot) * data().vertex_count()];
+    Vec3d corner[4];
+    for (int i = 0; i < 4; ++i) corner[i] = normals[vertex_of(patch.corner[i])];
+    return unit_or(blend(corner, weights.w), flat);
+}
+
+void OpenedPolygons::surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const {
+    const CornerWeights weights(patch.kind, uv);
+    for (int k = 0; k < knot_count(); ++k) {
+        const Corners at = corners(patch, k);
+        out.p[k] = Vec3f(blend(at.p, weights.w));
+        if (displaced())
+            out.offset[k] = Vec3f(static_cast<double>(displacement(material(patch.face)).constant) *
+                                  direction(patch, k, weights, at));
+    }
+}
+
+void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
+                            SurfaceSamples& out) const {
+    const std::size_t n = uv.size();
+    std::vector<CornerWeights> weights;
+    weights.reserve(n);
+    for (const Vec2d& at : uv) weights.emplace_back(patch.kind, at);
+
+    out.positions.resize(n * static_cast<std::size_t>(knot_count()));
+    if (displaced()) out.offset.resize(out.positions.size());
+    const double amount = displacement(material(patch.face)).constant;
+    Corners frame;
+    for (int k = 0; k < knot_count(); ++k) {
+        const Corners at = corners(patch, k);
+        if (k == knots().frame_knot) frame = at;
+        if (k == knots().frame_knot + 1 && knots().frame_fraction > 0.0)
+            for (int i = 0; i < 4; ++i) frame.p[i] = at_frame(frame.p[i], at.p[i]);
+        const std::size_t base = static_cast<std::size_t>(k) * n;
+        for (std::size_t i = 0; i < n; ++i) {
+            out.positions[base + i] = Vec3f(blend(at.p, weights[i].w));
+            if (displaced())
+                out.offset[base + i] = Vec3f(amount * direction(patch, k, weights[i], at));
+        }
+    }
+
+    Vec3d normals[4];
+    const bool custom = !data().corner_normals.empty();
+    const bool interpolated = custom || (smooth(patch.face) && !shared().vertex_normals().empty());
+    if (interpolated)
+        for (int i = 0; i < 4; ++i) {
+            const std::uint32_t corner = patch.corner[i];
+            normals[i] = unit_or(
+                camera_normal(
+                    custom
+                        ? data().corner_normals[corner]
+                        : shared().vertex_normals()[static_cast<std::size_t>(vertex_of(corner))]),
+                Vec3d(0.0));
+        }
+    out.su.resize(n);
+    out.sv.resize(n);
+    out.normal.resize(n);
+    out.geometric_normal.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        out.su[i] = Vec3f(blend(frame.p, weights[i].du));
+        out.sv[i] = Vec3f(blend(frame.p, weights[i].dv));
+        const Vec3d flat = frame_orientation() * face_direction(frame, weights[i]);
+        out.geometric_normal[i] = Vec3f(flat);
+        out.normal[i] =
+            interpolated ? Vec3f(unit_or(blend(normals, weights[i].w), flat)) : Vec3f(flat);
+    }
+}
+
+void OpenedPolygons::attribute(const BasePatch& patch, const AttributeRequest& request,
+                               std::span<const Vec2d> uv, std::vector<float>& values,
+                               std::vector<float>& du, std::vector<float>& dv) const {
+    interpolate(corner_values(shared(), patch, request), patch.kind, uv, request.width, values, du,
+                dv);
+}
+
+}  // namespace granita

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/patch.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "dice/raster_bound.h"
+
+namespace granita {
+namespace {
+
+/// An edge of 1e5 m under a camera at eye height needs 2^26 pieces to reach a pixel at its feet.
+constexpr int kMostLevels = 26;
+
+}  // namespace
+
+RasterBounds patch_bounds(const OpenedMesh& mesh, const BasePatch& patch, const Vec2d* corner_uv) {
+    Bounds3f box = mesh.swept_box(patch, corner_uv);
+    if (box.empty()) return {};
+    // Rounding of positions, and the displacement that the material admits.
+    const Vec3f largest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
+    box.grow(1e-6f * std::max({largest.x, largest.y, largest.z}));
+    if (mesh.displaced()) {
+        float bound = 0.0f;  // of all materials: a border vertex may follow its neighbour's
+        for (const std::int32_t m : mesh.instance().materials)
+            bound = std::max(bound, mesh.displacement(m).bound);
+        box.grow(std::max(bound, mesh.displacement(mesh.material(patch.face)).bound));
+    }
+    return raster_bound(mesh.view().projection, box);
+}
+
+Patch::Patch(std::shared_ptr<const OpenedMesh> mesh, const BasePatch& patch)
+    : m_mesh(std::move(mesh)), m_patch(&patch) {}
+
+std::unique_ptr<Patch> Patch::open(std::shared_ptr<const OpenedMesh> mesh, const BasePatch& patch) {
+    std::unique_ptr<Patch> opened(new Patch(std::move(mesh), patch));
+    const std::int32_t corners = opened->m_mesh->data().face_sizes[patch.face];
+    const int bits =
+        patch.whole_face ? 0 : static_cast<int>(std::bit_width(static_cast<unsigned>(corners)));
+    opened->m_path = (std::uint64_t{1} << bits) | patch.sub;
+    const int budget = std::min(kMostLevels, (62 - bits) / 2);
+    opened->m_budget_u = opened->m_budget_v = budget;
+    OpenedMesh::Start start = opened->m_mesh->start(patch, budget);
+    std::copy_n(start.corner_uv, 4, opened->m_corner_uv);
+    std::move(start.sides, start.sides + 4, opened->m_sides);
+    opened->measure();
+    return opened;
+}
+
+bool Patch::splittable(bool along_u) const {
+    return (along_u ? m_budget_u : m_budget_v) > 0 &&
+           (m_sides[along_u ? kBottom : kLeft].refined() ||
+            m_sides[along_u ? kTop : kRight].refined());
+}
+
+void Patch::measure() {
+    const int grid_size = std::max(m_mesh->view().scene->options.grid_size, 1);
+    const int most = static_cast<int>(std::bit_width(static_cast<unsigned>(grid_size))) - 1;
+    const SideWalker walk(*m_mesh, *m_patch);
+    m_border.u = std::max(walk.depth(m_sides[kBottom], most), walk.depth(m_sides[kTop], most));
+    m_border.v = std::max(walk.depth(m_sides[kLeft], most), walk.depth(m_sides[kRight], most));
+    m_rates = m_border;
+    const bool fits = m_border.u + m_border.v <= most;
+    if (fits && !m_mesh->straight_edges()) {
+        // Between the sides a curved surface may need more than they do.
+        EdgePoint a, b;
+        for (const bool along_u : {true, false}) {
+            const Vec2d* c = m_corner_uv;
+            const Vec2d start = 0.5 * (c[0] + (along_u ? c[3] : c[1]));
+            const Vec2d end = 0.5 * (c[2] + (along_u ? c[1] : c[3]));
+            m_mesh->surface_point(*m_patch, start, a);
+            m_mesh->surface_point(*m_patch, end, b);
+            const Side middle = walk.draw(start, end, a, b, along_u ? m_budget_u : m_budget_v);
+            int& rate = along_u ? m_rates.u : m_rates.v;
+            rate = std::max(rate, walk.depth(middle, most));
+        }
+    }
+    const bool u = splittable(true), v = splittable(false);
+    m_diceable = m_rates.u + m_rates.v <= most || !(u || v);
+    if (m_diceable) {
+        // Only the sides are owed their vertices.
+        while (m_rates.u + m_rates.v > most && (m_rates.u > m_border.u || m_rates.v > m_border.v)) {
+            if (m_rates.u > m_border.u && (m_rates.u >= m_rates.v || m_rates.v <= m_border.v))
+                --m_rates.u;
+            else
+                --m_rates.v;
+        }
+        return;
+    }
+    if (u && v && m_rates.u == m_rates.v)
+        m_split_u = m_budget_u >= m_budget_v;
+    else
+        m_split_u = u && (!v || m_rates.u > m_rates.v);
+}
+
+bool Patch::diceable() const {
+    return m_diceable;
+}
+
+GridKey Patch::key() const {
+    return {m_mesh->instance().key, m_patch->face, m_path};
+}
+
+RasterBounds Patch::bounds() const {
+    return patch_bounds(*m_mesh, *m_patch, m_corner_uv);
+}
+
+Patch::Cut Patch::cut(int side, bool collapsed_before, int before, int after) const {
+    const SideWalker walk(*m_mesh, *m_patch);
+    const Side& s = m_sides[side];
+    Cut cut;
+    if (s.refined()) {
+        cut.uv = 0.5 * (m_corner_uv[before] + m_corner_uv[after]);
+        walk.point(s, 0.5, cut.point);
+        cut.halves[0] = walk.half(s, 0);
+        cut.halves[1] = walk.half(s, 1);
+        return cut;
+    }
+    // The corner away from a side that is a point already, or that child would have no area.
+    const bool at_end = collapsed_before;
+    cut.uv = m_corner_uv[at_end ? after : before];
+    cut.halves[0] = cut.halves[1] = s;
+    Side& point = cut.halves[at_end ? 1 : 0];
+    point = Side{};
+    point.collapsed = true;
+    if (!s.collapsed) {
+        walk.point(s, at_end ? 1.0 : 0.0, cut.point);
+    } else {
+        // A collapsed side is a point that its neighbours end in; those run from bottom to top and
+        // from left to right.
+        const bool first = side == kBottom || side == kLeft;
+        walk.point(m_sides[side == kBottom || side == kTop ? kLeft : kBottom], first ? 0.0 : 1.0,
+                   cut.point);
+    }
+    return cut;
+}
+
+std::vector<std::unique_ptr<Primitive>> Patch::split() const {
+    const bool u = m_split_u;
+    if (m_mesh->view().statistics) m_mesh->view().statistics->add(Counter::PrimitivesSplit);
+    // Named for a split along u; along v, left and bottom, right and top change places.
+    const bool point_before = m_sides[u ? kLeft : kBottom].collapsed;
+    const Cut low = cut(u ? kBottom : kLeft, point_before, 0, u ? 1 : 3);
+    const Cut high = cut(u ? kTop : kRight, point_before, u ? 3 : 1, 2);
+    const SideWalker walk(*m_mesh, *m_patch);
+    const Side line =
+        walk.draw(low.uv, high.uv, low.point, high.point, u ? m_budget_v : m_budget_u);
+
+    std::vector<std::unique_ptr<Primitive>> children;
+    for (int number = 0; number < 2; ++number) {
+        std::unique_ptr<Patch> child(new Patch(m_mesh, *m_patch));
+        child->m_path = 2 * m_path + static_cast<unsigned>(number);
+        child->m_budget_u = m_budget_u - (u ? 1 : 0);
+        child->m_budget_v = m_budget_v - (u ? 0 : 1);
+        std::copy_n(m_corner_uv, 4, child->m_corner_uv);
+        std::copy_n(m_sides, 4, child->m_sides);
+        child->m_sides[u ? kBottom : kLeft] = low.halves[number];
+        child->m_sides[u ? kTop : kRight] = high.halves[number];
+        if (number == 0) {
+            child->m_corner_uv[u ? 1 : 3] = low.uv;
+            child->m_corner_uv[2] = high.uv;
+            child->m_sides[u ? kRight : kTop] = line;
+        } else {
+            child->m_corner_uv[0] = low.uv;
+            child->m_corner_uv[u ? 3 : 1] = high.uv;
+            child->m_sides[u ? kLeft : kBottom] = line;
+        }
+        child->measure();
+        children.push_back(std::move(child));
+    }
+    return children;
+}
+
+}  // namespace granita

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A primitive: four corners in a base patch's (u, v) and the four sides between them.
+//
+// A patch is split between the middles of two opposite sides.  Where one of them is not to be
+// bisected (its neighbour would not have that vertex), the split line ends in its corner instead
+// and one child is a triangle: a side collapsed to a point.  No vertex ever lies on a side that
+// does not have it, and whatever is too large can be split as long as any side has a vertex inside
+// (Fisher et al. 2009).
+#pragma once
+
+#include <memory>
+
+#include "dice/opened_mesh.h"
+
+namespace granita {
+
+/// Of the part of a base patch inside four corners, displacement included.
+RasterBounds patch_bounds(const OpenedMesh& mesh, const BasePatch& patch, const Vec2d* corner_uv);
+
+class Patch final : public Primitive {
+  public:
+    static std::unique_ptr<Patch> open(std::shared_ptr<const OpenedMesh> mesh,
+                                       const BasePatch& patch);
+
+    RasterBounds bounds() const override;
+    GridKey key() const override;
+    bool diceable() const override;
+    std::vector<std::unique_ptr<Primitive>> split() const override;
+    std::unique_ptr<Grid> dice() const override;
+
+  private:
+    enum { kBottom, kRight, kTop, kLeft };
+    /// log2 of the micropolygons along u and v.
+    struct Rates {
+        int u = 0, v = 0;
+    };
+
+    Patch(std::shared_ptr<const OpenedMesh> mesh, const BasePatch& patch);
+    void measure();
+    bool splittable(bool along_u) const;
+    /// Where a split line ends on a side: its middle, or the corner that stands in for it.
+    struct Cut {
+        Vec2d uv{0.0};
+        EdgePoint point;
+        Side halves[2];
+    };
+    Cut cut(int side, bool collapsed_before, int before, int after) const;
+    /// Whether the grid moves, its shading positions and its bounds.
+    void finish_motion(Grid& grid) const;
+    void dice_attributes(Grid& grid, const std::vector<Vec2d>& uv, const std::vector<Vec2d>& step_u,
+                         const std::vector<Vec2d>& step_v) const;
+
+    std::shared_ptr<const OpenedMesh> m_mesh;
+    const BasePatch* m_patch;
+    std::uint64_t m_path = 1;
+    Vec2d m_corner_uv[4];
+    Side m_sides[4];
+    int m_budget_u = 0, m_budget_v = 0;
+    Rates m_border;  ///< what the sides need
+    Rates m_rates;   ///< what is diced: the sides, and the surface between them
+    bool m_diceable = false, m_split_u = false;
+};
+
+}  // namespace granita

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/raster_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace granita {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The hider works in float relative to a tile; its rounding and ours stay inside this, in pixels.
+constexpr double kMargin = 1.0 / 256.0;
+
+struct Interval {
+    double lo = kInfinity, hi = -kInfinity;
+    void add(double x, double reach) {
+        lo = std::min(lo, x - reach);
+        hi = std::max(hi, x + reach);
+    }
+};
+
+RasterBounds finish(const Projection& projection, const Interval& x, const Interval& y,
+                    float z_lo) {
+    RasterBounds bounds;
+    const auto low = [](double v) {
+        return std::nextafter(static_cast<float>(v - kMargin), -INFINITY);
+    };
+    const auto high = [](double v) {
+        return std::nextafter(static_cast<float>(v + kMargin), INFINITY);
+    };
+    bounds.x0 = low(x.lo), bounds.x1 = high(x.hi);
+    bounds.y0 = low(y.lo), bounds.y1 = high(y.hi);
+    bounds.nearest_key =
+        projection.depth_key(std::max(z_lo, static_cast<float>(projection.near_clip)));
+    bounds.visible = true;
+    return bounds;
+}
+
+bool in_clip_range(const Projection& projection, float z_lo, float z_hi) {
+    return z_hi >= projection.near_clip && z_lo <= projection.far_clip;
+}
+
+}  // namespace
+
+RasterBounds raster_bound(const Projection& projection, const Bounds3f& box) {
+    if (box.empty() || !in_clip_range(projection, box.lo.z, box.hi.z)) return {};
+    const bool crosses = projection.perspective && box.lo.z <= 0.0f;
+    const double z_near = projection.perspective
+                              ? std::max<double>(box.lo.z, crosses ? projection.near_clip : 0.0)
+                              : box.lo.z;
+    const double z_far = std::max<double>(box.hi.z, z_near);
+    const auto axis = [&](int i, double lo, double hi) {
+        Interval interval;
+        for (const double z : {z_near, z_far}) {
+            const double w = projection.perspective ? 1.0 / z : 1.0;
+            const double reach =
+                projection.scale[i] * projection.lens_radius * std::abs(z / projection.focus - 1.0);
+            for (const double v : {lo, hi})
+                interval.add(projection.center[i] + projection.scale[i] * v * w,
+                             projection.has_lens() ? reach * w : 0.0);
+        }
+        if (crosses && (lo < 0.0 || projection.has_lens())) interval.lo = -kInfinity;
+        if (crosses && (hi > 0.0 || projection.has_lens())) interval.hi = kInfinity;
+        return interval;
+    };
+    return finish(projection, axis(0, box.lo.x, box.hi.x), axis(1, box.lo.y, box.hi.y), box.lo.z);
+}
+
+RasterBounds raster_bound(const Projection& projection, std::span<const Vec3f> points) {
+    Bounds3f box;
+    for (const Vec3f& p : points) box.add(p);
+    if (box.empty() || !in_clip_range(projection, box.lo.z, box.hi.z)) return {};
+    if (projection.perspective && box.lo.z <= 0.0f) return raster_bound(projection, box);
+    Interval x, y;
+    for (const Vec3f& p : points) {
+        const double w = projection.perspective ? 1.0 / p.z : 1.0;
+        const double reach = projection.has_lens() ? projection.lens_radius *
+                                                         std::abs(p.z / projection.focus - 1.0) * w
+                                                   : 0.0;
+        x.add(projection.center.x + projection.scale.x * p.x * w, projection.scale.x * reach);
+        y.add(projection.center.y + projection.scale.y * p.y * w, projection.scale.y * reach);
+    }
+    return finish(projection, x, y, box.lo.z);
+}
+
+}  // namespace granita

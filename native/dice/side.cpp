@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/side.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dice/edge_rate.h"
+#include "dice/opened_mesh.h"
+
+namespace granita {
+
+void SideWalker::edge_point(const Side& side, double t, EdgePoint& out) const {
+    if (!side.line) {
+        m_mesh.edge_point(side.edge, t, out);
+        return;
+    }
+    const Line& line = *side.line;
+    if (t > 0.0 && t < 1.0) {
+        m_mesh.surface_point(m_patch, line.uv0 * (1.0 - t) + line.uv1 * t, out);
+        return;
+    }
+    const std::ptrdiff_t first = t > 0.0 ? m_mesh.knot_count() : 0;
+    std::copy_n(line.p.begin() + first, m_mesh.knot_count(), out.p);
+    if (!line.offset.empty())
+        std::copy_n(line.offset.begin() + first, m_mesh.knot_count(), out.offset);
+}
+
+void SideWalker::point(const Side& side, double at, EdgePoint& out) const {
+    edge_point(side, std::ldexp(side.index + (side.reversed ? 1.0 - at : at), -side.depth), out);
+}
+
+void SideWalker::classify(Side& side) const {
+    EdgePoint start, middle, end;
+    const auto place = [&side](double at) { return std::ldexp(side.index + at, -side.depth); };
+    edge_point(side, place(0.0), start);
+    edge_point(side, place(1.0), end);
+    const EdgeRate& rate = m_mesh.rate();
+    if (!side.line && m_mesh.straight_edges() &&
+        rate.stays_whole(start.p, end.p, m_mesh.knot_count())) {
+        side.levels = 0;
+        return;
+    }
+    edge_point(side, place(0.5), middle);
+    side.levels = static_cast<std::int8_t>(
+        rate.levels(start.p, middle.p, end.p, m_mesh.knot_count(), side.budget));
+}
+
+Side SideWalker::half(const Side& side, int half) const {
+    Side child = side;
+    child.index = 2 * side.index + static_cast<unsigned>(side.reversed ? 1 - half : half);
+    child.depth = static_cast<std::uint8_t>(side.depth + 1);
+    child.budget = static_cast<std::uint8_t>(side.budget > 0 ? side.budget - 1 : 0);
+    if (side.levels == EdgeRate::kAdaptive)
+        classify(child);
+    else
+        child.levels = static_cast<std::int8_t>(side.levels > 0 ? side.levels - 1 : 0);
+    return child;
+}
+
+int SideWalker::depth(const Side& side, int cap) const {
+    if (side.levels >= 0) return std::min<int>(side.levels, cap + 1);
+    if (cap <= 0) return 1;
+    const int first = depth(half(side, 0), cap - 1);
+    if (first >= cap) return cap + 1;
+    return 1 + std::max(first, depth(half(side, 1), cap - 1));
+}
+
+void SideWalker::leaf_ends(const Side& side, int first, int steps, std::vector<int>& ends) const {
+    if (!side.refined()) {
+        ends.push_back(first + steps);
+        return;
+    }
+    leaf_ends(half(side, 0), first, steps / 2, ends);
+    leaf_ends(half(side, 1), first + steps / 2, steps / 2, ends);
+}
+
+Side SideWalker::draw(const Vec2d& uv0, const Vec2d& uv1, const EdgePoint& start,
+                      const EdgePoint& end, int budget) const {
+    auto line = std::make_shared<Line>();
+    line->uv0 = uv0;
+    line->uv1 = uv1;
+    const int knots = m_mesh.knot_count();
+    line->p.assign(start.p, start.p + knots);
+    line->p.insert(line->p.end(), end.p, end.p + knots);
+    if (m_mesh.displaced()) {
+        line->offset.assign(start.offset, start.offset + knots);
+        line->offset.insert(line->offset.end(), end.offset, end.offset + knots);
+    }
+    Side side;
+    side.line = std::move(line);
+    side.budget = static_cast<std::uint8_t>(budget);
+    classify(side);
+    return side;
+}
+
+}  // namespace granita
