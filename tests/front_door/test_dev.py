@@ -57,11 +57,10 @@ def test_blender_has_the_addon_and_the_exit_code_comes_through():
 def test_blender_leaves_the_users_configuration_untouched(tmp_path):
     script = "import bpy; bpy.ops.wm.save_userpref()"
     cache = os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache"))
-    done = dev(
-        "blender", "-b", "--python-expr", script, HOME=str(tmp_path), XDG_CACHE_HOME=cache
-    )  # fmt: skip
+    home = {"HOME": str(tmp_path), "XDG_CACHE_HOME": cache, "XDG_CONFIG_HOME": ""}
+    done = dev("blender", "-b", "--python-expr", script, **home)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert not (tmp_path / ".config").exists()
+    assert not (tmp_path / ".config" / "blender").exists()
 
 
 def test_a_failing_part_makes_the_test_run_fail(tmp_path):
