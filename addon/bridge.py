@@ -8,7 +8,7 @@ message in the panel and at render, never a failed registration.
 
 import importlib
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .export.report import Cancelled
@@ -65,7 +65,7 @@ def rendering(snapshot):
     """Renders a scene snapshot (docs/scene_snapshot.md): yields the running granita_core.Render.
 
     On a normal exit the job is finished and its first failure raised; on any other it is
-    cancelled.  Native exceptions arrive as those of this file.
+    cancelled and joined.  Native exceptions arrive as those of this file.
     """
     core = load()
     try:
@@ -74,6 +74,8 @@ def rendering(snapshot):
             yield job
         except BaseException:
             job.cancel()
+            with suppress(core.Error):
+                job.finish()
             raise
         job.finish()
     except core.Cancelled as error:

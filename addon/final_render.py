@@ -83,17 +83,21 @@ class FinalRender:
     def _render(self, snapshot):
         """On the device asked for; on the CPU where that is not to be had, which is said if it was
         asked for by name."""
+        options = snapshot["options"]
+        asked, reason = options["device"], ""
         try:
-            return self._run_job(snapshot)
+            job = self._run_job(snapshot)
         except bridge.DeviceError as error:
-            asked = snapshot["options"]["device"]
             if asked == "CPU":
                 raise
-            if asked == "GPU":
-                message = f"rendered on the CPU, no usable GPU: {error}"
-                self.report.warn(f"scene '{self.scene}'", message)
-        snapshot["options"]["device"] = "CPU"
-        return self._run_job(snapshot)
+            reason = f": {error}"
+            options["device"] = "CPU"
+            job = self._run_job(snapshot)
+        if asked == "GPU" and not job.device.startswith("GPU"):
+            self.report.warn(
+                f"scene '{self.scene}'", f"not rendered on the GPU but by {job.device}{reason}"
+            )
+        return job
 
     def _run_job(self, snapshot):
         """Runs one native job to its end and returns it."""
@@ -102,7 +106,7 @@ class FinalRender:
         try:
             with bridge.rendering(snapshot) as job:
                 self.seconds["scene"] = perf_counter() - started
-                origin = snapshot["options"]["crop"][:2]
+                origin = [int(pixel) for pixel in snapshot["options"]["crop"][:2]]
                 while not job.done():
                     self._deliver(job.take_tiles(POLL_SECONDS), origin)
                     if self.engine.test_break():

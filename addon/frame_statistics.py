@@ -57,8 +57,9 @@ class FrameStatistics:
         for name, value in layer.seconds.items():
             record["seconds"][name] = record["seconds"].get(name, 0.0) + value
         for name, value in job.statistics().items():
-            merge = max if name.startswith("peak_") else sum
-            record["statistics"][name] = merge((record["statistics"].get(name, 0), value))
+            if name != "device":
+                merge = max if name.startswith("peak_") else sum
+                record["statistics"][name] = merge((record["statistics"].get(name, 0), value))
         for datablock, message, count in warnings:
             entry = {"datablock": datablock, "message": message, "count": int(count)}
             record["warnings"].append(entry)

@@ -35,7 +35,7 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
         "More samples: less noise in edges, motion blur and depth of field",
         default=64,
         min=1,
-        max=65536,
+        max=4096,
         soft_max=1024,
     )
     sampling: EnumProperty(

@@ -6,7 +6,6 @@ end (AWS Deadline Cloud: `^Fra:.*Sample\\s(\\d+)\\/(\\d+)$`) and take the words 
 in it for failures: each line ends in `Sample k/n`, k buckets of n, and holds no user's names.
 """
 
-from math import isfinite
 from time import monotonic
 
 SECONDS_BETWEEN_LINES = 1.0
@@ -19,14 +18,20 @@ class StatusLine:
 
     def __init__(self, engine):
         self._engine = engine
+        self._started = None
 
     def exporting(self):
         self._show("Exporting | Sample 0/1")
 
     def rendering(self, job):
+        """`job`: a granita_core.Render."""
+        now = monotonic()
+        if self._started is None:
+            self._started = now
         text = f"Sample {job.buckets_done}/{job.buckets_total}"
-        if isfinite(job.remaining):
-            text = f"Remaining:{clock(job.remaining)} | {text}"
+        if job.fraction > 0.0:
+            remaining = (now - self._started) * (1.0 - job.fraction) / job.fraction
+            text = f"Remaining:{clock(remaining)} | {text}"
         self._show(text)
 
     def _show(self, text):

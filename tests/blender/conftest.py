@@ -36,3 +36,14 @@ def render(tmp_path):
         return exr.read(scene.render.filepath)
 
     return render_to_arrays
+
+
+@pytest.fixture
+def blend(scene, tmp_path):
+    """A saved file: a camera above an emissive square, float output."""
+    scene_parts.add_camera(scene, ortho_scale=4.0)
+    scene_parts.add_square(scene, material=scene_parts.emission("Glow", (0.25, 0.5, 0.75)))
+    scene_parts.multilayer_exr(scene)
+    path = tmp_path / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+    return path

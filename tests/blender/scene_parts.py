@@ -51,7 +51,8 @@ def add_square(scene, name="Square", size=2.0, location=(0.0, 0.0, 0.0), materia
 def emission(name, color, strength=1.0):
     """A material whose pixels are `color` (linear RGB) times `strength`."""
     material = bpy.data.materials.new(name)
-    material.use_nodes = True
+    if material.node_tree is None:
+        material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
     emit = nodes.new("ShaderNodeEmission")

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ctrl+C on a farm: `render()` returns within .5 s wherever it is, and the frame is not saved."""
+
+import os
+import signal
+import subprocess
+import time
+
+import bpy
+import pytest
+import render_host
+import scene_parts as parts
+
+# The latency that the artist is promised, beyond the one Blender call in flight.
+PROMISED_SECONDS = 0.5
+
+# Says when each stage is reached and when `render()` returns, on the clock of this machine.
+WATCH = """
+import time
+import granita.engine, granita.final_render as final_render, granita.bridge as bridge
+def say(word):
+    print("WATCH", word, time.time(), flush=True)
+engine = granita.engine.GranitaRenderEngine
+render = engine.render
+def watched(self, depsgraph):
+    say("export")
+    render(self, depsgraph)
+    say("returned")
+engine.render = watched
+run_job = final_render.FinalRender._run_job
+def watched_job(self, snapshot):
+    say("native")
+    return run_job(self, snapshot)
+final_render.FinalRender._run_job = watched_job
+"""
+
+
+def many_knots(scene):
+    """An export of many seconds: 129 knots of a hundred deforming meshes."""
+    scene.render.use_motion_blur = True
+    scene.granita.motion_steps = 129
+    side = 60
+    vertices = [(x / side, y / side, 0.0) for y in range(side) for x in range(side)]
+    faces = [
+        (i, i + 1, i + side + 1, i + side)
+        for y in range(side - 1)
+        for i in range(y * side, y * side + side - 1)
+    ]
+    for n in range(100):
+        thing = parts.add_mesh(scene, f"Wave{n}", vertices, faces, (n % 10 - 5, n // 10 - 5, 0))
+        wave = thing.modifiers.new("Wave", "WAVE")
+        wave.height, wave.width = 0.3, 0.5
+
+
+def fine_dicing(scene):
+    """Minutes of dicing: every pixel is some hundred micropolygons, hidden by one sample."""
+    parts.add_square(scene, size=20.0, location=(0, 0, -1))
+    scene.render.resolution_x = scene.render.resolution_y = 4096
+    scene.granita.dicing_rate = 0.06
+    scene.granita.samples = 1
+
+
+def many_samples(scene):
+    """Minutes of hiding: few micropolygons, many samples."""
+    parts.add_square(scene, size=20.0, location=(0, 0, -1))
+    scene.render.resolution_x = scene.render.resolution_y = 2048
+    scene.granita.dicing_rate = 8.0
+    scene.granita.samples = 4096
+
+
+@pytest.mark.parametrize(
+    "make, stage",
+    [(many_knots, "export"), (fine_dicing, "native"), (many_samples, "native")],
+)
+@pytest.mark.parametrize("delay", [0.1, 1.0])
+def test_interrupt(scene, tmp_path, make, stage, delay):
+    parts.add_camera(scene, location=(0, 0, 12))
+    parts.multilayer_exr(scene)
+    make(scene)
+    blend = tmp_path / "slow.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend), copy=True)
+    process = subprocess.Popen(
+        render_host.command(blend, tmp_path / "out" / "frame_####", WATCH),
+        env=render_host.environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        stdin=subprocess.DEVNULL,
+        text=True,
+    )
+    output, interrupted, returned = [], None, None
+    try:
+        for line in process.stdout:
+            output.append(line)
+            if line.startswith(f"WATCH {stage}"):
+                time.sleep(delay)
+                interrupted = time.time()
+                os.kill(process.pid, signal.SIGINT)
+            elif line.startswith("WATCH returned"):
+                returned = float(line.split()[2])
+        code = process.wait(60)
+    finally:
+        process.kill()
+    text = "".join(output)
+    assert interrupted is not None and returned is not None, text
+    assert returned > interrupted, "the frame was finished before it could be interrupted: " + text
+    assert returned - interrupted < PROMISED_SECONDS, text
+    assert code == 1, text
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())

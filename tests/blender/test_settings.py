@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scene.granita's names and numbers are API; panels are those of Granita and of common data."""
+
+import sys
+
+import bpy
+import pytest
+
+DEFAULTS = {
+    "device": "AUTO",
+    "samples": 64,
+    "sampling": "INDEPENDENT",
+    "time_samples": 0,
+    "pixel_filter": "BLACKMAN_HARRIS",
+    "filter_width": 1.5,
+    "dicing_rate": 1.0,
+    "shading_rate": 0.0,
+    "grid_size": 256,
+    "bucket_size": 64,
+    "opacity_threshold": 0.996,
+    "motion_steps": 3,
+    "seed": 0,
+    "animate_seed": False,
+    "light_samples": 8,
+}
+
+NUMBERS = {
+    "device": ["AUTO", "CPU", "GPU"],
+    "sampling": ["INDEPENDENT", "INTERLEAVED", "REGULAR"],
+    "pixel_filter": [
+        "BOX",
+        "TENT",
+        "GAUSSIAN",
+        "BLACKMAN_HARRIS",
+        "MITCHELL",
+        "CATMULL_ROM",
+        "LANCZOS",
+        "BSPLINE",
+    ],
+}
+
+
+def own_properties():
+    return bpy.context.scene.granita.bl_rna.properties
+
+
+def test_defaults():
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    settings = bpy.context.scene.granita
+    found = {p.identifier for p in own_properties()} - {"rna_type", "name"}
+    assert found == DEFAULTS.keys()
+    for name, value in DEFAULTS.items():
+        assert getattr(settings, name) == pytest.approx(value), name
+
+
+def test_enumerations_keep_their_numbers():
+    for name, identifiers in NUMBERS.items():
+        items = own_properties()[name].enum_items
+        assert [(i.identifier, i.value) for i in items] == list(
+            zip(identifiers, range(len(identifiers)), strict=True)
+        )
+
+
+def test_every_setting_explains_itself():
+    for p in own_properties():
+        if p.identifier in DEFAULTS:
+            assert len(p.description) > 10, p.identifier
+
+
+SERVED = [
+    "RENDER_PT_format",
+    "RENDER_PT_color_management",
+    "DATA_PT_lens",
+    "DATA_PT_camera",
+    "DATA_PT_camera_dof",
+    "DATA_PT_camera_dof_aperture",
+    "DATA_PT_EEVEE_light",
+    "DATA_PT_spot",
+    "EEVEE_MATERIAL_PT_surface",
+    "EEVEE_WORLD_PT_surface",
+    "MATERIAL_PT_preview",
+    "OBJECT_PT_visibility",
+    "VIEWLAYER_PT_layer",
+]
+
+
+def served():
+    def below(cls):
+        for sub in cls.__subclasses__():
+            yield sub
+            yield from below(sub)
+
+    return {
+        panel.__name__
+        for panel in below(bpy.types.Panel)
+        if "GRANITA" in getattr(panel, "COMPAT_ENGINES", ())
+    }
+
+
+def test_stock_panels_come_and_go():
+    granita = sys.modules["granita"]
+    names = served()
+    assert names >= set(SERVED)
+    # EEVEE's own knobs mean nothing here.
+    assert not {name for name in names if name.startswith("RENDER_PT_eevee")}
+    granita.unregister()
+    try:
+        stock = {name for name in served() if not name.startswith("GRANITA")}
+        assert stock == set()
+        assert not hasattr(bpy.types.Scene, "granita")
+    finally:
+        granita.register()
+    assert served() == names
