@@ -1,0 +1,340 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motion at the knots of the shutter, and the frame restored on every path."""
+
+import bpy
+import numpy as np
+import pytest
+
+import export_probe
+import scene_parts
+from export_probe import geometry_of, knots_of
+from granita.export import Cancelled
+
+
+@pytest.fixture
+def moving(scene):
+    """The scene with motion blur: shutter of half a frame around frame 10."""
+    scene_parts.add_camera(scene, (0, 0, 10))
+    scene.render.use_motion_blur = True
+    scene.render.motion_blur_shutter = 0.5
+    set_position(scene, "CENTER")
+    scene.frame_set(10)
+    return scene
+
+
+def set_position(scene, position):
+    owner = scene.render if hasattr(scene.render, "motion_blur_position") else scene.cycles
+    owner.motion_blur_position = position
+
+
+def drive(owner, path, expression, index=-1):
+    """A property that is a formula of `frame`, with its fraction."""
+    owner.driver_add(path, index).driver.expression = expression
+
+
+def xs(snapshot, name):
+    return knots_of(snapshot, name)[:, 0, 3]
+
+
+@pytest.mark.parametrize(
+    "position, expected",
+    [("CENTER", [9.75, 10, 10.25]), ("START", [10, 10.25, 10.5]), ("END", [9.5, 9.75, 10])],
+)
+def test_positions_of_the_shutter(moving, position, expected):
+    set_position(moving, position)
+    drive(scene_parts.add_square(moving), "location", "frame", 0)
+    still = scene_parts.add_square(moving, "Still")
+    still.location.x = 3.0
+    snapshot, report, time_after = export_probe.through_engine(moving)
+    assert xs(snapshot, "Square") == pytest.approx(expected)
+    assert xs(snapshot, "Still").tolist() == [3.0]
+    assert snapshot["options"]["frame_time"] == {"CENTER": 0.5, "START": 0.0, "END": 1.0}[position]
+    assert time_after == 10.0 and len(report) == 0
+
+
+def test_a_script_sees_the_same(moving):
+    drive(scene_parts.add_square(moving), "location", "frame", 0)
+    snapshot, _ = export_probe.through_script()
+    assert xs(snapshot, "Square") == pytest.approx([9.75, 10, 10.25])
+    assert (moving.frame_current, moving.frame_subframe) == (10, 0.0)
+
+
+@pytest.mark.parametrize("steps, knots", [(2, 3), (3, 3), (4, 5), (7, 7)])
+def test_more_steps_are_more_knots(moving, steps, knots):
+    drive(scene_parts.add_square(moving), "location", "frame * frame", 0)
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=steps)
+    times = np.linspace(9.75, 10.25, knots)
+    assert xs(snapshot, "Square") == pytest.approx(times * times, rel=1e-6)
+
+
+def test_motion_off_steps_no_time(moving):
+    moving.render.use_motion_blur = False
+    drive(scene_parts.add_square(moving), "location", "frame", 0)
+    changes = []
+
+    def changed(*_):
+        changes.append(1)
+
+    def listen(_depsgraph):
+        bpy.app.handlers.frame_change_post.append(changed)
+
+    def stop(_depsgraph):
+        bpy.app.handlers.frame_change_post.remove(changed)
+
+    snapshot, _, _ = export_probe.through_engine(moving, before=listen, after=stop)
+    assert xs(snapshot, "Square").tolist() == [10.0] and changes == []
+
+
+@pytest.mark.parametrize("frame", [-3, 0, 1])
+def test_negative_and_first_frames(moving, frame):
+    moving.frame_set(frame)
+    drive(scene_parts.add_square(moving), "location", "frame", 0)
+    snapshot, _, time_after = export_probe.through_engine(moving)
+    assert xs(snapshot, "Square") == pytest.approx([frame - 0.25, frame, frame + 0.25])
+    assert time_after == frame
+
+
+def test_camera_and_lights_move(moving):
+    drive(moving.camera, "location", "frame", 1)
+    light = scene_parts.add_object(moving, "Lamp", bpy.data.lights.new("Lamp", "POINT"))
+    drive(light, "location", "2 * frame", 2)
+    snapshot, _, _ = export_probe.through_engine(moving)
+    assert snapshot["camera"]["world_from_camera"][:, 1, 3] == pytest.approx([9.75, 10, 10.25])
+    (lamp,) = snapshot["lights"]
+    assert lamp["world_from_light"][:, 2, 3] == pytest.approx([19.5, 20, 20.5])
+
+
+def test_a_parent_and_a_driver(moving):
+    parent = scene_parts.add_object(moving, "Parent", None)
+    child = scene_parts.add_square(moving, "Child")
+    child.parent = parent
+    follower = scene_parts.add_square(moving, "Follower")
+    drive(parent, "location", "frame", 0)
+    driver = follower.driver_add("location", 0).driver
+    variable = driver.variables.new()
+    variable.name, variable.type = "x", "TRANSFORMS"
+    variable.targets[0].id = child
+    driver.expression = "-x"
+    snapshot, _, _ = export_probe.through_engine(moving)
+    assert xs(snapshot, "Child") == pytest.approx([9.75, 10, 10.25])
+    assert xs(snapshot, "Follower") == pytest.approx([-9.75, -10, -10.25])
+
+
+def test_instances_move_each_on_its_own(moving):
+    square = scene_parts.add_square(moving)
+    part = bpy.data.collections.new("Part")
+    part.objects.link(square)
+    moving.collection.objects.unlink(square)
+    for i in range(3):
+        empty = scene_parts.add_object(moving, f"Place{i}", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", part
+        if i:
+            drive(empty, "location", f"{i} * frame", 0)
+    snapshot, _, _ = export_probe.through_engine(moving)
+    instances = snapshot["instances"]
+    assert instances["knots"].tolist() == [1, 3, 3]
+    x = instances["world_from_object"][:, 0, 3]
+    assert x == pytest.approx([0, 9.75, 10, 10.25, 19.5, 20, 20.5])
+    assert len(snapshot["geometries"]) == 1
+
+
+def shape_key(thing, name="Up", lift=1.0):
+    thing.shape_key_add(name="Basis")
+    key = thing.shape_key_add(name=name)
+    for point in key.data:
+        point.co.z += lift
+    return key
+
+
+def test_shape_keys(moving):
+    square = scene_parts.add_square(moving)
+    drive(shape_key(square), "value", "frame / 20")
+    still = scene_parts.add_square(moving, "Still")
+    snapshot, report, _ = export_probe.through_engine(moving)
+    points = geometry_of(snapshot, "Square")["points"]
+    assert points.shape == (3, 4, 3) and points.flags.c_contiguous
+    assert points[:, :, 2] == pytest.approx(np.repeat([[0.4875], [0.5], [0.5125]], 4, axis=1))
+    assert geometry_of(snapshot, "Still")["points"].shape == (1, 4, 3)
+    assert still.data.vertices[0].co.z == 0.0 and len(report) == 0
+
+
+def test_a_deformed_cage(moving):
+    square = scene_parts.add_square(moving)
+    drive(shape_key(square), "value", "frame / 20")
+    modifier = square.modifiers.new("Subsurf", "SUBSURF")
+    modifier.render_levels = 3
+    snapshot, _, _ = export_probe.through_engine(moving)
+    geometry = geometry_of(snapshot, "Square")
+    assert "subdivision" in geometry and geometry["points"].shape == (3, 4, 3)
+    assert geometry["points"][:, 0, 2] == pytest.approx([0.4875, 0.5, 0.5125])
+
+
+def test_a_moving_subsurf_stays_a_static_cage(moving):
+    square = scene_parts.add_square(moving)
+    square.modifiers.new("Subsurf", "SUBSURF").render_levels = 2
+    drive(square, "location", "frame", 0)
+    snapshot, _, _ = export_probe.through_engine(moving)
+    assert geometry_of(snapshot, "Square")["points"].shape == (1, 4, 3)
+    assert xs(snapshot, "Square") == pytest.approx([9.75, 10, 10.25])
+
+
+def test_armature(moving):
+    """The square follows a bone that turns; Blender's own evaluation at that time is the truth."""
+    square = scene_parts.add_square(moving)
+    bpy.ops.object.armature_add()
+    armature = bpy.context.object
+    square.vertex_groups.new(name=armature.data.bones[0].name).add(range(4), 1.0, "REPLACE")
+    square.modifiers.new("Armature", "ARMATURE").object = armature
+    bone = armature.pose.bones[0]
+    bone.rotation_mode = "XYZ"
+    drive(bone, "rotation_euler", "frame / 5", 0)
+    expected = []
+    for subframe_of in ((9, 0.75), (10, 0.0), (10, 0.25)):
+        moving.frame_set(subframe_of[0], subframe=subframe_of[1])
+        evaluated = square.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        expected.append([tuple(vertex.co) for vertex in evaluated.data.vertices])
+    moving.frame_set(10)
+    snapshot, _, _ = export_probe.through_engine(moving)
+    assert geometry_of(snapshot, "Square")["points"] == pytest.approx(np.array(expected), abs=1e-6)
+
+
+def build(square):
+    """Faces appear one after another."""
+    modifier = square.modifiers.new("Build", "BUILD")
+    modifier.frame_start, modifier.frame_duration = 9, 3
+
+
+def test_changing_topology_keeps_transform_blur_and_is_named(moving):
+    verts = [(x, y, 0) for y in range(21) for x in range(21)]
+    faces = [(i, i + 1, i + 22, i + 21) for i in range(420) if i % 21 < 20]
+    build(scene_parts.add_mesh(moving, "Growing", verts, faces))
+    drive(bpy.data.objects["Growing"], "location", "frame", 0)
+    snapshot, report, time_after = export_probe.through_engine(moving, motion_steps=5)
+    assert geometry_of(snapshot, "Growing")["points"].shape[0] == 1
+    assert xs(snapshot, "Growing") == pytest.approx([9.75, 9.875, 10, 10.125, 10.25])
+    ((datablock, message, count),) = report.entries()
+    assert datablock == "mesh 'Growing'" and "topology" in message and count == 1
+    assert time_after == 10.0
+
+
+def test_equal_counts_of_other_faces_do_not_smear(moving):
+    """Two meshes of four vertices and one face each, joined in another order, swapped in time."""
+    tree = bpy.data.node_groups.new("Swap", "GeometryNodeTree")
+    if hasattr(tree, "interface"):
+        tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    else:
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
+    switch = tree.nodes.new("GeometryNodeSwitch")
+    output = tree.nodes.new("NodeGroupOutput")
+    geometry = [s for s in switch.inputs if s.type == "GEOMETRY"]
+    for socket, order in zip(geometry, ((0, 1, 2, 3), (3, 2, 1, 0))):
+        name = f"Source{order[0]}"
+        verts = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+        source = scene_parts.add_mesh(moving, name, verts, [order])
+        source.hide_render = True
+        info = tree.nodes.new("GeometryNodeObjectInfo")
+        info.inputs["Object"].default_value = source
+        tree.links.new(info.outputs["Geometry"], socket)
+    tree.links.new(
+        next(s for s in switch.outputs if s.type == "GEOMETRY" and s.enabled), output.inputs[0]
+    )
+    time = tree.nodes.new("GeometryNodeInputSceneTime")
+    compare = tree.nodes.new("FunctionNodeCompare")
+    compare.operation = "GREATER_THAN"
+    compare.inputs[1].default_value = 10.1
+    tree.links.new(time.outputs["Frame"], compare.inputs[0])
+    flag = next(s for s in switch.inputs if s.type == "BOOLEAN" and s.enabled)
+    tree.links.new(compare.outputs[0], flag)
+    host = scene_parts.add_square(moving, "Host")
+    host.modifiers.new("Nodes", "NODES").node_group = tree
+    snapshot, report, _ = export_probe.through_engine(moving)
+    assert geometry_of(snapshot, "Host")["points"].shape == (1, 4, 3)
+    assert [(d, "topology" in m) for d, m, _ in report.entries()] == [("mesh 'Host'", True)]
+
+
+def test_hidden_within_the_shutter_is_held(moving):
+    square = scene_parts.add_square(moving)
+    drive(square, "location", "frame", 0)
+    drive(square, "hide_render", "frame > 10.1")
+    snapshot, _, _ = export_probe.through_engine(moving)
+    assert xs(snapshot, "Square") == pytest.approx([9.75, 10, 10])
+
+
+def test_what_is_hidden_at_the_frame_is_not_there(moving):
+    drive(scene_parts.add_square(moving), "hide_render", "frame < 10.1")
+    snapshot, _, _ = export_probe.through_engine(moving)
+    assert snapshot["instances"]["name"] == []
+
+
+def test_objects_can_stand_out_of_motion_blur(moving):
+    square = scene_parts.add_square(moving)
+    if not hasattr(square, "cycles"):
+        pytest.skip("Cycles' settings are not there")
+    drive(square, "location", "frame", 0)
+    drive(shape_key(square), "value", "frame / 20")
+    square.cycles.use_deform_motion = False
+    snapshot, _, _ = export_probe.through_engine(moving)
+    assert len(xs(snapshot, "Square")) == 3
+    assert geometry_of(snapshot, "Square")["points"].shape[0] == 1
+    square.cycles.use_motion_blur = False
+    snapshot, _, _ = export_probe.through_engine(moving)
+    assert xs(snapshot, "Square").tolist() == [10.0]
+
+
+def test_the_camera_is_taken_at_the_frame_though_a_marker_follows(moving):
+    first = moving.camera
+    drive(first, "location", "frame", 1)
+    second = scene_parts.add_camera(moving, (50, 50, 50))
+    second.name = "Second"
+    for frame, camera in ((1, first), (11, second)):
+        moving.timeline_markers.new(f"F{frame}", frame=frame).camera = camera
+    moving.render.motion_blur_shutter = 4.0
+    moving.frame_set(10)
+    snapshot, _, _ = export_probe.through_engine(moving)
+    camera = snapshot["camera"]
+    assert camera["name"] == first.name
+    assert camera["world_from_camera"][:, 1, 3] == pytest.approx([8, 10, 12])
+
+
+def test_the_frame_is_restored_after_a_failure(moving):
+    drive(scene_parts.add_square(moving), "location", "frame", 0)
+    calls = []
+
+    def fail_late():
+        # At the second knot the scene stands elsewhere.
+        calls.append(moving.frame_current + moving.frame_subframe)
+        if calls[-1] != 10.0 and len(set(calls)) > 2:
+            raise RuntimeError("on purpose")
+
+    with pytest.raises(RuntimeError, match="on purpose") as caught:
+        export_probe.through_engine(moving, cancelled=fail_late)
+    assert caught.value.time_after == 10.0
+    assert calls[-1] == pytest.approx(10.25)
+
+
+def test_the_frame_is_restored_after_cancel(moving):
+    drive(scene_parts.add_square(moving), "location", "frame", 0)
+
+    def away():
+        return moving.frame_current != 10
+
+    with pytest.raises(Cancelled) as caught:
+        export_probe.through_engine(moving, cancelled=away)
+    assert caught.value.time_after == 10.0
+
+
+def test_render_at_a_subframe(moving):
+    moving.frame_set(10, subframe=0.5)
+    drive(scene_parts.add_square(moving), "location", "frame", 0)
+    snapshot, _, time_after = export_probe.through_engine(moving)
+    assert xs(snapshot, "Square") == pytest.approx([10.25, 10.5, 10.75])
+    assert time_after == 10.5
+
+
+def test_original_data_is_untouched(moving):
+    square = scene_parts.add_square(moving)
+    modifier = square.modifiers.new("Subsurf", "SUBSURF")
+    drive(square, "location", "frame", 0)
+    export_probe.through_engine(moving)
+    assert modifier.show_render and modifier.show_viewport
+    assert len(square.data.vertices) == 4 and len(bpy.data.meshes) == 1
