@@ -24,17 +24,6 @@ gl::Program grid_program(const Projection& projection, bool with_radiance) {
                         {GL_FRAGMENT_SHADER, gl::shader_source("raster/grid.frag", defines)}});
 }
 
-/// Device time between construction and stop(), added to a stage when it is known.
-class DeviceTimer {
-  public:
-    DeviceTimer() : m_query(GL_TIME_ELAPSED) { m_query.begin(); }
-    void stop() const { m_query.end(); }
-    double seconds() const { return 1e-9 * static_cast<double>(m_query.result()); }
-
-  private:
-    gl::Query m_query;
-};
-
 }  // namespace
 
 // What all buckets share on the device; touched on the thread that owns OpenGL.
@@ -90,10 +79,6 @@ class RasterHider::Bucket : public RasterBucket {
     void add(Counter counter, std::uint64_t n) const {
         if (m_frame.statistics != nullptr) m_frame.statistics->add(counter, n);
     }
-    void add_seconds(Stage stage, const DeviceTimer& timer) const {
-        if (m_frame.statistics != nullptr) m_frame.statistics->add_seconds(stage, timer.seconds());
-    }
-
     // Depth is near / z: the far clip is a depth that the target starts with.
     float farthest() const {
         return static_cast<float>(m_frame.projection.near_clip / m_frame.projection.far_clip);
@@ -156,7 +141,6 @@ class RasterHider::Bucket : public RasterBucket {
     std::vector<std::uint64_t> count_visible_here() {
         std::vector<std::uint64_t> counts(m_geometry.ranges().size(), 0);
         for (const RasterCell& cell : m_device.target.cells(m_pixels)) {
-            const DeviceTimer timer;
             const gl::Query primitives = draw_surfaces(cell);
             // The same program finds the same depths: a grid's own samples pass, and no others.
             glDepthFunc(GL_EQUAL);
@@ -171,12 +155,10 @@ class RasterHider::Bucket : public RasterBucket {
                                GL_UNSIGNED_INT, offset(range));
                 queries.back().second.end();
             }
-            timer.stop();
             gl::check("counting visible samples");
             for (const auto& [input, query] : queries) counts[input] += query.result();
             add(Counter::GlPasses, 1);
             add(Counter::GlPrimitives, primitives.result());
-            add_seconds(Stage::Hide, timer);
         }
         m_visible = counts;
         return counts;
@@ -198,20 +180,13 @@ class RasterHider::Bucket : public RasterBucket {
         RasterImage image{m_pixels, {}};
         image.combined.resize(static_cast<std::size_t>(m_pixels.width()) * m_pixels.height());
         for (const RasterCell& cell : m_device.target.cells(m_pixels)) {
-            const DeviceTimer hide;
             m_device.target.begin_radiance(cell, m_frame.background, farthest());
             use(m_device.radiance, cell);
             const gl::Query primitives = draw(cell);
-            hide.stop();
-            const DeviceTimer resolve;
-            const std::vector<Vec4f> pixels = m_device.target.resolve(cell);
-            resolve.stop();
-            copy(pixels, cell.pixels, 1, image.combined);
+            copy(m_device.target.resolve(cell), cell.pixels, 1, image.combined);
             add(Counter::SamplesTotal, static_cast<std::uint64_t>(cell.texels.width) *
                                            static_cast<std::uint64_t>(cell.texels.height));
             add(Counter::GlPrimitives, primitives.result());
-            add_seconds(Stage::Hide, hide);
-            add_seconds(Stage::Resolve, resolve);
         }
         return image;
     }

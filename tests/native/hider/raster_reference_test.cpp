@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The raster executor against the reference hider, sample by sample, on static grids.
+//
+// OpenGL moves every vertex to a grid of 2^-8 texel (GL_SUBPIXEL_BITS is 8 in most drivers, at
+// least 4 in all), so an edge lies within half a diagonal of that grid of where it should be:
+// samples within one unit of an edge of either winner may differ.  Its depth moves with it and is
+// interpolated in float: winners may also differ where their depths are that close.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+
+#include "hider/hider.h"
+#include "hider/raster_hider.h"
+#include "raster_scene.h"
+
+namespace granita::raster_test {
+namespace {
+
+constexpr int kLattice = 4;
+
+struct Sample {
+    std::int32_t grid = -1, micropolygon = -1;
+    float key = -std::numeric_limits<float>::infinity();
+};
+
+struct TestScene {
+    Projection projection;
+    Rect pixels;
+    std::vector<Grid> grids;
+};
+
+std::vector<const Grid*> pointers(const std::vector<Grid>& grids) {
+    std::vector<const Grid*> list;
+    for (const Grid& grid : grids) list.push_back(&grid);
+    return list;
+}
+
+/// [height * lattice][width * lattice] as RasterSurfaces.
+std::vector<Sample> reference_samples(const TestScene& scene) {
+    Options options;
+    options.sampling = Sampling::Regular;
+    options.samples = kLattice * kLattice;
+    Camera camera;
+    camera.projection = scene.projection;
+    const SampleTable table(options, camera, {});
+    HiderFrame frame;
+    frame.table = &table;
+    frame.projection = scene.projection;
+    const Rect tiles{0, 0, (scene.pixels.x1 + kTileSize - 1) / kTileSize,
+                     (scene.pixels.y1 + kTileSize - 1) / kTileSize};
+    const auto hider = make_reference_hider(frame, tiles, scene.pixels);
+    for (const Grid& grid : scene.grids) hider->hide(grid);
+
+    const int width = scene.pixels.width() * kLattice;
+    std::vector<Sample> samples(static_cast<std::size_t>(width) * scene.pixels.height() * kLattice);
+    for (const TileStore& store : hider->finish())
+        for (std::size_t i = 0; i < store.id.size(); ++i) {
+            const int pixel = static_cast<int>(i) / (kLattice * kLattice);
+            const int s = static_cast<int>(i) % (kLattice * kLattice);
+            const int x = store.tile.x * kTileSize + pixel % kTileSize;
+            const int y = store.tile.y * kTileSize + pixel / kTileSize;
+            if (store.id[i] == kNoSurface || x >= scene.pixels.x1 || y >= scene.pixels.y1) continue;
+            const GridPool::Place place = hider->pool().locate(store.id[i]);
+            samples[static_cast<std::size_t>(y * kLattice + s / kLattice) * width + x * kLattice +
+                    s % kLattice] = {static_cast<std::int32_t>(place.grid - scene.grids.data()),
+                                     place.micropolygon, store.key[i]};
+        }
+    return samples;
+}
+
+struct Triangle {
+    Vec2d p[3];  ///< texels
+    double key[3];
+};
+
+/// The two triangles of a micropolygon wholly in front of the near plane.
+std::array<Triangle, 2> triangles(const TestScene& scene, const Sample& sample) {
+    const Grid& grid = scene.grids[sample.grid];
+    const Grid::Corners c = grid.corners(sample.micropolygon);
+    const int vertices[2][3] = {{c.v0, c.v1, c.v2}, {c.v0, c.v2, c.v3}};
+    std::array<Triangle, 2> result;
+    for (int t = 0; t < 2; ++t)
+        for (int i = 0; i < 3; ++i) {
+            const Vec3d p(grid.positions[vertices[t][i]]);
+            const double w = scene.projection.perspective ? p.z : 1.0;
+            result[t].p[i] = (scene.projection.scale * Vec2d(p) / w + scene.projection.center) *
+                             static_cast<double>(kLattice);
+            result[t].key[i] = scene.projection.perspective ? 1.0 / p.z : -p.z;
+        }
+    return result;
+}
+
+/// Distance to the nearest of the lines through the triangles' edges, texels.
+double edge_distance(const std::array<Triangle, 2>& triangles, const Vec2d& at) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Triangle& t : triangles)
+        for (int i = 0; i < 3; ++i) {
+            const Vec2d a = t.p[i], d = t.p[(i + 1) % 3] - a;
+            const double length = std::hypot(d.x, d.y);
+            if (length == 0.0) continue;
+            nearest = std::min(nearest, std::abs(d.x * (at.y - a.y) - d.y * (at.x - a.x)) / length);
+        }
+    return nearest;
+}
+
+/// Largest change of the key over one texel in x plus one in y.
+double key_slope(const std::array<Triangle, 2>& triangles) {
+    double slope = 0.0;
+    for (const Triangle& t : triangles) {
+        const Vec2d a = t.p[1] - t.p[0], b = t.p[2] - t.p[0];
+        const double area = a.x * b.y - a.y * b.x;
+        if (area == 0.0) continue;
+        const double ka = t.key[1] - t.key[0], kb = t.key[2] - t.key[0];
+        slope = std::max(
+            slope, std::abs((ka * b.y - kb * a.y) / area) + std::abs((kb * a.x - ka * b.x) / area));
+    }
+    return slope;
+}
+
+struct Differences {
+    int seen = 0, at_edges = 0, in_depth = 0, unexplained = 0, wrong_keys = 0;
+};
+
+Differences compare(const TestScene& scene) {
+    GLint subpixel_bits = 0;
+    gl_thread().run([&] { glGetIntegerv(GL_SUBPIXEL_BITS, &subpixel_bits); });
+    const double unit = std::ldexp(1.0, -subpixel_bits);
+    RasterFrame frame;
+    frame.projection = scene.projection;
+    frame.filter = box_filter(kLattice);
+    RasterHider hider(gl_thread(), frame);
+    const RasterSurfaces drawn = hider.open(scene.pixels, pointers(scene.grids))->surfaces();
+    const std::vector<Sample> expected = reference_samples(scene);
+
+    Differences d;
+    const int width = scene.pixels.width() * kLattice;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const Sample a{drawn.surface[i].grid, drawn.surface[i].micropolygon, drawn.key[i]};
+        const Sample& b = expected[i];
+        d.seen += b.grid >= 0;
+        if (a.grid < 0 && b.grid < 0) continue;
+        const Vec2d at(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);
+        double distance = std::numeric_limits<double>::infinity(), slope = 0.0;
+        for (const Sample& s : {a, b}) {
+            if (s.grid < 0) continue;
+            const auto t = triangles(scene, s);
+            distance = std::min(distance, edge_distance(t, at));
+            slope = std::max(slope, key_slope(t));
+        }
+        // The plane's value at a corner of the target, up to 272 texels away, is rounded too.
+        const double largest = std::max<double>(std::abs(std::max(a.key, b.key)), 272.0 * slope);
+        const double key_tolerance = slope * unit + 4.0 * 0x1p-24 * largest;
+        const bool close = std::abs(static_cast<double>(a.key) - b.key) <= 2.0 * key_tolerance;
+        if (a.grid == b.grid && a.micropolygon == b.micropolygon)
+            d.wrong_keys += !close;
+        else if (distance <= unit)
+            ++d.at_edges;
+        else if (close)
+            ++d.in_depth;
+        else
+            ++d.unexplained;
+    }
+    return d;
+}
+
+/// Sheets of random, crumpled micropolygons of about `size` pixels that overlap and intersect.
+TestScene crumpled(bool perspective, float size, unsigned seed) {
+    TestScene scene;
+    scene.pixels = {0, 0, 48, 48};
+    scene.projection = perspective ? perspective_projection(48, 48) : pixel_projection();
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> jitter(-0.35f, 0.35f), depth(2.0f, 6.0f);
+    for (std::uint32_t k = 0; k < 5; ++k) {
+        const int n = static_cast<int>(30.0f / size);
+        const float x0 = 18.0f * (k % 2), y0 = 9.0f * (k / 2), z0 = depth(random);
+        scene.grids.push_back(make_grid(k, n, n, [&](float u, float v) {
+            const float x = x0 + 30 * u + size * jitter(random);
+            const float y = y0 + 30 * v + size * jitter(random);
+            const float z = z0 + 0.5f * jitter(random) + u - v;
+            return perspective ? Vec3f((x - 24) / 24 * z, (y - 24) / 24 * z, z) : Vec3f(x, y, z);
+        }));
+    }
+    return scene;
+}
+
+class RasterReference : public testing::TestWithParam<bool> {};
+
+TEST_P(RasterReference, samples_differ_only_at_edges_and_equal_depths) {
+    Differences sum;
+    for (const float size : {0.7f, 3.0f, 15.0f})
+        for (unsigned seed = 1; seed <= 3; ++seed) {
+            SCOPED_TRACE(testing::Message() << "size " << size << ", seed " << seed);
+            const Differences d = compare(crumpled(GetParam(), size, seed));
+            EXPECT_EQ(d.unexplained, 0);
+            EXPECT_EQ(d.wrong_keys, 0);
+            EXPECT_GT(d.seen, 20000);
+            sum.at_edges += d.at_edges;
+            sum.in_depth += d.in_depth;
+            sum.seen += d.seen;
+        }
+    RecordProperty("samples_seen", sum.seen);
+    RecordProperty("differ_at_edges", sum.at_edges);
+    RecordProperty("differ_in_depth", sum.in_depth);
+    // The smallest micropolygons, 2.8 texels a side, have two sides and a diagonal each: 9.6 texels
+    // of edge in 7.8 square texels, so 2 x 2^-8 x 1.2 of the samples lie within a unit of an edge.
+    EXPECT_LT(sum.at_edges, sum.seen / 100);
+    // Sheets meet in lines; only next to those are depths so close.
+    EXPECT_LT(sum.in_depth, sum.seen / 1000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Projections, RasterReference, testing::Bool(), [](const auto& info) {
+    return std::string(info.param ? "perspective" : "orthographic");
+});
+
+TEST(RasterReferencePlane, ground_through_the_eye_has_no_holes_up_to_the_horizon) {
+    // Hard case 47: a plane one metre below the eye from 50 m behind to 90 m before it.
+    TestScene scene;
+    scene.pixels = {0, 0, 48, 48};
+    scene.projection = perspective_projection(48, 48);
+    scene.grids.push_back(make_grid(
+        1, 7, 28, [](float u, float v) { return Vec3f(400 * u - 200, -1, 140 * v - 50); }));
+    RasterFrame frame;
+    frame.projection = scene.projection;
+    frame.filter = box_filter(kLattice);
+    RasterHider hider(gl_thread(), frame);
+    const RasterSurfaces drawn = hider.open(scene.pixels, pointers(scene.grids))->surfaces();
+    const std::vector<Sample> expected = reference_samples(scene);
+    const int width = 48 * kLattice;
+    // The plane's far edge at z = 90 lies 24 / 90 pixels below the horizon at y = 24.
+    const double far_edge = (24.0 - 24.0 / 90.0) * kLattice;
+    for (int y = 0; y < width; ++y)
+        for (int x = 0; x < width; ++x) {
+            const std::size_t i = static_cast<std::size_t>(y) * width + x;
+            EXPECT_EQ(drawn.surface[i].grid, y + 0.5 < far_edge ? 0 : -1) << x << ", " << y;
+            EXPECT_EQ(drawn.surface[i].grid, expected[i].grid) << x << ", " << y;
+            if (y + 0.5 >= far_edge) continue;
+            const double key = (24.0 - (y + 0.5) / kLattice) / 24.0;
+            // Vertices behind the eye are clipped: a unit of 2^-8 texel of slope, and rounding.
+            EXPECT_NEAR(drawn.key[i], key, 0x1p-8 / (24.0 * kLattice) + 1e-6) << x << ", " << y;
+        }
+}
+
+}  // namespace
+}  // namespace granita::raster_test
