@@ -1,11 +1,127 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The CPU executor: grid by grid and tile by tile through the SIMD kernel, behind a hierarchical
+// depth.
+#include <cmath>
+#include <optional>
+
+#include "hider/bucket_tiles.h"
 #include "hider/hider.h"
+#include "hider/micropolygon_class.h"
+#include "hider/simd_kernel.h"
+#include "hider/tile_grid.h"
+#include "hider/working_tile.h"
 
 namespace granita {
+namespace {
+
+class SimdHider : public Hider {
+  public:
+    SimdHider(const HiderFrame& frame, const Rect& tiles, const Rect& pixels)
+        : m_projection(frame.projection),
+          m_statistics(frame.statistics),
+          m_tiles(frame, tiles, pixels),
+          m_working(m_tiles.count()),
+          m_tile_grid(frame.projection, frame.table->lens()),
+          m_range(depth_range(frame.projection)),
+          m_lens_x(static_cast<float>(frame.projection.lens_radius * frame.projection.scale.x)),
+          m_lens_y(static_cast<float>(frame.projection.lens_radius * frame.projection.scale.y)) {}
+
+    bool occluded(const RasterBounds& bounds) const override {
+        const Rect touched = m_tiles.touched(bounds);
+        for (int y = touched.y0; y < touched.y1; ++y)
+            for (int x = touched.x0; x < touched.x1; ++x)
+                if (!tile_hides(m_tiles.index(x, y), bounds)) return false;
+        return true;
+    }
+
+    void hide(const Grid& grid) override {
+        const SurfaceId base = m_tiles.pool().add(grid);
+        const GridClasses classes = classify(grid);
+        m_tiles.report_dropped(grid, classes.dropped);
+        SimdCounts counts;
+        std::uint64_t fragments = 0;
+        const Rect touched = m_tiles.touched(grid.bounds);
+        for (int y = touched.y0; y < touched.y1; ++y)
+            for (int x = touched.x0; x < touched.x1; ++x) {
+                const std::size_t i = m_tiles.index(x, y);
+                if (tile_hides(i, grid.bounds)) continue;
+                fragments += hide_in_tile(grid, classes, base, i, counts);
+            }
+        if (!m_statistics) return;
+        m_statistics->add(Counter::Micropolygons,
+                          static_cast<std::uint64_t>(grid.micropolygon_count()));
+        m_statistics->add(grid.motion || m_projection.has_lens() ? Counter::SampleTestsMoving
+                                                                 : Counter::SampleTestsStatic,
+                          counts.tests);
+        m_statistics->add(Counter::SampleHits, counts.hits);
+        m_statistics->add(Counter::FragmentsStored, fragments);
+    }
+
+    std::vector<TileStore>& finish() override {
+        for (std::size_t i = 0; i < m_tiles.count(); ++i) {
+            if (!m_working[i]) continue;
+            m_working[i]->store(m_tiles.store(i));
+            m_working[i].reset();
+            m_tiles.drop_hidden_fragments(i);
+        }
+        return m_tiles.stores();
+    }
+    const GridPool& pool() const override { return m_tiles.pool(); }
+    const TileSamples& tile_samples(std::size_t i) const override { return m_tiles.samples(i); }
+
+  private:
+    bool tile_hides(std::size_t i, const RasterBounds& bounds) const {
+        if (!m_working[i]) return false;
+        const Vec2d origin = m_tiles.origin(i);
+        const auto pixel = [](double x) {
+            return static_cast<int>(std::floor(std::fmin(std::fmax(x, -1.0), kTileSize)));
+        };
+        // An undecidable bound (NaN) covers the tile: fmax and fmin drop the NaN.
+        const Rect pixels{std::isnan(bounds.x0) ? 0 : pixel(bounds.x0 - origin.x),
+                          std::isnan(bounds.y0) ? 0 : pixel(bounds.y0 - origin.y),
+                          std::isnan(bounds.x1) ? kTileSize : pixel(bounds.x1 - origin.x) + 1,
+                          std::isnan(bounds.y1) ? kTileSize : pixel(bounds.y1 - origin.y) + 1};
+        return m_working[i]->blocks.hide(pixels, bounds.nearest_key);
+    }
+
+    std::uint64_t hide_in_tile(const Grid& grid, const GridClasses& classes, SurfaceId base,
+                               std::size_t i, SimdCounts& counts) {
+        if (!m_working[i])
+            m_working[i].emplace(m_tiles.samples(i), m_tiles.local_pixels(i), m_lens_x, m_lens_y);
+        WorkingTile& working = *m_working[i];
+        if (grid.motion && !working.sorted()) {
+            m_tiles.need_time(i);
+            working.sort_by_time(m_tiles.samples(i), m_lens_x, m_lens_y);
+        }
+        SimdGrid simd_grid;
+        m_tile_grid.project(grid, m_tiles.origin(i), simd_grid);
+        simd_grid.classes = classes.classes.data();
+        simd_grid.base = base;
+        simd_grid.pool = &m_tiles.pool();
+        simd_grid.range = m_range;
+        const std::size_t fragments = working.fragments.size();
+        const std::uint64_t writes = counts.writes;
+        const SimdTile tile = working.view();
+        hide_grid_in_tile(simd_grid, tile, working.fragments, counts);
+        working.blocks.note_writes(counts.writes - writes);
+        working.blocks.update(tile.key, tile.samples);
+        return working.fragments.size() - fragments;
+    }
+
+    Projection m_projection;
+    Statistics* m_statistics;
+    BucketTiles m_tiles;
+    std::vector<std::optional<WorkingTile>> m_working;  ///< made when the first grid comes
+    TileGrid m_tile_grid;
+    DepthRange m_range;
+    float m_lens_x, m_lens_y;
+};
+
+}  // namespace
 
 std::unique_ptr<Hider> make_simd_hider(const HiderFrame& frame, const Rect& tiles,
                                        const Rect& pixels) {
-    return make_reference_hider(frame, tiles, pixels);
+    return std::make_unique<SimdHider>(frame, tiles, pixels);
 }
 
 }  // namespace granita
