@@ -29,6 +29,7 @@ struct ProgramBuilder {
     Report& report;
     std::string owner;  ///< for messages: "material 'Wood'"
     bool is_world = false;
+    int material_index = 0;
     std::vector<Load> loads{};
     std::vector<Step> steps{};
     std::vector<AttributeRequest> requests{};
@@ -52,6 +53,7 @@ class NodeBuilder {
     Shift shift() const { return m_shift; }
     bool is_world() const { return m_program.is_world; }
     const Scene& scene() const { return m_program.scene; }
+    int material_index() const { return m_program.material_index; }
     TextureStore& textures() { return m_program.textures; }
     Report& report() { return m_program.report; }
 

@@ -82,14 +82,15 @@ std::vector<AttributeRequest> used_requests(std::vector<AttributeRequest> all,
 }  // namespace
 
 CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, TextureStore& textures,
-                                Report& report, const std::string& owner, bool is_world) {
+                                Report& report, const GraphOwner& owner) {
     ProgramBuilder builder{.scene = scene,
                            .textures = textures,
                            .report = report,
-                           .owner = owner,
-                           .is_world = is_world};
+                           .owner = owner.name,
+                           .is_world = owner.is_world,
+                           .material_index = owner.material_index};
     builder.outputs.resize(graph.nodes.size());
-    const std::vector<bool> reachable = reachable_nodes(graph, owner);
+    const std::vector<bool> reachable = reachable_nodes(graph, owner.name);
 
     for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
         if (!reachable[i]) continue;

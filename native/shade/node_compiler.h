@@ -23,8 +23,15 @@ struct CompiledSurface {
     SurfaceProgram radiance;
 };
 
-/// Compiles `graph.surface`.  `owner` names the datablock in messages.
+/// Whose graph it is.
+struct GraphOwner {
+    std::string name;  ///< for messages: "material 'Wood'"
+    bool is_world = false;
+    int material_index = 0;  ///< pass_index
+};
+
+/// Compiles `graph.surface`.  The scene, textures and report must outlive the programs.
 CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, TextureStore& textures,
-                                Report& report, const std::string& owner, bool is_world);
+                                Report& report, const GraphOwner& owner);
 
 }  // namespace granita

@@ -30,7 +30,8 @@ struct ShadingInput {
     const ShadingPoints* points = nullptr;
     const std::vector<GridAttribute>* attributes = nullptr;  ///< nullptr = none
     const Instance* instance = nullptr;                      ///< nullptr: the world
-    Mat3f object_from_world{1.0f};                           ///< for normals and directions
+    Mat3f world_from_object{1.0f};                           ///< for normals and directions
+    Mat3f object_from_world{1.0f};
     float spread = 0.0f;  ///< world: radians a direction stands for
 };
 

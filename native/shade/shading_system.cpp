@@ -42,8 +42,7 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources) {
         lobe.weight = values_of(run, from.weight);
         lobe.normal = values_of(run, from.normal);
         lobe.roughness = values_of(run, from.roughness);
-        if (from.fresnel != FresnelKind::None || from.multiscatter)
-            lobe.f0 = values_of(run, from.f0);
+        if (from.fresnel != FresnelKind::None || from.has_color) lobe.f0 = values_of(run, from.f0);
         if (from.fresnel != FresnelKind::None) lobe.f90 = values_of(run, from.f90);
         if (from.fresnel == FresnelKind::Dielectric) lobe.ior = values_of(run, from.ior);
         closure.lobes.push_back(std::move(lobe));
@@ -72,17 +71,17 @@ struct ShadingSystem::Impl {
         for (const Material& material : scene.materials) {
             progress.check();
             const std::string owner = "material '" + material.name + "'";
-            materials.push_back(
-                compile_surface(material.graph, scene, textures, report, owner, false));
+            materials.push_back(compile_surface(material.graph, scene, textures, report,
+                                                {owner, false, material.index}));
             if (material.graph.displacement.node >= 0)
                 report.warn(owner, "displacement is not supported yet; the surface stays smooth");
         }
         materials.push_back(
-            compile_surface(default_material(), scene, textures, report, "no material", false));
+            compile_surface(default_material(), scene, textures, report, {"no material"}));
         for (const CompiledSurface& material : materials) requests.push_back(material.requests);
         displacement.resize(materials.size());
         world = compile_surface(scene.world.graph, scene, textures, report,
-                                "world '" + scene.world.name + "'", true);
+                                {"world '" + scene.world.name + "'", true});
         light = std::make_unique<DirectLight>(
             scene,
             [this](const std::vector<Vec3f>& directions, float spread, std::vector<Vec3f>& out) {
@@ -100,8 +99,10 @@ struct ShadingSystem::Impl {
         in.points = &points;
         in.attributes = &grid.attributes;
         in.instance = &scene.instances[grid.instance];
-        in.object_from_world = Mat3f(glm::inverse(
-            Mat3d(matrix_at(in.instance->world_from_object, scene.options.frame_time))));
+        const Mat3d world_from_object(
+            matrix_at(in.instance->world_from_object, scene.options.frame_time));
+        in.world_from_object = Mat3f(world_from_object);
+        in.object_from_world = Mat3f(glm::inverse(world_from_object));
         return in;
     }
 

@@ -18,6 +18,7 @@ struct LobeSource {
     bool multiscatter = false, separable_masking = false, burley = false;
     VectorSource weight, normal;
     FloatSource roughness;
+    bool has_color = false;  ///< f0 is the lobe's colour though it has no Fresnel
     VectorSource f0, f90;
     FloatSource ior;
 };

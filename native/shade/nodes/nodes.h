@@ -53,6 +53,5 @@ void build_object_info(NodeBuilder&);
 void build_camera_data(NodeBuilder&);
 void build_checker(NodeBuilder&);
 void build_gradient(NodeBuilder&);
-void build_noise(NodeBuilder&);
 
 }  // namespace granita

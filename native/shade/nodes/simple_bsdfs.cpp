@@ -19,11 +19,14 @@ FloatSource clamped_roughness(NodeBuilder& b, float fallback) {
 void build_diffuse(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight) {
     LobeSource lobe;
     lobe.kind = LobeKind::Diffuse;
-    lobe.weight = scaled(b, b.color("Color", Vec3f(0.8f)), weight);
+    lobe.f0 = b.color("Color", Vec3f(0.8f));
+    lobe.weight = scaled(b, lobe.f0, weight);
     lobe.normal = b.normal_input();
     // Of the kin only Diffuse itself has a roughness that means Oren-Nayar's sigma.
     lobe.roughness = b.node().type == "ShaderNodeBsdfDiffuse" ? clamped_roughness(b, 0.0f)
                                                               : FloatSource{-1, 0.0f};
+    // Since Blender 4 light that bounces inside a rough surface takes on its colour.
+    lobe.has_color = b.value("generation", 2) >= 2 && !lobe.roughness.is(0.0f);
     surface.add_lobe(lobe);
 }
 
@@ -38,6 +41,7 @@ void build_glossy(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& we
     if (distribution == "ASHIKHMIN_SHIRLEY")
         b.warn("Ashikhmin-Shirley is not supported; rendered as GGX");
     lobe.separable_masking = b.value("generation", 2) < 2;
+    lobe.has_color = lobe.multiscatter;
     lobe.f0 = b.color("Color", Vec3f(0.8f));
     lobe.weight = scaled(b, lobe.f0, weight);
     lobe.normal = b.normal_input();

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a point is: UV Map, Texture Coordinate, Geometry and Camera Data.
+#include "shade/nodes/coordinates.h"
+
+#include "shade/nodes/nodes.h"
+#include "shade/shading_points.h"
+
+namespace granita {
+
+namespace {
+
+Vec3f unit(const Vec3f& v) {
+    const float length = glm::length(v);
+    return length > 0.0f ? v / length : v;
+}
+
+/// The camera of the frame as a lambda may hold it.
+struct FrameCamera {
+    Mat3f camera_from_world;
+    Vec3f position;
+    Projection projection;
+    Vec2f resolution;
+
+    explicit FrameCamera(const Scene& scene)
+        : projection(scene.camera.projection),
+          resolution(static_cast<float>(scene.options.width),
+                     static_cast<float>(scene.options.height)) {
+        const ShadingCamera camera(scene);
+        camera_from_world = glm::transpose(Mat3f(camera.world_from_camera));
+        position = Vec3f(camera.world_from_camera[3]);
+    }
+
+    /// Place in the frame, [0,1]^2 from its lower left corner.
+    Vec3f window(const Vec3f& p_camera) const {
+        const Vec3f h = projection.homogeneous(p_camera, Vec2d(0.0));
+        return {h.x / h.z / resolution.x, h.y / h.z / resolution.y, 0.0f};
+    }
+};
+
+}  // namespace
+
+VectorSource position_at(NodeBuilder& b, Shift shift) {
+    return b.geometry<Vec3f>([shift](const ShadingInput& in, std::size_t i) {
+        Vec3f p = in.points->p[i];
+        if (shift == Shift::U && !in.points->dp_du.empty()) p += in.points->dp_du[i];
+        if (shift == Shift::V && !in.points->dp_dv.empty()) p += in.points->dp_dv[i];
+        return p;
+    });
+}
+
+VectorSource object_normal(NodeBuilder& b) {
+    if (b.is_world()) return b.view();
+    return b.geometry<Vec3f>([](const ShadingInput& in, std::size_t i) {
+        return unit(glm::transpose(in.world_from_object) * in.points->normal[i]);
+    });
+}
+
+VectorSource generated_at(NodeBuilder& b, Shift shift) {
+    if (b.is_world()) return position_at(b, shift);
+    return b.attribute_at({AttributeSource::Generated, "", 3, false}, shift);
+}
+
+VectorSource uv_at(NodeBuilder& b, const std::string& name, Shift shift) {
+    const AttributeSource source =
+        name.empty() ? AttributeSource::DefaultUv : AttributeSource::Named;
+    return b.attribute_at({source, name, 2, false}, shift);
+}
+
+void build_uv_map(NodeBuilder& b) {
+    b.output_vector("UV", uv_at(b, b.text("uv_map"), b.shift()));
+}
+
+void build_texture_coordinate(NodeBuilder& b) {
+    const FrameCamera camera(b.scene());
+    const VectorSource position = position_at(b, b.shift());
+    b.output_vector("Generated", generated_at(b, b.shift()));
+    b.output_vector("UV", uv_at(b, "", b.shift()));
+    b.output_vector("Normal", object_normal(b));
+    b.output_vector("Object", b.is_world()
+                                  ? position
+                                  : b.attribute({AttributeSource::ObjectPosition, "", 3, false}));
+    const std::vector<float> other = b.table("object_from_world");
+    if (other.size() == 16) {
+        // Row-major, of the object that the node names.
+        b.output_vector("Object", b.map<Vec3f>(
+                                      [other, camera](const Vec3f& p) {
+                                          const Vec3f q = p + camera.position;
+                                          Vec3f out;
+                                          for (int r = 0; r < 3; ++r)
+                                              out[r] = other[4 * r] * q.x + other[4 * r + 1] * q.y +
+                                                       other[4 * r + 2] * q.z + other[4 * r + 3];
+                                          return out;
+                                      },
+                                      position));
+    }
+    const VectorSource p_camera =
+        b.map<Vec3f>([camera](const Vec3f& p) { return camera.camera_from_world * p; }, position);
+    b.output_vector("Camera", p_camera);
+    b.output_vector("Window",
+                    b.map<Vec3f>([camera](const Vec3f& p) { return camera.window(p); }, p_camera));
+    b.output_vector("Reflection", b.is_world() ? position
+                                               : b.map<Vec3f>(
+                                                     [](const Vec3f& n, const Vec3f& view) {
+                                                         return 2.0f * glm::dot(n, view) * n - view;
+                                                     },
+                                                     b.shading_normal(), b.view()));
+}
+
+void build_geometry(NodeBuilder& b) {
+    const FrameCamera camera(b.scene());
+    const VectorSource p = position_at(b, b.shift());
+    if (b.is_world()) {
+        b.output_vector("Position", p);
+        b.output_vector("Incoming", b.map<Vec3f>([](const Vec3f& d) { return -d; }, p));
+        b.output_vector("Normal", b.map<Vec3f>([](const Vec3f& d) { return -d; }, p));
+        b.output("Backfacing", FloatSource{-1, 0.0f});
+        return;
+    }
+    b.output_vector("Position",
+                    b.map<Vec3f>([camera](const Vec3f& q) { return q + camera.position; }, p));
+    b.output_vector("Normal", b.shading_normal());
+    b.output_vector("True Normal", b.geometry<Vec3f>([](const ShadingInput& in, std::size_t i) {
+        return in.points->geometric_normal[i];
+    }));
+    b.output_vector("Incoming", b.view());
+    b.output("Backfacing", b.geometry<float>([](const ShadingInput& in, std::size_t i) {
+        return in.points->backfacing[i] ? 1.0f : 0.0f;
+    }));
+    b.output_vector("Tangent", b.geometry<Vec3f>([](const ShadingInput& in, std::size_t i) {
+        return unit(in.points->dp_du[i]);
+    }));
+    b.output_vector("Parametric", {-1, Vec3f(0.0f)});
+    // What Cycles gives for meshes without these attributes.
+    b.output("Pointiness", FloatSource{-1, 0.5f});
+    b.output("Random Per Island", FloatSource{-1, 0.0f});
+}
+
+void build_camera_data(NodeBuilder& b) {
+    const FrameCamera camera(b.scene());
+    const VectorSource p =
+        b.map<Vec3f>([camera](const Vec3f& q) { return camera.camera_from_world * q; },
+                     position_at(b, b.shift()));
+    b.output_vector("View Vector", b.map<Vec3f>(unit, p));
+    b.output("View Z Depth", b.map<float>([](const Vec3f& q) { return q.z; }, p));
+    b.output("View Distance", b.map<float>([](const Vec3f& q) { return glm::length(q); }, p));
+}
+
+}  // namespace granita

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Coordinates that textures use when nothing is linked.
+#pragma once
+
+#include "shade/node_builder.h"
+
+namespace granita {
+
+/// Camera-relative world; the direction in the world's programs.
+VectorSource position_at(NodeBuilder& b, Shift shift);
+VectorSource generated_at(NodeBuilder& b, Shift shift);
+/// An empty name: the UV map that is active for render.
+VectorSource uv_at(NodeBuilder& b, const std::string& name, Shift shift);
+/// The shading normal in object space, unit.
+VectorSource object_normal(NodeBuilder& b);
+
+}  // namespace granita

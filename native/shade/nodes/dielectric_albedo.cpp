@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/nodes/dielectric_albedo.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "math/vec.h"
+#include "shade/nodes/fresnel.h"
+
+namespace granita {
+
+namespace {
+
+constexpr int kSize = 16;  // entries along each axis
+constexpr int kSide = 16;  // kSide^2 quadrature points an entry
+constexpr float kPi = 3.14159265358979f;
+
+/// The table's third axis: sqrt(|f0|) up to ior 7 and down to 1/7.
+float ior_axis(float ior) {
+    return std::sqrt(std::min(std::abs(ior - 1.0f) / (ior + 1.0f), 1.0f));
+}
+float ior_of_axis(float x) {
+    return (1.0f + x * x) / (1.0f - std::min(x * x, 0.98f));
+}
+
+float smith_lambda(float cosine, float alpha) {
+    const float c2 = cosine * cosine;
+    return 0.5f * (std::sqrt(1.0f + alpha * alpha * (1.0f - c2) / c2) - 1.0f);
+}
+
+/// A visible microfacet normal for the unit square (Heitz 2018, "Sampling the GGX distribution of
+/// visible normals").
+Vec3f visible_normal(const Vec3f& view, float alpha, float u0, float u1) {
+    const Vec3f stretched = glm::normalize(Vec3f(alpha * view.x, alpha * view.y, view.z));
+    const float across = stretched.x * stretched.x + stretched.y * stretched.y;
+    const Vec3f t1 = across > 0.0f ? Vec3f(-stretched.y, stretched.x, 0.0f) / std::sqrt(across)
+                                   : Vec3f(1.0f, 0.0f, 0.0f);
+    const Vec3f t2 = glm::cross(stretched, t1);
+    const float r = std::sqrt(u0), phi = 2.0f * kPi * u1;
+    const float a = r * std::cos(phi), s = 0.5f * (1.0f + stretched.z);
+    const float b = (1.0f - s) * std::sqrt(1.0f - a * a) + s * r * std::sin(phi);
+    const Vec3f n = a * t1 + b * t2 + std::sqrt(std::max(0.0f, 1.0f - a * a - b * b)) * stretched;
+    return glm::normalize(Vec3f(alpha * n.x, alpha * n.y, std::max(n.z, 1e-6f)));
+}
+
+float integrate(float roughness, float cosine, float ior) {
+    const float alpha = std::max(roughness * roughness, 1e-4f), mu = std::max(cosine, 1e-3f);
+    const Vec3f view(std::sqrt(1.0f - mu * mu), 0.0f, mu);
+    const float f0 = f0_from_ior(ior), lambda = smith_lambda(mu, alpha);
+    double total = 0.0, reflected = 0.0;
+    for (int j = 0; j < kSide; ++j) {
+        for (int i = 0; i < kSide; ++i) {
+            const Vec3f half = visible_normal(view, alpha, (i + 0.5f) / kSide, (j + 0.5f) / kSide);
+            const float h = glm::dot(view, half);
+            const Vec3f light = 2.0f * h * half - view;
+            if (light.z <= 0.0f) continue;
+            const float masking = (1.0f + lambda) / (1.0f + lambda + smith_lambda(light.z, alpha));
+            total += masking;
+            reflected += masking * (dielectric_reflectance(h, ior) - f0) / (1.0f - f0);
+        }
+    }
+    return total > 0.0 ? static_cast<float>(reflected / total) : 0.0f;
+}
+
+struct Table {
+    std::array<float, kSize * kSize * kSize> values{};  ///< [ior][cosine][roughness]
+
+    Table() {
+        for (int z = 0; z < kSize; ++z)
+            for (int y = 0; y < kSize; ++y)
+                for (int x = 0; x < kSize; ++x)
+                    values[(z * kSize + y) * kSize + x] =
+                        integrate(unit(x), unit(y), ior_of_axis(unit(z)));
+    }
+    static float unit(int i) { return static_cast<float>(i) / (kSize - 1); }
+
+    float look_up(float x, float y, float z) const {
+        const std::array<float, 3> place = {x, y, z};
+        std::array<int, 3> cell{};
+        std::array<float, 3> t{};
+        for (int a = 0; a < 3; ++a) {
+            const float p = std::clamp(place[a], 0.0f, 1.0f) * (kSize - 1);
+            cell[a] = std::min(static_cast<int>(p), kSize - 2);
+            t[a] = p - static_cast<float>(cell[a]);
+        }
+        float sum = 0.0f;
+        for (int corner = 0; corner < 8; ++corner) {
+            float weight = 1.0f;
+            std::array<int, 3> at = cell;
+            for (int a = 0; a < 3; ++a) {
+                const bool far = corner >> a & 1;
+                at[a] += far;
+                weight *= far ? t[a] : 1.0f - t[a];
+            }
+            sum += weight * values[(at[2] * kSize + at[1]) * kSize + at[0]];
+        }
+        return sum;
+    }
+};
+
+}  // namespace
+
+float f0_from_ior(float ior) {
+    const float ratio = (ior - 1.0f) / (ior + 1.0f);
+    return ratio * ratio;
+}
+
+float ior_from_f0(float f0) {
+    const float root = std::sqrt(std::clamp(f0, 0.0f, 0.99f));
+    return (1.0f + root) / (1.0f - root);
+}
+
+float dielectric_albedo(float roughness, float cosine, float ior) {
+    static const Table kTable;
+    return kTable.look_up(roughness, cosine, ior_axis(ior));
+}
+
+}  // namespace granita

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How much of the light a rough dielectric reflects, between its reflectances at normal and at
+// grazing incidence: albedo = f0 + (1 - f0) * dielectric_albedo.  Cycles layers its Principled BSDF
+// with a table of the same quantity.
+#pragma once
+
+namespace granita {
+
+float f0_from_ior(float ior);
+float ior_from_f0(float f0);
+
+/// The mean over GGX's visible normals (Heitz 2018), weighted by their masking.  From a table made
+/// at first use; roughness and cosine in [0, 1].
+float dielectric_albedo(float roughness, float cosine, float ior);
+
+}  // namespace granita

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fresnel and Layer Weight: how much a surface turns its edge to the viewer.
+#include "shade/nodes/fresnel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shade/nodes/nodes.h"
+
+namespace granita {
+
+float dielectric_reflectance(float cosine, float ior) {
+    const float c = std::abs(cosine);
+    const float g2 = ior * ior - 1.0f + c * c;
+    if (g2 <= 0.0f) return 1.0f;  // total internal reflection
+    const float g = std::sqrt(g2);
+    const float a = (g - c) / (g + c);
+    const float b = ((g + c) * c - 1.0f) / ((g - c) * c + 1.0f);
+    return 0.5f * a * a * (1.0f + b * b);
+}
+
+namespace {
+
+FloatSource backfacing(NodeBuilder& b) {
+    if (b.is_world()) return {-1, 0.0f};
+    return b.geometry<float>([](const ShadingInput& in, std::size_t i) {
+        return in.points->backfacing[i] ? 1.0f : 0.0f;
+    });
+}
+
+}  // namespace
+
+void build_fresnel(NodeBuilder& b) {
+    b.output("Fac", b.map<float>(
+                        [](float ior, const Vec3f& n, const Vec3f& view, float back) {
+                            const float eta = std::max(ior, 1e-5f);
+                            return dielectric_reflectance(glm::dot(view, n),
+                                                          back != 0.0f ? 1.0f / eta : eta);
+                        },
+                        b.number("IOR", 1.45f), b.normal_input(), b.view(), backfacing(b)));
+}
+
+void build_layer_weight(NodeBuilder& b) {
+    const FloatSource blend = b.number("Blend", 0.5f);
+    const VectorSource normal = b.normal_input(), view = b.view();
+    b.output("Fresnel", b.map<float>(
+                            [](float x, const Vec3f& n, const Vec3f& v, float back) {
+                                const float eta = std::max(1.0f - x, 1e-5f);
+                                return dielectric_reflectance(glm::dot(v, n),
+                                                              back != 0.0f ? eta : 1.0f / eta);
+                            },
+                            blend, normal, view, backfacing(b)));
+    b.output("Facing", b.map<float>(
+                           [](float x, const Vec3f& n, const Vec3f& v) {
+                               float facing = std::abs(glm::dot(v, n));
+                               if (x != 0.5f) {
+                                   const float t = std::clamp(x, 0.0f, 1.0f - 1e-5f);
+                                   const float power = t < 0.5f ? 2.0f * t : 0.5f / (1.0f - t);
+                                   facing = std::pow(facing, power);
+                               }
+                               return 1.0f - facing;
+                           },
+                           blend, normal, view));
+}
+
+}  // namespace granita

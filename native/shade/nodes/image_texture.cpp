@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Image Texture: projections flat, box, sphere and tube; footprints from the shifted vectors.
+#include <algorithm>
+#include <cmath>
+
+#include "shade/nodes/coordinates.h"
+#include "shade/nodes/nodes.h"
+
+namespace granita {
+
+namespace {
+
+constexpr float kPi = 3.14159265358979f;
+
+/// A place on the unit sphere around the middle of the unit cube, as longitude and latitude.
+Vec2f project_sphere(const Vec3f& coordinate) {
+    const Vec3f p = (coordinate - 0.5f) * 2.0f;
+    const float length = glm::length(p);
+    if (length == 0.0f) return Vec2f(0.0f);
+    const float u = p.x == 0.0f && p.y == 0.0f ? 0.0f : (1.0f - std::atan2(p.x, p.y) / kPi) / 2.0f;
+    return {u, 1.0f - std::acos(std::clamp(p.z / length, -1.0f, 1.0f)) / kPi};
+}
+
+Vec2f project_tube(const Vec3f& coordinate) {
+    const Vec3f p = (coordinate - 0.5f) * 2.0f;
+    if (p.x == 0.0f && p.y == 0.0f) return Vec2f(0.0f);
+    return {(1.0f - std::atan2(p.x, p.y) / kPi) * 0.5f, (p.z + 1.0f) * 0.5f};
+}
+
+/// An edge of a footprint; one that jumps over the seam of a periodic projection is taken the short
+/// way round.
+Vec2f edge(const Vec2f& from, const Vec2f& to, bool seam) {
+    Vec2f d = to - from;
+    if (seam) d.x -= std::round(d.x);
+    return d;
+}
+
+/// How much each axis' face shows: (Cycles' box projection) one face alone, or two or three blended
+/// where the normal is within `blend` of the diagonal.
+Vec3f box_weights(const Vec3f& normal, float blend) {
+    Vec3f n = glm::abs(normal);
+    n /= std::max(n.x + n.y + n.z, 1e-20f);
+    const float limit = 0.5f * (1.0f + blend);
+    if (n.x > limit * (n.x + n.y) && n.x > limit * (n.x + n.z)) return {1, 0, 0};
+    if (n.y > limit * (n.x + n.y) && n.y > limit * (n.y + n.z)) return {0, 1, 0};
+    if (n.z > limit * (n.x + n.z) && n.z > limit * (n.y + n.z)) return {0, 0, 1};
+    if (blend <= 0.0f) return {1, 0, 0};
+    const auto share = [blend](float a, float b) {
+        return std::clamp((a / (a + b) - 0.5f * (1.0f - blend)) / blend, 0.0f, 1.0f);
+    };
+    if (n.z < (1.0f - limit) * (n.y + n.x)) {
+        const float x = share(n.x, n.y);
+        return {x, 1.0f - x, 0.0f};
+    }
+    if (n.x < (1.0f - limit) * (n.y + n.z)) {
+        const float y = share(n.y, n.z);
+        return {0.0f, y, 1.0f - y};
+    }
+    if (n.y < (1.0f - limit) * (n.x + n.z)) {
+        const float x = share(n.x, n.z);
+        return {x, 0.0f, 1.0f - x};
+    }
+    return ((2.0f - limit) * n + (limit - 1.0f)) / (2.0f * limit - 1.0f);
+}
+
+/// The plane that a face of the box shows, mirrored on one side so that text reads alike.
+Vec2f box_plane(int axis, const Vec3f& p, const Vec3f& normal) {
+    if (axis == 0) return {normal.x < 0.0f ? 1.0f - p.y : p.y, p.z};
+    if (axis == 1) return {normal.y > 0.0f ? 1.0f - p.x : p.x, p.z};
+    return {normal.z > 0.0f ? 1.0f - p.y : p.y, p.x};
+}
+
+TextureMode texture_mode(NodeBuilder& b) {
+    const std::string filter = b.text("interpolation", "Linear");
+    const std::string extension = b.text("extension", "REPEAT");
+    TextureMode mode;
+    mode.filter = filter == "Closest"  ? TextureFilter::Closest
+                  : filter == "Linear" ? TextureFilter::Linear
+                                       : TextureFilter::Cubic;
+    mode.extension = extension == "EXTEND"   ? TextureExtension::Extend
+                     : extension == "CLIP"   ? TextureExtension::Clip
+                     : extension == "MIRROR" ? TextureExtension::Mirror
+                                             : TextureExtension::Repeat;
+    mode.unassociate = b.flag("unassociate_alpha");
+    return mode;
+}
+
+struct Footprint {
+    VectorSource center, along_u, along_v;
+};
+
+Footprint footprint(NodeBuilder& b) {
+    const auto at = [&](Shift shift) {
+        return b.linked("Vector") ? b.vector_at("Vector", shift) : uv_at(b, "", shift);
+    };
+    return {at(b.shift()), at(Shift::U), at(Shift::V)};
+}
+
+}  // namespace
+
+void build_image_texture(NodeBuilder& b) {
+    const std::string image = b.text("image");
+    if (image.empty()) {
+        // Cycles shows a node without an image black... with full alpha.
+        b.output_color("Color", {-1, Vec3f(0.0f)});
+        b.output("Alpha", FloatSource{-1, 0.0f});
+        return;
+    }
+    const auto texture = b.textures().find(image, "node '" + b.node().name + "'");
+    const TextureMode mode = texture_mode(b);
+    const std::string projection = b.text("projection", "FLAT");
+    const Footprint print = footprint(b);
+    const VectorSource color = b.new_source<Vec3f>();
+    const FloatSource alpha = b.new_source<float>();
+    const std::vector<int> reads = {print.center.slot, print.along_u.slot, print.along_v.slot};
+
+    if (projection == "BOX") {
+        const auto blend = static_cast<float>(b.value("projection_blend"));
+        const VectorSource normal = object_normal(b);
+        b.add_step(
+            [=](Run& run) {
+                const std::size_t n = run.count();
+                const auto p = run.read(print.center), u = run.read(print.along_u),
+                           v = run.read(print.along_v), normals = run.read(normal);
+                std::vector<Vec4f> sum(n, Vec4f(0.0f)), texels;
+                std::vector<TexturePlace> places(n);
+                for (int axis = 0; axis < 3; ++axis) {
+                    for (std::size_t i = 0; i < n; ++i) {
+                        const Vec2f center = box_plane(axis, p[i], normals[i]);
+                        places[i] = {center, box_plane(axis, u[i], normals[i]) - center,
+                                     box_plane(axis, v[i], normals[i]) - center};
+                    }
+                    texture->look_up(mode, places, texels);
+                    for (std::size_t i = 0; i < n; ++i)
+                        sum[i] += texels[i] * box_weights(normals[i], blend)[axis];
+                }
+                Vec3f* out_color = run.write(color);
+                float* out_alpha = run.write(alpha);
+                for (std::size_t i = 0; i < n; ++i) {
+                    out_color[i] = Vec3f(sum[i]);
+                    out_alpha[i] = sum[i].w;
+                }
+            },
+            {reads[0], reads[1], reads[2], normal.slot}, {color.slot, alpha.slot});
+    } else {
+        using Project = Vec2f (*)(const Vec3f&);
+        const Project project = projection == "SPHERE" ? project_sphere
+                                : projection == "TUBE" ? project_tube
+                                                       : [](const Vec3f& p) { return Vec2f(p); };
+        const bool seam = projection == "SPHERE" || projection == "TUBE";
+        b.add_step(
+            [=](Run& run) {
+                const std::size_t n = run.count();
+                const auto p = run.read(print.center), u = run.read(print.along_u),
+                           v = run.read(print.along_v);
+                std::vector<TexturePlace> places(n);
+                for (std::size_t i = 0; i < n; ++i) {
+                    const Vec2f center = project(p[i]);
+                    places[i] = {center, edge(center, project(u[i]), seam),
+                                 edge(center, project(v[i]), seam)};
+                }
+                std::vector<Vec4f> texels;
+                texture->look_up(mode, places, texels);
+                Vec3f* out_color = run.write(color);
+                float* out_alpha = run.write(alpha);
+                for (std::size_t i = 0; i < n; ++i) {
+                    out_color[i] = Vec3f(texels[i]);
+                    out_alpha[i] = texels[i].w;
+                }
+            },
+            reads, {color.slot, alpha.slot});
+    }
+    b.output_color("Color", color);
+    b.output("Alpha", alpha);
+}
+
+}  // namespace granita

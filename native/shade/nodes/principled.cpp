@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Principled BSDF, both generations, as Cycles builds them from lobes.
+//
+//   generation 1 (before Blender 4): Burley's diffuse, a specular lobe that fades from dielectric
+//   to
+//       metallic by its colour at normal incidence, side by side
+//   generation 2: a metallic lobe and a dielectric one, which takes its albedo from the diffuse
+//       layer below
+//
+// Subsurface is rendered as diffuse, transmission as its reflection alone; sheen, and what else is
+// set and left out, is told to the artist.
+#include <algorithm>
+#include <cmath>
+
+#include "shade/nodes/dielectric_albedo.h"
+#include "shade/nodes/nodes.h"
+
+namespace granita {
+
+namespace {
+
+float saturate(float x) {
+    return std::clamp(x, 0.0f, 1.0f);
+}
+const Vec3f kOne(1.0f);
+
+/// A socket under its name of Blender 4; the exporter renames older ones.
+void warn_about_unused(NodeBuilder& b, const char* input, const char* what) {
+    if (b.linked(input) || !b.number(input).is(0.0f)) b.warn(std::string("Principled ") + what);
+}
+
+void warn_about_left_out(NodeBuilder& b) {
+    warn_about_unused(b, "Subsurface Weight", "subsurface is rendered as diffuse");
+    warn_about_unused(b, "Transmission Weight", "transmission is rendered as its reflection alone");
+    warn_about_unused(b, "Sheen Weight", "sheen is not rendered");
+    warn_about_unused(b, "Anisotropic", "anisotropy is not rendered");
+    warn_about_unused(b, "Thin Film Thickness", "thin film is not rendered");
+}
+
+struct Common {
+    FloatSource weight;  ///< alpha applied
+    VectorSource base_color, normal;
+    FloatSource metallic, roughness, transmission, specular, ior;
+    bool multiscatter = false;
+};
+
+void add_alpha(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight,
+               const FloatSource& alpha) {
+    const FloatSource clear = b.map<float>([](float a) { return 1.0f - a; }, alpha);
+    surface.add_transparency(b, scaled(b, {-1, kOne}, product(b, weight, clear)));
+}
+
+LobeSource glossy_lobe(const Common& c) {
+    LobeSource lobe;
+    lobe.kind = LobeKind::Glossy;
+    lobe.multiscatter = c.multiscatter;
+    lobe.normal = c.normal;
+    lobe.roughness = c.roughness;
+    return lobe;
+}
+
+void add_coat(NodeBuilder& b, SurfaceBuilder& surface, const Common& c, float strength,
+              bool separable) {
+    const FloatSource coat = b.number("Coat Weight");
+    if (coat.is(0.0f)) return;
+    LobeSource lobe = glossy_lobe(c);
+    lobe.multiscatter = false;
+    lobe.separable_masking = separable;
+    lobe.fresnel = FresnelKind::Dielectric;
+    lobe.normal = b.normal_input("Coat Normal");
+    lobe.roughness = b.map<float>(saturate, b.number("Coat Roughness", 0.03f));
+    lobe.ior = b.number("Coat IOR", 1.5f);
+    lobe.f0 = b.map<Vec3f>([](float ior) { return Vec3f(f0_from_ior(ior)); }, lobe.ior);
+    lobe.f90 = {-1, kOne};
+    const FloatSource amount =
+        b.map<float>([strength](float x) { return strength * std::max(x, 0.0f); }, coat);
+    lobe.weight = scaled(b, {-1, kOne}, product(b, c.weight, amount));
+    surface.add_lobe(lobe);
+}
+
+void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
+    LobeSource diffuse;
+    diffuse.kind = LobeKind::Diffuse;
+    diffuse.burley = true;
+    diffuse.normal = c.normal;
+    diffuse.roughness = c.roughness;
+    diffuse.weight =
+        scaled(b, c.base_color,
+               product(b, c.weight,
+                       b.map<float>([](float m, float t) { return (1.0f - m) * (1.0f - t); },
+                                    c.metallic, c.transmission)));
+    surface.add_lobe(diffuse);
+
+    const FloatSource tint = b.number("Specular Tint");
+    LobeSource specular = glossy_lobe(c);
+    specular.separable_masking = true;
+    specular.fresnel = FresnelKind::Dielectric;
+    specular.ior = b.map<float>(
+        [](float s) { return 2.0f / (1.0f - std::sqrt(0.08f * std::max(s, 0.0f))) - 1.0f; },
+        c.specular);
+    specular.f0 = b.map<Vec3f>(
+        [](const Vec3f& base, float m, float s, float t) {
+            const float light = luminance(base);
+            const Vec3f hue = light > 0.0f ? base / light : kOne;
+            const Vec3f tinted = kOne * (1.0f - t) + hue * t;
+            return std::max(s, 0.0f) * 0.08f * tinted * (1.0f - m) + base * m;
+        },
+        c.base_color, c.metallic, c.specular, tint);
+    specular.f90 = {-1, kOne};
+    specular.weight = scaled(b, {-1, kOne}, c.weight);
+    if (!(c.specular.is(0.0f) && c.metallic.is(0.0f))) surface.add_lobe(specular);
+    add_coat(b, surface, c, 0.25f, true);
+}
+
+void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
+    const VectorSource tint = b.color("Specular Tint", kOne);
+    LobeSource metal = glossy_lobe(c);
+    // The edge tint is white unless the artist sets it: then F82 is Schlick's.
+    metal.fresnel = FresnelKind::Schlick;
+    metal.f0 = c.base_color;
+    metal.f90 = {-1, kOne};
+    metal.weight = scaled(b, {-1, kOne}, product(b, c.weight, c.metallic));
+    surface.add_lobe(metal);
+
+    const FloatSource rest =
+        product(b, c.weight, b.map<float>([](float m) { return 1.0f - m; }, c.metallic));
+    LobeSource specular = glossy_lobe(c);
+    specular.fresnel = FresnelKind::Dielectric;
+    specular.ior = b.map<float>(
+        [](float ior, float level) {
+            if (level == 0.5f) return ior;
+            const float eta = ior_from_f0(f0_from_ior(ior) * 2.0f * std::max(level, 0.0f));
+            return ior < 1.0f ? 1.0f / eta : eta;
+        },
+        c.ior, c.specular);
+    specular.f0 = b.map<Vec3f>(
+        [](float ior, const Vec3f& t) { return f0_from_ior(ior) * glm::max(t, Vec3f(0.0f)); },
+        specular.ior, tint);
+    specular.f90 = {-1, kOne};
+    specular.weight = scaled(b, {-1, kOne}, rest);
+    if (!specular.ior.is(1.0f)) surface.add_lobe(specular);
+
+    // Light that the specular layer reflects does not reach the diffuse one.
+    const FloatSource below = b.map<float>(
+        [](const Vec3f& f0, float ior, float roughness, const Vec3f& n, const Vec3f& view) {
+            if (ior == 1.0f) return 1.0f;
+            const float s = dielectric_albedo(roughness, glm::dot(n, view), ior);
+            const Vec3f albedo = f0 * (1.0f - s) + kOne * s;
+            return saturate(1.0f - std::max({albedo.x, albedo.y, albedo.z}));
+        },
+        specular.f0, specular.ior, c.roughness, c.normal, b.view());
+    LobeSource diffuse;
+    diffuse.kind = LobeKind::Diffuse;
+    diffuse.normal = c.normal;
+    diffuse.roughness = b.map<float>(saturate, b.number("Diffuse Roughness"));
+    diffuse.has_color = !diffuse.roughness.is(0.0f);
+    diffuse.f0 = c.base_color;
+    const FloatSource opaque = b.map<float>([](float t) { return 1.0f - t; }, c.transmission);
+    diffuse.weight = scaled(b, c.base_color, product(b, product(b, rest, opaque), below));
+    surface.add_lobe(diffuse);
+    add_coat(b, surface, c, 1.0f, false);
+}
+
+}  // namespace
+
+void build_principled(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight) {
+    const FloatSource alpha = b.map<float>(saturate, b.number("Alpha", 1.0f));
+    add_alpha(b, surface, weight, alpha);
+    Common c;
+    c.weight = product(b, weight, alpha);
+    const VectorSource emission = b.color("Emission Color", Vec3f(0.0f));
+    const FloatSource strength = b.number("Emission Strength", 1.0f);
+    surface.add_emission(b, scaled(b, emission, product(b, c.weight, strength)));
+
+    warn_about_left_out(b);
+    const bool first = b.value("generation", 2) < 2;
+    c.base_color = b.map<Vec3f>([](const Vec3f& v) { return glm::max(v, Vec3f(0.0f)); },
+                                b.color("Base Color", Vec3f(0.8f)));
+    c.normal = b.normal_input();
+    c.metallic = b.map<float>(saturate, b.number("Metallic"));
+    c.roughness = b.map<float>(saturate, b.number("Roughness", 0.5f));
+    c.transmission = b.map<float>(saturate, b.number("Transmission Weight"));
+    c.specular = b.number("Specular IOR Level", 0.5f);
+    c.ior = b.map<float>([](float ior) { return std::max(ior, 1e-5f); }, b.number("IOR", 1.45f));
+    c.multiscatter = b.text("distribution", "GGX") == "MULTI_GGX";
+    if (first) {
+        add_first_generation(b, surface, c);
+    } else {
+        add_second_generation(b, surface, c);
+    }
+}
+
+}  // namespace granita
