@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/subdivision_topology.h"
+
 namespace granita {
 namespace {
 
