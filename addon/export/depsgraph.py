@@ -74,15 +74,17 @@ class Visit:
     identity: np.ndarray  # uint64 [n], unique, the same at every time and in every frame
     random: np.ndarray  # uint32 [n], Blender's random id; 0 where it is no instance
     is_instance: np.ndarray  # bool [n]
+    cages: dict  # address of an evaluated object -> its Cage or None
 
 
-def visit(depsgraph, report, check_cancel):
+def visit(depsgraph, report, check_cancel, cages=None):
     """Walks once.
 
     Args:
         depsgraph: evaluated.
         report: called with (datablock, message).
         check_cancel: true when the user has cancelled.
+        cages: of an earlier Visit, which then decides what is a cage.
 
     Raises:
         Cancelled, or what check_cancel raises.
@@ -95,7 +97,7 @@ def visit(depsgraph, report, check_cancel):
     random = _column(instances, "random_id", count, 1, np.int32)
     persistent = _column(instances, "persistent_id", count, 8, np.int32).reshape(-1, 8)
 
-    walk = _Walk(depsgraph, report)
+    walk = _Walk(depsgraph, report, cages)
     kind = [-1] * count
     iterator = iter(instances)
     try:
@@ -121,6 +123,7 @@ def visit(depsgraph, report, check_cancel):
         identity=combine(hashes[kind] if len(kind) else np.zeros(0, np.uint64), persistent[taken]),
         random=random[taken].view(np.uint32),
         is_instance=is_instance[taken],
+        cages=walk.cages,
     )
 
 
@@ -134,13 +137,13 @@ def _column(instances, name, count, width, dtype):
 class _Walk:
     """Sorts instances into kinds; everything slow happens once a kind."""
 
-    def __init__(self, depsgraph, report):
+    def __init__(self, depsgraph, report, cages):
         self.kinds = []
         self._report = report
         self._mode = depsgraph.mode
         self._simplify = simplify_level(depsgraph.scene_eval.render, depsgraph.mode)
         self._index = {}
-        self._cages = {}
+        self.cages = dict(cages or {})
 
     def kind_of(self, instance, duplicate):
         """Index in `kinds`, or -1 for what is not rendered."""
@@ -183,11 +186,11 @@ class _Walk:
 
     def _cage(self, source):
         pointer = source.as_pointer()
-        if pointer not in self._cages:
-            self._cages[pointer] = (
+        if pointer not in self.cages:
+            self.cages[pointer] = (
                 find_cage(source, self._mode, self._simplify) if source.type == "MESH" else None
             )
-        return self._cages[pointer]
+        return self.cages[pointer]
 
     @staticmethod
     def _may_make_instances(source):

@@ -15,7 +15,7 @@ from .camera import camera_matrix
 from .depsgraph import visit
 from .mesh import read_points, read_topology
 from .report import Cancelled
-from .subdivision import cage_mesh
+from .subdivision import cage_mesh, cages_only
 from .transforms import is_finite
 
 
@@ -75,16 +75,18 @@ def sample_motion(clock, shutter, depsgraph, camera, frame_visit, geometries, re
         Motion.
     """
     sampler = _Sampler(shutter, depsgraph, camera, frame_visit, geometries, report, check_cancel)
-    try:
-        for knot, offset in enumerate(shutter.offsets):
-            if knot == shutter.frame_knot:
-                continue
-            if check_cancel():
-                raise Cancelled
-            clock.go(offset)
-            sampler.sample(knot, clock.knows_updates)
-    finally:
-        clock.go(0.0)
+    cages = {kind.source.as_pointer(): kind for kind in frame_visit.kinds if kind.cage is not None}
+    with cages_only([(kind.source, kind.cage) for kind in cages.values()], depsgraph):
+        try:
+            for knot, offset in enumerate(shutter.offsets):
+                if knot == shutter.frame_knot:
+                    continue
+                if check_cancel():
+                    raise Cancelled
+                clock.go(offset)
+                sampler.sample(knot, clock.knows_updates)
+        finally:
+            clock.go(0.0)
     return sampler.result()
 
 
@@ -115,7 +117,7 @@ class _Sampler:
         if knows_updates:
             self._changed |= changed_geometry(self._depsgraph)
         self._cameras[knot] = camera_matrix(self._camera, self._depsgraph)
-        now = visit(self._depsgraph, _silent, self._check_cancel)
+        now = visit(self._depsgraph, _silent, self._check_cancel, self._visit.cages)
         here, there = match(self._visit.identity, self._order, now.identity)
         usable = is_finite(now.matrices[there])
         here, there = here[usable], there[usable]

@@ -93,6 +93,61 @@ def cage_mesh(evaluated, cage, depsgraph):
         modifiers.foreach_set(cage.flag, flags)
 
 
+@contextmanager
+def cages_only(cages, depsgraph):
+    """While time is stepped: deforming surfaces are not subdivided by Blender at every knot.
+
+    Their modifiers stay off, so that each re-evaluation stops at the cage.  That is safe only for
+    objects whose mesh nothing else in the file can read; the others are left alone.
+
+    Args:
+        cages: [(evaluated Object, Cage)].
+        depsgraph: evaluated.
+    """
+    read = _referenced([evaluated.original for evaluated, _ in cages])
+    switched = []
+    try:
+        for evaluated, cage in cages:
+            if evaluated.original in read or evaluated.rigid_body is not None:
+                continue
+            flags = np.zeros(len(evaluated.modifiers), dtype=np.bool_)
+            evaluated.modifiers.foreach_get(cage.flag, flags)
+            switched.append((evaluated.original, cage.flag, flags.copy()))
+            flags[cage.index] = False
+            evaluated.modifiers.foreach_set(cage.flag, flags)
+        yield
+    finally:
+        for original, flag, flags in switched:
+            # Found anew: the evaluated copy may have been replaced meanwhile.
+            modifiers = original.evaluated_get(depsgraph).modifiers
+            if len(modifiers) == len(flags):
+                modifiers.foreach_set(flag, flags)
+
+
+def _referenced(originals):
+    """Objects that something may read: all that have users beside scenes and plain collections."""
+    import bpy
+
+    holders = (bpy.types.Scene, bpy.types.Collection)
+
+    def used(datablocks):
+        users = bpy.data.user_map(subset=datablocks)
+        return {
+            datablock
+            for datablock, its_users in users.items()
+            if any(not isinstance(user, holders) for user in its_users)
+        }
+
+    originals = set(originals)
+    if not originals:
+        return set()
+    read = used(originals)
+    collections = {collection for thing in originals for collection in thing.users_collection}
+    for collection in used(collections) if collections else ():
+        read |= originals & set(collection.all_objects)
+    return read
+
+
 def sharpness(crease):
     """OpenSubdiv's sharpness of Blender's creases, elementwise."""
     crease = np.clip(crease, 0.0, 1.0)

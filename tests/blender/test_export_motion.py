@@ -178,6 +178,65 @@ def test_a_moving_subsurf_stays_a_static_cage(moving):
     assert xs(snapshot, "Square") == pytest.approx([9.75, 10, 10.25])
 
 
+def sphere(scene):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=32)
+    return bpy.context.object
+
+
+def test_deforming_cages_are_not_subdivided_at_every_knot(moving):
+    """A million faces would come of it: what a step costs is seen in the mesh that Blender holds."""
+    thing = sphere(moving)
+    drive(shape_key(thing), "value", "frame / 20")
+    thing.modifiers.new("Subsurf", "SUBSURF").render_levels = 2
+    vertices = []
+
+    def count(scene, depsgraph):
+        mesh = thing.evaluated_get(depsgraph).data
+        vertices.append((scene.frame_current + scene.frame_subframe, len(mesh.vertices)))
+
+    def listen(_depsgraph):
+        bpy.app.handlers.frame_change_post.append(count)
+
+    def stop(_depsgraph):
+        bpy.app.handlers.frame_change_post.remove(count)
+
+    snapshot, _, _ = export_probe.through_engine(moving, before=listen, after=stop)
+    cage = len(thing.data.vertices)
+    assert vertices == [(9.75, cage), (10.25, cage), (10.0, cage)]
+    assert geometry_of(snapshot, "Sphere")["points"].shape == (3, cage, 3)
+    # The next render finds the modifier switched on.
+    assert "subdivision" in geometry_of(export_probe.through_engine(moving)[0], "Sphere")
+
+
+@pytest.mark.parametrize("through_collection", [False, True])
+def test_a_mesh_that_others_read_stays_subdivided(moving, through_collection):
+    """A boolean with a deforming subsurf must see its round form at every knot."""
+    thing = sphere(moving)
+    drive(shape_key(thing), "value", "frame / 20")
+    thing.modifiers.new("Subsurf", "SUBSURF").render_levels = 1
+    reader = scene_parts.add_square(moving, "Reader", 9.0)
+    modifier = reader.modifiers.new("Boolean", "BOOLEAN")
+    if through_collection:
+        part = bpy.data.collections.new("Part")
+        part.objects.link(thing)
+        modifier.operand_type, modifier.collection = "COLLECTION", part
+    else:
+        modifier.object = thing
+    sizes = []
+
+    def count(_scene, depsgraph):
+        sizes.append(len(thing.evaluated_get(depsgraph).data.vertices))
+
+    def listen(_depsgraph):
+        bpy.app.handlers.frame_change_post.append(count)
+
+    def stop(_depsgraph):
+        bpy.app.handlers.frame_change_post.remove(count)
+
+    export_probe.through_engine(moving, before=listen, after=stop)
+    assert len(sizes) == 3 and min(sizes) > len(thing.data.vertices)
+
+
 def test_armature(moving):
     """The square follows a bone that turns; Blender's own evaluation at that time is the truth."""
     square = scene_parts.add_square(moving)
