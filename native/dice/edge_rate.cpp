@@ -30,7 +30,8 @@ EdgeRate::EdgeRate(const View& view)
       m_rate(view.scene->options.dicing_rate),
       m_width(view.scene->options.width),
       m_height(view.scene->options.height),
-      m_near(std::max(view.projection.near_clip, 1e-9)) {}
+      m_near(view.projection.perspective ? std::max(view.projection.near_clip, 1e-9)
+                                         : view.projection.near_clip) {}
 
 void EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b, double& length) const {
     Vec3d p(a), q(b);

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small scenes for dicing tests, and what can be said of all grids of one instance.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "dice/open_instance.h"
+
+namespace granita::testing {
+
+/// A scene with one instance of one geometry; camera at the origin looking along z.
+struct DiceScene {
+    Scene scene;
+    View view;
+    Report report;
+    Statistics statistics;
+
+    explicit DiceScene(GeometryData geometry, float rate = 1.0f, int grid_size = 256) {
+        scene.options.width = scene.options.height = 256;
+        scene.options.dicing_rate = rate;
+        scene.options.grid_size = grid_size;
+        scene.camera.world_from_camera = {Mat4d(1.0)};
+        scene.geometries.push_back(std::move(geometry));
+        Instance instance;
+        instance.name = "object 'Test'";
+        instance.world_from_object = {Mat4d(1.0)};
+        scene.instances.push_back(instance);
+        view.scene = &scene;
+        view.statistics = &statistics;
+        orthographic();
+    }
+    DiceScene(const DiceScene&) = delete;
+    DiceScene& operator=(const DiceScene&) = delete;
+
+    /// One pixel a metre, the origin in the middle of the frame.
+    void orthographic() {
+        view.projection = {};
+        view.projection.perspective = false;
+        view.projection.scale = {1.0, 1.0};
+        view.projection.center = {128.0, 128.0};
+        view.projection.near_clip = -1e6;
+        view.projection.far_clip = 1e6;
+    }
+    void perspective(double pixels = 256.0) {
+        view.projection = {};
+        view.projection.scale = {pixels, pixels};
+        view.projection.center = {128.0, 128.0};
+        view.projection.near_clip = 0.1;
+        view.projection.far_clip = 1e7;
+    }
+
+    std::vector<std::unique_ptr<Grid>> grids(std::size_t instance = 0) {
+        std::vector<std::unique_ptr<Grid>> grids;
+        const auto opened = open_instance(view, instance, report);
+        for (std::size_t i = 0; i < opened->primitive_count(); ++i) {
+            if (!opened->bounds(i).visible) continue;
+            dice_all(*opened->primitive(i), grids);
+        }
+        return grids;
+    }
+    static void dice_all(const Primitive& primitive, std::vector<std::unique_ptr<Grid>>& grids) {
+        if (!primitive.bounds().visible) return;
+        if (primitive.diceable()) {
+            grids.push_back(primitive.dice());
+            return;
+        }
+        for (const auto& child : primitive.split()) dice_all(*child, grids);
+    }
+};
+
+inline GeometryData mesh(std::vector<Vec3f> points, std::vector<std::int32_t> sizes,
+                         std::vector<std::int32_t> corners) {
+    GeometryData data;
+    data.name = "mesh 'Test'";
+    data.points = std::move(points);
+    data.face_sizes = std::move(sizes);
+    data.corner_verts = std::move(corners);
+    return data;
+}
+
+/// Corners at +-half, six outward quads.
+inline GeometryData cube(float half, float z = 0.0f) {
+    std::vector<Vec3f> p;
+    for (int i = 0; i < 8; ++i)
+        p.emplace_back(i & 1 ? half : -half, i & 2 ? half : -half, z + (i & 4 ? half : -half));
+    return mesh(p, {4, 4, 4, 4, 4, 4},
+                {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5});
+}
+
+inline double area(const std::vector<std::unique_ptr<Grid>>& grids, int knot = 0) {
+    double sum = 0.0;
+    for (const auto& grid : grids) {
+        const Vec3f* p = &grid->positions[static_cast<std::size_t>(knot * grid->vertex_count())];
+        for (int m = 0; m < grid->micropolygon_count(); ++m) {
+            const Grid::Corners c = grid->corners(m);
+            const Vec3d a(p[c.v0]);
+            sum += 0.5 * glm::length(glm::cross(Vec3d(p[c.v1]) - a, Vec3d(p[c.v2]) - a)) +
+                   0.5 * glm::length(glm::cross(Vec3d(p[c.v2]) - a, Vec3d(p[c.v3]) - a));
+        }
+    }
+    return sum;
+}
+
+/// Directed edges of all micropolygon triangles that no equal and opposite edge closes, compared
+/// bit by bit at a knot.  0 for a closed surface without cracks; its border otherwise.
+inline std::vector<std::array<Vec3f, 2>> open_edges(const std::vector<std::unique_ptr<Grid>>& grids,
+                                                    int knot = 0) {
+    using Point = std::array<float, 3>;
+    std::map<std::pair<Point, Point>, int> balance;
+    const auto add = [&](const Vec3f& a, const Vec3f& b) {
+        const Point p{a.x + 0.0f, a.y + 0.0f, a.z + 0.0f}, q{b.x + 0.0f, b.y + 0.0f, b.z + 0.0f};
+        if (p == q) return;
+        if (p < q)
+            ++balance[{p, q}];
+        else
+            --balance[{q, p}];
+    };
+    for (const auto& grid : grids) {
+        const int k = grid->knots > 1 ? knot : 0;
+        const Vec3f* p = &grid->positions[static_cast<std::size_t>(k * grid->vertex_count())];
+        for (int m = 0; m < grid->micropolygon_count(); ++m) {
+            const Grid::Corners c = grid->corners(m);
+            for (const auto& t : {std::array{c.v0, c.v1, c.v2}, std::array{c.v0, c.v2, c.v3}})
+                for (int i = 0; i < 3; ++i)
+                    add(p[t[static_cast<std::size_t>(i)]],
+                        p[t[static_cast<std::size_t>((i + 1) % 3)]]);
+        }
+    }
+    std::vector<std::array<Vec3f, 2>> open;
+    for (const auto& [edge, count] : balance)
+        if (count != 0) {
+            const auto& [a, b] = edge;
+            open.push_back({Vec3f(a[0], a[1], a[2]), Vec3f(b[0], b[1], b[2])});
+        }
+    return open;
+}
+
+inline long micropolygons(const std::vector<std::unique_ptr<Grid>>& grids) {
+    long sum = 0;
+    for (const auto& grid : grids) sum += grid->micropolygon_count();
+    return sum;
+}
+
+}  // namespace granita::testing

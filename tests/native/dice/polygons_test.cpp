@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <set>
+
+#include "dice/dice_scene.h"
+
+namespace granita::testing {
+namespace {
+
+Mat4d rotation(double angle, const Vec3d& axis) {
+    const Vec3d a = glm::normalize(axis);
+    const double c = std::cos(angle), s = std::sin(angle);
+    Mat4d m(1.0);
+    for (int i = 0; i < 3; ++i) {
+        Vec3d e(0.0);
+        e[i] = 1.0;
+        m[i] = glm::dvec4(e * c + glm::cross(a, e) * s + a * glm::dot(a, e) * (1.0 - c), 0.0);
+    }
+    return m;
+}
+
+Mat4d translation(const Vec3d& d) {
+    Mat4d m(1.0);
+    m[3] = glm::dvec4(d, 1.0);
+    return m;
+}
+
+TEST(Polygons, a_square_is_diced_at_the_rate) {
+    for (const float rate : {0.4f, 1.0f, 3.0f}) {
+        DiceScene s(
+            mesh({{-40, -40, 1}, {40, -40, 1}, {40, 40, 1}, {-40, 40, 1}}, {4}, {0, 1, 2, 3}),
+            rate);
+        const auto grids = s.grids();
+        EXPECT_NEAR(area(grids), 6400.0, 1e-2);
+        for (const auto& grid : grids) {
+            EXPECT_LE(grid->micropolygon_count(), 256);
+            for (int m = 0; m < grid->micropolygon_count(); ++m) {
+                const Grid::Corners c = grid->corners(m);
+                for (const auto& [a, b] : {std::pair{c.v0, c.v1}, std::pair{c.v0, c.v3}}) {
+                    const double length =
+                        glm::distance(Vec3d(grid->positions[a]), Vec3d(grid->positions[b]));
+                    EXPECT_GT(length, rate * M_SQRT1_2 * 0.9999);
+                    EXPECT_LE(length, rate * M_SQRT2 * 1.0001);
+                }
+            }
+        }
+    }
+}
+
+TEST(Polygons, grid_size_is_the_users) {
+    for (const int size : {1, 2, 16, 100, 1024}) {
+        DiceScene s(mesh({{-20, -20, 1}, {30, -25, 1}, {20, 20, 1}, {-20, 25, 1}, {0, 60, 1}},
+                         {4, 3}, {0, 1, 2, 3, 3, 2, 4}),
+                    1.0f, size);
+        const auto grids = s.grids();
+        ASSERT_FALSE(grids.empty());
+        for (const auto& grid : grids) EXPECT_LE(grid->micropolygon_count(), size);
+        // Shoelace: the quad (-20,-20) (30,-25) (20,20) (-20,25), the triangle on its top.
+        EXPECT_NEAR(area(grids), 2000.0 + 750.0, 1e-2);
+    }
+}
+
+TEST(Polygons, every_rate_of_two_neighbours_closes) {
+    // Orthographic pixels are metres: edges of 1, 3, 5, 7 and 63 pixels meet.
+    DiceScene s(cube(0.5f));
+    for (const Vec3d& size : {Vec3d(1, 7, 1), Vec3d(3, 5, 1), Vec3d(63, 1, 9), Vec3d(.3, .3, .3),
+                              Vec3d(100, 100, 37)}) {
+        Mat4d scale(1.0);
+        for (int i = 0; i < 3; ++i) scale[i][i] = size[i];
+        s.scene.instances[0].world_from_object = {rotation(0.7, {1, 2, 3}) * scale};
+        const auto grids = s.grids();
+        EXPECT_TRUE(open_edges(grids).empty()) << size.x << " " << open_edges(grids).size();
+        EXPECT_NEAR(area(grids), 2 * (size.x * size.y + size.y * size.z + size.z * size.x),
+                    1e-5 * area(grids));
+    }
+}
+
+TEST(Polygons, perspective_closes_near_and_far) {
+    for (const int grid_size : {4, 256}) {
+        DiceScene s(cube(0.5f), 1.0f, grid_size);
+        s.perspective();
+        s.view.projection.near_clip = 1e-3;
+        Mat4d scale(1.0);
+        scale[2][2] = 40.0;  // one end close to the eye, the other far away
+        s.scene.instances[0].world_from_object = {translation({0.1, 0.2, 20.5}) *
+                                                  rotation(0.05, {1, 1, 0}) * scale};
+        const auto grids = s.grids();
+        EXPECT_TRUE(open_edges(grids).empty());
+        EXPECT_NEAR(area(grids), 2 + 4 * 40, 1e-2);
+    }
+}
+
+TEST(Polygons, random_closed_meshes_close) {
+    // A noisy octahedron-like ball of triangles, quads and pentagons around every rate.
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> noise(-0.3f, 0.3f);
+    for (int round = 0; round < 20; ++round) {
+        GeometryData data = cube(1.0f);
+        for (Vec3f& p : data.points) p += Vec3f(noise(random), noise(random), noise(random));
+        DiceScene s(data, 1.0f, 64);
+        s.perspective(12.0 * (round + 1));
+        s.scene.options.width = s.scene.options.height = 1024;
+        s.scene.instances[0].world_from_object = {translation({0, 0, 3}) *
+                                                  rotation(round, {1, 0.3, 0.2})};
+        const auto grids = s.grids();
+        EXPECT_TRUE(open_edges(grids).empty()) << round;
+    }
+}
+
+TEST(Polygons, a_concave_polygon_is_filled_exactly_once) {
+    // A comb: 2 wide bars of 10 x 40 on a base of 50 x 10, corners in the plane of a tilted square.
+    std::vector<Vec3f> p = {{0, 0, 0},   {50, 0, 0},  {50, 50, 0}, {40, 50, 0},
+                            {40, 10, 0}, {10, 10, 0}, {10, 50, 0}, {0, 50, 0}};
+    for (Vec3f& q : p) q = Vec3f(q.x, 0.8f * q.y, 0.6f * q.y);
+    DiceScene s(mesh(p, {8}, {0, 1, 2, 3, 4, 5, 6, 7}));
+    const auto grids = s.grids();
+    EXPECT_NEAR(area(grids), 500 + 2 * 400, 1e-2);
+    // Its border is that of the polygon: nothing open inside.
+    double length = 0.0;
+    for (const auto& [a, b] : open_edges(grids)) length += glm::distance(a, b);
+    EXPECT_NEAR(length, 50 + 2 * 50 + 2 * 10 + 2 * 40 + 30, 1e-2);
+    for (const auto& grid : grids)
+        for (const Vec3f& n : grid->geometric_normal)
+            EXPECT_NEAR(glm::dot(n, Vec3f(0, -0.6f, 0.8f)), 1.0f, 1e-5f);
+    EXPECT_TRUE(s.report.warnings().empty());
+}
+
+TEST(Polygons, a_concave_quad_does_not_fold) {
+    DiceScene s(mesh({{0, 0, 0}, {40, 0, 0}, {10, 10, 0}, {0, 40, 0}}, {4}, {0, 1, 2, 3}));
+    EXPECT_NEAR(area(s.grids()), 400.0, 1e-2);
+}
+
+TEST(Polygons, a_crossing_polygon_is_reported) {
+    DiceScene s(
+        mesh({{0, 0, 0}, {40, 0, 0}, {0, 40, 0}, {40, 41, 0}, {20, 60, 0}}, {5}, {0, 1, 2, 3, 4}));
+    EXPECT_FALSE(s.grids().empty());
+    ASSERT_EQ(s.report.warnings().size(), 1u);
+    EXPECT_EQ(s.report.warnings()[0].datablock, "mesh 'Test'");
+}
+
+TEST(Polygons, a_quad_that_is_not_flat_is_bilinear) {
+    // z = k u v over the unit square, hard case 49: silhouette the square, z(.5, .5) = k / 4.
+    const float k = 32.0f, w = 64.0f;
+    DiceScene s(mesh({{0, 0, 0}, {w, 0, 0}, {w, w, k}, {0, w, 0}}, {4}, {0, 1, 2, 3}));
+    double silhouette = 0.0;
+    int seen = 0;
+    for (const auto& grid : s.grids()) {
+        for (const Vec3f& p : grid->positions) {
+            EXPECT_NEAR(p.z, k * (p.x / w) * (p.y / w), 1e-4);
+            if (p.x != 0.5f * w || p.y != 0.5f * w) continue;
+            EXPECT_NEAR(p.z, k / 4, 1e-5);
+            ++seen;
+        }
+        for (int m = 0; m < grid->micropolygon_count(); ++m) {
+            const Grid::Corners c = grid->corners(m);
+            const auto triangle = [&](int a, int b, int d) {
+                const Vec3d p(grid->positions[a]), q(grid->positions[b]), r(grid->positions[d]);
+                return 0.5 * glm::cross(q - p, r - p).z;
+            };
+            silhouette += triangle(c.v0, c.v1, c.v2) + triangle(c.v0, c.v2, c.v3);
+        }
+    }
+    EXPECT_NEAR(silhouette, w * w, 1e-3);
+    EXPECT_GT(seen, 0);
+}
+
+TEST(Polygons, slivers_and_repeated_vertices_give_no_nan) {
+    DiceScene s(mesh({{0, 0, 0}, {50, 0, 0}, {50, 1e-4f, 0}, {0, 1e-4f, 0}, {0, 0, 0}, {9, 9, 9}},
+                     {4, 3, 4, 3, 4}, {0, 1, 2, 3, 0, 4, 0, 0, 0, 1, 1, 5, 5, 5, 0, 1, 0, 1}));
+    s.scene.geometries[0].smooth.assign(5, 1);
+    for (const auto& grid : s.grids()) {
+        for (const auto* list :
+             {&grid->positions, &grid->normal, &grid->geometric_normal, &grid->dp_du, &grid->dp_dv})
+            for (const Vec3f& v : *list) EXPECT_TRUE(is_finite(v));
+        for (const Vec3f& n : grid->normal) EXPECT_NEAR(glm::length(n), 1.0f, 1e-5f);
+    }
+    s.scene.instances[0].world_from_object = {Mat4d(0.0)};
+    s.scene.instances[0].world_from_object[0][3][3] = 1.0;
+    for (const auto& grid : s.grids())
+        for (const Vec3f& n : grid->normal) EXPECT_NEAR(glm::length(n), 1.0f, 1e-5f);
+}
+
+TEST(Polygons, a_face_with_a_nan_is_left_out_and_named_the_rest_is_the_same) {
+    const auto run = [](bool bad) {
+        auto data = mesh({{0, 0, 0}, {30, 0, 0}, {30, 30, 0}, {0, 30, 0}, {60, 0, 0}, {60, 30, 0}},
+                         {4, 4}, {0, 1, 2, 3, 1, 4, 5, 2});
+        if (bad) data.points[4].y = std::numeric_limits<float>::quiet_NaN();
+        DiceScene s(data);
+        auto grids = s.grids();
+        return std::pair(std::move(grids), s.report.warnings());
+    };
+    auto [good, none] = run(false);
+    auto [rest, warnings] = run(true);
+    EXPECT_TRUE(none.empty());
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0].datablock, "mesh 'Test'");
+    EXPECT_NE(warnings[0].message.find("1 face"), std::string::npos);
+    ASSERT_EQ(rest.size() * 2, good.size());
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+        EXPECT_EQ(rest[i]->key, good[i]->key);
+        EXPECT_EQ(rest[i]->positions, good[i]->positions);
+    }
+}
+
+TEST(Polygons, keys_are_unique) {
+    DiceScene s(cube(60.0f), 1.0f, 64);
+    std::set<GridKey> keys;
+    const auto grids = s.grids();
+    for (const auto& grid : grids) EXPECT_TRUE(keys.insert(grid->key).second);
+    EXPECT_GT(grids.size(), 100u);
+}
+
+TEST(Polygons, normals_follow_the_faces_the_smooth_flag_and_the_custom_normals) {
+    DiceScene s(cube(10.0f));
+    // Flat: each face its own; the outside is the outside although camera space is left-handed.
+    Mat4d flip(1.0);
+    flip[2][2] = -1.0;
+    s.scene.camera.world_from_camera = {flip};
+    for (const auto& grid : s.grids())
+        for (std::size_t i = 0; i < grid->normal.size(); ++i) {
+            EXPECT_EQ(grid->normal[i], grid->geometric_normal[i]);
+            EXPECT_GT(glm::dot(grid->normal[i], grid->positions[i]), 9.99f);
+        }
+    s.scene.camera.world_from_camera = {Mat4d(1.0)};
+    s.view.geometries = std::make_shared<GeometryCache>();
+    s.scene.geometries[0].smooth.assign(6, 1);
+    for (const auto& grid : s.grids())
+        for (std::size_t i = 0; i < grid->normal.size(); ++i) {
+            // On a cube the interpolated normal is the direction from the centre of a bilinear
+            // blend of the corner directions: that of the position itself.
+            EXPECT_NEAR(glm::dot(grid->normal[i], glm::normalize(grid->positions[i])), 1.0f, 1e-5f);
+        }
+    // A mirrored instance keeps its outside.
+    Mat4d mirror(1.0);
+    mirror[0][0] = -2.0;
+    s.scene.instances[0].world_from_object = {mirror};
+    for (const auto& grid : s.grids())
+        for (std::size_t i = 0; i < grid->normal.size(); ++i)
+            EXPECT_GT(glm::dot(grid->geometric_normal[i], grid->positions[i]), 9.99f);
+    s.view.geometries = std::make_shared<GeometryCache>();
+    s.scene.geometries[0].corner_normals.assign(24, glm::normalize(Vec3f(1, 1, 1)));
+    for (const auto& grid : s.grids())
+        for (const Vec3f& n : grid->normal)
+            EXPECT_NEAR(glm::distance(n, glm::normalize(Vec3f(-0.5f, 1, 1))), 0.0f, 1e-6f);
+}
+
+TEST(Polygons, derivatives_are_the_parametric_ones_times_the_step) {
+    DiceScene s(mesh({{0, 0, 0}, {40, 0, 0}, {40, 30, 7}, {0, 20, 0}, {60, 3, 1}}, {4, 3},
+                     {0, 1, 2, 3, 1, 4, 2}));
+    Attribute uv;
+    uv.name = "UVMap";
+    uv.kind = AttributeKind::Uv;
+    uv.domain = Domain::Corner;
+    uv.width = 2;
+    uv.values = {0, 0, 1, 0, 1, 1, 0, 1, 1, 0, 2, 0, 1, 1};
+    s.scene.geometries[0].attributes.push_back(uv);
+    s.view.requests = {{{AttributeSource::DefaultUv, "", 2, true},
+                        {AttributeSource::Generated, "", 3, true},
+                        {AttributeSource::ObjectPosition, "", 3, true},
+                        {AttributeSource::Named, "nothing", 3, true}}};
+    const auto check = [](const Grid& grid, const float* values, const float* du, const float* dv,
+                          int width, float tolerance) {
+        // Differences over two steps of what is at most quadratic are exact at the middle one,
+        // inside the grid where no vertex was moved onto an edge's.
+        for (int j = 2; j < grid.n_v - 1; ++j)
+            for (int i = 2; i < grid.n_u - 1; ++i)
+                for (int c = 0; c < width; ++c) {
+                    const int row = grid.n_u + 1, v = j * row + i;
+                    EXPECT_NEAR(du[v * width + c],
+                                0.5f * (values[(v + 1) * width + c] - values[(v - 1) * width + c]),
+                                tolerance);
+                    EXPECT_NEAR(
+                        dv[v * width + c],
+                        0.5f * (values[(v + row) * width + c] - values[(v - row) * width + c]),
+                        tolerance);
+                }
+    };
+    for (const auto& grid : s.grids()) {
+        if (grid->key.face == 0)  // a triangle's narrow end takes the middle's step
+            check(*grid, &grid->positions[0].x, &grid->dp_du[0].x, &grid->dp_dv[0].x, 3, 1e-4f);
+        ASSERT_EQ(grid->attributes.size(), 4u);
+        for (const GridAttribute& a : grid->attributes) {
+            ASSERT_EQ(a.values.size(), static_cast<std::size_t>(grid->vertex_count() * a.width));
+            if (grid->key.face == 0)
+                check(*grid, a.values.data(), a.du.data(), a.dv.data(), a.width, 1e-4f);
+        }
+        for (std::size_t i = 0; i < grid->positions.size(); ++i) {
+            const Vec3f p = grid->positions[i];
+            EXPECT_NEAR(glm::distance(p, Vec3f(grid->attributes[2].values[3 * i],
+                                               grid->attributes[2].values[3 * i + 1],
+                                               grid->attributes[2].values[3 * i + 2])),
+                        0.0f, 1e-4f);
+            EXPECT_NEAR(grid->attributes[1].values[3 * i], p.x / 60.0f, 1e-5f);
+            EXPECT_EQ(grid->attributes[3].values[3 * i], 0.0f);
+            EXPECT_GT(glm::length(grid->dp_du[i]), 0.0f);
+            EXPECT_GT(glm::length(grid->dp_dv[i]), 0.0f);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace granita::testing
