@@ -82,8 +82,8 @@ Environment::Environment(const WorldEvaluator& world, int height)
     for (int row = 0; row < m_height; ++row) {
         const Vec3f* line = radiance.data() + static_cast<std::size_t>(row) * m_width;
         for (int column = 0; column < m_width; ++column) {
-            // The larger of the texel and its neighbours: what a filtered texture brings across a
-            // texel's border is never sampled with too small a density.
+            // At least a tenth of the brightest neighbour: what a filtered texture brings across a
+            // texel's border is never sampled with far too small a density.
             double largest = 0.0;
             for (int dy = -1; dy <= 1; ++dy) {
                 const int y = std::clamp(row + dy, 0, m_height - 1) - row;
@@ -91,7 +91,7 @@ Environment::Environment(const WorldEvaluator& world, int height)
                     const int x = (column + dx + m_width) % m_width;
                     const Vec3f& c = line[static_cast<std::ptrdiff_t>(y) * m_width + x];
                     const double l = luminance(c);
-                    largest = std::max(largest, (dx == 0 && dy == 0) ? l : 0.5 * l);
+                    largest = std::max(largest, (dx == 0 && dy == 0) ? l : 0.1 * l);
                 }
             }
             columns[column] = largest;

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/ray_scene.h"
+
+#include <gtest/gtest.h>
+#include <opensubdiv/bfr/surface.h>
+
+#include <limits>
+
+#include "base/error.h"
+#include "geometry/shared_geometry.h"
+#include "geometry/subdivision_topology.h"
+#include "shade/light_scene.h"
+#include "shade/sampling.h"
+
+namespace granita {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+const Vec3f kUp(0, 0, 1);
+
+GeometryData square(float half) {
+    return quads("mesh 'Square'",
+                 {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}});
+}
+
+/// A cube's cage, every face a quad.
+GeometryData cube() {
+    GeometryData data;
+    data.name = "mesh 'Cube'";
+    for (int i = 0; i < 8; ++i)
+        data.points.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+    data.corner_verts = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
+    data.face_sizes.assign(6, 4);
+    return data;
+}
+
+TEST(RayScene, a_square_blocks_exactly_the_rays_through_it) {
+    Scene scene = empty_scene();
+    add_instance(scene, square(0.5f), at({2, 0, 1}));
+    const Progress progress;
+    const RayScene rays(scene, Vec3d(0.0), {}, progress);
+    // A lamp at height 2 above the square's centre doubles its shadow on the floor.
+    const Vec3f lamp(2, 0, 2);
+    const SobolPoints points(1);
+    for (std::uint32_t i = 0; i < 4096; ++i) {
+        const Vec2f u = points(i) * 4.0f - 2.0f;
+        const float edge = std::max(std::abs(u.x), std::abs(u.y)) - 1.0f;
+        if (std::abs(edge) < 1e-5f) continue;
+        const Vec3f p(2 + u.x, u.y, 0), d = lamp - p;
+        const Vec3f left = rays.transmittance(p, glm::normalize(d), glm::length(d));
+        EXPECT_EQ(left, Vec3f(edge < 0 ? 0.0f : 1.0f)) << u.x << " " << u.y;
+    }
+    // What lies beyond the lamp casts no shadow.
+    EXPECT_EQ(rays.transmittance({2, 0, 0}, kUp, 0.9f), Vec3f(1.0f));
+    EXPECT_EQ(rays.transmittance({2, 0, 0}, kUp, kInfinity), Vec3f(0.0f));
+    EXPECT_GT(rays.bytes(), 0u);
+}
+
+TEST(RayScene, instances_that_cast_no_shadow_are_not_in_it) {
+    Scene scene = empty_scene();
+    scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].casts_shadow = false;
+    const Progress progress;
+    EXPECT_TRUE(RayScene(scene, Vec3d(0.0), {}, progress).empty());
+}
+
+TEST(RayScene, stands_at_the_frame_time_between_knots) {
+    Scene scene = empty_scene();
+    Instance& moving = scene.instances[add_instance(scene, square(0.1f), at({0, 0, 1}))];
+    moving.world_from_object = {at({-1, 0, 1}), at({3, 0, 1})};
+    scene.options.frame_time = 0.5f;
+    const Progress progress;
+    const RayScene rays(scene, Vec3d(0.0), {}, progress);
+    EXPECT_EQ(rays.transmittance({1, 0, 0}, kUp, kInfinity), Vec3f(0.0f));
+    EXPECT_EQ(rays.transmittance({-1, 0, 0}, kUp, kInfinity), Vec3f(1.0f));
+}
+
+TEST(RayScene, keeps_its_bits_far_from_the_worlds_origin) {
+    const Vec3d far(1e6, -2e6, 3e6);
+    Scene scene = empty_scene();
+    add_instance(scene, square(0.5f), at(far + Vec3d(0, 0, 1)));
+    const Progress progress;
+    const RayScene rays(scene, far, {}, progress);
+    EXPECT_EQ(rays.transmittance({0.4999f, 0, 0}, kUp, kInfinity), Vec3f(0.0f));
+    EXPECT_EQ(rays.transmittance({0.5001f, 0, 0}, kUp, kInfinity), Vec3f(1.0f));
+}
+
+TEST(RayScene, lifted_points_of_a_limit_surface_do_not_shade_themselves) {
+    // A cube's limit surface: points on it, from a finer evaluation than the ray scene's, are lit
+    // from every direction above their tangent plane.
+    GeometryData cage = cube();
+    cage.is_subdivision = true;
+    Scene scene = empty_scene();
+    add_instance(scene, cage, at({0, 0, 0}));
+    const Progress progress;
+    const RayScene rays(scene, Vec3d(0.0), {}, progress);
+    Report report;
+    const SharedGeometry shared(cage, 0.5f, report);
+    int tested = 0;
+    for (std::uint32_t face = 0; face < 6; ++face) {
+        OpenSubdiv::Bfr::Surface<float> surface;
+        ASSERT_TRUE(
+            shared.subdivision()->factory().InitVertexSurface(static_cast<int>(face), &surface));
+        std::vector<float> control(static_cast<std::size_t>(surface.GetNumPatchPoints()) * 3);
+        surface.PreparePatchPoints(&cage.points[0].x, 3, control.data(), 3);
+        const SobolPoints points(face);
+        for (std::uint32_t i = 0; i < 200; ++i) {
+            const Vec2f uv = points(i);
+            Vec3f p, du, dv;
+            surface.Evaluate(&uv.x, control.data(), 3, &p.x, &du.x, &dv.x);
+            const Vec3f n = glm::normalize(glm::cross(du, dv));
+            ASSERT_GT(glm::dot(n, p), 0.0f);
+            const GridKey key{0, face, 1};
+            const Vec3f start = rays.lift(key, p, n);
+            EXPECT_LT(glm::length(start - p), 0.02f);  // the lift stays small
+            const Vec3f local = sample_cone(points(i + 1000), 0.98f);
+            EXPECT_EQ(rays.transmittance(start, Frame(n).to_world(local), kInfinity), Vec3f(1.0f));
+            // And it is solid: looking inwards is dark.
+            EXPECT_EQ(rays.transmittance(start, -n, kInfinity), Vec3f(0.0f));
+            ++tested;
+        }
+    }
+    EXPECT_EQ(tested, 1200);
+}
+
+TEST(RayScene, lifted_points_of_scaled_and_twisted_quads_do_not_shade_themselves) {
+    Scene scene = empty_scene();
+    const GeometryData saddle =
+        quads("mesh 'Saddle'", {{0, 0, 0.1f}, {1, 0, -0.1f}, {1, 1, 0.1f}, {0, 1, -0.1f}});
+    Mat4d place = at({500, 0, 0});
+    for (int axis = 0; axis < 3; ++axis) place[axis] *= 10.0;
+    add_instance(scene, saddle, place);
+    const Progress progress;
+    const RayScene rays(scene, Vec3d(0.0), {}, progress);
+    const SobolPoints points(1);
+    for (std::uint32_t i = 0; i < 500; ++i) {
+        const Vec2f u = points(i);
+        const float z = 0.1f * (1 - 2 * u.x) * (1 - 2 * u.y);  // the bilinear patch
+        const Vec3f p(500 + 10 * u.x, 10 * u.y, 10 * z);
+        const Vec3f n = glm::normalize(Vec3f(0.2f * (1 - 2 * u.y), 0.2f * (1 - 2 * u.x), 1.0f));
+        EXPECT_EQ(rays.transmittance(rays.lift({0, 0, 1}, p, n), kUp, kInfinity), Vec3f(1.0f));
+    }
+}
+
+TEST(RayScene, transparent_materials_multiply_and_opaque_ones_end) {
+    Scene scene = empty_scene();
+    scene.materials.resize(2);
+    for (int layer = 1; layer <= 3; ++layer)
+        scene.instances[add_instance(scene, square(1), at({0, 0, layer}))].materials = {0};
+    ShadowOpacity opacity;
+    opacity.is_transparent = [](std::int32_t material) { return material == 0; };
+    opacity.transparency = [](const ShadowHit& hit) {
+        // A cut-out: a hole where the first coordinate is positive, tinted glass elsewhere.
+        EXPECT_EQ(hit.material, 0);
+        EXPECT_NEAR(hit.normal.z, 1.0f, 1e-6f);
+        float x = 0.0f, sum = 0.0f;
+        const float corner_x[4] = {-1, 1, 1, -1};
+        for (const auto& [corner, weight] : hit.corners) {
+            x += weight * corner_x[corner];
+            sum += weight;
+        }
+        EXPECT_NEAR(sum, 1.0f, 1e-6f);
+        EXPECT_NEAR(x, hit.p.x, 1e-5f);
+        return x > 0 ? Vec3f(1.0f) : Vec3f(0.5f, 0.25f, 1.0f);
+    };
+    const Progress progress;
+    const RayScene rays(scene, Vec3d(0.0), opacity, progress);
+    EXPECT_EQ(rays.transmittance({0.5f, 0.2f, 0}, kUp, kInfinity), Vec3f(1.0f));
+    EXPECT_EQ(rays.transmittance({-0.5f, 0.2f, 0}, kUp, kInfinity), Vec3f(0.125f, 0.015625f, 1.0f));
+    EXPECT_EQ(rays.transmittance({-0.5f, 0.2f, 0}, kUp, 2.5f), Vec3f(0.25f, 0.0625f, 1.0f));
+
+    scene.instances[1].materials = {1};
+    const RayScene blocked(scene, Vec3d(0.0), opacity, progress);
+    EXPECT_EQ(blocked.transmittance({0.5f, 0.2f, 0}, kUp, kInfinity), Vec3f(0.0f));
+}
+
+TEST(RayScene, hits_on_a_limit_surface_name_the_cages_corners) {
+    GeometryData cage = cube();
+    cage.is_subdivision = true;
+    cage.subdivision.scheme = SubdivisionScheme::Simple;  // stays the cube: corners are known
+    Scene scene = empty_scene();
+    scene.materials.resize(1);
+    scene.instances[add_instance(scene, cage, at({0, 0, 0}))].materials = {0};
+    std::vector<Vec3f> seen;
+    ShadowOpacity opacity;
+    opacity.is_transparent = [](std::int32_t) { return true; };
+    opacity.transparency = [&](const ShadowHit& hit) {
+        Vec3f p(0.0f);
+        for (const auto& [corner, weight] : hit.corners)
+            p += weight * cage.points[static_cast<std::size_t>(cage.corner_verts[corner])];
+        EXPECT_LT(glm::length(p - hit.p), 1e-4f);
+        seen.push_back(p);
+        return Vec3f(0.5f);
+    };
+    const Progress progress;
+    const RayScene rays(scene, Vec3d(0.0), opacity, progress);
+    EXPECT_EQ(rays.transmittance({0.33f, -0.71f, -3}, kUp, kInfinity), Vec3f(0.25f));
+    EXPECT_EQ(seen.size(), 2u);
+}
+
+TEST(RayScene, an_error_inside_a_material_comes_out_of_the_ray) {
+    Scene scene = empty_scene();
+    scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].materials = {0};
+    scene.materials.resize(1);
+    ShadowOpacity opacity;
+    opacity.is_transparent = [](std::int32_t) { return true; };
+    opacity.transparency = [](const ShadowHit&) -> Vec3f { throw SceneError("material 'M'", "x"); };
+    const Progress progress;
+    const RayScene rays(scene, Vec3d(0.0), opacity, progress);
+    EXPECT_THROW(rays.transmittance({0, 0, 0}, kUp, kInfinity), SceneError);
+}
+
+TEST(RayScene, stops_when_cancelled) {
+    Scene scene = empty_scene();
+    add_instance(scene, square(1), at({0, 0, 1}));
+    Progress progress;
+    progress.cancel();
+    EXPECT_THROW(RayScene(scene, Vec3d(0.0), {}, progress), Cancelled);
+}
+
+TEST(RayScene, broken_faces_and_flat_transforms_neither_cast_nor_harm) {
+    Scene scene = empty_scene();
+    GeometryData broken = square(1);
+    broken.points[2].x = std::numeric_limits<float>::quiet_NaN();
+    add_instance(scene, broken, at({0, 0, 1}));
+    Mat4d flat = at({0, 0, 1});
+    flat[0] *= 0.0;
+    add_instance(scene, square(1), flat);
+    const Progress progress;
+    const RayScene rays(scene, Vec3d(0.0), {}, progress);
+    EXPECT_EQ(rays.transmittance({0, 0, 0}, kUp, kInfinity), Vec3f(1.0f));
+}
+
+}  // namespace
+}  // namespace granita
