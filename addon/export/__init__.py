@@ -98,7 +98,7 @@ def _shading(depsgraph, used_materials, scan, report):
     from .world import export_world
 
     materials, images = export_materials(used_materials, report)
-    world = export_world(depsgraph.scene_eval, depsgraph.view_layer_eval, report)
+    world = export_world(depsgraph.scene_eval, depsgraph.view_layer_eval, report, images)
     no_place = np.eye(4)[None]
     is_light = np.array([kind.type == "LIGHT" for kind in scan.kinds], dtype=bool)
     lights = [

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images that nodes show, as records of docs/scene_snapshot.md: a file wherever there is one (the native
+texture cache reads it in tiles), pixels for what exists in memory alone."""
+
+import hashlib
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+_KNOWN_SPACES = {"sRGB", "Non-Color", "Raw", "Linear", "Linear Rec.709", "Linear BT.709"}
+
+
+def image_name(image, image_user, images, report):
+    """Adds an image to the records, once.
+
+    Args:
+        image: bpy Image.
+        image_user: ImageUser of the node: which frame of a sequence.
+        images: {name: record} to add to.
+        report: called with (datablock, message).
+
+    Returns:
+        the record's name.
+    """
+    path = _sequence_path(image, image_user)
+    name = image.name_full if path is None else f"{image.name_full} {Path(path).name}"
+    if name not in images:
+        images[name] = _record(image, name, path, report)
+    return name
+
+
+def _sequence_path(image, image_user):
+    """The file of the current frame; None where the image is no sequence."""
+    if image.source != "SEQUENCE":
+        return None
+    return image.filepath_from_user(image_user=image_user)
+
+
+def _record(image, name, path, report):
+    label = f"image '{image.name_full}'"
+    space = image.colorspace_settings.name
+    if space not in _KNOWN_SPACES:
+        report(label, f"its colour space '{space}' is read as sRGB")
+    record = {"name": name, "path": "", "colorspace": space, "alpha_mode": image.alpha_mode}
+    if path is not None:
+        record["path"] = path
+    elif image.source in ("FILE", "TILED") and not image.is_dirty:
+        record["path"] = _packed_file(image) or _file_path(image, label, report)
+    else:
+        pixels = _pixels(image)
+        if pixels is None:
+            report(label, f"its source {image.source} has no pixels: shown magenta")
+            record["path"] = image.filepath or image.name_full
+        else:
+            record["pixels"] = pixels
+    return record
+
+
+def _file_path(image, label, report):
+    path = bpy.path.abspath(image.filepath, library=image.library)
+    if image.source == "TILED":
+        tile = image.tiles[0].number if len(image.tiles) else 1001
+        report(label, f"only its tile {tile} is shown")
+        u, v = (tile - 1001) % 10 + 1, (tile - 1001) // 10 + 1
+        path = path.replace("<UDIM>", str(tile)).replace("<UVTILE>", f"u{u}_v{v}")
+    return path
+
+
+def _packed_file(image):
+    """Writes packed bytes where a file reader can open them; None where nothing is packed.
+
+    Blender deletes its own temporary folder when it ends.  The name follows from the content: frames
+    of an animation share the file.
+    """
+    if image.packed_file is None:
+        return None
+    data = image.packed_file.data
+    if not data:
+        return None
+    suffix = Path(image.filepath).suffix or f".{image.file_format.lower()}"
+    digest = hashlib.sha1(data).hexdigest()
+    path = Path(bpy.app.tempdir or "/tmp") / f"granita-{digest}{suffix}"
+    if not path.exists():
+        path.write_bytes(data)
+    return str(path)
+
+
+def _pixels(image):
+    """float32 [h, w, 4], lower left first, scene-linear; None where Blender has none."""
+    width, height = image.size
+    if width == 0 or height == 0:
+        return None
+    values = np.empty(width * height * image.channels, dtype=np.float32)
+    image.pixels.foreach_get(values)
+    values = values.reshape(height, width, image.channels)
+    pixels = np.ones((height, width, 4), dtype=np.float32)
+    count = image.channels
+    pixels[..., :3] = values[..., :3] if count >= 3 else values[..., :1]
+    if count in (2, 4):
+        pixels[..., 3] = values[..., count - 1]
+    # Blender gives the pixels of 8-bit images in their own space, of others scene-linear.
+    if not image.is_float and image.colorspace_settings.name not in _KNOWN_SPACES - {"sRGB"}:
+        pixels[..., :3] = _linear_from_srgb(pixels[..., :3])
+    return pixels
+
+
+def _linear_from_srgb(x):
+    return np.where(x < 0.04045, np.maximum(x, 0) / 12.92, ((np.abs(x) + 0.055) / 1.055) ** 2.4)

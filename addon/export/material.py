@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Materials as node graphs (docs/scene_snapshot.md)."""
+
+from .nodes import FlatGraph
+
+
+def export_materials(materials, report):
+    """The snapshot's `materials` and the images they show.
+
+    Args:
+        materials: evaluated Materials, in the order of the snapshot.
+        report: called with (datablock, message).
+
+    Returns:
+        (list of material records, list of image records).
+    """
+    images = {}
+    records = [material_record(material, images, report) for material in materials]
+    return records, list(images.values())
+
+
+def material_record(material, images, report):
+    """One entry of the snapshot's `materials`; `images` {name: record} grows."""
+    record = {"name": material.name_full, "index": material.pass_index, "displacement": None}
+    if not material.use_nodes or material.node_tree is None:
+        color = tuple(material.diffuse_color)
+        node = {
+            "type": "ShaderNodeBsdfDiffuse",
+            "name": "Viewport Display",
+            "inputs": {"Color": color},
+            "properties": {},
+        }
+        return {**record, "nodes": [node], "surface": (0, "BSDF")}
+    owner = f"material '{material.name_full}'"
+    graph = FlatGraph(material.node_tree, owner, images, report)
+    output = material.node_tree.get_output_node("CYCLES")
+    surface = None
+    if output is not None:
+        surface = graph.add(output.inputs["Surface"])
+        record["displacement"] = graph.add(output.inputs["Displacement"])
+        if output.inputs["Volume"].is_linked:
+            report(owner, "its volume is not rendered")
+    return {**record, "nodes": graph.nodes, "surface": surface}
