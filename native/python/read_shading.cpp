@@ -88,9 +88,11 @@ void read_light(const Record& r, Light& light) {
     if (color.size() == 3) light.color = {color[0], color[1], color[2]};
     light.energy = static_cast<float>(r.number("energy"));
     light.radius = static_cast<float>(r.number("radius", 0.0));
+    light.soft_falloff = r.boolean("soft_falloff", true);
     light.sun_angle = static_cast<float>(r.number("sun_angle", 0.0));
     light.spot_size = static_cast<float>(r.number("spot_size", 0.0));
     light.spot_blend = static_cast<float>(r.number("spot_blend", 0.0));
+    light.spot_cosine = r.boolean("spot_cosine", false);
     light.shape = static_cast<AreaShape>(
         choice(r, "shape", r.text("shape", "SQUARE"), {"SQUARE", "RECTANGLE", "DISK", "ELLIPSE"}));
     if (r.has("size")) light.size = Vec2f(r.pair("size"));
