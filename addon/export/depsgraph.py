@@ -5,10 +5,13 @@ The rules of that iterator, each learnt the hard way:
 - Curves, text, surfaces and metaballs come twice: as themselves, and as an instance of type MESH.
   Only the mesh counts.
 - The object of an instance is a temporary; only `instance_object` and `parent` outlive the step.
-- Left early, it leaks the rest of the list: it is always drained.
+- Left early, it leaks the rest of the list: it is always drained.  `foreach_get` looks at the first
+  element to learn its type and leaves, so it leaks too where that object is an instancer (66 MB in
+  three calls over 100,000 instances, 3.4 and 4.5): everything is read in the one loop.
 - Touching `.data` of an object whose Subsurf is last makes Blender subdivide: cages are found first.
 """
 
+from array import array
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,9 +19,9 @@ import numpy as np
 from .identity import combine, name_hash
 from .report import Cancelled
 from .subdivision import Cage, find_cage, simplify_level
-from .transforms import from_columns
 
 _POLL_EVERY = 1024
+_NO_ID = (0,) * 8
 
 # What the twin of type MESH stands for, or what has no surface.
 _NOT_SEEN = {
@@ -89,49 +92,40 @@ def visit(depsgraph, report, check_cancel, cages=None):
     Raises:
         Cancelled, or what check_cancel raises.
     """
-    instances = depsgraph.object_instances
-    count = len(instances)
-    matrices = _column(instances, "matrix_world", count, 16, np.float32)
-    is_instance = _column(instances, "is_instance", count, 1, np.bool_)
-    shows_self = _column(instances, "show_self", count, 1, np.bool_)
-    random = _column(instances, "random_id", count, 1, np.int32)
-    persistent = _column(instances, "persistent_id", count, 8, np.int32).reshape(-1, 8)
-
     walk = _Walk(depsgraph, report, cages)
-    kind = [-1] * count
-    iterator = iter(instances)
+    kind, rows, persistent, random, is_instance = [], array("d"), [], [], []
+    iterator = iter(depsgraph.object_instances)
     try:
-        for i, (instance, duplicate, seen) in enumerate(
-            zip(iterator, is_instance.tolist(), shows_self.tolist())
-        ):
+        for i, instance in enumerate(iterator):
             if i % _POLL_EVERY == 0 and check_cancel():
                 raise Cancelled
-            if seen:
-                kind[i] = walk.kind_of(instance, duplicate)
+            if not instance.show_self:
+                continue
+            duplicate = instance.is_instance
+            index = walk.kind_of(instance, duplicate)
+            if index < 0:
+                continue
+            kind.append(index)
+            for row in instance.matrix_world:
+                rows.extend(row)
+            is_instance.append(duplicate)
+            persistent.append(instance.persistent_id[:] if duplicate else _NO_ID)
+            random.append(instance.random_id if duplicate else 0)
     finally:
         for _ in iterator:
             pass
 
     kind = np.array(kind, dtype=np.int32)
-    taken = np.flatnonzero(kind >= 0)
-    kind = kind[taken]
     hashes = np.array([name_hash(k) for k in walk.kinds], dtype=np.uint64)
     return Visit(
         kinds=walk.kinds,
         kind=kind,
-        matrices=from_columns(matrices)[taken],
-        identity=combine(hashes[kind] if len(kind) else np.zeros(0, np.uint64), persistent[taken]),
-        random=random[taken].view(np.uint32),
-        is_instance=is_instance[taken],
+        matrices=np.frombuffer(rows, dtype=np.float64).reshape(-1, 4, 4),
+        identity=combine(hashes[kind], np.array(persistent, dtype=np.int32).reshape(-1, 8)),
+        random=np.array(random, dtype=np.int32).view(np.uint32),
+        is_instance=np.array(is_instance, dtype=bool),
         cages=walk.cages,
     )
-
-
-def _column(instances, name, count, width, dtype):
-    values = np.zeros(count * width, dtype=dtype)
-    if count:
-        instances.foreach_get(name, values)
-    return values
 
 
 class _Walk:

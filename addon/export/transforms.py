@@ -1,18 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's matrices in the snapshot's convention.
 
-Both are right-handed with column vectors.  Blender hands matrices to `foreach_get` column by
-column in float32; the snapshot wants rows, in float64, so that nothing is lost when
-camera-from-object is composed.  Blender's camera looks along its -z; the snapshot's looks along +z.
+Both are right-handed with column vectors, `m[row, column]`.  Blender's are float32; the snapshot's
+are float64, so that nothing is lost when camera-from-object is composed.  Blender's camera looks
+along its -z; the snapshot's looks along +z.
 """
 
 import numpy as np
-
-
-def from_columns(flat):
-    """float32 [n * 16], column by column -> float64 [n, 4, 4], `m[row, column]`."""
-    columns = np.asarray(flat).reshape(-1, 4, 4)
-    return np.ascontiguousarray(columns.transpose(0, 2, 1), dtype=np.float64)
 
 
 def from_matrix(matrix):

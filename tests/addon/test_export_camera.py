@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from export.camera import Frame, lens_radius, projection, sensor_size
-from export.transforms import from_columns, has_area, world_from_camera
+from export.transforms import has_area, world_from_camera
 
 HD = Frame(1920, 1080)
 
@@ -66,13 +66,6 @@ def test_camera_matrix_drops_scale_and_looks_along_plus_z():
 @pytest.mark.parametrize("broken", [0.0, np.nan, np.inf])
 def test_camera_without_extent(broken):
     assert world_from_camera(np.diag([1.0, broken, 1.0, 1.0])) is None
-
-
-def test_columns_become_rows():
-    flat = np.arange(32, dtype=np.float32)
-    rows = from_columns(flat)
-    assert rows.dtype == np.float64 and rows.flags.c_contiguous
-    assert rows[1, 0].tolist() == [16, 20, 24, 28]
 
 
 def test_area_survives_one_flat_axis_but_not_two():
