@@ -99,7 +99,7 @@ def test_scale_through_zero(executor):
     expected = np.maximum(1 - r / 50, 0)
     error = s.alpha(snapshot) - expected
     away = (np.abs(r - 50) > 2) & (r > 2)
-    assert np.abs(error[away]).max() <= 4 * OWEN[100, 256]
+    assert np.abs(error[away]).max() <= 4 * 2 * OWEN[100, 256]  # the outline passes inwards and outwards
 
 
 @pytest.mark.parametrize("knots", [2, 3, 5])
