@@ -5,6 +5,7 @@
 
 #include "dice/knots.h"
 #include "dice/opened_polygons.h"
+#include "dice/opened_subdivision.h"
 #include "dice/raster_bound.h"
 #include "geometry/geometry_cache.h"
 #include "geometry/shared_geometry.h"
@@ -82,6 +83,9 @@ std::shared_ptr<const OpenedInstance> open_instance(const View& view, std::size_
                     "approximated by " +
                         std::to_string(kMaxKnots - 1) + " segments");
     if (shared->patches().empty()) return std::make_shared<Nothing>();
+    if (shared->subdivision())
+        return std::make_shared<OpenedSubdivision>(view, index, std::move(shared), std::move(knots),
+                                                   report);
     return std::make_shared<OpenedPolygons>(view, index, std::move(shared), std::move(knots),
                                             report);
 }

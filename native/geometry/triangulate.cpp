@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/triangulate.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace granita {
@@ -29,22 +30,50 @@ bool contains(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& p) {
     return cross2(a, b, p) >= 0 && cross2(b, c, p) >= 0 && cross2(c, a, p) >= 0;
 }
 
-/// Whether the corner at position k of the remaining loop is an ear.  `slack` lets flat corners go
-/// when nothing better is left.
-bool is_ear(const std::vector<Vec2d>& p, const std::vector<int>& loop, std::size_t k, bool flat) {
-    const std::size_t n = loop.size();
-    const int a = loop[(k + n - 1) % n], b = loop[k], c = loop[(k + 1) % n];
-    const double area = cross2(p[a], p[b], p[c]);
-    if (flat ? area != 0.0 : area <= 0.0) return false;
-    if (flat) return true;
-    for (std::size_t m = 0; m < n; ++m) {
-        const int v = loop[m];
-        if (v == a || v == b || v == c) continue;
-        if (p[v] == p[a] || p[v] == p[b] || p[v] == p[c]) continue;
-        if (contains(p[a], p[b], p[c], p[v])) return false;
+/// The corners not yet cut off, a ring, and which of them turn inwards: only those can lie in an
+/// ear.
+class Ring {
+  public:
+    explicit Ring(const std::vector<Vec2d>& points)
+        : m_points(points), m_next(points.size()), m_last(points.size()) {
+        const int n = static_cast<int>(points.size());
+        for (int i = 0; i < n; ++i) {
+            next(i) = (i + 1) % n;
+            last(i) = (i + n - 1) % n;
+        }
+        for (int i = 0; i < n; ++i)
+            if (turn(i) <= 0.0) m_inward.push_back(i);
     }
-    return true;
-}
+    int& next(int i) { return m_next[static_cast<std::size_t>(i)]; }
+    int& last(int i) { return m_last[static_cast<std::size_t>(i)]; }
+    const Vec2d& at(int i) const { return m_points[static_cast<std::size_t>(i)]; }
+    double turn(int i) { return cross2(at(last(i)), at(i), at(next(i))); }
+
+    bool is_ear(int i) {
+        if (turn(i) <= 0.0) return false;
+        const int a = last(i), c = next(i);
+        for (const int v : m_inward) {
+            if (v == a || v == i || v == c) continue;
+            if (at(v) == at(a) || at(v) == at(i) || at(v) == at(c)) continue;
+            if (contains(at(a), at(i), at(c), at(v))) return false;
+        }
+        return true;
+    }
+    void cut(int i) {
+        const int a = last(i), c = next(i);
+        next(a) = c;
+        last(c) = a;
+        std::erase_if(m_inward, [&](int v) { return v == i || turn(v) > 0.0; });
+        // A corner with room to both sides can become flat, never the other way round.
+        for (const int v : {a, c})
+            if (turn(v) <= 0.0 && std::find(m_inward.begin(), m_inward.end(), v) == m_inward.end())
+                m_inward.push_back(v);
+    }
+
+  private:
+    const std::vector<Vec2d>& m_points;
+    std::vector<int> m_next, m_last, m_inward;
+};
 
 Triangulation fan(std::size_t corners) {
     Triangulation result;
@@ -81,28 +110,21 @@ Triangulation triangulate(std::span<const Vec3f> polygon) {
     const std::vector<Vec2d> flat = flatten(polygon, normal);
 
     Triangulation result;
-    std::vector<int> loop(n);
-    for (std::size_t i = 0; i < n; ++i) loop[i] = static_cast<int>(i);
-    // Starting each search behind the last ear keeps triangles from fanning out of one corner.
-    std::size_t start = 0;
-    while (loop.size() > 3) {
-        bool found = false;
-        for (bool flat_corner : {false, true}) {
-            for (std::size_t s = 0; s < loop.size() && !found; ++s) {
-                const std::size_t k = (start + s) % loop.size();
-                if (!is_ear(flat, loop, k, flat_corner)) continue;
-                const std::size_t m = loop.size();
-                result.triangles.push_back({loop[(k + m - 1) % m], loop[k], loop[(k + 1) % m]});
-                loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(k));
-                start = (k + 1) % loop.size();
-                found = true;
-            }
-            if (found) break;
-        }
-        if (!found) return fan(n);
+    Ring ring(flat);
+    int corner = 0;
+    for (std::size_t left = n; left > 3; --left) {
+        // An ear, or else a corner of no area: the ring is then a point narrower and no less full.
+        int found = -1;
+        for (const bool empty : {false, true})
+            for (std::size_t i = 0; i < left && found < 0; ++i, corner = ring.next(corner))
+                if (empty ? ring.turn(corner) == 0.0 : ring.is_ear(corner)) found = corner;
+        if (found < 0) return fan(n);
+        result.triangles.push_back({ring.last(found), found, ring.next(found)});
+        corner = ring.next(ring.next(found));  // not all out of one corner
+        ring.cut(found);
     }
-    if (cross2(flat[loop[0]], flat[loop[1]], flat[loop[2]]) < 0.0) return fan(n);
-    result.triangles.push_back({loop[0], loop[1], loop[2]});
+    if (ring.turn(corner) < 0.0) return fan(n);
+    result.triangles.push_back({ring.last(corner), corner, ring.next(corner)});
     return result;
 }
 
