@@ -19,6 +19,8 @@ _LAYOUT = {
     "INT32_2D": ("value", 2, np.int32),
     "QUATERNION": ("value", 4, np.float32),
 }
+# Of the nodes Attribute, Color Attribute and UV Map.
+_NAMING_PROPERTIES = {"attribute_name", "layer_name", "uv_map"}
 _DOMAINS = ("POINT", "FACE", "CORNER")
 
 
@@ -33,7 +35,7 @@ def requested_names(materials):
         for material in materials
         for node in material.get("nodes", ())
         for key, name in node.get("properties", {}).items()
-        if key == "attribute_name" and name
+        if key in _NAMING_PROPERTIES and name
     }
 
 
