@@ -85,8 +85,7 @@ def _separate(values, move):
 def _string_hash(text):
     value = 0
     for byte in text.encode():
-        # Cycles reads plain char, which is signed.
-        value = (value * 37 + (byte - 256 if byte > 127 else byte)) & _MASK
+        value = (value * 37 + byte) & _MASK
     return value
 
 
