@@ -102,6 +102,7 @@ def by_nodes(scene, cube, count=9):
     return count
 
 
+@pytest.mark.smoke
 @pytest.mark.parametrize(
     "make", [collection_instances, on_vertices, on_faces, by_particles, by_nodes]
 )

@@ -216,6 +216,7 @@ def test_empty_meshes_are_nothing(scene):
     assert len(report) == 0
 
 
+@pytest.mark.smoke
 def test_cage(scene, cube):
     modifier = add_subsurf(cube, 3)
     modifier.boundary_smooth = "PRESERVE_CORNERS"

@@ -36,6 +36,7 @@ def xs(snapshot, name):
     return knots_of(snapshot, name)[:, 0, 3]
 
 
+@pytest.mark.smoke
 @pytest.mark.parametrize(
     "position, expected",
     [("CENTER", [9.75, 10, 10.25]), ("START", [10, 10.25, 10.5]), ("END", [9.5, 9.75, 10])],
@@ -255,6 +256,109 @@ def test_armature(moving):
     moving.frame_set(10)
     snapshot, _, _ = export_probe.through_engine(moving)
     assert geometry_of(snapshot, "Square")["points"] == pytest.approx(np.array(expected), abs=1e-6)
+
+
+def wave_of_nodes(thing):
+    """Geometry nodes that lift every point by the scene's time."""
+    tree = bpy.data.node_groups.new("Lift", "GeometryNodeTree")
+    if hasattr(tree, "interface"):
+        for way in ("INPUT", "OUTPUT"):
+            tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    else:
+        tree.inputs.new("NodeSocketGeometry", "Geometry")
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
+    start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    time = tree.nodes.new("GeometryNodeInputSceneTime")
+    vector = tree.nodes.new("ShaderNodeCombineXYZ")
+    lift = tree.nodes.new("GeometryNodeSetPosition")
+    tree.links.new(time.outputs["Frame"], vector.inputs["Z"])
+    tree.links.new(vector.outputs[0], lift.inputs["Offset"])
+    tree.links.new(start.outputs[0], lift.inputs["Geometry"])
+    tree.links.new(lift.outputs[0], end.inputs[0])
+    thing.modifiers.new("Nodes", "NODES").node_group = tree
+
+
+def test_geometry_nodes_that_ask_for_the_time(moving):
+    wave_of_nodes(scene_parts.add_square(moving))
+    snapshot, _, _ = export_probe.through_engine(moving)
+    points = geometry_of(snapshot, "Square")["points"]
+    assert points[:, 0, 2] == pytest.approx([9.75, 10, 10.25])
+
+
+def test_deformed_instances_are_read_once(moving):
+    square = scene_parts.add_square(moving)
+    wave_of_nodes(square)
+    part = bpy.data.collections.new("Part")
+    part.objects.link(square)
+    moving.collection.objects.unlink(square)
+    for i in range(4):
+        empty = scene_parts.add_object(moving, f"Place{i}", None, (3 * i, 0, 0))
+        empty.instance_type, empty.instance_collection = "COLLECTION", part
+    snapshot, _, _ = export_probe.through_engine(moving)
+    assert snapshot["instances"]["geometry"].tolist() == [0] * 4
+    assert snapshot["instances"]["knots"].tolist() == [1] * 4
+    assert snapshot["geometries"][0]["points"].shape == (3, 4, 3)
+
+
+def test_deforming_text(moving):
+    """A curve's mesh is found again though it is a new one at every knot."""
+    bpy.ops.object.text_add()
+    drive(bpy.context.object.data, "extrude", "frame / 10")
+    snapshot, report, _ = export_probe.through_engine(moving)
+    points = geometry_of(snapshot, "Text")["points"]
+    assert points[:, :, 2].max(axis=1) == pytest.approx([0.975, 1.0, 1.025])
+    assert len(report) == 0
+
+
+def test_particles_fly(moving):
+    """Emitted at frame 1 without gravity, with 2 m/s: a frame of particles lasts .04 s at any rate."""
+    emitter = scene_parts.add_square(moving, "Emitter", 1.0)
+    emitter.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    flake = scene_parts.add_square(moving, "Flake", 0.1, (0, 0, -50))
+    flake.hide_render = False
+    settings = emitter.particle_systems[0].settings
+    settings.count, settings.frame_start, settings.frame_end = 5, 1, 1
+    settings.lifetime, settings.normal_factor = 1000, 2.0
+    settings.effector_weights.gravity = 0.0
+    settings.render_type, settings.instance_object = "OBJECT", flake
+    settings.particle_size = 1.0
+    settings.use_scale_instance = False
+    for frame in range(1, 11):
+        moving.frame_set(frame)
+    snapshot, _, _ = export_probe.through_engine(moving)
+    instances = snapshot["instances"]
+    first = np.cumsum(instances["knots"]) - instances["knots"]
+    flying = [i for i, knots in enumerate(instances["knots"]) if knots == 3]
+    assert len(flying) == 5
+    for i in flying:
+        z = instances["world_from_object"][first[i] : first[i] + 3, 2, 3]
+        assert np.diff(z) == pytest.approx([0.25 * 2 * 0.04] * 2, rel=1e-3)
+
+
+def same(a, b):
+    if isinstance(a, dict):
+        return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
+    if isinstance(a, (list, tuple)):
+        return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b))
+    return np.array_equal(a, b)
+
+
+def test_persistent_data_changes_nothing(moving):
+    square = scene_parts.add_square(moving)
+    drive(square, "location", "frame", 0)
+    drive(shape_key(square), "value", "frame / 20")
+    square.modifiers.new("Subsurf", "SUBSURF").render_levels = 2
+    scene_parts.add_square(moving, "Still").modifiers.new("Subsurf", "SUBSURF")
+
+    def frames():
+        for frame in (10, 11, 12):
+            moving.frame_set(frame)
+            yield export_probe.through_engine(moving)[0]
+
+    fresh = list(frames())
+    moving.render.use_persistent_data = True
+    assert all(same(a, b) for a, b in zip(fresh, frames(), strict=True))
+    assert not same(fresh[0], fresh[1])
 
 
 def build(square):
