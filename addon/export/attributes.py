@@ -65,6 +65,11 @@ def mesh_attributes(mesh, label, requested, report):
             )
             continue
         found.append(Attribute(name, attribute.domain, "GENERIC", values))
+    for attribute in found:
+        broken = ~np.isfinite(attribute.values)
+        if broken.any():
+            report(label, f"'{attribute.name}' holds values that are not finite: taken as 0")
+            attribute.values[broken] = 0.0
     return found
 
 

@@ -79,6 +79,9 @@ def read_geometry(mesh, label, requested, report, subdivision=None):
     )
     if subdivision is None:
         geometry.smooth, geometry.corner_normals = _shading(mesh)
+        if geometry.corner_normals is not None and not np.isfinite(geometry.corner_normals).all():
+            report(label, "its normals are not finite: computed from the faces instead")
+            geometry.corner_normals = None
     else:
         geometry.smooth = _smooth(mesh)
     _drop_broken_faces(geometry, report)

@@ -111,11 +111,17 @@ class _Sampler:
         self._present[shutter.frame_knot] = True
         self._still = still_kinds(frame_visit.kinds)
         self._points = {}
+        self._last = shutter.frame_knot
 
     def sample(self, knot, knows_updates):
         """Reads the scene, which stands at the knot's time."""
         if knows_updates:
+            if not moved(self._depsgraph):
+                # As it was at the last time that was visited, the frame's at first.
+                self._repeat(knot)
+                return
             self._changed |= changed_geometry(self._depsgraph)
+        self._last = knot
         self._cameras[knot] = camera_matrix(self._camera, self._depsgraph)
         now = visit(self._depsgraph, _silent, self._check_cancel, self._visit.cages)
         here, there = match(self._visit.identity, self._order, now.identity)
@@ -134,6 +140,13 @@ class _Sampler:
             if knows_updates and not self._changed & source.pointers:
                 continue
             self._read_points(knot, index, source, now.kinds[now.kind[thing]])
+
+    def _repeat(self, knot):
+        self._cameras[knot] = self._cameras[self._last]
+        self._matrices[knot] = self._matrices[self._last]
+        self._present[knot] = self._present[self._last]
+        for points in self._points.values():
+            points[knot] = points[self._last]
 
     def _read_points(self, knot, index, source, kind):
         if (kind.cage is None) != (source.cage is None):
@@ -169,6 +182,8 @@ class _Sampler:
         self._matrices[:, self._still[self._visit.kind]] = self._visit.matrices[
             self._still[self._visit.kind]
         ]
+        if not blurs(self._camera):
+            self._cameras = [self._cameras[frame_knot]] * len(self._cameras)
         motion = Motion(np.array(self._cameras), self._matrices)
         for index, knots in self._points.items():
             at_frame = self._geometries[index].geometry.points[0]
@@ -181,6 +196,13 @@ class _Sampler:
         return motion
 
 
+def moved(depsgraph):
+    """Whether the last step touched any place or geometry."""
+    return any(
+        update.is_updated_transform or update.is_updated_geometry for update in depsgraph.updates
+    )
+
+
 def changed_geometry(depsgraph):
     """Addresses of the original datablocks whose geometry the last step touched."""
     return {
@@ -190,15 +212,16 @@ def changed_geometry(depsgraph):
     }
 
 
+def blurs(thing):
+    """Whether an object has motion blur at all; a switch of Cycles', where it is enabled."""
+    return getattr(getattr(thing, "cycles", None), "use_motion_blur", True)
+
+
 def still_kinds(kinds):
     """bool [kinds]: objects whose motion blur is switched off, by themselves or their instancer."""
     return np.array(
         [
-            any(
-                not getattr(getattr(owner, "cycles", None), "use_motion_blur", True)
-                for owner in (kind.source, kind.parent)
-                if owner is not None
-            )
+            not blurs(kind.source) or (kind.parent is not None and not blurs(kind.parent))
             for kind in kinds
         ],
         dtype=bool,

@@ -5,13 +5,13 @@ import math
 import random
 
 import bpy
+import export_probe
 import numpy as np
 import pytest
+import scene_parts
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Matrix, Vector
 
-import export_probe
-import scene_parts
 from granita.export import ExportError
 
 

@@ -4,11 +4,11 @@
 import time
 
 import bpy
+import export_probe
 import numpy as np
 import pytest
-
-import export_probe
 import scene_parts
+
 from granita.export import Cancelled
 
 

@@ -2,10 +2,9 @@
 """What arrives of a mesh: faces, normals, attributes, and cages of subdivision surfaces."""
 
 import bpy
+import export_probe
 import numpy as np
 import pytest
-
-import export_probe
 import scene_parts
 from export_probe import attribute_of, geometry_of
 
@@ -205,6 +204,17 @@ def test_faces_with_vertices_that_are_not_finite_are_left_out_and_named(scene, c
     uv = attribute_of(geometry, "UV")["values"]
     assert uv[:, 0].tolist() == [8, 10, 12, 14, 24, 26, 28, 30, 40, 42, 44, 46]
     assert report.entries() == [("mesh 'Cube'", "1 vertices are not finite: 3 faces left out", 1)]
+
+
+def test_attribute_values_that_are_not_finite_are_named(scene, cube):
+    layer = cube.data.uv_layers.new(name="UV")
+    values = np.full(48, 0.5, dtype=np.float32)
+    values[[0, 7]] = np.nan, np.inf
+    layer.data.foreach_set("uv", values)
+    snapshot, report = export_probe.through_script()
+    uv = attribute_of(geometry_of(snapshot, "Cube"), "UV")["values"].reshape(-1)
+    assert np.flatnonzero(uv != 0.5).tolist() == [0, 7] and uv[0] == uv[7] == 0.0
+    assert [(d, "UV" in m) for d, m, _ in report.entries()] == [("mesh 'Cube'", True)]
 
 
 def test_empty_meshes_are_nothing(scene):

@@ -2,13 +2,13 @@
 """Motion at the knots of the shutter, and the frame restored on every path."""
 
 import bpy
+import export_probe
 import numpy as np
 import pytest
-
-import export_probe
 import scene_parts
 from export_probe import geometry_of, knots_of
-from granita.export import Cancelled
+
+from granita.export import Cancelled, motion
 
 
 @pytest.fixture
@@ -84,6 +84,30 @@ def test_motion_off_steps_no_time(moving):
 
     snapshot, _, _ = export_probe.through_engine(moving, before=listen, after=stop)
     assert xs(snapshot, "Square").tolist() == [10.0] and changes == []
+
+
+@pytest.mark.parametrize("moves", [False, True])
+def test_a_scene_that_stands_still_is_walked_once(moving, moves, monkeypatch):
+    square = scene_parts.add_square(moving)
+    if moves:
+        drive(square, "location", "frame", 0)
+    walks = []
+    walk = motion.visit
+    monkeypatch.setattr(motion, "visit", lambda *all_: walks.append(1) or walk(*all_))
+    export_probe.through_engine(moving)
+    assert len(walks) == (2 if moves else 0)
+
+
+def test_motion_in_one_half_of_the_shutter(moving):
+    """Nothing is updated before the frame, and after it things stay where they went."""
+    square = scene_parts.add_square(moving)
+    drive(square, "location", "max(frame, 10) if frame < 10.2 else 10.2", 0)
+    drive(shape_key(square), "value", "0 if frame < 10.1 else 1")
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=9)
+    times = np.linspace(9.75, 10.25, 9)
+    assert xs(snapshot, "Square") == pytest.approx(np.clip(times, 10, 10.2))
+    lifted = geometry_of(snapshot, "Square")["points"][:, 0, 2]
+    assert lifted.tolist() == (times >= 10.1).astype(float).tolist()
 
 
 @pytest.mark.parametrize("frame", [-3, 0, 1])
@@ -440,8 +464,11 @@ def test_objects_can_stand_out_of_motion_blur(moving):
     assert len(xs(snapshot, "Square")) == 3
     assert geometry_of(snapshot, "Square")["points"].shape[0] == 1
     square.cycles.use_motion_blur = False
+    drive(moving.camera, "location", "frame", 1)
+    moving.camera.cycles.use_motion_blur = False
     snapshot, _, _ = export_probe.through_engine(moving)
     assert xs(snapshot, "Square").tolist() == [10.0]
+    assert snapshot["camera"]["world_from_camera"][:, 1, 3].tolist() == [10.0]
 
 
 def test_the_camera_is_taken_at_the_frame_though_a_marker_follows(moving):

@@ -2,9 +2,8 @@
 """Object Info's Random is the same number in Cycles, for objects and for instances."""
 
 import bpy
-import pytest
-
 import export_probe
+import pytest
 import scene_parts
 
 
