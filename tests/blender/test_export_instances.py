@@ -8,16 +8,9 @@ import export_probe
 import numpy as np
 import pytest
 import scene_parts
+from mesh_parts import cube_in_view  # noqa: F401
 
 from granita.export import Cancelled
-
-
-@pytest.fixture
-def cube(scene):
-    scene_parts.add_camera(scene)
-    verts = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
-    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-    return scene_parts.add_mesh(scene, "Cube", verts, faces)
 
 
 def instances_of(snapshot, name):
