@@ -47,16 +47,17 @@ RasterFilter make_raster_filter(int lattice, double radius,
     return filter;
 }
 
-std::string filter_taps(const RasterFilter& filter) {
-    std::string taps;
-    for (std::size_t i = 0; i < filter.weights.size(); ++i) {
-        char tap[64];
+std::string weights_source(const RasterFilter& filter) {
+    std::string source;
+    for (const double weight : filter.weights) {
+        char number[32];
         // Nine digits make a float exact.
-        std::snprintf(tap, sizeof tap, "TAP(%d, %.9e) ", filter.first + static_cast<int>(i),
-                      static_cast<double>(static_cast<float>(filter.weights[i])));
-        taps += tap;
+        std::snprintf(number, sizeof number, "%.8e",
+                      static_cast<double>(static_cast<float>(weight)));
+        if (!source.empty()) source += ", ";
+        source += number;
     }
-    return taps;
+    return source;
 }
 
 }  // namespace granita

@@ -24,7 +24,7 @@ struct RasterFilter {
 RasterFilter make_raster_filter(int lattice, double radius,
                                 const std::function<double(double)>& factor);
 
-/// The TAPS of resolve/filter.frag.
-std::string filter_taps(const RasterFilter& filter);
+/// The weights as the source of a list of floats, for resolve/filter.frag.
+std::string weights_source(const RasterFilter& filter);
 
 }  // namespace granita

@@ -27,8 +27,11 @@ int choose_cell(const RasterFilter& filter, int max_texture_size) {
 }
 
 gl::Program filter_program(const RasterFilter& filter, const std::string& axis) {
-    const gl::Defines defines{
-        {"TAPS", filter_taps(filter)}, {"LATTICE", std::to_string(filter.lattice)}, {"AXIS", axis}};
+    const gl::Defines defines{{"TAP_WEIGHTS", weights_source(filter)},
+                              {"TAP_COUNT", std::to_string(filter.weights.size())},
+                              {"TAP_FIRST", std::to_string(filter.first)},
+                              {"LATTICE", std::to_string(filter.lattice)},
+                              {"AXIS", axis}};
     return gl::Program("pixel filter along " + axis,
                        {{GL_VERTEX_SHADER, gl::shader_source("resolve/screen.vert")},
                         {GL_FRAGMENT_SHADER, gl::shader_source("resolve/filter.frag", defines)}});
