@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <map>
+#include <mutex>
+#include <tuple>
+#include <utility>
 
 #include "shade/texture_input.h"
 #include "shade/texture_pyramid.h"
@@ -105,29 +108,58 @@ class CachedTexture final : public Texture {
     Report& m_report;
 };
 
+/// A cache with its texture system, lent to one frame at a time and never destroyed:
+/// OpenImageIO 2.4 deletes both as if they were a char, and the sized delete of jemalloc, which
+/// Debian's Blender links, then corrupts the heap (TextureSystemImpl and ImageCacheImpl::operator
+/// delete).
+class LentCache {
+  public:
+    LentCache() {
+        const std::lock_guard lock(idle().mutex);
+        if (idle().caches.empty()) {
+            cache = OIIO::ImageCache::create(false);
+            cache->attribute("max_memory_MB", kCacheMegabytes);
+            cache->attribute("max_open_files", kOpenFiles);
+            cache->attribute("autotile", 64);
+            cache->attribute("deduplicate", 0);
+            system = OIIO::TextureSystem::create(false, cache);
+        } else {
+            std::tie(cache, system) = idle().caches.back();
+            idle().caches.pop_back();
+        }
+    }
+    ~LentCache() {
+        cache->invalidate_all(true);
+        const std::lock_guard lock(idle().mutex);
+        idle().caches.emplace_back(cache, system);
+    }
+    LentCache(const LentCache&) = delete;
+    LentCache& operator=(const LentCache&) = delete;
+
+    OIIO::ImageCache* cache;
+    OIIO::TextureSystem* system;
+
+  private:
+    struct Idle {
+        std::mutex mutex;
+        std::vector<std::pair<OIIO::ImageCache*, OIIO::TextureSystem*>> caches;
+    };
+    static Idle& idle() {
+        static Idle the_idle;
+        return the_idle;
+    }
+};
+
 }  // namespace
 
 struct TextureStore::Impl {
     const Scene& scene;
     Statistics& statistics;
     Report& report;
-    OIIO::ImageCache* cache;
-    OIIO::TextureSystem* system;
+    LentCache lent;
     std::map<std::string, std::shared_ptr<const Texture>> textures;
 
-    Impl(const Scene& s, Statistics& stats, Report& r)
-        : scene(s), statistics(stats), report(r), cache(OIIO::ImageCache::create(false)) {
-        cache->attribute("max_memory_MB", kCacheMegabytes);
-        cache->attribute("max_open_files", kOpenFiles);
-        cache->attribute("autotile", 64);
-        cache->attribute("deduplicate", 0);
-        system = OIIO::TextureSystem::create(false, cache);
-    }
-    ~Impl() {
-        textures.clear();
-        OIIO::TextureSystem::destroy(system);
-        OIIO::ImageCache::destroy(cache);
-    }
+    Impl(const Scene& s, Statistics& stats, Report& r) : scene(s), statistics(stats), report(r) {}
 };
 
 TextureStore::TextureStore(const Scene& scene, Statistics& statistics, Report& report)
@@ -154,8 +186,9 @@ std::shared_ptr<const Texture> TextureStore::find(const std::string& name,
                             "cannot be read, shown magenta: " + image->path);
         return texture;
     }
-    texture = std::make_shared<CachedTexture>(*image, header.kind, *m_impl->system, *m_impl->cache,
-                                              m_impl->statistics, m_impl->report);
+    texture =
+        std::make_shared<CachedTexture>(*image, header.kind, *m_impl->lent.system,
+                                        *m_impl->lent.cache, m_impl->statistics, m_impl->report);
     return texture;
 }
 
