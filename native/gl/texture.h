@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "gl/handle.h"
@@ -29,7 +31,8 @@ class Texture {
     template <class T>
     std::vector<T> read(const TexelRect& rect, GLenum components, int component_count) const {
         std::vector<T> texels(static_cast<std::size_t>(rect.width) * rect.height * component_count);
-        const GLenum type = static_cast<T>(0.5f) == static_cast<T>(0) ? GL_UNSIGNED_INT : GL_FLOAT;
+        static_assert(std::is_same_v<T, float> || std::is_same_v<T, std::uint32_t>);
+        const GLenum type = std::is_same_v<T, float> ? GL_FLOAT : GL_UNSIGNED_INT;
         read_texels(rect, components, type, texels.size() * sizeof(T), texels.data());
         return texels;
     }
