@@ -205,9 +205,9 @@ def add_room() -> None:
     )
     plane("Board", 8 * SQUARE, square(0.5, 1.5), board)
     table = principled("Table", Base_Color=(0.02, 0.014, 0.012, 1), Roughness=0.5)
-    plane("Table", 200, square(0, 0, -0.6), table)
+    plane("Table", 60, (0, 36, -0.6), table)
     wall = principled("Wall", Base_Color=(0.05, 0.09, 0.11, 1), Roughness=0.9)
-    backdrop = plane("Wall", 120, (0, 40, 0), wall)
+    backdrop = plane("Wall", 60, (0, 40, 0), wall)
     backdrop.rotation_euler.x = math.radians(90)
     add_lanterns()
 
@@ -298,7 +298,8 @@ def set_render(scene: bpy.types.Scene) -> None:
     scene.view_settings.look = "Medium High Contrast"
 
 
-def main() -> None:
+def build() -> None:
+    """Make the scene in place of whatever is open."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     add_knight()
@@ -310,6 +311,10 @@ def main() -> None:
     light_scene()
     add_camera()
     set_render(scene)
+
+
+def main() -> None:
+    build()
     target = Path(sys.argv[sys.argv.index("--") + 1]).resolve()
     bpy.ops.wm.save_as_mainfile(filepath=str(target), compress=True)
 
