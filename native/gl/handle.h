@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
 #include <utility>
 
 namespace granita::gl {
 
-/// Owns one OpenGL name.  Move-only.  Made and destroyed on the thread whose context is current.
+/// Owns one OpenGL name.  Move-only.  Made and destroyed on the thread whose context is current;
+/// where no context is, the name is left to end with its own context, because a call would end the
+/// process.
 template <void (*Delete)(GLuint)>
 class Handle {
   public:
@@ -19,7 +22,7 @@ class Handle {
         return *this;
     }
     ~Handle() {
-        if (m_name != 0) Delete(m_name);
+        if (m_name != 0 && eglGetCurrentContext() != EGL_NO_CONTEXT) Delete(m_name);
     }
     GLuint name() const { return m_name; }
 

@@ -48,11 +48,13 @@ class RasterHider::Bucket : public RasterBucket {
         add(Counter::Micropolygons, m_geometry.micropolygons());
         add(Counter::MicropolygonsDropped, m_geometry.dropped());
         m_thread.run([&] {
-            m_buffers.emplace();
-            m_buffers->positions = gl::Buffer::of(m_geometry.positions());
-            m_buffers->indices = gl::Buffer::of(m_geometry.indices());
-            m_buffers->array.set_floats(RASTER_POSITION, m_buffers->positions, 3);
-            m_buffers->array.set_indices(m_buffers->indices);
+            // Whole or not at all: what is made here must not end on another thread.
+            Buffers buffers;
+            buffers.positions = gl::Buffer::of(m_geometry.positions());
+            buffers.indices = gl::Buffer::of(m_geometry.indices());
+            buffers.array.set_floats(RASTER_POSITION, buffers.positions, 3);
+            buffers.array.set_indices(buffers.indices);
+            m_buffers = std::move(buffers);
         });
     }
     ~Bucket() override {

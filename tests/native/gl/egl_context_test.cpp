@@ -43,6 +43,18 @@ TEST(EglContext, two_in_turn_keep_their_own_objects) {
     check("after the second context");
 }
 
+TEST(EglContext, objects_that_outlive_it_do_no_harm) {
+    Buffer orphan;
+    {
+        const EglContext context;
+        orphan = Buffer(4, nullptr);
+        EXPECT_NE(orphan.name(), 0u);
+    }
+    EXPECT_NO_THROW(orphan = Buffer());
+    const EglContext context;
+    check("in the next context");
+}
+
 TEST(EglContext, says_whether_it_is_software) {
     const EglContext context;
     if (context.info().renderer.find("llvmpipe") != std::string::npos) {
