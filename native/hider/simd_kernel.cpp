@@ -208,7 +208,7 @@ class Kernel {
         const float cells = static_cast<float>(m_tile.time_cells);
         const V scale = set(cells / static_cast<float>(m_grid.segments));
         const V widen = set(cells * 0x1p-20f);
-        const V lowest = zero, highest = set(cells - 1.0f);
+        const V lowest = zero, highest = set(std::nextafter(cells, 0.0f));  // its floor is a cell
         const V start = set(static_cast<float>(segment));
         for (int i = 0; i <= last - first; i += static_cast<int>(lane_count())) {
             const V left = hn::Iota(kTag, static_cast<float>(first + i));

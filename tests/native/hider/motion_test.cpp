@@ -48,9 +48,8 @@ TEST_P(Motion, MovingDisc) {
 Picture dolly(HiderMaker make, float z0, float z1) {
     Shot shot;
     shot.camera = pinhole_camera(500);
-    shot.options.samples = 256;
     shot.tiles = {7, 0, 8, 1};
-    shot.grids.push_back(disc(0, 0, {1, 1}, {z0, z1}, 512, 16));
+    shot.grids.push_back(disc(0, 0, {1, 1}, {z0, z1}, 96, 3));
     return render(make, shot);
 }
 
@@ -60,7 +59,7 @@ TEST_P(Motion, DollyInterpolatesBeforeProjection) {
         return std::clamp(1 - t, 0.0, 1.0);
     };
     ASSERT_NEAR(fraction(120, 0), .27083, 1e-5);
-    EXPECT_LE(worst_excess(dolly(GetParam(), 10, 2), fraction, 256), 0);
+    EXPECT_LE(worst_excess(dolly(GetParam(), 10, 2), fraction, 64), 0);
 }
 
 TEST_P(Motion, ThroughTheNearPlaneAndTheEye) {
@@ -69,18 +68,17 @@ TEST_P(Motion, ThroughTheNearPlaneAndTheEye) {
         return (std::min(2.0, 500 / std::hypot(x, y)) - .1) / 3;
     };
     ASSERT_NEAR(fraction(120, 0), .6333, 1e-4);
-    EXPECT_LE(worst_excess(dolly(GetParam(), 2, -1), fraction, 256), 0);
+    EXPECT_LE(worst_excess(dolly(GetParam(), 2, -1), fraction, 64), 0);
 }
 
 TEST_P(Motion, ScaleThroughZero) {
     Shot shot;
-    shot.options.samples = 256;
     shot.tiles = {1, 0, 2, 1};
-    shot.grids.push_back(disc(0, 0, {50, -50}, {5, 5}, 512, 50));
+    shot.grids.push_back(disc(0, 0, {50, -50}, {5, 5}, 96, 5));
     const auto fraction = [](double x, double y) {
         return std::max(0.0, 1 - std::hypot(x, y) / 50);
     };
-    EXPECT_LE(worst_excess(render(GetParam(), shot), fraction, 256), 0);
+    EXPECT_LE(worst_excess(render(GetParam(), shot), fraction, 64), 0);
 }
 
 TEST_P(Motion, MirroredInstance) {
