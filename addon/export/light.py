@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A light of Blender as the plain record of docs/scene_snapshot.md, read as Cycles reads it."""
+"""A light of Blender as the plain record of docs/scene_snapshot.md, read as Cycles reads it.
+
+Where Cycles changed its mind between Blenders, a light means what the host's own Cycles means by it;
+nothing but the version tells these changes.
+"""
 
 import math
 
@@ -23,6 +27,8 @@ def light_record(light_object, matrices, report):
     label = f"light '{light_object.name}'"
     color, factor = _emission(light, label, report)
     energy = light.energy * factor * 2.0 ** getattr(light, "exposure", 0.0)
+    if light.type == "AREA" and bpy.app.version < (4, 0, 0):
+        energy *= math.pi / 4.0  # radiance was P / (4 A) until 4.0 made it P / (pi A)
     if getattr(light, "use_temperature", False):
         color = [c * t for c, t in zip(color, light.temperature_color)]
     if not getattr(light, "normalize", True):
@@ -45,7 +51,7 @@ def light_record(light_object, matrices, report):
         "sun_angle": getattr(light, "angle", 0.0),
         "spot_size": getattr(light, "spot_size", 0.0),
         "spot_blend": getattr(light, "spot_blend", 0.0),
-        # Until 3.4 Cycles dimmed spots by the cosine to their axis; nothing but the version tells.
+        # Until 3.4 a spot was dimmed by the cosine to its axis and its cone ignored the scale.
         "spot_cosine": bpy.app.version < (3, 5, 0),
         "shape": shape if shape in _AREA_SHAPES else "SQUARE",
         "size": [size, getattr(light, "size_y", size) if _has_two_sizes(shape) else size],

@@ -24,7 +24,8 @@ struct Light {
     float sun_angle = 0.0f;    ///< radians, full angle
     float spot_size = 0.0f;    ///< radians, full cone
     float spot_blend = 0.0f;
-    bool spot_cosine = false;  ///< dimmed by the cosine to the axis, as Cycles before Blender 3.5
+    bool spot_cosine = false;  ///< as Cycles before Blender 3.5: dimmed by the cosine to the axis,
+    ///< the cone ignores the light's scale
     AreaShape shape = AreaShape::Square;
     Vec2f size{1.0f};  ///< area: metres, before the matrix's scale
     float spread = 3.14159265f;

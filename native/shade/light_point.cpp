@@ -10,11 +10,18 @@ float smoothstep(float t) {
     return c * c * (3.0f - 2.0f * c);
 }
 
+/// Rows are the unit axes: the inverse of an unsheared matrix but for its scale.
+Mat3d without_scale(const Mat3d& axes) {
+    return glm::transpose(
+        Mat3d(glm::normalize(axes[0]), glm::normalize(axes[1]), glm::normalize(axes[2])));
+}
+
 /// The cone of a spot, in the light's own space: a scaled light has an elliptic cone.
 class SpotCone {
   public:
     SpotCone(const Light& light, const LightFrame& frame)
-        : m_light_from_world(glm::inverse(frame.axes)),
+        : m_light_from_world(light.spot_cosine ? without_scale(frame.axes)
+                                               : glm::inverse(frame.axes)),
           m_direction(frame.direction),
           m_cos_half(std::cos(0.5f * light.spot_size)),
           m_smooth(std::max((1.0f - m_cos_half) * light.spot_blend, 1e-7f)),
