@@ -50,7 +50,8 @@ class Kind:
     parent: object  # evaluated Object that instances it, or None
     data: object = None  # evaluated Mesh; None for a cage and for lights
     cage: Cage = None
-    materials: list = field(default_factory=list)  # of evaluated Material or None, one a slot
+    # Evaluated Material or None, one a slot; of the visit at the frame alone.
+    materials: list = field(default_factory=list)
 
     @property
     def label(self):
@@ -87,7 +88,7 @@ def visit(depsgraph, report, check_cancel, cages=None):
         depsgraph: evaluated.
         report: called with (datablock, message).
         check_cancel: true when the user has cancelled.
-        cages: of an earlier Visit, which then decides what is a cage.
+        cages: of the Visit at the frame, which decides what is a cage; None at the frame itself.
 
     Raises:
         Cancelled, or what check_cancel raises.
@@ -137,6 +138,7 @@ class _Walk:
         self._mode = depsgraph.mode
         self._simplify = simplify_level(depsgraph.scene_eval.render, depsgraph.mode)
         self._index = {}
+        self._at_frame = cages is None
         self.cages = dict(cages or {})
 
     def kind_of(self, instance, duplicate):
@@ -171,11 +173,10 @@ class _Walk:
         index = self._index.get(key)
         if index is None:
             index = self._index[key] = len(self.kinds)
-            materials = (
-                [slot.material for slot in shown.material_slots] if kind_type == "MESH" else []
-            )
-            self.kinds.append(Kind(kind_type, shown.name, source, parent, data, cage, materials))
-            self._warn_of_hair(source)
+            kind = Kind(kind_type, shown.name, source, parent, data, cage)
+            self.kinds.append(kind)
+            if self._at_frame:
+                self._look_closer(kind, shown)
         return index
 
     def _cage(self, source):
@@ -190,8 +191,11 @@ class _Walk:
     def _may_make_instances(source):
         return any(modifier.type == "NODES" for modifier in source.modifiers)
 
-    def _warn_of_hair(self, source):
-        for system in source.particle_systems:
+    def _look_closer(self, kind, shown):
+        """What does not change within the shutter."""
+        if kind.type == "MESH":
+            kind.materials = [slot.material for slot in shown.material_slots]
+        for system in kind.source.particle_systems:
             settings = system.settings
             if settings.type == "HAIR" and settings.render_type == "PATH":
-                self._report(f"object '{source.name}'", f"hair '{system.name}' is not rendered")
+                self._report(f"object '{kind.name}'", f"hair '{system.name}' is not rendered")

@@ -125,26 +125,26 @@ def cages_only(cages, depsgraph):
 
 
 def _referenced(originals):
-    """Objects that something may read: all that have users beside scenes and plain collections."""
+    """Objects that something may read: all that have users beside scenes and plain collections.
+
+    A collection is not plain where it, or one around it, has such users itself (a boolean's, say).
+    """
     import bpy
 
-    holders = (bpy.types.Scene, bpy.types.Collection)
-
-    def used(datablocks):
-        users = bpy.data.user_map(subset=datablocks)
-        return {
-            datablock
-            for datablock, its_users in users.items()
-            if any(not isinstance(user, holders) for user in its_users)
-        }
-
-    originals = set(originals)
-    if not originals:
-        return set()
-    read = used(originals)
-    collections = {collection for thing in originals for collection in thing.users_collection}
-    for collection in used(collections) if collections else ():
-        read |= originals & set(collection.all_objects)
+    read, collections, found = set(), set(), set(originals)
+    while found:
+        users = bpy.data.user_map(subset=found)
+        found = set()
+        for datablock, its_users in users.items():
+            for user in its_users:
+                if isinstance(user, bpy.types.Collection):
+                    found.add(user)
+                elif not isinstance(user, bpy.types.Scene):
+                    read.add(datablock)
+        found -= collections
+        collections |= found
+    for collection in read & collections:
+        read |= set(collection.all_objects)
     return read
 
 
