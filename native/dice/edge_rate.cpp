@@ -15,6 +15,15 @@ constexpr double kOutside = 8.0;
 /// Halves this equal are taken for equal all the way down: lengths may then leave their range by as
 /// much.
 constexpr double kEqual = 0.05;
+/// Largest length over distance of what is not shown.
+constexpr double kNearby = 0.5;
+
+double distance_to_segment(const Vec3d& a, const Vec3d& b) {
+    const Vec3d d = b - a;
+    const double squared = glm::dot(d, d);
+    const double t = squared > 0.0 ? glm::clamp(-glm::dot(a, d) / squared, 0.0, 1.0) : 0.0;
+    return glm::length(a + d * t);
+}
 
 }  // namespace
 
@@ -33,16 +42,12 @@ EdgeRate::EdgeRate(const View& view)
       m_near(view.projection.perspective ? std::max(view.projection.near_clip, 1e-9)
                                          : view.projection.near_clip) {}
 
-void EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b, double& length) const {
+double EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b) const {
     Vec3d p(a), q(b);
-    if (p.z < m_near && q.z < m_near) {
+    if (m_projection.perspective && (p.z < m_near || q.z < m_near)) {
         swept.clipped = true;
-        return;
-    }
-    if (p.z < m_near || q.z < m_near) {
-        const Vec3d cut = p + (q - p) * ((m_near - p.z) / (q.z - p.z));
-        (p.z < m_near ? p : q) = cut;
-        swept.clipped = true;
+        if (p.z < m_near && q.z < m_near) return 0.0;
+        (p.z < m_near ? p : q) = p + (q - p) * ((m_near - p.z) / (q.z - p.z));
     }
     double x[2], y[2];
     const Vec3d* ends[2] = {&p, &q};
@@ -60,24 +65,31 @@ void EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b, double& length)
         swept.y1 = std::max(swept.y1, y[i] + m_projection.scale.y * reach);
     }
     swept.seen = true;
-    length = std::hypot(x[1] - x[0], y[1] - y[0]);
+    return std::hypot(x[1] - x[0], y[1] - y[0]);
 }
 
-double EdgeRate::target(const Swept& swept) const {
+double EdgeRate::outside(const Swept& swept) const {
     const double dx = std::max({0.0, -swept.x1, swept.x0 - m_width});
     const double dy = std::max({0.0, -swept.y1, swept.y0 - m_height});
-    return m_rate + std::max(dx, dy) / kOutside;
+    return std::max(dx, dy);
+}
+
+double EdgeRate::angle(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots) const {
+    double largest = 0.0;
+    for (int k = 0; k < knots; ++k) {
+        const Vec3d a(start[k]), m(middle[k]), b(end[k]);
+        const double distance = std::min(distance_to_segment(a, m), distance_to_segment(m, b));
+        const double length = glm::distance(a, m) + glm::distance(m, b);
+        largest = std::max(largest, length / std::max(distance, m_near));
+    }
+    return largest;
 }
 
 bool EdgeRate::stays_whole(const Vec3f* start, const Vec3f* end, int knots) const {
     Swept swept;
     double longest = 0.0;
-    for (int k = 0; k < knots; ++k) {
-        double length = 0.0;
-        add(swept, start[k], end[k], length);
-        longest = std::max(longest, length);
-    }
-    return !swept.seen || !(longest > M_SQRT2 * target(swept));
+    for (int k = 0; k < knots; ++k) longest = std::max(longest, add(swept, start[k], end[k]));
+    return !swept.clipped && outside(swept) == 0.0 && longest <= M_SQRT2 * m_rate;
 }
 
 int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots,
@@ -87,10 +99,9 @@ int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, 
     double longest = 0.0, sag = 0.0;
     bool equal = true;
     for (int k = 0; k < knots; ++k) {
-        double first = 0.0, second = 0.0, chord = 0.0;
-        add(swept, start[k], middle[k], first);
-        add(swept, middle[k], end[k], second);
-        add(swept, start[k], end[k], chord);
+        const double first = add(swept, start[k], middle[k]);
+        const double second = add(swept, middle[k], end[k]);
+        const double chord = add(swept, start[k], end[k]);
         const double length = first + second;
         longest = std::max(longest, length);
         if (std::abs(first - second) > kEqual * std::max(first, second)) equal = false;
@@ -101,17 +112,24 @@ int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, 
             chord > 0.25 * length ? 2.0 * std::sqrt(std::max(area2, 0.0)) / chord : 0.5 * length;
         sag = std::max(sag, height);
     }
+    const double off = swept.seen ? outside(swept) : 0.0;
+    const double target = m_rate + off / kOutside, coarser = target / m_rate;
+    if (m_projection.perspective && (swept.clipped || off > 0.0)) {
+        const double seen_angle = angle(start, middle, end, knots);
+        if (seen_angle > kNearby) return kAdaptive;
+        if (off > 0.0)
+            longest = std::min(longest,
+                               seen_angle * std::max(m_projection.scale.x, m_projection.scale.y));
+    }
     if (!swept.seen) return 0;
-    const double wanted = target(swept), coarser = wanted / m_rate;
     const bool bent = sag > kSag * coarser && longest > kShortest * coarser;
-    if (!(longest > M_SQRT2 * wanted) && !bent) return 0;
-    // A straight piece's halves are never longer than itself; a bent one's are looked at anew until
-    // it is nearly straight.
+    if (!(longest > M_SQRT2 * target) && !bent) return 0;
     const bool inside = swept.x0 > -m_width && swept.x1 < 2.0 * m_width && swept.y0 > -m_height &&
                         swept.y1 < 2.0 * m_height;
-    if (!equal || swept.clipped || !inside || sag > 0.05 * longest) return kAdaptive;
+    // A bent piece's halves are looked at anew until they are nearly straight.
+    if (!equal || swept.clipped || off > 0.0 || !inside || sag > 0.05 * longest) return kAdaptive;
     int levels = 1;
-    while (levels < budget && std::ldexp(longest, -levels) > M_SQRT2 * wanted) ++levels;
+    while (levels < budget && std::ldexp(longest, -levels) > M_SQRT2 * target) ++levels;
     while (levels < budget && std::ldexp(sag, -2 * levels) > kSag &&
            std::ldexp(longest, -levels) > kShortest)
         ++levels;

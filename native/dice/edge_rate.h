@@ -7,8 +7,13 @@
 //   (target / sqrt(2), sqrt(2) * target], or
 //   its middle lies more than kSag pixels off its chord and it is longer than kShortest pixels.
 // Lengths are the largest over all knots.  target is the dicing rate inside the frame and grows by
-// an eighth of a pixel for each pixel that the piece's swept bound lies outside of it.  What lies
-// behind the near plane has no length: it is never seen.
+// an eighth of a pixel for each pixel that the piece's swept bound lies outside of it.
+//
+// Near the eye plane raster lengths have no limit, and behind it they mean nothing.  What the frame
+// does not show, or only in part, is therefore measured from the eye as well: it is bisected while
+// it is longer than half its distance, so that sizes grade evenly around the camera and the work is
+// a constant for each doubling of the distance; and outside the frame its raster length counts for
+// no more than its angle.
 #pragma once
 
 #include <cstdint>
@@ -34,10 +39,14 @@ class EdgeRate {
 
   private:
     struct Swept;
-    void add(Swept& swept, const Vec3f& a, const Vec3f& b, double& length) const;
-    double target(const Swept& swept) const;
+    /// Adds the piece's raster box and returns its raster length at one knot.
+    double add(Swept& swept, const Vec3f& a, const Vec3f& b) const;
+    /// Pixels from the frame to the box.
+    double outside(const Swept& swept) const;
+    /// Length over distance from the eye, the largest over the knots.
+    double angle(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots) const;
 
-    const Projection& m_projection;
+    Projection m_projection;
     double m_rate, m_width, m_height;
     double m_near;
 };

@@ -48,10 +48,13 @@ std::unique_ptr<Patch> Patch::open(std::shared_ptr<const OpenedMesh> mesh, const
     return opened;
 }
 
-bool Patch::splittable(bool along_u) const {
-    return (along_u ? m_budget_u : m_budget_v) > 0 &&
-           (m_sides[along_u ? kBottom : kLeft].refined() ||
-            m_sides[along_u ? kTop : kRight].refined());
+int Patch::splittable(bool along_u) const {
+    if ((along_u ? m_budget_u : m_budget_v) <= 0) return 0;
+    const Side& low = m_sides[along_u ? kBottom : kLeft];
+    const Side& high = m_sides[along_u ? kTop : kRight];
+    if (low.refined() && (high.refined() || high.collapsed)) return 2;
+    if (high.refined() && low.collapsed) return 2;
+    return low.refined() || high.refined() ? 1 : 0;
 }
 
 void Patch::measure() {
@@ -76,8 +79,8 @@ void Patch::measure() {
             rate = std::max(rate, walk.depth(middle, most));
         }
     }
-    const bool u = splittable(true), v = splittable(false);
-    m_diceable = m_rates.u + m_rates.v <= most || !(u || v);
+    const int u = splittable(true), v = splittable(false);
+    m_diceable = m_rates.u + m_rates.v <= most || u + v == 0;
     if (m_diceable) {
         // Only the sides are owed their vertices.
         while (m_rates.u + m_rates.v > most && (m_rates.u > m_border.u || m_rates.v > m_border.v)) {
@@ -88,10 +91,13 @@ void Patch::measure() {
         }
         return;
     }
-    if (u && v && m_rates.u == m_rates.v)
-        m_split_u = m_budget_u >= m_budget_v;
+    // A side that has no vertex inside makes a fan of triangles: last choice.
+    if (u != v)
+        m_split_u = u > v;
+    else if (m_rates.u != m_rates.v)
+        m_split_u = m_rates.u > m_rates.v;
     else
-        m_split_u = u && (!v || m_rates.u > m_rates.v);
+        m_split_u = m_budget_u >= m_budget_v;
 }
 
 bool Patch::diceable() const {

@@ -37,7 +37,8 @@ class Patch final : public Primitive {
 
     Patch(std::shared_ptr<const OpenedMesh> mesh, const BasePatch& patch);
     void measure();
-    bool splittable(bool along_u) const;
+    /// 0 not at all, 1 into a triangle and a rest, 2 in the middle.
+    int splittable(bool along_u) const;
     /// Where a split line ends on a side: its middle, or the corner that stands in for it.
     struct Cut {
         Vec2d uv{0.0};

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hard cases 50 and 53: displacement by a constant, its bound, and tilings that stay closed.
+#include <algorithm>
+
+#include "dice/dice_scene.h"
+
+namespace granita::testing {
+namespace {
+
+void displace(DiceScene& s, std::vector<DisplacementHook> hooks) {
+    s.view.displacement = std::move(hooks);
+    s.view.requests.assign(s.view.displacement.size(), {});
+}
+
+TEST(Displacement, a_displaced_plane_is_a_translated_plane) {
+    for (const bool subdivided : {false, true}) {
+        GeometryData data =
+            mesh({{-40, -40, 9}, {-40, 40, 9}, {40, 40, 9}, {40, -40, 9}}, {4}, {0, 1, 2, 3});
+        data.is_subdivision = subdivided;
+        data.subdivision.boundary = SubdivisionBoundary::EdgeAndCorner;
+        DiceScene flat(data), moved(data);
+        displace(moved, {{2.5f, 2.5f}});
+        const auto a = flat.grids(), b = moved.grids();
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t g = 0; g < a.size(); ++g)
+            for (std::size_t i = 0; i < a[g]->positions.size(); ++i) {
+                // This winding looks back at the camera: outward is -z.
+                const Vec3f expected = a[g]->positions[i] + 2.5f * a[g]->normal[i];
+                EXPECT_NEAR(glm::distance(b[g]->positions[i], expected), 0.0f, 1e-5f);
+                EXPECT_NEAR(std::abs(b[g]->positions[i].z - 9.0f), 2.5f, 1e-5f);
+                EXPECT_EQ(a[g]->normal[i], b[g]->normal[i]);
+            }
+        EXPECT_TRUE(moved.report.warnings().empty());
+    }
+}
+
+TEST(Displacement, closed_surfaces_stay_closed) {
+    for (const int kind : {0, 1, 2})
+        for (const float rate : {1.0f, 7.0f}) {
+            GeometryData data = cube(20.0f);
+            if (kind == 1) data.smooth.assign(6, 1);
+            data.is_subdivision = kind == 2;
+            data.material_index = {0, 1, 0, 1, 2, 0};
+            DiceScene s(data, rate, 64);
+            s.scene.instances[0].materials = {0, 1, -1};
+            // Three materials that move by different amounts meet at every corner.
+            displace(s, {{3.0f, 3.0f}, {5.0f, -1.0f}, {3.0f, 0.0f}});
+            s.view.displacement[2].bound = 0.0f;
+            Mat4d turn(1.0);
+            turn[0] = glm::dvec4(0.8, 0.6, 0, 0);
+            turn[1] = glm::dvec4(-0.6, 0.8, 0, 0);
+            s.scene.instances[0].world_from_object = {turn, turn * Mat4d(1.5)};
+            s.scene.instances[0].world_from_object[1][3][3] = 1.0;
+            const auto grids = s.grids();
+            for (const int knot : {0, 1})
+                EXPECT_TRUE(open_edges(grids, knot).empty()) << kind << " " << rate;
+        }
+}
+
+TEST(Displacement, bounds_grow_by_the_bound_and_what_exceeds_it_is_reported) {
+    for (const bool subdivided : {false, true}) {
+        GeometryData data = cube(20.0f);
+        data.is_subdivision = subdivided;
+        DiceScene s(data);
+        displace(s, {{4.0f, 4.0f}});
+        const RasterBounds whole = instance_bounds(s.view, 0);
+        const auto opened = open_instance(s.view, 0, s.report);
+        for (std::size_t i = 0; i < opened->primitive_count(); ++i) {
+            const RasterBounds out = opened->bounds(i);
+            std::vector<std::unique_ptr<Grid>> grids;
+            DiceScene::dice_all(*opened->primitive(i), grids);
+            for (const auto& grid : grids)
+                for (const RasterBounds& b : {out, whole}) {
+                    EXPECT_GE(grid->bounds.x0, b.x0 - 0.01f);
+                    EXPECT_LE(grid->bounds.x1, b.x1 + 0.01f);
+                    EXPECT_GE(grid->bounds.y0, b.y0 - 0.01f);
+                    EXPECT_LE(grid->bounds.y1, b.y1 + 0.01f);
+                    EXPECT_LE(grid->bounds.nearest_key, b.nearest_key + 0.01f);
+                }
+        }
+        EXPECT_TRUE(s.report.warnings().empty());
+        displace(s, {{1.0f, 4.0f}});
+        s.grids();
+        ASSERT_EQ(s.report.warnings().size(), 1u);
+        EXPECT_EQ(s.report.warnings()[0].datablock, "object 'Test'");
+        EXPECT_GT(s.report.warnings()[0].count, 1000u);
+    }
+}
+
+TEST(Displacement, a_displacement_that_is_not_finite_leaves_the_grid_out) {
+    DiceScene s(mesh({{0, 0, 0}, {20, 0, 0}, {0, 20, 0}}, {3}, {0, 1, 2}));
+    displace(s, {{1.0f, NAN}});
+    const auto grids = s.grids();
+    ASSERT_FALSE(grids.empty());
+    for (const auto& grid : grids) EXPECT_EQ(grid, nullptr);
+    EXPECT_FALSE(s.report.warnings().empty());
+}
+
+}  // namespace
+}  // namespace granita::testing
