@@ -29,6 +29,7 @@ BucketTiles::BucketTiles(const HiderFrame& frame, const Rect& tiles, const Rect&
     const SampleNeeds needs{false, frame.projection.has_lens()};
     for (int y = tiles.y0; y < tiles.y1; ++y)
         for (int x = tiles.x0; x < tiles.x1; ++x) {
+            if (frame.progress) frame.progress->check();
             TileStore& store = m_stores.emplace_back();
             store.tile = {x, y};
             frame.table->fill_tile(store.tile, needs, m_samples.emplace_back());

@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/progress.h"
 #include "base/report.h"
 #include "base/statistics.h"
 #include "dice/grid.h"
@@ -28,6 +29,7 @@ struct HiderFrame {
     /// Where dropped micropolygons are named; both or neither.
     const Scene* scene = nullptr;
     Report* report = nullptr;
+    const Progress* progress = nullptr;  ///< asked between tiles; may be absent
 };
 
 class Hider {

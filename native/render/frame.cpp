@@ -49,7 +49,7 @@ Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& fra
       view(make_view(scene, statistics, shading,
                      PixelFilter(scene.options.pixel_filter, scene.options.filter_width))),
       table(scene.options, scene.camera),
-      hider{&table, view.projection, &statistics, &scene, &report},
+      hider{&table, view.projection, &statistics, &scene, &report, &progress},
       constant_background(constant_background_of(shading)),
       choice(choose_executor(scene, shading, report)),
       raster(choice.executor == Executor::Raster

@@ -60,6 +60,7 @@ std::vector<TileContribution> resolve(Frame& frame, std::vector<TileStore>& stor
     for (std::size_t i = 0; i < stores.size(); ++i) {
         frame.progress.check();
         const TileSamples& samples = hider.tile_samples(i);
+        frame.statistics.add(Counter::SamplesTotal, samples.x.size());
         std::vector<Vec3f> background{Vec3f(0.0f)};
         if (!options.film_transparent) {
             const StageTimer timer(frame.statistics, Stage::Shade);
