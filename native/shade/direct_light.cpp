@@ -38,6 +38,21 @@ struct WorldLooks {
         weights.push_back(weight);
         points.push_back(point);
     }
+    /// Mean angle between the directions of neighbouring points: what one of them stands for.
+    float spread() const {
+        float sum = 0.0f;
+        int pairs = 0;
+        for (std::size_t k = 1; k < points.size(); ++k) {
+            if (points[k] != points[k - 1] + 1) continue;
+            // A row's end and the next row's start are neighbours in the list alone.
+            const float angle = glm::length(directions[k] - directions[k - 1]);
+            if (angle > kWidestSpread) continue;
+            sum += angle;
+            ++pairs;
+        }
+        return pairs > 0 ? sum / static_cast<float>(pairs) : 0.0f;
+    }
+    static constexpr float kWidestSpread = 0.5f;
 };
 
 /// What a grid's points share while they are lit.
@@ -273,11 +288,8 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     if (closure.lobes.empty() || (m_impl->lamps.empty() && !m_impl->environment)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     Work work{grid_seed(key, m_impl->scene.options.seed), radiance, {}, {}};
-    float footprint = 0.0f;  // mean angle between neighbouring points, seen from the camera
     for (std::size_t i = 0; i < points.count; ++i) {
         const PointBsdf bsdf(closure, points, i, albedo);
-        footprint += glm::length(points.dp_du[i]) /
-                     std::max(glm::length(points.p[i]), std::numeric_limits<float>::min());
         if (bsdf.lobe_count() == 0) continue;
         Point point{i, bsdf, points.p[i], points.p[i], mix_bits(work.seed + i), {}};
         if (m_impl->rays)
@@ -286,7 +298,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     }
     if (m_impl->environment)
         m_impl->look(work.blurred, m_impl->environment->texel_angle(), radiance);
-    m_impl->look(work.sharp, footprint / static_cast<float>(points.count), radiance);
+    m_impl->look(work.sharp, work.sharp.spread(), radiance);
     m_impl->statistics.add(Counter::RaysShadow, work.shadow_rays);
     m_impl->statistics.add(Counter::RaysOcclusion, work.occlusion_rays);
     return radiance;

@@ -133,54 +133,30 @@ void RayMesh::add_limit_surface(const Progress& progress) {
 }
 
 void RayMesh::release_triangles() {
-    m_points = {};
-    m_triangles = {};
+    std::vector<Vec3f>().swap(m_points);
+    std::vector<std::array<std::uint32_t, 3>>().swap(m_triangles);
 }
 
 float RayMesh::error(std::uint32_t face) const {
     return face < m_errors.size() ? m_errors[face] : 0.0f;
 }
 
-std::size_t RayMesh::patch_of(std::uint32_t triangle) const {
-    if (!m_patches.empty()) return m_patches[triangle] / 2;
-    return triangle / (2 * static_cast<std::uint32_t>(m_side * m_side));
-}
-
-std::uint32_t RayMesh::face(std::uint32_t triangle) const {
-    return m_shared.patches()[patch_of(triangle)].face;
-}
-
 void RayMesh::locate(std::uint32_t triangle, float u, float v, ShadowHit& hit) const {
-    const BasePatch& patch = m_shared.patches()[patch_of(triangle)];
-    hit.face = patch.face;
-    if (!m_patches.empty()) {  // the triangle's corners are corners of the face
-        const bool second = (m_patches[triangle] & 1u) != 0;
-        hit.add(patch.corner[0], 1.0f - u - v);
-        hit.add(patch.corner[second ? 2 : 1], u);
-        hit.add(patch.corner[second ? 3 : 2], v);
-        return;
-    }
+    hit.geometry = &m_shared;
+    const auto& patches = m_shared.patches();
     const auto cells = static_cast<std::uint32_t>(m_side * m_side);
-    const std::uint32_t cell = triangle % (2 * cells) / 2,
-                        side = static_cast<std::uint32_t>(m_side);
-    const bool second = (triangle & 1u) != 0;
-    const float s = (static_cast<float>(cell % side) + u + (second ? 0.0f : v)) / m_side;
-    const float t = (static_cast<float>(cell / side) + v + (second ? u : 0.0f)) / m_side;
-    const float w[4] = {(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t};
-    if (patch.kind == PatchKind::Quad) {
-        for (std::size_t i = 0; i < 4; ++i) hit.add(patch.corner[i], w[i]);
+    const bool polygons = !m_patches.empty();
+    const std::uint32_t half = (polygons ? m_patches[triangle] : triangle) & 1u;
+    hit.patch = &patches[polygons ? m_patches[triangle] / 2 : triangle / (2 * cells)];
+    if (hit.patch->kind == PatchKind::Triangle) {
+        hit.uv = {u, v};
         return;
     }
-    // A sub-face of an n-gon: its own corner, the middles of two edges, the centre.
-    const std::uint32_t first = m_shared.first_corner(patch.face);
-    const auto n = static_cast<std::uint32_t>(m_shared.data().face_sizes[patch.face]);
-    for (std::uint32_t i = 0; i < n; ++i) {
-        float weight = w[2] / static_cast<float>(n);
-        if (i == patch.sub) weight += w[0] + 0.5f * (w[1] + w[3]);
-        if (i == (patch.sub + 1) % n) weight += 0.5f * w[1];
-        if (i == (patch.sub + n - 1) % n) weight += 0.5f * w[3];
-        hit.add(first + i, weight);
-    }
+    // Triangles (0, 1, 2) and (0, 2, 3) of a cell, corner 0 at its origin.
+    const Vec2d in_cell = half ? Vec2d(u, u + v) : Vec2d(u + v, v);
+    const std::uint32_t cell = polygons ? 0 : triangle % (2 * cells) / 2;
+    const auto side = static_cast<std::uint32_t>(m_side);
+    hit.uv = (Vec2d(cell % side, cell / side) + in_cell) / static_cast<double>(m_side);
 }
 
 std::size_t RayMesh::bytes() const {

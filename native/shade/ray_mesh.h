@@ -27,15 +27,13 @@ class RayMesh {
     /// Largest absolute coordinate: rounding grows with it.
     float extent() const { return m_extent; }
     const SharedGeometry& shared() const { return m_shared; }
-    std::uint32_t face(std::uint32_t triangle) const;
-    /// Fills face, corners and weights of a hit at the barycentric point (u, v) of a triangle.
+    /// Fills geometry, patch and uv of a hit at the barycentric point (u, v) of a triangle.
     void locate(std::uint32_t triangle, float u, float v, ShadowHit& hit) const;
     std::size_t bytes() const;
 
   private:
     void add_polygons();
     void add_limit_surface(const Progress& progress);
-    std::size_t patch_of(std::uint32_t triangle) const;
 
     SharedGeometry m_shared;
     int m_side = 1;  ///< cells along a side of a patch of a subdivision surface

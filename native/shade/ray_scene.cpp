@@ -167,7 +167,7 @@ Vec3f RayScene::Impl::transparency(const RTCRay& ray, const RTCHit& hit, unsigne
     ShadowHit shadow;
     shadow.instance = instance.index;
     meshes[static_cast<std::size_t>(source.geometry)]->locate(hit.primID, hit.u, hit.v, shadow);
-    shadow.material = material_of(source, shadow.face);
+    shadow.material = material_of(source, shadow.patch->face);
     if (!opacity.is_transparent(shadow.material)) return Vec3f(0.0f);
     shadow.direction = {ray.dir_x, ray.dir_y, ray.dir_z};
     shadow.p = Vec3f(ray.org_x, ray.org_y, ray.org_z) + shadow.direction * ray.tfar;

@@ -6,6 +6,7 @@
 #include "shade/direct_light.h"
 #include "shade/node_compiler.h"
 #include "shade/shading_points.h"
+#include "shade/shadow_transparency.h"
 
 namespace granita {
 
@@ -87,7 +88,15 @@ struct ShadingSystem::Impl {
             [this](const std::vector<Vec3f>& directions, float spread, std::vector<Vec3f>& out) {
                 background(directions, spread, out);
             },
-            statistics, report, progress);
+            statistics, report, progress, shadow_opacity());
+    }
+
+    ShadowOpacity shadow_opacity() const {
+        return {
+            [this](std::int32_t index) { return !material(index).transparency.is(Vec3f(0.0f)); },
+            [this](const ShadowHit& hit) {
+                return shadow_transparency(material(hit.material), scene, hit);
+            }};
     }
 
     const CompiledSurface& material(int index) const {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "dice/corner_values.h"
 #include "geometry/shared_geometry.h"
 #include "geometry/subdivision_topology.h"
 #include "shade/light_scene.h"
@@ -32,6 +33,18 @@ GeometryData cube() {
     data.corner_verts = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
     data.face_sizes.assign(6, 4);
     return data;
+}
+
+/// Where the hit's patch and uv say that it is, object space: linear over the patch.
+Vec3f object_position(const ShadowHit& hit) {
+    const CornerValues corners =
+        corner_values(*hit.geometry, *hit.patch, {AttributeSource::ObjectPosition, "", 3, false});
+    const CornerWeights weights(hit.patch->kind, hit.uv);
+    Vec3d p(0.0);
+    for (std::size_t k = 0; k < 4; ++k)
+        for (int c = 0; c < 3; ++c)
+            p[c] += weights.w[k] * corners.at[k][static_cast<std::size_t>(c)];
+    return Vec3f(p);
 }
 
 TEST(RayScene, a_square_blocks_exactly_the_rays_through_it) {
@@ -152,13 +165,7 @@ TEST(RayScene, transparent_materials_multiply_and_opaque_ones_end) {
         // A cut-out: a hole where the first coordinate is positive, tinted glass elsewhere.
         EXPECT_EQ(hit.material, 0);
         EXPECT_NEAR(hit.normal.z, 1.0f, 1e-6f);
-        float x = 0.0f, sum = 0.0f;
-        const float corner_x[4] = {-1, 1, 1, -1};
-        for (const auto& [corner, weight] : hit.corners) {
-            x += weight * corner_x[corner];
-            sum += weight;
-        }
-        EXPECT_NEAR(sum, 1.0f, 1e-6f);
+        const float x = object_position(hit).x;
         EXPECT_NEAR(x, hit.p.x, 1e-5f);
         return x > 0 ? Vec3f(1.0f) : Vec3f(0.5f, 0.25f, 1.0f);
     };
@@ -173,7 +180,7 @@ TEST(RayScene, transparent_materials_multiply_and_opaque_ones_end) {
     EXPECT_EQ(blocked.transmittance({0.5f, 0.2f, 0}, kUp, kInfinity), Vec3f(0.0f));
 }
 
-TEST(RayScene, hits_on_a_limit_surface_name_the_cages_corners) {
+TEST(RayScene, hits_on_a_limit_surface_name_the_patch_and_the_place_on_it) {
     GeometryData cage = cube();
     cage.is_subdivision = true;
     cage.subdivision.scheme = SubdivisionScheme::Simple;  // stays the cube: corners are known
@@ -184,9 +191,7 @@ TEST(RayScene, hits_on_a_limit_surface_name_the_cages_corners) {
     ShadowOpacity opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
     opacity.transparency = [&](const ShadowHit& hit) {
-        Vec3f p(0.0f);
-        for (const auto& [corner, weight] : hit.corners)
-            p += weight * cage.points[static_cast<std::size_t>(cage.corner_verts[corner])];
+        const Vec3f p = object_position(hit);
         EXPECT_LT(glm::length(p - hit.p), 1e-4f);
         seen.push_back(p);
         return Vec3f(0.5f);

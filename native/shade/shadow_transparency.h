@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "shade/node_compiler.h"
+#include "shade/shadow_opacity.h"
+
+namespace granita {
+
+/// Runs a material's opacity program where a shadow ray meets it, seen along the ray: what passes,
+/// per channel in [0, 1].  Textures are read at full resolution.
+Vec3f shadow_transparency(const CompiledSurface& material, const Scene& scene,
+                          const ShadowHit& hit);
+
+}  // namespace granita
