@@ -29,7 +29,7 @@ BucketTiles::BucketTiles(const HiderFrame& frame, const Rect& tiles, const Rect&
     const SampleNeeds needs{false, frame.projection.has_lens()};
     for (int y = tiles.y0; y < tiles.y1; ++y)
         for (int x = tiles.x0; x < tiles.x1; ++x) {
-            if (frame.progress) frame.progress->check();
+            check_cancelled();
             TileStore& store = m_stores.emplace_back();
             store.tile = {x, y};
             frame.table->fill_tile(store.tile, needs, m_samples.emplace_back());
@@ -37,6 +37,10 @@ BucketTiles::BucketTiles(const HiderFrame& frame, const Rect& tiles, const Rect&
             store.id.assign(m_samples.back().x.size(), kNoSurface);
         }
     m_needs.assign(m_stores.size(), needs);
+}
+
+void BucketTiles::check_cancelled() const {
+    if (m_frame.progress) m_frame.progress->check();
 }
 
 Rect BucketTiles::touched(const RasterBounds& b) const {

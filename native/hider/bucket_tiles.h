@@ -46,6 +46,8 @@ class BucketTiles {
     }
     /// Drops the fragments that ended up behind the sample's opaque surface.
     void drop_hidden_fragments(std::size_t i);
+    /// Throws Cancelled; called between tiles, whose samples may be millions.
+    void check_cancelled() const;
     /// Counts and reports micropolygons left out of the grid.
     void report_dropped(const Grid& grid, std::uint64_t dropped) const;
 

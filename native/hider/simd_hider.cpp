@@ -45,6 +45,7 @@ class SimdHider : public Hider {
             for (int x = touched.x0; x < touched.x1; ++x) {
                 const std::size_t i = m_tiles.index(x, y);
                 if (tile_hides(i, grid.bounds)) continue;
+                m_tiles.check_cancelled();
                 fragments += hide_in_tile(grid, classes, base, i, counts);
             }
         if (!m_statistics) return;
