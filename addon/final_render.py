@@ -81,23 +81,19 @@ class FinalRender:
         self.status.exporting()
 
     def _render(self, snapshot):
-        """On the device asked for; on the CPU where that is not to be had, which is said if it was
-        asked for by name."""
+        """On the device asked for; where OpenGL fails on the way, once more on the CPU.
+
+        That there is no usable GPU to begin with, the native library finds and says itself.
+        """
         options = snapshot["options"]
-        asked, reason = options["device"], ""
         try:
-            job = self._run_job(snapshot)
+            return self._run_job(snapshot)
         except bridge.DeviceError as error:
-            if asked == "CPU":
+            if options["device"] == "CPU":
                 raise
-            reason = f": {error}"
-            options["device"] = "CPU"
-            job = self._run_job(snapshot)
-        if asked == "GPU" and not job.device.startswith("GPU"):
-            self.report.warn(
-                f"scene '{self.scene}'", f"not rendered on the GPU but by {job.device}{reason}"
-            )
-        return job
+            self.report.warn(f"scene '{self.scene}'", f"the GPU failed, the CPU renders: {error}")
+        options["device"] = "CPU"
+        return self._run_job(snapshot)
 
     def _run_job(self, snapshot):
         """Runs one native job to its end and returns it."""

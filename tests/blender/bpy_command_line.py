@@ -16,8 +16,15 @@ import bpy
 sys.path.insert(0, os.path.join(os.environ["BLENDER_USER_SCRIPTS"], "addons"))
 import addon_utils  # noqa: E402
 
+PREPARATION = "preparation"  # the module that CODE believes to be
+
 
 def release_engine():
+    """What is still registered, or hooked in, when Python ends may hang or crash `bpy`."""
+    for name in dir(bpy.app.handlers):
+        hooks = getattr(bpy.app.handlers, name)
+        if isinstance(hooks, list):
+            hooks[:] = [hook for hook in hooks if hook.__module__ != PREPARATION]
     for scene in bpy.data.scenes:
         scene.render.engine = "CYCLES"
     addon_utils.disable("granita")
@@ -30,7 +37,7 @@ def main(file, out, code, first, last):
     scene = bpy.context.scene
     scene.render.engine = "GRANITA"
     scene.render.filepath = out
-    exec(code, {})
+    exec(code, {"__name__": PREPARATION})
     scene.frame_start, scene.frame_end = int(first), int(last)
     bpy.ops.render.render(animation=True)
 
