@@ -23,8 +23,7 @@ class SimdHider : public Hider {
           m_working(m_tiles.count()),
           m_tile_grid(frame.projection, frame.table->lens()),
           m_range(depth_range(frame.projection)),
-          m_lens_x(static_cast<float>(frame.projection.lens_radius * frame.projection.scale.x)),
-          m_lens_y(static_cast<float>(frame.projection.lens_radius * frame.projection.scale.y)) {}
+          m_lens(frame.projection.lens_radius * frame.projection.scale) {}
 
     bool occluded(const RasterBounds& bounds) const override {
         const Rect touched = m_tiles.touched(bounds);
@@ -88,11 +87,14 @@ class SimdHider : public Hider {
     std::uint64_t hide_in_tile(const Grid& grid, const GridClasses& classes, SurfaceId base,
                                std::size_t i, SimdCounts& counts) {
         if (!m_working[i])
-            m_working[i].emplace(m_tiles.samples(i), m_tiles.local_pixels(i), m_lens_x, m_lens_y);
+            m_working[i].emplace(m_tiles.samples(i), m_tiles.local_pixels(i), m_lens,
+                                 m_tile_grid.lens_x());
         WorkingTile& working = *m_working[i];
-        if (grid.motion && !working.sorted()) {
+        if (grid.motion && working.sorted_by() != SortedBy::Time) {
             m_tiles.need_time(i);
-            working.sort_by_time(m_tiles.samples(i), m_lens_x, m_lens_y);
+            working.sort(SortedBy::Time, m_tiles.samples(i));
+        } else if (m_projection.has_lens() && working.sorted_by() == SortedBy::Table) {
+            working.sort(SortedBy::Lens, m_tiles.samples(i));
         }
         SimdGrid simd_grid;
         m_tile_grid.project(grid, m_tiles.origin(i), simd_grid);
@@ -115,7 +117,7 @@ class SimdHider : public Hider {
     std::vector<std::optional<WorkingTile>> m_working;  ///< made when the first grid comes
     TileGrid m_tile_grid;
     DepthRange m_range;
-    float m_lens_x, m_lens_y;
+    Vec2f m_lens;  ///< lens radius times scale
 };
 
 }  // namespace

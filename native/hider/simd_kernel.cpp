@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hider/micropolygon_class.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "hider/simd_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -22,6 +24,7 @@ using V = hn::Vec<Tag>;
 using M = hn::Mask<Tag>;
 constexpr Tag kTag;
 constexpr IdTag kIdTag;
+constexpr hn::RebindToSigned<IdTag> kIndexTag;
 inline std::size_t lane_count() {
     return hn::Lanes(kTag);
 }
@@ -44,11 +47,23 @@ struct PixelRange {
     bool empty() const { return x0 > x1 || y0 > y1; }
 };
 
+/// Kept from grid to grid.
+inline std::vector<std::uint32_t>& candidate_buffer() {
+    thread_local std::vector<std::uint32_t> buffer;
+    return buffer;
+}
+
 class Kernel {
   public:
     Kernel(const SimdGrid& grid, const SimdTile& tile, std::vector<Fragment>& fragments,
            SimdCounts& counts)
-        : m_grid(grid), m_tile(tile), m_fragments(fragments), m_counts(counts) {}
+        : m_grid(grid),
+          m_tile(tile),
+          m_fragments(fragments),
+          m_counts(counts),
+          m_candidates(candidate_buffer()) {
+        m_candidates.resize(static_cast<std::size_t>(tile.samples) * 256 + kLanePadding);
+    }
 
     template <bool kLens>
     void run() {
@@ -61,10 +76,12 @@ class Kernel {
             for (int segment = 0; segment < std::max(1, m_grid.segments); ++segment) {
                 const PixelRange range = touched(vertex, segment);
                 if (range.empty()) continue;
-                if (m_grid.segments == 0)
-                    hide_static<kLens>(vertex, range);
-                else
+                if (m_grid.segments > 0)
                     hide_moving<kLens>(vertex, segment, range);
+                else if (kLens && m_tile.sorted_by == SortedBy::Lens)
+                    hide_defocused(vertex, range);
+                else
+                    hide_static<kLens>(vertex, range);
             }
         }
     }
@@ -123,110 +140,194 @@ class Kernel {
             for (std::size_t i = 0; i < count; i += lane_count()) {
                 Offset<V> d[4];
                 for (int k = 0; k < 4; ++k) d[k] = offset<kLens>(c[k], first + i);
-                test(c, d, first + i, hn::FirstN(kTag, count - i));
+                V key = set(0.0f);
+                const M hit = test(c, d, hn::FirstN(kTag, count - i), key);
+                if (!hn::AllFalse(kTag, hit)) record(key, hit, first + i);
             }
         }
         m_counts.tests += count * static_cast<std::size_t>(range.y1 - range.y0 + 1);
     }
 
-    /// Only the samples of the times at which the micropolygon can be over the pixel: bounds a
+    /// Only the samples of the times at which the micropolygon can be over their pixel: bounds a
     /// column and a row of pixels, in homogeneous space (Laine et al. 2011; hider-research 5.3).
     template <bool kLens>
     void hide_moving(const int vertex[4], int segment, const PixelRange& range) {
-        Corner<float> begin[4], delta[4];
-        Corner<V> c0[4], dc[4];
+        Corner<V> begin[4], delta[4];
+        Bounded columns, rows;
         for (int k = 0; k < 4; ++k) {
-            begin[k] = load(vertex[k], segment);
-            const Corner<float> end = load(vertex[k], segment + 1);
-            delta[k] = {end.x - begin[k].x, end.y - begin[k].y, end.w - begin[k].w,
-                        end.z - begin[k].z};
-            c0[k] = broadcast(begin[k]);
-            dc[k] = broadcast(delta[k]);
+            const Corner<float> a = load(vertex[k], segment), b = load(vertex[k], segment + 1);
+            begin[k] = broadcast(a);
+            delta[k] = broadcast({b.x - a.x, b.y - a.y, b.w - a.w, b.z - a.z});
+            const float shear = std::max(shear_of(a), shear_of(b));
+            columns.set_corner(k, a.x, b.x, a.w, b.w, m_grid.lens_x * shear);
+            rows.set_corner(k, a.y, b.y, a.w, b.w, m_grid.lens_y * shear);
         }
-        alignas(64) float column_from[32], column_to[32], row_from[32], row_to[32];
-        bound_times<true>(begin, delta, segment, range.x0, range.x1, column_from, column_to);
-        bound_times<false>(begin, delta, segment, range.y0, range.y1, row_from, row_to);
-
+        const float scale = static_cast<float>(m_tile.cells) / static_cast<float>(m_grid.segments);
         const V knots = set(static_cast<float>(m_grid.segments));
-        const V segment_start = set(static_cast<float>(segment));
-        const V segment_end =
+        const V start = set(static_cast<float>(segment));
+        const V end =
             set(segment + 1 == m_grid.segments ? INFINITY : static_cast<float>(segment + 1));
-        for (int y = range.y0; y <= range.y1; ++y)
-            for (int x = range.x0; x <= range.x1; ++x) {
-                const float from = std::max(column_from[x - range.x0], row_from[y - range.y0]);
-                const float to = std::min(column_to[x - range.x0], row_to[y - range.y0]);
-                if (!(from <= to)) continue;
-                const int pixel = y * 16 + x;
-                const std::uint32_t* start =
-                    m_tile.time_start + static_cast<std::size_t>(pixel) * (m_tile.time_cells + 1);
-                const std::uint32_t begin_sample = start[static_cast<int>(from)];
-                const std::uint32_t end_sample = start[static_cast<int>(to) + 1];
-                const std::size_t first = static_cast<std::size_t>(pixel) * m_tile.samples;
-                m_counts.tests += end_sample - begin_sample;
-                for (std::size_t i = begin_sample; i < end_sample; i += lane_count()) {
-                    const V place = hn::LoadU(kTag, m_tile.t + first + i) * knots;
-                    const V local = place - segment_start;
-                    const M active =
-                        hn::And(hn::FirstN(kTag, end_sample - i),
-                                hn::And(hn::Ge(place, segment_start), hn::Lt(place, segment_end)));
-                    Corner<V> c[4];
-                    Offset<V> d[4];
-                    for (int k = 0; k < 4; ++k) {
-                        c[k] = at_time(c0[k], dc[k], local);
-                        d[k] = offset<kLens>(c[k], first + i);
-                    }
-                    test(c, d, first + i, active);
-                }
+        const auto test_at = [&](V t, M present, auto offset_at, V& key) HWY_ATTR {
+            const V place = t * knots;
+            const V local = place - start;
+            const M active = hn::And(present, hn::And(hn::Ge(place, start), hn::Lt(place, end)));
+            Corner<V> c[4];
+            Offset<V> d[4];
+            for (int k = 0; k < 4; ++k) {
+                c[k] = at_time(begin[k], delta[k], local);
+                d[k] = offset_at(c[k]);
             }
+            return test(c, d, active, key);
+        };
+        collect(columns, rows, static_cast<float>(segment), scale, range,
+                [&](std::size_t i, M present) HWY_ATTR {
+                    V key = set(0.0f);
+                    const M hit = test_at(
+                        hn::LoadU(kTag, m_tile.t + i), present,
+                        [&](const Corner<V>& c) HWY_ATTR { return offset<kLens>(c, i); }, key);
+                    if (!hn::AllFalse(kTag, hit)) record(key, hit, i);
+                });
+        for (std::size_t i = 0; i < m_candidate_count; i += lane_count()) {
+            V key = set(0.0f);
+            const M hit = test_at(
+                gather(m_tile.t, i), hn::FirstN(kTag, m_candidate_count - i),
+                [&](const Corner<V>& c) HWY_ATTR { return gathered_offset<kLens>(c, i); }, key);
+            if (!hn::AllFalse(kTag, hit)) record_scattered(key, hit, m_candidates.data() + i);
+        }
     }
 
-    /// For each column (or row) of pixels, in units of time cells, when the micropolygon may be
-    /// over it: some corner right of its left side and some corner left of its right side.  Both
-    /// conditions are linear in time for every corner, whatever the sign of w.
-    template <bool kColumns>
-    void bound_times(const Corner<float> begin[4], const Corner<float> delta[4], int segment,
-                     int first, int last, float* from, float* to) const {
-        V at0[4], at1[4], w0[4], w1[4], margin[4];
+    /// Without motion the lens does to x what time does above: x + U s is linear in U.
+    void hide_defocused(const int vertex[4], const PixelRange& range) {
+        Corner<V> c[4];
+        Bounded columns, rows;
         for (int k = 0; k < 4; ++k) {
-            const Corner<float>& c = begin[k];
-            const float p0 = kColumns ? c.x : c.y, p1 = p0 + (kColumns ? delta[k].x : delta[k].y);
-            const float w_end = c.w + delta[k].w, z_end = c.z + delta[k].z;
-            const float shear = std::max(std::fabs(c.z * m_grid.inverse_focus - 1.0f),
-                                         std::fabs(z_end * m_grid.inverse_focus - 1.0f));
-            const float w_most = std::max(std::fabs(c.w), std::fabs(w_end));
-            const float p_most = std::max(std::fabs(p0), std::fabs(p1));
-            const float lens = kColumns ? m_grid.lens_x : m_grid.lens_y;
-            // 1/256 pixel and a few ulp of far positions: more than rounding can move anything.
-            margin[k] = set(lens * shear + w_most / 256 + p_most * 0x1p-21f);
-            at0[k] = set(p0);
-            at1[k] = set(p1);
-            w0[k] = set(c.w);
-            w1[k] = set(w_end);
+            const Corner<float> a = load(vertex[k], 0);
+            c[k] = broadcast(a);
+            const float s = m_grid.lens_x * (a.z * m_grid.inverse_focus - 1.0f);
+            columns.set_corner(k, a.x - s, a.x + s, a.w, a.w, 0.0f);
+            rows.set_corner(k, a.y, a.y, a.w, a.w, m_grid.lens_y * shear_of(a));
         }
+        collect(columns, rows, 0.0f, static_cast<float>(m_tile.cells), range,
+                [&](std::size_t i, M present) HWY_ATTR {
+                    Offset<V> d[4];
+                    for (int k = 0; k < 4; ++k) d[k] = offset<true>(c[k], i);
+                    V key = set(0.0f);
+                    const M hit = test(c, d, present, key);
+                    if (!hn::AllFalse(kTag, hit)) record(key, hit, i);
+                });
+        for (std::size_t i = 0; i < m_candidate_count; i += lane_count()) {
+            Offset<V> d[4];
+            for (int k = 0; k < 4; ++k) d[k] = gathered_offset<true>(c[k], i);
+            V key = set(0.0f);
+            const M hit = test(c, d, hn::FirstN(kTag, m_candidate_count - i), key);
+            if (!hn::AllFalse(kTag, hit)) record_scattered(key, hit, m_candidates.data() + i);
+        }
+    }
+
+    float shear_of(const Corner<float>& c) const {
+        return std::fabs(c.z * m_grid.inverse_focus - 1.0f);
+    }
+
+    /// x w (or y w) and w of the corners at both ends of the sorted parameter.
+    struct Bounded {
+        float at0[4], at1[4], w0[4], w1[4], margin[4];
+        void set_corner(int k, float p0, float p1, float w_begin, float w_end, float lens) {
+            at0[k] = p0;
+            at1[k] = p1;
+            w0[k] = w_begin;
+            w1[k] = w_end;
+            // 1/256 pixel and a few ulp of far positions: more than rounding can move anything.
+            margin[k] = lens + std::max(std::fabs(w_begin), std::fabs(w_end)) / 256 +
+                        std::max(std::fabs(p0), std::fabs(p1)) * 0x1p-21f;
+        }
+    };
+
+    /// Finds the samples whose cell is possible both for their column and for their row.  Runs of
+    /// them that fill a good part of a vector go to `visit`, a vector at a time; the others are
+    /// collected as candidates, since gathers cost about as much as the lanes they fill.
+    template <class Visit>
+    void collect(const Bounded& columns, const Bounded& rows, float start, float scale,
+                 const PixelRange& range, Visit visit) {
+        alignas(64) float column_from[32], column_to[32], row_from[32], row_to[32];
+        bound_cells(columns, start, scale, range.x0, range.x1, column_from, column_to);
+        bound_cells(rows, start, scale, range.y0, range.y1, row_from, row_to);
+        alignas(64) float from[16], to[16];
+        std::size_t count = 0;
+        const int width = range.x1 - range.x0 + 1;
+        for (int y = range.y0; y <= range.y1; ++y) {
+            const V this_from = set(row_from[y - range.y0]), this_to = set(row_to[y - range.y0]);
+            for (int i = 0; i < width; i += static_cast<int>(lane_count())) {
+                const V cell0 = hn::Max(this_from, hn::LoadU(kTag, column_from + i));
+                const V cell1 = hn::Min(this_to, hn::LoadU(kTag, column_to + i));
+                const M possible = hn::And(hn::Le(cell0, cell1),
+                                           hn::FirstN(kTag, static_cast<std::size_t>(width - i)));
+                if (hn::AllFalse(kTag, possible)) continue;
+                hn::StoreU(cell0, kTag, from);
+                hn::StoreU(cell1, kTag, to);
+                for_each_lane(possible, [&](std::size_t lane) HWY_ATTR {
+                    const std::size_t pixel =
+                        static_cast<std::size_t>(y * 16 + range.x0 + i) + lane;
+                    const std::uint32_t* cells =
+                        m_tile.cell_start + pixel * static_cast<std::size_t>(m_tile.cells + 1);
+                    const auto first = static_cast<std::uint32_t>(pixel * m_tile.samples);
+                    const std::uint32_t end = first + cells[static_cast<int>(to[lane]) + 1];
+                    std::uint32_t s = first + cells[static_cast<int>(from[lane])];
+                    m_counts.tests += end - s;
+                    for (; (end - s) * 3 > lane_count();
+                         s += std::min<std::uint32_t>(end - s, lane_count()))
+                        visit(s, hn::FirstN(kTag, end - s));
+                    for (; s < end; ++s) m_candidates[count++] = s;
+                });
+            }
+        }
+        std::fill_n(m_candidates.begin() + static_cast<std::ptrdiff_t>(count), kLanePadding, 0u);
+        m_candidate_count = count;
+    }
+
+    /// For each column (or row) of pixels, in units of cells, when the micropolygon may be over it:
+    /// some corner right of its left side and some corner left of its right side.  Both conditions
+    /// are linear in the parameter for every corner, whatever the sign of w.
+    void bound_cells(const Bounded& b, float start, float scale, int first, int last, float* from,
+                     float* to) const {
         const V zero = set(0.0f), one = set(1.0f), never = set(INFINITY);
-        // A time is exact to a few ulp of 1; widened by 2^-20 of the shutter.
-        const float cells = static_cast<float>(m_tile.time_cells);
-        const V scale = set(cells / static_cast<float>(m_grid.segments));
+        const auto cells = static_cast<float>(m_tile.cells);
+        // A parameter is exact to a few ulp of 1; widened by 2^-20 of its range.
         const V widen = set(cells * 0x1p-20f);
         const V lowest = zero, highest = set(std::nextafter(cells, 0.0f));  // its floor is a cell
-        const V start = set(static_cast<float>(segment));
         for (int i = 0; i <= last - first; i += static_cast<int>(lane_count())) {
             const V left = hn::Iota(kTag, static_cast<float>(first + i));
             const V right = left + one;
             V from_left = never, to_left = hn::Neg(never);
             V from_right = never, to_right = hn::Neg(never);
             for (int k = 0; k < 4; ++k) {
-                extend(at0[k] - left * w0[k] + margin[k], at1[k] - left * w1[k] + margin[k],
-                       from_left, to_left);
-                extend(right * w0[k] - at0[k] + margin[k], right * w1[k] - at1[k] + margin[k],
-                       from_right, to_right);
+                const V at0 = set(b.at0[k]), at1 = set(b.at1[k]), margin = set(b.margin[k]);
+                const V w0 = set(b.w0[k]), w1 = set(b.w1[k]);
+                extend(at0 - left * w0 + margin, at1 - left * w1 + margin, from_left, to_left);
+                extend(right * w0 - at0 + margin, right * w1 - at1 + margin, from_right, to_right);
             }
             // Empty stays empty: infinities survive the scaling.
             const V t0 = hn::Max(from_left, from_right), t1 = hn::Min(to_left, to_right);
-            const V cell0 = (start + t0) * scale - widen, cell1 = (start + t1) * scale + widen;
+            const V cell0 = (set(start) + t0) * set(scale) - widen;
+            const V cell1 = (set(start) + t1) * set(scale) + widen;
             hn::StoreU(hn::Max(cell0, lowest), kTag, from + i);
             hn::StoreU(hn::Min(cell1, highest), kTag, to + i);
         }
+    }
+
+    HWY_INLINE V gather(const float* values, std::size_t candidate) const {
+        const auto index =
+            hn::BitCast(kIndexTag, hn::LoadU(kIdTag, m_candidates.data() + candidate));
+        return hn::GatherIndex(kTag, values, index);
+    }
+
+    template <bool kLens>
+    HWY_INLINE Offset<V> gathered_offset(const Corner<V>& c, std::size_t i) const {
+        const V x = gather(m_tile.x, i), y = gather(m_tile.y, i);
+        if constexpr (kLens)
+            return offset_lens(c, x, y, gather(m_tile.u, i), gather(m_tile.v, i),
+                               set(m_grid.inverse_focus), set(1.0f));
+        else
+            return offset_pinhole(c, x, y);
     }
 
     /// Grows [from, to] by the part of [0, 1] where the linear function with these end values is
@@ -239,7 +340,8 @@ class Kernel {
         to = hn::Max(to, hn::IfThenElse(in1, one, hn::IfThenElse(in0, root, hn::Neg(never))));
     }
 
-    HWY_INLINE void test(const Corner<V> c[4], const Offset<V> d[4], std::size_t first, M active) {
+    /// The active lanes that hit, and their keys.
+    HWY_INLINE M test(const Corner<V> c[4], const Offset<V> d[4], M active, V& key) {
         const V zero = set(0.0f);
         const V e01 = edge(d[0], d[1]), e12 = edge(d[1], d[2]), e02 = edge(d[0], d[2]);
         const V e23 = edge(d[2], d[3]), e30 = edge(d[3], d[0]), e20 = hn::Neg(e02);
@@ -247,7 +349,7 @@ class Kernel {
         if (m_class & kTriangleA) inside(e01, e12, e20, in_a, strict_a);
         if (m_class & kTriangleB) inside(e02, e23, e30, in_b, strict_b);
         const M touched = hn::And(active, hn::Or(in_a, in_b));
-        if (hn::AllFalse(kTag, touched)) return;
+        if (hn::AllFalse(kTag, touched)) return touched;
 
         // Strictly inside one triangle and outside the other; the rest is on an edge or where the
         // micropolygon is folded.
@@ -263,12 +365,12 @@ class Kernel {
                     third_weight * share * (third_z - c[0].z);
         const V z_in = hn::Min(hn::Max(z, hn::Min(c[0].z, hn::Min(second_z, third_z))),
                                hn::Max(c[0].z, hn::Max(second_z, third_z)));
-        V key = m_grid.range.perspective ? set(1.0f) / z_in : hn::Neg(z_in);
+        key = m_grid.range.perspective ? set(1.0f) / z_in : hn::Neg(z_in);
         M hit = hn::And(clean, hn::And(hn::Ge(key, set(m_grid.range.key_far)),
                                        hn::Le(key, set(m_grid.range.key_near))));
         const M unclear = hn::AndNot(clean, touched);
         if (!hn::AllFalse(kTag, unclear)) test_exactly(c, d, unclear, key, hit);
-        if (!hn::AllFalse(kTag, hit)) record(key, hit, first);
+        return hit;
     }
 
     static HWY_INLINE void inside(V a, V b, V c, M& in, M& strict) {
@@ -309,7 +411,7 @@ class Kernel {
         const V stored = hn::LoadU(kTag, m_tile.key + first);
         const M nearer = hn::And(hit, hn::Gt(key, stored));
         const M equal = hn::And(hit, hn::Eq(key, stored));
-        if (m_class & 4) {
+        if (m_class & kTransparent) {
             record_fragments(key, hn::Or(nearer, equal), equal, first);
             return;
         }
@@ -323,6 +425,28 @@ class Kernel {
         hn::BlendedStore(key, nearer, kTag, m_tile.key + first);
         hn::BlendedStore(hn::Set(kIdTag, m_id), hn::RebindMask(kIdTag, nearer), kIdTag,
                          m_tile.id + first);
+    }
+
+    HWY_INLINE void record_scattered(V key, M hit, const std::uint32_t* samples) {
+        alignas(64) float keys[16];
+        hn::StoreU(key, kTag, keys);
+        m_counts.hits += hn::CountTrue(kTag, hit);
+        for_each_lane(hit, [&](std::size_t lane) {
+            const std::uint32_t i = samples[lane];
+            const float stored = m_tile.key[i];
+            if (!(keys[lane] > stored)) {
+                const SurfaceId id = m_tile.id[i];
+                if (keys[lane] < stored || id == kNoSurface || !m_grid.pool->before(m_id, id))
+                    return;
+            }
+            if (m_class & kTransparent) {
+                m_fragments.push_back({keys[lane], i, m_id});
+                return;
+            }
+            m_tile.key[i] = keys[lane];
+            m_tile.id[i] = m_id;
+            ++m_counts.writes;
+        });
     }
 
     HWY_NOINLINE void record_fragments(V key, M visible, M equal, std::size_t first) {
@@ -343,6 +467,8 @@ class Kernel {
     SimdCounts& m_counts;
     std::uint8_t m_class = 0;
     SurfaceId m_id = 0;
+    std::vector<std::uint32_t>& m_candidates;
+    std::size_t m_candidate_count = 0;
 };
 
 void hide_grid(const SimdGrid& grid, const SimdTile& tile, std::vector<Fragment>& fragments,

@@ -15,17 +15,22 @@ namespace granita {
 /// Arrays that are read in whole vectors end in this many spare elements.
 inline constexpr int kLanePadding = 16;
 
-/// Samples of a tile in the order the kernel likes: pixel by pixel and, once the tile has motion,
-/// by time inside the pixel.
+/// What a tile's samples are sorted by inside each pixel, so that a micropolygon finds those that
+/// can see it: time where anything moves, else the lens coordinate u where there is a lens.
+enum class SortedBy { Table, Time, Lens };
+
+/// Samples of a tile, pixel by pixel.
 struct SimdTile {
     int samples = 0;  ///< a pixel
     const float *x = nullptr, *y = nullptr, *t = nullptr;
     const float *u = nullptr, *v = nullptr;  ///< times lens radius and scale: pixels per unit shear
     float* key = nullptr;
     SurfaceId* id = nullptr;
-    /// [256][time_cells + 1]: first of the pixel's samples with t >= cell / time_cells.
-    const std::uint32_t* time_start = nullptr;
-    int time_cells = 0;
+    SortedBy sorted_by = SortedBy::Table;
+    /// [256][cells + 1]: first of the pixel's samples in each cell of time or of u, which run from
+    /// the shutter's opening, and from -SimdGrid::lens_x.
+    const std::uint32_t* cell_start = nullptr;
+    int cells = 0;
     Rect pixels;  ///< that count, relative to the tile
 };
 

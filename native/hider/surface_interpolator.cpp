@@ -11,6 +11,10 @@ Corner<float> corner(const Projection& projection, const Vec3f& p, const Vec2d& 
     return {h.x, h.y, h.z, p.z};
 }
 
+int segment_of(float time, int knots) {
+    return std::min(static_cast<int>(time * static_cast<float>(knots - 1)), knots - 2);
+}
+
 /// Weights of the triangle whose smallest weight is largest: the nearest guess for a sample that is
 /// outside both by rounding.
 SurfaceHit nearest_triangle(const Offset<double> d[4]) {
@@ -42,34 +46,47 @@ SurfaceInterpolator::SurfaceInterpolator(const Projection& projection, Vec2i til
       m_pool(pool),
       m_inverse_focus(static_cast<float>(1.0 / projection.focus)),
       m_lens_x(static_cast<float>(projection.lens_radius * projection.scale.x)),
-      m_lens_y(static_cast<float>(projection.lens_radius * projection.scale.y)) {}
+      m_lens_y(static_cast<float>(projection.lens_radius * projection.scale.y)),
+      m_cache(1024) {}
 
-void SurfaceInterpolator::load(SurfaceId id) {
-    const GridPool::Place place = m_pool.locate(id);
-    const Grid::Corners c = place.grid->corners(place.micropolygon);
-    const int vertex[4] = {c.v0, c.v1, c.v2, c.v3};
-    m_grid = place.grid;
-    for (int i = 0; i < 4; ++i) {
-        m_vertex[i] = vertex[i];
-        m_static[i] = corner(m_projection, m_grid->positions[vertex[i]], m_origin);
+const SurfaceInterpolator::Loaded& SurfaceInterpolator::load(SurfaceId id, float time) {
+    Loaded& entry = m_cache[id % m_cache.size()];
+    if (entry.id != id) {
+        const GridPool::Place place = m_pool.locate(id);
+        const Grid::Corners c = place.grid->corners(place.micropolygon);
+        entry.id = id;
+        entry.segment = -1;
+        entry.grid = place.grid;
+        entry.vertex[0] = c.v0;
+        entry.vertex[1] = c.v1;
+        entry.vertex[2] = c.v2;
+        entry.vertex[3] = c.v3;
     }
-    m_loaded = id;
+    const Grid& grid = *entry.grid;
+    const int segment = grid.motion ? segment_of(time, grid.knots) : 0;
+    if (entry.segment == segment) return entry;
+    entry.segment = segment;
+    const Vec3f* const knot = grid.positions.data() + segment * grid.vertex_count();
+    for (int i = 0; i < 4; ++i) {
+        const Corner<float> a = corner(m_projection, knot[entry.vertex[i]], m_origin);
+        entry.begin[i] = a;
+        if (!grid.motion) continue;
+        const Corner<float> b =
+            corner(m_projection, knot[grid.vertex_count() + entry.vertex[i]], m_origin);
+        entry.delta[i] = {b.x - a.x, b.y - a.y, b.w - a.w, b.z - a.z};
+    }
+    return entry;
 }
 
 SurfacePoint SurfaceInterpolator::locate(std::uint32_t sample, SurfaceId id) {
-    if (id != m_loaded) load(id);
-    Corner<float> c[4] = {m_static[0], m_static[1], m_static[2], m_static[3]};
-    if (m_grid->motion) {
-        const float place = m_samples.t[sample] * static_cast<float>(m_grid->knots - 1);
-        const int segment = std::min(static_cast<int>(place), m_grid->knots - 2);
-        const float local = place - static_cast<float>(segment);
-        const Vec3f* begin = m_grid->positions.data() + segment * m_grid->vertex_count();
-        for (int i = 0; i < 4; ++i) {
-            const Corner<float> a = corner(m_projection, begin[m_vertex[i]], m_origin);
-            const Corner<float> b =
-                corner(m_projection, begin[m_grid->vertex_count() + m_vertex[i]], m_origin);
-            c[i] = at_time(a, Corner<float>{b.x - a.x, b.y - a.y, b.w - a.w, b.z - a.z}, local);
-        }
+    const float time = m_samples.t.empty() ? 0.0f : m_samples.t[sample];
+    const Loaded& surface = load(id, time);
+    Corner<float> c[4];
+    for (int i = 0; i < 4; ++i) c[i] = surface.begin[i];
+    if (surface.grid->motion) {
+        const float local = time * static_cast<float>(surface.grid->knots - 1) -
+                            static_cast<float>(surface.segment);
+        for (int i = 0; i < 4; ++i) c[i] = at_time(surface.begin[i], surface.delta[i], local);
     }
     Corner<double> exact[4];
     Offset<double> d[4];
@@ -88,10 +105,10 @@ SurfacePoint SurfaceInterpolator::locate(std::uint32_t sample, SurfaceId id) {
     SurfaceHit hit = hit_micropolygon(exact, d, kTriangleA | kTriangleB, any);
     if (!hit.hit) hit = nearest_triangle(d);
     SurfacePoint point;
-    point.grid = m_grid;
-    point.vertex[0] = m_vertex[0];
-    point.vertex[1] = m_vertex[hit.second ? 2 : 1];
-    point.vertex[2] = m_vertex[hit.second ? 3 : 2];
+    point.grid = surface.grid;
+    point.vertex[0] = surface.vertex[0];
+    point.vertex[1] = surface.vertex[hit.second ? 2 : 1];
+    point.vertex[2] = surface.vertex[hit.second ? 3 : 2];
     point.weight[0] = static_cast<float>(1.0 - hit.b1 - hit.b2);
     point.weight[1] = static_cast<float>(hit.b1);
     point.weight[2] = static_cast<float>(hit.b2);

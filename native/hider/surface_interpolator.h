@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "hider/micropolygon.h"
 #include "hider/sample_store.h"
 #include "hider/sample_table.h"
@@ -29,18 +31,22 @@ class SurfaceInterpolator {
     SurfacePoint locate(std::uint32_t sample, SurfaceId id);
 
   private:
-    void load(SurfaceId id);
+    /// A micropolygon in one segment of its motion.
+    struct Loaded {
+        SurfaceId id = kNoSurface;
+        int segment = 0;
+        const Grid* grid = nullptr;
+        int vertex[4] = {};
+        Corner<float> begin[4], delta[4];
+    };
+    const Loaded& load(SurfaceId id, float time);
 
     Projection m_projection;
     Vec2d m_origin;
     const TileSamples& m_samples;
     const GridPool& m_pool;
     float m_inverse_focus, m_lens_x, m_lens_y;
-
-    SurfaceId m_loaded = kNoSurface;  ///< neighbouring samples mostly ask for the same one
-    const Grid* m_grid = nullptr;
-    int m_vertex[4] = {};
-    Corner<float> m_static[4];
+    std::vector<Loaded> m_cache;  ///< by id; neighbouring samples ask for the same few
 };
 
 }  // namespace granita

@@ -18,6 +18,9 @@ class TileGrid {
     /// call.
     void project(const Grid& grid, const Vec2d& origin, SimdGrid& out);
 
+    /// Bound of |u| in pixels per unit shear.
+    float lens_x() const { return m_lens_x; }
+
   private:
     void bound_vertices(std::size_t vertices, std::size_t knots);
 
