@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Covered (sample, micropolygon) pairs a second on one core, one-pixel micropolygons, 64 samples:
+// without motion, with 5, 20 and 100 pixels of motion, and with a circle of confusion of 5 pixels
+// radius.  Beside them the stages that every sample pays for.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "film/film.h"
+#include "hider/composite.h"
+#include "hider/hider.h"
+
+namespace granita {
+namespace {
+
+Options bench_options() {
+    Options options;
+    options.crop = {0, 0, 64, 64};
+    return options;
+}
+
+Camera pixel_camera() {
+    Camera camera;
+    camera.projection.perspective = false;
+    camera.projection.far_clip = 1e6;
+    return camera;
+}
+
+/// 16 x 16 micropolygons of one pixel, turned by 30 degrees, at depth z.
+Grid make_grid(float x, float y, float z, float motion) {
+    Grid grid;
+    grid.n_u = grid.n_v = 16;
+    grid.knots = motion > 0 ? 2 : 1;
+    grid.motion = motion > 0;
+    for (int k = 0; k < grid.knots; ++k)
+        for (int j = 0; j <= 16; ++j)
+            for (int i = 0; i <= 16; ++i) {
+                const float u = static_cast<float>(i) - 8, v = static_cast<float>(j) - 8;
+                const float shift = (static_cast<float>(k) - .5f) * motion;
+                grid.positions.push_back({x + .8660254f * u - .5f * v + .8f * shift,
+                                          y + .5f * u + .8660254f * v + .6f * shift, z});
+            }
+    grid.radiance.assign(grid.vertex_count(), Vec3f(1));
+    const float reach = 16 + motion;
+    grid.bounds = {x - reach, y - reach, x + reach, y + reach, -z, true};
+    return grid;
+}
+
+/// Back to front, so that nothing is culled.
+std::vector<Grid> make_layers(float motion) {
+    std::vector<Grid> grids;
+    for (int layer = 0; layer < 4; ++layer)
+        for (int y = 8; y < 64; y += 14)
+            for (int x = 8; x < 64; x += 14)
+                grids.push_back(make_grid(static_cast<float>(x), static_cast<float>(y),
+                                          20 - static_cast<float>(layer), motion));
+    return grids;
+}
+
+void hide(benchmark::State& state, float motion, double lens) {
+    Camera camera = pixel_camera();
+    camera.projection.lens_radius = lens;
+    const SampleTable table(bench_options(), camera);
+    const std::vector<Grid> grids = make_layers(motion);
+    Statistics statistics;
+    const HiderFrame frame{&table, camera.projection, &statistics};
+    std::uint64_t micropolygons = 0;
+    for (auto _ : state) {
+        state.PauseTiming();
+        auto hider = make_simd_hider(frame, {0, 0, 4, 4}, {0, 0, 64, 64});
+        state.ResumeTiming();
+        for (const Grid& grid : grids) hider->hide(grid);
+        benchmark::DoNotOptimize(hider->finish());
+        micropolygons += grids.size() * 256;
+    }
+    const auto rate = [](std::uint64_t n) {
+        return benchmark::Counter(static_cast<double>(n), benchmark::Counter::kIsRate);
+    };
+    const std::uint64_t tests =
+        statistics.get(Counter::SampleTestsStatic) + statistics.get(Counter::SampleTestsMoving);
+    state.counters["hits"] = rate(statistics.get(Counter::SampleHits));
+    state.counters["tests"] = rate(tests);
+    state.counters["micropolygons"] = rate(micropolygons);
+    state.counters["tests_per_hit"] =
+        static_cast<double>(tests) / static_cast<double>(statistics.get(Counter::SampleHits));
+}
+BENCHMARK_CAPTURE(hide, still, 0.0f, 0.0);
+BENCHMARK_CAPTURE(hide, motion_5px, 5.0f, 0.0);
+BENCHMARK_CAPTURE(hide, motion_20px, 20.0f, 0.0);
+BENCHMARK_CAPTURE(hide, motion_100px, 100.0f, 0.0);
+BENCHMARK_CAPTURE(hide, lens_5px, 0.0f, 5.0);
+
+void fill_table(benchmark::State& state, SampleNeeds needs) {
+    Camera camera = pixel_camera();
+    camera.projection.lens_radius = 1;
+    const SampleTable table(bench_options(), camera);
+    TileSamples samples;
+    for (auto _ : state) {
+        table.fill_tile({1, 2}, needs, samples);
+        benchmark::DoNotOptimize(samples.x.data());
+    }
+    state.counters["samples"] = benchmark::Counter(
+        static_cast<double>(state.iterations()) * 256 * 64, benchmark::Counter::kIsRate);
+}
+BENCHMARK_CAPTURE(fill_table, xy, SampleNeeds{false, false});
+BENCHMARK_CAPTURE(fill_table, xyt, SampleNeeds{true, false});
+BENCHMARK_CAPTURE(fill_table, xytuv, SampleNeeds{true, true});
+
+void composite(benchmark::State& state) {
+    const Camera camera = pixel_camera();
+    const SampleTable table(bench_options(), camera);
+    const std::vector<Grid> grids = make_layers(0);
+    const HiderFrame frame{&table, camera.projection};
+    const auto hider = make_simd_hider(frame, {1, 1, 2, 2}, {16, 16, 32, 32});
+    for (const Grid& grid : grids) hider->hide(grid);
+    auto& store = hider->finish()[0];
+    const CompositeSettings settings{camera.projection, 1, true};
+    for (auto _ : state)
+        benchmark::DoNotOptimize(
+            composite_tile(store, hider->tile_samples(0), hider->pool(), {}, settings));
+    state.counters["samples"] = benchmark::Counter(
+        static_cast<double>(state.iterations()) * 256 * 64, benchmark::Counter::kIsRate);
+}
+BENCHMARK(composite);
+
+void filter(benchmark::State& state) {
+    const Film film(bench_options());
+    const SampleTable table(bench_options(), pixel_camera());
+    TileSamples samples;
+    table.fill_tile({1, 1}, {}, samples);
+    const std::vector<SampleColor> colors(samples.x.size());
+    for (auto _ : state) benchmark::DoNotOptimize(film.filter_tile({1, 1}, samples, colors));
+    state.counters["samples"] = benchmark::Counter(
+        static_cast<double>(state.iterations()) * 256 * 64, benchmark::Counter::kIsRate);
+}
+BENCHMARK(filter);
+
+}  // namespace
+}  // namespace granita
