@@ -188,10 +188,6 @@ std::unique_ptr<Grid> Patch::dice() const {
         grid->dp_dv[i] = Vec3f(su * step_v[i].x + sv * step_v[i].y);
     }
     dice_attributes(*grid, uv, step_u, step_v);
-    if (Statistics* statistics = m_mesh->view().statistics) {
-        statistics->add(Counter::GridsDiced);
-        statistics->add(Counter::PointsDiced, count);
-    }
     return grid;
 }
 

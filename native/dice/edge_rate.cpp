@@ -9,6 +9,8 @@ namespace granita {
 namespace {
 
 constexpr double kSag = 0.1;
+/// The least dicing rate, pixels: below it nothing more can be seen, and 0 would never end.
+constexpr double kFinest = 0.01;
 constexpr double kShortest = 0.5;
 /// Pixels outside the frame for one more pixel of target length.
 constexpr double kOutside = 8.0;
@@ -36,7 +38,7 @@ struct EdgeRate::Swept {
 
 EdgeRate::EdgeRate(const View& view)
     : m_projection(view.projection),
-      m_rate(view.scene->options.dicing_rate),
+      m_rate(std::max<double>(view.scene->options.dicing_rate, kFinest)),
       m_width(view.scene->options.width),
       m_height(view.scene->options.height),
       m_near(view.projection.perspective ? std::max(view.projection.near_clip, 1e-9)

@@ -131,7 +131,6 @@ RasterBounds OpenedMesh::bounds(std::size_t primitive) const {
 }
 
 std::unique_ptr<Primitive> OpenedMesh::primitive(std::size_t primitive) const {
-    if (m_view->statistics) m_view->statistics->add(Counter::PrimitivesOpened);
     return Patch::open(shared_from_this(), m_shared->patches()[primitive]);
 }
 

@@ -13,14 +13,9 @@ namespace {
 
 const Vec3d kTowardsCamera(0.0, 0.0, -1.0);
 
-/// The faces that a thread evaluated last: borders are their owner's business, so a patch asks for
-/// its neighbours over and over.  128 hold a ring of neighbours for all that is split at a time, in
-/// about a megabyte.
-struct FaceSlot {
-    std::uint64_t id = 0;
-    int face = -1;
-    LimitFace limit;
-};
+/// Faces that a thread keeps ready.  Borders are their owner's business, so a patch asks for its
+/// neighbours over and over; 128 hold the neighbours of all that is split at a time, in about a
+/// megabyte.
 constexpr std::size_t kSlots = 128;
 
 std::uint64_t next_id() {
@@ -44,6 +39,13 @@ Vec3d at(const std::vector<double>& columns, int set) {
 
 }  // namespace
 
+struct OpenedSubdivision::FaceSlot {
+    std::uint64_t id = 0;  ///< of the opened instance
+    int face = -1;
+    LimitFace limit;
+    std::vector<std::pair<int, LimitFace>> uv_maps;
+};
+
 OpenedSubdivision::OpenedSubdivision(const View& view, std::size_t instance,
                                      std::shared_ptr<const SharedGeometry> shared, Knots knots,
                                      Report& report)
@@ -52,18 +54,33 @@ OpenedSubdivision::OpenedSubdivision(const View& view, std::size_t instance,
     if (wants_object_position(view)) m_sets.push_back(this->shared().frame_points().data());
 }
 
-const LimitFace& OpenedSubdivision::face(int index) const {
+OpenedSubdivision::FaceSlot& OpenedSubdivision::slot(int face) const {
     thread_local std::vector<FaceSlot> slots(kSlots);
-    FaceSlot& slot = slots[(static_cast<std::size_t>(index) + m_id * 31) % kSlots];
-    if (slot.id != m_id || slot.face != index) {
+    FaceSlot& slot = slots[(static_cast<std::size_t>(face) + m_id * 31) % kSlots];
+    if (slot.id != m_id || slot.face != face) {
         slot.face = -1;
-        if (!slot.limit.gather(topology(), index, m_sets))
-            throw InternalError(data().name + ": face " + std::to_string(index) +
+        slot.uv_maps.clear();
+        if (!slot.limit.gather(topology(), face, m_sets))
+            throw InternalError(data().name + ": face " + std::to_string(face) +
                                 " has no limit surface");
         slot.id = m_id;
-        slot.face = index;
+        slot.face = face;
     }
-    return slot.limit;
+    return slot;
+}
+
+const LimitFace& OpenedSubdivision::face(int index) const {
+    return slot(index).limit;
+}
+
+const LimitFace& OpenedSubdivision::uv_map(int face, int channel) const {
+    FaceSlot& at = slot(face);
+    for (const auto& [known, map] : at.uv_maps)
+        if (known == channel) return map;
+    LimitFace map;
+    if (!map.gather_uv(topology(), face, channel))
+        throw InternalError(data().name + ": face " + std::to_string(face) + " has no UV surface");
+    return at.uv_maps.emplace_back(channel, std::move(map)).second;
 }
 
 Side OpenedSubdivision::base_side(std::uint32_t face, int local, std::int32_t from, int budget,
@@ -289,10 +306,7 @@ void OpenedSubdivision::attribute(const BasePatch& patch, const AttributeRequest
         return;
     }
     const int index = static_cast<int>(patch.face);
-    LimitFace map;
-    if (channel >= 0 && !map.gather_uv(topology(), index, channel))
-        throw InternalError(data().name + ": face " + std::to_string(index) + " has no UV surface");
-    const LimitFace& limit = channel >= 0 ? map : face(index);
+    const LimitFace& limit = channel >= 0 ? uv_map(index, channel) : face(index);
     const FaceCoordinates coordinates(topology(), index);
     const std::size_t columns = static_cast<std::size_t>(limit.columns());
     const std::size_t width = static_cast<std::size_t>(request.width);

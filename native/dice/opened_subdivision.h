@@ -31,7 +31,10 @@ class OpenedSubdivision final : public OpenedMesh {
     static constexpr std::uint32_t kWhole = 0xffffffffu;
 
     const SubdivisionTopology& topology() const { return *shared().subdivision(); }
+    struct FaceSlot;
+    FaceSlot& slot(int face) const;
     const LimitFace& face(int index) const;
+    const LimitFace& uv_map(int face, int channel) const;
     Side base_side(std::uint32_t face, int local, std::int32_t from, int budget,
                    const SideWalker& walk) const;
     /// `amount`: displacement along the normal, metres.

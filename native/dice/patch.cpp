@@ -10,8 +10,10 @@
 namespace granita {
 namespace {
 
-/// An edge of 1e5 m under a camera at eye height needs 2^26 pieces to reach a pixel at its feet.
-constexpr int kMostLevels = 26;
+/// An edge of 1e5 m may end in pieces of 3 mm: two pixels at the feet of a camera at eye height.  A
+/// path of 64 bits holds two such budgets and the sub-faces of a face of 4,000 corners; beyond that
+/// the face gets fewer levels.
+constexpr int kMostLevels = 25;
 
 }  // namespace
 
@@ -144,7 +146,6 @@ Patch::Cut Patch::cut(int side, bool collapsed_before, int before, int after) co
 
 std::vector<std::unique_ptr<Primitive>> Patch::split() const {
     const bool u = m_split_u;
-    if (m_mesh->view().statistics) m_mesh->view().statistics->add(Counter::PrimitivesSplit);
     // Named for a split along u; along v, left and bottom, right and top change places.
     const bool point_before = m_sides[u ? kLeft : kBottom].collapsed;
     const Cut low = cut(u ? kBottom : kLeft, point_before, 0, u ? 1 : 3);

@@ -11,6 +11,9 @@
 // Everything depends on primitive, camera and rates alone (decision 1), never on who asks.  Shared
 // borders of neighbouring primitives are diced from edge data alone and their vertices are
 // bit-identical at every knot. All methods are const and thread-safe.
+//
+// Primitives keep the opened instance alive; the View and the Report that it was opened with must
+// outlive both.  Counting what is opened, split and diced is the caller's.
 #pragma once
 
 #include <memory>
