@@ -195,6 +195,8 @@ class _Walk:
         """What does not change within the shutter."""
         if kind.type == "MESH":
             kind.materials = [slot.material for slot in shown.material_slots]
+            if kind.source.is_shadow_catcher:
+                self._report(f"object '{kind.name}'", "is a shadow catcher: rendered as it stands")
         for system in kind.source.particle_systems:
             settings = system.settings
             if settings.type == "HAIR" and settings.render_type == "PATH":

@@ -111,7 +111,18 @@ def moving_instances(scene):
         drive(place, "location", f"(frame - 10) * {i}", 0)
 
 
-@pytest.mark.slow
+def held_out(scene):
+    scene_parts.add_camera(scene, (0, 0, 8))
+    scene_parts.add_square(scene, "Behind", 4.0)
+    scene_parts.add_square(scene, "Unseen", 1.0, (2.5, 0, 0)).visible_camera = False
+    hole = scene_parts.add_square(scene, "Hole", 1.0, (0.3, 0.2, 2))
+    held = bpy.data.collections.new("Held")
+    scene.collection.children.link(held)
+    held.objects.link(hole)
+    scene.collection.objects.unlink(hole)
+    bpy.context.view_layer.layer_collection.children["Held"].holdout = True
+
+
 @pytest.mark.parametrize(
     "build",
     [
@@ -123,6 +134,7 @@ def moving_instances(scene):
         moving_camera,
         deforming_cage,
         moving_instances,
+        held_out,
     ],
 )
 def test_coverage_is_that_of_cycles(scene, render, build):
