@@ -21,7 +21,7 @@ class NativeModuleMissing(Exception):
 
 
 class DeviceError(Exception):
-    """OpenGL or EGL failed or is absent."""
+    """OpenGL failed while it rendered.  (That it is absent the library finds itself.)"""
 
 
 class RenderError(Exception):
@@ -63,13 +63,16 @@ def _why_missing():
 @contextmanager
 def rendering(snapshot):
     """Renders a scene snapshot (docs/scene_snapshot.md): yields the running granita_core.Render.
+    The snapshot is emptied.
 
     On a normal exit the job is finished and its first failure raised; on any other it is
     cancelled and joined.  Native exceptions arrive as those of this file.
     """
     core = load()
     try:
-        job = core.Render(core.Scene(snapshot))
+        scene = core.Scene(snapshot)
+        snapshot.clear()  # copied: a large scene need not be held twice
+        job = core.Render(scene)
         try:
             yield job
         except BaseException:

@@ -46,10 +46,11 @@ class FinalRender:
         bridge.load()
         try:
             snapshot = self._export()
+            options = snapshot["options"]
             job = self._render(snapshot)
             self.seconds["total"] = perf_counter() - started
             warnings = self.report.entries() + job.warnings()
-            statistics.add_layer(self, snapshot["options"], job, warnings)
+            statistics.add_layer(self, options, job, warnings)
         finally:
             self._tell(self.report.entries())
 
@@ -81,28 +82,13 @@ class FinalRender:
         self.status.exporting()
 
     def _render(self, snapshot):
-        """On the device asked for; where OpenGL fails on the way, once more on the CPU.
-
-        That there is no usable GPU to begin with, the native library finds and says itself.
-        """
-        options = snapshot["options"]
-        try:
-            return self._run_job(snapshot)
-        except bridge.DeviceError as error:
-            if options["device"] == "CPU":
-                raise
-            self.report.warn(f"scene '{self.scene}'", f"the GPU failed, the CPU renders: {error}")
-        options["device"] = "CPU"
-        return self._run_job(snapshot)
-
-    def _run_job(self, snapshot):
-        """Runs one native job to its end and returns it."""
+        """Runs the native job to its end and returns it.  Empties the snapshot."""
         started = perf_counter()
+        origin = [int(pixel) for pixel in snapshot["options"]["crop"][:2]]
         job = None
         try:
             with bridge.rendering(snapshot) as job:
                 self.seconds["scene"] = perf_counter() - started
-                origin = [int(pixel) for pixel in snapshot["options"]["crop"][:2]]
                 while not job.done():
                     self._deliver(job.take_tiles(POLL_SECONDS), origin)
                     if self.engine.test_break():

@@ -189,7 +189,7 @@ def test_a_good_frame_says_nothing_alarming(blend, tmp_path):
 
 
 def test_status_lines_end_in_sample_counts(blend, tmp_path):
-    slow = SETTING.format("s.granita.samples = 2048; r.resolution_x = r.resolution_y = 512")
+    slow = SETTING.format("s.granita.samples = 1024; r.resolution_x = r.resolution_y = 192")
     outcome = render_host.run(blend, tmp_path / "out", slow)
     assert outcome.code == 0, outcome.output
     lines = [line for line in outcome.output.splitlines() if "Sample" in line]

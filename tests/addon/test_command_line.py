@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Granita's options after `--`: what is read, what is refused, what is left to others."""
+
+import pytest
+
+from addon.command_line import CommandLine, CommandLineError, parse
+
+BLENDER = ["blender", "-b", "scene.blend", "-E", "GRANITA", "-f", "1"]
+
+
+@pytest.mark.parametrize(
+    "words, expected",
+    [
+        ([], CommandLine()),
+        (["--granita-device", "cpu"], CommandLine(device="CPU")),
+        (["--granita-device=GPU"], CommandLine(device="GPU")),
+        (["--granita-device", "auto"], CommandLine(device="AUTO")),
+        (["--granita-stats", "a b.json"], CommandLine(stats="a b.json")),
+        (["--granita-stats=x=y"], CommandLine(stats="x=y")),
+        (["--granita-threads", "0"], CommandLine(threads=0)),
+        (["--granita-threads", "2", "--granita-threads", "5"], CommandLine(threads=5)),
+        (["--cycles-device", "CPU", "scene", "--granita-threads=3"], CommandLine(threads=3)),
+    ],
+)
+def test_reads(words, expected):
+    assert parse([*BLENDER, "--", *words]) == expected
+
+
+def test_words_before_the_dashes_are_blenders():
+    assert parse(["blender", "--granita-device", "nonsense"]) == CommandLine()
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (["--granita-devcie", "cpu"], "unknown option --granita-devcie"),
+        (["--granita-"], "unknown option --granita- "),
+        (["--granita-device", "tpu"], "'tpu' is not one of cpu, gpu, auto"),
+        (["--granita-device"], "--granita-device needs a value"),
+        (["--granita-stats", "--granita-threads", "2"], "--granita-stats needs a value"),
+        (["--granita-stats="], "--granita-stats needs a value"),
+        (["--granita-threads", "two"], "'two' is not a number"),
+        (["--granita-threads=-1"], "'-1' is not a number"),
+        (["--granita-threads", "1025"], "'1025' is not a number"),
+    ],
+)
+def test_refuses(words, message):
+    with pytest.raises(CommandLineError) as failure:
+        parse([*BLENDER, "--", *words])
+    assert message in str(failure.value)
