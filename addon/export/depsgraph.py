@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .identity import combine, name_hash
-from .report import Cancelled
+from .report import poll
 from .subdivision import Cage, find_cage, simplify_level
 
 _POLL_EVERY = 1024
@@ -98,8 +98,8 @@ def visit(depsgraph, report, check_cancel, cages=None):
     iterator = iter(depsgraph.object_instances)
     try:
         for i, instance in enumerate(iterator):
-            if i % _POLL_EVERY == 0 and check_cancel():
-                raise Cancelled
+            if i % _POLL_EVERY == 0:
+                poll(check_cancel)
             if not instance.show_self:
                 continue
             duplicate = instance.is_instance

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .mesh import Topology, read_geometry
-from .report import Cancelled
+from .report import poll
 from .snapshot import Geometry
 from .subdivision import Cage, cage_mesh, subdivision_record
 
@@ -43,11 +43,10 @@ def read_geometries(scan, requested, depsgraph, report, check_cancel):
     for number, kind in enumerate(scan.kinds):
         if kind.type != "MESH":
             continue
-        if check_cancel():
-            raise Cancelled
+        poll(check_cancel)
         key = kind.geometry_key()
         if key not in index:
-            source = _read(kind, int(examples[number]), requested, depsgraph, report)
+            source = _read(kind, int(examples[number]), requested, depsgraph, report, check_cancel)
             index[key] = len(sources) if source else -1
             if source:
                 sources.append(source)
@@ -55,13 +54,13 @@ def read_geometries(scan, requested, depsgraph, report, check_cancel):
     return sources, of_kind
 
 
-def _read(kind, example, requested, depsgraph, report):
+def _read(kind, example, requested, depsgraph, report, check_cancel):
     if kind.cage is None:
-        found = read_geometry(kind.data, kind.label, requested, report)
+        found = read_geometry(kind.data, kind.label, requested, report, check_cancel)
     else:
         with cage_mesh(kind.source, kind.cage, depsgraph) as mesh:
             record = subdivision_record(kind.cage, mesh)
-            found = read_geometry(mesh, kind.label, requested, report, record)
+            found = read_geometry(mesh, kind.label, requested, report, check_cancel, record)
     if found is None:
         return None
     original = kind.source.original

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .attributes import mesh_attributes
+from .report import poll
 from .snapshot import Geometry
 
 
@@ -52,7 +53,7 @@ def read_points(mesh):
     return points
 
 
-def read_geometry(mesh, label, requested, report, subdivision=None):
+def read_geometry(mesh, label, requested, report, check_cancel, subdivision=None):
     """One geometry with one knot.
 
     Args:
@@ -60,6 +61,7 @@ def read_geometry(mesh, label, requested, report, subdivision=None):
         label: its name for messages, "mesh 'Cube'".
         requested: names of generic attributes that materials ask for.
         report: called with (datablock, message).
+        check_cancel: true when the user has cancelled; asked between the long steps.
         subdivision: record of a cage, or None.
 
     Returns:
@@ -68,15 +70,18 @@ def read_geometry(mesh, label, requested, report, subdivision=None):
     topology = read_topology(mesh)
     if len(topology.face_sizes) == 0:
         return None
+    poll(check_cancel)
     geometry = Geometry(
         name=label,
         points=read_points(mesh)[None],
         face_sizes=topology.face_sizes,
         corner_verts=topology.corner_verts,
         material_index=_material_index(mesh),
-        attributes=mesh_attributes(mesh, label, requested, report),
         subdivision=subdivision,
     )
+    poll(check_cancel)
+    geometry.attributes = mesh_attributes(mesh, label, requested, report)
+    poll(check_cancel)
     if subdivision is None:
         geometry.smooth, geometry.corner_normals = _shading(mesh)
         if geometry.corner_normals is not None and not np.isfinite(geometry.corner_normals).all():
@@ -84,6 +89,7 @@ def read_geometry(mesh, label, requested, report, subdivision=None):
             geometry.corner_normals = None
     else:
         geometry.smooth = _smooth(mesh)
+    poll(check_cancel)
     _drop_broken_faces(geometry, report)
     return (geometry, topology) if len(geometry.face_sizes) else None
 

@@ -14,7 +14,7 @@ import numpy as np
 from .camera import camera_matrix
 from .depsgraph import visit
 from .mesh import read_points, read_topology
-from .report import Cancelled
+from .report import poll
 from .subdivision import cage_mesh, cages_only
 from .transforms import is_finite
 
@@ -81,8 +81,7 @@ def sample_motion(clock, shutter, depsgraph, camera, frame_visit, geometries, re
             for knot, offset in enumerate(shutter.offsets):
                 if knot == shutter.frame_knot:
                     continue
-                if check_cancel():
-                    raise Cancelled
+                poll(check_cancel)
                 clock.go(offset)
                 sampler.sample(knot, clock.knows_updates)
         finally:
@@ -132,8 +131,7 @@ class _Sampler:
         place = np.full(len(self._visit.kind), -1)
         place[here] = there
         for index, source in enumerate(self._geometries):
-            if self._check_cancel():
-                raise Cancelled
+            poll(self._check_cancel)
             thing = place[source.example]
             if thing < 0 or index in self._rigid or not source.deforms:
                 continue

@@ -19,6 +19,12 @@ class Cancelled(Exception):
     """The user ended the render while the scene was being read."""
 
 
+def poll(check_cancel):
+    """Raises Cancelled, or what check_cancel raises, when the user has cancelled."""
+    if check_cancel():
+        raise Cancelled
+
+
 class Report:
     """Recoverable problems.  Calling it is the same as `warn`, so it serves as a plain callback."""
 
