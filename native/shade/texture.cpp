@@ -34,6 +34,7 @@ OIIO::TextureOpt options_for(const TextureMode& mode) {
     OIIO::TextureOpt options;
     const auto wrap = mode.extension == TextureExtension::Repeat   ? OIIO::TextureOpt::WrapPeriodic
                       : mode.extension == TextureExtension::Mirror ? OIIO::TextureOpt::WrapMirror
+                      : mode.extension == TextureExtension::Clip   ? OIIO::TextureOpt::WrapBlack
                                                                    : OIIO::TextureOpt::WrapClamp;
     options.swrap = options.twrap = wrap;
     options.interpmode = mode.filter == TextureFilter::Closest ? OIIO::TextureOpt::InterpClosest
@@ -66,11 +67,6 @@ class CachedTexture final : public Texture {
             const TexturePlace& place = places[i];
             const Vec2f p = place.center;
             if (!(std::abs(p.x) < 1e6f && std::abs(p.y) < 1e6f)) {  // also catches NaN
-                out[i] = Vec4f(0.0f);
-                continue;
-            }
-            if (mode.extension == TextureExtension::Clip &&
-                (p.x < 0.0f || p.x > 1.0f || p.y < 0.0f || p.y > 1.0f)) {
                 out[i] = Vec4f(0.0f);
                 continue;
             }

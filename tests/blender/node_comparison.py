@@ -14,8 +14,12 @@ SQUARES = 16
 PIXELS = 2 * SQUARES
 
 
-def board(scene, low=-1.5, high=1.5, seed=7):
-    """Adds board and camera; attributes A, B, C uniform in [low, high], UV map over the whole."""
+def board(scene, low=-1.5, high=1.5, seed=7, tilt=0.0, both_sides=False):
+    """Adds board and camera; attributes A, B, C uniform in [low, high], UV map over the whole.
+
+    With `tilt` each square leans its own way (slopes up to `tilt`) and still covers its pixels; with
+    `both_sides` every other one shows its back.
+    """
     n = SQUARES
     i, j = np.meshgrid(np.arange(n), np.arange(n))
     lower_left = np.stack([i.ravel(), j.ravel()], axis=1)
@@ -23,10 +27,15 @@ def board(scene, low=-1.5, high=1.5, seed=7):
     uv = corners.reshape(-1, 2) / n
     vertices = np.concatenate([uv * 2 - 1, np.zeros((len(uv), 1))], axis=1)
     faces = np.arange(4 * n * n).reshape(-1, 4)
+    random = np.random.default_rng(seed)
+    slopes = np.repeat(random.uniform(-tilt, tilt, (n * n, 2)), 4, axis=0)
+    vertices[:, 2] = np.sum(slopes * (vertices[:, :2] - np.repeat(vertices[::4, :2], 4, axis=0)), 1)
+    if both_sides:
+        faces[::2] = faces[::2, ::-1]
+        uv.reshape(-1, 4, 2)[::2] = uv.reshape(-1, 4, 2)[::2, ::-1]
     thing = scene_parts.add_mesh(scene, "Board", vertices.tolist(), faces.tolist())
     mesh = thing.data
     mesh.uv_layers.new(name="UVMap").data.foreach_set("uv", uv.astype(np.float32).ravel())
-    random = np.random.default_rng(seed)
     for name in "ABC":
         values = np.repeat(random.uniform(low, high, (n * n, 3)), 4, axis=0)
         attribute = mesh.attributes.new(name, "FLOAT_VECTOR", "POINT")
@@ -85,6 +94,7 @@ def render_both(scene, render, samples=1):
     theirs = _rgb(render(scene, "cycles"))
     scene.render.engine = "GRANITA"
     scene.granita.samples = samples
+    scene.granita.dicing_rate = 0.5  # the node is compared, not the interpolation between vertices
     scene.granita.pixel_filter = "BOX"
     scene.granita.filter_width = 1.0
     ours = _rgb(render(scene, "granita"))
@@ -106,8 +116,9 @@ LIMIT = 0.002
 def check(scene, render, samples=1, limit=LIMIT):
     """Renders both and compares; a case that hardly varies shows nothing and fails."""
     theirs, ours = render_both(scene, render, samples)
-    assert theirs.std() >= 0.1
-    assert rmse(theirs, ours) < limit
+    deviation, error = float(theirs.std()), rmse(theirs, ours)
+    assert deviation >= 0.1, f"deviation {deviation:.4f}"
+    assert error < limit, f"error {error:.5f}, deviation {deviation:.4f}"
 
 
 def enum_values(kind, name):

@@ -17,13 +17,13 @@ VectorSource coordinate(NodeBuilder& b) {
     return b.linked("Vector") ? b.vector("Vector") : generated_at(b, b.shift());
 }
 
-/// 1 on the cubes of the first colour.  The nudge keeps faces that lie on whole numbers, where
-/// rounding would decide, on one side (Cycles').
+/// 1 on the cubes of the first colour, the odd ones.  The nudge keeps faces that lie on whole
+/// numbers, where rounding would decide, on one side (Cycles').
 float checker(const Vec3f& p, float scale) {
     const Vec3f q = (p * scale + 1e-6f) * 0.999999f;
     int sum = 0;
     for (int c = 0; c < 3; ++c) sum += std::abs(static_cast<int>(std::floor(q[c]))) % 2;
-    return sum % 2 == 0 ? 1.0f : 0.0f;
+    return sum % 2 == 0 ? 0.0f : 1.0f;
 }
 
 float gradient(const std::string& type, const Vec3f& p) {

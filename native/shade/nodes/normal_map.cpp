@@ -15,6 +15,11 @@ Vec3f unit_or(const Vec3f& v, const Vec3f& fallback) {
     return length > 0.0f && std::isfinite(length) ? v / length : fallback;
 }
 
+/// From the surface's normal to the map's and, above 1, beyond it.
+Vec3f strengthened(const Vec3f& normal, const Vec3f& mapped, float strength) {
+    return unit_or(normal + (mapped - normal) * std::max(strength, 0.0f), normal);
+}
+
 struct TangentFrame {
     Vec3f tangent, bitangent;
     bool valid = false;
@@ -43,6 +48,8 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
     const std::string name = b.text("uv_map");
     const VectorSource uv = uv_at(b, name, Shift::None), uv_u = uv_at(b, name, Shift::U),
                        uv_v = uv_at(b, name, Shift::V), out = b.new_source<Vec3f>();
+    // Since Blender 4 strength scales the map's slopes, before it blended the resulting normals.
+    const bool scales_slopes = b.value("generation", 2) >= 2;
     b.add_step(
         [=](Run& run) {
             const auto colors = run.read(color), uvs = run.read(uv), us = run.read(uv_u),
@@ -60,14 +67,15 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
                     result[i] = points.normal[i];
                     continue;
                 }
-                const float s = std::max(strengths[i], 0.0f);
                 Vec3f c = 2.0f * (colors[i] - 0.5f);
-                c.x *= s;
-                c.y *= s;
-                c.z = 1.0f + (c.z - 1.0f) * std::min(s, 1.0f);
-                result[i] =
-                    side *
+                if (scales_slopes) {
+                    const float s = std::max(strengths[i], 0.0f);
+                    c = {c.x * s, c.y * s, 1.0f + (c.z - 1.0f) * std::min(s, 1.0f)};
+                }
+                const Vec3f n =
                     unit_or(frame.tangent * c.x + frame.bitangent * c.y + normal * c.z, normal);
+                result[i] =
+                    strengthened(points.normal[i], side * n, scales_slopes ? 1.0f : strengths[i]);
             }
         },
         {color.slot, strength.slot, uv.slot, uv_u.slot, uv_v.slot}, {out.slot});
@@ -105,9 +113,7 @@ void build_normal_map(NodeBuilder& b) {
                 if (object) n = world_normal_from_object * n;
                 n = unit_or(n, points.normal[i]);
                 if (points.backfacing[i]) n = -n;
-                const float s = std::max(strengths[i], 0.0f);
-                result[i] =
-                    unit_or(points.normal[i] + (n - points.normal[i]) * s, points.normal[i]);
+                result[i] = strengthened(points.normal[i], n, strengths[i]);
             }
         },
         {color.slot, strength.slot}, {out.slot});

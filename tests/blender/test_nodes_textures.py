@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images, coordinates and normals against Cycles' own output."""
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Matrix
+from node_comparison import Tree, board, check, enum_values
+
+SAMPLES = 64  # what varies inside a pixel is averaged by both
+
+
+def smooth_image(name, float_buffer=False, alpha=False, size=16):
+    """Low frequencies only: filters of both renderers see the same thing."""
+    image = bpy.data.images.new(name, size, size, alpha=alpha, float_buffer=float_buffer)
+    y, x = np.mgrid[0:size, 0:size] * (2 * np.pi / size)
+    pixels = np.stack([np.sin(x), np.cos(y), np.sin(x + y), np.cos(x - y)], axis=-1) * 0.4 + 0.5
+    if not alpha:
+        pixels[..., 3] = 1.0
+    image.pixels.foreach_set(pixels.astype(np.float32).ravel())
+    image.update()
+    return image
+
+
+def saved_image(tmp_path, name, **options):
+    image = smooth_image(name, **options)
+    image.filepath_raw = str(tmp_path / f"{name}.png")
+    image.file_format = "PNG"
+    image.save()
+    return bpy.data.images.load(str(tmp_path / f"{name}.png"))
+
+
+def textured(scene, image, **properties):
+    tree = Tree(board(scene))
+    return tree, tree.add("ShaderNodeTexImage", image=image, **properties)
+
+
+@pytest.mark.parametrize("interpolation", ["Linear", "Cubic"])
+@pytest.mark.parametrize("source", ["byte", "float", "file", "packed"])
+def test_image(scene, render, tmp_path, interpolation, source):
+    if source in ("byte", "float"):
+        image = smooth_image("Image", float_buffer=source == "float")
+    else:
+        image = saved_image(tmp_path, "Image")
+        if source == "packed":
+            image.pack()
+    tree, node = textured(scene, image, interpolation=interpolation)
+    tree.emit(node.outputs["Color"])
+    check(scene, render, SAMPLES)
+
+
+@pytest.mark.parametrize("interpolation", ["Closest", "Linear", "Cubic"])
+@pytest.mark.parametrize("extension", enum_values("ShaderNodeTexImage", "extension"))
+def test_extension(scene, render, interpolation, extension):
+    image = smooth_image("Image")
+    tree, node = textured(scene, image, interpolation=interpolation, extension=extension)
+    tree.link(tree.attribute("A"), node.inputs[0])
+    tree.emit(node.outputs["Color"])
+    check(scene, render)
+
+
+@pytest.mark.parametrize("space", ["sRGB", "Non-Color", "Linear"])
+def test_colour_spaces(scene, render, tmp_path, space):
+    image = saved_image(tmp_path, "Image")
+    names = [i.identifier for i in image.colorspace_settings.bl_rna.properties["name"].enum_items]
+    if space not in names and space == "Linear":
+        space = "Linear Rec.709"
+    image.colorspace_settings.name = space
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    check(scene, render, SAMPLES)
+
+
+@pytest.mark.parametrize("mode", ["STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"])
+@pytest.mark.parametrize("output", ["Color", "Alpha", "both"])
+def test_alpha(scene, render, tmp_path, mode, output):
+    if mode == "NONE" and output == "Alpha":
+        pytest.skip("alpha is 1 everywhere")
+    image = saved_image(tmp_path, "Image", alpha=True)
+    image.alpha_mode = mode
+    tree, node = textured(scene, image)
+    if output == "both":
+        mix = tree.add("ShaderNodeMixRGB")
+        tree.link(node.outputs["Alpha"], mix.inputs[0])
+        tree.link(node.outputs["Color"], mix.inputs[2])
+        tree.emit(mix.outputs[0])
+    else:
+        tree.emit(node.outputs[output])
+    check(scene, render, SAMPLES)
+
+
+@pytest.mark.parametrize("projection", ["BOX", "SPHERE", "TUBE"])
+def test_projection(scene, render, projection):
+    tree = Tree(board(scene, tilt=3.0))
+    node = tree.add("ShaderNodeTexImage", image=smooth_image("Image"), projection=projection)
+    node.projection_blend = 0.4
+    tree.link(tree.attribute("A"), node.inputs[0])
+    tree.emit(node.outputs["Color"])
+    check(scene, render)
+
+
+@pytest.mark.parametrize(
+    "output", ["Generated", "Normal", "UV", "Object", "Camera", "Window", "Reflection"]
+)
+def test_texture_coordinate(scene, render, output):
+    tree = Tree(board(scene, tilt=1.0 if output in ("Normal", "Reflection") else 0.0))
+    node = tree.add("ShaderNodeTexCoord")
+    tree.emit(node.outputs[output])
+    check(scene, render, SAMPLES)
+
+
+def test_object_coordinate_of_another(scene, render):
+    tree = Tree(board(scene))
+    empty = bpy.data.objects.new("Empty", None)
+    empty.matrix_world = Matrix.Translation((0.3, -0.2, 0.5)) @ Matrix.Rotation(0.7, 4, "Z")
+    scene.collection.objects.link(empty)
+    node = tree.add("ShaderNodeTexCoord", object=empty)
+    tree.emit(node.outputs["Object"])
+    check(scene, render, SAMPLES)
+
+
+@pytest.mark.parametrize("output", ["Position", "Normal", "True Normal", "Incoming", "Backfacing"])
+def test_geometry(scene, render, output):
+    seen_along = output in ("Position", "Incoming")
+    thing = board(scene, tilt=0.0 if seen_along else 1.0, both_sides=not seen_along)
+    if seen_along:
+        _perspective(scene, thing)
+    tree = Tree(thing)
+    tree.emit(tree.add("ShaderNodeNewGeometry").outputs[output])
+    check(scene, render, SAMPLES if seen_along else 1)
+
+
+def _perspective(scene, thing):
+    scene.camera.data.type = "PERSP"
+    scene.camera.data.angle = 0.36
+    thing.matrix_world = Matrix.Rotation(0.5, 4, (0.6, 0.64, 0.48)) @ Matrix.Scale(2.0, 4)
+
+
+@pytest.mark.parametrize("space", enum_values("ShaderNodeNormalMap", "space"))
+@pytest.mark.parametrize("leaning", [False, True])
+def test_normal_map(scene, render, space, leaning):
+    """Blue above 1/2: what points into the surface is bent back, differently in every Blender."""
+    thing = board(scene, 0.55, 1, tilt=0.5 * leaning, both_sides=leaning)
+    thing.matrix_world = Matrix.Rotation(np.pi / 2, 4, "Z")
+    tree = Tree(thing)
+    node = tree.add("ShaderNodeNormalMap", space=space, uv_map="UVMap")
+    tree.link(tree.attribute("A", "Color"), node.inputs["Color"])
+    tree.link(tree.attribute("B", "Fac"), node.inputs["Strength"])
+    tree.emit(node.outputs[0])
+    check(scene, render)
+
+
+def test_color_attribute(scene, render):
+    thing = board(scene)
+    for name, kind in (("Byte", "BYTE_COLOR"), ("Float", "FLOAT_COLOR")):
+        colors = thing.data.color_attributes.new(name, kind, "CORNER")
+        values = np.random.default_rng(3).uniform(0, 1, (len(colors.data) // 4, 4))
+        colors.data.foreach_set("color", np.repeat(values, 4, axis=0).astype(np.float32).ravel())
+    tree = Tree(thing)
+    mix = tree.add("ShaderNodeMixRGB")
+    for name, target in (("Byte", mix.inputs[1]), ("Float", mix.inputs[2])):
+        tree.link(tree.add("ShaderNodeVertexColor", layer_name=name).outputs["Color"], target)
+    tree.link(
+        tree.add("ShaderNodeVertexColor", layer_name="Float").outputs["Alpha"], mix.inputs[0]
+    )
+    tree.emit(mix.outputs[0])
+    check(scene, render)
+
+
+@pytest.mark.parametrize("output", ["View Vector", "View Z Depth", "View Distance"])
+def test_camera_data(scene, render, output):
+    thing = board(scene)
+    _perspective(scene, thing)
+    tree = Tree(thing)
+    tree.emit(tree.add("ShaderNodeCameraData").outputs[output])
+    check(scene, render, SAMPLES)
+
+
+@pytest.mark.parametrize("output", ["Color", "Fac"])
+def test_checker(scene, render, output):
+    tree = Tree(board(scene))
+    node = tree.add("ShaderNodeTexChecker")
+    tree.link(tree.attribute("A"), node.inputs["Vector"])
+    tree.emit(node.outputs[output])
+    check(scene, render)
+
+
+@pytest.mark.parametrize("kind", enum_values("ShaderNodeTexGradient", "gradient_type"))
+def test_gradient(scene, render, kind):
+    tree = Tree(board(scene, -0.6, 0.6))
+    node = tree.add("ShaderNodeTexGradient", gradient_type=kind)
+    tree.link(tree.attribute("A"), node.inputs["Vector"])
+    tree.emit(node.outputs["Color"])
+    check(scene, render)
+
+
+@pytest.mark.parametrize("kind", ["Location", "Object Index", "Random"])
+def test_object_info(scene, render, kind):
+    thing = board(scene)
+    thing.pass_index = 3
+    thing.location.z = -0.7
+    tree = Tree(thing)
+    node, mix = tree.add("ShaderNodeObjectInfo"), tree.add("ShaderNodeVectorMath")
+    tree.link(node.outputs[kind], mix.inputs[0])
+    tree.link(tree.attribute("A"), mix.inputs[1])
+    tree.emit(mix.outputs[0])
+    check(scene, render)
+
+
+def test_generated_is_what_textures_use_when_nothing_is_linked(scene, render):
+    tree = Tree(board(scene))
+    tree.emit(tree.add("ShaderNodeTexGradient").outputs["Color"])
+    check(scene, render, SAMPLES)
