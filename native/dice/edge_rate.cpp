@@ -67,7 +67,7 @@ double EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b) const {
         swept.y1 = std::max(swept.y1, y[i] + m_projection.scale.y * reach);
     }
     swept.seen = true;
-    return std::hypot(x[1] - x[0], y[1] - y[0]);
+    return glm::distance(Vec2d(x[0], y[0]), Vec2d(x[1], y[1]));
 }
 
 double EdgeRate::outside(const Swept& swept) const {

@@ -2,12 +2,19 @@
 #include "dice/side.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "dice/edge_rate.h"
 #include "dice/opened_mesh.h"
 
 namespace granita {
+namespace {
+
+/// Parameter on the whole edge of a place in a node's own direction; exact.
+double on_edge(const Side& side, double place) {
+    return (side.index + place) / static_cast<double>(std::uint32_t{1} << side.depth);
+}
+
+}  // namespace
 
 void SideWalker::edge_point(const Side& side, double t, EdgePoint& out) const {
     if (!side.line) {
@@ -26,21 +33,20 @@ void SideWalker::edge_point(const Side& side, double t, EdgePoint& out) const {
 }
 
 void SideWalker::point(const Side& side, double at, EdgePoint& out) const {
-    edge_point(side, std::ldexp(side.index + (side.reversed ? 1.0 - at : at), -side.depth), out);
+    edge_point(side, on_edge(side, side.reversed ? 1.0 - at : at), out);
 }
 
 void SideWalker::classify(Side& side) const {
     EdgePoint start, middle, end;
-    const auto place = [&side](double at) { return std::ldexp(side.index + at, -side.depth); };
-    edge_point(side, place(0.0), start);
-    edge_point(side, place(1.0), end);
+    edge_point(side, on_edge(side, 0.0), start);
+    edge_point(side, on_edge(side, 1.0), end);
     const EdgeRate& rate = m_mesh.rate();
     if (!side.line && m_mesh.straight_edges() &&
         rate.stays_whole(start.p, end.p, m_mesh.knot_count())) {
         side.levels = 0;
         return;
     }
-    edge_point(side, place(0.5), middle);
+    edge_point(side, on_edge(side, 0.5), middle);
     side.levels = static_cast<std::int8_t>(
         rate.levels(start.p, middle.p, end.p, m_mesh.knot_count(), side.budget));
 }

@@ -193,8 +193,14 @@ TEST(Subdivision, derivatives_are_central_differences_in_the_limit_of_small_step
 }
 
 TEST(Subdivision, bounds_hold_every_descendant) {
+    // A ring of semi-sharp edges bends the faces beside it within a narrow band.
+    GeometryData creased = smooth_prism(1.5f, 1.0f);
+    for (int i = 0; i < 5; ++i) {
+        for (const int v : {i, (i + 1) % 5}) creased.subdivision.crease_verts.push_back(v);
+        creased.subdivision.crease_values.push_back(2.7f);
+    }
     for (const GeometryData& data :
-         {smooth_cube(1.0f), smooth_tetrahedron(1.0f), smooth_prism(1.5f, 1.0f)}) {
+         {smooth_cube(1.0f), smooth_tetrahedron(1.0f), smooth_prism(1.5f, 1.0f), creased}) {
         DiceScene s(data, 1.0f, 32);
         s.perspective(100.0);
         Mat4d m(1.0);
