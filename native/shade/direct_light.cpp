@@ -112,6 +112,7 @@ struct DirectLight::Impl {
     const Scene& scene;
     WorldEvaluator world;
     Statistics& statistics;
+    const Progress& progress;
     int sample_count;
     std::vector<Lamp> lamps;
     std::unique_ptr<Environment> environment;  ///< nullptr where the world sheds no light
@@ -119,11 +120,12 @@ struct DirectLight::Impl {
 };
 
 DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator,
-                        Statistics& frame_statistics, Report& report, const Progress& progress,
-                        ShadowOpacity opacity)
+                        Statistics& frame_statistics, Report& report,
+                        const Progress& frame_progress, ShadowOpacity opacity)
     : scene(frame_scene),
       world(std::move(world_evaluator)),
       statistics(frame_statistics),
+      progress(frame_progress),
       sample_count(std::max(1, frame_scene.options.light_samples)) {
     const float time = scene.options.frame_time;
     const Vec3d origin(matrix_at(scene.camera.world_from_camera, time)[3]);
@@ -137,7 +139,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
         lamps.push_back(std::move(lamp));
     }
     if (scene.world.lights_scene && world) {
-        environment = std::make_unique<Environment>(world);
+        environment = std::make_unique<Environment>(world, progress);
         if (environment->broken() > 0)
             report.warn("world '" + scene.world.name + "'",
                         "is not finite in some directions, which light as black",
@@ -289,6 +291,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     Work work{grid_seed(key, m_impl->scene.options.seed), radiance, {}, {}};
     for (std::size_t i = 0; i < points.count; ++i) {
+        m_impl->progress.check();
         const PointBsdf bsdf(closure, points, i, albedo);
         if (bsdf.lobe_count() == 0) continue;
         Point point{i, bsdf, points.p[i], points.p[i], mix_bits(work.seed + i), {}};

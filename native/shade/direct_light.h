@@ -28,8 +28,8 @@ namespace granita {
 class DirectLight {
   public:
     /// Bakes the world and, if any light or the world shines, builds the ray scene.  `world` is
-    /// kept and called from any thread; the scene must outlive this.  Without `opacity` every
-    /// surface casts a full shadow.  Throws Cancelled.
+    /// kept and called from any thread; scene, statistics and progress must outlive this.  Without
+    /// `opacity` every surface casts a full shadow.  Throws Cancelled.
     DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics, Report& report,
                 const Progress& progress, ShadowOpacity opacity = {});
     ~DirectLight();

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/environment.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <numbers>
 #include <numeric>
@@ -56,15 +59,26 @@ Located locate(const float* distribution, int count, float x) {
 
 }  // namespace
 
-Environment::Environment(const WorldEvaluator& world, int height)
+std::vector<Vec3f> Environment::bake(const WorldEvaluator& world, const Progress& progress) const {
+    const auto width = static_cast<std::size_t>(m_width);
+    std::vector<Vec3f> radiance(width * static_cast<std::size_t>(m_height));
+    tbb::parallel_for(tbb::blocked_range<int>(0, m_height, 8), [&](const auto& rows) {
+        progress.check();
+        std::vector<Vec3f> directions, seen;
+        for (int row = rows.begin(); row != rows.end(); ++row)
+            for (int column = 0; column < m_width; ++column)
+                directions.push_back(
+                    equirectangular_direction((column + 0.5) / m_width, (row + 0.5) / m_height));
+        world(directions, texel_angle(), seen);
+        std::copy(seen.begin(), seen.end(),
+                  radiance.begin() + static_cast<std::ptrdiff_t>(width) * rows.begin());
+    });
+    return radiance;
+}
+
+Environment::Environment(const WorldEvaluator& world, const Progress& progress, int height)
     : m_width(2 * height), m_height(height) {
-    const auto texels = static_cast<std::size_t>(m_width) * static_cast<std::size_t>(m_height);
-    std::vector<Vec3f> directions(texels), radiance;
-    for (int row = 0, k = 0; row < m_height; ++row)
-        for (int column = 0; column < m_width; ++column, ++k)
-            directions[k] =
-                equirectangular_direction((column + 0.5) / m_width, (row + 0.5) / m_height);
-    world(directions, texel_angle(), radiance);
+    std::vector<Vec3f> radiance = bake(world, progress);
     for (Vec3f& c : radiance)
         if (!is_finite(c)) {
             c = Vec3f(0.0f);
@@ -74,8 +88,10 @@ Environment::Environment(const WorldEvaluator& world, int height)
                              [&](const Vec3f& c) { return c == radiance[0]; });
     m_constant_radiance = radiance[0];
     m_black = m_constant && luminance(radiance[0]) <= 0.0f;
-    if (m_constant) return;
+    if (!m_constant) build_distribution(radiance);
+}
 
+void Environment::build_distribution(const std::vector<Vec3f>& radiance) {
     m_rows.resize(static_cast<std::size_t>(m_height) + 1);
     m_columns.resize(static_cast<std::size_t>(m_height) * (m_width + 1));
     std::vector<double> rows(m_height), columns(m_width);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/progress.h"
 #include "math/vec.h"
 
 namespace granita {
@@ -18,9 +19,9 @@ using WorldEvaluator = std::function<void(const std::vector<Vec3f>& directions, 
 
 class Environment {
   public:
-    /// Evaluates the world once at `height` x 2 `height` directions.  Radiance that is not finite
-    /// counts as black.
-    explicit Environment(const WorldEvaluator& world, int height = 512);
+    /// Evaluates the world once at `height` x 2 `height` directions, in parallel.  Radiance that is
+    /// not finite counts as black.  Throws Cancelled.
+    Environment(const WorldEvaluator& world, const Progress& progress, int height = 512);
 
     /// Directions whose radiance was not finite.
     std::size_t broken() const { return m_broken; }
@@ -40,6 +41,10 @@ class Environment {
     std::size_t bytes() const;
 
   private:
+    /// [height][width]
+    std::vector<Vec3f> bake(const WorldEvaluator& world, const Progress& progress) const;
+    void build_distribution(const std::vector<Vec3f>& radiance);
+
     int m_width = 0, m_height = 0;
     std::size_t m_broken = 0;
     bool m_black = false, m_constant = false;

@@ -193,6 +193,14 @@ TEST_F(DirectLightTest, the_same_grid_gets_the_same_bits_and_others_get_other_sa
     EXPECT_NE(first, reflect(points, lobe, {5, 1, 3}));
 }
 
+TEST_F(DirectLightTest, a_grid_stops_being_lit_when_cancelled) {
+    scene.lights = {light_of(LightKind::Point, 100.0f, at({0, 0, 3}))};
+    const ShadingPoints points = points_facing_up({{0, 0, 0}});
+    const DirectLight light(scene, world, statistics, report, progress);
+    progress.cancel();
+    EXPECT_THROW(light.reflect(points, closure_of(lambert(points, 1.0f)), {}), Cancelled);
+}
+
 TEST_F(DirectLightTest, a_world_that_is_not_finite_is_reported) {
     world = [](const std::vector<Vec3f>& d, float, std::vector<Vec3f>& out) {
         out.assign(d.size(), Vec3f(std::nanf("")));

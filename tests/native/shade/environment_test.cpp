@@ -11,6 +11,8 @@
 namespace granita {
 namespace {
 
+const Progress kProgress;
+
 /// A dim sky with a bright cap of half-angle 3 degrees around `sun`.
 const Vec3f kSun = glm::normalize(Vec3f(0.3f, -0.5f, 0.6f));
 const float kSunCos = std::cos(0.0523599f);
@@ -26,16 +28,16 @@ WorldEvaluator sunny() {
 }
 
 TEST(Environment, tells_constant_black_and_varying_worlds_apart) {
-    EXPECT_TRUE(Environment(constant_world(Vec3f(0.0f)), 8).is_black());
-    const Environment grey(constant_world(Vec3f(0.5f)), 8);
+    EXPECT_TRUE(Environment(constant_world(Vec3f(0.0f)), kProgress, 8).is_black());
+    const Environment grey(constant_world(Vec3f(0.5f)), kProgress, 8);
     EXPECT_TRUE(grey.is_constant());
     EXPECT_FALSE(grey.is_black());
     EXPECT_EQ(grey.constant_radiance(), Vec3f(0.5f));
-    EXPECT_FALSE(Environment(sunny(), 128).is_constant());
+    EXPECT_FALSE(Environment(sunny(), kProgress, 128).is_constant());
 }
 
 TEST(Environment, density_integrates_to_one_and_matches_its_samples) {
-    const Environment world(sunny(), 64);
+    const Environment world(sunny(), kProgress, 64);
     // 2048 x 1024 cells of equal solid angle resolve the 128 x 64 table.
     double integral = 0.0;
     const int w = 2048, h = 1024;
@@ -59,7 +61,7 @@ TEST(Environment, density_integrates_to_one_and_matches_its_samples) {
 }
 
 TEST(Environment, samples_estimate_the_irradiance_of_a_small_sun) {
-    const Environment world(sunny());
+    const Environment world(sunny(), kProgress);
     const SobolPoints points(2);
     const std::uint32_t count = 1 << 14;
     double sum = 0.0;
@@ -81,7 +83,7 @@ TEST(Environment, directions_that_are_not_finite_count_as_black) {
         for (const Vec3f& v : d)
             out.emplace_back(v.z > 0 ? std::numeric_limits<float>::quiet_NaN() : 1.0f);
     };
-    const Environment world(broken, 32);
+    const Environment world(broken, kProgress, 32);
     EXPECT_EQ(world.broken(), 32u * 32u);
     const SobolPoints points(4);
     for (std::uint32_t i = 0; i < 256; ++i) {
@@ -89,6 +91,12 @@ TEST(Environment, directions_that_are_not_finite_count_as_black) {
         EXPECT_LT(world.sample(points(i), pdf).z, 0.15f);  // one texel blurs across the horizon
         EXPECT_TRUE(std::isfinite(pdf));
     }
+}
+
+TEST(Environment, stops_when_cancelled) {
+    Progress progress;
+    progress.cancel();
+    EXPECT_THROW(Environment(sunny(), progress, 64), Cancelled);
 }
 
 }  // namespace
