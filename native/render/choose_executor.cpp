@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/choose_executor.h"
 
-#include <algorithm>
-
 #include "base/error.h"
 
 namespace granita {
@@ -12,13 +10,7 @@ namespace {
 std::string raster_obstacle(const Scene& scene, const ShadingSystem& shading) {
     if (scene.options.sampling != Sampling::Regular) return "sampling is not Regular";
     if (scene.camera.projection.has_lens()) return "the camera has depth of field";
-    const bool moves =
-        scene.camera.world_from_camera.size() > 1 ||
-        std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& i) {
-            return i.world_from_object.size() > 1 ||
-                   scene.geometries[static_cast<std::size_t>(i.geometry)].knots > 1;
-        });
-    if (moves) return "something moves";
+    if (scene.moves()) return "something moves";
     for (int m = -1; m < static_cast<int>(scene.materials.size()); ++m)
         if (shading.opacity_varies(m)) return "a material is transparent";
     for (const Instance& instance : scene.instances)
@@ -32,8 +24,9 @@ ExecutorChoice cpu(Executor executor) {
     return {executor, nullptr, executor == Executor::Reference ? "CPU (reference)" : "CPU (simd)"};
 }
 
-ExecutorChoice raster() {
-    ExecutorChoice choice{Executor::Raster, std::make_unique<gl::GlThread>(), {}};
+ExecutorChoice raster(gl::DeviceChoice device) {
+    ExecutorChoice choice{
+        Executor::Raster, std::make_unique<gl::GlThread>(gl::ContextOptions{.device = device}), {}};
     choice.device = "GPU (raster, " + choice.gl->info().renderer + ")";
     return choice;
 }
@@ -46,13 +39,14 @@ ExecutorChoice choose_executor(const Scene& scene, const ShadingSystem& shading,
         if (const std::string obstacle = raster_obstacle(scene, shading); !obstacle.empty())
             throw SceneError("render settings",
                              "the raster executor cannot render this: " + obstacle);
-        return raster();
+        return raster(gl::DeviceChoice::Any);
     }
     if (options.executor != Executor::Auto) return cpu(options.executor);
     if (options.device != Device::Gpu) return cpu(Executor::Simd);
     try {
         const std::string obstacle = raster_obstacle(scene, shading);
-        if (obstacle.empty()) return raster();
+        // A software driver is no GPU: the CPU executors are faster and do more.
+        if (obstacle.empty()) return raster(gl::DeviceChoice::Hardware);
         report.warn("render settings", "the GPU was asked for, the CPU renders: " + obstacle);
     } catch (const GlError& error) {
         report.warn("render settings",

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/raster_bucket.h"
 
-#include <cmath>
-
 #include "film/filter.h"
 #include "render/visit_geometry.h"
 
@@ -33,7 +31,7 @@ RasterFrame make_raster_frame(const Scene& scene, const Projection& projection,
                               const SampleTable& table, const Vec3f& background,
                               Statistics& statistics) {
     const PixelFilter filter(scene.options.pixel_filter, scene.options.filter_width);
-    const int lattice = static_cast<int>(std::lround(std::sqrt(table.samples())));
+    const int lattice = table.lattice();
     RasterFrame frame;
     frame.projection = projection;
     frame.filter = make_raster_filter(

@@ -49,6 +49,17 @@ std::vector<bool> seen_grids(const std::vector<TileStore>& stores, const GridPoo
     return seen;
 }
 
+/// What the bucket had to pay for.
+void count_needs(Frame& frame, const std::vector<std::shared_ptr<SharedGrid>>& grids) {
+    bool moving = frame.view.projection.has_lens() && !grids.empty(), transparent = false;
+    for (const auto& grid : grids) {
+        moving |= grid->grid().motion;
+        transparent |= grid->grid().opacity_varies;
+    }
+    frame.statistics.add(Counter::BucketsMoving, moving);
+    frame.statistics.add(Counter::BucketsTransparent, transparent);
+}
+
 /// Composites and filters every tile.
 std::vector<TileContribution> resolve(Frame& frame, std::vector<TileStore>& stores,
                                       const Hider& hider) {
@@ -90,6 +101,8 @@ std::vector<Tile> render_bucket(Frame& frame, int bucket) {
         hider->hide(grid->grid());
         grids.push_back(std::move(grid));
     });
+    count_needs(frame, grids);
+
     std::vector<TileStore>* stores = nullptr;
     std::vector<bool> seen;
     {

@@ -38,6 +38,9 @@ struct Scene {
     std::vector<Image> images;
     std::vector<Light> lights;
     World world;
+
+    /// Whether camera or geometry has more than one knot.
+    bool moves() const;
 };
 
 }  // namespace granita

@@ -90,12 +90,13 @@ def test_through_the_near_plane(executor):
 
 def test_scale_through_zero(executor):
     """Case 18: scale 1 - 2 t of a disc of radius 50: coverage at radius r = 1 - r / R."""
-    snapshot = s.orthographic((64, 64), samples=256, executor=executor)
+    # Coarse dicing keeps the brute force short; the disc is flat, so it changes nothing.
+    snapshot = s.orthographic((56, 8), samples=256, executor=executor, dicing_rate=8)
     points, faces = s.disc(50.0, z=0.0)
     scales = [np.diag([k, k, k, 1.0]) for k in (1.0, 0.0, -1.0)]
     moved = [s.translation(0.0, 0.0, 5.0) @ m for m in scales]
     s.mesh(snapshot, points, faces, s.emission(snapshot), transforms=moved)
-    r = np.hypot(*np.meshgrid(np.arange(64) + 0.5, np.arange(64) + 0.5))
+    r = np.hypot(*np.meshgrid(np.arange(56) + 0.5, np.arange(8) + 0.5))
     expected = np.maximum(1 - r / 50, 0)
     error = s.alpha(snapshot) - expected
     away = (np.abs(r - 50) > 2) & (r > 2)

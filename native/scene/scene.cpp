@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/scene.h"
+
+#include <algorithm>
+
+namespace granita {
+
+bool Scene::moves() const {
+    return camera.world_from_camera.size() > 1 ||
+           std::any_of(instances.begin(), instances.end(), [&](const Instance& instance) {
+               return instance.world_from_object.size() > 1 ||
+                      geometries[static_cast<std::size_t>(instance.geometry)].knots > 1;
+           });
+}
+
+}  // namespace granita
