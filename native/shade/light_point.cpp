@@ -22,7 +22,6 @@ class SpotCone {
     SpotCone(const Light& light, const LightFrame& frame)
         : m_light_from_world(light.spot_cosine ? without_scale(frame.axes)
                                                : glm::inverse(frame.axes)),
-          m_direction(frame.direction),
           m_cos_half(std::cos(0.5f * light.spot_size)),
           m_smooth(std::max((1.0f - m_cos_half) * light.spot_blend, 1e-7f)),
           m_cosine(light.spot_cosine) {}
@@ -36,7 +35,6 @@ class SpotCone {
 
   private:
     Mat3d m_light_from_world;
-    Vec3f m_direction;
     float m_cos_half, m_smooth;
     bool m_cosine;
 };
