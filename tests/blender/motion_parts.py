@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What tests of exported motion share: a scene with a shutter, formulas of time."""
+"""What tests of exported motion share: a scene with a shutter, formulas of time.
+
+No fixtures: pytest holds on to imported ones, they to this module and it to `bpy`, and bpy 4.2
+crashes at exit when it is still held.
+"""
 
 import bpy
-import pytest
 import scene_parts
 from export_probe import knots_of
 
 
-@pytest.fixture(name="moving")
-def moving_scene(scene):
+def with_shutter(scene):
     """The scene with motion blur: shutter of half a frame around frame 10."""
     scene_parts.add_camera(scene, (0, 0, 10))
     scene.render.use_motion_blur = True

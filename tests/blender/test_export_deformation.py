@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 import scene_parts
 from export_probe import geometry_of
-from motion_parts import drive, moving_scene, on_every_step, shape_key, xs  # noqa: F401
+from motion_parts import drive, on_every_step, shape_key, with_shutter, xs
+
+
+@pytest.fixture
+def moving(scene):
+    return with_shutter(scene)
 
 
 def test_shape_keys(moving):

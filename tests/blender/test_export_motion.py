@@ -7,9 +7,14 @@ import numpy as np
 import pytest
 import scene_parts
 from export_probe import geometry_of
-from motion_parts import drive, moving_scene, on_every_step, set_position, shape_key, xs  # noqa: F401
+from motion_parts import drive, on_every_step, set_position, shape_key, with_shutter, xs
 
 from granita.export import motion
+
+
+@pytest.fixture
+def moving(scene):
+    return with_shutter(scene)
 
 
 @pytest.mark.smoke

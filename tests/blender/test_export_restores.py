@@ -6,9 +6,14 @@ import export_probe
 import numpy as np
 import pytest
 import scene_parts
-from motion_parts import drive, moving_scene, shape_key  # noqa: F401
+from motion_parts import drive, shape_key, with_shutter
 
 from granita.export import Cancelled
+
+
+@pytest.fixture
+def moving(scene):
+    return with_shutter(scene)
 
 
 def test_the_frame_is_restored_after_a_failure(moving):
