@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdlib>
+#include <list>
 #include <random>
 
 #include "grid_builder.h"
@@ -222,30 +223,32 @@ TEST_P(ExecutorsAgree, OrderOfArrivalChangesNoPixel) {
 
 TEST(Occlusion, CullsWhatIsHiddenAndNothingElse) {
     Shot shot;
+    std::list<Grid> grids;  // a hider refers to what it has hidden
+    const auto keep = [&](Grid grid) -> const Grid& { return grids.emplace_back(std::move(grid)); };
     const SampleTable table(shot.options, shot.camera);
     const HiderFrame frame{&table, shot.camera.projection};
     const auto hider = make_simd_hider(frame, {0, 0, 2, 2}, {0, 0, 32, 32});
     const RasterBounds behind{3, 3, 20, 20, -9, true}, before{3, 3, 20, 20, -4, true};
     const RasterBounds outside{-20, 3, -4, 20, -4, true};
     EXPECT_FALSE(hider->occluded(behind));
-    hider->hide(rectangle(-1, -1, 33, 33, 5, 32, 32));
+    hider->hide(keep(rectangle(-1, -1, 33, 33, 5, 32, 32)));
     EXPECT_TRUE(hider->occluded(behind));
     EXPECT_FALSE(hider->occluded(before));
     EXPECT_TRUE(hider->occluded(outside));
     // A wall with a hole of one pixel hides nothing that covers the hole.
     const auto holed = make_simd_hider(frame, {0, 0, 2, 2}, {0, 0, 32, 32});
-    holed->hide(rectangle(-1, -1, 33, 10, 5, 32, 32));
-    holed->hide(rectangle(-1, 11, 33, 33, 5, 32, 32));
-    holed->hide(rectangle(-1, 10, 10, 11, 5, 32, 2));
-    holed->hide(rectangle(11, 10, 33, 11, 5, 32, 2));
+    holed->hide(keep(rectangle(-1, -1, 33, 10, 5, 32, 32)));
+    holed->hide(keep(rectangle(-1, 11, 33, 33, 5, 32, 32)));
+    holed->hide(keep(rectangle(-1, 10, 10, 11, 5, 32, 2)));
+    holed->hide(keep(rectangle(11, 10, 33, 11, 5, 32, 2)));
     EXPECT_FALSE(holed->occluded(behind));
     EXPECT_TRUE(holed->occluded({16, 16, 30, 30, -9, true}));
     // A moving wall that leaves its pixels hides nothing; transparent ones neither.
     const auto moving = make_simd_hider(frame, {0, 0, 2, 2}, {0, 0, 32, 32});
-    moving->hide(moving_rectangle(-1, -1, 33, 33, 5, 40, 0, 32, 32));
+    moving->hide(keep(moving_rectangle(-1, -1, 33, 33, 5, 40, 0, 32, 32)));
     Grid glass = rectangle(-1, -1, 33, 33, 5, 32, 32);
     set_color(glass, Vec3f(1), Vec3f(.9f));
-    moving->hide(glass);
+    moving->hide(keep(glass));
     EXPECT_FALSE(moving->occluded(behind));
 }
 
