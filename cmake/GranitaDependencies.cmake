@@ -3,7 +3,7 @@
 # OpenSubdivConfig.cmake lists static libraries that are not shipped, and the OpenImageIO target names an
 # OpenCV include folder that need not exist.
 find_package(TBB REQUIRED)
-find_package(Python 3.11 EXACT REQUIRED COMPONENTS Interpreter Development.Module NumPy)
+find_package(Python 3.11 EXACT REQUIRED COMPONENTS Interpreter Development.Module)
 find_package(pybind11 REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(hwy QUIET)
