@@ -111,6 +111,18 @@ float ior_from_f0(float f0) {
     return (1.0f + root) / (1.0f - root);
 }
 
+float dielectric_mean_albedo(float ior) {
+    constexpr int kSteps = 16;
+    const float f0 = f0_from_ior(ior);
+    float sum = 0.0f, weights = 0.0f;
+    for (int i = 0; i < kSteps; ++i) {
+        const float cosine = (static_cast<float>(i) + 0.5f) / kSteps;
+        sum += cosine * (dielectric_reflectance(cosine, ior) - f0) / (1.0f - f0);
+        weights += cosine;
+    }
+    return sum / weights;
+}
+
 float dielectric_albedo(float roughness, float cosine, float ior) {
     static const Table kTable;
     return kTable.look_up(roughness, cosine, ior_axis(ior));

@@ -12,5 +12,7 @@ float ior_from_f0(float f0);
 /// The mean over GGX's visible normals (Heitz 2018), weighted by their masking.  From a table made
 /// at first use; roughness and cosine in [0, 1].
 float dielectric_albedo(float roughness, float cosine, float ior);
+/// The cosine-weighted mean of the smooth surface's over all directions.
+float dielectric_mean_albedo(float ior);
 
 }  // namespace granita

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shade/bsdf_albedo.h"
 #include "shade/nodes/dielectric_albedo.h"
 #include "shade/nodes/nodes.h"
 
@@ -112,6 +113,17 @@ void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common&
     add_coat(b, surface, c, 0.25f, true);
 }
 
+/// Light that is reflected between microfacets meets Fresnel at each bounce (Kulla and Conty 2017):
+/// what is left, relative to a lobe that loses nothing.
+Vec3f multiscatter_darkening(const Vec3f& fresnel, float roughness, float cosine) {
+    const GgxAlbedo& albedo = GgxAlbedo::shared();
+    const float directional = albedo.directional(roughness, std::clamp(cosine, 0.0f, 1.0f));
+    const float average = albedo.average(roughness);
+    const float missing = (1.0f - directional) / directional;
+    const Vec3f bounced = fresnel * average / (kOne - fresnel * (1.0f - average));
+    return (kOne + bounced * missing) / (1.0f + missing);
+}
+
 void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
     const VectorSource tint = b.color("Specular Tint", kOne);
     LobeSource metal = glossy_lobe(c);
@@ -141,11 +153,19 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common
     if (!specular.ior.is(1.0f)) surface.add_lobe(specular);
 
     // Light that the specular layer reflects does not reach the diffuse one.
+    const bool multiscatter = c.multiscatter;
     const FloatSource below = b.map<float>(
-        [](const Vec3f& f0, float ior, float roughness, const Vec3f& n, const Vec3f& view) {
+        [multiscatter](const Vec3f& f0, float ior, float roughness, const Vec3f& n,
+                       const Vec3f& view) {
             if (ior == 1.0f) return 1.0f;
-            const float s = dielectric_albedo(roughness, glm::dot(n, view), ior);
-            const Vec3f albedo = f0 * (1.0f - s) + kOne * s;
+            const float cosine = glm::dot(n, view);
+            const float s = dielectric_albedo(roughness, cosine, ior);
+            Vec3f albedo = f0 * (1.0f - s) + kOne * s;
+            if (multiscatter) {
+                const float mean = dielectric_mean_albedo(ior);
+                albedo *=
+                    multiscatter_darkening(f0 * (1.0f - mean) + kOne * mean, roughness, cosine);
+            }
             return saturate(1.0f - std::max({albedo.x, albedo.y, albedo.z}));
         },
         specular.f0, specular.ior, c.roughness, c.normal, b.view());

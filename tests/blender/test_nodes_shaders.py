@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shaders against Cycles' own output, and trees that have to be flattened."""
+
+import bpy
+import pytest
+from node_comparison import Tree, board, check, render_both, rmse, socket
+
+
+def sun(scene):
+    light = bpy.data.lights.new("Sun", "SUN")
+    light.energy, light.angle = 3.0, 0.0
+    # Shadows of leaning squares would end inside pixels.
+    light.use_shadow = False
+    light.cycles.cast_shadow = False
+    thing = bpy.data.objects.new("Sun", light)
+    thing.rotation_euler = (0.4, 0.2, 0.0)
+    scene.collection.objects.link(thing)
+
+
+def shown(tree, shader):
+    tree.link(shader.outputs[0], tree.output.inputs["Surface"])
+
+
+def emission(tree, name):
+    node = tree.add("ShaderNodeEmission")
+    tree.link(tree.attribute(name), node.inputs["Color"])
+    return node
+
+
+@pytest.mark.parametrize("kind", ["ShaderNodeMixShader", "ShaderNodeAddShader"])
+def test_mix_and_add_shader(scene, render, kind):
+    tree = Tree(board(scene, 0, 1))
+    node = tree.add(kind)
+    shaders = [target for target in node.inputs if target.type == "SHADER"]
+    for name, target in zip("AB", shaders):
+        tree.link(emission(tree, name).outputs[0], target)
+    if kind == "ShaderNodeMixShader":
+        tree.link(tree.attribute("C", "Fac"), node.inputs[0])
+    shown(tree, node)
+    check(scene, render)
+
+
+def test_a_shader_that_two_mixes_share(scene, render):
+    tree = Tree(board(scene, 0, 1))
+    shared = emission(tree, "A")
+    mix, add = tree.add("ShaderNodeMixShader"), tree.add("ShaderNodeAddShader")
+    tree.link(tree.attribute("C", "Fac"), mix.inputs[0])
+    tree.link(shared.outputs[0], mix.inputs[1])
+    tree.link(emission(tree, "B").outputs[0], mix.inputs[2])
+    tree.link(mix.outputs[0], add.inputs[0])
+    tree.link(shared.outputs[0], add.inputs[1])
+    shown(tree, add)
+    check(scene, render)
+
+
+def test_transparent(scene, render):
+    """In front of a glowing wall: what passes is the wall's light."""
+    thing = board(scene, 0, 1)
+    tree = Tree(thing)
+    mix, clear = tree.add("ShaderNodeMixShader"), tree.add("ShaderNodeBsdfTransparent")
+    tree.link(tree.attribute("B", "Color"), clear.inputs["Color"])
+    tree.link(tree.attribute("C", "Fac"), mix.inputs[0])
+    tree.link(clear.outputs[0], mix.inputs[1])
+    tree.link(emission(tree, "A").outputs[0], mix.inputs[2])
+    shown(tree, mix)
+    wall = thing.copy()
+    wall.data = thing.data.copy()
+    wall.data.materials.clear()
+    wall.location.z = -1
+    scene.collection.objects.link(wall)
+    behind = Tree(wall, "Wall")
+    shown(behind, emission(behind, "B"))
+    scene.cycles.transparent_max_bounces = 8
+    scene.granita.opacity_threshold = 1.0
+    check(scene, render)
+
+
+@pytest.mark.parametrize("values", [{}, {"Roughness": "B"}])
+def test_diffuse(scene, render, values):
+    _lit(scene, render, "ShaderNodeBsdfDiffuse", {"Color": "A", **values})
+
+
+@pytest.mark.parametrize("distribution", ["GGX", "BECKMANN", "MULTI_GGX"])
+def test_glossy(scene, render, distribution):
+    _skip_random_walks(distribution)
+    kind = "ShaderNodeBsdfGlossy"
+    if not hasattr(bpy.types, kind):
+        kind = "ShaderNodeBsdfAnisotropic"
+    _lit(scene, render, kind, {"Color": "A", "Roughness": "B"}, distribution=distribution)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"Base Color": "A"},
+        {"Base Color": "A", "Roughness": "B"},
+        {"Base Color": "A", "Metallic": "B"},
+        {"Base Color": "A", "Metallic": "B", "Roughness": "C"},
+        {"Base Color": "A", "Specular": "B"},
+        {"Base Color": "A", "IOR": "B", "Specular": "C"},
+    ],
+    ids="+".join,
+)
+@pytest.mark.parametrize("distribution", ["GGX", "MULTI_GGX"])
+def test_principled(scene, render, values, distribution):
+    _skip_random_walks(distribution)
+    _lit(scene, render, "ShaderNodeBsdfPrincipled", values, distribution=distribution)
+
+
+def _skip_random_walks(distribution):
+    if distribution == "MULTI_GGX" and bpy.app.version < (4, 0, 0):
+        pytest.skip("before Blender 4 Cycles walks at random between facets, since then as we do")
+
+
+def test_principled_alpha_and_emission(scene, render):
+    """Unlit: Cycles chooses at random between the lit surface and what is behind it."""
+    tree = Tree(board(scene, 0.15, 1))
+    node = tree.add("ShaderNodeBsdfPrincipled")
+    emitted = node.inputs.get("Emission") or node.inputs["Emission Color"]
+    tree.link(tree.attribute("A", "Color"), emitted)
+    tree.link(tree.attribute("B", "Fac"), node.inputs["Emission Strength"])
+    tree.link(tree.attribute("C", "Fac"), node.inputs["Alpha"])
+    shown(tree, node)
+    check(scene, render)
+
+
+_RENAMED = {"Specular": "Specular IOR Level"}
+
+
+def _lit(scene, render, kind, values, **properties):
+    sun(scene)
+    tree = Tree(board(scene, 0.15, 1, tilt=0.3))
+    node = tree.add(kind, **properties)
+    for name, attribute in values.items():
+        target = node.inputs.get(name) or node.inputs[_RENAMED[name]]
+        output = "Color" if target.type == "RGBA" else "Fac"
+        tree.link(tree.attribute(attribute, output), target)
+    shown(tree, node)
+    check(scene, render)
+
+
+def nested(tree, depth):
+    """`depth` groups in one another; the innermost inverts what comes in."""
+    inner = None
+    for level in range(depth):
+        group = bpy.data.node_groups.new(f"Level {level}", "ShaderNodeTree")
+        if hasattr(group, "interface"):
+            for name, way in (("In", "INPUT"), ("Out", "OUTPUT")):
+                group.interface.new_socket(name, in_out=way, socket_type="NodeSocketColor")
+        else:
+            group.inputs.new("NodeSocketColor", "In")
+            group.outputs.new("NodeSocketColor", "Out")
+        start, end = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+        if inner is None:
+            node = group.nodes.new("ShaderNodeInvert")
+            target = node.inputs["Color"]
+        else:
+            node = group.nodes.new("ShaderNodeGroup")
+            node.node_tree = inner
+            target = node.inputs[0]
+        group.links.new(start.outputs[0], target)
+        group.links.new(node.outputs[0], end.inputs[0])
+        inner = group
+    node = tree.add("ShaderNodeGroup")
+    node.node_tree = inner
+    return node
+
+
+@pytest.mark.parametrize("linked", [False, True])
+def test_groups(scene, render, linked):
+    tree = Tree(board(scene))
+    group, mix = nested(tree, 3), tree.add("ShaderNodeMixRGB", blend_type="MULTIPLY")
+    group.inputs[0].default_value = (0.1, 0.4, 0.7, 1.0)
+    if linked:
+        tree.link(tree.attribute("A"), group.inputs[0])
+    tree.link(group.outputs[0], mix.inputs[1])
+    tree.link(tree.attribute("B"), mix.inputs[2])
+    tree.emit(mix.outputs[0])
+    check(scene, render)
+
+
+def test_1600_nested_groups_do_not_exhaust_the_stack(scene):
+    from granita.export.material import material_record
+
+    tree = Tree(board(scene))
+    group = nested(tree, 1600)
+    tree.link(tree.attribute("A"), group.inputs[0])
+    tree.emit(group.outputs[0])
+    record = material_record(tree.material, {}, lambda *warning: pytest.fail(str(warning)))
+    kinds = [node["type"] for node in record["nodes"]]
+    assert kinds == ["ShaderNodeAttribute", "ShaderNodeInvert", "ShaderNodeEmission"]
+
+
+def test_mutes_and_reroutes(scene, render):
+    tree = Tree(board(scene))
+    reroute, muted = tree.add("NodeReroute"), tree.add("ShaderNodeMixRGB", blend_type="MULTIPLY")
+    muted.mute = True
+    tree.link(tree.attribute("A"), reroute.inputs[0])
+    tree.link(reroute.outputs[0], muted.inputs[1])
+    tree.link(tree.attribute("B"), muted.inputs[2])
+    tree.emit(muted.outputs[0])
+    check(scene, render)
+
+
+def test_conversions_between_sockets(scene, render):
+    """Colour to number and vector to number, each its own way."""
+    tree = Tree(board(scene))
+    node = tree.add("ShaderNodeMath", operation="SUBTRACT")
+    tree.link(tree.attribute("A", "Color"), node.inputs[0])
+    tree.link(tree.attribute("A", "Vector"), node.inputs[1])
+    mix = tree.add("ShaderNodeMath", operation="MULTIPLY_ADD")
+    tree.link(node.outputs[0], mix.inputs[0])
+    mix.inputs[1].default_value = 3.0
+    tree.link(tree.attribute("B"), mix.inputs[2])
+    tree.emit(mix.outputs[0])
+    check(scene, render)
+
+
+def test_material_without_nodes_and_no_material(scene, render):
+    sun(scene)
+    thing = board(scene, tilt=1.0)
+    material = bpy.data.materials.new("Plain")
+    material.use_nodes = False
+    material.diffuse_color = (0.9, 0.3, 0.1, 1.0)
+    if not material.use_nodes:  # Blender 5 has nodes always
+        thing.data.materials.append(material)
+    check(scene, render)
+
+
+def test_unknown_node_is_told_once(scene, render):
+    from granita.export import export_frame
+
+    granita_core = pytest.importorskip("granita_core")
+    tree = Tree(board(scene))
+    tree.emit(tree.add("ShaderNodeTexMagic", name="Swirl").outputs["Color"])
+    snapshot = export_frame(None, bpy.context.evaluated_depsgraph_get(), scene.granita, print)
+    warnings = granita_core.render(snapshot)["warnings"]
+    about = [w for w in warnings if "Swirl" in w[1]]
+    assert len(about) == 1 and about[0][0] == "material 'Material'" and about[0][2] == 1
+
+
+def test_render_both_sees_differences(scene, render):
+    """The comparison itself can fail."""
+    tree = Tree(board(scene))
+    tree.emit(tree.attribute("A"))
+    theirs, ours = render_both(scene, render)
+    assert rmse(theirs, ours[::-1]) > 0.1
+    assert socket(tree.output.inputs, "Surface").is_linked
