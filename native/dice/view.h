@@ -30,9 +30,8 @@ struct View {
         requests;                                ///< [materials + 1], the last for material -1
     std::vector<DisplacementHook> displacement;  ///< [materials + 1]; empty = none
 
-    /// The rectangle of the frame that can be asked for: pixels whose samples reach the crop
-    /// through the filter. Dicing rates of what lies outside the whole frame may be coarser; never
-    /// depends on the crop.
+    /// The rectangle that samples can reach through the filter.  Rates do not read it: outside
+    /// Options::width and height they coarsen, whatever the crop and the filter.
     float raster_x0 = 0, raster_y0 = 0, raster_x1 = 0, raster_y1 = 0;
 
     /// What instances of one geometry share, built when first asked for.

@@ -47,7 +47,7 @@ struct Rect {
 /// nearest depth key.
 struct RasterBounds {
     float x0 = 0, y0 = 0, x1 = 0,
-          y1 = 0;           ///< pixels, frame raster space; +-inf when it crosses the eye plane
+          y1 = 0;  ///< pixels, frame raster space; +-inf on the sides that the eye plane unbounds
     float nearest_key = 0;  ///< largest depth key it can produce (see Projection::depth_key)
     bool visible = false;   ///< false: wholly behind the near clip, beyond the far clip or empty
 };
