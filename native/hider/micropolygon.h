@@ -19,6 +19,7 @@
 // covers every sample exactly once.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace granita {
@@ -73,8 +74,8 @@ inline void hit_triangle(const Side& e01, const Side& e12, const Side& e20, cons
     if (sum == 0.0) return;
     const double b1 = e20.edge / sum, b2 = e01.edge / sum;
     const double z_hit = z[0] + b1 * (z[1] - z[0]) + b2 * (z[2] - z[0]);
-    const double z_in = std::fmin(std::fmax(z_hit, std::fmin(z[0], std::fmin(z[1], z[2]))),
-                                  std::fmax(z[0], std::fmax(z[1], z[2])));
+    const double z_in =
+        std::clamp(z_hit, std::min({z[0], z[1], z[2]}), std::max({z[0], z[1], z[2]}));
     const auto key = static_cast<float>(range.perspective ? 1.0 / z_in : -z_in);
     if (!(key >= range.key_far && key <= range.key_near)) return;
     if (!best.hit || key > best.key) best = {true, key, second, b1, b2};
