@@ -105,4 +105,5 @@ def test_interrupt(scene, tmp_path, make, stage, delay):
     assert returned > interrupted, "the frame was finished before it could be interrupted: " + text
     assert returned - interrupted < PROMISED_SECONDS, text
     assert code == 1, text
+    assert "Not freed memory" not in text, text
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
