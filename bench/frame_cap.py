@@ -61,9 +61,12 @@ def main():
                 "threads": arguments.threads,
                 "micropolygons": statistics["micropolygons"],
                 "seconds": round(seconds, 2),
-                "peak_bytes_above": (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024,
+                "peak_bytes_above": (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+                * 1024,
                 "peak_grid_bytes": statistics["peak_grid_bytes"],
-                "stages": {k: round(v, 2) for k, v in statistics.items() if k.startswith("seconds_")},
+                "stages": {
+                    k: round(v, 2) for k, v in statistics.items() if k.startswith("seconds_")
+                },
             }
         )
     )

@@ -10,22 +10,42 @@ import numpy as np
 
 def orthographic(size, **options):
     """Snapshot without geometry, `size` = (width, height) pixels."""
-    return _snapshot(size, {"kind": "ORTHOGRAPHIC", "scale": (1, 1), "center": (0, 0), "clip": (0.01, 1e4)}, options)
+    return _snapshot(
+        size,
+        {"kind": "ORTHOGRAPHIC", "scale": (1, 1), "center": (0, 0), "clip": (0.01, 1e4)},
+        options,
+    )
 
 
 def perspective(size, focal, center=None, clip=(0.1, 1e5), **options):
     center = center or (size[0] / 2, size[1] / 2)
-    return _snapshot(size, {"kind": "PERSPECTIVE", "scale": (focal, focal), "center": center, "clip": clip}, options)
+    return _snapshot(
+        size,
+        {"kind": "PERSPECTIVE", "scale": (focal, focal), "center": center, "clip": clip},
+        options,
+    )
 
 
 def _snapshot(size, camera, options):
     camera = {"name": "Camera", "world_from_camera": np.eye(4)[None], **camera}
-    defaults = {"pixel_filter": "BOX", "filter_width": 1.0, "film_transparent": True, "opacity_threshold": 1.0}
+    defaults = {
+        "pixel_filter": "BOX",
+        "filter_width": 1.0,
+        "film_transparent": True,
+        "opacity_threshold": 1.0,
+    }
     return {
         "options": {"width": size[0], "height": size[1], **defaults, **options},
         "camera": camera,
         "geometries": [],
-        "instances": {"name": [], "geometry": [], "knots": [], "world_from_object": [], "slots": [], "materials": []},
+        "instances": {
+            "name": [],
+            "geometry": [],
+            "knots": [],
+            "world_from_object": [],
+            "slots": [],
+            "materials": [],
+        },
         "materials": [],
     }
 
@@ -36,7 +56,11 @@ def emission(snapshot, color=(1, 1, 1), alpha=None):
     surface = (0, "Emission")
     if alpha is not None:
         nodes.append({"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1, 1, 1, 1)}})
-        inputs = {"Fac": float(alpha), "Shader": ("LINK", 1, "BSDF"), "Shader_001": ("LINK", 0, "Emission")}
+        inputs = {
+            "Fac": float(alpha),
+            "Shader": ("LINK", 1, "BSDF"),
+            "Shader_001": ("LINK", 0, "Emission"),
+        }
         nodes.append({"type": "ShaderNodeMixShader", "inputs": inputs})
         surface = (2, "Shader")
     index = len(snapshot["materials"])

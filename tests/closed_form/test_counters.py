@@ -65,7 +65,12 @@ def test_a_moving_thing_costs_motion_only_in_its_buckets(executor):
     snapshot = s.orthographic((256, 64), samples=16, executor=executor, bucket_size=32)
     material = s.emission(snapshot)
     s.quad(snapshot, s.rectangle(0, 0, 256, 64, 5), material)
-    s.quad(snapshot, s.rectangle(4, 4, 20, 20), material, transforms=[s.translation(0), s.translation(6)])
+    s.quad(
+        snapshot,
+        s.rectangle(4, 4, 20, 20),
+        material,
+        transforms=[s.translation(0), s.translation(6)],
+    )
     result = statistics(snapshot)
     assert 1 <= result["buckets_moving"] <= 2
 
@@ -75,7 +80,9 @@ def test_far_objects_are_not_finely_diced(executor, distance, bound):
     """A cube of 2 m under a focal length of 2000 px: its faces are distance-limited to few micropolygons."""
     snapshot = s.perspective((64, 64), 2000.0, clip=(0.1, 1e9), samples=4, executor=executor)
     points, faces = sphere_cage()
-    s.mesh(snapshot, points, faces, s.emission(snapshot), transforms=[s.translation(0, 0, distance)])
+    s.mesh(
+        snapshot, points, faces, s.emission(snapshot), transforms=[s.translation(0, 0, distance)]
+    )
     result = statistics(snapshot)
     # Projected side: 4000 / distance px. Six faces, at most (sqrt(2) * side)^2 + 1 micropolygons of 1 px each and double.
     assert result["points_diced"] <= 6 * 4 * bound

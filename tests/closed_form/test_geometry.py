@@ -53,7 +53,11 @@ def subdivided_cube(executor, **options):
         CUBE_FACES,
         s.emission(snapshot),
         transforms=[s.translation(0, 0, 6)],
-        subdivision={"scheme": "CATMULL_CLARK", "boundary": "ALL", "uv_smooth": "PRESERVE_BOUNDARIES"},
+        subdivision={
+            "scheme": "CATMULL_CLARK",
+            "boundary": "ALL",
+            "uv_smooth": "PRESERVE_BOUNDARIES",
+        },
     )
     return s.alpha(snapshot)
 
@@ -65,7 +69,10 @@ def test_subdivision_surface_has_no_pinholes(executor):
 
 def test_dicing_rate_changes_only_the_outline(executor):
     """A finer rate moves the silhouette by less than the stated chord error, not the inside."""
-    coarse, fine = subdivided_cube(executor, dicing_rate=1.0), subdivided_cube(executor, dicing_rate=0.25)
+    coarse, fine = (
+        subdivided_cube(executor, dicing_rate=1.0),
+        subdivided_cube(executor, dicing_rate=0.25),
+    )
     assert abs(coarse.sum() - fine.sum()) <= 2e-3 * fine.sum()
     inside = fine == 1.0
     assert np.mean(coarse[inside] == 1.0) > 0.99
@@ -87,13 +94,17 @@ def test_nan_vertices_are_left_out_and_named(executor):
     clean, broken = scene(False), scene(True)
     assert np.array_equal(clean["combined"], broken["combined"])
     assert clean["warnings"] == []
-    assert any("Mesh 1" in datablock or "Object 1" in datablock for datablock, _, _ in broken["warnings"])
+    assert any(
+        "Mesh 1" in datablock or "Object 1" in datablock for datablock, _, _ in broken["warnings"]
+    )
 
 
 @pytest.mark.parametrize("size", [(1, 1), (1, 33), (33, 1)])
 def test_tiny_frames(executor, size):
     """Case 8."""
-    snapshot = s.orthographic(size, samples=16, executor=executor, pixel_filter="MITCHELL", filter_width=4.0)
+    snapshot = s.orthographic(
+        size, samples=16, executor=executor, pixel_filter="MITCHELL", filter_width=4.0
+    )
     s.quad(snapshot, s.rectangle(-50, -50, 90, 90), s.emission(snapshot))
     assert np.abs(s.alpha(snapshot) - 1).max() <= 1e-6
 
@@ -103,7 +114,10 @@ def test_edge_far_from_the_frame_origin(executor):
 
     def column(offset):
         snapshot = s.orthographic(
-            (16384, 64), samples=256, executor=executor, crop=np.array((offset, 0, offset + 1, 64), np.int32)
+            (16384, 64),
+            samples=256,
+            executor=executor,
+            crop=np.array((offset, 0, offset + 1, 64), np.int32),
         )
         s.quad(snapshot, s.rectangle(-10, -10, offset + 0.25, 100), s.emission(snapshot))
         return s.alpha(snapshot).mean()
@@ -117,6 +131,14 @@ def test_far_over_near_of_ten_million(executor):
     """Case 60: depth order survives a clip range of 1e7."""
     snapshot = s.perspective((16, 16), 20.0, clip=(1e-3, 1e4), samples=16, executor=executor)
     near, far = s.emission(snapshot, (1, 0, 0)), s.emission(snapshot, (0, 1, 0))
-    s.quad(snapshot, [(x * 9000, y * 9000, 9001.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], far)
-    s.quad(snapshot, [(x * 9000, y * 9000, 9000.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], near)
+    s.quad(
+        snapshot,
+        [(x * 9000, y * 9000, 9001.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))],
+        far,
+    )
+    s.quad(
+        snapshot,
+        [(x * 9000, y * 9000, 9000.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))],
+        near,
+    )
     assert np.array_equal(s.render(snapshot)["combined"][8, 8], [1, 0, 0, 1])

@@ -12,14 +12,22 @@ def busy_scene(executor, **options):
     options = {"samples": 16, "pixel_filter": "MITCHELL", "filter_width": 4.0, **options}
     snapshot = s.perspective((96, 72), 90.0, executor=executor, **options)
     snapshot["camera"].update(lens_radius=0.02, focus_distance=4.0)
-    materials = [s.emission(snapshot, c, a) for c, a in [((1, 0.2, 0), None), ((0, 1, 0.3), 0.4), ((0.1, 0.2, 1), None)]]
+    materials = [
+        s.emission(snapshot, c, a)
+        for c, a in [((1, 0.2, 0), None), ((0, 1, 0.3), 0.4), ((0.1, 0.2, 1), None)]
+    ]
     for i in range(24):
         z = random.uniform(2, 8)
         center = random.uniform(-0.5, 0.5, 2) * z
         corners = center + random.uniform(-0.8, 0.8, (4, 2))
         points = np.concatenate([corners, z + random.uniform(-0.4, 0.4, (4, 1))], 1)
         motion = random.uniform(-0.3, 0.3, 3) if i % 2 else np.zeros(3)
-        s.quad(snapshot, points, materials[i % 3], transforms=[s.translation(*-motion), s.translation(*motion)])
+        s.quad(
+            snapshot,
+            points,
+            materials[i % 3],
+            transforms=[s.translation(*-motion), s.translation(*motion)],
+        )
     return snapshot
 
 
@@ -48,7 +56,11 @@ def test_hidden_and_off_screen_geometry_changes_no_bit(executor):
         s.quad(snapshot, [(-90, -90, 20), (90, -90, 20), (90, 90, 20), (-90, 90, 20)], wall)
         if extra:
             for dx, dz in [(0, 30), (500, 3), (0, -5)]:
-                s.quad(snapshot, [(dx - 1, -1, dz), (dx + 1, -1, dz), (dx + 1, 1, dz), (dx - 1, 1, dz)], wall)
+                s.quad(
+                    snapshot,
+                    [(dx - 1, -1, dz), (dx + 1, -1, dz), (dx + 1, 1, dz), (dx - 1, 1, dz)],
+                    wall,
+                )
             s.quad(snapshot, [(0, 0, 3)] * 4, wall)
         return s.render(snapshot)["combined"]
 
@@ -60,7 +72,10 @@ def test_order_of_objects_changes_no_bit(executor):
 
     def scene(reverse):
         snapshot = s.orthographic((32, 32), samples=16, executor=executor)
-        items = [(s.rectangle(2 + i, 3 + i, 20 + i, 18 + i, 10 - i), (i / 5, 1 - i / 5, 0.5)) for i in range(6)]
+        items = [
+            (s.rectangle(2 + i, 3 + i, 20 + i, 18 + i, 10 - i), (i / 5, 1 - i / 5, 0.5))
+            for i in range(6)
+        ]
         for points, color in reversed(items) if reverse else items:
             s.quad(snapshot, points, s.emission(snapshot, color))
         return s.render(snapshot)["combined"]
@@ -75,7 +90,10 @@ def test_far_from_the_origin_nothing_changes(executor):
         snapshot = s.perspective((48, 48), 40.0, samples=16, executor=executor)
         offset = np.array([shift, -shift, 0.5 * shift])
         snapshot["camera"]["world_from_camera"] = s.translation(*offset)[None]
-        motion = [s.translation(*(offset + (-0.25, 0, 4))), s.translation(*(offset + (0.25, 0.125, 4)))]
+        motion = [
+            s.translation(*(offset + (-0.25, 0, 4))),
+            s.translation(*(offset + (0.25, 0.125, 4))),
+        ]
         s.quad(snapshot, s.rectangle(-1, -1, 1, 1, 0), s.emission(snapshot), transforms=motion)
         return s.render(snapshot)["combined"]
 
@@ -93,7 +111,9 @@ def test_area_and_centroid_of_anything_translating(executor):
     x, y = p.T
     cross = x * np.roll(y, -1) - np.roll(x, -1) * y
     area = cross.sum() / 2
-    center = np.array([((x + np.roll(x, -1)) * cross).sum(), ((y + np.roll(y, -1)) * cross).sum()]) / (6 * area)
+    center = np.array(
+        [((x + np.roll(x, -1)) * cross).sum(), ((y + np.roll(y, -1)) * cross).sum()]
+    ) / (6 * area)
     assert abs(image.sum() - area) <= 2e-3 * area
     ys, xs = np.mgrid[0:64, 0:64] + 0.5
     found = np.array([(image * xs).sum(), (image * ys).sum()]) / image.sum()

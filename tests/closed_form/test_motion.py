@@ -44,7 +44,13 @@ def test_moving_disc_time_fraction(executor):
     radius, length, n = 10.0, 40.0, 256
     snapshot = s.orthographic((80, 32), samples=n, executor=executor)
     points, faces = s.disc(radius, (20.5, 16.5))
-    s.mesh(snapshot, points, faces, s.emission(snapshot), transforms=[s.translation(0), s.translation(length)])
+    s.mesh(
+        snapshot,
+        points,
+        faces,
+        s.emission(snapshot),
+        transforms=[s.translation(0), s.translation(length)],
+    )
     x, y = np.meshgrid(np.arange(80) - 20.0, np.arange(32) - 16.0)
     # The pixel's mean of the point formula, by a 16 x 16 midpoint rule.
     expected = np.zeros_like(x)
@@ -62,7 +68,9 @@ def test_moving_disc_time_fraction(executor):
 def disc_at(z0, z1, clip, executor, samples=1024):
     """Alpha of the ring at radius 120 px around the axis of a unit disc that moves from z0 to z1; focal 500 px."""
     size = (16, 4)
-    snapshot = s.perspective(size, 500.0, center=(-120.0 + 8, 2.0), clip=clip, samples=samples, executor=executor)
+    snapshot = s.perspective(
+        size, 500.0, center=(-120.0 + 8, 2.0), clip=clip, samples=samples, executor=executor
+    )
     points, faces = s.disc(1.0, z=0.0)
     transforms = [s.translation(0, 0, z0), s.translation(0, 0, z1)]
     s.mesh(snapshot, points, faces, s.emission(snapshot), transforms=transforms)
@@ -100,7 +108,9 @@ def test_scale_through_zero(executor):
     expected = np.maximum(1 - r / 50, 0)
     error = s.alpha(snapshot) - expected
     away = (np.abs(r - 50) > 2) & (r > 2)
-    assert np.abs(error[away]).max() <= 4 * 2 * OWEN[100, 256]  # the outline passes inwards and outwards
+    assert (
+        np.abs(error[away]).max() <= 4 * 2 * OWEN[100, 256]
+    )  # the outline passes inwards and outwards
 
 
 @pytest.mark.parametrize("knots", [2, 3, 5])

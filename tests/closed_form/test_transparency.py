@@ -14,7 +14,9 @@ def stack(executor, layers, **options):
     return s.render(snapshot)["combined"]
 
 
-@pytest.mark.parametrize("count, a, expected", [(128, 1 / 128, 0.6335623), (1000, 0.001, 0.6323046)])
+@pytest.mark.parametrize(
+    "count, a, expected", [(128, 1 / 128, 0.6335623), (1000, 0.001, 0.6323046)]
+)
 def test_many_equal_layers(executor, count, a, expected):
     """Case 35: 1 - (1 - a)^n, to float rounding: 1000 additions of 2^-24 relative error."""
     image = stack(executor, [(1 + 0.01 * i, a, (1, 1, 1)) for i in range(count)])
@@ -83,5 +85,10 @@ def test_moving_transparent_patch_has_no_seams(executor):
     """Case 42 in motion: shared edges are hit once at any time."""
     snapshot = s.orthographic((64, 64), samples=64, executor=executor, grid_size=16)
     transforms = [s.translation(-6.3, 2.1), s.translation(6.9, -3.7)]
-    s.quad(snapshot, s.rectangle(-60, -60, 120, 120), s.emission(snapshot, (1, 1, 1), 0.37), transforms=transforms)
+    s.quad(
+        snapshot,
+        s.rectangle(-60, -60, 120, 120),
+        s.emission(snapshot, (1, 1, 1), 0.37),
+        transforms=transforms,
+    )
     assert np.abs(s.alpha(snapshot) - 0.37).max() <= 1e-6

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whole pictures against Cycles' converged ones, bounces at 0: FLIP (Andersson et al. 2020) and mean luminance.
+
+The limits are the project's promise, not sampling error: FLIP < .02, luminance within 1 %.  On failure the picture,
+the reference and the FLIP map lie side by side in the folder that pytest names.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "blender"))
+import exr  # noqa: E402
+
+flip_evaluator = pytest.importorskip("flip_evaluator", reason="FLIP is installed by ./dev test")
+
+SAMPLES, LIGHT_SAMPLES = 64, 32
+# Reyes shades at vertices and interpolates: highlights and fine textures want finer micropolygons than 1 px.
+SCENES = {"metal": 0.5, "object_alpha": 0.5, "creased": 0.5, "demo": 0.5}
+
+
+def load(path):
+    """Linear RGB [h,w,3], top row first."""
+    channels = exr.read(path)
+    pick = lambda letter: next(v for k, v in channels.items() if k.split(".")[-1] == letter)  # noqa: E731
+    return np.stack([pick(c) for c in "RGB"], -1)[::-1].astype(np.float32)
+
+
+def srgb(x):
+    x = np.clip(x, 0, 1)
+    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055).astype(np.float32)
+
+
+def luminance(x):
+    return float((x @ [0.2126, 0.7152, 0.0722]).mean())
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_like_cycles(name, tmp_path):
+    out = tmp_path / "picture.exr"
+    script = ["--python", str(HERE / "scenes.py"), "--", name, "GRANITA", str(out)]
+    command = [
+        "blender",
+        "-b",
+        "--factory-startup",
+        "--addons",
+        "granita",
+        "--python-exit-code",
+        "1",
+        *script,
+    ]
+    command += [str(SAMPLES), str(LIGHT_SAMPLES), str(SCENES[name])]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-1000:]
+    picture, reference = load(out), load(HERE / "references" / f"{name}.exr")
+    flip, mean, _ = flip_evaluator.evaluate(srgb(reference), srgb(picture), "LDR", applyMagma=False)
+    ratio = luminance(picture) / luminance(reference)
+    np.save(
+        tmp_path / "side_by_side.npy",
+        np.concatenate([srgb(picture), srgb(reference), np.repeat(flip[..., :1], 3, 2)], 1),
+    )
+    print(f"{name}: FLIP {mean:.4f}, luminance ratio {ratio:.4f}")
+    assert mean < 0.02
+    assert abs(ratio - 1) < 0.01
