@@ -47,7 +47,9 @@ def test_mix_rgb(scene, render, blend, clamp):
 
 
 @pytest.mark.parametrize("clamp", [False, True])
-@pytest.mark.parametrize("mode", ["FLOAT", "UNIFORM", "NON_UNIFORM", "MIX", "LINEAR_LIGHT", "EXCLUSION"])
+@pytest.mark.parametrize(
+    "mode", ["FLOAT", "UNIFORM", "NON_UNIFORM", "MIX", "LINEAR_LIGHT", "EXCLUSION"]
+)
 def test_mix(scene, render, mode, clamp):
     tree = Tree(board(scene))
     node = tree.add("ShaderNodeMix", clamp_factor=clamp)

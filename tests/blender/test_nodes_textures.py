@@ -160,9 +160,7 @@ def test_color_attribute(scene, render):
     mix = tree.add("ShaderNodeMixRGB")
     for name, target in (("Byte", mix.inputs[1]), ("Float", mix.inputs[2])):
         tree.link(tree.add("ShaderNodeVertexColor", layer_name=name).outputs["Color"], target)
-    tree.link(
-        tree.add("ShaderNodeVertexColor", layer_name="Float").outputs["Alpha"], mix.inputs[0]
-    )
+    tree.link(tree.add("ShaderNodeVertexColor", layer_name="Float").outputs["Alpha"], mix.inputs[0])
     tree.emit(mix.outputs[0])
     check(scene, render)
 
@@ -211,3 +209,33 @@ def test_generated_is_what_textures_use_when_nothing_is_linked(scene, render):
     tree = Tree(board(scene))
     tree.emit(tree.add("ShaderNodeTexGradient").outputs["Color"])
     check(scene, render, SAMPLES)
+
+
+@pytest.mark.parametrize("projection", enum_values("ShaderNodeTexEnvironment", "projection"))
+def test_environment_texture(scene, render, projection):
+    tree = Tree(board(scene))
+    node = tree.add("ShaderNodeTexEnvironment", image=smooth_image("Image"), projection=projection)
+    direction = tree.add("ShaderNodeVectorMath", operation="NORMALIZE")
+    tree.link(tree.attribute("A"), direction.inputs[0])
+    tree.link(direction.outputs[0], node.inputs[0])
+    tree.emit(node.outputs["Color"])
+    check(scene, render)
+
+
+@pytest.mark.parametrize("damage", ["missing", "truncated", "empty"])
+def test_broken_image_is_magenta_and_named(scene, render, tmp_path, damage):
+    from granita.export import export_frame
+
+    granita_core = pytest.importorskip("granita_core")
+    image = saved_image(tmp_path, "Broken", size=64)
+    path = tmp_path / "Broken.png"
+    data = path.read_bytes()
+    path.unlink()
+    if damage != "missing":
+        path.write_bytes(data[: len(data) // 2] if damage == "truncated" else b"")
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    snapshot = export_frame(None, bpy.context.evaluated_depsgraph_get(), scene.granita, print)
+    result = granita_core.render(snapshot)
+    assert result["combined"][5, 7, :3].tolist() == pytest.approx([1, 0, 1], abs=1e-5)
+    assert [name for name, *_ in result["warnings"]] == [f"image '{image.name}'"]
