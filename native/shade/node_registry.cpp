@@ -66,6 +66,7 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeCameraData", value(build_camera_data)},
         {"ShaderNodeTexChecker", value(build_checker)},
         {"ShaderNodeTexGradient", value(build_gradient)},
+        {"ShaderNodeTexSky", value(build_sky_texture)},
 
         {"ShaderNodeBsdfGlass", like_glossy},
         {"ShaderNodeBsdfRefraction", like_glossy},

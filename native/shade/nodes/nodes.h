@@ -53,5 +53,6 @@ void build_object_info(NodeBuilder&);
 void build_camera_data(NodeBuilder&);
 void build_checker(NodeBuilder&);
 void build_gradient(NodeBuilder&);
+void build_sky_texture(NodeBuilder&);
 
 }  // namespace granita

@@ -172,6 +172,24 @@ TEST(NodeProgram, unknown_node_is_reported_once_and_is_zero) {
     EXPECT_EQ(c.report.warnings()[0].count, 1u);
 }
 
+TEST(NodeProgram, a_sky_is_bright_above_and_told_to_be_a_stand_in) {
+    Compiler c;
+    const int sky = c.add("ShaderNodeTexSky", {}, {{"sky_type", std::string("PREETHAM")}});
+    const int background =
+        c.add("ShaderNodeBackground", {{"Color", link(sky, "Color")}, {"Strength", constant(2)}});
+    c.graph.surface = {background, "Background"};
+    const CompiledSurface world =
+        compile_surface(c.graph, c.scene, c.textures, c.report, {"world 'Test'", true});
+    ShadingPoints points;
+    points.count = 2;
+    points.p = {Vec3f(0, 0, 1), Vec3f(1, 0, 0)};
+    const auto radiance = run_emission(world, {}, points);
+    EXPECT_FLOAT_EQ(radiance[0].z, 2 * 1.55f);
+    EXPECT_FLOAT_EQ(radiance[1].x, 2 * 0.66f);
+    ASSERT_EQ(c.report.warnings().size(), 1u);
+    EXPECT_EQ(c.report.warnings()[0].datablock, "world 'Test'");
+}
+
 TEST(NodeProgram, forward_link_is_an_error_that_names_the_material) {
     Compiler c;
     const int emission = c.add("ShaderNodeEmission", {{"Color", link(7, "Color")}});
