@@ -9,8 +9,8 @@ import atexit
 import runpy
 import sys
 
+import bpy  # isort: skip  (first: Blender's own modules are found through it)
 import addon_utils
-import bpy
 
 
 def release_engine() -> None:
