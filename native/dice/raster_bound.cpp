@@ -51,6 +51,10 @@ RasterBounds raster_bound(const Projection& projection, const Bounds3f& box) {
                               ? std::max<double>(box.lo.z, crosses ? projection.near_clip : 0.0)
                               : box.lo.z;
     const double z_far = std::max<double>(box.hi.z, z_near);
+    // What is seen has z in [z_near, z_far].  On either side of the focus (v +- R |z / focus - 1|)
+    // / z is monotone in z, and at the focus it is v / z without a reach: the ends bound it.  So a
+    // floor that passes below the lens stays below the frame, however large its circle of confusion
+    // grows.
     const auto axis = [&](int i, double lo, double hi) {
         Interval interval;
         for (const double z : {z_near, z_far}) {
@@ -61,8 +65,6 @@ RasterBounds raster_bound(const Projection& projection, const Bounds3f& box) {
                 interval.add(projection.center[i] + projection.scale[i] * v * w,
                              projection.has_lens() ? reach * w : 0.0);
         }
-        if (crosses && (lo < 0.0 || projection.has_lens())) interval.lo = -kInfinity;
-        if (crosses && (hi > 0.0 || projection.has_lens())) interval.hi = kInfinity;
         return interval;
     };
     return finish(projection, axis(0, box.lo.x, box.hi.x), axis(1, box.lo.y, box.hi.y), box.lo.z);

@@ -123,6 +123,27 @@ TEST(EyePlane, a_cube_around_the_camera_closes) {
     }
 }
 
+/// Whatever a vertex shows between the clips, at any time and through any lens point, lies inside
+/// the bounds.
+void expect_inside(const Grid& grid, const Projection& projection) {
+    const int n = grid.vertex_count();
+    for (int v = 0; v < n; ++v)
+        for (int step = 0; step <= 64; ++step) {
+            const float t = static_cast<float>(step) / 64.0f;
+            const Vec3f a = grid.positions[static_cast<std::size_t>(v)];
+            const Vec3f b = grid.positions[static_cast<std::size_t>((grid.knots - 1) * n + v)];
+            const Vec3f p = a + t * (b - a);
+            if (p.z < projection.near_clip || p.z > projection.far_clip) continue;
+            const Vec2f shear = projection.lens_shear(p.z);
+            for (const float lens : {-1.0f, 0.0f, 1.0f}) {
+                const Vec3f h = projection.homogeneous(p, {0.0, 0.0});
+                const float x = (h.x + lens * shear.x) / h.z, y = (h.y + lens * shear.y) / h.z;
+                ASSERT_TRUE(x >= grid.bounds.x0 && x <= grid.bounds.x1) << x << " at t " << t;
+                ASSERT_TRUE(y >= grid.bounds.y0 && y <= grid.bounds.y1) << y << " at t " << t;
+            }
+        }
+}
+
 TEST(EyePlane, dollying_through_the_near_plane_keeps_the_swept_bound) {
     // Hard case 17: z = 2 - 3 t.
     DiceScene s(mesh({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {4}, {0, 1, 2, 3}));
@@ -135,13 +156,25 @@ TEST(EyePlane, dollying_through_the_near_plane_keeps_the_swept_bound) {
     ASSERT_FALSE(grids.empty());
     EXPECT_NEAR(area(grids, 0), 4.0, 1e-5);
     EXPECT_NEAR(area(grids, 1), 4.0, 1e-5);
-    const float inf = std::numeric_limits<float>::infinity();
     for (const auto& grid : grids) {
         EXPECT_TRUE(grid->bounds.visible);
         EXPECT_EQ(grid->bounds.nearest_key, 1.0f / 0.1f);
-        EXPECT_TRUE(grid->bounds.x0 == -inf || grid->bounds.x1 == inf);
+        expect_inside(*grid, s.view.projection);
     }
     EXPECT_LT(micropolygons(grids), 4 * 256 * 256);
+}
+
+TEST(EyePlane, a_floor_below_the_lens_stays_below_the_frame) {
+    DiceScene s(
+        mesh({{-50, -2, -50}, {50, -2, -50}, {50, -2, 50}, {-50, -2, 50}}, {4}, {0, 1, 2, 3}));
+    s.perspective(256.0);
+    s.view.projection.lens_radius = 0.05;
+    s.view.projection.focus = 8.0;
+    for (const auto& grid : s.grids()) expect_inside(*grid, s.view.projection);
+    // The horizon is half-way up; what lies nearer than 2 m is outside the frame whatever the lens
+    // does.
+    const auto opened = open_instance(s.view, 0, s.report);
+    EXPECT_LE(opened->bounds(0).y1, 128.0f + 256.0f * 0.05f / 8.0f + 1.0f);
 }
 
 TEST(EyePlane, a_lens_widens_bounds_by_its_circle_of_confusion) {
