@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "hider/lens_shape.h"
-#include "hider/shutter_warp.h"
 #include "math/bounds.h"
 #include "scene/scene.h"
+#include "scene/shutter_warp.h"
 
 namespace granita {
 

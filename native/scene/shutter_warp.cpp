@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hider/shutter_warp.h"
+#include "scene/shutter_warp.h"
 
 #include <algorithm>
 #include <cmath>
