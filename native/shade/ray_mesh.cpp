@@ -15,7 +15,8 @@ namespace {
 
 namespace Bfr = OpenSubdiv::Bfr;
 
-/// Cells a side of a patch, so that no geometry takes more than some ten million triangles.
+/// Cells a side of a patch, so that no geometry takes more than some ten million points over all
+/// its knots.
 int cells_a_side(std::size_t patches) {
     if (patches <= 40'000) return 8;
     return patches <= 400'000 ? 4 : 2;
@@ -30,7 +31,7 @@ Report& no_report() {
 }  // namespace
 
 RayMesh::RayMesh(const GeometryData& data, float frame_time, const Progress& progress)
-    : m_shared(data, frame_time, no_report()) {
+    : m_shared(data, frame_time, no_report()), m_knots(m_shared.is_static() ? 1 : data.knots) {
     if (m_shared.subdivision() != nullptr)
         add_limit_surface(progress);
     else
@@ -40,10 +41,18 @@ RayMesh::RayMesh(const GeometryData& data, float frame_time, const Progress& pro
             m_extent = std::max({m_extent, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
 }
 
+std::span<const Vec3f> RayMesh::vertices(int knot) const {
+    if (m_knots == 1) return m_shared.frame_points();
+    const GeometryData& data = m_shared.data();
+    return std::span(data.points)
+        .subspan(static_cast<std::size_t>(knot) * data.vertex_count(), data.vertex_count());
+}
+
 void RayMesh::add_polygons() {
     const GeometryData& data = m_shared.data();
     const auto& patches = m_shared.patches();
-    m_points.assign(m_shared.frame_points().begin(), m_shared.frame_points().end());
+    for (int knot = 0; knot < m_knots; ++knot)
+        m_points.insert(m_points.end(), vertices(knot).begin(), vertices(knot).end());
     m_triangles.reserve(2 * patches.size());
     m_patches.reserve(2 * patches.size());
     for (std::uint32_t k = 0; k < patches.size(); ++k) {
@@ -56,29 +65,32 @@ void RayMesh::add_polygons() {
         if (patch.kind != PatchKind::Quad) continue;
         m_triangles.push_back({v[0], v[2], v[3]});
         m_patches.push_back(2 * k + 1);
-        const Vec3f twist = m_points[v[0]] - m_points[v[1]] + m_points[v[2]] - m_points[v[3]];
-        const float error = 0.25f * glm::length(twist);
-        // Rounding alone twists a flat quad: that is the business of extent().
-        if (error <= 1e-6f * glm::length(m_points[v[0]] - m_points[v[2]])) continue;
-        if (m_errors.empty()) m_errors.assign(data.face_count(), 0.0f);
-        m_errors[patch.face] = std::max(m_errors[patch.face], error);
+        for (int knot = 0; knot < m_knots; ++knot) {
+            const auto at = points(knot);
+            const float error = 0.25f * glm::length(at[v[0]] - at[v[1]] + at[v[2]] - at[v[3]]);
+            // Rounding alone twists a flat quad: that is the business of extent().
+            if (error <= 1e-6f * glm::length(at[v[0]] - at[v[2]])) continue;
+            if (m_errors.empty()) m_errors.assign(data.face_count(), 0.0f);
+            m_errors[patch.face] = std::max(m_errors[patch.face], error);
+        }
     }
 }
 
 void RayMesh::add_limit_surface(const Progress& progress) {
     const auto& patches = m_shared.patches();
-    const int side = m_side = cells_a_side(patches.size());
+    const int side = m_side = cells_a_side(patches.size() * static_cast<std::size_t>(m_knots));
     const auto line = static_cast<std::size_t>(side) + 1;
     const auto cells = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
-    m_points.resize(patches.size() * line * line);
+    m_points.resize(static_cast<std::size_t>(m_knots) * patches.size() * line * line);
     m_triangles.resize(patches.size() * 2 * cells);
     std::vector<float> errors(patches.size(), 0.0f);
-    const auto* cage = reinterpret_cast<const float*>(m_shared.frame_points().data());
     const auto& factory = m_shared.subdivision()->factory();
 
-    const auto evaluate = [&](std::size_t k) {
+    const auto evaluate = [&](std::size_t k, int knot) {
         const BasePatch& patch = patches[k];
-        Vec3f* points = m_points.data() + k * line * line;
+        const auto* cage = reinterpret_cast<const float*>(vertices(knot).data());
+        Vec3f* points =
+            m_points.data() + (static_cast<std::size_t>(knot) * patches.size() + k) * line * line;
         Bfr::Surface<float> surface;
         if (!factory.InitVertexSurface(static_cast<int>(patch.face), &surface)) {
             std::fill_n(points, line * line, Vec3f(std::nanf("")));  // a hole: Embree skips it
@@ -112,7 +124,8 @@ void RayMesh::add_limit_surface(const Progress& progress) {
                     twist = std::max(twist, glm::length(at(i, j) - at(i + 1, j) + at(i + 1, j + 1) -
                                                         at(i, j + 1)));
             }
-        errors[k] = 0.125f * (bend_u + bend_v) + 0.25f * twist;
+        errors[k] = std::max(errors[k], 0.125f * (bend_u + bend_v) + 0.25f * twist);
+        if (knot > 0) return;
         auto* triangles = m_triangles.data() + k * 2 * cells;
         for (std::size_t j = 0; j + 1 < line; ++j)
             for (std::size_t i = 0; i + 1 < line; ++i) {
@@ -125,7 +138,8 @@ void RayMesh::add_limit_surface(const Progress& progress) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), 256),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                           progress.check();
-                          for (std::size_t k = range.begin(); k != range.end(); ++k) evaluate(k);
+                          for (std::size_t k = range.begin(); k != range.end(); ++k)
+                              for (int knot = 0; knot < m_knots; ++knot) evaluate(k, knot);
                       });
     m_errors.assign(m_shared.data().face_count(), 0.0f);
     for (std::size_t k = 0; k < patches.size(); ++k)

@@ -36,12 +36,36 @@ bool goes_on(void* user, double) {
     return !static_cast<const Progress*>(user)->cancelled();
 }
 
+/// Embree's RTC_MAX_TIME_STEP_COUNT, and more than Blender can ask for (dice/knots.h).
+constexpr std::size_t kMostKnots = RTC_MAX_TIME_STEP_COUNT;
+
+/// Boxes of moving casters that a ray is tested against one by one; more are merged.
+constexpr std::size_t kMostWays = 16;
+
+/// Slabs (Kay and Kajiya 1986); a ray inside a slab's plane, where 0 times infinity is no number,
+/// counts as meeting it.
+bool meets_box(const Bounds3f& box, const Vec3f& start, const Vec3f& direction, float distance) {
+    float nearest = 0.0f, farthest = distance;
+    for (int c = 0; c < 3; ++c) {
+        const float a = (box.lo[c] - start[c]) / direction[c];
+        const float b = (box.hi[c] - start[c]) / direction[c];
+        if (std::isnan(a) || std::isnan(b)) continue;
+        nearest = std::max(nearest, std::min(a, b));
+        farthest = std::min(farthest, std::max(a, b));
+    }
+    return nearest <= farthest;
+}
+
+bool stands_still(const Instance& instance) {
+    const auto& knots = instance.world_from_object;
+    return std::all_of(knots.begin(), knots.end(), [&](const Mat4d& m) { return m == knots[0]; });
+}
+
 /// What an instance tells a ray.
 struct RayInstance {
     std::uint32_t index = 0;  ///< in Scene::instances
-    Mat3f normal_from_object{1.0f};
-    float scale = 1.0f;     ///< largest stretch of the transform
-    float rounding = 0.0f;  ///< metres
+    float scale = 1.0f;       ///< largest stretch of the transform at any knot
+    float rounding = 0.0f;    ///< metres
 };
 
 /// A ray and what is left of its light.
@@ -61,6 +85,7 @@ struct RayScene::Impl {
     void check(const std::string& what, const Progress& progress) const;
     void build_geometry(int geometry, bool filtered, const Progress& progress);
     void add_instance(std::uint32_t index, const Vec3d& origin);
+    void add_way(RTCScene geometry, const std::vector<Mat4d>& knots);
     bool lets_light_through(const Instance& instance) const;
     std::int32_t material_of(const Instance& instance, std::uint32_t face) const;
     Vec3f transparency(const RTCRay& ray, const RTCHit& hit, unsigned id) const;
@@ -73,7 +98,8 @@ struct RayScene::Impl {
     std::vector<std::unique_ptr<RayMesh>> meshes;  ///< [geometries] nullptr = casts no shadow
     std::vector<Handle<RTCScene>> geometries;      ///< [geometries]
     Handle<RTCScene> top;
-    std::vector<RayInstance> instances;                       ///< by Embree's id in `top`
+    std::vector<Bounds3f> ways;          ///< what moving casters sweep, a few boxes
+    std::vector<RayInstance> instances;  ///< by Embree's id in `top`
     std::unordered_map<std::uint32_t, std::uint32_t> by_key;  ///< Instance::key to that id
 };
 
@@ -102,13 +128,20 @@ void RayScene::Impl::build_geometry(int index, bool filtered, const Progress& pr
     rtcSetSceneProgressMonitorFunction(built.get(), goes_on, const_cast<Progress*>(&progress));
     RTCGeometry triangles = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     // Copied: Embree reads 16 bytes at the last vertex, so a shared buffer needs padding.
-    void* vertices =
-        rtcSetNewGeometryBuffer(triangles, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                sizeof(Vec3f), mesh->points().size());
+    rtcSetGeometryTimeStepCount(triangles, static_cast<unsigned>(mesh->knots()));
+    bool allocated = true;
+    for (int knot = 0; knot < mesh->knots(); ++knot) {
+        void* vertices =
+            rtcSetNewGeometryBuffer(triangles, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(knot),
+                                    RTC_FORMAT_FLOAT3, sizeof(Vec3f), mesh->point_count());
+        if (vertices == nullptr)
+            allocated = false;
+        else
+            std::ranges::copy(mesh->points(knot), static_cast<Vec3f*>(vertices));
+    }
     void* indices = rtcSetNewGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                             3 * sizeof(std::uint32_t), mesh->triangles().size());
-    if (vertices != nullptr && indices != nullptr) {
-        std::copy(mesh->points().begin(), mesh->points().end(), static_cast<Vec3f*>(vertices));
+    if (allocated && indices != nullptr) {
         std::copy(mesh->triangles().begin(), mesh->triangles().end(),
                   static_cast<std::array<std::uint32_t, 3>*>(indices));
         if (filtered) rtcSetGeometryOccludedFilterFunction(triangles, pass_through);
@@ -126,31 +159,68 @@ void RayScene::Impl::build_geometry(int index, bool filtered, const Progress& pr
 void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     const Instance& instance = scene.instances[index];
     const auto geometry = static_cast<std::size_t>(instance.geometry);
-    Mat4d m = matrix_at(instance.world_from_object, scene.options.frame_time);
-    m[3] -= glm::dvec4(origin, 0.0);
+    // One knot where it stands still: Embree then needs no motion hierarchy for it.
+    std::vector<Mat4d> knots = instance.world_from_object;
+    if (stands_still(instance)) knots.resize(1);
+    if (knots.size() > kMostKnots) {
+        knots.resize(kMostKnots);
+        for (std::size_t k = 0; k < kMostKnots; ++k)
+            knots[k] =
+                matrix_at(instance.world_from_object, static_cast<double>(k) / (kMostKnots - 1));
+    }
     RayInstance added;
     added.index = index;
-    added.normal_from_object = Mat3f(glm::transpose(glm::inverse(Mat3d(m))));
-    added.scale = static_cast<float>(
-        std::max({glm::length(Vec3d(m[0])), glm::length(Vec3d(m[1])), glm::length(Vec3d(m[2]))}));
-    added.rounding = kRounding * (static_cast<float>(glm::length(Vec3d(m[3]))) +
-                                  added.scale * meshes[geometry]->extent());
-    float columns[12];
-    for (int c = 0, k = 0; c < 4; ++c)
-        for (int r = 0; r < 3; ++r, ++k) columns[k] = static_cast<float>(m[c][r]);
+    bool has_volume = false;
+    std::vector<std::array<float, 12>> columns;
+    for (Mat4d& m : knots) {
+        m[3] -= glm::dvec4(origin, 0.0);
+        float scale = 0.0f;
+        for (int c = 0; c < 3; ++c)
+            scale = std::max(scale, static_cast<float>(glm::length(Vec3d(m[c]))));
+        added.scale = std::max(added.scale, scale);
+        added.rounding =
+            std::max(added.rounding, kRounding * (static_cast<float>(glm::length(Vec3d(m[3]))) +
+                                                  scale * meshes[geometry]->extent()));
+        has_volume = has_volume || glm::determinant(Mat3d(m)) != 0.0;
+        columns.emplace_back();
+        for (std::size_t c = 0, k = 0; c < 4; ++c)
+            for (std::size_t r = 0; r < 3; ++r, ++k) {
+                columns.back()[k] = static_cast<float>(m[c][r]);
+                if (!std::isfinite(columns.back()[k])) return;
+            }
+    }
     // A transform without volume casts no shadow that rays could find.
-    if (!std::all_of(std::begin(columns), std::end(columns),
-                     [](float x) { return std::isfinite(x); }) ||
-        glm::determinant(Mat3d(m)) == 0.0)
-        return;
+    if (!has_volume) return;
     RTCGeometry node = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(node, geometries[geometry].get());
-    rtcSetGeometryTransform(node, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+    rtcSetGeometryTimeStepCount(node, static_cast<unsigned>(columns.size()));
+    for (unsigned k = 0; k < columns.size(); ++k)
+        rtcSetGeometryTransform(node, k, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns[k].data());
     rtcCommitGeometry(node);
+    if (knots.size() > 1 || meshes[geometry]->knots() > 1)
+        add_way(geometries[geometry].get(), knots);
     rtcAttachGeometryByID(top.get(), node, static_cast<unsigned>(instances.size()));
     rtcReleaseGeometry(node);
     by_key[instance.key] = static_cast<std::uint32_t>(instances.size());
     instances.push_back(added);
+}
+
+/// Points move in straight lines between knots: the boxes at the knots hold all of their way.
+void RayScene::Impl::add_way(RTCScene geometry, const std::vector<Mat4d>& knots) {
+    RTCBounds box;
+    rtcGetSceneBounds(geometry, &box);
+    Bounds3f way;
+    for (const Mat4d& m : knots)
+        for (int corner = 0; corner < 8; ++corner)
+            way.add(Vec3f(m * glm::dvec4(corner & 1 ? box.upper_x : box.lower_x,
+                                         corner & 2 ? box.upper_y : box.lower_y,
+                                         corner & 4 ? box.upper_z : box.lower_z, 1.0)));
+    if (way.empty()) return;
+    way.grow(kRounding * std::max(glm::length(way.lo), glm::length(way.hi)));
+    if (ways.size() < kMostWays)
+        ways.push_back(way);
+    else
+        ways.back().add(way);
 }
 
 std::int32_t RayScene::Impl::material_of(const Instance& instance, std::uint32_t face) const {
@@ -171,8 +241,10 @@ Vec3f RayScene::Impl::transparency(const RTCRay& ray, const RTCHit& hit, unsigne
     if (!opacity.is_transparent(shadow.material)) return Vec3f(0.0f);
     shadow.direction = {ray.dir_x, ray.dir_y, ray.dir_z};
     shadow.p = Vec3f(ray.org_x, ray.org_y, ray.org_z) + shadow.direction * ray.tfar;
-    shadow.normal =
-        glm::normalize(instance.normal_from_object * Vec3f(hit.Ng_x, hit.Ng_y, hit.Ng_z));
+    shadow.time = ray.time;
+    const Mat3d world_from_object(matrix_at(source.world_from_object, ray.time));
+    shadow.normal = Vec3f(glm::normalize(glm::transpose(glm::inverse(world_from_object)) *
+                                         Vec3d(hit.Ng_x, hit.Ng_y, hit.Ng_z)));
     return opacity.transparency(shadow);
 }
 
@@ -249,7 +321,22 @@ Vec3f RayScene::lift(const GridKey& key, const Vec3f& p, const Vec3f& geometric_
     return p + geometric_normal * height;
 }
 
+bool RayScene::moves() const {
+    return !m_impl->ways.empty();
+}
+
+bool RayScene::varies(const Vec3f& start, const Vec3f& direction, float distance) const {
+    return std::ranges::any_of(m_impl->ways, [&](const Bounds3f& way) {
+        return meets_box(way, start, direction, distance);
+    });
+}
+
 Vec3f RayScene::transmittance(const Vec3f& start, const Vec3f& direction, float distance) const {
+    return transmittance(start, direction, distance, m_impl->scene.options.frame_time);
+}
+
+Vec3f RayScene::transmittance(const Vec3f& start, const Vec3f& direction, float distance,
+                              float time) const {
     ShadowContext context;
     rtcInitIntersectContext(&context.embree);
     context.scene = m_impl.get();
@@ -258,6 +345,7 @@ Vec3f RayScene::transmittance(const Vec3f& start, const Vec3f& direction, float 
     ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
     ray.tnear = 0.0f;
     ray.tfar = distance;
+    ray.time = time;
     ray.mask = ~0u;
     rtcOccluded1(m_impl->top.get(), &context.embree, &ray);
     if (context.failure) std::rethrow_exception(context.failure);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scene as shadow rays see it: view-independent triangles, one Embree scene a geometry,
 // instanced, in shading space (world axes, origin at the camera of the frame time; decision 12).
+// What moves in the world has its motion knots in Embree; the camera's motion moves nothing.
 #pragma once
 
 #include <memory>
@@ -21,6 +22,11 @@ class RayScene {
     ~RayScene();
 
     bool empty() const;
+    /// Whether any caster moves or deforms within the shutter.
+    bool moves() const;
+    /// Whether what passes along the segment may depend on time: false where no caster's way comes
+    /// near it.
+    bool varies(const Vec3f& start, const Vec3f& direction, float distance) const;
     std::size_t bytes() const;
 
     /// Where a ray from a grid's point `p` must start so as to clear the grid's own triangles:
@@ -28,7 +34,11 @@ class RayScene {
     /// between the surface and its triangles.
     Vec3f lift(const GridKey& key, const Vec3f& p, const Vec3f& geometric_normal) const;
 
-    /// Share of light that passes along the segment, per channel.  `direction` is unit.
+    /// Share of light that passes along the segment at a shutter time in [0, 1], per channel.
+    /// `direction` is unit.
+    Vec3f transmittance(const Vec3f& start, const Vec3f& direction, float distance,
+                        float time) const;
+    /// The same at the frame time.
     Vec3f transmittance(const Vec3f& start, const Vec3f& direction, float distance) const;
 
   private:

@@ -20,6 +20,7 @@ struct ShadowHit {
     Vec3f p{0.0f};                             ///< world axes, origin at the camera
     Vec3f normal{0.0f};                        ///< unit, of the triangle, world axes, as modelled
     Vec3f direction{0.0f};                     ///< unit, of the ray, from shaded point to light
+    float time = 0.5f;                         ///< of the ray, in the shutter
 };
 
 /// Both or neither are given; called from any thread.

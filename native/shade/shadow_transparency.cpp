@@ -54,8 +54,7 @@ Vec3f shadow_transparency(const CompiledSurface& material, const Scene& scene,
     input.points = &points;
     input.attributes = &attributes;
     input.instance = &scene.instances[hit.instance];
-    const Mat3d world_from_object(
-        matrix_at(input.instance->world_from_object, scene.options.frame_time));
+    const Mat3d world_from_object(matrix_at(input.instance->world_from_object, hit.time));
     input.world_from_object = Mat3f(world_from_object);
     input.object_from_world = Mat3f(glm::inverse(world_from_object));
     Run run = material.opacity_program.prepare(input, 1);
