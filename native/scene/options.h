@@ -25,6 +25,17 @@ enum class FilterKind {
     Bspline
 };
 
+/// A material's own output, written by AOV Output nodes of that name.
+struct Aov {
+    std::string name;
+    bool is_color = true;  ///< else one number
+};
+
+/// Blender's mist: ((distance to the camera - start) / depth) to the power of exponent, in [0, 1].
+struct Mist {
+    float start = 5.0f, depth = 25.0f, exponent = 2.0f;
+};
+
 struct Options {
     int width = 0, height = 0;  ///< full frame, pixels
     Rect crop;                  ///< what is rendered, inside the frame
@@ -46,6 +57,11 @@ struct Options {
     int threads = 0;                     ///< 0 = all
     bool film_transparent = false;
     bool depth_pass = false;
+    std::vector<std::string> passes;  ///< names of scene/channels.h
+    std::vector<Aov> aovs;
+    /// Passes of the first surface pass through those whose mean opacity is less.
+    float pass_alpha_threshold = 0.0f;
+    Mist mist;
     float frame_time =
         0.5f;  ///< shutter time of Blender's frame: 0, 1/2 or 1; shading happens there
     std::vector<float> shutter_curve;  ///< opening over t in [0, 1], equidistant; empty = box
