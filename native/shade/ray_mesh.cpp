@@ -22,6 +22,24 @@ int cells_a_side(std::size_t patches) {
     return patches <= 400'000 ? 4 : 2;
 }
 
+/// How far a face with this offset from a triangle's plane may stand off the triangle, along the
+/// face's own normal. Only what leaves the plane counts: a flat trapezoid's patch is not linear in
+/// its parameters, but lies in its triangles all the same.
+float height_off(const Vec3f& offset, const Vec3f& triangle, const Vec3f& face) {
+    const float area = glm::length(triangle);
+    if (!(area > 0.0f)) return 0.0f;  // no triangle for a ray to hit
+    const float cosine = std::abs(glm::dot(triangle, face)) / glm::length(face);
+    return std::min(glm::length(offset), std::abs(glm::dot(offset, triangle)) / cosine);
+}
+
+/// The same of a quad cut from a to c: the larger of its two triangles'. Normals of any length.
+float height_off(const Vec3f& offset, const Vec3f& a, const Vec3f& b, const Vec3f& c,
+                 const Vec3f& d) {
+    const Vec3f face = glm::cross(c - a, d - b);
+    return std::max(height_off(offset, glm::cross(b - a, c - a), face),
+                    height_off(offset, glm::cross(c - a, d - a), face));
+}
+
 Report& no_report() {
     // What cannot be diced is reported by dicing, which reads the same data.
     static Report report;
@@ -67,7 +85,8 @@ void RayMesh::add_polygons() {
         m_patches.push_back(2 * k + 1);
         for (int knot = 0; knot < m_knots; ++knot) {
             const auto at = points(knot);
-            const float error = 0.25f * glm::length(at[v[0]] - at[v[1]] + at[v[2]] - at[v[3]]);
+            const Vec3f twist = at[v[0]] - at[v[1]] + at[v[2]] - at[v[3]];
+            const float error = 0.25f * height_off(twist, at[v[0]], at[v[1]], at[v[2]], at[v[3]]);
             // Rounding alone twists a flat quad: that is the business of extent().
             if (error <= 1e-6f * glm::length(at[v[0]] - at[v[2]])) continue;
             if (m_errors.empty()) m_errors.assign(data.face_count(), 0.0f);
@@ -109,22 +128,25 @@ void RayMesh::add_limit_surface(const Progress& progress) {
                 surface.Evaluate(uv, control.data(), 3, &points[j * line + i].x);
             }
         // A chord misses a curve by an eighth of its second difference, a cell's diagonal by a
-        // quarter of its twist.
+        // quarter of its twist. At the patch's border the nearest second difference inside stands.
         const auto at = [&](std::size_t i, std::size_t j) { return points[j * line + i]; };
-        float bend_u = 0.0f, bend_v = 0.0f, twist = 0.0f;
-        for (std::size_t j = 0; j < line; ++j)
-            for (std::size_t i = 0; i < line; ++i) {
-                if (i > 0 && i + 1 < line)
-                    bend_u = std::max(bend_u,
-                                      glm::length(at(i - 1, j) - 2.0f * at(i, j) + at(i + 1, j)));
-                if (j > 0 && j + 1 < line)
-                    bend_v = std::max(bend_v,
-                                      glm::length(at(i, j - 1) - 2.0f * at(i, j) + at(i, j + 1)));
-                if (i + 1 < line && j + 1 < line)
-                    twist = std::max(twist, glm::length(at(i, j) - at(i + 1, j) + at(i + 1, j + 1) -
-                                                        at(i, j + 1)));
+        const auto inside = [&](std::size_t i) { return std::clamp<std::size_t>(i, 1, line - 2); };
+        const auto bend_u = [&](std::size_t i, std::size_t j) {
+            i = inside(i);
+            return at(i - 1, j) - 2.0f * at(i, j) + at(i + 1, j);
+        };
+        const auto bend_v = [&](std::size_t i, std::size_t j) {
+            j = inside(j);
+            return at(i, j - 1) - 2.0f * at(i, j) + at(i, j + 1);
+        };
+        for (std::size_t j = 0; j + 1 < line; ++j)
+            for (std::size_t i = 0; i + 1 < line; ++i) {
+                const Vec3f a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
+                const float bent_u = height_off(bend_u(i, j), a, b, c, d);
+                const float bent_v = height_off(bend_v(i, j), a, b, c, d);
+                const float twist = height_off(a - b + c - d, a, b, c, d);
+                errors[k] = std::max(errors[k], 0.125f * (bent_u + bent_v) + 0.25f * twist);
             }
-        errors[k] = std::max(errors[k], 0.125f * (bend_u + bend_v) + 0.25f * twist);
         if (knot > 0) return;
         auto* triangles = m_triangles.data() + k * 2 * cells;
         for (std::size_t j = 0; j + 1 < line; ++j)

@@ -154,6 +154,23 @@ TEST(RayScene, lifted_points_of_scaled_and_twisted_quads_do_not_shade_themselves
     }
 }
 
+TEST(RayScene, flat_faces_of_any_shape_and_size_lift_by_rounding_alone) {
+    // Neither a trapezoid nor a subdivided plane is linear in its parameters, yet both lie in their
+    // triangles: lifted by that, a floor would lose the shadows of all that stands on it.
+    const GeometryData trapezoid =
+        quads("mesh 'Trapezoid'", {{-400, -400, 0}, {400, -400, 0}, {100, 400, 0}, {-100, 700, 0}});
+    GeometryData subdivided = square(400);
+    subdivided.is_subdivision = true;
+    for (const GeometryData& floor : {trapezoid, subdivided}) {
+        Scene scene = empty_scene();
+        add_instance(scene, floor, at({0, 0, 0}));
+        const Progress progress;
+        const RayScene rays(scene, Vec3d(0.0), {}, progress);
+        EXPECT_LT(rays.lift({0, 0, 1}, {10, 20, 0}, kUp).z, 0.01f) << floor.name;
+        EXPECT_GT(rays.lift({0, 0, 1}, {10, 20, 0}, kUp).z, 0.0f) << floor.name;
+    }
+}
+
 TEST(RayScene, transparent_materials_multiply_and_opaque_ones_end) {
     Scene scene = empty_scene();
     scene.materials.resize(2);
