@@ -160,8 +160,9 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
     motion_steps: IntProperty(
         name="Motion Steps",
         description="Most moments in the shutter at which moving and deforming geometry is read, "
-        "rounded up to an odd number; between them it moves linearly",
-        default=3,
+        "rounded up to an odd number. Only paths that bend are read that often; between the moments "
+        "things move on straight lines",
+        default=17,
         min=1,
         max=129,
         soft_max=33,
@@ -169,11 +170,41 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
     )
 
 
+class GranitaObjectSettings(bpy.types.PropertyGroup):
+    """Read only where Cycles' add-on, whose settings of the same names win, is not enabled."""
+
+    use_motion_blur: BoolProperty(
+        name="Motion Blur",
+        description="The object, or the camera, is blurred by its motion",
+        default=True,
+    )
+    use_deform_motion: BoolProperty(
+        name="Deformation",
+        description="The object is blurred by its deformation too",
+        default=True,
+    )
+    motion_steps: IntProperty(
+        name="Steps",
+        description="The object is read at 2 to this power moments of the shutter, and one, at least",
+        default=1,
+        min=1,
+        max=7,
+    )
+
+
+_OWNERS = (
+    (bpy.types.Scene, GranitaSceneSettings),
+    (bpy.types.Object, GranitaObjectSettings),
+)
+
+
 def register():
-    bpy.utils.register_class(GranitaSceneSettings)
-    bpy.types.Scene.granita = PointerProperty(type=GranitaSceneSettings)
+    for owner, settings in _OWNERS:
+        bpy.utils.register_class(settings)
+        owner.granita = PointerProperty(type=settings)
 
 
 def unregister():
-    del bpy.types.Scene.granita
-    bpy.utils.unregister_class(GranitaSceneSettings)
+    for owner, settings in reversed(_OWNERS):
+        del owner.granita
+        bpy.utils.unregister_class(settings)

@@ -7,18 +7,24 @@
 All of it is copied: nothing of Blender's is kept after `export_frame` returns.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from .attributes import requested_names
 from .camera import camera_record
 from .depsgraph import visit
+from .frame_scene import FrameScene
 from .geometry import read_geometries
-from .instance import build_instances, collect_materials, kind_table, knot_table, usable
-from .motion import Clock, sample_motion
-from .options import options_record, scene_frame, scene_shutter
+from .instance import build_instances, collect_materials, kind_table, usable
+from .motion import sample_motion
+from .options import options_record, scene_frame
+from .path import no_tracks
 from .report import Cancelled, ExportError, Report
+from .shutter import Clock, scene_shutter
 from .snapshot import Snapshot
 from .transforms import is_finite
+from .velocity import moved_points
 
 __all__ = ["Cancelled", "ExportError", "Report", "export_frame"]
 
@@ -60,22 +66,31 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
     table = kind_table(scan.kinds, view_layer, geometry_of_kind, slots)
     chosen = usable(scan, table, report)
 
-    motion = None
-    if len(shutter.offsets) > 1:
-        motion = sample_motion(
-            clock, shutter, depsgraph, camera, scan, sources, report, check_cancel
-        )
-        if (motion.camera != motion.camera[0]).any():
-            camera_at_frame["world_from_camera"] = motion.camera
-        for index, points in motion.points.items():
-            sources[index].geometry.points = points
-    places = None if motion is None else motion.matrices
-    _place_lights(lights, scan, places, report)
+    at_frame = FrameScene(
+        depsgraph=depsgraph,
+        camera=camera,
+        camera_record=camera_at_frame,
+        frame=frame,
+        visit=scan,
+        sources=sources,
+        geometry_of_kind=geometry_of_kind,
+        is_light=np.array([kind.type == "LIGHT" for kind in scan.kinds], dtype=bool),
+    )
+    tracks, points = no_tracks(), {}
+    if shutter.segments:
+        motion = sample_motion(clock, shutter, at_frame, report, check_cancel)
+        camera_at_frame["world_from_camera"] = motion.camera
+        tracks, points = motion.tracks, motion.points
+        points.update(_flying(sources, shutter, scene.render))
+    _place_lights(lights, scan, tracks, report)
     return Snapshot(
         options=options,
         camera=camera_at_frame,
-        geometries=[source.geometry for source in sources],
-        instances=build_instances(scan, chosen, table, places, report),
+        geometries=[
+            replace(source.geometry, points=points.get(index, source.geometry.points))
+            for index, source in enumerate(sources)
+        ],
+        instances=build_instances(scan, chosen, table, tracks, report),
         materials=materials,
         images=images,
         lights=[light for _, light in lights],
@@ -108,7 +123,18 @@ def _shading(depsgraph, used_materials, scan, report):
     return materials, images, world, lights
 
 
-def _place_lights(lights, scan, motion, report):
+def _flying(sources, shutter, render):
+    """{geometry index: float32 [2, V, 3]} of those whose points say their velocity."""
+    return {
+        index: moved_points(
+            source.geometry.points[0], source.velocity, shutter, render.fps / render.fps_base
+        )
+        for index, source in enumerate(sources)
+        if source.velocity is not None and source.velocity.any()
+    }
+
+
+def _place_lights(lights, scan, tracks, report):
     """Gives lights their matrices; those that are nowhere are left out."""
     for entry in list(lights):
         i, light = entry
@@ -116,5 +142,4 @@ def _place_lights(lights, scan, motion, report):
             report(f"light '{light['name']}'", "its transform is not finite: left out")
             lights.remove(entry)
             continue
-        track = None if motion is None else motion[:, i : i + 1]
-        light["world_from_light"], _ = knot_table(scan.matrices[i : i + 1], track)
+        light["world_from_light"], _ = tracks.table(scan.matrices, np.array([i]))

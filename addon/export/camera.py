@@ -12,6 +12,8 @@ in units of the fitted side, and moves the picture against the camera.
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from .report import ExportError
 from .transforms import from_matrix, world_from_camera
 
@@ -92,16 +94,12 @@ def camera_record(camera, frame, depsgraph, report):
     matrix = camera_matrix(camera, depsgraph)
     if matrix is None:
         raise ExportError(name, "its scale is zero or not finite")
-    if kind == "PERSPECTIVE":
-        sensor = sensor_size(data.sensor_fit, data.sensor_width, data.sensor_height)
-        span = sensor / data.lens
-    else:
-        span = data.ortho_scale
-    if not (math.isfinite(span) and span > 0.0):
+    found = _projection(data, kind, frame)
+    if found is None:
         raise ExportError(name, "sees nothing: its focal length or its scale is not usable")
     if not data.clip_end > data.clip_start:
         raise ExportError(name, f"clips everything: {data.clip_start:g} m to {data.clip_end:g} m")
-    scale, center = projection(frame, data.sensor_fit, span, (data.shift_x, data.shift_y))
+    scale, center = found
     record = {
         "name": camera.name,
         "kind": kind,
@@ -118,6 +116,60 @@ def camera_record(camera, frame, depsgraph, report):
     if data.dof.use_dof:
         _add_lens(record, data, evaluated, depsgraph, report)
     return record
+
+
+def _projection(data, kind, frame):
+    """(scale, center) of evaluated camera data; None where it sees nothing."""
+    if kind == "PERSPECTIVE":
+        span = sensor_size(data.sensor_fit, data.sensor_width, data.sensor_height) / data.lens
+    else:
+        span = data.ortho_scale
+    if not (math.isfinite(span) and span > 0.0):
+        return None
+    return projection(frame, data.sensor_fit, span, (data.shift_x, data.shift_y))
+
+
+def camera_knot(camera, frame, depsgraph, at_frame):
+    """float64 [4, 4] world from camera at the depsgraph's time, as the camera of the frame sees it.
+
+    The projection is linear in x, y and z, so a focal length, an orthographic scale or a shift that
+    changes within the shutter is the same as a space that is scaled and sheared in x and y: with the
+    frame's own projection, points land where the other one puts them.
+
+    Args:
+        camera: original object.
+        frame: Frame.
+        depsgraph: evaluated at a time of the shutter.
+        at_frame: `camera_record` at the frame.
+
+    Returns:
+        None where the camera has no extent or sees nothing.
+    """
+    matrix = camera_matrix(camera, depsgraph)
+    data = camera.evaluated_get(depsgraph).data
+    found = _projection(data, at_frame["kind"], frame)
+    if matrix is None or found is None:
+        return None
+    return matrix @ np.linalg.inv(other_projection(at_frame, *found))
+
+
+def other_projection(at_frame, scale, center):
+    """float64 [4, 4] on camera space: what another scale and center (pixels) make of points."""
+    change = np.eye(4)
+    column = 2 if at_frame["kind"] == "PERSPECTIVE" else 3
+    for axis in (0, 1):
+        change[axis, axis] = scale[axis] / at_frame["scale"][axis]
+        change[axis, column] = (center[axis] - at_frame["center"][axis]) / at_frame["scale"][axis]
+    return change
+
+
+def lens_state(camera, depsgraph):
+    """(f-stop, focus distance) at the depsgraph's time; None without depth of field."""
+    evaluated = camera.evaluated_get(depsgraph)
+    dof = evaluated.data.dof
+    if not dof.use_dof:
+        return None
+    return dof.aperture_fstop, _focus_distance(dof, evaluated, depsgraph)
 
 
 def camera_matrix(camera, depsgraph):

@@ -5,10 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .blur_settings import deforms
 from .mesh import Topology, read_geometry
 from .report import poll
 from .snapshot import Geometry
 from .subdivision import Cage, cage_mesh, subdivision_record
+from .velocity import read_velocity
 
 
 @dataclass
@@ -20,7 +22,8 @@ class GeometrySource:
     cage: Cage  # or None
     example: int  # index of one thing of the visit that has it
     pointers: frozenset  # addresses of original datablocks that it is made from
-    deforms: bool  # false where the object's deformation blur is switched off
+    deforms: bool  # false where its deformation blur is switched off, or its velocity says it all
+    velocity: np.ndarray  # float32 [V, 3] metres a second, or None
 
 
 def read_geometries(scan, requested, depsgraph, report, check_cancel):
@@ -57,18 +60,24 @@ def read_geometries(scan, requested, depsgraph, report, check_cancel):
 def _read(kind, example, requested, depsgraph, report, check_cancel):
     if kind.cage is None:
         found = read_geometry(kind.data, kind.label, requested, report, check_cancel)
+        velocity = read_velocity(kind.data, kind.label, report)
     else:
         with cage_mesh(kind.source, kind.cage, depsgraph) as mesh:
             record = subdivision_record(kind.cage, mesh)
             found = read_geometry(mesh, kind.label, requested, report, check_cancel, record)
+            velocity = read_velocity(mesh, kind.label, report)
     if found is None:
         return None
     original = kind.source.original
     pointers = {original.as_pointer()}
     if original.data is not None:
         pointers.add(original.data.as_pointer())
-    cycles = getattr(kind.source, "cycles", None)
-    deforms = getattr(cycles, "use_motion_blur", True) and getattr(
-        cycles, "use_deform_motion", True
+    can_deform = deforms(kind.source)
+    return GeometrySource(
+        *found,
+        cage=kind.cage,
+        example=example,
+        pointers=frozenset(pointers),
+        deforms=can_deform and velocity is None,
+        velocity=velocity if can_deform else None,
     )
-    return GeometrySource(*found, kind.cage, example, frozenset(pointers), deforms)

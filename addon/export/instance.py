@@ -106,21 +106,19 @@ def usable(scan, table, report):
     return np.flatnonzero(placed & finite)
 
 
-def build_instances(scan, chosen, table, motion, report):
+def build_instances(scan, chosen, table, tracks, report):
     """The snapshot's instances.
 
     Args:
         scan: depsgraph.Visit at the frame.
         chosen: int [n], which of its things.
         table: KindTable.
-        motion: float64 [K, len(scan.kind), 4, 4] at the knots, or None.
+        tracks: path.Tracks of the things of the scan.
         report: called with (datablock, message).
     """
     kind = scan.kind[chosen]
     names = [table.name[k] for k in kind]
-    matrices, knots = knot_table(
-        scan.matrices[chosen], None if motion is None else motion[:, chosen]
-    )
+    matrices, knots = tracks.table(scan.matrices, chosen)
     _warn_of_points(names, matrices, knots, report)
     random = scan.random[chosen] / float(0xFFFFFFFF)
     for i in np.flatnonzero(~scan.is_instance[chosen]):
@@ -146,26 +144,3 @@ def _warn_of_points(names, matrices, knots, report):
     seen = np.logical_or.reduceat(has_area(matrices), np.cumsum(knots) - knots)
     for i in np.flatnonzero(~seen):
         report(f"object '{names[i]}'", "is scaled to nothing: not visible")
-
-
-def knot_table(matrices, motion):
-    """All matrices in one table, instance after instance; what stands still has one.
-
-    Args:
-        matrices: float64 [n, 4, 4] at the frame.
-        motion: float64 [K, n, 4, 4], or None.
-
-    Returns:
-        (float64 [sum of knots, 4, 4], int32 [n] knots).
-    """
-    count = len(matrices)
-    if motion is None or count == 0:
-        return matrices, np.ones(count, dtype=np.int32)
-    moves = (motion != matrices[None]).any(axis=(0, 2, 3))
-    knots = np.where(moves, len(motion), 1).astype(np.int32)
-    first = np.cumsum(knots) - knots
-    table = np.empty((int(knots.sum()), 4, 4))
-    table[first[~moves]] = matrices[~moves]
-    for k, at_knot in enumerate(motion):
-        table[first[moves] + k] = at_knot[moves]
-    return table, knots

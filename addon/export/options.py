@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Render settings -> the snapshot's options: Blender's own properties, then `scene.granita`."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .camera import Frame
 from .report import ExportError
-
-SHUTTER_CURVE_SIZE = 257
+from .shutter import rolling_shutter, shutter_curve
 
 # Read from the settings under the same name; (name, used where the settings lack it).
 _SETTINGS = (
@@ -26,56 +23,6 @@ _SETTINGS = (
     ("device", "AUTO"),
     ("executor", "AUTO"),
 )
-
-
-@dataclass(frozen=True)
-class Shutter:
-    """When the film sees light.
-
-    `offsets` are the knots, in frames from Blender's frame, ascending and equidistant;
-    `offsets[frame_knot]` is 0.  One knot means no motion.
-    """
-
-    offsets: tuple
-    frame_knot: int
-    frame_time: float
-
-
-_FRAME_TIME = {"START": 0.0, "CENTER": 0.5, "END": 1.0}
-
-
-def shutter(length, position, steps):
-    """Args: length in frames; START, CENTER or END; most knots (rounded up to an odd number, so
-    that Blender's frame is always one of them)."""
-    time = _FRAME_TIME[position]
-    if length <= 0.0 or steps < 2:
-        return Shutter((0.0,), 0, time)
-    knots = steps | 1
-    frame_knot = round(time * (knots - 1))
-    step = length / (knots - 1)
-    return Shutter(tuple((i - frame_knot) * step for i in range(knots)), frame_knot, time)
-
-
-def scene_shutter(scene, settings):
-    """The shutter of a scene; without motion blur it has one knot."""
-    render = scene.render
-    # Blender 4.2 moved the position out of Cycles' settings.
-    owner = render if hasattr(render, "motion_blur_position") else getattr(scene, "cycles", None)
-    position = getattr(owner, "motion_blur_position", "CENTER")
-    steps = getattr(settings, "motion_steps", 3) if render.use_motion_blur else 1
-    return shutter(render.motion_blur_shutter, position, steps)
-
-
-def shutter_curve(render):
-    """float32 [257], how far the shutter is open over its interval; empty where that is constant."""
-    mapping = render.motion_blur_shutter_curve
-    mapping.initialize()
-    curve = mapping.curves[0]
-    times = np.linspace(0.0, 1.0, SHUTTER_CURVE_SIZE)
-    opening = np.array([mapping.evaluate(curve, t) for t in times], dtype=np.float32)
-    opening = np.maximum(opening, 0.0)
-    is_box = np.ptp(opening) < 1e-6
-    return np.zeros(0, dtype=np.float32) if is_box else opening
 
 
 def scene_frame(render):
@@ -163,5 +110,6 @@ def options_record(scene, view_layer, settings, frame, frame_time):
         depth_pass=bool(view_layer.use_pass_z),
         frame_time=frame_time,
         shutter_curve=shutter_curve(render),
+        rolling_shutter=rolling_shutter(scene),
     )
     return record

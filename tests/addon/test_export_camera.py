@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from export.camera import Frame, lens_radius, projection, sensor_size
+from export.camera import Frame, lens_radius, other_projection, projection, sensor_size
 from export.transforms import has_area, world_from_camera
 
 HD = Frame(1920, 1080)
@@ -71,3 +71,14 @@ def test_camera_without_extent(broken):
 def test_area_survives_one_flat_axis_but_not_two():
     flat, line, point = np.diag([1, 1, 0, 1.0]), np.diag([1, 0, 0, 1.0]), np.diag([0, 0, 0, 1.0])
     assert has_area(np.stack([flat, line, point])).tolist() == [True, False, False]
+
+
+@pytest.mark.parametrize("kind", ["PERSPECTIVE", "ORTHOGRAPHIC"])
+def test_another_projection_is_another_space(kind):
+    """Pixels of the changed space through the frame's projection are those of the other one."""
+    at_frame = {"kind": kind, "scale": (100.0, 90.0), "center": (32.0, 24.0)}
+    x, y, z, _ = other_projection(at_frame, (150.0, 135.0), (40.0, 20.0)) @ (0.3, -0.2, 2.0, 1.0)
+    w = 2.0 if kind == "PERSPECTIVE" else 1.0
+    assert z == 2.0
+    assert 32.0 + 100.0 * x / w == pytest.approx(40.0 + 150.0 * 0.3 / w)
+    assert 24.0 + 90.0 * y / w == pytest.approx(20.0 + 135.0 * -0.2 / w)

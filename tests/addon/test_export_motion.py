@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Time arithmetic, matching and tables of knots, without Blender."""
+"""Time arithmetic, matching, paths and their knots, without Blender."""
 
 import numpy as np
 import pytest
-from export.instance import knot_table
-from export.motion import hold_order, match, split_time
+from export.path import Tracks, bends_still, finer_level, keep_fewest, no_tracks
+from export.shutter import shutter, split_time
+from export.steps import hold_order, match
 
 
 @pytest.mark.parametrize(
@@ -17,6 +18,22 @@ def test_time_splits_by_floor(time, expected):
 
 def test_a_subframe_that_single_precision_rounds_to_one_is_the_next_frame():
     assert split_time(4.9999999999) == (5, 0.0)
+
+
+@pytest.mark.parametrize(
+    "length, position, steps, offsets, frame_tick",
+    [
+        (0.5, "CENTER", 3, [-0.25, 0.0, 0.25], 1),
+        (0.5, "START", 2, [0.0, 0.25, 0.5], 0),
+        (1.0, "END", 4, [-1.0, -0.75, -0.5, -0.25, 0.0], 4),
+        (0.5, "CENTER", 1, [-0.25], 0),
+        (0.0, "CENTER", 9, [0.0], 0),
+    ],
+)
+def test_shutter_ticks(length, position, steps, offsets, frame_tick):
+    made = shutter(length, position, steps)
+    assert made.frame_tick == frame_tick
+    assert [made.offset(tick) for tick in range(made.segments + 1)] == pytest.approx(offsets)
 
 
 def test_match_by_identity():
@@ -32,22 +49,49 @@ def test_match_with_nothing():
 
 
 def test_missing_knots_are_held_from_the_frame_outwards():
-    assert hold_order(5, 2) == [(3, 2), (4, 3), (1, 2), (0, 1)]
-    assert hold_order(3, 0) == [(1, 0), (2, 1)]
-    assert hold_order(3, 2) == [(1, 2), (0, 1)]
+    assert hold_order([2, 0, 1, 3, 4], 2) == [(3, 2), (4, 3), (1, 2), (0, 1)]
+    assert hold_order([0, 8, 4], 0) == [(4, 0), (8, 4)]
+    assert hold_order([0, 8, 4], 8) == [(4, 8), (0, 4)]
+
+
+def test_levels_keep_the_knots_of_those_before():
+    assert [finer_level(s, 16) for s in (1, 2, 4, 8, 16)] == [2, 4, 8, 16, None]
+    assert [finer_level(s, 6) for s in (1, 2, 6)] == [2, 6, None]
+    assert finer_level(1, 2) == 2
+
+
+def metres(difference):
+    return np.abs(difference).max(axis=1)
+
+
+def test_a_parabola_takes_the_knots_that_its_sagitta_asks_for():
+    """x = c t^2 leaves a chord over a part h of the time by c h^2 / 4 at most, in its middle.
+
+    c = 1, .5, 0 pixels with bounds of 1/32: h^2 <= 1/8 and 1/4, so 4, 2 and 1 segments."""
+    times = np.arange(17) / 16
+    path = {tick: np.array([[c * times[tick] ** 2] for c in (1, 0.5, 0)]) for tick in range(17)}
+    assert keep_fewest(path, 16, 16, metres).tolist() == [4, 2, 1]
+
+
+@pytest.mark.parametrize("strength, still", [(1.9, False), (2.1, True)])
+def test_another_level_is_read_where_chords_are_too_long(strength, still):
+    """c h^2 / 4 over quarters is 1/32 pixel at c = 2."""
+    path = {t: np.array([[strength * (t / 16) ** 2]]) for t in (0, 4, 8, 12, 16)}
+    assert bends_still(path, 4, metres) is still
 
 
 def test_only_what_moves_has_knots():
     at_frame = np.stack([np.eye(4)] * 3)
-    motion = np.stack([at_frame] * 3)
-    motion[0, 1, 0, 3] = -2.0
-    motion[2, 1, 0, 3] = 2.0
-    table, knots = knot_table(at_frame, motion)
-    assert knots.tolist() == [1, 3, 1]
-    assert table[:, 0, 3].tolist() == [0.0, -2.0, 0.0, 2.0, 0.0]
+    moved = np.stack([at_frame[1:]] * 5)
+    moved[:, 0, 0, 3] = [-2, -1, 0, 1, 2]
+    moved[:, 1, 0, 3] = [4, 1, 0, 1, 4]
+    tracks = Tracks(np.array([1, 2]), moved, np.array([1, 4]))
+    table, knots = tracks.table(at_frame, np.array([2, 0, 1]))
+    assert knots.tolist() == [5, 1, 2]
+    assert table[:, 0, 3].tolist() == [4, 1, 0, 1, 4, 0, -2, 2]
 
 
 def test_no_motion_at_all():
     at_frame = np.stack([np.eye(4)] * 2)
-    table, knots = knot_table(at_frame, None)
+    table, knots = no_tracks().table(at_frame, np.array([0, 1]))
     assert knots.tolist() == [1, 1] and table.shape == (2, 4, 4)

@@ -1,29 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shutter times, borders and seeds worked out by hand."""
 
-import pytest
 from export.camera import Frame
-from export.options import border, mixed_seed, shutter
+from export.options import border, mixed_seed
 from export.report import ExportError, Report
-
-
-@pytest.mark.parametrize(
-    "length, position, steps, offsets, frame_knot, time",
-    [
-        (0.5, "CENTER", 3, (-0.25, 0.0, 0.25), 1, 0.5),
-        (0.5, "START", 3, (0.0, 0.25, 0.5), 0, 0.0),
-        (0.5, "END", 3, (-0.5, -0.25, 0.0), 2, 1.0),
-        (1.0, "CENTER", 4, (-0.5, -0.25, 0.0, 0.25, 0.5), 2, 0.5),
-        (2.0, "START", 2, (0.0, 1.0, 2.0), 0, 0.0),
-        (0.5, "CENTER", 1, (0.0,), 0, 0.5),
-        (0.0, "END", 5, (0.0,), 0, 1.0),
-    ],
-)
-def test_shutter_knots(length, position, steps, offsets, frame_knot, time):
-    made = shutter(length, position, steps)
-    assert made.offsets == pytest.approx(offsets)
-    assert made.offsets[made.frame_knot] == 0.0
-    assert (made.frame_knot, made.frame_time) == (frame_knot, time)
 
 
 def test_border_truncates():

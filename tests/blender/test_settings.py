@@ -18,7 +18,7 @@ DEFAULTS = {
     "grid_size": 256,
     "bucket_size": 64,
     "opacity_threshold": 0.996,
-    "motion_steps": 3,
+    "motion_steps": 17,
     "seed": 0,
     "animate_seed": False,
     "light_samples": 8,

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scene at Blender's frame, as the other times of the shutter are held against it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .depsgraph import Visit
+
+
+@dataclass
+class FrameScene:
+    depsgraph: object  # evaluated
+    camera: object  # original Object
+    camera_record: dict  # camera.camera_record at the frame
+    frame: object  # camera.Frame
+    visit: Visit
+    sources: list  # of geometry.GeometrySource
+    geometry_of_kind: np.ndarray  # int32 [kinds], -1 = none
+    is_light: np.ndarray  # bool [kinds]
+    _bounds: tuple = None
+
+    def things_of(self, geometry):
+        """int [m], indices in the visit."""
+        return np.flatnonzero(self.geometry_of_kind[self.visit.kind] == geometry)
+
+    def is_seen(self):
+        """bool [n]: has a geometry or shines."""
+        kind = self.visit.kind
+        return (self.geometry_of_kind[kind] >= 0) | self.is_light[kind]
+
+    def bounds(self, things):
+        """(float64 [m, 4] centers, float64 [m] radii) in object space; a light is as wide as 1 m."""
+        if self._bounds is None:
+            boxes = [
+                (s.geometry.points[0].min(axis=0), s.geometry.points[0].max(axis=0))
+                for s in self.sources
+            ]
+            boxes = np.array([*boxes, ((-0.5,) * 3, (0.5,) * 3)], dtype=np.float64)
+            centers = np.ones((len(boxes), 4))
+            centers[:, :3] = boxes.mean(axis=1)
+            self._bounds = centers, np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1) / 2.0
+        geometry = self.geometry_of_kind[self.visit.kind[things]]
+        return self._bounds[0][geometry], self._bounds[1][geometry]

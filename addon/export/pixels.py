@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How many pixels of the frame a distance in the scene is, in the worst place."""
+
+import numpy as np
+
+_MOST_PROBES = 4096
+
+
+class PixelScale:
+    """Measures of differences of paths.
+
+    Args:
+        scene: frame_scene.FrameScene.
+        cameras: {tick: float64 [4, 4] world from camera}.
+    """
+
+    def __init__(self, scene, cameras):
+        self._scene = scene
+        self._focal = max(scene.camera_record["scale"])
+        self._perspective = scene.camera_record["kind"] == "PERSPECTIVE"
+        self._near = scene.camera_record["clip"][0]
+        self._views = {tick: np.linalg.inv(matrix) for tick, matrix in cameras.items()}
+
+    def places(self, things, path):
+        """measure([m, 4, 4]) -> pixels [m] by which points of things go astray with their matrices.
+
+        Args:
+            things: int [m].
+            path: {tick: float64 [m, 4, 4]}.
+        """
+        center, radius = self._scene.bounds(things)
+        scale = self._per_metre(things, path)
+
+        def measure(difference):
+            middle = np.linalg.norm(np.einsum("nij,nj->ni", difference, center)[:, :3], axis=1)
+            around = radius * np.linalg.norm(difference[:, :3, :3], axis=(1, 2))
+            return (middle + around) * scale
+
+        return measure
+
+    def points(self, geometry):
+        """measure([V, 3]) -> pixels [1], in the instance that shows the geometry largest."""
+        things = self._scene.things_of(geometry)
+        matrices = self._scene.visit.matrices[things]
+        scale = self._per_metre(things, dict.fromkeys(self._views, matrices))
+        stretch = np.linalg.norm(matrices[:, :3, :3], axis=1).max(axis=1)
+        most = float(np.max(scale * stretch, initial=0.0))
+
+        def measure(difference):
+            return np.sqrt(np.max((difference**2).sum(axis=1), initial=0.0, keepdims=True)) * most
+
+        return measure
+
+    def camera(self):
+        """measure([1, 4, 4]) -> pixels [1]: of what stands still, and of what is infinitely far.
+
+        To first order a camera that is wrong by D sees a point P of its own space displaced by D P.
+        """
+        scan = self._scene.visit
+        things = np.arange(0, len(scan.kind), max(len(scan.kind) // _MOST_PROBES, 1))
+        center, _ = self._scene.bounds(things)
+        view = next(iter(self._views.values()))
+        seen = np.einsum("ij,njk,nk->ni", view, scan.matrices[things], center)
+        seen = seen[np.isfinite(seen).all(axis=1)]
+        if self._perspective:
+            seen = seen[seen[:, 2] > self._near]
+            seen = np.vstack([seen / seen[:, 2:3], [[0.0, 0.0, 1.0, 0.0]]])
+
+        def measure(difference):
+            astray = np.linalg.norm(seen @ difference[0].T, axis=1)
+            return np.max(astray, initial=0.0, keepdims=True) * self._focal
+
+        return measure
+
+    def _per_metre(self, things, path):
+        """Pixels a metre, float64 [m]; 0 for what is behind the camera all the time."""
+        if not self._perspective:
+            return np.full(len(things), self._focal)
+        center, radius = self._scene.bounds(things)
+        nearest, farthest = np.full(len(things), np.inf), np.full(len(things), -np.inf)
+        for tick, matrices in path.items():
+            depth = np.einsum("nij,nj->ni", matrices, center) @ self._views[tick][2]
+            reach = radius * np.linalg.norm(matrices[:, :3, :3], axis=(1, 2))
+            nearest = np.minimum(nearest, depth - reach)
+            farthest = np.maximum(farthest, depth + reach)
+        return np.where(farthest > self._near, self._focal / np.maximum(nearest, self._near), 0.0)

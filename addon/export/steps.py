@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is read at the times of the shutter that were stepped to."""
+
+import numpy as np
+
+from .blur_settings import blurs
+from .camera import camera_knot, lens_state
+from .changes import Plain, changed_geometry, moved
+from .depsgraph import visit
+from .mesh import read_points, read_topology
+from .report import poll
+from .subdivision import cage_mesh
+from .transforms import is_finite
+
+
+class Steps:
+    """The places, cameras and deformed points of the ticks that were read.
+
+    Attributes:
+        ticks: list of int, in the order in which they were read; the frame's is the first.
+        cameras: {tick: float64 [4, 4]}.
+        points: {geometry index: {tick: float32 [V, 3]}} of what deforms.
+        focus_moves: whether lens or focus are another at any tick.
+    """
+
+    def __init__(self, scene, frame_tick, report, check_cancel):
+        self._scene = scene
+        self._report = report
+        self._check_cancel = check_cancel
+        self._plain = Plain(scene.visit)
+        self._order = np.argsort(scene.visit.identity)
+        self._can_blur = scene.is_seen() & ~_still(scene.visit.kinds)[scene.visit.kind]
+        self._changed = set()  # addresses of datablocks
+        self._rigid = set()  # geometries whose topology changed
+        # As things were at the last time that was visited.
+        self._now = scene.visit.matrices.copy()
+        self._present = np.ones(len(self._now), dtype=bool)
+        self._touched = np.zeros(len(self._now), dtype=bool)
+        self._last_points = {}
+        self.frame_tick = frame_tick
+        self.ticks = [frame_tick]
+        self.cameras = {frame_tick: scene.camera_record["world_from_camera"][0]}
+        self._records = {}  # tick -> (things, present, matrices)
+        self._point_records = {frame_tick: {}}  # tick -> {geometry: points, None = not there}
+        self._lens = lens_state(scene.camera, scene.depsgraph)
+        self.focus_moves = False
+
+    def read(self, tick, knows_updates):
+        """Reads the scene, which stands at the tick's time."""
+        poll(self._check_cancel)
+        self.ticks.append(tick)
+        if not knows_updates or moved(self._scene.depsgraph):
+            self._read_camera(tick)
+            changes = self._plain.changes(self._scene.depsgraph) if knows_updates else None
+            if knows_updates:
+                self._changed |= changed_geometry(self._scene.depsgraph)
+            if changes is None:
+                self._walk(knows_updates)
+            else:
+                self._take(changes)
+        else:  # as it was at the last time that was visited
+            self.cameras[tick] = self.cameras[self.ticks[-2]]
+        things = np.flatnonzero(self._touched)
+        self._records[tick] = (things, self._present[things], self._now[things])
+        self._point_records[tick] = dict(self._last_points)
+
+    def _read_camera(self, tick):
+        scene = self._scene
+        try:
+            knot = camera_knot(scene.camera, scene.frame, scene.depsgraph, scene.camera_record)
+            self.focus_moves |= lens_state(scene.camera, scene.depsgraph) != self._lens
+        except ReferenceError:  # a handler of another add-on deleted it
+            knot = None
+        self.cameras[tick] = self.cameras[self.ticks[-2]] if knot is None else knot
+
+    def _take(self, changes):
+        for thing, matrix in changes.places.items():
+            if self._can_blur[thing] and np.isfinite(matrix).all():
+                self._now[thing] = matrix
+                self._touched[thing] = True
+        for index, source in enumerate(self._scene.sources):
+            thing = changes.objects.get(source.example)
+            if thing is not None and self._deforms(index, source):
+                cage = source.cage
+                self._read_points(index, source, thing, None if cage else thing.data, cage)
+
+    def _walk(self, knows_updates):
+        scan = self._scene.visit
+        now = visit(self._scene.depsgraph, _silent, self._check_cancel, scan.cages)
+        here, there = match(scan.identity, self._order, now.identity)
+        usable = is_finite(now.matrices[there]) & self._can_blur[here]
+        self._present[:] = ~self._can_blur
+        self._present[here[usable]] = True
+        self._now[here[usable]] = now.matrices[there[usable]]
+        self._touched |= ~self._present | (self._now != scan.matrices).any(axis=(1, 2))
+        place = np.full(len(scan.kind), -1)
+        place[here] = there
+        for index, source in enumerate(self._scene.sources):
+            poll(self._check_cancel)
+            if not self._deforms(index, source):
+                continue
+            if place[source.example] < 0:
+                self._last_points[index] = None
+            elif not knows_updates or self._changed & source.pointers:
+                kind = now.kinds[now.kind[place[source.example]]]
+                self._read_points(index, source, kind.source, kind.data, kind.cage)
+
+    def _deforms(self, index, source):
+        return source.deforms and index not in self._rigid
+
+    def _read_points(self, index, source, thing, mesh, cage):
+        if (cage is None) != (source.cage is None):
+            points = None
+        elif cage is None:
+            points = _matching_points(mesh, source.topology)
+        else:
+            with cage_mesh(thing, cage, self._scene.depsgraph) as mesh:
+                points = _matching_points(mesh, source.topology)
+        if points is None:
+            self._rigid.add(index)
+            self._report(
+                source.geometry.name,
+                "its topology changes within the shutter: rendered without deformation blur; "
+                "a 'velocity' attribute on its points would blur it",
+            )
+            return
+        broken = ~(np.isfinite(points).all(axis=1))
+        points[broken] = source.geometry.points[0][broken]
+        self._last_points[index] = points
+
+    def places(self):
+        """(int [m] things that ever move, {tick: float64 [m, 4, 4]})."""
+        things = np.flatnonzero(self._touched)
+        at_frame = self._scene.visit.matrices[things]
+        path = {self.frame_tick: at_frame}
+        absent = {}
+        for tick, (known, present, matrices) in self._records.items():
+            row = np.searchsorted(things, known)
+            path[tick] = at_frame.copy()
+            path[tick][row] = matrices
+            absent[tick] = np.zeros(len(things), dtype=bool)
+            absent[tick][row] = ~present
+        for tick, nearer in hold_order(self.ticks, self.frame_tick):
+            path[tick][absent[tick]] = path[nearer][absent[tick]]
+        moves = np.zeros(len(things), dtype=bool)
+        for matrices in path.values():
+            moves |= (matrices != at_frame).any(axis=(1, 2))
+        return things[moves], {tick: path[tick][moves] for tick in sorted(path)}
+
+    def points(self):
+        """{geometry index: {tick: float32 [V, 3]}} of what deforms."""
+        found = {}
+        for index in set().union(*self._point_records.values()) - self._rigid:
+            at_frame = self._scene.sources[index].geometry.points[0]
+            path = {t: record.get(index, at_frame) for t, record in self._point_records.items()}
+            for tick, nearer in hold_order(self.ticks, self.frame_tick):
+                if path[tick] is None:
+                    path[tick] = path[nearer]
+            if any(not np.array_equal(points, at_frame) for points in path.values()):
+                found[index] = {tick: path[tick] for tick in sorted(path)}
+        return found
+
+
+def match(identity, order, now):
+    """Pairs of equal identities.
+
+    Args:
+        identity: uint64 [n], unique.
+        order: argsort of it.
+        now: uint64 [m], unique.
+
+    Returns:
+        (int [p] indices in `identity`, int [p] indices in `now`).
+    """
+    if len(identity) == 0 or len(now) == 0:
+        return np.zeros(0, dtype=int), np.zeros(0, dtype=int)
+    place = np.minimum(np.searchsorted(identity, now, sorter=order), len(identity) - 1)
+    here = order[place]
+    there = np.flatnonzero(identity[here] == now)
+    return here[there], there
+
+
+def hold_order(ticks, frame_tick):
+    """(tick, its neighbour towards the frame) pairs, from the frame outwards."""
+    ticks = sorted(ticks)
+    middle = ticks.index(frame_tick)
+    later = [(ticks[i], ticks[i - 1]) for i in range(middle + 1, len(ticks))]
+    return later + [(ticks[i], ticks[i + 1]) for i in range(middle - 1, -1, -1)]
+
+
+def _still(kinds):
+    """bool [kinds]: objects whose motion blur is switched off, by themselves or their instancer."""
+    return np.array(
+        [
+            not blurs(kind.source) or (kind.parent is not None and not blurs(kind.parent))
+            for kind in kinds
+        ],
+        dtype=bool,
+    )
+
+
+def _matching_points(mesh, topology):
+    """float32 [V, 3], or None where the mesh is not the frame's any more."""
+    if len(mesh.vertices) != topology.vertex_count or len(mesh.loops) != len(topology.corner_verts):
+        return None
+    return read_points(mesh) if read_topology(mesh).matches(topology) else None
+
+
+def _silent(_datablock, _message):
+    """What a walk has to say was said at the frame."""
