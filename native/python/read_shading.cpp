@@ -87,6 +87,7 @@ void read_light(const Record& r, Light& light) {
     const auto color = r.values<float>("color", {3});
     if (color.size() == 3) light.color = {color[0], color[1], color[2]};
     light.energy = static_cast<float>(r.number("energy"));
+    light.energy_knots = r.values<float>("energy_knots", {-1});
     light.radius = static_cast<float>(r.number("radius", 0.0));
     light.soft_falloff = r.boolean("soft_falloff", true);
     light.sun_angle = static_cast<float>(r.number("sun_angle", 0.0));

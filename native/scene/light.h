@@ -19,7 +19,8 @@ struct Light {
     std::vector<Mat4d> world_from_light;  ///< [K] Blender's light space: shines along -z
     Vec3f color{1.0f};
     float energy = 0.0f;
-    float radius = 0.0f;       ///< point, spot: metres
+    std::vector<float> energy_knots;  ///< [K] over the shutter; empty = `energy` at all times
+    float radius = 0.0f;              ///< point, spot: metres
     bool soft_falloff = true;  ///< a radius means a disc that faces the point; false: a sphere
     float sun_angle = 0.0f;    ///< radians, full angle
     float spot_size = 0.0f;    ///< radians, full cone

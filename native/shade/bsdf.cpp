@@ -228,6 +228,17 @@ BsdfValue PointBsdf::evaluate(const Vec3f& wo) const {
     return value;
 }
 
+BsdfValue PointBsdf::albedo() const {
+    BsdfValue albedo;
+    for (const Prepared& lobe : m_lobes) {
+        if (lobe.kind == LobeKind::Diffuse)
+            albedo.diffuse += lobe.weight;
+        else
+            albedo.glossy += lobe.weight * fresnel(lobe, lobe.cos_wi);
+    }
+    return albedo;
+}
+
 float PointBsdf::pdf(std::size_t index, const Vec3f& wo) const {
     const Prepared& lobe = m_lobes[index];
     const float cos_o = glm::dot(lobe.normal, wo);

@@ -35,6 +35,9 @@ class PointBsdf {
     /// Share of this lobe in the reflected energy, roughly; sums to 1 over the lobes.
     float importance(std::size_t lobe) const { return m_lobes[lobe].importance; }
 
+    /// Share of white light from all sides that leaves along the view, weights included.  Fresnel
+    /// of glossy lobes is taken at the view's own angle.
+    BsdfValue albedo() const;
     /// Sum over all lobes that are not sharp.
     BsdfValue evaluate(const Vec3f& wo) const;
     /// Density of sample(), per solid angle; 0 for sharp lobes.

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/shutter_warp.h"
 #include "shade/bsdf.h"
 #include "shade/bsdf_albedo.h"
-#include "shade/light_source.h"
+#include "shade/light_lamp.h"
+#include "shade/light_world_looks.h"
 #include "shade/ray_scene.h"
 #include "shade/sampling.h"
 #include "shade/shading_points.h"
@@ -16,58 +18,57 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// A lamp with what it may do to whom.
-struct Lamp {
-    std::unique_ptr<LightSource> source;
-    bool casts_shadow = true;
-    float diffuse = 1.0f, glossy = 1.0f;
-
-    Vec3f apply(const BsdfValue& value) const {
-        return value.diffuse * diffuse + value.glossy * glossy;
-    }
-};
-
-/// Looks into the world that wait for their radiance: the world is asked once for many directions.
-struct WorldLooks {
-    std::vector<Vec3f> directions;
-    std::vector<Vec3f> weights;
-    std::vector<std::size_t> points;
-
-    void add(std::size_t point, const Vec3f& direction, const Vec3f& weight) {
-        directions.push_back(direction);
-        weights.push_back(weight);
-        points.push_back(point);
-    }
-    /// Mean angle between the directions of neighbouring points: what one of them stands for.
-    float spread() const {
-        float sum = 0.0f;
-        int pairs = 0;
-        for (std::size_t k = 1; k < points.size(); ++k) {
-            if (points[k] != points[k - 1] + 1) continue;
-            // A row's end and the next row's start are neighbours in the list alone.
-            const float angle = glm::length(directions[k] - directions[k - 1]);
-            if (angle > kWidestSpread) continue;
-            sum += angle;
-            ++pairs;
-        }
-        return pairs > 0 ? sum / static_cast<float>(pairs) : 0.0f;
-    }
-    static constexpr float kWidestSpread = 0.5f;
-};
+Vec3f total(const BsdfValue& value) {
+    return value.diffuse + value.glossy;
+}
 
 /// What a grid's points share while they are lit.
 struct Work {
-    std::uint64_t seed;
     std::vector<Vec3f>& radiance;
+    ReflectionParts* parts;  ///< nullptr = not asked for
     WorldLooks blurred, sharp;
     std::uint64_t shadow_rays = 0, occlusion_rays = 0;
+
+    /// Light of a lamp: `value` reflected without shadow.
+    void add_lamp(std::size_t point, const BsdfValue& value, const Vec3f& shadow) {
+        if (!parts) return;
+        parts->diffuse[point] += value.diffuse * shadow;
+        parts->glossy[point] += value.glossy * shadow;
+        parts->arriving[point] += total(value) * shadow;
+        parts->unblocked[point] += total(value);
+    }
+    /// Asks the world later; `weight` is 0 where nothing can be seen of it.
+    void look(WorldLooks& looks, std::size_t point, const Vec3f& direction,
+              const BsdfValue& weight) {
+        if (total(weight) == Vec3f(0.0f)) return;
+        looks.add(point, direction, total(weight));
+        if (parts) looks.parts.push_back(weight);
+    }
+    void add_world(std::size_t point, const BsdfValue& value) {
+        if (!parts) return;
+        parts->diffuse[point] += value.diffuse;
+        parts->glossy[point] += value.glossy;
+    }
+};
+
+BsdfValue operator*(const BsdfValue& value, const Vec3f& factor) {
+    return {value.diffuse * factor, value.glossy * factor};
+}
+
+/// A shaded point at one time of the shutter.
+struct Place {
+    float time = 0.0f;
+    Vec3f p{0.0f}, normal{0.0f};  ///< geometric normal
+    Vec3f start{0.0f};            ///< of rays
 };
 
 /// A shaded point while it is lit.
 struct Point {
     std::size_t index;
     const PointBsdf& bsdf;
-    Vec3f p, start;
+    const PointPaths& paths;
+    const GridKey& key;
+    Place at_frame;
     std::uint64_t seed;
     std::vector<int> samples;  ///< [lobes] taken of each lobe; 0 for sharp ones
 
@@ -104,19 +105,28 @@ struct DirectLight::Impl {
     void sample_world(Work& work, const Point& point) const;
     void sample_lobe(Work& work, const Point& point, std::size_t lobe, Vec3f& sum) const;
     void mirror(Work& work, const Point& point, std::size_t lobe, Vec3f& sum) const;
-    void look(const WorldLooks& looks, float spread, std::vector<Vec3f>& radiance) const;
-    Vec3f shadow(Work& work, const Point& point, const Lamp& lamp, const Vec3f& direction,
-                 float distance) const;
-    Vec3f occlusion(Work& work, const Point& point, const Vec3f& direction) const;
+    void look(Work& work, const WorldLooks& looks, float spread) const;
+    Place place_at(const Point& point, float uniform) const;
+    bool changes(const Lamp& lamp) const;
+    int samples_of(const Point& point, const Lamp& lamp) const;
+    Vec3f trace(const Point& point, const Place& place, const Vec3f& direction,
+                float distance) const;
+    Vec3f shadow(Work& work, const Point& point, const Place& place, const Lamp& lamp,
+                 const LightSample& sample) const;
+    Vec3f occlusion(Work& work, const Point& point, const Place& place,
+                    const Vec3f& direction) const;
 
     const Scene& scene;
     WorldEvaluator world;
     Statistics& statistics;
     const Progress& progress;
     int sample_count;
+    ShutterWarp shutter;
     std::vector<Lamp> lamps;
     std::unique_ptr<Environment> environment;  ///< nullptr where the world sheds no light
     std::unique_ptr<RayScene> rays;            ///< nullptr where nothing can cast a shadow
+    bool casters_move = false;
+    bool varies = false;  ///< casters or lamps do
 };
 
 DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator,
@@ -126,17 +136,16 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
       world(std::move(world_evaluator)),
       statistics(frame_statistics),
       progress(frame_progress),
-      sample_count(std::max(1, frame_scene.options.light_samples)) {
+      sample_count(std::max(1, frame_scene.options.light_samples)),
+      shutter(frame_scene.options.shutter_curve) {
     const float time = scene.options.frame_time;
     const Vec3d origin(matrix_at(scene.camera.world_from_camera, time)[3]);
     for (const Light& light : scene.lights) {
-        if (light.color * light.energy == Vec3f(0.0f)) continue;
-        Lamp lamp;
-        lamp.source = make_light_source(light, time, origin);
-        lamp.casts_shadow = light.casts_shadow;
-        lamp.diffuse = light.visible_diffuse ? light.diffuse_factor : 0.0f;
-        lamp.glossy = light.visible_glossy ? light.specular_factor : 0.0f;
-        lamps.push_back(std::move(lamp));
+        float energy = std::abs(light.energy);
+        for (const float knot : light.energy_knots) energy = std::max(energy, std::abs(knot));
+        if (light.color * energy == Vec3f(0.0f)) continue;
+        lamps.emplace_back(light, time, origin);
+        varies = varies || lamps.back().varies();
     }
     if (scene.world.lights_scene && world) {
         environment = std::make_unique<Environment>(world, progress);
@@ -151,36 +160,80 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
     rays = std::make_unique<RayScene>(scene, origin, std::move(opacity), progress);
     statistics.peak_ray_bytes(rays->bytes());
     if (rays->empty()) rays.reset();
+    casters_move = rays && rays->moves();
+    varies = varies || casters_move;
 }
 
-Vec3f DirectLight::Impl::shadow(Work& work, const Point& point, const Lamp& lamp,
-                                const Vec3f& direction, float distance) const {
-    if (!rays || !lamp.casts_shadow) return Vec3f(1.0f);
+/// The point at a time drawn by `uniform` in [0, 1) through the shutter; at the frame time where
+/// nothing that light depends on changes.
+Place DirectLight::Impl::place_at(const Point& point, float uniform) const {
+    Place place = point.at_frame;
+    if (!varies) return place;
+    place.time = shutter.time(uniform);
+    if (!point.paths.moves()) return place;
+    place.p = point.paths.position(point.index, place.time);
+    place.normal = point.paths.normal(point.index, place.time);
+    place.start = rays ? rays->lift(point.key, place.p, place.normal) : place.p;
+    return place;
+}
+
+bool DirectLight::Impl::changes(const Lamp& lamp) const {
+    return lamp.varies() || (casters_move && lamp.casts_shadow());
+}
+
+/// One sample tells all about a lamp without size that nothing moving can come before.
+int DirectLight::Impl::samples_of(const Point& point, const Lamp& lamp) const {
+    if (!lamp.is_hard()) return sample_count;
+    if (!changes(lamp)) return 1;
+    if (lamp.varies() || point.paths.moves()) return sample_count;
+    const Place& place = point.at_frame;
+    LightSample sample;
+    if (!lamp.at(place.time).sample(place.p, Vec2f(0.0f), sample)) return 0;
+    return rays->varies(place.start, sample.direction, sample.distance) ? sample_count : 1;
+}
+
+Vec3f DirectLight::Impl::trace(const Point& point, const Place& place, const Vec3f& direction,
+                               float distance) const {
+    const bool turned_away = glm::dot(place.normal, direction) <= 0.0f &&
+                             glm::dot(point.at_frame.normal, direction) > 0.0f;
+    const Place& from = turned_away ? point.at_frame : place;
+    return rays->transmittance(from.start, direction, distance, from.time);
+}
+
+Vec3f DirectLight::Impl::shadow(Work& work, const Point& point, const Place& place,
+                                const Lamp& lamp, const LightSample& sample) const {
+    if (!rays || !lamp.casts_shadow()) return Vec3f(1.0f);
     ++work.shadow_rays;
-    return rays->transmittance(point.start, direction, distance);
+    return trace(point, place, sample.direction, sample.distance);
 }
 
-Vec3f DirectLight::Impl::occlusion(Work& work, const Point& point, const Vec3f& direction) const {
+Vec3f DirectLight::Impl::occlusion(Work& work, const Point& point, const Place& place,
+                                   const Vec3f& direction) const {
     if (!rays) return Vec3f(1.0f);
     ++work.occlusion_rays;
-    return rays->transmittance(point.start, direction, kInfinity);
+    return trace(point, place, direction, kInfinity);
 }
 
 void DirectLight::Impl::sample_lamp(Work& work, const Point& point, const Lamp& lamp,
                                     std::uint64_t dimension, Vec3f& sum) const {
-    const bool hard = lamp.source->is_hard();
-    const int count = hard ? 1 : sample_count;
+    const int count = samples_of(point, lamp);
+    const bool timed = count > 1 && changes(lamp);
     const SobolPoints sequence = point.sequence(dimension);
     for (int s = 0; s < count; ++s) {
+        const auto index = static_cast<std::uint32_t>(s);
+        const Place place = timed ? place_at(point, sequence.third(index)) : point.at_frame;
+        const LightSource& source = lamp.at(place.time);
         LightSample sample;
-        if (!lamp.source->sample(point.p, sequence(static_cast<std::uint32_t>(s)), sample))
-            continue;
-        Vec3f value = lamp.apply(point.bsdf.evaluate(sample.direction)) * sample.radiance;
+        if (!source.sample(place.p, sequence(index), sample)) continue;
+        const BsdfValue bsdf = lamp.apply(point.bsdf.evaluate(sample.direction));
+        const Vec3f value = total(bsdf) * sample.radiance;
         if (value == Vec3f(0.0f)) continue;
-        if (!hard)
-            value /= static_cast<float>(count) * sample.pdf +
-                     (lamp.glossy > 0.0f ? point.glossy_density(sample.direction) : 0.0f);
-        sum += value * shadow(work, point, lamp, sample.direction, sample.distance);
+        float density = static_cast<float>(count) * sample.pdf;
+        if (!source.is_hard() && lamp.reaches_glossy())
+            density += point.glossy_density(sample.direction);
+        const Vec3f seen = shadow(work, point, place, lamp, sample);
+        sum += value / density * seen;
+        work.add_lamp(point.index, bsdf * (sample.radiance / density), seen);
     }
 }
 
@@ -189,14 +242,14 @@ void DirectLight::Impl::sample_world(Work& work, const Point& point) const {
     if (!environment || environment->is_constant()) return;
     const SobolPoints sequence = point.sequence(0);
     for (int s = 0; s < sample_count; ++s) {
+        const auto index = static_cast<std::uint32_t>(s);
         float pdf = 0.0f;
-        const Vec3f wo = environment->sample(sequence(static_cast<std::uint32_t>(s)), pdf);
+        const Vec3f wo = environment->sample(sequence(index), pdf);
         const BsdfValue value = point.bsdf.evaluate(wo);
-        Vec3f weight = value.diffuse + value.glossy;
-        if (weight == Vec3f(0.0f) || !(pdf > 0.0f)) continue;
-        weight /= static_cast<float>(sample_count) * pdf + point.all_density(wo);
-        weight *= occlusion(work, point, wo);
-        if (weight != Vec3f(0.0f)) work.blurred.add(point.index, wo, weight);
+        if (total(value) == Vec3f(0.0f) || !(pdf > 0.0f)) continue;
+        const float density = static_cast<float>(sample_count) * pdf + point.all_density(wo);
+        const Vec3f seen = occlusion(work, point, place_at(point, sequence.third(index)), wo);
+        work.look(work.blurred, point.index, wo, value * (seen / density));
     }
 }
 
@@ -206,29 +259,36 @@ void DirectLight::Impl::sample_lobe(Work& work, const Point& point, std::size_t 
     if (!environment && !glossy) return;
     const SobolPoints sequence = point.sequence(1 + lobe);
     for (int s = 0; s < point.samples[lobe]; ++s) {
+        const auto index = static_cast<std::uint32_t>(s);
         Vec3f wo;
-        if (!point.bsdf.sample(lobe, sequence(static_cast<std::uint32_t>(s)), wo)) continue;
+        if (!point.bsdf.sample(lobe, sequence(index), wo)) continue;
         const BsdfValue value = point.bsdf.evaluate(wo);
-        const Vec3f both = value.diffuse + value.glossy;
-        if (both == Vec3f(0.0f)) continue;
+        if (total(value) == Vec3f(0.0f)) continue;
+        const Place place = place_at(point, sequence.third(index));
         if (environment) {
             float density = point.all_density(wo);
             if (!environment->is_constant())
                 density += static_cast<float>(sample_count) * environment->pdf(wo);
-            const Vec3f weight = both / density * occlusion(work, point, wo);
-            if (environment->is_constant())
-                sum += weight * environment->constant_radiance();
-            else if (weight != Vec3f(0.0f))
-                work.blurred.add(point.index, wo, weight);
+            const BsdfValue weight = value * (occlusion(work, point, place, wo) / density);
+            if (environment->is_constant()) {
+                const Vec3f radiance = environment->constant_radiance();
+                sum += total(weight) * radiance;
+                work.add_world(point.index, weight * radiance);
+            } else {
+                work.look(work.blurred, point.index, wo, weight);
+            }
         }
         if (!glossy) continue;
         for (const Lamp& lamp : lamps) {
             LightSample sample;
-            if (lamp.glossy <= 0.0f || !lamp.source->intersect(point.p, wo, sample)) continue;
+            if (!lamp.reaches_glossy() || !lamp.at(place.time).intersect(place.p, wo, sample))
+                continue;
             const float density =
                 static_cast<float>(sample_count) * sample.pdf + point.glossy_density(wo);
-            sum += lamp.apply(value) * sample.radiance / density *
-                   shadow(work, point, lamp, wo, sample.distance);
+            const BsdfValue bsdf = lamp.apply(value);
+            const Vec3f seen = shadow(work, point, place, lamp, sample);
+            sum += total(bsdf) * sample.radiance / density * seen;
+            work.add_lamp(point.index, bsdf * (sample.radiance / density), seen);
         }
     }
 }
@@ -236,15 +296,24 @@ void DirectLight::Impl::sample_lobe(Work& work, const Point& point, std::size_t 
 void DirectLight::Impl::mirror(Work& work, const Point& point, std::size_t lobe, Vec3f& sum) const {
     Vec3f wo, reflectance;
     if (!point.bsdf.reflect(lobe, wo, reflectance)) return;
-    for (const Lamp& lamp : lamps) {
-        LightSample sample;
-        if (lamp.glossy <= 0.0f || !lamp.source->intersect(point.p, wo, sample)) continue;
-        sum += reflectance * lamp.glossy * sample.radiance *
-               shadow(work, point, lamp, wo, sample.distance);
+    const int count = varies ? sample_count : 1;
+    reflectance /= static_cast<float>(count);
+    const SobolPoints sequence = point.sequence(1 + lobe);
+    Vec3f open(0.0f);
+    for (int s = 0; s < count; ++s) {
+        const Place place = place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
+        for (const Lamp& lamp : lamps) {
+            LightSample sample;
+            if (!lamp.reaches_glossy() || !lamp.at(place.time).intersect(place.p, wo, sample))
+                continue;
+            const Vec3f value = reflectance * lamp.glossy() * sample.radiance;
+            const Vec3f seen = shadow(work, point, place, lamp, sample);
+            sum += value * seen;
+            work.add_lamp(point.index, {Vec3f(0.0f), value}, seen);
+        }
+        if (environment) open += reflectance * occlusion(work, point, place, wo);
     }
-    if (!environment) return;
-    const Vec3f weight = reflectance * occlusion(work, point, wo);
-    if (weight != Vec3f(0.0f)) work.sharp.add(point.index, wo, weight);
+    work.look(work.sharp, point.index, wo, {Vec3f(0.0f), open});
 }
 
 void DirectLight::Impl::light_point(Work& work, Point& point) const {
@@ -268,13 +337,15 @@ void DirectLight::Impl::light_point(Work& work, Point& point) const {
     work.radiance[point.index] += sum;
 }
 
-void DirectLight::Impl::look(const WorldLooks& looks, float spread,
-                             std::vector<Vec3f>& radiance) const {
+void DirectLight::Impl::look(Work& work, const WorldLooks& looks, float spread) const {
     if (looks.directions.empty()) return;
     std::vector<Vec3f> seen;
     world(looks.directions, spread, seen);
-    for (std::size_t k = 0; k < seen.size(); ++k)
-        if (is_finite(seen[k])) radiance[looks.points[k]] += looks.weights[k] * seen[k];
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+        if (!is_finite(seen[k])) continue;
+        work.radiance[looks.points[k]] += looks.weights[k] * seen[k];
+        if (work.parts) work.add_world(looks.points[k], looks.parts[k] * seen[k]);
+    }
 }
 
 DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics,
@@ -284,24 +355,38 @@ DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& s
 
 DirectLight::~DirectLight() = default;
 
+bool DirectLight::varies() const {
+    return m_impl->varies;
+}
+
 std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const SurfaceClosure& closure,
-                                        const GridKey& key) const {
+                                        const GridKey& key, ReflectionParts* parts,
+                                        const PointPaths& paths) const {
     std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
-    if (closure.lobes.empty() || (m_impl->lamps.empty() && !m_impl->environment)) return radiance;
+    if (parts) parts->resize(points.count);
+    const bool dark = m_impl->lamps.empty() && !m_impl->environment;
+    if (closure.lobes.empty() || (dark && !parts)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
-    Work work{grid_seed(key, m_impl->scene.options.seed), radiance, {}, {}};
+    const std::uint64_t seed = grid_seed(key, m_impl->scene.options.seed);
+    Work work{radiance, parts, {}, {}};
     for (std::size_t i = 0; i < points.count; ++i) {
         m_impl->progress.check();
         const PointBsdf bsdf(closure, points, i, albedo);
         if (bsdf.lobe_count() == 0) continue;
-        Point point{i, bsdf, points.p[i], points.p[i], mix_bits(work.seed + i), {}};
-        if (m_impl->rays)
-            point.start = m_impl->rays->lift(key, point.p, points.geometric_normal[i]);
+        if (parts) {
+            const BsdfValue color = bsdf.albedo();
+            parts->diffuse_color[i] = color.diffuse;
+            parts->glossy_color[i] = color.glossy;
+        }
+        if (dark) continue;
+        const Vec3f &p = points.p[i], &normal = points.geometric_normal[i];
+        const Vec3f start = m_impl->rays ? m_impl->rays->lift(key, p, normal) : p;
+        const Place at_frame{m_impl->scene.options.frame_time, p, normal, start};
+        Point point{i, bsdf, paths, key, at_frame, mix_bits(seed + i), {}};
         m_impl->light_point(work, point);
     }
-    if (m_impl->environment)
-        m_impl->look(work.blurred, m_impl->environment->texel_angle(), radiance);
-    m_impl->look(work.sharp, work.sharp.spread(), radiance);
+    if (m_impl->environment) m_impl->look(work, work.blurred, m_impl->environment->texel_angle());
+    m_impl->look(work, work.sharp, work.sharp.spread());
     m_impl->statistics.add(Counter::RaysShadow, work.shadow_rays);
     m_impl->statistics.add(Counter::RaysOcclusion, work.occlusion_rays);
     return radiance;

@@ -9,6 +9,10 @@
 // a point (Veach 1997, 9.2.2), so that mirrors see lamps and rough surfaces see small suns without
 // fireflies.  `Options::light_samples` is the number of samples a soft light, a world image and all
 // lobes together take at a point; hard lights take one.
+//
+// Where casters or lights move, samples are spread over the shutter and the point goes along.  A
+// sample whose light the moved surface has turned away from, while at the frame time it has not, is
+// traced at the frame time: or a spinning ball would shade its own lit side.
 #pragma once
 
 #include <memory>
@@ -20,7 +24,9 @@
 #include "dice/grid.h"
 #include "scene/scene.h"
 #include "shade/environment.h"
+#include "shade/light_paths.h"
 #include "shade/lobe.h"
+#include "shade/reflection.h"
 #include "shade/shadow_opacity.h"
 
 namespace granita {
@@ -34,9 +40,16 @@ class DirectLight {
                 const Progress& progress, ShadowOpacity opacity = {});
     ~DirectLight();
 
-    /// Radiance reflected by the closure's lobes towards the view, [points.count].
+    /// Whether anything that sheds light or casts shadows changes within the shutter: then
+    /// reflect() wants to know where the points are.
+    bool varies() const;
+
+    /// Radiance reflected by the closure's lobes towards the view, [points.count]: the mean over
+    /// the shutter of what arrives, on the surface as it is at the frame time.  Fills `parts`
+    /// where given.
     std::vector<Vec3f> reflect(const ShadingPoints& points, const SurfaceClosure& closure,
-                               const GridKey& seed) const;
+                               const GridKey& seed, ReflectionParts* parts = nullptr,
+                               const PointPaths& paths = {}) const;
 
   private:
     struct Impl;

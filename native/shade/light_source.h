@@ -37,9 +37,8 @@ class LightSource {
     virtual bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const = 0;
 };
 
-/// `frame_time`: shutter time at which the light stands; `origin`: the camera's world position.
-std::unique_ptr<LightSource> make_light_source(const Light& light, float frame_time,
-                                               const Vec3d& origin);
+/// `time`: shutter time at which the light stands; `origin`: the camera's world position.
+std::unique_ptr<LightSource> make_light_source(const Light& light, float time, const Vec3d& origin);
 
 // The kinds, one file each.
 struct LightFrame {

@@ -28,14 +28,15 @@ inline std::uint64_t grid_seed(const GridKey& key, std::uint32_t frame_seed) {
     return mix_bits(mix_bits(face + 0x9e3779b97f4a7c15ULL * (frame_seed + 1ULL)) ^ key.path);
 }
 
-/// The first two dimensions of Sobol's sequence, Owen-scrambled by hashing (Laine and Karras 2011;
-/// Burley 2020).  Any power-of-two prefix is a (0, m, 2)-net: stratified in every elementary
-/// interval.
+/// The first three dimensions of Sobol's sequence, Owen-scrambled by hashing (Laine and Karras 2011;
+/// Burley 2020).  Any power-of-two prefix of the first two is a (0, m, 2)-net: stratified in every
+/// elementary interval.
 class SobolPoints {
   public:
     explicit SobolPoints(std::uint64_t seed)
         : m_seed_x(static_cast<std::uint32_t>(mix_bits(seed))),
-          m_seed_y(static_cast<std::uint32_t>(mix_bits(seed + 0x632be59bd9b4e019ULL))) {}
+          m_seed_y(static_cast<std::uint32_t>(mix_bits(seed + 0x632be59bd9b4e019ULL))),
+          m_seed_z(static_cast<std::uint32_t>(mix_bits(seed + 0xc6bc279692b5c323ULL))) {}
 
     /// In [0, 1)^2.
     Vec2f operator()(std::uint32_t index) const {
@@ -45,6 +46,19 @@ class SobolPoints {
         // van der Corput is the bit reversal of the index, which Owen's scramble wants anyway.
         return {unit(reverse(scramble(index, m_seed_x))),
                 unit(reverse(scramble(reverse(y), m_seed_y)))};
+    }
+
+    /// The third coordinate, in [0, 1).
+    float third(std::uint32_t index) const {
+        // Direction numbers of the primitive polynomial x^2 + x + 1.
+        std::uint32_t z = 0, v = 1u << 31, next = 3u << 30;
+        for (std::uint32_t i = index; i != 0; i >>= 1) {
+            if (i & 1u) z ^= v;
+            const std::uint32_t after = next ^ v ^ (v >> 2);
+            v = next;
+            next = after;
+        }
+        return unit(reverse(scramble(reverse(z), m_seed_z)));
     }
 
   private:
@@ -66,7 +80,7 @@ class SobolPoints {
     }
     static float unit(std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
 
-    std::uint32_t m_seed_x, m_seed_y;
+    std::uint32_t m_seed_x, m_seed_y, m_seed_z;
 };
 
 /// Axes x, y that make (x, y, n) a right-handed orthonormal frame (Duff et al. 2017).

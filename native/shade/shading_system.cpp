@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "shade/shading_system.h"
-
 #include <algorithm>
 
 #include "shade/direct_light.h"
 #include "shade/node_compiler.h"
 #include "shade/shading_points.h"
+#include "shade/shading_system.h"
 #include "shade/shadow_transparency.h"
 
 namespace granita {
@@ -115,6 +114,10 @@ struct ShadingSystem::Impl {
         return in;
     }
 
+    PointPaths paths(const Grid& grid, const ShadingPoints& points) const {
+        return light->varies() ? PointPaths(grid, scene, points) : PointPaths();
+    }
+
     void background(const std::vector<Vec3f>& directions, float spread,
                     std::vector<Vec3f>& out) const {
         if (world.radiance.sources.emission.is_constant()) {
@@ -177,7 +180,8 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     const SurfaceClosure closure = closure_of(run, surface.sources);
     std::vector<Vec3f> radiance = closure.lobes.empty()
                                       ? std::vector<Vec3f>(points.count, Vec3f(0.0f))
-                                      : m_impl->light->reflect(points, closure, grid.key);
+                                      : m_impl->light->reflect(points, closure, grid.key, nullptr,
+                                                               m_impl->paths(grid, points));
     for (std::size_t i = 0; i < closure.emission.size(); ++i) radiance[i] += closure.emission[i];
     grid.radiance = std::move(radiance);
     m_impl->statistics.add(Counter::GridsShaded);

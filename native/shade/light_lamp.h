@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scene/light.h"
+#include "shade/bsdf.h"
+#include "shade/light_source.h"
+
+namespace granita {
+
+/// A light of the scene over the shutter, with what it may do to whom.
+class Lamp {
+  public:
+    /// `origin`: the camera's world position at the frame time.
+    Lamp(const Light& light, float frame_time, const Vec3d& origin);
+
+    /// Whether its place or its strength changes within the shutter.
+    bool varies() const { return m_sources.size() > 1; }
+    /// Without a size at all times.
+    bool is_hard() const { return m_hard; }
+    bool casts_shadow() const { return m_casts_shadow; }
+    bool reaches_glossy() const { return m_glossy > 0.0f; }
+    float glossy() const { return m_glossy; }
+    const LightSource& at(float time) const {
+        const auto count = m_sources.size();
+        const auto place = static_cast<std::size_t>(time * static_cast<float>(count));
+        return *m_sources[place < count ? place : count - 1];
+    }
+    /// Reflected light, by the lobes that see this lamp.
+    BsdfValue apply(const BsdfValue& value) const {
+        return {value.diffuse * m_diffuse, value.glossy * m_glossy};
+    }
+
+  private:
+    std::vector<std::unique_ptr<LightSource>> m_sources;  ///< one, or at equal parts of the shutter
+    bool m_hard = true, m_casts_shadow;
+    float m_diffuse, m_glossy;
+};
+
+}  // namespace granita

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/light_paths.h"
+
+#include <algorithm>
+
+#include "dice/knots.h"
+#include "shade/shading_points.h"
+
+namespace granita {
+namespace {
+
+bool stands_still(const Scene& scene, const Instance& instance) {
+    const auto& knots = instance.world_from_object;
+    return scene.geometries[static_cast<std::size_t>(instance.geometry)].knots == 1 &&
+           std::all_of(knots.begin(), knots.end(), [&](const Mat4d& m) { return m == knots[0]; });
+}
+
+}  // namespace
+
+PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints& points) {
+    if (grid.knots < 2 || stands_still(scene, scene.instances[grid.instance])) return;
+    m_knots = grid.knots;
+    m_count = points.count;
+    const auto& camera = scene.camera.world_from_camera;
+    const Vec3d origin(matrix_at(camera, scene.options.frame_time)[3]);
+    const auto knots = static_cast<std::size_t>(m_knots);
+    m_positions.reserve(knots * m_count);
+    m_normals.reserve(knots * m_count);
+    for (std::size_t knot = 0; knot < knots; ++knot) {
+        const Mat4d m = matrix_at(camera, static_cast<double>(knot) / (m_knots - 1));
+        const Mat3f rotation{Mat3d(m)};
+        const Vec3f offset(Vec3d(m[3]) - origin);
+        for (std::size_t i = 0; i < m_count; ++i)
+            m_positions.push_back(rotation * grid.positions[knot * m_count + i] + offset);
+        add_normals(grid, points, knot);
+    }
+}
+
+/// From the neighbours in the grid: deformation turns a surface as well as a transform does.
+void PointPaths::add_normals(const Grid& grid, const ShadingPoints& points, std::size_t knot) {
+    const auto p = [&](int i, int j) {
+        return m_positions[knot * m_count + static_cast<std::size_t>(j * (grid.n_u + 1) + i)];
+    };
+    for (int j = 0; j <= grid.n_v; ++j)
+        for (int i = 0; i <= grid.n_u; ++i) {
+            const auto k = static_cast<std::size_t>(j * (grid.n_u + 1) + i);
+            const Vec3f du = p(std::min(i + 1, grid.n_u), j) - p(std::max(i - 1, 0), j);
+            const Vec3f dv = p(i, std::min(j + 1, grid.n_v)) - p(i, std::max(j - 1, 0));
+            const Vec3f across = glm::cross(du, dv);
+            const float length = glm::length(across);
+            const Vec3f& seen = points.geometric_normal[k];
+            const bool same = glm::dot(glm::cross(points.dp_du[k], points.dp_dv[k]), seen) > 0.0f;
+            // Vertices that coincide have no neighbours to tell their normal.
+            m_normals.push_back(length > 0.0f ? across * ((same ? 1.0f : -1.0f) / length) : seen);
+        }
+}
+
+Vec3f PointPaths::at(const std::vector<Vec3f>& values, std::size_t point, float time) const {
+    const KnotTime t = knot_time(static_cast<double>(time), m_knots);
+    const Vec3f& before = values[t.knot * m_count + point];
+    if (t.fraction == 0.0) return before;
+    return before +
+           (values[(t.knot + 1) * m_count + point] - before) * static_cast<float>(t.fraction);
+}
+
+Vec3f PointPaths::normal(std::size_t point, float time) const {
+    const Vec3f n = at(m_normals, point, time);
+    const float length = glm::length(n);
+    return length > 0.0f ? n / length : m_normals[point];
+}
+
+}  // namespace granita

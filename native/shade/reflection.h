@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reflected light by what reflects it and where it comes from, for passes.  The total is summed by
+// itself: it has the same bits whether the parts are asked for or not.
+#pragma once
+
+#include <vector>
+
+#include "math/vec.h"
+
+namespace granita {
+
+/// Each [points]; premultiplied by opacity like the radiance they are parts of.
+struct ReflectionParts {
+    std::vector<Vec3f> diffuse, glossy;              ///< by lobe; their sum is the total
+    std::vector<Vec3f> diffuse_color, glossy_color;  ///< the lobes' albedo towards the view
+    std::vector<Vec3f> arriving, unblocked;  ///< of lamps, all lobes; with and without shadows
+
+    void resize(std::size_t points) {
+        for (auto* values :
+             {&diffuse, &glossy, &diffuse_color, &glossy_color, &arriving, &unblocked})
+            values->assign(points, Vec3f(0.0f));
+    }
+};
+
+}  // namespace granita
