@@ -37,6 +37,7 @@ def tick():
     global last
     now = time.monotonic()
     if state["end"] or now > deadline:
+        state["seconds"] = now - began
         if state["end"]:
             bpy.data.images["Render Result"].save_render(OUT + ".exr")
         json.dump(state, open(OUT + ".json", "w"))
@@ -48,6 +49,8 @@ def tick():
     state["ticks"] += 1
     return 0.01
 def start():
+    global began
+    began = time.monotonic()
     bpy.app.timers.register(tick)
     window = bpy.context.window_manager.windows[0]
     with bpy.context.temp_override(window=window, screen=window.screen):
@@ -80,9 +83,10 @@ def test_f12_keeps_the_window_alive(scene, tmp_path, render):
     state = json.loads(Path(f"{out}.json").read_text())
     assert state["end"] == "complete", state
     assert state["ticks"] > 5, state
-    # Software drawing of the whole window takes some .2 s here; a render that kept Python's lock
-    # would leave a gap of its whole length.
-    assert state["gap"] < 1.0, state
+    # A render that kept Python's lock would leave a gap of its whole length.  Software drawing of
+    # the whole window takes some .2 s on an idle machine and more on a busy one, which then also
+    # takes longer to render.
+    assert state["gap"] < max(1.0, 0.5 * state["seconds"]), state
     pixels = exr.read(f"{out}.exr")
     for name, plane in expected.items():
         np.testing.assert_array_equal(pixels[name], plane)
