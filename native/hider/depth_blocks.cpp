@@ -4,54 +4,74 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hider/sample_order.h"
+
 namespace granita {
 namespace {
 
-/// Least of `count` values; lanes, because the order of minima does not matter but vectors do.
-float least_of(const float* values, std::size_t count, float least) {
-    float lanes[8];
-    std::fill(lanes, lanes + 8, least);
-    std::size_t i = 0;
-    for (; i + 8 <= count; i += 8)
-        for (int lane = 0; lane < 8; ++lane)
-            lanes[lane] = values[i + lane] < lanes[lane] ? values[i + lane] : lanes[lane];
-    for (; i < count; ++i) lanes[0] = std::min(lanes[0], values[i]);
-    return *std::min_element(lanes, lanes + 8);
+/// Least of a packet's keys; lanes, because the order of minima does not matter but vectors do.
+float least_of_packet(const float* keys) {
+    float lanes[4];
+    for (int lane = 0; lane < 4; ++lane) {
+        const float a = std::min(keys[lane], keys[lane + 4]);
+        const float b = std::min(keys[lane + 8], keys[lane + 12]);
+        lanes[lane] = std::min(a, b);
+    }
+    return std::min(std::min(lanes[0], lanes[1]), std::min(lanes[2], lanes[3]));
 }
+static_assert(kPacket == 16);
 
 }  // namespace
 
-DepthBlocks::DepthBlocks(const Rect& pixels) : m_pixels(pixels) {
-    m_farthest.fill(-INFINITY);
-}
-
-void DepthBlocks::update(const float* keys, int samples) {
-    // An eighth of the samples: a scan costs about as much as hiding that many.
-    const auto all = static_cast<std::uint64_t>(m_pixels.width()) * m_pixels.height() * samples;
-    if (m_writes == 0 || m_writes < all / 8) return;
+void DepthBlocks::reset(int blocks_wide, int packets, const PacketBounds& bounds) {
+    m_blocks_wide = blocks_wide;
+    m_packets = packets;
+    m_bounds = &bounds;
     m_writes = 0;
-    for (int by = 0; by < kBlocks; ++by)
-        for (int bx = 0; bx < kBlocks; ++bx) {
-            const Rect block =
-                Rect{bx * kSide, by * kSide, (bx + 1) * kSide, (by + 1) * kSide}.intersect(
-                    m_pixels);
-            float least = INFINITY;
-            for (int y = block.y0; y < block.y1 && !block.empty(); ++y)
-                least =
-                    least_of(keys + static_cast<std::size_t>(y * kTileSize + block.x0) * samples,
-                             static_cast<std::size_t>(block.width()) * samples, least);
-            m_farthest[by * kBlocks + bx] = least;
-        }
+    const std::size_t blocks = static_cast<std::size_t>(blocks_wide) * blocks_wide;
+    m_packet.assign(blocks * packets, -INFINITY);
+    m_block.assign(blocks, -INFINITY);
+    m_tile = -INFINITY;
 }
 
-bool DepthBlocks::hide(const Rect& pixels, float nearest_key) const {
-    const Rect r = pixels.intersect(m_pixels);
-    if (r.empty()) return true;
+void DepthBlocks::update(const float* keys) {
+    // An eighth of the samples: a scan costs about as much as hiding that many.
+    if (m_writes >= m_packet.size() * kPacket / 8) rebuild(keys);
+}
+
+void DepthBlocks::rebuild(const float* keys) {
+    m_writes = 0;
+    for (std::size_t p = 0; p < m_packet.size(); ++p)
+        m_packet[p] = least_of_packet(keys + p * kPacket);
+    for (std::size_t b = 0; b < m_block.size(); ++b)
+        m_block[b] =
+            *std::min_element(&m_packet[b * m_packets], &m_packet[b * m_packets] + m_packets);
+    m_tile = *std::min_element(m_block.begin(), m_block.end());
+}
+
+bool DepthBlocks::hide_in_block(std::size_t block, float time0, float time1, float limit) const {
+    if (limit < m_block[block]) return true;
+    if (time0 <= 0.0f && time1 >= 1.0f) return false;
+    for (int k = 0; k < m_packets; ++k)
+        if (m_bounds->t_lo[k] <= time1 && m_bounds->t_hi[k] >= time0 &&
+            !(limit < m_packet[block * m_packets + k]))
+            return false;
+    return true;
+}
+
+bool DepthBlocks::hide(const Rect& pixels, float time0, float time1, float nearest_key) const {
+    if (pixels.empty()) return true;
     // A key at a sample may round a few ulp past the nearest corner's.
     const float limit = nearest_key + std::fabs(nearest_key) * 0x1p-20f;
-    for (int by = r.y0 / kSide; by <= (r.y1 - 1) / kSide; ++by)
-        for (int bx = r.x0 / kSide; bx <= (r.x1 - 1) / kSide; ++bx)
-            if (!(limit < m_farthest[by * kBlocks + bx])) return false;
+    if (limit < m_tile) return true;
+    const double per_pixel = static_cast<double>(m_blocks_wide) / kTileSize;
+    const auto first = [&](int pixel) { return static_cast<int>(pixel * per_pixel); };
+    const auto end = [&](int pixel) { return static_cast<int>(std::ceil(pixel * per_pixel)); };
+    for (int by = first(pixels.y0); by < end(pixels.y1); ++by)
+        for (int bx = first(pixels.x0); bx < end(pixels.x1); ++bx)
+            if (!hide_in_block(static_cast<std::size_t>(by) * m_blocks_wide + bx, time0, time1,
+                               limit))
+                return false;
     return true;
 }
 

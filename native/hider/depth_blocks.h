@@ -1,35 +1,47 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <vector>
 
-#include "hider/sample_table.h"
 #include "math/bounds.h"
 
 namespace granita {
 
-/// Hierarchical depth of one tile (Greene, Kass and Miller 1993): for each block of 4 x 4 pixels
-/// the farthest key of all its samples, over all times and lens points, hence conservative for
-/// anything whose swept bounds lie in the blocks.  It may lag behind: keys only come nearer, so an
+/// Bounds of time and lens point of packet k of any block of a tile.  [packets], and spare elements
+/// for whole vectors.
+struct PacketBounds {
+    std::vector<float> t_lo, t_hi, u_lo, u_hi, v_lo, v_hi;
+};
+
+/// Hierarchical depth of one tile (Greene, Kass and Miller 1993) in slabs of time (Boulos et al.
+/// 2010): the farthest key of each packet of samples, whose times are a slab; of each block of the
+/// raster over all its packets; and of the tile.  It may lag behind: keys only come nearer, so an
 /// old value only culls less.
 class DepthBlocks {
   public:
-    /// `pixels`: the tile's pixels that count; others never hide nor show anything.
-    explicit DepthBlocks(const Rect& pixels);
+    /// Nothing seen.  `bounds` must outlive the object.
+    void reset(int blocks_wide, int packets, const PacketBounds& bounds);
 
     /// `written` more samples have come nearer.
     void note_writes(std::uint64_t written) { m_writes += written; }
-    /// Brings the blocks up to date when enough samples changed to make it worth while.
-    void update(const float* keys, int samples);
-    /// Whether everything in these pixels (relative to the tile) is nearer than `nearest_key`.
-    bool hide(const Rect& pixels, float nearest_key) const;
+    /// Rebuilds when enough samples changed to make it worth while.
+    void update(const float* keys);
+    void rebuild(const float* keys);
+    /// Whether all samples of these pixels of the tile with times in [time0, time1] are nearer than
+    /// `nearest_key`.
+    bool hide(const Rect& pixels, float time0, float time1, float nearest_key) const;
+    /// [block][packet]
+    const float* farthest_of_packets() const { return m_packet.data(); }
 
   private:
-    static constexpr int kSide = 4, kBlocks = kTileSize / kSide;
-    Rect m_pixels;
+    bool hide_in_block(std::size_t block, float time0, float time1, float limit) const;
+
+    int m_blocks_wide = 0, m_packets = 0;
+    const PacketBounds* m_bounds = nullptr;
     std::uint64_t m_writes = 0;
-    std::array<float, kBlocks * kBlocks> m_farthest;
+    std::vector<float> m_packet, m_block;
+    float m_tile = 0.0f;
 };
 
 }  // namespace granita

@@ -37,6 +37,8 @@ class SimdHider : public Hider {
         const SurfaceId base = m_tiles.pool().add(grid);
         const GridClasses classes = classify(grid);
         m_tiles.report_dropped(grid, classes.dropped);
+        m_tile_grid.load(grid);
+        const Sweep sweep = m_tile_grid.sweep();
         SimdCounts counts;
         std::uint64_t fragments = 0;
         const Rect touched = m_tiles.touched(grid.bounds);
@@ -45,7 +47,8 @@ class SimdHider : public Hider {
                 const std::size_t i = m_tiles.index(x, y);
                 if (tile_hides(i, grid.bounds)) continue;
                 m_tiles.check_cancelled();
-                fragments += hide_in_tile(grid, classes, base, i, counts);
+                arrange(i, grid.motion, sweep);
+                fragments += hide_in_tile(classes, base, i, counts);
             }
         if (!m_statistics) return;
         m_statistics->add(Counter::Micropolygons,
@@ -59,9 +62,9 @@ class SimdHider : public Hider {
 
     std::vector<TileStore>& finish() override {
         for (std::size_t i = 0; i < m_tiles.count(); ++i) {
-            if (!m_working[i]) continue;
-            m_working[i]->store(m_tiles.store(i));
-            m_working[i].reset();
+            if (!m_working[i].tile) continue;
+            m_working[i].tile->store(m_tiles.store(i));
+            m_working[i].tile.reset();
             m_tiles.drop_hidden_fragments(i);
         }
         return m_tiles.stores();
@@ -71,7 +74,7 @@ class SimdHider : public Hider {
 
   private:
     bool tile_hides(std::size_t i, const RasterBounds& bounds) const {
-        if (!m_working[i]) return false;
+        if (!m_working[i].tile) return false;
         const Vec2d origin = m_tiles.origin(i);
         const auto pixel = [](double x) {
             return static_cast<int>(std::floor(std::fmin(std::fmax(x, -1.0), kTileSize)));
@@ -81,40 +84,58 @@ class SimdHider : public Hider {
                           std::isnan(bounds.y0) ? 0 : pixel(bounds.y0 - origin.y),
                           std::isnan(bounds.x1) ? kTileSize : pixel(bounds.x1 - origin.x) + 1,
                           std::isnan(bounds.y1) ? kTileSize : pixel(bounds.y1 - origin.y) + 1};
-        return m_working[i]->blocks.hide(pixels, bounds.nearest_key);
+        return m_working[i].tile->hides(pixels, 0.0f, 1.0f, bounds.nearest_key);
     }
 
-    std::uint64_t hide_in_tile(const Grid& grid, const GridClasses& classes, SurfaceId base,
-                               std::size_t i, SimdCounts& counts) {
-        if (!m_working[i])
-            m_working[i].emplace(m_tiles.samples(i), m_tiles.local_pixels(i), m_lens,
-                                 m_tile_grid.lens_x());
-        WorkingTile& working = *m_working[i];
-        if (grid.motion && working.sorted_by() != SortedBy::Time) {
-            m_tiles.need_time(i);
-            working.sort(SortedBy::Time, m_tiles.samples(i));
-        } else if (m_projection.has_lens() && working.sorted_by() == SortedBy::Table) {
-            working.sort(SortedBy::Lens, m_tiles.samples(i));
-        }
+    /// Sees to it that the tile's samples lie in an order that suits grids which go this far.
+    void arrange(std::size_t i, bool moving, const Sweep& sweep) {
+        Working& working = m_working[i];
+        const bool needs_time = moving && !m_tiles.has_time(i);
+        if (working.tile && !needs_time && !working.outgrown_by(sweep)) return;
+        working.sweep.motion = glm::max(working.sweep.motion, sweep.motion);
+        working.sweep.lens = glm::max(working.sweep.lens, sweep.lens);
+        if (needs_time) m_tiles.need_time(i);
+        const TileSamples& samples = m_tiles.samples(i);
+        const OrderShape shape = best_order(samples.samples, working.sweep);
+        if (!working.tile)
+            working.tile.emplace(samples, m_tiles.local_pixels(i), m_lens, shape);
+        else if (needs_time || shape != working.tile->shape())
+            working.tile->reorder(samples, shape);
+    }
+
+    std::uint64_t hide_in_tile(const GridClasses& classes, SurfaceId base, std::size_t i,
+                               SimdCounts& counts) {
+        WorkingTile& working = *m_working[i].tile;
         SimdGrid simd_grid;
-        m_tile_grid.project(grid, m_tiles.origin(i), simd_grid);
+        m_tile_grid.project(m_tiles.origin(i), simd_grid);
         simd_grid.classes = classes.classes.data();
         simd_grid.base = base;
         simd_grid.pool = &m_tiles.pool();
         simd_grid.range = m_range;
         const std::size_t fragments = working.fragments.size();
         const std::uint64_t writes = counts.writes;
-        const SimdTile tile = working.view();
-        hide_grid_in_tile(simd_grid, tile, working.fragments, counts);
-        working.blocks.note_writes(counts.writes - writes);
-        working.blocks.update(tile.key, tile.samples);
+        hide_grid_in_tile(simd_grid, working.view(), working.fragments, counts);
+        working.note_writes(counts.writes - writes);
+        working.update_depth();
         return working.fragments.size() - fragments;
     }
+
+    /// A tile from the first grid that comes, and the largest sweep it was arranged for.
+    struct Working {
+        std::optional<WorkingTile> tile;
+        Sweep sweep;
+
+        /// By half, which bounds the number of times a tile is arranged anew.
+        bool outgrown_by(const Sweep& s) const {
+            return s.motion.x > 1.5f * sweep.motion.x || s.motion.y > 1.5f * sweep.motion.y ||
+                   s.lens.x > 1.5f * sweep.lens.x || s.lens.y > 1.5f * sweep.lens.y;
+        }
+    };
 
     Projection m_projection;
     Statistics* m_statistics;
     BucketTiles m_tiles;
-    std::vector<std::optional<WorkingTile>> m_working;  ///< made when the first grid comes
+    std::vector<Working> m_working;
     TileGrid m_tile_grid;
     DepthRange m_range;
     Vec2f m_lens;  ///< lens radius times scale

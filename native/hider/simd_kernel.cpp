@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hider/micropolygon_class.h"
+#include "hider/sample_order.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "hider/simd_kernel.cpp"
@@ -18,15 +19,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #include "hider/corner_arithmetic.inl"
 
-using Tag = hn::ScalableTag<float>;
-using IdTag = hn::ScalableTag<std::uint32_t>;
+// At most a packet wide, on machines with wider vectors too.
+using Tag = hn::CappedTag<float, kPacket>;
+using IdTag = hn::RebindToUnsigned<Tag>;
+using IntTag = hn::RebindToSigned<Tag>;
 using V = hn::Vec<Tag>;
 using M = hn::Mask<Tag>;
 constexpr Tag kTag;
 constexpr IdTag kIdTag;
-constexpr hn::RebindToSigned<IdTag> kIndexTag;
-inline std::size_t lane_count() {
-    return hn::Lanes(kTag);
+constexpr IntTag kIntTag;
+inline int lane_count() {
+    return static_cast<int>(hn::Lanes(kTag));
 }
 HWY_INLINE V set(float x) {
     return hn::Set(kTag, x);
@@ -38,20 +41,19 @@ HWY_INLINE void for_each_lane(M mask, Visit visit) {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(kTag, mask, bytes);
     std::uint32_t bits = bytes[0] | (bytes[1] << 8);
-    for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(__builtin_ctz(bits)));
+    for (; bits != 0; bits &= bits - 1) visit(static_cast<int>(__builtin_ctz(bits)));
 }
 
-/// Pixels of the tile, inclusive.
-struct PixelRange {
-    int x0, x1, y0, y1;
-    bool empty() const { return x0 > x1 || y0 > y1; }
+/// Rectangles of blocks, inclusive, and nearest keys, a vector of them.
+struct BlockRanges {
+    alignas(64) int x0[kPacket], x1[kPacket], y0[kPacket], y1[kPacket];
+    alignas(64) float nearest[kPacket];
 };
 
-/// Kept from grid to grid.
-inline std::vector<std::uint32_t>& candidate_buffer() {
-    thread_local std::vector<std::uint32_t> buffer;
-    return buffer;
-}
+/// A micropolygon during one segment of its motion.
+struct Shape {
+    Corner<float> begin[4], delta[4];
+};
 
 class Kernel {
   public:
@@ -61,61 +63,219 @@ class Kernel {
           m_tile(tile),
           m_fragments(fragments),
           m_counts(counts),
-          m_candidates(candidate_buffer()) {
-        m_candidates.resize(static_cast<std::size_t>(tile.samples) * 256 + kLanePadding);
-    }
+          m_blocks_per_pixel(static_cast<float>(tile.blocks_wide) / kTileSize) {}
 
-    template <bool kLens>
+    template <bool kMoving, bool kLens>
     void run() {
-        for (int m = 0; m < m_grid.n_u * m_grid.n_v; ++m) {
-            if (m_grid.classes[m] == 0) continue;
-            const int i = m % m_grid.n_u, j = m / m_grid.n_u, v0 = j * (m_grid.n_u + 1) + i;
-            const int vertex[4] = {v0, v0 + 1, v0 + m_grid.n_u + 2, v0 + m_grid.n_u + 1};
-            m_class = m_grid.classes[m];
-            m_id = m_grid.base + static_cast<SurfaceId>(m);
-            for (int segment = 0; segment < std::max(1, m_grid.segments); ++segment) {
-                const PixelRange range = touched(vertex, segment);
-                if (range.empty()) continue;
-                if (m_grid.segments > 0)
-                    hide_moving<kLens>(vertex, segment, range);
-                else if (kLens && m_tile.sorted_by == SortedBy::Lens)
-                    hide_defocused(vertex, range);
-                else
-                    hide_static<kLens>(vertex, range);
-            }
-        }
+        const int stride = m_grid.n_u + 1;
+        BlockRanges ranges;
+        for (m_segment = 0; m_segment < std::max(1, m_grid.segments); ++m_segment)
+            for (int j = 0; j < m_grid.n_v; ++j)
+                for (int i = 0; i < m_grid.n_u; i += lane_count()) {
+                    const int first = j * stride + i;
+                    const M touching = find_touched(first, m_grid.n_u - i, ranges);
+                    for_each_lane(touching, [&](int lane) HWY_ATTR {
+                        const int m = j * m_grid.n_u + i + lane;
+                        m_class = m_grid.classes[m];
+                        if (m_class == 0) return;
+                        m_id = m_grid.base + static_cast<SurfaceId>(m);
+                        hide<kMoving, kLens>(first + lane, ranges, lane);
+                    });
+                }
     }
 
   private:
-    PixelRange touched(const int vertex[4], int segment) const {
-        const std::size_t row = static_cast<std::size_t>(segment) * m_grid.vertices;
-        const auto least = [&](const float* a) {
-            a += row;
-            return std::min(std::min(a[vertex[0]], a[vertex[1]]),
-                            std::min(a[vertex[2]], a[vertex[3]]));
+    /// Of the micropolygons from this vertex on, which touch the tile, and where over the whole
+    /// segment and lens.
+    HWY_INLINE M find_touched(int vertex, int count, BlockRanges& out) const {
+        const std::size_t at = static_cast<std::size_t>(m_segment) * m_grid.vertices + vertex;
+        const std::size_t above = at + static_cast<std::size_t>(m_grid.n_u) + 1;
+        const auto least = [&](const float* a) HWY_ATTR {
+            return hn::Min(hn::Min(hn::LoadU(kTag, a + at), hn::LoadU(kTag, a + at + 1)),
+                           hn::Min(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + 1)));
         };
-        const auto most = [&](const float* a) {
-            a += row;
-            return std::max(std::max(a[vertex[0]], a[vertex[1]]),
-                            std::max(a[vertex[2]], a[vertex[3]]));
+        const auto most = [&](const float* a) HWY_ATTR {
+            return hn::Max(hn::Max(hn::LoadU(kTag, a + at), hn::LoadU(kTag, a + at + 1)),
+                           hn::Max(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + 1)));
         };
+        hn::StoreU(most(m_grid.nearest), kTag, out.nearest);
+        const M some = store_blocks(least(m_grid.x_lo), most(m_grid.x_hi), least(m_grid.y_lo),
+                                    most(m_grid.y_hi), out);
+        return hn::And(some, hn::FirstN(kTag, static_cast<std::size_t>(count)));
+    }
+
+    /// Raster bounds -> blocks; which of them are in the tile.
+    HWY_INLINE M store_blocks(V x_lo, V x_hi, V y_lo, V y_hi, BlockRanges& out) const {
+        const V scale = set(m_blocks_per_pixel), zero = set(0.0f);
+        const V last = set(static_cast<float>(m_tile.blocks_wide - 1));
+        const V end = set(static_cast<float>(m_tile.blocks_wide));
         // Clamped before the conversion, which overflows otherwise.
-        const auto pixel = [](float x) {
-            return static_cast<int>(std::floor(std::min(std::max(x, -1.0f), 32.0f)));
-        };
-        const Rect& p = m_tile.pixels;
-        return {std::max(p.x0, pixel(least(m_grid.x_lo))),
-                std::min(p.x1 - 1, pixel(most(m_grid.x_hi))),
-                std::max(p.y0, pixel(least(m_grid.y_lo))),
-                std::min(p.y1 - 1, pixel(most(m_grid.y_hi)))};
+        const V x0 = hn::Min(hn::Max(hn::Floor(x_lo * scale), zero), end);
+        const V y0 = hn::Min(hn::Max(hn::Floor(y_lo * scale), zero), end);
+        const V x1 = hn::Max(hn::Min(hn::Floor(x_hi * scale), last), set(-1.0f));
+        const V y1 = hn::Max(hn::Min(hn::Floor(y_hi * scale), last), set(-1.0f));
+        hn::StoreU(hn::ConvertTo(kIntTag, x0), kIntTag, out.x0);
+        hn::StoreU(hn::ConvertTo(kIntTag, x1), kIntTag, out.x1);
+        hn::StoreU(hn::ConvertTo(kIntTag, y0), kIntTag, out.y0);
+        hn::StoreU(hn::ConvertTo(kIntTag, y1), kIntTag, out.y1);
+        return hn::And(hn::Le(x0, x1), hn::Le(y0, y1));
+    }
+
+    template <bool kMoving, bool kLens>
+    HWY_INLINE void hide(int vertex, const BlockRanges& swept, int lane) {
+        const int corner[4] = {vertex, vertex + 1, vertex + m_grid.n_u + 2,
+                               vertex + m_grid.n_u + 1};
+        Shape shape;
+        for (int k = 0; k < 4; ++k) {
+            shape.begin[k] = load(corner[k], m_segment);
+            if constexpr (kMoving) {
+                const Corner<float> a = shape.begin[k], b = load(corner[k], m_segment + 1);
+                shape.delta[k] = {b.x - a.x, b.y - a.y, b.w - a.w, b.z - a.z};
+            }
+        }
+        if (!(kMoving || kLens) || m_tile.strata == 1) {
+            visit_blocks<kMoving, kLens>(shape, swept, lane, 0, m_tile.packets);
+            return;
+        }
+        BlockRanges strata;
+        for (int first = 0; first < m_tile.packets; first += lane_count()) {
+            M touching = bound_strata<kMoving, kLens>(shape, first, strata);
+            touching = hn::And(touching,
+                               hn::FirstN(kTag, static_cast<std::size_t>(m_tile.packets - first)));
+            for_each_lane(touching, [&](int k) HWY_ATTR {
+                visit_blocks<kMoving, kLens>(shape, strata, k, first + k, first + k + 1);
+            });
+        }
+    }
+
+    /// Packets [packet, packet_end) of the blocks of ranges[lane].
+    template <bool kMoving, bool kLens>
+    HWY_INLINE void visit_blocks(const Shape& shape, const BlockRanges& ranges, int lane,
+                                 int packet, int packet_end) {
+        const float nearest = ranges.nearest[lane];
+        const int x0 = ranges.x0[lane], x1 = ranges.x1[lane], y1 = ranges.y1[lane];
+        for (int by = ranges.y0[lane]; by <= y1; ++by)
+            for (int bx = x0; bx <= x1; ++bx) {
+                const std::size_t block = static_cast<std::size_t>(by) * m_tile.blocks_wide + bx;
+                for (int k = packet; k < packet_end; ++k) {
+                    const std::size_t p = block * m_tile.packets + k;
+                    if (nearest < m_tile.farthest[p]) {
+                        m_counts.culled += kPacket;
+                        continue;
+                    }
+                    m_counts.tests += kPacket;
+                    for (int l = 0; l < kPacket; l += lane_count())
+                        test<kMoving, kLens>(shape, p * kPacket + l);
+                }
+            }
     }
 
     Corner<float> load(int vertex, int knot) const {
         const std::size_t i = static_cast<std::size_t>(knot) * m_grid.vertices + vertex;
         return {m_grid.x[i], m_grid.y[i], m_grid.w[i], m_grid.z[i]};
     }
-    static HWY_INLINE Corner<V> broadcast(const Corner<float>& c) {
-        return {set(c.x), set(c.y), set(c.w), set(c.z)};
+
+    /// Where the micropolygon can be while the samples of each of these strata look.  For a fixed
+    /// lens point a corner moves monotonically between the ends of its interval of time, whatever
+    /// the perspective, and for a fixed time linearly in the lens point (compare Laine et al.
+    /// 2011): its extremes are at the corners of the stratum.
+    template <bool kMoving, bool kLens>
+    HWY_INLINE M bound_strata(const Shape& shape, int first, BlockRanges& out) const {
+        const PacketBounds& bounds = *m_tile.bounds;
+        const V zero = set(0.0f), one = set(1.0f), many = set(1e15f);
+        M present = hn::Ge(zero, zero);
+        V ends[2] = {zero, zero};
+        if constexpr (kMoving) {
+            const V knots = set(static_cast<float>(m_grid.segments));
+            const V start = set(static_cast<float>(m_segment));
+            const V lo = hn::LoadU(kTag, bounds.t_lo.data() + first) * knots - start;
+            const V hi = hn::LoadU(kTag, bounds.t_hi.data() + first) * knots - start;
+            present = hn::And(hn::Ge(hi, zero), hn::Le(lo, one));
+            ends[0] = hn::Max(lo, zero);
+            ends[1] = hn::Min(hi, one);
+        }
+        V x_lo = set(INFINITY), y_lo = x_lo, z_lo = x_lo, x_hi = set(-INFINITY), y_hi = x_hi;
+        V margin = zero;
+        M sane = present;
+        for (int k = 0; k < 4; ++k) {
+            const Corner<float>& c = shape.begin[k];
+            const float rounding = rounding_of<kMoving>(shape, k);
+            for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
+                V x = set(c.x), y = set(c.y), w = set(c.w), z = set(c.z);
+                if constexpr (kMoving) {
+                    const Corner<float>& d = shape.delta[k];
+                    x = x + ends[e] * set(d.x);
+                    y = y + ends[e] * set(d.y);
+                    w = w + ends[e] * set(d.w);
+                    z = z + ends[e] * set(d.z);
+                }
+                const V inverse = one / w;
+                V x0 = x * inverse, y0 = y * inverse, x1 = x0, y1 = y0;
+                if constexpr (kLens) {
+                    const V shear = (z * set(m_grid.inverse_focus) - one) * inverse;
+                    stretch(shear, bounds.u_lo.data() + first, bounds.u_hi.data() + first, x0, x1);
+                    stretch(shear, bounds.v_lo.data() + first, bounds.v_hi.data() + first, y0, y1);
+                }
+                x_lo = hn::Min(x_lo, x0);
+                x_hi = hn::Max(x_hi, x1);
+                y_lo = hn::Min(y_lo, y0);
+                y_hi = hn::Max(y_hi, y1);
+                z_lo = hn::Min(z_lo, z);
+                margin = hn::Max(margin, set(rounding) * inverse);
+                const V far =
+                    hn::Max(hn::Max(hn::Abs(x0), hn::Abs(x1)), hn::Max(hn::Abs(y0), hn::Abs(y1)));
+                sane = hn::And(sane, hn::And(hn::Gt(w, set(1e-15f)), hn::Lt(far, many)));
+            }
+        }
+        // At or behind the eye plane: anywhere.
+        x_lo = hn::IfThenElse(sane, x_lo - margin, set(-INFINITY));
+        y_lo = hn::IfThenElse(sane, y_lo - margin, set(-INFINITY));
+        x_hi = hn::IfThenElse(sane, x_hi + margin, set(INFINITY));
+        y_hi = hn::IfThenElse(sane, y_hi + margin, set(INFINITY));
+        // The key of a sample may round a few ulp past the nearest corner's.
+        V nearest = hn::Neg(z_lo);
+        if (m_grid.range.perspective)
+            nearest = hn::IfThenElse(hn::Gt(z_lo, zero), one / z_lo, set(INFINITY));
+        hn::StoreU(nearest + hn::Abs(nearest) * set(0x1p-18f), kTag, out.nearest);
+        return hn::And(present, store_blocks(x_lo, x_hi, y_lo, y_hi, out));
+    }
+
+    static HWY_INLINE void stretch(V shear, const float* lens_lo, const float* lens_hi, V& lo,
+                                   V& hi) {
+        const V a = shear * hn::LoadU(kTag, lens_lo), b = shear * hn::LoadU(kTag, lens_hi);
+        lo = lo + hn::Min(a, b);
+        hi = hi + hn::Max(a, b);
+    }
+
+    /// More than a corner's offset from a sample of the tile can round by, times w.
+    template <bool kMoving>
+    float rounding_of(const Shape& shape, int k) const {
+        const Corner<float>& a = shape.begin[k];
+        const Corner<float> b = kMoving ? load_end(shape, k) : a;
+        const float place = std::max(std::max(std::fabs(a.x), std::fabs(b.x)),
+                                     std::max(std::fabs(a.y), std::fabs(b.y)));
+        const float depth = std::max(std::fabs(a.z), std::fabs(b.z)) * m_grid.inverse_focus + 1.0f;
+        return std::max(std::fabs(a.w), std::fabs(b.w)) / 256 + place * 0x1p-20f +
+               std::max(m_grid.lens_x, m_grid.lens_y) * depth * 0x1p-20f;
+    }
+    static Corner<float> load_end(const Shape& shape, int k) {
+        const Corner<float>&a = shape.begin[k], &d = shape.delta[k];
+        return {a.x + d.x, a.y + d.y, a.w + d.w, a.z + d.z};
+    }
+
+    /// Time of the samples in the segment, which may lie outside [0, 1].
+    HWY_INLINE V local_time(std::size_t i) const {
+        return hn::LoadU(kTag, m_tile.t + i) * set(static_cast<float>(m_grid.segments)) -
+               set(static_cast<float>(m_segment));
+    }
+
+    template <bool kMoving>
+    static HWY_INLINE Corner<V> corner_at(const Shape& shape, int k, V local) {
+        const Corner<float>& b = shape.begin[k];
+        const Corner<V> begin{set(b.x), set(b.y), set(b.w), set(b.z)};
+        if constexpr (!kMoving) return begin;
+        const Corner<float>& d = shape.delta[k];
+        return at_time(begin, {set(d.x), set(d.y), set(d.w), set(d.z)}, local);
     }
 
     template <bool kLens>
@@ -128,249 +288,60 @@ class Kernel {
             return offset_pinhole(c, x, y);
     }
 
-    /// The samples of a row of pixels follow each other in memory: one run a row.
-    template <bool kLens>
-    void hide_static(const int vertex[4], const PixelRange& range) {
-        Corner<V> c[4];
-        for (int k = 0; k < 4; ++k) c[k] = broadcast(load(vertex[k], 0));
-        const auto n = static_cast<std::size_t>(m_tile.samples);
-        const std::size_t count = static_cast<std::size_t>(range.x1 - range.x0 + 1) * n;
-        for (int y = range.y0; y <= range.y1; ++y) {
-            const std::size_t first = static_cast<std::size_t>(y * 16 + range.x0) * n;
-            for (std::size_t i = 0; i < count; i += lane_count()) {
-                Offset<V> d[4];
-                for (int k = 0; k < 4; ++k) d[k] = offset<kLens>(c[k], first + i);
-                V key = set(0.0f);
-                const M hit = test(c, d, hn::FirstN(kTag, count - i), key);
-                if (!hn::AllFalse(kTag, hit)) record(key, hit, first + i);
-            }
-        }
-        m_counts.tests += count * static_cast<std::size_t>(range.y1 - range.y0 + 1);
-    }
-
-    /// Only the samples of the times at which the micropolygon can be over their pixel: bounds a
-    /// column and a row of pixels, in homogeneous space (Laine et al. 2011; hider-research 5.3).
-    template <bool kLens>
-    void hide_moving(const int vertex[4], int segment, const PixelRange& range) {
-        Corner<V> begin[4], delta[4];
-        Bounded columns, rows;
-        for (int k = 0; k < 4; ++k) {
-            const Corner<float> a = load(vertex[k], segment), b = load(vertex[k], segment + 1);
-            begin[k] = broadcast(a);
-            delta[k] = broadcast({b.x - a.x, b.y - a.y, b.w - a.w, b.z - a.z});
-            const float shear = std::max(shear_of(a), shear_of(b));
-            columns.set_corner(k, a.x, b.x, a.w, b.w, m_grid.lens_x * shear);
-            rows.set_corner(k, a.y, b.y, a.w, b.w, m_grid.lens_y * shear);
-        }
-        const float scale = static_cast<float>(m_tile.cells) / static_cast<float>(m_grid.segments);
-        const V knots = set(static_cast<float>(m_grid.segments));
-        const V start = set(static_cast<float>(segment));
-        const V end =
-            set(segment + 1 == m_grid.segments ? INFINITY : static_cast<float>(segment + 1));
-        const auto test_at = [&](V t, M present, auto offset_at, V& key) HWY_ATTR {
-            const V place = t * knots;
-            const V local = place - start;
-            const M active = hn::And(present, hn::And(hn::Ge(place, start), hn::Lt(place, end)));
-            Corner<V> c[4];
-            Offset<V> d[4];
-            for (int k = 0; k < 4; ++k) {
-                c[k] = at_time(begin[k], delta[k], local);
-                d[k] = offset_at(c[k]);
-            }
-            return test(c, d, active, key);
-        };
-        collect(columns, rows, static_cast<float>(segment), scale, range,
-                [&](std::size_t i, M present) HWY_ATTR {
-                    V key = set(0.0f);
-                    const M hit = test_at(
-                        hn::LoadU(kTag, m_tile.t + i), present,
-                        [&](const Corner<V>& c) HWY_ATTR { return offset<kLens>(c, i); }, key);
-                    if (!hn::AllFalse(kTag, hit)) record(key, hit, i);
-                });
-        for (std::size_t i = 0; i < m_candidate_count; i += lane_count()) {
-            V key = set(0.0f);
-            const M hit = test_at(
-                gather(m_tile.t, i), hn::FirstN(kTag, m_candidate_count - i),
-                [&](const Corner<V>& c) HWY_ATTR { return gathered_offset<kLens>(c, i); }, key);
-            if (!hn::AllFalse(kTag, hit)) record_scattered(key, hit, m_candidates.data() + i);
-        }
-    }
-
-    /// Without motion the lens does to x what time does above: x + U s is linear in U.
-    void hide_defocused(const int vertex[4], const PixelRange& range) {
-        Corner<V> c[4];
-        Bounded columns, rows;
-        for (int k = 0; k < 4; ++k) {
-            const Corner<float> a = load(vertex[k], 0);
-            c[k] = broadcast(a);
-            const float s = m_grid.lens_x * (a.z * m_grid.inverse_focus - 1.0f);
-            columns.set_corner(k, a.x - s, a.x + s, a.w, a.w, 0.0f);
-            rows.set_corner(k, a.y, a.y, a.w, a.w, m_grid.lens_y * shear_of(a));
-        }
-        collect(columns, rows, 0.0f, static_cast<float>(m_tile.cells), range,
-                [&](std::size_t i, M present) HWY_ATTR {
-                    Offset<V> d[4];
-                    for (int k = 0; k < 4; ++k) d[k] = offset<true>(c[k], i);
-                    V key = set(0.0f);
-                    const M hit = test(c, d, present, key);
-                    if (!hn::AllFalse(kTag, hit)) record(key, hit, i);
-                });
-        for (std::size_t i = 0; i < m_candidate_count; i += lane_count()) {
-            Offset<V> d[4];
-            for (int k = 0; k < 4; ++k) d[k] = gathered_offset<true>(c[k], i);
-            V key = set(0.0f);
-            const M hit = test(c, d, hn::FirstN(kTag, m_candidate_count - i), key);
-            if (!hn::AllFalse(kTag, hit)) record_scattered(key, hit, m_candidates.data() + i);
-        }
-    }
-
-    float shear_of(const Corner<float>& c) const {
-        return std::fabs(c.z * m_grid.inverse_focus - 1.0f);
-    }
-
-    /// x w (or y w) and w of the corners at both ends of the sorted parameter.
-    struct Bounded {
-        float at0[4], at1[4], w0[4], w1[4], margin[4];
-        void set_corner(int k, float p0, float p1, float w_begin, float w_end, float lens) {
-            at0[k] = p0;
-            at1[k] = p1;
-            w0[k] = w_begin;
-            w1[k] = w_end;
-            // 1/256 pixel and a few ulp of far positions: more than rounding can move anything.
-            margin[k] = lens + std::max(std::fabs(w_begin), std::fabs(w_end)) / 256 +
-                        std::max(std::fabs(p0), std::fabs(p1)) * 0x1p-21f;
-        }
-    };
-
-    /// Finds the samples whose cell is possible both for their column and for their row.  Runs of
-    /// them that fill a good part of a vector go to `visit`, a vector at a time; the others are
-    /// collected as candidates, since gathers cost about as much as the lanes they fill.
-    template <class Visit>
-    void collect(const Bounded& columns, const Bounded& rows, float start, float scale,
-                 const PixelRange& range, Visit visit) {
-        alignas(64) float column_from[32], column_to[32], row_from[32], row_to[32];
-        bound_cells(columns, start, scale, range.x0, range.x1, column_from, column_to);
-        bound_cells(rows, start, scale, range.y0, range.y1, row_from, row_to);
-        alignas(64) float from[16], to[16];
-        std::size_t count = 0;
-        const int width = range.x1 - range.x0 + 1;
-        for (int y = range.y0; y <= range.y1; ++y) {
-            const V this_from = set(row_from[y - range.y0]), this_to = set(row_to[y - range.y0]);
-            for (int i = 0; i < width; i += static_cast<int>(lane_count())) {
-                const V cell0 = hn::Max(this_from, hn::LoadU(kTag, column_from + i));
-                const V cell1 = hn::Min(this_to, hn::LoadU(kTag, column_to + i));
-                const M possible = hn::And(hn::Le(cell0, cell1),
-                                           hn::FirstN(kTag, static_cast<std::size_t>(width - i)));
-                if (hn::AllFalse(kTag, possible)) continue;
-                hn::StoreU(cell0, kTag, from);
-                hn::StoreU(cell1, kTag, to);
-                for_each_lane(possible, [&](std::size_t lane) HWY_ATTR {
-                    const std::size_t pixel =
-                        static_cast<std::size_t>(y * 16 + range.x0 + i) + lane;
-                    const std::uint32_t* cells =
-                        m_tile.cell_start + pixel * static_cast<std::size_t>(m_tile.cells + 1);
-                    const auto first = static_cast<std::uint32_t>(pixel * m_tile.samples);
-                    const std::uint32_t end = first + cells[static_cast<int>(to[lane]) + 1];
-                    std::uint32_t s = first + cells[static_cast<int>(from[lane])];
-                    m_counts.tests += end - s;
-                    for (; (end - s) * 3 > lane_count();
-                         s += std::min<std::uint32_t>(end - s, lane_count()))
-                        visit(s, hn::FirstN(kTag, end - s));
-                    for (; s < end; ++s) m_candidates[count++] = s;
-                });
-            }
-        }
-        std::fill_n(m_candidates.begin() + static_cast<std::ptrdiff_t>(count), kLanePadding, 0u);
-        m_candidate_count = count;
-    }
-
-    /// For each column (or row) of pixels, in units of cells, when the micropolygon may be over it:
-    /// some corner right of its left side and some corner left of its right side.  Both conditions
-    /// are linear in the parameter for every corner, whatever the sign of w.
-    void bound_cells(const Bounded& b, float start, float scale, int first, int last, float* from,
-                     float* to) const {
-        const V zero = set(0.0f), one = set(1.0f), never = set(INFINITY);
-        const auto cells = static_cast<float>(m_tile.cells);
-        // A parameter is exact to a few ulp of 1; widened by 2^-20 of its range.
-        const V widen = set(cells * 0x1p-20f);
-        const V lowest = zero, highest = set(std::nextafter(cells, 0.0f));  // its floor is a cell
-        for (int i = 0; i <= last - first; i += static_cast<int>(lane_count())) {
-            const V left = hn::Iota(kTag, static_cast<float>(first + i));
-            const V right = left + one;
-            V from_left = never, to_left = hn::Neg(never);
-            V from_right = never, to_right = hn::Neg(never);
-            for (int k = 0; k < 4; ++k) {
-                const V at0 = set(b.at0[k]), at1 = set(b.at1[k]), margin = set(b.margin[k]);
-                const V w0 = set(b.w0[k]), w1 = set(b.w1[k]);
-                extend(at0 - left * w0 + margin, at1 - left * w1 + margin, from_left, to_left);
-                extend(right * w0 - at0 + margin, right * w1 - at1 + margin, from_right, to_right);
-            }
-            // Empty stays empty: infinities survive the scaling.
-            const V t0 = hn::Max(from_left, from_right), t1 = hn::Min(to_left, to_right);
-            const V cell0 = (set(start) + t0) * set(scale) - widen;
-            const V cell1 = (set(start) + t1) * set(scale) + widen;
-            hn::StoreU(hn::Max(cell0, lowest), kTag, from + i);
-            hn::StoreU(hn::Min(cell1, highest), kTag, to + i);
-        }
-    }
-
-    HWY_INLINE V gather(const float* values, std::size_t candidate) const {
-        const auto index =
-            hn::BitCast(kIndexTag, hn::LoadU(kIdTag, m_candidates.data() + candidate));
-        return hn::GatherIndex(kTag, values, index);
-    }
-
-    template <bool kLens>
-    HWY_INLINE Offset<V> gathered_offset(const Corner<V>& c, std::size_t i) const {
-        const V x = gather(m_tile.x, i), y = gather(m_tile.y, i);
-        if constexpr (kLens)
-            return offset_lens(c, x, y, gather(m_tile.u, i), gather(m_tile.v, i),
-                               set(m_grid.inverse_focus), set(1.0f));
-        else
-            return offset_pinhole(c, x, y);
-    }
-
-    /// Grows [from, to] by the part of [0, 1] where the linear function with these end values is
-    /// not negative.
-    static HWY_INLINE void extend(V f0, V f1, V& from, V& to) {
-        const V zero = set(0.0f), one = set(1.0f), never = set(INFINITY);
-        const V root = f0 / (f0 - f1);
-        const M in0 = hn::Ge(f0, zero), in1 = hn::Ge(f1, zero);
-        from = hn::Min(from, hn::IfThenElse(in0, zero, hn::IfThenElse(in1, root, never)));
-        to = hn::Max(to, hn::IfThenElse(in1, one, hn::IfThenElse(in0, root, hn::Neg(never))));
-    }
-
-    /// The active lanes that hit, and their keys.
-    HWY_INLINE M test(const Corner<V> c[4], const Offset<V> d[4], M active, V& key) {
+    /// A vector of samples against the micropolygon.
+    template <bool kMoving, bool kLens>
+    HWY_INLINE void test(const Shape& shape, std::size_t i) {
         const V zero = set(0.0f);
-        const V e01 = edge(d[0], d[1]), e12 = edge(d[1], d[2]), e02 = edge(d[0], d[2]);
-        const V e23 = edge(d[2], d[3]), e30 = edge(d[3], d[0]), e20 = hn::Neg(e02);
+        const V local = kMoving ? local_time(i) : zero;
+        const Offset<V> d0 = offset<kLens>(corner_at<kMoving>(shape, 0, local), i);
+        const Offset<V> d1 = offset<kLens>(corner_at<kMoving>(shape, 1, local), i);
+        const Offset<V> d2 = offset<kLens>(corner_at<kMoving>(shape, 2, local), i);
+        const Offset<V> d3 = offset<kLens>(corner_at<kMoving>(shape, 3, local), i);
+        const V e01 = edge(d0, d1), e12 = edge(d1, d2), e02 = edge(d0, d2);
+        const V e23 = edge(d2, d3), e30 = edge(d3, d0), e20 = hn::Neg(e02);
         M in_a = hn::MaskFromVec(zero), strict_a = in_a, in_b = in_a, strict_b = in_a;
         if (m_class & kTriangleA) inside(e01, e12, e20, in_a, strict_a);
         if (m_class & kTriangleB) inside(e02, e23, e30, in_b, strict_b);
-        const M touched = hn::And(active, hn::Or(in_a, in_b));
-        if (hn::AllFalse(kTag, touched)) return touched;
+        M touched = hn::Or(in_a, in_b);
+        if (hn::AllFalse(kTag, touched)) return;
+        if (kMoving && m_grid.segments > 1) {
+            touched = hn::And(touched, hn::Ge(local, zero));
+            if (m_segment + 1 < m_grid.segments)
+                touched = hn::And(touched, hn::Lt(local, set(1.0f)));
+        }
 
         // Strictly inside one triangle and outside the other; the rest is on an edge or where the
         // micropolygon is folded.
         const M clean =
             hn::And(touched, hn::Or(hn::AndNot(in_b, strict_a), hn::AndNot(in_a, strict_b)));
+        const V z0 = corner_at<kMoving>(shape, 0, local).z;
+        const V z1 = corner_at<kMoving>(shape, 1, local).z;
+        const V z2 = corner_at<kMoving>(shape, 2, local).z;
+        const V z3 = corner_at<kMoving>(shape, 3, local).z;
         const V first_weight = hn::IfThenElse(strict_a, e12, e23);
         const V second_weight = hn::IfThenElse(strict_a, e20, e30);
         const V third_weight = hn::IfThenElse(strict_a, e01, e02);
-        const V second_z = hn::IfThenElse(strict_a, c[1].z, c[2].z);
-        const V third_z = hn::IfThenElse(strict_a, c[2].z, c[3].z);
+        const V second_z = hn::IfThenElse(strict_a, z1, z2);
+        const V third_z = hn::IfThenElse(strict_a, z2, z3);
         const V share = set(1.0f) / (first_weight + second_weight + third_weight);
-        const V z = c[0].z + second_weight * share * (second_z - c[0].z) +
-                    third_weight * share * (third_z - c[0].z);
-        const V z_in = hn::Min(hn::Max(z, hn::Min(c[0].z, hn::Min(second_z, third_z))),
-                               hn::Max(c[0].z, hn::Max(second_z, third_z)));
-        key = m_grid.range.perspective ? set(1.0f) / z_in : hn::Neg(z_in);
+        const V z =
+            z0 + second_weight * share * (second_z - z0) + third_weight * share * (third_z - z0);
+        const V z_in = hn::Min(hn::Max(z, hn::Min(z0, hn::Min(second_z, third_z))),
+                               hn::Max(z0, hn::Max(second_z, third_z)));
+        V key = m_grid.range.perspective ? set(1.0f) / z_in : hn::Neg(z_in);
         M hit = hn::And(clean, hn::And(hn::Ge(key, set(m_grid.range.key_far)),
                                        hn::Le(key, set(m_grid.range.key_near))));
         const M unclear = hn::AndNot(clean, touched);
-        if (!hn::AllFalse(kTag, unclear)) test_exactly(c, d, unclear, key, hit);
-        return hit;
+        if (HWY_UNLIKELY(!hn::AllFalse(kTag, unclear))) {
+            // By way of memory: what a call can see would be kept there in every test.
+            alignas(64) float keys[kPacket], hits[kPacket];
+            hn::StoreU(key, kTag, keys);
+            hn::StoreU(hn::IfThenElseZero(hit, set(1.0f)), kTag, hits);
+            test_exactly<kMoving, kLens>(shape, i, unclear, keys, hits);
+            key = hn::LoadU(kTag, keys);
+            hit = hn::Gt(hn::LoadU(kTag, hits), zero);
+        }
+        if (!hn::AllFalse(kTag, hit)) record(key, hit, i);
     }
 
     static HWY_INLINE void inside(V a, V b, V c, M& in, M& strict) {
@@ -380,18 +351,20 @@ class Kernel {
         strict = hn::Or(hn::Gt(least, zero), hn::Lt(most, zero));
     }
 
-    HWY_NOINLINE void test_exactly(const Corner<V> c[4], const Offset<V> d[4], M unclear, V& key,
-                                   M& hit) {
-        alignas(64) float values[4][4][16], keys[16], hits[16];
+    template <bool kMoving, bool kLens>
+    HWY_NOINLINE void test_exactly(const Shape& shape, std::size_t i, M unclear, float* keys,
+                                   float* hits) {
+        const V local = kMoving ? local_time(i) : set(0.0f);
+        alignas(64) float values[4][4][kPacket];
         for (int k = 0; k < 4; ++k) {
-            hn::StoreU(d[k].x, kTag, values[k][0]);
-            hn::StoreU(d[k].y, kTag, values[k][1]);
-            hn::StoreU(c[k].w, kTag, values[k][2]);
-            hn::StoreU(c[k].z, kTag, values[k][3]);
+            const Corner<V> c = corner_at<kMoving>(shape, k, local);
+            const Offset<V> d = offset<kLens>(c, i);
+            hn::StoreU(d.x, kTag, values[k][0]);
+            hn::StoreU(d.y, kTag, values[k][1]);
+            hn::StoreU(c.w, kTag, values[k][2]);
+            hn::StoreU(c.z, kTag, values[k][3]);
         }
-        hn::StoreU(key, kTag, keys);
-        hn::StoreU(hn::IfThenElseZero(hit, set(1.0f)), kTag, hits);
-        for_each_lane(unclear, [&](std::size_t lane) {
+        for_each_lane(unclear, [&](int lane) {
             granita::Corner<double> corner[4];
             granita::Offset<double> offset[4];
             for (int k = 0; k < 4; ++k) {
@@ -402,8 +375,6 @@ class Kernel {
             keys[lane] = exact.key;
             hits[lane] = exact.hit ? 1.0f : 0.0f;
         });
-        key = hn::LoadU(kTag, keys);
-        hit = hn::Gt(hn::LoadU(kTag, hits), set(0.0f));
     }
 
     HWY_INLINE void record(V key, M hit, std::size_t first) {
@@ -415,11 +386,7 @@ class Kernel {
             record_fragments(key, hn::Or(nearer, equal), equal, first);
             return;
         }
-        if (!hn::AllFalse(kTag, equal))
-            for_each_lane(equal, [&](std::size_t lane) {
-                SurfaceId& id = m_tile.id[first + lane];
-                if (id != kNoSurface && m_grid.pool->before(m_id, id)) id = m_id;
-            });
+        if (HWY_UNLIKELY(!hn::AllFalse(kTag, equal))) settle_ties(equal, first);
         if (hn::AllFalse(kTag, nearer)) return;
         m_counts.writes += hn::CountTrue(kTag, nearer);
         hn::BlendedStore(key, nearer, kTag, m_tile.key + first);
@@ -427,25 +394,10 @@ class Kernel {
                          m_tile.id + first);
     }
 
-    HWY_INLINE void record_scattered(V key, M hit, const std::uint32_t* samples) {
-        alignas(64) float keys[16];
-        hn::StoreU(key, kTag, keys);
-        m_counts.hits += hn::CountTrue(kTag, hit);
-        for_each_lane(hit, [&](std::size_t lane) {
-            const std::uint32_t i = samples[lane];
-            const float stored = m_tile.key[i];
-            if (!(keys[lane] > stored)) {
-                const SurfaceId id = m_tile.id[i];
-                if (keys[lane] < stored || id == kNoSurface || !m_grid.pool->before(m_id, id))
-                    return;
-            }
-            if (m_class & kTransparent) {
-                m_fragments.push_back({keys[lane], i, m_id});
-                return;
-            }
-            m_tile.key[i] = keys[lane];
-            m_tile.id[i] = m_id;
-            ++m_counts.writes;
+    HWY_NOINLINE void settle_ties(M equal, std::size_t first) {
+        for_each_lane(equal, [&](int lane) {
+            SurfaceId& id = m_tile.id[first + lane];
+            if (id != kNoSurface && m_grid.pool->before(m_id, id)) id = m_id;
         });
     }
 
@@ -453,7 +405,7 @@ class Kernel {
         alignas(64) float keys[16], ties[16];
         hn::StoreU(key, kTag, keys);
         hn::StoreU(hn::IfThenElseZero(equal, set(1.0f)), kTag, ties);
-        for_each_lane(visible, [&](std::size_t lane) {
+        for_each_lane(visible, [&](int lane) {
             const SurfaceId stored = m_tile.id[first + lane];
             if (ties[lane] > 0.0f && (stored == kNoSurface || !m_grid.pool->before(m_id, stored)))
                 return;
@@ -465,19 +417,20 @@ class Kernel {
     const SimdTile& m_tile;
     std::vector<Fragment>& m_fragments;
     SimdCounts& m_counts;
+    const float m_blocks_per_pixel;
+    int m_segment = 0;
     std::uint8_t m_class = 0;
     SurfaceId m_id = 0;
-    std::vector<std::uint32_t>& m_candidates;
-    std::size_t m_candidate_count = 0;
 };
 
 void hide_grid(const SimdGrid& grid, const SimdTile& tile, std::vector<Fragment>& fragments,
                SimdCounts& counts) {
     Kernel kernel(grid, tile, fragments, counts);
-    if (grid.lens_x > 0.0f)
-        kernel.run<true>();
+    const bool lens = grid.lens_x > 0.0f;
+    if (grid.segments > 0)
+        lens ? kernel.run<true, true>() : kernel.run<true, false>();
     else
-        kernel.run<false>();
+        lens ? kernel.run<false, true>() : kernel.run<false, false>();
 }
 
 }  // namespace HWY_NAMESPACE

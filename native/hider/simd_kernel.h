@@ -6,39 +6,35 @@
 #include <cstdint>
 #include <vector>
 
+#include "hider/depth_blocks.h"
 #include "hider/micropolygon.h"
 #include "hider/sample_store.h"
-#include "math/bounds.h"
 
 namespace granita {
 
 /// Arrays that are read in whole vectors end in this many spare elements.
 inline constexpr int kLanePadding = 16;
 
-/// What a tile's samples are sorted by inside each pixel, so that a micropolygon finds those that
-/// can see it: time where anything moves, else the lens coordinate u where there is a lens.
-enum class SortedBy { Table, Time, Lens };
-
-/// Samples of a tile, pixel by pixel.
+/// Samples of a tile in packets: [block][packet][kPacket], blocks row by row (SampleOrder).  A slot
+/// without sample has NaN for a place.
 struct SimdTile {
-    int samples = 0;  ///< a pixel
     const float *x = nullptr, *y = nullptr, *t = nullptr;
     const float *u = nullptr, *v = nullptr;  ///< times lens radius and scale: pixels per unit shear
     float* key = nullptr;
     SurfaceId* id = nullptr;
-    SortedBy sorted_by = SortedBy::Table;
-    /// [256][cells + 1]: first of the pixel's samples in each cell of time or of u, which run from
-    /// the shutter's opening, and from -SimdGrid::lens_x.
-    const std::uint32_t* cell_start = nullptr;
-    int cells = 0;
-    Rect pixels;  ///< that count, relative to the tile
+    int blocks_wide = 0, packets = 0;  ///< blocks in a row of the tile; packets in a block
+    int strata = 1;                    ///< into which a block's packets are sorted
+    const PacketBounds* bounds = nullptr;
+    const float* farthest = nullptr;  ///< [block][packet] farthest key, maybe out of date
 };
 
 /// A grid in a tile's homogeneous raster space.
 struct SimdGrid {
     const float *x = nullptr, *y = nullptr, *w = nullptr, *z = nullptr;  ///< [knots][vertices]
-    /// [max(1, knots - 1)][vertices] raster bounds of a vertex over the segment and the lens.
+    /// [max(1, knots - 1)][vertices] raster bounds of a vertex over the segment and the lens, and
+    /// its nearest key.
     const float *x_lo = nullptr, *x_hi = nullptr, *y_lo = nullptr, *y_hi = nullptr;
+    const float* nearest = nullptr;
     int n_u = 0, n_v = 0, vertices = 0;
     int segments = 0;  ///< knots - 1; 0 = static
     const std::uint8_t* classes = nullptr;
@@ -51,10 +47,11 @@ struct SimdGrid {
 
 struct SimdCounts {
     std::uint64_t tests = 0, hits = 0, writes = 0;
+    std::uint64_t culled = 0;  ///< tests that the hierarchical depth saved
 };
 
 /// Opaque hits go into the tile's key and id; transparent ones that are not behind them into
-/// `fragments`, whose sample counts in the tile's order.
+/// `fragments`, whose sample is a slot.
 void hide_grid_in_tile(const SimdGrid& grid, const SimdTile& tile, std::vector<Fragment>& fragments,
                        SimdCounts& counts);
 

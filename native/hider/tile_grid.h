@@ -3,7 +3,9 @@
 
 #include <vector>
 
+#include "dice/grid.h"
 #include "hider/lens_shape.h"
+#include "hider/sample_order.h"
 #include "hider/simd_kernel.h"
 #include "math/projection.h"
 
@@ -14,21 +16,22 @@ namespace granita {
 class TileGrid {
   public:
     TileGrid(const Projection& projection, const LensShape& lens);
-    /// Fills the positions, bounds and lens of `out`, which refers to this object until the next
-    /// call.
-    void project(const Grid& grid, const Vec2d& origin, SimdGrid& out);
-
-    /// Bound of |u| in pixels per unit shear.
-    float lens_x() const { return m_lens_x; }
+    /// The grid that project() is about; it must outlive the calls.
+    void load(const Grid& grid);
+    /// Fills all of `out` but classes, base, pool and range; it refers to this object until the
+    /// next call.
+    void project(const Vec2d& origin, SimdGrid& out);
+    /// How far the grid's micropolygons go, roughly.
+    Sweep sweep() const;
 
   private:
-    void bound_vertices(std::size_t vertices, std::size_t knots);
-
     Projection m_projection;
     float m_inverse_focus;
     float m_lens_x = 0.0f, m_lens_y = 0.0f;  ///< largest shift a unit of shear, pixels
-    std::vector<float> m_x, m_y, m_w, m_z;
-    std::vector<float> m_x_lo, m_x_hi, m_y_lo, m_y_hi;
+    const Grid* m_grid = nullptr;
+    std::vector<float> m_px, m_py, m_z;  ///< camera space; padded like the following
+    std::vector<float> m_x, m_y, m_w;
+    std::vector<float> m_x_lo, m_x_hi, m_y_lo, m_y_hi, m_nearest;
 };
 
 }  // namespace granita

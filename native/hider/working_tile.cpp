@@ -3,91 +3,82 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 namespace granita {
-namespace {
-
-constexpr int kPixels = kTileSize * kTileSize;
-constexpr int kMaxCells = 256;
-
-}  // namespace
 
 WorkingTile::WorkingTile(const TileSamples& samples, const Rect& pixels, Vec2f lens,
-                         float lens_reach)
-    : blocks(pixels),
-      m_samples(samples.samples),
-      m_pixels(pixels),
-      m_lens(lens),
-      m_lens_reach(lens_reach),
-      m_cells(std::min(samples.samples, kMaxCells)) {
-    m_order.resize(samples.x.size());
-    std::iota(m_order.begin(), m_order.end(), 0u);
-    copy(samples.x, 1.0f, m_x);
-    copy(samples.y, 1.0f, m_y);
-    copy(samples.u, m_lens.x, m_u);
-    copy(samples.v, m_lens.y, m_v);
-    m_key.assign(samples.x.size() + kLanePadding, -INFINITY);
-    m_id.assign(samples.x.size() + kLanePadding, kNoSurface);
+                         const OrderShape& shape)
+    : m_pixels(pixels), m_lens(lens) {
+    arrange(samples, shape);
+    m_id.assign(m_order.slots(), kNoSurface);
+    m_key.resize(m_order.slots());
+    // A slot without sample is nearer than everything, so that it never keeps a block from hiding.
+    for (std::size_t i = 0; i < m_key.size(); ++i)
+        m_key[i] = m_order.table_index()[i] == SampleOrder::kNone ? INFINITY : -INFINITY;
 }
 
-void WorkingTile::copy(const std::vector<float>& from, float factor, std::vector<float>& to) const {
-    to.assign(from.size() + kLanePadding, 0.0f);
-    for (std::size_t i = 0; i < from.size(); ++i) to[i] = from[m_order[i]] * factor;
+void WorkingTile::arrange(const TileSamples& samples, const OrderShape& shape) {
+    m_order = SampleOrder(samples, m_pixels, shape);
+    const std::vector<std::uint32_t>& index = m_order.table_index();
+    const auto copy = [&](const std::vector<float>& from, float factor, float none,
+                          std::vector<float>& to) {
+        to.assign(from.empty() ? 0 : index.size(), none);
+        if (from.empty()) return;
+        for (std::size_t i = 0; i < index.size(); ++i)
+            if (index[i] != SampleOrder::kNone) to[i] = from[index[i]] * factor;
+    };
+    // A slot without sample is nowhere: not a number, hence inside of nothing.
+    constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
+    copy(samples.x, 1.0f, kNowhere, m_x);
+    copy(samples.y, 1.0f, kNowhere, m_y);
+    copy(samples.t, 1.0f, kNowhere, m_t);
+    copy(samples.u, m_lens.x, kNowhere, m_u);
+    copy(samples.v, m_lens.y, kNowhere, m_v);
+    bound_packets();
+    m_depth.reset(m_order.blocks_wide(), m_order.packets(), m_bounds);
 }
 
-// Counting sort of every pixel's samples into cells; stable, so the order is a function of the
-// table alone.
-void WorkingTile::order_by(const std::vector<int>& cell) {
-    m_cell_start.assign(static_cast<std::size_t>(kPixels) * (m_cells + 1), 0);
-    std::vector<std::uint32_t> next(m_cells);
-    for (int pixel = 0; pixel < kPixels; ++pixel) {
-        const std::size_t first = static_cast<std::size_t>(pixel) * m_samples;
-        std::uint32_t* const start = &m_cell_start[static_cast<std::size_t>(pixel) * (m_cells + 1)];
-        for (int s = 0; s < m_samples; ++s) ++start[cell[first + s] + 1];
-        for (int c = 0; c < m_cells; ++c) start[c + 1] += start[c];
-        std::copy(start, start + m_cells, next.begin());
-        for (int s = 0; s < m_samples; ++s)
-            m_order[first + next[cell[first + s]]++] = static_cast<std::uint32_t>(first + s);
-    }
+// Of the same packet in all blocks: the table stratifies all blocks alike, so one set of bounds is
+// nearly as tight as one a block and a micropolygon is bounded once for all blocks.
+void WorkingTile::bound_packets() {
+    const auto packets = static_cast<std::size_t>(m_order.packets());
+    const auto bound = [&](const std::vector<float>& values, float most, std::vector<float>& lo,
+                           std::vector<float>& hi) {
+        lo.assign(packets + kPacket, values.empty() ? 0.0f : INFINITY);
+        hi.assign(packets + kPacket, values.empty() ? most : -INFINITY);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const std::size_t packet = i / kPacket % packets;
+            lo[packet] = values[i] < lo[packet] ? values[i] : lo[packet];
+            hi[packet] = values[i] > hi[packet] ? values[i] : hi[packet];
+        }
+    };
+    bound(m_t, 1.0f, m_bounds.t_lo, m_bounds.t_hi);
+    bound(m_u, 0.0f, m_bounds.u_lo, m_bounds.u_hi);
+    bound(m_v, 0.0f, m_bounds.v_lo, m_bounds.v_hi);
 }
 
-void WorkingTile::sort(SortedBy by, const TileSamples& samples) {
-    const std::size_t count = samples.x.size();
-    const auto cells = static_cast<float>(m_cells);
-    std::vector<int> cell(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const float place = by == SortedBy::Time
-                                ? samples.t[i]
-                                : 0.5f + 0.5f * (samples.u[i] * m_lens.x / m_lens_reach);
-        cell[i] = std::clamp(static_cast<int>(place * cells), 0, m_cells - 1);
+void WorkingTile::reorder(const TileSamples& samples, const OrderShape& shape) {
+    const std::vector<std::uint32_t> before = m_order.table_index();
+    const std::vector<float> key = std::move(m_key);
+    const std::vector<SurfaceId> id = std::move(m_id);
+    arrange(samples, shape);
+    std::vector<std::uint32_t> slot(samples.x.size(), 0);  // by index in the table
+    for (std::uint32_t i = 0; i < m_order.slots(); ++i)
+        if (m_order.table_index()[i] != SampleOrder::kNone) slot[m_order.table_index()[i]] = i;
+    m_key.assign(m_order.slots(), INFINITY);
+    m_id.assign(m_order.slots(), kNoSurface);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        if (before[i] == SampleOrder::kNone) continue;
+        m_key[slot[before[i]]] = key[i];
+        m_id[slot[before[i]]] = id[i];
     }
-    const std::vector<std::uint32_t> before = m_order;
-    order_by(cell);
-    m_sorted_by = by;
-    copy(samples.x, 1.0f, m_x);
-    copy(samples.y, 1.0f, m_y);
-    copy(samples.t, 1.0f, m_t);
-    copy(samples.u, m_lens.x, m_u);
-    copy(samples.v, m_lens.y, m_v);
-
-    std::vector<std::uint32_t> old_place(count), new_place(count);  // by index in the table
-    for (std::uint32_t i = 0; i < count; ++i) {
-        old_place[before[i]] = i;
-        new_place[m_order[i]] = i;
-    }
-    const std::vector<float> key = m_key;
-    const std::vector<SurfaceId> id = m_id;
-    for (std::size_t i = 0; i < count; ++i) {
-        m_key[i] = key[old_place[m_order[i]]];
-        m_id[i] = id[old_place[m_order[i]]];
-    }
-    for (Fragment& fragment : fragments) fragment.sample = new_place[before[fragment.sample]];
+    for (Fragment& fragment : fragments) fragment.sample = slot[before[fragment.sample]];
+    m_depth.rebuild(m_key.data());
 }
 
 SimdTile WorkingTile::view() {
     SimdTile tile;
-    tile.samples = m_samples;
     tile.x = m_x.data();
     tile.y = m_y.data();
     tile.t = m_t.data();
@@ -95,20 +86,23 @@ SimdTile WorkingTile::view() {
     tile.v = m_v.data();
     tile.key = m_key.data();
     tile.id = m_id.data();
-    tile.sorted_by = m_sorted_by;
-    tile.cell_start = m_cell_start.data();
-    tile.cells = m_cells;
-    tile.pixels = m_pixels;
+    tile.blocks_wide = m_order.blocks_wide();
+    tile.packets = m_order.packets();
+    tile.bounds = &m_bounds;
+    tile.farthest = m_depth.farthest_of_packets();
+    tile.strata = m_order.shape().times * m_order.shape().us * m_order.shape().vs;
     return tile;
 }
 
 void WorkingTile::store(TileStore& out) const {
-    for (std::size_t i = 0; i < out.key.size(); ++i) {
-        out.key[m_order[i]] = m_key[i];
-        out.id[m_order[i]] = m_id[i];
+    const std::vector<std::uint32_t>& index = m_order.table_index();
+    for (std::size_t i = 0; i < index.size(); ++i) {
+        if (index[i] == SampleOrder::kNone) continue;
+        out.key[index[i]] = m_key[i];
+        out.id[index[i]] = m_id[i];
     }
     out.fragments = fragments;
-    for (Fragment& fragment : out.fragments) fragment.sample = m_order[fragment.sample];
+    for (Fragment& fragment : out.fragments) fragment.sample = index[fragment.sample];
 }
 
 }  // namespace granita

@@ -5,43 +5,48 @@
 #include <vector>
 
 #include "hider/depth_blocks.h"
+#include "hider/sample_order.h"
 #include "hider/sample_store.h"
 #include "hider/simd_kernel.h"
 
 namespace granita {
 
-/// A tile while the SIMD executor works on it: padded copies of its samples, sorted inside each
-/// pixel for the kernel.
+/// A tile while the SIMD executor works on it: copies of its samples in packets for the kernel.
 class WorkingTile {
   public:
-    /// `lens_x`, `lens_y`: lens radius times pixels per unit shear, multiplied into u and v;
-    /// `lens_reach`: bound of the resulting |u|.
-    WorkingTile(const TileSamples& samples, const Rect& pixels, Vec2f lens, float lens_reach);
+    /// `lens`: lens radius times pixels per unit shear, multiplied into u and v.
+    WorkingTile(const TileSamples& samples, const Rect& pixels, Vec2f lens,
+                const OrderShape& shape);
+    WorkingTile(const WorkingTile&) = delete;
+    WorkingTile& operator=(const WorkingTile&) = delete;
 
-    SortedBy sorted_by() const { return m_sorted_by; }
-    /// By Time or Lens, of which the samples must have the coordinates; what was seen moves along.
-    void sort(SortedBy by, const TileSamples& samples);
+    const OrderShape& shape() const { return m_order.shape(); }
+    /// Another order of the samples; what was seen moves along.
+    void reorder(const TileSamples& samples, const OrderShape& shape);
     SimdTile view();
     /// Copies what was seen to the store, in table order.
     void store(TileStore& out) const;
+    /// Brings the hierarchical depth up to date when it is worth while.
+    void update_depth() { m_depth.update(m_key.data()); }
+    void note_writes(std::uint64_t written) { m_depth.note_writes(written); }
+    /// Whether all samples of these pixels (relative to the tile) and times see something nearer.
+    bool hides(const Rect& pixels, float time0, float time1, float nearest_key) const {
+        return m_depth.hide(pixels.intersect(m_pixels), time0, time1, nearest_key);
+    }
 
-    std::vector<Fragment> fragments;  ///< sample in this tile's order
-    DepthBlocks blocks;
+    std::vector<Fragment> fragments;  ///< sample = slot of the order
 
   private:
-    void copy(const std::vector<float>& from, float factor, std::vector<float>& to) const;
-    void order_by(const std::vector<int>& cell);
+    void arrange(const TileSamples& samples, const OrderShape& shape);
+    void bound_packets();
 
-    int m_samples;
     Rect m_pixels;
     Vec2f m_lens;
-    float m_lens_reach;
-    SortedBy m_sorted_by = SortedBy::Table;
+    SampleOrder m_order;
+    DepthBlocks m_depth;
     std::vector<float> m_x, m_y, m_t, m_u, m_v, m_key;
     std::vector<SurfaceId> m_id;
-    std::vector<std::uint32_t> m_order;  ///< place here -> index in the table
-    std::vector<std::uint32_t> m_cell_start;
-    int m_cells = 0;
+    PacketBounds m_bounds;
 };
 
 }  // namespace granita

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hider/sample_order.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace granita {
+namespace {
+
+constexpr int kPixels = kTileSize * kTileSize;
+/// Side of the bounding square of a micropolygon of one pixel, at some angle.
+constexpr double kExtent = 1.3;
+constexpr int kLeastSideLog2 = -2, kMostSideLog2 = 3;
+
+int packets_of_block(int side_log2, int samples) {
+    const double count = std::ldexp(samples, 2 * side_log2);
+    return std::max(1, static_cast<int>(std::ceil(count / kPacket)));
+}
+
+/// Counting sort of slots[0, count) by cells of `value`, which lies in [lo, hi]; stable.
+template <class Value>
+void sort_by_cells(std::uint32_t* slots, std::size_t count, int cells, float lo, float hi,
+                   std::vector<std::uint32_t>& scratch, Value value) {
+    const float scale = static_cast<float>(cells) / (hi - lo);
+    const auto cell = [&](std::uint32_t sample) {
+        return std::clamp(static_cast<int>((value(sample) - lo) * scale), 0, cells - 1);
+    };
+    std::vector<std::uint32_t> start(static_cast<std::size_t>(cells) + 1, 0);
+    for (std::size_t i = 0; i < count; ++i) ++start[cell(slots[i]) + 1];
+    for (int c = 0; c < cells; ++c) start[c + 1] += start[c];
+    scratch.assign(slots, slots + count);
+    for (const std::uint32_t sample : scratch) slots[start[cell(sample)]++] = sample;
+}
+
+/// Calls visit(first, count) for each of `parts` equal shares of the packets that hold `count`
+/// slots.
+template <class Visit>
+void for_each_share(std::size_t count, int packets, int parts, Visit visit) {
+    for (int part = 0; part < parts; ++part) {
+        const std::size_t first = static_cast<std::size_t>(packets) * part / parts * kPacket;
+        const std::size_t end = static_cast<std::size_t>(packets) * (part + 1) / parts * kPacket;
+        if (first < count) visit(first, std::min(end, count) - first);
+    }
+}
+
+}  // namespace
+
+float OrderShape::side() const {
+    return std::ldexp(1.0f, side_log2);
+}
+
+double packets_met(const OrderShape& shape, int samples, const Sweep& sweep) {
+    const int packets = packets_of_block(shape.side_log2, samples);
+    const double side = shape.side();
+    const auto blocks = [&](int axis, int lens_strata) {
+        const double reach = sweep.motion[axis] / shape.times + sweep.lens[axis] / lens_strata;
+        return std::min((reach + kExtent + side) / side, kTileSize / side + 1);
+    };
+    // The bounds of the strata of one micropolygon cost about a test for every four strata.
+    const int strata = shape.times * shape.us * shape.vs;
+    return packets * blocks(0, shape.us) * blocks(1, shape.vs) + .25 * (strata - 1);
+}
+
+OrderShape best_order(int samples, const Sweep& sweep) {
+    OrderShape best;
+    double least = INFINITY;
+    const auto is_zero = [](const Vec2f& v) { return v.x == 0.0f && v.y == 0.0f; };
+    for (int side = kLeastSideLog2; side <= kMostSideLog2; ++side) {
+        // Parts of a pixel hold equally many samples only if these divide.
+        if (side < 0 && samples % (1 << (-2 * side)) != 0) continue;
+        const int packets = packets_of_block(side, samples);
+        for (int times = 1; times <= (is_zero(sweep.motion) ? 1 : packets); times *= 2)
+            for (int us = 1; us * times <= (is_zero(sweep.lens) ? times : packets); us *= 2)
+                for (int vs = us; vs <= 2 * us && vs * us * times <= packets; vs *= 2) {
+                    if (is_zero(sweep.lens) && vs > 1) continue;
+                    const OrderShape shape{side, times, us, vs};
+                    const double met = packets_met(shape, samples, sweep);
+                    if (met < least) {
+                        least = met;
+                        best = shape;
+                    }
+                }
+    }
+    return best;
+}
+
+SampleOrder::SampleOrder(const TileSamples& samples, const Rect& pixels, const OrderShape& shape)
+    : m_shape(shape) {
+    distribute(samples, pixels);
+    // Samples that are not a net may crowd in a part of a pixel; then blocks are whole pixels.
+    if (m_shape.side_log2 < 0 && m_packets > packets_of_block(m_shape.side_log2, samples.samples)) {
+        m_shape.side_log2 = 0;
+        distribute(samples, pixels);
+    }
+}
+
+void SampleOrder::distribute(const TileSamples& samples, const Rect& pixels) {
+    m_blocks_wide = static_cast<int>(std::ldexp(kTileSize, -m_shape.side_log2));
+    const float per_pixel = std::ldexp(1.0f, -m_shape.side_log2);
+    const auto block_of = [&](std::uint32_t i) {
+        return static_cast<std::uint32_t>(static_cast<int>(samples.y[i] * per_pixel) *
+                                              m_blocks_wide +
+                                          static_cast<int>(samples.x[i] * per_pixel));
+    };
+    const auto for_each_sample = [&](auto visit) {
+        for (int p = 0; p < kPixels; ++p) {
+            const int x = p % kTileSize, y = p / kTileSize;
+            if (x < pixels.x0 || x >= pixels.x1 || y < pixels.y0 || y >= pixels.y1) continue;
+            const auto first = static_cast<std::uint32_t>(p * samples.samples);
+            for (std::uint32_t s = 0; s < static_cast<std::uint32_t>(samples.samples); ++s)
+                visit(first + s);
+        }
+    };
+    const auto blocks = static_cast<std::size_t>(m_blocks_wide) * m_blocks_wide;
+    std::vector<std::uint32_t> count(blocks, 0);
+    for_each_sample([&](std::uint32_t i) { ++count[block_of(i)]; });
+    const std::uint32_t most = *std::max_element(count.begin(), count.end());
+    m_packets = std::max(1, static_cast<int>((most + kPacket - 1) / kPacket));
+    const std::size_t stride = static_cast<std::size_t>(m_packets) * kPacket;
+    m_table_index.assign(blocks * stride, kNone);
+    std::vector<std::uint32_t> filled(blocks, 0);
+    for_each_sample([&](std::uint32_t i) {
+        const std::uint32_t block = block_of(i);
+        m_table_index[block * stride + filled[block]++] = i;
+    });
+    if (m_shape.times * m_shape.us * m_shape.vs == 1) return;
+    for (std::size_t block = 0; block < blocks; ++block)
+        sort_block(samples, m_table_index.data() + block * stride, count[block]);
+}
+
+void SampleOrder::sort_block(const TileSamples& samples, std::uint32_t* slots, std::size_t count) {
+    // Four cells a stratum: enough for nets, whose strata are whole cells, and nearly for others.
+    const auto sort = [&](std::size_t first, std::size_t n, int parts, float lo,
+                          const std::vector<float>& values) {
+        if (parts > 1)
+            sort_by_cells(slots + first, n, 4 * parts, lo, 1.0f, m_scratch,
+                          [&](std::uint32_t i) { return values[i]; });
+    };
+    sort(0, count, m_shape.times, 0.0f, samples.t);
+    const int per_time = m_packets / m_shape.times;
+    for_each_share(count, m_packets, m_shape.times, [&](std::size_t first, std::size_t n) {
+        sort(first, n, m_shape.us, -1.0f, samples.u);
+        for_each_share(n, per_time, m_shape.us, [&](std::size_t from, std::size_t some) {
+            sort(first + from, some, m_shape.vs, -1.0f, samples.v);
+        });
+    });
+}
+
+}  // namespace granita
