@@ -76,6 +76,14 @@ double EdgeRate::outside(const Swept& swept) const {
     return std::max(dx, dy);
 }
 
+double EdgeRate::outside(const RasterBounds& bounds) const {
+    return outside(Swept{bounds.x0, bounds.x1, bounds.y0, bounds.y1});
+}
+
+bool EdgeRate::inside(const RasterBounds& bounds) const {
+    return bounds.x0 >= 0.0f && bounds.y0 >= 0.0f && bounds.x1 <= m_width && bounds.y1 <= m_height;
+}
+
 double EdgeRate::angle(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots) const {
     double largest = 0.0;
     for (int k = 0; k < knots; ++k) {
@@ -95,7 +103,7 @@ bool EdgeRate::stays_whole(const Vec3f* start, const Vec3f* end, int knots) cons
 }
 
 int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots,
-                     int budget) const {
+                     int budget, double most_outside) const {
     if (budget <= 0) return 0;
     Swept swept;
     double longest = 0.0, sag = 0.0;
@@ -114,7 +122,7 @@ int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, 
             chord > 0.25 * length ? 2.0 * std::sqrt(std::max(area2, 0.0)) / chord : 0.5 * length;
         sag = std::max(sag, height);
     }
-    const double off = swept.seen ? outside(swept) : 0.0;
+    const double off = swept.seen ? std::min(outside(swept), most_outside) : 0.0;
     const double target = m_rate + off / kOutside, coarser = target / m_rate;
     if (m_projection.perspective && (swept.clipped || off > 0.0)) {
         const double seen_angle = angle(start, middle, end, knots);

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "dice/view.h"
 
@@ -31,11 +32,17 @@ class EdgeRate {
     static constexpr int kAdaptive = -1;
 
     /// `start`, `middle`, `end` [knots] camera space, in the edge's own direction.  At most
-    /// `budget` levels.
-    int levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots,
-               int budget) const;
+    /// `budget` levels.  The piece counts as no farther outside the frame than `most_outside`
+    /// pixels.
+    int levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots, int budget,
+               double most_outside = std::numeric_limits<double>::infinity()) const;
     /// The same for a straight piece that is probably short enough: true where levels() is 0.
     bool stays_whole(const Vec3f* start, const Vec3f* end, int knots) const;
+    /// The dicing rate, pixels; never 0.
+    double rate() const { return m_rate; }
+    /// Pixels from the frame to a swept bound; 0 where they overlap.
+    double outside(const RasterBounds& bounds) const;
+    bool inside(const RasterBounds& bounds) const;
 
   private:
     struct Swept;

@@ -66,21 +66,7 @@ void Patch::measure() {
     m_border.u = std::max(walk.depth(m_sides[kBottom], most), walk.depth(m_sides[kTop], most));
     m_border.v = std::max(walk.depth(m_sides[kLeft], most), walk.depth(m_sides[kRight], most));
     m_rates = m_border;
-    const bool fits = m_border.u + m_border.v <= most;
-    if (fits && !m_mesh->straight_edges()) {
-        // Between the sides a curved surface may need more than they do.
-        EdgePoint a, b;
-        for (const bool along_u : {true, false}) {
-            const Vec2d* c = m_corner_uv;
-            const Vec2d start = 0.5 * (c[0] + (along_u ? c[3] : c[1]));
-            const Vec2d end = 0.5 * (c[2] + (along_u ? c[1] : c[3]));
-            m_mesh->surface_point(*m_patch, start, a);
-            m_mesh->surface_point(*m_patch, end, b);
-            const Side middle = walk.draw(start, end, a, b, along_u ? m_budget_u : m_budget_v);
-            int& rate = along_u ? m_rates.u : m_rates.v;
-            rate = std::max(rate, walk.depth(middle, most));
-        }
-    }
+    if (m_border.u + m_border.v <= most) measure_inside(walk, most);
     const int u = splittable(true), v = splittable(false);
     m_diceable = m_rates.u + m_rates.v <= most || u + v == 0;
     if (m_diceable) {
@@ -100,6 +86,29 @@ void Patch::measure() {
         m_split_u = m_rates.u > m_rates.v;
     else
         m_split_u = m_budget_u >= m_budget_v;
+}
+
+/// Between the sides a surface may need more than they do: where it is curved, and where they lie
+/// outside the frame, and coarse for that, around or beside what the frame shows.  Its middle lines
+/// stand for it, as near to the frame as the patch is.
+void Patch::measure_inside(const SideWalker& walk, int most) {
+    const bool curved = !m_mesh->straight_edges();
+    if (!curved && m_border.u + m_border.v == 0) return;  // a pixel or two
+    const RasterBounds around = bounds();
+    const EdgeRate& rate = m_mesh->rate();
+    if (!curved && rate.inside(around)) return;
+    const auto outside = static_cast<float>(rate.outside(around));
+    EdgePoint a, b;
+    for (const bool along_u : {true, false}) {
+        const Vec2d* c = m_corner_uv;
+        const Vec2d start = 0.5 * (c[0] + (along_u ? c[3] : c[1]));
+        const Vec2d end = 0.5 * (c[2] + (along_u ? c[1] : c[3]));
+        m_mesh->surface_point(*m_patch, start, a);
+        m_mesh->surface_point(*m_patch, end, b);
+        const Side middle = walk.draw(start, end, a, b, along_u ? m_budget_u : m_budget_v, outside);
+        int& levels = along_u ? m_rates.u : m_rates.v;
+        levels = std::max(levels, walk.depth(middle, most));
+    }
 }
 
 bool Patch::diceable() const {

@@ -37,6 +37,7 @@ class Patch final : public Primitive {
 
     Patch(std::shared_ptr<const OpenedMesh> mesh, const BasePatch& patch);
     void measure();
+    void measure_inside(const SideWalker& walk, int most);
     /// 0 not at all, 1 into a triangle and a rest, 2 in the middle.
     int splittable(bool along_u) const;
     /// Where a split line ends on a side: its middle, or the corner that stands in for it.
@@ -46,8 +47,6 @@ class Patch final : public Primitive {
         Side halves[2];
     };
     Cut cut(int side, bool collapsed_before, int before, int after) const;
-    /// Whether the grid moves, its shading positions and its bounds.
-    void finish_motion(Grid& grid) const;
     void dice_attributes(Grid& grid, const std::vector<Vec2d>& uv, const std::vector<Vec2d>& step_u,
                          const std::vector<Vec2d>& step_v) const;
 

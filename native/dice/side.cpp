@@ -48,7 +48,7 @@ void SideWalker::classify(Side& side) const {
     }
     edge_point(side, on_edge(side, 0.5), middle);
     side.levels = static_cast<std::int8_t>(
-        rate.levels(start.p, middle.p, end.p, m_mesh.knot_count(), side.budget));
+        rate.levels(start.p, middle.p, end.p, m_mesh.knot_count(), side.budget, side.most_outside));
 }
 
 Side SideWalker::half(const Side& side, int half) const {
@@ -81,7 +81,7 @@ void SideWalker::leaf_ends(const Side& side, int first, int steps, std::vector<i
 }
 
 Side SideWalker::draw(const Vec2d& uv0, const Vec2d& uv1, const EdgePoint& start,
-                      const EdgePoint& end, int budget) const {
+                      const EdgePoint& end, int budget, float most_outside) const {
     auto line = std::make_shared<Line>();
     line->uv0 = uv0;
     line->uv1 = uv1;
@@ -94,6 +94,7 @@ Side SideWalker::draw(const Vec2d& uv0, const Vec2d& uv1, const EdgePoint& start
     }
     Side side;
     side.line = std::move(line);
+    side.most_outside = most_outside;
     side.budget = static_cast<std::uint8_t>(budget);
     classify(side);
     return side;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -45,6 +46,8 @@ struct Side {
     std::int8_t levels = 0;   ///< of the tree below: uniform, or EdgeRate::kAdaptive
     bool reversed = false;    ///< the patch's direction is against the edge's
     bool collapsed = false;   ///< no edge at all: one point, its neighbours know which
+    /// Counts as no farther outside the frame than this, pixels: lines that stand for a surface.
+    float most_outside = std::numeric_limits<float>::infinity();
 
     bool refined() const { return levels != 0; }
 };
@@ -66,7 +69,7 @@ class SideWalker {
     void leaf_ends(const Side& side, int first, int steps, std::vector<int>& ends) const;
     /// The line between two points, classified.
     Side draw(const Vec2d& uv0, const Vec2d& uv1, const EdgePoint& start, const EdgePoint& end,
-              int budget) const;
+              int budget, float most_outside = std::numeric_limits<float>::infinity()) const;
 
   private:
     void edge_point(const Side& side, double t, EdgePoint& out) const;

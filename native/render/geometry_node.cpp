@@ -29,8 +29,6 @@ void SharedGrid::ensure_radiance(const ShadingSystem& shading) {
     std::call_once(m_radiance, [&] {
         const StageTimer timer(m_statistics, Stage::Shade);
         shading.shade_radiance(*m_grid);
-        m_statistics.add(Counter::GridsShaded);
-        m_statistics.add(Counter::PointsShaded, static_cast<std::uint64_t>(m_grid->vertex_count()));
     });
 }
 

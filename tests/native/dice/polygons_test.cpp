@@ -300,5 +300,26 @@ TEST(Polygons, derivatives_are_the_parametric_ones_times_the_step) {
     }
 }
 
+TEST(Polygons, what_the_frame_shows_of_a_large_face_is_diced_finely) {
+    // All sides lie outside the frame and are coarse; the frame looks at the face's middle, or at a
+    // part of it that neither middle line crosses.
+    for (const float shift : {0.0f, 25.0f}) {
+        const float lo = -60.0f - shift, hi = 60.0f - shift;
+        DiceScene s(
+            mesh({{lo, lo, 49}, {hi, lo, 49}, {hi, hi, 49}, {lo, hi, 49}}, {4}, {0, 1, 2, 3}));
+        s.perspective(256.0);
+        int seen = 0;
+        for (const auto& grid : s.grids()) {
+            const RasterBounds& b = grid->bounds;
+            if (b.x1 < 0 || b.y1 < 0 || b.x0 > 256 || b.y0 > 256) continue;
+            // No micropolygon of it is wider than twice the rate on average.
+            EXPECT_LE(b.x1 - b.x0, 2.0f * static_cast<float>(grid->n_u) + 1.0f);
+            EXPECT_LE(b.y1 - b.y0, 2.0f * static_cast<float>(grid->n_v) + 1.0f);
+            seen += grid->micropolygon_count();
+        }
+        EXPECT_GE(seen, 256 * 256 / 2);
+    }
+}
+
 }  // namespace
 }  // namespace granita::testing
