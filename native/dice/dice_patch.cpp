@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dice/finish_motion.h"
 #include "dice/patch.h"
-#include "dice/raster_bound.h"
 
 namespace granita {
 namespace {
@@ -163,7 +163,7 @@ std::unique_ptr<Grid> Patch::dice() const {
             m_mesh->report().warn(m_mesh->instance().name,
                                   "vertices displaced beyond the displacement bound", beyond);
     }
-    finish_motion(*grid);
+    finish_motion(*grid, m_mesh->knots(), m_mesh->view().projection);
     if (!grid->bounds.visible && std::none_of(grid->positions.begin(), grid->positions.end(),
                                               [](const Vec3f& p) { return is_finite(p); })) {
         m_mesh->report().warn(m_mesh->instance().name, "a grid without any finite vertex left out");
@@ -189,29 +189,6 @@ std::unique_ptr<Grid> Patch::dice() const {
     }
     dice_attributes(*grid, uv, step_u, step_v);
     return grid;
-}
-
-void Patch::finish_motion(Grid& grid) const {
-    const std::size_t count = static_cast<std::size_t>(grid.vertex_count());
-    for (int k = 1; k < grid.knots && !grid.motion; ++k)
-        grid.motion = !std::equal(grid.positions.begin(),
-                                  grid.positions.begin() + static_cast<std::ptrdiff_t>(count),
-                                  grid.positions.begin() + k * static_cast<std::ptrdiff_t>(count));
-    if (!grid.motion) {
-        grid.knots = 1;
-        grid.positions.resize(count);
-    } else {
-        const Knots& knots = m_mesh->knots();
-        const std::size_t first = static_cast<std::size_t>(knots.frame_knot) * count;
-        const double fraction = knots.frame_fraction;
-        grid.p.resize(count);
-        for (std::size_t i = 0; i < count; ++i)
-            grid.p[i] = fraction == 0.0
-                            ? grid.positions[first + i]
-                            : Vec3f(Vec3d(grid.positions[first + i]) * (1.0 - fraction) +
-                                    Vec3d(grid.positions[first + count + i]) * fraction);
-    }
-    grid.bounds = raster_bound(m_mesh->view().projection, grid.positions);
 }
 
 void Patch::dice_attributes(Grid& grid, const std::vector<Vec2d>& uv,

@@ -4,10 +4,12 @@
 #include <algorithm>
 
 #include "dice/knots.h"
+#include "dice/opened_elements.h"
 #include "dice/opened_polygons.h"
 #include "dice/opened_subdivision.h"
 #include "dice/raster_bound.h"
 #include "geometry/geometry_cache.h"
+#include "geometry/shared_elements.h"
 #include "geometry/shared_geometry.h"
 
 namespace granita {
@@ -28,6 +30,10 @@ void add_transformed(Bounds3f& sum, const Mat4d& m, const Bounds3f& box) {
         sum.add(Vec3f(transform_point(m, p)));
     }
 }
+
+/// Of a radius: how far a curve's may swing beyond its points' (corners of a small point's outline
+/// reach a little further than 1.25).
+constexpr float kWidest = 1.26f;
 
 float displacement_bound(const View& view, const Instance& instance) {
     if (view.displacement.empty()) return 0.0f;
@@ -55,10 +61,16 @@ RasterBounds instance_bounds(const View& view, std::size_t index) {
     const auto boxes = view.geometries->boxes(*view.scene, geometry);
     const Knots knots = combine_knots(*view.scene, instance, data, data.knots == 1);
     if (!knots.finite) return {};
+    const float radius = view.geometries->largest_radius(*view.scene, geometry);
     Bounds3f box;
-    for (int k = 0; k < knots.count; ++k)
-        add_transformed(box, knots.camera_from_object[static_cast<std::size_t>(k)],
-                        box_at(*boxes, knot_time(k, knots.count - 1, data.knots)));
+    for (int k = 0; k < knots.count; ++k) {
+        const Mat4d& m = knots.camera_from_object[static_cast<std::size_t>(k)];
+        Bounds3f at_knot;
+        add_transformed(at_knot, m, box_at(*boxes, knot_time(k, knots.count - 1, data.knots)));
+        if (radius > 0.0f && !at_knot.empty())
+            at_knot.grow(kWidest * radius * static_cast<float>(uniform_scale(m)));
+        box.add(at_knot);
+    }
     if (box.empty()) return {};
     const Vec3f largest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
     box.grow(4e-6f * std::max({largest.x, largest.y, largest.z}) +
@@ -71,8 +83,15 @@ std::shared_ptr<const OpenedInstance> open_instance(const View& view, std::size_
     const Instance& instance = view.scene->instances[index];
     const std::size_t geometry = static_cast<std::size_t>(instance.geometry);
     const GeometryData& data = view.scene->geometries[geometry];
-    auto shared = view.geometries->shared(*view.scene, geometry, report);
-    Knots knots = combine_knots(*view.scene, instance, data, shared->is_static());
+    const bool is_mesh = data.kind == GeometryKind::Mesh;
+    std::shared_ptr<const SharedGeometry> shared;
+    std::shared_ptr<const SharedElements> elements;
+    if (is_mesh)
+        shared = view.geometries->shared(*view.scene, geometry, report);
+    else
+        elements = view.geometries->elements(*view.scene, geometry, report);
+    Knots knots = combine_knots(*view.scene, instance, data,
+                                is_mesh ? shared->is_static() : elements->is_static());
     if (!knots.finite) {
         report.warn(instance.name, "has a transform that is not finite and is left out");
         return std::make_shared<Nothing>();
@@ -82,6 +101,9 @@ std::shared_ptr<const OpenedInstance> open_instance(const View& view, std::size_
                     "its motion knots and its camera's have too few in common: the motion is "
                     "approximated by " +
                         std::to_string(kMaxKnots - 1) + " segments");
+    if (!is_mesh)
+        return std::make_shared<OpenedElements>(view, index, std::move(elements), std::move(knots),
+                                                report);
     if (shared->patches().empty()) return std::make_shared<Nothing>();
     if (shared->subdivision())
         return std::make_shared<OpenedSubdivision>(view, index, std::move(shared), std::move(knots),

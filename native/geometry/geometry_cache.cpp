@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/geometry_cache.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/shared_elements.h"
 #include "geometry/shared_geometry.h"
 
 namespace granita {
@@ -14,12 +18,8 @@ std::shared_ptr<const std::vector<Bounds3f>> GeometryCache::boxes(const Scene& s
                                                                   std::size_t geometry) {
     Entry& found = entry(geometry);
     std::call_once(found.boxes_once, [&] {
-        const GeometryData& data = scene.geometries[geometry];
-        auto boxes = std::make_shared<std::vector<Bounds3f>>(static_cast<std::size_t>(data.knots));
-        const std::size_t n = data.vertex_count();
-        for (std::size_t i = 0; i < data.points.size(); ++i)
-            if (is_finite(data.points[i])) (*boxes)[i / n].add(data.points[i]);
-        found.boxes = std::move(boxes);
+        found.boxes =
+            std::make_shared<std::vector<Bounds3f>>(element_boxes(scene.geometries[geometry]));
     });
     return found.boxes;
 }
@@ -32,6 +32,27 @@ std::shared_ptr<const SharedGeometry> GeometryCache::shared(const Scene& scene,
                                                         scene.options.frame_time, report);
     });
     return found.shared;
+}
+
+std::shared_ptr<const SharedElements> GeometryCache::elements(const Scene& scene,
+                                                              std::size_t geometry,
+                                                              Report& report) {
+    Entry& found = entry(geometry);
+    std::call_once(found.elements_once, [&] {
+        found.elements = std::make_shared<SharedElements>(scene.geometries[geometry],
+                                                          scene.options.frame_time, report);
+    });
+    return found.elements;
+}
+
+float GeometryCache::largest_radius(const Scene& scene, std::size_t geometry) {
+    Entry& found = entry(geometry);
+    std::call_once(found.radius_once, [&] {
+        for (const float radius : scene.geometries[geometry].radius)
+            if (std::isfinite(radius))
+                found.largest_radius = std::max(found.largest_radius, radius);
+    });
+    return found.largest_radius;
 }
 
 }  // namespace granita

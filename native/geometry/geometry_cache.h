@@ -14,6 +14,7 @@
 
 namespace granita {
 
+class SharedElements;
 class SharedGeometry;
 
 /// Thread-safe; one a frame.
@@ -21,14 +22,22 @@ class GeometryCache {
   public:
     /// Object-space boxes of the finite points, one a knot of the geometry.
     std::shared_ptr<const std::vector<Bounds3f>> boxes(const Scene& scene, std::size_t geometry);
+    /// Of a mesh.
     std::shared_ptr<const SharedGeometry> shared(const Scene& scene, std::size_t geometry,
                                                  Report& report);
+    /// Of curves and points.
+    std::shared_ptr<const SharedElements> elements(const Scene& scene, std::size_t geometry,
+                                                   Report& report);
+    /// The largest radius of curves and points, metres; 0 for a mesh.
+    float largest_radius(const Scene& scene, std::size_t geometry);
 
   private:
     struct Entry {
-        std::once_flag boxes_once, shared_once;
+        std::once_flag boxes_once, shared_once, elements_once, radius_once;
         std::shared_ptr<const std::vector<Bounds3f>> boxes;
         std::shared_ptr<const SharedGeometry> shared;
+        std::shared_ptr<const SharedElements> elements;
+        float largest_radius = 0.0f;
     };
     Entry& entry(std::size_t geometry);
 

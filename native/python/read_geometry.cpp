@@ -25,7 +25,7 @@ Attribute read_attribute(const Record& r, const GeometryData& g) {
     attribute.kind = static_cast<AttributeKind>(
         choice(r, "kind", r.text("kind", "GENERIC"), {"GENERIC", "UV", "COLOR"}));
     const std::size_t elements = attribute.domain == Domain::Point  ? g.vertex_count()
-                                 : attribute.domain == Domain::Face ? g.face_count()
+                                 : attribute.domain == Domain::Face ? g.element_count()
                                                                     : g.corner_verts.size();
     const auto a = r.array<float>("values", {static_cast<py::ssize_t>(elements), -1});
     attribute.width = static_cast<int>(a.shape(1));
@@ -59,16 +59,7 @@ void read_subdivision(const Record& r, GeometryData& g) {
         if (v < 0 || v >= n) r.fail("'crease_verts' names a vertex that does not exist");
 }
 
-}  // namespace
-
-void read_geometry(const Record& r, GeometryData& g) {
-    const auto points = r.array<float>("points", {-1, -1, 3});
-    g.knots = static_cast<int>(points.shape(0));
-    if (g.knots < 1) r.fail("'points' must hold at least one knot");
-    g.points.resize(static_cast<std::size_t>(points.shape(0) * points.shape(1)));
-    if (!g.points.empty())
-        std::memcpy(g.points.data(), points.data(), g.points.size() * sizeof(Vec3f));
-
+void read_faces(const Record& r, GeometryData& g) {
     g.face_sizes = r.values<std::int32_t>("face_sizes", {-1});
     g.corner_verts = r.values<std::int32_t>("corner_verts", {-1});
     std::int64_t corners = 0;
@@ -84,18 +75,57 @@ void read_geometry(const Record& r, GeometryData& g) {
         if (v < 0 || v >= vertices)
             r.fail("'corner_verts' names vertex " + std::to_string(v) + " of " +
                    std::to_string(vertices));
-
-    const auto faces = static_cast<py::ssize_t>(g.face_count());
-    g.material_index = r.values<std::int32_t>("material_index", {faces});
-    g.smooth = r.values<std::uint8_t>("smooth", {faces});
+    g.smooth = r.values<std::uint8_t>("smooth", {static_cast<py::ssize_t>(g.face_count())});
     g.corner_normals =
         vectors(r, "corner_normals", static_cast<py::ssize_t>(g.corner_verts.size()));
+    if (r.has("subdivision")) read_subdivision(r.record("subdivision"), g);
+}
+
+void read_curve_sizes(const Record& r, GeometryData& g) {
+    g.curve_sizes = r.values<std::int32_t>("curve_sizes", {-1});
+    std::int64_t points = 0;
+    for (const std::int32_t size : g.curve_sizes) {
+        if (size < 1) r.fail("'curve_sizes' holds a curve of " + std::to_string(size) + " points");
+        points += size;
+    }
+    if (points != static_cast<std::int64_t>(g.vertex_count()))
+        r.fail("'curve_sizes' add up to " + std::to_string(points) + ", 'points' has " +
+               std::to_string(g.vertex_count()));
+}
+
+void read_radius(const Record& r, GeometryData& g) {
+    const auto radius = r.array<float>("radius", {-1, static_cast<py::ssize_t>(g.vertex_count())});
+    if (radius.shape(0) != 1 && radius.shape(0) != g.knots)
+        r.fail("'radius' has " + std::to_string(radius.shape(0)) + " knots, 'points' has " +
+               std::to_string(g.knots));
+    g.radius.assign(radius.data(), radius.data() + radius.size());
+}
+
+}  // namespace
+
+void read_geometry(const Record& r, GeometryData& g) {
+    g.kind = static_cast<GeometryKind>(
+        choice(r, "kind", r.text("kind", "MESH"), {"MESH", "CURVES", "POINTS"}));
+    const auto points = r.array<float>("points", {-1, -1, 3});
+    g.knots = static_cast<int>(points.shape(0));
+    if (g.knots < 1) r.fail("'points' must hold at least one knot");
+    g.points.resize(static_cast<std::size_t>(points.shape(0) * points.shape(1)));
+    if (!g.points.empty())
+        std::memcpy(g.points.data(), points.data(), g.points.size() * sizeof(Vec3f));
+
+    if (g.kind == GeometryKind::Mesh)
+        read_faces(r, g);
+    else
+        read_radius(r, g);
+    if (g.kind == GeometryKind::Curves) read_curve_sizes(r, g);
+
+    g.material_index =
+        r.values<std::int32_t>("material_index", {static_cast<py::ssize_t>(g.element_count())});
     for (const py::handle item : r.list("attributes")) {
         if (!py::isinstance<py::dict>(item)) r.fail("'attributes' must hold dicts");
         g.attributes.push_back(
             read_attribute(Record(py::reinterpret_borrow<py::dict>(item), r.datablock()), g));
     }
-    if (r.has("subdivision")) read_subdivision(r.record("subdivision"), g);
 }
 
 void read_instances(const Record& r, Scene& scene) {

@@ -10,7 +10,7 @@
 
 namespace granita {
 
-enum class Domain { Point, Face, Corner };
+enum class Domain { Point, Face, Corner };  // Face: a curve or a point, where it is no mesh
 enum class AttributeKind { Generic, Uv, Color };
 
 struct Attribute {
@@ -42,15 +42,25 @@ struct Subdivision {
     std::vector<float> vertex_creases;       ///< [V] or empty
 };
 
-/// A polygon mesh, or the cage of a subdivision surface.
+enum class GeometryKind {
+    Mesh,    ///< polygons, or the cage of a subdivision surface
+    Curves,  ///< hair: Catmull-Rom curves through their points, with a radius
+    Points,  ///< a cloud of spheres
+};
+
+/// A mesh, a set of curves or a cloud of points.  Faces, corners and what belongs to them are a
+/// mesh's alone.
 struct GeometryData {
     std::string name;  ///< Blender's, for messages: "mesh 'Cube'"
+    GeometryKind kind = GeometryKind::Mesh;
     int knots = 1;
     std::vector<Vec3f> points;  ///< [knots][V] object space, metres
     std::size_t vertex_count() const { return points.size() / static_cast<std::size_t>(knots); }
     std::vector<std::int32_t> face_sizes;      ///< [F] corners a face, >= 3
     std::vector<std::int32_t> corner_verts;    ///< [C]
-    std::vector<std::int32_t> material_index;  ///< [F] slot of the instance; empty = all 0
+    std::vector<std::int32_t> curve_sizes;     ///< [C] points a curve; they follow each other
+    std::vector<float> radius;                 ///< [1 or knots][V] metres, of curves and points
+    std::vector<std::int32_t> material_index;  ///< [elements] slot of the instance; empty = all 0
     std::vector<std::uint8_t> smooth;          ///< [F]; empty = all flat
     std::vector<Vec3f>
         corner_normals;  ///< [C] at the frame time, unit, object space; empty = from smooth
@@ -59,6 +69,12 @@ struct GeometryData {
     Subdivision subdivision;
 
     std::size_t face_count() const { return face_sizes.size(); }
+    /// Faces, curves or points: what Domain::Face counts.
+    std::size_t element_count() const {
+        return kind == GeometryKind::Mesh     ? face_sizes.size()
+               : kind == GeometryKind::Curves ? curve_sizes.size()
+                                              : vertex_count();
+    }
     const Attribute* find_attribute(const std::string& attribute_name) const;
     /// The UV map that is active for render (first of kind Uv); nullptr when there is none.
     const Attribute* default_uv() const;

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/curve_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dice/opened_mesh.h"
+#include "geometry/catmull_rom.h"
+
+namespace granita {
+namespace {
+
+/// Where a derivative is zero (a cusp, a doubled point), the curve's direction is that of a chord
+/// this long, in segments.
+constexpr double kChord = 1e-3;
+
+Vec3d any_perpendicular(const Vec3d& v) {
+    const Vec3d a = glm::abs(v);
+    const Vec3d axis = a.x <= a.y && a.x <= a.z ? Vec3d(1, 0, 0)
+                       : a.y <= a.z             ? Vec3d(0, 1, 0)
+                                                : Vec3d(0, 0, 1);
+    return unit_or(glm::cross(v, axis), Vec3d(1, 0, 0));
+}
+
+Vec3d unit(const Vec3d& v) {
+    return unit_or(v, Vec3d(0.0));
+}
+
+}  // namespace
+
+double curve_middle(double lo, double hi) {
+    const double middle = 0.5 * (lo + hi);
+    return hi - lo > 1.0 ? std::floor(middle) : middle;
+}
+
+void CurveControl::gather(const OpenedElements& elements, std::uint32_t curve, double lo,
+                          double hi) {
+    const SharedElements& shared = elements.shared();
+    const int n = static_cast<int>(shared.point_count(curve));
+    m_elements = &elements;
+    m_curve = curve;
+    m_segments = n - 1;
+    // Two more on each side: neighbours of the end segments, and those that a chord may reach.
+    m_first = std::max(static_cast<int>(std::floor(lo)) - 2, 0);
+    m_count = std::min(static_cast<int>(std::floor(hi)) + 4, n) - m_first;
+    const std::size_t first = shared.first_point(curve) + static_cast<std::size_t>(m_first);
+    m_points.clear();
+    for (int k = 0; k < elements.knot_count(); ++k)
+        for (int i = 0; i < m_count; ++i)
+            m_points.push_back(elements.point(k, first + static_cast<std::size_t>(i)));
+}
+
+CurveControl::Span CurveControl::span(int knot, double t) const {
+    const int segment = std::clamp(static_cast<int>(std::floor(t)), 0, m_segments - 1);
+    Span span{};
+    for (int i = 0; i < 4; ++i) {
+        const int index = std::clamp(segment - 1 + i, 0, m_segments);
+        span.p[i] = &m_points[static_cast<std::size_t>(knot * m_count + index - m_first)];
+    }
+    span.t = t - segment;
+    return span;
+}
+
+ElementPoint CurveControl::at(int knot, double t) const {
+    const Span s = span(knot, t);
+    const CatmullRom basis(s.t);
+    return {CatmullRom::sum<Vec3d>(basis.w, [&](int i) { return s.p[i]->p; }),
+            std::max(CatmullRom::sum<double>(basis.w, [&](int i) { return s.p[i]->radius; }), 0.0)};
+}
+
+Vec3d CurveControl::tangent(int knot, double t) const {
+    const Span s = span(knot, t);
+    return CatmullRom::sum<Vec3d>(CatmullRom(s.t).d, [&](int i) { return s.p[i]->p; });
+}
+
+Vec3d CurveControl::direction(int knot, double t) const {
+    const Vec3d d = tangent(knot, t);
+    const Vec3d center = at(knot, t).p;
+    // Rounding leaves a cusp's derivative a little off zero, in any direction.
+    if (glm::length(d) > 1e-12 * (glm::length(center) + 1e-30)) return d;
+    const double before = std::max(t - kChord, 0.0);
+    const double after = std::min(t + kChord, static_cast<double>(m_segments));
+    return at(knot, after).p - at(knot, before).p;
+}
+
+RibbonRow CurveControl::row(int knot, double t) const {
+    RibbonRow row;
+    const ElementPoint here = at(knot, t);
+    row.center = here.p;
+    const Vec3d view = m_elements->view_direction(here.p), along = direction(knot, t);
+    const Vec3d across = glm::cross(view, along);
+    // A curve that runs straight to the eye has no side of its own.
+    const bool seen_along = !(glm::length(across) > 1e-9 * glm::length(view) * glm::length(along));
+    row.side =
+        seen_along ? any_perpendicular(glm::length(view) > 0.0 ? view : along) : unit(across);
+    row.across = row.side * here.radius;
+    row.facing = unit(glm::cross(along, row.side));
+    if (seen_along || glm::length(row.facing) == 0.0) row.facing = unit(-view);
+    if (glm::dot(row.facing, view) > 0.0) row.facing = -row.facing;
+    return row;
+}
+
+ElementPlace CurveControl::place(double t) const {
+    const int segment = std::clamp(static_cast<int>(std::floor(t)), 0, m_segments - 1);
+    const std::size_t point =
+        m_elements->shared().first_point(m_curve) + static_cast<std::size_t>(segment);
+    return {m_curve, point, point + 1, t - segment};
+}
+
+Bounds3f CurveControl::swept_box(double lo, double hi) const {
+    Bounds3f box;
+    double radius = 0.0;
+    for (int k = 0; k < m_elements->knot_count(); ++k)
+        for (double a = lo; a < hi;) {
+            const double b = std::min(std::floor(a) + 1.0, hi);
+            // The Bezier points of the part: the curve lies in their hull.  Its derivative is
+            // continuous, so that at its end it is the next segment's.
+            const Vec3d p = at(k, a).p, q = at(k, b).p, third(1.0 / 3.0);
+            for (const Vec3d& corner :
+                 {p, p + tangent(k, a) * (b - a) * third, q - tangent(k, b) * (b - a) * third, q})
+                box.add(Vec3f(corner));
+            // Of the radius: cubic weights never add up to more than 5/4 of the largest.
+            const Span s = span(k, a);
+            for (const ElementPoint* point : s.p) radius = std::max(radius, 1.25 * point->radius);
+            a = b;
+        }
+    if (!box.empty()) box.grow(static_cast<float>(radius));
+    return box;
+}
+
+double CurveControl::width_pixels() const {
+    double width = 0.0;
+    for (const ElementPoint& point : m_points)
+        width = std::max(width, m_elements->pixels(point.p, 2.0 * point.radius));
+    return width;
+}
+
+double CurveControl::polygon_length(int knot, double lo, double hi) const {
+    double length = 0.0;
+    Vec3d from = at(knot, lo).p;
+    for (double t = std::floor(lo) + 1.0; t < hi; t += 1.0) {
+        const Vec3d to = at(knot, t).p;
+        length += glm::distance(from, to);
+        from = to;
+    }
+    return length + glm::distance(from, at(knot, hi).p);
+}
+
+void CurveControl::steps(double lo, double hi, std::size_t most, std::vector<double>& ends) const {
+    if (ends.size() > most) return;
+    const int knots = m_elements->knot_count();
+    const bool several = hi - lo > 1.0;
+    const int budget =
+        several ? kMostCurveLevels : kMostCurveLevels + std::min(std::ilogb(hi - lo), 0);
+    Vec3f start[kMaxKnots], middle[kMaxKnots], end[kMaxKnots];
+    const double half = curve_middle(lo, hi);
+    for (int k = 0; k < knots; ++k) {
+        const Vec3d p = at(k, lo).p, q = at(k, hi).p;
+        start[k] = Vec3f(p);
+        if (several) {
+            // Points between may lie anywhere: it asks for a straight piece as long as the way
+            // over them.
+            const Vec3d line = unit_or(q - p, Vec3d(1, 0, 0)) * polygon_length(k, lo, hi);
+            middle[k] = Vec3f(p + 0.5 * line);
+            end[k] = Vec3f(p + line);
+        } else {
+            middle[k] = Vec3f(at(k, half).p);
+            end[k] = Vec3f(q);
+        }
+    }
+    const int levels = m_elements->rate().levels(start, middle, end, knots, budget);
+    if (levels == 0) {
+        ends.push_back(hi);
+    } else if (levels == EdgeRate::kAdaptive || several) {
+        steps(lo, half, most, ends);
+        steps(half, hi, most, ends);
+    } else {
+        const int n = 1 << levels;
+        for (int i = 1; i <= n && ends.size() <= most; ++i)
+            ends.push_back(i == n ? hi : lo + (hi - lo) * i / n);
+    }
+}
+
+}  // namespace granita

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/finish_motion.h"
+
+#include <algorithm>
+
+#include "dice/raster_bound.h"
+
+namespace granita {
+
+void finish_motion(Grid& grid, const Knots& knots, const Projection& projection) {
+    const std::size_t count = static_cast<std::size_t>(grid.vertex_count());
+    for (int k = 1; k < grid.knots && !grid.motion; ++k)
+        grid.motion = !std::equal(grid.positions.begin(),
+                                  grid.positions.begin() + static_cast<std::ptrdiff_t>(count),
+                                  grid.positions.begin() + k * static_cast<std::ptrdiff_t>(count));
+    if (!grid.motion) {
+        grid.knots = 1;
+        grid.positions.resize(count);
+    } else {
+        const std::size_t first = static_cast<std::size_t>(knots.frame_knot) * count;
+        const double fraction = knots.frame_fraction;
+        grid.p.resize(count);
+        for (std::size_t i = 0; i < count; ++i)
+            grid.p[i] = fraction == 0.0
+                            ? grid.positions[first + i]
+                            : Vec3f(Vec3d(grid.positions[first + i]) * (1.0 - fraction) +
+                                    Vec3d(grid.positions[first + count + i]) * fraction);
+    }
+    grid.bounds = raster_bound(projection, grid.positions);
+}
+
+}  // namespace granita

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/opened_elements.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dice/corner_values.h"
+#include "dice/curve_batch.h"
+#include "dice/finish_motion.h"
+#include "dice/point_batch.h"
+
+namespace granita {
+
+double uniform_scale(const Mat4d& m) {
+    return std::cbrt(std::abs(glm::determinant(Mat3d(m))));
+}
+
+OpenedElements::OpenedElements(const View& view, std::size_t instance,
+                               std::shared_ptr<const SharedElements> shared, Knots knots,
+                               Report& report)
+    : m_view(&view),
+      m_instance(&view.scene->instances[instance]),
+      m_instance_index(instance),
+      m_shared(std::move(shared)),
+      m_knots(std::move(knots)),
+      m_report(&report),
+      m_rate(view) {
+    const int geometry_knots = m_shared->is_static() ? 1 : m_shared->data().knots;
+    for (int k = 0; k < m_knots.count; ++k) {
+        m_times.push_back(knot_time(k, m_knots.count - 1, geometry_knots));
+        m_scales.push_back(uniform_scale(m_knots.camera_from_object[static_cast<std::size_t>(k)]));
+    }
+    if (view.displacement.empty()) return;
+    for (const std::int32_t m : m_instance->materials)
+        if (m >= 0 && view.displacement[static_cast<std::size_t>(m)].constant != 0.0f)
+            report.warn(m_instance->name, "displacement has no effect on curves and points");
+}
+
+RasterBounds OpenedElements::bounds(std::size_t primitive) const {
+    return m_shared->data().kind == GeometryKind::Curves ? CurveBatch(*this, primitive).bounds()
+                                                         : PointBatch(*this, primitive).bounds();
+}
+
+std::unique_ptr<Primitive> OpenedElements::primitive(std::size_t primitive) const {
+    if (m_shared->data().kind == GeometryKind::Curves)
+        return CurveBatch::open(shared_from_this(), primitive);
+    return PointBatch::open(shared_from_this(), primitive);
+}
+
+ElementPoint OpenedElements::point(int knot, std::size_t vertex) const {
+    const GeometryData& data = m_shared->data();
+    const KnotTime& time = m_times[static_cast<std::size_t>(knot)];
+    const std::size_t n = data.vertex_count(), at = time.knot * n + vertex;
+    Vec3d p(data.points[at]);
+    const bool one_radius = data.radius.size() == n;
+    double radius = data.radius[one_radius ? vertex : at];
+    if (time.fraction > 0.0) {
+        p = p * (1.0 - time.fraction) + Vec3d(data.points[at + n]) * time.fraction;
+        if (!one_radius)
+            radius = radius * (1.0 - time.fraction) + data.radius[at + n] * time.fraction;
+    }
+    return {transform_point(m_knots.camera_from_object[static_cast<std::size_t>(knot)], p),
+            std::max(radius, 0.0) * m_scales[static_cast<std::size_t>(knot)]};
+}
+
+double OpenedElements::pixels(const Vec3d& p, double length) const {
+    const Projection& projection = m_view->projection;
+    const double scale = std::max(projection.scale.x, projection.scale.y) * length;
+    return projection.perspective ? scale / std::max({p.z, projection.near_clip, 1e-9}) : scale;
+}
+
+int OpenedElements::grid_size() const {
+    return std::max(m_view->scene->options.grid_size, 1);
+}
+
+int OpenedElements::material(std::size_t batch) const {
+    const std::vector<std::int32_t>& slots = m_instance->materials;
+    if (slots.empty()) return -1;
+    const std::int32_t slot = m_shared->slot(m_shared->batch(batch).front());
+    return slots[static_cast<std::size_t>(
+        std::clamp<std::int32_t>(slot, 0, static_cast<std::int32_t>(slots.size()) - 1))];
+}
+
+std::unique_ptr<Grid> OpenedElements::make_grid(std::size_t batch, std::uint64_t path, int n_u,
+                                                int n_v) const {
+    auto grid = std::make_unique<Grid>();
+    grid->key = {m_instance->key, static_cast<std::uint32_t>(batch), path};
+    grid->instance = static_cast<std::uint32_t>(m_instance_index);
+    grid->material = material(batch);
+    grid->n_u = n_u;
+    grid->n_v = n_v;
+    grid->knots = m_knots.count;
+    grid->holdout = m_instance->holdout;
+    const std::size_t count = static_cast<std::size_t>(grid->vertex_count());
+    grid->positions.resize(count * static_cast<std::size_t>(m_knots.count));
+    grid->normal.resize(count);
+    grid->geometric_normal.resize(count);
+    return grid;
+}
+
+void OpenedElements::finish(Grid& grid, std::span<const ElementPlace> places) const {
+    finish_motion(grid, m_knots, m_view->projection);
+    finish_derivatives(grid, places);
+    finish_attributes(grid, places);
+}
+
+void OpenedElements::finish_derivatives(Grid& grid, std::span<const ElementPlace> places) const {
+    const std::vector<Vec3f>& p = grid.shading_p();
+    const int row = grid.n_u + 1;
+    grid.dp_du.resize(p.size());
+    grid.dp_dv.resize(p.size());
+    const auto joined = [&](int a, int b) {
+        return b >= 0 && b <= grid.n_v &&
+               places[static_cast<std::size_t>(a)].element ==
+                   places[static_cast<std::size_t>(b)].element;
+    };
+    for (int j = 0; j <= grid.n_v; ++j) {
+        const int before = joined(j, j - 1) ? j - 1 : j, after = joined(j, j + 1) ? j + 1 : j;
+        for (int i = 0; i <= grid.n_u; ++i) {
+            const auto at = [&](int x, int y) { return p[static_cast<std::size_t>(y * row + x)]; };
+            const std::size_t v = static_cast<std::size_t>(j * row + i);
+            const int left = std::max(i - 1, 0), right = std::min(i + 1, grid.n_u);
+            grid.dp_du[v] = (at(right, j) - at(left, j)) / static_cast<float>(right - left);
+            if (after > before)
+                grid.dp_dv[v] = (at(i, after) - at(i, before)) / static_cast<float>(after - before);
+        }
+    }
+}
+
+void OpenedElements::attribute_at(const AttributeRequest& request, const ElementPlace& place,
+                                  float* out) const {
+    const std::size_t width = static_cast<std::size_t>(request.width);
+    double value[4] = {0.0, 0.0, 0.0, 0.0};
+    const auto set = [&](const Vec3d& v) {
+        for (int i = 0; i < 3; ++i) value[i] = v[i];
+        value[3] = 1.0;
+    };
+    const auto along = [&](const auto& at) {
+        return at(place.point) * (1.0 - place.fraction) + at(place.next) * place.fraction;
+    };
+    const auto position = [&](std::size_t v) { return m_shared->frame_point(v); };
+    if (request.source == AttributeSource::Generated) {
+        // One place a hair, its root's, as in Cycles.
+        set(generated(m_shared->frame_box(), position(m_shared->first_point(place.element))));
+    } else if (request.source == AttributeSource::ObjectPosition) {
+        set(along(position));
+    } else if (const Attribute* attribute = find_attribute(m_shared->data(), request)) {
+        const std::size_t n = static_cast<std::size_t>(attribute->width);
+        const auto component = [&](std::size_t element, std::size_t c) {
+            return static_cast<double>(attribute->values[element * n + c]);
+        };
+        for (std::size_t c = 0; c < n; ++c)
+            value[c] = attribute->domain == Domain::Point
+                           ? along([&](std::size_t v) { return component(v, c); })
+                           : component(place.element, c);
+        if (n == 1) value[1] = value[2] = value[0];
+        if (n < 4) value[3] = 1.0;
+    }
+    for (std::size_t c = 0; c < width; ++c) out[c] = static_cast<float>(value[c]);
+}
+
+void OpenedElements::finish_attributes(Grid& grid, std::span<const ElementPlace> places) const {
+    static const std::vector<AttributeRequest> none;
+    const std::vector<AttributeRequest>& requests =
+        m_view->requests.empty() ? none
+        : grid.material < 0      ? m_view->requests.back()
+                                 : m_view->requests[static_cast<std::size_t>(grid.material)];
+    grid.attributes.resize(requests.size());
+    const std::size_t row = static_cast<std::size_t>(grid.n_u) + 1;
+    for (std::size_t a = 0; a < requests.size(); ++a) {
+        GridAttribute& out = grid.attributes[a];
+        const std::size_t width = static_cast<std::size_t>(requests[a].width);
+        out.attribute = static_cast<int>(a);
+        out.width = requests[a].width;
+        out.values.resize(row * places.size() * width);
+        for (std::size_t j = 0; j < places.size(); ++j) {
+            float* first = &out.values[j * row * width];
+            attribute_at(requests[a], places[j], first);
+            for (std::size_t i = 1; i < row; ++i) std::copy_n(first, width, first + i * width);
+        }
+        if (!requests[a].derivatives) continue;
+        out.du.assign(out.values.size(), 0.0f);
+        out.dv.assign(out.values.size(), 0.0f);
+        const std::size_t step = row * width;
+        for (std::size_t j = 0; j + 1 < places.size(); ++j)
+            for (std::size_t i = 0; i < step; ++i)
+                if (places[j].element == places[j + 1].element)
+                    out.dv[j * step + i] =
+                        out.values[(j + 1) * step + i] - out.values[j * step + i];
+    }
+}
+
+}  // namespace granita

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Curves or a point cloud as the camera sees them.  A primitive is a batch of neighbours
+// (geometry/shared_elements.h); points are taken to camera space where they are needed, so that a
+// million moving hairs cost no more memory than their snapshot.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dice/edge_rate.h"
+#include "dice/knots.h"
+#include "dice/primitive.h"
+#include "dice/view.h"
+#include "geometry/shared_elements.h"
+
+namespace granita {
+
+/// Metres that a radius of 1 takes after a transform: a sphere's of the same volume.
+double uniform_scale(const Mat4d& m);
+
+/// Camera space, metres.
+struct ElementPoint {
+    Vec3d p{0.0};
+    double radius = 0.0;
+};
+
+/// Where along a row of control points: `point` and this part of the way to `next`.
+struct ElementPlace {
+    std::uint32_t element = 0;
+    std::size_t point = 0, next = 0;
+    double fraction = 0.0;
+};
+
+class OpenedElements final : public OpenedInstance,
+                             public std::enable_shared_from_this<OpenedElements> {
+  public:
+    OpenedElements(const View& view, std::size_t instance,
+                   std::shared_ptr<const SharedElements> shared, Knots knots, Report& report);
+
+    std::size_t primitive_count() const override { return m_shared->batch_count(); }
+    RasterBounds bounds(std::size_t primitive) const override;
+    std::unique_ptr<Primitive> primitive(std::size_t primitive) const override;
+    std::uint64_t bytes() const override { return sizeof(*this); }
+
+    ElementPoint point(int knot, std::size_t vertex) const;
+    /// From the eye to `p`, of any length: the way along which it is seen.
+    Vec3d view_direction(const Vec3d& p) const {
+        return view().projection.perspective ? p : Vec3d(0.0, 0.0, 1.0);
+    }
+    /// Pixels that a length across the view takes at `p`; near the eye those at the near clip.
+    double pixels(const Vec3d& p, double length) const;
+
+    const View& view() const { return *m_view; }
+    const Instance& instance() const { return *m_instance; }
+    const SharedElements& shared() const { return *m_shared; }
+    int knot_count() const { return m_knots.count; }
+    const Knots& knots() const { return m_knots; }
+    const EdgeRate& rate() const { return m_rate; }
+    Report& report() const { return *m_report; }
+    int grid_size() const;
+
+    /// A grid of this instance for a batch: its identity, material and size; every vertex at every
+    /// knot at the origin.
+    std::unique_ptr<Grid> make_grid(std::size_t batch, std::uint64_t path, int n_u, int n_v) const;
+    /// Once positions are set: motion, shading positions, bounds, derivatives and attributes.
+    /// `places` [n_v + 1]; rows of one place follow each other along an element.
+    void finish(Grid& grid, std::span<const ElementPlace> places) const;
+
+  private:
+    int material(std::size_t batch) const;
+    void finish_derivatives(Grid& grid, std::span<const ElementPlace> places) const;
+    void finish_attributes(Grid& grid, std::span<const ElementPlace> places) const;
+    void attribute_at(const AttributeRequest& request, const ElementPlace& place, float* out) const;
+
+    const View* m_view;
+    const Instance* m_instance;
+    std::size_t m_instance_index;
+    std::shared_ptr<const SharedElements> m_shared;
+    Knots m_knots;
+    Report* m_report;
+    EdgeRate m_rate;
+    std::vector<KnotTime> m_times;  ///< [knots] among the geometry's own
+    std::vector<double> m_scales;   ///< [knots] metres of camera space in one of object space
+};
+
+}  // namespace granita

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Curves and points against closed forms (hider-research, cases 9, 13, 27 and 57)."""
+
+import granita_core
+import numpy as np
+import pytest
+import snapshots as s
+
+OWEN_20_256 = 0.0035  # hider-research 1.2, edges moving 20 px at 256 samples
+
+
+def curves(snapshot, points, sizes, radius, material=None, transforms=None, **extra):
+    """points: [V,3] or [K,V,3]; radius: a number, [V] or [K,V]."""
+    points = np.asarray(points, np.float32)
+    points = points[None] if points.ndim == 2 else points
+    radius = np.broadcast_to(np.atleast_2d(np.float32(radius)), (np.shape(np.atleast_2d(radius))[0], points.shape[1]))
+    index = len(snapshot["geometries"])
+    record = {"name": f"curves 'Curves {index}'", "kind": "CURVES", "points": points}
+    record |= {"curve_sizes": np.array(sizes, np.int32), "radius": np.ascontiguousarray(radius), **extra}
+    snapshot["geometries"].append(record)
+    s.instance(snapshot, index, material, transforms)
+
+
+def cloud(snapshot, points, radius, material=None, transforms=None, **extra):
+    points = np.asarray(points, np.float32)
+    points = points[None] if points.ndim == 2 else points
+    radius = np.full((1, points.shape[1]), radius, np.float32)
+    index = len(snapshot["geometries"])
+    record = {"name": f"points 'Points {index}'", "kind": "POINTS", "points": points}
+    snapshot["geometries"].append({**record, "radius": radius, **extra})
+    s.instance(snapshot, index, material, transforms)
+
+
+@pytest.mark.parametrize("width", [0.02, 0.1, 0.5])
+def test_thin_line_keeps_its_energy(executor, width):
+    """Case 9: alpha adds up to the area; the error of n samples is sqrt(A (1 - w) / n) at most."""
+    samples = 64
+    snapshot = s.orthographic((96, 64), samples=samples, executor=executor)
+    points = np.linspace((10.2, 7.3, 1), (83.7, 51.9, 1), 9)
+    curves(snapshot, points, [9], width / 2, s.emission(snapshot))
+    area = np.hypot(73.5, 44.6) * width
+    assert abs(s.alpha(snapshot).sum() - area) < 4 * np.sqrt(area / samples)
+
+
+def test_thin_line_has_no_dashes(executor):
+    """Case 9: along a horizontal hair every pixel holds the same share, with its own noise alone."""
+    width, samples = 0.1, 256
+    snapshot = s.orthographic((80, 16), samples=samples, executor=executor)
+    curves(snapshot, [(-10, 8.5, 1), (40, 8.5, 1), (90, 8.5, 1)], [3], width / 2, s.emission(snapshot))
+    row = s.alpha(snapshot)[8]
+    sigma = np.sqrt(width * (1 - width) / samples)
+    assert abs(row.mean() - width) < 4 * sigma / np.sqrt(len(row))
+    assert np.abs(row - width).max() < 4.5 * sigma
+
+
+@pytest.mark.parametrize("radius", [0.3, 2.0, 15.0])
+def test_point_is_a_disc(executor, radius):
+    samples = 256
+    snapshot = s.orthographic((48, 48), samples=samples, executor=executor)
+    cloud(snapshot, [(23.7, 24.4, 20.0)], radius, s.emission(snapshot))
+    alpha = s.alpha(snapshot)
+    area = np.pi * radius**2
+    # Only pixels on the outline, of which there are less than 8 r + 4, have an error at all.
+    assert abs(alpha.sum() - area) < 4 * 0.5 * np.sqrt((8 * radius + 4) / samples)
+    y, x = np.mgrid[:48, :48] + 0.5
+    distance = np.hypot(x - 23.7, y - 24.4)
+    assert (alpha[distance < radius - 0.9] == 1).all() and (alpha[distance > radius + 0.9] == 0).all()
+
+
+def test_moving_point_time_fraction(executor):
+    """Cases 13 and 27: the part of the shutter during which a moving point covers a place."""
+    radius, length = 10.0, 40.0
+    expected = moving_disc((32, 80), (20.5, 16.5), radius, length)
+    for motion in ("points", "object"):
+        snapshot = s.orthographic((80, 32), samples=256, executor=executor)
+        start = np.array([(20.5, 16.5, 15.0)])
+        if motion == "points":
+            cloud(snapshot, [start, start + (length, 0, 0)], radius, s.emission(snapshot))
+        else:
+            ends = [s.translation(0), s.translation(length)]
+            cloud(snapshot, start, radius, s.emission(snapshot), ends)
+        error = s.alpha(snapshot) - expected
+        blurred = (expected > 0) & (expected < 1)
+        assert np.sqrt(np.mean(error[blurred] ** 2)) <= 1.3 * OWEN_20_256
+        assert np.abs(error).max() <= 4 * 2 * OWEN_20_256  # two edges pass each pixel
+
+
+def moving_disc(shape, center, radius, length):
+    """[h,w]: mean over each pixel of the time that a disc takes over a point, by 16 x 16 midpoints."""
+    y, x = np.mgrid[: shape[0], : shape[1]].astype(float)
+    total = np.zeros(shape)
+    for oy in (np.arange(16) + 0.5) / 16:
+        for ox in (np.arange(16) + 0.5) / 16:
+            h = np.sqrt(np.maximum(radius**2 - (y + oy - center[1]) ** 2, 0))
+            along = x + ox - center[0]
+            time = np.minimum(along + h, length) - np.maximum(along - h, 0)
+            total += np.maximum(time, 0) / length
+    return total / 256
+
+
+def test_moving_hair_is_a_moving_strip(executor):
+    """An upright hair 2 px wide that crosses 20 px: a trapezoid, of which 2/20 is the plateau."""
+    snapshot = s.orthographic((48, 16), samples=256, executor=executor)
+    hair = np.array([(10.5, -20, 1), (10.5, 5, 1), (10.5, 30, 1)], float)
+    curves(snapshot, [hair, hair + (20, 0, 0)], [3], 1.0, s.emission(snapshot))
+    edge = lambda e: np.where(e < 0, 0, np.where(e > 1, e - 0.5, 0.5 * e * e))  # noqa: E731
+    x = np.arange(48)
+    left, right = 9.5 - x, 11.5 - x
+    expected = ((edge(right + 20) - edge(right)) - (edge(left + 20) - edge(left))) / 20
+    error = s.alpha(snapshot) - expected
+    assert np.sqrt(np.mean(error[:, 8:34] ** 2)) <= 1.3 * OWEN_20_256
+    assert abs(error[:, 8:34].mean()) < 4 * OWEN_20_256 / np.sqrt(16 * 26)
+
+
+def test_radius_in_motion(executor):
+    """A hair whose radius grows from 0 to 4 px: covers a place at distance d for 1 - d/4 of the time."""
+    snapshot = s.orthographic((32, 16), samples=256, executor=executor)
+    hair = np.array([(16, -20, 1), (16, 5, 1), (16, 30, 1)], float)
+    curves(snapshot, [hair, hair], [3], np.repeat([[0.0], [4.0]], 3, axis=1), s.emission(snapshot))
+    distance = np.abs(np.arange(32) + 0.5 - 16)
+    expected = np.maximum(1 - distance / 4, 0)  # linear inside every pixel but the outermost
+    error = s.alpha(snapshot) - expected
+    inside = distance < 3.6
+    assert np.sqrt(np.mean(error[:, inside] ** 2)) <= 1.3 * 2 * 0.0035  # two edges again; the rate of 5 to 20 px
+    assert abs(error[:, inside].mean()) < 1e-3
+
+
+def scattered(snapshot, seed=5):
+    """200 moving hairs and 200 moving points that overlap."""
+    random = np.random.default_rng(seed)
+    roots = random.uniform((0, 0, 5), (96, 64, 50), (200, 1, 3))
+    hairs = (roots + np.cumsum(random.normal(0, 4, (200, 6, 3)), axis=1)).reshape(-1, 3)
+    moved = hairs + random.normal(0, 3, 3)
+    curves(snapshot, [hairs, moved], [6] * 200, random.uniform(0, 1.5, 1200), s.emission(snapshot, (1, 0.5, 0.2)))
+    points = random.uniform((0, 0, 5), (96, 64, 50), (200, 3))
+    cloud(snapshot, [points, points + (5, 3, 0)], 1.2, s.emission(snapshot, (0.2, 0.5, 1), alpha=0.5))
+
+
+def test_no_bit_depends_on_buckets_threads_or_crop():
+    def picture(**options):
+        snapshot = s.orthographic((96, 64), samples=16, executor="SIMD", **options)
+        scattered(snapshot)
+        return s.render(snapshot)["combined"]
+
+    whole = picture(bucket_size=64, threads=1)
+    np.testing.assert_array_equal(whole, picture(bucket_size=16, threads=4))
+    crop = picture(crop=(20, 10, 70, 50))
+    np.testing.assert_array_equal(whole[10:50, 20:70], crop)
+
+
+def test_executors_agree():
+    pictures = []
+    for executor in ("REFERENCE", "SIMD"):
+        snapshot = s.orthographic((96, 64), samples=16, executor=executor)
+        scattered(snapshot)
+        pictures.append(s.render(snapshot)["combined"])
+    np.testing.assert_allclose(*pictures, atol=1e-5)
+
+
+def test_shared_outline_of_hair_and_mesh(executor):
+    """A wide ribbon covers what a rectangle of its size covers, sample by sample."""
+    pictures = []
+    for kind in ("hair", "mesh"):
+        snapshot = s.orthographic((64, 32), samples=16, executor=executor)
+        if kind == "hair":
+            points = [(10.25, 16, 1), (30.25, 16, 1), (50.25, 16, 1)]
+            curves(snapshot, points, [3], 8.0, s.emission(snapshot))
+        else:
+            s.quad(snapshot, s.rectangle(10.25, 8, 50.25, 24), s.emission(snapshot))
+        pictures.append(s.alpha(snapshot))
+    np.testing.assert_array_equal(*pictures)
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        ({"curve_sizes": np.array([2], np.int32)}, "add up to 2"),
+        ({"curve_sizes": np.array([0, 3], np.int32)}, "a curve of 0 points"),
+        ({"radius": np.zeros((1, 2), np.float32)}, "radius"),
+        ({"radius": np.zeros((3, 3), np.float32)}, "'radius' has 3 knots"),
+        ({"kind": "BLOBS"}, "BLOBS"),
+        ({"material_index": np.zeros(3, np.int32)}, "material_index"),
+    ],
+)
+def test_wrong_curves_are_named(change, message):
+    snapshot = s.orthographic((16, 16), samples=1)
+    curves(snapshot, [(1, 1, 1), (5, 5, 1), (9, 9, 1)], [3], 1.0, s.emission(snapshot))
+    snapshot["geometries"][0].update(change)
+    with pytest.raises(granita_core.SceneError, match=message) as error:
+        s.render(snapshot)
+    assert "Curves 0" in str(error.value)
