@@ -21,7 +21,6 @@ void SharedGrid::ensure_opacity(const ShadingSystem& shading) {
     std::call_once(m_opacity, [&] {
         const StageTimer timer(m_statistics, Stage::Shade);
         shading.shade_opacity(*m_grid);
-        m_statistics.add(Counter::GridsOpacityShaded);
     });
 }
 
