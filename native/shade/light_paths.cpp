@@ -2,6 +2,7 @@
 #include "shade/light_paths.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "dice/knots.h"
 #include "shade/shading_points.h"
@@ -15,23 +16,37 @@ bool stands_still(const Scene& scene, const Instance& instance) {
            std::all_of(knots.begin(), knots.end(), [&](const Mat4d& m) { return m == knots[0]; });
 }
 
+/// Of the grid in camera space, at a time.
+Vec3f position_at(const Grid& grid, std::size_t vertex, const KnotTime& t) {
+    const auto count = static_cast<std::size_t>(grid.vertex_count());
+    const Vec3f& before = grid.positions[t.knot * count + vertex];
+    if (t.fraction == 0.0) return before;
+    const Vec3f& after = grid.positions[(t.knot + 1) * count + vertex];
+    return before + (after - before) * static_cast<float>(t.fraction);
+}
+
 }  // namespace
 
 PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints& points) {
-    if (grid.knots < 2 || stands_still(scene, scene.instances[grid.instance])) return;
-    m_knots = grid.knots;
-    m_count = points.count;
+    if (stands_still(scene, scene.instances[grid.instance])) return;
+    // What moves with the camera has one knot in its space: the camera's own count too.
     const auto& camera = scene.camera.world_from_camera;
+    const int segments = static_cast<int>(
+        std::lcm(std::max(1, grid.knots - 1), std::max(1, static_cast<int>(camera.size()) - 1)));
+    m_knots = std::min(segments, kMaxKnots - 1) + 1;
+    m_count = points.count;
     const Vec3d origin(matrix_at(camera, scene.options.frame_time)[3]);
     const auto knots = static_cast<std::size_t>(m_knots);
     m_positions.reserve(knots * m_count);
     m_normals.reserve(knots * m_count);
     for (std::size_t knot = 0; knot < knots; ++knot) {
-        const Mat4d m = matrix_at(camera, static_cast<double>(knot) / (m_knots - 1));
+        const double time = static_cast<double>(knot) / (m_knots - 1);
+        const Mat4d m = matrix_at(camera, time);
         const Mat3f rotation{Mat3d(m)};
         const Vec3f offset(Vec3d(m[3]) - origin);
+        const KnotTime t = knot_time(static_cast<int>(knot), m_knots - 1, grid.knots);
         for (std::size_t i = 0; i < m_count; ++i)
-            m_positions.push_back(rotation * grid.positions[knot * m_count + i] + offset);
+            m_positions.push_back(rotation * position_at(grid, i, t) + offset);
         add_normals(grid, points, knot);
     }
 }

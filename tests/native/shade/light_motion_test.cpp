@@ -151,6 +151,9 @@ TEST_F(LightMotionTest, the_cameras_motion_alone_moves_nothing) {
     const PointPaths paths(grid, scene, points);
     EXPECT_EQ(paths.position(kMiddle, 0.0f), Vec3f(0, 0, -5));
     EXPECT_EQ(paths.position(kMiddle, 1.0f), Vec3f(2, 0, -5));
+    // What goes with the camera has one knot before it, but moves.
+    const PointPaths carried(moving_grid({{0, 0, -5}}), scene, points);
+    EXPECT_EQ(carried.position(kMiddle, 1.0f) - carried.position(kMiddle, 0.0f), Vec3f(2, 0, 0));
 }
 
 TEST_F(LightMotionTest, only_points_near_the_way_of_a_caster_take_more_rays) {
