@@ -79,12 +79,37 @@ def test_creases_become_sharpness(scene, cube):
     subdivision = geometry_of(export_probe.through_engine(scene)[0], "Cube")["subdivision"]
     expected = [tuple(cube.data.edges[i].vertices) for i in (2, 7)]
     assert [tuple(pair) for pair in subdivision["crease_verts"]] == expected
-    # Ten times the square.
+    # Ten times the square, at most the quality.
     assert subdivision["crease_values"] == pytest.approx([2.5, 10.0])
+    assert subdivision["vertex_creases"] == pytest.approx([0, 0, 0, 3.0, 0, 0, 0, 0], abs=1e-5)
+    modifier.quality = 5
+    subdivision = geometry_of(export_probe.through_engine(scene)[0], "Cube")["subdivision"]
     assert subdivision["vertex_creases"] == pytest.approx([0, 0, 0, 4.9, 0, 0, 0, 0], abs=1e-5)
     modifier.use_creases = False
     subdivision = geometry_of(export_probe.through_engine(scene)[0], "Cube")["subdivision"]
     assert "crease_verts" not in subdivision and "vertex_creases" not in subdivision
+
+
+def greatest_sum(cube):
+    """How far Blender's own subdivided mesh reaches along (1, 1, 1)."""
+    bpy.context.view_layer.update()
+    evaluated = cube.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    return max(sum(vertex.co) for vertex in evaluated.data.vertices)
+
+
+@pytest.mark.parametrize("quality", [1, 2, 3, 4, 6])
+def test_creases_are_as_round_as_blenders(scene, cube, quality):
+    # A cube's corner at which three edges of sharpness n meet: n levels leave it in place and halve
+    # the edges; the smooth limit of what is left reaches to 3/2 of a half cube's 3.
+    modifier = add_subsurf(cube, 4)
+    modifier.levels = 4
+    modifier.quality = quality
+    set_crease(cube.data, np.full(12, 0.6**0.5, dtype=np.float32), None)
+    values = geometry_of(export_probe.through_engine(scene)[0], "Cube")["subdivision"][
+        "crease_values"
+    ]
+    assert values == pytest.approx(np.full(12, min(quality, 6)), abs=1e-5)
+    assert greatest_sum(cube) == pytest.approx(3 - 1.5 * 0.5 ** values[0], abs=1e-4)
 
 
 def off(modifier, _cube, _scene):
