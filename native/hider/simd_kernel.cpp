@@ -44,16 +44,7 @@ HWY_INLINE void for_each_lane(M mask, Visit visit) {
     for (; bits != 0; bits &= bits - 1) visit(static_cast<int>(__builtin_ctz(bits)));
 }
 
-/// Rectangles of blocks, inclusive, and nearest keys, a vector of them.
-struct BlockRanges {
-    alignas(64) int x0[kPacket], x1[kPacket], y0[kPacket], y1[kPacket];
-    alignas(64) float nearest[kPacket];
-};
-
-/// A micropolygon during one segment of its motion.
-struct Shape {
-    Corner<float> begin[4], delta[4];
-};
+#include "hider/tile_bounds.inl"
 
 class Kernel {
   public:
@@ -63,17 +54,19 @@ class Kernel {
           m_tile(tile),
           m_fragments(fragments),
           m_counts(counts),
-          m_blocks_per_pixel(static_cast<float>(tile.blocks_wide) / kTileSize) {}
+          m_where(grid, tile) {}
 
     template <bool kMoving, bool kLens>
     void run() {
         const int stride = m_grid.n_u + 1;
         BlockRanges ranges;
-        for (m_segment = 0; m_segment < std::max(1, m_grid.segments); ++m_segment)
+        for (int& segment = m_where.segment; segment < std::max(1, m_grid.segments); ++segment)
             for (int j = 0; j < m_grid.n_v; ++j)
                 for (int i = 0; i < m_grid.n_u; i += lane_count()) {
                     const int first = j * stride + i;
-                    const M touching = find_touched(first, m_grid.n_u - i, ranges);
+                    M touching = m_where.find_touched(first, m_grid.n_u - i, ranges);
+                    if (kMoving && m_tile.strata > 1 && !hn::AllFalse(kTag, touching))
+                        touching = hn::And(touching, m_where.find_times<kLens>(first, ranges));
                     for_each_lane(touching, [&](int lane) HWY_ATTR {
                         const int m = j * m_grid.n_u + i + lane;
                         m_class = m_grid.classes[m];
@@ -85,61 +78,16 @@ class Kernel {
     }
 
   private:
-    /// Of the micropolygons from this vertex on, which touch the tile, and where over the whole
-    /// segment and lens.
-    HWY_INLINE M find_touched(int vertex, int count, BlockRanges& out) const {
-        const std::size_t at = static_cast<std::size_t>(m_segment) * m_grid.vertices + vertex;
-        const std::size_t above = at + static_cast<std::size_t>(m_grid.n_u) + 1;
-        const auto least = [&](const float* a) HWY_ATTR {
-            return hn::Min(hn::Min(hn::LoadU(kTag, a + at), hn::LoadU(kTag, a + at + 1)),
-                           hn::Min(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + 1)));
-        };
-        const auto most = [&](const float* a) HWY_ATTR {
-            return hn::Max(hn::Max(hn::LoadU(kTag, a + at), hn::LoadU(kTag, a + at + 1)),
-                           hn::Max(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + 1)));
-        };
-        hn::StoreU(most(m_grid.nearest), kTag, out.nearest);
-        const M some = store_blocks(least(m_grid.x_lo), most(m_grid.x_hi), least(m_grid.y_lo),
-                                    most(m_grid.y_hi), out);
-        return hn::And(some, hn::FirstN(kTag, static_cast<std::size_t>(count)));
-    }
-
-    /// Raster bounds -> blocks; which of them are in the tile.
-    HWY_INLINE M store_blocks(V x_lo, V x_hi, V y_lo, V y_hi, BlockRanges& out) const {
-        const V scale = set(m_blocks_per_pixel), zero = set(0.0f);
-        const V last = set(static_cast<float>(m_tile.blocks_wide - 1));
-        const V end = set(static_cast<float>(m_tile.blocks_wide));
-        // Clamped before the conversion, which overflows otherwise.
-        const V x0 = hn::Min(hn::Max(hn::Floor(x_lo * scale), zero), end);
-        const V y0 = hn::Min(hn::Max(hn::Floor(y_lo * scale), zero), end);
-        const V x1 = hn::Max(hn::Min(hn::Floor(x_hi * scale), last), set(-1.0f));
-        const V y1 = hn::Max(hn::Min(hn::Floor(y_hi * scale), last), set(-1.0f));
-        hn::StoreU(hn::ConvertTo(kIntTag, x0), kIntTag, out.x0);
-        hn::StoreU(hn::ConvertTo(kIntTag, x1), kIntTag, out.x1);
-        hn::StoreU(hn::ConvertTo(kIntTag, y0), kIntTag, out.y0);
-        hn::StoreU(hn::ConvertTo(kIntTag, y1), kIntTag, out.y1);
-        return hn::And(hn::Le(x0, x1), hn::Le(y0, y1));
-    }
-
     template <bool kMoving, bool kLens>
     HWY_INLINE void hide(int vertex, const BlockRanges& swept, int lane) {
-        const int corner[4] = {vertex, vertex + 1, vertex + m_grid.n_u + 2,
-                               vertex + m_grid.n_u + 1};
-        Shape shape;
-        for (int k = 0; k < 4; ++k) {
-            shape.begin[k] = load(corner[k], m_segment);
-            if constexpr (kMoving) {
-                const Corner<float> a = shape.begin[k], b = load(corner[k], m_segment + 1);
-                shape.delta[k] = {b.x - a.x, b.y - a.y, b.w - a.w, b.z - a.z};
-            }
-        }
+        const Shape shape = m_where.load_shape(vertex);
         if (!(kMoving || kLens) || m_tile.strata == 1) {
             visit_blocks<kMoving, kLens>(shape, swept, lane, 0, m_tile.packets);
             return;
         }
         BlockRanges strata;
         for (int first = 0; first < m_tile.packets; first += lane_count()) {
-            M touching = bound_strata<kMoving, kLens>(shape, first, strata);
+            M touching = m_where.bound_strata<kMoving, kLens>(shape, first, strata);
             touching = hn::And(touching,
                                hn::FirstN(kTag, static_cast<std::size_t>(m_tile.packets - first)));
             for_each_lane(touching, [&](int k) HWY_ATTR {
@@ -170,103 +118,10 @@ class Kernel {
             }
     }
 
-    Corner<float> load(int vertex, int knot) const {
-        const std::size_t i = static_cast<std::size_t>(knot) * m_grid.vertices + vertex;
-        return {m_grid.x[i], m_grid.y[i], m_grid.w[i], m_grid.z[i]};
-    }
-
-    /// Where the micropolygon can be while the samples of each of these strata look.  For a fixed
-    /// lens point a corner moves monotonically between the ends of its interval of time, whatever
-    /// the perspective, and for a fixed time linearly in the lens point (compare Laine et al.
-    /// 2011): its extremes are at the corners of the stratum.
-    template <bool kMoving, bool kLens>
-    HWY_INLINE M bound_strata(const Shape& shape, int first, BlockRanges& out) const {
-        const PacketBounds& bounds = *m_tile.bounds;
-        const V zero = set(0.0f), one = set(1.0f), many = set(1e15f);
-        M present = hn::Ge(zero, zero);
-        V ends[2] = {zero, zero};
-        if constexpr (kMoving) {
-            const V knots = set(static_cast<float>(m_grid.segments));
-            const V start = set(static_cast<float>(m_segment));
-            const V lo = hn::LoadU(kTag, bounds.t_lo.data() + first) * knots - start;
-            const V hi = hn::LoadU(kTag, bounds.t_hi.data() + first) * knots - start;
-            present = hn::And(hn::Ge(hi, zero), hn::Le(lo, one));
-            ends[0] = hn::Max(lo, zero);
-            ends[1] = hn::Min(hi, one);
-        }
-        V x_lo = set(INFINITY), y_lo = x_lo, z_lo = x_lo, x_hi = set(-INFINITY), y_hi = x_hi;
-        V margin = zero;
-        M sane = present;
-        for (int k = 0; k < 4; ++k) {
-            const Corner<float>& c = shape.begin[k];
-            const float rounding = rounding_of<kMoving>(shape, k);
-            for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
-                V x = set(c.x), y = set(c.y), w = set(c.w), z = set(c.z);
-                if constexpr (kMoving) {
-                    const Corner<float>& d = shape.delta[k];
-                    x = x + ends[e] * set(d.x);
-                    y = y + ends[e] * set(d.y);
-                    w = w + ends[e] * set(d.w);
-                    z = z + ends[e] * set(d.z);
-                }
-                const V inverse = one / w;
-                V x0 = x * inverse, y0 = y * inverse, x1 = x0, y1 = y0;
-                if constexpr (kLens) {
-                    const V shear = (z * set(m_grid.inverse_focus) - one) * inverse;
-                    stretch(shear, bounds.u_lo.data() + first, bounds.u_hi.data() + first, x0, x1);
-                    stretch(shear, bounds.v_lo.data() + first, bounds.v_hi.data() + first, y0, y1);
-                }
-                x_lo = hn::Min(x_lo, x0);
-                x_hi = hn::Max(x_hi, x1);
-                y_lo = hn::Min(y_lo, y0);
-                y_hi = hn::Max(y_hi, y1);
-                z_lo = hn::Min(z_lo, z);
-                margin = hn::Max(margin, set(rounding) * inverse);
-                const V far =
-                    hn::Max(hn::Max(hn::Abs(x0), hn::Abs(x1)), hn::Max(hn::Abs(y0), hn::Abs(y1)));
-                sane = hn::And(sane, hn::And(hn::Gt(w, set(1e-15f)), hn::Lt(far, many)));
-            }
-        }
-        // At or behind the eye plane: anywhere.
-        x_lo = hn::IfThenElse(sane, x_lo - margin, set(-INFINITY));
-        y_lo = hn::IfThenElse(sane, y_lo - margin, set(-INFINITY));
-        x_hi = hn::IfThenElse(sane, x_hi + margin, set(INFINITY));
-        y_hi = hn::IfThenElse(sane, y_hi + margin, set(INFINITY));
-        // The key of a sample may round a few ulp past the nearest corner's.
-        V nearest = hn::Neg(z_lo);
-        if (m_grid.range.perspective)
-            nearest = hn::IfThenElse(hn::Gt(z_lo, zero), one / z_lo, set(INFINITY));
-        hn::StoreU(nearest + hn::Abs(nearest) * set(0x1p-18f), kTag, out.nearest);
-        return hn::And(present, store_blocks(x_lo, x_hi, y_lo, y_hi, out));
-    }
-
-    static HWY_INLINE void stretch(V shear, const float* lens_lo, const float* lens_hi, V& lo,
-                                   V& hi) {
-        const V a = shear * hn::LoadU(kTag, lens_lo), b = shear * hn::LoadU(kTag, lens_hi);
-        lo = lo + hn::Min(a, b);
-        hi = hi + hn::Max(a, b);
-    }
-
-    /// More than a corner's offset from a sample of the tile can round by, times w.
-    template <bool kMoving>
-    float rounding_of(const Shape& shape, int k) const {
-        const Corner<float>& a = shape.begin[k];
-        const Corner<float> b = kMoving ? load_end(shape, k) : a;
-        const float place = std::max(std::max(std::fabs(a.x), std::fabs(b.x)),
-                                     std::max(std::fabs(a.y), std::fabs(b.y)));
-        const float depth = std::max(std::fabs(a.z), std::fabs(b.z)) * m_grid.inverse_focus + 1.0f;
-        return std::max(std::fabs(a.w), std::fabs(b.w)) / 256 + place * 0x1p-20f +
-               std::max(m_grid.lens_x, m_grid.lens_y) * depth * 0x1p-20f;
-    }
-    static Corner<float> load_end(const Shape& shape, int k) {
-        const Corner<float>&a = shape.begin[k], &d = shape.delta[k];
-        return {a.x + d.x, a.y + d.y, a.w + d.w, a.z + d.z};
-    }
-
     /// Time of the samples in the segment, which may lie outside [0, 1].
     HWY_INLINE V local_time(std::size_t i) const {
         return hn::LoadU(kTag, m_tile.t + i) * set(static_cast<float>(m_grid.segments)) -
-               set(static_cast<float>(m_segment));
+               set(static_cast<float>(m_where.segment));
     }
 
     template <bool kMoving>
@@ -306,7 +161,7 @@ class Kernel {
         if (hn::AllFalse(kTag, touched)) return;
         if (kMoving && m_grid.segments > 1) {
             touched = hn::And(touched, hn::Ge(local, zero));
-            if (m_segment + 1 < m_grid.segments)
+            if (m_where.segment + 1 < m_grid.segments)
                 touched = hn::And(touched, hn::Lt(local, set(1.0f)));
         }
 
@@ -395,9 +250,15 @@ class Kernel {
     }
 
     HWY_NOINLINE void settle_ties(M equal, std::size_t first) {
+        // Where surfaces coincide, neighbours see the same two.
+        SurfaceId last = kNoSurface;
+        bool wins = false;
         for_each_lane(equal, [&](int lane) {
             SurfaceId& id = m_tile.id[first + lane];
-            if (id != kNoSurface && m_grid.pool->before(m_id, id)) id = m_id;
+            if (id == kNoSurface) return;
+            if (id != last) wins = m_grid.pool->before(m_id, id);
+            last = id;
+            if (wins) id = m_id;
         });
     }
 
@@ -417,8 +278,7 @@ class Kernel {
     const SimdTile& m_tile;
     std::vector<Fragment>& m_fragments;
     SimdCounts& m_counts;
-    const float m_blocks_per_pixel;
-    int m_segment = 0;
+    TileBounds m_where;
     std::uint8_t m_class = 0;
     SurfaceId m_id = 0;
 };

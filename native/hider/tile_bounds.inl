@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where micropolygons can be in a tile: included once a SIMD target inside its namespace, like
+// corner_arithmetic.inl, after the kernel's vector types.
+
+/// Rectangles of blocks, inclusive, and nearest keys, a vector of them.
+struct BlockRanges {
+    alignas(64) int x0[kPacket], x1[kPacket], y0[kPacket], y1[kPacket];
+    alignas(64) float nearest[kPacket];
+    alignas(64) float t0[kPacket], t1[kPacket];  ///< shutter times over the tile; moving only
+};
+
+/// A micropolygon during one segment of its motion.
+struct Shape {
+    Corner<float> begin[4], delta[4];
+};
+
+/// The micropolygons of a grid during one segment of its motion, over the blocks of a tile.
+class TileBounds {
+  public:
+    TileBounds(const SimdGrid& grid, const SimdTile& tile)
+        : m_grid(grid),
+          m_tile(tile),
+          m_blocks_per_pixel(static_cast<float>(tile.blocks_wide) / kTileSize) {}
+
+    int segment = 0;
+
+    Shape load_shape(int vertex) const {
+        const int corner[4] = {vertex, vertex + 1, vertex + m_grid.n_u + 2,
+                               vertex + m_grid.n_u + 1};
+        Shape shape;
+        for (int k = 0; k < 4; ++k) {
+            shape.begin[k] = load(corner[k], segment);
+            if (m_grid.segments == 0) continue;
+            const Corner<float> a = shape.begin[k], b = load(corner[k], segment + 1);
+            shape.delta[k] = {b.x - a.x, b.y - a.y, b.w - a.w, b.z - a.z};
+        }
+        return shape;
+    }
+
+    /// Of the micropolygons from this vertex on, which touch the tile, and where over the whole
+    /// segment and lens.
+    HWY_INLINE M find_touched(int vertex, int count, BlockRanges& out) const {
+        const std::size_t at = static_cast<std::size_t>(segment) * m_grid.vertices + vertex;
+        const std::size_t above = at + static_cast<std::size_t>(m_grid.n_u) + 1;
+        const auto least = [&](const float* a) HWY_ATTR {
+            return hn::Min(hn::Min(hn::LoadU(kTag, a + at), hn::LoadU(kTag, a + at + 1)),
+                           hn::Min(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + 1)));
+        };
+        const auto most = [&](const float* a) HWY_ATTR {
+            return hn::Max(hn::Max(hn::LoadU(kTag, a + at), hn::LoadU(kTag, a + at + 1)),
+                           hn::Max(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + 1)));
+        };
+        hn::StoreU(most(m_grid.nearest), kTag, out.nearest);
+        const M some = store_blocks(least(m_grid.x_lo), most(m_grid.x_hi), least(m_grid.y_lo),
+                                    most(m_grid.y_hi), out);
+        return hn::And(some, hn::FirstN(kTag, static_cast<std::size_t>(count)));
+    }
+
+    /// When they are over the tile, and which are at all: some corner right of its left side, some
+    /// corner left of its right side, and so on.  Each condition is linear in time for every
+    /// corner, whatever the sign of w (Laine et al. 2011).
+    template <bool kLens>
+    HWY_INLINE M find_times(int vertex, BlockRanges& out) const {
+        const std::size_t knot = static_cast<std::size_t>(segment) * m_grid.vertices;
+        const int row = m_grid.n_u + 1;
+        const V zero = set(0.0f), side = set(static_cast<float>(kTileSize)), never = set(INFINITY);
+        V from[4] = {never, never, never, never}, to[4];
+        for (V& t : to) t = hn::Neg(never);
+        for (const int corner : {vertex, vertex + 1, vertex + row, vertex + row + 1}) {
+            const std::size_t a = knot + static_cast<std::size_t>(corner), b = a + m_grid.vertices;
+            const V w0 = hn::LoadU(kTag, m_grid.w + a), w1 = hn::LoadU(kTag, m_grid.w + b);
+            V shear = zero;
+            if constexpr (kLens) {
+                const V focus = set(m_grid.inverse_focus), one = set(1.0f);
+                shear = hn::Max(hn::Abs(hn::LoadU(kTag, m_grid.z + a) * focus - one),
+                                hn::Abs(hn::LoadU(kTag, m_grid.z + b) * focus - one)) *
+                        set(1.0f + 0x1p-18f);
+            }
+            const V base = hn::Max(hn::Abs(w0), hn::Abs(w1)) * set(1.0f / 256);
+            const auto extend_axis = [&](const float* values, float lens, int axis) HWY_ATTR {
+                const V p0 = hn::LoadU(kTag, values + a), p1 = hn::LoadU(kTag, values + b);
+                const V margin =
+                    base + hn::Max(hn::Abs(p0), hn::Abs(p1)) * set(0x1p-20f) + set(lens) * shear;
+                extend(p0 + margin, p1 + margin, from[axis], to[axis]);
+                extend(side * w0 - p0 + margin, side * w1 - p1 + margin, from[axis + 1],
+                       to[axis + 1]);
+            };
+            extend_axis(m_grid.x, m_grid.lens_x, 0);
+            extend_axis(m_grid.y, m_grid.lens_y, 2);
+        }
+        const V t0 = hn::Max(hn::Max(from[0], from[1]), hn::Max(from[2], from[3]));
+        const V t1 = hn::Min(hn::Min(to[0], to[1]), hn::Min(to[2], to[3]));
+        const V widen = set(0x1p-18f), start = set(static_cast<float>(segment));
+        const V scale = set(1.0f / static_cast<float>(m_grid.segments));
+        hn::StoreU((start + t0 - widen) * scale - widen, kTag, out.t0);
+        hn::StoreU((start + t1 + widen) * scale + widen, kTag, out.t1);
+        return hn::Le(t0, t1 + widen);
+    }
+
+    /// Where the micropolygon can be while the samples of each of these strata look.  For a fixed
+    /// lens point a corner moves monotonically between the ends of its interval of time, whatever
+    /// the perspective, and for a fixed time linearly in the lens point (compare Laine et al.
+    /// 2011): its extremes are at the corners of the stratum.
+    template <bool kMoving, bool kLens>
+    HWY_INLINE M bound_strata(const Shape& shape, int first, BlockRanges& out) const {
+        const PacketBounds& bounds = *m_tile.bounds;
+        const V zero = set(0.0f), one = set(1.0f), many = set(1e15f);
+        M present = hn::Ge(zero, zero);
+        V ends[2] = {zero, zero};
+        if constexpr (kMoving) {
+            const V knots = set(static_cast<float>(m_grid.segments));
+            const V start = set(static_cast<float>(segment));
+            const V lo = hn::LoadU(kTag, bounds.t_lo.data() + first) * knots - start;
+            const V hi = hn::LoadU(kTag, bounds.t_hi.data() + first) * knots - start;
+            present = hn::And(hn::Ge(hi, zero), hn::Le(lo, one));
+            ends[0] = hn::Max(lo, zero);
+            ends[1] = hn::Min(hi, one);
+        }
+        V x_lo = set(INFINITY), y_lo = x_lo, z_lo = x_lo, x_hi = set(-INFINITY), y_hi = x_hi;
+        V margin = zero;
+        M sane = present;
+        for (int k = 0; k < 4; ++k) {
+            const Corner<float>& c = shape.begin[k];
+            const float rounding = rounding_of<kMoving>(shape, k);
+            for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
+                V x = set(c.x), y = set(c.y), w = set(c.w), z = set(c.z);
+                if constexpr (kMoving) {
+                    const Corner<float>& d = shape.delta[k];
+                    x = x + ends[e] * set(d.x);
+                    y = y + ends[e] * set(d.y);
+                    w = w + ends[e] * set(d.w);
+                    z = z + ends[e] * set(d.z);
+                }
+                const V inverse = one / w;
+                V x0 = x * inverse, y0 = y * inverse, x1 = x0, y1 = y0;
+                if constexpr (kLens) {
+                    const V shear = (z * set(m_grid.inverse_focus) - one) * inverse;
+                    stretch(shear, bounds.u_lo.data() + first, bounds.u_hi.data() + first, x0, x1);
+                    stretch(shear, bounds.v_lo.data() + first, bounds.v_hi.data() + first, y0, y1);
+                }
+                x_lo = hn::Min(x_lo, x0);
+                x_hi = hn::Max(x_hi, x1);
+                y_lo = hn::Min(y_lo, y0);
+                y_hi = hn::Max(y_hi, y1);
+                z_lo = hn::Min(z_lo, z);
+                margin = hn::Max(margin, set(rounding) * inverse);
+                const V far =
+                    hn::Max(hn::Max(hn::Abs(x0), hn::Abs(x1)), hn::Max(hn::Abs(y0), hn::Abs(y1)));
+                sane = hn::And(sane, hn::And(hn::Gt(w, set(1e-15f)), hn::Lt(far, many)));
+            }
+        }
+        // At or behind the eye plane: anywhere.
+        x_lo = hn::IfThenElse(sane, x_lo - margin, set(-INFINITY));
+        y_lo = hn::IfThenElse(sane, y_lo - margin, set(-INFINITY));
+        x_hi = hn::IfThenElse(sane, x_hi + margin, set(INFINITY));
+        y_hi = hn::IfThenElse(sane, y_hi + margin, set(INFINITY));
+        // The key of a sample may round a few ulp past the nearest corner's.
+        V nearest = hn::Neg(z_lo);
+        if (m_grid.range.perspective)
+            nearest = hn::IfThenElse(hn::Gt(z_lo, zero), one / z_lo, set(INFINITY));
+        hn::StoreU(nearest + hn::Abs(nearest) * set(0x1p-18f), kTag, out.nearest);
+        return hn::And(present, store_blocks(x_lo, x_hi, y_lo, y_hi, out));
+    }
+
+  private:
+    Corner<float> load(int vertex, int knot) const {
+        const std::size_t i = static_cast<std::size_t>(knot) * m_grid.vertices + vertex;
+        return {m_grid.x[i], m_grid.y[i], m_grid.w[i], m_grid.z[i]};
+    }
+
+    /// Grows [from, to] by the part of [0, 1] where the linear function with these end values is
+    /// not negative.
+    static HWY_INLINE void extend(V f0, V f1, V& from, V& to) {
+        const V zero = set(0.0f), one = set(1.0f), never = set(INFINITY);
+        const V root = f0 / (f0 - f1);
+        const M in0 = hn::Ge(f0, zero), in1 = hn::Ge(f1, zero);
+        from = hn::Min(from, hn::IfThenElse(in0, zero, hn::IfThenElse(in1, root, never)));
+        to = hn::Max(to, hn::IfThenElse(in1, one, hn::IfThenElse(in0, root, hn::Neg(never))));
+    }
+
+    /// Raster bounds -> blocks; which of them are in the tile.
+    HWY_INLINE M store_blocks(V x_lo, V x_hi, V y_lo, V y_hi, BlockRanges& out) const {
+        const V scale = set(m_blocks_per_pixel), zero = set(0.0f);
+        const V last = set(static_cast<float>(m_tile.blocks_wide - 1));
+        const V end = set(static_cast<float>(m_tile.blocks_wide));
+        // Clamped before the conversion, which overflows otherwise.
+        const V x0 = hn::Min(hn::Max(hn::Floor(x_lo * scale), zero), end);
+        const V y0 = hn::Min(hn::Max(hn::Floor(y_lo * scale), zero), end);
+        const V x1 = hn::Max(hn::Min(hn::Floor(x_hi * scale), last), set(-1.0f));
+        const V y1 = hn::Max(hn::Min(hn::Floor(y_hi * scale), last), set(-1.0f));
+        hn::StoreU(hn::ConvertTo(kIntTag, x0), kIntTag, out.x0);
+        hn::StoreU(hn::ConvertTo(kIntTag, x1), kIntTag, out.x1);
+        hn::StoreU(hn::ConvertTo(kIntTag, y0), kIntTag, out.y0);
+        hn::StoreU(hn::ConvertTo(kIntTag, y1), kIntTag, out.y1);
+        return hn::And(hn::Le(x0, x1), hn::Le(y0, y1));
+    }
+
+    static HWY_INLINE void stretch(V shear, const float* lens_lo, const float* lens_hi, V& lo,
+                                   V& hi) {
+        const V a = shear * hn::LoadU(kTag, lens_lo), b = shear * hn::LoadU(kTag, lens_hi);
+        lo = lo + hn::Min(a, b);
+        hi = hi + hn::Max(a, b);
+    }
+
+    /// More than a corner's offset from a sample of the tile can round by, times w.
+    template <bool kMoving>
+    float rounding_of(const Shape& shape, int k) const {
+        const Corner<float>& a = shape.begin[k];
+        const Corner<float> b = kMoving ? load_end(shape, k) : a;
+        const float place = std::max(std::max(std::fabs(a.x), std::fabs(b.x)),
+                                     std::max(std::fabs(a.y), std::fabs(b.y)));
+        const float depth = std::max(std::fabs(a.z), std::fabs(b.z)) * m_grid.inverse_focus + 1.0f;
+        return std::max(std::fabs(a.w), std::fabs(b.w)) / 256 + place * 0x1p-20f +
+               std::max(m_grid.lens_x, m_grid.lens_y) * depth * 0x1p-20f;
+    }
+    static Corner<float> load_end(const Shape& shape, int k) {
+        const Corner<float>&a = shape.begin[k], &d = shape.delta[k];
+        return {a.x + d.x, a.y + d.y, a.w + d.w, a.z + d.z};
+    }
+
+    const SimdGrid& m_grid;
+    const SimdTile& m_tile;
+    const float m_blocks_per_pixel;
+};
