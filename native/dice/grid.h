@@ -71,6 +71,8 @@ struct Grid {
     std::vector<Vec3f>
         radiance;  ///< [vertices] premultiplied by opacity, plus emission; linear, unclamped
 
+    std::vector<float> channels;  ///< [vertices][ChannelSet::vertex_width()]; empty = none asked
+
     int vertex_count() const { return (n_u + 1) * (n_v + 1); }
     int micropolygon_count() const { return n_u * n_v; }
     const std::vector<Vec3f>& shading_p() const { return p.empty() ? positions : p; }

@@ -3,20 +3,33 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "base/check.h"
+#include "hider/channel_layers.h"
+#include "hider/locate_kernel.h"
 #include "hider/surface_interpolator.h"
 
 namespace granita {
 namespace {
 
-/// Order of Fragment lists: sample, nearest first, ties by `before`.
-void sort_fragments(std::vector<Fragment>& fragments, const GridPool& pool) {
-    std::sort(fragments.begin(), fragments.end(), [&](const Fragment& a, const Fragment& b) {
-        if (a.sample != b.sample) return a.sample < b.sample;
-        if (a.key != b.key) return a.key > b.key;
-        return a.id != b.id && pool.before(a.id, b.id);
-    });
+/// Order of Fragment lists: sample, nearest first, ties by `before`.  Fragments come in order of
+/// grids; they are counted into samples, whose lists are short.
+void sort_fragments(std::vector<Fragment>& fragments, std::size_t samples, const GridPool& pool) {
+    if (fragments.empty()) return;
+    std::vector<std::uint32_t> begin(samples + 1, 0);
+    for (const Fragment& fragment : fragments) ++begin[fragment.sample + 1];
+    for (std::size_t i = 0; i < samples; ++i) begin[i + 1] += begin[i];
+    std::vector<Fragment> sorted(fragments.size());
+    std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+    for (const Fragment& fragment : fragments) sorted[next[fragment.sample]++] = fragment;
+    for (std::size_t i = 0; i < samples; ++i)
+        std::sort(sorted.begin() + begin[i], sorted.begin() + begin[i + 1],
+                  [&](const Fragment& a, const Fragment& b) {
+                      if (a.key != b.key) return a.key > b.key;
+                      return a.id != b.id && pool.before(a.id, b.id);
+                  });
+    fragments = std::move(sorted);
 }
 
 Vec3d clamp_opacity(const Vec3f& a) {
@@ -34,10 +47,9 @@ struct Layers {
     Vec3d color{0.0}, opacity{0.0}, transmission{1.0};
     double alpha = 0.0, cut = 0.0;  ///< covered by surfaces; by holdouts
 
-    /// True when the threshold is reached.
-    bool add(const SurfacePoint& at, bool opaque, double threshold) {
+    /// `a`: opacity.  True when the threshold is reached.
+    bool add(const SurfacePoint& at, const Vec3d& a, double threshold) {
         const Grid& grid = *at.grid;
-        const Vec3d a = opaque ? Vec3d(1.0) : clamp_opacity(at(grid.opacity));
         if (!grid.holdout && !grid.radiance.empty())
             color += transmission * Vec3d(at(grid.radiance));
         // T -= a T keeps what float's 1 - a loses: 1e6 layers of 1e-6 (hider-research 4.4, case
@@ -50,42 +62,113 @@ struct Layers {
     }
 };
 
+constexpr float kNothing = -std::numeric_limits<float>::infinity();
+
+/// Composites the samples of one tile, in order.
+class TileComposite {
+  public:
+    TileComposite(const TileStore& store, SurfaceInterpolator& surface,
+                  std::span<const Vec3f> background, const CompositeSettings& settings,
+                  ChannelLayers* channels)
+        : m_store(store),
+          m_surface(surface),
+          m_background(background),
+          m_settings(settings),
+          m_channels(channels),
+          m_next(store.fragments.begin()) {}
+
+    /// `opaque`: where the sample meets its nearest opaque surface, if it has one.
+    SampleColor next(std::uint32_t sample, const SurfacePoint& opaque) {
+        const bool has_fragments = m_next != m_store.fragments.end() && m_next->sample == sample;
+        if (!has_fragments && m_store.id[sample] != kNoSurface && !opaque.grid->holdout &&
+            !opaque.grid->radiance.empty())
+            return opaque_alone(sample, opaque);
+        m_layers = {};
+        m_first_key = kNothing;
+        bool ended = false;
+        for (; m_next != m_store.fragments.end() && m_next->sample == sample; ++m_next) {
+            if (is_complete(ended)) continue;
+            const SurfacePoint at = m_surface.locate(sample, m_next->id);
+            ended = add(sample, at, m_next->key, clamp_opacity(at(at.grid->opacity)), ended);
+        }
+        if (m_store.id[sample] != kNoSurface && !is_complete(ended))
+            add(sample, opaque, m_store.key[sample], Vec3d(1.0), ended);
+        return finish(sample);
+    }
+
+  private:
+    /// What the layers would give, without the sums: most samples of most pictures.
+    SampleColor opaque_alone(std::uint32_t sample, const SurfacePoint& at) {
+        if (m_channels) {
+            m_channels->set_first(sample, at);
+            m_channels->add(sample, at, Vec3d(1.0));
+        }
+        return {at(at.grid->radiance) + Vec3f(0.0f), 1.0f,
+                m_settings.projection.depth_from_key(m_store.key[sample])};
+    }
+
+    /// A list that has ended is followed only to the layer that stands for the sample.
+    bool is_complete(bool ended) const { return ended && m_first_key != kNothing; }
+
+    /// `a`: opacity.  True when the list has ended.
+    bool add(std::uint32_t sample, const SurfacePoint& at, float key, const Vec3d& a, bool ended) {
+        if (m_first_key == kNothing && mean(a) >= m_settings.pass_alpha_threshold) {
+            m_first_key = key;
+            if (m_channels) m_channels->set_first(sample, at);
+        }
+        if (ended) return true;
+        if (m_channels && !at.grid->holdout) m_channels->add(sample, at, m_layers.transmission);
+        return m_layers.add(at, a, m_settings.opacity_threshold);
+    }
+
+    SampleColor finish(std::uint32_t sample) {
+        Vec3d color = m_layers.color;
+        double alpha = m_layers.alpha;
+        if (!m_background.empty()) {
+            const Vec3f& behind = m_background[m_background.size() == 1 ? 0 : sample];
+            if (m_channels) m_channels->add_environment(sample, behind, m_layers.transmission);
+            if (!m_settings.film_transparent) color += m_layers.transmission * Vec3d(behind);
+        }
+        if (!m_settings.film_transparent) alpha = 1.0 - m_layers.cut;
+        return {Vec3f(color), static_cast<float>(alpha),
+                m_first_key > kNothing ? m_settings.projection.depth_from_key(m_first_key)
+                                       : std::numeric_limits<float>::infinity()};
+    }
+
+    const TileStore& m_store;
+    SurfaceInterpolator& m_surface;
+    std::span<const Vec3f> m_background;
+    const CompositeSettings& m_settings;
+    ChannelLayers* m_channels;
+    std::vector<Fragment>::const_iterator m_next;
+    Layers m_layers;
+    float m_first_key = kNothing;
+};
+
 }  // namespace
 
 std::vector<SampleColor> composite_tile(TileStore& store, const TileSamples& samples,
                                         const GridPool& pool, std::span<const Vec3f> background,
-                                        const CompositeSettings& settings) {
+                                        const CompositeSettings& settings,
+                                        SampleChannels* channels) {
     const std::size_t count = store.key.size();
-    if (!settings.film_transparent)
+    const bool has_channels = settings.channels && !settings.channels->empty();
+    GRANITA_CHECK(!has_channels || channels);
+    if (!settings.film_transparent || (has_channels && settings.channels->has_environment()))
         GRANITA_CHECK(background.size() == 1 || background.size() == count);
-    sort_fragments(store.fragments, pool);
+    sort_fragments(store.fragments, count, pool);
     SurfaceInterpolator surface(settings.projection, store.tile, samples, pool);
+    std::optional<ChannelLayers> layers;
+    if (has_channels) layers.emplace(*settings.channels, samples, *channels);
+    TileComposite composite(store, surface, background, settings, layers ? &*layers : nullptr);
     std::vector<SampleColor> colors(count);
-    auto next = store.fragments.begin();
-    for (std::uint32_t i = 0; i < count; ++i) {
-        Layers layers;
-        bool ended = false;
-        float nearest = store.key[i];
-        if (next != store.fragments.end() && next->sample == i)
-            nearest = std::max(nearest, next->key);
-        for (; next != store.fragments.end() && next->sample == i; ++next)
-            if (!ended)
-                ended = layers.add(surface.locate(i, next->id), false, settings.opacity_threshold);
-        if (!ended && store.id[i] != kNoSurface)
-            layers.add(surface.locate(i, store.id[i]), true, settings.opacity_threshold);
-
-        SampleColor& out = colors[i];
-        Vec3d color = layers.color;
-        double alpha = layers.alpha;
-        if (!settings.film_transparent) {
-            color += layers.transmission * Vec3d(background[background.size() == 1 ? 0 : i]);
-            alpha = 1.0 - layers.cut;
-        }
-        out.color = Vec3f(color);
-        out.alpha = static_cast<float>(alpha);
-        out.depth = nearest > -std::numeric_limits<float>::infinity()
-                        ? settings.projection.depth_from_key(nearest)
-                        : std::numeric_limits<float>::infinity();
+    constexpr std::uint32_t kRun = LocateLanes::kCount;
+    SurfacePoint opaque[kRun];
+    for (std::uint32_t first = 0; first < count; first += kRun) {
+        const auto end = std::min(first + kRun, static_cast<std::uint32_t>(count));
+        surface.locate_run(first, static_cast<int>(end - first), &store.id[first], opaque);
+        for (std::uint32_t i = first; i < end; ++i)
+            colors[i] = composite.next(i, opaque[i - first]);
     }
     return colors;
 }

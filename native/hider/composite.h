@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hider/hider.h"
+#include "hider/sample_channels.h"
 #include "hider/sample_store.h"
 #include "hider/sample_table.h"
 #include "math/projection.h"
@@ -19,17 +20,24 @@ struct CompositeSettings {
     /// opacity here; 1 = never.  What was accumulated stays as it is.
     float opacity_threshold = 1.0f;
     bool film_transparent = false;  ///< no background; alpha is what covers it
+    /// Depth and channels of the first surface are those of the first layer of so much mean
+    /// opacity.
+    float pass_alpha_threshold = 0.0f;
+    const ChannelSet* channels = nullptr;  ///< nullptr = no passes
 };
 
 /// [256 * samples] colours in sample order.  `background`: premultiplied radiance behind
-/// everything: one value, or one a sample; not read where the film is transparent.
+/// everything: one value, or one a sample; read where the film is not transparent or channels have
+/// the environment.
 ///
 /// Layers from front to back, each channel by itself: C += T c, O += a T, T -= a T, in double.
 /// Interpolated opacity is clamped to [0, 1] here and nowhere earlier; radiance is not clamped.
 /// Alpha is the mean of the three opacities without those of holdout surfaces; with a background it
-/// is 1 less what holdouts cut out.  Depth is that of the first layer.
+/// is 1 less what holdouts cut out.  Depth is that of the first layer.  Fills `channels` where
+/// settings.channels asks for some; holdouts take part in Merge::First and Center alone.
 std::vector<SampleColor> composite_tile(TileStore& store, const TileSamples& samples,
                                         const GridPool& pool, std::span<const Vec3f> background,
-                                        const CompositeSettings& settings);
+                                        const CompositeSettings& settings,
+                                        SampleChannels* channels = nullptr);
 
 }  // namespace granita

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "hider/locate_kernel.h"
+
 namespace granita {
 namespace {
 
@@ -36,6 +38,18 @@ SurfaceHit nearest_triangle(const Offset<double> d[4]) {
     return best;
 }
 
+SurfacePoint point_of(const Grid* grid, const int vertex[4], bool second, double b1, double b2) {
+    SurfacePoint point;
+    point.grid = grid;
+    point.vertex[0] = vertex[0];
+    point.vertex[1] = vertex[second ? 2 : 1];
+    point.vertex[2] = vertex[second ? 3 : 2];
+    point.weight[0] = static_cast<float>(1.0 - b1 - b2);
+    point.weight[1] = static_cast<float>(b1);
+    point.weight[2] = static_cast<float>(b2);
+    return point;
+}
+
 }  // namespace
 
 SurfaceInterpolator::SurfaceInterpolator(const Projection& projection, Vec2i tile,
@@ -47,7 +61,7 @@ SurfaceInterpolator::SurfaceInterpolator(const Projection& projection, Vec2i til
       m_inverse_focus(static_cast<float>(1.0 / projection.focus)),
       m_lens_x(static_cast<float>(projection.lens_radius * projection.scale.x)),
       m_lens_y(static_cast<float>(projection.lens_radius * projection.scale.y)),
-      m_cache(1024) {}
+      m_cache(256) {}
 
 const SurfaceInterpolator::Loaded& SurfaceInterpolator::load(SurfaceId id, float time) {
     Loaded& entry = m_cache[id % m_cache.size()];
@@ -78,41 +92,71 @@ const SurfaceInterpolator::Loaded& SurfaceInterpolator::load(SurfaceId id, float
     return entry;
 }
 
-SurfacePoint SurfaceInterpolator::locate(std::uint32_t sample, SurfaceId id) {
+SurfaceInterpolator::Seen SurfaceInterpolator::see(std::uint32_t sample, SurfaceId id) {
     const float time = m_samples.t.empty() ? 0.0f : m_samples.t[sample];
     const Loaded& surface = load(id, time);
-    Corner<float> c[4];
-    for (int i = 0; i < 4; ++i) c[i] = surface.begin[i];
-    if (surface.grid->motion) {
-        const float local = time * static_cast<float>(surface.grid->knots - 1) -
-                            static_cast<float>(surface.segment);
-        for (int i = 0; i < 4; ++i) c[i] = at_time(surface.begin[i], surface.delta[i], local);
+    Seen seen;
+    seen.surface = &surface;
+    const float local = surface.grid->motion ? time * static_cast<float>(surface.grid->knots - 1) -
+                                                   static_cast<float>(surface.segment)
+                                             : 0.0f;
+    const float x = m_samples.x[sample], y = m_samples.y[sample];
+    for (int i = 0; i < 4; ++i) {
+        Corner<float>& c = seen.corners[i];
+        c = surface.grid->motion ? at_time(surface.begin[i], surface.delta[i], local)
+                                 : surface.begin[i];
+        seen.offsets[i] = m_projection.has_lens()
+                              ? offset_lens(c, x, y, m_samples.u[sample] * m_lens_x,
+                                            m_samples.v[sample] * m_lens_y, m_inverse_focus, 1.0f)
+                              : offset_pinhole(c, x, y);
     }
-    Corner<double> exact[4];
+    return seen;
+}
+
+SurfacePoint SurfaceInterpolator::locate(std::uint32_t sample, SurfaceId id) {
+    const Seen seen = see(sample, id);
+    Corner<double> corners[4];
     Offset<double> d[4];
     for (int i = 0; i < 4; ++i) {
-        const float x = m_samples.x[sample], y = m_samples.y[sample];
-        const Offset<float> o =
-            m_projection.has_lens()
-                ? offset_lens(c[i], x, y, m_samples.u[sample] * m_lens_x,
-                              m_samples.v[sample] * m_lens_y, m_inverse_focus, 1.0f)
-                : offset_pinhole(c[i], x, y);
-        d[i] = {o.x, o.y};
-        exact[i] = {c[i].x, c[i].y, c[i].w, c[i].z};
+        const Corner<float>& c = seen.corners[i];
+        corners[i] = {c.x, c.y, c.w, c.z};
+        d[i] = {seen.offsets[i].x, seen.offsets[i].y};
     }
     // The clip range is left out: the hider applied it.
     const DepthRange any{m_projection.perspective, -INFINITY, INFINITY};
-    SurfaceHit hit = hit_micropolygon(exact, d, kTriangleA | kTriangleB, any);
+    SurfaceHit hit = hit_micropolygon(corners, d, kTriangleA | kTriangleB, any);
     if (!hit.hit) hit = nearest_triangle(d);
-    SurfacePoint point;
-    point.grid = surface.grid;
-    point.vertex[0] = surface.vertex[0];
-    point.vertex[1] = surface.vertex[hit.second ? 2 : 1];
-    point.vertex[2] = surface.vertex[hit.second ? 3 : 2];
-    point.weight[0] = static_cast<float>(1.0 - hit.b1 - hit.b2);
-    point.weight[1] = static_cast<float>(hit.b1);
-    point.weight[2] = static_cast<float>(hit.b2);
-    return point;
+    return point_of(seen.surface->grid, seen.surface->vertex, hit.second, hit.b1, hit.b2);
+}
+
+void SurfaceInterpolator::locate_run(std::uint32_t first, int count, const SurfaceId* ids,
+                                     SurfacePoint* points) {
+    LocateLanes lanes{};
+    const Grid* grids[LocateLanes::kCount];
+    int vertices[LocateLanes::kCount][4];
+    bool any = false;
+    for (int i = 0; i < count; ++i) {
+        if (ids[i] == kNoSurface) continue;
+        any = true;
+        const Seen seen = see(first + static_cast<std::uint32_t>(i), ids[i]);
+        for (int k = 0; k < 4; ++k) {
+            lanes.x[k][i] = seen.offsets[k].x;
+            lanes.y[k][i] = seen.offsets[k].y;
+            vertices[i][k] = seen.surface->vertex[k];
+        }
+        grids[i] = seen.surface->grid;
+    }
+    if (!any) return;
+    locate_lanes(lanes);
+    for (int i = 0; i < count; ++i) {
+        if (ids[i] == kNoSurface) continue;
+        if (lanes.plain[i] == 0.0) {
+            points[i] = locate(first + static_cast<std::uint32_t>(i), ids[i]);
+            continue;
+        }
+        points[i] =
+            point_of(grids[i], vertices[i], lanes.second[i] != 0.0, lanes.b1[i], lanes.b2[i]);
+    }
 }
 
 }  // namespace granita

@@ -29,6 +29,9 @@ class SurfaceInterpolator {
     SurfaceInterpolator(const Projection& projection, Vec2i tile, const TileSamples& samples,
                         const GridPool& pool);
     SurfacePoint locate(std::uint32_t sample, SurfaceId id);
+    /// The same for `count` <= LocateLanes::kCount samples from `first` on; those without a surface
+    /// are left as they are.
+    void locate_run(std::uint32_t first, int count, const SurfaceId* ids, SurfacePoint* points);
 
   private:
     /// A micropolygon in one segment of its motion.
@@ -39,7 +42,14 @@ class SurfaceInterpolator {
         int vertex[4] = {};
         Corner<float> begin[4], delta[4];
     };
+    /// The corners from which a sample is seen through the lens, at its time.
+    struct Seen {
+        const Loaded* surface;
+        Corner<float> corners[4];
+        Offset<float> offsets[4];
+    };
     const Loaded& load(SurfaceId id, float time);
+    Seen see(std::uint32_t sample, SurfaceId id);
 
     Projection m_projection;
     Vec2d m_origin;
