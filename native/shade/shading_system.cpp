@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/shading_system.h"
+
 #include <algorithm>
 
 #include "shade/direct_light.h"
 #include "shade/node_compiler.h"
 #include "shade/shading_points.h"
-#include "shade/shading_system.h"
 #include "shade/shadow_transparency.h"
 
 namespace granita {
@@ -20,6 +21,9 @@ NodeGraph default_material() {
     graph.surface = {0, "BSDF"};
     return graph;
 }
+
+/// Radiance of a surface that nobody misses as a light: an 8-bit step of white.
+constexpr float kDimmestEmission = 0.004f;
 
 template <class T>
 std::vector<T> values_of(const Run& run, const Source<T>& source) {
@@ -80,6 +84,7 @@ struct ShadingSystem::Impl {
             compile_surface(default_material(), scene, textures, report, {"no material"}));
         for (const CompiledSurface& material : materials) requests.push_back(material.requests);
         displacement.resize(materials.size());
+        warn_of_emission(report);
         world = compile_surface(scene.world.graph, scene, textures, report,
                                 {"world '" + scene.world.name + "'", true});
         light = std::make_unique<DirectLight>(
@@ -88,6 +93,20 @@ struct ShadingSystem::Impl {
                 background(directions, spread, out);
             },
             statistics, report, progress, shadow_opacity());
+    }
+
+    /// Only lamps and the world are sampled: a surface that shines is seen, but sheds no light.
+    void warn_of_emission(Report& report) const {
+        const auto reflects = [](const CompiledSurface& m) {
+            return !m.radiance.sources.lobes.empty();
+        };
+        if (std::none_of(materials.begin(), materials.end() - 1, reflects)) return;
+        for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+            const auto& emission = materials[i].radiance.sources.emission;
+            if (emission.is_constant() && luminance(emission.constant) < kDimmestEmission) continue;
+            report.warn("material '" + scene.materials[i].name + "'",
+                        "its emission is seen but lights nothing: add a lamp where it should");
+        }
     }
 
     ShadowOpacity shadow_opacity() const {

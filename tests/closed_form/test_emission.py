@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What shines without being a lamp."""
+
+import numpy as np
+import pytest
+import snapshots as s
+
+
+def plain(snapshot):
+    """Adds a material that reflects; returns its index."""
+    nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.5, 0.5, 0.5, 1)}}]
+    snapshot["materials"].append({"name": "Plain", "nodes": nodes, "surface": (0, "BSDF")})
+    return len(snapshot["materials"]) - 1
+
+
+def warnings_of(strength, reflecting):
+    snapshot = s.orthographic((16, 16), samples=1, executor="SIMD")
+    shining = s.emission(snapshot, color=(strength,) * 3)
+    s.quad(snapshot, s.rectangle(0, 0, 8, 16), shining)
+    if reflecting:
+        s.quad(snapshot, s.rectangle(8, 0, 16, 16), plain(snapshot))
+    done = s.render(snapshot)
+    assert np.allclose(done["combined"][8, 2, :3], strength, rtol=1e-6)
+    return [(datablock, count) for datablock, _, count in done["warnings"]]
+
+
+@pytest.mark.parametrize("strength, reflecting", [(0.003, True), (5.0, False)])
+def test_nobody_misses_light_that_is_faint_or_that_nothing_would_reflect(strength, reflecting):
+    assert warnings_of(strength, reflecting) == []
+
+
+def test_an_emitting_material_that_lights_nothing_is_named_once():
+    assert warnings_of(5.0, True) == [("material 'Emission 0'", 1)]
