@@ -15,6 +15,7 @@ std::map<std::string, NodeKind> all_kinds() {
     };
     const auto closure = [](auto* build) { return NodeKind{nullptr, build, nullptr}; };
     const auto like_glossy = NodeKind{nullptr, build_glossy, "Glossy BSDF"};
+    const auto flat = NodeKind{build_flat_texture, nullptr, "a flat grey, its mean"};
     const auto like_diffuse = NodeKind{nullptr, build_diffuse, "Diffuse BSDF"};
     return {
         {"ShaderNodeEmission", closure(build_emission)},
@@ -67,6 +68,17 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeTexChecker", value(build_checker)},
         {"ShaderNodeTexGradient", value(build_gradient)},
         {"ShaderNodeTexSky", value(build_sky_texture)},
+
+        {"ShaderNodeTexNoise", flat},
+        {"ShaderNodeTexVoronoi", flat},
+        {"ShaderNodeTexMusgrave", flat},
+        {"ShaderNodeTexWave", flat},
+        {"ShaderNodeTexMagic", flat},
+        {"ShaderNodeTexBrick", flat},
+        {"ShaderNodeTexGabor", flat},
+        {"ShaderNodeTexWhiteNoise", flat},
+        {"ShaderNodeTexPointDensity", flat},
+        {"ShaderNodeTexIES", flat},
 
         {"ShaderNodeBsdfGlass", like_glossy},
         {"ShaderNodeBsdfRefraction", like_glossy},

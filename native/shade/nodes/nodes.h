@@ -54,5 +54,6 @@ void build_camera_data(NodeBuilder&);
 void build_checker(NodeBuilder&);
 void build_gradient(NodeBuilder&);
 void build_sky_texture(NodeBuilder&);
+void build_flat_texture(NodeBuilder&);
 
 }  // namespace granita
