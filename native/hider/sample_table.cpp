@@ -14,7 +14,6 @@ namespace {
 constexpr int kPixels = kTileSize * kTileSize;
 constexpr int kBlockBits = 7;      ///< blocks of 128 pixels (decision 15)
 constexpr int kMaxClasses = 1024;  ///< of INTERLEAVED
-constexpr int kDefaultPasses = 16;
 enum Dimension { kX, kY, kT, kU, kV };
 
 int nearest_square_side(int samples) {
@@ -52,7 +51,8 @@ void sobol_run(std::uint32_t first, int dimension, int count, std::uint32_t* out
 
 }  // namespace
 
-SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNeeds frame)
+SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNeeds frame,
+                         int automatic_passes)
     : m_samples(options.samples),
       m_sampling(options.sampling),
       m_seed(options.seed),
@@ -68,7 +68,9 @@ SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNee
     if (m_sampling == Sampling::Regular) {
         m_lattice = nearest_square_side(m_samples);
         const bool blur = frame.time || (frame.lens && camera.projection.has_lens());
-        const int passes = !blur ? 1 : options.time_samples ? options.time_samples : kDefaultPasses;
+        const int passes = !blur                  ? 1
+                           : options.time_samples ? options.time_samples
+                                                  : automatic_passes;
         m_samples = m_lattice * m_lattice * passes;
     }
 }

@@ -34,12 +34,15 @@ struct SampleNeeds {
 /// of 1 to 8 pixels (Keller and Heidrich 2001).
 /// REGULAR: sample = pass * lattice^2 + cell; the lattice is the square nearest to
 /// Options::samples, and all pixels share a pass's time and lens point (the paper, 9.3.5). Passes:
-/// Options::time_samples (0 = 16) if the frame has motion or a lens, else 1.
+/// Options::time_samples, or what the constructor is told where that is 0, if the frame has motion
+/// or a lens, else 1.
 class SampleTable {
   public:
+    static constexpr int kDefaultPasses = 16;
     /// `frame`: what any bucket of the frame may need; the number of samples of REGULAR depends on
     /// it. Throws SceneError for counts that 32 bits cannot index.
-    SampleTable(const Options& options, const Camera& camera, SampleNeeds frame = {true, true});
+    SampleTable(const Options& options, const Camera& camera, SampleNeeds frame = {true, true},
+                int automatic_passes = kDefaultPasses);
     /// A pixel's samples.
     int samples() const { return m_samples; }
     Sampling sampling() const { return m_sampling; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/frame.h"
 
+#include "render/frame_blur.h"
 #include "render/raster_bucket.h"
 
 namespace granita {
@@ -19,6 +20,15 @@ View make_view(const Scene& scene, Statistics& statistics, const ShadingSystem& 
     view.raster_x1 = static_cast<float>(scene.options.width) + apron;
     view.raster_y1 = static_cast<float>(scene.options.height) + apron;
     return view;
+}
+
+SampleTable make_table(const Scene& scene, const View& view, Report& report) {
+    const SampleNeeds needs{scene.moves(), scene.camera.projection.has_lens()};
+    const Options& options = scene.options;
+    if (options.sampling != Sampling::Regular || options.time_samples != 0)
+        return SampleTable(options, scene.camera, needs);
+    const PixelFilter filter(options.pixel_filter, options.filter_width);
+    return SampleTable(options, scene.camera, needs, automatic_passes(view, filter, report));
 }
 
 Vec3f constant_background_of(const ShadingSystem& shading) {
@@ -48,8 +58,7 @@ Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& fra
       shading(scene, statistics, report, progress),
       view(make_view(scene, statistics, shading,
                      PixelFilter(scene.options.pixel_filter, scene.options.filter_width))),
-      table(scene.options, scene.camera,
-            SampleNeeds{scene.moves(), scene.camera.projection.has_lens()}),
+      table(make_table(scene, view, report)),
       hider{&table, view.projection, &statistics, &scene, &report, &progress},
       constant_background(constant_background_of(shading)),
       choice(choose_executor(scene, shading, report)),
