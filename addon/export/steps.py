@@ -49,8 +49,8 @@ class Steps:
         """Reads the scene, which stands at the tick's time."""
         poll(self._check_cancel)
         self.ticks.append(tick)
+        self._read_camera(tick)  # what its lens does is no change of place or geometry
         if not knows_updates or moved(self._scene.depsgraph):
-            self._read_camera(tick)
             changes = self._plain.changes(self._scene.depsgraph) if knows_updates else None
             if knows_updates:
                 self._changed |= changed_geometry(self._scene.depsgraph)
@@ -58,8 +58,6 @@ class Steps:
                 self._walk(knows_updates)
             else:
                 self._take(changes)
-        else:  # as it was at the last time that was visited
-            self.cameras[tick] = self.cameras[self.ticks[-2]]
         things = np.flatnonzero(self._touched)
         self._records[tick] = (things, self._present[things], self._now[things])
         self._point_records[tick] = dict(self._last_points)
