@@ -220,3 +220,36 @@ def test_render_at_a_subframe(moving):
     snapshot, _, time_after = export_probe.through_engine(moving)
     assert xs(snapshot, "Square") == pytest.approx([10.25, 10.75])
     assert time_after == 10.5
+
+
+def test_an_object_asks_for_more_knots_than_the_scene_allows(moving):
+    """Two to the power of its steps, and one: 8 segments where the scene's limit is 2."""
+    square = scene_parts.add_square(moving)
+    drive(square, "rotation_euler", "40 * frame", 2)
+    (getattr(square, "cycles", None) or square.granita).motion_steps = 3
+    snapshot, _, _ = export_probe.through_engine(moving)
+    turned = export_probe.knots_of(snapshot, "Square")
+    angles = 40.0 * np.linspace(9.75, 10.25, 9)
+    assert turned[:, 0, 0] == pytest.approx(np.cos(angles), abs=1e-4)
+
+
+def test_a_handler_that_deletes_an_object_leaves_it_where_it_was(moving):
+    drive(scene_parts.add_square(moving), "location", "frame", 0)
+    scene_parts.add_square(moving, "Doomed", 1.0)
+
+    def delete(*_):
+        doomed = bpy.data.objects.get("Doomed")
+        if doomed is not None:
+            bpy.data.objects.remove(doomed)
+
+    snapshot, _, _ = export_probe.through_engine(moving, **on_every_step(delete))
+    assert xs(snapshot, "Square") == pytest.approx([9.75, 10.25])
+    assert xs(snapshot, "Doomed").tolist() == [0.0]
+
+
+@pytest.mark.parametrize("length", [1e-6, 1e6])
+def test_extreme_shutters(moving, length):
+    moving.render.motion_blur_shutter = length
+    drive(scene_parts.add_square(moving), "location", "sin(frame)", 0)
+    snapshot, _, time_after = export_probe.through_engine(moving)
+    assert np.isfinite(xs(snapshot, "Square")).all() and time_after == 10.0
