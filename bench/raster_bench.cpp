@@ -66,7 +66,7 @@ void raster(benchmark::State& state) {
     for (const Grid& grid : grids) list.push_back(&grid);
     for (auto _ : state) {
         auto bucket = hider.open({0, 0, kSide, kSide}, list);
-        if (state.range(0) != 0) benchmark::DoNotOptimize(bucket->count_visible());
+        if (state.range(0) != 0) benchmark::DoNotOptimize(bucket->find_seen());
         benchmark::DoNotOptimize(bucket->render());
     }
     state.SetItemsProcessed(state.iterations() * kHits);

@@ -42,6 +42,8 @@ ContextInfo query_info(const Display& display) {
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &renderbuffer);
     glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
     info.max_texture_size = std::min({texture, renderbuffer, viewport[0], viewport[1]});
+    glGetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &info.vertex_storage_blocks);
+    info.layer_in_vertex_shader = epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array");
     return info;
 }
 

@@ -28,7 +28,9 @@ struct ContextOptions {
 struct ContextInfo {
     std::string display, vendor, renderer, version;
     bool software = false;
-    int max_texture_size = 0;  ///< texels; also bounds viewports and renderbuffers
+    int max_texture_size = 0;             ///< texels; also bounds viewports and renderbuffers
+    int vertex_storage_blocks = 0;        ///< that a vertex shader may read
+    bool layer_in_vertex_shader = false;  ///< GL_ARB_shader_viewport_layer_array
 };
 
 class EglContext {

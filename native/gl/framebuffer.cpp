@@ -17,11 +17,17 @@ GLuint create() {
 
 }  // namespace
 
-Framebuffer::Framebuffer(const Texture* color, const Texture* depth) : m_handle(create()) {
-    if (color != nullptr)
-        glNamedFramebufferTexture(name(), GL_COLOR_ATTACHMENT0, color->name(), 0);
-    else
-        glNamedFramebufferDrawBuffer(name(), GL_NONE);
+Framebuffer::Framebuffer(const Texture* color, const Texture* depth)
+    : Framebuffer(color != nullptr ? std::vector{color} : std::vector<const Texture*>{}, depth) {}
+
+Framebuffer::Framebuffer(const std::vector<const Texture*>& colors, const Texture* depth)
+    : m_handle(create()) {
+    std::vector<GLenum> outputs;
+    for (const Texture* color : colors) {
+        outputs.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(outputs.size()));
+        glNamedFramebufferTexture(name(), outputs.back(), color->name(), 0);
+    }
+    glNamedFramebufferDrawBuffers(name(), static_cast<GLsizei>(outputs.size()), outputs.data());
     if (depth != nullptr) glNamedFramebufferTexture(name(), GL_DEPTH_ATTACHMENT, depth->name(), 0);
     const GLenum status = glCheckNamedFramebufferStatus(name(), GL_FRAMEBUFFER);
     check("making a framebuffer");

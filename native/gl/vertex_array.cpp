@@ -23,6 +23,15 @@ void VertexArray::set_floats(GLuint location, const Buffer& buffer, int componen
     glEnableVertexArrayAttrib(array, location);
 }
 
+void VertexArray::set_uints(GLuint location, const Buffer& buffer, bool by_instance) const {
+    const GLuint array = m_handle.name();
+    glVertexArrayVertexBuffer(array, location, buffer.name(), 0, sizeof(GLuint));
+    glVertexArrayAttribIFormat(array, location, 1, GL_UNSIGNED_INT, 0);
+    glVertexArrayAttribBinding(array, location, location);
+    glVertexArrayBindingDivisor(array, location, by_instance ? 1 : 0);
+    glEnableVertexArrayAttrib(array, location);
+}
+
 void VertexArray::set_indices(const Buffer& buffer) const {
     glVertexArrayElementBuffer(m_handle.name(), buffer.name());
 }

@@ -12,6 +12,8 @@ class VertexArray {
     VertexArray();
     /// `components` floats a vertex, tightly packed, as attribute `location`.
     void set_floats(GLuint location, const Buffer& buffer, int components) const;
+    /// One unsigned integer a vertex or, with `by_instance`, an instance.
+    void set_uints(GLuint location, const Buffer& buffer, bool by_instance = false) const;
     /// 32-bit vertex indices.
     void set_indices(const Buffer& buffer) const;
     void bind() const { glBindVertexArray(m_handle.name()); }

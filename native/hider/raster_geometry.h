@@ -1,53 +1,90 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The grids of a bucket as one array of vertices and one of triangles, ready for the device.
+// The grids of a bucket as arrays for the device: positions at their knots, vertices, triangles.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "dice/grid.h"
 #include "math/bounds.h"
+#include "math/projection.h"
 
 namespace granita {
 
 /// Grids follow GridKey and micropolygons their index, whatever the order they were handed over in:
 /// OpenGL keeps the first of equal depths, so ties fall as GridPool::before decides (decision 3).
+/// Of each grid the opaque and the transparent micropolygons are drawn apart; what
+/// micropolygon_class.h finds degenerate, clear or not finite is left out.
 class RasterGeometry {
   public:
+    /// Consecutive triangles that are culled and drawn together: one grid, or several small ones
+    /// (the paper's remedy for a million grids of one micropolygon, 9.4).
     struct Range {
-        const Grid* grid;
-        std::uint32_t input;         ///< index in the list handed over
-        std::uint32_t first_vertex;  ///< of `positions`
-        std::uint32_t first_index;   ///< of `indices`
-        std::uint32_t index_count;
+        std::uint32_t first_index = 0;  ///< of `indices`
+        std::uint32_t index_count = 0;
+        int knots = 1;          ///< 1: does not move
+        RasterBounds swept;     ///< over shutter and lens
+        std::size_t first_box;  ///< of the camera-space boxes at its knots
     };
     struct Place {
-        std::uint32_t input;
+        std::uint32_t input;  ///< index in the list handed over
         int micropolygon;
     };
 
     explicit RasterGeometry(const std::vector<const Grid*>& grids);
 
-    const std::vector<Range>& ranges() const { return m_ranges; }
+    const std::vector<Range>& opaque() const { return m_opaque; }
+    /// One grid each.
+    const std::vector<Range>& transparent() const { return m_transparent; }
+    /// Where a range can be seen at a time of the shutter, through any lens point.
+    RasterBounds bounds_at(const Range& range, const Projection& projection, double t) const;
+    /// Camera-space depths that a range takes during the shutter, metres.
+    std::array<float, 2> depths(const Range& range) const;
+
     const std::vector<Vec3f>& positions() const { return m_positions; }
+    const std::vector<std::uint32_t>& vertex_grids() const { return m_vertex_grids; }
+    /// First vertex, first position, vertices of a knot, knots: as raster/grid.vert has it.
+    const std::vector<std::array<std::uint32_t, 4>>& grid_places() const { return m_places; }
     /// Two triangles a micropolygon, its corner 0 first in both.
     const std::vector<std::uint32_t>& indices() const { return m_indices; }
+    /// In the order of their keys.
+    const std::vector<const Grid*>& grids() const { return m_grids; }
+    /// Of each the index in the list handed over.
+    const std::vector<std::uint32_t>& inputs() const { return m_inputs; }
     /// Premultiplied colour and coverage a vertex; holdouts are 0 throughout.  0 for grids that
     /// were not shaded.
     std::vector<Vec4f> radiance() const;
+    /// Opacity a vertex, w = 1 for holdouts.
+    std::vector<Vec4f> opacity() const;
     /// The micropolygon whose corner 0 is that vertex.
     Place locate(std::uint32_t vertex) const;
 
-    std::uint64_t micropolygons() const { return m_indices.size() / 6; }
-    std::uint64_t dropped() const { return m_dropped; }  ///< non-finite micropolygons
+    std::uint64_t micropolygons() const { return m_micropolygons; }
+    /// Micropolygons with a vertex that is not finite.
+    struct Dropped {
+        const Grid* grid;
+        std::uint64_t micropolygons;
+    };
+    const std::vector<Dropped>& dropped() const { return m_dropped; }
 
   private:
-    void append(const Grid& grid, std::uint32_t input);
+    struct Triangles {
+        std::vector<std::uint32_t> opaque, transparent;
+    };
+    void append(const Grid& grid, Triangles& triangles);
+    void append_range(std::vector<Range>& ranges, const Grid& grid, std::uint32_t first,
+                      std::size_t end, bool combine);
 
-    std::vector<Range> m_ranges;
+    std::vector<const Grid*> m_grids;  ///< by key
+    std::vector<std::uint32_t> m_inputs;
+    std::vector<std::array<std::uint32_t, 4>> m_places;
+    std::vector<Range> m_opaque, m_transparent;
+    std::vector<Bounds3f> m_boxes;
     std::vector<Vec3f> m_positions;
-    std::vector<std::uint32_t> m_indices;
-    std::uint64_t m_dropped = 0;
+    std::vector<std::uint32_t> m_vertex_grids, m_indices;
+    std::vector<Dropped> m_dropped;
+    std::uint64_t m_micropolygons = 0;
 };
 
 }  // namespace granita

@@ -1,41 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hider/raster_hider.h"
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "base/check.h"
 #include "gl/gl_check.h"
-#include "gl/query.h"
-#include "gl/shader_source.h"
+#include "hider/raster_device.h"
 #include "hider/raster_geometry.h"
-#include "hider/raster_target.h"
 #include "shaders/shared/raster_layout.h"
 
 namespace granita {
-namespace {
-
-gl::Program grid_program(const Projection& projection, bool with_radiance) {
-    const gl::Defines defines{{"PERSPECTIVE", projection.perspective ? "1" : "0"},
-                              {"WITH_RADIANCE", with_radiance ? "1" : "0"}};
-    return gl::Program("grids",
-                       {{GL_VERTEX_SHADER, gl::shader_source("raster/grid.vert", defines)},
-                        {GL_FRAGMENT_SHADER, gl::shader_source("raster/grid.frag", defines)}});
-}
-
-}  // namespace
-
-// What all buckets share on the device; touched on the thread that owns OpenGL.
-struct RasterHider::Device {
-    RasterTarget target;
-    gl::Program radiance, surfaces;
-
-    Device(const RasterFrame& frame, int max_texture_size)
-        : target(frame.filter, max_texture_size),
-          radiance(grid_program(frame.projection, true)),
-          surfaces(grid_program(frame.projection, false)) {}
-};
 
 class RasterHider::Bucket : public RasterBucket {
   public:
@@ -44,167 +21,208 @@ class RasterHider::Bucket : public RasterBucket {
           m_frame(hider.m_frame),
           m_device(*hider.m_device),
           m_pixels(pixels),
-          m_geometry(grids) {
+          m_geometry(grids),
+          m_opaque(all(m_geometry.opaque())),
+          m_transparent(all(m_geometry.transparent())) {
         add(Counter::Micropolygons, m_geometry.micropolygons());
-        add(Counter::MicropolygonsDropped, m_geometry.dropped());
-        m_thread.run([&] {
-            // Whole or not at all: what is made here must not end on another thread.
-            Buffers buffers;
-            buffers.positions = gl::Buffer::of(m_geometry.positions());
-            buffers.indices = gl::Buffer::of(m_geometry.indices());
-            buffers.array.set_floats(RASTER_POSITION, buffers.positions, 3);
-            buffers.array.set_indices(buffers.indices);
-            m_buffers = std::move(buffers);
-        });
+        report_dropped();
+        m_thread.run([&] { upload(); });
     }
     ~Bucket() override {
         m_thread.run([&] { m_buffers.reset(); });
     }
 
-    std::vector<std::uint64_t> count_visible() override {
-        return m_thread.run([&] { return count_visible_here(); });
+    std::vector<bool> find_seen() override {
+        return m_thread.run([&] { return find_seen_here(); });
     }
-    RasterImage render() override {
-        return m_thread.run([&] { return render_here(); });
+    RasterImage render(const RasterBackground& background) override {
+        return m_thread.run([&] { return render_here(background); });
     }
-    RasterSurfaces surfaces() override {
-        return m_thread.run([&] { return surfaces_here(); });
+    RasterSurfaces surfaces(int pass) override {
+        return m_thread.run([&] { return surfaces_here(pass); });
     }
 
   private:
     using Range = RasterGeometry::Range;
-    struct Buffers {
-        gl::Buffer positions, indices, radiance;
-        gl::VertexArray array;
-    };
+    using Ranges = std::vector<std::uint32_t>;
+
+    static Ranges all(const std::vector<Range>& ranges) {
+        Ranges indices(ranges.size());
+        std::iota(indices.begin(), indices.end(), 0u);
+        return indices;
+    }
 
     void add(Counter counter, std::uint64_t n) const {
         if (m_frame.statistics != nullptr) m_frame.statistics->add(counter, n);
     }
-    // Depth is near / z: the far clip is a depth that the target starts with.
-    float farthest() const {
-        return static_cast<float>(m_frame.projection.near_clip / m_frame.projection.far_clip);
-    }
-    float key_of_depth(float depth) const {
-        const auto near_clip = static_cast<float>(m_frame.projection.near_clip);
-        return m_frame.projection.perspective ? depth / near_clip : -(near_clip / depth);
-    }
 
-    static bool reaches(const Grid& grid, const RasterCell& cell) {
-        const RasterBounds& b = grid.bounds;
-        const Rect& s = cell.samples;
-        return b.visible && b.x1 >= static_cast<float>(s.x0) && b.x0 <= static_cast<float>(s.x1) &&
-               b.y1 >= static_cast<float>(s.y0) && b.y0 <= static_cast<float>(s.y1);
-    }
-
-    void use(const gl::Program& program, const RasterCell& cell) const {
-        const Projection& p = m_frame.projection;
-        const Vec2d per_pixel(2.0 / m_device.target.pixel_size());
-        const Vec2d scale = p.scale * per_pixel;
-        const Vec2d center = (p.center - Vec2d(cell.corner)) * per_pixel - Vec2d(1.0);
-        program.use();
-        glUniform2d(RASTER_CLIP_SCALE, scale.x, scale.y);
-        glUniform2d(RASTER_CLIP_CENTER, center.x, center.y);
-        glUniform1f(RASTER_NEAR, static_cast<float>(p.near_clip));
-        m_buffers->array.bind();
-    }
-
-    static const void* offset(const Range& range) {
-        return reinterpret_cast<const void*>(static_cast<std::uintptr_t>(range.first_index) *
-                                             sizeof(std::uint32_t));
-    }
-
-    // One pass over the bucket's grids in the order of the pool, which is how ties are decided.
-    // The result counts the primitives; it is read late, so that nobody waits.
-    gl::Query draw(const RasterCell& cell) const {
-        std::vector<GLsizei> counts;
-        std::vector<const void*> offsets;
-        for (const Range& range : m_geometry.ranges())
-            if (reaches(*range.grid, cell)) {
-                counts.push_back(static_cast<GLsizei>(range.index_count));
-                offsets.push_back(offset(range));
-            }
-        gl::Query primitives(GL_PRIMITIVES_GENERATED);
-        primitives.begin();
-        glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
-                            static_cast<GLsizei>(counts.size()));
-        primitives.end();
-        gl::check("drawing grids");
-        add(Counter::GlPasses, 1);
-        return primitives;
-    }
-
-    gl::Query draw_surfaces(const RasterCell& cell) {
-        m_device.target.begin_surfaces(cell, farthest());
-        use(m_device.surfaces, cell);
-        return draw(cell);
-    }
-
-    std::vector<std::uint64_t> count_visible_here() {
-        std::vector<std::uint64_t> counts(m_geometry.ranges().size(), 0);
-        for (const RasterCell& cell : m_device.target.cells(m_pixels)) {
-            const gl::Query primitives = draw_surfaces(cell);
-            // The same program finds the same depths: a grid's own samples pass, and no others.
-            glDepthFunc(GL_EQUAL);
-            glDepthMask(GL_FALSE);
-            glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-            std::vector<std::pair<std::uint32_t, gl::Query>> queries;
-            for (const Range& range : m_geometry.ranges()) {
-                if (!reaches(*range.grid, cell)) continue;
-                queries.emplace_back(range.input, gl::Query(GL_SAMPLES_PASSED));
-                queries.back().second.begin();
-                glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.index_count),
-                               GL_UNSIGNED_INT, offset(range));
-                queries.back().second.end();
-            }
-            gl::check("counting visible samples");
-            for (const auto& [input, query] : queries) counts[input] += query.result();
-            add(Counter::GlPasses, 1);
-            add(Counter::GlPrimitives, primitives.result());
+    void report_dropped() const {
+        for (const auto& [grid, micropolygons] : m_geometry.dropped()) {
+            add(Counter::MicropolygonsDropped, micropolygons);
+            if (m_frame.report != nullptr && m_frame.scene != nullptr)
+                m_frame.report->warn(
+                    "object '" + m_frame.scene->instances.at(grid->instance).name + "'",
+                    "micropolygons with a vertex that is not finite were left out", micropolygons);
         }
-        m_visible = counts;
-        return counts;
+    }
+
+    void upload() {
+        // Whole or not at all: what is made here must not end on another thread.
+        RasterBuffers buffers;
+        buffers.positions = gl::Buffer::of(m_geometry.positions());
+        buffers.grids = gl::Buffer::of(m_geometry.grid_places());
+        buffers.vertex_grids = gl::Buffer::of(m_geometry.vertex_grids());
+        buffers.indices = gl::Buffer::of(m_geometry.indices());
+        buffers.array.set_uints(RASTER_GRID, buffers.vertex_grids);
+        buffers.array.set_indices(buffers.indices);
+        if (!m_transparent.empty()) {
+            buffers.opacity = gl::Buffer::of(m_geometry.opacity());
+            buffers.array.set_floats(RASTER_OPACITY, buffers.opacity, 4);
+        }
+        m_buffers = std::move(buffers);
+    }
+
+    /// The passes of a cell (paper, 9.3.5: clamped by motion and circle of confusion): one, where
+    /// all would be the same.
+    int pass_count(const RasterCell& cell, bool background_varies) const {
+        const int passes = static_cast<int>(m_frame.passes.size());
+        if (passes == 1 || background_varies) return passes;
+        for (const auto* ranges : {&m_geometry.opaque(), &m_geometry.transparent()})
+            for (const Range& range : *ranges)
+                if ((range.knots > 1 || m_frame.projection.has_lens()) &&
+                    RasterDevice::reaches(range.swept, cell))
+                    return passes;
+        return 1;
+    }
+
+    /// Calls `draw` with the passes of a cell, as many at once as the target has layers.
+    template <class Draw>
+    void for_passes(int passes, const Draw& draw) const {
+        const int layers = m_device.target().layers();
+        for (int first = 0; first < passes; first += layers)
+            draw(RasterPasses{first, std::min(layers, passes - first)});
+    }
+
+    void draw_opaque(RasterOutput output, const RasterCell& cell, const RasterPasses& passes) {
+        m_device.draw(output, *m_buffers,
+                      m_device.commands(m_geometry, m_geometry.opaque(), m_opaque, cell, passes),
+                      cell, passes);
+    }
+
+    std::vector<RasterDevice::Command> transparent_commands(const Ranges& among,
+                                                            const RasterCell& cell,
+                                                            const RasterPasses& passes) const {
+        return m_device.commands(m_geometry, m_geometry.transparent(), among, cell, passes);
+    }
+
+    std::vector<bool> find_seen_here() {
+        const std::size_t grids = m_geometry.inputs().size();
+        const gl::Buffer marks = gl::Buffer::of(std::vector<std::uint32_t>(grids, 0));
+        for (const RasterCell& cell : m_device.target().cells(m_pixels))
+            for_passes(pass_count(cell, false), [&](const RasterPasses& passes) {
+                m_device.target().begin_surfaces(cell, m_device.farthest());
+                draw_opaque(RasterOutput::Surface, cell, passes);
+                m_device.mark_surfaces(cell, passes, *m_buffers, marks);
+                const auto commands = transparent_commands(m_transparent, cell, passes);
+                if (commands.empty()) return;
+                m_device.begin_marks(cell, marks);
+                m_device.draw(RasterOutput::Mark, *m_buffers, commands, cell, passes);
+            });
+        const auto marked = marks.read<std::uint32_t>();
+        std::vector<bool> seen(grids);
+        for (std::size_t i = 0; i < grids; ++i) seen[m_geometry.inputs()[i]] = marked[i] != 0;
+        add(Counter::GlPrimitives, m_device.take_primitives());
+        m_seen = seen;
+        return seen;
     }
 
     void upload_radiance() {
-        for (const Range& range : m_geometry.ranges()) {
-            const bool unseen = m_visible && (*m_visible)[range.input] == 0;
-            if (unseen || range.grid->holdout) continue;
-            GRANITA_CHECK_EQ(range.grid->radiance.size(),
-                             static_cast<std::size_t>(range.grid->vertex_count()));
+        for (std::size_t i = 0; i < m_geometry.grids().size(); ++i) {
+            const Grid& grid = *m_geometry.grids()[i];
+            if ((m_seen && !(*m_seen)[m_geometry.inputs()[i]]) || grid.holdout) continue;
+            GRANITA_CHECK_EQ(grid.radiance.size(), static_cast<std::size_t>(grid.vertex_count()));
         }
         m_buffers->radiance = gl::Buffer::of(m_geometry.radiance());
         m_buffers->array.set_floats(RASTER_RADIANCE, m_buffers->radiance, 4);
     }
 
-    RasterImage render_here() {
+    std::vector<ZBatch> batches_of(const RasterCell& cell) const {
+        Ranges among;
+        for (const std::uint32_t i : m_transparent)
+            if (RasterDevice::reaches(m_geometry.transparent()[i].swept, cell)) among.push_back(i);
+        return z_batches(m_geometry, among, m_frame.projection.near_clip, m_device.farthest(),
+                         m_frame.z_batch_size);
+    }
+
+    /// The transparent grids of a cell, batch by batch and layer by layer, until no sample finds
+    /// another one (paper, listing 1).
+    void peel(const std::vector<ZBatch>& batches, const RasterCell& cell,
+              const RasterPasses& passes) {
+        RasterPeel& peel = m_device.peel();
+        peel.begin(cell);
+        for (const ZBatch& batch : batches) {
+            const auto commands = transparent_commands(batch.ranges, cell, passes);
+            if (commands.empty()) continue;
+            // The answer is read one layer late, while the device draws the next one.
+            std::optional<gl::Query> last;
+            for (;;) {
+                peel.begin_layer(cell, batch.farther_than);
+                gl::Query any(GL_ANY_SAMPLES_PASSED);
+                any.begin();
+                m_device.draw(RasterOutput::Layer, *m_buffers, commands, cell, passes);
+                any.end();
+                peel.composite(cell, passes.count, m_frame.opacity_threshold);
+                if (last && last->result() == 0) break;
+                last.emplace(std::move(any));
+            }
+        }
+    }
+
+    RasterImage render_here(const RasterBackground& background) {
         upload_radiance();
+        const gl::Buffer corners = gl::Buffer::of(background.corners);
         RasterImage image{m_pixels, {}};
         image.combined.resize(static_cast<std::size_t>(m_pixels.width()) * m_pixels.height());
-        for (const RasterCell& cell : m_device.target.cells(m_pixels)) {
-            m_device.target.begin_radiance(cell, m_frame.background, farthest());
-            use(m_device.radiance, cell);
-            const gl::Query primitives = draw(cell);
-            copy(m_device.target.resolve(cell), cell.pixels, 1, image.combined);
+        for (const RasterCell& cell : m_device.target().cells(m_pixels)) {
+            const int count = pass_count(cell, background.passes > 1);
+            const std::vector<ZBatch> batches = batches_of(cell);
+            for_passes(count, [&](const RasterPasses& passes) {
+                m_device.target().begin_radiance(cell, m_device.farthest());
+                draw_opaque(RasterOutput::Radiance, cell, passes);
+                if (!batches.empty()) peel(batches, cell, passes);
+                m_device.accumulate(cell, passes, !batches.empty(), background, corners);
+            });
+            copy(m_device.target().resolve(cell), cell.pixels, 1, image.combined);
             add(Counter::SamplesTotal, static_cast<std::uint64_t>(cell.texels.width) *
-                                           static_cast<std::uint64_t>(cell.texels.height));
-            add(Counter::GlPrimitives, primitives.result());
+                                           static_cast<std::uint64_t>(cell.texels.height) *
+                                           static_cast<std::uint64_t>(count));
+            add(Counter::GlPrimitives, m_device.take_primitives());
         }
         return image;
     }
 
-    RasterSurfaces surfaces_here() {
+    float key_of_depth(float depth) const {
+        const auto near_clip = static_cast<float>(m_frame.projection.near_clip);
+        return m_frame.projection.perspective ? depth / near_clip : -(near_clip / depth);
+    }
+
+    RasterSurfaces surfaces_here(int pass) {
         const int lattice = m_frame.filter.lattice;
         const std::size_t count =
             static_cast<std::size_t>(m_pixels.width()) * m_pixels.height() * lattice * lattice;
         std::vector<std::uint32_t> names(count);
         std::vector<float> depths(count);
-        for (const RasterCell& cell : m_device.target.cells(m_pixels)) {
-            const gl::Query primitives = draw_surfaces(cell);
-            copy(m_device.target.read_surfaces(cell), cell.pixels, lattice, names);
-            copy(m_device.target.read_depth(cell), cell.pixels, lattice, depths);
-            add(Counter::GlPrimitives, primitives.result());
+        for (const RasterCell& cell : m_device.target().cells(m_pixels)) {
+            const RasterPasses passes{pass, 1};
+            m_device.target().begin_surfaces(cell, m_device.farthest());
+            draw_opaque(RasterOutput::Surface, cell, passes);
+            if (!m_transparent.empty())
+                m_device.draw(RasterOutput::Surface, *m_buffers,
+                              transparent_commands(m_transparent, cell, passes), cell, passes);
+            copy(m_device.target().read_surfaces(cell), cell.pixels, lattice, names);
+            copy(m_device.target().read_depth(cell), cell.pixels, lattice, depths);
         }
+        add(Counter::GlPrimitives, m_device.take_primitives());
         RasterSurfaces result{m_pixels, lattice, {}, {}};
         result.surface.resize(count);
         result.key.resize(count, -std::numeric_limits<float>::infinity());
@@ -230,19 +248,19 @@ class RasterHider::Bucket : public RasterBucket {
 
     gl::GlThread& m_thread;
     const RasterFrame& m_frame;
-    Device& m_device;
+    RasterDevice& m_device;
     Rect m_pixels;
     RasterGeometry m_geometry;
-    std::optional<Buffers> m_buffers;
-    std::optional<std::vector<std::uint64_t>> m_visible;
+    Ranges m_opaque, m_transparent;
+    std::optional<RasterBuffers> m_buffers;
+    std::optional<std::vector<bool>> m_seen;
 };
 
 RasterHider::RasterHider(gl::GlThread& thread, const RasterFrame& frame)
     : m_thread(thread), m_frame(frame) {
-    GRANITA_CHECK(!frame.projection.has_lens());
+    GRANITA_CHECK(!frame.passes.empty());
     GRANITA_CHECK(frame.projection.near_clip > 0.0);
-    m_device =
-        thread.run([&] { return std::make_unique<Device>(frame, thread.info().max_texture_size); });
+    m_device = thread.run([&] { return std::make_unique<RasterDevice>(m_frame, thread.info()); });
 }
 
 RasterHider::~RasterHider() {
@@ -256,7 +274,9 @@ Rect RasterHider::sample_pixels(const Rect& pixels) const {
 
 std::unique_ptr<RasterBucket> RasterHider::open(const Rect& pixels,
                                                 const std::vector<const Grid*>& grids) {
-    for (const Grid* grid : grids) GRANITA_CHECK(can_draw(*grid));
+    for (const Grid* grid : grids)
+        if (grid->opacity_varies)
+            GRANITA_CHECK_EQ(grid->opacity.size(), static_cast<std::size_t>(grid->vertex_count()));
     return std::make_unique<Bucket>(*this, pixels, grids);
 }
 

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The raster executor: the paper's hider for static opaque grids, through OpenGL (Wexler, Gritz,
-// Enderton and Rice 2005, sections 9.3.3 and 9.3.6).
+// The raster executor: the paper's hider through OpenGL (Wexler, Gritz, Enderton and Rice 2005,
+// sections 9.3.3 to 9.3.6).
 //
 //   RasterHider hider(gl_thread, frame);
-//   auto bucket = hider.open(pixels, grids);      // positions to the device, once
-//   visible = bucket->count_visible();            // occlusion queries, before shading
-//   ... shade the grids with visible[i] > 0 ...
-//   image = bucket->render();                     // draw supersampled, filter, read back
+//   auto bucket = hider.open(pixels, grids);      // positions and opacity to the device, once
+//   seen = bucket->find_seen();                   // before shading
+//   ... shade the grids with seen[i] ...
+//   image = bucket->render(background);           // draw supersampled, filter, read back
 //
 // Samples are those of SampleTable with REGULAR sampling: the lattice's cell centres are the
-// centres of the target's texels.  What a sample sees is what the CPU executors see, but for
-// samples within a unit of OpenGL's sub-pixel grid (2^-8 texel in most drivers) of an edge, and
-// depths within the rounding of its depth interpolation.  No bit depends on `pixels`.
+// centres of the target's texels, and each pass has one time and one lens point for all pixels.
+// What a sample sees is what the CPU executors see, but for samples within a unit of OpenGL's
+// sub-pixel grid (2^-8 texel in most drivers) of an edge, and depths within the rounding of its
+// depth interpolation.  No bit depends on `pixels`.
 //
 // Differs from the paper: grids are tested against the finished depth buffer of the bucket instead
-// of what happens to be drawn so far.  That costs one more pass over the geometry, needs no order,
-// finds exactly what is seen, and leaves no query to wait for until all are under way.
+// of what happens to be drawn so far, and not by one occlusion query each: the samples themselves
+// mark the grids that they see.  That costs one more pass over the geometry, needs no order, finds
+// exactly what is seen, makes tiny grids no dearer than large ones, and leaves nothing to wait for.
 //
 // Any thread may call; the work is done on the thread that owns OpenGL.
 #pragma once
@@ -24,19 +26,35 @@
 #include <memory>
 #include <vector>
 
+#include "base/report.h"
 #include "base/statistics.h"
 #include "dice/grid.h"
 #include "gl/gl_thread.h"
 #include "hider/raster_filter.h"
+#include "hider/raster_target.h"
 #include "math/projection.h"
+#include "scene/scene.h"
 
 namespace granita {
 
+/// Shutter time in [0, 1] and place on the unit lens of all samples of one pass.
+struct RasterPass {
+    float t = 0.0f, u = 0.0f, v = 0.0f;
+};
+
 struct RasterFrame {
-    Projection projection;   ///< without lens
-    RasterFilter filter;     ///< also says the lattice
-    Vec4f background{0.0f};  ///< premultiplied; what a sample sees where there is no surface
+    Projection projection;
+    RasterFilter filter;                ///< also says the lattice
+    std::vector<RasterPass> passes{1};  ///< at least one
+    float opacity_threshold = 1.0f;     ///< as CompositeSettings::opacity_threshold
+    bool film_transparent = true;       ///< alpha is what surfaces cover
+    int z_batch_size = 26;              ///< transparent grids that are peeled together
+    int most_layers =
+        8;  ///< passes drawn at once, where the device can; 1 = multipass accumulation
     Statistics* statistics = nullptr;
+    /// Where dropped micropolygons are named; both or neither.
+    const Scene* scene = nullptr;
+    Report* report = nullptr;
 };
 
 /// [height][width] premultiplied linear RGBA, filtered; lower-left pixel first.
@@ -45,7 +63,8 @@ struct RasterImage {
     std::vector<Vec4f> combined;
 };
 
-/// What each sample of a rectangle sees, [height * lattice][width * lattice], lower-left first.
+/// What each sample of a rectangle sees in one pass, [height * lattice][width * lattice],
+/// lower-left first: the nearest surface, opaque or not.
 struct RasterSurfaces {
     struct Surface {
         std::int32_t grid = -1;  ///< index in the list given to open(); -1 = nothing
@@ -61,35 +80,34 @@ struct RasterSurfaces {
 class RasterBucket {
   public:
     virtual ~RasterBucket() = default;
-    /// For each grid of open() the samples, the filter's apron included, that see it.  Grids that
-    /// coincide there are counted both.
-    virtual std::vector<std::uint64_t> count_visible() = 0;
-    /// Every grid must be shaded, but for those that count_visible() found unseen.
-    virtual RasterImage render() = 0;
-    virtual RasterSurfaces surfaces() = 0;
+    /// For each grid of open() whether a sample, the filter's apron included, sees it in any pass.
+    /// Transparent ones count as seen where they lie before the opaque.
+    virtual std::vector<bool> find_seen() = 0;
+    /// Every grid must be shaded, but for those that find_seen() found unseen.
+    virtual RasterImage render(const RasterBackground& background = {}) = 0;
+    virtual RasterSurfaces surfaces(int pass = 0) = 0;
 };
 
 class RasterHider {
   public:
-    /// Throws GlError where the filter needs more than the device has, InternalError for a lens.
+    /// Throws GlError where the filter needs more than the device has.
     RasterHider(gl::GlThread& thread, const RasterFrame& frame);
     ~RasterHider();
     RasterHider(const RasterHider&) = delete;
     RasterHider& operator=(const RasterHider&) = delete;
 
-    /// Static and opaque: the only grids that open() takes.
-    static bool can_draw(const Grid& grid) { return !grid.motion && !grid.opacity_varies; }
+    const RasterFrame& frame() const { return m_frame; }
     /// `pixels` of the frame, grown by the filter: what overlaps it belongs to the bucket.
     Rect sample_pixels(const Rect& pixels) const;
-    /// Non-finite micropolygons are left out and counted (Counter::MicropolygonsDropped).
+    /// Opacity must be there where it varies.  Non-finite micropolygons are left out, counted
+    /// (Counter::MicropolygonsDropped) and reported.
     std::unique_ptr<RasterBucket> open(const Rect& pixels, const std::vector<const Grid*>& grids);
 
   private:
-    struct Device;
     class Bucket;
     gl::GlThread& m_thread;
     RasterFrame m_frame;
-    std::unique_ptr<Device> m_device;
+    std::unique_ptr<class RasterDevice> m_device;
 };
 
 }  // namespace granita

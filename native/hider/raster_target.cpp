@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hider/raster_target.h"
 
+#include <algorithm>
 #include <string>
 
 #include "base/error.h"
@@ -14,6 +15,8 @@ namespace {
 constexpr int kLargestCell = 64;  ///< pixels; the apron's share falls with it, memory grows
 constexpr int kSmallestCell = 16;
 constexpr int kWantedTexels = 2048;  ///< side: 64 MiB of colour and 16 of depth
+/// Of all layers together: a texel takes 24 bytes, and 80 more where things are transparent.
+constexpr int kLayeredTexels = 1 << 21;
 
 int choose_cell(const RasterFilter& filter, int max_texture_size) {
     const auto side = [&](int cell) { return (cell + 2 * filter.apron()) * filter.lattice; };
@@ -43,13 +46,17 @@ int floor_to(int value, int step) {
 
 }  // namespace
 
-RasterTarget::RasterTarget(const RasterFilter& filter, int max_texture_size)
+RasterTarget::RasterTarget(const RasterFilter& filter, int most_layers, int max_texture_size)
     : m_lattice(filter.lattice),
       m_apron(filter.apron()),
       m_cell(choose_cell(filter, max_texture_size)) {
-    const int side = pixel_size() * m_lattice;
-    m_radiance = gl::Texture(GL_RGBA32F, side, side);
-    m_depth = gl::Texture(GL_DEPTH_COMPONENT32F, side, side);
+    const int side = texel_size();
+    const int most = std::clamp(kLayeredTexels / (side * side), 1, most_layers);
+    const int draws = (most_layers + most - 1) / most;
+    m_layers = (most_layers + draws - 1) / draws;  // all draws as full as the last
+    m_radiance = gl::Texture(GL_RGBA32F, side, side, m_layers);
+    m_depth = gl::Texture(GL_DEPTH_COMPONENT32F, side, side, m_layers);
+    m_mean = gl::Texture(GL_RGBA32F, side, side);
     m_rows = gl::Texture(GL_RGBA32F, m_cell, side);
     m_pixels = gl::Texture(GL_RGBA32F, m_cell, m_cell);
     m_radiance_target = gl::Framebuffer(&m_radiance, &m_depth);
@@ -77,7 +84,7 @@ std::vector<RasterCell> RasterTarget::cells(const Rect& pixels) const {
 }
 
 void RasterTarget::bind(const gl::Framebuffer& framebuffer, const RasterCell& cell) const {
-    const int side = pixel_size() * m_lattice;
+    const int side = texel_size();
     framebuffer.bind();
     glViewport(0, 0, side, side);
     glEnable(GL_SCISSOR_TEST);
@@ -93,22 +100,31 @@ void RasterTarget::bind(const gl::Framebuffer& framebuffer, const RasterCell& ce
     glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
 }
 
-void RasterTarget::begin_radiance(const RasterCell& cell, const Vec4f& background,
-                                  float farthest) const {
+void RasterTarget::begin_radiance(const RasterCell& cell, float farthest) const {
+    constexpr float kNothing[4] = {0.0f, 0.0f, 0.0f, -1.0f};
     bind(m_radiance_target, cell);
-    glClearNamedFramebufferfv(m_radiance_target.name(), GL_COLOR, 0, &background.x);
+    glClearNamedFramebufferfv(m_radiance_target.name(), GL_COLOR, 0, kNothing);
     glClearNamedFramebufferfv(m_radiance_target.name(), GL_DEPTH, 0, &farthest);
 }
 
 void RasterTarget::begin_surfaces(const RasterCell& cell, float farthest) {
     if (m_surfaces.name() == 0) {
-        m_surfaces = gl::Texture(GL_R32UI, m_depth.width(), m_depth.height());
+        m_surfaces = gl::Texture(GL_R32UI, m_depth.width(), m_depth.height(), m_layers);
         m_surfaces_target = gl::Framebuffer(&m_surfaces, &m_depth);
     }
     bind(m_surfaces_target, cell);
     const GLuint none = 0;
     glClearNamedFramebufferuiv(m_surfaces_target.name(), GL_COLOR, 0, &none);
     glClearNamedFramebufferfv(m_surfaces_target.name(), GL_DEPTH, 0, &farthest);
+}
+
+void RasterTarget::dispatch(const RasterCell& cell, int layers) const {
+    const gl::TexelRect& t = cell.texels;
+    const auto groups = [](int texels) {
+        return static_cast<GLuint>((texels + RASTER_GROUP - 1) / RASTER_GROUP);
+    };
+    glUniform4i(RASTER_TEXELS, t.x, t.y, t.width, t.height);
+    glDispatchCompute(groups(t.width), groups(t.height), static_cast<GLuint>(layers));
 }
 
 std::vector<Vec4f> RasterTarget::resolve(const RasterCell& cell) const {
@@ -121,7 +137,7 @@ std::vector<Vec4f> RasterTarget::resolve(const RasterCell& cell) const {
     m_rows_target.bind();
     m_filter_x.use();
     glUniform2i(FILTER_ORIGIN, apron_texels, 0);
-    m_radiance.bind(FILTER_SOURCE);
+    m_mean.bind(FILTER_SOURCE);
     glViewport(0, 0, m_rows.width(), m_rows.height());
     glScissor(left, cell.texels.y, p.width(), cell.texels.height);
     glDrawArrays(GL_TRIANGLES, 0, 3);

@@ -4,6 +4,9 @@
 // A picture is drawn in cells: squares aligned to the frame, each with the filter's apron around
 // it. A pixel is always computed from the target of its own cell, with the same coordinates,
 // whatever bucket or crop asks for it, so its bits do not depend on them.
+//
+// The target has layers, one for each time and lens pass that a draw serves at once: the paper's
+// multibuffer accumulation (9.3.5, listing 2).  One layer is its multipass accumulation.
 #pragma once
 
 #include <memory>
@@ -27,35 +30,56 @@ struct RasterCell {
     gl::TexelRect texels;  ///< `samples` in the target
 };
 
+/// What a sample sees behind all surfaces: one colour, or the world at the corners of pixels,
+/// bilinear in between.
+struct RasterBackground {
+    Vec4f constant{0.0f};        ///< premultiplied
+    Rect pixels;                 ///< empty: constant; else all pixels whose samples are drawn
+    int passes = 1;              ///< 1, or one image for each
+    std::vector<Vec4f> corners;  ///< [passes][height + 1][width + 1]
+};
+
 /// Used on the thread that owns OpenGL.
 class RasterTarget {
   public:
     /// Throws GlError where the filter's apron at this lattice does not fit the device.
-    RasterTarget(const RasterFilter& filter, int max_texture_size);
+    /// `most_layers`: wanted at once; fewer where they are large.
+    RasterTarget(const RasterFilter& filter, int most_layers, int max_texture_size);
 
     std::vector<RasterCell> cells(const Rect& pixels) const;
     /// Side of the target in frame pixels: one cell and its apron.
     int pixel_size() const { return m_cell + 2 * m_apron; }
+    int texel_size() const { return pixel_size() * m_lattice; }
+    int layers() const { return m_layers; }
 
-    /// Binds the target and clears the cell's samples: colour to the background, depth to
-    /// `farthest`.
-    void begin_radiance(const RasterCell& cell, const Vec4f& background, float farthest) const;
+    /// Binds the target and clears the cell's samples: colour to nothing, depth to `farthest`.
+    void begin_radiance(const RasterCell& cell, float farthest) const;
     /// The same with the micropolygons' names: 0 is none.
     void begin_surfaces(const RasterCell& cell, float farthest);
+    /// Binds a target of the same size for drawing into the cell's samples.
+    void bind(const gl::Framebuffer& framebuffer, const RasterCell& cell) const;
+
+    /// Runs the compute shader in use over the cell's samples.
+    void dispatch(const RasterCell& cell, int layers) const;
+
+    const gl::Texture& radiance() const { return m_radiance; }
+    const gl::Texture& depth() const { return m_depth; }
+    const gl::Texture& surfaces() const { return m_surfaces; }
+    /// The mean of the passes, which resolve() filters.
+    const gl::Texture& mean() const { return m_mean; }
 
     /// Filters and downsamples the cell; [height][width] of cell.pixels.
     std::vector<Vec4f> resolve(const RasterCell& cell) const;
-    /// What begin_surfaces() and drawing left of the cell's own pixels, [height * lattice][width *
-    /// lattice].
+    /// What begin_surfaces() and drawing left in layer 0 of the cell's own pixels, [height *
+    /// lattice][width * lattice].
     std::vector<std::uint32_t> read_surfaces(const RasterCell& cell) const;
     std::vector<float> read_depth(const RasterCell& cell) const;
 
   private:
-    void bind(const gl::Framebuffer& framebuffer, const RasterCell& cell) const;
     gl::TexelRect own_texels(const RasterCell& cell) const;
 
-    int m_lattice, m_apron, m_cell;
-    gl::Texture m_radiance, m_depth, m_rows, m_pixels;
+    int m_lattice, m_apron, m_cell, m_layers;
+    gl::Texture m_radiance, m_depth, m_mean, m_rows, m_pixels;
     gl::Framebuffer m_radiance_target, m_rows_target, m_pixels_target;
     gl::Texture m_surfaces;  ///< made at the first begin_surfaces()
     gl::Framebuffer m_surfaces_target;

@@ -17,31 +17,38 @@ Mat3d rotation_at(const Camera& camera, double t) {
     return Mat3d(knots[k]) * (1.0 - f) + Mat3d(knots[next]) * f;
 }
 
+/// World direction through a raster position (pixels), at time t, from a lens point in the unit
+/// disc: a point at infinity obeys X = cx + sx (slope + lx / focus) (math/projection.h with z ->
+/// infinity).
+Vec3f world_direction(const Camera& camera, Vec2d raster, double t, Vec2d lens) {
+    const Projection& p = camera.projection;
+    Vec3d direction(0.0, 0.0, 1.0);
+    if (p.perspective) {
+        direction.x = (raster.x - p.center.x) / p.scale.x;
+        direction.y = (raster.y - p.center.y) / p.scale.y;
+        if (p.has_lens()) direction -= Vec3d(lens, 0.0) * (p.lens_radius / p.focus);
+    }
+    return Vec3f(glm::normalize(rotation_at(camera, t) * direction));
+}
+
+/// Angle of a pixel, radians.
+float pixel_spread(const Camera& camera) {
+    return static_cast<float>(1.0 / std::max(camera.projection.scale.x, 1e-9));
+}
+
 class Directions {
   public:
     Directions(const Camera& camera, const TileStore& store, const TileSamples& samples)
-        : m_camera(camera),
-          m_projection(camera.projection),
-          m_samples(samples),
-          m_origin(Vec2d(store.tile * kTileSize)) {}
+        : m_camera(camera), m_samples(samples), m_origin(Vec2d(store.tile * kTileSize)) {}
 
     bool vary_in_pixel() const {
         return !m_samples.u.empty() ||
                (!m_samples.t.empty() && m_camera.world_from_camera.size() > 1);
     }
 
-    /// World direction through a tile position (pixels), at time t, from a lens point in the unit
-    /// disc: a point at infinity obeys X = cx + sx (slope + lx / focus) (math/projection.h with z
-    /// -> infinity).
+    /// World direction through a tile position (pixels).
     Vec3f at(double x, double y, double t, double u, double v) const {
-        Vec3d direction(0.0, 0.0, 1.0);
-        if (m_projection.perspective) {
-            direction.x = (m_origin.x + x - m_projection.center.x) / m_projection.scale.x;
-            direction.y = (m_origin.y + y - m_projection.center.y) / m_projection.scale.y;
-            if (m_projection.has_lens())
-                direction -= Vec3d(u, v, 0.0) * (m_projection.lens_radius / m_projection.focus);
-        }
-        return Vec3f(glm::normalize(rotation_at(m_camera, t) * direction));
+        return world_direction(m_camera, {m_origin.x + x, m_origin.y + y}, t, {u, v});
     }
 
     Vec3f of_sample(std::size_t i) const {
@@ -52,7 +59,6 @@ class Directions {
 
   private:
     const Camera& m_camera;
-    const Projection& m_projection;
     const TileSamples& m_samples;
     Vec2d m_origin;
 };
@@ -98,7 +104,7 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
     TileSamples samples;
     table.fill_tile(store.tile, needs, samples);
     const Directions directions(camera, store, samples);
-    const auto spread = static_cast<float>(1.0 / std::max(camera.projection.scale.x, 1e-9));
+    const float spread = pixel_spread(camera);
     if (!directions.vary_in_pixel()) return from_corners(directions, shading, spread, samples);
 
     std::vector<Vec3f> wanted, found;
@@ -107,6 +113,16 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
     shading.background(wanted, spread, found);
     std::vector<Vec3f> colors(store.id.size(), Vec3f(0.0f));
     for (std::size_t k = 0; k < uncovered.size(); ++k) colors[uncovered[k]] = found[k];
+    return colors;
+}
+
+std::vector<Vec3f> corner_background(const Camera& camera, const ShadingSystem& shading,
+                                     const Rect& pixels, double time, Vec2d lens) {
+    std::vector<Vec3f> directions, colors;
+    for (int y = pixels.y0; y <= pixels.y1; ++y)
+        for (int x = pixels.x0; x <= pixels.x1; ++x)
+            directions.push_back(world_direction(camera, {x, y}, time, lens));
+    shading.background(directions, pixel_spread(camera), colors);
     return colors;
 }
 

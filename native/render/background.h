@@ -18,4 +18,9 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
                                    const ShadingSystem& shading, const Vec3f& constant,
                                    const TileStore& store);
 
+/// The world at the corners of pixels at one time and from one point of the unit lens,
+/// [height + 1][width + 1]: within a pass of REGULAR sampling it is a smooth function of the pixel.
+std::vector<Vec3f> corner_background(const Camera& camera, const ShadingSystem& shading,
+                                     const Rect& pixels, double time, Vec2d lens);
+
 }  // namespace granita

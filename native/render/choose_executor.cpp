@@ -2,21 +2,15 @@
 #include "render/choose_executor.h"
 
 #include "base/error.h"
+#include "scene/channels.h"
 
 namespace granita {
 namespace {
 
 /// What keeps the raster executor from rendering the scene; empty = nothing.
-std::string raster_obstacle(const Scene& scene, const ShadingSystem& shading) {
+std::string raster_obstacle(const Scene& scene) {
     if (scene.options.sampling != Sampling::Regular) return "sampling is not Regular";
-    if (scene.camera.projection.has_lens()) return "the camera has depth of field";
-    if (scene.moves()) return "something moves";
-    for (int m = -1; m < static_cast<int>(scene.materials.size()); ++m)
-        if (shading.opacity_varies(m)) return "a material is transparent";
-    for (const Instance& instance : scene.instances)
-        if (instance.holdout) return "there is a holdout";
-    if (!scene.options.film_transparent && !shading.background_is_constant())
-        return "the world is not one colour";
+    if (!ChannelSet(scene.options).empty()) return "passes beside Combined and Depth are asked for";
     return {};
 }
 
@@ -33,10 +27,10 @@ ExecutorChoice raster(gl::DeviceChoice device) {
 
 }  // namespace
 
-ExecutorChoice choose_executor(const Scene& scene, const ShadingSystem& shading, Report& report) {
+ExecutorChoice choose_executor(const Scene& scene, Report& report) {
     const Options& options = scene.options;
     if (options.executor == Executor::Raster) {
-        if (const std::string obstacle = raster_obstacle(scene, shading); !obstacle.empty())
+        if (const std::string obstacle = raster_obstacle(scene); !obstacle.empty())
             throw SceneError("render settings",
                              "the raster executor cannot render this: " + obstacle);
         return raster(gl::DeviceChoice::Any);
@@ -44,7 +38,7 @@ ExecutorChoice choose_executor(const Scene& scene, const ShadingSystem& shading,
     if (options.executor != Executor::Auto) return cpu(options.executor);
     if (options.device != Device::Gpu) return cpu(Executor::Simd);
     try {
-        const std::string obstacle = raster_obstacle(scene, shading);
+        const std::string obstacle = raster_obstacle(scene);
         // A software driver is no GPU: the CPU executors are faster and do more.
         if (obstacle.empty()) return raster(gl::DeviceChoice::Hardware);
         report.warn("render settings", "the GPU was asked for, the CPU renders: " + obstacle);

@@ -8,7 +8,6 @@
 #include "base/report.h"
 #include "gl/gl_thread.h"
 #include "scene/scene.h"
-#include "shade/shading_system.h"
 
 namespace granita {
 
@@ -21,6 +20,6 @@ struct ExecutorChoice {
 /// An explicit Options::executor wins over the device, and throws SceneError or GlError where it
 /// cannot be had. A device that cannot do what the scene needs is replaced by the CPU, with a
 /// warning that says why.
-ExecutorChoice choose_executor(const Scene& scene, const ShadingSystem& shading, Report& report);
+ExecutorChoice choose_executor(const Scene& scene, Report& report);
 
 }  // namespace granita

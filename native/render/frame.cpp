@@ -61,11 +61,11 @@ Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& fra
       table(make_table(scene, view, report)),
       hider{&table, view.projection, &statistics, &scene, &report, &progress},
       constant_background(constant_background_of(shading)),
-      choice(choose_executor(scene, shading, report)),
+      choice(choose_executor(scene, report)),
       raster(choice.executor == Executor::Raster
                  ? std::make_unique<RasterHider>(*choice.gl,
                                                  make_raster_frame(scene, view.projection, table,
-                                                                   constant_background, statistics))
+                                                                   statistics, report))
                  : nullptr),
       film(scene.options),
       layout(make_layout(scene, film, raster != nullptr)),

@@ -2,6 +2,7 @@
 #include "render/raster_bucket.h"
 
 #include "film/filter.h"
+#include "render/background.h"
 #include "render/visit_geometry.h"
 
 namespace granita {
@@ -25,19 +26,67 @@ std::vector<float> center_depths(const RasterSurfaces& surfaces, const Rect& pix
     return depths;
 }
 
+/// Pass i of the table: any pixel's samples of one place on the lattice.
+std::vector<RasterPass> passes_of(const SampleTable& table, const Scene& scene) {
+    TileSamples samples;
+    table.fill_tile({0, 0}, {scene.moves(), scene.camera.projection.has_lens()}, samples);
+    const int cells = table.lattice() * table.lattice();
+    std::vector<RasterPass> passes;
+    for (int s = 0; s < table.samples(); s += cells)
+        passes.push_back({samples.t.empty() ? 0.0f : samples.t[s],
+                          samples.u.empty() ? 0.0f : samples.u[s],
+                          samples.v.empty() ? 0.0f : samples.v[s]});
+    return passes;
+}
+
+RasterBackground background(const Frame& frame, const Rect& pixels) {
+    RasterBackground out;
+    if (frame.scene.options.film_transparent) return out;
+    out.constant = Vec4f(frame.constant_background, 1.0f);
+    if (frame.shading.background_is_constant()) return out;
+    const Camera& camera = frame.scene.camera;
+    const std::vector<RasterPass>& passes = frame.raster->frame().passes;
+    const bool varies =
+        passes.size() > 1 && (camera.world_from_camera.size() > 1 || camera.projection.has_lens());
+    out.passes = varies ? static_cast<int>(passes.size()) : 1;
+    out.pixels = frame.raster->sample_pixels(pixels);
+    for (int p = 0; p < out.passes; ++p) {
+        frame.progress.check();
+        const RasterPass& pass = passes[p];
+        for (const Vec3f& color :
+             corner_background(camera, frame.shading, out.pixels, pass.t, {pass.u, pass.v}))
+            out.corners.emplace_back(color, 1.0f);
+    }
+    return out;
+}
+
+/// What the bucket met, for the statistics.
+void count_needs(Frame& frame, const std::vector<const Grid*>& grids) {
+    bool moving = frame.view.projection.has_lens() && !grids.empty(), transparent = false;
+    for (const Grid* grid : grids) {
+        moving |= grid->motion;
+        transparent |= grid->opacity_varies;
+    }
+    frame.statistics.add(Counter::BucketsMoving, moving);
+    frame.statistics.add(Counter::BucketsTransparent, transparent);
+}
+
 }  // namespace
 
 RasterFrame make_raster_frame(const Scene& scene, const Projection& projection,
-                              const SampleTable& table, const Vec3f& background,
-                              Statistics& statistics) {
+                              const SampleTable& table, Statistics& statistics, Report& report) {
     const PixelFilter filter(scene.options.pixel_filter, scene.options.filter_width);
-    const int lattice = table.lattice();
     RasterFrame frame;
     frame.projection = projection;
-    frame.filter = make_raster_filter(
-        lattice, filter.radius(), [&](double d) { return filter.evaluate(static_cast<float>(d)); });
-    if (!scene.options.film_transparent) frame.background = Vec4f(background, 1.0f);
+    frame.filter = make_raster_filter(table.lattice(), filter.radius(), [&](double d) {
+        return filter.evaluate(static_cast<float>(d));
+    });
+    frame.passes = passes_of(table, scene);
+    frame.opacity_threshold = scene.options.opacity_threshold;
+    frame.film_transparent = scene.options.film_transparent;
     frame.statistics = &statistics;
+    frame.scene = &scene;
+    frame.report = &report;
     return frame;
 }
 
@@ -46,25 +95,35 @@ Tile raster_bucket(Frame& frame, int bucket) {
     std::vector<std::shared_ptr<SharedGrid>> grids;
     visit_geometry(
         frame, bucket, [](const RasterBounds&) { return false; },
-        [&](std::shared_ptr<SharedGrid> grid) { grids.push_back(std::move(grid)); });
+        [&](std::shared_ptr<SharedGrid> grid) {
+            if (frame.shading.opacity_varies(grid->grid().material))
+                grid->ensure_opacity(frame.shading);
+            grids.push_back(std::move(grid));
+        });
     std::vector<const Grid*> plain;
     for (const auto& grid : grids) plain.push_back(&grid->grid());
+    count_needs(frame, plain);
 
     std::unique_ptr<RasterBucket> device_bucket;
-    std::vector<std::uint64_t> visible;
+    std::vector<bool> seen;
     {
         const StageTimer timer(frame.statistics, Stage::Hide);
         device_bucket = frame.raster->open(pixels, plain);
-        visible = device_bucket->count_visible();
+        seen = device_bucket->find_seen();
     }
     for (std::size_t i = 0; i < grids.size(); ++i) {
         frame.progress.check();
-        if (visible[i] > 0) grids[i]->ensure_radiance(frame.shading);
+        if (seen[i]) grids[i]->ensure_radiance(frame.shading);
+    }
+    RasterBackground behind;
+    {
+        const StageTimer timer(frame.statistics, Stage::Shade);
+        behind = background(frame, pixels);
     }
     const StageTimer timer(frame.statistics, Stage::Hide);
     Tile tile;
     tile.rect = pixels;
-    tile.combined = device_bucket->render().combined;
+    tile.combined = device_bucket->render(behind).combined;
     if (frame.scene.options.depth_pass)
         tile.depth = center_depths(device_bucket->surfaces(), pixels, frame.view.projection);
     return tile;

@@ -1,45 +1,95 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A grid's vertex from camera space to the clip space of one cell of the frame.
+// A grid's vertex at one instant, seen from one lens point, in the clip space of one cell of the
+// frame (paper, 9.3.5: vertex motion).
 //
-// Defines: PERSPECTIVE 0 or 1; WITH_RADIANCE 0 or 1.
+// Defines: PERSPECTIVE 0 or 1; LAYERED 0 or 1: one draw fills several layers of the target, each a
+// pass of its own; OUTPUT as in grid.frag.
 //
-// The cell's corner is subtracted in double and the result rounded once, as Projection::homogeneous
-// does on the CPU: vertices that grids share stay shared, and pixel 16,000 has the sub-pixel bits of
-// pixel 0 (decision 2).  gl_Position.z is the near distance, so that the depth is near / w: the
-// reversed float depth that is proportional to the depth key.
+// A vertex moves linearly between its grid's knots in camera space, before projection, and is then
+// sheared by the lens as Projection::lens_shear says.  All that, and the cell's corner, is computed
+// in double and rounded once, as on the CPU: vertices that grids share stay shared, and pixel 16,000
+// has the sub-pixel bits of pixel 0 (decision 2).  gl_Position.z is the near distance, so that the
+// depth is near / w: the reversed float depth that is proportional to the depth key.
+#if LAYERED
+#extension GL_ARB_shader_viewport_layer_array : require
+#endif
+#include "raster/grid_output.glsl"
 #include "shared/raster_layout.h"
 
-layout(location = RASTER_POSITION) in vec3 p_camera;
+layout(std430, binding = RASTER_POSITIONS) readonly buffer Positions { float positions[]; };
+// First vertex, first position, vertices of a knot, knots.
+layout(std430, binding = RASTER_GRIDS) readonly buffer Grids { uvec4 grids[]; };
+// Shutter time, lens point in metres.
+layout(std430, binding = RASTER_PASSES) readonly buffer Passes { vec4 passes[]; };
+
+layout(location = RASTER_GRID) in uint grid_index;
+layout(location = RASTER_LAYER) in uint layer;
 layout(location = RASTER_CLIP_SCALE) uniform dvec2 clip_scale;
 layout(location = RASTER_CLIP_CENTER) uniform dvec2 clip_center;
 layout(location = RASTER_NEAR) uniform float near_clip;
+layout(location = RASTER_FIRST_PASS) uniform uint first_pass;
+layout(location = RASTER_INVERSE_FOCUS) uniform double inverse_focus;  // 0: no lens
 
 // Two passes over the same geometry must find the same depth.
 invariant gl_Position;
 
 // Corner 0 is the provoking vertex of both triangles of its micropolygon, so it names it.
 flat out uint corner;
-#if WITH_RADIANCE
+flat out uint layer_here;
+#if OUTPUT == MARK
+flat out uint grid_here;
+#endif
+#if OUTPUT == RADIANCE || OUTPUT == LAYER
 layout(location = RASTER_RADIANCE) in vec4 radiance;
 out vec4 radiance_here;
+#endif
+#if OUTPUT == LAYER
+layout(location = RASTER_OPACITY) in vec4 opacity;
+out vec4 opacity_here;
 #endif
 #if !PERSPECTIVE
 out float z_camera;
 #endif
 
+dvec3 position(uint i) {
+    return dvec3(positions[3u * i], positions[3u * i + 1u], positions[3u * i + 2u]);
+}
+
 void main() {
+    const uvec4 grid = grids[grid_index];
+    const vec4 pass = passes[first_pass + layer];
+    uint i = grid.y + uint(gl_VertexID) - grid.x;
+    dvec3 p = position(i);
+    if (grid.w > 1u) {
+        const double place = double(pass.x) * double(grid.w - 1u);
+        const uint segment = min(uint(place), grid.w - 2u);
+        i += segment * grid.z;
+        p = position(i);
+        p += (place - double(segment)) * (position(i + grid.z) - p);
+    }
 #if PERSPECTIVE
-    const double w = double(p_camera.z);
+    const double w = p.z;
     const float z_clip = near_clip;
 #else
     const double w = 1.0LF;
     const float z_clip = 0.5;  // never clipped: grid.frag cuts at the sample
-    z_camera = p_camera.z;
+    z_camera = float(p.z);
 #endif
-    const dvec2 xy = clip_scale * dvec2(p_camera.xy) + clip_center * w;
+    if (inverse_focus != 0.0LF) p.xy += dvec2(pass.yz) * (p.z * inverse_focus - 1.0LF);
+    const dvec2 xy = clip_scale * p.xy + clip_center * w;
     gl_Position = vec4(vec2(xy), z_clip, float(w));
+#if LAYERED
+    gl_Layer = int(layer);
+#endif
+    layer_here = layer;
     corner = uint(gl_VertexID);
-#if WITH_RADIANCE
+#if OUTPUT == MARK
+    grid_here = grid_index;
+#endif
+#if OUTPUT == RADIANCE || OUTPUT == LAYER
     radiance_here = radiance;
+#endif
+#if OUTPUT == LAYER
+    opacity_here = opacity;
 #endif
 }

@@ -3,14 +3,40 @@
 #ifndef GRANITA_RASTER_LAYOUT_H
 #define GRANITA_RASTER_LAYOUT_H
 
-// Vertex attributes.
-#define RASTER_POSITION 0
-#define RASTER_RADIANCE 1
+// Vertex attributes; the layer is one an instance.
+#define RASTER_GRID 0
+#define RASTER_LAYER 1
+#define RASTER_RADIANCE 2
+#define RASTER_OPACITY 3
+
+// Shader storage blocks.
+#define RASTER_POSITIONS 0
+#define RASTER_GRIDS 1
+#define RASTER_PASSES 2
+#define RASTER_SEEN 3
+#define RASTER_BACKGROUND 4
 
 // Uniform locations of raster/grid.*.
 #define RASTER_CLIP_SCALE 0
 #define RASTER_CLIP_CENTER 1
 #define RASTER_NEAR 2
+#define RASTER_FIRST_PASS 3
+#define RASTER_INVERSE_FOCUS 4
+
+// Texture units of raster/grid.frag.
+#define RASTER_OPAQUE_DEPTH 0
+#define RASTER_PEELED_DEPTH 1
+#define RASTER_PEELED_NAME 2
+
+// Uniform locations of the compute shaders of raster/; work groups are squares of texels.
+#define RASTER_GROUP 8
+#define RASTER_TEXELS 0
+#define RASTER_COUNT 1
+#define RASTER_THRESHOLD 2
+#define RASTER_CELL_PIXEL 3
+#define RASTER_BACKGROUND_SIZE 4
+#define RASTER_BACKGROUND_CONSTANT 5
+#define RASTER_FLAGS 6
 
 // Uniform location and texture unit of resolve/filter.frag.
 #define FILTER_ORIGIN 0

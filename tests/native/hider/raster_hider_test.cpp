@@ -36,12 +36,6 @@ std::vector<Grid> make_sheets() {
     return grids;
 }
 
-std::vector<const Grid*> pointers(const std::vector<Grid>& grids) {
-    std::vector<const Grid*> list;
-    for (const Grid& grid : grids) list.push_back(&grid);
-    return list;
-}
-
 bool same_bits(const std::vector<Vec4f>& a, const std::vector<Vec4f>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec4f)) == 0;
 }
@@ -168,19 +162,25 @@ TEST(RasterHider, of_coincident_grids_the_smaller_key_wins_in_any_order) {
 TEST(RasterHider, a_tiling_whose_edges_run_through_samples_covers_each_exactly_once) {
     // Hard case 51: at lattice 2 samples lie at quarters; so do all vertices, diagonals included.
     RasterHider hider(gl_thread(), make_frame(pixel_projection(), box_filter(2)));
-    const Grid left = make_rectangle(1, 1.25f, 1.25f, 5.25f, 9.25f, 1, 8, 16);
-    const Grid right = make_rectangle(2, 5.25f, 1.25f, 9.25f, 9.25f, 1, 4, 2);
+    Grid left = make_rectangle(1, 1.25f, 1.25f, 5.25f, 9.25f, 1, 8, 16);
+    Grid right = make_rectangle(2, 5.25f, 1.25f, 9.25f, 9.25f, 1, 4, 2);
     auto bucket = hider.open({0, 0, 12, 12}, {&left, &right});
-    const auto counts = bucket->count_visible();
-    // 8 x 8 pixels of 4 samples.  A sample in two triangles of the plane would be counted twice.
-    EXPECT_EQ(counts[0] + counts[1], 256u);
-    EXPECT_EQ(counts[0], counts[1]);
-    std::uint64_t covered = 0;
-    for (const auto& s : bucket->surfaces().surface) covered += s.grid >= 0;
-    EXPECT_EQ(covered, 256u);
+    EXPECT_EQ(bucket->find_seen(), (std::vector<bool>{true, true}));
+    // 8 x 8 pixels of 4 samples.
+    std::uint64_t covered[2] = {};
+    for (const auto& s : bucket->surfaces().surface)
+        if (s.grid >= 0) ++covered[s.grid];
+    EXPECT_EQ(covered[0], 128u);
+    EXPECT_EQ(covered[1], 128u);
+    // Of a transparent plane a sample in two triangles would be two layers.
+    for (Grid* grid : {&left, &right}) set_opacity(*grid, Vec3f(0.25f));
+    const RasterImage image = hider.open({0, 0, 12, 12}, {&left, &right})->render();
+    double alpha = 0.0;
+    for (const Vec4f& pixel : image.combined) alpha += pixel.w;
+    EXPECT_DOUBLE_EQ(alpha, 16.0);
 }
 
-TEST(RasterHider, counts_visible_samples_before_shading) {
+TEST(RasterHider, finds_what_is_seen_before_shading) {
     Statistics statistics;
     RasterHider hider(gl_thread(), make_frame(pixel_projection(),
                                               make_raster_filter(4, 2.0, mitchell), &statistics));
@@ -193,9 +193,8 @@ TEST(RasterHider, counts_visible_samples_before_shading) {
         grid->radiance.clear();
     auto bucket =
         hider.open({0, 0, 20, 20}, {&front, &hidden, &peeping, &in_the_apron, &beyond_it});
-    // 16 samples a pixel; half a column of 4 pixels; the apron is two pixels, a pixel and a half of
-    // it covered.
-    EXPECT_EQ(bucket->count_visible(), (std::vector<std::uint64_t>{1024, 0, 32, 24, 0}));
+    // The apron is two pixels.
+    EXPECT_EQ(bucket->find_seen(), (std::vector<bool>{true, false, true, true, false}));
     EXPECT_GT(statistics.get(Counter::GlPrimitives), 0u);
     EXPECT_EQ(statistics.get(Counter::SampleTestsStatic), 0u);
 
@@ -209,15 +208,17 @@ TEST(RasterHider, counts_visible_samples_before_shading) {
 
 TEST(RasterHider, holdouts_cut_coverage_and_background) {
     RasterFrame frame = make_frame(pixel_projection(), box_filter(2));
-    frame.background = {0.2f, 0.3f, 0.4f, 1.0f};
+    frame.film_transparent = false;
+    RasterBackground background;
+    background.constant = {0.2f, 0.3f, 0.4f, 1.0f};
     RasterHider hider(gl_thread(), frame);
     Grid holdout = make_rectangle(1, 0, 0, 2, 2, 1);
     holdout.holdout = true;
     const Grid behind = make_rectangle(2, 0, 0, 3, 2, 2);
-    const RasterImage image = hider.open({0, 0, 4, 1}, {&holdout, &behind})->render();
+    const RasterImage image = hider.open({0, 0, 4, 1}, {&holdout, &behind})->render(background);
     EXPECT_EQ(image.combined[1], Vec4f(0.0f));
     EXPECT_EQ(image.combined[2], Vec4f(1.0f));
-    EXPECT_EQ(image.combined[3], frame.background);
+    EXPECT_EQ(image.combined[3], background.constant);
 }
 
 TEST(RasterHider, non_finite_micropolygons_are_dropped_and_counted) {
@@ -235,17 +236,11 @@ TEST(RasterHider, non_finite_micropolygons_are_dropped_and_counted) {
     EXPECT_EQ(statistics.get(Counter::Micropolygons), 12u);
 }
 
-TEST(RasterHider, refuses_what_is_not_static_and_opaque) {
+TEST(RasterHider, opacity_that_varies_must_be_there) {
     RasterHider hider(gl_thread(), make_frame(pixel_projection(), box_filter(2)));
     Grid grid = make_rectangle(1, 0, 0, 4, 4, 1);
-    grid.motion = true;
-    EXPECT_THROW(hider.open({0, 0, 4, 4}, {&grid}), InternalError);
-    grid.motion = false;
     grid.opacity_varies = true;
     EXPECT_THROW(hider.open({0, 0, 4, 4}, {&grid}), InternalError);
-    Projection with_lens = perspective_projection(8, 8);
-    with_lens.lens_radius = 0.1;
-    EXPECT_THROW(RasterHider(gl_thread(), make_frame(with_lens, box_filter(2))), InternalError);
 }
 
 }  // namespace

@@ -134,13 +134,13 @@ TEST(RasterResolve, a_filter_wider_than_a_cell_keeps_the_energy) {
 }
 
 TEST(RasterResolve, background_fills_what_nothing_covers) {
-    RasterFrame frame = frame_of(kFilters[5]);
-    frame.background = {0.5f, 0.25f, 0.125f, 1.0f};
-    RasterHider hider(gl_thread(), frame);
-    const RasterImage image = hider.open({0, 0, 5, 3}, {})->render();
+    RasterBackground background;
+    background.constant = {0.5f, 0.25f, 0.125f, 1.0f};
+    RasterHider hider(gl_thread(), frame_of(kFilters[5]));
+    const RasterImage image = hider.open({0, 0, 5, 3}, {})->render(background);
     ASSERT_EQ(image.combined.size(), 15u);
     for (const Vec4f& pixel : image.combined)
-        for (int c = 0; c < 4; ++c) EXPECT_NEAR(pixel[c], frame.background[c], 4e-6);
+        for (int c = 0; c < 4; ++c) EXPECT_NEAR(pixel[c], background.constant[c], 4e-6);
 }
 
 TEST(RasterResolve, a_filter_that_no_target_holds_is_an_error) {

@@ -10,6 +10,7 @@
 #include "dice/grid.h"
 #include "gl/gl_thread.h"
 #include "hider/raster_hider.h"
+#include "hider/sample_table.h"
 #include "math/projection.h"
 
 namespace granita::raster_test {
@@ -69,6 +70,39 @@ inline Grid make_rectangle(std::uint32_t key, float x0, float y0, float x1, floa
         key, n_u, n_v,
         [=](float u, float v) { return Vec3f(x0 * (1 - u) + x1 * u, y0 * (1 - v) + y1 * v, z); },
         [=](float, float) { return color; });
+}
+
+/// Radiance stays what it is: it is premultiplied.
+inline void set_opacity(Grid& grid, const Vec3f& opacity) {
+    grid.opacity_varies = true;
+    grid.opacity.assign(static_cast<std::size_t>(grid.vertex_count()), opacity);
+}
+
+/// Adds knots: the whole grid shifted by each of `shifts` after the first knot.
+inline void set_motion(Grid& grid, const std::vector<Vec3f>& shifts) {
+    const std::vector<Vec3f> still = grid.positions;
+    for (const Vec3f& shift : shifts)
+        for (const Vec3f& p : still) grid.positions.push_back(p + shift);
+    grid.p = still;
+    grid.knots = 1 + static_cast<int>(shifts.size());
+    grid.motion = true;
+}
+
+inline std::vector<const Grid*> pointers(const std::vector<Grid>& grids) {
+    std::vector<const Grid*> list;
+    for (const Grid& grid : grids) list.push_back(&grid);
+    return list;
+}
+
+/// The passes of a table of REGULAR sampling, from the samples of one pixel.
+inline std::vector<RasterPass> passes_of(const SampleTable& table, SampleNeeds needs) {
+    TileSamples samples;
+    table.fill_tile({0, 0}, needs, samples);
+    std::vector<RasterPass> passes;
+    for (int s = 0; s < samples.samples; s += table.lattice() * table.lattice())
+        passes.push_back({needs.time ? samples.t[s] : 0.0f, needs.lens ? samples.u[s] : 0.0f,
+                          needs.lens ? samples.v[s] : 0.0f});
+    return passes;
 }
 
 inline RasterFilter box_filter(int lattice) {

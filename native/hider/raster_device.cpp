@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hider/raster_device.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+#include "base/error.h"
+#include "gl/gl_check.h"
+#include "gl/shader_source.h"
+#include "shaders/shared/raster_layout.h"
+
+namespace granita {
+namespace {
+
+const char* name_of(RasterOutput output) {
+    constexpr const char* kNames[] = {"SURFACE", "RADIANCE", "LAYER", "MARK"};
+    return kNames[static_cast<int>(output)];
+}
+
+int layers_wanted(const RasterFrame& frame, const gl::ContextInfo& info) {
+    if (!info.layer_in_vertex_shader) return 1;
+    return std::clamp(frame.most_layers, 1, static_cast<int>(frame.passes.size()));
+}
+
+gl::Program accumulate_program(int lattice) {
+    const gl::Defines defines{{"LATTICE", std::to_string(lattice)}};
+    return gl::Program("passes",
+                       {{GL_COMPUTE_SHADER, gl::shader_source("raster/accumulate.comp", defines)}});
+}
+
+std::vector<Vec4f> device_passes(const RasterFrame& frame) {
+    const auto radius = static_cast<float>(frame.projection.lens_radius);
+    std::vector<Vec4f> passes;
+    for (const RasterPass& p : frame.passes)
+        passes.emplace_back(p.t, p.u * radius, p.v * radius, 0.0f);
+    return passes;
+}
+
+}  // namespace
+
+RasterDevice::RasterDevice(const RasterFrame& frame, const gl::ContextInfo& info)
+    : m_frame(frame),
+      m_layered(info.layer_in_vertex_shader),
+      m_target(frame.filter, layers_wanted(frame, info), info.max_texture_size),
+      m_accumulate(accumulate_program(frame.filter.lattice)),
+      m_mark("seen grids", {{GL_COMPUTE_SHADER, gl::shader_source("raster/mark_seen.comp")}}),
+      m_mark_target(&m_target.radiance(), nullptr),
+      m_passes(gl::Buffer::of(device_passes(frame))) {
+    constexpr int kBlocks = 3;
+    if (info.vertex_storage_blocks < kBlocks)
+        throw GlError("the device's vertex shaders read " +
+                      std::to_string(info.vertex_storage_blocks) + " storage blocks, " +
+                      std::to_string(kBlocks) + " are needed");
+    std::vector<std::uint32_t> layers(static_cast<std::size_t>(m_target.layers()));
+    std::iota(layers.begin(), layers.end(), 0u);
+    m_layers = gl::Buffer::of(layers);
+}
+
+bool RasterDevice::reaches(const RasterBounds& b, const RasterCell& cell) {
+    const Rect& s = cell.samples;
+    return b.visible && b.x1 >= static_cast<float>(s.x0) && b.x0 <= static_cast<float>(s.x1) &&
+           b.y1 >= static_cast<float>(s.y0) && b.y0 <= static_cast<float>(s.y1);
+}
+
+gl::Program& RasterDevice::program(RasterOutput output) {
+    auto& program = m_programs[static_cast<int>(output)];
+    if (!program) {
+        const gl::Defines defines{{"PERSPECTIVE", m_frame.projection.perspective ? "1" : "0"},
+                                  {"LAYERED", m_layered ? "1" : "0"},
+                                  {"OUTPUT", name_of(output)}};
+        program.emplace("grids",
+                        std::vector<gl::Stage>{
+                            {GL_VERTEX_SHADER, gl::shader_source("raster/grid.vert", defines)},
+                            {GL_FRAGMENT_SHADER, gl::shader_source("raster/grid.frag", defines)}});
+    }
+    return *program;
+}
+
+RasterPeel& RasterDevice::peel() {
+    if (!m_peel) m_peel.emplace(m_target);
+    return *m_peel;
+}
+
+std::vector<RasterDevice::Command> RasterDevice::commands(
+    const RasterGeometry& geometry, const std::vector<RasterGeometry::Range>& ranges,
+    const std::vector<std::uint32_t>& among, const RasterCell& cell,
+    const RasterPasses& passes) const {
+    std::vector<Command> commands;
+    for (const std::uint32_t i : among) {
+        const RasterGeometry::Range& range = ranges[i];
+        if (!reaches(range.swept, cell)) continue;
+        int first = 0, end = passes.count;
+        if (range.knots > 1) {
+            const auto touches = [&](int layer) {
+                const double t = m_frame.passes[passes.first + layer].t;
+                return reaches(geometry.bounds_at(range, m_frame.projection, t), cell);
+            };
+            while (first < end && !touches(first)) ++first;
+            while (end > first && !touches(end - 1)) --end;
+            if (first == end) continue;
+        }
+        const auto layer = static_cast<GLuint>(first), layers = static_cast<GLuint>(end - first);
+        if (!commands.empty()) {
+            Command& last = commands.back();
+            if (last.first_index + last.count == range.first_index &&
+                last.first_instance == layer && last.instances == layers) {
+                last.count += range.index_count;
+                continue;
+            }
+        }
+        commands.push_back({range.index_count, layers, range.first_index, 0, layer});
+    }
+    return commands;
+}
+
+void RasterDevice::draw(RasterOutput output, const RasterBuffers& buffers,
+                        const std::vector<Command>& commands, const RasterCell& cell,
+                        const RasterPasses& passes) {
+    const Projection& p = m_frame.projection;
+    const Vec2d per_pixel(2.0 / m_target.pixel_size());
+    const Vec2d scale = p.scale * per_pixel;
+    const Vec2d center = (p.center - Vec2d(cell.corner)) * per_pixel - Vec2d(1.0);
+    program(output).use();
+    glUniform2d(RASTER_CLIP_SCALE, scale.x, scale.y);
+    glUniform2d(RASTER_CLIP_CENTER, center.x, center.y);
+    glUniform1f(RASTER_NEAR, static_cast<float>(p.near_clip));
+    glUniform1ui(RASTER_FIRST_PASS, static_cast<GLuint>(passes.first));
+    glUniform1d(RASTER_INVERSE_FOCUS, p.has_lens() ? 1.0 / p.focus : 0.0);
+    buffers.positions.bind_storage(RASTER_POSITIONS);
+    buffers.grids.bind_storage(RASTER_GRIDS);
+    m_passes.bind_storage(RASTER_PASSES);
+    buffers.array.set_uints(RASTER_LAYER, m_layers, true);
+    buffers.array.bind();
+
+    const gl::Buffer indirect = gl::Buffer::of(commands);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, indirect.name());
+    m_primitives.emplace_back(GL_PRIMITIVES_GENERATED);
+    m_primitives.back().begin();
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr,
+                                static_cast<GLsizei>(commands.size()), 0);
+    m_primitives.back().end();
+    gl::check("drawing grids");
+    if (m_frame.statistics != nullptr) m_frame.statistics->add(Counter::GlPasses, 1);
+}
+
+void RasterDevice::accumulate(const RasterCell& cell, const RasterPasses& passes, bool peeled,
+                              const RasterBackground& background, const gl::Buffer& corners) const {
+    const Rect& b = background.pixels;
+    m_accumulate.use();
+    glUniform2i(RASTER_COUNT, passes.first, passes.count);
+    glUniform2i(RASTER_CELL_PIXEL, cell.corner.x - b.x0, cell.corner.y - b.y0);
+    glUniform3i(RASTER_BACKGROUND_SIZE, b.empty() ? 0 : b.width() + 1, b.height() + 1,
+                background.passes);
+    glUniform4fv(RASTER_BACKGROUND_CONSTANT, 1, &background.constant.x);
+    glUniform2i(RASTER_FLAGS, peeled, m_frame.film_transparent);
+    m_target.radiance().bind(0);
+    if (peeled) m_peel->bind_result();
+    m_target.mean().bind_image(0, GL_READ_WRITE);
+    if (!b.empty()) corners.bind_storage(RASTER_BACKGROUND);
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    m_target.dispatch(cell, 1);
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    gl::check("accumulating passes");
+}
+
+void RasterDevice::mark_surfaces(const RasterCell& cell, const RasterPasses& passes,
+                                 const RasterBuffers& buffers, const gl::Buffer& seen) const {
+    m_mark.use();
+    m_target.surfaces().bind(0);
+    buffers.vertex_grids.bind_storage(RASTER_GRIDS);
+    seen.bind_storage(RASTER_SEEN);
+    m_target.dispatch(cell, passes.count);
+    gl::check("marking what is seen");
+}
+
+void RasterDevice::begin_marks(const RasterCell& cell, const gl::Buffer& seen) const {
+    m_target.bind(m_mark_target, cell);
+    glDisable(GL_DEPTH_TEST);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    m_target.depth().bind(RASTER_OPAQUE_DEPTH);
+    seen.bind_storage(RASTER_SEEN);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+std::uint64_t RasterDevice::take_primitives() {
+    std::uint64_t sum = 0;
+    for (const gl::Query& query : m_primitives) sum += query.result();
+    m_primitives.clear();
+    return sum;
+}
+
+float RasterDevice::farthest() const {
+    return static_cast<float>(m_frame.projection.near_clip / m_frame.projection.far_clip);
+}
+
+}  // namespace granita

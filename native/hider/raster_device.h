@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What all buckets of the raster executor share on the device, and how grids are drawn with it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "gl/egl_context.h"
+#include "gl/program.h"
+#include "gl/query.h"
+#include "gl/vertex_array.h"
+#include "hider/raster_hider.h"
+#include "hider/raster_peel.h"
+#include "hider/raster_target.h"
+
+namespace granita {
+
+/// What drawing leaves behind: OUTPUT of shaders/raster/grid_output.glsl.
+enum class RasterOutput { Surface, Radiance, Layer, Mark };
+
+/// A bucket's grids on the device: uploaded once, drawn in every pass (paper, 9.3.5).
+struct RasterBuffers {
+    gl::Buffer positions, grids, vertex_grids, indices, radiance, opacity;
+    gl::VertexArray array;
+};
+
+/// Consecutive time and lens passes that are drawn at once, a layer of the target each.
+struct RasterPasses {
+    int first = 0, count = 1;
+};
+
+/// Used on the thread that owns OpenGL.
+class RasterDevice {
+  public:
+    RasterDevice(const RasterFrame& frame, const gl::ContextInfo& info);
+
+    static bool reaches(const RasterBounds& bounds, const RasterCell& cell);
+    /// Draws of ranges, as OpenGL reads them: in ascending order, each only in the layers whose
+    /// instants it touches the cell at.
+    struct Command {
+        GLuint count, instances, first_index, base_vertex, first_instance;
+    };
+    std::vector<Command> commands(const RasterGeometry& geometry,
+                                  const std::vector<RasterGeometry::Range>& ranges,
+                                  const std::vector<std::uint32_t>& among, const RasterCell& cell,
+                                  const RasterPasses& passes) const;
+    /// Into the target that is bound.
+    void draw(RasterOutput output, const RasterBuffers& buffers,
+              const std::vector<Command>& commands, const RasterCell& cell,
+              const RasterPasses& passes);
+    /// Adds what was drawn to the mean of the passes before.
+    void accumulate(const RasterCell& cell, const RasterPasses& passes, bool peeled,
+                    const RasterBackground& background, const gl::Buffer& corners) const;
+    /// Marks in `seen` the grids of the micropolygons in the target.
+    void mark_surfaces(const RasterCell& cell, const RasterPasses& passes,
+                       const RasterBuffers& buffers, const gl::Buffer& seen) const;
+    /// Binds what RasterOutput::Mark reads and writes.
+    void begin_marks(const RasterCell& cell, const gl::Buffer& seen) const;
+
+    RasterTarget& target() { return m_target; }
+    /// Made when the first transparent grid comes.
+    RasterPeel& peel();
+    /// Primitives drawn since the last call; waits for the device.
+    std::uint64_t take_primitives();
+    /// Depth is near / z: the far clip is a depth that the target starts with.
+    float farthest() const;
+
+  private:
+    gl::Program& program(RasterOutput output);
+
+    const RasterFrame& m_frame;
+    bool m_layered;
+    RasterTarget m_target;
+    std::optional<RasterPeel> m_peel;
+    std::optional<gl::Program> m_programs[4];
+    gl::Program m_accumulate, m_mark;
+    gl::Framebuffer m_mark_target;
+    gl::Buffer m_passes, m_layers;
+    std::vector<gl::Query> m_primitives;
+};
+
+}  // namespace granita

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Depth peeling of transparent grids, front to back (paper, 9.3.4): the layers so far of each
+// sample, and the target that finds the next one.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gl/framebuffer.h"
+#include "gl/program.h"
+#include "gl/texture.h"
+#include "hider/raster_geometry.h"
+#include "hider/raster_target.h"
+
+namespace granita {
+
+/// A piece of the depth axis, and the grids in it.
+struct ZBatch {
+    float farther_than = 0.0f;          ///< depth of OpenGL: 0 at infinity, 1 at the near clip
+    std::vector<std::uint32_t> ranges;  ///< of RasterGeometry::transparent(), ascending
+};
+
+/// The paper's z-batches: `size` grids each, sorted by their nearest depth.  A batch holds what is
+/// nearer than the nearest of the next one; grids that reach farther are in several.  `among`:
+/// indices of RasterGeometry::transparent().
+std::vector<ZBatch> z_batches(const RasterGeometry& geometry,
+                              const std::vector<std::uint32_t>& among, double near_clip,
+                              float farthest, int size);
+
+/// Used on the thread that owns OpenGL.
+class RasterPeel {
+  public:
+    explicit RasterPeel(const RasterTarget& target);
+
+    /// No layers yet, in all of the cell's samples.
+    void begin(const RasterCell& cell) const;
+    /// Binds the target of the next layer and what its shader reads.  Only what is nearer than
+    /// `farther_than` and the opaque surfaces is peeled.
+    void begin_layer(const RasterCell& cell, float farther_than) const;
+    /// Puts what was drawn under the layers so far.
+    void composite(const RasterCell& cell, int layers, float threshold) const;
+    /// For raster/accumulate.comp.
+    void bind_result() const;
+
+  private:
+    const RasterTarget& m_target;
+    // The layers so far.
+    gl::Texture m_color, m_transmission, m_peeled_depth, m_peeled_name;
+    // The next layer.
+    gl::Texture m_radiance, m_opacity, m_name, m_layer_depth, m_depth;
+    gl::Framebuffer m_layer;
+    gl::Program m_composite;
+};
+
+}  // namespace granita

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Micropolygons against samples.  A workgroup owns 64 samples of a block of 4 x 4 pixels, an
+// invocation one of them: it walks through the block's list and keeps the nearest surface in
+// registers, so nothing is shared, locked or waited for.
+//
+// Defines: MOTION, LENS 0 or 1; PASS: the nearest opaque surface (COMPUTE_PASS_OPAQUE), or how many
+// transparent ones lie in front of it (_COUNT), or which (_FILL).
+#include "compute/blocks.glsl"
+#include "compute/corner.glsl"
+#include "compute/order.glsl"
+
+layout(local_size_x = COMPUTE_GROUP_SIZE) in;
+
+struct Entry {
+    uint vertex;    // corner 0 at the segment's first knot
+    uint row;       // vertices a row of the grid
+    uint knot;      // from a vertex to itself at the segment's end
+    uint id;
+    uint pixels;    // x0, x1, y0, y1 in the tile, inclusive, 4 bits each
+    uint segment;
+    uint segments;  // 0 = static
+    uint kind;
+};
+layout(std430, binding = COMPUTE_ENTRIES) readonly buffer Entries { Entry entries[]; };
+layout(std430, binding = COMPUTE_VERTICES) readonly buffer Vertices { vec4 vertices[]; };
+// x and y of all samples, then t, then u and v where there are any.
+layout(std430, binding = COMPUTE_SAMPLES) readonly buffer Samples { float samples[]; };
+// Key (bits of a float) and surface.
+layout(std430, binding = COMPUTE_SEEN) buffer Seen { uvec2 seen[]; };
+#if PASS != COMPUTE_PASS_OPAQUE
+// COUNT: how many.  FILL: where to, or none: not in this part.
+layout(std430, binding = COMPUTE_COUNTS) buffer Counts { uint counts[]; };
+#endif
+#if PASS == COMPUTE_PASS_FILL
+layout(std430, binding = COMPUTE_OUTPUT) writeonly buffer Fragments { uint fragments[]; };
+#endif
+
+layout(location = COMPUTE_SAMPLE_STRIDE) uniform uint stride;
+layout(location = COMPUTE_TIME_AT) uniform uint time_at;
+layout(location = COMPUTE_LENS_AT) uniform uint lens_at;
+
+bool touches(Entry entry, uvec2 pixel) {
+    const uvec4 p = uvec4(entry.pixels, entry.pixels >> 4, entry.pixels >> 8, entry.pixels >> 12) & 15u;
+    return pixel.x >= p.x && pixel.x <= p.y && pixel.y >= p.z && pixel.y <= p.w;
+}
+
+void main() {
+    const Block block = blocks[gl_WorkGroupID.x];
+    const uint cell = gl_WorkGroupID.y * COMPUTE_GROUP_SIZE + gl_LocalInvocationID.x;
+    if (cell >= 16u * samples_a_pixel) return;
+    const uvec2 pixel = pixel_of(block, cell / samples_a_pixel);
+    const uint in_tile = (pixel.y * 16u + pixel.x) * samples_a_pixel + cell % samples_a_pixel;
+    const uint i = block.tile * 256u * samples_a_pixel + in_tile;
+
+    const vec2 place = vec2(samples[i], samples[stride + i]);
+#if MOTION
+    const float time = samples[time_at + i];
+#endif
+#if LENS
+    const vec2 lens = vec2(samples[lens_at + i], samples[lens_at + stride + i]);
+#endif
+    const uvec2 before = seen[i];
+    float nearest = uintBitsToFloat(before.x);
+    uint surface = before.y;
+#if PASS == COMPUTE_PASS_COUNT
+    uint found = 0u;
+#elif PASS == COMPUTE_PASS_FILL
+    const uint at = gl_WorkGroupID.x * 16u * samples_a_pixel + cell;
+    uint next = counts[at];
+    if (next == kNone) return;
+#endif
+    for (uint e = block.first; e < block.first + block.count; ++e) {
+        const Entry entry = entries[e];
+        if (!touches(entry, pixel)) continue;
+        const uint corner[4] = uint[4](entry.vertex, entry.vertex + 1u,
+                                       entry.vertex + entry.row + 1u, entry.vertex + entry.row);
+        vec4 c[4];
+        for (int k = 0; k < 4; ++k) c[k] = vertices[corner[k]];
+#if MOTION
+        if (entry.segments > 0u) {
+            precise const float at_knot = time * float(entry.segments);
+            const float start = float(entry.segment);
+            const bool last = entry.segment + 1u == entry.segments;
+            if (!(at_knot >= start && (last || at_knot < start + 1.0))) continue;
+            for (int k = 0; k < 4; ++k)
+                c[k] = at_time(c[k], vertices[corner[k] + entry.knot], at_knot - start);
+        }
+#endif
+        vec2 d[4];
+        for (int k = 0; k < 4; ++k)
+#if LENS
+            d[k] = offset_lens(c[k], place, lens);
+#else
+            d[k] = offset_pinhole(c[k], place);
+#endif
+        float key;
+        if (!hit_micropolygon(c, d, entry.kind, key)) continue;
+        const bool wins = key > nearest || (key == nearest && surface != kNone &&
+                                            comes_before(entry.id, surface));
+        if (!wins) continue;
+#if PASS == COMPUTE_PASS_OPAQUE
+        nearest = key;
+        surface = entry.id;
+#elif PASS == COMPUTE_PASS_COUNT
+        ++found;
+#else
+        fragments[3u * next] = floatBitsToUint(key);
+        fragments[3u * next + 1u] = in_tile;
+        fragments[3u * next + 2u] = entry.id;
+        ++next;
+#endif
+    }
+#if PASS == COMPUTE_PASS_OPAQUE
+    seen[i] = uvec2(floatBitsToUint(nearest), surface);
+#elif PASS == COMPUTE_PASS_COUNT
+    counts[gl_WorkGroupID.x * 16u * samples_a_pixel + cell] = found;
+#endif
+}

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Adds the passes of one draw to the mean of the passes so far (paper, 9.3.5, listing 2): layers
+// over opaque surfaces over the background.
+//
+// The running mean m += (x - m) / n leaves a sample that is the same in all passes exactly as it is:
+// a cell where nothing moves takes one pass, and its bits are those of many.
+//
+// Define: LATTICE, samples along a pixel's side.
+#include "shared/raster_layout.h"
+
+layout(local_size_x = RASTER_GROUP, local_size_y = RASTER_GROUP) in;
+layout(binding = 0) uniform sampler2DArray opaque;  // w: 1 a surface, 0 a holdout, -1 nothing
+layout(binding = 1) uniform sampler2DArray color;
+layout(binding = 2) uniform sampler2DArray transmission;
+layout(binding = 3) uniform sampler2DArray peeled_depth;
+layout(binding = 0, rgba32f) uniform image2D mean;
+// The world at the corners of pixels, row by row, pass by pass.
+layout(std430, binding = RASTER_BACKGROUND) readonly buffer Background { vec4 corners[]; };
+layout(location = RASTER_TEXELS) uniform ivec4 texels;             // corner and size
+layout(location = RASTER_COUNT) uniform ivec2 passes;              // done, now
+layout(location = RASTER_CELL_PIXEL) uniform ivec2 cell_pixel;     // of texel 0, from corners' first
+layout(location = RASTER_BACKGROUND_SIZE) uniform ivec3 size;      // corners; 0: one colour
+layout(location = RASTER_BACKGROUND_CONSTANT) uniform vec4 constant;
+layout(location = RASTER_FLAGS) uniform ivec2 flags;               // layers were peeled; film transparent
+
+vec4 background(ivec2 texel, int pass) {
+    if (size.x == 0) return constant;
+    const ivec2 pixel = texel / LATTICE, corner = cell_pixel + pixel;
+    const vec2 f = (vec2(texel - pixel * LATTICE) + 0.5) / float(LATTICE);
+    const int i = ((size.z > 1 ? pass : 0) * size.y + corner.y) * size.x + corner.x;
+    return mix(mix(corners[i], corners[i + 1], f.x),
+               mix(corners[i + size.x], corners[i + size.x + 1], f.x), f.y);
+}
+
+vec4 sample_color(ivec3 at, int pass) {
+    vec4 under = texelFetch(opaque, at, 0);
+    if (flags.x == 0) return under.w < 0.0 ? background(at.xy, pass) : under;
+    if (under.w < 0.0 || texelFetch(peeled_depth, at, 0).r < 0.0) under = background(at.xy, pass);
+    const vec4 through = texelFetch(transmission, at, 0), over = texelFetch(color, at, 0);
+    const float left = (through.r + through.g + through.b) / 3.0;
+    const float alpha =
+        flags.y != 0 ? over.w + left * under.w : 1.0 - through.w - left * (1.0 - under.w);
+    return vec4(over.rgb + through.rgb * under.rgb, alpha);
+}
+
+void main() {
+    if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), texels.zw))) return;
+    const ivec2 at = ivec2(gl_GlobalInvocationID.xy) + texels.xy;
+    vec4 sum = passes.x == 0 ? vec4(0.0) : imageLoad(mean, at);
+    for (int layer = 0; layer < passes.y; ++layer) {
+        const int pass = passes.x + layer;
+        sum += (sample_color(ivec3(at, layer), pass) - sum) / float(pass + 1);
+    }
+    imageStore(mean, at, sum);
+}

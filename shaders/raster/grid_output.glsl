@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What drawing grids leaves behind: the define OUTPUT of grid.vert and grid.frag.
+
+#define SURFACE 0   // the micropolygon's name, 0 is nothing
+#define RADIANCE 1  // premultiplied radiance of opaque surfaces
+#define LAYER 2     // the nearest transparent surface behind the layers already peeled
+#define MARK 3      // no colour: the grids that lie before the opaque surfaces are marked as seen
