@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hider/sample_table.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <string>
@@ -57,6 +58,8 @@ SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNee
       m_sampling(options.sampling),
       m_seed(options.seed),
       m_shutter(options.shutter_curve),
+      m_height(options.height),
+      m_rolling(options.rolling_shutter),
       m_lens(camera.blades, camera.blade_rotation, camera.lens_ratio) {
     if (options.samples < 1 || options.samples > 1 << 16)
         throw SceneError("render settings",
@@ -96,7 +99,24 @@ void SampleTable::fill_tile(Vec2i tile, SampleNeeds needs, TileSamples& out) con
     }
     if (needs.time && !m_shutter.is_box())
         for (float& t : out.t) t = m_shutter.time(t);
+    if (needs.time && m_rolling >= 0.0f) roll(tile, out.t);
     if (needs.lens) m_lens.map(out.u.data(), out.v.data(), count);
+}
+
+/// A rolling shutter exposes the rows one after the other, the top one first: each sees a part
+/// `m_rolling` of the time, and these parts spread over the shutter (as Cycles has it, so that one
+/// setting gives one picture: t = (t - 1/2) d + (1/2 - y/n) (1 - d) + 1/2).
+void SampleTable::roll(Vec2i tile, std::vector<float>& t) const {
+    const std::size_t row_samples = static_cast<std::size_t>(kTileSize) * m_samples;
+    for (int y = 0; y < kTileSize; ++y) {
+        const int row = std::clamp(tile.y * kTileSize + y, 0, m_height - 1);
+        const float start =
+            (0.5f - static_cast<float>(row) / static_cast<float>(m_height)) * (1.0f - m_rolling) +
+            0.5f;
+        float* const times = t.data() + row_samples * y;
+        for (std::size_t i = 0; i < row_samples; ++i)
+            times[i] = std::clamp((times[i] - 0.5f) * m_rolling + start, 0.0f, 1.0f);
+    }
 }
 
 void SampleTable::fill_dimension(Vec2i tile, int dimension, std::vector<float>& out) const {

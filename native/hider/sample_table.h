@@ -55,12 +55,15 @@ class SampleTable {
   private:
     void fill_regular(SampleNeeds needs, TileSamples& out) const;
     void fill_dimension(Vec2i tile, int dimension, std::vector<float>& out) const;
+    void roll(Vec2i tile, std::vector<float>& t) const;
 
     int m_samples, m_lattice = 0;
     Sampling m_sampling;
     std::uint32_t m_seed;
     int m_class_pixels = 1;  ///< INTERLEAVED: side of the square of pixels that holds every class
     ShutterWarp m_shutter;
+    int m_height;     ///< rows of the frame
+    float m_rolling;  ///< Options::rolling_shutter
     LensShape m_lens;
 };
 

@@ -65,6 +65,8 @@ void read_options(const Record& r, Options& o) {
     o.frame_time = static_cast<float>(r.number("frame_time", 0.5));
     if (o.frame_time < 0.0f || o.frame_time > 1.0f) r.fail("'frame_time' must be between 0 and 1");
     o.shutter_curve = r.values<float>("shutter_curve", {-1});
+    o.rolling_shutter = static_cast<float>(r.number("rolling_shutter", -1.0));
+    if (o.rolling_shutter > 1.0f) r.fail("'rolling_shutter' must be at most 1");
 }
 
 void read_camera(const Record& r, Camera& camera) {

@@ -65,6 +65,9 @@ struct Options {
     float frame_time =
         0.5f;  ///< shutter time of Blender's frame: 0, 1/2 or 1; shading happens there
     std::vector<float> shutter_curve;  ///< opening over t in [0, 1], equidistant; empty = box
+    /// Rolling shutter, top row first: the part of the shutter in which one row is exposed, 0 to 1.
+    /// Negative = all rows at once.
+    float rolling_shutter = -1.0f;
 };
 
 }  // namespace granita

@@ -123,6 +123,22 @@ TEST(SampleTable, SameBitsWhateverIsAskedFor) {
     }
 }
 
+TEST(SampleTable, ARollingShutterSpreadsItsRowsOverTheTime) {
+    // Row y of n: (u - 1/2) d + (1/2 - y / n) (1 - d) + 1/2; beyond the frame as its last row.
+    Options options = make_options(8, Sampling::Independent);
+    options.height = 40;
+    const TileSamples plain = fill(options, {0, 2});
+    options.rolling_shutter = 0.25f;
+    const TileSamples rolled = fill(options, {0, 2});
+    EXPECT_EQ(rolled.x, plain.x);
+    for (int p = 0; p < 256; ++p) {
+        const double row = std::min(32 + p / 16, 39);
+        for (int i = p * 8; i < (p + 1) * 8; ++i)
+            ASSERT_NEAR(rolled.t[i], (plain.t[i] - 0.5) * 0.25 + (0.5 - row / 40) * 0.75 + 0.5,
+                        1e-6);
+    }
+}
+
 TEST(SampleTable, StaysInsideItsRanges) {
     for (const Sampling kind : {Sampling::Independent, Sampling::Interleaved, Sampling::Regular})
         for (const Vec2i tile : {Vec2i{0, 0}, Vec2i{-1, -9}, Vec2i{1100, 700}}) {
