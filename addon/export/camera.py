@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .report import ExportError
-from .transforms import from_matrix, world_from_camera
+from .transforms import from_matrix, inverse, world_from_camera
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ def camera_knot(camera, frame, depsgraph, at_frame):
     found = _projection(data, at_frame["kind"], frame)
     if matrix is None or found is None:
         return None
-    return matrix @ np.linalg.inv(other_projection(at_frame, *found))
+    return matrix @ inverse(other_projection(at_frame, *found))
 
 
 def other_projection(at_frame, scale, center):

@@ -86,8 +86,9 @@ def _first_level(ticks):
 def _paths(scene, steps):
     """(key, {tick: array [m, ...]}, measure in pixels) of the camera, of places, of deformations."""
     scale = PixelScale(scene, steps.cameras)
-    if blurs(scene.camera):
-        cameras = {tick: steps.cameras[tick][None] for tick in sorted(steps.cameras)}
+    cameras = {tick: steps.cameras[tick][None] for tick in sorted(steps.cameras)}
+    at_frame = steps.cameras[steps.frame_tick]
+    if blurs(scene.camera) and any((camera != at_frame).any() for camera in cameras.values()):
         yield "CAMERA", cameras, scale.camera()
     things, places = steps.places()
     if len(things):
@@ -111,8 +112,7 @@ def _result(scene, steps, ticks, level):
             continue
         knots = np.stack([path[t] for t in range(0, ticks + 1, ticks // int(segments[0]))])
         if isinstance(key, str):
-            if (knots != knots[0]).any():
-                motion.camera = knots[:, 0]
+            motion.camera = knots[:, 0]
         else:
             motion.points[key] = knots
     return motion

@@ -3,6 +3,8 @@
 
 import numpy as np
 
+from .transforms import inverse
+
 _MOST_PROBES = 4096
 
 
@@ -19,7 +21,7 @@ class PixelScale:
         self._focal = max(scene.camera_record["scale"])
         self._perspective = scene.camera_record["kind"] == "PERSPECTIVE"
         self._near = scene.camera_record["clip"][0]
-        self._views = {tick: np.linalg.inv(matrix) for tick, matrix in cameras.items()}
+        self._views = {tick: inverse(matrix) for tick, matrix in cameras.items()}
 
     def places(self, things, path):
         """measure([m, 4, 4]) -> pixels [m] by which points of things go astray with their matrices.

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from export.camera import Frame, lens_radius, other_projection, projection, sensor_size
-from export.transforms import has_area, world_from_camera
+from export.transforms import has_area, inverse, world_from_camera
 
 HD = Frame(1920, 1080)
 
@@ -82,3 +82,9 @@ def test_another_projection_is_another_space(kind):
     assert z == 2.0
     assert 32.0 + 100.0 * x / w == pytest.approx(40.0 + 150.0 * 0.3 / w)
     assert 24.0 + 90.0 * y / w == pytest.approx(20.0 + 135.0 * -0.2 / w)
+
+
+def test_inverse_of_an_affine_matrix():
+    matrix = np.random.default_rng(1).normal(size=(4, 4))
+    matrix[3] = (0, 0, 0, 1)
+    assert inverse(matrix) @ matrix == pytest.approx(np.eye(4), abs=1e-12)

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Memory over many frames: nothing of a frame stays when it is exported."""
+
+import ctypes
+
+import export_probe
+import numpy as np
+import pytest
+import scene_parts
+from motion_parts import drive, shape_key, with_shutter
+
+FRAMES, WARM_UP = 300, 50
+
+
+def heap():
+    """Bytes that are allocated, exactly; Debian's Blender is linked with jemalloc."""
+    try:
+        mallctl = ctypes.CDLL(None).mallctl
+    except AttributeError:
+        pytest.skip("the heap of this Blender cannot be asked")
+    epoch, allocated = ctypes.c_uint64(1), ctypes.c_size_t(0)
+    size = ctypes.c_size_t(ctypes.sizeof(epoch))
+    mallctl(b"epoch", ctypes.byref(epoch), ctypes.byref(size), ctypes.byref(epoch), size)
+    size = ctypes.c_size_t(ctypes.sizeof(allocated))
+    mallctl(b"stats.allocated", ctypes.byref(allocated), ctypes.byref(size), None, 0)
+    return allocated.value
+
+
+def test_export_of_300_frames_is_flat(scene):
+    """A moving and deforming object and a moving instance: less than 20 KB a frame by regression."""
+    heap()
+    with_shutter(scene)
+    square = scene_parts.add_square(scene)
+    drive(square, "rotation_euler", "frame", 2)
+    drive(shape_key(square), "value", "frame / 300")
+    part = scene_parts.bpy.data.collections.new("Part")
+    part.objects.link(square)
+    empty = scene_parts.add_object(scene, "Place", None)
+    empty.instance_type, empty.instance_collection = "COLLECTION", part
+    drive(empty, "location", "frame", 0)
+    bytes_used = []
+    for frame in range(1, FRAMES + 1):
+        scene.frame_set(frame)
+        export_probe.through_engine(scene, motion_steps=5)
+        bytes_used.append(heap())
+    slope = np.polyfit(np.arange(FRAMES - WARM_UP), bytes_used[WARM_UP:], 1)[0]
+    print(f"heap: {slope:.0f} bytes a frame")
+    assert slope < 20e3
