@@ -57,7 +57,7 @@ def mesh_attributes(mesh, label, requested, report):
         attribute = mesh.attributes.get(name)
         if attribute is None:
             continue
-        values = _values(attribute)
+        values = attribute_values(attribute)
         if values is None or attribute.domain not in _DOMAINS:
             report(
                 label,
@@ -65,12 +65,17 @@ def mesh_attributes(mesh, label, requested, report):
             )
             continue
         found.append(Attribute(name, attribute.domain, "GENERIC", values))
-    for attribute in found:
+    finite_attributes(found, label, report)
+    return found
+
+
+def finite_attributes(attributes, label, report):
+    """Takes values that are not finite as 0, and says so."""
+    for attribute in attributes:
         broken = ~np.isfinite(attribute.values)
         if broken.any():
             report(label, f"'{attribute.name}' holds values that are not finite: taken as 0")
             attribute.values[broken] = 0.0
-    return found
 
 
 def _uv_maps(mesh):
@@ -92,10 +97,12 @@ def _colors(mesh):
     active = mesh.color_attributes.render_color_index
     if 0 <= active < len(layers):
         layers.insert(0, layers.pop(active))
-    return [Attribute(layer.name, layer.domain, "COLOR", _values(layer)) for layer in layers]
+    return [
+        Attribute(layer.name, layer.domain, "COLOR", attribute_values(layer)) for layer in layers
+    ]
 
 
-def _values(attribute):
+def attribute_values(attribute):
     """float32 [elements, components], colours linear; None for types that hold no numbers."""
     if attribute.data_type not in _LAYOUT:
         return None

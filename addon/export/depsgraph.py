@@ -16,11 +16,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .hair import hair_material, hair_systems
 from .identity import combine, name_hash
 from .report import poll
 from .subdivision import Cage, find_cage, simplify_level
 
 _POLL_EVERY = 1024
+_RENDERED = {"CURVES", "LIGHT", "MESH", "POINTCLOUD"}
 _NO_ID = (0,) * 8
 
 # What the twin of type MESH stands for, or what has no surface.
@@ -44,25 +46,30 @@ _NOT_SEEN = {
 class Kind:
     """What instances share that differ in their place alone."""
 
-    type: str  # "MESH" or "LIGHT"
+    type: str  # "MESH", "CURVES", "POINTCLOUD", "HAIR" or "LIGHT"
     name: str
     source: object  # evaluated Object
     parent: object  # evaluated Object that instances it, or None
-    data: object = None  # evaluated Mesh; None for a cage and for lights
+    data: object = None  # evaluated Mesh, Curves or PointCloud; None for a cage, hair and lights
     cage: Cage = None
     # Evaluated Material or None, one a slot; of the visit at the frame alone.
     materials: list = field(default_factory=list)
+    system: str = ""  # the particle system of hair
 
     @property
     def label(self):
         """Name of the geometry for messages."""
         original = self.source.original
-        if original.type == "MESH":
+        if self.type == "HAIR":
+            return f"particle system '{self.system}' of object '{original.name}'"
+        if original.type == "MESH" and self.type == "MESH":
             return f"mesh '{original.data.name}'"
         return f"object '{original.name}'"
 
     def geometry_key(self):
         """Equal for kinds that have one geometry."""
+        if self.type == "HAIR":
+            return self.source.as_pointer(), self.system
         if self.cage is None:
             return self.data.as_pointer()
         return self.cage.sharing or (self.source.as_pointer(), "CAGE")
@@ -100,18 +107,14 @@ def visit(depsgraph, report, check_cancel, cages=None):
         for i, instance in enumerate(iterator):
             if i % _POLL_EVERY == 0:
                 poll(check_cancel)
-            if not instance.show_self:
-                continue
             duplicate = instance.is_instance
-            index = walk.kind_of(instance, duplicate)
-            if index < 0:
-                continue
-            kind.append(index)
-            for row in instance.matrix_world:
-                rows.extend(row)
-            is_instance.append(duplicate)
-            persistent.append(instance.persistent_id[:] if duplicate else _NO_ID)
-            random.append(instance.random_id if duplicate else 0)
+            for index in walk.kinds_of(instance, duplicate):
+                kind.append(index)
+                for row in instance.matrix_world:
+                    rows.extend(row)
+                is_instance.append(duplicate)
+                persistent.append(instance.persistent_id[:] if duplicate else _NO_ID)
+                random.append(instance.random_id if duplicate else 0)
     finally:
         for _ in iterator:
             pass
@@ -138,14 +141,42 @@ class _Walk:
         self._mode = depsgraph.mode
         self._simplify = simplify_level(depsgraph.scene_eval.render, depsgraph.mode)
         self._index = {}
+        self._hair = {}
         self._at_frame = cages is None
         self.cages = dict(cages or {})
 
-    def kind_of(self, instance, duplicate):
+    def kinds_of(self, instance, duplicate):
+        """Indices in `kinds`: of the thing itself, where it is rendered, and of its hair."""
+        index = self._kind_of(instance, duplicate) if instance.show_self else -1
+        found = (index,) if index >= 0 else ()
+        if instance.show_particles and instance.object.particle_systems:
+            found += self._hair_of(instance, duplicate)
+        return found
+
+    def _hair_of(self, instance, duplicate):
+        source = instance.instance_object if duplicate else instance.object
+        parent = instance.parent if duplicate else None
+        if duplicate and instance.object.data.as_pointer() != source.data.as_pointer():
+            return ()  # something else that the object's own nodes made
+        key = source.as_pointer(), parent.as_pointer() if parent is not None else 0
+        found = self._hair.get(key)
+        if found is None:
+            found = []
+            for name in hair_systems(source, self._mode):
+                found.append(len(self.kinds))
+                kind = Kind("HAIR", source.name, source, parent, system=name)
+                if self._at_frame:
+                    material = hair_material(source, name)
+                    kind.materials = [material] if material is not None else []
+                self.kinds.append(kind)
+            found = self._hair[key] = tuple(found)
+        return found
+
+    def _kind_of(self, instance, duplicate):
         """Index in `kinds`, or -1 for what is not rendered."""
         shown = instance.object
         kind_type = shown.type
-        if kind_type not in ("MESH", "LIGHT"):
+        if kind_type not in _RENDERED:
             if kind_type not in _NOT_SEEN:
                 self._report(
                     f"object '{shown.name}'", f"objects of type {kind_type} are not rendered"
@@ -165,6 +196,10 @@ class _Walk:
                     data = None
                 elif cage is not None:
                     cage = None
+        elif kind_type != "LIGHT":
+            data = shown.data
+            if data is None:
+                return -1
         key = (
             source.as_pointer(),
             parent.as_pointer() if parent is not None else 0,
@@ -193,11 +228,7 @@ class _Walk:
 
     def _look_closer(self, kind, shown):
         """What does not change within the shutter."""
-        if kind.type == "MESH":
+        if kind.type != "LIGHT":
             kind.materials = [slot.material for slot in shown.material_slots]
             if kind.source.is_shadow_catcher:
                 self._report(f"object '{kind.name}'", "is a shadow catcher: rendered as it stands")
-        for system in kind.source.particle_systems:
-            settings = system.settings
-            if settings.type == "HAIR" and settings.render_type == "PATH":
-                self._report(f"object '{kind.name}'", f"hair '{system.name}' is not rendered")

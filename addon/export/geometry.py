@@ -6,11 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from .blur_settings import deforms
-from .mesh import Topology, read_geometry
+from .curves import read_curves
+from .hair import read_hair
+from .mesh import read_geometry
+from .points import read_point_cloud
 from .report import poll
 from .snapshot import Geometry
 from .subdivision import Cage, cage_mesh, subdivision_record
 from .velocity import read_velocity
+
+_READERS = {"CURVES": read_curves, "POINTCLOUD": read_point_cloud}
 
 
 @dataclass
@@ -18,7 +23,7 @@ class GeometrySource:
     """A geometry, and how to find it again at another time."""
 
     geometry: Geometry
-    topology: Topology
+    topology: object  # mesh.Topology or elements.Elements: `points_again`
     cage: Cage  # or None
     example: int  # index of one thing of the visit that has it
     pointers: frozenset  # addresses of original datablocks that it is made from
@@ -27,7 +32,7 @@ class GeometrySource:
 
 
 def read_geometries(scan, requested, depsgraph, report, check_cancel):
-    """Reads every mesh of a visit.
+    """Reads every mesh, every set of curves and every point cloud of a visit.
 
     Args:
         scan: depsgraph.Visit at the depsgraph's time.
@@ -37,14 +42,14 @@ def read_geometries(scan, requested, depsgraph, report, check_cancel):
         check_cancel: true when the user has cancelled.
 
     Returns:
-        (list of GeometrySource, int32 [kinds]: index in it, -1 for what has no faces).
+        (list of GeometrySource, int32 [kinds]: index in it, -1 for what has nothing to see).
     """
     of_kind = np.full(len(scan.kinds), -1, dtype=np.int32)
     examples = np.zeros(len(scan.kinds), dtype=int)
     examples[scan.kind[::-1]] = np.arange(len(scan.kind))[::-1]
     sources, index = [], {}
     for number, kind in enumerate(scan.kinds):
-        if kind.type != "MESH":
+        if kind.type == "LIGHT":
             continue
         poll(check_cancel)
         key = kind.geometry_key()
@@ -58,7 +63,13 @@ def read_geometries(scan, requested, depsgraph, report, check_cancel):
 
 
 def _read(kind, example, requested, depsgraph, report, check_cancel):
-    if kind.cage is None:
+    if kind.type in _READERS:
+        found = _READERS[kind.type](kind.data, kind.label, requested, report)
+        velocity = read_velocity(kind.data, kind.label, report)
+    elif kind.type == "HAIR":
+        found = read_hair(kind.source, kind.system, kind.label, depsgraph.mode, report)
+        velocity = None
+    elif kind.cage is None:
         found = read_geometry(kind.data, kind.label, requested, report, check_cancel)
         velocity = read_velocity(kind.data, kind.label, report)
     else:

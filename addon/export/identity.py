@@ -16,7 +16,8 @@ _MASK = 0xFFFFFFFF
 def name_hash(kind):
     """64-bit hash of what is placed and of what places it, by full name (with the library)."""
     parent = kind.parent.name_full if kind.parent is not None else ""
-    text = "\0".join((kind.type, kind.source.name_full, parent))
+    system = (kind.system,) if kind.system else ()
+    text = "\0".join((kind.type, kind.source.name_full, parent, *system))
     return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=8).digest(), "little")
 
 

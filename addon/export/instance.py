@@ -86,7 +86,7 @@ def collect_materials(kinds, override):
         return index[pointer]
 
     for kind in kinds:
-        wanted = kind.materials or ([override] if override and kind.type == "MESH" else [])
+        wanted = kind.materials or ([override] if override and kind.type != "LIGHT" else [])
         slots.append(np.array([number(material) for material in wanted], dtype=np.int32))
     return materials, slots
 

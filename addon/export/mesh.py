@@ -28,6 +28,12 @@ class Topology:
             and np.array_equal(self.face_sizes, other.face_sizes)
         )
 
+    def points_again(self, _thing, mesh):
+        """float32 [V, 3] at another time, or None where the mesh is not the frame's any more."""
+        if len(mesh.vertices) != self.vertex_count or len(mesh.loops) != len(self.corner_verts):
+            return None
+        return read_points(mesh) if read_topology(mesh).matches(self) else None
+
 
 def read_topology(mesh):
     """Topology of a mesh, as Blender has it."""

@@ -28,17 +28,21 @@ class Attribute:
 
 @dataclass
 class Geometry:
-    """A polygon mesh or a subdivision cage with V vertices, F faces, C face corners."""
+    """A polygon mesh or a subdivision cage with V vertices, F faces, C face corners; or curves, or a
+    point cloud, of V points."""
 
     name: str  # "mesh 'Cube'"
     points: np.ndarray  # float32 [K, V, 3], object space, metres
-    face_sizes: np.ndarray  # int32 [F], corners a face, at least 3
-    corner_verts: np.ndarray  # int32 [C]
+    face_sizes: Optional[np.ndarray] = None  # int32 [F], corners a face, at least 3
+    corner_verts: Optional[np.ndarray] = None  # int32 [C]
     material_index: Optional[np.ndarray] = None  # int32 [F]; None = all 0
     smooth: Optional[np.ndarray] = None  # uint8 [F]; None = all flat
     corner_normals: Optional[np.ndarray] = None  # float32 [C, 3], unit, at the frame's time
     attributes: list = field(default_factory=list)  # of Attribute; active UV, active colour first
     subdivision: Optional[dict] = None
+    kind: str = "MESH"  # "CURVES", "POINTS"
+    curve_sizes: Optional[np.ndarray] = None  # int32 [curves], points a curve
+    radius: Optional[np.ndarray] = None  # float32 [1, V], metres; of curves and points
 
     def as_dict(self):
         record = _record(self)

@@ -7,7 +7,6 @@ from .blur_settings import blurs
 from .camera import camera_knot, lens_state
 from .changes import Plain, changed_geometry, moved
 from .depsgraph import visit
-from .mesh import read_points, read_topology
 from .report import poll
 from .subdivision import cage_mesh
 from .transforms import is_finite
@@ -110,10 +109,10 @@ class Steps:
         if (cage is None) != (source.cage is None):
             points = None
         elif cage is None:
-            points = _matching_points(mesh, source.topology)
+            points = source.topology.points_again(thing, mesh)
         else:
             with cage_mesh(thing, cage, self._scene.depsgraph) as mesh:
-                points = _matching_points(mesh, source.topology)
+                points = source.topology.points_again(thing, mesh)
         if points is None:
             self._rigid.add(index)
             self._report(
@@ -195,13 +194,6 @@ def _still(kinds):
         ],
         dtype=bool,
     )
-
-
-def _matching_points(mesh, topology):
-    """float32 [V, 3], or None where the mesh is not the frame's any more."""
-    if len(mesh.vertices) != topology.vertex_count or len(mesh.loops) != len(topology.corner_verts):
-        return None
-    return read_points(mesh) if read_topology(mesh).matches(topology) else None
 
 
 def _silent(_datablock, _message):

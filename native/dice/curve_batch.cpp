@@ -16,9 +16,14 @@ namespace {
 constexpr float kRegion = 32.0f;
 /// Micropolygons across a ribbon: it is flat, and what its normal does is known well before this.
 constexpr int kMostAcross = 32;
-/// Two normals stand for all of a thin ribbon: a tube's at 1 / sqrt(3) of the way from its middle
-/// to its edge, Gauss's places, so that what their colours average to is right for any cubic.
-constexpr double kGauss = 0.57735026918962576;
+
+/// How far out a tube's normals are taken for a ribbon of so many micropolygons across.  Colours go
+/// linearly between vertices: with normals at their true places a tube's edges would be too dark.
+/// Drawn in so far, the mean is right for any cubic; 1 / sqrt(3) with one micropolygon are Gauss's
+/// places.
+double drawn_in(int across) {
+    return 1.0 / std::sqrt(1.0 + 2.0 / (static_cast<double>(across) * across));
+}
 
 }  // namespace
 
@@ -179,7 +184,7 @@ void CurveBatch::fill_row(Grid& grid, int j, const Row& row, const CurveControl&
     const Vec3d front = unit_or(facing, Vec3d(0.0, 0.0, -1.0));
     for (int i = 0; i <= grid.n_u; ++i) {
         const double u = 2.0 * i / grid.n_u - 1.0;
-        const double sine = grid.n_u == 1 ? u * kGauss : u;
+        const double sine = u * drawn_in(grid.n_u);
         const Vec3d normal = side * sine + front * std::sqrt(std::max(1.0 - sine * sine, 0.0));
         const std::size_t v = first + static_cast<std::size_t>(i);
         grid.normal[v] = Vec3f(unit_or(normal, front));

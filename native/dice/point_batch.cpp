@@ -42,8 +42,9 @@ struct PointBatch::Vertex {
         if (!elements.view().projection.perspective) return;
         // The cone from the eye touches the sphere in front of its middle; from inside nothing
         // is seen of it.
-        const double sine = radius / std::max(glm::length(sphere.p), 1e-300);
-        outline = radius * std::sqrt(std::max(1.0 - sine * sine, 0.0));
+        const double angle = radius / std::max(glm::length(sphere.p), 1e-300);
+        sine = std::sqrt(std::max(1.0 - angle * angle, 0.0));
+        outline = radius * sine;
     }
     /// `x`, `y`: of the outline's radius.
     Vec3d at(double x, double y) const { return center + offset(x, y); }
@@ -55,6 +56,7 @@ struct PointBatch::Vertex {
     }
     Vec3d center, to_eye, right, up;
     double radius, outline;
+    double sine = 1.0;  ///< of the outline's normals against the way to the eye
 };
 
 PointBatch::PointBatch(const OpenedElements& elements, std::size_t batch)
@@ -198,6 +200,10 @@ void PointBatch::fill_row(Grid& grid, int j, std::uint32_t point, int latitude, 
     const double v = M_PI * (static_cast<double>(latitude) / latitudes - 0.5);
     const bool pole = latitude == 0 || latitude == latitudes;
     const bool flat = m_longitudes == 1;
+    // Colours go linearly between vertices: normals are drawn in so far that the mean over the
+    // outline is right for any quadratic (half of the area's radius where the sphere is flat).
+    const double drawn_in =
+        1.0 / std::sqrt(1.0 + 1.0 / (static_cast<double>(m_longitudes) * m_longitudes));
     for (int k = 0; k < knots.count; ++k) {
         const Vertex sphere(*m_elements, m_elements->point(k, point));
         const double weight = k == knots.frame_knot       ? 1.0 - knots.frame_fraction
@@ -210,14 +216,13 @@ void PointBatch::fill_row(Grid& grid, int j, std::uint32_t point, int latitude, 
             const std::size_t vertex = first + static_cast<std::size_t>(i);
             grid.positions[static_cast<std::size_t>(k) * count + vertex] = Vec3f(sphere.at(x, y));
             if (weight == 0.0) continue;
-            // A flat sphere's normals are those at half of the outline's area, so that what their
-            // colours average to is right for any quadratic.
-            const Vec3d normal = flat ? (sphere.right * std::cos(v) * std::sin(u) +
-                                         sphere.up * std::sin(v) + sphere.to_eye)
-                                      : sphere.offset(x, y);
-            const Vec3d unit = unit_or(normal, sphere.to_eye);
-            grid.normal[vertex] += Vec3f(unit * weight);
-            grid.geometric_normal[vertex] += Vec3f((flat ? sphere.to_eye : unit) * weight);
+            const Vec2d lateral(pole ? 0.0 : std::cos(v) * std::sin(u), std::sin(v));
+            const Vec2d in = lateral * (drawn_in * sphere.sine);
+            const double front = std::sqrt(std::max(1.0 - glm::dot(in, in), 0.0));
+            grid.normal[vertex] +=
+                Vec3f((sphere.right * in.x + sphere.up * in.y + sphere.to_eye * front) * weight);
+            const Vec3d surface = flat ? sphere.to_eye : sphere.offset(lateral.x, lateral.y);
+            grid.geometric_normal[vertex] += Vec3f(unit_or(surface, sphere.to_eye) * weight);
         }
     }
     for (int i = 0; i <= grid.n_u; ++i) {

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Curves and points against closed forms (hider-research, cases 9, 13, 27 and 57)."""
 
-import granita_core
 import numpy as np
 import pytest
 import snapshots as s
+
+import granita_core
 
 OWEN_20_256 = 0.0035  # hider-research 1.2, edges moving 20 px at 256 samples
 
@@ -13,10 +14,16 @@ def curves(snapshot, points, sizes, radius, material=None, transforms=None, **ex
     """points: [V,3] or [K,V,3]; radius: a number, [V] or [K,V]."""
     points = np.asarray(points, np.float32)
     points = points[None] if points.ndim == 2 else points
-    radius = np.broadcast_to(np.atleast_2d(np.float32(radius)), (np.shape(np.atleast_2d(radius))[0], points.shape[1]))
+    radius = np.broadcast_to(
+        np.atleast_2d(np.float32(radius)), (np.shape(np.atleast_2d(radius))[0], points.shape[1])
+    )
     index = len(snapshot["geometries"])
     record = {"name": f"curves 'Curves {index}'", "kind": "CURVES", "points": points}
-    record |= {"curve_sizes": np.array(sizes, np.int32), "radius": np.ascontiguousarray(radius), **extra}
+    record |= {
+        "curve_sizes": np.array(sizes, np.int32),
+        "radius": np.ascontiguousarray(radius),
+        **extra,
+    }
     snapshot["geometries"].append(record)
     s.instance(snapshot, index, material, transforms)
 
@@ -46,7 +53,9 @@ def test_thin_line_has_no_dashes(executor):
     """Case 9: along a horizontal hair every pixel holds the same share, with its own noise alone."""
     width, samples = 0.1, 256
     snapshot = s.orthographic((80, 16), samples=samples, executor=executor)
-    curves(snapshot, [(-10, 8.5, 1), (40, 8.5, 1), (90, 8.5, 1)], [3], width / 2, s.emission(snapshot))
+    curves(
+        snapshot, [(-10, 8.5, 1), (40, 8.5, 1), (90, 8.5, 1)], [3], width / 2, s.emission(snapshot)
+    )
     row = s.alpha(snapshot)[8]
     sigma = np.sqrt(width * (1 - width) / samples)
     assert abs(row.mean() - width) < 4 * sigma / np.sqrt(len(row))
@@ -64,7 +73,9 @@ def test_point_is_a_disc(executor, radius):
     assert abs(alpha.sum() - area) < 4 * 0.5 * np.sqrt((8 * radius + 4) / samples)
     y, x = np.mgrid[:48, :48] + 0.5
     distance = np.hypot(x - 23.7, y - 24.4)
-    assert (alpha[distance < radius - 0.9] == 1).all() and (alpha[distance > radius + 0.9] == 0).all()
+    assert (alpha[distance < radius - 0.9] == 1).all() and (
+        alpha[distance > radius + 0.9] == 0
+    ).all()
 
 
 def test_moving_point_time_fraction(executor):
@@ -121,7 +132,9 @@ def test_radius_in_motion(executor):
     expected = np.maximum(1 - distance / 4, 0)  # linear inside every pixel but the outermost
     error = s.alpha(snapshot) - expected
     inside = distance < 3.6
-    assert np.sqrt(np.mean(error[:, inside] ** 2)) <= 1.3 * 2 * 0.0035  # two edges again; the rate of 5 to 20 px
+    assert (
+        np.sqrt(np.mean(error[:, inside] ** 2)) <= 1.3 * 2 * 0.0035
+    )  # two edges again; the rate of 5 to 20 px
     assert abs(error[:, inside].mean()) < 1e-3
 
 
@@ -131,9 +144,17 @@ def scattered(snapshot, seed=5):
     roots = random.uniform((0, 0, 5), (96, 64, 50), (200, 1, 3))
     hairs = (roots + np.cumsum(random.normal(0, 4, (200, 6, 3)), axis=1)).reshape(-1, 3)
     moved = hairs + random.normal(0, 3, 3)
-    curves(snapshot, [hairs, moved], [6] * 200, random.uniform(0, 1.5, 1200), s.emission(snapshot, (1, 0.5, 0.2)))
+    curves(
+        snapshot,
+        [hairs, moved],
+        [6] * 200,
+        random.uniform(0, 1.5, 1200),
+        s.emission(snapshot, (1, 0.5, 0.2)),
+    )
     points = random.uniform((0, 0, 5), (96, 64, 50), (200, 3))
-    cloud(snapshot, [points, points + (5, 3, 0)], 1.2, s.emission(snapshot, (0.2, 0.5, 1), alpha=0.5))
+    cloud(
+        snapshot, [points, points + (5, 3, 0)], 1.2, s.emission(snapshot, (0.2, 0.5, 1), alpha=0.5)
+    )
 
 
 def test_no_bit_depends_on_buckets_threads_or_crop():

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Curves, hair and points: what is seen of them, against Cycles with ribbons.
+
+Coverage in blocks of 8 by 8 pixels, as in test_export_against_cycles.py, where the limits come from.
+"""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+import scene_parts
+from hair_parts import furry, grid_points, spiral_curves
+from motion_parts import drive, set_position
+from test_export_against_cycles import LIMIT, SAMPLES, coverage
+
+
+def curves(scene):
+    scene_parts.add_camera(scene, (0, -5, 2.5)).rotation_euler.x = 1.15
+    spiral_curves(scene)
+
+
+def curves_default_radius(scene):
+    scene_parts.add_camera(scene, (0, -0.6, 0.6), ortho_scale=0.9).rotation_euler.x = 0.8
+    spiral_curves(scene, radius=None)
+
+
+def moving_curves(scene):
+    scene_parts.add_camera(scene, (0, -5, 2.5)).rotation_euler.x = 1.15
+    curves = spiral_curves(scene)
+    curves.scale = (0.5, 0.5, 0.5)
+    drive(curves, "location", "(frame - 10) / 2", 0)
+    drive(curves, "rotation_euler", "(frame - 10) / 3", 2)
+
+
+def hair(scene):
+    scene_parts.add_camera(scene, (0, -5, 3)).rotation_euler.x = 1.0
+    furry(scene, shape=0.3)
+
+
+def hair_of_children(scene):
+    scene_parts.add_camera(scene, (0, -5, 3)).rotation_euler.x = 1.0
+    kinky = {"kink": "SPIRAL", "kink_amplitude": 0.1, "kink_frequency": 3.0}
+    settings = {"child_type": "INTERPOLATED", "rendered_child_count": 10, "use_close_tip": False}
+    furry(scene, count=20, shape=-0.5, brownian_factor=0.02, **settings, **kinky)
+
+
+def moving_hair(scene):
+    scene_parts.add_camera(scene, (0, -5, 3)).rotation_euler.x = 1.0
+    thing = furry(scene, count=40, use_close_tip=False)
+    thing.show_instancer_for_render = False
+    thing.rotation_euler.x = 0.4
+    drive(thing, "location", "(frame - 10) / 2", 0)
+
+
+def points(scene):
+    scene_parts.add_camera(scene, (0, -5, 4)).rotation_euler.x = 0.9
+    grid_points(scene)
+
+
+def moving_points(scene):
+    scene_parts.add_camera(scene, (0, 0, 8))
+    drive(grid_points(scene), "location", "frame - 10", 1)
+
+
+@pytest.mark.parametrize(
+    "build",
+    [
+        curves,
+        curves_default_radius,
+        moving_curves,
+        hair,
+        hair_of_children,
+        moving_hair,
+        points,
+        moving_points,
+    ],
+)
+def test_coverage_is_that_of_cycles(scene, render, build):
+    scene.render.film_transparent = True
+    scene.render.use_motion_blur = True
+    scene.render.motion_blur_shutter = 1.0
+    set_position(scene, "CENTER")
+    scene.frame_set(10)
+    build(scene)
+    for thing in scene.objects:
+        thing.cycles.motion_steps = 3
+    scene.granita.motion_steps = 9
+    scene.granita.samples = scene.cycles.samples = SAMPLES
+    scene.granita.pixel_filter, scene.granita.filter_width = "BOX", 1.0
+    scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
+    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 1.0
+    scene.cycles_curves.shape = "RIBBONS"
+    scene.cycles_curves.subdivisions = 5
+    ours, theirs = coverage(scene, render, "GRANITA"), coverage(scene, render, "CYCLES")
+    assert 0.01 < ours.mean() < 0.98
+    difference = ours - theirs
+    print("RMS", build.__name__, math.sqrt((difference**2).mean()), ours.mean(), theirs.mean())
+    assert np.sqrt((difference**2).mean()) < LIMIT, difference.round(3)
+    assert abs(difference).max() < 4 * LIMIT, difference.round(3)
+
+
+def test_shading_is_that_of_cycles(scene, render):
+    """Rounded ribbons in the light of a sun from the side, without shadows: means of colour."""
+    scene_parts.add_camera(scene, (0, -5, 2.5)).rotation_euler.x = 1.15
+    thing = spiral_curves(scene, radius=0.08)
+    material = bpy.data.materials.new("Matte")
+    material.use_nodes = True
+    material.node_tree.nodes.clear()
+    diffuse = material.node_tree.nodes.new("ShaderNodeBsdfDiffuse")
+    output = material.node_tree.nodes.new("ShaderNodeOutputMaterial")
+    material.node_tree.links.new(diffuse.outputs[0], output.inputs[0])
+    thing.data.materials.append(material)
+    sun = bpy.data.lights.new("Sun", "SUN")
+    sun.energy, sun.use_shadow = 2.0, False
+    sun.cycles.cast_shadow = False
+    scene_parts.add_object(scene, "Sun", sun).rotation_euler = (0.6, 0.9, 0.0)
+    scene.render.film_transparent = True
+    scene.granita.samples = scene.cycles.samples = SAMPLES
+    scene.cycles.max_bounces = 0
+    scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
+    scene.cycles_curves.shape = "RIBBONS"
+    means = []
+    for engine in ("GRANITA", "CYCLES"):
+        scene.render.engine = engine
+        passes = render(scene, engine)
+        color = next(values for key, values in passes.items() if key.endswith("Combined.R"))
+        alpha = next(values for key, values in passes.items() if key.endswith("Combined.A"))
+        means.append(color.sum() / alpha.sum())
+    assert abs(means[0] / means[1] - 1.0) < 0.02, means
