@@ -10,7 +10,7 @@ constexpr std::array kCounterNames = {
     "points_shaded",       "micropolygons",       "micropolygons_dropped", "samples_total",
     "sample_tests_static", "sample_tests_moving", "sample_hits",           "fragments_stored",
     "buckets_moving",      "buckets_transparent", "gl_primitives",         "gl_passes",
-    "rays_shadow",         "rays_occlusion",      "texture_lookups"};
+    "gl_dispatches",       "rays_shadow",         "rays_occlusion",        "texture_lookups"};
 static_assert(kCounterNames.size() == static_cast<std::size_t>(Counter::kCount));
 
 constexpr std::array kStageNames = {"open",  "split",   "dice", "hide",

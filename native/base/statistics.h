@@ -35,6 +35,7 @@ enum class Counter {
     BucketsTransparent,
     GlPrimitives,  ///< triangles drawn by the raster executor
     GlPasses,
+    GlDispatches,  ///< of the compute executor
     RaysShadow,
     RaysOcclusion,
     TextureLookups,

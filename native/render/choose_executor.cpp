@@ -15,13 +15,26 @@ std::string raster_obstacle(const Scene& scene) {
 }
 
 ExecutorChoice cpu(Executor executor) {
-    return {executor, nullptr, executor == Executor::Reference ? "CPU (reference)" : "CPU (simd)"};
+    return {executor, nullptr, nullptr,
+            executor == Executor::Reference ? "CPU (reference)" : "CPU (simd)"};
 }
 
 ExecutorChoice raster(gl::DeviceChoice device) {
-    ExecutorChoice choice{
-        Executor::Raster, std::make_unique<gl::GlThread>(gl::ContextOptions{.device = device}), {}};
+    ExecutorChoice choice{Executor::Raster,
+                          std::make_unique<gl::GlThread>(gl::ContextOptions{.device = device}),
+                          nullptr,
+                          {}};
     choice.device = "GPU (raster, " + choice.gl->info().renderer + ")";
+    return choice;
+}
+
+ExecutorChoice compute(gl::DeviceChoice device) {
+    ExecutorChoice choice{Executor::Compute,
+                          std::make_unique<gl::GlThread>(gl::ContextOptions{.device = device}),
+                          nullptr,
+                          {}};
+    choice.compute = std::make_unique<ComputeDevice>(*choice.gl);
+    choice.device = "GPU (compute, " + choice.gl->info().renderer + ")";
     return choice;
 }
 
@@ -35,13 +48,14 @@ ExecutorChoice choose_executor(const Scene& scene, Report& report) {
                              "the raster executor cannot render this: " + obstacle);
         return raster(gl::DeviceChoice::Any);
     }
+    if (options.executor == Executor::Compute) return compute(gl::DeviceChoice::Any);
     if (options.executor != Executor::Auto) return cpu(options.executor);
     if (options.device != Device::Gpu) return cpu(Executor::Simd);
     try {
         const std::string obstacle = raster_obstacle(scene);
         // A software driver is no GPU: the CPU executors are faster and do more.
         if (obstacle.empty()) return raster(gl::DeviceChoice::Hardware);
-        report.warn("render settings", "the GPU was asked for, the CPU renders: " + obstacle);
+        return compute(gl::DeviceChoice::Hardware);
     } catch (const GlError& error) {
         report.warn("render settings",
                     std::string("the GPU was asked for, the CPU renders: ") + error.what());

@@ -7,14 +7,16 @@
 
 #include "base/report.h"
 #include "gl/gl_thread.h"
+#include "hider/compute_device.h"
 #include "scene/scene.h"
 
 namespace granita {
 
 struct ExecutorChoice {
-    Executor executor = Executor::Simd;  ///< never Auto
-    std::unique_ptr<gl::GlThread> gl;    ///< Raster only
-    std::string device;                  ///< for statistics and the artist, e.g. "CPU (simd)"
+    Executor executor = Executor::Simd;      ///< never Auto
+    std::unique_ptr<gl::GlThread> gl;        ///< Raster and Compute
+    std::unique_ptr<ComputeDevice> compute;  ///< Compute only
+    std::string device;                      ///< for statistics and the artist, e.g. "CPU (simd)"
 };
 
 /// An explicit Options::executor wins over the device, and throws SceneError or GlError where it

@@ -2,6 +2,7 @@
 #include "render/render_bucket.h"
 
 #include "hider/composite.h"
+#include "hider/compute_hider.h"
 #include "render/background.h"
 #include "render/raster_bucket.h"
 #include "render/visit_geometry.h"
@@ -24,6 +25,8 @@ class Release {
 
 std::unique_ptr<Hider> make_hider(const Frame& frame, int bucket) {
     const Rect tiles = frame.layout.tiles(bucket), pixels = frame.layout.pixels(bucket);
+    if (frame.choice.compute)
+        return make_compute_hider(*frame.choice.compute, frame.hider, tiles, pixels);
     return frame.choice.executor == Executor::Reference
                ? make_reference_hider(frame.hider, tiles, pixels)
                : make_simd_hider(frame.hider, tiles, pixels);

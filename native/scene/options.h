@@ -13,7 +13,8 @@ namespace granita {
 enum class Sampling { Independent, Interleaved, Regular };
 enum class Device { Auto, Cpu, Gpu };
 /// Reference: brute force in double (tests).  Simd: the CPU default.  Raster: the paper's, OpenGL.
-enum class Executor { Auto, Reference, Simd, Raster };
+/// Compute: the loops of Simd in compute shaders.
+enum class Executor { Auto, Reference, Simd, Raster, Compute };
 enum class FilterKind {
     Box,
     Tent,

@@ -20,6 +20,7 @@ struct Entry {
     uint segment;
     uint segments;  // 0 = static
     uint kind;
+    float from, to;  // in time where it moves, else in u: when it may be over the block
 };
 layout(std430, binding = COMPUTE_ENTRIES) readonly buffer Entries { Entry entries[]; };
 layout(std430, binding = COMPUTE_VERTICES) readonly buffer Vertices { vec4 vertices[]; };
@@ -39,9 +40,17 @@ layout(location = COMPUTE_SAMPLE_STRIDE) uniform uint stride;
 layout(location = COMPUTE_TIME_AT) uniform uint time_at;
 layout(location = COMPUTE_LENS_AT) uniform uint lens_at;
 
-bool touches(Entry entry, uvec2 pixel) {
-    const uvec4 p = uvec4(entry.pixels, entry.pixels >> 4, entry.pixels >> 8, entry.pixels >> 12) & 15u;
-    return pixel.x >= p.x && pixel.x <= p.y && pixel.y >= p.z && pixel.y <= p.w;
+/// Whether a sample at the pixel and the time, or u, can be inside.
+bool may_hit(uint e, uvec2 pixel, float time, float u) {
+    const uint bits = entries[e].pixels;
+    const uvec4 p = uvec4(bits, bits >> 4, bits >> 8, bits >> 12) & 15u;
+    if (pixel.x < p.x || pixel.x > p.y || pixel.y < p.z || pixel.y > p.w) return false;
+#if MOTION || LENS
+    const float coordinate = entries[e].segments > 0u ? time : u;
+    return coordinate >= entries[e].from && coordinate <= entries[e].to;
+#else
+    return true;
+#endif
 }
 
 void main() {
@@ -55,9 +64,13 @@ void main() {
     const vec2 place = vec2(samples[i], samples[stride + i]);
 #if MOTION
     const float time = samples[time_at + i];
+#else
+    const float time = 0.0;
 #endif
 #if LENS
     const vec2 lens = vec2(samples[lens_at + i], samples[lens_at + stride + i]);
+#else
+    const vec2 lens = vec2(0.0);
 #endif
     const uvec2 before = seen[i];
     float nearest = uintBitsToFloat(before.x);
@@ -69,9 +82,13 @@ void main() {
     uint next = counts[at];
     if (next == kNone) return;
 #endif
-    for (uint e = block.first; e < block.first + block.count; ++e) {
+    const uint end = block.first + block.count;
+    for (uint e = block.first;; ++e) {
+        // Each invocation looks for its own next micropolygon, so that the test below finds most of
+        // them with something to do (Aila and Laine 2009, while-while).
+        while (e < end && !may_hit(e, pixel, time, lens.x)) ++e;
+        if (e >= end) break;
         const Entry entry = entries[e];
-        if (!touches(entry, pixel)) continue;
         const uint corner[4] = uint[4](entry.vertex, entry.vertex + 1u,
                                        entry.vertex + entry.row + 1u, entry.vertex + entry.row);
         vec4 c[4];

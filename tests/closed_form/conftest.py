@@ -2,7 +2,7 @@
 import pytest
 
 
-@pytest.fixture(params=["REFERENCE", "SIMD"])
+@pytest.fixture(params=["REFERENCE", "SIMD", "COMPUTE"])
 def executor(request):
     """Every executor that takes any sampling; each closed form holds for all of them."""
     return request.param

@@ -9,7 +9,7 @@ namespace granita::test {
 namespace {
 
 class Coverage : public ExecutorTest {};
-GRANITA_BOTH_EXECUTORS(Coverage);
+GRANITA_ALL_EXECUTORS(Coverage);
 
 /// Every sample must lie in exactly one micropolygon of the half-transparent tiling.
 void expect_covered_once(HiderMaker make, Shot& shot) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests that every CPU executor must pass: TEST_P(ExecutorTest, ...) with GetParam() the maker.
+// Tests that every executor of any sampling must pass: TEST_P(ExecutorTest, ...) with GetParam()
+// the maker.
 #pragma once
 
 #include <gtest/gtest.h>
 
+#include "compute_executor.h"
 #include "grid_builder.h"
 
 namespace granita::test {
@@ -11,12 +13,14 @@ namespace granita::test {
 class ExecutorTest : public testing::TestWithParam<HiderMaker> {};
 
 inline std::string executor_name(const testing::TestParamInfo<HiderMaker>& info) {
-    return info.param == make_reference_hider ? "reference" : "simd";
+    if (info.param == make_reference_hider) return "reference";
+    return info.param == make_simd_hider ? "simd" : "compute";
 }
 
 }  // namespace granita::test
 
-#define GRANITA_BOTH_EXECUTORS(Suite)                                                \
-    INSTANTIATE_TEST_SUITE_P(Executors, Suite,                                       \
-                             testing::Values(make_reference_hider, make_simd_hider), \
-                             granita::test::executor_name)
+#define GRANITA_ALL_EXECUTORS(Suite)                                                              \
+    INSTANTIATE_TEST_SUITE_P(                                                                     \
+        Executors, Suite,                                                                         \
+        testing::Values(make_reference_hider, make_simd_hider, granita::test::make_device_hider), \
+        granita::test::executor_name)

@@ -5,108 +5,13 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstdlib>
 #include <list>
 #include <random>
 
-#include "grid_builder.h"
+#include "busy_scene.h"
 
 namespace granita::test {
 namespace {
-
-enum Blur { kStatic, kMoving, kLens, kBoth };
-
-/// Eight bent, overlapping, partly transparent grids with three knots in front of a perspective
-/// camera;
-void make_busy(Shot& shot, Blur blur, unsigned seed = 3) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> uniform(0, 1);
-    shot.options.samples = 16;
-    shot.tiles = {-1, -1, 2, 2};
-    shot.camera = pinhole_camera(120);
-    if (blur == kLens || blur == kBoth) {
-        shot.camera.projection.lens_radius = .15;
-        shot.camera.projection.focus = 11;
-    }
-    for (int g = 0; g < 8; ++g) {
-        const float x = -2 + 3 * uniform(random), y = -2 + 3 * uniform(random);
-        const float z = 8 + 6 * uniform(random), turn = 6 * uniform(random);
-        const float dx = uniform(random) - .5f, dz = 2 * uniform(random) - 1;
-        const int knots = blur == kMoving || blur == kBoth ? 3 : 1;
-        shot.grids.push_back(make_grid(17, 13, knots, [=](float u, float v, int k) {
-            const auto t = static_cast<float>(k) / 2;
-            const float a = 3 * (u - .5f), b = 2.4f * (v - .5f), angle = turn + t;
-            return Vec3f(x + a * std::cos(angle) - b * std::sin(angle) + 1.5f * dx * t,
-                         y + a * std::sin(angle) + b * std::cos(angle) + dx * t * t,
-                         z + a * .6f + std::sin(4 * u + 3 * v) * .4f + dz * t);
-        }));
-        Grid& grid = shot.grids.back();
-        set_color(grid, Vec3f(uniform(random)), g % 2 ? Vec3f(.4f) : Vec3f(1.0f));
-    }
-}
-
-struct Seen {
-    std::vector<TileStore> stores;
-    std::vector<TileSamples> samples;
-};
-
-Seen look(HiderMaker make, Shot& shot, const Rect& tiles) {
-    const SampleTable table(shot.options, shot.camera);
-    const HiderFrame frame{&table, shot.camera.projection, &shot.statistics};
-    const auto hider =
-        make(frame, tiles, {tiles.x0 * 16, tiles.y0 * 16, tiles.x1 * 16, tiles.y1 * 16});
-    for (const Grid& grid : shot.grids) hider->hide(grid);
-    Seen seen;
-    seen.stores = hider->finish();
-    for (std::size_t i = 0; i < seen.stores.size(); ++i)
-        seen.samples.push_back(hider->tile_samples(i));
-    for (TileStore& store : seen.stores)
-        std::sort(store.fragments.begin(), store.fragments.end(),
-                  [](const Fragment& a, const Fragment& b) {
-                      return a.sample != b.sample ? a.sample < b.sample : a.id < b.id;
-                  });
-    return seen;
-}
-
-int ulps(float a, float b) {
-    if (!std::isfinite(a) || !std::isfinite(b)) return a == b ? 0 : 1 << 30;
-    return std::abs(std::bit_cast<int>(a) - std::bit_cast<int>(b));
-}
-
-/// Distance in pixels from the sample to the nearest edge of the micropolygon, in double.
-double edge_distance(const Shot& shot, const TileSamples& samples, Vec2i tile, std::uint32_t i,
-                     SurfaceId id) {
-    const int per_grid = shot.grids[0].micropolygon_count();
-    const Grid& grid = shot.grids[id / per_grid];
-    const Grid::Corners c = grid.corners(static_cast<int>(id % per_grid));
-    const Projection& projection = shot.camera.projection;
-    const int vertex[4] = {c.v0, c.v1, c.v2, c.v3};
-    Vec2d p[4];
-    for (int k = 0; k < 4; ++k) {
-        Vec3d q = grid.positions[vertex[k]];
-        if (grid.motion) {
-            const double place = static_cast<double>(samples.t[i]) * (grid.knots - 1);
-            const int segment = std::min(static_cast<int>(place), grid.knots - 2);
-            const Vec3d a = grid.positions[segment * grid.vertex_count() + vertex[k]];
-            const Vec3d b = grid.positions[(segment + 1) * grid.vertex_count() + vertex[k]];
-            q = a + (place - segment) * (b - a);
-        }
-        Vec2d lens(0);
-        if (projection.has_lens())
-            lens = projection.lens_radius * (q.z / projection.focus - 1) *
-                   Vec2d(samples.u[i], samples.v[i]);
-        p[k] = projection.center + projection.scale * (Vec2d(q) + lens) / q.z - Vec2d(tile * 16);
-    }
-    const Vec2d s(samples.x[i], samples.y[i]);
-    double least = INFINITY;
-    for (const auto& [a, b] : {std::pair{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 2}}) {
-        const Vec2d along = p[b] - p[a];
-        const double t = glm::clamp(glm::dot(s - p[a], along) / glm::dot(along, along), 0.0, 1.0);
-        least = std::min(least, glm::length(s - p[a] - t * along));
-    }
-    return least;
-}
 
 class ExecutorsAgree : public testing::TestWithParam<Blur> {};
 INSTANTIATE_TEST_SUITE_P(Blurs, ExecutorsAgree, testing::Values(kStatic, kMoving, kLens, kBoth));
@@ -116,40 +21,8 @@ TEST_P(ExecutorsAgree, SampleBySample) {
     make_busy(shot, GetParam());
     const Seen a = look(make_reference_hider, shot, shot.tiles);
     const Seen b = look(make_simd_hider, shot, shot.tiles);
-    // A sample may differ where it lies within 2^-12 pixel of an edge of what either has seen.
-    const double margin = 0x1p-12;
-    int compared = 0, other_surface = 0, other_fragments = 0, unexplained = 0, far_keys = 0;
-    for (std::size_t tile = 0; tile < a.stores.size(); ++tile) {
-        const TileStore &p = a.stores[tile], &q = b.stores[tile];
-        const auto near_edge = [&](std::uint32_t i, SurfaceId id) {
-            return id != kNoSurface && edge_distance(shot, b.samples[tile], p.tile, i, id) < margin;
-        };
-        std::size_t f = 0, g = 0;
-        for (std::uint32_t i = 0; i < p.key.size(); ++i) {
-            ++compared;
-            const bool same_surface = p.id[i] == q.id[i];
-            if (!same_surface) {
-                ++other_surface;
-                unexplained += !near_edge(i, p.id[i]) && !near_edge(i, q.id[i]) &&
-                               ulps(p.key[i], q.key[i]) > 4;
-            } else {
-                far_keys += ulps(p.key[i], q.key[i]) > 4;
-            }
-            while ((f < p.fragments.size() && p.fragments[f].sample == i) ||
-                   (g < q.fragments.size() && q.fragments[g].sample == i)) {
-                const bool in_p = f < p.fragments.size() && p.fragments[f].sample == i;
-                const bool in_q = g < q.fragments.size() && q.fragments[g].sample == i;
-                if (in_p && in_q && p.fragments[f].id == q.fragments[g].id) {
-                    far_keys += ulps(p.fragments[f++].key, q.fragments[g++].key) > 4;
-                    continue;
-                }
-                const bool take_p = in_p && (!in_q || p.fragments[f].id < q.fragments[g].id);
-                const SurfaceId id = take_p ? p.fragments[f++].id : q.fragments[g++].id;
-                ++other_fragments;
-                unexplained += !near_edge(i, id) && same_surface;
-            }
-        }
-    }
+    const auto [compared, other_surface, other_fragments, unexplained, far_keys] =
+        compare(shot, a, b);
     EXPECT_EQ(unexplained, 0);
     EXPECT_EQ(far_keys, 0);
     // Within 2^-12 pixel of an edge lies a share of about 4 edges a pixel times 2^-11.

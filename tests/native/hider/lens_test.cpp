@@ -9,7 +9,7 @@ namespace granita::test {
 namespace {
 
 class Lens : public ExecutorTest {};
-GRANITA_BOTH_EXECUTORS(Lens);
+GRANITA_ALL_EXECUTORS(Lens);
 
 Camera lens_camera(double radius, double focus = 10) {
     Camera camera = pixel_camera();

@@ -8,7 +8,7 @@ namespace granita::test {
 namespace {
 
 class Motion : public ExecutorTest {};
-GRANITA_BOTH_EXECUTORS(Motion);
+GRANITA_ALL_EXECUTORS(Motion);
 
 TEST_P(Motion, MovingEdge) {
     for (const float v : {0.7f, 5.0f, 20.0f, 100.0f}) {

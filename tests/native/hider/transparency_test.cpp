@@ -10,7 +10,7 @@ namespace granita::test {
 namespace {
 
 class Transparency : public ExecutorTest {};
-GRANITA_BOTH_EXECUTORS(Transparency);
+GRANITA_ALL_EXECUTORS(Transparency);
 
 Grid layer(float z, const Vec3f& color, const Vec3f& opacity) {
     Grid grid = rectangle(-1, -1, 17, 17, z, 3, 3);

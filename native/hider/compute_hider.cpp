@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hider/compute_hider.h"
+
+#include <cmath>
+#include <optional>
+
+#include "hider/compute_tiles.h"
+#include "hider/micropolygon_class.h"
+#include "hider/tile_grid.h"
+
+namespace granita {
+namespace {
+
+constexpr int kBlockSide = 4, kBlocks = kTileSize / kBlockSide;
+
+/// Tiles that share buffers, and what is on its way to them.
+struct TileGroup {
+    TileGroup(std::size_t first_tile, std::size_t tile_count, const ComputeLimits& limits)
+        : first(first_tile), count(tile_count), batch(limits) {}
+    std::size_t first, count;
+    ComputeBatch batch;
+    std::optional<ComputeTiles> device;  ///< made with the first batch
+};
+
+class ComputeHider : public Hider {
+  public:
+    ComputeHider(ComputeDevice& device, const HiderFrame& frame, const Rect& tiles,
+                 const Rect& pixels)
+        : m_device(device),
+          m_frame(frame),
+          m_tiles(m_frame, tiles, pixels),
+          m_tile_grid(frame.projection, frame.table->lens()),
+          m_group_size(ComputeTiles::capacity(frame.table->samples(), device.limits())),
+          m_farthest(m_tiles.count() * kBlocks * kBlocks, -INFINITY) {
+        for (std::size_t first = 0; first < m_tiles.count(); first += m_group_size)
+            m_groups.emplace_back(first, std::min(m_group_size, m_tiles.count() - first),
+                                  device.limits());
+    }
+    ~ComputeHider() override {
+        m_device.thread().run([&] { m_groups.clear(); });
+    }
+    ComputeHider(const ComputeHider&) = delete;
+    ComputeHider& operator=(const ComputeHider&) = delete;
+
+    bool occluded(const RasterBounds& bounds) const override {
+        const Rect touched = m_tiles.touched(bounds);
+        for (int y = touched.y0; y < touched.y1; ++y)
+            for (int x = touched.x0; x < touched.x1; ++x)
+                if (!tile_hides(m_tiles.index(x, y), bounds)) return false;
+        return true;
+    }
+
+    void hide(const Grid& grid) override {
+        const SurfaceId base = m_tiles.pool().add(grid);
+        const GridClasses classes = classify(grid);
+        m_tiles.report_dropped(grid, classes.dropped);
+        if (m_frame.statistics)
+            m_frame.statistics->add(Counter::Micropolygons,
+                                    static_cast<std::uint64_t>(grid.micropolygon_count()));
+        m_tile_grid.load(grid);
+        const Rect touched = m_tiles.touched(grid.bounds);
+        for (int y = touched.y0; y < touched.y1; ++y)
+            for (int x = touched.x0; x < touched.x1; ++x) {
+                const std::size_t i = m_tiles.index(x, y);
+                if (tile_hides(i, grid.bounds)) continue;
+                SimdGrid in_tile;
+                m_tile_grid.project(m_tiles.origin(i), in_tile);
+                in_tile.classes = classes.classes.data();
+                in_tile.base = base;
+                TileGroup& group = m_groups[i / m_group_size];
+                group.batch.add(in_tile, static_cast<std::uint32_t>(i - group.first),
+                                m_tiles.local_pixels(i), [&] { run(group); });
+            }
+    }
+
+    std::vector<TileStore>& finish() override {
+        for (TileGroup& group : m_groups) {
+            if (!group.batch.empty()) run(group);
+            if (!group.device) continue;
+            m_device.thread().run([&] {
+                group.device->read_back();
+                group.device.reset();
+            });
+        }
+        for (std::size_t i = 0; i < m_tiles.count(); ++i) m_tiles.drop_hidden_fragments(i);
+        return m_tiles.stores();
+    }
+    const GridPool& pool() const override { return m_tiles.pool(); }
+    const TileSamples& tile_samples(std::size_t i) const override { return m_tiles.samples(i); }
+
+  private:
+    void run(TileGroup& group) {
+        m_tiles.check_cancelled();
+        const std::vector<float> farthest = m_device.thread().run([&] {
+            if (!group.device)
+                group.device.emplace(m_device, m_tiles, m_frame, group.first, group.count);
+            group.device->hide(group.batch);
+            return group.device->farthest();
+        });
+        std::copy(
+            farthest.begin(), farthest.end(),
+            m_farthest.begin() + static_cast<std::ptrdiff_t>(group.first * kBlocks * kBlocks));
+        group.batch.clear();
+    }
+
+    /// Whether the last batch left nothing of the tile that is farther than the bounds.  Keys only
+    /// come nearer, so what is on its way only culls less.
+    bool tile_hides(std::size_t i, const RasterBounds& bounds) const {
+        const Vec2d origin = m_tiles.origin(i);
+        // An undecidable bound (NaN) covers the tile: fmin and fmax drop the NaN.
+        const auto pixel = [](double x, double if_nan) {
+            if (std::isnan(x)) x = if_nan;
+            return static_cast<int>(std::floor(std::fmin(std::fmax(x, -1.0), kTileSize)));
+        };
+        const Rect r = m_tiles.local_pixels(i).intersect(
+            {pixel(bounds.x0 - origin.x, 0), pixel(bounds.y0 - origin.y, 0),
+             pixel(bounds.x1 - origin.x, kTileSize) + 1,
+             pixel(bounds.y1 - origin.y, kTileSize) + 1});
+        if (r.empty()) return true;
+        // A key at a sample may round a few ulp past the nearest corner's.
+        const float limit = bounds.nearest_key + std::fabs(bounds.nearest_key) * 0x1p-20f;
+        for (int y = r.y0 / kBlockSide; y <= (r.y1 - 1) / kBlockSide; ++y)
+            for (int x = r.x0 / kBlockSide; x <= (r.x1 - 1) / kBlockSide; ++x)
+                if (!(limit < m_farthest[i * kBlocks * kBlocks +
+                                         static_cast<std::size_t>(y * kBlocks + x)]))
+                    return false;
+        return true;
+    }
+
+    ComputeDevice& m_device;
+    HiderFrame m_frame;
+    BucketTiles m_tiles;
+    TileGrid m_tile_grid;
+    std::size_t m_group_size;
+    std::vector<TileGroup> m_groups;
+    std::vector<float> m_farthest;  ///< [tiles][16]
+};
+
+}  // namespace
+
+std::unique_ptr<Hider> make_compute_hider(ComputeDevice& device, const HiderFrame& frame,
+                                          const Rect& tiles, const Rect& pixels) {
+    return std::make_unique<ComputeHider>(device, frame, tiles, pixels);
+}
+
+}  // namespace granita
