@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "film/cell_sums.h"
 
 namespace granita {
 namespace {
@@ -46,15 +47,21 @@ Film::~Film() = default;
 
 Film::Film(const Options& options)
     : m_options(options),
+      m_channels(options),
       m_filter(options.pixel_filter, options.filter_width),
       m_sample_pixels(options.crop.empty() ? Rect{} : grown(options.crop, m_filter.radius())),
       m_pending(std::make_unique<Pending>()) {
     GRANITA_CHECK(options.bucket_size > 0);
     // Linear between 4096 steps a radius: the largest error is h^2 / 8 max|f''| < 1e-6.
-    constexpr int kSteps = 4096;
-    m_table.resize(kSteps + 2, 0.0f);
-    for (int i = 0; i < kSteps; ++i)
-        m_table[i] = m_filter.evaluate(m_filter.radius() * static_cast<float>(i) / kSteps);
+    const auto value = [&](int step) {
+        return step < kFilterSteps
+                   ? m_filter.evaluate(m_filter.radius() * static_cast<float>(step) / kFilterSteps)
+                   : 0.0f;
+    };
+    for (int i = 0; i <= kFilterSteps; ++i) {
+        m_table.push_back(value(i));
+        m_table.push_back(value(i + 1) - value(i));
+    }
 
     if (options.crop.empty()) return;
     m_pending->cells = cells_over(options.crop, options.bucket_size);
@@ -107,9 +114,13 @@ Tile Film::finish_cell(const Rect& cell,
     Tile out;
     out.rect = cell;
     const std::size_t count = static_cast<std::size_t>(cell.width()) * cell.height();
+    const std::size_t width = m_channels.sample_width(), center_width = m_channels.center_width();
     out.combined.assign(count, Vec4f(0.0f));
     if (m_options.depth_pass) out.depth.assign(count, kNoDepth);
-    std::vector<float> weight(count, 0.0f);
+    CellSums sums;
+    sums.weight.assign(count, 0.0f);
+    sums.channels.assign(count * width, 0.0f);
+    sums.center.assign(count * center_width, 0.0f);
     for (const auto& part : parts) {
         const Rect r = part->rect.intersect(cell);
         for (int y = r.y0; y < r.y1; ++y)
@@ -118,20 +129,29 @@ Tile Film::finish_cell(const Rect& cell,
                 const std::size_t from =
                     (y - part->rect.y0) * part->rect.width() + x - part->rect.x0;
                 out.combined[to] += part->sum[from];
-                weight[to] += part->weight[from];
+                sums.weight[to] += part->weight[from];
+                for (std::size_t k = 0; k < width; ++k)
+                    sums.channels[to * width + k] += part->channel_sum[from * width + k];
             }
-        if (part->depth.empty()) continue;
         const Rect own = part->own.intersect(cell);
         for (int y = own.y0; y < own.y1; ++y)
-            for (int x = own.x0; x < own.x1; ++x)
-                out.depth[(y - cell.y0) * cell.width() + x - cell.x0] =
-                    part->depth[(y - part->own.y0) * part->own.width() + x - part->own.x0];
+            for (int x = own.x0; x < own.x1; ++x) {
+                const std::size_t to = (y - cell.y0) * cell.width() + x - cell.x0;
+                const std::size_t from = (y - part->own.y0) * part->own.width() + x - part->own.x0;
+                if (m_options.depth_pass) out.depth[to] = part->depth[from];
+                std::copy_n(part->center.begin() + from * center_width, center_width,
+                            sums.center.begin() + to * center_width);
+            }
     }
     // The weights of a pixel sum to about 1.  Filters much narrower than the samples' spacing may
     // find none, and negative lobes under few samples may nearly cancel: then the sum stands.
     constexpr float kLeastWeight = 1.0f / 16;
-    for (std::size_t i = 0; i < count; ++i)
-        if (weight[i] > kLeastWeight) out.combined[i] /= weight[i];
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!(sums.weight[i] > kLeastWeight)) continue;
+        out.combined[i] /= sums.weight[i];
+        for (std::size_t k = 0; k < width; ++k) sums.channels[i * width + k] /= sums.weight[i];
+    }
+    finish_passes(sums, out);
     return out;
 }
 

@@ -5,53 +5,38 @@
 
 #include "base/check.h"
 #include "film/film.h"
+#include "film/weigh_pixel.h"
 
 namespace granita {
+
 namespace {
 
-/// Sums run in this many lanes, in a fixed order: the same bits whatever the compiler vectorises.
-constexpr int kLanes = 8;
-
-/// A pixel's samples, structure of arrays, padded with zeros to whole lanes.
-struct PixelSamples {
-    explicit PixelSamples(int samples)
-        : padded((samples + kLanes - 1) / kLanes * kLanes),
-          r(padded),
-          g(padded),
-          b(padded),
-          a(padded) {}
-    std::size_t padded;
-    std::vector<float> r, g, b, a;
-};
-
-struct Sum {
-    float r[kLanes] = {}, g[kLanes] = {}, b[kLanes] = {}, a[kLanes] = {}, w[kLanes] = {};
-};
-
-float total(const float* lanes) {
-    return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) +
-           ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
-}
-
-Sum weigh(const PixelSamples& p, const float* wx, const float* wy) {
-    Sum sum;
-    for (std::size_t i = 0; i < p.padded; i += kLanes)
-        for (int lane = 0; lane < kLanes; ++lane) {
-            const float w = wx[i + lane] * wy[i + lane];
-            sum.r[lane] += w * p.r[i + lane];
-            sum.g[lane] += w * p.g[i + lane];
-            sum.b[lane] += w * p.b[i + lane];
-            sum.a[lane] += w * p.a[i + lane];
-            sum.w[lane] += w;
+/// Adds the sums for the pixels `to` to those of them that the contribution holds.
+void add_sums(const PixelWork& work, const Rect& to, TileContribution& out) {
+    const Rect inside = to.intersect(out.rect);
+    const auto width = static_cast<std::size_t>(work.width);
+    for (int y = inside.y0; y < inside.y1; ++y)
+        for (int x = inside.x0; x < inside.x1; ++x) {
+            const std::size_t tap = (y - to.y0) * work.taps + x - to.x0;
+            const std::size_t pixel = (y - out.rect.y0) * out.rect.width() + x - out.rect.x0;
+            const WeightedSum& sum = work.sums[tap];
+            out.sum[pixel] += Vec4f(sum.r, sum.g, sum.b, sum.a);
+            out.weight[pixel] += sum.weight;
+            for (std::size_t k = 0; k < width; ++k)
+                out.channel_sum[pixel * width + k] += work.row_sums[tap * width + k];
         }
-    return sum;
 }
 
 }  // namespace
 
 TileContribution Film::filter_tile(Vec2i tile, const TileSamples& samples,
-                                   const std::vector<SampleColor>& colors) const {
+                                   const std::vector<SampleColor>& colors,
+                                   const SampleChannels* channels) const {
     const int n = samples.samples;
+    const std::size_t width = m_channels.sample_width(), center_width = m_channels.center_width();
+    GRANITA_CHECK(m_channels.empty() ||
+                  (channels &&
+                   channels->filtered.size() == colors.size() * width + SampleChannels::kPadding));
     GRANITA_CHECK_EQ(colors.size(), static_cast<std::size_t>(kTileSize * kTileSize) * n);
     const Vec2i corner = tile * kTileSize;
     const Rect tile_pixels{corner.x, corner.y, corner.x + kTileSize, corner.y + kTileSize};
@@ -63,74 +48,49 @@ TileContribution Film::filter_tile(Vec2i tile, const TileSamples& samples,
     const std::size_t reached = static_cast<std::size_t>(out.rect.width()) * out.rect.height();
     out.sum.assign(reached, Vec4f(0.0f));
     out.weight.assign(reached, 0.0f);
+    out.channel_sum.assign(reached * width, 0.0f);
 
     const float radius = m_filter.radius();
-    const int taps_each_side = std::max(0, static_cast<int>(std::ceil(radius - 0.5f)));
-    const int taps = 2 * taps_each_side + 1;
-    PixelSamples pixel(n);
-    std::vector<float> wx(taps * pixel.padded, 0.0f), wy(taps * pixel.padded, 0.0f);
-    const float to_table = static_cast<float>(m_table.size() - 2) / radius;
-    const auto factor = [&](float d) {
-        if (m_filter.is_box()) return m_filter.evaluate(d);
-        const float place = std::fabs(d) * to_table;
-        if (!(place < static_cast<float>(m_table.size() - 2))) return 0.0f;
-        const auto cell = static_cast<std::size_t>(place);
-        return m_table[cell] +
-               (place - static_cast<float>(cell)) * (m_table[cell + 1] - m_table[cell]);
-    };
-
-    const Rect source = tile_pixels.intersect(m_sample_pixels);
+    const int each_side = std::max(0, static_cast<int>(std::ceil(radius - 0.5f)));
+    const FilterTable filter{
+        m_table.data(),    kFilterSteps, static_cast<float>(kFilterSteps) / radius,
+        m_filter.is_box(), radius,       m_filter.evaluate(0.0f)};
     const float share = 1.0f / static_cast<float>(n);
+    PixelWork work(n, each_side, static_cast<int>(width));
+    const Rect source = tile_pixels.intersect(m_sample_pixels);
     for (int y = source.y0; y < source.y1; ++y)
         for (int x = source.x0; x < source.x1; ++x) {
             const int local_x = x - corner.x, local_y = y - corner.y;
             const std::size_t first = static_cast<std::size_t>(local_y * kTileSize + local_x) * n;
             for (int s = 0; s < n; ++s) {
+                work.x[s] = samples.x[first + s] - (static_cast<float>(local_x) + 0.5f);
+                work.y[s] = samples.y[first + s] - (static_cast<float>(local_y) + 0.5f);
                 const SampleColor& c = colors[first + s];
-                pixel.r[s] = c.color.x;
-                pixel.g[s] = c.color.y;
-                pixel.b[s] = c.color.z;
-                pixel.a[s] = c.alpha;
-                // Distance from the centre of the pixel that is `tap - taps_each_side` away.
-                const float dx = samples.x[first + s] - (static_cast<float>(local_x) + 0.5f);
-                const float dy = samples.y[first + s] - (static_cast<float>(local_y) + 0.5f);
-                for (int tap = 0; tap < taps; ++tap) {
-                    const auto step = static_cast<float>(tap - taps_each_side);
-                    wx[tap * pixel.padded + s] = factor(dx - step) * share;
-                    wy[tap * pixel.padded + s] = factor(dy - step);
-                }
+                work.red[s] = c.color.x;
+                work.green[s] = c.color.y;
+                work.blue[s] = c.color.z;
+                work.alpha[s] = c.alpha;
             }
-            for (int ty = 0; ty < taps; ++ty)
-                for (int tx = 0; tx < taps; ++tx) {
-                    const int to_x = x + tx - taps_each_side, to_y = y + ty - taps_each_side;
-                    if (to_x < out.rect.x0 || to_x >= out.rect.x1 || to_y < out.rect.y0 ||
-                        to_y >= out.rect.y1)
-                        continue;
-                    const Sum sum = weigh(pixel, &wx[tx * pixel.padded], &wy[ty * pixel.padded]);
-                    const std::size_t to =
-                        (to_y - out.rect.y0) * out.rect.width() + to_x - out.rect.x0;
-                    out.sum[to] += Vec4f(total(sum.r), total(sum.g), total(sum.b), total(sum.a));
-                    out.weight[to] += total(sum.w);
-                }
+            if (width > 0) work.rows = &channels->filtered[first * width];
+            weigh_pixel(filter, share, work);
+            const Rect reached_pixels{x - each_side, y - each_side, x + each_side + 1,
+                                      y + each_side + 1};
+            add_sums(work, reached_pixels, out);
         }
 
-    if (!m_options.depth_pass || out.own.empty()) return out;
+    if (out.own.empty() || (!m_options.depth_pass && center_width == 0)) return out;
+    const auto centers = m_options.depth_pass ? center_samples(samples) : CenterSamples{};
     for (int y = out.own.y0; y < out.own.y1; ++y)
         for (int x = out.own.x0; x < out.own.x1; ++x) {
-            const std::size_t first =
-                static_cast<std::size_t>((y - corner.y) * kTileSize + x - corner.x) * n;
-            std::size_t nearest = first;
-            float least = INFINITY;
-            for (std::size_t i = first; i < first + n; ++i) {
-                const float dx = samples.x[i] - (static_cast<float>(x - corner.x) + 0.5f);
-                const float dy = samples.y[i] - (static_cast<float>(y - corner.y) + 0.5f);
-                if (dx * dx + dy * dy < least) {
-                    least = dx * dx + dy * dy;
-                    nearest = i;
-                }
+            const int p = (y - corner.y) * kTileSize + x - corner.x;
+            if (m_options.depth_pass) {
+                const float depth = colors[centers[p]].depth;
+                out.depth.push_back(std::isfinite(depth) ? depth : kNoDepth);
             }
-            const float depth = colors[nearest].depth;
-            out.depth.push_back(std::isfinite(depth) ? depth : kNoDepth);
+            if (center_width > 0) {
+                const auto row = channels->center.begin() + p * center_width;
+                out.center.insert(out.center.end(), row, row + center_width);
+            }
         }
     return out;
 }

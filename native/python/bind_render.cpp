@@ -23,6 +23,16 @@ py::object to_array(const std::vector<float>& pixels, int width, int height) {
     return a;
 }
 
+py::dict pass_dict(const std::vector<TilePass>& passes, int width, int height) {
+    py::dict dict;
+    for (const TilePass& pass : passes) {
+        py::array_t<float> a({height, width, pass.width});
+        std::memcpy(a.mutable_data(), pass.values.data(), pass.values.size() * sizeof(float));
+        dict[pass.name.c_str()] = a;
+    }
+    return dict;
+}
+
 py::dict statistics_dict(const RenderJob& job) {
     py::dict dict;
     for (const auto& [name, value] : job.statistics().list()) {
@@ -41,12 +51,31 @@ py::list warning_list(const RenderJob& job) {
     return list;
 }
 
+/// Copies a tile's values, `width` floats a pixel, to their place in the crop's.
+template <class T>
+void paste(const Tile& tile, const Rect& crop, const std::vector<T>& from, std::size_t width,
+           std::vector<T>& to) {
+    const std::size_t row = static_cast<std::size_t>(tile.rect.width()) * width;
+    for (int y = 0; y < tile.rect.height(); ++y) {
+        const std::size_t pixel = static_cast<std::size_t>(tile.rect.y0 + y - crop.y0) *
+                                      static_cast<std::size_t>(crop.width()) +
+                                  static_cast<std::size_t>(tile.rect.x0 - crop.x0);
+        std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row),
+                    row, to.begin() + static_cast<std::ptrdiff_t>(pixel * width));
+    }
+}
+
 py::dict render(const py::dict& snapshot) {
     const auto scene = read_scene(snapshot);
     const Rect& crop = scene->options.crop;
-    std::vector<Vec4f> combined(static_cast<std::size_t>(crop.width()) *
-                                static_cast<std::size_t>(crop.height()));
-    std::vector<float> depth(scene->options.depth_pass ? combined.size() : 0);
+    const std::size_t pixels =
+        static_cast<std::size_t>(crop.width()) * static_cast<std::size_t>(crop.height());
+    std::vector<Vec4f> combined(pixels);
+    std::vector<float> depth(scene->options.depth_pass ? pixels : 0);
+    std::vector<TilePass> passes;
+    const ChannelSet channels(scene->options);
+    for (const Pass& pass : channels.passes())
+        passes.push_back({pass.name, pass.width, std::vector<float>(pixels * pass.width)});
     RenderJob job(scene);
     while (!job.done()) {
         std::vector<Tile> tiles;
@@ -56,18 +85,11 @@ py::dict render(const py::dict& snapshot) {
         }
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         for (const Tile& tile : tiles) {
-            const auto w = static_cast<std::size_t>(tile.rect.width());
-            for (int y = 0; y < tile.rect.height(); ++y) {
-                const std::size_t to = static_cast<std::size_t>(tile.rect.y0 + y - crop.y0) *
-                                           static_cast<std::size_t>(crop.width()) +
-                                       static_cast<std::size_t>(tile.rect.x0 - crop.x0);
-                const std::size_t from = static_cast<std::size_t>(y) * w;
-                std::copy_n(tile.combined.begin() + static_cast<std::ptrdiff_t>(from), w,
-                            combined.begin() + static_cast<std::ptrdiff_t>(to));
-                if (!depth.empty())
-                    std::copy_n(tile.depth.begin() + static_cast<std::ptrdiff_t>(from), w,
-                                depth.begin() + static_cast<std::ptrdiff_t>(to));
-            }
+            paste(tile, crop, tile.combined, 1, combined);
+            if (!depth.empty()) paste(tile, crop, tile.depth, 1, depth);
+            for (std::size_t i = 0; i < passes.size(); ++i)
+                paste(tile, crop, tile.passes[i].values, static_cast<std::size_t>(passes[i].width),
+                      passes[i].values);
         }
     }
     {
@@ -77,6 +99,7 @@ py::dict render(const py::dict& snapshot) {
     py::dict result;
     result["combined"] = to_array(combined, crop.width(), crop.height());
     result["depth"] = to_array(depth, crop.width(), crop.height());
+    result["passes"] = pass_dict(passes, crop.width(), crop.height());
     result["statistics"] = statistics_dict(job);
     result["warnings"] = warning_list(job);
     return result;
@@ -108,7 +131,11 @@ void bind_render(py::module_& module) {
         .def_property_readonly(
             "depth",
             [](const Tile& t) { return to_array(t.depth, t.rect.width(), t.rect.height()); },
-            "f32 [h,w] camera z in metres, or None");
+            "f32 [h,w] camera z in metres, or None")
+        .def_property_readonly(
+            "passes",
+            [](const Tile& t) { return pass_dict(t.passes, t.rect.width(), t.rect.height()); },
+            "{name: f32 [h,w,channels]} of the other passes that were asked for");
 
     py::class_<RenderJob>(module, "Render", py::module_local(),
                           "A frame being rendered on its own threads.")
@@ -131,8 +158,8 @@ void bind_render(py::module_& module) {
         .def("warnings", &warning_list, "[(datablock, message, count)]");
 
     module.def("render", &render, py::arg("snapshot"),
-               "Renders a snapshot: {'combined': f32 [h,w,4] of the crop, 'depth', 'statistics', "
-               "'warnings'}.");
+               "Renders a snapshot: {'combined': f32 [h,w,4] of the crop, 'depth', 'passes', "
+               "'statistics', 'warnings'}.");
 }
 
 }  // namespace granita::python

@@ -4,6 +4,7 @@
 
 #include "hider/sample_table.h"
 #include "python/snapshot.h"
+#include "scene/channels.h"
 
 namespace granita::python {
 namespace {
@@ -20,6 +21,23 @@ float at_least(const Record& record, const char* key, double value, double lo) {
         record.fail(std::string("'") + key + "' is " + std::to_string(value) +
                     ", expected at least " + std::to_string(lo));
     return static_cast<float>(value);
+}
+
+void read_passes(const Record& r, Options& o) {
+    for (const py::handle name : r.list("passes")) o.passes.push_back(py::cast<std::string>(name));
+    if (std::find(o.passes.begin(), o.passes.end(), "Depth") != o.passes.end()) o.depth_pass = true;
+    for (const py::handle item : r.list("aovs")) {
+        const Record aov(py::cast<py::dict>(item), r.datablock());
+        o.aovs.push_back({aov.text("name"),
+                          choice(aov, "kind", aov.text("kind", "COLOR"), {"COLOR", "VALUE"}) == 0});
+    }
+    const ChannelSet checked(o);
+    o.pass_alpha_threshold = static_cast<float>(r.number("pass_alpha_threshold", 0.0));
+    const auto mist = r.values<float>("mist", {3});
+    if (mist.empty()) return;
+    o.mist = {mist[0], mist[1], mist[2]};
+    if (!(o.mist.depth >= 0.0f && o.mist.exponent > 0.0f))
+        r.fail("'mist' must have a depth of at least 0 and an exponent above 0");
 }
 
 }  // namespace
@@ -57,11 +75,12 @@ void read_options(const Record& r, Options& o) {
         in_range(r, "light_samples", r.integer("light_samples", o.light_samples), 1, 65536);
     o.device =
         static_cast<Device>(choice(r, "device", r.text("device", "AUTO"), {"AUTO", "CPU", "GPU"}));
-    o.executor = static_cast<Executor>(choice(r, "executor", r.text("executor", "AUTO"),
-                                              {"AUTO", "REFERENCE", "SIMD", "RASTER", "COMPUTE"}));
+    o.executor = static_cast<Executor>(
+        choice(r, "executor", r.text("executor", "AUTO"), {"AUTO", "REFERENCE", "SIMD", "RASTER"}));
     o.threads = in_range(r, "threads", r.integer("threads", 0), 0, 1024);
     o.film_transparent = r.boolean("film_transparent", false);
     o.depth_pass = r.boolean("depth_pass", false);
+    read_passes(r, o);
     o.frame_time = static_cast<float>(r.number("frame_time", 0.5));
     if (o.frame_time < 0.0f || o.frame_time > 1.0f) r.fail("'frame_time' must be between 0 and 1");
     o.shutter_curve = r.values<float>("shutter_curve", {-1});

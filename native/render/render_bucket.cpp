@@ -67,23 +67,28 @@ void count_needs(Frame& frame, const std::vector<std::shared_ptr<SharedGrid>>& g
 std::vector<TileContribution> resolve(Frame& frame, std::vector<TileStore>& stores,
                                       const Hider& hider) {
     const Options& options = frame.scene.options;
+    const ChannelSet& channels = frame.film.channels();
+    const bool has_passes = options.depth_pass || !channels.empty();
     const CompositeSettings settings{frame.view.projection, options.opacity_threshold,
-                                     options.film_transparent};
+                                     options.film_transparent,
+                                     has_passes ? options.pass_alpha_threshold : 0.0f, &channels};
     std::vector<TileContribution> contributions;
     contributions.reserve(stores.size());
+    SampleChannels values;
     for (std::size_t i = 0; i < stores.size(); ++i) {
         frame.progress.check();
         const TileSamples& samples = hider.tile_samples(i);
         frame.statistics.add(Counter::SamplesTotal, samples.x.size());
         std::vector<Vec3f> background{Vec3f(0.0f)};
-        if (!options.film_transparent) {
+        if (!options.film_transparent || channels.has_environment()) {
             const StageTimer timer(frame.statistics, Stage::Shade);
             background = tile_background(frame.scene.camera, frame.table, frame.shading,
                                          frame.constant_background, stores[i]);
         }
         const StageTimer timer(frame.statistics, Stage::Resolve);
-        const auto colors = composite_tile(stores[i], samples, hider.pool(), background, settings);
-        contributions.push_back(frame.film.filter_tile(stores[i].tile, samples, colors));
+        const auto colors =
+            composite_tile(stores[i], samples, hider.pool(), background, settings, &values);
+        contributions.push_back(frame.film.filter_tile(stores[i].tile, samples, colors, &values));
     }
     return contributions;
 }

@@ -14,7 +14,23 @@ namespace granita {
 
 namespace {
 
-std::vector<bool> reachable_nodes(const NodeGraph& graph, const std::string& owner) {
+constexpr const char* kAovOutput = "ShaderNodeOutputAOV";
+
+/// The AOV Output node of that name: of several the last wins, as in Cycles; -1 = none.
+int find_aov_output(const NodeGraph& graph, const std::string& name) {
+    for (std::size_t i = graph.nodes.size(); i-- > 0;) {
+        const Node& node = graph.nodes[i];
+        if (node.type != kAovOutput) continue;
+        const auto found = node.properties.find("aov_name");
+        if (found == node.properties.end()) continue;
+        const auto* text = std::get_if<std::string>(&found->second);
+        if (text && *text == name) return static_cast<int>(i);
+    }
+    return -1;
+}
+
+std::vector<bool> reachable_nodes(const NodeGraph& graph, const std::string& owner,
+                                  const std::vector<int>& aov_outputs) {
     std::vector<bool> reachable(graph.nodes.size());
     const auto check = [&](const NodeLink& link, std::size_t limit) {
         if (link.node < 0 || static_cast<std::size_t>(link.node) >= limit)
@@ -22,6 +38,8 @@ std::vector<bool> reachable_nodes(const NodeGraph& graph, const std::string& own
         reachable[link.node] = true;
     };
     if (graph.surface.node >= 0) check(graph.surface, graph.nodes.size());
+    for (const int node : aov_outputs)
+        if (node >= 0) reachable[node] = true;
     for (std::size_t i = graph.nodes.size(); i-- > 0;) {
         if (!reachable[i]) continue;
         for (const auto& [name, input] : graph.nodes[i].inputs) {
@@ -46,8 +64,11 @@ void push_root(std::vector<int>& roots, int slot) {
     if (slot >= 0) roots.push_back(slot);
 }
 
-std::vector<int> roots_of(const SurfaceSources& sources) {
+std::vector<int> roots_of(const SurfaceSources& sources, const PassSources& passes) {
     std::vector<int> roots;
+    push_root(roots, passes.uv.slot);
+    for (const VectorSource& color : passes.aov_colors) push_root(roots, color.slot);
+    for (const FloatSource& value : passes.aov_values) push_root(roots, value.slot);
     push_root(roots, sources.emission.slot);
     push_root(roots, sources.transparency.slot);
     for (const LobeSource& lobe : sources.lobes) {
@@ -56,6 +77,24 @@ std::vector<int> roots_of(const SurfaceSources& sources) {
             push_root(roots, slot);
     }
     return roots;
+}
+
+PassSources pass_sources(ProgramBuilder& builder, const NodeGraph& graph,
+                         const std::vector<int>& aov_outputs, const ChannelSet& passes) {
+    PassSources sources;
+    const Node none;
+    if (passes.find(Quantity::Uv)) {
+        NodeBuilder b(builder, none, 0, Shift::None);
+        sources.uv = b.attribute({AttributeSource::DefaultUv, "", 2});
+    }
+    for (const int index : aov_outputs) {
+        const Node& node = index < 0 ? none : graph.nodes[index];
+        NodeBuilder b(builder, node, static_cast<std::size_t>(std::max(index, 0)), Shift::None);
+        sources.writes_aov.push_back(index >= 0);
+        sources.aov_colors.push_back(b.color("Color"));
+        sources.aov_values.push_back(b.number("Value"));
+    }
+    return sources;
 }
 
 /// Keeps the requests that some live load reads; a shifted load asks for derivatives.
@@ -82,7 +121,7 @@ std::vector<AttributeRequest> used_requests(std::vector<AttributeRequest> all,
 }  // namespace
 
 CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, TextureStore& textures,
-                                Report& report, const GraphOwner& owner) {
+                                Report& report, const GraphOwner& owner, const ChannelSet* passes) {
     ProgramBuilder builder{.scene = scene,
                            .textures = textures,
                            .report = report,
@@ -90,10 +129,14 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
                            .is_world = owner.is_world,
                            .material_index = owner.material_index};
     builder.outputs.resize(graph.nodes.size());
-    const std::vector<bool> reachable = reachable_nodes(graph, owner.name);
+    std::vector<int> aov_outputs;
+    if (passes)
+        for (const Aov& aov : scene.options.aovs)
+            aov_outputs.push_back(find_aov_output(graph, aov.name));
+    const std::vector<bool> reachable = reachable_nodes(graph, owner.name, aov_outputs);
 
     for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-        if (!reachable[i]) continue;
+        if (!reachable[i] || graph.nodes[i].type == kAovOutput) continue;
         const NodeKind* kind = find_node_kind(graph.nodes[i].type);
         // The shifted values first: the value at the point may need their differences.
         for (const Shift shift : {Shift::U, Shift::V, Shift::None}) {
@@ -131,8 +174,10 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
 
     CompiledSurface compiled;
     compiled.radiance.sources = surface.sources();
-    compiled.radiance.program = Program(builder.loads, builder.steps, builder.floats_a_point,
-                                        roots_of(compiled.radiance.sources));
+    if (passes) compiled.radiance.passes = pass_sources(builder, graph, aov_outputs, *passes);
+    compiled.radiance.program =
+        Program(builder.loads, builder.steps, builder.floats_a_point,
+                roots_of(compiled.radiance.sources, compiled.radiance.passes));
     compiled.transparency = surface.sources().transparency;
     std::vector<int> opacity_roots;
     push_root(opacity_roots, compiled.transparency.slot);

@@ -6,14 +6,24 @@
 #include <string>
 #include <vector>
 
+#include "scene/channels.h"
 #include "shade/program.h"
 #include "shade/surface_builder.h"
 
 namespace granita {
 
+/// Values for passes alone, beside what the surface sends out.
+struct PassSources {
+    VectorSource uv;                       ///< the constant 0 where it is not asked for
+    std::vector<bool> writes_aov;          ///< [Options::aovs] whether some node does
+    std::vector<VectorSource> aov_colors;  ///< [Options::aovs]; 0 where no node writes it
+    std::vector<FloatSource> aov_values;   ///< likewise
+};
+
 struct SurfaceProgram {
     Program program;
     SurfaceSources sources;
+    PassSources passes;
 };
 
 struct CompiledSurface {
@@ -30,8 +40,10 @@ struct GraphOwner {
     int material_index = 0;  ///< pass_index
 };
 
-/// Compiles `graph.surface`.  The scene, textures and report must outlive the programs.
+/// Compiles `graph.surface`, and what `passes` need beside it.  The scene, textures and report must
+/// outlive the programs.
 CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, TextureStore& textures,
-                                Report& report, const GraphOwner& owner);
+                                Report& report, const GraphOwner& owner,
+                                const ChannelSet* passes = nullptr);
 
 }  // namespace granita

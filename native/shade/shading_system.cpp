@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "shade/direct_light.h"
+#include "shade/grid_channels.h"
 #include "shade/node_compiler.h"
 #include "shade/shading_points.h"
 #include "shade/shadow_transparency.h"
@@ -64,6 +65,7 @@ struct ShadingSystem::Impl {
     Statistics& statistics;
     TextureStore textures;
     ShadingCamera camera;
+    ChannelSet channels;
     std::vector<CompiledSurface> materials;  ///< [materials + 1]
     std::vector<std::vector<AttributeRequest>> requests;
     std::vector<DisplacementHook> displacement;
@@ -71,17 +73,18 @@ struct ShadingSystem::Impl {
     std::unique_ptr<DirectLight> light;
 
     Impl(const Scene& s, Statistics& stats, Report& report, const Progress& progress)
-        : scene(s), statistics(stats), textures(s, stats, report), camera(s) {
+        : scene(s), statistics(stats), textures(s, stats, report), camera(s), channels(s.options) {
+        const ChannelSet* passes = channels.empty() ? nullptr : &channels;
         for (const Material& material : scene.materials) {
             progress.check();
             const std::string owner = "material '" + material.name + "'";
             materials.push_back(compile_surface(material.graph, scene, textures, report,
-                                                {owner, false, material.index}));
+                                                {owner, false, material.index}, passes));
             if (material.graph.displacement.node >= 0)
                 report.warn(owner, "displacement is not supported yet; the surface stays smooth");
         }
         materials.push_back(
-            compile_surface(default_material(), scene, textures, report, {"no material"}));
+            compile_surface(default_material(), scene, textures, report, {"no material"}, passes));
         for (const CompiledSurface& material : materials) requests.push_back(material.requests);
         displacement.resize(materials.size());
         warn_of_emission(report);
@@ -197,12 +200,15 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     Run run = surface.program.prepare(input, points.count);
     surface.program.execute(run);
     const SurfaceClosure closure = closure_of(run, surface.sources);
-    std::vector<Vec3f> radiance = closure.lobes.empty()
-                                      ? std::vector<Vec3f>(points.count, Vec3f(0.0f))
-                                      : m_impl->light->reflect(points, closure, grid.key, nullptr,
-                                                               m_impl->paths(grid, points));
+    const bool has_passes = !m_impl->channels.empty();
+    ReflectionParts parts;
+    std::vector<Vec3f> radiance = m_impl->light->reflect(
+        points, closure, grid.key, has_passes ? &parts : nullptr, m_impl->paths(grid, points));
     for (std::size_t i = 0; i < closure.emission.size(); ++i) radiance[i] += closure.emission[i];
     grid.radiance = std::move(radiance);
+    if (has_passes)
+        fill_channels(grid, m_impl->channels, m_impl->scene, m_impl->camera,
+                      {points, closure, parts, run, surface.passes});
     m_impl->statistics.add(Counter::GridsShaded);
     m_impl->statistics.add(Counter::PointsShaded, points.count);
 }

@@ -135,6 +135,8 @@ def render(snapshot):
         "slots": np.array(table["slots"], np.int32),
         "materials": np.array(table["materials"], np.int32),
     }
+    if "flags" in table:
+        packed["flags"] = np.array(table["flags"], np.uint32)
     return granita_core.render({**snapshot, "instances": packed})
 
 

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "film/film.h"
+
+namespace granita {
+
+/// What the tiles around a cell of the film have given to its pixels; ratios once divided by the
+/// weight.
+struct Film::CellSums {
+    std::vector<float> weight;    ///< [pixels]
+    std::vector<float> channels;  ///< [pixels][ChannelSet::sample_width()]
+    std::vector<float> center;    ///< [pixels][ChannelSet::center_width()]
+};
+
+}  // namespace granita

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/grid_channels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace granita {
+namespace {
+
+float mean(const Vec3f& v) {
+    return (v.x + v.y + v.z) / 3.0f;
+}
+
+/// The lobes' normals by weight, as Cycles averages its closures'.
+Vec3f average_normal(const ShadingPoints& points, const SurfaceClosure& closure, std::size_t i) {
+    Vec3f sum(0.0f);
+    for (const Lobe& lobe : closure.lobes) sum += lobe.normal[i] * std::abs(mean(lobe.weight[i]));
+    const float length = glm::length(sum);
+    return length > 0.0f ? sum / length : points.normal[i];
+}
+
+/// How little of a point is lost in the mist, times its opacity.
+float clarity(const Mist& mist, const Vec3f& p_camera, bool perspective, float opacity) {
+    const float distance = perspective ? glm::length(p_camera) : std::abs(p_camera.z);
+    const float place = mist.depth > 0.0f ? (distance - mist.start) / mist.depth
+                                          : (distance >= mist.start ? 1.0f : 0.0f);
+    return (1.0f - std::pow(std::clamp(place, 0.0f, 1.0f), mist.exponent)) * opacity;
+}
+
+/// Rows of one channel in Grid::channels.
+class Rows {
+  public:
+    Rows(Grid& grid, const ChannelSet& channels, const Channel& channel)
+        : m_first(grid.channels.data() + channel.first), m_width(channels.vertex_width()) {
+        if (channel.merge == Merge::Center || channel.merge == Merge::CenterConstant)
+            m_first += channels.surface_width();
+    }
+    void write(std::size_t vertex, float value) const { m_first[vertex * m_width] = value; }
+    void write(std::size_t vertex, const Vec3f& value) const {
+        for (int c = 0; c < 3; ++c) m_first[vertex * m_width + c] = value[c];
+    }
+    void write(std::size_t vertex, const Vec4f& value) const {
+        for (int c = 0; c < 4; ++c) m_first[vertex * m_width + c] = value[c];
+    }
+
+  private:
+    float* m_first;
+    std::size_t m_width;
+};
+
+}  // namespace
+
+void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
+                   const ShadingCamera& camera, const ShadedGrid& shaded) {
+    const ShadingPoints& points = shaded.points;
+    grid.channels.assign(points.count * channels.vertex_width(), 0.0f);
+    for (const Channel& channel : channels.channels()) {
+        if (channel.quantity == Quantity::Environment) continue;
+        if (channel.aov >= 0 && !shaded.sources.writes_aov[channel.aov]) continue;
+        const Rows rows(grid, channels, channel);
+        const auto fill = [&](auto value) {
+            for (std::size_t i = 0; i < points.count; ++i) rows.write(i, value(i));
+        };
+        const auto copy = [&](const std::vector<Vec3f>& values) {
+            for (std::size_t i = 0; i < values.size(); ++i) rows.write(i, values[i]);
+        };
+        switch (channel.quantity) {
+            case Quantity::DiffuseDirect:
+                copy(shaded.parts.diffuse);
+                break;
+            case Quantity::DiffuseColor:
+                copy(shaded.parts.diffuse_color);
+                break;
+            case Quantity::GlossyDirect:
+                copy(shaded.parts.glossy);
+                break;
+            case Quantity::GlossyColor:
+                copy(shaded.parts.glossy_color);
+                break;
+            case Quantity::LampsArriving:
+                copy(shaded.parts.arriving);
+                break;
+            case Quantity::LampsUnblocked:
+                copy(shaded.parts.unblocked);
+                break;
+            case Quantity::Emission:
+                copy(shaded.closure.emission);
+                break;
+            case Quantity::Clarity:
+                fill([&](std::size_t i) {
+                    const float opacity = grid.opacity_varies ? mean(grid.opacity[i]) : 1.0f;
+                    return clarity(scene.options.mist, grid.shading_p()[i], camera.perspective,
+                                   opacity);
+                });
+                break;
+            case Quantity::Normal:
+                fill([&](std::size_t i) { return average_normal(points, shaded.closure, i); });
+                break;
+            case Quantity::Uv: {
+                const auto uv = shaded.run.read(shaded.sources.uv);
+                fill([&](std::size_t i) { return Vec3f(uv[i].x, uv[i].y, 1.0f); });
+                break;
+            }
+            case Quantity::AovColor: {
+                const auto color = shaded.run.read(shaded.sources.aov_colors[channel.aov]);
+                fill([&](std::size_t i) { return Vec4f(color[i], 1.0f); });
+                break;
+            }
+            case Quantity::AovValue: {
+                const auto value = shaded.run.read(shaded.sources.aov_values[channel.aov]);
+                fill([&](std::size_t i) { return value[i]; });
+                break;
+            }
+            case Quantity::Position: {
+                const Vec3d origin(camera.world_from_camera[3]);
+                fill([&](std::size_t i) { return Vec3f(origin + Vec3d(points.p[i])); });
+                break;
+            }
+            case Quantity::ObjectIndex: {
+                const auto index = static_cast<float>(scene.instances[grid.instance].object_index);
+                fill([&](std::size_t) { return index; });
+                break;
+            }
+            case Quantity::MaterialIndex: {
+                const int index = grid.material < 0 ? 0 : scene.materials[grid.material].index;
+                fill([&](std::size_t) { return static_cast<float>(index); });
+                break;
+            }
+            case Quantity::Environment:
+                break;
+        }
+    }
+}
+
+}  // namespace granita
