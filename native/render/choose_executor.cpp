@@ -10,6 +10,7 @@ namespace {
 /// What keeps the raster executor from rendering the scene; empty = nothing.
 std::string raster_obstacle(const Scene& scene) {
     if (scene.options.sampling != Sampling::Regular) return "sampling is not Regular";
+    if (scene.options.rolling_shutter >= 0.0f) return "the shutter rolls";
     if (!ChannelSet(scene.options).empty()) return "passes beside Combined and Depth are asked for";
     return {};
 }
