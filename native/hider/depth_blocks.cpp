@@ -32,6 +32,7 @@ void DepthBlocks::reset(int blocks_wide, int packets, const PacketBounds& bounds
     m_packet.assign(blocks * packets, -INFINITY);
     m_block.assign(blocks, -INFINITY);
     m_tile = -INFINITY;
+    m_filled = false;
 }
 
 void DepthBlocks::update(const float* keys) {
@@ -41,6 +42,7 @@ void DepthBlocks::update(const float* keys) {
 
 void DepthBlocks::rebuild(const float* keys) {
     m_writes = 0;
+    m_filled = true;
     for (std::size_t p = 0; p < m_packet.size(); ++p)
         m_packet[p] = least_of_packet(keys + p * kPacket);
     for (std::size_t b = 0; b < m_block.size(); ++b)

@@ -31,6 +31,8 @@ class DepthBlocks {
     /// Whether all samples of these pixels of the tile with times in [time0, time1] are nearer than
     /// `nearest_key`.
     bool hide(const Rect& pixels, float time0, float time1, float nearest_key) const;
+    /// Whether any rebuild has happened since reset().
+    bool filled() const { return m_filled; }
     /// [block][packet]
     const float* farthest_of_packets() const { return m_packet.data(); }
 
@@ -42,6 +44,7 @@ class DepthBlocks {
     std::uint64_t m_writes = 0;
     std::vector<float> m_packet, m_block;
     float m_tile = 0.0f;
+    bool m_filled = false;
 };
 
 }  // namespace granita

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The CPU executor: grid by grid and tile by tile through the SIMD kernel, behind a hierarchical
 // depth.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -9,6 +10,7 @@
 #include "hider/micropolygon_class.h"
 #include "hider/simd_kernel.h"
 #include "hider/tile_grid.h"
+#include "hider/time_slabs.h"
 #include "hider/working_tile.h"
 
 namespace granita {
@@ -29,7 +31,7 @@ class SimdHider : public Hider {
         const Rect touched = m_tiles.touched(bounds);
         for (int y = touched.y0; y < touched.y1; ++y)
             for (int x = touched.x0; x < touched.x1; ++x)
-                if (!tile_hides(m_tiles.index(x, y), bounds)) return false;
+                if (!tile_hides(m_tiles.index(x, y), bounds, 0.0f, 1.0f)) return false;
         return true;
     }
 
@@ -41,16 +43,20 @@ class SimdHider : public Hider {
         const Sweep sweep = m_tile_grid.sweep();
         SimdCounts counts;
         std::uint64_t fragments = 0;
+        bool hidden = true;
+        std::vector<TimeSlab> slabs;  // made when a tile asks
         const Rect touched = m_tiles.touched(grid.bounds);
         for (int y = touched.y0; y < touched.y1; ++y)
             for (int x = touched.x0; x < touched.x1; ++x) {
                 const std::size_t i = m_tiles.index(x, y);
-                if (tile_hides(i, grid.bounds)) continue;
+                if (tile_hides(i, grid, slabs)) continue;
+                hidden = false;
                 m_tiles.check_cancelled();
                 arrange(i, grid.motion, sweep);
                 fragments += hide_in_tile(classes, base, i, counts);
             }
         if (!m_statistics) return;
+        m_statistics->add(Counter::GridsCulled, hidden && !touched.empty());
         m_statistics->add(Counter::Micropolygons,
                           static_cast<std::uint64_t>(grid.micropolygon_count()));
         m_statistics->add(grid.motion || m_projection.has_lens() ? Counter::SampleTestsMoving
@@ -73,7 +79,18 @@ class SimdHider : public Hider {
     const TileSamples& tile_samples(std::size_t i) const override { return m_tiles.samples(i); }
 
   private:
-    bool tile_hides(std::size_t i, const RasterBounds& bounds) const {
+    /// By the grid's bounds over the shutter or, where it moves, by those of each part of it.
+    bool tile_hides(std::size_t i, const Grid& grid, std::vector<TimeSlab>& slabs) const {
+        if (tile_hides(i, grid.bounds, 0.0f, 1.0f)) return true;
+        if (!grid.motion || !m_working[i].tile || !m_working[i].tile->hides_something())
+            return false;
+        if (slabs.empty()) slabs = time_slabs(grid, m_projection);
+        return std::all_of(slabs.begin(), slabs.end(), [&](const TimeSlab& slab) {
+            return !slab.bounds.visible || tile_hides(i, slab.bounds, slab.t0, slab.t1);
+        });
+    }
+
+    bool tile_hides(std::size_t i, const RasterBounds& bounds, float time0, float time1) const {
         if (!m_working[i].tile) return false;
         const Vec2d origin = m_tiles.origin(i);
         const auto pixel = [](double x) {
@@ -84,7 +101,7 @@ class SimdHider : public Hider {
                           std::isnan(bounds.y0) ? 0 : pixel(bounds.y0 - origin.y),
                           std::isnan(bounds.x1) ? kTileSize : pixel(bounds.x1 - origin.x) + 1,
                           std::isnan(bounds.y1) ? kTileSize : pixel(bounds.y1 - origin.y) + 1};
-        return m_working[i].tile->hides(pixels, 0.0f, 1.0f, bounds.nearest_key);
+        return m_working[i].tile->hides(pixels, time0, time1, bounds.nearest_key);
     }
 
     /// Sees to it that the tile's samples lie in an order that suits grids which go this far.

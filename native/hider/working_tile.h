@@ -34,6 +34,9 @@ class WorkingTile {
         return m_depth.hide(pixels.intersect(m_pixels), time0, time1, nearest_key);
     }
 
+    /// Whether it is worth while to ask hides() more than once.
+    bool hides_something() const { return m_depth.filled(); }
+
     std::vector<Fragment> fragments;  ///< sample = slot of the order
 
   private:
