@@ -228,6 +228,14 @@ BsdfValue PointBsdf::evaluate(const Vec3f& wo) const {
     return value;
 }
 
+bool PointBsdf::can_see(const Vec3f& to_center, float radius) const {
+    // Rounding must not hide a sphere that touches the horizon.
+    const float reach = radius + 1e-5f * (radius + glm::length(to_center));
+    for (const Prepared& lobe : m_lobes)
+        if (!lobe.sharp && glm::dot(lobe.normal, to_center) > -reach) return true;
+    return false;
+}
+
 BsdfValue PointBsdf::albedo() const {
     BsdfValue albedo;
     for (const Prepared& lobe : m_lobes) {

@@ -38,6 +38,8 @@ class PointBsdf {
     /// Share of white light from all sides that leaves along the view, weights included.  Fresnel
     /// of glossy lobes is taken at the view's own angle.
     BsdfValue albedo() const;
+    /// False where evaluate() is 0 for every direction to the sphere around `to_center`.
+    bool can_see(const Vec3f& to_center, float radius) const;
     /// Sum over all lobes that are not sharp.
     BsdfValue evaluate(const Vec3f& wo) const;
     /// Density of sample(), per solid angle; 0 for sharp lobes.

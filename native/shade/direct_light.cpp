@@ -181,8 +181,15 @@ bool DirectLight::Impl::changes(const Lamp& lamp) const {
     return lamp.varies() || (casters_move && lamp.casts_shadow());
 }
 
-/// One sample tells all about a lamp without size that nothing moving can come before.
+/// None of a lamp below the horizon; one tells all about a lamp without size that nothing moving
+/// can come before.
 int DirectLight::Impl::samples_of(const Point& point, const Lamp& lamp) const {
+    Vec3f center;
+    float radius;
+    const bool still = !lamp.varies() && !point.paths.moves();
+    if (still && lamp.at(0.0f).bound(center, radius) &&
+        !point.bsdf.can_see(center - point.at_frame.p, radius))
+        return 0;
     if (!lamp.is_hard()) return sample_count;
     if (!changes(lamp)) return 1;
     if (lamp.varies() || point.paths.moves()) return sample_count;

@@ -81,9 +81,11 @@ class AreaLight : public LightSource {
         Vec2f lo = center - m_half, hi = center + m_half;
         if (!clip_to_spread(height, lo, hi)) return false;
         Vec2f q;
+        double solid_angle = 0.0;
         if (!m_ellipse) {
             const SphericalRectangle rectangle(lo.x, hi.x, lo.y, hi.y, -height);
             const Vec3d point = rectangle.sample(u);
+            solid_angle = rectangle.solid_angle();
             q = {static_cast<float>(point.x), static_cast<float>(point.y)};
         } else {
             q = center + sample_disc(u) * m_half;
@@ -92,7 +94,7 @@ class AreaLight : public LightSource {
         const float distance = glm::length(to_light);
         sample.direction = to_light / distance;
         sample.distance = distance;
-        return shade(height, lo, hi, sample);
+        return shade(solid_angle, sample);
     }
 
     bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const override {
@@ -109,7 +111,16 @@ class AreaLight : public LightSource {
         const Vec2f center(glm::dot(to_center, m_u), glm::dot(to_center, m_v));
         Vec2f lo = center - m_half, hi = center + m_half;
         if (!clip_to_spread(height, lo, hi)) return false;
-        return shade(height, lo, hi, sample);
+        double solid_angle = 0.0;
+        if (!m_ellipse)
+            solid_angle = SphericalRectangle(lo.x, hi.x, lo.y, hi.y, -height).solid_angle();
+        return shade(solid_angle, sample);
+    }
+
+    bool bound(Vec3f& center, float& radius) const override {
+        center = m_center;
+        radius = glm::length(m_half);
+        return true;
     }
 
   private:
@@ -125,7 +136,8 @@ class AreaLight : public LightSource {
         return lo.x < hi.x && lo.y < hi.y;
     }
 
-    bool shade(float height, const Vec2f& lo, const Vec2f& hi, LightSample& sample) const {
+    /// `solid_angle`: of what is sampled of a rectangle; ellipses are sampled by area.
+    bool shade(double solid_angle, LightSample& sample) const {
         const float cos_light = -glm::dot(sample.direction, m_front);
         if (cos_light <= 0.0f) return false;
         sample.radiance = m_radiance;
@@ -135,12 +147,8 @@ class AreaLight : public LightSource {
             sample.radiance *= std::max(0.0f, (m_tan_half - tangent) * m_spread_scale);
             if (tangent >= m_tan_half) return false;
         }
-        if (m_ellipse) {
-            sample.pdf = sample.distance * sample.distance / (cos_light * m_area);
-        } else {
-            const SphericalRectangle rectangle(lo.x, hi.x, lo.y, hi.y, -height);
-            sample.pdf = static_cast<float>(1.0 / rectangle.solid_angle());
-        }
+        sample.pdf = m_ellipse ? sample.distance * sample.distance / (cos_light * m_area)
+                               : static_cast<float>(1.0 / solid_angle);
         return std::isfinite(sample.pdf) && sample.pdf > 0.0f;
     }
 

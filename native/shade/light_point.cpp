@@ -82,6 +82,12 @@ class PointLight : public LightSource {
                         : meet_disc(to_center, d2, direction, sample);
     }
 
+    bool bound(Vec3f& center, float& radius) const override {
+        center = m_position;
+        radius = m_radius;
+        return true;
+    }
+
   private:
     static Vec3f sample_sphere(const Vec2f& u) {
         const float z = 1.0f - 2.0f * u.x, s = std::sqrt(std::max(0.0f, 1.0f - z * z));

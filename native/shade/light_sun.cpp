@@ -40,6 +40,8 @@ class SunLight : public LightSource {
         return true;
     }
 
+    bool bound(Vec3f&, float&) const override { return false; }
+
   private:
     Frame m_frame;
     Vec3f m_radiance;

@@ -190,5 +190,27 @@ TEST(Fresnel, sharp_lobes_mirror_with_their_reflectance) {
     EXPECT_NEAR(reflectance.x, 0.089187f, 1e-5f);
 }
 
+TEST(PointBsdf, what_lies_below_the_horizon_is_not_seen_and_reflects_nothing) {
+    const ShadingPoints points = points_facing_up({{0, 0, 0}});
+    const PointBsdf diffuse(closure_of(lambert(points, 1.0f)), points, 0, GgxAlbedo::shared());
+    const PointBsdf shiny(closure_of(glossy(points, 0.5f)), points, 0, GgxAlbedo::shared());
+    const SobolPoints sequence(3);
+    int hidden = 0;
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        const Vec3f center = 3.0f * (2.0f * Vec3f(sequence(i), sequence.third(i)) - Vec3f(1.0f));
+        const float radius = 0.5f + sequence(i).x;
+        EXPECT_EQ(diffuse.can_see(center, radius), shiny.can_see(center, radius));
+        if (diffuse.can_see(center, radius)) {
+            EXPECT_GT(center.z + radius, -1e-3f);
+            continue;
+        }
+        ++hidden;
+        const Vec3f highest = glm::normalize(center + Vec3f(0, 0, radius));
+        EXPECT_EQ(diffuse.evaluate(highest).diffuse, Vec3f(0.0f));
+        EXPECT_EQ(shiny.evaluate(highest).glossy, Vec3f(0.0f));
+    }
+    EXPECT_GT(hidden, 200);
+}
+
 }  // namespace
 }  // namespace granita
