@@ -63,6 +63,7 @@ class FinalRender:
         settings = self.depsgraph.scene_eval.granita
         snapshot = export_frame(self.engine, self.depsgraph, settings, self.report, self._exporting)
         options = snapshot["options"]
+        options.update(passes.requested(self.depsgraph.scene_eval, self.depsgraph.view_layer))
         options["bucket_size"] = -(-options["bucket_size"] // TILE_PIXELS) * TILE_PIXELS
         if self.options.device is not None:
             options["device"] = self.options.device

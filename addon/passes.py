@@ -1,31 +1,87 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table of passes, and what uses it: registration and the hand-over of tiles."""
+"""The table of passes, and what uses it: registration, the export and the hand-over of tiles."""
 
 from collections import namedtuple
 
+import bpy
 import numpy as np
 
-# `wanted`: the view layer's property that asks for the pass (None: always there).
-# `tile`: the attribute of a native tile that holds it, f32 [h, w, channels] or [h, w].
-Pass = namedtuple("Pass", "name channels channel_ids kind wanted tile")
+# `native`: the name in the snapshot and in the native tile; Blender's own since version 5.
+# `short`: Blender's name before.  `wanted`: the view layer's property that asks for the pass (None:
+# always there).
+Pass = namedtuple("Pass", "native short channels channel_ids kind wanted")
 
 PASSES = (
-    Pass("Combined", 4, "RGBA", "COLOR", None, "combined"),
-    Pass("Depth", 1, "Z", "VALUE", "use_pass_z", "depth"),
+    Pass("Combined", "Combined", 4, "RGBA", "COLOR", None),
+    Pass("Depth", "Depth", 1, "Z", "VALUE", "use_pass_z"),
+    Pass("Mist", "Mist", 1, "Z", "VALUE", "use_pass_mist"),
+    Pass("Position", "Position", 3, "XYZ", "VECTOR", "use_pass_position"),
+    Pass("Normal", "Normal", 3, "XYZ", "VECTOR", "use_pass_normal"),
+    Pass("UV", "UV", 3, "UVA", "VECTOR", "use_pass_uv"),
+    Pass("Object Index", "IndexOB", 1, "X", "VALUE", "use_pass_object_index"),
+    Pass("Material Index", "IndexMA", 1, "X", "VALUE", "use_pass_material_index"),
+    Pass("Diffuse Direct", "DiffDir", 3, "RGB", "COLOR", "use_pass_diffuse_direct"),
+    Pass("Diffuse Color", "DiffCol", 3, "RGB", "COLOR", "use_pass_diffuse_color"),
+    Pass("Glossy Direct", "GlossDir", 3, "RGB", "COLOR", "use_pass_glossy_direct"),
+    Pass("Glossy Color", "GlossCol", 3, "RGB", "COLOR", "use_pass_glossy_color"),
+    Pass("Emission", "Emit", 3, "RGB", "COLOR", "use_pass_emit"),
+    Pass("Environment", "Env", 3, "RGB", "COLOR", "use_pass_environment"),
+    Pass("Shadow", "Shadow", 3, "RGB", "COLOR", "use_pass_shadow"),
 )
 
 # Blender's depth where there is no surface.
 NO_SURFACE_DEPTH = 1e10
 
 
+def display_name(p):
+    """The name that this Blender gives the pass."""
+    return p.native if bpy.app.version >= (5, 0, 0) else p.short
+
+
+def standard(view_layer):
+    """Passes of the table that the view layer asks for."""
+    return [p for p in PASSES if p.wanted is None or getattr(view_layer, p.wanted, False)]
+
+
+def custom(view_layer):
+    """AOVs of the view layer as passes.  Blender marks invalid those whose names collide."""
+    made = []
+    for aov in view_layer.aovs:
+        if not aov.is_valid:
+            continue
+        value = aov.type == "VALUE"
+        shape = (1, "X", "VALUE") if value else (4, "RGBA", "COLOR")
+        made.append(Pass(aov.name, aov.name, *shape, None))
+    return made
+
+
 def wanted(view_layer):
-    return [p for p in PASSES if p.wanted is None or getattr(view_layer, p.wanted)]
+    return standard(view_layer) + custom(view_layer)
+
+
+def requested(scene, view_layer):
+    """The snapshot's options of passes."""
+    world = scene.world
+    falloff = {"QUADRATIC": 2.0, "LINEAR": 1.0, "INVERSE_QUADRATIC": 0.5}
+    options = {
+        "passes": [p.native for p in standard(view_layer)],
+        "aovs": [
+            {"name": p.native, "kind": "VALUE" if p.channels == 1 else "COLOR"}
+            for p in custom(view_layer)
+        ],
+        "pass_alpha_threshold": view_layer.pass_alpha_threshold,
+    }
+    if world is not None:
+        mist = world.mist_settings
+        values = (mist.start, mist.depth, falloff[mist.falloff])
+        options["mist"] = np.array(values, dtype=np.float32)
+    return options
 
 
 def register(engine, scene, view_layer):
     """Every pass is registered, standard ones too: else the result holds Combined alone."""
     for p in wanted(view_layer):
-        engine.register_pass(scene, view_layer, p.name, p.channels, p.channel_ids, p.kind)
+        engine.register_pass(scene, view_layer, display_name(p), p.channels, p.channel_ids, p.kind)
 
 
 def deliver(engine, tile, passes, layer, origin):
@@ -34,7 +90,8 @@ def deliver(engine, tile, passes, layer, origin):
     `origin`: the crop's lower-left pixel in the frame, which is (0, 0) of the result.  The result
     is closed on every path (an open one crashes the saving of float files).
     """
-    height, width = tile.combined.shape[:2]
+    combined = tile.combined
+    height, width = combined.shape[:2]
     result = engine.begin_result(tile.x - origin[0], tile.y - origin[1], width, height, layer=layer)
     complete = False
     try:
@@ -43,12 +100,12 @@ def deliver(engine, tile, passes, layer, origin):
                 f"tile ({tile.x}, {tile.y}) of {width} x {height} pixels does not fit the result: "
                 f"{result.resolution_x} x {result.resolution_y} pixels are left"
             )
+        arrays = {"Combined": combined, **tile.passes}
+        if tile.depth is not None:
+            arrays["Depth"] = np.where(np.isfinite(tile.depth), tile.depth, NO_SURFACE_DEPTH)
         render_passes = result.layers[0].passes
         for p in passes:
-            pixels = getattr(tile, p.tile)
-            if p.name == "Depth":
-                pixels = np.where(np.isfinite(pixels), pixels, NO_SURFACE_DEPTH)
-            _put(render_passes[p.name], pixels, width * height, p.channels)
+            _put(render_passes[display_name(p)], arrays[p.native], width * height, p.channels)
         complete = True
     finally:
         engine.end_result(result, cancel=not complete)

@@ -112,7 +112,8 @@ def _shading(depsgraph, used_materials, scan, report):
     from .material import export_materials
     from .world import export_world
 
-    materials, images = export_materials(used_materials, report)
+    aovs = {aov.name for aov in depsgraph.view_layer.aovs if aov.is_valid}
+    materials, images = export_materials(used_materials, report, aovs)
     world = export_world(depsgraph.scene_eval, depsgraph.view_layer_eval, report, images)
     no_place = np.eye(4)[None]
     is_light = np.array([kind.type == "LIGHT" for kind in scan.kinds], dtype=bool)

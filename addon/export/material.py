@@ -4,22 +4,23 @@
 from .nodes import FlatGraph
 
 
-def export_materials(materials, report):
+def export_materials(materials, report, aovs=()):
     """The snapshot's `materials` and the images they show.
 
     Args:
         materials: evaluated Materials, in the order of the snapshot.
         report: called with (datablock, message).
+        aovs: names whose AOV Output nodes are wanted.
 
     Returns:
         (list of material records, list of image records).
     """
     images = {}
-    records = [material_record(material, images, report) for material in materials]
+    records = [material_record(material, images, report, aovs) for material in materials]
     return records, list(images.values())
 
 
-def material_record(material, images, report):
+def material_record(material, images, report, aovs=()):
     """One entry of the snapshot's `materials`; `images` {name: record} grows."""
     record = {"name": material.name_full, "index": material.pass_index, "displacement": None}
     if not material.use_nodes or material.node_tree is None:
@@ -40,4 +41,5 @@ def material_record(material, images, report):
         record["displacement"] = graph.add(output.inputs["Displacement"])
         if output.inputs["Volume"].is_linked:
             report(owner, "its volume is not rendered")
+    graph.add_aov_outputs(aovs)
     return {**record, "nodes": graph.nodes, "surface": surface}

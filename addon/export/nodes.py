@@ -49,6 +49,36 @@ class FlatGraph:
         self._add_nodes(source)
         return self._index[source.key], output_identifier(source.socket)
 
+    def add_aov_outputs(self, names):
+        """Adds the AOV Output nodes of those names, groups' too, with all that feeds them."""
+        scopes = [self._root] if names else []
+        while scopes:
+            scope = scopes.pop()
+            for node in scope.tree.nodes:
+                if node.mute:
+                    continue
+                if node.type == "GROUP" and node.node_tree is not None:
+                    scopes.append(scope.inside(node))
+                elif node.bl_idname == "ShaderNodeOutputAOV" and aov_name(node) in names:
+                    self._add_aov_output(scope, node)
+
+    def _add_aov_output(self, scope, node):
+        inputs = {}
+        for socket in node.inputs:
+            origin = trace(scope, socket)
+            if origin.node is not None:
+                self._add_nodes(origin)
+            self._add_input(inputs, socket.identifier, origin, node)
+        properties = {"aov_name": aov_name(node), "generation": generation()}
+        self.nodes.append(
+            {
+                "type": node.bl_idname,
+                "name": f"AOV Output {aov_name(node)}",
+                "inputs": inputs,
+                "properties": properties,
+            }
+        )
+
     def _add_nodes(self, root):
         pending, entered = [(root, None)], set()
         while pending:
@@ -67,15 +97,7 @@ class FlatGraph:
         node = source.node
         inputs = {}
         for name, origin in sources.items():
-            if origin.node is None:
-                value = _constant(origin.socket)
-            elif origin.key in self._index:
-                value = self._converted_link(origin)
-            else:
-                self._report(self._owner, f"node '{node.name}': its links run in a circle")
-                continue
-            if value is not None:
-                inputs[name] = value
+            self._add_input(inputs, name, origin, node)
         properties = node_properties(node, self._owner, self._images, self._report)
         self._index[source.key] = len(self.nodes)
         self.nodes.append(
@@ -86,6 +108,17 @@ class FlatGraph:
                 "properties": {**properties, "generation": generation()},
             }
         )
+
+    def _add_input(self, inputs, name, origin, node):
+        if origin.node is None:
+            value = _constant(origin.socket)
+        elif origin.key in self._index:
+            value = self._converted_link(origin)
+        else:
+            self._report(self._owner, f"node '{node.name}': its links run in a circle")
+            return
+        if value is not None:
+            inputs[name] = value
 
     def _converted_link(self, origin):
         """The link, behind a conversion node where the socket types in between ask for one."""
@@ -107,6 +140,11 @@ class FlatGraph:
 def generation():
     """1: shaders mean what they meant before Blender 4; 2: since then."""
     return 1 if bpy.app.version < (4, 0, 0) else 2
+
+
+def aov_name(node):
+    """Blender 4.1 renamed the property, which had hidden the node's own name."""
+    return node.aov_name if hasattr(node, "aov_name") else node.name
 
 
 def output_identifier(socket):

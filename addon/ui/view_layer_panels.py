@@ -22,8 +22,8 @@ class GRANITA_VIEWLAYER_PT_passes(bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         for p in passes.PASSES:
-            if p.wanted is not None:
-                layout.prop(context.view_layer, p.wanted, text=p.name)
+            if p.wanted is not None and hasattr(context.view_layer, p.wanted):
+                layout.prop(context.view_layer, p.wanted, text=p.native)
 
 
 def register():
