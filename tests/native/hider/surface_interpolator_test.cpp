@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sixteen samples at a time give the bits of one at a time.
+#include "hider/surface_interpolator.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "hider/grid_builder.h"
+#include "hider/locate_kernel.h"
+
+namespace granita {
+namespace {
+
+using test::make_grid;
+
+bool same(const SurfacePoint& a, const SurfacePoint& b) {
+    return a.grid == b.grid && std::equal(a.vertex, a.vertex + 3, b.vertex) &&
+           std::equal(a.weight, a.weight + 3, b.weight);
+}
+
+/// Every sample against a micropolygon of its own choice, hit or not: nearest points, folds and
+/// samples on edges are among them.
+void expect_runs_equal_singles(const Camera& camera, const Grid& grid, bool on_lattice) {
+    GridPool pool;
+    pool.add(grid);
+    Options options;
+    options.samples = 16;
+    options.sampling = on_lattice ? Sampling::Regular : Sampling::Independent;
+    TileSamples samples;
+    SampleTable(options, camera).fill_tile({0, 0}, {true, camera.projection.has_lens()}, samples);
+    std::mt19937 random(5);
+    std::vector<SurfaceId> ids;
+    for (std::size_t i = 0; i < samples.x.size(); ++i) {
+        const int x = std::clamp(static_cast<int>(samples.x[i]), 0, grid.n_u - 1);
+        const int y = std::clamp(static_cast<int>(samples.y[i]), 0, grid.n_v - 1);
+        const unsigned what = random() % 8;
+        ids.push_back(what == 0   ? kNoSurface
+                      : what == 1 ? random() % grid.micropolygon_count()
+                                  : static_cast<SurfaceId>(y * grid.n_u + x));
+    }
+    SurfaceInterpolator one(camera.projection, {0, 0}, samples, pool);
+    SurfaceInterpolator many(camera.projection, {0, 0}, samples, pool);
+    std::size_t located = 0;
+    for (std::uint32_t first = 0; first < ids.size(); first += LocateLanes::kCount) {
+        SurfacePoint points[LocateLanes::kCount];
+        many.locate_run(first, LocateLanes::kCount, &ids[first], points);
+        for (std::uint32_t i = 0; i < LocateLanes::kCount; ++i) {
+            if (ids[first + i] == kNoSurface) continue;
+            ++located;
+            ASSERT_TRUE(same(points[i], one.locate(first + i, ids[first + i]))) << first + i;
+        }
+    }
+    EXPECT_GT(located, ids.size() * 3 / 4);
+}
+
+Grid jittered(int knots, float jitter, float z) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> at(-jitter, jitter);
+    return make_grid(16, 16, knots, [&](float u, float v, int) {
+        return Vec3f(u * 16 + at(random), v * 16 + at(random), z + at(random));
+    });
+}
+
+TEST(SurfaceInterpolator, RunsEqualSingles) {
+    expect_runs_equal_singles(test::pixel_camera(), jittered(1, 0.9f, 5), false);
+}
+
+TEST(SurfaceInterpolator, RunsEqualSinglesOnEdges) {
+    // Lattice samples at odd eighths; corners on whole pixels: diagonals hit samples exactly.
+    expect_runs_equal_singles(test::pixel_camera(), jittered(1, 0.0f, 5), true);
+}
+
+TEST(SurfaceInterpolator, RunsEqualSinglesInMotion) {
+    expect_runs_equal_singles(test::pixel_camera(), jittered(3, 0.9f, 5), false);
+}
+
+TEST(SurfaceInterpolator, RunsEqualSinglesThroughALens) {
+    Camera camera = test::pinhole_camera(10);
+    camera.projection.lens_radius = 0.3;
+    camera.projection.focus = 7.0;
+    expect_runs_equal_singles(camera, jittered(2, 0.9f, 10), false);
+}
+
+}  // namespace
+}  // namespace granita
