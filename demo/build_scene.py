@@ -234,6 +234,7 @@ def add_lanterns() -> None:
         x, z = dice.uniform(-17, 17), dice.uniform(1.5, 9)
         lantern = turned.piece(f"Lantern{index}", copy, (x, dice.uniform(24, 34), z))
         lantern.scale = (dice.uniform(0.10, 0.16),) * 3
+        lantern.visible_diffuse = lantern.visible_glossy = False  # seen, but no lamps
 
 
 def add_light(name: str, kind: str, location: tuple, target: tuple, **settings) -> None:
