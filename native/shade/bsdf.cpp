@@ -163,6 +163,7 @@ void PointBsdf::prepare_glossy(Prepared& lobe, float roughness, bool multiscatte
     const float e = albedo.directional(clamped, lobe.cos_wi);
     const float e_mean = albedo.average(clamped);
     const float missing = (1.0f - e) / e;
+    lobe.directional_albedo = e;
     Vec3f fss = lobe.f0;
     if (lobe.fresnel == FresnelKind::Schlick) fss = mix(lobe.f0, lobe.f90, 1.0f / 21.0f);
     if (lobe.fresnel == FresnelKind::Dielectric)
@@ -242,7 +243,7 @@ BsdfValue PointBsdf::albedo() const {
         if (lobe.kind == LobeKind::Diffuse)
             albedo.diffuse += lobe.weight;
         else
-            albedo.glossy += lobe.weight * fresnel(lobe, lobe.cos_wi);
+            albedo.glossy += lobe.weight * fresnel(lobe, lobe.cos_wi) * lobe.directional_albedo;
     }
     return albedo;
 }

@@ -61,6 +61,7 @@ class PointBsdf {
         float alpha = 0.0f;
         float cos_wi = 0.0f;
         float importance = 0.0f;
+        float directional_albedo = 1.0f;     ///< without Fresnel; known where energy is compensated
         float burley = -1.0f;                ///< Burley's roughness; < 0 = not his model
         float oren_a = 0.0f, oren_b = 0.0f;  ///< diffuse; b = 0 is Lambert
         Vec3f oren_multiscatter{0.0f};
