@@ -149,6 +149,14 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
         step=TILE_PIXELS,
         options=set(),
     )
+    z_batch_size: IntProperty(
+        name="Z-Batch Size",
+        description="Regular sampling on the GPU: transparent grids that are peeled together. "
+        "Changes the time, never the picture",
+        default=26,
+        min=1,
+        max=65536,
+    )
     opacity_threshold: FloatProperty(
         name="Opacity Threshold",
         description="Surfaces behind this much accumulated opacity (0 to 1) are ignored; 1 = never",

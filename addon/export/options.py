@@ -18,6 +18,7 @@ _SETTINGS = (
     ("shading_rate", 0.0),
     ("grid_size", 256),
     ("bucket_size", 64),
+    ("z_batch_size", 26),
     ("opacity_threshold", 0.996),
     ("light_samples", 8),
     ("device", "AUTO"),

@@ -41,7 +41,6 @@ std::vector<Vec4f> device_passes(const RasterFrame& frame) {
 
 RasterDevice::RasterDevice(const RasterFrame& frame, const gl::ContextInfo& info)
     : m_frame(frame),
-      m_layered(info.layer_in_vertex_shader),
       m_target(frame.filter, layers_wanted(frame, info), info.max_texture_size),
       m_accumulate(accumulate_program(frame.filter.lattice)),
       m_mark("seen grids", {{GL_COMPUTE_SHADER, gl::shader_source("raster/mark_seen.comp")}}),
@@ -67,7 +66,7 @@ gl::Program& RasterDevice::program(RasterOutput output) {
     auto& program = m_programs[static_cast<int>(output)];
     if (!program) {
         const gl::Defines defines{{"PERSPECTIVE", m_frame.projection.perspective ? "1" : "0"},
-                                  {"LAYERED", m_layered ? "1" : "0"},
+                                  {"LAYERED", m_target.layers() > 1 ? "1" : "0"},
                                   {"OUTPUT", name_of(output)}};
         program.emplace("grids",
                         std::vector<gl::Stage>{

@@ -70,7 +70,6 @@ class RasterDevice {
     gl::Program& program(RasterOutput output);
 
     const RasterFrame& m_frame;
-    bool m_layered;
     RasterTarget m_target;
     std::optional<RasterPeel> m_peel;
     std::optional<gl::Program> m_programs[4];

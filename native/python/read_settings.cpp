@@ -68,6 +68,8 @@ void read_options(const Record& r, Options& o) {
     o.bucket_size =
         in_range(r, "bucket_size", r.integer("bucket_size", o.bucket_size), kTileSize, 4096);
     if (o.bucket_size % kTileSize) r.fail("'bucket_size' must be a multiple of 16 pixels");
+    o.z_batch_size =
+        in_range(r, "z_batch_size", r.integer("z_batch_size", o.z_batch_size), 1, 65536);
     o.opacity_threshold =
         at_least(r, "opacity_threshold", r.number("opacity_threshold", o.opacity_threshold), 0.0);
     o.seed = static_cast<std::uint32_t>(r.integer("seed", 0));

@@ -84,6 +84,7 @@ RasterFrame make_raster_frame(const Scene& scene, const Projection& projection,
     frame.passes = passes_of(table, scene);
     frame.opacity_threshold = scene.options.opacity_threshold;
     frame.film_transparent = scene.options.film_transparent;
+    frame.z_batch_size = scene.options.z_batch_size;
     frame.statistics = &statistics;
     frame.scene = &scene;
     frame.report = &report;

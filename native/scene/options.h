@@ -49,6 +49,7 @@ struct Options {
     float dicing_rate = 1.0f, shading_rate = 0.0f;
     int grid_size = 256;
     int bucket_size = 64;
+    int z_batch_size = 26;  ///< transparent grids that the raster executor peels together
     float opacity_threshold = 0.996f;
     std::uint32_t seed =
         0;  ///< of the sample table, the frame already mixed in where animate_seed is on

@@ -17,6 +17,7 @@ DEFAULTS = {
     "shading_rate": 0.0,
     "grid_size": 256,
     "bucket_size": 64,
+    "z_batch_size": 26,
     "opacity_threshold": 0.996,
     "motion_steps": 17,
     "seed": 0,

@@ -147,6 +147,13 @@ def test_opacity_threshold_is_exact(bucket):
     assert np.abs(image[..., 3] - 0.271).max() <= 1e-6
 
 
+def test_z_batches_change_no_bit():
+    scenes = [
+        render(busy_scene("RASTER", z_batch_size=size, opacity_threshold=0.5)) for size in (1, 10, 1000)
+    ]
+    assert np.array_equal(scenes[0], scenes[1]) and np.array_equal(scenes[0], scenes[2])
+
+
 def test_opaque_hides_what_is_behind():
     """Case 44 and M6."""
     front = [(1, 0.25, (1, 0, 0)), (2, None, (0, 1, 0))]
