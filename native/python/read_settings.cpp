@@ -77,8 +77,8 @@ void read_options(const Record& r, Options& o) {
         in_range(r, "light_samples", r.integer("light_samples", o.light_samples), 1, 65536);
     o.device =
         static_cast<Device>(choice(r, "device", r.text("device", "AUTO"), {"AUTO", "CPU", "GPU"}));
-    o.executor = static_cast<Executor>(
-        choice(r, "executor", r.text("executor", "AUTO"), {"AUTO", "REFERENCE", "SIMD", "RASTER"}));
+    o.executor = static_cast<Executor>(choice(r, "executor", r.text("executor", "AUTO"),
+                                              {"AUTO", "REFERENCE", "SIMD", "RASTER", "COMPUTE"}));
     o.threads = in_range(r, "threads", r.integer("threads", 0), 0, 1024);
     o.film_transparent = r.boolean("film_transparent", false);
     o.depth_pass = r.boolean("depth_pass", false);
