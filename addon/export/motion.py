@@ -84,28 +84,34 @@ def _first_level(ticks):
 
 
 def _paths(scene, steps):
-    """(key, {tick: array [m, ...]}, measure in pixels) of the camera, of places, of deformations."""
+    """(key, path, seen, measure in pixels) of the camera, of places, of deformations.
+
+    `path` is what is exported, {tick: array [m, ...]}.  `seen` is what has to be straight: native code
+    draws straight lines in camera space, so a camera is seen as its inverse, and places through it.
+    """
     scale = PixelScale(scene, steps.cameras)
     cameras = {tick: steps.cameras[tick][None] for tick in sorted(steps.cameras)}
     at_frame = steps.cameras[steps.frame_tick]
-    if blurs(scene.camera) and any((camera != at_frame).any() for camera in cameras.values()):
-        yield "CAMERA", cameras, scale.camera()
+    moves = blurs(scene.camera) and any((camera != at_frame).any() for camera in cameras.values())
+    if moves:
+        yield "CAMERA", cameras, {t: scale.views[t][None] for t in cameras}, scale.camera()
     things, places = steps.places()
     if len(things):
-        yield things, places, scale.places(things, places)
+        seen = {t: scale.views[t] @ m for t, m in places.items()} if moves else places
+        yield things, places, seen, scale.places(things, places)
     for index, path in steps.points().items():
-        yield index, path, scale.points(index)
+        yield index, path, path, scale.points(index)
 
 
 def _bends(scene, steps, stride):
-    return any(bends_still(path, stride, measure) for _, path, measure in _paths(scene, steps))
+    return any(bends_still(seen, stride, measure) for _, _, seen, measure in _paths(scene, steps))
 
 
 def _result(scene, steps, ticks, level):
     motion = Motion(scene.camera_record["world_from_camera"])
     stride = ticks // level
-    for key, path, measure in _paths(scene, steps):
-        segments = keep_fewest(path, ticks, level, measure)
+    for key, path, seen, measure in _paths(scene, steps):
+        segments = keep_fewest(seen, ticks, level, measure)
         if isinstance(key, np.ndarray):
             knots = np.stack([path[tick] for tick in range(0, ticks + 1, stride)])
             motion.tracks = Tracks(key, knots, segments)

@@ -14,6 +14,8 @@ class PixelScale:
     Args:
         scene: frame_scene.FrameScene.
         cameras: {tick: float64 [4, 4] world from camera}.
+
+    `views` holds their inverses.
     """
 
     def __init__(self, scene, cameras):
@@ -21,7 +23,7 @@ class PixelScale:
         self._focal = max(scene.camera_record["scale"])
         self._perspective = scene.camera_record["kind"] == "PERSPECTIVE"
         self._near = scene.camera_record["clip"][0]
-        self._views = {tick: inverse(matrix) for tick, matrix in cameras.items()}
+        self.views = {tick: inverse(matrix) for tick, matrix in cameras.items()}
 
     def places(self, things, path):
         """measure([m, 4, 4]) -> pixels [m] by which points of things go astray with their matrices.
@@ -44,7 +46,7 @@ class PixelScale:
         """measure([V, 3]) -> pixels [1], in the instance that shows the geometry largest."""
         things = self._scene.things_of(geometry)
         matrices = self._scene.visit.matrices[things]
-        scale = self._per_metre(things, dict.fromkeys(self._views, matrices))
+        scale = self._per_metre(things, dict.fromkeys(self.views, matrices))
         stretch = np.linalg.norm(matrices[:, :3, :3], axis=1).max(axis=1)
         most = float(np.max(scale * stretch, initial=0.0))
 
@@ -54,22 +56,24 @@ class PixelScale:
         return measure
 
     def camera(self):
-        """measure([1, 4, 4]) -> pixels [1]: of what stands still, and of what is infinitely far.
-
-        To first order a camera that is wrong by D sees a point P of its own space displaced by D P.
-        """
+        """measure([1, 4, 4]) -> pixels [1]: of what stands still, and of what is infinitely far, with
+        a camera_from_world that is wrong by so much."""
         scan = self._scene.visit
         things = np.arange(0, len(scan.kind), max(len(scan.kind) // _MOST_PROBES, 1))
         center, _ = self._scene.bounds(things)
-        view = next(iter(self._views.values()))
-        seen = np.einsum("ij,njk,nk->ni", view, scan.matrices[things], center)
-        seen = seen[np.isfinite(seen).all(axis=1)]
+        view = next(iter(self.views.values()))
+        places = np.einsum("njk,nk->nj", scan.matrices[things], center)
+        depth = places @ view[2]
+        kept = np.isfinite(places).all(axis=1) & np.isfinite(depth)
         if self._perspective:
-            seen = seen[seen[:, 2] > self._near]
-            seen = np.vstack([seen / seen[:, 2:3], [[0.0, 0.0, 1.0, 0.0]]])
+            kept &= depth > self._near
+            far = np.append(view[2, :3], 0.0)  # the direction of the axis, 1 m away
+            probes = np.vstack([places[kept] / depth[kept, None], far])
+        else:
+            probes = places[kept]
 
         def measure(difference):
-            astray = np.linalg.norm(seen @ difference[0].T, axis=1)
+            astray = np.linalg.norm(probes @ difference[0].T, axis=1)
             return np.max(astray, initial=0.0, keepdims=True) * self._focal
 
         return measure
@@ -81,7 +85,7 @@ class PixelScale:
         center, radius = self._scene.bounds(things)
         nearest, farthest = np.full(len(things), np.inf), np.full(len(things), -np.inf)
         for tick, matrices in path.items():
-            depth = np.einsum("nij,nj->ni", matrices, center) @ self._views[tick][2]
+            depth = np.einsum("nij,nj->ni", matrices, center) @ self.views[tick][2]
             reach = radius * np.linalg.norm(matrices[:, :3, :3], axis=(1, 2))
             nearest = np.minimum(nearest, depth - reach)
             farthest = np.maximum(farthest, depth + reach)

@@ -63,9 +63,9 @@ Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& fra
       constant_background(constant_background_of(shading)),
       choice(choose_executor(scene, report)),
       raster(choice.executor == Executor::Raster
-                 ? std::make_unique<RasterHider>(*choice.gl,
-                                                 make_raster_frame(scene, view.projection, table,
-                                                                   statistics, report))
+                 ? std::make_unique<RasterHider>(
+                       *choice.gl,
+                       make_raster_frame(scene, view.projection, table, statistics, report))
                  : nullptr),
       film(scene.options),
       layout(make_layout(scene, film, raster != nullptr)),

@@ -28,9 +28,9 @@ inline std::uint64_t grid_seed(const GridKey& key, std::uint32_t frame_seed) {
     return mix_bits(mix_bits(face + 0x9e3779b97f4a7c15ULL * (frame_seed + 1ULL)) ^ key.path);
 }
 
-/// The first three dimensions of Sobol's sequence, Owen-scrambled by hashing (Laine and Karras 2011;
-/// Burley 2020).  Any power-of-two prefix of the first two is a (0, m, 2)-net: stratified in every
-/// elementary interval.
+/// The first three dimensions of Sobol's sequence, Owen-scrambled by hashing (Laine and Karras
+/// 2011; Burley 2020).  Any power-of-two prefix of the first two is a (0, m, 2)-net: stratified in
+/// every elementary interval.
 class SobolPoints {
   public:
     explicit SobolPoints(std::uint64_t seed)

@@ -149,7 +149,8 @@ def test_opacity_threshold_is_exact(bucket):
 
 def test_z_batches_change_no_bit():
     scenes = [
-        render(busy_scene("RASTER", z_batch_size=size, opacity_threshold=0.5)) for size in (1, 10, 1000)
+        render(busy_scene("RASTER", z_batch_size=size, opacity_threshold=0.5))
+        for size in (1, 10, 1000)
     ]
     assert np.array_equal(scenes[0], scenes[1]) and np.array_equal(scenes[0], scenes[2])
 
