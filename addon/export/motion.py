@@ -84,34 +84,44 @@ def _first_level(ticks):
 
 
 def _paths(scene, steps):
-    """(key, path, seen, measure in pixels) of the camera, of places, of deformations.
+    """(key, path, checks) of the camera, of places, of deformations.
 
-    `path` is what is exported, {tick: array [m, ...]}.  `seen` is what has to be straight: native code
-    draws straight lines in camera space, so a camera is seen as its inverse, and places through it.
+    `path` is what is exported, {tick: array [m, ...]}.  `checks` are [(path, measure in pixels)] of what
+    has to be straight.  Native code draws straight lines in camera space between the knots of camera
+    and thing together, and interpolates each of the two where only the other has a knot.  So both
+    have to hold by themselves, the camera as a view as well, and places as they are seen.
     """
     scale = PixelScale(scene, steps.cameras)
     cameras = {tick: steps.cameras[tick][None] for tick in sorted(steps.cameras)}
     at_frame = steps.cameras[steps.frame_tick]
     moves = blurs(scene.camera) and any((camera != at_frame).any() for camera in cameras.values())
     if moves:
-        yield "CAMERA", cameras, {t: scale.views[t][None] for t in cameras}, scale.camera()
+        views = {tick: scale.views[tick][None] for tick in cameras}
+        yield "CAMERA", cameras, [(cameras, scale.camera()), (views, scale.view())]
     things, places = steps.places()
     if len(things):
-        seen = {t: scale.views[t] @ m for t, m in places.items()} if moves else places
-        yield things, places, seen, scale.places(things, places)
+        measure = scale.places(things, places)
+        checks = [(places, measure)]
+        if moves:
+            checks.append(({t: scale.views[t] @ m for t, m in places.items()}, measure))
+        yield things, places, checks
     for index, path in steps.points().items():
-        yield index, path, path, scale.points(index)
+        yield index, path, [(path, scale.points(index))]
 
 
 def _bends(scene, steps, stride):
-    return any(bends_still(seen, stride, measure) for _, _, seen, measure in _paths(scene, steps))
+    return any(
+        bends_still(path, stride, measure)
+        for _, _, checks in _paths(scene, steps)
+        for path, measure in checks
+    )
 
 
 def _result(scene, steps, ticks, level):
     motion = Motion(scene.camera_record["world_from_camera"])
     stride = ticks // level
-    for key, path, seen, measure in _paths(scene, steps):
-        segments = keep_fewest(seen, ticks, level, measure)
+    for key, path, checks in _paths(scene, steps):
+        segments = np.lcm.reduce([keep_fewest(p, ticks, level, measure) for p, measure in checks])
         if isinstance(key, np.ndarray):
             knots = np.stack([path[tick] for tick in range(0, ticks + 1, stride)])
             motion.tracks = Tracks(key, knots, segments)

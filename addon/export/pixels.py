@@ -57,7 +57,27 @@ class PixelScale:
 
     def camera(self):
         """measure([1, 4, 4]) -> pixels [1]: of what stands still, and of what is infinitely far, with
-        a camera_from_world that is wrong by so much."""
+        a world_from_camera that is wrong by so much.
+
+        To first order a camera that is wrong by D sees a point P of its own space displaced by D P.
+        """
+        places, view = self._probes()
+        return self._astray(places @ view.T)
+
+    def view(self):
+        """The same with a camera_from_world that is wrong by so much."""
+        return self._astray(self._probes()[0])
+
+    def _astray(self, probes):
+        def measure(difference):
+            astray = np.linalg.norm(probes @ difference[0].T, axis=1)
+            return np.max(astray, initial=0.0, keepdims=True) * self._focal
+
+        return measure
+
+    def _probes(self):
+        """Homogeneous places of the world, float64 [p, 4], scaled to lie 1 m before the camera where
+        it is perspective; and the view that they were scaled by."""
         scan = self._scene.visit
         things = np.arange(0, len(scan.kind), max(len(scan.kind) // _MOST_PROBES, 1))
         center, _ = self._scene.bounds(things)
@@ -65,18 +85,11 @@ class PixelScale:
         places = np.einsum("njk,nk->nj", scan.matrices[things], center)
         depth = places @ view[2]
         kept = np.isfinite(places).all(axis=1) & np.isfinite(depth)
-        if self._perspective:
-            kept &= depth > self._near
-            far = np.append(view[2, :3], 0.0)  # the direction of the axis, 1 m away
-            probes = np.vstack([places[kept] / depth[kept, None], far])
-        else:
-            probes = places[kept]
-
-        def measure(difference):
-            astray = np.linalg.norm(probes @ difference[0].T, axis=1)
-            return np.max(astray, initial=0.0, keepdims=True) * self._focal
-
-        return measure
+        if not self._perspective:
+            return places[kept], view
+        kept &= depth > self._near
+        far = np.append(view[2, :3], 0.0)
+        return np.vstack([places[kept] / depth[kept, None], far]), view
 
     def _per_metre(self, things, path):
         """Pixels a metre, float64 [m]; 0 for what is behind the camera all the time."""
