@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How many pixels of the frame a distance in the scene is, in the worst place."""
 
+from functools import cached_property
+
 import numpy as np
 
 from .transforms import inverse
@@ -61,12 +63,12 @@ class PixelScale:
 
         To first order a camera that is wrong by D sees a point P of its own space displaced by D P.
         """
-        places, view = self._probes()
+        places, view = self._probes
         return self._astray(places @ view.T)
 
     def view(self):
         """The same with a camera_from_world that is wrong by so much."""
-        return self._astray(self._probes()[0])
+        return self._astray(self._probes[0])
 
     def _astray(self, probes):
         def measure(difference):
@@ -75,6 +77,7 @@ class PixelScale:
 
         return measure
 
+    @cached_property
     def _probes(self):
         """Homogeneous places of the world, float64 [p, 4], scaled to lie 1 m before the camera where
         it is perspective; and the view that they were scaled by."""

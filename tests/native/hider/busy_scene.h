@@ -2,6 +2,8 @@
 // Scenes on which executors are held against each other sample by sample, and the comparison.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstdlib>
@@ -146,6 +148,18 @@ inline Differences compare(const Shot& shot, const Seen& a, const Seen& b) {
         }
     }
     return d;
+}
+
+/// Bit for bit, fragments in their order too.
+inline void expect_equal(const TileStore& a, const TileStore& b) {
+    ASSERT_EQ(a.key, b.key);
+    ASSERT_EQ(a.id, b.id);
+    ASSERT_EQ(a.fragments.size(), b.fragments.size());
+    for (std::size_t i = 0; i < a.fragments.size(); ++i) {
+        ASSERT_EQ(a.fragments[i].key, b.fragments[i].key);
+        ASSERT_EQ(a.fragments[i].sample, b.fragments[i].sample);
+        ASSERT_EQ(a.fragments[i].id, b.fragments[i].id);
+    }
 }
 
 }  // namespace granita::test

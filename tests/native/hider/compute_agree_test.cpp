@@ -40,17 +40,6 @@ TEST_P(ComputeAgrees, SampleBySampleWithSimd) {
     EXPECT_GT(fragments, static_cast<std::size_t>(d.compared) / 4);
 }
 
-void expect_equal(const TileStore& a, const TileStore& b) {
-    ASSERT_EQ(a.key, b.key);
-    ASSERT_EQ(a.id, b.id);
-    ASSERT_EQ(a.fragments.size(), b.fragments.size());
-    for (std::size_t i = 0; i < a.fragments.size(); ++i) {
-        ASSERT_EQ(a.fragments[i].key, b.fragments[i].key);
-        ASSERT_EQ(a.fragments[i].sample, b.fragments[i].sample);
-        ASSERT_EQ(a.fragments[i].id, b.fragments[i].id);
-    }
-}
-
 TEST_P(ComputeAgrees, SplitWorkChangesNoBit) {
     Shot shot;
     make_busy(shot, GetParam());
