@@ -11,6 +11,7 @@ import traceback
 import bpy
 
 from . import bridge, command_line, final_render, frame_statistics, passes
+from .export import Kept
 from .export.report import Cancelled, ExportError
 
 ENGINE_ID = "GRANITA"
@@ -39,6 +40,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **kwargs)
         self.frame_statistics = frame_statistics.FrameStatistics()
+        self.kept = Kept()
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register(self, scene, renderlayer)
@@ -47,7 +49,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
         try:
             options = command_line.parse()
             self.frame_statistics.open(options.stats)
-            final_render.FinalRender(self, depsgraph, options).run(self.frame_statistics)
+            final_render.FinalRender(self, depsgraph, options, self.kept).run(self.frame_statistics)
         except Cancelled:
             self.frame_statistics.discard()
             if not self.test_break():

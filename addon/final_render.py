@@ -28,11 +28,12 @@ class FinalRender:
     then been told to the artist.
     """
 
-    def __init__(self, engine, depsgraph, options):
-        """`options`: of the command line; they win over the file."""
+    def __init__(self, engine, depsgraph, options, kept):
+        """`options`: of the command line; they win over the file.  `kept`: export.Kept of the engine."""
         self.engine = engine
         self.depsgraph = depsgraph
         self.options = options
+        self.kept = kept
         self.scene = depsgraph.scene.name
         self.layer = depsgraph.view_layer.name
         self.passes = passes.wanted(depsgraph.view_layer)
@@ -61,7 +62,10 @@ class FinalRender:
             raise SettingsError(f"scene '{self.scene}': stereoscopy is not supported")
 
         settings = self.depsgraph.scene_eval.granita
-        snapshot = export_frame(self.engine, self.depsgraph, settings, self.report, self._exporting)
+        kept = self.kept if render.use_persistent_data else None
+        snapshot = export_frame(
+            self.engine, self.depsgraph, settings, self.report, self._exporting, kept
+        )
         options = snapshot["options"]
         options.update(passes.requested(self.depsgraph.scene_eval, self.depsgraph.view_layer))
         options["bucket_size"] = -(-options["bucket_size"] // TILE_PIXELS) * TILE_PIXELS

@@ -4,32 +4,31 @@
     settings -> camera -> one walk over what is placed -> materials -> meshes -> lights, world
              -> the same again, as little as possible, at the other knots of the shutter
 
-All of it is copied: nothing of Blender's is kept after `export_frame` returns.
+All of it is copied: no reference to anything of Blender's is kept after `export_frame` returns.
 """
 
 from dataclasses import replace
 
 import numpy as np
 
-from .attributes import requested_names
 from .camera import camera_record
-from .depsgraph import visit
+from .changes import originals
 from .frame_scene import FrameScene
-from .geometry import read_geometries
-from .instance import build_instances, collect_materials, kind_table, usable
+from .instance import place
 from .motion import sample_motion
 from .options import options_record, scene_frame
 from .path import no_tracks
+from .persistent import Kept
 from .report import Cancelled, ExportError, Report
 from .shutter import Clock, scene_shutter
 from .snapshot import Snapshot
 from .transforms import is_finite
 from .velocity import moved_points
 
-__all__ = ["Cancelled", "ExportError", "Report", "export_frame"]
+__all__ = ["Cancelled", "ExportError", "Kept", "Report", "export_frame"]
 
 
-def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False):
+def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False, kept=None):
     """Copies the frame at which the depsgraph stands.
 
     Args:
@@ -39,6 +38,8 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         settings: `scene.granita`, anything with some of its properties, or None for the defaults.
         report: Report, or a function of (datablock, message), for what the frame survives.
         check_cancel: called often; raises, or returns true, to end the export.
+        kept: persistent.Kept of the engine where Blender keeps its evaluated scene from frame to frame:
+            only what changed is read then.
 
     Returns:
         dict for `granita_core.Scene`.
@@ -48,7 +49,8 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         Cancelled, or what check_cancel raises.
     """
     scene, view_layer = depsgraph.scene, depsgraph.view_layer
-    clock = Clock(engine, scene)
+    kept = kept if kept is not None else Kept()
+    clock = Clock(engine, scene, lambda: kept.note(depsgraph))
     frame = scene_frame(scene.render)
     shutter = scene_shutter(scene, settings)
     options = options_record(scene, view_layer, settings, frame, shutter.frame_time)
@@ -56,25 +58,20 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
     camera = _render_camera(engine, scene)
     camera_at_frame = camera_record(camera, frame, depsgraph, report)
 
-    scan = visit(depsgraph, report, check_cancel)
-    override = depsgraph.view_layer_eval.material_override
-    used_materials, slots = collect_materials(scan.kinds, override)
-    materials, images, world, lights = _shading(depsgraph, used_materials, scan, report)
-    sources, geometry_of_kind = read_geometries(
-        scan, requested_names(materials), depsgraph, report, check_cancel
-    )
-    table = kind_table(scan.kinds, view_layer, geometry_of_kind, slots)
-    chosen = usable(scan, table, report)
-
+    placed = kept.placed(depsgraph, report, check_cancel)
+    world, lights, images = _lighting(depsgraph, placed, report)
+    placed.choose(report)
+    scan, sources = placed.scan, placed.sources
     at_frame = FrameScene(
         depsgraph=depsgraph,
         camera=camera,
         camera_record=camera_at_frame,
         frame=frame,
         visit=scan,
+        plain=placed.plain,
         sources=sources,
-        geometry_of_kind=geometry_of_kind,
-        is_light=np.array([kind.type == "LIGHT" for kind in scan.kinds], dtype=bool),
+        geometry_of_kind=placed.table.geometry,
+        is_light=placed.is_light,
     )
     tracks, points = no_tracks(), {}
     if shutter.segments:
@@ -83,6 +80,8 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         tracks, points = motion.tracks, motion.points
         points.update(_flying(sources, shutter, scene.render))
     _place_lights(lights, scan, tracks, report)
+    instances = place(placed.instances, scan, placed.chosen, tracks, report)
+    kept.keep(placed)
     return Snapshot(
         options=options,
         camera=camera_at_frame,
@@ -90,8 +89,8 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
             replace(source.geometry, points=points.get(index, source.geometry.points))
             for index, source in enumerate(sources)
         ],
-        instances=build_instances(scan, chosen, table, tracks, report),
-        materials=materials,
+        instances=instances,
+        materials=placed.materials,
         images=images,
         lights=[light for _, light in lights],
         world=world,
@@ -106,22 +105,22 @@ def _render_camera(engine, scene):
     return camera.original
 
 
-def _shading(depsgraph, used_materials, scan, report):
-    """Materials, images, world, and lights without a place: [(index in the scan, record)]."""
+def _lighting(depsgraph, placed, report):
+    """World, lights without a place [(thing of the scan, record)], and the images of all nodes."""
     from .light import light_record
-    from .material import export_materials
     from .world import export_world
 
-    aovs = {aov.name for aov in depsgraph.view_layer.aovs if aov.is_valid}
-    materials, images = export_materials(used_materials, report, aovs)
+    images = list(placed.images)
     world = export_world(depsgraph.scene_eval, depsgraph.view_layer_eval, report, images)
+    things = placed.lights()
+    everything = originals() if len(things) else {}
     no_place = np.eye(4)[None]
-    is_light = np.array([kind.type == "LIGHT" for kind in scan.kinds], dtype=bool)
-    lights = [
-        (i, light_record(scan.kinds[scan.kind[i]].source, no_place, report))
-        for i in np.flatnonzero(is_light[scan.kind])
-    ]
-    return materials, images, world, lights
+    lights = []
+    for thing in things:
+        address = placed.scan.kinds[placed.scan.kind[thing]].address
+        lamp = everything[address].evaluated_get(depsgraph)
+        lights.append((thing, light_record(lamp, no_place, report)))
+    return world, lights, images
 
 
 def _flying(sources, shutter, render):

@@ -34,12 +34,11 @@ class Plain:
         many = np.bincount(scan.kind, minlength=len(scan.kinds)) != 1
         self.thing, self.entangled = {}, set()
         for index, kind in enumerate(scan.kinds):
-            pointer = kind.source.original.as_pointer()
-            if kind.parent is not None:
-                self.entangled.add(kind.parent.original.as_pointer())
-            if many[index] or scan.is_instance[first[index]] or pointer in self.thing:
-                self.entangled.add(pointer)
-            self.thing[pointer] = int(first[index])
+            if kind.parent_address:
+                self.entangled.add(kind.parent_address)
+            if many[index] or scan.is_instance[first[index]] or kind.address in self.thing:
+                self.entangled.add(kind.address)
+            self.thing[kind.address] = int(first[index])
 
     def changes(self, depsgraph):
         """Changes of the last step, or None where only a walk can tell."""
@@ -57,21 +56,59 @@ class Plain:
                 return None
             if not isinstance(thing, bpy.types.Object):
                 continue  # an object that uses it is named as well
-            pointer = thing.original.as_pointer()
-            if pointer in self.entangled or thing.is_instancer:
-                return None
-            index = self.thing.get(pointer)
+            index = self.index_of(thing)
             if index is None:
-                if thing.type in _NEVER_SEEN:
-                    continue
                 return None
-            if thing.hide_render:
-                return None
+            if index < 0:
+                continue
             if moved:
                 found.places[index] = from_matrix(thing.matrix_world)
             if formed:
                 found.objects[index] = thing
         return found
+
+    def index_of(self, thing):
+        """Where an evaluated Object is in the visit; -1 where it is nothing to see, None where only a walk
+        can tell."""
+        pointer = thing.original.as_pointer()
+        if pointer in self.entangled or thing.is_instancer:
+            return None
+        index = self.thing.get(pointer)
+        if index is None:
+            return -1 if thing.type in _NEVER_SEEN else None
+        return None if thing.hide_render else index
+
+
+class Touched:
+    """Everything that updates of the depsgraph named since it was made; by address of the original."""
+
+    def __init__(self):
+        self.moved, self.formed = set(), set()
+        self.otherwise = set()  # objects of which something else changed
+        self.collections = False
+
+    def add(self, depsgraph):
+        """What the last evaluation touched."""
+        import bpy
+
+        for update in depsgraph.updates:
+            moved, formed = update.is_updated_transform, update.is_updated_geometry
+            pointer = update.id.original.as_pointer()
+            if moved:
+                self.moved.add(pointer)
+            if formed:
+                self.formed.add(pointer)
+            if isinstance(update.id, bpy.types.Collection):
+                self.collections = True
+            if not (moved or formed) and isinstance(update.id, bpy.types.Object):
+                self.otherwise.add(pointer)
+
+
+def originals():
+    """{address: original Object}, of the whole file."""
+    import bpy
+
+    return {thing.as_pointer(): thing for thing in bpy.data.objects}
 
 
 def object_names():

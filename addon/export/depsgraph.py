@@ -12,14 +12,19 @@ The rules of that iterator, each learnt the hard way:
 """
 
 from array import array
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
+from types import SimpleNamespace
 
 import numpy as np
 
+from .blur_settings import blurs, fewest_segments
 from .hair import hair_material, hair_systems
 from .identity import combine, name_hash
+from .kind import Kind
 from .report import poll
-from .subdivision import Cage, find_cage, simplify_level
+from .subdivision import find_cage, simplify_level
+from .transforms import has_area
 
 _POLL_EVERY = 1024
 _RENDERED = {"CURVES", "LIGHT", "MESH", "POINTCLOUD"}
@@ -43,39 +48,6 @@ _NOT_SEEN = {
 
 
 @dataclass
-class Kind:
-    """What instances share that differ in their place alone."""
-
-    type: str  # "MESH", "CURVES", "POINTCLOUD", "HAIR" or "LIGHT"
-    name: str
-    source: object  # evaluated Object
-    parent: object  # evaluated Object that instances it, or None
-    data: object = None  # evaluated Mesh, Curves or PointCloud; None for a cage, hair and lights
-    cage: Cage = None
-    # Evaluated Material or None, one a slot; of the visit at the frame alone.
-    materials: list = field(default_factory=list)
-    system: str = ""  # the particle system of hair
-
-    @property
-    def label(self):
-        """Name of the geometry for messages."""
-        original = self.source.original
-        if self.type == "HAIR":
-            return f"particle system '{self.system}' of object '{original.name}'"
-        if original.type == "MESH" and self.type == "MESH":
-            return f"mesh '{original.data.name}'"
-        return f"object '{original.name}'"
-
-    def geometry_key(self):
-        """Equal for kinds that have one geometry."""
-        if self.type == "HAIR":
-            return self.source.as_pointer(), self.system
-        if self.cage is None:
-            return self.data.as_pointer()
-        return self.cage.sharing or (self.source.as_pointer(), "CAGE")
-
-
-@dataclass
 class Visit:
     """n placed things at one time."""
 
@@ -86,6 +58,29 @@ class Visit:
     random: np.ndarray  # uint32 [n], Blender's random id; 0 where it is no instance
     is_instance: np.ndarray  # bool [n]
     cages: dict  # address of an evaluated object -> its Cage or None
+
+    @cached_property
+    def order(self):
+        """int [n], ascending by identity."""
+        return np.argsort(self.identity)
+
+    @cached_property
+    def has_area(self):
+        """bool [n]; `move` keeps it true."""
+        return has_area(self.matrices)
+
+    def move(self, thing, matrix):
+        """Puts one thing elsewhere; matrix: float64 [4, 4]."""
+        self.matrices[thing] = matrix
+        self.has_area[thing] = has_area(matrix[None])[0]
+
+
+def kind_again(thing, depsgraph):
+    """The Kind of an evaluated Object that stands for itself, as a visit at the frame finds it; None where
+    it is not rendered.  What there is to report about it was reported by the visit."""
+    walk = _Walk(depsgraph, lambda _datablock, _message: None, None)
+    index = walk.kind_of(SimpleNamespace(object=thing), False)
+    return walk.kinds[index] if index >= 0 else None
 
 
 def visit(depsgraph, report, check_cancel, cages=None):
@@ -147,7 +142,7 @@ class _Walk:
 
     def kinds_of(self, instance, duplicate):
         """Indices in `kinds`: of the thing itself, where it is rendered, and of its hair."""
-        index = self._kind_of(instance, duplicate) if instance.show_self else -1
+        index = self.kind_of(instance, duplicate) if instance.show_self else -1
         found = (index,) if index >= 0 else ()
         if instance.show_particles and instance.object.particle_systems:
             found += self._hair_of(instance, duplicate)
@@ -165,14 +160,14 @@ class _Walk:
             for name in hair_systems(source, self._mode):
                 found.append(len(self.kinds))
                 kind = Kind("HAIR", source.name, source, parent, system=name)
+                self.kinds.append(kind)
                 if self._at_frame:
                     material = hair_material(source, name)
-                    kind.materials = [material] if material is not None else []
-                self.kinds.append(kind)
+                    self._look_closer(kind, [material] if material is not None else [])
             found = self._hair[key] = tuple(found)
         return found
 
-    def _kind_of(self, instance, duplicate):
+    def kind_of(self, instance, duplicate):
         """Index in `kinds`, or -1 for what is not rendered."""
         shown = instance.object
         kind_type = shown.type
@@ -211,7 +206,8 @@ class _Walk:
             kind = Kind(kind_type, shown.name, source, parent, data, cage)
             self.kinds.append(kind)
             if self._at_frame:
-                self._look_closer(kind, shown)
+                slots = () if kind_type == "LIGHT" else shown.material_slots
+                self._look_closer(kind, [slot.material for slot in slots])
         return index
 
     def _cage(self, source):
@@ -226,9 +222,14 @@ class _Walk:
     def _may_make_instances(source):
         return any(modifier.type == "NODES" for modifier in source.modifiers)
 
-    def _look_closer(self, kind, shown):
+    def _look_closer(self, kind, materials):
         """What does not change within the shutter."""
-        if kind.type != "LIGHT":
-            kind.materials = [slot.material for slot in shown.material_slots]
-            if kind.source.is_shadow_catcher:
-                self._report(f"object '{kind.name}'", "is a shadow catcher: rendered as it stands")
+        kind.materials = materials
+        kind.material_addresses = tuple(m.original.as_pointer() if m else 0 for m in materials)
+        owners = [kind.source] if kind.parent is None else [kind.source, kind.parent]
+        kind.address = kind.source.original.as_pointer()
+        kind.parent_address = owners[1].original.as_pointer() if kind.parent is not None else 0
+        kind.blurs = all(blurs(owner) for owner in owners)
+        kind.fewest_segments = fewest_segments(kind.source)
+        if kind.type not in {"HAIR", "LIGHT"} and kind.source.is_shadow_catcher:
+            self._report(f"object '{kind.name}'", "is a shadow catcher: rendered as it stands")

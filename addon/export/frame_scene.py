@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .changes import Plain
 from .depsgraph import Visit
 
 
@@ -15,6 +16,7 @@ class FrameScene:
     camera_record: dict  # camera.camera_record at the frame
     frame: object  # camera.Frame
     visit: Visit
+    plain: Plain
     sources: list  # of geometry.GeometrySource
     geometry_of_kind: np.ndarray  # int32 [kinds], -1 = none
     is_light: np.ndarray  # bool [kinds]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The distinct geometries of a visit, each read once."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,14 +24,22 @@ class GeometrySource:
 
     geometry: Geometry
     topology: object  # mesh.Topology or elements.Elements: `points_again`
+    key: tuple  # the same in another frame, as long as nothing of `pointers` changes
     cage: Cage  # or None
     example: int  # index of one thing of the visit that has it
     pointers: frozenset  # addresses of original datablocks that it is made from
     deforms: bool  # false where its deformation blur is switched off, or its velocity says it all
     velocity: np.ndarray  # float32 [V, 3] metres a second, or None
+    said: list  # [(datablock, message)], what there was to report
+
+    def is_true_after(self, touched):
+        """Whether it need not be read again after what a changes.Touched holds."""
+        # Blender hands hair out in world space: a place that changes moves its last bits.
+        moved = touched.moved if self.key[0] == "HAIR" else frozenset()
+        return self.pointers.isdisjoint(touched.formed) and self.pointers.isdisjoint(moved)
 
 
-def read_geometries(scan, requested, depsgraph, report, check_cancel):
+def read_geometries(scan, requested, depsgraph, report, check_cancel, known=()):
     """Reads every mesh, every set of curves and every point cloud of a visit.
 
     Args:
@@ -40,6 +48,7 @@ def read_geometries(scan, requested, depsgraph, report, check_cancel):
         depsgraph: evaluated.
         report: called with (datablock, message).
         check_cancel: true when the user has cancelled.
+        known: GeometrySources of another frame that are still true.
 
     Returns:
         (list of GeometrySource, int32 [kinds]: index in it, -1 for what has nothing to see).
@@ -48,18 +57,40 @@ def read_geometries(scan, requested, depsgraph, report, check_cancel):
     examples = np.zeros(len(scan.kinds), dtype=int)
     examples[scan.kind[::-1]] = np.arange(len(scan.kind))[::-1]
     sources, index = [], {}
+    known = {source.key: source for source in known}
     for number, kind in enumerate(scan.kinds):
         if kind.type == "LIGHT":
             continue
         poll(check_cancel)
-        key = kind.geometry_key()
+        key = kind.type, kind.geometry_key()
         if key not in index:
-            source = _read(kind, int(examples[number]), requested, depsgraph, report, check_cancel)
+            example = int(examples[number])
+            source = known.get(_lasting_key(kind))
+            if source is not None:
+                source = replace(source, example=example)
+                for entry in source.said:
+                    report(*entry)
+            else:
+                source = read_source(kind, example, requested, depsgraph, report, check_cancel)
             index[key] = len(sources) if source else -1
             if source:
                 sources.append(source)
         of_kind[number] = index[key]
     return sources, of_kind
+
+
+def read_source(kind, example, requested, depsgraph, report, check_cancel):
+    """The GeometrySource of one Kind, or None where there is nothing to see."""
+    said = []
+
+    def note(datablock, message):
+        said.append((datablock, message))
+        report(datablock, message)
+
+    source = _read(kind, example, requested, depsgraph, note, check_cancel)
+    if source is not None:
+        source.said = said
+    return source
 
 
 def _read(kind, example, requested, depsgraph, report, check_cancel):
@@ -79,16 +110,31 @@ def _read(kind, example, requested, depsgraph, report, check_cancel):
             velocity = read_velocity(mesh, kind.label, report)
     if found is None:
         return None
+    can_deform = deforms(kind.source)
+    return GeometrySource(
+        *found,
+        key=_lasting_key(kind),
+        cage=kind.cage,
+        example=example,
+        pointers=_pointers(kind),
+        deforms=can_deform and velocity is None,
+        velocity=velocity if can_deform else None,
+        said=[],
+    )
+
+
+def _lasting_key(kind):
+    """Blender keeps an evaluated datablock where it is until it evaluates it again; and an address that
+    was freed may be another object's, whence the original's."""
+    return kind.type, kind.address, kind.geometry_key()
+
+
+def _pointers(kind):
+    """Addresses of the original datablocks that a geometry is made from."""
     original = kind.source.original
     pointers = {original.as_pointer()}
     if original.data is not None:
         pointers.add(original.data.as_pointer())
-    can_deform = deforms(kind.source)
-    return GeometrySource(
-        *found,
-        cage=kind.cage,
-        example=example,
-        pointers=frozenset(pointers),
-        deforms=can_deform and velocity is None,
-        velocity=velocity if can_deform else None,
-    )
+    if kind.data is not None and kind.data.as_pointer() != kind.source.data.as_pointer():
+        pointers.add(kind.parent_address)  # made by the nodes of what instances it
+    return frozenset(pointers)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Placed geometries -> the snapshot's arrays."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,15 @@ class KindTable:
     flags: np.ndarray  # uint32
     object_index: np.ndarray  # int32
     slots: list  # of int32 arrays, material indices
+
+    def renew(self, index, kind, view_layer):
+        """Reads the settings of a kind again; whether they are others."""
+        before = self.flags[index], self.object_index[index]
+        self.flags[index], self.object_index[index] = (
+            _flags(kind, view_layer),
+            kind.source.pass_index,
+        )
+        return before != (self.flags[index], self.object_index[index])
 
 
 def kind_table(kinds, view_layer, geometry, slots):
@@ -106,28 +115,24 @@ def usable(scan, table, report):
     return np.flatnonzero(placed & finite)
 
 
-def build_instances(scan, chosen, table, tracks, report):
-    """The snapshot's instances.
+def unplaced_instances(scan, chosen, table):
+    """The snapshot's instances, with nothing but their places missing.
 
     Args:
         scan: depsgraph.Visit at the frame.
         chosen: int [n], which of its things.
         table: KindTable.
-        tracks: path.Tracks of the things of the scan.
-        report: called with (datablock, message).
     """
     kind = scan.kind[chosen]
     names = [table.name[k] for k in kind]
-    matrices, knots = tracks.table(scan.matrices, chosen)
-    _warn_of_points(names, matrices, knots, report)
     random = scan.random[chosen] / float(0xFFFFFFFF)
     for i in np.flatnonzero(~scan.is_instance[chosen]):
         random[i] = random_of_name(names[i])
     return Instances(
         name=names,
         geometry=table.geometry[kind],
-        knots=knots,
-        world_from_object=matrices,
+        knots=None,
+        world_from_object=None,
         slots=np.array([len(slots) for slots in table.slots], dtype=np.int32)[kind],
         materials=np.concatenate([*(table.slots[k] for k in kind), np.zeros(0, dtype=np.int32)]),
         flags=table.flags[kind],
@@ -137,10 +142,19 @@ def build_instances(scan, chosen, table, tracks, report):
     )
 
 
-def _warn_of_points(names, matrices, knots, report):
-    """Names what is scaled to nothing over the whole shutter; it has no area to render."""
-    if len(names) == 0:
-        return
-    seen = np.logical_or.reduceat(has_area(matrices), np.cumsum(knots) - knots)
-    for i in np.flatnonzero(~seen):
-        report(f"object '{names[i]}'", "is scaled to nothing: not visible")
+def place(instances, scan, chosen, tracks, report):
+    """The same with places.
+
+    Args:
+        instances: of `unplaced_instances`.
+        scan, chosen: as there.
+        tracks: path.Tracks of the things of the scan.
+        report: called with (datablock, message).
+    """
+    matrices, knots = tracks.table(scan.matrices, chosen)
+    first = np.cumsum(knots) - knots
+    # What is scaled to nothing over the whole shutter has no area to render.
+    for i in np.flatnonzero(~scan.has_area[chosen]):
+        if not has_area(matrices[first[i] : first[i] + knots[i]]).any():
+            report(f"object '{instances.name[i]}'", "is scaled to nothing: not visible")
+    return replace(instances, world_from_object=matrices, knots=knots)

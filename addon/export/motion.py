@@ -51,8 +51,8 @@ def sample_motion(clock, shutter, scene, report, check_cancel):
                 clock.go(shutter.offset(tick, ticks))
                 steps.read(tick, clock.knows_updates)
 
-    cages = {kind.source.as_pointer(): kind for kind in scene.visit.kinds if kind.cage is not None}
-    with cages_only([(kind.source, kind.cage) for kind in cages.values()], scene.depsgraph):
+    cages = {kind.address: kind.cage for kind in scene.visit.kinds if kind.cage is not None}
+    with cages_only(cages, scene.depsgraph):
         try:
             level = _first_level(ticks)
             read(range(0, ticks + 1, ticks // level))
@@ -72,8 +72,8 @@ def sample_motion(clock, shutter, scene, report, check_cancel):
 
 def _wanted_segments(scene):
     """What objects ask for themselves; the scene's limit yields to it."""
-    sources = {kind.source.as_pointer(): kind.source for kind in scene.visit.kinds}
-    return max(fewest_segments(thing) for thing in (scene.camera, *sources.values()))
+    kinds = scene.visit.kinds
+    return max([fewest_segments(scene.camera), *(kind.fewest_segments for kind in kinds)])
 
 
 def _first_level(ticks):

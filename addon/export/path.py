@@ -109,11 +109,9 @@ class Tracks:
         kept = segments[chosen]
         knots = kept + 1
         first = np.cumsum(knots) - knots
-        table = np.empty((int(knots.sum()), 4, 4))
-        still = kept == 0
-        table[first[still]] = at_frame[chosen[still]]
+        table = at_frame[np.repeat(chosen, knots)]
         most = len(self.matrices) - 1
-        for s in np.unique(kept[~still]):
+        for s in np.unique(kept[kept > 0]):
             these = kept == s
             rows = row[chosen[these]]
             for knot in range(s + 1):

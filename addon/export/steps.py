@@ -3,9 +3,8 @@
 
 import numpy as np
 
-from .blur_settings import blurs
 from .camera import camera_knot, lens_state
-from .changes import Plain, changed_geometry, moved
+from .changes import changed_geometry, moved
 from .depsgraph import visit
 from .report import poll
 from .subdivision import cage_mesh
@@ -26,9 +25,9 @@ class Steps:
         self._scene = scene
         self._report = report
         self._check_cancel = check_cancel
-        self._plain = Plain(scene.visit)
-        self._order = np.argsort(scene.visit.identity)
-        self._can_blur = scene.is_seen() & ~_still(scene.visit.kinds)[scene.visit.kind]
+        self._plain = scene.plain
+        can_blur = np.array([kind.blurs for kind in scene.visit.kinds], dtype=bool)
+        self._can_blur = scene.is_seen() & can_blur[scene.visit.kind]
         self._changed = set()  # addresses of datablocks
         self._rigid = set()  # geometries whose topology changed
         # As things were at the last time that was visited.
@@ -84,7 +83,7 @@ class Steps:
     def _walk(self, knows_updates):
         scan = self._scene.visit
         now = visit(self._scene.depsgraph, _silent, self._check_cancel, scan.cages)
-        here, there = match(scan.identity, self._order, now.identity)
+        here, there = match(scan.identity, scan.order, now.identity)
         usable = is_finite(now.matrices[there]) & self._can_blur[here]
         self._present[:] = ~self._can_blur
         self._present[here[usable]] = True
@@ -183,17 +182,6 @@ def hold_order(ticks, frame_tick):
     middle = ticks.index(frame_tick)
     later = [(ticks[i], ticks[i - 1]) for i in range(middle + 1, len(ticks))]
     return later + [(ticks[i], ticks[i + 1]) for i in range(middle - 1, -1, -1)]
-
-
-def _still(kinds):
-    """bool [kinds]: objects whose motion blur is switched off, by themselves or their instancer."""
-    return np.array(
-        [
-            not blurs(kind.source) or (kind.parent is not None and not blurs(kind.parent))
-            for kind in kinds
-        ],
-        dtype=bool,
-    )
 
 
 def _silent(_datablock, _message):

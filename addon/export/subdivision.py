@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .changes import originals
+
 # Blender's creases run from 0 to 1; OpenSubdiv's sharpness is 10 times their square, and 10 is
 # infinitely sharp.
 MAX_SHARPNESS = 10.0
@@ -102,25 +104,30 @@ def cages_only(cages, depsgraph):
     objects whose mesh nothing else in the file can read; the others are left alone.
 
     Args:
-        cages: [(evaluated Object, Cage)].
+        cages: {address of an original Object: Cage}.
         depsgraph: evaluated.
     """
-    read = _referenced([evaluated.original for evaluated, _ in cages])
+    everything = originals() if cages else {}
+    read = _referenced([everything[address] for address in cages])
     switched = []
     try:
-        for evaluated, cage in cages:
-            if evaluated.original in read or evaluated.rigid_body is not None:
+        for address, cage in cages.items():
+            original = everything[address]
+            if original in read or original.rigid_body is not None:
                 continue
+            evaluated = original.evaluated_get(depsgraph)
             flags = np.zeros(len(evaluated.modifiers), dtype=np.bool_)
             evaluated.modifiers.foreach_get(cage.flag, flags)
-            switched.append((evaluated.original, cage.flag, flags.copy()))
+            switched.append((address, cage.flag, flags.copy()))
             flags[cage.index] = False
             evaluated.modifiers.foreach_set(cage.flag, flags)
         yield
     finally:
-        for original, flag, flags in switched:
-            # Found anew: the evaluated copy may have been replaced meanwhile.
-            modifiers = original.evaluated_get(depsgraph).modifiers
+        # Found anew: a handler of another add-on may have deleted or replaced them meanwhile.
+        everything = originals() if switched else {}
+        for address, flag, flags in switched:
+            original = everything.get(address)
+            modifiers = original.evaluated_get(depsgraph).modifiers if original is not None else ()
             if len(modifiers) == len(flags):
                 modifiers.foreach_set(flag, flags)
 

@@ -4,11 +4,13 @@
 The result of a script's export (engine None, the viewport's depsgraph) is there as well.
 """
 
+import time
+from contextlib import contextmanager
 from types import SimpleNamespace
 
 import bpy
 
-from granita.export import Report, export_frame
+from granita.export import Kept, Report, export_frame
 
 
 class ExportProbe(bpy.types.RenderEngine):
@@ -25,45 +27,82 @@ class ExportProbe(bpy.types.RenderEngine):
         job = ExportProbe.job
         try:
             job.before(depsgraph)
-            job.snapshot = export_frame(self, depsgraph, job.settings, job.report, job.cancelled)
+            started = time.thread_time()
+            job.snapshot = export_frame(
+                self, depsgraph, job.settings, job.report, job.cancelled, job.kept
+            )
+            job.seconds = time.thread_time() - started
         except Exception as error:
             job.error = error
         job.time_after = depsgraph.scene.frame_current + depsgraph.scene.frame_subframe
         job.after(depsgraph)
 
 
-def _nothing(_depsgraph):
+def _nothing(_):
     pass
+
+
+@contextmanager
+def _probing(scene):
+    bpy.utils.register_class(ExportProbe)
+    engine = scene.render.engine
+    try:
+        scene.render.engine = ExportProbe.bl_idname
+        yield
+    finally:
+        scene.render.engine = engine
+        bpy.utils.unregister_class(ExportProbe)
+        ExportProbe.job = None
+
+
+def _render(
+    scene, motion_steps, cancelled=lambda: False, before=_nothing, after=_nothing, kept=None
+):
+    job = SimpleNamespace(
+        settings=SimpleNamespace(motion_steps=motion_steps),
+        report=Report(),
+        cancelled=cancelled,
+        snapshot=None,
+        seconds=None,
+        error=None,
+        time_after=None,
+        before=before,
+        after=after,
+        kept=kept,
+    )
+    ExportProbe.job = job
+    bpy.ops.render.render(scene=scene.name)
+    if job.error is not None:
+        job.error.time_after = job.time_after
+        raise job.error
+    return job
 
 
 def through_engine(
     scene, *, motion_steps=3, cancelled=lambda: False, before=_nothing, after=_nothing
 ):
     """(snapshot, Report, time at which the scene stood afterwards); raises what export raises."""
-    job = SimpleNamespace(
-        settings=SimpleNamespace(motion_steps=motion_steps),
-        report=Report(),
-        cancelled=cancelled,
-        snapshot=None,
-        error=None,
-        time_after=None,
-        before=before,
-        after=after,
-    )
-    ExportProbe.job = job
-    bpy.utils.register_class(ExportProbe)
-    engine = scene.render.engine
-    try:
-        scene.render.engine = ExportProbe.bl_idname
-        bpy.ops.render.render(scene=scene.name)
-    finally:
-        scene.render.engine = engine
-        bpy.utils.unregister_class(ExportProbe)
-        ExportProbe.job = None
-    if job.error is not None:
-        job.error.time_after = job.time_after
-        raise job.error
+    with _probing(scene):
+        job = _render(scene, motion_steps, cancelled, before, after)
     return job.snapshot, job.report, job.time_after
+
+
+def frame_by_frame(scene, frames, *, persistent, keeps=True, motion_steps=3, edit=_nothing):
+    """Exports frames as an animation does; yields of each its `snapshot`, `report` and `seconds`, of the
+    exporting thread alone.
+
+    Args:
+        persistent: with Persistent Data.
+        keeps: whether export keeps then what it read, from frame to frame.
+        edit: called with the number of each frame before it is rendered.
+    """
+    scene.render.use_persistent_data = persistent
+    kept = Kept() if persistent and keeps else None
+    with _probing(scene):
+        for frame in frames:
+            scene.frame_set(frame)
+            edit(frame)
+            yield _render(scene, motion_steps, kept=kept)
 
 
 def through_script(*, motion_steps=3):

@@ -3,10 +3,9 @@
 
 import bpy
 import export_probe
-import numpy as np
 import pytest
 import scene_parts
-from motion_parts import drive, shape_key, with_shutter
+from motion_parts import drive, with_shutter
 
 from granita.export import Cancelled
 
@@ -50,29 +49,3 @@ def test_original_data_is_untouched(moving):
     export_probe.through_engine(moving)
     assert modifier.show_render and modifier.show_viewport
     assert len(square.data.vertices) == 4 and len(bpy.data.meshes) == 1
-
-
-def same(a, b):
-    if isinstance(a, dict):
-        return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
-    if isinstance(a, (list, tuple)):
-        return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b))
-    return np.array_equal(a, b)
-
-
-def test_persistent_data_changes_nothing(moving):
-    square = scene_parts.add_square(moving)
-    drive(square, "location", "frame", 0)
-    drive(shape_key(square), "value", "frame / 20")
-    square.modifiers.new("Subsurf", "SUBSURF").render_levels = 2
-    scene_parts.add_square(moving, "Still").modifiers.new("Subsurf", "SUBSURF")
-
-    def frames():
-        for frame in (10, 11, 12):
-            moving.frame_set(frame)
-            yield export_probe.through_engine(moving)[0]
-
-    fresh = list(frames())
-    moving.render.use_persistent_data = True
-    assert all(same(a, b) for a, b in zip(fresh, frames(), strict=True))
-    assert not same(fresh[0], fresh[1])
