@@ -115,9 +115,11 @@ void composite(benchmark::State& state) {
     for (const Grid& grid : grids) hider->hide(grid);
     auto& store = hider->finish()[0];
     const CompositeSettings settings{camera.projection, 1, true};
-    for (auto _ : state)
-        benchmark::DoNotOptimize(
-            composite_tile(store, hider->tile_samples(0), hider->pool(), {}, settings));
+    SampleColors colors;
+    for (auto _ : state) {
+        composite_tile(store, hider->tile_samples(0), hider->pool(), {}, settings, colors);
+        benchmark::DoNotOptimize(colors.red.data());
+    }
     state.counters["samples"] = benchmark::Counter(
         static_cast<double>(state.iterations()) * 256 * 64, benchmark::Counter::kIsRate);
 }
@@ -128,7 +130,7 @@ void filter(benchmark::State& state) {
     const SampleTable table(bench_options(), pixel_camera());
     TileSamples samples;
     table.fill_tile({1, 1}, {}, samples);
-    const std::vector<SampleColor> colors(samples.x.size());
+    const SampleColors colors(samples.x.size());
     for (auto _ : state) benchmark::DoNotOptimize(film.filter_tile({1, 1}, samples, colors));
     state.counters["samples"] = benchmark::Counter(
         static_cast<double>(state.iterations()) * 256 * 64, benchmark::Counter::kIsRate);

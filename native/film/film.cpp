@@ -49,20 +49,10 @@ Film::Film(const Options& options)
     : m_options(options),
       m_channels(options),
       m_filter(options.pixel_filter, options.filter_width),
+      m_pieces(m_filter),
       m_sample_pixels(options.crop.empty() ? Rect{} : grown(options.crop, m_filter.radius())),
       m_pending(std::make_unique<Pending>()) {
     GRANITA_CHECK(options.bucket_size > 0);
-    // Linear between 4096 steps a radius: the largest error is h^2 / 8 max|f''| < 1e-6.
-    const auto value = [&](int step) {
-        return step < kFilterSteps
-                   ? m_filter.evaluate(m_filter.radius() * static_cast<float>(step) / kFilterSteps)
-                   : 0.0f;
-    };
-    for (int i = 0; i <= kFilterSteps; ++i) {
-        m_table.push_back(value(i));
-        m_table.push_back(value(i + 1) - value(i));
-    }
-
     if (options.crop.empty()) return;
     m_pending->cells = cells_over(options.crop, options.bucket_size);
     const Rect& cells = m_pending->cells;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "film/filter.h"
+#include "film/filter_pieces.h"
 #include "hider/sample_channels.h"
 #include "hider/sample_store.h"
 #include "hider/sample_table.h"
@@ -64,8 +64,7 @@ class Film {
     const ChannelSet& channels() const { return m_channels; }
     /// `colors` [256 * samples], in sample index order of the tile; `channels` where there are
     /// passes.  Thread-safe.
-    TileContribution filter_tile(Vec2i tile, const TileSamples& samples,
-                                 const std::vector<SampleColor>& colors,
+    TileContribution filter_tile(Vec2i tile, const TileSamples& samples, const SampleColors& colors,
                                  const SampleChannels* channels = nullptr) const;
     /// Thread-safe.  Every tile that overlaps sample_pixels() arrives exactly once, in any order.
     /// Returns the pixels (of `bucket_size` squares cut to the crop) that became complete.
@@ -87,8 +86,7 @@ class Film {
     Options m_options;
     ChannelSet m_channels;
     PixelFilter m_filter;
-    static constexpr int kFilterSteps = 4096;  ///< a radius
-    std::vector<float> m_table;                ///< FilterTable::pairs
+    FilterPieces m_pieces;
     Rect m_sample_pixels;
     std::mutex m_mutex;
     std::unique_ptr<Pending> m_pending;

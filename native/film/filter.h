@@ -22,6 +22,8 @@ class PixelFilter {
     /// 1-D factor at distance d pixels from the centre; 0 outside the support.  A BOX holds its
     /// left end and not its right one, so that every sample belongs to one box.
     float evaluate(float d) const;
+    /// The same unrounded, for |d| up to the radius, its end included.
+    double value(double d) const { return m_scale * shape(d); }
     /// E(d): integral of the factor from -infinity to d, by Simpson's rule in double.
     double edge_response(double d) const;
     bool is_box() const { return m_kind == FilterKind::Box; }

@@ -30,7 +30,7 @@ void add_sums(const PixelWork& work, const Rect& to, TileContribution& out) {
 }  // namespace
 
 TileContribution Film::filter_tile(Vec2i tile, const TileSamples& samples,
-                                   const std::vector<SampleColor>& colors,
+                                   const SampleColors& colors,
                                    const SampleChannels* channels) const {
     const int n = samples.samples;
     const std::size_t width = m_channels.sample_width(), center_width = m_channels.center_width();
@@ -52,9 +52,6 @@ TileContribution Film::filter_tile(Vec2i tile, const TileSamples& samples,
 
     const float radius = m_filter.radius();
     const int each_side = std::max(0, static_cast<int>(std::ceil(radius - 0.5f)));
-    const FilterTable filter{
-        m_table.data(),    kFilterSteps, static_cast<float>(kFilterSteps) / radius,
-        m_filter.is_box(), radius,       m_filter.evaluate(0.0f)};
     const float share = 1.0f / static_cast<float>(n);
     PixelWork work(n, each_side, static_cast<int>(width));
     const Rect source = tile_pixels.intersect(m_sample_pixels);
@@ -62,17 +59,10 @@ TileContribution Film::filter_tile(Vec2i tile, const TileSamples& samples,
         for (int x = source.x0; x < source.x1; ++x) {
             const int local_x = x - corner.x, local_y = y - corner.y;
             const std::size_t first = static_cast<std::size_t>(local_y * kTileSize + local_x) * n;
-            for (int s = 0; s < n; ++s) {
-                work.x[s] = samples.x[first + s] - (static_cast<float>(local_x) + 0.5f);
-                work.y[s] = samples.y[first + s] - (static_cast<float>(local_y) + 0.5f);
-                const SampleColor& c = colors[first + s];
-                work.red[s] = c.color.x;
-                work.green[s] = c.color.y;
-                work.blue[s] = c.color.z;
-                work.alpha[s] = c.alpha;
-            }
-            if (width > 0) work.rows = &channels->filtered[first * width];
-            weigh_pixel(filter, share, work);
+            work.load(samples, colors, first,
+                      {static_cast<float>(local_x) + 0.5f, static_cast<float>(local_y) + 0.5f},
+                      width > 0 ? &channels->filtered[first * width] : nullptr);
+            weigh_pixel(m_pieces, share, work);
             const Rect reached_pixels{x - each_side, y - each_side, x + each_side + 1,
                                       y + each_side + 1};
             add_sums(work, reached_pixels, out);
@@ -84,7 +74,7 @@ TileContribution Film::filter_tile(Vec2i tile, const TileSamples& samples,
         for (int x = out.own.x0; x < out.own.x1; ++x) {
             const int p = (y - corner.y) * kTileSize + x - corner.x;
             if (m_options.depth_pass) {
-                const float depth = colors[centers[p]].depth;
+                const float depth = colors.depth[centers[p]];
                 out.depth.push_back(std::isfinite(depth) ? depth : kNoDepth);
             }
             if (center_width > 0) {

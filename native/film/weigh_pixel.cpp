@@ -14,79 +14,97 @@ namespace granita {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Colours are summed in so many lanes, on every target.
-constexpr int kLanes = 8;
+constexpr int kLanes = PixelWork::kLanes;
 using Tag = hn::CappedTag<float, kLanes>;
 using V = hn::Vec<Tag>;
 constexpr Tag kTag;
 constexpr hn::RebindToSigned<Tag> kIntTag;
+using IntV = hn::Vec<decltype(kIntTag)>;
 
-struct V2 {
-    V low, rise;
-};
-
-/// A step's value and its rise to the next are one 64-bit element: half the loads of two gathers.
-HWY_INLINE V2 gather_pairs(const float* pairs, hn::Vec<decltype(kIntTag)> cell) {
-    constexpr hn::RepartitionToWide<decltype(kIntTag)> wide;
-    const auto* base = reinterpret_cast<const std::int64_t*>(pairs);
-    const hn::Half<decltype(kIntTag)> half;
-    const auto first = hn::GatherIndex(wide, base, hn::PromoteTo(wide, hn::LowerHalf(half, cell)));
-    const auto second = hn::GatherIndex(wide, base, hn::PromoteTo(wide, hn::UpperHalf(half, cell)));
-    const V low = hn::BitCast(kTag, first), high = hn::BitCast(kTag, second);
-    return {hn::ConcatEven(kTag, high, low), hn::ConcatOdd(kTag, high, low)};
+/// values[piece] in every lane; piece < FilterPieces::kTable.
+HWY_INLINE V look_up(const float* values, IntV piece) {
+    if constexpr (hn::MaxLanes(kTag) == 16) {
+        return hn::TableLookupLanes(hn::LoadU(kTag, values), hn::IndicesFromVec(kTag, piece));
+    } else if constexpr (hn::MaxLanes(kTag) == 8) {
+        const auto index = hn::IndicesFromVec(kTag, hn::And(piece, hn::Set(kIntTag, 7)));
+        const auto upper = hn::RebindMask(kTag, hn::Gt(piece, hn::Set(kIntTag, 7)));
+        return hn::IfThenElse(upper, hn::TableLookupLanes(hn::LoadU(kTag, values + 8), index),
+                              hn::TableLookupLanes(hn::LoadU(kTag, values), index));
+    } else {
+        return hn::GatherIndex(kTag, values, piece);
+    }
 }
 
-/// factors[i] = f(distance[i] - step) * scale
-HWY_INLINE void factors(const FilterTable& f, const float* distance, float step, float scale,
+/// factors[i] = f(place[i] - center) * scale
+HWY_INLINE void factors(const FilterPieces& f, const float* place, float center, float scale,
                         int count, float* out) {
-    const V offset = hn::Set(kTag, step), scales = hn::Set(kTag, scale), zero = hn::Zero(kTag);
+    const V middle = hn::Set(kTag, center), scales = hn::Set(kTag, scale);
     const V radius = hn::Set(kTag, f.radius), height = hn::Set(kTag, f.height);
-    const V rate = hn::Set(kTag, f.steps_a_pixel);
-    const V end = hn::Set(kTag, static_cast<float>(f.steps));
+    const V rate = hn::Set(kTag, f.pieces_a_pixel);
+    const V end = hn::Set(kTag, static_cast<float>(FilterPieces::kPieces));
     const int lanes = static_cast<int>(hn::Lanes(kTag));
     for (int i = 0; i < count; i += lanes) {
-        const V d = hn::Sub(hn::LoadU(kTag, distance + i), offset);
+        const V d = hn::LoadU(kTag, place + i) - middle;
         V value;
         if (f.is_box) {
             const auto inside = hn::And(hn::Ge(d, hn::Neg(radius)), hn::Lt(d, radius));
             value = hn::IfThenElseZero(inside, height);
         } else {
-            const V place = hn::Min(hn::Mul(hn::Abs(d), rate), end);
-            const auto cell = hn::ConvertTo(kIntTag, place);
-            const V2 pairs = gather_pairs(f.pairs, cell);
-            const V low = pairs.low, rise = pairs.rise;
-            const V part = hn::Sub(place, hn::ConvertTo(kTag, cell));
-            value = hn::Add(low, hn::Mul(part, rise));
-            value = hn::IfThenElse(hn::Lt(place, end), value, zero);
+            const V at = hn::Min(hn::Abs(d) * rate, end);
+            const IntV piece = hn::ConvertTo(kIntTag, at);
+            const V part = at - hn::ConvertTo(kTag, piece);
+            value = look_up(f.coefficient[FilterPieces::kDegree], piece);
+            for (int k = FilterPieces::kDegree - 1; k >= 0; --k)
+                value = value * part + look_up(f.coefficient[k], piece);
         }
-        hn::StoreU(hn::Mul(value, scales), kTag, out + i);
+        hn::StoreU(value * scales, kTag, out + i);
     }
 }
 
-HWY_INLINE WeightedSum weigh_colors(const PixelWork& work, const float* wx, const float* wy,
-                                    float* weights) {
-    constexpr int kStep = static_cast<int>(hn::MaxLanes(kTag));
-    constexpr int kParts = kLanes / kStep;
-    V r[kParts], g[kParts], b[kParts], a[kParts], w[kParts];
-    for (int p = 0; p < kParts; ++p) r[p] = g[p] = b[p] = a[p] = w[p] = hn::Zero(kTag);
-    for (int i = 0; i < work.padded; i += kLanes)
-        for (int p = 0; p < kParts; ++p) {
-            const int at = i + p * kStep;
-            const V weight = hn::Mul(hn::LoadU(kTag, wx + at), hn::LoadU(kTag, wy + at));
-            hn::StoreU(weight, kTag, weights + at);
-            r[p] = hn::Add(r[p], hn::Mul(weight, hn::LoadU(kTag, work.red.data() + at)));
-            g[p] = hn::Add(g[p], hn::Mul(weight, hn::LoadU(kTag, work.green.data() + at)));
-            b[p] = hn::Add(b[p], hn::Mul(weight, hn::LoadU(kTag, work.blue.data() + at)));
-            a[p] = hn::Add(a[p], hn::Mul(weight, hn::LoadU(kTag, work.alpha.data() + at)));
-            w[p] = hn::Add(w[p], weight);
+/// The colours, weighed for kTaps neighbours in a row at once: each is loaded once for them.
+template <int kTaps>
+HWY_INLINE void weigh_colors(const PixelWork& work, const float* wx, const float* wy,
+                             float* weights, WeightedSum* sums) {
+    const int lanes = static_cast<int>(hn::Lanes(kTag));
+    const std::size_t padded = static_cast<std::size_t>(work.padded);
+    alignas(64) float r[kTaps][kLanes], g[kTaps][kLanes], b[kTaps][kLanes], a[kTaps][kLanes],
+        w[kTaps][kLanes];
+    for (int part = 0; part < kLanes; part += lanes) {
+        V sum_r[kTaps], sum_g[kTaps], sum_b[kTaps], sum_a[kTaps], sum_w[kTaps];
+        for (int t = 0; t < kTaps; ++t)
+            sum_r[t] = sum_g[t] = sum_b[t] = sum_a[t] = sum_w[t] = hn::Zero(kTag);
+        for (int i = part; i < work.padded; i += kLanes) {
+            const V across = hn::LoadU(kTag, wy + i);
+            const V red = hn::LoadU(kTag, work.red + i), green = hn::LoadU(kTag, work.green + i);
+            const V blue = hn::LoadU(kTag, work.blue + i), alpha = hn::LoadU(kTag, work.alpha + i);
+            for (int t = 0; t < kTaps; ++t) {
+                const V weight = hn::LoadU(kTag, wx + t * padded + i) * across;
+                if (weights) hn::StoreU(weight, kTag, weights + t * padded + i);
+                sum_r[t] = sum_r[t] + weight * red;
+                sum_g[t] = sum_g[t] + weight * green;
+                sum_b[t] = sum_b[t] + weight * blue;
+                sum_a[t] = sum_a[t] + weight * alpha;
+                sum_w[t] = sum_w[t] + weight;
+            }
         }
-    const auto sum = [](const V* parts) {
-        float lanes[kLanes];
-        for (int p = 0; p < kParts; ++p) hn::StoreU(parts[p], kTag, lanes + p * kStep);
-        return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) +
-               ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
+        for (int t = 0; t < kTaps; ++t) {
+            hn::StoreU(sum_r[t], kTag, r[t] + part);
+            hn::StoreU(sum_g[t], kTag, g[t] + part);
+            hn::StoreU(sum_b[t], kTag, b[t] + part);
+            hn::StoreU(sum_a[t], kTag, a[t] + part);
+            hn::StoreU(sum_w[t], kTag, w[t] + part);
+        }
+    }
+    const auto total = [](const float* x) HWY_ATTR {
+        constexpr hn::FixedTag<float, 4> d;
+        alignas(16) float s[4];
+        hn::Store(
+            (hn::Load(d, x) + hn::Load(d, x + 4)) + (hn::Load(d, x + 8) + hn::Load(d, x + 12)), d,
+            s);
+        return (s[0] + s[1]) + (s[2] + s[3]);
     };
-    return {sum(r), sum(g), sum(b), sum(a), sum(w)};
+    for (int t = 0; t < kTaps; ++t)
+        sums[t] = {total(r[t]), total(g[t]), total(b[t]), total(a[t]), total(w[t])};
 }
 
 /// A vector of all samples' channels from `first` on, for kTaps pixels at once: each row is loaded
@@ -115,19 +133,27 @@ HWY_INLINE void weigh_channels(PixelWork& work, std::size_t first, int tap) {
     }
 }
 
-void weigh(const FilterTable& filter, float share, PixelWork& work) {
+void weigh(const FilterPieces& filter, float share, PixelWork& work) {
     for (int tap = 0; tap < work.taps; ++tap) {
         const auto step = static_cast<float>(tap - work.each_side);
         const int row = tap * work.padded;
-        factors(filter, work.x.data(), step, share, work.padded, work.weights_x.data() + row);
-        factors(filter, work.y.data(), step, 1.0f, work.padded, work.weights_y.data() + row);
+        factors(filter, work.x, work.center.x + step, share, work.padded,
+                work.weights_x.data() + row);
+        factors(filter, work.y, work.center.y + step, 1.0f, work.padded,
+                work.weights_y.data() + row);
     }
-    for (int y = 0; y < work.taps; ++y)
-        for (int x = 0; x < work.taps; ++x)
-            work.sums[y * work.taps + x] =
-                weigh_colors(work, work.weights_x.data() + x * work.padded,
+    const auto weigh_row = [&](auto taps, int x, int y) HWY_ATTR {
+        const int tap = y * work.taps + x;
+        weigh_colors<taps()>(work, work.weights_x.data() + x * work.padded,
                              work.weights_y.data() + y * work.padded,
-                             work.weights.data() + (y * work.taps + x) * work.padded);
+                             work.width > 0 ? work.weights.data() + tap * work.padded : nullptr,
+                             work.sums.data() + tap);
+    };
+    for (int y = 0; y < work.taps; ++y) {
+        int x = 0;
+        for (; x + 3 <= work.taps; x += 3) weigh_row(std::integral_constant<int, 3>(), x, y);
+        for (; x < work.taps; ++x) weigh_row(std::integral_constant<int, 1>(), x, y);
+    }
     const std::size_t lanes = hn::Lanes(hn::ScalableTag<float>());
     const int taps = work.taps * work.taps;
     for (std::size_t first = 0; first < static_cast<std::size_t>(work.width); first += lanes) {
@@ -148,23 +174,36 @@ HWY_EXPORT(weigh);
 
 PixelWork::PixelWork(int samples_a_pixel, int taps_each_side, int channel_width)
     : samples(samples_a_pixel),
-      padded((samples_a_pixel + 7) / 8 * 8),
+      padded((samples_a_pixel + kLanes - 1) / kLanes * kLanes),
       each_side(taps_each_side),
       taps(2 * taps_each_side + 1),
       width(channel_width),
-      x(padded, std::numeric_limits<float>::infinity()),
-      y(x),
-      red(padded),
-      green(padded),
-      blue(padded),
-      alpha(padded),
       weights_x(taps * padded),
       weights_y(taps * padded),
-      weights(taps * taps * padded),
+      weights(width > 0 ? taps * taps * padded : 0),
       sums(taps * taps),
-      row_sums(static_cast<std::size_t>(taps * taps) * width) {}
+      row_sums(static_cast<std::size_t>(taps * taps) * width) {
+    if (padded == samples) return;
+    for (int i = 0; i < 6; ++i)
+        m_copies[i].assign(padded, i < 2 ? std::numeric_limits<float>::infinity() : 0.0f);
+}
 
-void weigh_pixel(const FilterTable& filter, float share, PixelWork& work) {
+void PixelWork::load(const TileSamples& tile, const SampleColors& colors, std::size_t first,
+                     Vec2f pixel_center, const float* channel_rows) {
+    center = pixel_center;
+    rows = channel_rows;
+    const std::vector<float>* const from[] = {&tile.x,       &tile.y,      &colors.red,
+                                              &colors.green, &colors.blue, &colors.alpha};
+    const float** const to[] = {&x, &y, &red, &green, &blue, &alpha};
+    for (int i = 0; i < 6; ++i) {
+        *to[i] = from[i]->data() + first;
+        if (padded == samples) continue;
+        std::copy_n(*to[i], samples, m_copies[i].begin());
+        *to[i] = m_copies[i].data();
+    }
+}
+
+void weigh_pixel(const FilterPieces& filter, float share, PixelWork& work) {
     HWY_DYNAMIC_DISPATCH(weigh)(filter, share, work);
 }
 

@@ -2,12 +2,12 @@
 #include "hider/composite.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <optional>
 
 #include "base/check.h"
 #include "hider/channel_layers.h"
-#include "hider/locate_kernel.h"
 #include "hider/surface_interpolator.h"
 
 namespace granita {
@@ -62,6 +62,20 @@ struct Layers {
     }
 };
 
+/// TileComposite::opaque_alone for a run of samples at once.
+void set_opaque(const TileStore& store, const Projection& projection, std::uint32_t first,
+                const SurfaceRun& run, SampleColors& colors) {
+    const auto copy = [&](const float* from, std::vector<float>& to) {
+        for (int i = 0; i < SurfaceRun::kCount; ++i) to[first + i] = from[i] + 0.0f;
+    };
+    copy(run.color[0], colors.red);
+    copy(run.color[1], colors.green);
+    copy(run.color[2], colors.blue);
+    for (int i = 0; i < SurfaceRun::kCount; ++i) colors.alpha[first + i] = 1.0f;
+    for (int i = 0; i < SurfaceRun::kCount; ++i)
+        colors.depth[first + i] = projection.depth_from_key(store.key[first + i]);
+}
+
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
 /// Composites the samples of one tile, in order.
@@ -77,11 +91,22 @@ class TileComposite {
           m_channels(channels),
           m_next(store.fragments.begin()) {}
 
+    /// Whether any of the samples before `end` has fragments.
+    bool has_fragments_before(std::uint32_t end) const {
+        return m_next != m_store.fragments.end() && m_next->sample < end;
+    }
+
+    /// A sample that sees nothing, before a constant background and without channels.
+    SampleColor empty() {
+        m_layers = {};
+        m_first_key = kNothing;
+        return finish(0);
+    }
+
     /// `opaque`: where the sample meets its nearest opaque surface, if it has one.
     SampleColor next(std::uint32_t sample, const SurfacePoint& opaque) {
-        const bool has_fragments = m_next != m_store.fragments.end() && m_next->sample == sample;
-        if (!has_fragments && m_store.id[sample] != kNoSurface && !opaque.grid->holdout &&
-            !opaque.grid->radiance.empty())
+        if (!has_fragments_before(sample + 1) && m_store.id[sample] != kNoSurface &&
+            !opaque.grid->holdout && !opaque.grid->radiance.empty())
             return opaque_alone(sample, opaque);
         m_layers = {};
         m_first_key = kNothing;
@@ -147,10 +172,9 @@ class TileComposite {
 
 }  // namespace
 
-std::vector<SampleColor> composite_tile(TileStore& store, const TileSamples& samples,
-                                        const GridPool& pool, std::span<const Vec3f> background,
-                                        const CompositeSettings& settings,
-                                        SampleChannels* channels) {
+void composite_tile(TileStore& store, const TileSamples& samples, const GridPool& pool,
+                    std::span<const Vec3f> background, const CompositeSettings& settings,
+                    SampleColors& colors, SampleChannels* channels) {
     const std::size_t count = store.key.size();
     const bool has_channels = settings.channels && !settings.channels->empty();
     GRANITA_CHECK(!has_channels || channels);
@@ -161,16 +185,31 @@ std::vector<SampleColor> composite_tile(TileStore& store, const TileSamples& sam
     std::optional<ChannelLayers> layers;
     if (has_channels) layers.emplace(*settings.channels, samples, *channels);
     TileComposite composite(store, surface, background, settings, layers ? &*layers : nullptr);
-    std::vector<SampleColor> colors(count);
-    constexpr std::uint32_t kRun = LocateLanes::kCount;
-    SurfacePoint opaque[kRun];
+    colors.resize(count);
+    constexpr std::uint32_t kRun = SurfaceRun::kCount, kAll = (1u << kRun) - 1u;
+    SurfaceRun run;
+    const bool constant = !has_channels && background.size() <= 1;
+    const SampleColor empty = constant ? composite.empty() : SampleColor{};
     for (std::uint32_t first = 0; first < count; first += kRun) {
-        const auto end = std::min(first + kRun, static_cast<std::uint32_t>(count));
-        surface.locate_run(first, static_cast<int>(end - first), &store.id[first], opaque);
-        for (std::uint32_t i = first; i < end; ++i)
-            colors[i] = composite.next(i, opaque[i - first]);
+        const bool points = has_channels || composite.has_fragments_before(first + kRun);
+        surface.locate_run(first, &store.id[first], points, run);
+        // Most samples of most pictures: one opaque surface and nothing else.
+        const std::uint32_t done = points ? 0u : run.plain & run.colored;
+        if (done != 0) set_opaque(store, settings.projection, first, run, colors);
+        for (std::uint32_t rest = kAll & ~done; rest != 0; rest &= rest - 1) {
+            const int i = std::countr_zero(rest);
+            const std::uint32_t sample = first + static_cast<std::uint32_t>(i);
+            if (constant && !points && store.id[sample] == kNoSurface) {
+                colors.set(sample, empty);
+                continue;
+            }
+            SurfacePoint opaque;
+            if (store.id[sample] != kNoSurface)
+                opaque = points && (run.plain >> i & 1u) ? run.point(i)
+                                                         : surface.locate(sample, store.id[sample]);
+            colors.set(sample, composite.next(sample, opaque));
+        }
     }
-    return colors;
 }
 
 }  // namespace granita

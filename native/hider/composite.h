@@ -26,7 +26,7 @@ struct CompositeSettings {
     const ChannelSet* channels = nullptr;  ///< nullptr = no passes
 };
 
-/// [256 * samples] colours in sample order.  `background`: premultiplied radiance behind
+/// Fills [256 * samples] colours in sample order.  `background`: premultiplied radiance behind
 /// everything: one value, or one a sample; read where the film is not transparent or channels have
 /// the environment.
 ///
@@ -35,9 +35,8 @@ struct CompositeSettings {
 /// Alpha is the mean of the three opacities without those of holdout surfaces; with a background it
 /// is 1 less what holdouts cut out.  Depth is that of the first layer.  Fills `channels` where
 /// settings.channels asks for some; holdouts take part in Merge::First and Center alone.
-std::vector<SampleColor> composite_tile(TileStore& store, const TileSamples& samples,
-                                        const GridPool& pool, std::span<const Vec3f> background,
-                                        const CompositeSettings& settings,
-                                        SampleChannels* channels = nullptr);
+void composite_tile(TileStore& store, const TileSamples& samples, const GridPool& pool,
+                    std::span<const Vec3f> background, const CompositeSettings& settings,
+                    SampleColors& colors, SampleChannels* channels = nullptr);
 
 }  // namespace granita

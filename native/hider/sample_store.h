@@ -60,4 +60,26 @@ struct SampleColor {
     float depth = 0.0f;  ///< camera z of the nearest surface, metres; infinity = none
 };
 
+/// The composited samples of a tile, structure of arrays: the film sums whole vectors of them.
+struct SampleColors {
+    std::vector<float> red, green, blue, alpha, depth;
+
+    SampleColors() = default;
+    explicit SampleColors(std::size_t count) { resize(count); }
+    std::size_t size() const { return red.size(); }
+    void resize(std::size_t count) {
+        for (auto* plane : {&red, &green, &blue, &alpha, &depth}) plane->resize(count);
+    }
+    SampleColor operator[](std::size_t i) const {
+        return {{red[i], green[i], blue[i]}, alpha[i], depth[i]};
+    }
+    void set(std::size_t i, const SampleColor& c) {
+        red[i] = c.color.x;
+        green[i] = c.color.y;
+        blue[i] = c.color.z;
+        alpha[i] = c.alpha;
+        depth[i] = c.depth;
+    }
+};
+
 }  // namespace granita

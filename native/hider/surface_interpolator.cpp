@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "hider/locate_kernel.h"
+#include "hider/surface_kernel.h"
 
 namespace granita {
 namespace {
@@ -13,8 +13,8 @@ Corner<float> corner(const Projection& projection, const Vec3f& p, const Vec2d& 
     return {h.x, h.y, h.z, p.z};
 }
 
-int segment_of(float time, int knots) {
-    return std::min(static_cast<int>(time * static_cast<float>(knots - 1)), knots - 2);
+int segment_of(float time, int segments) {
+    return std::min(static_cast<int>(time * static_cast<float>(segments)), segments - 1);
 }
 
 /// Weights of the triangle whose smallest weight is largest: the nearest guess for a sample that is
@@ -38,19 +38,44 @@ SurfaceHit nearest_triangle(const Offset<double> d[4]) {
     return best;
 }
 
-SurfacePoint point_of(const Grid* grid, const int vertex[4], bool second, double b1, double b2) {
+/// Strictly inside one triangle and outside the other: the float arithmetic of locate_lanes
+/// (triangle_pair.inl), with its bits.
+bool plain_weights(const Offset<float> d[4], bool& second, float weight[3]) {
+    const float e01 = edge(d[0], d[1]), e12 = edge(d[1], d[2]), e02 = edge(d[0], d[2]);
+    const float e23 = edge(d[2], d[3]), e30 = edge(d[3], d[0]);
+    const auto in = [](float a, float b, float c) {
+        return (a >= 0.0f && b >= 0.0f && c >= 0.0f) || (a <= 0.0f && b <= 0.0f && c <= 0.0f);
+    };
+    const auto strict = [](float a, float b, float c) {
+        return (a > 0.0f && b > 0.0f && c > 0.0f) || (a < 0.0f && b < 0.0f && c < 0.0f);
+    };
+    const bool in_first = strict(e01, e12, -e02) && !in(e02, e23, e30);
+    second = strict(e02, e23, e30) && !in(e01, e12, -e02);
+    if (!in_first && !second) return false;
+    const float e[3] = {second ? e23 : e12, second ? e30 : -e02, second ? e02 : e01};
+    const float share = 1.0f / (e[0] + e[1] + e[2]);
+    weight[1] = e[1] * share;
+    weight[2] = e[2] * share;
+    weight[0] = 1.0f - weight[1] - weight[2];
+    return true;
+}
+
+SurfacePoint point_of(const SurfaceCorners& corners, bool second, const float weight[3]) {
     SurfacePoint point;
-    point.grid = grid;
-    point.vertex[0] = vertex[0];
-    point.vertex[1] = vertex[second ? 2 : 1];
-    point.vertex[2] = vertex[second ? 3 : 2];
-    point.weight[0] = static_cast<float>(1.0 - b1 - b2);
-    point.weight[1] = static_cast<float>(b1);
-    point.weight[2] = static_cast<float>(b2);
+    point.grid = corners.grid;
+    point.vertex[0] = corners.vertex[0];
+    point.vertex[1] = corners.vertex[second ? 2 : 1];
+    point.vertex[2] = corners.vertex[second ? 3 : 2];
+    std::copy_n(weight, 3, point.weight);
     return point;
 }
 
 }  // namespace
+
+SurfacePoint SurfaceRun::point(int lane) const {
+    const float w[3] = {weight[0][lane], weight[1][lane], weight[2][lane]};
+    return point_of(corners[lane], (second >> lane & 1u) != 0, w);
+}
 
 SurfaceInterpolator::SurfaceInterpolator(const Projection& projection, Vec2i tile,
                                          const TileSamples& samples, const GridPool& pool)
@@ -59,55 +84,59 @@ SurfaceInterpolator::SurfaceInterpolator(const Projection& projection, Vec2i til
       m_samples(samples),
       m_pool(pool),
       m_inverse_focus(static_cast<float>(1.0 / projection.focus)),
-      m_lens_x(static_cast<float>(projection.lens_radius * projection.scale.x)),
-      m_lens_y(static_cast<float>(projection.lens_radius * projection.scale.y)),
-      m_cache(256) {}
+      m_lens(static_cast<float>(projection.lens_radius * projection.scale.x),
+             static_cast<float>(projection.lens_radius * projection.scale.y)),
+      m_cache(kCached) {}
 
-const SurfaceInterpolator::Loaded& SurfaceInterpolator::load(SurfaceId id, float time) {
-    Loaded& entry = m_cache[id % m_cache.size()];
-    if (entry.id != id) {
+const SurfaceRecord& SurfaceInterpolator::load(SurfaceId id, float time) {
+    SurfaceRecord& record = m_cache[id % kCached];
+    if (record.id != id) {
         const GridPool::Place place = m_pool.locate(id);
-        const Grid::Corners c = place.grid->corners(place.micropolygon);
-        entry.id = id;
-        entry.segment = -1;
-        entry.grid = place.grid;
-        entry.vertex[0] = c.v0;
-        entry.vertex[1] = c.v1;
-        entry.vertex[2] = c.v2;
-        entry.vertex[3] = c.v3;
+        const Grid& grid = *place.grid;
+        const Grid::Corners c = grid.corners(place.micropolygon);
+        record.id = id;
+        record.segment = -1;
+        record.segments = grid.motion ? grid.knots - 1 : 0;
+        record.corners = {&grid, {c.v0, c.v1, c.v2, c.v3}};
+        record.colored = !grid.holdout && !grid.radiance.empty();
+        if (record.colored)
+            for (int i = 0; i < 4; ++i)
+                record.radiance[i] = grid.radiance[record.corners.vertex[i]];
     }
-    const Grid& grid = *entry.grid;
-    const int segment = grid.motion ? segment_of(time, grid.knots) : 0;
-    if (entry.segment == segment) return entry;
-    entry.segment = segment;
+    const int segment = record.segments > 0 ? segment_of(time, record.segments) : 0;
+    if (record.segment != segment) load_corners(record, segment);
+    return record;
+}
+
+void SurfaceInterpolator::load_corners(SurfaceRecord& record, int segment) const {
+    record.segment = segment;
+    const Grid& grid = *record.corners.grid;
     const Vec3f* const knot = grid.positions.data() + segment * grid.vertex_count();
     for (int i = 0; i < 4; ++i) {
-        const Corner<float> a = corner(m_projection, knot[entry.vertex[i]], m_origin);
-        entry.begin[i] = a;
-        if (!grid.motion) continue;
-        const Corner<float> b =
-            corner(m_projection, knot[grid.vertex_count() + entry.vertex[i]], m_origin);
-        entry.delta[i] = {b.x - a.x, b.y - a.y, b.w - a.w, b.z - a.z};
+        const int vertex = record.corners.vertex[i];
+        const Corner<float> a = corner(m_projection, knot[vertex], m_origin);
+        record.begin[i] = a;
+        if (record.segments == 0) continue;
+        const Corner<float> b = corner(m_projection, knot[grid.vertex_count() + vertex], m_origin);
+        record.delta[i] = {b.x - a.x, b.y - a.y, b.w - a.w, b.z - a.z};
     }
-    return entry;
 }
 
 SurfaceInterpolator::Seen SurfaceInterpolator::see(std::uint32_t sample, SurfaceId id) {
     const float time = m_samples.t.empty() ? 0.0f : m_samples.t[sample];
-    const Loaded& surface = load(id, time);
+    const SurfaceRecord& surface = load(id, time);
     Seen seen;
     seen.surface = &surface;
-    const float local = surface.grid->motion ? time * static_cast<float>(surface.grid->knots - 1) -
-                                                   static_cast<float>(surface.segment)
-                                             : 0.0f;
+    const float local =
+        time * static_cast<float>(surface.segments) - static_cast<float>(surface.segment);
     const float x = m_samples.x[sample], y = m_samples.y[sample];
     for (int i = 0; i < 4; ++i) {
         Corner<float>& c = seen.corners[i];
-        c = surface.grid->motion ? at_time(surface.begin[i], surface.delta[i], local)
+        c = surface.segments > 0 ? at_time(surface.begin[i], surface.delta[i], local)
                                  : surface.begin[i];
         seen.offsets[i] = m_projection.has_lens()
-                              ? offset_lens(c, x, y, m_samples.u[sample] * m_lens_x,
-                                            m_samples.v[sample] * m_lens_y, m_inverse_focus, 1.0f)
+                              ? offset_lens(c, x, y, m_samples.u[sample] * m_lens.x,
+                                            m_samples.v[sample] * m_lens.y, m_inverse_focus, 1.0f)
                               : offset_pinhole(c, x, y);
     }
     return seen;
@@ -115,48 +144,33 @@ SurfaceInterpolator::Seen SurfaceInterpolator::see(std::uint32_t sample, Surface
 
 SurfacePoint SurfaceInterpolator::locate(std::uint32_t sample, SurfaceId id) {
     const Seen seen = see(sample, id);
-    Corner<double> corners[4];
-    Offset<double> d[4];
-    for (int i = 0; i < 4; ++i) {
-        const Corner<float>& c = seen.corners[i];
-        corners[i] = {c.x, c.y, c.w, c.z};
-        d[i] = {seen.offsets[i].x, seen.offsets[i].y};
+    bool second = false;
+    float weight[3];
+    if (!plain_weights(seen.offsets, second, weight)) {
+        Corner<double> corners[4];
+        Offset<double> d[4];
+        for (int i = 0; i < 4; ++i) {
+            const Corner<float>& c = seen.corners[i];
+            corners[i] = {c.x, c.y, c.w, c.z};
+            d[i] = {seen.offsets[i].x, seen.offsets[i].y};
+        }
+        // The clip range is left out: the hider applied it.
+        const DepthRange any{m_projection.perspective, -INFINITY, INFINITY};
+        SurfaceHit hit = hit_micropolygon(corners, d, kTriangleA | kTriangleB, any);
+        if (!hit.hit) hit = nearest_triangle(d);
+        second = hit.second;
+        weight[0] = static_cast<float>(1.0 - hit.b1 - hit.b2);
+        weight[1] = static_cast<float>(hit.b1);
+        weight[2] = static_cast<float>(hit.b2);
     }
-    // The clip range is left out: the hider applied it.
-    const DepthRange any{m_projection.perspective, -INFINITY, INFINITY};
-    SurfaceHit hit = hit_micropolygon(corners, d, kTriangleA | kTriangleB, any);
-    if (!hit.hit) hit = nearest_triangle(d);
-    return point_of(seen.surface->grid, seen.surface->vertex, hit.second, hit.b1, hit.b2);
+    return point_of(seen.surface->corners, second, weight);
 }
 
-void SurfaceInterpolator::locate_run(std::uint32_t first, int count, const SurfaceId* ids,
-                                     SurfacePoint* points) {
-    LocateLanes lanes{};
-    const Grid* grids[LocateLanes::kCount];
-    int vertices[LocateLanes::kCount][4];
-    bool any = false;
-    for (int i = 0; i < count; ++i) {
-        if (ids[i] == kNoSurface) continue;
-        any = true;
-        const Seen seen = see(first + static_cast<std::uint32_t>(i), ids[i]);
-        for (int k = 0; k < 4; ++k) {
-            lanes.x[k][i] = seen.offsets[k].x;
-            lanes.y[k][i] = seen.offsets[k].y;
-            vertices[i][k] = seen.surface->vertex[k];
-        }
-        grids[i] = seen.surface->grid;
-    }
-    if (!any) return;
-    locate_lanes(lanes);
-    for (int i = 0; i < count; ++i) {
-        if (ids[i] == kNoSurface) continue;
-        if (lanes.plain[i] == 0.0) {
-            points[i] = locate(first + static_cast<std::uint32_t>(i), ids[i]);
-            continue;
-        }
-        points[i] =
-            point_of(grids[i], vertices[i], lanes.second[i] != 0.0, lanes.b1[i], lanes.b2[i]);
-    }
+void SurfaceInterpolator::locate_run(std::uint32_t first, const SurfaceId* ids, bool points,
+                                     SurfaceRun& out) {
+    out.plain = out.colored = out.second = 0;
+    out.wants_points = points;
+    locate_lanes(*this, m_samples, first, ids, out);
 }
 
 }  // namespace granita

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "hider/micropolygon.h"
@@ -22,6 +23,39 @@ struct SurfacePoint {
     }
 };
 
+/// The vertices of a micropolygon.
+struct SurfaceCorners {
+    const Grid* grid = nullptr;
+    int vertex[4] = {};
+};
+
+/// A micropolygon in one segment of its motion, in a tile's homogeneous raster space.
+struct SurfaceRecord {
+    SurfaceId id = kNoSurface;
+    int segment = 0, segments = 0;  ///< segments 0 = static
+    SurfaceCorners corners;
+    Corner<float> begin[4], delta[4];
+    bool colored = false;  ///< light that a sample takes as it is: no holdout, and shaded
+    Vec3f radiance[4];     ///< of a coloured one
+};
+
+/// Where kCount samples in a row meet their surfaces.  Bit or element i: sample first + i.
+struct SurfaceRun {
+    static constexpr int kCount = 16;
+
+    std::uint32_t plain = 0;    ///< located here; the others that see anything need locate()
+    std::uint32_t colored = 0;  ///< SurfaceRecord::colored
+    alignas(64) float color[3][kCount] = {};  ///< of coloured ones; else anything
+
+    // Where points are wanted.
+    bool wants_points = false;
+    std::uint32_t second = 0;  ///< triangle (0, 2, 3)
+    alignas(64) float weight[3][kCount];
+    SurfaceCorners corners[kCount];
+
+    SurfacePoint point(int lane) const;
+};
+
 /// Finds again where the samples of one tile meet the surfaces that the hider stored, with the
 /// hider's own arithmetic.  A sample that rounding puts outside takes the nearest point inside.
 class SurfaceInterpolator {
@@ -29,34 +63,33 @@ class SurfaceInterpolator {
     SurfaceInterpolator(const Projection& projection, Vec2i tile, const TileSamples& samples,
                         const GridPool& pool);
     SurfacePoint locate(std::uint32_t sample, SurfaceId id);
-    /// The same for `count` <= LocateLanes::kCount samples from `first` on; those without a surface
-    /// are left as they are.
-    void locate_run(std::uint32_t first, int count, const SurfaceId* ids, SurfacePoint* points);
+    /// The same bits for SurfaceRun::kCount samples from `first` on, as far as `plain` says.
+    /// `points`: SurfaceRun::point() will be asked.
+    void locate_run(std::uint32_t first, const SurfaceId* ids, bool points, SurfaceRun& out);
+
+    /// Stays until the next call.
+    const SurfaceRecord& load(SurfaceId id, float time);
+    Vec2f lens() const { return m_lens; }  ///< lens radius times pixels per unit shear
+    float inverse_focus() const { return m_inverse_focus; }
 
   private:
-    /// A micropolygon in one segment of its motion.
-    struct Loaded {
-        SurfaceId id = kNoSurface;
-        int segment = 0;
-        const Grid* grid = nullptr;
-        int vertex[4] = {};
-        Corner<float> begin[4], delta[4];
-    };
     /// The corners from which a sample is seen through the lens, at its time.
     struct Seen {
-        const Loaded* surface;
+        const SurfaceRecord* surface;
         Corner<float> corners[4];
         Offset<float> offsets[4];
     };
-    const Loaded& load(SurfaceId id, float time);
+    void load_corners(SurfaceRecord& record, int segment) const;
     Seen see(std::uint32_t sample, SurfaceId id);
 
     Projection m_projection;
     Vec2d m_origin;
     const TileSamples& m_samples;
     const GridPool& m_pool;
-    float m_inverse_focus, m_lens_x, m_lens_y;
-    std::vector<Loaded> m_cache;  ///< by id; neighbouring samples ask for the same few
+    float m_inverse_focus;
+    Vec2f m_lens;
+    static constexpr std::size_t kCached = 256;
+    std::vector<SurfaceRecord> m_cache;  ///< by id; neighbouring samples ask for the same few
 };
 
 }  // namespace granita

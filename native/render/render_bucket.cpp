@@ -74,6 +74,7 @@ std::vector<TileContribution> resolve(Frame& frame, std::vector<TileStore>& stor
                                      has_passes ? options.pass_alpha_threshold : 0.0f, &channels};
     std::vector<TileContribution> contributions;
     contributions.reserve(stores.size());
+    SampleColors colors;
     SampleChannels values;
     for (std::size_t i = 0; i < stores.size(); ++i) {
         frame.progress.check();
@@ -86,8 +87,7 @@ std::vector<TileContribution> resolve(Frame& frame, std::vector<TileStore>& stor
                                          frame.constant_background, stores[i]);
         }
         const StageTimer timer(frame.statistics, Stage::Resolve);
-        const auto colors =
-            composite_tile(stores[i], samples, hider.pool(), background, settings, &values);
+        composite_tile(stores[i], samples, hider.pool(), background, settings, colors, &values);
         contributions.push_back(frame.film.filter_tile(stores[i].tile, samples, colors, &values));
     }
     return contributions;

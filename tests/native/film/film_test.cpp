@@ -55,10 +55,10 @@ TileContribution shade_tile(const Film& film, const SampleTable& table, Vec2i ti
                             const Shade& shade) {
     TileSamples samples;
     table.fill_tile(tile, {}, samples);
-    std::vector<SampleColor> colors;
+    SampleColors colors(samples.x.size());
     for (std::size_t i = 0; i < samples.x.size(); ++i)
-        colors.push_back(shade(tile.x * 16 + static_cast<double>(samples.x[i]),
-                               tile.y * 16 + static_cast<double>(samples.y[i])));
+        colors.set(i, shade(tile.x * 16 + static_cast<double>(samples.x[i]),
+                            tile.y * 16 + static_cast<double>(samples.y[i])));
     return film.filter_tile(tile, samples, colors);
 }
 

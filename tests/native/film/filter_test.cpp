@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "film/weigh_pixel.h"
 
 namespace granita {
 namespace {
@@ -43,6 +44,38 @@ TEST(PixelFilter, EdgeResponses) {
             EXPECT_NEAR(filter.edge_response(-at[i]), 1 - c.response[i], 6e-5);
         }
     }
+}
+
+TEST(PixelFilter, PiecesAreTheFilter) {
+    // One sample a pixel: the sum of weights is its weight, f(dx) f(dy).  Odd widths put the
+    // filter's end and knots anywhere.
+    for (const float scale : {1.0f, .73f, 2.9f})
+        for (const Case& c : kCases) {
+            const PixelFilter filter(c.kind, c.width * scale);
+            const FilterPieces pieces(filter);
+            const int each_side = static_cast<int>(std::ceil(filter.radius()));
+            PixelWork work(1, each_side, 0);
+            const double peak = filter.evaluate(0) * filter.evaluate(0);
+            TileSamples samples;
+            samples.x = samples.y = {0};
+            const SampleColors colors(1);
+            for (int step = 0; step < 1000; ++step) {
+                samples.x[0] = static_cast<float>(step) / 1000;
+                samples.y[0] = static_cast<float>(step * 7 % 1000) / 1000;
+                work.load(samples, colors, 0, Vec2f(.5f), nullptr);
+                weigh_pixel(pieces, 1, work);
+                for (int tap = 0; tap < work.taps; ++tap) {
+                    const float across = static_cast<float>(tap - each_side) + .5f;
+                    const double expected =
+                        static_cast<double>(filter.evaluate(samples.x[0] - across)) *
+                        filter.evaluate(samples.y[0] - .5f);
+                    ASSERT_NEAR(work.sums[each_side * work.taps + tap].weight, expected,
+                                2e-6 * peak)
+                        << static_cast<int>(c.kind) << " width " << c.width * scale << " at "
+                        << samples.x[0] - across;
+                }
+            }
+        }
 }
 
 TEST(PixelFilter, IntegralVarianceAndEnergy) {

@@ -130,8 +130,9 @@ inline Picture render(HiderMaker make, Shot& shot) {
     auto& stores = hider->finish();
     for (std::size_t i = 0; i < stores.size(); ++i) {
         const int n = hider->tile_samples(i).samples;
-        const auto colors = composite_tile(stores[i], hider->tile_samples(i), hider->pool(),
-                                           std::span(&shot.background, 1), shot.composite);
+        SampleColors colors;
+        composite_tile(stores[i], hider->tile_samples(i), hider->pool(),
+                       std::span(&shot.background, 1), shot.composite, colors);
         for (int p = 0; p < 256; ++p) {
             const int x = stores[i].tile.x * 16 + p % 16, y = stores[i].tile.y * 16 + p / 16;
             Vec4d sum(0.0);

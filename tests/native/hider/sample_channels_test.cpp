@@ -43,7 +43,8 @@ struct Stack {
         const ChannelSet channels(options);
         ASSERT_EQ(channels.vertex_width(), 7);
         settings.channels = &channels;
-        composite_tile(store, samples, pool, {}, settings, &values);
+        SampleColors colors;
+        composite_tile(store, samples, pool, {}, settings, colors, &values);
     }
     const float* row(int sample) const { return &values.filtered[sample * 6]; }
 };

@@ -72,13 +72,15 @@ TEST(Composite, MillionLayersOfAMillionth) {
     CompositeSettings settings;
     settings.projection = pixel_camera().projection;
     const Vec3f background(1);
-    const auto colors = composite_tile(store, samples, pool, std::span(&background, 1), settings);
+    SampleColors colors;
+    composite_tile(store, samples, pool, std::span(&background, 1), settings, colors);
     const double a = 1e-6f, t = std::exp(1e6 * std::log1p(-a));
     EXPECT_NEAR(colors[77].color.x, 2 * (1 - t) + t, 1e-6);
     EXPECT_NEAR(colors[77].color.z, t, 1e-6);
     EXPECT_EQ(colors[77].alpha, 1.0f);
     settings.film_transparent = true;
-    EXPECT_NEAR(composite_tile(store, samples, pool, {}, settings)[77].alpha, 1 - t, 1e-6);
+    composite_tile(store, samples, pool, {}, settings, colors);
+    EXPECT_NEAR(colors[77].alpha, 1 - t, 1e-6);
 }
 
 TEST_P(Transparency, ThresholdEndsTheListAfterTheFragmentThatReachesIt) {
@@ -273,9 +275,9 @@ TEST_P(Transparency, DepthIsThatOfTheNearestSurface) {
     for (const Grid& grid : shot.grids) hider->hide(grid);
     shot.composite.projection = shot.camera.projection;
     TileStore& store = hider->finish()[0];
-    for (const SampleColor& c :
-         composite_tile(store, hider->tile_samples(0), hider->pool(), {}, shot.composite))
-        EXPECT_EQ(c.depth, 4.0f);
+    SampleColors colors;
+    composite_tile(store, hider->tile_samples(0), hider->pool(), {}, shot.composite, colors);
+    for (const float depth : colors.depth) EXPECT_EQ(depth, 4.0f);
 }
 
 }  // namespace

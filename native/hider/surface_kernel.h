@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where sixteen samples meet the micropolygons that they see, and what they see there: compiled for
+// every SIMD target and chosen at run time (Highway), with the same bits on all.
+#pragma once
+
+#include <cstdint>
+
+#include "hider/surface_interpolator.h"
+
+namespace granita {
+
+/// The plain cases among `kCount` samples from `first` on: samples strictly inside one triangle.
+/// One micropolygon after another with all samples that see it, so that its corners and colours are
+/// broadcast and nothing is gathered: neighbouring samples see few.
+void locate_lanes(SurfaceInterpolator& surfaces, const TileSamples& samples, std::uint32_t first,
+                  const SurfaceId* ids, SurfaceRun& out);
+
+}  // namespace granita
