@@ -92,21 +92,30 @@ void EglContext::open(const Display& display, const ContextOptions& options) {
         throw_egl("eglChooseConfig");
     if (config_count == 0) throw GlError("no EGL configuration for OpenGL");
 
-    const EGLint context_attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                         4,
-                                         EGL_CONTEXT_MINOR_VERSION,
-                                         5,
-                                         EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                         EGL_CONTEXT_OPENGL_DEBUG,
-                                         options.debug ? EGL_TRUE : EGL_FALSE,
-                                         EGL_NONE};
-    m_context = eglCreateContext(m_display, config, EGL_NO_CONTEXT, context_attributes);
+    create(config, options.debug, true);
+    if (m_context == EGL_NO_CONTEXT) create(config, options.debug, false);
     if (m_context == EGL_NO_CONTEXT) throw_egl("eglCreateContext (OpenGL 4.5 core)");
     make_current();
     m_info = query_info(display);
     if (options.debug) collect_debug_messages();
+    set_check_hook(options.faults.at_check);
     check("preparing the context");
+    if (options.faults.boast) options.faults.boast(m_info);
+}
+
+void EglContext::create(EGLConfig config, bool debug, bool notify) {
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 4,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 5,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_CONTEXT_OPENGL_DEBUG,
+                                 debug ? EGL_TRUE : EGL_FALSE,
+                                 notify ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
+                                 EGL_LOSE_CONTEXT_ON_RESET,
+                                 EGL_NONE};
+    m_context = eglCreateContext(m_display, config, EGL_NO_CONTEXT, attributes);
 }
 
 void EglContext::make_current() {
@@ -121,6 +130,7 @@ void EglContext::close() {
     eglMakeCurrent(m_display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(m_display, m_context);
     m_context = EGL_NO_CONTEXT;
+    set_check_hook({});
 }
 
 }  // namespace granita::gl

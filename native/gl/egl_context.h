@@ -7,6 +7,7 @@
 
 #include <epoxy/egl.h>
 
+#include <functional>
 #include <string>
 
 #include "gl/egl_display.h"
@@ -19,11 +20,6 @@ enum class DeviceChoice {
     Software
 };
 
-struct ContextOptions {
-    DeviceChoice device = DeviceChoice::Any;
-    bool debug = false;  ///< the driver's own messages in errors; slower
-};
-
 /// What the driver says of itself.
 struct ContextInfo {
     std::string display, vendor, renderer, version;
@@ -31,6 +27,21 @@ struct ContextInfo {
     int max_texture_size = 0;             ///< texels; also bounds viewports and renderbuffers
     int vertex_storage_blocks = 0;        ///< that a vertex shader may read
     bool layer_in_vertex_shader = false;  ///< GL_ARB_shader_viewport_layer_array
+};
+
+/// Stands in for drivers that fail, which no test can order otherwise.  Both are called on the
+/// context's thread.
+struct DriverFaults {
+    /// Changes what the driver says.
+    std::function<void(ContextInfo&)> boast = {};
+    /// In every check(); may throw GlError.
+    std::function<void(const std::string& what)> at_check = {};
+};
+
+struct ContextOptions {
+    DeviceChoice device = DeviceChoice::Any;
+    bool debug = false;  ///< the driver's own messages in errors; slower
+    DriverFaults faults = {};
 };
 
 class EglContext {
@@ -47,6 +58,9 @@ class EglContext {
   private:
     void open(const Display& display, const ContextOptions& options);
     void close();
+
+    /// With notice of resets where the driver can give it; m_context stays none where it can not.
+    void create(EGLConfig config, bool debug, bool notify);
 
     EGLDisplay m_display = EGL_NO_DISPLAY;
     EGLContext m_context = EGL_NO_CONTEXT;

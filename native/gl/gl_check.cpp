@@ -14,6 +14,7 @@ namespace {
 
 thread_local std::string t_missing_entry;
 thread_local std::string t_debug_messages;
+thread_local std::function<void(const std::string&)> t_check_hook;
 
 // Stands in for any missing entry point: on the C ABIs we run on extra arguments are ignored.
 std::uintptr_t missing_entry_stub() {
@@ -75,6 +76,13 @@ void check(const std::string& what) {
     }
     const std::string messages = std::exchange(t_debug_messages, {});
     if (!names.empty()) throw GlError(what + ": " + names + messages);
+    if (glGetGraphicsResetStatus() != GL_NO_ERROR)
+        throw GlError(what + ": the driver has reset the GPU");
+    if (t_check_hook) t_check_hook(what);
+}
+
+void set_check_hook(std::function<void(const std::string&)> hook) {
+    t_check_hook = std::move(hook);
 }
 
 void collect_debug_messages() {

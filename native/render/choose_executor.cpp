@@ -20,20 +20,14 @@ ExecutorChoice cpu(Executor executor) {
             executor == Executor::Reference ? "CPU (reference)" : "CPU (simd)"};
 }
 
-ExecutorChoice raster(gl::DeviceChoice device) {
-    ExecutorChoice choice{Executor::Raster,
-                          std::make_unique<gl::GlThread>(gl::ContextOptions{.device = device}),
-                          nullptr,
-                          {}};
+ExecutorChoice raster(const gl::ContextOptions& context) {
+    ExecutorChoice choice{Executor::Raster, std::make_unique<gl::GlThread>(context), nullptr, {}};
     choice.device = "GPU (raster, " + choice.gl->info().renderer + ")";
     return choice;
 }
 
-ExecutorChoice compute(gl::DeviceChoice device) {
-    ExecutorChoice choice{Executor::Compute,
-                          std::make_unique<gl::GlThread>(gl::ContextOptions{.device = device}),
-                          nullptr,
-                          {}};
+ExecutorChoice compute(const gl::ContextOptions& context) {
+    ExecutorChoice choice{Executor::Compute, std::make_unique<gl::GlThread>(context), nullptr, {}};
     choice.compute = std::make_unique<ComputeDevice>(*choice.gl);
     choice.device = "GPU (compute, " + choice.gl->info().renderer + ")";
     return choice;
@@ -41,26 +35,29 @@ ExecutorChoice compute(gl::DeviceChoice device) {
 
 }  // namespace
 
-ExecutorChoice choose_executor(const Scene& scene, Report& report) {
+ExecutorChoice choose_executor(const Scene& scene, Report& report, const gl::ContextOptions& gpu) {
     const Options& options = scene.options;
+    const gl::ContextOptions any{gl::DeviceChoice::Any, gpu.debug, gpu.faults};
     if (options.executor == Executor::Raster) {
         if (const std::string obstacle = raster_obstacle(scene); !obstacle.empty())
             throw SceneError("render settings",
                              "the raster executor cannot render this: " + obstacle);
-        return raster(gl::DeviceChoice::Any);
+        return raster(any);
     }
-    if (options.executor == Executor::Compute) return compute(gl::DeviceChoice::Any);
+    if (options.executor == Executor::Compute) return compute(any);
     if (options.executor != Executor::Auto) return cpu(options.executor);
     if (options.device != Device::Gpu) return cpu(Executor::Simd);
     try {
-        const std::string obstacle = raster_obstacle(scene);
-        // A software driver is no GPU: the CPU executors are faster and do more.
-        if (obstacle.empty()) return raster(gl::DeviceChoice::Hardware);
-        return compute(gl::DeviceChoice::Hardware);
+        return raster_obstacle(scene).empty() ? raster(gpu) : compute(gpu);
     } catch (const GlError& error) {
-        report.warn("render settings",
-                    std::string("the GPU was asked for, the CPU renders: ") + error.what());
+        return cpu_instead(scene, error, report);
     }
+}
+
+ExecutorChoice cpu_instead(const Scene& scene, const GlError& error, Report& report) {
+    if (scene.options.executor != Executor::Auto) throw error;
+    report.warn("render settings",
+                std::string("the GPU was asked for, the CPU renders: ") + error.what());
     return cpu(Executor::Simd);
 }
 

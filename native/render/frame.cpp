@@ -50,7 +50,7 @@ BucketLayout make_layout(const Scene& scene, const Film& film, bool is_raster) {
 }  // namespace
 
 Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& frame_report,
-             const Progress& frame_progress)
+             const Progress& frame_progress, ExecutorChoice frame_choice)
     : scene(frame_scene),
       statistics(frame_statistics),
       report(frame_report),
@@ -61,7 +61,7 @@ Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& fra
       table(make_table(scene, view, report)),
       hider{&table, view.projection, &statistics, &scene, &report, &progress},
       constant_background(constant_background_of(shading)),
-      choice(choose_executor(scene, report)),
+      choice(std::move(frame_choice)),
       raster(choice.executor == Executor::Raster
                  ? std::make_unique<RasterHider>(
                        *choice.gl,

@@ -15,7 +15,8 @@
 namespace granita {
 
 struct Frame {
-    Frame(const Scene& scene, Statistics& statistics, Report& report, const Progress& progress);
+    Frame(const Scene& scene, Statistics& statistics, Report& report, const Progress& progress,
+          ExecutorChoice choice);
 
     const Scene& scene;
     Statistics& statistics;

@@ -10,8 +10,10 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 
+#include "base/error.h"
 #include "base/progress.h"
 #include "render/frame.h"
 #include "render/render_bucket.h"
@@ -20,8 +22,10 @@ namespace granita {
 
 struct RenderJob::Impl {
     std::shared_ptr<const Scene> scene;
+    gl::ContextOptions gpu;
     Statistics statistics;
-    Report report;
+    Report reports[2];  ///< of the device that was chosen, and of the CPU in its place
+    std::atomic<int> attempt{0};
     Progress progress;
     std::string device;
 
@@ -50,35 +54,56 @@ struct RenderJob::Impl {
         return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     }
 
-    /// One task a bucket, taken in spiral order (decision 14).
+    /// One task a bucket, taken in spiral order (decision 14).  Where OpenGL fails, no further
+    /// bucket is begun, and the first GlError comes back.
+    void render(ExecutorChoice choice) {
+        Frame frame(*scene, statistics, reports[attempt], progress, std::move(choice));
+        {
+            const std::lock_guard lock(mutex);
+            device = frame.choice.device;
+        }
+        progress.add_done(-progress.done());
+        progress.set_total(frame.layout.count());
+        const std::vector<int> order = frame.layout.spiral();
+        std::atomic<std::size_t> next{0};
+        std::optional<GlError> lost;
+        const auto work = [&] {
+            try {
+                for (std::size_t i = next++; i < order.size(); i = next++) {
+                    deliver(render_bucket(frame, order[i]));
+                    progress.add_done(1);
+                }
+            } catch (const GlError& error) {
+                next = order.size();
+                const std::lock_guard lock(mutex);
+                if (!lost) lost = error;
+            } catch (...) {
+                fail(std::current_exception());
+            }
+        };
+        std::vector<std::thread> workers;
+        for (int i = 1; i < thread_count(); ++i) workers.emplace_back(work);
+        work();
+        for (std::thread& worker : workers) worker.join();
+        progress.check();
+        if (lost) throw *lost;
+    }
+
     void run() {
         try {
-            const int threads = thread_count();
             // Embree and OpenImageIO use TBB: the artist's thread limit holds for them too.
             const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                            static_cast<std::size_t>(threads));
-            Frame frame(*scene, statistics, report, progress);
-            {
-                const std::lock_guard lock(mutex);
-                device = frame.choice.device;
+                                            static_cast<std::size_t>(thread_count()));
+            std::optional<GlError> lost;
+            try {
+                render(choose_executor(*scene, reports[0], gpu));
+            } catch (const GlError& error) {
+                lost = error;
             }
-            progress.set_total(frame.layout.count());
-            const std::vector<int> order = frame.layout.spiral();
-            std::atomic<std::size_t> next{0};
-            const auto work = [&] {
-                try {
-                    for (std::size_t i = next++; i < order.size(); i = next++) {
-                        deliver(render_bucket(frame, order[i]));
-                        progress.add_done(1);
-                    }
-                } catch (...) {
-                    fail(std::current_exception());
-                }
-            };
-            std::vector<std::thread> workers;
-            for (int i = 1; i < threads; ++i) workers.emplace_back(work);
-            work();
-            for (std::thread& worker : workers) worker.join();
+            if (lost) {
+                attempt = 1;
+                render(cpu_instead(*scene, *lost, reports[1]));
+            }
         } catch (...) {
             fail(std::current_exception());
         }
@@ -88,8 +113,10 @@ struct RenderJob::Impl {
     }
 };
 
-RenderJob::RenderJob(std::shared_ptr<const Scene> scene) : m_impl(std::make_unique<Impl>()) {
+RenderJob::RenderJob(std::shared_ptr<const Scene> scene, const gl::ContextOptions& gpu)
+    : m_impl(std::make_unique<Impl>()) {
     m_impl->scene = std::move(scene);
+    m_impl->gpu = gpu;
     m_impl->driver = std::thread([impl = m_impl.get()] { impl->run(); });
 }
 
@@ -137,7 +164,7 @@ const Statistics& RenderJob::statistics() const {
     return m_impl->statistics;
 }
 const Report& RenderJob::report() const {
-    return m_impl->report;
+    return m_impl->reports[m_impl->attempt];
 }
 std::string RenderJob::device() const {
     return m_impl->device;

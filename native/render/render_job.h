@@ -10,14 +10,19 @@
 #include "base/report.h"
 #include "base/statistics.h"
 #include "film/film.h"
+#include "render/choose_executor.h"
 #include "scene/scene.h"
 
 namespace granita {
 
 class RenderJob {
   public:
-    /// Starts at once.  The scene is shared and immutable.
-    explicit RenderJob(std::shared_ptr<const Scene> scene);
+    /// Starts at once.  The scene is shared and immutable.  `gpu`: as in choose_executor.h.
+    ///
+    /// A GPU that fails in mid-frame costs the time spent: the CPU begins the frame anew, with one
+    /// warning, and its tiles follow those that the GPU has finished and replace them.
+    explicit RenderJob(std::shared_ptr<const Scene> scene,
+                       const gl::ContextOptions& gpu = kHardware);
     /// Cancels and joins.
     ~RenderJob();
 
