@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .attributes import mesh_attributes
-from .report import poll
+from .report import counted, poll
 from .snapshot import Geometry
 
 
@@ -157,14 +157,14 @@ def _drop_broken_faces(geometry, report):
     if bad_points.any():
         report(
             geometry.name,
-            f"{np.count_nonzero(bad_points)} vertices are not finite: "
-            f"{np.count_nonzero(bad_faces & ~few_corners)} faces left out",
+            f"{counted(np.count_nonzero(bad_faces & ~few_corners), 'face')} left out: "
+            f"{counted(np.count_nonzero(bad_points), 'vertex', 'vertices')} not finite",
         )
         geometry.points[0][bad_points] = 0.0
     if few_corners.any():
         report(
             geometry.name,
-            f"{np.count_nonzero(few_corners)} faces have less than three corners: left out",
+            f"{counted(np.count_nonzero(few_corners), 'face')} of less than three corners left out",
         )
     faces, corners = ~bad_faces, ~bad_faces[face_of_corner]
     keep = {"FACE": faces, "CORNER": corners}

@@ -6,6 +6,11 @@ A problem that the frame survives is an entry of the `Report`.  One that it does
 """
 
 
+def counted(count, one, many=None):
+    """ "1 face", "2 faces": `many` is the plural where it takes more than an s."""
+    return f"{count} {one if count == 1 else many or one + 's'}"
+
+
 class ExportError(Exception):
     """The frame cannot be rendered.  The text names the datablock: "scene 'Scene': no camera"."""
 

@@ -7,6 +7,8 @@ it says all of the deformation, as in Cycles; the object's own motion comes on t
 
 import numpy as np
 
+from .report import counted
+
 NAME = "velocity"
 
 
@@ -34,7 +36,7 @@ def read_velocity(mesh, label, report):
     if broken.any():
         report(
             label,
-            f"{np.count_nonzero(broken)} values of '{NAME}' are not finite: these points stand still",
+            f"its '{NAME}' is not finite at {counted(np.count_nonzero(broken), 'point')}, taken as 0",
         )
         velocity[broken] = 0.0
     return velocity

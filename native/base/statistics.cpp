@@ -5,12 +5,13 @@ namespace granita {
 namespace {
 
 constexpr std::array kCounterNames = {
-    "primitives_opened",   "primitives_split",    "primitives_culled",     "grids_diced",
-    "grids_culled",        "grids_shaded",        "grids_opacity_shaded",  "points_diced",
-    "points_shaded",       "micropolygons",       "micropolygons_dropped", "samples_total",
-    "sample_tests_static", "sample_tests_moving", "sample_hits",           "fragments_stored",
-    "buckets_moving",      "buckets_transparent", "gl_primitives",         "gl_passes",
-    "gl_dispatches",       "rays_shadow",         "rays_occlusion",        "texture_lookups"};
+    "primitives_opened", "primitives_split",    "primitives_culled",    "grids_diced",
+    "grids_culled",      "grids_shaded",        "grids_opacity_shaded", "points_diced",
+    "points_spared",     "points_shaded",       "micropolygons",        "micropolygons_dropped",
+    "samples_total",     "sample_tests_static", "sample_tests_moving",  "sample_hits",
+    "fragments_stored",  "buckets_moving",      "buckets_transparent",  "gl_primitives",
+    "gl_passes",         "gl_dispatches",       "rays_shadow",          "rays_occlusion",
+    "texture_lookups"};
 static_assert(kCounterNames.size() == static_cast<std::size_t>(Counter::kCount));
 
 constexpr std::array kStageNames = {"open",  "split",   "dice", "hide",
@@ -35,7 +36,8 @@ double Statistics::seconds(Stage stage) const {
     return 1e-9 * static_cast<double>(m_nanoseconds[static_cast<int>(stage)].load());
 }
 
-void Statistics::peak_grid_bytes(std::uint64_t bytes) {
+void Statistics::add_grid_bytes(std::uint64_t added) {
+    const std::uint64_t bytes = m_grid_bytes.fetch_add(added) + added;
     auto peak = m_peak_grid_bytes.load(std::memory_order_relaxed);
     while (bytes > peak && !m_peak_grid_bytes.compare_exchange_weak(peak, bytes)) {
     }

@@ -23,6 +23,7 @@ enum class Counter {
     GridsShaded,         ///< radiance run
     GridsOpacityShaded,  ///< opacity run before visibility
     PointsDiced,
+    PointsSpared,  ///< about as many more without motion_factor and focus_factor
     PointsShaded,
     Micropolygons,         ///< at the hider, counted once a bucket that tests them
     MicropolygonsDropped,  ///< non-finite, counted and reported
@@ -59,8 +60,9 @@ class Statistics {
     void add_seconds(Stage stage, double seconds);
     /// Summed over threads.
     double seconds(Stage stage) const;
-    /// The largest value given, e.g. bytes of live grids.
-    void peak_grid_bytes(std::uint64_t bytes);
+    /// Bytes of grids that came into being; the most that lived at a time are peak_grid_bytes().
+    void add_grid_bytes(std::uint64_t bytes);
+    void remove_grid_bytes(std::uint64_t bytes) { m_grid_bytes.fetch_sub(bytes); }
     std::uint64_t peak_grid_bytes() const { return m_peak_grid_bytes.load(); }
     /// Bytes of the structure that rays trace, its triangles included.
     void peak_ray_bytes(std::uint64_t bytes) { m_peak_ray_bytes.store(bytes); }
@@ -71,7 +73,7 @@ class Statistics {
   private:
     std::array<std::atomic<std::uint64_t>, static_cast<int>(Counter::kCount)> m_counters{};
     std::array<std::atomic<std::uint64_t>, static_cast<int>(Stage::kCount)> m_nanoseconds{};
-    std::atomic<std::uint64_t> m_peak_grid_bytes{0};
+    std::atomic<std::uint64_t> m_grid_bytes{0}, m_peak_grid_bytes{0};
     std::atomic<std::uint64_t> m_peak_ray_bytes{0};
 };
 

@@ -41,6 +41,7 @@ struct EdgeRate::Swept {
 EdgeRate::EdgeRate(const View& view)
     : m_projection(view.projection),
       m_rate(std::max<double>(view.scene->options.dicing_rate, kFinest)),
+      m_shading_rate(std::max<double>(m_rate, view.scene->options.shading_rate)),
       m_width(view.scene->options.width),
       m_height(view.scene->options.height),
       m_near(view.projection.perspective ? std::max(view.projection.near_clip, 1e-9)

@@ -40,6 +40,8 @@ class EdgeRate {
     bool stays_whole(const Vec3f* start, const Vec3f* end, int knots) const;
     /// The dicing rate, pixels; never 0.
     double rate() const { return m_rate; }
+    /// Distance of shaded points, pixels: the dicing rate, or coarser.
+    double shading_rate() const { return m_shading_rate; }
     /// Pixels from the frame to a swept bound; 0 where they overlap.
     double outside(const RasterBounds& bounds) const;
     bool inside(const RasterBounds& bounds) const;
@@ -54,7 +56,7 @@ class EdgeRate {
     double angle(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots) const;
 
     Projection m_projection;
-    double m_rate, m_width, m_height;
+    double m_rate, m_shading_rate, m_width, m_height;
     double m_near;
 };
 

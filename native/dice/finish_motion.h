@@ -8,7 +8,8 @@
 namespace granita {
 
 /// Once positions are set at every knot: whether the grid moves (where it does not, one knot is
-/// kept), its shading positions at the frame time and its swept bounds.
+/// kept), the vertices' positions at the frame time (in
+/// `p`) and its swept bounds.
 void finish_motion(Grid& grid, const Knots& knots, const Projection& projection);
 
 }  // namespace granita

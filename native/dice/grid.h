@@ -8,9 +8,14 @@
 //   |  0---1   it is the two triangles (0, 1, 2) and (0, 2, 3): the diagonal is fixed
 //   +-----> u
 //
+// Small faces of a mesh share a grid though they share no vertices (`apart`): micropolygon m has
+// its corners 0, 1, 3 and 2 at m, m + n_u, m + 2 n_u and m + 3 n_u, in one row.
+//
 // Where a border of the patch carries fewer vertices than the interior (crack-free dicing),
 // neighbouring border vertices of the grid coincide bit for bit: micropolygons there are triangles
 // or empty.
+//
+// Shading points are the vertices, or fewer: see ShadingPlaces.
 //
 // A grid is immutable after dicing (decision 4) except for the slots `opacity` and `radiance`, each
 // filled once.
@@ -33,13 +38,24 @@ struct GridKey {
     auto operator<=>(const GridKey&) const = default;
 };
 
-/// A primitive variable at the grid's vertices.
+/// A primitive variable at the grid's shading points.
 struct GridAttribute {
     int attribute = 0;  ///< index in the material's list of requested attributes
     int width = 1;
-    std::vector<float> values;  ///< [vertices][width]
-    std::vector<float> du,
-        dv;  ///< [vertices][width] change over one grid step, parametric; empty if not asked
+    std::vector<float> values;  ///< [points][width]
+    /// [points][width] change from one point to the next, parametric; empty if not asked
+    std::vector<float> du, dv;
+};
+
+/// Where a grid is shaded, if not at every vertex.
+struct ShadingPlaces {
+    /// [points] a vertex of each point: it moves along with it.  Empty: the vertices are the
+    /// points.
+    std::vector<std::uint32_t> anchors;
+    /// A lattice is shaded at every step_u-th vertex of every step_v-th row; steps divide n_u, n_v.
+    int step_u = 1, step_v = 1;
+    /// [micropolygons] of a grid of separate ones: the point whose colour each has all over.
+    std::vector<std::uint32_t> point_of;
 };
 
 struct Grid {
@@ -47,16 +63,23 @@ struct Grid {
     std::uint32_t instance = 0;  ///< index in Scene::instances
     std::int32_t material = -1;  ///< index in Scene::materials, slot already resolved
     int n_u = 0, n_v = 0;        ///< micropolygons along u and v, each >= 1
+    bool apart = false;          ///< micropolygons share no vertices; n_v is 1
     int knots = 1;               ///< equidistant in shutter time
 
     std::vector<Vec3f> positions;  ///< [knots][vertices] camera space at each knot
     /// Shading state at the frame time, camera space of the frame time.
-    std::vector<Vec3f> p;  ///< [vertices]; empty when knots == 1: positions serve
+    ShadingPlaces places;
+    std::vector<Vec3f> p;  ///< [points]; empty when knots == 1 and vertices are points: positions
     std::vector<Vec3f>
-        normal;  ///< [vertices] unit shading normal, outward as modelled (not yet faced forward)
-    std::vector<Vec3f> geometric_normal;  ///< [vertices] unit, of the surface itself
-    std::vector<Vec3f> dp_du, dp_dv;      ///< [vertices] change of P over one grid step
+        normal;  ///< [points] unit shading normal, outward as modelled (not yet faced forward)
+    std::vector<Vec3f> geometric_normal;  ///< [points] unit, of the surface itself
+    std::vector<Vec3f> dp_du, dp_dv;      ///< [points] change of P from one point to the next
     std::vector<GridAttribute> attributes;
+    /// [points] from p to where its rays may start: outside the hair or sphere that is drawn here
+    /// as something flat.  Empty: at p.
+    std::vector<Vec3f> ray_offset;
+    /// Part of a square pixel that a point stands for, at most 1: how much light it is worth.
+    float point_share = 1.0f;
 
     RasterBounds bounds;   ///< swept over shutter and lens
     bool motion = false;   ///< knots differ
@@ -73,8 +96,15 @@ struct Grid {
 
     std::vector<float> channels;  ///< [vertices][ChannelSet::vertex_width()]; empty = none asked
 
-    int vertex_count() const { return (n_u + 1) * (n_v + 1); }
+    int vertex_count() const { return apart ? 4 * n_u : (n_u + 1) * (n_v + 1); }
     int micropolygon_count() const { return n_u * n_v; }
+    std::size_t point_count() const {
+        return places.anchors.empty() ? static_cast<std::size_t>(vertex_count())
+                                      : places.anchors.size();
+    }
+    /// From corner 0 of a micropolygon to corners 1 and 3; corner 2 is both steps away.
+    int right() const { return apart ? n_u : 1; }
+    int up() const { return apart ? 2 * n_u : n_u + 1; }
     const std::vector<Vec3f>& shading_p() const { return p.empty() ? positions : p; }
     /// The four vertex indices of a micropolygon.
     struct Corners {
@@ -82,9 +112,11 @@ struct Grid {
     };
     Corners corners(int micropolygon) const {
         const int i = micropolygon % n_u, j = micropolygon / n_u;
-        const int v0 = j * (n_u + 1) + i;
-        return {v0, v0 + 1, v0 + n_u + 2, v0 + n_u + 1};
+        const int v0 = j * up() + i;
+        return {v0, v0 + right(), v0 + right() + up(), v0 + up()};
     }
+    /// The micropolygon whose corner 0 a vertex is.
+    int micropolygon_at(int v0) const { return v0 / up() * n_u + v0 % up(); }
 };
 
 }  // namespace granita

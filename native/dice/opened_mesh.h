@@ -61,6 +61,10 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     const GeometryData& data() const { return m_shared->data(); }
     const Knots& knots() const { return m_knots; }
     int knot_count() const { return m_knots.count; }
+    /// [V] camera space.
+    std::span<const Vec3f> points(int knot) const {
+        return {&m_points[static_cast<std::size_t>(knot) * m_vertex_count], m_vertex_count};
+    }
     const EdgeRate& rate() const { return m_rate; }
     Report& report() const { return *m_report; }
 

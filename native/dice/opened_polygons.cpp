@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "dice/corner_values.h"
+#include "dice/face_batch.h"
 #include "geometry/vertex_normals.h"
 
 namespace granita {
@@ -21,7 +22,7 @@ const Vec3d kTowardsCamera(0.0, 0.0, -1.0);
 OpenedPolygons::OpenedPolygons(const View& view, std::size_t instance,
                                std::shared_ptr<const SharedGeometry> shared, Knots knots,
                                Report& report)
-    : OpenedMesh(view, instance, std::move(shared), std::move(knots), report) {
+    : OpenedMesh(view, instance, std::move(shared), std::move(knots), report), m_small(*this) {
     if (!displaced()) return;
     const std::size_t n = data().vertex_count();
     for (int k = 0; k < knot_count(); ++k) {
@@ -127,6 +128,43 @@ Vec3d OpenedPolygons::direction(const BasePatch& patch, int knot, const CornerWe
     return unit_or(blend(corner, weights.w), flat);
 }
 
+bool OpenedPolygons::corner_normals(const BasePatch& patch, Vec3d* normals) const {
+    const bool custom = !data().corner_normals.empty();
+    if (!custom && (!smooth(patch.face) || shared().vertex_normals().empty())) return false;
+    for (int i = 0; i < 4; ++i) {
+        const std::uint32_t corner = patch.corner[i];
+        const Vec3f& normal =
+            custom ? data().corner_normals[corner]
+                   : shared().vertex_normals()[static_cast<std::size_t>(vertex_of(corner))];
+        normals[i] = unit_or(camera_normal(normal), Vec3d(0.0));
+    }
+    return true;
+}
+
+void OpenedPolygons::frame_normals(const BasePatch& patch, const Vec3f* p,
+                                   const CornerWeights& weights, Vec3d& normal,
+                                   Vec3d& geometric_normal) const {
+    const Corners at{{Vec3d(p[0]), Vec3d(p[1]), Vec3d(p[2]), Vec3d(p[3])}};
+    geometric_normal = frame_orientation() * face_direction(at, weights);
+    Vec3d normals[4];
+    normal = corner_normals(patch, normals) ? unit_or(blend(normals, weights.w), geometric_normal)
+                                            : geometric_normal;
+}
+
+RasterBounds OpenedPolygons::bounds(std::size_t primitive) const {
+    const std::size_t others = m_small.others().size();
+    return primitive < others ? OpenedMesh::bounds(m_small.others()[primitive])
+                              : FaceBatch::bounds(*this, m_small.batch(primitive - others));
+}
+
+std::unique_ptr<Primitive> OpenedPolygons::primitive(std::size_t primitive) const {
+    const std::size_t others = m_small.others().size();
+    if (primitive < others) return OpenedMesh::primitive(m_small.others()[primitive]);
+    return std::make_unique<FaceBatch>(
+        std::static_pointer_cast<const OpenedPolygons>(shared_from_this()),
+        m_small.batch(primitive - others));
+}
+
 void OpenedPolygons::surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const {
     const CornerWeights weights(patch.kind, uv);
     for (int k = 0; k < knot_count(); ++k) {
@@ -163,18 +201,7 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
     }
 
     Vec3d normals[4];
-    const bool custom = !data().corner_normals.empty();
-    const bool interpolated = custom || (smooth(patch.face) && !shared().vertex_normals().empty());
-    if (interpolated)
-        for (int i = 0; i < 4; ++i) {
-            const std::uint32_t corner = patch.corner[i];
-            normals[i] = unit_or(
-                camera_normal(
-                    custom
-                        ? data().corner_normals[corner]
-                        : shared().vertex_normals()[static_cast<std::size_t>(vertex_of(corner))]),
-                Vec3d(0.0));
-        }
+    const bool interpolated = corner_normals(patch, normals);
     out.su.resize(n);
     out.sv.resize(n);
     out.normal.resize(n);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dice/opened_mesh.h"
+#include "dice/small_faces.h"
 
 namespace granita {
 
@@ -10,6 +11,13 @@ class OpenedPolygons final : public OpenedMesh {
   public:
     OpenedPolygons(const View& view, std::size_t instance,
                    std::shared_ptr<const SharedGeometry> shared, Knots knots, Report& report);
+
+    std::size_t primitive_count() const override {
+        return m_small.others().size() + m_small.batch_count();
+    }
+    RasterBounds bounds(std::size_t primitive) const override;
+    std::unique_ptr<Primitive> primitive(std::size_t primitive) const override;
+    std::uint64_t bytes() const override { return OpenedMesh::bytes() + m_small.bytes(); }
 
     Start start(const BasePatch& patch, int budget) const override;
     bool straight_edges() const override { return true; }
@@ -22,6 +30,11 @@ class OpenedPolygons final : public OpenedMesh {
                    std::span<const Vec2d> uv, std::vector<float>& values, std::vector<float>& du,
                    std::vector<float>& dv) const override;
 
+    /// Unit normals at the frame time, where the corners are at `p`: the shading normal, and that
+    /// of the face itself.
+    void frame_normals(const BasePatch& patch, const Vec3f* p, const struct CornerWeights& weights,
+                       Vec3d& normal, Vec3d& geometric_normal) const;
+
   private:
     struct Corners {
         Vec3d p[4];
@@ -33,6 +46,10 @@ class OpenedPolygons final : public OpenedMesh {
                     const Corners& at) const;
     bool smooth(std::uint32_t face) const;
 
+    /// False: the face is flat.  In camera space.
+    bool corner_normals(const BasePatch& patch, Vec3d* normals) const;
+
+    SmallFaces m_small;               ///< none where displaced
     std::vector<Vec3f> m_directions;  ///< [knots][V] vertex normals; empty when not displaced
 };
 

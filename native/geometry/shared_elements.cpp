@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "math/morton.h"
+
 namespace granita {
 namespace {
 
@@ -14,24 +16,14 @@ namespace {
 constexpr std::size_t kBatchPoints = 128;
 constexpr std::size_t kMostElements = 32;
 
-/// Every third bit of a code, from the lowest 21 of `x`.
-std::uint64_t spread_bits(std::uint64_t x) {
-    x = (x | x << 32) & 0x001f00000000ffffull;
-    x = (x | x << 16) & 0x001f0000ff0000ffull;
-    x = (x | x << 8) & 0x100f00f00f00f00full;
-    x = (x | x << 4) & 0x10c30c30c30c30c3ull;
-    return (x | x << 2) & 0x1249249249249249ull;
-}
-
-/// Places that are close have codes that are close (Morton 1966).
+/// 21 bits a coordinate of the box.
 std::uint64_t place_code(const Bounds3f& box, const Vec3d& p) {
-    std::uint64_t code = 0;
+    Vec3f cell(0.0f);
     for (int i = 0; i < 3; ++i) {
         const double size = static_cast<double>(box.hi[i]) - box.lo[i];
-        const double at = size > 0.0 ? (p[i] - box.lo[i]) / size : 0.0;
-        code |= spread_bits(static_cast<std::uint64_t>(std::clamp(at, 0.0, 1.0) * 0x1fffff)) << i;
+        if (size > 0.0) cell[i] = static_cast<float>((p[i] - box.lo[i]) / size * 0x1fffff);
     }
-    return code;
+    return morton_code(cell, 21);
 }
 
 std::string counted(std::size_t n, const char* what, const char* why) {

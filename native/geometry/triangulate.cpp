@@ -15,8 +15,8 @@ double cross2(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
 /// polygons keep their bits.
 std::vector<Vec2d> flatten(std::span<const Vec3f> polygon, const Vec3d& normal) {
     const Vec3d n = glm::normalize(normal);
-    const Vec3d helper = std::abs(n.x) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
-    const Vec3d x = glm::normalize(glm::cross(helper, n)), y = glm::cross(n, x);
+    const Vec3d axis = std::abs(n.x) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
+    const Vec3d x = glm::normalize(glm::cross(axis, n)), y = glm::cross(n, x);
     std::vector<Vec2d> flat;
     flat.reserve(polygon.size());
     for (const Vec3f& p : polygon) {

@@ -38,7 +38,6 @@ Rect touched(const SimdGrid& grid, const int vertex[4], int segment, const Rect&
 void ComputeBatch::add(const SimdGrid& grid, std::uint32_t tile, const Rect& pixels,
                        const std::function<void()>& run) {
     constexpr std::uint32_t kNotYet = ~std::uint32_t{0};
-    const auto row = static_cast<std::uint32_t>(grid.n_u + 1);
     const std::size_t vertices = static_cast<std::size_t>(grid.vertices) * (grid.segments ? 2 : 1);
     if (vertices * sizeof(Vec4f) > m_limits.buffer_bytes)
         throw GlError("a grid of " + std::to_string(grid.vertices) +
@@ -47,8 +46,8 @@ void ComputeBatch::add(const SimdGrid& grid, std::uint32_t tile, const Rect& pix
         std::uint32_t first_vertex = kNotYet;
         for (int m = 0; m < grid.n_u * grid.n_v; ++m) {
             if (grid.classes[m] == 0) continue;
-            const int v0 = m / grid.n_u * (grid.n_u + 1) + m % grid.n_u;
-            const int vertex[4] = {v0, v0 + 1, v0 + grid.n_u + 2, v0 + grid.n_u + 1};
+            const int v0 = m / grid.n_u * grid.up + m % grid.n_u;
+            const int vertex[4] = {v0, v0 + grid.right, v0 + grid.right + grid.up, v0 + grid.up};
             const Rect range = touched(grid, vertex, segment, pixels);
             if (range.empty()) continue;
             const bool full =
@@ -63,7 +62,8 @@ void ComputeBatch::add(const SimdGrid& grid, std::uint32_t tile, const Rect& pix
             if (first_vertex == kNotYet) first_vertex = add_vertices(grid, segment);
             const ComputeEntry entry{
                 first_vertex + static_cast<std::uint32_t>(v0),
-                row,
+                static_cast<std::uint32_t>(grid.right),
+                static_cast<std::uint32_t>(grid.up),
                 grid.segments ? static_cast<std::uint32_t>(grid.vertices) : 0,
                 grid.base + static_cast<SurfaceId>(m),
                 static_cast<std::uint32_t>(range.x0 | (range.x1 - 1) << 4 | range.y0 << 8 |

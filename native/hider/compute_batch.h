@@ -23,7 +23,7 @@ struct ComputeLimits {
 
 /// A micropolygon in the list of a block; as in shaders/compute/hide.comp.
 struct ComputeEntry {
-    std::uint32_t vertex, row, knot, id, pixels, segment, segments, kind;
+    std::uint32_t vertex, right, up, knot, id, pixels, segment, segments, kind;
     float from, to;
 };
 

@@ -156,8 +156,7 @@ std::vector<Vec4f> RasterGeometry::opacity() const {
 RasterGeometry::Place RasterGeometry::locate(std::uint32_t vertex) const {
     const std::uint32_t grid = m_vertex_grids.at(vertex);
     const auto local = static_cast<int>(vertex - m_places[grid][0]);
-    const int n_u = m_grids[grid]->n_u, stride = n_u + 1;
-    return {m_inputs[grid], local / stride * n_u + local % stride};
+    return {m_inputs[grid], m_grids[grid]->micropolygon_at(local)};
 }
 
 }  // namespace granita

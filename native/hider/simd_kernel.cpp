@@ -58,12 +58,11 @@ class Kernel {
 
     template <bool kMoving, bool kLens>
     void run() {
-        const int stride = m_grid.n_u + 1;
         BlockRanges ranges;
         for (int& segment = m_where.segment; segment < std::max(1, m_grid.segments); ++segment)
             for (int j = 0; j < m_grid.n_v; ++j)
                 for (int i = 0; i < m_grid.n_u; i += lane_count()) {
-                    const int first = j * stride + i;
+                    const int first = j * m_grid.up + i;
                     M touching = m_where.find_touched(first, m_grid.n_u - i, ranges);
                     if (kMoving && m_tile.strata > 1 && !hn::AllFalse(kTag, touching))
                         touching = hn::And(touching, m_where.find_times<kLens>(first, ranges));

@@ -36,7 +36,8 @@ struct SimdGrid {
     const float *x_lo = nullptr, *x_hi = nullptr, *y_lo = nullptr, *y_hi = nullptr;
     const float* nearest = nullptr;
     int n_u = 0, n_v = 0, vertices = 0;
-    int segments = 0;  ///< knots - 1; 0 = static
+    int right = 1, up = 0;  ///< Grid::right(), Grid::up()
+    int segments = 0;       ///< knots - 1; 0 = static
     const std::uint8_t* classes = nullptr;
     SurfaceId base = 0;
     const GridPool* pool = nullptr;

@@ -25,8 +25,8 @@ class TileBounds {
     int segment = 0;
 
     Shape load_shape(int vertex) const {
-        const int corner[4] = {vertex, vertex + 1, vertex + m_grid.n_u + 2,
-                               vertex + m_grid.n_u + 1};
+        const int corner[4] = {vertex, vertex + m_grid.right, vertex + m_grid.right + m_grid.up,
+                               vertex + m_grid.up};
         Shape shape;
         for (int k = 0; k < 4; ++k) {
             shape.begin[k] = load(corner[k], segment);
@@ -41,14 +41,15 @@ class TileBounds {
     /// segment and lens.
     HWY_INLINE M find_touched(int vertex, int count, BlockRanges& out) const {
         const std::size_t at = static_cast<std::size_t>(segment) * m_grid.vertices + vertex;
-        const std::size_t above = at + static_cast<std::size_t>(m_grid.n_u) + 1;
+        const std::size_t right = static_cast<std::size_t>(m_grid.right);
+        const std::size_t above = at + static_cast<std::size_t>(m_grid.up);
         const auto least = [&](const float* a) HWY_ATTR {
-            return hn::Min(hn::Min(hn::LoadU(kTag, a + at), hn::LoadU(kTag, a + at + 1)),
-                           hn::Min(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + 1)));
+            return hn::Min(hn::Min(hn::LoadU(kTag, a + at), hn::LoadU(kTag, a + at + right)),
+                           hn::Min(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + right)));
         };
         const auto most = [&](const float* a) HWY_ATTR {
-            return hn::Max(hn::Max(hn::LoadU(kTag, a + at), hn::LoadU(kTag, a + at + 1)),
-                           hn::Max(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + 1)));
+            return hn::Max(hn::Max(hn::LoadU(kTag, a + at), hn::LoadU(kTag, a + at + right)),
+                           hn::Max(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + right)));
         };
         hn::StoreU(most(m_grid.nearest), kTag, out.nearest);
         const M some = store_blocks(least(m_grid.x_lo), most(m_grid.x_hi), least(m_grid.y_lo),
@@ -62,11 +63,11 @@ class TileBounds {
     template <bool kLens>
     HWY_INLINE M find_times(int vertex, BlockRanges& out) const {
         const std::size_t knot = static_cast<std::size_t>(segment) * m_grid.vertices;
-        const int row = m_grid.n_u + 1;
+        const int right = m_grid.right, up = m_grid.up;
         const V zero = set(0.0f), side = set(static_cast<float>(kTileSize)), never = set(INFINITY);
         V from[4] = {never, never, never, never}, to[4];
         for (V& t : to) t = hn::Neg(never);
-        for (const int corner : {vertex, vertex + 1, vertex + row, vertex + row + 1}) {
+        for (const int corner : {vertex, vertex + right, vertex + up, vertex + up + right}) {
             const std::size_t a = knot + static_cast<std::size_t>(corner), b = a + m_grid.vertices;
             const V w0 = hn::LoadU(kTag, m_grid.w + a), w1 = hn::LoadU(kTag, m_grid.w + b);
             V shear = zero;

@@ -36,6 +36,8 @@ void TileGrid::project(const Vec2d& origin, SimdGrid& out) {
     const Grid& grid = *m_grid;
     out.n_u = grid.n_u;
     out.n_v = grid.n_v;
+    out.right = grid.right();
+    out.up = grid.up();
     out.vertices = grid.vertex_count();
     out.segments = grid.motion ? grid.knots - 1 : 0;
     out.inverse_focus = m_inverse_focus;

@@ -64,6 +64,8 @@ void read_options(const Record& r, Options& o) {
     o.filter_width = at_least(r, "filter_width", r.number("filter_width", o.filter_width), 0.01);
     o.dicing_rate = at_least(r, "dicing_rate", r.number("dicing_rate", o.dicing_rate), 0.01);
     o.shading_rate = at_least(r, "shading_rate", r.number("shading_rate", o.shading_rate), 0.0);
+    o.motion_factor = at_least(r, "motion_factor", r.number("motion_factor", o.motion_factor), 0.0);
+    o.focus_factor = at_least(r, "focus_factor", r.number("focus_factor", o.focus_factor), 0.0);
     o.grid_size = in_range(r, "grid_size", r.integer("grid_size", o.grid_size), 1, 65536);
     o.bucket_size =
         in_range(r, "bucket_size", r.integer("bucket_size", o.bucket_size), kTileSize, 4096);

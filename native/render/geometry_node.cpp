@@ -2,19 +2,14 @@
 #include "render/geometry_node.h"
 
 namespace granita {
-namespace {
-
-std::atomic<std::uint64_t> live_grid_bytes{0};
-
-}  // namespace
 
 SharedGrid::SharedGrid(std::unique_ptr<Grid> grid, Statistics& statistics)
     : m_grid(std::move(grid)), m_statistics(statistics), m_bytes(m_grid->bytes()) {
-    m_statistics.peak_grid_bytes(live_grid_bytes.fetch_add(m_bytes) + m_bytes);
+    m_statistics.add_grid_bytes(m_bytes);
 }
 
 SharedGrid::~SharedGrid() {
-    live_grid_bytes.fetch_sub(m_bytes);
+    m_statistics.remove_grid_bytes(m_bytes);
 }
 
 void SharedGrid::ensure_opacity(const ShadingSystem& shading) {

@@ -47,6 +47,8 @@ struct Options {
     FilterKind pixel_filter = FilterKind::BlackmanHarris;
     float filter_width = 1.5f;
     float dicing_rate = 1.0f, shading_rate = 0.0f;
+    /// How much coarser what moves or is out of focus is diced (dice/edge_rate.h); 0 = no coarser.
+    float motion_factor = 1.0f, focus_factor = 1.0f;
     int grid_size = 256;
     int bucket_size = 64;
     int z_batch_size = 26;  ///< transparent grids that the raster executor peels together

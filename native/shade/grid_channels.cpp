@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shade/spread_points.h"
+
 namespace granita {
 namespace {
 
@@ -27,7 +29,7 @@ float clarity(const Mist& mist, const Vec3f& p_camera, bool perspective, float o
     return (1.0f - std::pow(std::clamp(place, 0.0f, 1.0f), mist.exponent)) * opacity;
 }
 
-/// Rows of one channel in Grid::channels.
+/// Rows of one channel in Grid::channels, a point each.
 class Rows {
   public:
     Rows(Grid& grid, const ChannelSet& channels, const Channel& channel)
@@ -35,12 +37,12 @@ class Rows {
         if (channel.merge == Merge::Center || channel.merge == Merge::CenterConstant)
             m_first += channels.surface_width();
     }
-    void write(std::size_t vertex, float value) const { m_first[vertex * m_width] = value; }
-    void write(std::size_t vertex, const Vec3f& value) const {
-        for (int c = 0; c < 3; ++c) m_first[vertex * m_width + c] = value[c];
+    void write(std::size_t point, float value) const { m_first[point * m_width] = value; }
+    void write(std::size_t point, const Vec3f& value) const {
+        for (int c = 0; c < 3; ++c) m_first[point * m_width + c] = value[c];
     }
-    void write(std::size_t vertex, const Vec4f& value) const {
-        for (int c = 0; c < 4; ++c) m_first[vertex * m_width + c] = value[c];
+    void write(std::size_t point, const Vec4f& value) const {
+        for (int c = 0; c < 4; ++c) m_first[point * m_width + c] = value[c];
     }
 
   private:
@@ -88,7 +90,9 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                 break;
             case Quantity::Clarity:
                 fill([&](std::size_t i) {
-                    const float opacity = grid.opacity_varies ? mean(grid.opacity[i]) : 1.0f;
+                    const std::size_t vertex =
+                        grid.places.anchors.empty() ? i : grid.places.anchors[i];
+                    const float opacity = grid.opacity_varies ? mean(grid.opacity[vertex]) : 1.0f;
                     return clarity(scene.options.mist, grid.shading_p()[i], camera.perspective,
                                    opacity);
                 });
@@ -130,6 +134,7 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                 break;
         }
     }
+    spread_points(grid, channels.vertex_width(), grid.channels);
 }
 
 }  // namespace granita

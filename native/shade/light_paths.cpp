@@ -25,6 +25,28 @@ Vec3f position_at(const Grid& grid, std::size_t vertex, const KnotTime& t) {
     return before + (after - before) * static_cast<float>(t.fraction);
 }
 
+/// From the neighbours in the grid: deformation turns a surface as well as a transform does.
+/// `places` [vertices]; the point's side is the one that is seen of it.
+Vec3f normal_at(const Grid& grid, const std::vector<Vec3f>& places, std::size_t vertex,
+                const ShadingPoints& points, std::size_t point) {
+    const int v = static_cast<int>(vertex);
+    Vec3f across;
+    if (grid.apart) {
+        const Grid::Corners c = grid.corners(v % grid.n_u);
+        across = glm::cross(places[c.v2] - places[c.v0], places[c.v3] - places[c.v1]);
+    } else {
+        const int i = v % grid.up(), j = v / grid.up();
+        const auto p = [&](int x, int y) { return places[y * grid.up() + x]; };
+        across = glm::cross(p(std::min(i + 1, grid.n_u), j) - p(std::max(i - 1, 0), j),
+                            p(i, std::min(j + 1, grid.n_v)) - p(i, std::max(j - 1, 0)));
+    }
+    const float length = glm::length(across);
+    const Vec3f& seen = points.geometric_normal[point];
+    const bool same = glm::dot(glm::cross(points.dp_du[point], points.dp_dv[point]), seen) > 0.0f;
+    // Vertices that coincide have no neighbours to tell their normal.
+    return length > 0.0f ? across * ((same ? 1.0f : -1.0f) / length) : seen;
+}
+
 }  // namespace
 
 PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints& points) {
@@ -39,35 +61,29 @@ PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints
     const auto knots = static_cast<std::size_t>(m_knots);
     m_positions.reserve(knots * m_count);
     m_normals.reserve(knots * m_count);
+    const auto vertices = static_cast<std::size_t>(grid.vertex_count());
+    // A point that is no vertex goes along with one, at the distance that it has at the frame time.
+    const std::vector<std::uint32_t>& anchors = grid.places.anchors;
+    const KnotTime frame = knot_time(static_cast<double>(scene.options.frame_time), grid.knots);
+    const Mat3f frame_rotation{Mat3d(matrix_at(camera, scene.options.frame_time))};
+    std::vector<Vec3f> beside;
+    for (std::size_t i = 0; i < anchors.size(); ++i)
+        beside.push_back(frame_rotation * (grid.p[i] - position_at(grid, anchors[i], frame)));
     for (std::size_t knot = 0; knot < knots; ++knot) {
         const double time = static_cast<double>(knot) / (m_knots - 1);
         const Mat4d m = matrix_at(camera, time);
         const Mat3f rotation{Mat3d(m)};
         const Vec3f offset(Vec3d(m[3]) - origin);
         const KnotTime t = knot_time(static_cast<int>(knot), m_knots - 1, grid.knots);
-        for (std::size_t i = 0; i < m_count; ++i)
-            m_positions.push_back(rotation * position_at(grid, i, t) + offset);
-        add_normals(grid, points, knot);
-    }
-}
-
-/// From the neighbours in the grid: deformation turns a surface as well as a transform does.
-void PointPaths::add_normals(const Grid& grid, const ShadingPoints& points, std::size_t knot) {
-    const auto p = [&](int i, int j) {
-        return m_positions[knot * m_count + static_cast<std::size_t>(j * (grid.n_u + 1) + i)];
-    };
-    for (int j = 0; j <= grid.n_v; ++j)
-        for (int i = 0; i <= grid.n_u; ++i) {
-            const auto k = static_cast<std::size_t>(j * (grid.n_u + 1) + i);
-            const Vec3f du = p(std::min(i + 1, grid.n_u), j) - p(std::max(i - 1, 0), j);
-            const Vec3f dv = p(i, std::min(j + 1, grid.n_v)) - p(i, std::max(j - 1, 0));
-            const Vec3f across = glm::cross(du, dv);
-            const float length = glm::length(across);
-            const Vec3f& seen = points.geometric_normal[k];
-            const bool same = glm::dot(glm::cross(points.dp_du[k], points.dp_dv[k]), seen) > 0.0f;
-            // Vertices that coincide have no neighbours to tell their normal.
-            m_normals.push_back(length > 0.0f ? across * ((same ? 1.0f : -1.0f) / length) : seen);
+        std::vector<Vec3f> places(vertices);
+        for (std::size_t v = 0; v < vertices; ++v)
+            places[v] = rotation * position_at(grid, v, t) + offset;
+        for (std::size_t i = 0; i < m_count; ++i) {
+            const std::size_t vertex = anchors.empty() ? i : anchors[i];
+            m_positions.push_back(anchors.empty() ? places[i] : places[vertex] + beside[i]);
+            m_normals.push_back(normal_at(grid, places, vertex, points, i));
         }
+    }
 }
 
 Vec3f PointPaths::at(const std::vector<Vec3f>& values, std::size_t point, float time) const {

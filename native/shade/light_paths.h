@@ -26,7 +26,6 @@ class PointPaths {
 
   private:
     Vec3f at(const std::vector<Vec3f>& values, std::size_t point, float time) const;
-    void add_normals(const Grid& grid, const ShadingPoints& points, std::size_t knot);
 
     int m_knots = 1;
     std::size_t m_count = 0;

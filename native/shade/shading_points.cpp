@@ -21,7 +21,7 @@ ShadingCamera::ShadingCamera(const Scene& scene)
       perspective(scene.camera.projection.perspective) {}
 
 ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
-    const auto n = static_cast<std::size_t>(grid.vertex_count());
+    const std::size_t n = grid.point_count();
     const Mat3f rotation(camera.world_from_camera);
     ShadingPoints points;
     points.count = n;

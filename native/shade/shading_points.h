@@ -18,7 +18,7 @@ struct ShadingCamera {
     explicit ShadingCamera(const Scene& scene);
 };
 
-/// A grid's vertices in shading space.
+/// A grid's shading points in shading space.
 ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera);
 
 }  // namespace granita

@@ -8,6 +8,7 @@
 #include "shade/node_compiler.h"
 #include "shade/shading_points.h"
 #include "shade/shadow_transparency.h"
+#include "shade/spread_points.h"
 
 namespace granita {
 
@@ -186,6 +187,7 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
     grid.opacity = values_of(run, material.transparency);
     for (Vec3f& opacity : grid.opacity)
         opacity = glm::clamp(Vec3f(1.0f) - opacity, Vec3f(0.0f), Vec3f(1.0f));
+    spread_points(grid, 1, grid.opacity);
     grid.opacity_varies = std::any_of(grid.opacity.begin(), grid.opacity.end(),
                                       [](const Vec3f& opacity) { return opacity != Vec3f(1.0f); });
     grid.additive = material.radiance.sources.additive;
@@ -205,6 +207,7 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     std::vector<Vec3f> radiance = m_impl->light->reflect(
         points, closure, grid.key, has_passes ? &parts : nullptr, m_impl->paths(grid, points));
     for (std::size_t i = 0; i < closure.emission.size(); ++i) radiance[i] += closure.emission[i];
+    spread_points(grid, 1, radiance);
     grid.radiance = std::move(radiance);
     if (has_passes)
         fill_channels(grid, m_impl->channels, m_impl->scene, m_impl->camera,

@@ -12,13 +12,13 @@
 layout(local_size_x = COMPUTE_GROUP_SIZE) in;
 
 struct Entry {
-    uint vertex;    // corner 0 at the segment's first knot
-    uint row;       // vertices a row of the grid
-    uint knot;      // from a vertex to itself at the segment's end
+    uint vertex;     // corner 0 at the segment's first knot
+    uint right, up;  // to corners 1 and 3
+    uint knot;       // from a vertex to itself at the segment's end
     uint id;
-    uint pixels;    // x0, x1, y0, y1 in the tile, inclusive, 4 bits each
+    uint pixels;     // x0, x1, y0, y1 in the tile, inclusive, 4 bits each
     uint segment;
-    uint segments;  // 0 = static
+    uint segments;   // 0 = static
     uint kind;
     float from, to;  // in time where it moves, else in u: when it may be over the block
 };
@@ -89,8 +89,9 @@ void main() {
         while (e < end && !may_hit(e, pixel, time, lens.x)) ++e;
         if (e >= end) break;
         const Entry entry = entries[e];
-        const uint corner[4] = uint[4](entry.vertex, entry.vertex + 1u,
-                                       entry.vertex + entry.row + 1u, entry.vertex + entry.row);
+        const uint corner[4] = uint[4](entry.vertex, entry.vertex + entry.right,
+                                       entry.vertex + entry.right + entry.up,
+                                       entry.vertex + entry.up);
         vec4 c[4];
         for (int k = 0; k < 4; ++k) c[k] = vertices[corner[k]];
 #if MOTION

@@ -165,7 +165,7 @@ def test_faces_with_vertices_that_are_not_finite_are_left_out_and_named(scene, c
     assert np.isfinite(geometry["points"]).all()
     uv = attribute_of(geometry, "UV")["values"]
     assert uv[:, 0].tolist() == [8, 10, 12, 14, 24, 26, 28, 30, 40, 42, 44, 46]
-    assert report.entries() == [("mesh 'Cube'", "1 vertices are not finite: 3 faces left out", 1)]
+    assert report.entries() == [("mesh 'Cube'", "3 faces left out: 1 vertex not finite", 1)]
 
 
 def test_attribute_values_that_are_not_finite_are_named(scene, cube):

@@ -205,7 +205,7 @@ def test_vanishing_numbers_in_velocity_are_named(film, render):
     attribute.data.foreach_set("vector", np.float32([np.nan, 0, 0] + [0, 0, 0] * 3))
     _, report, _ = export_probe.through_engine(film)
     assert [entry[:2] for entry in report.entries()] == [
-        ("mesh 'Wall'", "1 values of 'velocity' are not finite: these points stand still")
+        ("mesh 'Wall'", "its 'velocity' is not finite at 1 point, taken as 0")
     ]
 
 

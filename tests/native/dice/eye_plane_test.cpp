@@ -76,8 +76,8 @@ TEST(EyePlane, walls_through_the_camera_in_every_direction_are_bounded) {
         const double angle = round * 0.7, tilt = round * 0.37;
         const Vec3d x(std::cos(angle), std::sin(angle) * std::cos(tilt),
                       std::sin(angle) * std::sin(tilt)),
-            helper(0.3, -0.2, 0.9);
-        const Vec3d n = glm::normalize(glm::cross(x, helper)), y = glm::cross(n, x);
+            other(0.3, -0.2, 0.9);
+        const Vec3d n = glm::normalize(glm::cross(x, other)), y = glm::cross(n, x);
         const double off = round % 2 ? 0.0 : 0.01;  // exactly through the eye, and just beside it
         std::vector<Vec3f> p;
         for (const auto& [a, b] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})

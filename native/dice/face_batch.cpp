@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/face_batch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dice/corner_values.h"
+#include "dice/finish_motion.h"
+#include "dice/raster_bound.h"
+
+namespace granita {
+namespace {
+
+/// Cosine of the largest angle between the normals of a cluster.
+constexpr float kLeastCosine = 0.9f;
+/// Of the shading rate: the longest side of a cluster's box.
+constexpr float kLongest = 1.5f;
+
+/// Where in a face its point is: on both triangles of a quad, so that no ray's own surface lies
+/// above it.
+Vec2d middle_of(PatchKind kind) {
+    return kind == PatchKind::Triangle ? Vec2d(1.0 / 3.0) : Vec2d(0.5);
+}
+
+}  // namespace
+
+/// At the frame time, in camera space.
+struct FaceBatch::Face {
+    Vec3f middle{0.0f}, normal{0.0f}, geometric_normal{0.0f}, su{0.0f}, sv{0.0f};
+    Vec2f place{0.0f};  ///< of the middle, pixels
+    float area = 0.0f;  ///< as seen, square pixels
+};
+
+struct FaceBatch::Cluster {
+    std::size_t first = 0, end = 0;  ///< faces
+    std::size_t largest = 0;         ///< the face that it is shaded at
+    float area = 0.0f;
+    /// How much further its neighbours' points are than the next face's.
+    float stretch(const std::vector<Face>& faces) const {
+        return faces[largest].area > 0.0f ? std::sqrt(area / faces[largest].area) : 1.0f;
+    }
+};
+
+FaceBatch::FaceBatch(std::shared_ptr<const OpenedPolygons> mesh,
+                     std::span<const std::uint32_t> faces)
+    : m_mesh(std::move(mesh)), m_faces(faces) {}
+
+RasterBounds FaceBatch::bounds(const OpenedPolygons& mesh, std::span<const std::uint32_t> faces) {
+    Bounds3f box;
+    for (int k = 0; k < mesh.knot_count(); ++k) {
+        const std::span<const Vec3f> points = mesh.points(k);
+        for (const std::uint32_t face : faces)
+            for (const std::uint32_t corner : mesh.shared().patches()[face].corner)
+                box.add(points[static_cast<std::size_t>(mesh.data().corner_verts[corner])]);
+    }
+    return raster_bound(mesh.view().projection, box);
+}
+
+/// Bit 63 is never set in the path of a patch, and a patch is in one batch at most.
+GridKey FaceBatch::key() const {
+    return {m_mesh->instance().key, patch(0).face, std::uint64_t{1} << 63 | patch(0).sub};
+}
+
+std::unique_ptr<Grid> FaceBatch::dice() const {
+    const std::size_t count = m_faces.size();
+    auto grid = std::make_unique<Grid>();
+    grid->key = key();
+    grid->instance = static_cast<std::uint32_t>(m_mesh->instance_index());
+    grid->material = m_mesh->material(patch(0).face);
+    grid->holdout = m_mesh->instance().holdout;
+    grid->apart = true;
+    grid->n_u = static_cast<int>(count);
+    grid->n_v = 1;
+    grid->knots = m_mesh->knot_count();
+    grid->positions.resize(4 * count * static_cast<std::size_t>(grid->knots));
+    constexpr std::size_t kPlane[4] = {0, 1, 3, 2};
+    for (int k = 0; k < grid->knots; ++k) {
+        const std::span<const Vec3f> points = m_mesh->points(k);
+        Vec3f* const to = &grid->positions[4 * count * static_cast<std::size_t>(k)];
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t c = 0; c < 4; ++c)
+                to[kPlane[c] * count + i] = points[static_cast<std::size_t>(
+                    m_mesh->data().corner_verts[patch(i).corner[c]])];
+    }
+    finish_motion(*grid, m_mesh->knots(), m_mesh->view().projection);
+
+    std::vector<Face> faces;
+    faces.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) faces.push_back(face(*grid, i));
+    const std::vector<Cluster> points = clusters(*grid, faces);
+    grid->p.clear();
+    for (const Cluster& cluster : points) {
+        const Face& largest = faces[cluster.largest];
+        Vec3f normal(0.0f), geometric_normal(0.0f);
+        for (std::size_t i = cluster.first; i < cluster.end; ++i) {
+            // Something of it is left for a face that is seen edge-on.
+            const float weight = faces[i].area + 1e-6f * cluster.area;
+            normal += faces[i].normal * weight;
+            geometric_normal += faces[i].geometric_normal * weight;
+        }
+        grid->places.anchors.push_back(static_cast<std::uint32_t>(cluster.largest));
+        grid->p.push_back(largest.middle);
+        grid->normal.push_back(Vec3f(unit_or(Vec3d(normal), Vec3d(largest.normal))));
+        grid->geometric_normal.push_back(
+            Vec3f(unit_or(Vec3d(geometric_normal), Vec3d(largest.geometric_normal))));
+        grid->dp_du.push_back(largest.su * cluster.stretch(faces));
+        grid->dp_dv.push_back(largest.sv * cluster.stretch(faces));
+    }
+    dice_attributes(*grid, faces, points);
+    return grid;
+}
+
+FaceBatch::Face FaceBatch::face(const Grid& grid, std::size_t i) const {
+    const Grid::Corners c = grid.corners(static_cast<int>(i));
+    // Of the vertices yet: finish_motion() filled it.
+    const std::vector<Vec3f>& p = grid.shading_p();
+    const Vec3f corner[4] = {p[c.v0], p[c.v1], p[c.v2], p[c.v3]};
+    const bool triangle = patch(i).kind == PatchKind::Triangle;
+    const CornerWeights weights(patch(i).kind, middle_of(patch(i).kind));
+    Face face;
+    face.middle =
+        triangle ? (corner[0] + corner[1] + corner[2]) / 3.0f : 0.5f * (corner[0] + corner[2]);
+    const auto blend = [&](const std::array<double, 4>& w) {
+        return Vec3d(corner[0]) * w[0] + Vec3d(corner[1]) * w[1] + Vec3d(corner[2]) * w[2] +
+               Vec3d(corner[3]) * w[3];
+    };
+    face.su = Vec3f(blend(weights.du));
+    face.sv = Vec3f(blend(weights.dv));
+    Vec3d normal, geometric_normal;
+    m_mesh->frame_normals(patch(i), corner, weights, normal, geometric_normal);
+    face.normal = Vec3f(normal);
+    face.geometric_normal = Vec3f(geometric_normal);
+    const Projection& projection = m_mesh->view().projection;
+    const auto place = [&](const Vec3f& at) {
+        return Vec2f(projection.scale) * Vec2f(at) / (projection.perspective ? at.z : 1.0f);
+    };
+    face.place = place(face.middle);
+    const Vec2f a = place(corner[2]) - place(corner[0]), b = place(corner[3]) - place(corner[1]);
+    face.area = 0.5f * std::abs(a.x * b.y - a.y * b.x);
+    return face;
+}
+
+/// Neighbours follow each other in the batch.
+std::vector<FaceBatch::Cluster> FaceBatch::clusters(Grid& grid,
+                                                    const std::vector<Face>& faces) const {
+    const auto rate = static_cast<float>(m_mesh->rate().shading_rate());
+    std::vector<Cluster> clusters;
+    Vec2f lo(0.0f), hi(0.0f);  // of the last cluster
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const Face& face = faces[i];
+        if (!clusters.empty()) {
+            Cluster& last = clusters.back();
+            const Vec2f low = glm::min(lo, face.place), high = glm::max(hi, face.place);
+            const Vec2f size = high - low;
+            const Face& first = faces[last.first];
+            if (last.area + face.area <= rate * rate &&
+                std::max(size.x, size.y) <= kLongest * rate &&
+                glm::dot(face.normal, first.normal) >= kLeastCosine &&
+                glm::dot(face.geometric_normal, first.geometric_normal) >= kLeastCosine) {
+                lo = low;
+                hi = high;
+                if (face.area > faces[last.largest].area) last.largest = i;
+                last.area += face.area;
+                last.end = i + 1;
+                grid.places.point_of.push_back(static_cast<std::uint32_t>(clusters.size() - 1));
+                continue;
+            }
+        }
+        grid.places.point_of.push_back(static_cast<std::uint32_t>(clusters.size()));
+        clusters.push_back({i, i + 1, i, face.area});
+        lo = hi = face.place;
+    }
+    return clusters;
+}
+
+void FaceBatch::dice_attributes(Grid& grid, const std::vector<Face>& faces,
+                                const std::vector<Cluster>& clusters) const {
+    const std::vector<AttributeRequest>& requests = m_mesh->requests(grid.material);
+    grid.attributes.resize(requests.size());
+    for (std::size_t a = 0; a < requests.size(); ++a) {
+        GridAttribute& out = grid.attributes[a];
+        out.attribute = static_cast<int>(a);
+        out.width = requests[a].width;
+        const auto width = static_cast<std::size_t>(out.width);
+        const auto values_at = [&](std::size_t i, std::vector<float>& values,
+                                   std::vector<float>& du, std::vector<float>& dv) {
+            const Vec2d uv = middle_of(patch(i).kind);
+            interpolate(corner_values(m_mesh->shared(), patch(i), requests[a]), patch(i).kind,
+                        {&uv, 1}, out.width, values, du, dv);
+        };
+        std::vector<float> values, du, dv, mean;
+        for (const Cluster& cluster : clusters) {
+            if (requests[a].derivatives) {
+                values_at(cluster.largest, values, du, dv);
+                for (std::size_t c = 0; c < width; ++c) {
+                    out.du.push_back(du[c] * cluster.stretch(faces));
+                    out.dv.push_back(dv[c] * cluster.stretch(faces));
+                }
+                out.values.insert(out.values.end(), values.begin(), values.end());
+                continue;
+            }
+            mean.assign(width, 0.0f);
+            float total = 0.0f;
+            for (std::size_t i = cluster.first; i < cluster.end; ++i) {
+                const float weight = faces[i].area + 1e-6f * cluster.area;
+                values_at(i, values, du, dv);
+                for (std::size_t c = 0; c < width; ++c) mean[c] += values[c] * weight;
+                total += weight;
+            }
+            // A cluster that is seen edge-on has no area.
+            if (!(total > 0.0f)) values_at(cluster.largest, mean, du, dv), total = 1.0f;
+            for (const float value : mean) out.values.push_back(value / total);
+        }
+    }
+}
+
+}  // namespace granita

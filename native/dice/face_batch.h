@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small faces of one material as one grid of separate micropolygons (Grid::apart), each the
+// micropolygon that its patch would be.
+//
+// Shading: neighbours are gathered into clusters of about the shading rate's area, each shaded once
+// and of one colour all over.  A cluster's point is the middle of its largest face, with the mean
+// of the faces' normals and of what does not ask for derivatives; what does (textures) is looked up
+// where that face is, with the footprint of the cluster.  A colour so moves by half the shading
+// rate at most; faces of a cluster differ by no more than 25 degrees.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "dice/opened_polygons.h"
+
+namespace granita {
+
+class FaceBatch final : public Primitive {
+  public:
+    /// `faces`: patches of the mesh, which keeps them.
+    FaceBatch(std::shared_ptr<const OpenedPolygons> mesh, std::span<const std::uint32_t> faces);
+
+    static RasterBounds bounds(const OpenedPolygons& mesh, std::span<const std::uint32_t> faces);
+
+    RasterBounds bounds() const override { return bounds(*m_mesh, m_faces); }
+    GridKey key() const override;
+    bool diceable() const override { return true; }
+    std::vector<std::unique_ptr<Primitive>> split() const override { return {}; }
+    std::unique_ptr<Grid> dice() const override;
+
+  private:
+    struct Face;
+    struct Cluster;
+    const BasePatch& patch(std::size_t i) const { return m_mesh->shared().patches()[m_faces[i]]; }
+    Face face(const Grid& grid, std::size_t i) const;
+    std::vector<Cluster> clusters(Grid& grid, const std::vector<Face>& faces) const;
+    void dice_attributes(Grid& grid, const std::vector<Face>& faces,
+                         const std::vector<Cluster>& clusters) const;
+
+    std::shared_ptr<const OpenedPolygons> m_mesh;
+    std::span<const std::uint32_t> m_faces;
+};
+
+}  // namespace granita

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/small_faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "dice/opened_polygons.h"
+#include "math/morton.h"
+
+namespace granita {
+namespace {
+
+/// Batches are no wider than this, pixels: buckets beside them should not meet them.
+constexpr float kRegion = 32.0f;
+/// Places on screen and in depth are told apart to this part of a pixel.
+constexpr float kStepsAPixel = 4.0f;
+
+/// Vertices as the camera sees them; not a number where it does not.
+class ScreenPoints {
+  public:
+    explicit ScreenPoints(const OpenedPolygons& mesh)
+        : m_projection(mesh.view().projection),
+          m_width(static_cast<float>(mesh.view().scene->options.width)),
+          m_height(static_cast<float>(mesh.view().scene->options.height)),
+          m_swept(mesh.data().vertex_count()) {}
+
+    void project(std::span<const Vec3f> points) {
+        const float near = static_cast<float>(m_projection.near_clip);
+        const Vec2f scale(m_projection.scale), center(m_projection.center);
+        m_points.resize(points.size());
+        for (std::size_t v = 0; v < points.size(); ++v) {
+            const Vec3f& p = points[v];
+            const bool ahead = !m_projection.perspective || p.z > near;
+            const float w = m_projection.perspective ? 1.0f / p.z : 1.0f;
+            m_points[v] = ahead ? center + scale * Vec2f(p) * w
+                                : Vec2f(std::numeric_limits<float>::quiet_NaN());
+            m_swept[v].lo = glm::min(m_swept[v].lo, m_points[v]);
+            m_swept[v].hi = glm::max(m_swept[v].hi, m_points[v]);
+        }
+    }
+    const Vec2f& operator[](std::size_t v) const { return m_points[v]; }
+    /// Whether the vertex may have been in the frame, over all knots so far.
+    bool met_frame(std::size_t v) const {
+        const Swept& s = m_swept[v];
+        return s.lo.x <= m_width && s.hi.x >= 0.0f && s.lo.y <= m_height && s.hi.y >= 0.0f;
+    }
+    /// Pixels from the eye, so that a step in depth is as long as one across.
+    float depth(float z) const {
+        const float scale = static_cast<float>(m_projection.scale.x);
+        return scale * (m_projection.perspective ? std::log(z) : z);
+    }
+
+  private:
+    struct Swept {
+        Vec2f lo{INFINITY}, hi{-INFINITY};
+    };
+    const Projection m_projection;
+    const float m_width, m_height;
+    std::vector<Vec2f> m_points;
+    std::vector<Swept> m_swept;
+};
+
+struct Corners {
+    std::uint32_t v[4];
+    int count;
+};
+
+Corners corners_of(const OpenedPolygons& mesh, const BasePatch& patch) {
+    Corners corners{};
+    for (int i = 0; i < 4; ++i)
+        corners.v[i] = static_cast<std::uint32_t>(mesh.data().corner_verts[patch.corner[i]]);
+    corners.count = patch.kind == PatchKind::Triangle ? 3 : 4;
+    return corners;
+}
+
+/// [patches] 1 = all sides are short at every knot and meet the frame.
+std::vector<std::uint8_t> find_small(const OpenedPolygons& mesh, ScreenPoints& screen) {
+    const auto& patches = mesh.shared().patches();
+    std::vector<std::uint8_t> small(patches.size(), 1);
+    // A thousandth less than EdgeRate's own limit: this is single precision.
+    const float longest = static_cast<float>(0.999 * M_SQRT2 * mesh.rate().rate());
+    std::size_t left = patches.size();
+    for (int k = 0; k < mesh.knot_count() && left > 0; ++k) {
+        screen.project(mesh.points(k));
+        for (std::size_t p = 0; p < patches.size(); ++p) {
+            if (!small[p]) continue;
+            const Corners c = corners_of(mesh, patches[p]);
+            for (int i = 0; i < c.count; ++i) {
+                const Vec2f side = screen[c.v[(i + 1) % c.count]] - screen[c.v[i]];
+                // Written so that what is not a number is not small.
+                if (glm::dot(side, side) <= longest * longest) continue;
+                small[p] = 0;
+                --left;
+                break;
+            }
+        }
+    }
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+        const Corners c = corners_of(mesh, patches[p]);
+        for (int i = 0; i < c.count && small[p]; ++i)
+            if (!screen.met_frame(c.v[i]) && !screen.met_frame(c.v[(i + 1) % c.count]))
+                small[p] = 0;
+    }
+    return small;
+}
+
+/// A small face among its neighbours.
+struct Member {
+    std::uint64_t code;  ///< by material, side seen and place
+    std::uint32_t patch;
+    Vec3f place;  ///< x, y, depth in pixels
+    std::int32_t material;
+    bool back;
+};
+
+Member member_of(const OpenedPolygons& mesh, std::uint32_t index, const ScreenPoints& screen,
+                 std::span<const Vec3f> points) {
+    const BasePatch& patch = mesh.shared().patches()[index];
+    const Corners c = corners_of(mesh, patch);
+    const Vec2f at = 0.5f * (screen[c.v[0]] + screen[c.v[2]]);
+    const Vec3f a = points[c.v[2]] - points[c.v[0]], b = points[c.v[3]] - points[c.v[1]];
+    const Vec3f middle = 0.5f * (points[c.v[0]] + points[c.v[2]]);
+    const Vec3f view = mesh.view().projection.perspective ? middle : Vec3f(0.0f, 0.0f, 1.0f);
+    Member member{};
+    member.patch = index;
+    member.place = Vec3f(at, screen.depth(middle.z));
+    member.material = mesh.material(patch.face);
+    member.back = glm::dot(glm::cross(a, b), view) > 0.0f;
+    return member;
+}
+
+}  // namespace
+
+SmallFaces::SmallFaces(const OpenedPolygons& mesh) {
+    ScreenPoints screen(mesh);
+    const std::vector<std::uint8_t> small =
+        mesh.displaced() ? std::vector<std::uint8_t>(mesh.shared().patches().size(), 0)
+                         : find_small(mesh, screen);
+    const auto count =
+        static_cast<std::size_t>(std::count(small.begin(), small.end(), std::uint8_t{1}));
+    if (count > 0) screen.project(mesh.points(mesh.knots().frame_knot));
+    m_others.reserve(small.size() - count);
+    std::vector<Member> members;
+    members.reserve(count);
+    Vec3f lowest(INFINITY);
+    for (std::uint32_t p = 0; p < small.size(); ++p) {
+        if (!small[p]) {
+            m_others.push_back(p);
+            continue;
+        }
+        members.push_back(member_of(mesh, p, screen, mesh.points(mesh.knots().frame_knot)));
+        lowest = glm::min(lowest, members.back().place);
+    }
+    if (members.empty()) return;
+    for (Member& m : members) {
+        const auto group =
+            (static_cast<std::uint64_t>(m.material + 1) << 1 | (m.back ? 1 : 0)) & 0x1ff;
+        m.code = group << 54 | morton_code((m.place - lowest) * kStepsAPixel, 18);
+    }
+    std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
+        return std::pair(a.code, a.patch) < std::pair(b.code, b.patch);
+    });
+    const auto most = static_cast<std::size_t>(std::max(mesh.view().scene->options.grid_size, 1));
+    m_order.reserve(members.size());
+    Bounds3f region;
+    for (const Member& m : members) {
+        Bounds3f wider = region;
+        wider.add(m.place);
+        const Vec3f size = wider.hi - wider.lo;
+        const Member* last = m_order.empty() ? nullptr : &m - 1;
+        if (!last || m_order.size() - m_batches.back() >= most || m.material != last->material ||
+            m.back != last->back || std::max({size.x, size.y, size.z}) > kRegion) {
+            m_batches.push_back(static_cast<std::uint32_t>(m_order.size()));
+            wider = {};
+            wider.add(m.place);
+        }
+        region = wider;
+        m_order.push_back(m.patch);
+    }
+    m_batches.push_back(static_cast<std::uint32_t>(m_order.size()));
+}
+
+}  // namespace granita

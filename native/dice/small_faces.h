@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Faces of a polygon mesh that dice into one micropolygon each, and their batches: a million of
+// them must not be a million grids (the paper names the cost of tiny grids in 9.4).
+//
+// Batches are made when an instance is opened, for the camera and from all of its faces: neighbours
+// on screen and in depth that show the same side and have one material.  What shows its back is
+// apart, so that it is culled and never shaded where the front hides it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace granita {
+
+class OpenedPolygons;
+
+class SmallFaces {
+  public:
+    /// Every face that this takes has four sides (or three) that EdgeRate leaves whole; not every
+    /// such face is taken.
+    explicit SmallFaces(const OpenedPolygons& mesh);
+
+    std::size_t batch_count() const { return m_batches.empty() ? 0 : m_batches.size() - 1; }
+    /// Patches of a batch; at most Options::grid_size.
+    std::span<const std::uint32_t> batch(std::size_t index) const {
+        return {m_order.data() + m_batches[index], m_batches[index + 1] - m_batches[index]};
+    }
+    /// Patches in no batch.
+    std::span<const std::uint32_t> others() const { return m_others; }
+    std::uint64_t bytes() const {
+        return 4 * (m_order.size() + m_batches.size() + m_others.size());
+    }
+
+  private:
+    std::vector<std::uint32_t> m_order, m_batches, m_others;
+};
+
+}  // namespace granita

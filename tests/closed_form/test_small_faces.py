@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faces of a pixel or less share grids and shading points; the picture stays that of the surface."""
+
+import numpy as np
+import pytest
+import snapshots as s
+
+
+def position_emission(snapshot):
+    """A material that shines with its object-space position."""
+    nodes = [
+        {"type": "ShaderNodeTexCoord", "inputs": {}},
+        {
+            "type": "ShaderNodeEmission",
+            "inputs": {"Color": ("LINK", 0, "Object"), "Strength": 1.0},
+        },
+    ]
+    index = len(snapshot["materials"])
+    snapshot["materials"].append({"name": "Position", "nodes": nodes, "surface": (1, "Emission")})
+    return index
+
+
+def sheet(nx, ny, width, height, z=1.0):
+    """Points and faces of nx x ny quads over a rectangle in pixels."""
+    x, y = np.meshgrid(np.linspace(0, width, nx + 1), np.linspace(0, height, ny + 1))
+    points = np.stack([x, y, np.full_like(x, z)], -1).reshape(-1, 3)
+    v = (np.arange(ny)[:, None] * (nx + 1) + np.arange(nx)).reshape(-1, 1)
+    return points, (v + np.array([0, 1, nx + 2, nx + 1])).tolist()
+
+
+@pytest.mark.parametrize("size", [1.25, 0.8, 0.3])
+def test_a_gradient_over_small_faces_keeps_its_place(executor, size):
+    """Colours are constant over a point's faces: off by half of them, and right in the mean."""
+    snapshot = s.orthographic((48, 32), executor=executor, samples=64)
+    n = np.array([48, 32]) / size
+    s.mesh(snapshot, *sheet(int(n[0]), int(n[1]), 48, 32), position_emission(snapshot))
+    error = s.render(snapshot)["combined"][..., :2] - np.stack(
+        np.meshgrid(np.arange(48) + 0.5, np.arange(32) + 0.5), -1
+    )
+    assert np.abs(error).max() < 0.75  # of a colour that grows by 1 a pixel
+    assert np.abs(error.mean((0, 1))).max() < 0.03
+
+
+def test_points_follow_the_pixels():
+    """250,000 quads at 160 x 90 are 17 a pixel."""
+    snapshot = s.orthographic((160, 90), executor="SIMD", samples=16)
+    s.mesh(snapshot, *sheet(667, 375, 160, 90), s.emission(snapshot))
+    result = s.render(snapshot)
+    assert (result["combined"] == 1.0).all()
+    assert result["statistics"]["points_shaded"] <= 2 * 160 * 90
+    assert result["statistics"]["grids_diced"] <= 2 * 667 * 375 / 256
+
+
+def test_small_faces_cover_what_one_face_covers(executor):
+    def render(nx, ny):
+        snapshot = s.orthographic((40, 24), executor=executor, samples=16)
+        points, faces = sheet(nx, ny, 31, 17)
+        points = points + [4.25, 3.5, 0]
+        motion = [s.translation(-2.5, 1.0), s.translation(2.5, -1.0)]
+        s.mesh(snapshot, points, faces, s.emission(snapshot, alpha=0.5), transforms=motion)
+        return s.alpha(snapshot)
+
+    assert (
+        np.abs(render(62, 34) - render(1, 1)).max() <= 1 / 64
+    )  # half an alpha of samples on edges
+
+
+@pytest.mark.parametrize(
+    "change", [{"bucket_size": 16}, {"threads": 3}, {"crop": np.int32([13, 7, 41, 30])}], ids=str
+)
+def test_buckets_threads_and_crop_change_no_bit(executor, change):
+    def render(**options):
+        snapshot = s.perspective((64, 48), 90.0, executor=executor, samples=16, **options)
+        points, faces = sheet(100, 80, 2.0, 1.6)
+        x, y = points[:, 0] - 1.0, points[:, 1] - 0.8
+        waves = np.stack([x, y, 3.0 + 0.3 * np.sin(7 * x) * np.cos(9 * y)], -1)
+        moved = waves + [0.1, 0.05, -0.2]
+        s.mesh(snapshot, np.stack([waves, moved]), faces, position_emission(snapshot))
+        return s.render(snapshot)["combined"]
+
+    base = render()
+    if "crop" in change:
+        x0, y0, x1, y1 = change["crop"]
+        base = base[y0:y1, x0:x1]
+    assert np.ptp(base[..., 3]) > 0.5 or "crop" in change
+    assert np.array_equal(base, render(**change))
+
+
+def test_what_small_faces_hide_is_not_shaded():
+    """A ball of faces of half a pixel: its back costs nothing."""
+    n = 200
+    latitude, longitude = np.meshgrid(
+        np.linspace(-np.pi / 2, np.pi / 2, n // 2), np.linspace(0, 2 * np.pi, n), indexing="ij"
+    )
+    points = np.stack(
+        [
+            24 + 20 * np.cos(latitude) * np.cos(longitude),
+            24 + 20 * np.cos(latitude) * np.sin(longitude),
+            50 + 20 * np.sin(latitude),
+        ],
+        -1,
+    ).reshape(-1, 3)
+    v = (np.arange(n // 2 - 1)[:, None] * n + np.arange(n - 1)).reshape(-1, 1)
+    snapshot = s.orthographic((48, 48), executor="SIMD", samples=16)
+    faces = (v + np.array([0, 1, n + 1, n])).tolist()
+    s.mesh(snapshot, points, faces, s.emission(snapshot))
+    result = s.render(snapshot)
+    # The half in front has twice its outline's area; towards the outline points crowd.
+    assert result["statistics"]["points_shaded"] <= 2.5 * np.pi * 20**2

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Faces of a pixel or less share grids: the same micropolygons, fewer points.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "dice_scene.h"
+
+namespace granita::testing {
+namespace {
+
+/// n x n quads over `size` metres around the origin, z from `height(x, y)`.
+template <class Height>
+GeometryData sheet(int n, float size, Height height) {
+    std::vector<Vec3f> p;
+    std::vector<std::int32_t> corners;
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) {
+            const float x = size * (static_cast<float>(i) / n - 0.5f);
+            const float y = size * (static_cast<float>(j) / n - 0.5f);
+            p.emplace_back(x, y, height(x, y));
+        }
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            const int v = j * (n + 1) + i;
+            for (const int c : {v, v + 1, v + n + 2, v + n + 1}) corners.push_back(c);
+        }
+    return mesh(std::move(p), std::vector<std::int32_t>(static_cast<std::size_t>(n) * n, 4),
+                std::move(corners));
+}
+
+GeometryData flat_sheet(int n, float size) {
+    return sheet(n, size, [](float, float) { return 5.0f; });
+}
+
+std::size_t points(const std::vector<std::unique_ptr<Grid>>& grids) {
+    std::size_t sum = 0;
+    for (const auto& grid : grids) sum += grid->point_count();
+    return sum;
+}
+
+TEST(SmallFaces, every_face_is_one_micropolygon_with_the_bits_of_its_vertices) {
+    DiceScene s(flat_sheet(32, 32.0f));
+    const auto grids = s.grids();
+    EXPECT_LT(grids.size(), 16u);
+    EXPECT_EQ(micropolygons(grids), 1024);
+    std::set<std::array<float, 2>> corners;
+    for (const auto& grid : grids) {
+        EXPECT_LE(grid->micropolygon_count(), 256);
+        for (int m = 0; m < grid->micropolygon_count(); ++m) {
+            const Grid::Corners c = grid->corners(m);
+            const auto at = [&](int v) { return grid->positions[static_cast<std::size_t>(v)]; };
+            corners.insert({at(c.v0).x, at(c.v0).y});
+            EXPECT_EQ(at(c.v1), at(c.v0) + Vec3f(1, 0, 0));
+            EXPECT_EQ(at(c.v2), at(c.v0) + Vec3f(1, 1, 0));
+            EXPECT_EQ(at(c.v3), at(c.v0) + Vec3f(0, 1, 0));
+        }
+    }
+    EXPECT_EQ(corners.size(), 1024u);
+}
+
+TEST(SmallFaces, their_borders_to_larger_faces_have_no_cracks) {
+    // A closed surface: a ball's latitudes and longitudes, drawn out to one side.
+    GeometryData data = mesh({}, {}, {});
+    constexpr int n = 48;
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i < 2 * n; ++i) {
+            const double latitude = M_PI * (static_cast<double>(j) / n - 0.5);
+            const double longitude = M_PI * i / n;
+            const double r = 40.0 + 35.0 * std::sin(longitude);
+            data.points.emplace_back(r * std::cos(latitude) * std::cos(longitude),
+                                     r * std::cos(latitude) * std::sin(longitude),
+                                     r * std::sin(latitude) + 300.0);
+            if (j == 0 || j == n) data.points.back() = {0.0f, 0.0f, j == 0 ? 260.0f : 340.0f};
+        }
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < 2 * n; ++i) {
+            const int a = j * 2 * n + i, b = j * 2 * n + (i + 1) % (2 * n);
+            for (const int c : {a, b, b + 2 * n, a + 2 * n}) data.corner_verts.push_back(c);
+            data.face_sizes.push_back(4);
+        }
+    DiceScene s(std::move(data));
+    s.perspective(250.0);
+    const auto grids = s.grids();
+    const auto apart =
+        std::count_if(grids.begin(), grids.end(), [](const auto& grid) { return grid->apart; });
+    EXPECT_GT(apart, 5);
+    EXPECT_LT(apart, static_cast<long>(grids.size()));
+    EXPECT_TRUE(open_edges(grids).empty());
+}
+
+TEST(SmallFaces, points_follow_the_picture_and_not_the_mesh) {
+    // 32 x 32 pixels of .35 to .125 pixel a face.
+    for (const int n : {90, 128, 256}) {
+        DiceScene s(flat_sheet(n, 32.0f));
+        const auto grids = s.grids();
+        EXPECT_EQ(micropolygons(grids), static_cast<long>(n) * n);
+        EXPECT_GE(points(grids), 1024u) << n;
+        EXPECT_LE(points(grids), 2048u) << n;
+    }
+    DiceScene coarse(flat_sheet(128, 32.0f));
+    coarse.scene.options.shading_rate = 4.0f;
+    EXPECT_LE(points(coarse.grids()), 128u);
+}
+
+TEST(SmallFaces, a_point_lies_on_a_face_of_its_colour) {
+    DiceScene s(flat_sheet(100, 32.0f));
+    for (const auto& grid : s.grids()) {
+        ASSERT_EQ(grid->p.size(), grid->point_count());
+        ASSERT_EQ(grid->places.point_of.size(),
+                  static_cast<std::size_t>(grid->micropolygon_count()));
+        for (std::size_t i = 0; i < grid->point_count(); ++i) {
+            const std::uint32_t anchor = grid->places.anchors[i];
+            const auto face = anchor % static_cast<std::uint32_t>(grid->n_u);
+            EXPECT_EQ(grid->places.point_of[face], i);
+            const Grid::Corners c = grid->corners(static_cast<int>(face));
+            const auto at = [&](int v) { return grid->positions[static_cast<std::size_t>(v)]; };
+            EXPECT_EQ(grid->p[i], 0.5f * (at(c.v0) + at(c.v2)));
+            EXPECT_EQ(grid->normal[i], grid->geometric_normal[i]);
+            EXPECT_FLOAT_EQ(std::abs(grid->geometric_normal[i].z), 1.0f);
+        }
+        // Colours go no further than the shading rate and a face.
+        for (int m = 0; m < grid->micropolygon_count(); ++m) {
+            const Vec3f& point = grid->p[grid->places.point_of[static_cast<std::size_t>(m)]];
+            const Vec3f& corner = grid->positions[static_cast<std::size_t>(m)];
+            EXPECT_LT(std::max(std::abs(point.x - corner.x), std::abs(point.y - corner.y)), 2.0f);
+        }
+    }
+}
+
+TEST(SmallFaces, what_faces_away_is_apart_from_what_is_seen) {
+    // Two sheets in each other's place, one turned over.
+    GeometryData data = flat_sheet(64, 32.0f);
+    const std::size_t corners = data.corner_verts.size();
+    for (std::size_t i = 0; i < corners; i += 4)
+        for (const std::size_t c : {3, 2, 1, 0})
+            data.corner_verts.push_back(data.corner_verts[i + c]);
+    data.face_sizes.resize(2 * data.face_sizes.size(), 4);
+    DiceScene s(std::move(data));
+    for (const auto& grid : s.grids())
+        for (const Vec3f& n : grid->geometric_normal)
+            EXPECT_EQ(n.z > 0.0f, grid->geometric_normal[0].z > 0.0f);
+}
+
+// Two sharp sides of a roof of tiny faces: no point stands for both.
+TEST(SmallFaces, a_crease_is_not_rounded) {
+    DiceScene s(sheet(128, 32.0f, [](float x, float) { return 5.0f + std::abs(x); }));
+    for (const auto& grid : s.grids())
+        for (const Vec3f& n : grid->normal) EXPECT_NEAR(std::abs(n.x), M_SQRT1_2, 1e-3);
+}
+
+TEST(SmallFaces, keys_differ) {
+    DiceScene s(flat_sheet(64, 64.0f));
+    std::set<GridKey> keys;
+    const auto grids = s.grids();
+    for (const auto& grid : grids) keys.insert(grid->key);
+    EXPECT_EQ(keys.size(), grids.size());
+}
+
+TEST(SmallFaces, averages_what_lies_within_a_point_and_looks_textures_up_at_one_place) {
+    GeometryData data = flat_sheet(256, 32.0f);
+    Attribute stripes{"stripes", Domain::Face, AttributeKind::Generic, 1, {}};
+    for (std::size_t f = 0; f < data.face_sizes.size(); ++f)
+        stripes.values.push_back(static_cast<float>((f + f / 256) % 2));
+    data.attributes.push_back(stripes);
+    DiceScene s(std::move(data));
+    AttributeRequest mean, lookup;
+    mean.name = lookup.name = "stripes";
+    mean.width = lookup.width = 1;
+    lookup.derivatives = true;
+    s.view.requests = {{mean, lookup}};
+    double error = 0.0;
+    std::size_t count = 0;
+    for (const auto& grid : s.grids()) {
+        for (const float value : grid->attributes[0].values) error += std::abs(value - 0.5);
+        count += grid->attributes[0].values.size();
+        for (const float value : grid->attributes[1].values)
+            EXPECT_TRUE(value == 0.0f || value == 1.0f);
+    }
+    EXPECT_LT(error / static_cast<double>(count), 0.05);
+}
+
+}  // namespace
+}  // namespace granita::testing
