@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frames out of Blender and how wrong they are, for the benches."""
+
+import hashlib
+import json
+import os
+import statistics
+import struct
+import subprocess
+import sys
+import tempfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "tests" / "blender"))
+import exr  # noqa: E402
+
+CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "granita" / "bench"
+
+
+def rgb(path):
+    """f32 [h,w,3], linear, top row first."""
+    channels = exr.read(path)
+    pick = lambda letter: next(v for k, v in channels.items() if k.split(".")[-1] == letter)  # noqa: E731
+    return np.stack([pick(c) for c in "RGB"], -1)[::-1].astype(np.float32)
+
+
+def render(job, clock="processor"):
+    """Runs a job (render_frames.py); returns for each setting (image, median seconds)."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "job.json"
+        file.write_text(json.dumps({**job, "folder": folder}))
+        command = ["blender", "-b", "--factory-startup", "--addons", "granita"]
+        command += ["--python-exit-code", "1", "--python", str(HERE / "render_frames.py")]
+        done = subprocess.run([*command, "--", str(file)], capture_output=True, text=True)
+        if done.returncode:
+            raise RuntimeError(done.stdout[-3000:] + done.stderr[-3000:])
+        column = {"wall": 0, "processor": 1}[clock]
+        seconds = json.loads((Path(folder) / "seconds.json").read_text())
+        return [
+            (rgb(Path(folder) / f"{i}.exr"), statistics.median(run[column] for run in runs))
+            for i, runs in enumerate(seconds)
+        ]
+
+
+def reference(scene, samples):
+    """Cycles' converged picture of a scene of scenes.py, kept in the cache until that file changes."""
+    builders = (HERE / "scenes.py").read_bytes()
+    name = f"{scene}-{samples}-{hashlib.sha256(builders).hexdigest()[:12]}.npy"
+    if not (CACHE / name).exists():
+        CACHE.mkdir(parents=True, exist_ok=True)
+        # Another seed than the one that is measured, so that no error is shared.
+        job = {"module": "scenes", "scene": scene, "runs": 1, "seed": 1}
+        job["settings"] = [{"engine": "CYCLES", "samples": samples}]
+        np.save(CACHE / name, render(job)[0][0])
+    return np.load(CACHE / name)
+
+
+def srgb(linear):
+    x = np.clip(linear, 0, 1)
+    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055).astype(np.float32)
+
+
+def save_png(path, linear):
+    """8 bits a channel, as a screen shows it."""
+    pixels = (srgb(linear) * 255 + 0.5).astype(np.uint8)
+    height, width, _ = pixels.shape
+    rows = np.insert(pixels.reshape(height, -1), 0, 0, axis=1)  # each row behind its filter, none
+
+    def chunk(kind, data):
+        body = kind + data
+        return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    body = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 9))
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + body + chunk(b"IEND", b""))
+
+
+def errors(image, truth):
+    """{rmse, percentile (99.9, of the largest channel), flip (mean, 0 to 1)}"""
+    import flip_evaluator
+
+    difference = np.abs(image - truth)
+    flip = flip_evaluator.evaluate(srgb(truth), srgb(image), "LDR", applyMagma=False)[1]
+    return {
+        "rmse": float(np.sqrt(np.mean(difference**2))),
+        "percentile": float(np.percentile(difference.max(-1), 99.9)),
+        "flip": float(flip),
+    }

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How the benches take time, and the table that they print."""
+
+import statistics
+import time
+from dataclasses import dataclass, field
+
+from snapshot_scenes import s as snapshots
+
+
+def render(snapshot):
+    """(result, processor seconds) of a whole frame."""
+    start = time.process_time()
+    result = snapshots.render(snapshot)
+    return result, time.process_time() - start
+
+
+def frame_seconds(snapshot):
+    return render(snapshot)[1]
+
+
+def hide_seconds(snapshot):
+    return snapshots.render(snapshot)["statistics"]["seconds_hide"]
+
+
+def interleaved(cases, seconds, runs):
+    """Medians of `seconds(snapshot)` for each of {name: snapshot}, taken in turns."""
+    taken = {name: [] for name in cases}
+    for _ in range(runs):
+        for name, snapshot in cases.items():
+            taken[name].append(seconds(snapshot))
+    return {name: statistics.median(values) for name, values in taken.items()}
+
+
+@dataclass
+class Table:
+    """Rows of what was measured against its limit, printed as they come."""
+
+    rows: list = field(default_factory=list)
+
+    def header(self):
+        print("| what | measured | limit | |\n|---|---|---|---|", flush=True)
+
+    def row(self, what, value, limit, form="{:.2f}"):
+        """Held where the value is at most the limit."""
+        held = bool(value <= limit)
+        self.rows.append({"what": what, "measured": value, "limit": limit, "held": held})
+        word = "held" if held else "NOT HELD"
+        print(f"| {what} | {form.format(value)} | {form.format(limit)} | {word} |", flush=True)

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders one scene in several settings, in turns.  Runs inside Blender, for the benches.
+
+    blender -b --factory-startup --addons granita --python bench/render_frames.py -- JOB.json
+
+JOB: {"module": "scenes" or "moving_files", "scene", "variant" (of moving_files), "folder", "runs", "seed" (of
+Cycles), "settings": [{"engine": "CYCLES" or "GRANITA", "samples", other properties of scene.granita}]}.  Frame i of
+the settings is kept as FOLDER/i.exr; FOLDER/seconds.json lists for each setting its runs as [wall, processor] seconds
+of the whole frame, export included.
+"""
+
+import json
+import sys
+import time
+from pathlib import Path
+
+import bpy
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "tests" / "images")]
+import engines  # noqa: E402
+
+
+def build(job):
+    """(scene, frame at which the shutter opens, frames that it stays open)"""
+    if job["module"] == "scenes":
+        import scenes
+
+        return scenes.SCENES[job["scene"]](), 1, scenes.SHUTTER
+    import moving_files
+
+    return moving_files.build(job["scene"], job["variant"])
+
+
+def main():
+    job = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
+    scene, opens, shutter = build(job)
+    seconds = [[] for _ in job["settings"]]
+    for _ in range(job["runs"]):
+        for index, setting in enumerate(job["settings"]):
+            setting = dict(setting)
+            engine, samples = setting.pop("engine"), setting.pop("samples")
+            if engine == "CYCLES":
+                engines.set_cycles(scene, samples, job.get("seed", 0))
+            else:
+                engines.set_granita(scene, samples, **setting)
+            engines.set_motion(scene, engine, opens, shutter)
+            bpy.context.view_layer.update()
+            processor = time.process_time()
+            wall = engines.render(scene, Path(job["folder"]) / f"{index}.exr")
+            seconds[index].append([wall, time.process_time() - processor])
+    (Path(job["folder"]) / "seconds.json").write_text(json.dumps(seconds))
+
+
+main()

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Eight animated files by others against Cycles' converged pictures (make_moving_references.py), at 1024 samples.
+
+Emission shows motion and coverage alone: RMSE over the pixels that blur changes.  Lit shows the file's own materials
+and lights without bounces: FLIP over the frame.  The limits are the project's promise: .006 and .02.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+from test_against_cycles import load, srgb  # noqa: E402
+
+flip_evaluator = pytest.importorskip("flip_evaluator", reason="FLIP is installed by ./dev test")
+
+SAMPLES = 1024
+SCENES = ("bend", "camera", "snake", "instances")
+
+
+def picture(name, variant, folder):
+    out = folder / "picture.exr"
+    command = ["blender", "-b", "--factory-startup", "--addons", "granita"]
+    command += ["--python-exit-code", "1", "--python", str(HERE / "moving_files.py"), "--"]
+    command += [name, variant, "GRANITA", str(out), str(SAMPLES)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=900)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-1000:]
+    return load(out)
+
+
+def reference(name):
+    return np.load(HERE / "references" / f"moving_{name}.npz")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SCENES)
+def test_blurs_like_cycles(name, tmp_path):
+    stored = reference(name)
+    blurred = stored["blurred"]
+    assert blurred.sum() > 200, "hardly anything moves"
+    difference = (picture(name, "emission", tmp_path) - stored["emission"])[blurred]
+    rmse = float(np.sqrt(np.mean(difference**2)))
+    print(f"{name}: RMSE {rmse:.4f} over {blurred.sum()} pixels")
+    assert rmse < 0.006
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SCENES)
+def test_lit_like_cycles(name, tmp_path):
+    truth = reference(name)["lit"].astype(np.float32)
+    image = picture(name, "lit", tmp_path)
+    flip = flip_evaluator.evaluate(srgb(truth), srgb(image), "LDR", applyMagma=False)[1]
+    print(f"{name}: FLIP {flip:.4f}")
+    assert flip < 0.02
