@@ -2,12 +2,15 @@
 #include "hider/raster_device.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <string>
 
 #include "base/error.h"
 #include "gl/gl_check.h"
 #include "gl/shader_source.h"
+#include "hider/bucket_tiles.h"
+#include "shaders/shared/compute_layout.h"
 #include "shaders/shared/raster_layout.h"
 
 namespace granita {
@@ -23,8 +26,9 @@ int layers_wanted(const RasterFrame& frame, const gl::ContextInfo& info) {
     return std::clamp(frame.most_layers, 1, static_cast<int>(frame.passes.size()));
 }
 
-gl::Program accumulate_program(int lattice) {
-    const gl::Defines defines{{"LATTICE", std::to_string(lattice)}};
+gl::Program accumulate_program(const RasterFrame& frame) {
+    const gl::Defines defines{{"LATTICE", std::to_string(frame.filter.lattice)},
+                              {"AT_SAMPLE", frame.table != nullptr ? "1" : "0"}};
     return gl::Program("passes",
                        {{GL_COMPUTE_SHADER, gl::shader_source("raster/accumulate.comp", defines)}});
 }
@@ -42,11 +46,12 @@ std::vector<Vec4f> device_passes(const RasterFrame& frame) {
 RasterDevice::RasterDevice(const RasterFrame& frame, const gl::ContextInfo& info)
     : m_frame(frame),
       m_target(frame.filter, layers_wanted(frame, info), info.max_texture_size),
-      m_accumulate(accumulate_program(frame.filter.lattice)),
+      m_accumulate(accumulate_program(frame)),
       m_mark("seen grids", {{GL_COMPUTE_SHADER, gl::shader_source("raster/mark_seen.comp")}}),
       m_mark_target(&m_target.radiance(), nullptr),
       m_passes(gl::Buffer::of(device_passes(frame))) {
-    constexpr int kBlocks = 3;
+    if (frame.table != nullptr) m_samples.emplace(*frame.table, frame.needs, frame.projection);
+    const int kBlocks = m_samples ? 4 : 3;
     if (info.vertex_storage_blocks < kBlocks)
         throw GlError("the device's vertex shaders read " +
                       std::to_string(info.vertex_storage_blocks) + " storage blocks, " +
@@ -56,23 +61,33 @@ RasterDevice::RasterDevice(const RasterFrame& frame, const gl::ContextInfo& info
     m_layers = gl::Buffer::of(layers);
 }
 
+void RasterDevice::begin(const RasterCell& cell) {
+    if (m_samples) m_samples->load(cell);
+}
+
 bool RasterDevice::reaches(const RasterBounds& b, const RasterCell& cell) {
     const Rect& s = cell.samples;
     return b.visible && b.x1 >= static_cast<float>(s.x0) && b.x0 <= static_cast<float>(s.x1) &&
            b.y1 >= static_cast<float>(s.y0) && b.y0 <= static_cast<float>(s.y1);
 }
 
+gl::Program RasterDevice::make_program(RasterOutput output) const {
+    const std::string shaders = m_samples ? "raster/sample" : "raster/grid";
+    gl::Defines defines{{"PERSPECTIVE", m_frame.projection.perspective ? "1" : "0"},
+                        {"LAYERED", m_target.layers() > 1 ? "1" : "0"},
+                        {"OUTPUT", name_of(output)}};
+    if (m_samples) {
+        defines.emplace_back("MOTION", m_samples->needs().time ? "1" : "0");
+        defines.emplace_back("LENS", m_samples->needs().lens ? "1" : "0");
+    }
+    return gl::Program("grids",
+                       {{GL_VERTEX_SHADER, gl::shader_source(shaders + ".vert", defines)},
+                        {GL_FRAGMENT_SHADER, gl::shader_source(shaders + ".frag", defines)}});
+}
+
 gl::Program& RasterDevice::program(RasterOutput output) {
     auto& program = m_programs[static_cast<int>(output)];
-    if (!program) {
-        const gl::Defines defines{{"PERSPECTIVE", m_frame.projection.perspective ? "1" : "0"},
-                                  {"LAYERED", m_target.layers() > 1 ? "1" : "0"},
-                                  {"OUTPUT", name_of(output)}};
-        program.emplace("grids",
-                        std::vector<gl::Stage>{
-                            {GL_VERTEX_SHADER, gl::shader_source("raster/grid.vert", defines)},
-                            {GL_FRAGMENT_SHADER, gl::shader_source("raster/grid.frag", defines)}});
-    }
+    if (!program) program.emplace(make_program(output));
     return *program;
 }
 
@@ -89,8 +104,8 @@ std::vector<RasterDevice::Command> RasterDevice::commands(
     for (const std::uint32_t i : among) {
         const RasterGeometry::Range& range = ranges[i];
         if (!reaches(range.swept, cell)) continue;
-        int first = 0, end = passes.count;
-        if (range.knots > 1) {
+        int first = 0, end = m_samples ? std::max(1, range.knots - 1) : passes.count;
+        if (range.knots > 1 && !m_samples) {
             const auto touches = [&](int layer) {
                 const double t = m_frame.passes[passes.first + layer].t;
                 return reaches(geometry.bounds_at(range, m_frame.projection, t), cell);
@@ -113,40 +128,79 @@ std::vector<RasterDevice::Command> RasterDevice::commands(
     return commands;
 }
 
-void RasterDevice::draw(RasterOutput output, const RasterBuffers& buffers,
-                        const std::vector<Command>& commands, const RasterCell& cell,
-                        const RasterPasses& passes) {
+void RasterDevice::set_cell(const RasterCell& cell) const {
     const Projection& p = m_frame.projection;
     const Vec2d per_pixel(2.0 / m_target.pixel_size());
     const Vec2d scale = p.scale * per_pixel;
     const Vec2d center = (p.center - Vec2d(cell.corner)) * per_pixel - Vec2d(1.0);
-    program(output).use();
     glUniform2d(RASTER_CLIP_SCALE, scale.x, scale.y);
     glUniform2d(RASTER_CLIP_CENTER, center.x, center.y);
     glUniform1f(RASTER_NEAR, static_cast<float>(p.near_clip));
-    glUniform1ui(RASTER_FIRST_PASS, static_cast<GLuint>(passes.first));
     glUniform1d(RASTER_INVERSE_FOCUS, p.has_lens() ? 1.0 / p.focus : 0.0);
+}
+
+void RasterDevice::draw(RasterOutput output, const RasterBuffers& buffers,
+                        const std::vector<Command>& commands, const RasterCell& cell,
+                        const RasterPasses& passes) {
+    program(output).use();
+    set_cell(cell);
     buffers.positions.bind_storage(RASTER_POSITIONS);
     buffers.grids.bind_storage(RASTER_GRIDS);
-    m_passes.bind_storage(RASTER_PASSES);
-    buffers.array.set_uints(RASTER_LAYER, m_layers, true);
     buffers.array.bind();
-
-    const gl::Buffer indirect = gl::Buffer::of(commands);
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, indirect.name());
     m_primitives.emplace_back(GL_PRIMITIVES_GENERATED);
     m_primitives.back().begin();
-    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr,
-                                static_cast<GLsizei>(commands.size()), 0);
+    if (m_samples)
+        draw_ways(buffers, commands);
+    else
+        draw_passes(buffers, commands, passes);
     m_primitives.back().end();
     gl::check("drawing grids");
     if (m_frame.statistics != nullptr) m_frame.statistics->add(Counter::GlPasses, 1);
+}
+
+void RasterDevice::draw_passes(const RasterBuffers& buffers, const std::vector<Command>& commands,
+                               const RasterPasses& passes) const {
+    glUniform1ui(RASTER_FIRST_PASS, static_cast<GLuint>(passes.first));
+    m_passes.bind_storage(RASTER_PASSES);
+    buffers.array.set_uints(RASTER_LAYER, m_layers, true);
+    const gl::Buffer indirect = gl::Buffer::of(commands);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, indirect.name());
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr,
+                                static_cast<GLsizei>(commands.size()), 0);
+}
+
+void RasterDevice::draw_ways(const RasterBuffers& buffers,
+                             const std::vector<Command>& commands) const {
+    const Projection& p = m_frame.projection;
+    const DepthRange range = depth_range(p);
+    const LensShape& lens = m_frame.table->lens();
+    glUniform2f(RASTER_LENS_RADIUS, static_cast<float>(p.lens_radius * lens.extent_u()),
+                static_cast<float>(p.lens_radius * lens.extent_v()));
+    glUniform1f(RASTER_CELL_SIZE, static_cast<float>(m_target.pixel_size()));
+    glUniform2d(RASTER_RASTER_SCALE, p.scale.x, p.scale.y);
+    glUniform2d(RASTER_RASTER_CENTER, p.center.x, p.center.y);
+    glUniform1i(COMPUTE_PERSPECTIVE, range.perspective);
+    glUniform2f(COMPUTE_KEY_RANGE, range.key_far, range.key_near);
+    glUniform1f(COMPUTE_INVERSE_FOCUS, static_cast<float>(1.0 / p.focus));
+    m_samples->bind();
+    buffers.indices.bind_storage(RASTER_TRIANGLES);
+    buffers.vertex_grids.bind_storage(RASTER_VERTEX_GRIDS);
+    buffers.radiance.bind_storage(RASTER_VERTEX_RADIANCE);
+    buffers.opacity.bind_storage(RASTER_VERTEX_OPACITY);
+    // Six vertices for the three indices of a triangle; an instance a segment of the motion.
+    std::vector<std::array<GLuint, 4>> draws;
+    for (const Command& c : commands)
+        draws.push_back({2 * c.count, c.instances, 2 * c.first_index, 0});
+    const gl::Buffer indirect = gl::Buffer::of(draws);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, indirect.name());
+    glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<GLsizei>(draws.size()), 0);
 }
 
 void RasterDevice::accumulate(const RasterCell& cell, const RasterPasses& passes, bool peeled,
                               const RasterBackground& background, const gl::Buffer& corners) const {
     const Rect& b = background.pixels;
     m_accumulate.use();
+    if (m_samples) m_samples->bind();
     glUniform2i(RASTER_COUNT, passes.first, passes.count);
     glUniform2i(RASTER_CELL_PIXEL, cell.corner.x - b.x0, cell.corner.y - b.y0);
     glUniform3i(RASTER_BACKGROUND_SIZE, b.empty() ? 0 : b.width() + 1, b.height() + 1,

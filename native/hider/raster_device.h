@@ -12,6 +12,7 @@
 #include "gl/vertex_array.h"
 #include "hider/raster_hider.h"
 #include "hider/raster_peel.h"
+#include "hider/raster_samples.h"
 #include "hider/raster_target.h"
 
 namespace granita {
@@ -35,9 +36,11 @@ class RasterDevice {
   public:
     RasterDevice(const RasterFrame& frame, const gl::ContextInfo& info);
 
+    /// Before anything else is asked for the cell.
+    void begin(const RasterCell& cell);
     static bool reaches(const RasterBounds& bounds, const RasterCell& cell);
     /// Draws of ranges, as OpenGL reads them: in ascending order, each only in the layers whose
-    /// instants it touches the cell at.
+    /// instants it touches the cell at; with samples(), one instance a segment of the motion.
     struct Command {
         GLuint count, instances, first_index, base_vertex, first_instance;
     };
@@ -59,6 +62,8 @@ class RasterDevice {
     void begin_marks(const RasterCell& cell, const gl::Buffer& seen) const;
 
     RasterTarget& target() { return m_target; }
+    /// nullptr: all samples of a pass have one time and one lens point.
+    const RasterSamples* samples() const { return m_samples ? &*m_samples : nullptr; }
     /// Made when the first transparent grid comes.
     RasterPeel& peel();
     /// Primitives drawn since the last call; waits for the device.
@@ -68,9 +73,16 @@ class RasterDevice {
 
   private:
     gl::Program& program(RasterOutput output);
+    gl::Program make_program(RasterOutput output) const;
+    void set_cell(const RasterCell& cell) const;
+    void draw_passes(const RasterBuffers& buffers, const std::vector<Command>& commands,
+                     const RasterPasses& passes) const;
+    /// A quadrilateral around each triangle's way: raster/sample.*.
+    void draw_ways(const RasterBuffers& buffers, const std::vector<Command>& commands) const;
 
     const RasterFrame& m_frame;
     RasterTarget m_target;
+    std::optional<RasterSamples> m_samples;
     std::optional<RasterPeel> m_peel;
     std::optional<gl::Program> m_programs[4];
     gl::Program m_accumulate, m_mark;

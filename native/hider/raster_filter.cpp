@@ -10,6 +10,7 @@
 namespace granita {
 
 int RasterFilter::apron() const {
+    if (!factor.empty()) return static_cast<int>(std::ceil(radius - 0.5));
     const int last = first + static_cast<int>(weights.size()) - 1;
     const int below = first < 0 ? (-first + lattice - 1) / lattice : 0;
     const int above = last >= lattice ? last / lattice : 0;
@@ -47,9 +48,22 @@ RasterFilter make_raster_filter(int lattice, double radius,
     return filter;
 }
 
-std::string weights_source(const RasterFilter& filter) {
+RasterFilter make_gathering_filter(int lattice, double radius, bool is_box,
+                                   const std::function<double(double)>& factor) {
+    GRANITA_CHECK_GE(lattice, 1);
+    GRANITA_CHECK(std::isfinite(radius) && radius > 0.0);
+    constexpr int kSteps = 1024;
+    RasterFilter filter;
+    filter.lattice = lattice;
+    filter.radius = radius;
+    filter.is_box = is_box;
+    for (int i = 0; i <= kSteps; ++i) filter.factor.push_back(factor(radius * i / kSteps));
+    return filter;
+}
+
+std::string list_source(const std::vector<double>& values) {
     std::string source;
-    for (const double weight : filter.weights) {
+    for (const double weight : values) {
         char number[32];
         // Nine digits make a float exact.
         std::snprintf(number, sizeof number, "%.8e",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pixel filter as the raster executor uses it: on a regular lattice every pixel has the same
-// weights, so they are constants of a generated shader (paper, 9.3.6).
+// The pixel filter as the raster executor uses it, in a generated shader (paper, 9.3.6): on a
+// regular lattice every pixel has the same weights, which are its constants; samples that lie
+// anywhere weigh by the filter's factor, a table of constants.
 #pragma once
 
 #include <functional>
@@ -15,6 +16,11 @@ struct RasterFilter {
     int first = 0;                ///< sub-sample of weights[0]; 0 is the pixel's own lowest
     std::vector<double> weights;  ///< consecutive sub-samples; sum 1
 
+    /// Samples anywhere: the factor at equal steps from 0 to `radius`, unnormalised; else empty.
+    std::vector<double> factor;
+    double radius = 0.0;
+    bool is_box = false;
+
     /// Whole pixels that the filter reaches beyond its own.
     int apron() const;
 };
@@ -24,7 +30,12 @@ struct RasterFilter {
 RasterFilter make_raster_filter(int lattice, double radius,
                                 const std::function<double(double)>& factor);
 
-/// The weights as the source of a list of floats, for resolve/filter.frag.
-std::string weights_source(const RasterFilter& filter);
+/// For samples that lie anywhere in their pixels, of which `lattice`^2 have room.  The table's
+/// linear interpolation errs by less than 1e-5 of the factor at 0 for the filters of film/.
+RasterFilter make_gathering_filter(int lattice, double radius, bool is_box,
+                                   const std::function<double(double)>& factor);
+
+/// As the source of a list of floats, for the shaders of resolve/.
+std::string list_source(const std::vector<double>& values);
 
 }  // namespace granita

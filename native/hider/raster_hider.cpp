@@ -38,6 +38,9 @@ class RasterHider::Bucket : public RasterBucket {
     RasterImage render(const RasterBackground& background) override {
         return m_thread.run([&] { return render_here(background); });
     }
+    std::vector<float> center_keys() override {
+        return m_thread.run([&] { return center_keys_here(); });
+    }
     RasterSurfaces surfaces(int pass) override {
         return m_thread.run([&] { return surfaces_here(pass); });
     }
@@ -118,7 +121,8 @@ class RasterHider::Bucket : public RasterBucket {
     std::vector<bool> find_seen_here() {
         const std::size_t grids = m_geometry.inputs().size();
         const gl::Buffer marks = gl::Buffer::of(std::vector<std::uint32_t>(grids, 0));
-        for (const RasterCell& cell : m_device.target().cells(m_pixels))
+        for (const RasterCell& cell : m_device.target().cells(m_pixels)) {
+            m_device.begin(cell);
             for_passes(pass_count(cell, false), [&](const RasterPasses& passes) {
                 m_device.target().begin_surfaces(cell, m_device.farthest());
                 draw_opaque(RasterOutput::Surface, cell, passes);
@@ -128,6 +132,7 @@ class RasterHider::Bucket : public RasterBucket {
                 m_device.begin_marks(cell, marks);
                 m_device.draw(RasterOutput::Mark, *m_buffers, commands, cell, passes);
             });
+        }
         const auto marked = marks.read<std::uint32_t>();
         std::vector<bool> seen(grids);
         for (std::size_t i = 0; i < grids; ++i) seen[m_geometry.inputs()[i]] = marked[i] != 0;
@@ -184,6 +189,7 @@ class RasterHider::Bucket : public RasterBucket {
         RasterImage image{m_pixels, {}};
         image.combined.resize(static_cast<std::size_t>(m_pixels.width()) * m_pixels.height());
         for (const RasterCell& cell : m_device.target().cells(m_pixels)) {
+            m_device.begin(cell);
             const int count = pass_count(cell, background.passes > 1);
             const std::vector<ZBatch> batches = batches_of(cell);
             for_passes(count, [&](const RasterPasses& passes) {
@@ -192,10 +198,14 @@ class RasterHider::Bucket : public RasterBucket {
                 if (!batches.empty()) peel(batches, cell, passes);
                 m_device.accumulate(cell, passes, !batches.empty(), background, corners);
             });
-            copy(m_device.target().resolve(cell), cell.pixels, 1, image.combined);
-            add(Counter::SamplesTotal, static_cast<std::uint64_t>(cell.texels.width) *
-                                           static_cast<std::uint64_t>(cell.texels.height) *
-                                           static_cast<std::uint64_t>(count));
+            copy(m_device.target().resolve(cell, m_device.samples()), cell.pixels, 1,
+                 image.combined);
+            const int lattice = m_frame.filter.lattice;
+            add(Counter::SamplesTotal,
+                static_cast<std::uint64_t>(cell.samples.width()) *
+                    static_cast<std::uint64_t>(cell.samples.height()) *
+                    static_cast<std::uint64_t>(m_frame.table ? m_frame.table->samples()
+                                                             : lattice * lattice * count));
             add(Counter::GlPrimitives, m_device.take_primitives());
         }
         return image;
@@ -206,6 +216,29 @@ class RasterHider::Bucket : public RasterBucket {
         return m_frame.projection.perspective ? depth / near_clip : -(near_clip / depth);
     }
 
+    void draw_surfaces(const RasterCell& cell, const RasterPasses& passes) {
+        m_device.begin(cell);
+        m_device.target().begin_surfaces(cell, m_device.farthest());
+        draw_opaque(RasterOutput::Surface, cell, passes);
+        if (!m_transparent.empty())
+            m_device.draw(RasterOutput::Surface, *m_buffers,
+                          transparent_commands(m_transparent, cell, passes), cell, passes);
+    }
+
+    std::vector<float> center_keys_here() {
+        std::vector<float> keys(static_cast<std::size_t>(m_pixels.width()) * m_pixels.height());
+        for (const RasterCell& cell : m_device.target().cells(m_pixels)) {
+            draw_surfaces(cell, {0, 1});
+            auto depths = m_device.target().center_depths(cell, m_device.samples());
+            for (float& depth : depths)
+                depth =
+                    depth > 0.0f ? key_of_depth(depth) : -std::numeric_limits<float>::infinity();
+            copy(depths, cell.pixels, 1, keys);
+        }
+        add(Counter::GlPrimitives, m_device.take_primitives());
+        return keys;
+    }
+
     RasterSurfaces surfaces_here(int pass) {
         const int lattice = m_frame.filter.lattice;
         const std::size_t count =
@@ -213,12 +246,7 @@ class RasterHider::Bucket : public RasterBucket {
         std::vector<std::uint32_t> names(count);
         std::vector<float> depths(count);
         for (const RasterCell& cell : m_device.target().cells(m_pixels)) {
-            const RasterPasses passes{pass, 1};
-            m_device.target().begin_surfaces(cell, m_device.farthest());
-            draw_opaque(RasterOutput::Surface, cell, passes);
-            if (!m_transparent.empty())
-                m_device.draw(RasterOutput::Surface, *m_buffers,
-                              transparent_commands(m_transparent, cell, passes), cell, passes);
+            draw_surfaces(cell, {pass, 1});
             copy(m_device.target().read_surfaces(cell), cell.pixels, lattice, names);
             copy(m_device.target().read_depth(cell), cell.pixels, lattice, depths);
         }

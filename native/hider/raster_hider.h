@@ -8,11 +8,14 @@
 //   ... shade the grids with seen[i] ...
 //   image = bucket->render(background);           // draw supersampled, filter, read back
 //
-// Samples are those of SampleTable with REGULAR sampling: the lattice's cell centres are the
-// centres of the target's texels, and each pass has one time and one lens point for all pixels.
-// What a sample sees is what the CPU executors see, but for samples within a unit of OpenGL's
-// sub-pixel grid (2^-8 texel in most drivers) of an edge, and depths within the rounding of its
-// depth interpolation.  No bit depends on `pixels`.
+// Samples are those of SampleTable.  REGULAR: the lattice's cell centres are the centres of the
+// target's texels, and each pass has one time and one lens point for all pixels.  What a sample
+// sees is what the CPU executors see, but for samples within a unit of OpenGL's sub-pixel grid
+// (2^-8 texel in most drivers) of an edge, and depths within the rounding of its depth
+// interpolation.  INDEPENDENT and INTERLEAVED (RasterFrame::table): the paper's per-pixel time
+// sampling (9.3.5, figure 9.6): each triangle is drawn as a quadrilateral around its whole way, and
+// the fragment program tests each sample at its own place, time and lens point, with the CPU's
+// arithmetic.  No bit depends on `pixels`.
 //
 // Differs from the paper: grids are tested against the finished depth buffer of the bucket instead
 // of what happens to be drawn so far, and not by one occlusion query each: the samples themselves
@@ -32,6 +35,7 @@
 #include "gl/gl_thread.h"
 #include "hider/raster_filter.h"
 #include "hider/raster_target.h"
+#include "hider/sample_table.h"
 #include "math/projection.h"
 #include "scene/scene.h"
 
@@ -46,9 +50,12 @@ struct RasterFrame {
     Projection projection;
     RasterFilter filter;                ///< also says the lattice
     std::vector<RasterPass> passes{1};  ///< at least one
-    float opacity_threshold = 1.0f;     ///< as CompositeSettings::opacity_threshold
-    bool film_transparent = true;       ///< alpha is what surfaces cover
-    int z_batch_size = 26;              ///< transparent grids that are peeled together
+    /// Not REGULAR: places, times and lens points of all samples, in one pass; `filter` gathers.
+    const SampleTable* table = nullptr;
+    SampleNeeds needs;               ///< of `table`
+    float opacity_threshold = 1.0f;  ///< as CompositeSettings::opacity_threshold
+    bool film_transparent = true;    ///< alpha is what surfaces cover
+    int z_batch_size = 26;           ///< transparent grids that are peeled together
     int most_layers =
         8;  ///< passes drawn at once, where the device can; 1 = multipass accumulation
     Statistics* statistics = nullptr;
@@ -85,6 +92,10 @@ class RasterBucket {
     virtual std::vector<bool> find_seen() = 0;
     /// Every grid must be shaded, but for those that find_seen() found unseen.
     virtual RasterImage render(const RasterBackground& background = {}) = 0;
+    /// Depth keys of the samples nearest to the pixels' centres, in the first pass,
+    /// [height][width]; -inf = nothing.
+    virtual std::vector<float> center_keys() = 0;
+    /// Reads the supersampled target back, for tests.
     virtual RasterSurfaces surfaces(int pass = 0) = 0;
 };
 

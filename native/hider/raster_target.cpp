@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "gl/gl_check.h"
 #include "gl/shader_source.h"
+#include "hider/raster_samples.h"
 #include "shaders/shared/raster_layout.h"
 
 namespace granita {
@@ -29,15 +30,28 @@ int choose_cell(const RasterFilter& filter, int max_texture_size) {
     return cell;
 }
 
+gl::Program screen_program(const std::string& name, const std::string& fragment,
+                           const gl::Defines& defines) {
+    return gl::Program(name, {{GL_VERTEX_SHADER, gl::shader_source("resolve/screen.vert")},
+                              {GL_FRAGMENT_SHADER, gl::shader_source(fragment, defines)}});
+}
+
 gl::Program filter_program(const RasterFilter& filter, const std::string& axis) {
-    const gl::Defines defines{{"TAP_WEIGHTS", weights_source(filter)},
+    const gl::Defines defines{{"TAP_WEIGHTS", list_source(filter.weights)},
                               {"TAP_COUNT", std::to_string(filter.weights.size())},
                               {"TAP_FIRST", std::to_string(filter.first)},
                               {"LATTICE", std::to_string(filter.lattice)},
                               {"AXIS", axis}};
-    return gl::Program("pixel filter along " + axis,
-                       {{GL_VERTEX_SHADER, gl::shader_source("resolve/screen.vert")},
-                        {GL_FRAGMENT_SHADER, gl::shader_source("resolve/filter.frag", defines)}});
+    return screen_program("pixel filter along " + axis, "resolve/filter.frag", defines);
+}
+
+gl::Program gather_program(const RasterFilter& filter) {
+    const gl::Defines defines{{"FACTOR", list_source(filter.factor)},
+                              {"FACTOR_COUNT", std::to_string(filter.factor.size() - 1)},
+                              {"RADIUS", list_source({filter.radius})},
+                              {"IS_BOX", filter.is_box ? "1" : "0"},
+                              {"APRON", std::to_string(filter.apron())}};
+    return screen_program("pixel filter", "resolve/gather.frag", defines);
 }
 
 int floor_to(int value, int step) {
@@ -57,11 +71,15 @@ RasterTarget::RasterTarget(const RasterFilter& filter, int most_layers, int max_
     m_radiance = gl::Texture(GL_RGBA32F, side, side, m_layers);
     m_depth = gl::Texture(GL_DEPTH_COMPONENT32F, side, side, m_layers);
     m_mean = gl::Texture(GL_RGBA32F, side, side);
-    m_rows = gl::Texture(GL_RGBA32F, m_cell, side);
     m_pixels = gl::Texture(GL_RGBA32F, m_cell, m_cell);
     m_radiance_target = gl::Framebuffer(&m_radiance, &m_depth);
-    m_rows_target = gl::Framebuffer(&m_rows, nullptr);
     m_pixels_target = gl::Framebuffer(&m_pixels, nullptr);
+    if (!filter.factor.empty()) {
+        m_gather = gather_program(filter);
+        return;
+    }
+    m_rows = gl::Texture(GL_RGBA32F, m_cell, side);
+    m_rows_target = gl::Framebuffer(&m_rows, nullptr);
     m_filter_x = filter_program(filter, "ivec2(1, 0)");
     m_filter_y = filter_program(filter, "ivec2(0, 1)");
 }
@@ -127,35 +145,65 @@ void RasterTarget::dispatch(const RasterCell& cell, int layers) const {
     glDispatchCompute(groups(t.width), groups(t.height), static_cast<GLuint>(layers));
 }
 
-std::vector<Vec4f> RasterTarget::resolve(const RasterCell& cell) const {
-    const Rect& p = cell.pixels;
-    const int left = p.x0 - cell.corner.x - m_apron, low = p.y0 - cell.corner.y - m_apron;
-    const int apron_texels = m_apron * m_lattice;
+void RasterTarget::fill(const gl::Framebuffer& target, const gl::Texture& texture,
+                        const gl::TexelRect& part, Vec2i origin) const {
     glDisable(GL_DEPTH_TEST);
     m_no_attributes.bind();
+    target.bind();
+    glUniform2i(FILTER_ORIGIN, origin.x, origin.y);
+    glViewport(0, 0, texture.width(), texture.height());
+    glScissor(part.x, part.y, part.width, part.height);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
 
-    m_rows_target.bind();
-    m_filter_x.use();
-    glUniform2i(FILTER_ORIGIN, apron_texels, 0);
+std::vector<Vec4f> RasterTarget::resolve(const RasterCell& cell,
+                                         const RasterSamples* samples) const {
+    const gl::TexelRect own = own_pixels(cell);
+    const int apron_texels = m_apron * m_lattice;
     m_mean.bind(FILTER_SOURCE);
-    glViewport(0, 0, m_rows.width(), m_rows.height());
-    glScissor(left, cell.texels.y, p.width(), cell.texels.height);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-
-    m_pixels_target.bind();
-    m_filter_y.use();
-    glUniform2i(FILTER_ORIGIN, 0, apron_texels);
-    m_rows.bind(FILTER_SOURCE);
-    glViewport(0, 0, m_pixels.width(), m_pixels.height());
-    glScissor(left, low, p.width(), p.height());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    if (samples != nullptr) {
+        m_gather.use();
+        samples->bind();
+        fill(m_pixels_target, m_pixels, own, {m_apron, m_apron});
+    } else {
+        m_filter_x.use();
+        fill(m_rows_target, m_rows, {own.x, cell.texels.y, own.width, cell.texels.height},
+             {apron_texels, 0});
+        m_filter_y.use();
+        m_rows.bind(FILTER_SOURCE);
+        fill(m_pixels_target, m_pixels, own, {0, apron_texels});
+    }
     gl::check("filtering a cell");
 
-    const auto floats = m_pixels.read<float>({left, low, p.width(), p.height()}, GL_RGBA, 4);
+    const auto floats = m_pixels.read<float>(own, GL_RGBA, 4);
     std::vector<Vec4f> pixels(floats.size() / 4);
     for (std::size_t i = 0; i < pixels.size(); ++i)
         pixels[i] = {floats[4 * i], floats[4 * i + 1], floats[4 * i + 2], floats[4 * i + 3]};
     return pixels;
+}
+
+std::vector<float> RasterTarget::center_depths(const RasterCell& cell,
+                                               const RasterSamples* samples) {
+    if (m_center.name() == 0) {
+        m_center_depths = gl::Texture(GL_R32F, m_cell, m_cell);
+        m_center_depths_target = gl::Framebuffer(&m_center_depths, nullptr);
+        m_center = screen_program("depth of pixels", "resolve/depth.frag",
+                                  {{"AT_SAMPLE", samples != nullptr ? "1" : "0"},
+                                   {"LATTICE", std::to_string(m_lattice)}});
+    }
+    const gl::TexelRect own = own_pixels(cell);
+    m_center.use();
+    if (samples != nullptr) samples->bind();
+    m_surfaces.bind(0);
+    m_depth.bind(1);
+    fill(m_center_depths_target, m_center_depths, own, {m_apron, m_apron});
+    gl::check("depth of a cell");
+    return m_center_depths.read<float>(own, GL_RED, 1);
+}
+
+gl::TexelRect RasterTarget::own_pixels(const RasterCell& cell) const {
+    return {cell.pixels.x0 - cell.corner.x - m_apron, cell.pixels.y0 - cell.corner.y - m_apron,
+            cell.pixels.width(), cell.pixels.height()};
 }
 
 gl::TexelRect RasterTarget::own_texels(const RasterCell& cell) const {

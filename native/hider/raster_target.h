@@ -22,6 +22,8 @@
 
 namespace granita {
 
+class RasterSamples;
+
 /// The part of one cell that is asked for.
 struct RasterCell {
     Vec2i corner{0, 0};    ///< frame pixel at the target's texel (0, 0)
@@ -68,8 +70,12 @@ class RasterTarget {
     /// The mean of the passes, which resolve() filters.
     const gl::Texture& mean() const { return m_mean; }
 
-    /// Filters and downsamples the cell; [height][width] of cell.pixels.
-    std::vector<Vec4f> resolve(const RasterCell& cell) const;
+    /// Filters and downsamples the cell; [height][width] of cell.pixels.  `samples`: where the
+    /// filter gathers them, else nullptr.
+    std::vector<Vec4f> resolve(const RasterCell& cell, const RasterSamples* samples) const;
+    /// Of what begin_surfaces() and drawing left in layer 0: the depths of the samples nearest to
+    /// the pixels' centres, 0 where they see nothing; [height][width] of cell.pixels.
+    std::vector<float> center_depths(const RasterCell& cell, const RasterSamples* samples);
     /// What begin_surfaces() and drawing left in layer 0 of the cell's own pixels, [height *
     /// lattice][width * lattice].
     std::vector<std::uint32_t> read_surfaces(const RasterCell& cell) const;
@@ -77,13 +83,22 @@ class RasterTarget {
 
   private:
     gl::TexelRect own_texels(const RasterCell& cell) const;
+    /// The cell's own pixels, relative to the first one of whole cells.
+    gl::TexelRect own_pixels(const RasterCell& cell) const;
+    /// Draws a pass of the resolve over a part of a target.
+    void fill(const gl::Framebuffer& target, const gl::Texture& texture, const gl::TexelRect& part,
+              Vec2i origin) const;
 
     int m_lattice, m_apron, m_cell, m_layers;
     gl::Texture m_radiance, m_depth, m_mean, m_rows, m_pixels;
     gl::Framebuffer m_radiance_target, m_rows_target, m_pixels_target;
     gl::Texture m_surfaces;  ///< made at the first begin_surfaces()
     gl::Framebuffer m_surfaces_target;
-    gl::Program m_filter_x, m_filter_y;
+    gl::Program m_filter_x, m_filter_y;  ///< of a lattice
+    gl::Program m_gather;                ///< of samples anywhere
+    gl::Texture m_center_depths;         ///< made at the first center_depths()
+    gl::Framebuffer m_center_depths_target;
+    gl::Program m_center;
     gl::VertexArray m_no_attributes;
 };
 

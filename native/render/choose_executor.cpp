@@ -1,16 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/choose_executor.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "scene/channels.h"
 
 namespace granita {
 namespace {
 
+/// A world of one colour, to go by its nodes.
+bool is_plain(const NodeGraph& world) {
+    return std::all_of(world.nodes.begin(), world.nodes.end(),
+                       [](const Node& node) { return node.type == "ShaderNodeBackground"; });
+}
+
 /// What keeps the raster executor from rendering the scene; empty = nothing.
 std::string raster_obstacle(const Scene& scene) {
-    if (scene.options.sampling != Sampling::Regular) return "sampling is not Regular";
-    if (scene.options.rolling_shutter >= 0.0f) return "the shutter rolls";
+    const Camera& camera = scene.camera;
+    if (scene.options.sampling == Sampling::Regular) {
+        // All samples of a pass have one time.
+        if (scene.options.rolling_shutter >= 0.0f) return "the shutter rolls";
+    } else if (!scene.options.film_transparent &&
+               (camera.world_from_camera.size() > 1 || camera.projection.has_lens()) &&
+               !is_plain(scene.world.graph)) {
+        // The world is evaluated at the corners of pixels, for whole passes.
+        return "the world would differ from sample to sample";
+    }
     if (!ChannelSet(scene.options).empty()) return "passes beside Combined and Depth are asked for";
     return {};
 }
@@ -48,7 +64,8 @@ ExecutorChoice choose_executor(const Scene& scene, Report& report, const gl::Con
     if (options.executor != Executor::Auto) return cpu(options.executor);
     if (options.device != Device::Gpu) return cpu(Executor::Simd);
     try {
-        return raster_obstacle(scene).empty() ? raster(gpu) : compute(gpu);
+        const bool passes = options.sampling == Sampling::Regular && raster_obstacle(scene).empty();
+        return passes ? raster(gpu) : compute(gpu);
     } catch (const GlError& error) {
         return cpu_instead(scene, error, report);
     }

@@ -1,30 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/raster_bucket.h"
 
+#include <cmath>
+
 #include "film/filter.h"
+#include "hider/raster_samples.h"
 #include "render/background.h"
 #include "render/visit_geometry.h"
 
 namespace granita {
 namespace {
-
-/// Depth is not filtered: the sample nearest to the pixel's centre, as Film does it.
-std::vector<float> center_depths(const RasterSurfaces& surfaces, const Rect& pixels,
-                                 const Projection& projection) {
-    const int lattice = surfaces.lattice, row = surfaces.pixels.width() * lattice;
-    std::vector<float> depths;
-    for (int y = pixels.y0; y < pixels.y1; ++y)
-        for (int x = pixels.x0; x < pixels.x1; ++x) {
-            const int sx = (x - surfaces.pixels.x0) * lattice + (lattice - 1) / 2;
-            const int sy = (y - surfaces.pixels.y0) * lattice + (lattice - 1) / 2;
-            const auto sample = static_cast<std::size_t>(sy) * static_cast<std::size_t>(row) +
-                                static_cast<std::size_t>(sx);
-            depths.push_back(surfaces.surface[sample].grid < 0
-                                 ? Film::kNoDepth
-                                 : projection.depth_from_key(surfaces.key[sample]));
-        }
-    return depths;
-}
 
 /// Pass i of the table: any pixel's samples of one place on the lattice.
 std::vector<RasterPass> passes_of(const SampleTable& table, const Scene& scene) {
@@ -78,10 +63,16 @@ RasterFrame make_raster_frame(const Scene& scene, const Projection& projection,
     const PixelFilter filter(scene.options.pixel_filter, scene.options.filter_width);
     RasterFrame frame;
     frame.projection = projection;
-    frame.filter = make_raster_filter(table.lattice(), filter.radius(), [&](double d) {
-        return filter.evaluate(static_cast<float>(d));
-    });
-    frame.passes = passes_of(table, scene);
+    const auto factor = [&](double d) { return filter.evaluate(static_cast<float>(d)); };
+    if (table.sampling() == Sampling::Regular) {
+        frame.filter = make_raster_filter(table.lattice(), filter.radius(), factor);
+        frame.passes = passes_of(table, scene);
+    } else {
+        frame.filter = make_gathering_filter(sample_lattice(table.samples()), filter.radius(),
+                                             filter.is_box(), factor);
+        frame.table = &table;
+        frame.needs = {scene.moves(), scene.camera.projection.has_lens()};
+    }
     frame.opacity_threshold = scene.options.opacity_threshold;
     frame.film_transparent = scene.options.film_transparent;
     frame.z_batch_size = scene.options.z_batch_size;
@@ -125,8 +116,12 @@ Tile raster_bucket(Frame& frame, int bucket) {
     Tile tile;
     tile.rect = pixels;
     tile.combined = device_bucket->render(behind).combined;
-    if (frame.scene.options.depth_pass)
-        tile.depth = center_depths(device_bucket->surfaces(), pixels, frame.view.projection);
+    if (frame.scene.options.depth_pass) {
+        tile.depth = device_bucket->center_keys();
+        for (float& depth : tile.depth)
+            depth =
+                std::isinf(depth) ? Film::kNoDepth : frame.view.projection.depth_from_key(depth);
+    }
     return tile;
 }
 

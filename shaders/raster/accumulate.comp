@@ -5,8 +5,11 @@
 // The running mean m += (x - m) / n leaves a sample that is the same in all passes exactly as it is:
 // a cell where nothing moves takes one pass, and its bits are those of many.
 //
-// Define: LATTICE, samples along a pixel's side.
+// Defines: LATTICE, samples along a pixel's side; AT_SAMPLE 0 or 1: they lie at its cells, or anywhere.
 #include "shared/raster_layout.h"
+#if AT_SAMPLE
+#include "raster/samples.glsl"
+#endif
 
 layout(local_size_x = RASTER_GROUP, local_size_y = RASTER_GROUP) in;
 layout(binding = 0) uniform sampler2DArray opaque;  // w: 1 a surface, 0 a holdout, -1 nothing
@@ -26,7 +29,11 @@ layout(location = RASTER_FLAGS) uniform ivec2 flags;               // layers wer
 vec4 background(ivec2 texel, int pass) {
     if (size.x == 0) return constant;
     const ivec2 pixel = texel / LATTICE, corner = cell_pixel + pixel;
+#if AT_SAMPLE
+    const vec2 f = place_in_pixel(texel);
+#else
     const vec2 f = (vec2(texel - pixel * LATTICE) + 0.5) / float(LATTICE);
+#endif
     const int i = ((size.z > 1 ? pass : 0) * size.y + corner.y) * size.x + corner.x;
     return mix(mix(corners[i], corners[i + 1], f.x),
                mix(corners[i + size.x], corners[i + size.x + 1], f.x), f.y);

@@ -15,6 +15,12 @@
 #define RASTER_PASSES 2
 #define RASTER_SEEN 3
 #define RASTER_BACKGROUND 4
+#define RASTER_TRIANGLES 5
+#define RASTER_VERTEX_GRIDS 6
+#define RASTER_SAMPLES 7
+// Of raster/sample.frag, which has neither passes nor a background.
+#define RASTER_VERTEX_OPACITY 2
+#define RASTER_VERTEX_RADIANCE 4
 
 // Uniform locations of raster/grid.*.
 #define RASTER_CLIP_SCALE 0
@@ -22,6 +28,15 @@
 #define RASTER_NEAR 2
 #define RASTER_FIRST_PASS 3
 #define RASTER_INVERSE_FOCUS 4
+// Of raster/sample.*; 5 to 7 are those of compute/corner.glsl.
+#define RASTER_LENS_RADIUS 8
+#define RASTER_CELL_SIZE 9
+#define RASTER_RASTER_SCALE 10
+#define RASTER_RASTER_CENTER 11
+// Of raster/samples.glsl, wherever it is included.
+#define RASTER_SAMPLE_AREA 12
+#define RASTER_SAMPLE_CORNER 13
+#define RASTER_SAMPLE_COUNT 14
 
 // Texture units of raster/grid.frag.
 #define RASTER_OPAQUE_DEPTH 0

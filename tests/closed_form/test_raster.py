@@ -96,7 +96,15 @@ def test_hidden_grids_are_not_shaded():
     assert s.render(snapshot)["statistics"]["points_shaded"] == alone
 
 
-def test_what_it_cannot_render_is_refused_by_name():
-    snapshot = s.orthographic((8, 8), executor="RASTER", sampling="INDEPENDENT")
-    with pytest.raises(granita_core.SceneError, match="raster executor"):
+@pytest.mark.parametrize(
+    "options, reason",
+    [
+        ({"sampling": "REGULAR", "rolling_shutter": 0.1}, "the shutter rolls"),
+        ({"passes": ["Normal"]}, "passes beside Combined and Depth"),
+    ],
+    ids=["rolling shutter", "passes"],
+)
+def test_what_it_cannot_render_is_refused_by_name(options, reason):
+    snapshot = s.orthographic((8, 8), executor="RASTER", **options)
+    with pytest.raises(granita_core.SceneError, match=f"raster executor.*{reason}"):
         s.render(snapshot)

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pixel filter over samples that lie anywhere: sum(w c) / sum(w) with w = f(dx) f(dy), as film/
+// does it on the CPU (Film).  One pass: weights depend on both coordinates' own samples.
+//
+// Defines: FACTOR, a list of FACTOR_COUNT + 1 floats, f at equal steps from 0 to RADIUS; IS_BOX 0 or
+// 1; APRON, pixels.
+#include "raster/samples.glsl"
+
+layout(binding = FILTER_SOURCE) uniform sampler2D source;
+layout(location = FILTER_ORIGIN) uniform ivec2 origin;  // the source's pixel of the target's (0, 0)
+layout(location = 0) out vec4 filtered;
+
+const float kFactor[FACTOR_COUNT + 1] = float[](FACTOR);
+
+float factor(float d) {
+#if IS_BOX
+    return d >= -RADIUS && d < RADIUS ? 1.0 : 0.0;
+#else
+    const float place = abs(d) * (float(FACTOR_COUNT) / RADIUS);
+    if (place >= float(FACTOR_COUNT)) return 0.0;
+    const int i = int(place);
+    return mix(kFactor[i], kFactor[i + 1], place - float(i));
+#endif
+}
+
+void main() {
+    const ivec2 own = origin + ivec2(gl_FragCoord.xy);
+    vec4 sum = vec4(0.0);
+    float weight = 0.0;
+    for (int y = -APRON; y <= APRON; ++y)
+        for (int x = -APRON; x <= APRON; ++x)
+            for (int s = 0; s < count.y; ++s) {
+                const ivec2 texel =
+                    (own + ivec2(x, y)) * count.x + ivec2(s % count.x, s / count.x);
+                const vec2 d = place_in_pixel(texel) + vec2(x, y) - 0.5;
+                const float w = factor(d.x) * factor(d.y);
+                sum += w * texelFetch(source, texel, 0);
+                weight += w;
+            }
+    filtered = weight != 0.0 ? sum / weight : vec4(0.0);
+}
