@@ -131,6 +131,28 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
         soft_max=8.0,
         precision=2,
     )
+    motion_factor: FloatProperty(
+        name="Motion Factor",
+        description="How much more coarsely what moves is diced and shaded along its way: "
+        "with 1 its micropolygons are no shorter than a sixteenth of the way; 0 = as if it "
+        "stood still",
+        default=1.0,
+        min=0.0,
+        max=16.0,
+        soft_max=4.0,
+        precision=2,
+    )
+    focus_factor: FloatProperty(
+        name="Focus Factor",
+        description="How much more coarsely what is out of focus is diced and shaded: with 1 its "
+        "micropolygons are no smaller than a sixteenth of its circle of confusion; 0 = as if it "
+        "were sharp",
+        default=1.0,
+        min=0.0,
+        max=16.0,
+        soft_max=4.0,
+        precision=2,
+    )
     grid_size: IntProperty(
         name="Grid Size",
         description="Most micropolygons in a grid, the unit that is shaded at once",

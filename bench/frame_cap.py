@@ -26,6 +26,7 @@ def scene(scale, threads):
         (width, height),
         samples=16,
         dicing_rate=0.4,
+        motion_factor=0.0,
         threads=threads,
         pixel_filter="BLACKMAN_HARRIS",
         filter_width=1.5,

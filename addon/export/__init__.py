@@ -7,8 +7,6 @@
 All of it is copied: no reference to anything of Blender's is kept after `export_frame` returns.
 """
 
-from dataclasses import replace
-
 import numpy as np
 
 from .camera import camera_record
@@ -86,7 +84,7 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         options=options,
         camera=camera_at_frame,
         geometries=[
-            replace(source.geometry, points=points.get(index, source.geometry.points))
+            source.moved(points[index]) if index in points else source.geometry
             for index, source in enumerate(sources)
         ],
         instances=instances,

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .elements import Elements, element_attributes, radii, vector_attribute
+from .elements import Elements, element_attributes, split_radii, vector_attribute, with_radii
 from .snapshot import Attribute, Geometry
 
 # What Cycles takes where there is no attribute.
@@ -30,12 +30,13 @@ def read_curves(data, label, requested, report):
         report(label, "its cyclic curves are left open")
     if _any_set(data, "curve_type", np.int32):
         report(label, "all its curves are taken for Catmull-Rom, as Cycles does")
+    places, radii = split_radii(points[None])
     geometry = Geometry(
         name=label,
         kind="CURVES",
-        points=points[None],
+        points=places,
         curve_sizes=sizes,
-        radius=radii(data, _RADIUS),
+        radius=radii,
         attributes=_surface_uv(data) + element_attributes(data, label, requested - {_UV}, report),
     )
     return geometry, Elements(sizes, _read)
@@ -46,7 +47,7 @@ def _read(_thing, data):
     points = vector_attribute(attribute.data if attribute else data.position_data)
     offsets = np.empty(len(data.curve_offset_data), dtype=np.int32)
     data.curve_offset_data.foreach_get("value", offsets)
-    return points, np.diff(offsets)
+    return with_radii(points, data, _RADIUS), np.diff(offsets)
 
 
 def _any_set(data, name, dtype=np.bool_):

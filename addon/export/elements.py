@@ -12,13 +12,14 @@ from .snapshot import Attribute
 
 @dataclass(frozen=True)
 class Elements:
-    """How many points each element has; `read(thing, data)` gives its points at another time."""
+    """How many points each element has; `read(thing, data)` gives its points at another time: their
+    places, and their radii too where these may change."""
 
     sizes: np.ndarray  # int32 [elements]
-    read: object  # function of (evaluated Object, its data) -> (float32 [V, 3], int32 sizes)
+    read: object  # function of (evaluated Object, its data) -> (float32 [V, 3 or 4], int32 sizes)
 
     def points_again(self, thing, data):
-        """float32 [V, 3], or None where the elements are not the frame's any more."""
+        """float32 [V, 3 or 4], or None where the elements are not the frame's any more."""
         points, sizes = self.read(thing, data)
         return points if np.array_equal(sizes, self.sizes) else None
 
@@ -30,20 +31,24 @@ def vector_attribute(collection, member="vector"):
     return values
 
 
-def radii(data, default):
-    """float32 [1, V] metres, object space.
+def with_radii(points, data, default):
+    """float32 [V, 4]: places and radii, metres, object space.
 
     Args:
+        points: float32 [V, 3].
         data: evaluated Curves or PointCloud.
         default: where it has no attribute `radius`.
     """
     attribute = data.attributes.get("radius")
-    count = len(data.points)
-    if attribute is None or attribute.domain != "POINT" or attribute.data_type != "FLOAT":
-        return np.full((1, count), default, dtype=np.float32)
-    values = np.empty((1, count), dtype=np.float32)
-    attribute.data.foreach_get("value", values.reshape(-1))
-    return values
+    radii = np.full((len(points), 1), default, dtype=np.float32)
+    if attribute is not None and attribute.domain == "POINT" and attribute.data_type == "FLOAT":
+        attribute.data.foreach_get("value", radii.reshape(-1))
+    return np.hstack([points, radii])
+
+
+def split_radii(knots):
+    """(places float32 [K, V, 3], radii float32 [K, V]) of float32 [K, V, 4]."""
+    return np.ascontiguousarray(knots[..., :3]), np.ascontiguousarray(knots[..., 3])
 
 
 def element_attributes(data, label, requested, report):

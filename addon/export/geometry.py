@@ -7,6 +7,7 @@ import numpy as np
 
 from .blur_settings import deforms
 from .curves import read_curves
+from .elements import split_radii
 from .hair import read_hair
 from .mesh import read_geometry
 from .points import read_point_cloud
@@ -31,6 +32,22 @@ class GeometrySource:
     deforms: bool  # false where its deformation blur is switched off, or its velocity says it all
     velocity: np.ndarray  # float32 [V, 3] metres a second, or None
     said: list  # [(datablock, message)], what there was to report
+
+    def at_frame(self, columns):
+        """What `points_again` gives at the frame: float32 [V, columns]."""
+        points = self.geometry.points[0]
+        if columns == 3:
+            return points
+        return np.hstack([points, self.geometry.radius[0][:, None]])
+
+    def moved(self, knots):
+        """The Geometry with float32 [K, V, 3 or 4] of `points_again`."""
+        if knots.shape[2] == 3:
+            return replace(self.geometry, points=knots)
+        points, radius = split_radii(knots)
+        if (radius == radius[0]).all():
+            radius = self.geometry.radius
+        return replace(self.geometry, points=points, radius=radius)
 
     def is_true_after(self, touched):
         """Whether it need not be read again after what a changes.Touched holds."""

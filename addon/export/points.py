@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .elements import Elements, element_attributes, radii, vector_attribute
+from .elements import Elements, element_attributes, split_radii, vector_attribute, with_radii
 from .snapshot import Geometry
 
 # What Cycles takes where there is no attribute.
@@ -25,11 +25,12 @@ def read_point_cloud(data, label, requested, report):
     points, sizes = _read(None, data)
     if len(points) == 0:
         return None
+    places, radii = split_radii(points[None])
     geometry = Geometry(
         name=label,
         kind="POINTS",
-        points=points[None],
-        radius=radii(data, _RADIUS),
+        points=places,
+        radius=radii,
         attributes=element_attributes(data, label, requested, report),
     )
     return geometry, Elements(sizes, _read)
@@ -38,4 +39,4 @@ def read_point_cloud(data, label, requested, report):
 def _read(_thing, data):
     attribute = data.attributes.get("position")
     points = vector_attribute(attribute.data) if attribute else vector_attribute(data.points, "co")
-    return points, np.array([len(points)], dtype=np.int32)
+    return with_radii(points, data, _RADIUS), np.array([len(points)], dtype=np.int32)

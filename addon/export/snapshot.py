@@ -42,7 +42,7 @@ class Geometry:
     subdivision: Optional[dict] = None
     kind: str = "MESH"  # "CURVES", "POINTS"
     curve_sizes: Optional[np.ndarray] = None  # int32 [curves], points a curve
-    radius: Optional[np.ndarray] = None  # float32 [1, V], metres; of curves and points
+    radius: Optional[np.ndarray] = None  # float32 [1 or K, V], metres; of curves and points
 
     def as_dict(self):
         record = _record(self)

@@ -17,7 +17,7 @@ class Steps:
     Attributes:
         ticks: list of int, in the order in which they were read; the frame's is the first.
         cameras: {tick: float64 [4, 4]}.
-        points: {geometry index: {tick: float32 [V, 3]}} of what deforms.
+        points: {geometry index: {tick: float32 [V, 3 or 4]}} of what deforms.
         focus_moves: whether lens or focus are another at any tick.
     """
 
@@ -121,7 +121,7 @@ class Steps:
             )
             return
         broken = ~(np.isfinite(points).all(axis=1))
-        points[broken] = source.geometry.points[0][broken]
+        points[broken] = source.at_frame(points.shape[1])[broken]
         self._last_points[index] = points
 
     def places(self):
@@ -144,10 +144,12 @@ class Steps:
         return things[moves], {tick: path[tick][moves] for tick in sorted(path)}
 
     def points(self):
-        """{geometry index: {tick: float32 [V, 3]}} of what deforms."""
+        """{geometry index: {tick: float32 [V, 3 or 4]}} of what deforms."""
         found = {}
         for index in set().union(*self._point_records.values()) - self._rigid:
-            at_frame = self._scene.sources[index].geometry.points[0]
+            records = [record.get(index) for record in self._point_records.values()]
+            columns = next((points.shape[1] for points in records if points is not None), 3)
+            at_frame = self._scene.sources[index].at_frame(columns)
             path = {t: record.get(index, at_frame) for t, record in self._point_records.items()}
             for tick, nearer in hold_order(self.ticks, self.frame_tick):
                 if path[tick] is None:

@@ -69,6 +69,8 @@ class GRANITA_RENDER_PT_geometry(RenderPanel, bpy.types.Panel):
         column = self.column()
         column.prop(settings, "dicing_rate")
         column.prop(settings, "shading_rate")
+        column.prop(settings, "motion_factor")
+        column.prop(settings, "focus_factor")
 
 
 class GRANITA_RENDER_PT_motion_blur(RenderPanel, bpy.types.Panel):

@@ -6,14 +6,10 @@
 #include <cmath>
 
 #include "dice/opened_mesh.h"
-#include "dice/raster_bound.h"
 
 namespace granita {
 namespace {
 
-/// Curves further apart than this, pixels, are split from each other: buckets beside them should
-/// not meet them.
-constexpr float kRegion = 32.0f;
 /// Micropolygons across a ribbon: it is flat, and what its normal does is known well before this.
 constexpr int kMostAcross = 32;
 
@@ -28,15 +24,12 @@ double drawn_in(int across) {
 }  // namespace
 
 CurveBatch::CurveBatch(const OpenedElements& elements, std::size_t batch)
-    : m_elements(&elements), m_batch(batch), m_count(elements.shared().batch(batch).size()) {
-    if (m_count == 1) m_hi = end_of(curve(0));
-}
+    : ElementBatch(elements, batch) {}
 
 std::unique_ptr<CurveBatch> CurveBatch::open(std::shared_ptr<const OpenedElements> elements,
                                              std::size_t batch) {
     auto opened = std::make_unique<CurveBatch>(*elements, batch);
-    opened->m_owner = std::move(elements);
-    opened->measure();
+    opened->own(std::move(elements));
     return opened;
 }
 
@@ -48,49 +41,36 @@ RasterBounds CurveBatch::bounds() const {
     Bounds3f box;
     CurveControl control;
     for (std::size_t i = m_first; i < m_first + m_count; ++i) {
-        const double lo = m_count == 1 ? m_lo : 0.0, hi = m_count == 1 ? m_hi : end_of(curve(i));
-        control.gather(*m_elements, curve(i), lo, hi);
-        box.add(control.swept_box(lo, hi));
+        control.gather(*m_elements, element(i), start(), end(element(i)));
+        box.add(control.swept_box(start(), end(element(i))));
     }
-    if (box.empty()) return {};
-    const Vec3f largest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
-    box.grow(1e-6f * std::max({largest.x, largest.y, largest.z}));  // rounding of positions
-    return raster_bound(m_elements->view().projection, box);
-}
-
-GridKey CurveBatch::key() const {
-    return {m_elements->instance().key, static_cast<std::uint32_t>(m_batch), m_path};
+    return raster_bounds(box);
 }
 
 void CurveBatch::measure() {
-    const int most = m_elements->grid_size();
-    if (m_across == 0) {
-        // Of whole curves, so that all parts of one agree.
-        CurveControl control;
-        double width = 0.0;
-        for (std::size_t i = m_first; i < m_first + m_count; ++i) {
-            control.gather(*m_elements, curve(i), 0.0, end_of(curve(i)));
-            width = std::max(width, control.width_pixels());
-        }
-        m_across = 1;
-        while (m_across < std::min(kMostAcross, most / 2) &&
-               width > M_SQRT2 * m_elements->rate().rate() * m_across)
-            m_across *= 2;
-        // A row between curves shrinks without area only where it has no vertex inside.
-        if (m_count > 1 && m_across > 1) {
-            m_across = 0;
-            return;
-        }
+    if (!find_across() || scattered()) {
+        m_across = 0;
+        return;
     }
-    if (m_count > 1) {
-        const RasterBounds b = bounds();
-        if (b.visible && !(b.x1 - b.x0 <= kRegion && b.y1 - b.y0 <= kRegion)) {
-            m_across = 0;
-            return;
-        }
-    }
-    m_diceable = find_rows(static_cast<std::size_t>(most / m_across));
+    m_diceable = find_rows(static_cast<std::size_t>(m_elements->grid_size() / m_across));
     if (!m_diceable && m_count > 1) m_across = 0;
+}
+
+/// Of whole curves, so that all parts of one agree.  False: they cannot share a grid.
+bool CurveBatch::find_across() {
+    if (m_across > 0) return true;
+    CurveControl control;
+    double width = 0.0;
+    for (std::size_t i = m_first; i < m_first + m_count; ++i) {
+        control.gather(*m_elements, element(i), 0.0, end_of(element(i)));
+        width = std::max(width, control.width_pixels());
+    }
+    m_across = 1;
+    while (m_across < std::min(kMostAcross, m_elements->grid_size() / 2) &&
+           width > M_SQRT2 * m_elements->rate().rate() * m_across)
+        m_across *= 2;
+    // A row between curves shrinks without area only where it has no vertex inside.
+    return m_count == 1 || m_across == 1;
 }
 
 /// False: more than `most` steps.
@@ -98,8 +78,8 @@ bool CurveBatch::find_rows(std::size_t most) {
     CurveControl control;
     std::vector<double> ends;
     for (std::size_t i = m_first; i < m_first + m_count; ++i) {
-        const std::uint32_t c = curve(i);
-        const double lo = m_count == 1 ? m_lo : 0.0, hi = m_count == 1 ? m_hi : end_of(c);
+        const std::uint32_t c = element(i);
+        const double lo = start(), hi = end(c);
         control.gather(*m_elements, c, lo, hi);
         if (i > m_first) {
             const Row last = m_rows.back();
@@ -118,31 +98,20 @@ bool CurveBatch::find_rows(std::size_t most) {
     return true;
 }
 
-std::vector<std::unique_ptr<Primitive>> CurveBatch::split() const {
-    std::vector<std::unique_ptr<Primitive>> children;
-    const std::size_t half = m_count / 2;
-    const double middle = curve_middle(m_lo, m_hi);
-    for (unsigned number = 0; number < 2; ++number) {
-        auto child = std::make_unique<CurveBatch>(*m_elements, m_batch);
-        child->m_owner = m_owner;
-        child->m_path = 2 * m_path + number;
-        child->m_across = m_across;
-        child->m_first = m_first;
-        child->m_count = m_count;
-        child->m_lo = m_lo;
-        child->m_hi = m_hi;
-        if (m_count > 1) {
-            child->m_first += number == 0 ? 0 : half;
-            child->m_count = number == 0 ? half : m_count - half;
-            child->m_lo = 0.0;
-            child->m_hi = child->m_count == 1 ? end_of(curve(child->m_first)) : 0.0;
-        } else {
-            (number == 0 ? child->m_hi : child->m_lo) = middle;
-        }
-        child->measure();
-        children.push_back(std::move(child));
-    }
-    return children;
+std::unique_ptr<ElementBatch> CurveBatch::child() const {
+    auto child = std::make_unique<CurveBatch>(*m_elements, m_batch);
+    child->m_owner = m_owner;
+    child->m_first = m_first;
+    child->m_count = m_count;
+    child->m_across = m_across;
+    child->m_lo = m_lo;
+    child->m_hi = m_hi;
+    return child;
+}
+
+void CurveBatch::halve(unsigned number) {
+    const double last = end(element(m_first));
+    (number == 0 ? m_hi : m_lo) = curve_middle(m_lo, last);
 }
 
 std::unique_ptr<Grid> CurveBatch::dice() const {
@@ -154,8 +123,7 @@ std::unique_ptr<Grid> CurveBatch::dice() const {
     for (int j = 0; j <= n_v; ++j) {
         const Row& row = m_rows[static_cast<std::size_t>(j)];
         if (j == 0 || row.curve != m_rows[static_cast<std::size_t>(j) - 1].curve)
-            control.gather(*m_elements, row.curve, m_count == 1 ? m_lo : 0.0,
-                           m_count == 1 ? m_hi : end_of(row.curve));
+            control.gather(*m_elements, row.curve, start(), end(row.curve));
         fill_row(*grid, j, row, control);
         places.push_back(control.place(row.t));
     }
@@ -167,7 +135,7 @@ void CurveBatch::fill_row(Grid& grid, int j, const Row& row, const CurveControl&
     const Knots& knots = m_elements->knots();
     const std::size_t count = static_cast<std::size_t>(grid.vertex_count());
     const std::size_t first = static_cast<std::size_t>(j * (grid.n_u + 1));
-    Vec3d side(0.0), facing(0.0);
+    Vec3d side(0.0), facing(0.0), half(0.0);
     for (int k = 0; k < knots.count; ++k) {
         const RibbonRow ribbon = control.row(k, row.t);
         for (int i = 0; i <= grid.n_u; ++i) {
@@ -180,14 +148,21 @@ void CurveBatch::fill_row(Grid& grid, int j, const Row& row, const CurveControl&
                                                           : 0.0;
         side += ribbon.side * weight;
         facing += ribbon.facing * weight;
+        half += ribbon.across * weight;
     }
+    const double drawn = drawn_in(grid.n_u);
     const Vec3d front = unit_or(facing, Vec3d(0.0, 0.0, -1.0));
     for (int i = 0; i <= grid.n_u; ++i) {
         const double u = 2.0 * i / grid.n_u - 1.0;
-        const double sine = u * drawn_in(grid.n_u);
+        const double sine = u * drawn;
         const Vec3d normal = side * sine + front * std::sqrt(std::max(1.0 - sine * sine, 0.0));
         const std::size_t v = first + static_cast<std::size_t>(i);
-        grid.normal[v] = Vec3f(unit_or(normal, front));
+        const Vec3d unit = unit_or(normal, front);
+        grid.normal[v] = Vec3f(unit);
+        // Rays start on a tube around the one that is meant, so far out that they meet it only
+        // where the normal turns away from them.
+        grid.ray_offset[v] =
+            Vec3f(unit * (glm::length(half) / drawn) - half * (row.shrunk ? -1.0 : u));
         grid.geometric_normal[v] = Vec3f(front);
     }
 }

@@ -12,10 +12,11 @@
 #include <vector>
 
 #include "dice/curve_control.h"
+#include "dice/element_batch.h"
 
 namespace granita {
 
-class CurveBatch final : public Primitive {
+class CurveBatch final : public ElementBatch {
   public:
     /// Whole batch; bounds alone may be asked of it.
     CurveBatch(const OpenedElements& elements, std::size_t batch);
@@ -23,10 +24,12 @@ class CurveBatch final : public Primitive {
                                             std::size_t batch);
 
     RasterBounds bounds() const override;
-    GridKey key() const override;
-    bool diceable() const override { return m_diceable; }
-    std::vector<std::unique_ptr<Primitive>> split() const override;
     std::unique_ptr<Grid> dice() const override;
+
+  protected:
+    std::unique_ptr<ElementBatch> child() const override;
+    void halve(unsigned number) override;
+    void measure() override;
 
   private:
     struct Row {
@@ -35,21 +38,18 @@ class CurveBatch final : public Primitive {
         bool shrunk = false;  ///< to its left end
     };
 
-    void measure();
+    bool find_across();
     bool find_rows(std::size_t most);
-    std::uint32_t curve(std::size_t i) const { return m_elements->shared().batch(m_batch)[i]; }
     double end_of(std::uint32_t curve) const;
+    double start() const { return m_count == 1 ? m_lo : 0.0; }
+    double end(std::uint32_t curve) const {
+        return m_count == 1 && m_hi > 0.0 ? m_hi : end_of(curve);
+    }
     void fill_row(Grid& grid, int j, const Row& row, const CurveControl& control) const;
 
-    const OpenedElements* m_elements;
-    std::shared_ptr<const OpenedElements> m_owner;  ///< keeps m_elements
-    std::size_t m_batch;
-    std::uint64_t m_path = 1;
-    std::size_t m_first = 0, m_count = 0;  ///< curves of the batch
-    double m_lo = 0.0, m_hi = 0.0;         ///< of a single curve
-    int m_across = 0;                      ///< micropolygons across; 0 = not yet known
-    bool m_diceable = false;
-    std::vector<Row> m_rows;  ///< of what can be diced
+    double m_lo = 0.0, m_hi = 0.0;  ///< of a single curve; m_hi 0: to its end
+    int m_across = 0;               ///< micropolygons across; 0 = not yet known
+    std::vector<Row> m_rows;        ///< of what can be diced
 };
 
 }  // namespace granita

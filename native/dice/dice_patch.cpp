@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dice/coarsen_shading.h"
 #include "dice/finish_motion.h"
 #include "dice/patch.h"
 
@@ -172,6 +173,14 @@ std::unique_ptr<Grid> Patch::dice() const {
     grid->normal = std::move(samples.normal);
     grid->geometric_normal = std::move(samples.geometric_normal);
 
+    if (Statistics* statistics = m_mesh->view().statistics) {
+        std::vector<Vec3f> path;
+        for (int k = 0; k < grid->knots; ++k)
+            path.push_back(grid->positions[static_cast<std::size_t>(k) * count + count / 2]);
+        const double spared = m_mesh->rate().spared(path.data(), grid->knots) - 1.0;
+        statistics->add(Counter::PointsSpared, static_cast<std::uint64_t>(spared * n));
+    }
+
     const Steps step(m_corner_uv, m_sides, layout);
     std::vector<Vec2d> step_u(count), step_v(count);
     for (int j = 0; j <= layout.n_v; ++j)
@@ -188,6 +197,8 @@ std::unique_ptr<Grid> Patch::dice() const {
         grid->dp_dv[i] = Vec3f(su * step_v[i].x + sv * step_v[i].y);
     }
     dice_attributes(*grid, uv, step_u, step_v);
+    if (m_mesh->rate().shading_rate() > m_mesh->rate().rate())
+        coarsen_shading(*grid, m_mesh->view().projection, m_mesh->rate().shading_rate());
     return grid;
 }
 

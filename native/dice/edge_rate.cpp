@@ -19,6 +19,8 @@ constexpr double kOutside = 8.0;
 /// Halves this equal are taken for equal all the way down: lengths may then leave their range by as
 /// much.
 constexpr double kEqual = 0.05;
+/// Of blur to one of distance between vertices, with factors of 1.
+constexpr double kBlurSteps = 16.0;
 /// Largest length over distance of what is not shown.
 constexpr double kNearby = 0.5;
 
@@ -44,14 +46,16 @@ EdgeRate::EdgeRate(const View& view)
       m_shading_rate(std::max<double>(m_rate, view.scene->options.shading_rate)),
       m_width(view.scene->options.width),
       m_height(view.scene->options.height),
+      m_motion_factor(view.scene->options.motion_factor),
+      m_focus_factor(view.scene->options.focus_factor),
       m_near(view.projection.perspective ? std::max(view.projection.near_clip, 1e-9)
                                          : view.projection.near_clip) {}
 
-double EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b) const {
+Vec2d EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b) const {
     Vec3d p(a), q(b);
     if (m_projection.perspective && (p.z < m_near || q.z < m_near)) {
         swept.clipped = true;
-        if (p.z < m_near && q.z < m_near) return 0.0;
+        if (p.z < m_near && q.z < m_near) return Vec2d(0.0);
         (p.z < m_near ? p : q) = p + (q - p) * ((m_near - p.z) / (q.z - p.z));
     }
     double x[2], y[2];
@@ -70,7 +74,50 @@ double EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b) const {
         swept.y1 = std::max(swept.y1, y[i] + m_projection.scale.y * reach);
     }
     swept.seen = true;
-    return glm::distance(Vec2d(x[0], y[0]), Vec2d(x[1], y[1]));
+    return {x[1] - x[0], y[1] - y[0]};
+}
+
+EdgeRate::Blur EdgeRate::blur(const Vec3f* start, const Vec3f* middle, const Vec3f* end,
+                              int knots) const {
+    Blur blur;
+    const bool moves = knots > 1 && m_motion_factor > 0.0;
+    const bool defocused = m_projection.has_lens() && m_focus_factor > 0.0;
+    if (!moves && !defocused) return blur;
+    const Vec2d scale = m_projection.scale;
+    if (moves) {
+        Vec2d place[2];
+        for (int i = 0; i < 2; ++i) {
+            const Vec3d p(middle[i == 0 ? 0 : knots - 1]);
+            if (m_projection.perspective && !(p.z >= m_near)) return blur;
+            place[i] = scale * Vec2d(p) / (m_projection.perspective ? p.z : 1.0);
+        }
+        const double way = glm::distance(place[0], place[1]);
+        if (way * m_motion_factor > kBlurSteps) {
+            blur.direction = (place[1] - place[0]) / way;
+            blur.along = way * m_motion_factor / kBlurSteps;
+        }
+    }
+    if (!defocused) return blur;
+    double smallest = std::numeric_limits<double>::infinity();
+    bool before = false, behind = false;
+    for (int k = 0; k < knots; ++k)
+        for (const Vec3f& p : {start[k], middle[k], end[k]}) {
+            const double z = p.z;
+            if (m_projection.perspective && !(z >= m_near)) return blur;
+            const double w = m_projection.perspective ? 1.0 / z : 1.0;
+            const double shear = z / m_projection.focus - 1.0;
+            (shear < 0.0 ? before : behind) = true;
+            smallest = std::min(smallest, std::abs(shear) * w);
+        }
+    if (before && behind) return blur;
+    const double diameter = 2.0 * smallest * m_projection.lens_radius * std::min(scale.x, scale.y);
+    blur.all = std::max(1.0, diameter * m_focus_factor / kBlurSteps);
+    return blur;
+}
+
+double EdgeRate::spared(const Vec3f* p, int knots) const {
+    const Blur there = blur(p, p, p, knots);
+    return there.along * there.all * there.all;
 }
 
 double EdgeRate::outside(const Swept& swept) const {
@@ -101,22 +148,25 @@ double EdgeRate::angle(const Vec3f* start, const Vec3f* middle, const Vec3f* end
 bool EdgeRate::stays_whole(const Vec3f* start, const Vec3f* end, int knots) const {
     Swept swept;
     double longest = 0.0;
-    for (int k = 0; k < knots; ++k) longest = std::max(longest, add(swept, start[k], end[k]));
+    for (int k = 0; k < knots; ++k)
+        longest = std::max(longest, glm::length(add(swept, start[k], end[k])));
     return !swept.clipped && outside(swept) == 0.0 && longest <= M_SQRT2 * m_rate;
 }
 
 int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots,
                      int budget, double most_outside) const {
     if (budget <= 0) return 0;
+    const Blur blurred = blur(start, middle, end, knots);
     Swept swept;
-    double longest = 0.0, sag = 0.0;
+    double longest = 0.0, counted = 0.0, sag = 0.0;
     bool equal = true;
     for (int k = 0; k < knots; ++k) {
-        const double first = add(swept, start[k], middle[k]);
-        const double second = add(swept, middle[k], end[k]);
-        const double chord = add(swept, start[k], end[k]);
+        const Vec2d pieces[2] = {add(swept, start[k], middle[k]), add(swept, middle[k], end[k])};
+        const double first = glm::length(pieces[0]), second = glm::length(pieces[1]);
+        const double chord = glm::length(add(swept, start[k], end[k]));
         const double length = first + second;
         longest = std::max(longest, length);
+        counted = std::max(counted, blurred.length(pieces[0]) + blurred.length(pieces[1]));
         if (std::abs(first - second) > kEqual * std::max(first, second)) equal = false;
         // The height of the triangle start, middle, end over its chord, by Heron's formula.
         const double s = 0.5 * (length + chord);
@@ -126,25 +176,27 @@ int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, 
         sag = std::max(sag, height);
     }
     const double off = swept.seen ? std::min(outside(swept), most_outside) : 0.0;
-    const double target = m_rate + off / kOutside, coarser = target / m_rate;
+    const double target = (m_rate + off / kOutside) * blurred.all, coarser = target / m_rate;
     if (m_projection.perspective && (swept.clipped || off > 0.0)) {
         const double seen_angle = angle(start, middle, end, knots);
         if (seen_angle > kNearby) return kAdaptive;
-        if (off > 0.0)
-            longest = std::min(longest,
-                               seen_angle * std::max(m_projection.scale.x, m_projection.scale.y));
+        if (off > 0.0) {
+            const double most = seen_angle * std::max(m_projection.scale.x, m_projection.scale.y);
+            longest = std::min(longest, most);
+            counted = std::min(counted, most);
+        }
     }
     if (!swept.seen) return 0;
     const bool bent = sag > kSag * coarser && longest > kShortest * coarser;
-    if (!(longest > M_SQRT2 * target) && !bent) return 0;
+    if (!(counted > M_SQRT2 * target) && !bent) return 0;
     const bool inside = swept.x0 > -m_width && swept.x1 < 2.0 * m_width && swept.y0 > -m_height &&
                         swept.y1 < 2.0 * m_height;
     // A bent piece's halves are looked at anew until they are nearly straight.
     if (!equal || swept.clipped || off > 0.0 || !inside || sag > 0.05 * longest) return kAdaptive;
     int levels = 1;
-    while (levels < budget && std::ldexp(longest, -levels) > M_SQRT2 * target) ++levels;
-    while (levels < budget && std::ldexp(sag, -2 * levels) > kSag &&
-           std::ldexp(longest, -levels) > kShortest)
+    while (levels < budget && std::ldexp(counted, -levels) > M_SQRT2 * target) ++levels;
+    while (levels < budget && std::ldexp(sag, -2 * levels) > kSag * coarser &&
+           std::ldexp(longest, -levels) > kShortest * coarser)
         ++levels;
     return levels;
 }

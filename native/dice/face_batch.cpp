@@ -106,6 +106,11 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
         grid->dp_du.push_back(largest.su * cluster.stretch(faces));
         grid->dp_dv.push_back(largest.sv * cluster.stretch(faces));
     }
+    float area = 0.0f;
+    for (const Cluster& cluster : points) area += cluster.area;
+    const auto rate = static_cast<float>(m_mesh->rate().rate());
+    const float share = area / (rate * rate * static_cast<float>(points.size()));
+    if (share < 1.0f) grid->point_share = share;
     dice_attributes(*grid, faces, points);
     return grid;
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dice/corner_values.h"
 #include "dice/curve_batch.h"
 #include "dice/finish_motion.h"
 #include "dice/point_batch.h"
@@ -95,13 +94,33 @@ std::unique_ptr<Grid> OpenedElements::make_grid(std::size_t batch, std::uint64_t
     grid->positions.resize(count * static_cast<std::size_t>(m_knots.count));
     grid->normal.resize(count);
     grid->geometric_normal.resize(count);
+    grid->ray_offset.resize(count);
     return grid;
 }
 
 void OpenedElements::finish(Grid& grid, std::span<const ElementPlace> places) const {
     finish_motion(grid, m_knots, m_view->projection);
+    finish_share(grid);
     finish_derivatives(grid, places);
     finish_attributes(grid, places);
+}
+
+void OpenedElements::finish_share(Grid& grid) const {
+    const Projection& projection = m_view->projection;
+    const std::vector<Vec3f>& p = grid.shading_p();
+    std::vector<Vec2f> place;
+    place.reserve(p.size());
+    for (const Vec3f& at : p)
+        place.push_back(Vec2f(projection.scale) * Vec2f(at) /
+                        (projection.perspective ? at.z : 1.0f));
+    double area = 0.0;
+    for (int m = 0; m < grid.micropolygon_count(); ++m) {
+        const Grid::Corners c = grid.corners(m);
+        const Vec2f a = place[c.v2] - place[c.v0], b = place[c.v3] - place[c.v1];
+        area += 0.5 * std::abs(a.x * b.y - a.y * b.x);
+    }
+    const double share = area / (m_rate.rate() * m_rate.rate() * static_cast<double>(p.size()));
+    if (share < 1.0) grid.point_share = static_cast<float>(share);
 }
 
 void OpenedElements::finish_derivatives(Grid& grid, std::span<const ElementPlace> places) const {
@@ -127,38 +146,6 @@ void OpenedElements::finish_derivatives(Grid& grid, std::span<const ElementPlace
     }
 }
 
-void OpenedElements::attribute_at(const AttributeRequest& request, const ElementPlace& place,
-                                  float* out) const {
-    const std::size_t width = static_cast<std::size_t>(request.width);
-    double value[4] = {0.0, 0.0, 0.0, 0.0};
-    const auto set = [&](const Vec3d& v) {
-        for (int i = 0; i < 3; ++i) value[i] = v[i];
-        value[3] = 1.0;
-    };
-    const auto along = [&](const auto& at) {
-        return at(place.point) * (1.0 - place.fraction) + at(place.next) * place.fraction;
-    };
-    const auto position = [&](std::size_t v) { return m_shared->frame_point(v); };
-    if (request.source == AttributeSource::Generated) {
-        // One place a hair, its root's, as in Cycles.
-        set(generated(m_shared->frame_box(), position(m_shared->first_point(place.element))));
-    } else if (request.source == AttributeSource::ObjectPosition) {
-        set(along(position));
-    } else if (const Attribute* attribute = find_attribute(m_shared->data(), request)) {
-        const std::size_t n = static_cast<std::size_t>(attribute->width);
-        const auto component = [&](std::size_t element, std::size_t c) {
-            return static_cast<double>(attribute->values[element * n + c]);
-        };
-        for (std::size_t c = 0; c < n; ++c)
-            value[c] = attribute->domain == Domain::Point
-                           ? along([&](std::size_t v) { return component(v, c); })
-                           : component(place.element, c);
-        if (n == 1) value[1] = value[2] = value[0];
-        if (n < 4) value[3] = 1.0;
-    }
-    for (std::size_t c = 0; c < width; ++c) out[c] = static_cast<float>(value[c]);
-}
-
 void OpenedElements::finish_attributes(Grid& grid, std::span<const ElementPlace> places) const {
     static const std::vector<AttributeRequest> none;
     const std::vector<AttributeRequest>& requests =
@@ -175,7 +162,7 @@ void OpenedElements::finish_attributes(Grid& grid, std::span<const ElementPlace>
         out.values.resize(row * places.size() * width);
         for (std::size_t j = 0; j < places.size(); ++j) {
             float* first = &out.values[j * row * width];
-            attribute_at(requests[a], places[j], first);
+            element_value(*m_shared, requests[a], places[j], first);
             for (std::size_t i = 1; i < row; ++i) std::copy_n(first, width, first + i * width);
         }
         if (!requests[a].derivatives) continue;

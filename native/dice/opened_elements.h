@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dice/edge_rate.h"
+#include "dice/element_values.h"
 #include "dice/knots.h"
 #include "dice/primitive.h"
 #include "dice/view.h"
@@ -23,13 +24,6 @@ double uniform_scale(const Mat4d& m);
 struct ElementPoint {
     Vec3d p{0.0};
     double radius = 0.0;
-};
-
-/// Where along a row of control points: `point` and this part of the way to `next`.
-struct ElementPlace {
-    std::uint32_t element = 0;
-    std::size_t point = 0, next = 0;
-    double fraction = 0.0;
 };
 
 class OpenedElements final : public OpenedInstance,
@@ -69,9 +63,9 @@ class OpenedElements final : public OpenedInstance,
 
   private:
     int material(std::size_t batch) const;
+    void finish_share(Grid& grid) const;
     void finish_derivatives(Grid& grid, std::span<const ElementPlace> places) const;
     void finish_attributes(Grid& grid, std::span<const ElementPlace> places) const;
-    void attribute_at(const AttributeRequest& request, const ElementPlace& place, float* out) const;
 
     const View* m_view;
     const Instance* m_instance;

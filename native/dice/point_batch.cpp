@@ -5,13 +5,10 @@
 #include <cmath>
 
 #include "dice/opened_mesh.h"
-#include "dice/raster_bound.h"
 
 namespace granita {
 namespace {
 
-/// Points further apart than this, pixels, are split from each other.
-constexpr float kRegion = 32.0f;
 /// An outline stays this close to the circle, pixels.
 constexpr double kSag = 0.1;
 /// Below this radius, pixels, a square of the circle's area does.
@@ -60,13 +57,12 @@ struct PointBatch::Vertex {
 };
 
 PointBatch::PointBatch(const OpenedElements& elements, std::size_t batch)
-    : m_elements(&elements), m_batch(batch), m_count(elements.shared().batch(batch).size()) {}
+    : ElementBatch(elements, batch) {}
 
 std::unique_ptr<PointBatch> PointBatch::open(std::shared_ptr<const OpenedElements> elements,
                                              std::size_t batch) {
     auto opened = std::make_unique<PointBatch>(*elements, batch);
-    opened->m_owner = std::move(elements);
-    opened->measure();
+    opened->own(std::move(elements));
     return opened;
 }
 
@@ -76,7 +72,7 @@ RasterBounds PointBatch::bounds() const {
         if (m_part.v1 > 0) {
             // A part lies between its corners; how far it bulges out of their box is bounded by
             // the sagitta of its steps' arcs.
-            const Vertex sphere(*m_elements, m_elements->point(k, point(m_first)));
+            const Vertex sphere(*m_elements, m_elements->point(k, element(m_first)));
             const int v = m_latitudes[0], u = m_longitudes;
             const double arc = M_PI * std::max(static_cast<double>(m_part.v1 - m_part.v0) / v,
                                                static_cast<double>(m_part.u1 - m_part.u0) / u);
@@ -93,19 +89,13 @@ RasterBounds PointBatch::bounds() const {
             continue;
         }
         for (std::size_t i = m_first; i < m_first + m_count; ++i) {
-            const ElementPoint sphere = m_elements->point(k, point(i));
+            const ElementPoint sphere = m_elements->point(k, element(i));
             const Vec3d reach(kReach * sphere.radius);
             box.add(Vec3f(sphere.p - reach));
             box.add(Vec3f(sphere.p + reach));
         }
     }
-    const Vec3f largest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
-    box.grow(1e-6f * std::max({largest.x, largest.y, largest.z}));  // rounding of positions
-    return raster_bound(m_elements->view().projection, box);
-}
-
-GridKey PointBatch::key() const {
-    return {m_elements->instance().key, static_cast<std::uint32_t>(m_batch), m_path};
+    return raster_bounds(box);
 }
 
 PointBatch::Rates PointBatch::rates(std::uint32_t point) const {
@@ -127,15 +117,13 @@ void PointBatch::measure() {
     m_latitudes.clear();
     m_longitudes = 1;
     for (std::size_t i = m_first; i < m_first + m_count; ++i) {
-        const Rates needed = rates(point(i));
+        const Rates needed = rates(element(i));
         m_latitudes.push_back(needed.v);
         m_longitudes = std::max(m_longitudes, needed.u);
         rows += needed.v + 1;
     }
     if (m_count > 1) {
-        const RasterBounds b = bounds();
-        m_diceable = rows * m_longitudes <= most &&
-                     (!b.visible || (b.x1 - b.x0 <= kRegion && b.y1 - b.y0 <= kRegion));
+        m_diceable = rows * m_longitudes <= most && !scattered();
         return;
     }
     if (m_part.v1 == 0) m_part = {0, m_latitudes[0], 0, m_longitudes};
@@ -143,30 +131,20 @@ void PointBatch::measure() {
     m_diceable = v * u <= most || v * u == 1;
 }
 
-std::vector<std::unique_ptr<Primitive>> PointBatch::split() const {
-    std::vector<std::unique_ptr<Primitive>> children;
-    const std::size_t half = m_count / 2;
-    const bool along_v = m_part.v1 - m_part.v0 >= m_part.u1 - m_part.u0;
-    for (unsigned number = 0; number < 2; ++number) {
-        auto child = std::make_unique<PointBatch>(*m_elements, m_batch);
-        child->m_owner = m_owner;
-        child->m_path = 2 * m_path + number;
-        child->m_first = m_first;
-        child->m_count = m_count;
-        child->m_part = m_part;
-        Part& part = child->m_part;
-        if (m_count > 1) {
-            child->m_first += number == 0 ? 0 : half;
-            child->m_count = number == 0 ? half : m_count - half;
-        } else if (along_v) {
-            (number == 0 ? part.v1 : part.v0) = (m_part.v0 + m_part.v1) / 2;
-        } else {
-            (number == 0 ? part.u1 : part.u0) = (m_part.u0 + m_part.u1) / 2;
-        }
-        child->measure();
-        children.push_back(std::move(child));
-    }
-    return children;
+std::unique_ptr<ElementBatch> PointBatch::child() const {
+    auto child = std::make_unique<PointBatch>(*m_elements, m_batch);
+    child->m_owner = m_owner;
+    child->m_first = m_first;
+    child->m_count = m_count;
+    child->m_part = m_part;
+    return child;
+}
+
+void PointBatch::halve(unsigned number) {
+    if (m_part.v1 - m_part.v0 >= m_part.u1 - m_part.u0)
+        (number == 0 ? m_part.v1 : m_part.v0) = (m_part.v0 + m_part.v1) / 2;
+    else
+        (number == 0 ? m_part.u1 : m_part.u0) = (m_part.u0 + m_part.u1) / 2;
 }
 
 std::unique_ptr<Grid> PointBatch::dice() const {
@@ -178,7 +156,7 @@ std::unique_ptr<Grid> PointBatch::dice() const {
     std::vector<ElementPlace> places;
     places.reserve(static_cast<std::size_t>(rows));
     for (std::size_t i = 0; i < m_count; ++i) {
-        const std::uint32_t p = point(m_first + i);
+        const std::uint32_t p = element(m_first + i);
         const int first = m_count == 1 ? part.v0 : 0;
         const int last = m_count == 1 ? part.v1 : m_latitudes[i];
         for (int latitude = first; latitude <= last; ++latitude) {
@@ -219,8 +197,12 @@ void PointBatch::fill_row(Grid& grid, int j, std::uint32_t point, int latitude, 
             const Vec2d lateral(pole ? 0.0 : std::cos(v) * std::sin(u), std::sin(v));
             const Vec2d in = lateral * (drawn_in * sphere.sine);
             const double front = std::sqrt(std::max(1.0 - glm::dot(in, in), 0.0));
-            grid.normal[vertex] +=
-                Vec3f((sphere.right * in.x + sphere.up * in.y + sphere.to_eye * front) * weight);
+            const Vec3d normal = sphere.right * in.x + sphere.up * in.y + sphere.to_eye * front;
+            grid.normal[vertex] += Vec3f(normal * weight);
+            // Rays start on the sphere where it has this normal: they meet it only where that
+            // turns away from them.
+            grid.ray_offset[vertex] +=
+                Vec3f((normal * sphere.radius - sphere.offset(x, y)) * weight);
             const Vec3d surface = flat ? sphere.to_eye : sphere.offset(lateral.x, lateral.y);
             grid.geometric_normal[vertex] += Vec3f(unit_or(surface, sphere.to_eye) * weight);
         }

@@ -8,11 +8,11 @@
 #include <memory>
 #include <vector>
 
-#include "dice/opened_elements.h"
+#include "dice/element_batch.h"
 
 namespace granita {
 
-class PointBatch final : public Primitive {
+class PointBatch final : public ElementBatch {
   public:
     /// Whole batch; bounds alone may be asked of it.
     PointBatch(const OpenedElements& elements, std::size_t batch);
@@ -20,10 +20,12 @@ class PointBatch final : public Primitive {
                                             std::size_t batch);
 
     RasterBounds bounds() const override;
-    GridKey key() const override;
-    bool diceable() const override { return m_diceable; }
-    std::vector<std::unique_ptr<Primitive>> split() const override;
     std::unique_ptr<Grid> dice() const override;
+
+  protected:
+    std::unique_ptr<ElementBatch> child() const override;
+    void halve(unsigned number) override;
+    void measure() override;
 
   private:
     /// Latitudes and longitudes of a half sphere, powers of two.
@@ -36,21 +38,13 @@ class PointBatch final : public Primitive {
     };
     struct Vertex;
 
-    void measure();
     Rates rates(std::uint32_t point) const;
-    std::uint32_t point(std::size_t i) const { return m_elements->shared().batch(m_batch)[i]; }
     void fill_row(Grid& grid, int j, std::uint32_t point, int latitude, int latitudes,
                   const Part& part) const;
 
-    const OpenedElements* m_elements;
-    std::shared_ptr<const OpenedElements> m_owner;  ///< keeps m_elements
-    std::size_t m_batch;
-    std::uint64_t m_path = 1;
-    std::size_t m_first = 0, m_count = 0;  ///< points of the batch
-    Part m_part;                           ///< of a single point
-    std::vector<int> m_latitudes;          ///< [m_count]
+    Part m_part;                   ///< of a single point
+    std::vector<int> m_latitudes;  ///< [m_count]
     int m_longitudes = 1;
-    bool m_diceable = false;
 };
 
 }  // namespace granita

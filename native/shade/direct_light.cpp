@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/direct_light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -69,6 +70,8 @@ struct Point {
     const PointPaths& paths;
     const GridKey& key;
     Place at_frame;
+    Vec3f ray_offset{0.0f};  ///< ShadingPoints::ray_offset
+    int sample_count = 1;    ///< of a soft light, of the world's image, of all lobes together
     std::uint64_t seed;
     std::vector<int> samples;  ///< [lobes] taken of each lobe; 0 for sharp ones
 
@@ -107,6 +110,9 @@ struct DirectLight::Impl {
     void mirror(Work& work, const Point& point, std::size_t lobe, Vec3f& sum) const;
     void look(Work& work, const WorldLooks& looks, float spread) const;
     Place place_at(const Point& point, float uniform) const;
+    Vec3f ray_start(const GridKey& key, const Vec3f& p, const Vec3f& normal) const {
+        return rays ? rays->lift(key, p, normal) : p;
+    }
     bool changes(const Lamp& lamp) const;
     int samples_of(const Point& point, const Lamp& lamp) const;
     Vec3f trace(const Point& point, const Place& place, const Vec3f& direction,
@@ -155,7 +161,10 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
                         environment->broken());
         if (environment->is_black()) environment.reset();
     }
-    if (lamps.empty() && !environment) return;
+    const bool shadows = environment || std::ranges::any_of(lamps, [](const Lamp& lamp) {
+                             return lamp.casts_shadow();
+                         });
+    if (!shadows) return;
     StageTimer timer(statistics, Stage::RayBuild);
     rays = std::make_unique<RayScene>(scene, origin, std::move(opacity), progress);
     statistics.peak_ray_bytes(rays->bytes());
@@ -173,7 +182,7 @@ Place DirectLight::Impl::place_at(const Point& point, float uniform) const {
     if (!point.paths.moves()) return place;
     place.p = point.paths.position(point.index, place.time);
     place.normal = point.paths.normal(point.index, place.time);
-    place.start = rays ? rays->lift(point.key, place.p, place.normal) : place.p;
+    place.start = ray_start(point.key, place.p + point.ray_offset, place.normal);
     return place;
 }
 
@@ -190,13 +199,13 @@ int DirectLight::Impl::samples_of(const Point& point, const Lamp& lamp) const {
     if (still && lamp.at(0.0f).bound(center, radius) &&
         !point.bsdf.can_see(center - point.at_frame.p, radius))
         return 0;
-    if (!lamp.is_hard()) return sample_count;
+    if (!lamp.is_hard()) return point.sample_count;
     if (!changes(lamp)) return 1;
-    if (lamp.varies() || point.paths.moves()) return sample_count;
+    if (lamp.varies() || point.paths.moves()) return point.sample_count;
     const Place& place = point.at_frame;
     LightSample sample;
     if (!lamp.at(place.time).sample(place.p, Vec2f(0.0f), sample)) return 0;
-    return rays->varies(place.start, sample.direction, sample.distance) ? sample_count : 1;
+    return rays->varies(place.start, sample.direction, sample.distance) ? point.sample_count : 1;
 }
 
 Vec3f DirectLight::Impl::trace(const Point& point, const Place& place, const Vec3f& direction,
@@ -248,13 +257,13 @@ void DirectLight::Impl::sample_world(Work& work, const Point& point) const {
     // A constant world needs no table: the lobes themselves are its best samples.
     if (!environment || environment->is_constant()) return;
     const SobolPoints sequence = point.sequence(0);
-    for (int s = 0; s < sample_count; ++s) {
+    for (int s = 0; s < point.sample_count; ++s) {
         const auto index = static_cast<std::uint32_t>(s);
         float pdf = 0.0f;
         const Vec3f wo = environment->sample(sequence(index), pdf);
         const BsdfValue value = point.bsdf.evaluate(wo);
         if (total(value) == Vec3f(0.0f) || !(pdf > 0.0f)) continue;
-        const float density = static_cast<float>(sample_count) * pdf + point.all_density(wo);
+        const float density = static_cast<float>(point.sample_count) * pdf + point.all_density(wo);
         const Vec3f seen = occlusion(work, point, place_at(point, sequence.third(index)), wo);
         work.look(work.blurred, point.index, wo, value * (seen / density));
     }
@@ -275,7 +284,7 @@ void DirectLight::Impl::sample_lobe(Work& work, const Point& point, std::size_t 
         if (environment) {
             float density = point.all_density(wo);
             if (!environment->is_constant())
-                density += static_cast<float>(sample_count) * environment->pdf(wo);
+                density += static_cast<float>(point.sample_count) * environment->pdf(wo);
             const BsdfValue weight = value * (occlusion(work, point, place, wo) / density);
             if (environment->is_constant()) {
                 const Vec3f radiance = environment->constant_radiance();
@@ -291,7 +300,7 @@ void DirectLight::Impl::sample_lobe(Work& work, const Point& point, std::size_t 
             if (!lamp.reaches_glossy() || !lamp.at(place.time).intersect(place.p, wo, sample))
                 continue;
             const float density =
-                static_cast<float>(sample_count) * sample.pdf + point.glossy_density(wo);
+                static_cast<float>(point.sample_count) * sample.pdf + point.glossy_density(wo);
             const BsdfValue bsdf = lamp.apply(value);
             const Vec3f seen = shadow(work, point, place, lamp, sample);
             sum += total(bsdf) * sample.radiance / density * seen;
@@ -303,7 +312,7 @@ void DirectLight::Impl::sample_lobe(Work& work, const Point& point, std::size_t 
 void DirectLight::Impl::mirror(Work& work, const Point& point, std::size_t lobe, Vec3f& sum) const {
     Vec3f wo, reflectance;
     if (!point.bsdf.reflect(lobe, wo, reflectance)) return;
-    const int count = varies ? sample_count : 1;
+    const int count = varies ? point.sample_count : 1;
     reflectance /= static_cast<float>(count);
     const SobolPoints sequence = point.sequence(1 + lobe);
     Vec3f open(0.0f);
@@ -331,7 +340,7 @@ void DirectLight::Impl::light_point(Work& work, Point& point) const {
         if (!point.bsdf.is_sharp(k))
             point.samples[k] =
                 std::max(1, static_cast<int>(std::lround(point.bsdf.importance(k) *
-                                                         static_cast<float>(sample_count))));
+                                                         static_cast<float>(point.sample_count))));
     for (std::size_t l = 0; l < lamps.size(); ++l)
         sample_lamp(work, point, lamps[l], 1 + lobes + l, sum);
     sample_world(work, point);
@@ -376,6 +385,9 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     const std::uint64_t seed = grid_seed(key, m_impl->scene.options.seed);
     Work work{radiance, parts, {}, {}};
+    // Points that lie closer share the light that a pixel's worth of them is due.
+    const int sample_count = std::max(
+        1, static_cast<int>(std::lround(points.share * static_cast<float>(m_impl->sample_count))));
     for (std::size_t i = 0; i < points.count; ++i) {
         m_impl->progress.check();
         const PointBsdf bsdf(closure, points, i, albedo);
@@ -387,9 +399,10 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         }
         if (dark) continue;
         const Vec3f &p = points.p[i], &normal = points.geometric_normal[i];
-        const Vec3f start = m_impl->rays ? m_impl->rays->lift(key, p, normal) : p;
+        const Vec3f offset = points.ray_offset.empty() ? Vec3f(0.0f) : points.ray_offset[i];
+        const Vec3f start = m_impl->ray_start(key, p + offset, normal);
         const Place at_frame{m_impl->scene.options.frame_time, p, normal, start};
-        Point point{i, bsdf, paths, key, at_frame, mix_bits(seed + i), {}};
+        Point point{i, bsdf, paths, key, at_frame, offset, sample_count, mix_bits(seed + i), {}};
         m_impl->light_point(work, point);
     }
     if (m_impl->environment) m_impl->look(work, work.blurred, m_impl->environment->texel_angle());

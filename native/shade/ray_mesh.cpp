@@ -168,9 +168,36 @@ void RayMesh::add_limit_surface(const Progress& progress) {
         m_errors[patches[k].face] = std::max(m_errors[patches[k].face], errors[k]);
 }
 
-void RayMesh::release_triangles() {
+RTCGeometry RayMesh::hand_over(RTCDevice device) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(m_knots));
+    // Copied: Embree reads 16 bytes at the last vertex, so a shared buffer needs padding.
+    bool allocated = true;
+    for (int knot = 0; knot < m_knots && allocated; ++knot) {
+        void* vertices =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(knot),
+                                    RTC_FORMAT_FLOAT3, sizeof(Vec3f), point_count());
+        allocated = vertices != nullptr;
+        if (allocated) std::ranges::copy(points(knot), static_cast<Vec3f*>(vertices));
+    }
+    if (allocated) {
+        void* indices =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    3 * sizeof(std::uint32_t), m_triangles.size());
+        allocated = indices != nullptr;
+        if (allocated)
+            std::copy(m_triangles.begin(), m_triangles.end(),
+                      static_cast<std::array<std::uint32_t, 3>*>(indices));
+    }
     std::vector<Vec3f>().swap(m_points);
     std::vector<std::array<std::uint32_t, 3>>().swap(m_triangles);
+    if (allocated) return geometry;
+    rtcReleaseGeometry(geometry);
+    return nullptr;
+}
+
+std::string RayMesh::size() const {
+    return std::to_string(m_triangles.size()) + " triangles";
 }
 
 float RayMesh::error(std::uint32_t face) const {
@@ -179,11 +206,13 @@ float RayMesh::error(std::uint32_t face) const {
 
 void RayMesh::locate(std::uint32_t triangle, float u, float v, ShadowHit& hit) const {
     hit.geometry = &m_shared;
+    const GeometryData& data = m_shared.data();
     const auto& patches = m_shared.patches();
     const auto cells = static_cast<std::uint32_t>(m_side * m_side);
     const bool polygons = !m_patches.empty();
     const std::uint32_t half = (polygons ? m_patches[triangle] : triangle) & 1u;
     hit.patch = &patches[polygons ? m_patches[triangle] / 2 : triangle / (2 * cells)];
+    hit.slot = data.material_index.empty() ? 0 : data.material_index[hit.patch->face];
     if (hit.patch->kind == PatchKind::Triangle) {
         hit.uv = {u, v};
         return;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A geometry as triangles for rays: view-independent, object space, at the frame time or, where it
-// deforms, at each of its knots (decision 12). Polygons are their own triangles; a subdivision
-// surface is evaluated on its limit at a fixed number of points a face.
+// A mesh as triangles for rays. Polygons are their own triangles; a subdivision surface is
+// evaluated on its limit at a fixed number of points a face.
 #pragma once
 
 #include <array>
@@ -11,37 +10,33 @@
 
 #include "base/progress.h"
 #include "geometry/shared_geometry.h"
-#include "shade/shadow_opacity.h"
+#include "shade/ray_shape.h"
 
 namespace granita {
 
-class RayMesh {
+class RayMesh final : public RayShape {
   public:
     RayMesh(const GeometryData& data, float frame_time, const Progress& progress);
 
-    /// 1 = it does not deform.
-    int knots() const { return m_knots; }
-    std::size_t point_count() const { return m_points.size() / static_cast<std::size_t>(m_knots); }
-    std::span<const Vec3f> points(int knot) const {
-        return std::span(m_points).subspan(static_cast<std::size_t>(knot) * point_count(),
-                                           point_count());
-    }
-    const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return m_triangles; }
-    /// Once Embree has its own copy.
-    void release_triangles();
-    /// Largest distance between the surface of a face and its triangles at any knot, object space.
-    float error(std::uint32_t face) const;
-    /// Largest absolute coordinate: rounding grows with it.
-    float extent() const { return m_extent; }
+    RTCGeometry hand_over(RTCDevice device) override;
+    std::string size() const override;
+    int knots() const override { return m_knots; }
+    float error(std::uint32_t face) const override;
+    float extent() const override { return m_extent; }
     const SharedGeometry& shared() const { return m_shared; }
-    /// Fills geometry, patch and uv of a hit at the barycentric point (u, v) of a triangle.
-    void locate(std::uint32_t triangle, float u, float v, ShadowHit& hit) const;
-    std::size_t bytes() const;
+    /// (u, v): the barycentric point of a triangle.
+    void locate(std::uint32_t triangle, float u, float v, ShadowHit& hit) const override;
+    std::size_t bytes() const override;
 
   private:
     /// The vertices that the faces refer to.
     std::span<const Vec3f> vertices(int knot) const;
     void add_polygons();
+    std::size_t point_count() const { return m_points.size() / static_cast<std::size_t>(m_knots); }
+    std::span<const Vec3f> points(int knot) const {
+        return std::span(m_points).subspan(static_cast<std::size_t>(knot) * point_count(),
+                                           point_count());
+    }
     void add_limit_surface(const Progress& progress);
 
     SharedGeometry m_shared;

@@ -10,6 +10,7 @@
 #include <exception>
 #include <unordered_map>
 
+#include "shade/ray_elements.h"
 #include "shade/ray_mesh.h"
 #include "shade/shading_points.h"
 
@@ -61,6 +62,12 @@ bool stands_still(const Instance& instance) {
     return std::all_of(knots.begin(), knots.end(), [&](const Mat4d& m) { return m == knots[0]; });
 }
 
+std::int32_t material_of(const Instance& instance, std::int32_t slot) {
+    if (instance.materials.empty()) return -1;
+    const auto last = static_cast<std::int32_t>(instance.materials.size()) - 1;
+    return instance.materials[static_cast<std::size_t>(std::clamp(slot, 0, last))];
+}
+
 /// What an instance tells a ray.
 struct RayInstance {
     std::uint32_t index = 0;  ///< in Scene::instances
@@ -87,7 +94,6 @@ struct RayScene::Impl {
     void add_instance(std::uint32_t index, const Vec3d& origin);
     void add_way(RTCScene geometry, const std::vector<Mat4d>& knots);
     bool lets_light_through(const Instance& instance) const;
-    std::int32_t material_of(const Instance& instance, std::uint32_t face) const;
     Vec3f transparency(const RTCRay& ray, const RTCHit& hit, unsigned id) const;
     static void pass_through(const RTCFilterFunctionNArguments* arguments);
 
@@ -95,8 +101,8 @@ struct RayScene::Impl {
     ShadowOpacity opacity;
     std::atomic<long long> embree_bytes{0};
     Handle<RTCDevice> device;
-    std::vector<std::unique_ptr<RayMesh>> meshes;  ///< [geometries] nullptr = casts no shadow
-    std::vector<Handle<RTCScene>> geometries;      ///< [geometries]
+    std::vector<std::unique_ptr<RayShape>> shapes;  ///< [geometries] nullptr = casts no shadow
+    std::vector<Handle<RTCScene>> geometries;       ///< [geometries]
     Handle<RTCScene> top;
     std::vector<Bounds3f> ways;          ///< what moving casters sweep, a few boxes
     std::vector<RayInstance> instances;  ///< by Embree's id in `top`
@@ -121,38 +127,26 @@ bool RayScene::Impl::lets_light_through(const Instance& instance) const {
 
 void RayScene::Impl::build_geometry(int index, bool filtered, const Progress& progress) {
     const GeometryData& data = scene.geometries[static_cast<std::size_t>(index)];
-    auto mesh = std::make_unique<RayMesh>(data, scene.options.frame_time, progress);
+    const float time = scene.options.frame_time;
+    std::unique_ptr<RayShape> shape;
+    if (data.kind == GeometryKind::Mesh)
+        shape = std::make_unique<RayMesh>(data, time, progress);
+    else
+        shape = std::make_unique<RayElements>(data, time, filtered);
+    const std::string what = data.name + " of " + shape->size();
     Handle<RTCScene> built(rtcNewScene(device.get()));
     rtcSetSceneFlags(built.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(built.get(), RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneProgressMonitorFunction(built.get(), goes_on, const_cast<Progress*>(&progress));
-    RTCGeometry triangles = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    // Copied: Embree reads 16 bytes at the last vertex, so a shared buffer needs padding.
-    rtcSetGeometryTimeStepCount(triangles, static_cast<unsigned>(mesh->knots()));
-    bool allocated = true;
-    for (int knot = 0; knot < mesh->knots(); ++knot) {
-        void* vertices =
-            rtcSetNewGeometryBuffer(triangles, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(knot),
-                                    RTC_FORMAT_FLOAT3, sizeof(Vec3f), mesh->point_count());
-        if (vertices == nullptr)
-            allocated = false;
-        else
-            std::ranges::copy(mesh->points(knot), static_cast<Vec3f*>(vertices));
+    if (RTCGeometry handed = shape->hand_over(device.get())) {
+        if (filtered) rtcSetGeometryOccludedFilterFunction(handed, pass_through);
+        rtcCommitGeometry(handed);
+        rtcAttachGeometry(built.get(), handed);
+        rtcReleaseGeometry(handed);
     }
-    void* indices = rtcSetNewGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                            3 * sizeof(std::uint32_t), mesh->triangles().size());
-    if (allocated && indices != nullptr) {
-        std::copy(mesh->triangles().begin(), mesh->triangles().end(),
-                  static_cast<std::array<std::uint32_t, 3>*>(indices));
-        if (filtered) rtcSetGeometryOccludedFilterFunction(triangles, pass_through);
-        rtcCommitGeometry(triangles);
-        rtcAttachGeometry(built.get(), triangles);
-    }
-    rtcReleaseGeometry(triangles);
     rtcCommitScene(built.get());
-    check(data.name + " of " + std::to_string(mesh->triangles().size()) + " triangles", progress);
-    mesh->release_triangles();
-    meshes[static_cast<std::size_t>(index)] = std::move(mesh);
+    check(what, progress);
+    shapes[static_cast<std::size_t>(index)] = std::move(shape);
     geometries[static_cast<std::size_t>(index)] = std::move(built);
 }
 
@@ -180,7 +174,7 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
         added.scale = std::max(added.scale, scale);
         added.rounding =
             std::max(added.rounding, kRounding * (static_cast<float>(glm::length(Vec3d(m[3]))) +
-                                                  scale * meshes[geometry]->extent()));
+                                                  scale * shapes[geometry]->extent()));
         has_volume = has_volume || glm::determinant(Mat3d(m)) != 0.0;
         columns.emplace_back();
         for (std::size_t c = 0, k = 0; c < 4; ++c)
@@ -197,7 +191,7 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     for (unsigned k = 0; k < columns.size(); ++k)
         rtcSetGeometryTransform(node, k, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns[k].data());
     rtcCommitGeometry(node);
-    if (knots.size() > 1 || meshes[geometry]->knots() > 1)
+    if (knots.size() > 1 || shapes[geometry]->knots() > 1)
         add_way(geometries[geometry].get(), knots);
     rtcAttachGeometryByID(top.get(), node, static_cast<unsigned>(instances.size()));
     rtcReleaseGeometry(node);
@@ -223,25 +217,21 @@ void RayScene::Impl::add_way(RTCScene geometry, const std::vector<Mat4d>& knots)
         ways.back().add(way);
 }
 
-std::int32_t RayScene::Impl::material_of(const Instance& instance, std::uint32_t face) const {
-    if (instance.materials.empty()) return -1;
-    const GeometryData& data = scene.geometries[static_cast<std::size_t>(instance.geometry)];
-    const std::int32_t slot = data.material_index.empty() ? 0 : data.material_index[face];
-    const auto last = static_cast<std::int32_t>(instance.materials.size()) - 1;
-    return instance.materials[static_cast<std::size_t>(std::clamp(slot, 0, last))];
-}
-
 Vec3f RayScene::Impl::transparency(const RTCRay& ray, const RTCHit& hit, unsigned id) const {
     const RayInstance& instance = instances[id];
     const Instance& source = scene.instances[instance.index];
     ShadowHit shadow;
     shadow.instance = instance.index;
-    meshes[static_cast<std::size_t>(source.geometry)]->locate(hit.primID, hit.u, hit.v, shadow);
-    shadow.material = material_of(source, shadow.patch->face);
+    shapes[static_cast<std::size_t>(source.geometry)]->locate(hit.primID, hit.u, hit.v, shadow);
+    shadow.material = material_of(source, shadow.slot);
     if (!opacity.is_transparent(shadow.material)) return Vec3f(0.0f);
     shadow.direction = {ray.dir_x, ray.dir_y, ray.dir_z};
     shadow.p = Vec3f(ray.org_x, ray.org_y, ray.org_z) + shadow.direction * ray.tfar;
     shadow.time = ray.time;
+    if (shadow.elements) {  // they face the ray
+        shadow.normal = -shadow.direction;
+        return opacity.transparency(shadow);
+    }
     const Mat3d world_from_object(matrix_at(source.world_from_object, ray.time));
     shadow.normal = Vec3f(glm::normalize(glm::transpose(glm::inverse(world_from_object)) *
                                          Vec3d(hit.Ng_x, hit.Ng_y, hit.Ng_z)));
@@ -279,7 +269,7 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacit
     if (!impl.device)
         throw Error("Embree cannot start: error " + std::to_string(rtcGetDeviceError(nullptr)));
     rtcSetDeviceMemoryMonitorFunction(impl.device.get(), add_bytes, &impl.embree_bytes);
-    impl.meshes.resize(scene.geometries.size());
+    impl.shapes.resize(scene.geometries.size());
     impl.geometries.resize(scene.geometries.size());
     for (std::size_t g = 0; g < used.size(); ++g) {
         progress.check();
@@ -304,8 +294,8 @@ bool RayScene::empty() const {
 
 std::size_t RayScene::bytes() const {
     std::size_t sum = static_cast<std::size_t>(std::max(0LL, m_impl->embree_bytes.load()));
-    for (const auto& mesh : m_impl->meshes)
-        if (mesh) sum += mesh->bytes();
+    for (const auto& shape : m_impl->shapes)
+        if (shape) sum += shape->bytes();
     return sum;
 }
 
@@ -316,7 +306,7 @@ Vec3f RayScene::lift(const GridKey& key, const Vec3f& p, const Vec3f& geometric_
         const RayInstance& instance = m_impl->instances[found->second];
         const auto geometry =
             static_cast<std::size_t>(m_impl->scene.instances[instance.index].geometry);
-        height += instance.rounding + instance.scale * m_impl->meshes[geometry]->error(key.face);
+        height += instance.rounding + instance.scale * m_impl->shapes[geometry]->error(key.face);
     }
     return p + geometric_normal * height;
 }

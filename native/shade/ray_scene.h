@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scene as shadow rays see it: view-independent triangles, one Embree scene a geometry,
+// The scene as shadow rays see it: view-independent shapes, one Embree scene a geometry,
 // instanced, in shading space (world axes, origin at the camera of the frame time; decision 12).
 // What moves in the world has its motion knots in Embree; the camera's motion moves nothing.
 #pragma once

@@ -25,6 +25,7 @@ ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
     const Mat3f rotation(camera.world_from_camera);
     ShadingPoints points;
     points.count = n;
+    points.share = grid.point_share;
     points.p.resize(n);
     points.normal.resize(n);
     points.geometric_normal.resize(n);
@@ -46,6 +47,7 @@ ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
         points.dp_dv[i] = rotation * grid.dp_dv[i];
         points.backfacing[i] = side < 0.0f;
     }
+    for (const Vec3f& offset : grid.ray_offset) points.ray_offset.push_back(rotation * offset);
     return points;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "dice/element_values.h"
 #include "geometry/shared_geometry.h"
 #include "math/vec.h"
 
@@ -14,11 +15,14 @@ namespace granita {
 struct ShadowHit {
     std::uint32_t instance = 0;                ///< index in Scene::instances
     std::int32_t material = -1;                ///< index in Scene::materials, slot already resolved
-    const SharedGeometry* geometry = nullptr;  ///< of the instance
+    std::int32_t slot = 0;                     ///< of the material
+    const SharedGeometry* geometry = nullptr;  ///< of a mesh
     const BasePatch* patch = nullptr;          ///< one of its patches
     Vec2d uv{0.0};                             ///< on the patch (PatchKind)
+    const SharedElements* elements = nullptr;  ///< of curves and points
+    ElementPlace place;                        ///< on one of them
     Vec3f p{0.0f};                             ///< world axes, origin at the camera
-    Vec3f normal{0.0f};                        ///< unit, of the triangle, world axes, as modelled
+    Vec3f normal{0.0f};                        ///< unit, of what was met, world axes, as modelled
     Vec3f direction{0.0f};                     ///< unit, of the ray, from shaded point to light
     float time = 0.5f;                         ///< of the ray, in the shutter
 };

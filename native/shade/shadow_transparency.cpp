@@ -7,21 +7,28 @@
 namespace granita {
 namespace {
 
+void mesh_value(const ShadowHit& hit, const AttributeRequest& request, std::vector<float>& out) {
+    const CornerWeights weights(hit.patch->kind, hit.uv);
+    const CornerValues corners = corner_values(*hit.geometry, *hit.patch, request);
+    for (std::size_t c = 0; c < out.size(); ++c) {
+        double value = 0.0;
+        for (std::size_t i = 0; i < 4; ++i) value += weights.w[i] * corners.at[i][c];
+        out[c] = static_cast<float>(value);
+    }
+}
+
 /// The attributes that the material asks for, as a grid of one vertex holds them.
 std::vector<GridAttribute> attributes_at(const ShadowHit& hit,
                                          const std::vector<AttributeRequest>& requests) {
-    const CornerWeights weights(hit.patch->kind, hit.uv);
     std::vector<GridAttribute> attributes;
     for (std::size_t k = 0; k < requests.size(); ++k) {
-        const CornerValues corners = corner_values(*hit.geometry, *hit.patch, requests[k]);
         GridAttribute attribute{static_cast<int>(k), requests[k].width, {}, {}, {}};
         const auto width = static_cast<std::size_t>(requests[k].width);
         attribute.values.resize(width);
-        for (std::size_t c = 0; c < width; ++c) {
-            double value = 0.0;
-            for (std::size_t i = 0; i < 4; ++i) value += weights.w[i] * corners.at[i][c];
-            attribute.values[c] = static_cast<float>(value);
-        }
+        if (hit.elements)
+            element_value(*hit.elements, requests[k], hit.place, attribute.values.data());
+        else
+            mesh_value(hit, requests[k], attribute.values);
         if (requests[k].derivatives) attribute.du = attribute.dv = std::vector<float>(width, 0.0f);
         attributes.push_back(std::move(attribute));
     }

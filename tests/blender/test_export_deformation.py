@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import scene_parts
 from export_probe import geometry_of
+from hair_parts import grid_points, spiral_curves
 from motion_parts import drive, on_every_step, shape_key, with_shutter, xs
 
 
@@ -45,6 +46,26 @@ def test_a_moving_subsurf_stays_a_static_cage(moving):
     snapshot, _, _ = export_probe.through_engine(moving)
     assert geometry_of(snapshot, "Square")["points"].shape == (1, 4, 3)
     assert xs(snapshot, "Square") == pytest.approx([9.75, 10.25])
+
+
+@pytest.mark.parametrize("build", [spiral_curves, grid_points])
+def test_radii_in_motion(moving, build):
+    """They swell by .01 a frame; where only they move, places have as many knots."""
+    thing = build(moving)
+    node = next(
+        n
+        for n in thing.modifiers[0].node_group.nodes
+        if "Radius" in n.inputs and n.inputs["Radius"]
+    )
+    name = f'nodes["{node.name}"].inputs["Radius"].default_value'
+    curve = thing.modifiers[0].node_group.driver_add(name)
+    curve.driver.expression = ".01 * frame"
+    snapshot, report, _ = export_probe.through_engine(moving)
+    geometry = next(g for g in snapshot["geometries"] if g["kind"] in ("CURVES", "POINTS"))
+    assert len(geometry["radius"]) == len(geometry["points"]) == 2
+    assert geometry["radius"][:, 0] == pytest.approx([0.0975, 0.1025], abs=1e-6)
+    assert np.array_equal(geometry["points"][0], geometry["points"][1])
+    assert len(report) == 0
 
 
 def sphere(scene):

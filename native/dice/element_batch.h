@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What batches of curves and of points share: a run of a batch's elements, which is halved until it
+// is narrow and dices into one grid, and a single element, which is then split by itself.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "dice/opened_elements.h"
+
+namespace granita {
+
+class ElementBatch : public Primitive {
+  public:
+    GridKey key() const override;
+    bool diceable() const override { return m_diceable; }
+    std::vector<std::unique_ptr<Primitive>> split() const override;
+
+  protected:
+    /// Whole batch.
+    ElementBatch(const OpenedElements& elements, std::size_t batch)
+        : m_elements(&elements), m_batch(batch), m_count(elements.shared().batch(batch).size()) {}
+
+    /// The same in all, as a child yet to be cut.
+    virtual std::unique_ptr<ElementBatch> child() const = 0;
+    /// Half 0 or 1 of a single element.
+    virtual void halve(unsigned number) = 0;
+    /// Sets m_diceable.
+    virtual void measure() = 0;
+
+    std::uint32_t element(std::size_t i) const { return m_elements->shared().batch(m_batch)[i]; }
+    /// Of a camera-space box, with the rounding of positions.
+    RasterBounds raster_bounds(Bounds3f box) const;
+    /// Several that lie too far from each other for one grid: buckets beside them should not meet
+    /// them.
+    bool scattered() const;
+    /// Keeps the opened instance alive, and measures.
+    void own(std::shared_ptr<const OpenedElements> elements);
+
+    const OpenedElements* m_elements;
+    std::shared_ptr<const OpenedElements> m_owner;  ///< keeps m_elements
+    std::size_t m_batch;
+    std::uint64_t m_path = 1;
+    std::size_t m_first = 0, m_count = 0;  ///< elements of the batch
+    bool m_diceable = false;
+};
+
+}  // namespace granita

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A geometry of the scene as Embree takes it: view-independent, object space, at the frame time or,
+// where it deforms, at each of its knots (decision 12).
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <cstdint>
+#include <string>
+
+#include "shade/shadow_opacity.h"
+
+namespace granita {
+
+class RayShape {
+  public:
+    virtual ~RayShape() = default;
+    /// Embree's own copy, to be committed and released by the caller; what only it needs is given
+    /// back here.  nullptr: not enough memory.
+    virtual RTCGeometry hand_over(RTCDevice device) = 0;
+    /// How much there is of it, for messages: "12 triangles".
+    virtual std::string size() const = 0;
+    /// 1 = it does not deform.
+    virtual int knots() const = 0;
+    /// Largest absolute coordinate: rounding grows with it.
+    virtual float extent() const = 0;
+    /// Largest distance between the surface of a face, or batch, and what rays meet of it at any
+    /// knot, object space.
+    virtual float error(std::uint32_t face) const = 0;
+    /// Fills the place of a hit and its material slot.
+    virtual void locate(std::uint32_t primitive, float u, float v, ShadowHit& hit) const = 0;
+    virtual std::size_t bytes() const = 0;
+};
+
+}  // namespace granita

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Coarser dicing of what is blurred, coarser shading of what is diced: what they save, and what they change."""
+
+import numpy as np
+import pytest
+import snapshots as s
+
+
+def stripes(snapshot, period):
+    """A material of black and white squares, `period` pixels wide, in object space."""
+    nodes = [
+        {"type": "ShaderNodeTexCoord", "inputs": {}},
+        {
+            "type": "ShaderNodeTexChecker",
+            "inputs": {
+                "Vector": ("LINK", 0, "Object"),
+                "Color1": (1, 1, 1, 1),
+                "Color2": (0, 0, 0, 1),
+                "Scale": 1.0 / period,
+            },
+        },
+        {"type": "ShaderNodeEmission", "inputs": {"Color": ("LINK", 1, "Color"), "Strength": 1.0}},
+    ]
+    index = len(snapshot["materials"])
+    snapshot["materials"].append({"name": "Squares", "nodes": nodes, "surface": (2, "Emission")})
+    return index
+
+
+def picture(snapshot):
+    result = s.render(snapshot)
+    return result["combined"][..., 0], result["statistics"]
+
+
+@pytest.mark.parametrize("period", [40, 8, 3])
+def test_motion_factor_spares_points_that_blur_hides(period):
+    """A sheet of squares that goes 64 pixels: micropolygons four times as long along the way."""
+
+    def render(factor, samples=256):
+        snapshot = s.orthographic(
+            (96, 64), executor="SIMD", samples=samples, dicing_rate=0.5, motion_factor=factor
+        )
+        way = [s.translation(-32, -3), s.translation(32, 3)]
+        corners = s.rectangle(-60, -60, 160, 130)
+        s.quad(snapshot, corners, stripes(snapshot, period), transforms=way)
+        return picture(snapshot)
+
+    fine, all_points = render(0.0)
+    coarse, fewer = render(1.0)
+    assert fewer["points_diced"] < 0.4 * all_points["points_diced"]
+    # What is said to be spared is what is, within the steps of a factor of two.
+    spared = all_points["points_diced"] - fewer["points_diced"]
+    assert 0.5 < fewer["points_spared"] / spared < 2.0
+    assert all_points["points_spared"] == 0
+    # A square's edge may lie half a micropolygon elsewhere: a 64th of the way, and of what crosses a place.
+    assert np.sqrt(np.mean((coarse - fine) ** 2)) < 0.02
+
+
+def test_focus_factor_spares_points_that_the_lens_hides():
+    def render(factor):
+        snapshot = s.perspective(
+            (96, 64), 100.0, executor="SIMD", samples=256, dicing_rate=0.5, focus_factor=factor
+        )
+        # The circle of confusion is 32 pixels wide.
+        snapshot["camera"].update(lens_radius=0.32, focus_distance=1.0)
+        corners = s.rectangle(-4, -3, 4, 3, 2.0)
+        s.quad(snapshot, corners, stripes(snapshot, 0.2))
+        return picture(snapshot)
+
+    fine, all_points = render(0.0)
+    coarse, fewer = render(1.0)
+    assert fewer["points_diced"] < 0.4 * all_points["points_diced"]
+    spared = all_points["points_diced"] - fewer["points_diced"]
+    assert 0.5 < fewer["points_spared"] / spared < 2.0
+    assert np.sqrt(np.mean((coarse - fine) ** 2)) < 0.01
+
+
+def test_what_stands_still_in_focus_is_diced_as_ever():
+    def render(**factors):
+        snapshot = s.perspective((64, 48), 60.0, executor="SIMD", samples=16, **factors)
+        s.quad(snapshot, s.rectangle(-1, -1, 1, 1, 3.0), stripes(snapshot, 0.1))
+        return s.render(snapshot)["combined"]
+
+    assert np.array_equal(render(), render(motion_factor=0.0, focus_factor=0.0))
+
+
+def test_shading_rate_shades_fewer_points_of_the_same_shapes(executor):
+    def render(**options):
+        snapshot = s.orthographic((64, 48), executor=executor, samples=16, **options)
+        nodes = [
+            {"type": "ShaderNodeTexCoord", "inputs": {}},
+            {
+                "type": "ShaderNodeEmission",
+                "inputs": {"Color": ("LINK", 0, "Object"), "Strength": 1.0},
+            },
+        ]
+        snapshot["materials"].append({"name": "Place", "nodes": nodes, "surface": (1, "Emission")})
+        s.quad(snapshot, s.rectangle(0, 0, 64, 48), 0)
+        s.mesh(snapshot, *s.disc(11.3, (30, 20), 0.5), 0)
+        result = s.render(snapshot)
+        return result["combined"], result["statistics"]
+
+    fine, all_points = render(dicing_rate=0.5)
+    coarse, fewer = render(dicing_rate=0.5, shading_rate=4.0)
+    assert fewer["points_diced"] == all_points["points_diced"]
+    assert fewer["points_shaded"] < 0.1 * all_points["points_shaded"]
+    assert np.array_equal(fine[..., 3], coarse[..., 3])
+    # A colour that is linear is so between any points; but vertices that were moved onto a coarser side
+    # have the colour of their old place, less than a micropolygon away.
+    error = np.abs(fine - coarse).max(axis=-1)
+    x, y = np.meshgrid(np.arange(64) + 0.5, np.arange(48) + 0.5)
+    assert error[np.hypot(x - 30, y - 20) > 13].max() < 1e-3
+    assert error.max() < 0.5
