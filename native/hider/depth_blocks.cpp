@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hider/sample_order.h"
-
 namespace granita {
 namespace {
+
+/// Squares of ranks are this wide, pixels, unless blocks are wider.
+constexpr int kSquare = 4;
 
 /// Least of a packet's keys; lanes, because the order of minima does not matter but vectors do.
 float least_of_packet(const float* keys) {
@@ -23,40 +24,68 @@ static_assert(kPacket == 16);
 
 }  // namespace
 
-void DepthBlocks::reset(int blocks_wide, int packets, const PacketBounds& bounds) {
-    m_blocks_wide = blocks_wide;
-    m_packets = packets;
+void DepthBlocks::reset(const SampleOrder& order, const RankBounds& bounds) {
     m_bounds = &bounds;
+    m_blocks_wide = order.blocks_wide();
+    m_ranks = order.ranks();
+    m_ranked = order.shape().ranked;
     m_writes = 0;
-    const std::size_t blocks = static_cast<std::size_t>(blocks_wide) * blocks_wide;
-    m_packet.assign(blocks * packets, -INFINITY);
+    m_square_shift = 0;
+    while ((m_blocks_wide >> m_square_shift) > kTileSize / kSquare) ++m_square_shift;
+    const std::size_t blocks = static_cast<std::size_t>(m_blocks_wide) * m_blocks_wide;
+    const std::size_t squares = static_cast<std::size_t>(squares_wide()) * squares_wide();
+    m_packet.assign(m_ranked ? 0 : blocks * (m_ranks / kPacket), -INFINITY);
+    // Ranks are read in whole vectors.
+    m_rank.assign(m_ranked ? squares * m_ranks + kPacket : 0, -INFINITY);
     m_block.assign(blocks, -INFINITY);
-    m_tile = -INFINITY;
+    m_tile = m_nearest_rank = -INFINITY;
     m_filled = false;
 }
 
 void DepthBlocks::update(const float* keys) {
     // An eighth of the samples: a scan costs about as much as hiding that many.
-    if (m_writes >= m_packet.size() * kPacket / 8) rebuild(keys);
+    if (m_writes >= m_block.size() * m_ranks / 8) rebuild(keys);
 }
 
 void DepthBlocks::rebuild(const float* keys) {
     m_writes = 0;
     m_filled = true;
-    for (std::size_t p = 0; p < m_packet.size(); ++p)
-        m_packet[p] = least_of_packet(keys + p * kPacket);
-    for (std::size_t b = 0; b < m_block.size(); ++b)
-        m_block[b] =
-            *std::min_element(&m_packet[b * m_packets], &m_packet[b * m_packets] + m_packets);
+    m_ranked ? rebuild_ranks(keys) : rebuild_packets(keys);
     m_tile = *std::min_element(m_block.begin(), m_block.end());
 }
 
-bool DepthBlocks::hide_in_block(std::size_t block, float time0, float time1, float limit) const {
-    if (limit < m_block[block]) return true;
-    if (time0 <= 0.0f && time1 >= 1.0f) return false;
-    for (int k = 0; k < m_packets; ++k)
-        if (m_bounds->t_lo[k] <= time1 && m_bounds->t_hi[k] >= time0 &&
-            !(limit < m_packet[block * m_packets + k]))
+void DepthBlocks::rebuild_packets(const float* keys) {
+    for (std::size_t p = 0; p < m_packet.size(); ++p)
+        m_packet[p] = least_of_packet(keys + p * kPacket);
+    const int packets = m_ranks / kPacket;
+    for (std::size_t b = 0; b < m_block.size(); ++b)
+        m_block[b] = *std::min_element(&m_packet[b * packets], &m_packet[b * packets] + packets);
+}
+
+void DepthBlocks::rebuild_ranks(const float* keys) {
+    std::fill(m_block.begin(), m_block.end(), INFINITY);
+    std::fill(m_rank.begin(), m_rank.end(), INFINITY);
+    const int square = 1 << m_square_shift;
+    for (int r = 0; r < m_ranks; ++r)
+        for (int y = 0; y < m_blocks_wide; ++y)
+            for (int x = 0; x < m_blocks_wide; x += square, keys += square) {
+                float* const block = &m_block[static_cast<std::size_t>(y) * m_blocks_wide + x];
+                float least = keys[0];
+                for (int i = 0; i < square; ++i) {
+                    block[i] = std::min(block[i], keys[i]);
+                    least = std::min(least, keys[i]);
+                }
+                const int at = (y >> m_square_shift) * squares_wide() + (x >> m_square_shift);
+                float& rank = m_rank[static_cast<std::size_t>(at) * m_ranks + r];
+                rank = std::min(rank, least);
+            }
+    m_nearest_rank = *std::max_element(m_rank.begin(), m_rank.end() - kPacket);
+}
+
+bool DepthBlocks::hide_in_square(std::size_t square, float time0, float time1, float limit) const {
+    for (int r = 0; r < m_ranks; ++r)
+        if (m_bounds->t_lo[r] <= time1 && m_bounds->t_hi[r] >= time0 &&
+            !(limit < m_rank[square * m_ranks + r]))
             return false;
     return true;
 }
@@ -66,14 +95,17 @@ bool DepthBlocks::hide(const Rect& pixels, float time0, float time1, float neare
     // A key at a sample may round a few ulp past the nearest corner's.
     const float limit = nearest_key + std::fabs(nearest_key) * 0x1p-20f;
     if (limit < m_tile) return true;
-    const double per_pixel = static_cast<double>(m_blocks_wide) / kTileSize;
+    const bool always = !m_ranked || (time0 <= 0.0f && time1 >= 1.0f);
+    const int wide = always ? m_blocks_wide : squares_wide();
+    const double per_pixel = static_cast<double>(wide) / kTileSize;
     const auto first = [&](int pixel) { return static_cast<int>(pixel * per_pixel); };
     const auto end = [&](int pixel) { return static_cast<int>(std::ceil(pixel * per_pixel)); };
-    for (int by = first(pixels.y0); by < end(pixels.y1); ++by)
-        for (int bx = first(pixels.x0); bx < end(pixels.x1); ++bx)
-            if (!hide_in_block(static_cast<std::size_t>(by) * m_blocks_wide + bx, time0, time1,
-                               limit))
+    for (int y = first(pixels.y0); y < end(pixels.y1); ++y)
+        for (int x = first(pixels.x0); x < end(pixels.x1); ++x) {
+            const auto at = static_cast<std::size_t>(y) * wide + x;
+            if (always ? !(limit < m_block[at]) : !hide_in_square(at, time0, time1, limit))
                 return false;
+        }
     return true;
 }
 

@@ -10,11 +10,11 @@ namespace {
 constexpr int kPixels = kTileSize * kTileSize;
 /// Side of the bounding square of a micropolygon of one pixel, at some angle.
 constexpr double kExtent = 1.3;
-constexpr int kLeastSideLog2 = -2, kMostSideLog2 = 3;
+/// A tile is at least a window of blocks wide.
+constexpr int kLeastSideLog2 = -2, kMostSideLog2 = 2;
 
-int packets_of_block(int side_log2, int samples) {
-    const double count = std::ldexp(samples, 2 * side_log2);
-    return std::max(1, static_cast<int>(std::ceil(count / kPacket)));
+int samples_of_block(int side_log2, int samples) {
+    return static_cast<int>(std::ceil(std::ldexp(samples, 2 * side_log2)));
 }
 
 /// Counting sort of slots[0, count) by cells of `value`, which lies in [lo, hi]; stable.
@@ -32,14 +32,12 @@ void sort_by_cells(std::uint32_t* slots, std::size_t count, int cells, float lo,
     for (const std::uint32_t sample : scratch) slots[start[cell(sample)]++] = sample;
 }
 
-/// Calls visit(first, count) for each of `parts` equal shares of the packets that hold `count`
-/// slots.
+/// Calls visit(first, count) for each of `parts` equal shares of `count` slots.
 template <class Visit>
-void for_each_share(std::size_t count, int packets, int parts, Visit visit) {
+void for_each_share(std::size_t count, int parts, Visit visit) {
     for (int part = 0; part < parts; ++part) {
-        const std::size_t first = static_cast<std::size_t>(packets) * part / parts * kPacket;
-        const std::size_t end = static_cast<std::size_t>(packets) * (part + 1) / parts * kPacket;
-        if (first < count) visit(first, std::min(end, count) - first);
+        const std::size_t first = count * part / parts;
+        visit(first, count * (part + 1) / parts - first);
     }
 }
 
@@ -49,34 +47,37 @@ float OrderShape::side() const {
     return std::ldexp(1.0f, side_log2);
 }
 
-double packets_met(const OrderShape& shape, int samples, const Sweep& sweep) {
-    const int packets = packets_of_block(shape.side_log2, samples);
+double order_cost(const OrderShape& shape, int samples, const Sweep& sweep) {
     const double side = shape.side();
+    const int count = samples_of_block(shape.side_log2, samples);
     const auto blocks = [&](int axis, int lens_strata) {
         const double reach = sweep.motion[axis] / shape.times + sweep.lens[axis] / lens_strata;
-        return std::min((reach + kExtent + side) / side, kTileSize / side + 1);
+        return std::min((reach + kExtent) / side + 1, kTileSize / side);
     };
-    // The bounds of the strata of one micropolygon cost about a test for every four strata.
-    const int strata = shape.times * shape.us * shape.vs;
-    return packets * blocks(0, shape.us) * blocks(1, shape.vs) + .25 * (strata - 1);
+    const double x = blocks(0, shape.us), y = blocks(1, shape.vs);
+    if (!shape.ranked) return std::ceil(static_cast<double>(count) / kPacket) * x * y;
+    // Windows of four by four blocks, and what a rank costs by itself.
+    const auto windows = [](double n) { return std::max(1.0, (n + 2.5) / 4); };
+    return count * (0.5 + windows(x) * windows(y));
 }
 
 OrderShape best_order(int samples, const Sweep& sweep) {
     OrderShape best;
     double least = INFINITY;
     const auto is_zero = [](const Vec2f& v) { return v.x == 0.0f && v.y == 0.0f; };
+    const bool moves = !is_zero(sweep.motion), lens = !is_zero(sweep.lens);
     for (int side = kLeastSideLog2; side <= kMostSideLog2; ++side) {
         // Parts of a pixel hold equally many samples only if these divide.
         if (side < 0 && samples % (1 << (-2 * side)) != 0) continue;
-        const int packets = packets_of_block(side, samples);
-        for (int times = 1; times <= (is_zero(sweep.motion) ? 1 : packets); times *= 2)
-            for (int us = 1; us * times <= (is_zero(sweep.lens) ? times : packets); us *= 2)
-                for (int vs = us; vs <= 2 * us && vs * us * times <= packets; vs *= 2) {
-                    if (is_zero(sweep.lens) && vs > 1) continue;
-                    const OrderShape shape{side, times, us, vs};
-                    const double met = packets_met(shape, samples, sweep);
-                    if (met < least) {
-                        least = met;
+        const int count = samples_of_block(side, samples);
+        for (int times = 1; times <= (moves ? count : 1); times *= 2)
+            for (int us = 1; us * times <= (lens ? count : times); us *= 2)
+                for (int vs = us; vs <= 2 * us && vs * us * times <= count; vs *= 2) {
+                    if (!lens && vs > 1) continue;
+                    const OrderShape shape{moves || lens, side, times, us, vs};
+                    const double cost = order_cost(shape, samples, sweep);
+                    if (cost < least) {
+                        least = cost;
                         best = shape;
                     }
                 }
@@ -88,7 +89,8 @@ SampleOrder::SampleOrder(const TileSamples& samples, const Rect& pixels, const O
     : m_shape(shape) {
     distribute(samples, pixels);
     // Samples that are not a net may crowd in a part of a pixel; then blocks are whole pixels.
-    if (m_shape.side_log2 < 0 && m_packets > packets_of_block(m_shape.side_log2, samples.samples)) {
+    const int expected = samples_of_block(m_shape.side_log2, samples.samples);
+    if (m_shape.side_log2 < 0 && m_ranks >= expected + kPacket) {
         m_shape.side_log2 = 0;
         distribute(samples, pixels);
     }
@@ -115,17 +117,23 @@ void SampleOrder::distribute(const TileSamples& samples, const Rect& pixels) {
     std::vector<std::uint32_t> count(blocks, 0);
     for_each_sample([&](std::uint32_t i) { ++count[block_of(i)]; });
     const std::uint32_t most = *std::max_element(count.begin(), count.end());
-    m_packets = std::max(1, static_cast<int>((most + kPacket - 1) / kPacket));
-    const std::size_t stride = static_cast<std::size_t>(m_packets) * kPacket;
+    m_ranks = static_cast<int>(std::max(most, 1u));
+    if (!m_shape.ranked) m_ranks = (m_ranks + kPacket - 1) / kPacket * kPacket;
+    const auto stride = static_cast<std::size_t>(m_ranks);
     m_table_index.assign(blocks * stride, kNone);
     std::vector<std::uint32_t> filled(blocks, 0);
     for_each_sample([&](std::uint32_t i) {
         const std::uint32_t block = block_of(i);
         m_table_index[block * stride + filled[block]++] = i;
     });
-    if (m_shape.times * m_shape.us * m_shape.vs == 1) return;
+    if (!m_shape.ranked) return;
     for (std::size_t block = 0; block < blocks; ++block)
         sort_block(samples, m_table_index.data() + block * stride, count[block]);
+    std::vector<std::uint32_t> by_rank(m_table_index.size());
+    for (std::size_t block = 0; block < blocks; ++block)
+        for (std::size_t rank = 0; rank < stride; ++rank)
+            by_rank[rank * blocks + block] = m_table_index[block * stride + rank];
+    m_table_index = std::move(by_rank);
 }
 
 void SampleOrder::sort_block(const TileSamples& samples, std::uint32_t* slots, std::size_t count) {
@@ -137,10 +145,10 @@ void SampleOrder::sort_block(const TileSamples& samples, std::uint32_t* slots, s
                           [&](std::uint32_t i) { return values[i]; });
     };
     sort(0, count, m_shape.times, 0.0f, samples.t);
-    const int per_time = m_packets / m_shape.times;
-    for_each_share(count, m_packets, m_shape.times, [&](std::size_t first, std::size_t n) {
+    if (m_shape.us * m_shape.vs == 1) return;
+    for_each_share(count, m_shape.times, [&](std::size_t first, std::size_t n) {
         sort(first, n, m_shape.us, -1.0f, samples.u);
-        for_each_share(n, per_time, m_shape.us, [&](std::size_t from, std::size_t some) {
+        for_each_share(n, m_shape.us, [&](std::size_t from, std::size_t some) {
             sort(first + from, some, m_shape.vs, -1.0f, samples.v);
         });
     });

@@ -12,9 +12,10 @@ namespace granita {
 /// Samples that the kernel looks at together, whatever the width of the machine's vectors.
 inline constexpr int kPacket = 16;
 
-/// Square blocks of the raster; the samples of a block sorted into strata of time, those into
-/// strata of the lens coordinate u, those into strata of v.
+/// Square blocks of the raster.  Where something is swept by motion or lens, the samples of a block
+/// are ranked by strata of time, those by strata of the lens coordinate u, those by strata of v.
 struct OrderShape {
+    bool ranked = false;
     int side_log2 = 0;  ///< the side of a block is 2^side_log2 pixels; negative: part of a pixel
     int times = 1, us = 1, vs = 1;
 
@@ -26,16 +27,24 @@ struct OrderShape {
 /// the lens from one rim to the other.
 struct Sweep {
     Vec2f motion{0.0f}, lens{0.0f};
+
+    bool still() const { return motion == Vec2f(0.0f) && lens == Vec2f(0.0f); }
 };
 
-/// Packets that a micropolygon about as large as a pixel has to be tested against.
-double packets_met(const OrderShape& shape, int samples, const Sweep& sweep);
-/// The shape that meets fewest, for `samples` a pixel.
+/// What a micropolygon about as large as a pixel costs in this order, relative to other orders of
+/// as many samples a pixel.
+double order_cost(const OrderShape& shape, int samples, const Sweep& sweep);
+/// The cheapest shape.
 OrderShape best_order(int samples, const Sweep& sweep);
 
-/// The place of a tile's samples in memory, packets of neighbours in place, time and lens: what
-/// sits in one packet of kPacket is seen or missed together, so that nearly all tests hit.  The
-/// (0, m, s) nets of the table make the strata exact.
+/// The place of a tile's samples in memory.
+///
+/// Where nothing is swept, [block][samples of the block]: packets of kPacket samples are neighbours
+/// in place, seen or missed together.
+///
+/// Ranked, [rank][block]: a rank stands for a stratum of time and lens and has one sample in every
+/// block, so that the samples which look where and when a micropolygon is lie in a small window of
+/// the rank's blocks.  The (0, m, s) nets of the table make strata exact.
 class SampleOrder {
   public:
     static constexpr std::uint32_t kNone = ~0u;  ///< a slot without sample
@@ -46,9 +55,10 @@ class SampleOrder {
 
     const OrderShape& shape() const { return m_shape; }
     int blocks_wide() const { return m_blocks_wide; }  ///< a tile has as many rows of blocks
-    int packets() const { return m_packets; }          ///< a block
+    /// Slots of a block; a multiple of kPacket unless ranked.
+    int ranks() const { return m_ranks; }
     std::size_t slots() const { return m_table_index.size(); }
-    /// [block][packet][kPacket] index in the table.
+    /// Index in the table.
     const std::vector<std::uint32_t>& table_index() const { return m_table_index; }
 
   private:
@@ -56,7 +66,7 @@ class SampleOrder {
     void sort_block(const TileSamples& samples, std::uint32_t* slots, std::size_t count);
 
     OrderShape m_shape;
-    int m_blocks_wide = 0, m_packets = 0;
+    int m_blocks_wide = 0, m_ranks = 0;
     std::vector<std::uint32_t> m_table_index;
     std::vector<std::uint32_t> m_scratch;
 };

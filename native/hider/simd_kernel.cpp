@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hider/micropolygon_class.h"
+#include "hider/rank_bounds.h"
 #include "hider/sample_order.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -45,6 +46,7 @@ HWY_INLINE void for_each_lane(M mask, Visit visit) {
 }
 
 #include "hider/tile_bounds.inl"
+#include "hider/triangle_pair.inl"
 
 class Kernel {
   public:
@@ -54,7 +56,10 @@ class Kernel {
           m_tile(tile),
           m_fragments(fragments),
           m_counts(counts),
-          m_where(grid, tile) {}
+          m_where(grid, tile) {
+        for (int i = 0; i < kPacket; ++i)
+            m_window[i] = i / kWindow * tile.blocks_wide + i % kWindow;
+    }
 
     template <bool kMoving, bool kLens>
     void run() {
@@ -64,62 +69,171 @@ class Kernel {
                 for (int i = 0; i < m_grid.n_u; i += lane_count()) {
                     const int first = j * m_grid.up + i;
                     M touching = m_where.find_touched(first, m_grid.n_u - i, ranges);
-                    if (kMoving && m_tile.strata > 1 && !hn::AllFalse(kTag, touching))
+                    if (kMoving && !hn::AllFalse(kTag, touching))
                         touching = hn::And(touching, m_where.find_times<kLens>(first, ranges));
                     for_each_lane(touching, [&](int lane) HWY_ATTR {
                         const int m = j * m_grid.n_u + i + lane;
                         m_class = m_grid.classes[m];
                         if (m_class == 0) return;
                         m_id = m_grid.base + static_cast<SurfaceId>(m);
-                        hide<kMoving, kLens>(first + lane, ranges, lane);
+                        const Shape shape = m_where.load_shape(first + lane);
+                        if (kMoving || kLens || m_tile.ranked)
+                            visit_ranks<kMoving, kLens>(shape, ranges, lane);
+                        else
+                            visit_packets(shape, ranges, lane);
                     });
                 }
     }
 
   private:
-    template <bool kMoving, bool kLens>
-    HWY_INLINE void hide(int vertex, const BlockRanges& swept, int lane) {
-        const Shape shape = m_where.load_shape(vertex);
-        if (!(kMoving || kLens) || m_tile.strata == 1) {
-            visit_blocks<kMoving, kLens>(shape, swept, lane, 0, m_tile.packets);
-            return;
-        }
-        BlockRanges strata;
-        for (int first = 0; first < m_tile.packets; first += lane_count()) {
-            M touching = m_where.bound_strata<kMoving, kLens>(shape, first, strata);
-            touching = hn::And(touching,
-                               hn::FirstN(kTag, static_cast<std::size_t>(m_tile.packets - first)));
-            for_each_lane(touching, [&](int k) HWY_ATTR {
-                visit_blocks<kMoving, kLens>(shape, strata, k, first + k, first + k + 1);
-            });
-        }
-    }
+    /// Samples of a tile's vector.
+    struct Samples {
+        V x, y, t, u, v;
+    };
 
-    /// Packets [packet, packet_end) of the blocks of ranges[lane].
-    template <bool kMoving, bool kLens>
-    HWY_INLINE void visit_blocks(const Shape& shape, const BlockRanges& ranges, int lane,
-                                 int packet, int packet_end) {
+    /// What is still is tested against all packets of the blocks of ranges[lane].
+    HWY_INLINE void visit_packets(const Shape& shape, const BlockRanges& ranges, int lane) {
         const float nearest = ranges.nearest[lane];
+        const int packets = m_tile.ranks / kPacket;
         const int x0 = ranges.x0[lane], x1 = ranges.x1[lane], y1 = ranges.y1[lane];
         for (int by = ranges.y0[lane]; by <= y1; ++by)
             for (int bx = x0; bx <= x1; ++bx) {
                 const std::size_t block = static_cast<std::size_t>(by) * m_tile.blocks_wide + bx;
-                for (int k = packet; k < packet_end; ++k) {
-                    const std::size_t p = block * m_tile.packets + k;
-                    if (nearest < m_tile.farthest[p]) {
-                        m_counts.culled += kPacket;
-                        continue;
-                    }
+                for (std::size_t p = block * packets; p < (block + 1) * packets; ++p) {
+                    if (nearest < m_tile.farthest_of_packets[p]) continue;
                     m_counts.tests += kPacket;
                     for (int l = 0; l < kPacket; l += lane_count())
-                        test<kMoving, kLens>(shape, p * kPacket + l);
+                        test_packet(shape, p * kPacket + l);
                 }
             }
     }
 
+    HWY_INLINE void test_packet(const Shape& shape, std::size_t first) {
+        Samples at;
+        at.x = hn::LoadU(kTag, m_tile.x + first);
+        at.y = hn::LoadU(kTag, m_tile.y + first);
+        V key;
+        const M hit = test<false, false>(shape, at, hn::FirstN(kTag, kPacket), key);
+        if (!hn::AllFalse(kTag, hit)) record(key, hit, first);
+    }
+
+    /// What is swept, and what is still in a tile where other things are swept: ranks are bounded a
+    /// vector at a time, the samples in each rank's window of blocks are compared with the
+    /// micropolygon's path, and what remains, about twice what is hit, is tested in whole vectors.
+    template <bool kMoving, bool kLens>
+    HWY_INLINE void visit_ranks(const Shape& shape, const BlockRanges& swept, int lane) {
+        int first = 0, end = m_tile.ranks;
+        if constexpr (kMoving) m_where.find_ranks(swept, lane, first, end);
+        const bool cull = swept.nearest[lane] < m_tile.nearest_of_ranks;
+        RankPaths paths;
+        std::size_t found = 0;
+        for (; first < end; first += lane_count()) {
+            M touching = m_where.bound_ranks<kMoving, kLens>(shape, first, cull, paths);
+            touching = hn::And(touching, hn::FirstN(kTag, static_cast<std::size_t>(end - first)));
+            for_each_lane(touching, [&](int k) HWY_ATTR {
+                // Windows side by side that do not leave the tile.
+                const int wide = m_tile.blocks_wide;
+                const int across = (paths.x1[k] - paths.x0[k]) / kWindow + 1;
+                const int up = (paths.y1[k] - paths.y0[k]) / kWindow + 1;
+                const int x0 = std::min(paths.x0[k], wide - kWindow * across);
+                const int y0 = std::min(paths.y0[k], wide - kWindow * up);
+                for (int y = 0; y < up; ++y)
+                    for (int x = 0; x < across; ++x) {
+                        const int slot =
+                            ((first + k) * wide + y0 + kWindow * y) * wide + x0 + kWindow * x;
+                        found = filter_window<kMoving, kLens>(paths, k, slot, found);
+                        if (HWY_UNLIKELY(found > kMostListed)) {
+                            test_listed<kMoving, kLens>(shape, found);
+                            found = 0;
+                        }
+                    }
+            });
+        }
+        test_listed<kMoving, kLens>(shape, found);
+    }
+
+    /// Rows of kWindow floats, as many as fit a vector.
+    template <class D>
+    HWY_INLINE hn::Vec<D> load_rows(D d, const float* row) const {
+        if constexpr (hn::MaxLanes(d) == kWindow) {
+            return hn::LoadU(d, row);
+        } else {
+            constexpr hn::Half<D> half;
+            constexpr int kRows = hn::MaxLanes(d) / kWindow / 2;
+            return hn::Combine(d, load_rows(half, row + kRows * m_tile.blocks_wide),
+                               load_rows(half, row));
+        }
+    }
+
+    /// Of the window at `slot`, adds the samples within the micropolygon's reach to the list.
+    template <bool kMoving, bool kLens>
+    HWY_INLINE std::size_t filter_window(const RankPaths& paths, int k, int slot,
+                                         std::size_t found) {
+        constexpr int kRows = hn::MaxLanes(kTag) / kWindow;
+        for (int row = 0; row < kWindow; row += kRows, slot += kRows * m_tile.blocks_wide) {
+            Samples at;
+            at.x = load_rows(kTag, m_tile.x + slot);
+            at.y = load_rows(kTag, m_tile.y + slot);
+            V x = set(paths.x.place[k]), y = set(paths.y.place[k]);
+            if constexpr (kMoving) {
+                at.t = load_rows(kTag, m_tile.t + slot);
+                x = x + set(paths.x.speed[k]) * at.t;
+                y = y + set(paths.y.speed[k]) * at.t;
+            }
+            if constexpr (kLens) {
+                at.u = load_rows(kTag, m_tile.u + slot);
+                at.v = load_rows(kTag, m_tile.v + slot);
+                x = x + set(paths.x.shear[k]) * at.u;
+                y = y + set(paths.y.shear[k]) * at.v;
+            }
+            const M near = hn::And(hn::Le(hn::Abs(at.x - x), set(paths.x.reach[k])),
+                                   hn::Le(hn::Abs(at.y - y), set(paths.y.reach[k])));
+            const auto add = [&](V value, float* to) HWY_ATTR {
+                hn::StoreU(hn::Compress(value, near), kTag, to + found);
+            };
+            add(at.x, m_listed.x);
+            add(at.y, m_listed.y);
+            if constexpr (kMoving) add(at.t, m_listed.t);
+            if constexpr (kLens) {
+                add(at.u, m_listed.u);
+                add(at.v, m_listed.v);
+            }
+            const auto slots = hn::LoadU(kIntTag, m_window) + hn::Set(kIntTag, slot);
+            hn::StoreU(hn::Compress(slots, hn::RebindMask(kIntTag, near)), kIntTag,
+                       m_listed.slot + found);
+            found += hn::CountTrue(kTag, near);
+        }
+        return found;
+    }
+
+    template <bool kMoving, bool kLens>
+    HWY_INLINE void test_listed(const Shape& shape, std::size_t count) {
+        m_counts.tests += count;
+        std::size_t hits = 0;
+        for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lane_count())) {
+            Samples at;
+            at.x = hn::LoadU(kTag, m_listed.x + i);
+            at.y = hn::LoadU(kTag, m_listed.y + i);
+            if constexpr (kMoving) at.t = hn::LoadU(kTag, m_listed.t + i);
+            if constexpr (kLens) {
+                at.u = hn::LoadU(kTag, m_listed.u + i);
+                at.v = hn::LoadU(kTag, m_listed.v + i);
+            }
+            V key;
+            const M hit = test<kMoving, kLens>(shape, at, hn::FirstN(kTag, count - i), key);
+            if (hn::AllFalse(kTag, hit)) continue;
+            hn::StoreU(hn::Compress(key, hit), kTag, m_hit_key + hits);
+            hn::StoreU(
+                hn::Compress(hn::LoadU(kIntTag, m_listed.slot + i), hn::RebindMask(kIntTag, hit)),
+                kIntTag, m_hit_slot + hits);
+            hits += hn::CountTrue(kTag, hit);
+        }
+        record_hits(hits);
+    }
+
     /// Time of the samples in the segment, which may lie outside [0, 1].
-    HWY_INLINE V local_time(std::size_t i) const {
-        return hn::LoadU(kTag, m_tile.t + i) * set(static_cast<float>(m_grid.segments)) -
+    HWY_INLINE V local_time(const Samples& at) const {
+        return at.t * set(static_cast<float>(m_grid.segments)) -
                set(static_cast<float>(m_where.segment));
     }
 
@@ -133,86 +247,85 @@ class Kernel {
     }
 
     template <bool kLens>
-    HWY_INLINE Offset<V> offset(const Corner<V>& c, std::size_t i) const {
-        const V x = hn::LoadU(kTag, m_tile.x + i), y = hn::LoadU(kTag, m_tile.y + i);
+    HWY_INLINE Offset<V> offset(const Corner<V>& c, const Samples& at) const {
         if constexpr (kLens)
-            return offset_lens(c, x, y, hn::LoadU(kTag, m_tile.u + i),
-                               hn::LoadU(kTag, m_tile.v + i), set(m_grid.inverse_focus), set(1.0f));
+            return offset_lens(c, at.x, at.y, at.u, at.v, set(m_grid.inverse_focus), set(1.0f));
         else
-            return offset_pinhole(c, x, y);
+            return offset_pinhole(c, at.x, at.y);
     }
 
-    /// A vector of samples against the micropolygon.
+    /// A vector of samples against the micropolygon: which it covers, and their keys.
     template <bool kMoving, bool kLens>
-    HWY_INLINE void test(const Shape& shape, std::size_t i) {
+    HWY_INLINE M test(const Shape& shape, const Samples& at, M valid, V& key) {
         const V zero = set(0.0f);
-        const V local = kMoving ? local_time(i) : zero;
-        const Offset<V> d0 = offset<kLens>(corner_at<kMoving>(shape, 0, local), i);
-        const Offset<V> d1 = offset<kLens>(corner_at<kMoving>(shape, 1, local), i);
-        const Offset<V> d2 = offset<kLens>(corner_at<kMoving>(shape, 2, local), i);
-        const Offset<V> d3 = offset<kLens>(corner_at<kMoving>(shape, 3, local), i);
-        const V e01 = edge(d0, d1), e12 = edge(d1, d2), e02 = edge(d0, d2);
-        const V e23 = edge(d2, d3), e30 = edge(d3, d0), e20 = hn::Neg(e02);
-        M in_a = hn::MaskFromVec(zero), strict_a = in_a, in_b = in_a, strict_b = in_a;
-        if (m_class & kTriangleA) inside(e01, e12, e20, in_a, strict_a);
-        if (m_class & kTriangleB) inside(e02, e23, e30, in_b, strict_b);
-        M touched = hn::Or(in_a, in_b);
-        if (hn::AllFalse(kTag, touched)) return;
+        const V local = kMoving ? local_time(at) : zero;
+        const Offset<V> d0 = offset<kLens>(corner_at<kMoving>(shape, 0, local), at);
+        const Offset<V> d1 = offset<kLens>(corner_at<kMoving>(shape, 1, local), at);
+        const Offset<V> d2 = offset<kLens>(corner_at<kMoving>(shape, 2, local), at);
+        const Offset<V> d3 = offset<kLens>(corner_at<kMoving>(shape, 3, local), at);
+        const PairEdges e = edges_of(d0, d1, d2, d3);
+        const M never = hn::MaskFromVec(zero);
+        Side a{never, never}, b{never, never};
+        if (m_class & kTriangleA) a = first_side(e);
+        if (m_class & kTriangleB) b = second_side(e);
+        M touched = hn::And(valid, hn::Or(a.in, b.in));
+        if (hn::AllFalse(kTag, touched)) return touched;
         if (kMoving && m_grid.segments > 1) {
             touched = hn::And(touched, hn::Ge(local, zero));
             if (m_where.segment + 1 < m_grid.segments)
                 touched = hn::And(touched, hn::Lt(local, set(1.0f)));
         }
-
-        // Strictly inside one triangle and outside the other; the rest is on an edge or where the
-        // micropolygon is folded.
-        const M clean =
-            hn::And(touched, hn::Or(hn::AndNot(in_b, strict_a), hn::AndNot(in_a, strict_b)));
+        const M clean = hn::And(touched, is_clean(a, b));
         const V z0 = corner_at<kMoving>(shape, 0, local).z;
         const V z1 = corner_at<kMoving>(shape, 1, local).z;
         const V z2 = corner_at<kMoving>(shape, 2, local).z;
         const V z3 = corner_at<kMoving>(shape, 3, local).z;
-        const V first_weight = hn::IfThenElse(strict_a, e12, e23);
-        const V second_weight = hn::IfThenElse(strict_a, e20, e30);
-        const V third_weight = hn::IfThenElse(strict_a, e01, e02);
-        const V second_z = hn::IfThenElse(strict_a, z1, z2);
-        const V third_z = hn::IfThenElse(strict_a, z2, z3);
-        const V share = set(1.0f) / (first_weight + second_weight + third_weight);
-        const V z =
-            z0 + second_weight * share * (second_z - z0) + third_weight * share * (third_z - z0);
+        const PairWeights weights = weights_of(e, a.strict);
+        const V second_z = hn::IfThenElse(a.strict, z1, z2);
+        const V third_z = hn::IfThenElse(a.strict, z2, z3);
+        const V z = z0 + weights.second * (second_z - z0) + weights.third * (third_z - z0);
         const V z_in = hn::Min(hn::Max(z, hn::Min(z0, hn::Min(second_z, third_z))),
                                hn::Max(z0, hn::Max(second_z, third_z)));
-        V key = m_grid.range.perspective ? set(1.0f) / z_in : hn::Neg(z_in);
+        key = m_grid.range.perspective ? set(1.0f) / z_in : hn::Neg(z_in);
         M hit = hn::And(clean, hn::And(hn::Ge(key, set(m_grid.range.key_far)),
                                        hn::Le(key, set(m_grid.range.key_near))));
         const M unclear = hn::AndNot(clean, touched);
         if (HWY_UNLIKELY(!hn::AllFalse(kTag, unclear))) {
             // By way of memory: what a call can see would be kept there in every test.
-            alignas(64) float keys[kPacket], hits[kPacket];
+            alignas(64) float keys[kPacket], hits[kPacket], copies[5][kPacket];
             hn::StoreU(key, kTag, keys);
             hn::StoreU(hn::IfThenElseZero(hit, set(1.0f)), kTag, hits);
-            test_exactly<kMoving, kLens>(shape, i, unclear, keys, hits);
+            hn::StoreU(at.x, kTag, copies[0]);
+            hn::StoreU(at.y, kTag, copies[1]);
+            if constexpr (kMoving) hn::StoreU(at.t, kTag, copies[2]);
+            if constexpr (kLens) {
+                hn::StoreU(at.u, kTag, copies[3]);
+                hn::StoreU(at.v, kTag, copies[4]);
+            }
+            test_exactly<kMoving, kLens>(shape, copies, unclear, keys, hits);
             key = hn::LoadU(kTag, keys);
             hit = hn::Gt(hn::LoadU(kTag, hits), zero);
         }
-        if (!hn::AllFalse(kTag, hit)) record(key, hit, i);
+        return hit;
     }
 
-    static HWY_INLINE void inside(V a, V b, V c, M& in, M& strict) {
-        const V zero = set(0.0f);
-        const V least = hn::Min(hn::Min(a, b), c), most = hn::Max(hn::Max(a, b), c);
-        in = hn::Or(hn::Ge(least, zero), hn::Le(most, zero));
-        strict = hn::Or(hn::Gt(least, zero), hn::Lt(most, zero));
-    }
-
+    /// `samples`: x, y, t, u, v as far as there are.
     template <bool kMoving, bool kLens>
-    HWY_NOINLINE void test_exactly(const Shape& shape, std::size_t i, M unclear, float* keys,
-                                   float* hits) {
-        const V local = kMoving ? local_time(i) : set(0.0f);
+    HWY_NOINLINE void test_exactly(const Shape& shape, const float (&samples)[5][kPacket],
+                                   M unclear, float* keys, float* hits) {
+        Samples at;
+        at.x = hn::LoadU(kTag, samples[0]);
+        at.y = hn::LoadU(kTag, samples[1]);
+        if constexpr (kMoving) at.t = hn::LoadU(kTag, samples[2]);
+        if constexpr (kLens) {
+            at.u = hn::LoadU(kTag, samples[3]);
+            at.v = hn::LoadU(kTag, samples[4]);
+        }
+        const V local = kMoving ? local_time(at) : set(0.0f);
         alignas(64) float values[4][4][kPacket];
         for (int k = 0; k < 4; ++k) {
             const Corner<V> c = corner_at<kMoving>(shape, k, local);
-            const Offset<V> d = offset<kLens>(c, i);
+            const Offset<V> d = offset<kLens>(c, at);
             hn::StoreU(d.x, kTag, values[k][0]);
             hn::StoreU(d.y, kTag, values[k][1]);
             hn::StoreU(c.w, kTag, values[k][2]);
@@ -237,7 +350,7 @@ class Kernel {
         const M nearer = hn::And(hit, hn::Gt(key, stored));
         const M equal = hn::And(hit, hn::Eq(key, stored));
         if (m_class & kTransparent) {
-            record_fragments(key, hn::Or(nearer, equal), equal, first);
+            record_fragments(key, hn::Or(nearer, equal), first);
             return;
         }
         if (HWY_UNLIKELY(!hn::AllFalse(kTag, equal))) settle_ties(equal, first);
@@ -249,29 +362,58 @@ class Kernel {
     }
 
     HWY_NOINLINE void settle_ties(M equal, std::size_t first) {
-        // Where surfaces coincide, neighbours see the same two.
-        SurfaceId last = kNoSurface;
-        bool wins = false;
-        for_each_lane(equal, [&](int lane) {
-            SurfaceId& id = m_tile.id[first + lane];
-            if (id == kNoSurface) return;
-            if (id != last) wins = m_grid.pool->before(m_id, id);
-            last = id;
-            if (wins) id = m_id;
-        });
+        for_each_lane(equal, [&](int lane) { settle_tie(m_tile.id[first + lane]); });
     }
 
-    HWY_NOINLINE void record_fragments(V key, M visible, M equal, std::size_t first) {
-        alignas(64) float keys[16], ties[16];
-        hn::StoreU(key, kTag, keys);
-        hn::StoreU(hn::IfThenElseZero(equal, set(1.0f)), kTag, ties);
-        for_each_lane(visible, [&](int lane) {
-            const SurfaceId stored = m_tile.id[first + lane];
-            if (ties[lane] > 0.0f && (stored == kNoSurface || !m_grid.pool->before(m_id, stored)))
-                return;
-            m_fragments.push_back({keys[lane], static_cast<std::uint32_t>(first + lane), m_id});
-        });
+    HWY_INLINE void settle_tie(SurfaceId& id) {
+        if (wins_tie(id)) id = m_id;
     }
+
+    /// Where surfaces coincide, neighbours see the same two.
+    HWY_INLINE bool wins_tie(SurfaceId id) {
+        if (id == kNoSurface) return false;
+        if (id != m_tied[0] || m_id != m_tied[1]) {
+            m_tied[0] = id;
+            m_tied[1] = m_id;
+            m_wins_tie = m_grid.pool->before(m_id, id);
+        }
+        return m_wins_tie;
+    }
+
+    HWY_NOINLINE void record_fragments(V key, M visible, std::size_t first) {
+        alignas(64) float keys[kPacket];
+        hn::StoreU(key, kTag, keys);
+        for_each_lane(visible, [&](int lane) { record_fragment(keys[lane], first + lane); });
+    }
+
+    HWY_INLINE void record_fragment(float key, std::size_t slot) {
+        if (key > m_tile.key[slot] || wins_tie(m_tile.id[slot]))
+            m_fragments.push_back({key, static_cast<std::uint32_t>(slot), m_id});
+    }
+
+    /// Of m_hit_key and m_hit_slot, in different places: one after another.
+    HWY_INLINE void record_hits(std::size_t count) {
+        m_counts.hits += count;
+        for (std::size_t i = 0; i < count; ++i) {
+            const int slot = m_hit_slot[i];
+            const float key = m_hit_key[i];
+            float& stored = m_tile.key[slot];
+            if (key < stored) continue;
+            if (m_class & kTransparent) {
+                record_fragment(key, slot);
+            } else if (key > stored) {
+                ++m_counts.writes;
+                stored = key;
+                m_tile.id[slot] = m_id;
+            } else {
+                settle_tie(m_tile.id[slot]);
+            }
+        }
+    }
+
+    static constexpr int kWindow = 4;
+    static constexpr std::size_t kMostListed = 256;
+    static constexpr std::size_t kListed = kMostListed + 2 * kPacket;
 
     const SimdGrid& m_grid;
     const SimdTile& m_tile;
@@ -280,6 +422,15 @@ class Kernel {
     TileBounds m_where;
     std::uint8_t m_class = 0;
     SurfaceId m_id = 0;
+    SurfaceId m_tied[2] = {kNoSurface, kNoSurface};  ///< the last two to settle
+    bool m_wins_tie = false;
+    struct {
+        alignas(64) float x[kListed], y[kListed], t[kListed], u[kListed], v[kListed];
+        alignas(64) int slot[kListed];
+    } m_listed;  ///< samples to be tested
+    float m_hit_key[kListed];
+    int m_hit_slot[kListed];
+    alignas(64) int m_window[kPacket];  ///< slots of a vector's rows from the first
 };
 
 void hide_grid(const SimdGrid& grid, const SimdTile& tile, std::vector<Fragment>& fragments,

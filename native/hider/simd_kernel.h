@@ -15,17 +15,21 @@ namespace granita {
 /// Arrays that are read in whole vectors end in this many spare elements.
 inline constexpr int kLanePadding = 16;
 
-/// Samples of a tile in packets: [block][packet][kPacket], blocks row by row (SampleOrder).  A slot
-/// without sample has NaN for a place.
+/// Samples of a tile in the order of SampleOrder, blocks row by row.  A slot without sample has NaN
+/// for a place.
 struct SimdTile {
     const float *x = nullptr, *y = nullptr, *t = nullptr;
     const float *u = nullptr, *v = nullptr;  ///< times lens radius and scale: pixels per unit shear
     float* key = nullptr;
     SurfaceId* id = nullptr;
-    int blocks_wide = 0, packets = 0;  ///< blocks in a row of the tile; packets in a block
-    int strata = 1;                    ///< into which a block's packets are sorted
-    const PacketBounds* bounds = nullptr;
-    const float* farthest = nullptr;  ///< [block][packet] farthest key, maybe out of date
+    bool ranked = false;
+    int blocks_wide = 0, ranks = 0;  ///< blocks in a row of the tile; slots of a block
+    const RankBounds* bounds = nullptr;
+    // Hierarchical depth (DepthBlocks), maybe out of date.
+    const float* farthest_of_packets = nullptr;
+    const float* farthest_of_ranks = nullptr;
+    float nearest_of_ranks = 0.0f;
+    int square_shift = 0, squares_wide = 0;
 };
 
 /// A grid in a tile's homogeneous raster space.
@@ -48,7 +52,6 @@ struct SimdGrid {
 
 struct SimdCounts {
     std::uint64_t tests = 0, hits = 0, writes = 0;
-    std::uint64_t culled = 0;  ///< tests that the hierarchical depth saved
 };
 
 /// Opaque hits go into the tile's key and id; transparent ones that are not behind them into

@@ -35,27 +35,8 @@ void WorkingTile::arrange(const TileSamples& samples, const OrderShape& shape) {
     copy(samples.t, 1.0f, kNowhere, m_t);
     copy(samples.u, m_lens.x, kNowhere, m_u);
     copy(samples.v, m_lens.y, kNowhere, m_v);
-    bound_packets();
-    m_depth.reset(m_order.blocks_wide(), m_order.packets(), m_bounds);
-}
-
-// Of the same packet in all blocks: the table stratifies all blocks alike, so one set of bounds is
-// nearly as tight as one a block and a micropolygon is bounded once for all blocks.
-void WorkingTile::bound_packets() {
-    const auto packets = static_cast<std::size_t>(m_order.packets());
-    const auto bound = [&](const std::vector<float>& values, float most, std::vector<float>& lo,
-                           std::vector<float>& hi) {
-        lo.assign(packets + kPacket, values.empty() ? 0.0f : INFINITY);
-        hi.assign(packets + kPacket, values.empty() ? most : -INFINITY);
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            const std::size_t packet = i / kPacket % packets;
-            lo[packet] = values[i] < lo[packet] ? values[i] : lo[packet];
-            hi[packet] = values[i] > hi[packet] ? values[i] : hi[packet];
-        }
-    };
-    bound(m_t, 1.0f, m_bounds.t_lo, m_bounds.t_hi);
-    bound(m_u, 0.0f, m_bounds.u_lo, m_bounds.u_hi);
-    bound(m_v, 0.0f, m_bounds.v_lo, m_bounds.v_hi);
+    if (m_order.shape().ranked) m_bounds = bound_ranks(m_order, m_x, m_y, m_t, m_u, m_v);
+    m_depth.reset(m_order, m_bounds);
 }
 
 void WorkingTile::reorder(const TileSamples& samples, const OrderShape& shape) {
@@ -86,11 +67,15 @@ SimdTile WorkingTile::view() {
     tile.v = m_v.data();
     tile.key = m_key.data();
     tile.id = m_id.data();
+    tile.ranked = m_order.shape().ranked;
     tile.blocks_wide = m_order.blocks_wide();
-    tile.packets = m_order.packets();
+    tile.ranks = m_order.ranks();
     tile.bounds = &m_bounds;
-    tile.farthest = m_depth.farthest_of_packets();
-    tile.strata = m_order.shape().times * m_order.shape().us * m_order.shape().vs;
+    tile.farthest_of_packets = m_depth.farthest_of_packets();
+    tile.farthest_of_ranks = m_depth.farthest_of_ranks();
+    tile.nearest_of_ranks = m_depth.nearest_of_ranks();
+    tile.square_shift = m_depth.square_shift();
+    tile.squares_wide = m_depth.squares_wide();
     return tile;
 }
 

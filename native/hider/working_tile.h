@@ -11,7 +11,7 @@
 
 namespace granita {
 
-/// A tile while the SIMD executor works on it: copies of its samples in packets for the kernel.
+/// A tile while the SIMD executor works on it: copies of its samples in the kernel's order.
 class WorkingTile {
   public:
     /// `lens`: lens radius times pixels per unit shear, multiplied into u and v.
@@ -41,7 +41,6 @@ class WorkingTile {
 
   private:
     void arrange(const TileSamples& samples, const OrderShape& shape);
-    void bound_packets();
 
     Rect m_pixels;
     Vec2f m_lens;
@@ -49,7 +48,7 @@ class WorkingTile {
     DepthBlocks m_depth;
     std::vector<float> m_x, m_y, m_t, m_u, m_v, m_key;
     std::vector<SurfaceId> m_id;
-    PacketBounds m_bounds;
+    RankBounds m_bounds;
 };
 
 }  // namespace granita
