@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/spares.h"
 #include "hider/micropolygon.h"
 
 namespace granita {
@@ -30,13 +31,22 @@ BucketTiles::BucketTiles(const HiderFrame& frame, const Rect& tiles, const Rect&
     for (int y = tiles.y0; y < tiles.y1; ++y)
         for (int x = tiles.x0; x < tiles.x1; ++x) {
             check_cancelled();
-            TileStore& store = m_stores.emplace_back();
+            TileStore& store = m_stores.emplace_back(Spares<TileStore>::take());
             store.tile = {x, y};
-            frame.table->fill_tile(store.tile, needs, m_samples.emplace_back());
+            m_samples.push_back(Spares<TileSamples>::take());
+            frame.table->fill_tile(store.tile, needs, m_samples.back());
             store.key.assign(m_samples.back().x.size(), -std::numeric_limits<float>::infinity());
             store.id.assign(m_samples.back().x.size(), kNoSurface);
         }
     m_needs.assign(m_stores.size(), needs);
+}
+
+BucketTiles::~BucketTiles() {
+    for (TileStore& store : m_stores) {
+        store.fragments = {};  // as many as there are layers: not worth keeping
+        Spares<TileStore>::give(std::move(store));
+    }
+    for (TileSamples& samples : m_samples) Spares<TileSamples>::give(std::move(samples));
 }
 
 void BucketTiles::check_cancelled() const {

@@ -14,6 +14,9 @@ namespace granita {
 class BucketTiles {
   public:
     BucketTiles(const HiderFrame& frame, const Rect& tiles, const Rect& pixels);
+    ~BucketTiles();
+    BucketTiles(const BucketTiles&) = delete;
+    BucketTiles& operator=(const BucketTiles&) = delete;
 
     std::size_t count() const { return m_stores.size(); }
     /// Tiles whose pixels the bounds may touch.

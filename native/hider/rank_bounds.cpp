@@ -9,20 +9,27 @@
 namespace granita {
 namespace {
 
-/// `corner(block)` is subtracted; values that are not numbers are left out.
-template <class Corner>
-void bound(const std::vector<float>& values, std::size_t ranks, std::size_t blocks, Corner corner,
+/// Values that are not numbers are left out.  In lanes, because the order of minima does not matter
+/// but vectors do.
+void bound(const std::vector<float>& values, std::size_t ranks, std::size_t blocks, float whole,
            std::vector<float>& lo, std::vector<float>& hi) {
-    lo.assign(ranks + kPacket, values.empty() ? 0.0f : INFINITY);
-    hi.assign(ranks + kPacket, values.empty() ? 0.0f : -INFINITY);
+    lo.assign(ranks + kPacket, 0.0f);
+    hi.assign(ranks + kPacket, whole);
     if (values.empty()) return;
-    const float* from = values.data();
-    for (std::size_t r = 0; r < ranks; ++r)
-        for (std::size_t block = 0; block < blocks; ++block) {
-            const float value = *from++ - corner(block);
-            lo[r] = value < lo[r] ? value : lo[r];
-            hi[r] = value > hi[r] ? value : hi[r];
-        }
+    for (std::size_t r = 0; r < ranks; ++r) {
+        float least[kPacket], most[kPacket];
+        std::fill_n(least, kPacket, INFINITY);
+        std::fill_n(most, kPacket, -INFINITY);
+        const float* const of_rank = &values[r * blocks];
+        for (std::size_t block = 0; block < blocks; block += kPacket)
+            for (int i = 0; i < kPacket; ++i) {
+                const float value = of_rank[block + i];
+                least[i] = value < least[i] ? value : least[i];
+                most[i] = value > most[i] ? value : most[i];
+            }
+        lo[r] = *std::min_element(least, least + kPacket);
+        hi[r] = *std::max_element(most, most + kPacket);
+    }
 }
 
 void find_slabs(std::size_t ranks, RankBounds& bounds) {
@@ -39,23 +46,14 @@ void find_slabs(std::size_t ranks, RankBounds& bounds) {
 
 }  // namespace
 
-RankBounds bound_ranks(const SampleOrder& order, const std::vector<float>& x,
-                       const std::vector<float>& y, const std::vector<float>& t,
+RankBounds bound_ranks(const SampleOrder& order, const std::vector<float>& t,
                        const std::vector<float>& u, const std::vector<float>& v) {
     const auto ranks = static_cast<std::size_t>(order.ranks());
-    const auto wide = static_cast<std::size_t>(order.blocks_wide());
-    const float side = order.shape().side();
-    const std::size_t blocks = wide * wide;
+    const std::size_t blocks = order.slots() / ranks;
     RankBounds out;
-    const auto left = [&](std::size_t b) { return static_cast<float>(b % wide) * side; };
-    const auto bottom = [&](std::size_t b) { return static_cast<float>(b / wide) * side; };
-    bound(x, ranks, blocks, left, out.x_lo, out.x_hi);
-    bound(y, ranks, blocks, bottom, out.y_lo, out.y_hi);
-    const auto none = [](std::size_t) { return 0.0f; };
-    bound(t, ranks, blocks, none, out.t_lo, out.t_hi);
-    bound(u, ranks, blocks, none, out.u_lo, out.u_hi);
-    bound(v, ranks, blocks, none, out.v_lo, out.v_hi);
-    if (t.empty()) std::fill(out.t_hi.begin(), out.t_hi.end(), 1.0f);
+    bound(t, ranks, blocks, 1.0f, out.t_lo, out.t_hi);
+    bound(u, ranks, blocks, 0.0f, out.u_lo, out.u_hi);
+    bound(v, ranks, blocks, 0.0f, out.v_lo, out.v_hi);
     find_slabs(ranks, out);
     return out;
 }

@@ -17,6 +17,30 @@ int samples_of_block(int side_log2, int samples) {
     return static_cast<int>(std::ceil(std::ldexp(samples, 2 * side_log2)));
 }
 
+/// Square blocks of a tile.
+struct Blocks {
+    const TileSamples& samples;
+    int wide;
+
+    std::size_t count() const { return static_cast<std::size_t>(wide) * wide; }
+    std::uint32_t of(std::uint32_t sample) const {
+        const float per_pixel = static_cast<float>(wide) / kTileSize;
+        return static_cast<std::uint32_t>(static_cast<int>(samples.y[sample] * per_pixel) * wide +
+                                          static_cast<int>(samples.x[sample] * per_pixel));
+    }
+};
+
+template <class Visit>
+void for_each_sample(const TileSamples& samples, const Rect& pixels, Visit visit) {
+    for (int p = 0; p < kPixels; ++p) {
+        const int x = p % kTileSize, y = p / kTileSize;
+        if (x < pixels.x0 || x >= pixels.x1 || y < pixels.y0 || y >= pixels.y1) continue;
+        const auto first = static_cast<std::uint32_t>(p * samples.samples);
+        for (std::uint32_t s = 0; s < static_cast<std::uint32_t>(samples.samples); ++s)
+            visit(first + s);
+    }
+}
+
 /// Counting sort of slots[0, count) by cells of `value`, which lies in [lo, hi]; stable.
 template <class Value>
 void sort_by_cells(std::uint32_t* slots, std::size_t count, int cells, float lo, float hi,
@@ -85,8 +109,8 @@ OrderShape best_order(int samples, const Sweep& sweep) {
     return best;
 }
 
-SampleOrder::SampleOrder(const TileSamples& samples, const Rect& pixels, const OrderShape& shape)
-    : m_shape(shape) {
+void SampleOrder::arrange(const TileSamples& samples, const Rect& pixels, const OrderShape& shape) {
+    m_shape = shape;
     distribute(samples, pixels);
     // Samples that are not a net may crowd in a part of a pixel; then blocks are whole pixels.
     const int expected = samples_of_block(m_shape.side_log2, samples.samples);
@@ -98,42 +122,54 @@ SampleOrder::SampleOrder(const TileSamples& samples, const Rect& pixels, const O
 
 void SampleOrder::distribute(const TileSamples& samples, const Rect& pixels) {
     m_blocks_wide = static_cast<int>(std::ldexp(kTileSize, -m_shape.side_log2));
-    const float per_pixel = std::ldexp(1.0f, -m_shape.side_log2);
-    const auto block_of = [&](std::uint32_t i) {
-        return static_cast<std::uint32_t>(static_cast<int>(samples.y[i] * per_pixel) *
-                                              m_blocks_wide +
-                                          static_cast<int>(samples.x[i] * per_pixel));
-    };
-    const auto for_each_sample = [&](auto visit) {
-        for (int p = 0; p < kPixels; ++p) {
-            const int x = p % kTileSize, y = p / kTileSize;
-            if (x < pixels.x0 || x >= pixels.x1 || y < pixels.y0 || y >= pixels.y1) continue;
-            const auto first = static_cast<std::uint32_t>(p * samples.samples);
-            for (std::uint32_t s = 0; s < static_cast<std::uint32_t>(samples.samples); ++s)
-                visit(first + s);
-        }
-    };
-    const auto blocks = static_cast<std::size_t>(m_blocks_wide) * m_blocks_wide;
-    std::vector<std::uint32_t> count(blocks, 0);
-    for_each_sample([&](std::uint32_t i) { ++count[block_of(i)]; });
+    if (place_net(samples, pixels)) return;
+    const Blocks blocks{samples, m_blocks_wide};
+    std::vector<std::uint32_t> count(blocks.count(), 0);
+    for_each_sample(samples, pixels, [&](std::uint32_t i) { ++count[blocks.of(i)]; });
     const std::uint32_t most = *std::max_element(count.begin(), count.end());
     m_ranks = static_cast<int>(std::max(most, 1u));
     if (!m_shape.ranked) m_ranks = (m_ranks + kPacket - 1) / kPacket * kPacket;
     const auto stride = static_cast<std::size_t>(m_ranks);
-    m_table_index.assign(blocks * stride, kNone);
-    std::vector<std::uint32_t> filled(blocks, 0);
-    for_each_sample([&](std::uint32_t i) {
-        const std::uint32_t block = block_of(i);
+    m_table_index.assign(blocks.count() * stride, kNone);
+    std::vector<std::uint32_t> filled(blocks.count(), 0);
+    for_each_sample(samples, pixels, [&](std::uint32_t i) {
+        const std::uint32_t block = blocks.of(i);
         m_table_index[block * stride + filled[block]++] = i;
     });
     if (!m_shape.ranked) return;
-    for (std::size_t block = 0; block < blocks; ++block)
+    for (std::size_t block = 0; block < blocks.count(); ++block)
         sort_block(samples, m_table_index.data() + block * stride, count[block]);
-    std::vector<std::uint32_t> by_rank(m_table_index.size());
-    for (std::size_t block = 0; block < blocks; ++block)
+    m_scratch.resize(m_table_index.size());
+    for (std::size_t block = 0; block < blocks.count(); ++block)
         for (std::size_t rank = 0; rank < stride; ++rank)
-            by_rank[rank * blocks + block] = m_table_index[block * stride + rank];
-    m_table_index = std::move(by_rank);
+            m_scratch[rank * blocks.count() + block] = m_table_index[block * stride + rank];
+    std::swap(m_table_index, m_scratch);
+}
+
+bool SampleOrder::place_net(const TileSamples& samples, const Rect& pixels) {
+    const int expected = samples_of_block(m_shape.side_log2, samples.samples);
+    const bool by_time = !samples.t.empty() && m_shape.times == expected;
+    if (m_shape.ranked ? !by_time : expected % kPacket != 0) return false;
+    m_ranks = expected;
+    const Blocks blocks{samples, m_blocks_wide};
+    const std::size_t count = blocks.count();
+    m_table_index.assign(count * expected, kNone);
+    m_scratch.assign(m_shape.ranked ? 0 : count, 0);
+    bool fits = true;
+    for_each_sample(samples, pixels, [&](std::uint32_t i) {
+        const std::size_t block = blocks.of(i);
+        if (m_shape.ranked) {
+            const int rank = static_cast<int>(samples.t[i] * static_cast<float>(expected));
+            std::uint32_t& slot = m_table_index[std::min(rank, expected - 1) * count + block];
+            fits = fits && slot == kNone;
+            slot = i;
+        } else {
+            std::uint32_t& filled = m_scratch[block];
+            if (filled == static_cast<std::uint32_t>(expected)) fits = false;
+            if (fits) m_table_index[block * expected + filled++] = i;
+        }
+    });
+    return fits;
 }
 
 void SampleOrder::sort_block(const TileSamples& samples, std::uint32_t* slots, std::size_t count) {

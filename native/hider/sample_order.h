@@ -49,9 +49,8 @@ class SampleOrder {
   public:
     static constexpr std::uint32_t kNone = ~0u;  ///< a slot without sample
 
-    SampleOrder() = default;
     /// `pixels`: those that count; other samples get no slot.
-    SampleOrder(const TileSamples& samples, const Rect& pixels, const OrderShape& shape);
+    void arrange(const TileSamples& samples, const Rect& pixels, const OrderShape& shape);
 
     const OrderShape& shape() const { return m_shape; }
     int blocks_wide() const { return m_blocks_wide; }  ///< a tile has as many rows of blocks
@@ -63,12 +62,14 @@ class SampleOrder {
 
   private:
     void distribute(const TileSamples& samples, const Rect& pixels);
+    /// Where the samples are a net, every stratum of a block has as many: no sort.  False
+    /// otherwise.
+    bool place_net(const TileSamples& samples, const Rect& pixels);
     void sort_block(const TileSamples& samples, std::uint32_t* slots, std::size_t count);
 
     OrderShape m_shape;
     int m_blocks_wide = 0, m_ranks = 0;
-    std::vector<std::uint32_t> m_table_index;
-    std::vector<std::uint32_t> m_scratch;
+    std::vector<std::uint32_t> m_table_index, m_scratch;
 };
 
 }  // namespace granita

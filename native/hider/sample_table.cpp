@@ -2,12 +2,12 @@
 #include "hider/sample_table.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string>
 
 #include "base/error.h"
 #include "hider/sample_bits.h"
+#include "hider/sample_kernel.h"
 
 namespace granita {
 namespace {
@@ -32,24 +32,6 @@ int class_pixels(int samples) {
 float fraction24(std::uint32_t bits) {
     return static_cast<float>(static_cast<std::int32_t>(bits >> 8)) * 0x1p-24f;
 }
-float fraction20(std::uint32_t bits) {
-    return static_cast<float>(static_cast<std::int32_t>(bits >> 12)) * 0x1p-20f;
-}
-
-/// sobol_reversed(first), sobol_reversed(first + 1), ...: from one to the next all direction
-/// numbers up to the lowest zero bit toggle.
-void sobol_run(std::uint32_t first, int dimension, int count, std::uint32_t* out) {
-    std::uint32_t toggle[32], sum = 0;
-    for (int i = 0; i < 32; ++i)
-        toggle[i] = sum ^=
-            dimension == 0 ? 1u << i : bits::kSobolReversed[(dimension - 1) * 32 + i];
-    std::uint32_t x = bits::sobol_reversed(first, static_cast<std::uint32_t>(dimension));
-    for (int i = 0; i < count; ++i) {
-        out[i] = x;
-        x ^= toggle[std::countr_one(first + static_cast<std::uint32_t>(i))];
-    }
-}
-
 }  // namespace
 
 SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNeeds frame,
@@ -129,20 +111,26 @@ void SampleTable::fill_dimension(Vec2i tile, int dimension, std::vector<float>& 
                    : bits::block_seed(m_seed, static_cast<std::uint32_t>(x0 >> kBlockBits),
                                       static_cast<std::uint32_t>(y0 >> kBlockBits));
     const std::uint32_t seed = bits::dimension_seed(block, static_cast<std::uint32_t>(dimension));
-    std::vector<std::uint32_t> run(static_cast<std::size_t>(m_samples));
+    // A tile's pixels, or those with a class each, are a run of the Z-order.
+    const auto samples = static_cast<std::size_t>(m_samples);
+    const std::uint32_t first = in_classes ? 0
+                                           : bits::morton(static_cast<std::uint32_t>(x0) & mask,
+                                                          static_cast<std::uint32_t>(y0) & mask);
+    const std::size_t pixels = in_classes ? (mask + 1) * (mask + 1) : kPixels;
+    const std::size_t count = (pixels * samples + kSobolRun - 1) / kSobolRun * kSobolRun;
+    std::vector<float> run(count);
+    fill_sobol(first * static_cast<std::uint32_t>(m_samples), count, dimension, seed,
+               dimension <= kY ? 20 : 24, run.data());
     for (int p = 0; p < kPixels; ++p) {
         const int x = p % kTileSize, y = p / kTileSize;
-        const std::uint32_t place = bits::morton(static_cast<std::uint32_t>(x0 + x) & mask,
-                                                 static_cast<std::uint32_t>(y0 + y) & mask);
-        sobol_run(place * static_cast<std::uint32_t>(m_samples), dimension, m_samples, run.data());
-        float* const values = out.data() + static_cast<std::size_t>(p) * m_samples;
-        if (dimension <= kY) {
-            const auto corner = static_cast<float>(dimension == kX ? x : y);
-            for (int s = 0; s < m_samples; ++s)
-                values[s] = corner + fraction20(bits::owen(run[s], seed));
-        } else {
-            for (int s = 0; s < m_samples; ++s) values[s] = fraction24(bits::owen(run[s], seed));
-        }
+        const std::uint32_t place = bits::morton(static_cast<std::uint32_t>(x) & mask,
+                                                 static_cast<std::uint32_t>(y) & mask);
+        const float corner = dimension == kX   ? static_cast<float>(x)
+                             : dimension == kY ? static_cast<float>(y)
+                                               : 0.0f;
+        const float* const from = run.data() + place * samples;
+        float* const values = out.data() + static_cast<std::size_t>(p) * samples;
+        for (std::size_t s = 0; s < samples; ++s) values[s] = corner + from[s];
     }
 }
 

@@ -3,8 +3,8 @@
 // depth.
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "base/spares.h"
 #include "hider/bucket_tiles.h"
 #include "hider/hider.h"
 #include "hider/micropolygon_class.h"
@@ -70,7 +70,7 @@ class SimdHider : public Hider {
         for (std::size_t i = 0; i < m_tiles.count(); ++i) {
             if (!m_working[i].tile) continue;
             m_working[i].tile->store(m_tiles.store(i));
-            m_working[i].tile.reset();
+            Spares<std::unique_ptr<WorkingTile>>::give(std::move(m_working[i].tile));
             m_tiles.drop_hidden_fragments(i);
         }
         return m_tiles.stores();
@@ -115,9 +115,14 @@ class SimdHider : public Hider {
         const TileSamples& samples = m_tiles.samples(i);
         const OrderShape shape = best_order(samples.samples, working.sweep);
         if (!working.tile)
-            working.tile.emplace(samples, m_tiles.local_pixels(i), m_lens, shape);
+            (working.tile = take_tile())->begin(samples, m_tiles.local_pixels(i), m_lens, shape);
         else if (needs_time || shape != working.tile->shape())
             working.tile->reorder(samples, shape);
+    }
+
+    static std::unique_ptr<WorkingTile> take_tile() {
+        auto tile = Spares<std::unique_ptr<WorkingTile>>::take();
+        return tile ? std::move(tile) : std::make_unique<WorkingTile>();
     }
 
     std::uint64_t hide_in_tile(const GridClasses& classes, SurfaceId base, std::size_t i,
@@ -139,7 +144,7 @@ class SimdHider : public Hider {
 
     /// A tile from the first grid that comes, and the largest sweep it was arranged for.
     struct Working {
-        std::optional<WorkingTile> tile;
+        std::unique_ptr<WorkingTile> tile;
         Sweep sweep;
 
         /// By half, which bounds the number of times a tile is arranged anew.

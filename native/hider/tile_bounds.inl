@@ -61,10 +61,8 @@ class TileBounds {
                            hn::Max(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + right)));
         };
         hn::StoreU(most(m_grid.nearest), kTag, out.nearest);
-        const V scale = set(m_blocks_per_pixel);
-        const M some = store_blocks(
-            hn::Floor(least(m_grid.x_lo) * scale), hn::Floor(most(m_grid.x_hi) * scale),
-            hn::Floor(least(m_grid.y_lo) * scale), hn::Floor(most(m_grid.y_hi) * scale), out);
+        const M some = store_blocks(least(m_grid.x_lo), most(m_grid.x_hi), least(m_grid.y_lo),
+                                    most(m_grid.y_hi), out);
         return hn::And(some, hn::FirstN(kTag, static_cast<std::size_t>(count)));
     }
 
@@ -132,7 +130,7 @@ class TileBounds {
         const auto rank = [&](const std::vector<float>& values)
                               HWY_ATTR { return hn::LoadU(kTag, values.data() + first); };
         const V zero = set(0.0f), one = set(1.0f);
-        M present = hn::Le(rank(bounds.x_lo), rank(bounds.x_hi));
+        M present = hn::Le(rank(bounds.t_lo), rank(bounds.t_hi));
         V ends[2] = {zero, zero};
         const V knots = set(static_cast<float>(m_grid.segments));
         const V start = set(static_cast<float>(segment));
@@ -234,12 +232,7 @@ class TileBounds {
             x_hi = hn::IfThenElse(sane, x_hi, never);
             y_hi = hn::IfThenElse(sane, y_hi, never);
         }
-        const V scale = set(m_blocks_per_pixel);
-        present =
-            hn::And(present, store_blocks(hn::Ceil((x_lo - rank(bounds.x_hi)) * scale),
-                                          hn::Floor((x_hi - rank(bounds.x_lo)) * scale),
-                                          hn::Ceil((y_lo - rank(bounds.y_hi)) * scale),
-                                          hn::Floor((y_hi - rank(bounds.y_lo)) * scale), out));
+        present = hn::And(present, store_blocks(x_lo, x_hi, y_lo, y_hi, out));
         if (!cull || hn::AllFalse(kTag, present)) return present;
         // The key of a sample may round a few ulp past the nearest corner's.
         V nearest = hn::Neg(z_lo);
@@ -278,16 +271,17 @@ class TileBounds {
         to = hn::Max(to, hn::IfThenElse(in1, one, hn::IfThenElse(in0, root, hn::Neg(never))));
     }
 
-    /// First and last blocks, whole numbers -> blocks of the tile; which have any.
+    /// Raster bounds -> blocks; which of them are in the tile.
     template <class Out>
-    HWY_INLINE M store_blocks(V x_first, V x_last, V y_first, V y_last, Out& out) const {
-        const V zero = set(0.0f), last = set(static_cast<float>(m_tile.blocks_wide - 1));
+    HWY_INLINE M store_blocks(V x_lo, V x_hi, V y_lo, V y_hi, Out& out) const {
+        const V scale = set(m_blocks_per_pixel), zero = set(0.0f);
+        const V last = set(static_cast<float>(m_tile.blocks_wide - 1));
         const V end = set(static_cast<float>(m_tile.blocks_wide));
         // Clamped before the conversion, which overflows otherwise.
-        const V x0 = hn::Min(hn::Max(x_first, zero), end);
-        const V y0 = hn::Min(hn::Max(y_first, zero), end);
-        const V x1 = hn::Max(hn::Min(x_last, last), set(-1.0f));
-        const V y1 = hn::Max(hn::Min(y_last, last), set(-1.0f));
+        const V x0 = hn::Min(hn::Max(hn::Floor(x_lo * scale), zero), end);
+        const V y0 = hn::Min(hn::Max(hn::Floor(y_lo * scale), zero), end);
+        const V x1 = hn::Max(hn::Min(hn::Floor(x_hi * scale), last), set(-1.0f));
+        const V y1 = hn::Max(hn::Min(hn::Floor(y_hi * scale), last), set(-1.0f));
         hn::StoreU(hn::ConvertTo(kIntTag, x0), kIntTag, out.x0);
         hn::StoreU(hn::ConvertTo(kIntTag, x1), kIntTag, out.x1);
         hn::StoreU(hn::ConvertTo(kIntTag, y0), kIntTag, out.y0);

@@ -2,6 +2,7 @@
 #include "hider/time_slabs.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "dice/raster_bound.h"
 
@@ -27,6 +28,7 @@ std::vector<TimeSlab> time_slabs(const Grid& grid, const Projection& projection)
     const int segments = grid.knots - 1;
     const int parts = (kLeastSlabs + segments - 1) / segments;
     std::vector<TimeSlab> slabs;
+    Bounds3f begin = box_at(grid, 0, 0.0f);
     for (int segment = 0; segment < segments; ++segment)
         for (int part = 0; part < parts; ++part) {
             const auto time = [&](int p) {
@@ -36,8 +38,10 @@ std::vector<TimeSlab> time_slabs(const Grid& grid, const Projection& projection)
             const auto fraction = [&](int p) {
                 return static_cast<float>(p) / static_cast<float>(parts);
             };
-            Bounds3f box = box_at(grid, segment, fraction(part));
-            box.add(box_at(grid, segment, fraction(part + 1)));
+            // At the end of the part; it begins where the last one ended.
+            const Bounds3f end = box_at(grid, segment, fraction(part + 1));
+            Bounds3f box = std::exchange(begin, end);
+            box.add(end);
             RasterBounds bounds;
             if (!box.empty()) {
                 // More than single precision moves anything.

@@ -7,9 +7,11 @@
 
 namespace granita {
 
-WorkingTile::WorkingTile(const TileSamples& samples, const Rect& pixels, Vec2f lens,
-                         const OrderShape& shape)
-    : m_pixels(pixels), m_lens(lens) {
+void WorkingTile::begin(const TileSamples& samples, const Rect& pixels, Vec2f lens,
+                        const OrderShape& shape) {
+    m_pixels = pixels;
+    m_lens = lens;
+    fragments = {};
     arrange(samples, shape);
     m_id.assign(m_order.slots(), kNoSurface);
     m_key.resize(m_order.slots());
@@ -19,7 +21,7 @@ WorkingTile::WorkingTile(const TileSamples& samples, const Rect& pixels, Vec2f l
 }
 
 void WorkingTile::arrange(const TileSamples& samples, const OrderShape& shape) {
-    m_order = SampleOrder(samples, m_pixels, shape);
+    m_order.arrange(samples, m_pixels, shape);
     const std::vector<std::uint32_t>& index = m_order.table_index();
     const auto copy = [&](const std::vector<float>& from, float factor, float none,
                           std::vector<float>& to) {
@@ -35,7 +37,7 @@ void WorkingTile::arrange(const TileSamples& samples, const OrderShape& shape) {
     copy(samples.t, 1.0f, kNowhere, m_t);
     copy(samples.u, m_lens.x, kNowhere, m_u);
     copy(samples.v, m_lens.y, kNowhere, m_v);
-    if (m_order.shape().ranked) m_bounds = bound_ranks(m_order, m_x, m_y, m_t, m_u, m_v);
+    if (m_order.shape().ranked) m_bounds = bound_ranks(m_order, m_t, m_u, m_v);
     m_depth.reset(m_order, m_bounds);
 }
 
@@ -79,14 +81,14 @@ SimdTile WorkingTile::view() {
     return tile;
 }
 
-void WorkingTile::store(TileStore& out) const {
+void WorkingTile::store(TileStore& out) {
     const std::vector<std::uint32_t>& index = m_order.table_index();
     for (std::size_t i = 0; i < index.size(); ++i) {
         if (index[i] == SampleOrder::kNone) continue;
         out.key[index[i]] = m_key[i];
         out.id[index[i]] = m_id[i];
     }
-    out.fragments = fragments;
+    out.fragments = std::move(fragments);
     for (Fragment& fragment : out.fragments) fragment.sample = index[fragment.sample];
 }
 

@@ -14,18 +14,19 @@ namespace granita {
 /// A tile while the SIMD executor works on it: copies of its samples in the kernel's order.
 class WorkingTile {
   public:
-    /// `lens`: lens radius times pixels per unit shear, multiplied into u and v.
-    WorkingTile(const TileSamples& samples, const Rect& pixels, Vec2f lens,
-                const OrderShape& shape);
+    WorkingTile() = default;
     WorkingTile(const WorkingTile&) = delete;
     WorkingTile& operator=(const WorkingTile&) = delete;
+
+    /// Nothing seen yet.  `lens`: lens radius times pixels per unit shear, multiplied into u and v.
+    void begin(const TileSamples& samples, const Rect& pixels, Vec2f lens, const OrderShape& shape);
 
     const OrderShape& shape() const { return m_order.shape(); }
     /// Another order of the samples; what was seen moves along.
     void reorder(const TileSamples& samples, const OrderShape& shape);
     SimdTile view();
-    /// Copies what was seen to the store, in table order.
-    void store(TileStore& out) const;
+    /// Moves what was seen to the store, in table order.
+    void store(TileStore& out);
     /// Brings the hierarchical depth up to date when it is worth while.
     void update_depth() { m_depth.update(m_key.data()); }
     void note_writes(std::uint64_t written) { m_depth.note_writes(written); }
