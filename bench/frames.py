@@ -4,6 +4,7 @@
 import hashlib
 import json
 import os
+import re
 import statistics
 import struct
 import subprocess
@@ -46,10 +47,20 @@ def render(job, clock="processor"):
         ]
 
 
-def reference(scene, samples):
-    """Cycles' converged picture of a scene of scenes.py, kept in the cache until that file changes."""
-    builders = (HERE / "scenes.py").read_bytes()
-    name = f"{scene}-{samples}-{hashlib.sha256(builders).hexdigest()[:12]}.npy"
+def fingerprint(scene, all_scenes):
+    """Of the part of scenes.py that a scene is built by: all but the other scenes' builders."""
+    parts = re.split(r"^def (\w+)", (HERE / "scenes.py").read_text(), flags=re.M)
+    kept = [
+        body
+        for name, body in zip(["", *parts[1::2]], parts[::2])
+        if name == scene or name not in all_scenes
+    ]
+    return hashlib.sha256("".join(kept).encode()).hexdigest()[:12]
+
+
+def reference(scene, samples, all_scenes):
+    """Cycles' converged picture of a scene of scenes.py, kept in the cache until its builder changes."""
+    name = f"{scene}-{samples}-{fingerprint(scene, all_scenes)}.npy"
     if not (CACHE / name).exists():
         CACHE.mkdir(parents=True, exist_ok=True)
         # Another seed than the one that is measured, so that no error is shared.

@@ -217,7 +217,9 @@ def grass():
     for i in range(60):
         color = random.uniform((0.05, 0.2, 0.02), (0.5, 0.8, 0.2))
         mesh = bpy.data.meshes.new(f"Clod {i}")
-        mesh.from_pydata([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], [], [range(4)])
+        mesh.from_pydata(
+            [(-0.7, -0.7, 0), (0.7, -0.7, 0), (0.7, 0.7, 0), (-0.7, 0.7, 0)], [], [range(4)]
+        )
         mesh.materials.append(material(f"Grass {i}", "ShaderNodeEmission", color))
         clod = add(scene, f"Clod {i}", mesh, (1.5 * (i % 10) - 6.75, 1.5 * (i // 10), 0))
         clod.modifiers.new("Grass", "PARTICLE_SYSTEM")

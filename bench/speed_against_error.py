@@ -20,6 +20,7 @@ import plot
 ROOT = Path(__file__).resolve().parent.parent
 SCENES = ("spheres", "lens", "lit", "feathers", "grass")
 TARGETS = (0.01, 0.003)
+WIDTH, HEIGHT = 320, 180  # of scenes.py, which only Blender can import
 SAMPLES = {
     "INDEPENDENT": (16, 64, 256, 1024),
     "INTERLEAVED": (16, 64, 256, 1024),
@@ -71,8 +72,15 @@ def seconds_to(target, points):
     return s1 * (target / e1) ** (1 / slope), "~"
 
 
+def nanoseconds(rows):
+    """What one more sample a pixel costs, from the fewest to the most; REGULAR multiplies them by its passes."""
+    first, last = rows[0], rows[-1]
+    samples = (last["samples"] - first["samples"]) * WIDTH * HEIGHT
+    return (last["seconds"] - first["seconds"]) / samples * 1e9
+
+
 def measure(scene, options):
-    truth = frames.reference(scene, options.reference)
+    truth = frames.reference(scene, options.reference, SCENES)
     job = {
         "module": "scenes",
         "scene": scene,
@@ -97,17 +105,24 @@ def print_tables(scene, rows):
             f"| {r['kind']} | {r['samples']} | {r['seconds']:.2f} | {r['rmse']:.5f} "
             f"| {r['percentile']:.4f} | {r['flip']:.4f} |"
         )
-    print(f"\n| seconds to RMSE | {' | '.join(SAMPLES)} | Cycles over INDEPENDENT |")
-    print("|---|" + "---|" * (len(SAMPLES) + 1))
+    kinds = {kind: [r for r in rows if r["kind"] == kind] for kind in SAMPLES}
+    print(f"\n| | {' | '.join(kinds)} | Cycles over INDEPENDENT |")
+    print("|---|" + "---|" * (len(kinds) + 1))
     for target in TARGETS:
         found = {
-            kind: seconds_to(target, [(r["seconds"], r["rmse"]) for r in rows if r["kind"] == kind])
-            for kind in SAMPLES
+            kind: seconds_to(target, [(r["seconds"], r["rmse"]) for r in of])
+            for kind, of in kinds.items()
         }
         cells = ["never" if s is None else f"{mark}{s:.2f}" for s, mark in found.values()]
-        ours, theirs = found["INDEPENDENT"][0], found["CYCLES"][0]
-        ratio = f"{theirs / ours:.1f}" if ours and theirs else "-"
-        print(f"| {target} | {' | '.join(cells)} | {ratio} |", flush=True)
+        print_ratio(f"seconds to RMSE {target}", cells, {k: s for k, (s, _) in found.items()})
+    costs = {kind: nanoseconds(of) for kind, of in kinds.items()}
+    print_ratio("one more sample a pixel, ns", [f"{c:.0f}" for c in costs.values()], costs)
+
+
+def print_ratio(what, cells, values):
+    ours, theirs = values["INDEPENDENT"], values["CYCLES"]
+    ratio = f"{theirs / ours:.1f}" if ours and theirs else "-"
+    print(f"| {what} | {' | '.join(cells)} | {ratio} |", flush=True)
 
 
 def main():
