@@ -96,7 +96,7 @@ def main():
                 "peak_bytes": peak * 1024,
                 "peak_bytes_above": (peak - before) * 1024,
                 **{k: figures[k] for k in ("grids_diced", "micropolygons", "points_shaded")},
-                **{k: figures[k] for k in ("rays_shadow", "peak_ray_bytes")},
+                **{k: figures[k] for k in ("rays_shadow", "peak_ray_bytes", "peak_grid_bytes")},
                 "stages": {k: round(v, 2) for k, v in figures.items() if k.startswith("seconds_")},
             }
         )

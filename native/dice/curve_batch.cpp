@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "dice/finish_motion.h"
 #include "dice/opened_mesh.h"
 
 namespace granita {
@@ -114,38 +115,61 @@ void CurveBatch::halve(unsigned number) {
     (number == 0 ? m_hi : m_lo) = curve_middle(m_lo, last);
 }
 
+template <class Visit>
+void CurveBatch::for_each_row(Visit visit) const {
+    CurveControl control;
+    for (std::size_t j = 0; j < m_rows.size(); ++j) {
+        const Row& row = m_rows[j];
+        if (j == 0 || row.curve != m_rows[j - 1].curve)
+            control.gather(*m_elements, row.curve, start(), end(row.curve));
+        visit(static_cast<int>(j), row, control);
+    }
+}
+
 std::unique_ptr<Grid> CurveBatch::dice() const {
     const int n_v = static_cast<int>(m_rows.size()) - 1;
     auto grid = m_elements->make_grid(m_batch, m_path, m_across, n_v);
-    std::vector<ElementPlace> places;
-    places.reserve(m_rows.size());
-    CurveControl control;
-    for (int j = 0; j <= n_v; ++j) {
-        const Row& row = m_rows[static_cast<std::size_t>(j)];
-        if (j == 0 || row.curve != m_rows[static_cast<std::size_t>(j) - 1].curve)
-            control.gather(*m_elements, row.curve, start(), end(row.curve));
-        fill_row(*grid, j, row, control);
-        places.push_back(control.place(row.t));
-    }
-    m_elements->finish(*grid, places);
+    for_each_row([&](int j, const Row& row, const CurveControl& control) {
+        place_row(*grid, j, row, control);
+    });
+    finish_motion(*grid, m_elements->view().projection);
     return grid;
 }
 
-void CurveBatch::fill_row(Grid& grid, int j, const Row& row, const CurveControl& control) const {
-    const Knots& knots = m_elements->knots();
-    const std::size_t count = static_cast<std::size_t>(grid.vertex_count());
-    const std::size_t first = static_cast<std::size_t>(j * (grid.n_u + 1));
-    Vec3d side(0.0), facing(0.0), half(0.0);
-    for (int k = 0; k < knots.count; ++k) {
+std::shared_ptr<const ElementBatch> CurveBatch::copy() const {
+    return std::make_shared<CurveBatch>(*this);
+}
+
+void CurveBatch::fill_shading_state(Grid& grid) const {
+    m_elements->begin_shading(grid);
+    std::vector<ElementPlace> places;
+    places.reserve(m_rows.size());
+    for_each_row([&](int j, const Row& row, const CurveControl& control) {
+        shade_row(grid, j, row, control);
+        places.push_back(control.place(row.t));
+    });
+    m_elements->finish_shading(grid, places);
+}
+
+void CurveBatch::place_row(Grid& grid, int j, const Row& row, const CurveControl& control) const {
+    const auto count = static_cast<std::size_t>(grid.vertex_count());
+    for (int k = 0; k < m_elements->knot_count(); ++k) {
         const RibbonRow ribbon = control.row(k, row.t);
+        Vec3f* to = &grid.positions[static_cast<std::size_t>(k) * count +
+                                    static_cast<std::size_t>(j * (grid.n_u + 1))];
         for (int i = 0; i <= grid.n_u; ++i) {
             const double u = row.shrunk ? -1.0 : 2.0 * i / grid.n_u - 1.0;
-            grid.positions[static_cast<std::size_t>(k) * count + first +
-                           static_cast<std::size_t>(i)] = Vec3f(ribbon.center + ribbon.across * u);
+            to[i] = Vec3f(ribbon.center + ribbon.across * u);
         }
-        const double weight = k == knots.frame_knot       ? 1.0 - knots.frame_fraction
-                              : k == knots.frame_knot + 1 ? knots.frame_fraction
-                                                          : 0.0;
+    }
+}
+
+void CurveBatch::shade_row(Grid& grid, int j, const Row& row, const CurveControl& control) const {
+    Vec3d side(0.0), facing(0.0), half(0.0);
+    for (int k = 0; k < m_elements->knot_count(); ++k) {
+        const double weight = m_elements->frame_weight(k);
+        if (weight == 0.0) continue;
+        const RibbonRow ribbon = control.row(k, row.t);
         side += ribbon.side * weight;
         facing += ribbon.facing * weight;
         half += ribbon.across * weight;
@@ -155,15 +179,15 @@ void CurveBatch::fill_row(Grid& grid, int j, const Row& row, const CurveControl&
     for (int i = 0; i <= grid.n_u; ++i) {
         const double u = 2.0 * i / grid.n_u - 1.0;
         const double sine = u * drawn;
-        const Vec3d normal = side * sine + front * std::sqrt(std::max(1.0 - sine * sine, 0.0));
-        const std::size_t v = first + static_cast<std::size_t>(i);
-        const Vec3d unit = unit_or(normal, front);
-        grid.normal[v] = Vec3f(unit);
+        const Vec3d normal =
+            unit_or(side * sine + front * std::sqrt(std::max(1.0 - sine * sine, 0.0)), front);
+        const auto v = static_cast<std::size_t>(j * (grid.n_u + 1) + i);
+        grid.normal[v] = Vec3f(normal);
+        grid.geometric_normal[v] = Vec3f(front);
         // Rays start on a tube around the one that is meant, so far out that they meet it only
         // where the normal turns away from them.
         grid.ray_offset[v] =
-            Vec3f(unit * (glm::length(half) / drawn) - half * (row.shrunk ? -1.0 : u));
-        grid.geometric_normal[v] = Vec3f(front);
+            Vec3f(normal * (glm::length(half) / drawn) - half * (row.shrunk ? -1.0 : u));
     }
 }
 

@@ -30,6 +30,8 @@ class CurveBatch final : public ElementBatch {
     std::unique_ptr<ElementBatch> child() const override;
     void halve(unsigned number) override;
     void measure() override;
+    std::shared_ptr<const ElementBatch> copy() const override;
+    void fill_shading_state(Grid& grid) const override;
 
   private:
     struct Row {
@@ -45,7 +47,11 @@ class CurveBatch final : public ElementBatch {
     double end(std::uint32_t curve) const {
         return m_count == 1 && m_hi > 0.0 ? m_hi : end_of(curve);
     }
-    void fill_row(Grid& grid, int j, const Row& row, const CurveControl& control) const;
+    /// visit(j, row, the curve's control points) for every row.
+    template <class Visit>
+    void for_each_row(Visit visit) const;
+    void place_row(Grid& grid, int j, const Row& row, const CurveControl& control) const;
+    void shade_row(Grid& grid, int j, const Row& row, const CurveControl& control) const;
 
     double m_lo = 0.0, m_hi = 0.0;  ///< of a single curve; m_hi 0: to its end
     int m_across = 0;               ///< micropolygons across; 0 = not yet known

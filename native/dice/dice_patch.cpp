@@ -164,7 +164,8 @@ std::unique_ptr<Grid> Patch::dice() const {
             m_mesh->report().warn(m_mesh->instance().name,
                                   "vertices displaced beyond the displacement bound", beyond);
     }
-    finish_motion(*grid, m_mesh->knots(), m_mesh->view().projection);
+    finish_motion(*grid, m_mesh->view().projection);
+    set_frame_positions(*grid, m_mesh->knots());
     if (!grid->bounds.visible && std::none_of(grid->positions.begin(), grid->positions.end(),
                                               [](const Vec3f& p) { return is_finite(p); })) {
         m_mesh->report().warn(m_mesh->instance().name, "a grid without any finite vertex left out");

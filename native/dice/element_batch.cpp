@@ -35,6 +35,10 @@ void ElementBatch::own(std::shared_ptr<const OpenedElements> elements) {
     measure();
 }
 
+std::function<void(Grid&)> ElementBatch::shading_state() const {
+    return [batch = copy()](Grid& grid) { batch->fill_shading_state(grid); };
+}
+
 std::vector<std::unique_ptr<Primitive>> ElementBatch::split() const {
     std::vector<std::unique_ptr<Primitive>> children;
     for (unsigned number = 0; number < 2; ++number) {

@@ -15,6 +15,9 @@ class ElementBatch : public Primitive {
     GridKey key() const override;
     bool diceable() const override { return m_diceable; }
     std::vector<std::unique_ptr<Primitive>> split() const override;
+    /// A million hairs are diced for their positions; shading state, three times the bytes, is made
+    /// of those that are seen.
+    std::function<void(Grid&)> shading_state() const override;
 
   protected:
     /// Whole batch.
@@ -27,6 +30,9 @@ class ElementBatch : public Primitive {
     virtual void halve(unsigned number) = 0;
     /// Sets m_diceable.
     virtual void measure() = 0;
+    /// What can be diced, once more.
+    virtual std::shared_ptr<const ElementBatch> copy() const = 0;
+    virtual void fill_shading_state(Grid& grid) const = 0;
 
     std::uint32_t element(std::size_t i) const { return m_elements->shared().batch(m_batch)[i]; }
     /// Of a camera-space box, with the rounding of positions.

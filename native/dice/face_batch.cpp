@@ -82,7 +82,8 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
                 to[kPlane[c] * count + i] = points[static_cast<std::size_t>(
                     m_mesh->data().corner_verts[patch(i).corner[c]])];
     }
-    finish_motion(*grid, m_mesh->knots(), m_mesh->view().projection);
+    finish_motion(*grid, m_mesh->view().projection);
+    set_frame_positions(*grid, m_mesh->knots());
 
     std::vector<Face> faces;
     faces.reserve(count);
@@ -117,7 +118,7 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
 
 FaceBatch::Face FaceBatch::face(const Grid& grid, std::size_t i) const {
     const Grid::Corners c = grid.corners(static_cast<int>(i));
-    // Of the vertices yet: finish_motion() filled it.
+    // Of the vertices yet.
     const std::vector<Vec3f>& p = grid.shading_p();
     const Vec3f corner[4] = {p[c.v0], p[c.v1], p[c.v2], p[c.v3]};
     const bool triangle = patch(i).kind == PatchKind::Triangle;

@@ -7,7 +7,7 @@
 
 namespace granita {
 
-void finish_motion(Grid& grid, const Knots& knots, const Projection& projection) {
+void finish_motion(Grid& grid, const Projection& projection) {
     const std::size_t count = static_cast<std::size_t>(grid.vertex_count());
     for (int k = 1; k < grid.knots && !grid.motion; ++k)
         grid.motion = !std::equal(grid.positions.begin(),
@@ -16,17 +16,20 @@ void finish_motion(Grid& grid, const Knots& knots, const Projection& projection)
     if (!grid.motion) {
         grid.knots = 1;
         grid.positions.resize(count);
-    } else {
-        const std::size_t first = static_cast<std::size_t>(knots.frame_knot) * count;
-        const double fraction = knots.frame_fraction;
-        grid.p.resize(count);
-        for (std::size_t i = 0; i < count; ++i)
-            grid.p[i] = fraction == 0.0
-                            ? grid.positions[first + i]
-                            : Vec3f(Vec3d(grid.positions[first + i]) * (1.0 - fraction) +
-                                    Vec3d(grid.positions[first + count + i]) * fraction);
     }
     grid.bounds = raster_bound(projection, grid.positions);
+}
+
+void set_frame_positions(Grid& grid, const Knots& knots) {
+    if (!grid.motion) return;
+    const std::size_t count = static_cast<std::size_t>(grid.vertex_count());
+    const std::size_t first = static_cast<std::size_t>(knots.frame_knot) * count;
+    const double fraction = knots.frame_fraction;
+    grid.p.resize(count);
+    for (std::size_t i = 0; i < count; ++i)
+        grid.p[i] = fraction == 0.0 ? grid.positions[first + i]
+                                    : Vec3f(Vec3d(grid.positions[first + i]) * (1.0 - fraction) +
+                                            Vec3d(grid.positions[first + count + i]) * fraction);
 }
 
 }  // namespace granita

@@ -8,8 +8,9 @@
 namespace granita {
 
 /// Once positions are set at every knot: whether the grid moves (where it does not, one knot is
-/// kept), the vertices' positions at the frame time (in
-/// `p`) and its swept bounds.
-void finish_motion(Grid& grid, const Knots& knots, const Projection& projection);
+/// kept), and its swept bounds.
+void finish_motion(Grid& grid, const Projection& projection);
+/// Then, where it moves: `p` of the vertices, their positions at the frame time.
+void set_frame_positions(Grid& grid, const Knots& knots);
 
 }  // namespace granita

@@ -8,7 +8,8 @@ std::uint64_t Grid::bytes() const {
     for (const GridAttribute& a : attributes) floats += a.values.size() + a.du.size() + a.dv.size();
     const std::uint64_t vectors = positions.size() + p.size() + normal.size() +
                                   geometric_normal.size() + dp_du.size() + dp_dv.size() +
-                                  opacity.size() + radiance.size();
+                                  opacity.size() + radiance.size() + ray_offset.size();
+    floats += channels.size() + places.anchors.size() + places.point_of.size();
     return sizeof(Grid) + 4 * floats + sizeof(Vec3f) * vectors;
 }
 

@@ -92,14 +92,17 @@ std::unique_ptr<Grid> OpenedElements::make_grid(std::size_t batch, std::uint64_t
     grid->holdout = m_instance->holdout;
     const std::size_t count = static_cast<std::size_t>(grid->vertex_count());
     grid->positions.resize(count * static_cast<std::size_t>(m_knots.count));
-    grid->normal.resize(count);
-    grid->geometric_normal.resize(count);
-    grid->ray_offset.resize(count);
     return grid;
 }
 
-void OpenedElements::finish(Grid& grid, std::span<const ElementPlace> places) const {
-    finish_motion(grid, m_knots, m_view->projection);
+void OpenedElements::begin_shading(Grid& grid) const {
+    const auto count = static_cast<std::size_t>(grid.vertex_count());
+    set_frame_positions(grid, m_knots);
+    for (auto* values : {&grid.normal, &grid.geometric_normal, &grid.ray_offset})
+        values->resize(count);
+}
+
+void OpenedElements::finish_shading(Grid& grid, std::span<const ElementPlace> places) const {
     finish_share(grid);
     finish_derivatives(grid, places);
     finish_attributes(grid, places);

@@ -57,9 +57,17 @@ class OpenedElements final : public OpenedInstance,
     /// A grid of this instance for a batch: its identity, material and size; every vertex at every
     /// knot at the origin.
     std::unique_ptr<Grid> make_grid(std::size_t batch, std::uint64_t path, int n_u, int n_v) const;
-    /// Once positions are set: motion, shading positions, bounds, derivatives and attributes.
-    /// `places` [n_v + 1]; rows of one place follow each other along an element.
-    void finish(Grid& grid, std::span<const ElementPlace> places) const;
+    /// Shading positions, and room for normals and offsets of rays.
+    void begin_shading(Grid& grid) const;
+    /// Once these are set: share, derivatives and attributes.  `places` [n_v + 1]; rows of one
+    /// place follow each other along an element.
+    void finish_shading(Grid& grid, std::span<const ElementPlace> places) const;
+    /// How much a knot counts at the frame time.
+    double frame_weight(int knot) const {
+        return knot == m_knots.frame_knot       ? 1.0 - m_knots.frame_fraction
+               : knot == m_knots.frame_knot + 1 ? m_knots.frame_fraction
+                                                : 0.0;
+    }
 
   private:
     int material(std::size_t batch) const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dice/finish_motion.h"
 #include "dice/opened_mesh.h"
 
 namespace granita {
@@ -147,71 +148,96 @@ void PointBatch::halve(unsigned number) {
         (number == 0 ? m_part.u1 : m_part.u0) = (m_part.u0 + m_part.u1) / 2;
 }
 
-std::unique_ptr<Grid> PointBatch::dice() const {
-    const Part part = m_count == 1 ? m_part : Part{0, 0, 0, m_longitudes};
-    int rows = 0;
-    for (const int latitudes : m_latitudes)
-        rows += (m_count == 1 ? part.v1 - part.v0 : latitudes) + 1;
-    auto grid = m_elements->make_grid(m_batch, m_path, part.u1 - part.u0, rows - 1);
-    std::vector<ElementPlace> places;
-    places.reserve(static_cast<std::size_t>(rows));
+std::vector<PointBatch::Row> PointBatch::rows() const {
+    std::vector<Row> rows;
     for (std::size_t i = 0; i < m_count; ++i) {
-        const std::uint32_t p = element(m_first + i);
-        const int first = m_count == 1 ? part.v0 : 0;
-        const int last = m_count == 1 ? part.v1 : m_latitudes[i];
-        for (int latitude = first; latitude <= last; ++latitude) {
-            fill_row(*grid, static_cast<int>(places.size()), p, latitude, m_latitudes[i], part);
-            places.push_back({p, p, p, 0.0});
-        }
+        const int first = m_count == 1 ? m_part.v0 : 0;
+        const int last = m_count == 1 ? m_part.v1 : m_latitudes[i];
+        for (int latitude = first; latitude <= last; ++latitude)
+            rows.push_back({element(m_first + i), latitude, m_latitudes[i]});
     }
-    m_elements->finish(*grid, places);
+    return rows;
+}
+
+std::unique_ptr<Grid> PointBatch::dice() const {
+    const std::vector<Row> all = rows();
+    auto grid = m_elements->make_grid(m_batch, m_path, part().u1 - part().u0,
+                                      static_cast<int>(all.size()) - 1);
+    for (std::size_t j = 0; j < all.size(); ++j) place_row(*grid, static_cast<int>(j), all[j]);
+    finish_motion(*grid, m_elements->view().projection);
     return grid;
 }
 
-void PointBatch::fill_row(Grid& grid, int j, std::uint32_t point, int latitude, int latitudes,
-                          const Part& part) const {
-    const Knots& knots = m_elements->knots();
-    const std::size_t count = static_cast<std::size_t>(grid.vertex_count());
-    const std::size_t first = static_cast<std::size_t>(j * (grid.n_u + 1));
+std::shared_ptr<const ElementBatch> PointBatch::copy() const {
+    return std::make_shared<PointBatch>(*this);
+}
+
+void PointBatch::fill_shading_state(Grid& grid) const {
+    m_elements->begin_shading(grid);
+    const std::vector<Row> all = rows();
+    std::vector<ElementPlace> places;
+    places.reserve(all.size());
+    for (std::size_t j = 0; j < all.size(); ++j) {
+        shade_row(grid, static_cast<int>(j), all[j]);
+        places.push_back({all[j].point, all[j].point, all[j].point, 0.0});
+    }
+    m_elements->finish_shading(grid, places);
+}
+
+Vec2d PointBatch::lateral(const Row& row, int i, double out) const {
+    const double u = M_PI * (static_cast<double>(part().u0 + i) / m_longitudes - 0.5);
+    const double v = M_PI * (static_cast<double>(row.latitude) / row.latitudes - 0.5);
+    const bool pole = row.latitude == 0 || row.latitude == row.latitudes;
+    return {pole ? 0.0 : out * std::cos(v) * std::sin(u), out * std::sin(v)};
+}
+
+/// How far out the corners of the outline lie.
+double PointBatch::Row::swell() const {
     const double corners = 2.0 * latitudes;
-    const double swell = std::sqrt(2.0 * M_PI / (corners * std::sin(2.0 * M_PI / corners)));
-    const double v = M_PI * (static_cast<double>(latitude) / latitudes - 0.5);
-    const bool pole = latitude == 0 || latitude == latitudes;
+    return std::sqrt(2.0 * M_PI / (corners * std::sin(2.0 * M_PI / corners)));
+}
+
+void PointBatch::place_row(Grid& grid, int j, const Row& row) const {
+    const auto count = static_cast<std::size_t>(grid.vertex_count());
+    for (int k = 0; k < m_elements->knot_count(); ++k) {
+        const Vertex sphere(*m_elements, m_elements->point(k, row.point));
+        Vec3f* to = &grid.positions[static_cast<std::size_t>(k) * count +
+                                    static_cast<std::size_t>(j * (grid.n_u + 1))];
+        for (int i = 0; i <= grid.n_u; ++i) {
+            const Vec2d at = lateral(row, i, row.swell());
+            to[i] = Vec3f(sphere.at(at.x, at.y));
+        }
+    }
+}
+
+void PointBatch::shade_row(Grid& grid, int j, const Row& row) const {
     const bool flat = m_longitudes == 1;
     // Colours go linearly between vertices: normals are drawn in so far that the mean over the
     // outline is right for any quadratic (half of the area's radius where the sphere is flat).
     const double drawn_in =
         1.0 / std::sqrt(1.0 + 1.0 / (static_cast<double>(m_longitudes) * m_longitudes));
-    for (int k = 0; k < knots.count; ++k) {
-        const Vertex sphere(*m_elements, m_elements->point(k, point));
-        const double weight = k == knots.frame_knot       ? 1.0 - knots.frame_fraction
-                              : k == knots.frame_knot + 1 ? knots.frame_fraction
-                                                          : 0.0;
-        for (int i = 0; i <= grid.n_u; ++i) {
-            const double u = M_PI * (static_cast<double>(part.u0 + i) / m_longitudes - 0.5);
-            const double x = pole ? 0.0 : swell * std::cos(v) * std::sin(u);
-            const double y = swell * std::sin(v);
-            const std::size_t vertex = first + static_cast<std::size_t>(i);
-            grid.positions[static_cast<std::size_t>(k) * count + vertex] = Vec3f(sphere.at(x, y));
+    const Vec3d towards(0.0, 0.0, -1.0);
+    for (int i = 0; i <= grid.n_u; ++i) {
+        const Vec2d on_sphere = lateral(row, i, 1.0), drawn = lateral(row, i, row.swell());
+        Vec3d normal(0.0), geometric_normal(0.0), offset(0.0);
+        for (int k = 0; k < m_elements->knot_count(); ++k) {
+            const double weight = m_elements->frame_weight(k);
             if (weight == 0.0) continue;
-            const Vec2d lateral(pole ? 0.0 : std::cos(v) * std::sin(u), std::sin(v));
-            const Vec2d in = lateral * (drawn_in * sphere.sine);
+            const Vertex sphere(*m_elements, m_elements->point(k, row.point));
+            const Vec2d in = on_sphere * (drawn_in * sphere.sine);
             const double front = std::sqrt(std::max(1.0 - glm::dot(in, in), 0.0));
-            const Vec3d normal = sphere.right * in.x + sphere.up * in.y + sphere.to_eye * front;
-            grid.normal[vertex] += Vec3f(normal * weight);
+            const Vec3d here = sphere.right * in.x + sphere.up * in.y + sphere.to_eye * front;
+            normal += here * weight;
             // Rays start on the sphere where it has this normal: they meet it only where that
             // turns away from them.
-            grid.ray_offset[vertex] +=
-                Vec3f((normal * sphere.radius - sphere.offset(x, y)) * weight);
-            const Vec3d surface = flat ? sphere.to_eye : sphere.offset(lateral.x, lateral.y);
-            grid.geometric_normal[vertex] += Vec3f(unit_or(surface, sphere.to_eye) * weight);
+            offset += (here * sphere.radius - sphere.offset(drawn.x, drawn.y)) * weight;
+            const Vec3d surface = flat ? sphere.to_eye : sphere.offset(on_sphere.x, on_sphere.y);
+            geometric_normal += unit_or(surface, sphere.to_eye) * weight;
         }
-    }
-    for (int i = 0; i <= grid.n_u; ++i) {
-        const std::size_t vertex = first + static_cast<std::size_t>(i);
-        const Vec3d up(0.0, 0.0, -1.0);
-        grid.normal[vertex] = Vec3f(unit_or(Vec3d(grid.normal[vertex]), up));
-        grid.geometric_normal[vertex] = Vec3f(unit_or(Vec3d(grid.geometric_normal[vertex]), up));
+        const auto vertex = static_cast<std::size_t>(j * (grid.n_u + 1) + i);
+        grid.normal[vertex] = Vec3f(unit_or(normal, towards));
+        grid.geometric_normal[vertex] = Vec3f(unit_or(geometric_normal, towards));
+        grid.ray_offset[vertex] = Vec3f(offset);
     }
 }
 

@@ -26,6 +26,8 @@ class PointBatch final : public ElementBatch {
     std::unique_ptr<ElementBatch> child() const override;
     void halve(unsigned number) override;
     void measure() override;
+    std::shared_ptr<const ElementBatch> copy() const override;
+    void fill_shading_state(Grid& grid) const override;
 
   private:
     /// Latitudes and longitudes of a half sphere, powers of two.
@@ -39,8 +41,18 @@ class PointBatch final : public ElementBatch {
     struct Vertex;
 
     Rates rates(std::uint32_t point) const;
-    void fill_row(Grid& grid, int j, std::uint32_t point, int latitude, int latitudes,
-                  const Part& part) const;
+    /// One of a sphere's rows.
+    struct Row {
+        std::uint32_t point = 0;
+        int latitude = 0, latitudes = 0;
+        double swell() const;
+    };
+    std::vector<Row> rows() const;
+    Part part() const { return m_count == 1 ? m_part : Part{0, 0, 0, m_longitudes}; }
+    /// Place (x, y) of a vertex on the outline's disc; `out` is drawn out to the circle's area.
+    Vec2d lateral(const Row& row, int i, double out) const;
+    void place_row(Grid& grid, int j, const Row& row) const;
+    void shade_row(Grid& grid, int j, const Row& row) const;
 
     Part m_part;                   ///< of a single point
     std::vector<int> m_latitudes;  ///< [m_count]

@@ -16,6 +16,7 @@
 // outlive both.  Counting what is opened, split and diced is the caller's.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -39,6 +40,9 @@ class Primitive {
     /// Positions, shading state and the material's attributes; never shaded.  nullptr when every
     /// vertex is non-finite.
     virtual std::unique_ptr<Grid> dice() const = 0;
+    /// Fills in the shading state and the attributes of a grid of dice() before its first shading,
+    /// where dice() has left them out; outlives the primitive.  Empty: nothing is missing.
+    virtual std::function<void(Grid&)> shading_state() const { return {}; }
 };
 
 /// An instance's geometry in camera space at its knots, ready to hand out primitives.

@@ -2,18 +2,47 @@
 #include "render/geometry_node.h"
 
 namespace granita {
+namespace {
 
-SharedGrid::SharedGrid(std::unique_ptr<Grid> grid, Statistics& statistics)
-    : m_grid(std::move(grid)), m_statistics(statistics), m_bytes(m_grid->bytes()) {
-    m_statistics.add_grid_bytes(m_bytes);
+/// What nobody reads once radiance is there.
+void drop_shading_state(Grid& grid) {
+    for (std::vector<Vec3f>* values : {&grid.p, &grid.normal, &grid.geometric_normal, &grid.dp_du,
+                                       &grid.dp_dv, &grid.ray_offset})
+        std::vector<Vec3f>().swap(*values);
+    std::vector<GridAttribute>().swap(grid.attributes);
+}
+
+}  // namespace
+
+SharedGrid::SharedGrid(std::unique_ptr<Grid> grid, std::function<void(Grid&)> shading_state,
+                       Statistics& statistics)
+    : m_grid(std::move(grid)), m_shading_state(std::move(shading_state)), m_statistics(statistics) {
+    count_bytes();
 }
 
 SharedGrid::~SharedGrid() {
     m_statistics.remove_grid_bytes(m_bytes);
 }
 
+void SharedGrid::count_bytes() {
+    m_statistics.remove_grid_bytes(m_bytes);
+    m_bytes = m_grid->bytes();
+    m_statistics.add_grid_bytes(m_bytes);
+}
+
+void SharedGrid::ensure_shading_state() {
+    std::call_once(m_has_state, [&] {
+        if (!m_shading_state) return;
+        const StageTimer timer(m_statistics, Stage::Dice);
+        m_shading_state(*m_grid);
+        m_shading_state = {};
+        count_bytes();
+    });
+}
+
 void SharedGrid::ensure_opacity(const ShadingSystem& shading) {
     std::call_once(m_opacity, [&] {
+        ensure_shading_state();
         const StageTimer timer(m_statistics, Stage::Shade);
         shading.shade_opacity(*m_grid);
     });
@@ -21,8 +50,11 @@ void SharedGrid::ensure_opacity(const ShadingSystem& shading) {
 
 void SharedGrid::ensure_radiance(const ShadingSystem& shading) {
     std::call_once(m_radiance, [&] {
+        ensure_shading_state();
         const StageTimer timer(m_statistics, Stage::Shade);
         shading.shade_radiance(*m_grid);
+        drop_shading_state(*m_grid);
+        count_bytes();
     });
 }
 
@@ -32,7 +64,7 @@ std::shared_ptr<SharedGrid> dice_counted(const Primitive& primitive, Statistics&
     if (!grid) return nullptr;
     statistics.add(Counter::GridsDiced);
     statistics.add(Counter::PointsDiced, static_cast<std::uint64_t>(grid->vertex_count()));
-    return std::make_shared<SharedGrid>(std::move(grid), statistics);
+    return std::make_shared<SharedGrid>(std::move(grid), primitive.shading_state(), statistics);
 }
 
 std::vector<std::unique_ptr<Primitive>> split_counted(const Primitive& primitive,

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -19,17 +20,23 @@ namespace granita {
 /// A diced grid and its slots, each filled once whoever asks first.
 class SharedGrid {
   public:
-    SharedGrid(std::unique_ptr<Grid> grid, Statistics& statistics);
+    /// `shading_state`: Primitive::shading_state().
+    SharedGrid(std::unique_ptr<Grid> grid, std::function<void(Grid&)> shading_state,
+               Statistics& statistics);
     ~SharedGrid();
     const Grid& grid() const { return *m_grid; }
     void ensure_opacity(const ShadingSystem& shading);
     void ensure_radiance(const ShadingSystem& shading);
 
   private:
+    void ensure_shading_state();
+    void count_bytes();
+
     std::unique_ptr<Grid> m_grid;
+    std::function<void(Grid&)> m_shading_state;
     Statistics& m_statistics;
-    std::uint64_t m_bytes;
-    std::once_flag m_opacity, m_radiance;
+    std::uint64_t m_bytes = 0;
+    std::once_flag m_has_state, m_opacity, m_radiance;
 };
 
 /// Splits until diceable and dices, with the counters.  nullptr when nothing is left of it.

@@ -68,6 +68,7 @@ struct DiceScene {
         if (!primitive.bounds().visible) return;
         if (primitive.diceable()) {
             grids.push_back(primitive.dice());
+            if (const auto fill = primitive.shading_state()) fill(*grids.back());
             return;
         }
         for (const auto& child : primitive.split()) dice_all(*child, grids);
