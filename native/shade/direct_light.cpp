@@ -70,13 +70,17 @@ struct Point {
     const PointPaths& paths;
     const GridKey& key;
     Place at_frame;
-    Vec3f ray_offset{0.0f};  ///< ShadingPoints::ray_offset
-    int sample_count = 1;    ///< of a soft light, of the world's image, of all lobes together
-    std::uint64_t seed;
+    Vec3f ray_offset{0.0f};    ///< ShadingPoints::ray_offset
+    int sample_count = 1;      ///< of a soft light, of the world's image, of all lobes together
+    std::uint64_t seed;        ///< of the grid
+    std::uint32_t place;       ///< in the grid, along Morton's curve
     std::vector<int> samples;  ///< [lobes] taken of each lobe; 0 for sharp ones
 
-    SobolPoints sequence(std::uint64_t dimension) const {
-        return SobolPoints(seed + 0x9e3779b97f4a7c15ULL * (dimension + 1));
+    /// This point's `count` samples of a sequence that the grid shares.  Each takes as many as it
+    /// uses: if all left out the ends of equal runs, all would miss the same strata.
+    SobolPoints sequence(std::uint64_t dimension, int count) const {
+        return SobolPoints(seed + 0x9e3779b97f4a7c15ULL * (dimension + 1),
+                           place * static_cast<std::uint32_t>(count));
     }
     /// Expected samples a solid angle around `wo` over the lobes that `which` accepts.
     template <class Which>
@@ -234,7 +238,7 @@ void DirectLight::Impl::sample_lamp(Work& work, const Point& point, const Lamp& 
                                     std::uint64_t dimension, Vec3f& sum) const {
     const int count = samples_of(point, lamp);
     const bool timed = count > 1 && changes(lamp);
-    const SobolPoints sequence = point.sequence(dimension);
+    const SobolPoints sequence = point.sequence(dimension, count);
     for (int s = 0; s < count; ++s) {
         const auto index = static_cast<std::uint32_t>(s);
         const Place place = timed ? place_at(point, sequence.third(index)) : point.at_frame;
@@ -256,7 +260,7 @@ void DirectLight::Impl::sample_lamp(Work& work, const Point& point, const Lamp& 
 void DirectLight::Impl::sample_world(Work& work, const Point& point) const {
     // A constant world needs no table: the lobes themselves are its best samples.
     if (!environment || environment->is_constant()) return;
-    const SobolPoints sequence = point.sequence(0);
+    const SobolPoints sequence = point.sequence(0, point.sample_count);
     for (int s = 0; s < point.sample_count; ++s) {
         const auto index = static_cast<std::uint32_t>(s);
         float pdf = 0.0f;
@@ -273,7 +277,7 @@ void DirectLight::Impl::sample_lobe(Work& work, const Point& point, std::size_t 
                                     Vec3f& sum) const {
     const bool glossy = point.bsdf.kind(lobe) == LobeKind::Glossy;
     if (!environment && !glossy) return;
-    const SobolPoints sequence = point.sequence(1 + lobe);
+    const SobolPoints sequence = point.sequence(1 + lobe, point.samples[lobe]);
     for (int s = 0; s < point.samples[lobe]; ++s) {
         const auto index = static_cast<std::uint32_t>(s);
         Vec3f wo;
@@ -314,7 +318,7 @@ void DirectLight::Impl::mirror(Work& work, const Point& point, std::size_t lobe,
     if (!point.bsdf.reflect(lobe, wo, reflectance)) return;
     const int count = varies ? point.sample_count : 1;
     reflectance /= static_cast<float>(count);
-    const SobolPoints sequence = point.sequence(1 + lobe);
+    const SobolPoints sequence = point.sequence(1 + lobe, count);
     Vec3f open(0.0f);
     for (int s = 0; s < count; ++s) {
         const Place place = place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
@@ -384,6 +388,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     if (closure.lobes.empty() || (dark && !parts)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     const std::uint64_t seed = grid_seed(key, m_impl->scene.options.seed);
+    const std::size_t columns = points.columns > 0 ? points.columns : points.count;
     Work work{radiance, parts, {}, {}};
     // Points that lie closer share the light that a pixel's worth of them is due.
     const int sample_count = std::max(
@@ -402,7 +407,11 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         const Vec3f offset = points.ray_offset.empty() ? Vec3f(0.0f) : points.ray_offset[i];
         const Vec3f start = m_impl->ray_start(key, p + offset, normal);
         const Place at_frame{m_impl->scene.options.frame_time, p, normal, start};
-        Point point{i, bsdf, paths, key, at_frame, offset, sample_count, mix_bits(seed + i), {}};
+        // Neighbours share a sequence: aligned squares of points, and so the pixels that average
+        // them, are stratified as one (Ahmed and Wonka 2020, without their shuffling of squares).
+        const std::uint32_t place = morton_index(static_cast<std::uint32_t>(i % columns),
+                                                 static_cast<std::uint32_t>(i / columns));
+        Point point{i, bsdf, paths, key, at_frame, offset, sample_count, seed, place, {}};
         m_impl->light_point(work, point);
     }
     if (m_impl->environment) m_impl->look(work, work.blurred, m_impl->environment->texel_angle());

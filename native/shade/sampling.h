@@ -28,18 +28,34 @@ inline std::uint64_t grid_seed(const GridKey& key, std::uint32_t frame_seed) {
     return mix_bits(mix_bits(face + 0x9e3779b97f4a7c15ULL * (frame_seed + 1ULL)) ^ key.path);
 }
 
+/// The bits of x and y interleaved: places along Morton's curve, which visits aligned squares
+/// whole.
+inline std::uint32_t morton_index(std::uint32_t x, std::uint32_t y) {
+    const auto spread = [](std::uint32_t v) {
+        v &= 0xffffu;
+        v = (v | (v << 8)) & 0x00ff00ffu;
+        v = (v | (v << 4)) & 0x0f0f0f0fu;
+        v = (v | (v << 2)) & 0x33333333u;
+        return (v | (v << 1)) & 0x55555555u;
+    };
+    return spread(x) | (spread(y) << 1);
+}
+
 /// The first three dimensions of Sobol's sequence, Owen-scrambled by hashing (Laine and Karras
 /// 2011; Burley 2020).  Any power-of-two prefix of the first two is a (0, m, 2)-net: stratified in
 /// every elementary interval.
 class SobolPoints {
   public:
-    explicit SobolPoints(std::uint64_t seed)
-        : m_seed_x(static_cast<std::uint32_t>(mix_bits(seed))),
+    /// `first`: where in the sequence index 0 stands.
+    explicit SobolPoints(std::uint64_t seed, std::uint32_t first = 0)
+        : m_first(first),
+          m_seed_x(static_cast<std::uint32_t>(mix_bits(seed))),
           m_seed_y(static_cast<std::uint32_t>(mix_bits(seed + 0x632be59bd9b4e019ULL))),
           m_seed_z(static_cast<std::uint32_t>(mix_bits(seed + 0xc6bc279692b5c323ULL))) {}
 
     /// In [0, 1)^2.
     Vec2f operator()(std::uint32_t index) const {
+        index += m_first;
         std::uint32_t y = 0;
         for (std::uint32_t i = index, v = 1u << 31; i != 0; i >>= 1, v ^= v >> 1)
             if (i & 1u) y ^= v;
@@ -52,7 +68,7 @@ class SobolPoints {
     float third(std::uint32_t index) const {
         // Direction numbers of the primitive polynomial x^2 + x + 1.
         std::uint32_t z = 0, v = 1u << 31, next = 3u << 30;
-        for (std::uint32_t i = index; i != 0; i >>= 1) {
+        for (std::uint32_t i = m_first + index; i != 0; i >>= 1) {
             if (i & 1u) z ^= v;
             const std::uint32_t after = next ^ v ^ (v >> 2);
             v = next;
@@ -80,7 +96,7 @@ class SobolPoints {
     }
     static float unit(std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
 
-    std::uint32_t m_seed_x, m_seed_y, m_seed_z;
+    std::uint32_t m_first, m_seed_x, m_seed_y, m_seed_z;
 };
 
 /// Axes x, y that make (x, y, n) a right-handed orthonormal frame (Duff et al. 2017).

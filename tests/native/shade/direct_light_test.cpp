@@ -55,6 +55,32 @@ TEST_F(DirectLightTest, a_shadow_ray_a_hard_light_and_one_a_sample_of_a_soft_one
     EXPECT_EQ(statistics.get(Counter::RaysShadow), 34u);
 }
 
+// The mean over a square of points, which is what a pixel or a lens shows of them, is far nearer
+// than that of as many points with samples of their own would be: its error then is a point's over
+// the root of their number.
+TEST_F(DirectLightTest, neighbours_are_stratified_together) {
+    scene.lights = {light_of(LightKind::Area, 100.0f, aimed({0, 0, 1}, {0, 0, -1}))};
+    scene.options.light_samples = 4;
+    constexpr std::size_t kSide = 8, kCount = kSide * kSide;
+    ShadingPoints points = points_facing_up(std::vector<Vec3f>(kCount, Vec3f(0.0f)));
+    points.columns = kSide;
+    // A square of half side a, at distance 1 over the point.
+    const double a = 0.5, side = a / std::sqrt(1 + a * a);
+    const double irradiance = 100.0 / kPi * 4.0 * side * std::atan(side);
+    double point_error = 0.0, mean_error = 0.0;
+    constexpr std::uint32_t kGrids = 50;
+    for (std::uint32_t grid = 0; grid < kGrids; ++grid) {
+        double sum = 0.0;
+        for (const Vec3f& radiance : reflect(points, lambert(points, 1.0f), {900, grid, 1})) {
+            const double error = radiance.x * kPi / irradiance - 1.0;
+            point_error += error * error / (kCount * kGrids);
+            sum += error / kCount;
+        }
+        mean_error += sum * sum / kGrids;
+    }
+    EXPECT_LT(std::sqrt(mean_error), 0.25 * std::sqrt(point_error / kCount));
+}
+
 TEST_F(DirectLightTest, nothing_is_built_for_a_scene_without_light) {
     add_instance(scene, box_square(1), at({0, 0, 1}));
     const ShadingPoints points = points_facing_up({{0, 0, 0}});
