@@ -45,7 +45,7 @@ def _record(image, name, path, report):
     record = {"name": name, "path": "", "colorspace": space, "alpha_mode": image.alpha_mode}
     if path is not None:
         record["path"] = path
-    elif image.source in ("FILE", "TILED") and not image.is_dirty:
+    elif image.source in ("FILE", "TILED") and not image.is_dirty and not _is_packed_hdr(image):
         record["path"] = _packed_file(image) or _file_path(image, label, report)
     else:
         pixels = _pixels(image)
@@ -65,6 +65,12 @@ def _file_path(image, label, report):
         u, v = (tile - 1001) % 10 + 1, (tile - 1001) // 10 + 1
         path = path.replace("<UDIM>", str(tile)).replace("<UVTILE>", f"u{u}_v{v}")
     return path
+
+
+def _is_packed_hdr(image):
+    """Of packed images Cycles takes what Blender decoded, and of Radiance's format Blender makes
+    .3 % more light than OpenImageIO does from a file: it adds half a step to each mantissa."""
+    return image.packed_file is not None and image.file_format == "HDR"
 
 
 def _packed_file(image):
