@@ -8,11 +8,7 @@ namespace granita {
 void build_flat_texture(NodeBuilder& b) {
     const FloatSource half{-1, 0.5f};
     for (const char* name : {"Fac", "Value", "Distance", "Radius", "W"}) b.output(name, half);
-    VectorSource color{-1, Vec3f(0.5f)};
-    if (b.has("Color1") && b.has("Color2"))  // Brick
-        color = b.map<Vec3f>([](const Vec3f& x, const Vec3f& y) { return 0.5f * (x + y); },
-                             b.color("Color1"), b.color("Color2"));
-    b.output_color("Color", color);
+    b.output_color("Color", {-1, Vec3f(0.5f)});
     b.output_vector("Position", {-1, Vec3f(0.5f)});
 }
 

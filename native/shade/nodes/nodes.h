@@ -54,6 +54,12 @@ void build_camera_data(NodeBuilder&);
 void build_checker(NodeBuilder&);
 void build_gradient(NodeBuilder&);
 void build_sky_texture(NodeBuilder&);
+void build_noise_texture(NodeBuilder&);
+void build_white_noise_texture(NodeBuilder&);
+void build_voronoi_texture(NodeBuilder&);
+void build_wave_texture(NodeBuilder&);
+void build_magic_texture(NodeBuilder&);
+void build_brick_texture(NodeBuilder&);
 void build_flat_texture(NodeBuilder&);
 
 }  // namespace granita

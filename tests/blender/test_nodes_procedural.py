@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Procedural textures against Cycles' own output: all types, all dimensions, all outputs."""
+
+import bpy
+import pytest
+from node_comparison import Tree, board, check, enum_values, socket
+
+DIMENSIONS = ["1D", "2D", "3D", "4D"]
+METRICS = enum_values("ShaderNodeTexVoronoi", "distance")
+
+
+def textured(scene, kind, inputs=(), low=-1.5, high=1.5, **properties):
+    """A tree with a texture at the attribute A, its w the first coordinate of B."""
+    tree = Tree(board(scene, low, high))
+    node = tree.add(kind, **properties)
+    vector = next((s for s in node.inputs if s.identifier == "Vector"), None)
+    if vector is not None and vector.enabled:
+        tree.link(tree.attribute("A"), vector)
+    w = next((s for s in node.inputs if s.identifier == "W" and s.enabled), None)
+    if w is not None:
+        tree.link(tree.attribute("B", "Fac"), w)
+    for name, value in dict(inputs).items():
+        socket(node.inputs, name).default_value = value
+    return tree, node
+
+
+def show(scene, render, tree, node, output, contrast=None):
+    """With a contrast, the values around .5 are spread; positions are shrunk into what a picture holds."""
+    source = next(s for s in node.outputs if s.enabled and s.name in (output, output + "tor"))
+    contrast = 0.5 if output == "Position" else contrast
+    if contrast is not None:
+        spread = tree.add("ShaderNodeVectorMath", operation="MULTIPLY_ADD")
+        tree.link(source, spread.inputs[0])
+        spread.inputs[1].default_value = (contrast,) * 3
+        spread.inputs[2].default_value = (max(0.5 - 0.5 * contrast, 0.5 * contrast),) * 3
+        source = spread.outputs[0]
+    tree.emit(source)
+    check(scene, render)
+
+
+def snap(tree, node):
+    """Rounds what is linked: of white noise the last bit of a coordinate decides all, and it is rounding's."""
+    for target in [s for s in node.inputs if s.enabled and s.is_linked]:
+        kind = "ShaderNodeMath" if target.identifier == "W" else "ShaderNodeVectorMath"
+        rounded = tree.add(kind, operation="SNAP")
+        grid = 2**-8
+        rounded.inputs[1].default_value = grid if kind == "ShaderNodeMath" else (grid,) * 3
+        tree.link(target.links[0].from_socket, rounded.inputs[0])
+        tree.link(rounded.outputs[0], target)
+
+
+@pytest.mark.parametrize("output", ["Fac", "Color"])
+@pytest.mark.parametrize("dimensions", DIMENSIONS)
+def test_noise(scene, render, dimensions, output):
+    inputs = {"Scale": 3.0, "Detail": 3.4, "Roughness": 0.7, "Distortion": 0.8}
+    tree, node = textured(scene, "ShaderNodeTexNoise", inputs, noise_dimensions=dimensions)
+    show(scene, render, tree, node, output, contrast=2.0)
+
+
+def test_noise_by_default(scene, render):
+    tree, node = textured(scene, "ShaderNodeTexNoise")
+    show(scene, render, tree, node, "Color", contrast=2.0)
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 0, 0), reason="lacunarity and normalize are of Blender 4")
+@pytest.mark.parametrize("normalize", [True, False])
+def test_noise_lacunarity(scene, render, normalize):
+    inputs = {"Scale": 3.0, "Detail": 4.0, "Roughness": 1.3, "Lacunarity": 2.7}
+    tree, node = textured(scene, "ShaderNodeTexNoise", inputs, normalize=normalize)
+    show(scene, render, tree, node, "Fac", contrast=2.0 if normalize else 1.0)
+
+
+@pytest.mark.parametrize("output", ["Value", "Color"])
+@pytest.mark.parametrize("dimensions", DIMENSIONS)
+def test_white_noise(scene, render, dimensions, output):
+    tree, node = textured(scene, "ShaderNodeTexWhiteNoise", noise_dimensions=dimensions)
+    snap(tree, node)
+    show(scene, render, tree, node, output)
+
+
+@pytest.mark.parametrize("feature", ["F1", "F2"])
+@pytest.mark.parametrize("output", ["Distance", "Color", "Position"])
+@pytest.mark.parametrize("dimensions", DIMENSIONS)
+def test_voronoi(scene, render, dimensions, output, feature):
+    if output == "Position" and dimensions == "1D":
+        output = "W"
+    inputs = {"Scale": 1.7, "Randomness": 0.8}
+    tree, node = textured(
+        scene, "ShaderNodeTexVoronoi", inputs, voronoi_dimensions=dimensions, feature=feature
+    )
+    show(scene, render, tree, node, output)
+
+
+@pytest.mark.parametrize("metric", METRICS)
+def test_voronoi_metric(scene, render, metric):
+    tree, node = textured(scene, "ShaderNodeTexVoronoi", {"Scale": 1.7}, distance=metric)
+    show(scene, render, tree, node, "Distance")
+
+
+@pytest.mark.parametrize("profile", enum_values("ShaderNodeTexWave", "wave_profile"))
+@pytest.mark.parametrize("direction", enum_values("ShaderNodeTexWave", "bands_direction"))
+def test_wave_bands(scene, render, direction, profile):
+    inputs = {"Scale": 0.4, "Phase Offset": 0.7}
+    tree, node = textured(
+        scene, "ShaderNodeTexWave", inputs, bands_direction=direction, wave_profile=profile
+    )
+    show(scene, render, tree, node, "Fac")
+
+
+@pytest.mark.parametrize("direction", enum_values("ShaderNodeTexWave", "rings_direction"))
+def test_wave_rings(scene, render, direction):
+    inputs = {"Scale": 0.4, "Distortion": 2.0, "Detail Scale": 1.5, "Detail": 1.5}
+    tree, node = textured(
+        scene, "ShaderNodeTexWave", inputs, wave_type="RINGS", rings_direction=direction
+    )
+    show(scene, render, tree, node, "Color")
+
+
+@pytest.mark.parametrize("depth", range(11))
+def test_magic(scene, render, depth):
+    inputs = {"Scale": 1.1, "Distortion": 1.3}
+    tree, node = textured(scene, "ShaderNodeTexMagic", inputs, turbulence_depth=depth)
+    show(scene, render, tree, node, "Color")
+
+
+@pytest.mark.parametrize("output", ["Fac", "Color"])
+@pytest.mark.parametrize("smooth", [0.0, 0.6, 1.0])
+def test_brick(scene, render, smooth, output):
+    inputs = {"Scale": 1.5, "Mortar Size": 0.1, "Mortar Smooth": smooth, "Bias": 0.1}
+    tree, node = textured(
+        scene, "ShaderNodeTexBrick", inputs, offset=0.3, squash=1.6, squash_frequency=3
+    )
+    node.inputs["Color1"].default_value = (0.9, 0.2, 0.1, 1)
+    node.inputs["Color2"].default_value = (0.1, 0.7, 0.3, 1)
+    show(scene, render, tree, node, output)
