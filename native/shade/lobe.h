@@ -50,7 +50,7 @@ struct SurfaceClosure {
 /// world's origin keep their bits), at the frame time.
 struct ShadingPoints {
     std::size_t count = 0;
-    std::size_t columns = 0;  ///< points in a row of the grid; 0: all are one row
+    std::size_t columns = 0;              ///< points in a row of the grid; 0: all are one row
     std::vector<Vec3f> p;                 ///< [n] camera-relative world
     std::vector<Vec3f> normal;            ///< [n] unit shading normal, faced to the viewer
     std::vector<Vec3f> geometric_normal;  ///< [n] unit, faced to the viewer
