@@ -26,6 +26,8 @@ layout(location = RASTER_BACKGROUND_SIZE) uniform ivec3 size;      // corners; 0
 layout(location = RASTER_BACKGROUND_CONSTANT) uniform vec4 constant;
 layout(location = RASTER_FLAGS) uniform ivec2 flags;               // layers were peeled; film transparent
 
+#include "raster/mean.glsl"
+
 vec4 background(ivec2 texel, int pass) {
     if (size.x == 0) return constant;
     const ivec2 pixel = texel / LATTICE, corner = cell_pixel + pixel;
@@ -44,7 +46,7 @@ vec4 sample_color(ivec3 at, int pass) {
     if (flags.x == 0) return under.w < 0.0 ? background(at.xy, pass) : under;
     if (under.w < 0.0 || texelFetch(peeled_depth, at, 0).r < 0.0) under = background(at.xy, pass);
     const vec4 through = texelFetch(transmission, at, 0), over = texelFetch(color, at, 0);
-    const float left = (through.r + through.g + through.b) / 3.0;
+    const float left = mean_of(through.rgb);
     const float alpha =
         flags.y != 0 ? over.w + left * under.w : 1.0 - through.w - left * (1.0 - under.w);
     return vec4(over.rgb + through.rgb * under.rgb, alpha);

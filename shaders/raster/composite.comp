@@ -19,6 +19,8 @@ layout(binding = 3, r32ui) uniform writeonly uimage2DArray peeled_name;
 layout(location = RASTER_TEXELS) uniform ivec4 texels;  // corner and size
 layout(location = RASTER_THRESHOLD) uniform float threshold;
 
+#include "raster/mean.glsl"
+
 void main() {
     if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), texels.zw))) return;
     const ivec3 at = ivec3(gl_GlobalInvocationID) + ivec3(texels.xy, 0);
@@ -30,7 +32,7 @@ void main() {
     const vec3 covered = min(max(vec3(0.0), opacity.rgb), vec3(1.0)) * through.rgb;
     sum.rgb += through.rgb * texelFetch(layer_radiance, at, 0).rgb;
     through.rgb -= covered;
-    const float mean = (covered.r + covered.g + covered.b) / 3.0;
+    const float mean = mean_of(covered);
     if (opacity.w > 0.5)
         through.w += mean;
     else

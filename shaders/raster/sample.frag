@@ -33,6 +33,11 @@ vec4 homogeneous(vec3 p, dvec2 origin) {
     return vec4(vec2(xy), float(w), p.z);
 }
 
+/// What is the same at all corners comes out as it is.
+vec4 interpolate(vec4 a, vec4 b, vec4 c, vec2 share) {
+    return a + share.x * (b - a) + share.y * (c - a);
+}
+
 void main() {
     const ivec2 texel = ivec2(gl_FragCoord.xy);
     if (!has_sample(texel)) discard;
@@ -69,13 +74,11 @@ void main() {
 #if OUTPUT == RADIANCE || OUTPUT == LAYER
     const vec3 edges = vec3(edge(d[1], d[2]), edge(d[2], d[0]), edge(d[0], d[1]));
     const float sum = edges.x + edges.y + edges.z;
-    const vec3 share = sum != 0.0 ? clamp(edges / sum, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
-    f.radiance = share.x * radiance[corners.x] + share.y * radiance[corners.y] +
-                 share.z * radiance[corners.z];
+    const vec2 share = sum != 0.0 ? clamp(edges.yz / sum, 0.0, 1.0) : vec2(0.0);
+    f.radiance = interpolate(radiance[corners.x], radiance[corners.y], radiance[corners.z], share);
 #endif
 #if OUTPUT == LAYER
-    f.opacity =
-        share.x * opacity[corners.x] + share.y * opacity[corners.y] + share.z * opacity[corners.z];
+    f.opacity = interpolate(opacity[corners.x], opacity[corners.y], opacity[corners.z], share);
 #endif
     gl_FragDepth = f.depth;
     leave(f);

@@ -11,7 +11,7 @@ namespace granita::test {
 namespace {
 
 class EmbreeOracle : public ExecutorTest {};
-GRANITA_ALL_EXECUTORS(EmbreeOracle);
+GRANITA_STORING_EXECUTORS(EmbreeOracle);
 
 /// The micropolygons of one grid as pairs of triangles with the same diagonal.
 RTCScene make_scene(RTCDevice device, const std::vector<Grid>& grids) {

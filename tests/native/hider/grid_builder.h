@@ -114,8 +114,14 @@ struct Picture {
     float alpha(int x, int y) const { return at(x, y).w; }
 };
 
+/// Stands for the raster executor where pictures or layers are asked for (raster_executor.h).
+std::unique_ptr<Hider> raster_executor(const HiderFrame&, const Rect&, const Rect&);
+Picture raster_picture(Shot& shot);
+std::vector<int> raster_layers(Shot& shot);
+
 /// One bucket of all tiles.
 inline Picture render(HiderMaker make, Shot& shot) {
+    if (make == raster_executor) return raster_picture(shot);
     const SampleTable table(shot.options, shot.camera);
     const Rect& tiles = shot.tiles;
     Picture out;
@@ -178,8 +184,9 @@ inline double worst_excess(const Picture& picture, const std::function<double(do
                                 static_cast<double>(picture.combined.size()));
 }
 
-/// How many transparent layers each sample of the bucket has met.
+/// How many transparent layers, of opacity 1/2, each sample of the bucket has met.
 inline std::vector<int> layers_per_sample(HiderMaker make, Shot& shot) {
+    if (make == raster_executor) return raster_layers(shot);
     const SampleTable table(shot.options, shot.camera);
     const HiderFrame frame{&table, shot.camera.projection, &shot.statistics};
     const Rect& tiles = shot.tiles;
@@ -196,3 +203,5 @@ inline std::vector<int> layers_per_sample(HiderMaker make, Shot& shot) {
 }
 
 }  // namespace granita::test
+
+#include "raster_executor.h"

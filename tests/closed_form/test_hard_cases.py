@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hard cases of visibility that no other file has, on every executor (docs/hard_cases.md).
+
+The raster executor draws REGULAR passes: its tolerances are those of a lattice and a midpoint rule in time.
+"""
+
+import numpy as np
+import pytest
+import snapshots as s
+from test_elements import cloud
+from test_raster_blur import ramp
+
+# RMSE of a (0,2)-net of 64 samples for an edge that moves 20 pixels (hider-research 1.2).
+OWEN_20_64 = 0.0092
+# Two such edges pass a pixel.
+TWO_EDGES = np.sqrt(2) * OWEN_20_64
+
+
+@pytest.fixture(params=["REFERENCE", "SIMD", "COMPUTE", "RASTER"])
+def executor(request):
+    return request.param
+
+
+def options(executor, samples=64, passes=1, **more):
+    """RASTER: `passes` of a lattice of `samples`; the others: as many INDEPENDENT samples."""
+    if executor == "RASTER":
+        more |= {"sampling": "REGULAR", "time_samples": passes}
+    return {"executor": executor, "samples": samples, **more}
+
+
+def mitchell_response(d):
+    """E(d) by the midpoint rule, from the filter's formula (Mitchell and Netravali 1988, B = C = 1/3)."""
+    x = (np.arange(8000) + 0.5) / 2000 - 2
+    a = np.abs(x)
+    near = (7 * a**3 - 12 * a**2 + 16 / 3) / 6
+    far = (-7 / 3 * a**3 + 12 * a**2 - 20 * a + 32 / 3) / 6
+    sums = np.concatenate([[0], np.cumsum(np.where(a < 1, near, far)) / 2000])
+    return np.interp(d, np.linspace(-2, 2, 8001), sums)
+
+
+def test_a_filter_spills_over_an_empty_bucket(executor):
+    """Case 6: the edge lies .3 px right of the border of buckets of 16."""
+
+    def picture(bucket):
+        more = {"pixel_filter": "MITCHELL", "filter_width": 4.0, "bucket_size": bucket}
+        snapshot = s.orthographic((32, 8), **options(executor, 256, **more))
+        s.quad(snapshot, s.rectangle(16.3, -9, 60, 30), s.emission(snapshot))
+        return s.alpha(snapshot)
+
+    pictures = [picture(bucket) for bucket in (16, 32, 64)]
+    expected = 1 - mitchell_response(16.3 - (np.arange(32) + 0.5))
+    # 16 strata a pixel along x: half a stratum of the filter's largest value, .89.
+    assert np.abs(pictures[0] - expected).max() <= 0.89 / 32
+    assert np.array_equal(pictures[0], pictures[1]) and np.array_equal(pictures[0], pictures[2])
+
+
+EDGE = 12.3125  # between two columns of a lattice of 16
+
+
+def strobed(sampling, executor):
+    """An edge that takes 10 steps of 2 px: how much of the pattern of 10 copies is in the picture, 1 all, 0 none."""
+    more = {"pixel_filter": "MITCHELL", "filter_width": 4.0, "dicing_rate": 20}
+    more |= {"sampling": sampling, "time_samples": 10, "samples": 256, "executor": executor}
+    snapshot = s.orthographic((48, 8), **more)
+    move = [s.translation(0), s.translation(20)]
+    s.quad(snapshot, s.rectangle(-90, -20, EDGE, 30), s.emission(snapshot), transforms=move)
+    x = np.arange(48) + 0.5
+    copies = np.mean([mitchell_response(EDGE + 2 * (j + 0.5) - x) for j in range(10)], axis=0)
+    steps = (np.arange(2000) + 0.5) / 100
+    smooth = np.mean([mitchell_response(EDGE + step - x) for step in steps], axis=0)
+    pattern = (copies - smooth) - (copies - smooth).mean()
+    return ((s.alpha(snapshot) - smooth) @ pattern / (pattern @ pattern)).mean()
+
+
+def test_passes_strobe_and_samples_do_not(executor):
+    """Case 11: Mitchell ripples by .78 at steps of 2 px (hider-research 1.2)."""
+    assert abs(strobed("REGULAR", executor) - 1) <= 0.03
+    if executor != "RASTER":
+        # The pattern's norm is .04; 8 rows of 48 pixels with errors of .0023: a share of .02 by chance.
+        assert abs(strobed("INDEPENDENT", executor)) <= 4 * 0.02
+
+
+def test_a_patch_that_moves_by_its_own_width(executor):
+    """Case 12: the overlap's triangle."""
+    snapshot = s.orthographic((64, 8), **options(executor, 64, 64, dicing_rate=20))
+    move = [s.translation(0), s.translation(20)]
+    s.quad(snapshot, s.rectangle(10, -9, 30, 30), s.emission(snapshot), transforms=move)
+    x = np.arange(64)
+    expected = (ramp(30 - x + 20) - ramp(30 - x) - ramp(10 - x + 20) + ramp(10 - x)) / 20
+    error = np.abs(s.alpha(snapshot) - expected)
+    assert error.max() <= 4 * TWO_EDGES
+
+
+def grating(executor, sampling):
+    """Period 4, half covered, moving by 8 pixels; the instants of two passes are a period apart."""
+    more = {"executor": executor, "sampling": sampling, "samples": 64, "time_samples": 2}
+    snapshot = s.orthographic((32, 8), dicing_rate=20, **more)
+    points = [p for k in range(-4, 9) for p in s.rectangle(4 * k, -9, 4 * k + 2, 30)]
+    faces = [tuple(range(4 * k, 4 * k + 4)) for k in range(13)]
+    move = [s.translation(-6), s.translation(2)]
+    s.mesh(snapshot, points, faces, s.emission(snapshot), transforms=move)
+    return s.alpha(snapshot)
+
+
+def test_a_grating_that_moves_by_periods(executor):
+    """Case 14: half covered everywhere; passes a period apart, the worst of all, do not blur it at all."""
+    bars = np.broadcast_to(np.arange(32) % 4 < 2, (8, 32))
+    assert np.array_equal(grating(executor, "REGULAR"), bars)
+    if (
+        executor != "RASTER"
+    ):  # long ways cost llvmpipe minutes; test_raster_samples.py has short ones
+        alpha = grating(executor, "INDEPENDENT")
+        assert np.sqrt(np.mean((alpha - 0.5) ** 2)) <= 0.5 / 8  # of 64 random samples
+        assert abs(alpha.mean() - 0.5) <= 4 * 0.5 / np.sqrt(64 * 256)
+
+
+def test_what_moves_with_its_occluder_is_the_still_picture_blurred(executor):
+    """Case 23: of an object from 10 to 30 the occluder leaves 18 to 30; both move by 20."""
+    snapshot = s.orthographic((64, 8), **options(executor, 64, 64, dicing_rate=20))
+    move = [s.translation(0), s.translation(20)]
+    black, red = s.emission(snapshot, (0, 0, 0)), s.emission(snapshot, (1, 0, 0))
+    s.quad(snapshot, s.rectangle(2, -9, 18, 30, 1.0), black, transforms=move)
+    s.quad(snapshot, s.rectangle(10, -9, 30, 30, 2.0), red, transforms=move)
+    x = np.arange(64)
+    expected = (ramp(30 - x + 20) - ramp(30 - x) - ramp(18 - x + 20) + ramp(18 - x)) / 20
+    error = np.abs(s.render(snapshot)["combined"][..., 0] - expected)
+    assert error.max() <= 4 * TWO_EDGES
+
+
+def test_a_sharp_edge_before_a_defocused_one(executor):
+    """Case 31: nothing of the background bleeds over what is in focus, nothing of the front behind it."""
+    radius, samples, passes = 6.0, 64, 1024
+    lens = options(executor, 16 if executor == "RASTER" else samples, passes, dicing_rate=40)
+    snapshot = s.orthographic((48, 24), **lens)
+    snapshot["camera"].update(lens_radius=radius, focus_distance=2.0)
+    s.quad(snapshot, s.rectangle(-30, -40, 16, 60, 2.0), s.emission(snapshot, (0, 1, 0)))
+    s.quad(snapshot, s.rectangle(-90, -90, 90, 12, 4.0), s.emission(snapshot, (1, 0, 0)))
+    picture = s.render(snapshot)["combined"]
+    assert np.array_equal(picture[:, :16], np.broadcast_to((0, 1, 0, 1), (24, 16, 4)))
+    fine = (
+        12 - (np.arange(24 * 32) + 0.5) / 32
+    )  # the disc's share below the edge, at 32 places a pixel
+    d = np.clip(fine / radius, -1, 1)
+    share = 0.5 + (d * np.sqrt(1 - d**2) + np.arcsin(d)) / np.pi
+    expected = share.reshape(24, 32).mean(axis=1)[:, None]
+    n = passes if executor == "RASTER" else samples
+    # Four standard errors of independent samples, an upper bound of both kinds' error.
+    bound = 4 * np.sqrt(np.maximum(expected * (1 - expected), 1e-6) / n) + 1 / n
+    assert (np.abs(picture[:, 16:, 0] - expected) <= bound).all()
+    assert not picture[:, 16:, 1].any()
+
+
+def test_outline_of_a_sphere_off_the_axis(executor):
+    """Case 56: a plane cuts the tangent cone of half angle a, tilted by b, in an ellipse of the semi-axes
+    sin a cos a / (cos^2 b - sin^2 a) and sin a / sqrt(cos^2 b - sin^2 a); no hole at the poles."""
+    focal, radius, place = 60.0, 1.0, np.array([1.2, 0.4, 3.0])
+    snapshot = s.perspective((96, 80), focal, center=(30.0, 30.0), **options(executor))
+    cloud(snapshot, [place], radius, s.emission(snapshot))
+    distance = np.linalg.norm(place)
+    sin2, cos2 = (radius / distance) ** 2, (place[2] / distance) ** 2
+    axes = np.sqrt(sin2 * (1 - sin2)) / (cos2 - sin2), np.sqrt(sin2 / (cos2 - sin2))
+    area = np.pi * axes[0] * axes[1] * focal**2
+    alpha = s.alpha(snapshot)
+    # Some 150 pixels on the outline, each with a 64-sample error of .044 (64^-.75).
+    assert abs(alpha.sum() - area) <= 4 * 0.044 * np.sqrt(150)
+    inside = alpha[30:44, 44:64]
+    assert (inside == 1).all()
+
+
+def test_a_thousand_grids_of_one_micropolygon_are_one_large_one(executor):
+    """Case 59 and M5, bit by bit; slanted in depth, so that only coverage can be alike."""
+    pictures = []
+    for pieces in (1, 32):
+        snapshot = s.orthographic((40, 40), **options(executor, 16))
+        material = s.emission(snapshot, (1, 1, 1), 0.5)
+        points, faces = [], []
+        edges = 2.3 + 32.0 * np.arange(pieces + 1) / pieces
+        for y0, y1 in zip(edges, edges[1:]):
+            for x0, x1 in zip(edges, edges[1:]):
+                faces.append(tuple(range(len(points), len(points) + 4)))
+                points += [(x, y, 1 + x / 64) for x, y, _ in s.rectangle(x0, y0, x1, y1)]
+        s.mesh(snapshot, points, faces, material)
+        pictures.append(s.render(snapshot)["combined"])
+    assert np.array_equal(*pictures)
+    assert (pictures[0][4:33, 4:33, 3] == 0.5).all()
