@@ -76,6 +76,18 @@ void set_opaque(const TileStore& store, const Projection& projection, std::uint3
         colors.depth[first + i] = projection.depth_from_key(store.key[first + i]);
 }
 
+/// The samples of a run that see nothing.
+void set_empty(std::uint32_t first, std::uint32_t seen, const SampleColor& empty,
+               SampleColors& colors) {
+    const float values[] = {empty.color.x, empty.color.y, empty.color.z, empty.alpha, empty.depth};
+    std::vector<float>* const planes[] = {&colors.red, &colors.green, &colors.blue, &colors.alpha,
+                                          &colors.depth};
+    for (int k = 0; k < 5; ++k) {
+        float* const to = planes[k]->data() + first;
+        for (int i = 0; i < SurfaceRun::kCount; ++i) to[i] = seen >> i & 1u ? to[i] : values[k];
+    }
+}
+
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
 /// Composites the samples of one tile, in order.
@@ -194,15 +206,15 @@ void composite_tile(TileStore& store, const TileSamples& samples, const GridPool
         const bool points = has_channels || composite.has_fragments_before(first + kRun);
         surface.locate_run(first, &store.id[first], points, run);
         // Most samples of most pictures: one opaque surface and nothing else.
-        const std::uint32_t done = points ? 0u : run.plain & run.colored;
+        std::uint32_t done = points ? 0u : run.plain & run.colored;
         if (done != 0) set_opaque(store, settings.projection, first, run, colors);
+        if (constant && !points && run.seen != kAll) {
+            set_empty(first, run.seen, empty, colors);
+            done |= kAll & ~run.seen;
+        }
         for (std::uint32_t rest = kAll & ~done; rest != 0; rest &= rest - 1) {
             const int i = std::countr_zero(rest);
             const std::uint32_t sample = first + static_cast<std::uint32_t>(i);
-            if (constant && !points && store.id[sample] == kNoSurface) {
-                colors.set(sample, empty);
-                continue;
-            }
             SurfacePoint opaque;
             if (store.id[sample] != kNoSurface)
                 opaque = points && (run.plain >> i & 1u) ? run.point(i)

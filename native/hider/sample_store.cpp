@@ -1,27 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hider/sample_store.h"
 
-#include <algorithm>
-
 #include "base/check.h"
 
 namespace granita {
 
+SurfaceId GridPool::id_end() const {
+    if (m_grids.empty()) return 0;
+    return m_bases.back() + static_cast<SurfaceId>(m_grids.back()->micropolygon_count());
+}
+
 SurfaceId GridPool::add(const Grid& grid) {
-    const SurfaceId base =
-        m_grids.empty()
-            ? 0
-            : m_bases.back() + static_cast<SurfaceId>(m_grids.back()->micropolygon_count());
+    const SurfaceId base = id_end();
     GRANITA_CHECK(base < kNoSurface - static_cast<SurfaceId>(grid.micropolygon_count()));
+    const auto slot = static_cast<std::uint32_t>(m_grids.size());
     m_grids.push_back(&grid);
     m_bases.push_back(base);
+    const std::size_t end = base + static_cast<std::size_t>(grid.micropolygon_count());
+    m_pages.resize((end + kPage - 1) / kPage, slot);
     return base;
 }
 
 GridPool::Place GridPool::locate(SurfaceId id) const {
-    const auto after = std::upper_bound(m_bases.begin(), m_bases.end(), id);
-    GRANITA_DCHECK(after != m_bases.begin());
-    const auto slot = static_cast<std::uint32_t>(after - m_bases.begin() - 1);
+    GRANITA_DCHECK(id / kPage < m_pages.size());
+    std::uint32_t slot = m_pages[id / kPage];
+    while (slot + 1 < m_bases.size() && m_bases[slot + 1] <= id) ++slot;
     return {m_grids[slot], slot, static_cast<int>(id - m_bases[slot])};
 }
 

@@ -30,11 +30,16 @@ class GridPool {
     /// Whether a wins a tie against b: smaller (GridKey, micropolygon index).
     bool before(SurfaceId a, SurfaceId b) const;
     std::size_t size() const { return m_grids.size(); }
+    /// Ids are less than this.
+    SurfaceId id_end() const;
     const Grid& grid(std::uint32_t slot) const { return *m_grids[slot]; }
 
   private:
     std::vector<const Grid*> m_grids;
     std::vector<SurfaceId> m_bases;
+    /// Every sample asks, so there is no search: the grid of each kPage-th id.
+    static constexpr SurfaceId kPage = 8;
+    std::vector<std::uint32_t> m_pages;
 };
 
 struct Fragment {

@@ -168,7 +168,7 @@ SurfacePoint SurfaceInterpolator::locate(std::uint32_t sample, SurfaceId id) {
 
 void SurfaceInterpolator::locate_run(std::uint32_t first, const SurfaceId* ids, bool points,
                                      SurfaceRun& out) {
-    out.plain = out.colored = out.second = 0;
+    out.seen = out.plain = out.colored = out.second = 0;
     out.wants_points = points;
     locate_lanes(*this, m_samples, first, ids, out);
 }

@@ -43,6 +43,7 @@ struct SurfaceRecord {
 struct SurfaceRun {
     static constexpr int kCount = 16;
 
+    std::uint32_t seen = 0;     ///< see any surface
     std::uint32_t plain = 0;    ///< located here; the others that see anything need locate()
     std::uint32_t colored = 0;  ///< SurfaceRecord::colored
     alignas(64) float color[3][kCount] = {};  ///< of coloured ones; else anything

@@ -84,6 +84,7 @@ void locate(SurfaceInterpolator& surfaces, const TileSamples& samples, std::uint
         const auto id = hn::LoadU(kIdTag, ids + part);
         std::uint32_t pending =
             bits_of(hn::RebindMask(kTag, hn::Ne(id, hn::Set(kIdTag, kNoSurface))));
+        out.seen |= pending << part;
         while (pending != 0) {
             const int lane = __builtin_ctz(pending);
             const SurfaceRecord& surface =

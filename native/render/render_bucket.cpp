@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/render_bucket.h"
 
+#include <algorithm>
+
 #include "hider/composite.h"
 #include "hider/compute_hider.h"
 #include "render/background.h"
@@ -34,20 +36,19 @@ std::unique_ptr<Hider> make_hider(const Frame& frame, int bucket) {
 
 /// Slots (arrival order) of the grids that some sample has seen.
 std::vector<bool> seen_grids(const std::vector<TileStore>& stores, const GridPool& pool) {
-    std::vector<bool> seen(pool.size(), false);
-    // Neighbouring samples see neighbouring micropolygons: ask again only when the id leaves the
-    // last grid.
-    SurfaceId lo = 0, hi = 0;
-    const auto mark = [&](SurfaceId id) {
-        if (id == kNoSurface || (id >= lo && id < hi)) return;
-        const GridPool::Place place = pool.locate(id);
-        lo = id - static_cast<SurfaceId>(place.micropolygon);
-        hi = lo + static_cast<SurfaceId>(place.grid->micropolygon_count());
-        seen[place.slot] = true;
-    };
+    // A mark for each micropolygon, and one for nothing: no question a sample.
+    const SurfaceId end = pool.id_end();
+    std::vector<char> marks(static_cast<std::size_t>(end) + 1, 0);
     for (const TileStore& store : stores) {
-        for (const SurfaceId id : store.id) mark(id);
-        for (const Fragment& fragment : store.fragments) mark(fragment.id);
+        for (const SurfaceId id : store.id) marks[std::min(id, end)] = 1;
+        for (const Fragment& fragment : store.fragments) marks[fragment.id] = 1;
+    }
+    std::vector<bool> seen(pool.size(), false);
+    auto next = marks.begin();
+    for (std::uint32_t slot = 0; slot < pool.size(); ++slot) {
+        const auto first = next;
+        next += pool.grid(slot).micropolygon_count();
+        seen[slot] = std::find(first, next, 1) != next;
     }
     return seen;
 }
