@@ -62,6 +62,7 @@ def save(path, panels, x_label, y_label, columns=3):
     """Writes the panels with one legend; a curve's name has the same colour in all."""
     names = list(dict.fromkeys(name for panel in panels for name in panel.curves))
     colors = {name: COLORS[i % len(COLORS)] for i, name in enumerate(names)}
+    columns = min(columns, len(panels))
     rows = math.ceil(len(panels) / columns)
     width, height = columns * WIDTH, rows * HEIGHT + 24
     out = [

@@ -19,7 +19,7 @@ from test_against_cycles import load, srgb  # noqa: E402
 flip_evaluator = pytest.importorskip("flip_evaluator", reason="FLIP is installed by ./dev test")
 
 SAMPLES = 1024
-SCENES = ("bend", "camera", "snake", "instances")
+SCENES = ("bend", "camera", "snake", "instances", "morph", "alien")
 
 
 def picture(name, variant, folder):
