@@ -58,8 +58,10 @@ def points(count):
     }
 
 
-def scene(kind, count, threads, shadows):
-    snapshot = s.perspective((960, 540), focal=900, samples=16, threads=threads)
+def scene(kind, count, threads, shadows, scale=1.0):
+    snapshot = s.perspective(
+        (int(960 * scale), int(540 * scale)), focal=900 * scale, samples=16, threads=threads
+    )
     snapshot["options"].update(film_transparent=False)
     nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.4, 0.25, 0.1, 1)}}]
     snapshot["materials"].append({"name": "Hair", "nodes": nodes, "surface": (0, "BSDF")})
@@ -75,10 +77,17 @@ def main():
     parser.add_argument("--kind", choices=("CURVES", "POINTS"), default="CURVES")
     parser.add_argument("--count", type=int, default=1_000_000)
     parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--scale", type=float, default=1.0, help="1 = 960 by 540 pixels")
     parser.add_argument("--no-shadows", action="store_true")
     parser.add_argument("--out", help="write the picture as an .npy array")
     arguments = parser.parse_args()
-    snapshot = scene(arguments.kind, arguments.count, arguments.threads, not arguments.no_shadows)
+    snapshot = scene(
+        arguments.kind,
+        arguments.count,
+        arguments.threads,
+        not arguments.no_shadows,
+        arguments.scale,
+    )
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     start, cpu = time.perf_counter(), time.process_time()
     result = s.render(snapshot)
