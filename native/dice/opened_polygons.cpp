@@ -206,10 +206,12 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
     out.sv.resize(n);
     out.normal.resize(n);
     out.geometric_normal.resize(n);
+    Vec3d flat(0.0);
     for (std::size_t i = 0; i < n; ++i) {
         out.su[i] = Vec3f(blend(frame.p, weights[i].du));
         out.sv[i] = Vec3f(blend(frame.p, weights[i].dv));
-        const Vec3d flat = frame_orientation() * face_direction(frame, weights[i]);
+        if (i == 0 || patch.kind != PatchKind::Triangle)  // a triangle has one for all
+            flat = frame_orientation() * face_direction(frame, weights[i]);
         out.geometric_normal[i] = Vec3f(flat);
         out.normal[i] =
             interpolated ? Vec3f(unit_or(blend(normals, weights[i].w), flat)) : Vec3f(flat);
