@@ -2,6 +2,8 @@
 #include "hider/simd_kernel.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "hider/micropolygon_class.h"
@@ -45,6 +47,7 @@ HWY_INLINE void for_each_lane(M mask, Visit visit) {
     for (; bits != 0; bits &= bits - 1) visit(static_cast<int>(__builtin_ctz(bits)));
 }
 
+#include "hider/squeeze.inl"
 #include "hider/tile_bounds.inl"
 #include "hider/triangle_pair.inl"
 
@@ -188,9 +191,9 @@ class Kernel {
             }
             const M near = hn::And(hn::Le(hn::Abs(at.x - x), set(paths.x.reach[k])),
                                    hn::Le(hn::Abs(at.y - y), set(paths.y.reach[k])));
-            const auto add = [&](V value, float* to) HWY_ATTR {
-                hn::StoreU(hn::Compress(value, near), kTag, to + found);
-            };
+            const Squeeze squeeze(near);
+            const auto add = [&](V value, float* to)
+                                 HWY_ATTR { hn::StoreU(squeeze(value), kTag, to + found); };
             add(at.x, m_listed.x);
             add(at.y, m_listed.y);
             if constexpr (kMoving) add(at.t, m_listed.t);
@@ -199,9 +202,8 @@ class Kernel {
                 add(at.v, m_listed.v);
             }
             const auto slots = hn::LoadU(kIntTag, m_window) + hn::Set(kIntTag, slot);
-            hn::StoreU(hn::Compress(slots, hn::RebindMask(kIntTag, near)), kIntTag,
-                       m_listed.slot + found);
-            found += hn::CountTrue(kTag, near);
+            add(hn::BitCast(kTag, slots), m_listed.slot);
+            found += squeeze.count();
         }
         return found;
     }
@@ -222,11 +224,10 @@ class Kernel {
             V key;
             const M hit = test<kMoving, kLens>(shape, at, hn::FirstN(kTag, count - i), key);
             if (hn::AllFalse(kTag, hit)) continue;
-            hn::StoreU(hn::Compress(key, hit), kTag, m_hit_key + hits);
-            hn::StoreU(
-                hn::Compress(hn::LoadU(kIntTag, m_listed.slot + i), hn::RebindMask(kIntTag, hit)),
-                kIntTag, m_hit_slot + hits);
-            hits += hn::CountTrue(kTag, hit);
+            const Squeeze squeeze(hit);
+            hn::StoreU(squeeze(key), kTag, m_hit_key + hits);
+            hn::StoreU(squeeze(hn::LoadU(kTag, m_listed.slot + i)), kTag, m_hit_slot + hits);
+            hits += squeeze.count();
         }
         record_hits(hits);
     }
@@ -395,7 +396,7 @@ class Kernel {
     HWY_INLINE void record_hits(std::size_t count) {
         m_counts.hits += count;
         for (std::size_t i = 0; i < count; ++i) {
-            const int slot = m_hit_slot[i];
+            const int slot = std::bit_cast<int>(m_hit_slot[i]);
             const float key = m_hit_key[i];
             float& stored = m_tile.key[slot];
             if (key < stored) continue;
@@ -425,11 +426,11 @@ class Kernel {
     SurfaceId m_tied[2] = {kNoSurface, kNoSurface};  ///< the last two to settle
     bool m_wins_tie = false;
     struct {
-        alignas(64) float x[kListed], y[kListed], t[kListed], u[kListed], v[kListed];
-        alignas(64) int slot[kListed];
-    } m_listed;  ///< samples to be tested
+        alignas(64) float x[kListed], y[kListed], t[kListed], u[kListed], v[kListed],
+            slot[kListed];  ///< slot: bits of an int
+    } m_listed;             ///< samples to be tested
     float m_hit_key[kListed];
-    int m_hit_slot[kListed];
+    float m_hit_slot[kListed];          ///< bits of an int
     alignas(64) int m_window[kPacket];  ///< slots of a vector's rows from the first
 };
 

@@ -39,6 +39,41 @@ TEST_P(ExecutorsAgree, SampleBySample) {
     EXPECT_GT(fragments, static_cast<std::size_t>(compared) / 4);
 }
 
+TEST_P(ExecutorsAgree, FastAndThroughTheEye) {
+    // Paths of a hundred pixels and more, bent by perspective: the depth grows fourfold, shrinks to
+    // a quarter, or passes the eye.
+    const bool lens = GetParam() == kLens || GetParam() == kBoth;
+    for (const auto& [z0, z1] : {std::pair{4.0f, 16.0f}, {12.0f, 3.0f}, {5.0f, -1.0f}}) {
+        Shot shot;
+        shot.options.samples = 64;
+        shot.tiles = {0, 0, 2, 2};
+        shot.camera = pinhole_camera(120);
+        shot.camera.projection.lens_radius = lens ? .1 : 0;
+        shot.camera.projection.focus = 7;
+        const int knots = GetParam() == kMoving || GetParam() == kBoth ? 2 : 1;
+        for (int g = 0; g < 3; ++g)
+            shot.grids.push_back(make_grid(9, 9, knots, [&](float u, float v, int k) {
+                const float z = k ? z1 : z0;
+                return Vec3f(2 * u - 2.5f + g + 1.5f * static_cast<float>(k), 2 * v - 1.2f,
+                             z + u * (g - 1) + v);
+            }));
+        const Seen a = look(make_reference_hider, shot, shot.tiles);
+        const Seen b = look(make_simd_hider, shot, shot.tiles);
+        const auto [compared, other_surface, other_fragments, unexplained, far_keys] =
+            compare(shot, a, b);
+        EXPECT_EQ(unexplained, 0) << z0;
+        // At the eye a depth is a difference of depths: an ulp of those is many of its own.
+        if (z1 > 0) {
+            EXPECT_EQ(far_keys, 0) << z0;
+        }
+        EXPECT_LT(other_surface, compared * 4.0 * 8 / 2048) << z0;
+        std::size_t hits = 0;
+        for (const TileStore& store : b.stores)
+            for (const SurfaceId id : store.id) hits += id != kNoSurface;
+        EXPECT_GT(hits, static_cast<std::size_t>(compared) / 20) << z0;
+    }
+}
+
 TEST_P(ExecutorsAgree, AllSimdTargetsMakeTheSameBits) {
     Shot shot;
     make_busy(shot, GetParam(), 8);
@@ -46,16 +81,19 @@ TEST_P(ExecutorsAgree, AllSimdTargetsMakeTheSameBits) {
     const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
     ASSERT_FALSE(targets.empty());
     std::vector<Seen> seen;
+    std::vector<Picture> pictures;
     for (const std::int64_t target : targets) {
         hwy::SetSupportedTargetsForTest(target);
         hwy::GetChosenTarget().Update(hwy::SupportedTargets());
         seen.push_back(look(make_simd_hider, shot, shot.tiles));
+        pictures.push_back(render(make_simd_hider, shot));
     }
     hwy::SetSupportedTargetsForTest(0);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     for (std::size_t target = 1; target < seen.size(); ++target)
         for (std::size_t i = 0; i < seen[0].stores.size(); ++i)
             expect_equal(seen[0].stores[i], seen[target].stores[i]);
+    for (const Picture& picture : pictures) EXPECT_EQ(picture.combined, pictures[0].combined);
     RecordProperty("targets", static_cast<int>(targets.size()));
 }
 
