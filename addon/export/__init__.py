@@ -9,19 +9,22 @@ All of it is copied: no reference to anything of Blender's is kept after `export
 
 import numpy as np
 
+from .blur_settings import blurs
 from .camera import camera_record
 from .changes import originals
 from .frame_scene import FrameScene
 from .instance import place
 from .motion import sample_motion
+from .neighbours import read_neighbours
 from .options import options_record, scene_frame
 from .path import no_tracks
 from .persistent import Kept
+from .placed import read_placed
 from .report import Cancelled, ExportError, Report
 from .shutter import Clock, scene_shutter
 from .snapshot import Snapshot
 from .transforms import is_finite
-from .velocity import moved_points
+from .velocity import flying_points
 
 __all__ = ["Cancelled", "ExportError", "Kept", "Report", "export_frame"]
 
@@ -47,8 +50,9 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         Cancelled, or what check_cancel raises.
     """
     scene, view_layer = depsgraph.scene, depsgraph.view_layer
-    kept = kept if kept is not None else Kept()
-    clock = Clock(engine, scene, lambda: kept.note(depsgraph))
+    clock = Clock(engine, scene)
+    if kept is not None:
+        clock.after = lambda: kept.note(depsgraph)
     frame = scene_frame(scene.render)
     shutter = scene_shutter(scene, settings)
     options = options_record(scene, view_layer, settings, frame, shutter.frame_time)
@@ -56,13 +60,17 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
     camera = _render_camera(engine, scene)
     camera_at_frame = camera_record(camera, frame, depsgraph, report)
 
-    placed = kept.placed(depsgraph, report, check_cancel)
+    if kept is not None:
+        placed = kept.placed(depsgraph, report, check_cancel)
+    else:
+        placed = read_placed(depsgraph, None, report, check_cancel)
     world, lights, images = _lighting(depsgraph, placed, report)
     placed.choose(report)
     scan, sources = placed.scan, placed.sources
     at_frame = FrameScene(
         depsgraph=depsgraph,
         camera=camera,
+        camera_blurs=blurs(camera),
         camera_record=camera_at_frame,
         frame=frame,
         visit=scan,
@@ -70,21 +78,32 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         sources=sources,
         geometry_of_kind=placed.table.geometry,
         is_light=placed.is_light,
+        energies={thing: light["energy"] for thing, light in lights},
     )
-    tracks, points = no_tracks(), {}
+    fps = scene.render.fps / scene.render.fps_base
+    tracks, points, neighbours = no_tracks(), {}, {}
     if shutter.segments:
         motion = sample_motion(clock, shutter, at_frame, report, check_cancel)
         camera_at_frame["world_from_camera"] = motion.camera
         tracks, points = motion.tracks, motion.points
-        points.update(_flying(sources, shutter, scene.render))
+        for thing, light in lights:
+            if thing in motion.energies:
+                light["energy_knots"] = motion.energies[thing]
+        points.update(flying_points(sources, shutter, fps))
     _place_lights(lights, scan, tracks, report)
     instances = place(placed.instances, scan, placed.chosen, tracks, report)
-    kept.keep(placed)
+    if view_layer.use_pass_vector:
+        found = read_neighbours(clock, at_frame, fps, report, check_cancel)
+        camera_at_frame["neighbours"] = found.camera
+        instances = found.instances(instances, scan, placed.chosen)
+        neighbours = found.points
+    if kept is not None:
+        kept.keep(placed)
     return Snapshot(
         options=options,
         camera=camera_at_frame,
         geometries=[
-            source.moved(points[index]) if index in points else source.geometry
+            source.exported(points.get(index), neighbours.get(index))
             for index, source in enumerate(sources)
         ],
         instances=instances,
@@ -119,17 +138,6 @@ def _lighting(depsgraph, placed, report):
         lamp = everything[address].evaluated_get(depsgraph)
         lights.append((thing, light_record(lamp, no_place, report)))
     return world, lights, images
-
-
-def _flying(sources, shutter, render):
-    """{geometry index: float32 [2, V, 3]} of those whose points say their velocity."""
-    return {
-        index: moved_points(
-            source.geometry.points[0], source.velocity, shutter, render.fps / render.fps_base
-        )
-        for index, source in enumerate(sources)
-        if source.velocity is not None and source.velocity.any()
-    }
 
 
 def _place_lights(lights, scan, tracks, report):

@@ -29,6 +29,7 @@ class Plain:
 
     def __init__(self, scan):
         self.names = object_names()
+        self.seen = {kind.name for kind in scan.kinds} & set(self.names)
         first = np.full(len(scan.kinds), -1)
         first[scan.kind[::-1]] = np.arange(len(scan.kind))[::-1]
         many = np.bincount(scan.kind, minlength=len(scan.kinds)) != 1
@@ -39,6 +40,11 @@ class Plain:
             if many[index] or scan.is_instance[first[index]] or kind.address in self.thing:
                 self.entangled.add(kind.address)
             self.thing[kind.address] = int(first[index])
+
+    def gone(self):
+        """Names of what is not there any more by that name: handlers of other add-ons delete and rename."""
+        here = object_names()
+        return [] if here == self.names else sorted(self.seen - set(here))
 
     def changes(self, depsgraph):
         """Changes of the last step, or None where only a walk can tell."""
@@ -123,6 +129,14 @@ def moved(depsgraph):
     return any(
         update.is_updated_transform or update.is_updated_geometry for update in depsgraph.updates
     )
+
+
+def lights_changed(depsgraph):
+    """Whether the last step touched any light or nodes."""
+    import bpy
+
+    kinds = (bpy.types.Light, bpy.types.NodeTree)
+    return any(isinstance(update.id, kinds) for update in depsgraph.updates)
 
 
 def changed_geometry(depsgraph):

@@ -23,6 +23,7 @@ from .hair import hair_material, hair_systems
 from .identity import combine, name_hash
 from .kind import Kind
 from .report import poll
+from .simulations import troubles, unbaked
 from .subdivision import find_cage, simplify_level
 from .transforms import has_area
 
@@ -231,5 +232,9 @@ class _Walk:
         kind.parent_address = owners[1].original.as_pointer() if kind.parent is not None else 0
         kind.blurs = all(blurs(owner) for owner in owners)
         kind.fewest_segments = fewest_segments(kind.source)
+        kind.unbaked = tuple((owner.name, name) for owner in owners for name in unbaked(owner))
+        for owner in owners:
+            for trouble in troubles(owner):
+                self._report(f"object '{owner.name}'", trouble)
         if kind.type not in {"HAIR", "LIGHT"} and kind.source.is_shadow_catcher:
             self._report(f"object '{kind.name}'", "is a shadow catcher: rendered as it stands")

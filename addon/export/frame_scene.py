@@ -5,14 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .changes import Plain
+from .changes import Plain, originals
 from .depsgraph import Visit
 
 
 @dataclass
 class FrameScene:
     depsgraph: object  # evaluated
-    camera: object  # original Object
+    camera: object  # original Object; a handler may delete it when time is moved
+    camera_blurs: bool
     camera_record: dict  # camera.camera_record at the frame
     frame: object  # camera.Frame
     visit: Visit
@@ -20,7 +21,28 @@ class FrameScene:
     sources: list  # of geometry.GeometrySource
     geometry_of_kind: np.ndarray  # int32 [kinds], -1 = none
     is_light: np.ndarray  # bool [kinds]
+    energies: dict  # thing of the visit that shines -> the light's energy
     _bounds: tuple = None
+
+    def energies_now(self, before):
+        """`energies` at the depsgraph's time; `before` serves what a handler has deleted."""
+        from .light import light_record
+
+        def silent(_datablock, _message):
+            """What there is to say was said at the frame."""
+
+        everything = originals()
+        found = dict(before)
+        for thing in before:
+            lamp = everything.get(self.visit.kinds[self.visit.kind[thing]].address)
+            if lamp is not None:
+                record = light_record(lamp.evaluated_get(self.depsgraph), None, silent)
+                found[thing] = record["energy"]
+        return found
+
+    def cages(self):
+        """{address of an original Object: subdivision.Cage}."""
+        return {kind.address: kind.cage for kind in self.visit.kinds if kind.cage is not None}
 
     def things_of(self, geometry):
         """int [m], indices in the visit."""

@@ -40,8 +40,15 @@ class GeometrySource:
             return points
         return np.hstack([points, self.geometry.radius[0][:, None]])
 
-    def moved(self, knots):
-        """The Geometry with float32 [K, V, 3 or 4] of `points_again`."""
+    def exported(self, knots, neighbours):
+        """The Geometry with float32 [K, V, 3 or 4] and [2, V, 3 or 4] of `points_again`; None: no others than
+        at the frame."""
+        geometry = self.geometry if knots is None else self._moved(knots)
+        if neighbours is None:
+            return geometry
+        return replace(geometry, neighbours=np.ascontiguousarray(neighbours[..., :3]))
+
+    def _moved(self, knots):
         if knots.shape[2] == 3:
             return replace(self.geometry, points=knots)
         points, radius = split_radii(knots)

@@ -27,6 +27,7 @@ class Kind:
     parent_address: int = 0  # of what instances it; 0 = nothing
     blurs: bool = True
     fewest_segments: int = 1
+    unbaked: tuple = ()  # of simulations.unbaked: (object's name, simulation)
 
     @property
     def label(self):

@@ -10,10 +10,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .blur_settings import blurs, fewest_segments
-from .path import Tracks, bends_still, finer_level, keep_fewest, no_tracks
+from .blur_settings import fewest_segments
+from .path import MAX_BEND_PIXELS, Tracks, bends_still, finer_level, keep_fewest, no_tracks
 from .pixels import PixelScale
 from .report import poll
+from .simulations import unbaked_rigid_bodies
 from .steps import Steps
 from .subdivision import cages_only
 
@@ -25,6 +26,7 @@ class Motion:
     camera: np.ndarray  # float64 [K, 4, 4]
     tracks: Tracks = field(default_factory=no_tracks)
     points: dict = field(default_factory=dict)  # geometry index -> float32 [K, V, 3]
+    energies: dict = field(default_factory=dict)  # thing that shines -> float32 [K]
 
 
 def sample_motion(clock, shutter, scene, report, check_cancel):
@@ -40,6 +42,7 @@ def sample_motion(clock, shutter, scene, report, check_cancel):
     Returns:
         Motion.
     """
+    _report_unbaked(scene, report)
     wanted = _wanted_segments(scene)
     ticks = max(shutter.segments, wanted)
     steps = Steps(scene, round(shutter.frame_time * ticks), report, check_cancel)
@@ -51,8 +54,7 @@ def sample_motion(clock, shutter, scene, report, check_cancel):
                 clock.go(shutter.offset(tick, ticks))
                 steps.read(tick, clock.knows_updates)
 
-    cages = {kind.address: kind.cage for kind in scene.visit.kinds if kind.cage is not None}
-    with cages_only(cages, scene.depsgraph):
+    with cages_only(scene.cages(), scene.depsgraph):
         try:
             level = _first_level(ticks)
             read(range(0, ticks + 1, ticks // level))
@@ -64,10 +66,21 @@ def sample_motion(clock, shutter, scene, report, check_cancel):
             clock.go(0.0)
     if steps.focus_moves:
         report(
-            f"camera '{scene.camera.name}'",
+            f"camera '{scene.camera_record['name']}'",
             "its focus or f-stop changes within the shutter: taken at the frame",
         )
     return _result(scene, steps, ticks, level)
+
+
+def _report_unbaked(scene, report):
+    entries = {entry for kind in scene.visit.kinds for entry in kind.unbaked}
+    for name, simulation in sorted(entries):
+        report(
+            f"object '{name}'", f"its simulation '{simulation}' is not baked: its blur may be wrong"
+        )
+    if unbaked_rigid_bodies(scene.depsgraph.scene):
+        name = scene.depsgraph.scene.name
+        report(f"scene '{name}'", "its rigid bodies are not baked: their blur may be wrong")
 
 
 def _wanted_segments(scene):
@@ -84,7 +97,7 @@ def _first_level(ticks):
 
 
 def _paths(scene, steps):
-    """(key, path, checks) of the camera, of places, of deformations.
+    """(key, path, checks) of the camera, of places, of deformations, of the strength of lights.
 
     `path` is what is exported, {tick: array [m, ...]}.  `checks` are [(path, measure in pixels)] of what
     has to be straight.  Native code draws straight lines in camera space between the knots of camera
@@ -94,7 +107,7 @@ def _paths(scene, steps):
     scale = PixelScale(scene, steps.cameras)
     cameras = {tick: steps.cameras[tick][None] for tick in sorted(steps.cameras)}
     at_frame = steps.cameras[steps.frame_tick]
-    moves = blurs(scene.camera) and any((camera != at_frame).any() for camera in cameras.values())
+    moves = scene.camera_blurs and any((camera != at_frame).any() for camera in cameras.values())
     if moves:
         views = {tick: scale.views[tick][None] for tick in cameras}
         yield "CAMERA", cameras, [(cameras, scale.camera()), (views, scale.view())]
@@ -107,6 +120,15 @@ def _paths(scene, steps):
         yield things, places, checks
     for index, path in steps.points().items():
         yield index, path, [(path, scale.points(index))]
+    for thing, path in steps.energies().items():
+        yield ("ENERGY", int(thing)), path, [(path, _share_of(path))]
+
+
+def _share_of(path):
+    """measure([1]) of energies, for the same bound: a 256th of the largest is as bad as a 32nd of a
+    pixel."""
+    largest = max(abs(float(energy[0])) for energy in path.values())
+    return lambda difference: np.abs(difference) / largest * 256.0 * MAX_BEND_PIXELS
 
 
 def _bends(scene, steps, stride):
@@ -129,6 +151,8 @@ def _result(scene, steps, ticks, level):
         knots = np.stack([path[t] for t in range(0, ticks + 1, ticks // int(segments[0]))])
         if isinstance(key, str):
             motion.camera = knots[:, 0]
+        elif isinstance(key, tuple):
+            motion.energies[key[1]] = knots[:, 0].astype(np.float32)
         else:
             motion.points[key] = knots
     return motion

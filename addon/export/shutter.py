@@ -76,11 +76,10 @@ def rolling_shutter(scene):
 class Clock:
     """Moves Blender's time.  Inside a render the engine does it; in a script, the scene."""
 
-    def __init__(self, engine, scene, after=lambda: None):
-        """`after` is called after every step."""
+    def __init__(self, engine, scene):
         self._step = engine.frame_set if engine is not None else self._scene_step
         self._scene = scene
-        self._after = after
+        self.after = lambda: None  # called after every step
         # Read back after a step to a negative time, frame and subframe are no longer floor and
         # remainder: their sum is always right.
         self.start = scene.frame_current + scene.frame_subframe
@@ -90,7 +89,7 @@ class Clock:
     def go(self, offset):
         """To `offset` frames after the start; `frame_set` wants a subframe in [0, 1)."""
         self._step(*split_time(self.start + offset))
-        self._after()
+        self.after()
 
     def _scene_step(self, frame, subframe):
         self._scene.frame_set(frame, subframe=subframe)

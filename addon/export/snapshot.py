@@ -33,6 +33,9 @@ class Geometry:
 
     name: str  # "mesh 'Cube'"
     points: np.ndarray  # float32 [K, V, 3], object space, metres
+    neighbours: Optional[np.ndarray] = (
+        None  # float32 [2, V, 3], of the frame before and the one after
+    )
     face_sizes: Optional[np.ndarray] = None  # int32 [F], corners a face, at least 3
     corner_verts: Optional[np.ndarray] = None  # int32 [C]
     material_index: Optional[np.ndarray] = None  # int32 [F]; None = all 0
@@ -64,6 +67,7 @@ class Instances:
     object_index: np.ndarray  # int32 [n], the pass index
     random: np.ndarray  # float32 [n], 0 to 1
     key: np.ndarray  # uint32 [n], unique; from the persistent identity
+    neighbours: Optional[np.ndarray] = None  # float64 [2 n, 4, 4], as of geometries
 
 
 @dataclass

@@ -4,7 +4,7 @@
 import numpy as np
 
 from .camera import camera_knot, lens_state
-from .changes import changed_geometry, moved
+from .changes import changed_geometry, lights_changed, moved
 from .depsgraph import visit
 from .report import poll
 from .subdivision import cage_mesh
@@ -17,7 +17,6 @@ class Steps:
     Attributes:
         ticks: list of int, in the order in which they were read; the frame's is the first.
         cameras: {tick: float64 [4, 4]}.
-        points: {geometry index: {tick: float32 [V, 3 or 4]}} of what deforms.
         focus_moves: whether lens or focus are another at any tick.
     """
 
@@ -29,6 +28,7 @@ class Steps:
         can_blur = np.array([kind.blurs for kind in scene.visit.kinds], dtype=bool)
         self._can_blur = scene.is_seen() & can_blur[scene.visit.kind]
         self._changed = set()  # addresses of datablocks
+        self._lost = set()  # names of what a handler took away
         self._rigid = set()  # geometries whose topology changed
         # As things were at the last time that was visited.
         self._now = scene.visit.matrices.copy()
@@ -40,14 +40,17 @@ class Steps:
         self.cameras = {frame_tick: scene.camera_record["world_from_camera"][0]}
         self._records = {}  # tick -> (things, present, matrices)
         self._point_records = {frame_tick: {}}  # tick -> {geometry: points, None = not there}
+        self._energies = {frame_tick: scene.energies}
         self._lens = lens_state(scene.camera, scene.depsgraph)
         self.focus_moves = False
 
     def read(self, tick, knows_updates):
         """Reads the scene, which stands at the tick's time."""
         poll(self._check_cancel)
+        self._report_gone()
         self.ticks.append(tick)
         self._read_camera(tick)  # what its lens does is no change of place or geometry
+        self._read_energies(tick, knows_updates)
         if not knows_updates or moved(self._scene.depsgraph):
             changes = self._plain.changes(self._scene.depsgraph) if knows_updates else None
             if knows_updates:
@@ -60,6 +63,15 @@ class Steps:
         self._records[tick] = (things, self._present[things], self._now[things])
         self._point_records[tick] = dict(self._last_points)
 
+    def _report_gone(self):
+        for name in self._plain.gone():
+            self._lose(f"object '{name}'", "deleted or renamed")
+
+    def _lose(self, datablock, how):
+        if datablock not in self._lost:
+            self._lost.add(datablock)
+            self._report(datablock, f"was {how} while the frame was read: it stays as it was")
+
     def _read_camera(self, tick):
         scene = self._scene
         try:
@@ -67,7 +79,14 @@ class Steps:
             self.focus_moves |= lens_state(scene.camera, scene.depsgraph) != self._lens
         except ReferenceError:  # a handler of another add-on deleted it
             knot = None
+            self._lose(f"camera '{scene.camera_record['name']}'", "deleted")
         self.cameras[tick] = self.cameras[self.ticks[-2]] if knot is None else knot
+
+    def _read_energies(self, tick, knows_updates):
+        energies = self._energies[self.ticks[-2]]
+        if energies and (not knows_updates or lights_changed(self._scene.depsgraph)):
+            energies = self._scene.energies_now(energies)
+        self._energies[tick] = energies
 
     def _take(self, changes):
         for thing, matrix in changes.places.items():
@@ -142,6 +161,18 @@ class Steps:
         for matrices in path.values():
             moves |= (matrices != at_frame).any(axis=(1, 2))
         return things[moves], {tick: path[tick][moves] for tick in sorted(path)}
+
+    def energies(self):
+        """{thing: {tick: float64 [1]}} of lights whose strength changes."""
+        paths = {
+            thing: {tick: np.array([self._energies[tick][thing]]) for tick in sorted(self.ticks)}
+            for thing in self._scene.energies
+        }
+        return {
+            thing: path
+            for thing, path in paths.items()
+            if np.ptp(np.stack(list(path.values()))) > 0.0
+        }
 
     def points(self):
         """{geometry index: {tick: float32 [V, 3 or 4]}} of what deforms."""

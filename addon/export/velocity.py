@@ -42,6 +42,15 @@ def read_velocity(mesh, label, report):
     return velocity
 
 
+def flying_points(sources, shutter, frames_per_second):
+    """{geometry index: float32 [2, V, 3]} of the GeometrySources whose points say their velocity."""
+    return {
+        index: moved_points(source.geometry.points[0], source.velocity, shutter, frames_per_second)
+        for index, source in enumerate(sources)
+        if source.velocity is not None and source.velocity.any()
+    }
+
+
 def moved_points(points, velocity, shutter, frames_per_second):
     """float32 [2, V, 3]: where points are when the shutter opens and when it closes.
 

@@ -1,31 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is seen of whole scenes, against Cycles: lenses, cages, instances, motion.
-
-Only coverage (alpha) is compared, in blocks of 8 by 8 pixels.  Both renderers take 64 samples a
-pixel; where every pixel of a block is half covered, a block's mean is off by .5 / 64 = .008, the
-difference of two by .011, if samples were independent (stratified ones do better).
-"""
+"""What is seen of whole scenes, against Cycles (cycles_coverage): lenses, cages, instances, motion."""
 
 import math
 
 import bpy
-import numpy as np
 import pytest
 import scene_parts
-from motion_parts import drive, set_position, shape_key
-
-SAMPLES = 64
-BLOCK = 8
-LIMIT = 0.011
-
-
-def coverage(scene, render, engine):
-    """float32 [blocks up, blocks across]: mean alpha."""
-    scene.render.engine = engine
-    passes = render(scene, engine)
-    alpha = next(values for key, values in passes.items() if key.endswith("Combined.A"))
-    height, width = alpha.shape
-    return alpha.reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK).mean(axis=(1, 3))
+from cycles_coverage import blurred, expect_coverage_of_cycles
+from motion_parts import drive, shape_key
 
 
 def monkey(size):
@@ -138,30 +120,6 @@ def held_out(scene):
     ],
 )
 def test_coverage_is_that_of_cycles(scene, render, build):
-    scene.render.film_transparent = True
-    scene.render.use_motion_blur = True
-    scene.render.motion_blur_shutter = 1.0
-    set_position(scene, "CENTER")
-    scene.frame_set(10)
+    blurred(scene)
     build(scene)
-    # Cycles places knots at 2^steps + 1 times; as many are ours.
-    for thing in scene.objects:
-        thing.cycles.motion_steps = 3
-    scene.granita.motion_steps = 9
-    scene.granita.samples = SAMPLES
-    scene.granita.pixel_filter, scene.granita.filter_width = "BOX", 1.0
-    scene.cycles.samples = SAMPLES
-    scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
-    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 1.0
-    ours, theirs = coverage(scene, render, "GRANITA"), coverage(scene, render, "CYCLES")
-    print(
-        "RMS",
-        build.__name__,
-        np.sqrt(((ours - theirs) ** 2).mean()),
-        abs(ours - theirs).max(),
-        ours.mean(),
-    )
-    assert 0.02 < ours.mean() < 0.98
-    difference = ours - theirs
-    assert np.sqrt((difference**2).mean()) < LIMIT, difference.round(3)
-    assert abs(difference).max() < 4 * LIMIT, difference.round(3)
+    expect_coverage_of_cycles(scene, render)

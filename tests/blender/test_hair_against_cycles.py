@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Curves, hair and points: what is seen of them, against Cycles with ribbons.
 
-Coverage in blocks of 8 by 8 pixels, as in test_export_against_cycles.py, where the limits come from.
+Coverage in blocks of 8 by 8 pixels (cycles_coverage, where the limits come from).
 """
 
 import math
@@ -10,9 +10,9 @@ import bpy
 import numpy as np
 import pytest
 import scene_parts
+from cycles_coverage import LIMIT, SAMPLES, coverage
 from hair_parts import furry, grid_points, spiral_curves
 from motion_parts import drive, set_position
-from test_export_against_cycles import LIMIT, SAMPLES, coverage
 
 
 def curves(scene):

@@ -10,7 +10,7 @@ import scene_parts
 from export_probe import frame_by_frame
 from motion_parts import drive, on_every_step, shape_key, with_shutter
 
-from granita.export import persistent
+from granita.export import geometry, persistent
 
 FRAMES = (10, 11, 12)
 
@@ -321,15 +321,13 @@ def test_what_stands_alone_needs_no_walk(anew, change, monkeypatch):
 def test_what_nothing_touched_is_not_read_again(anew, monkeypatch):
     """Where the scene is walked anew: of three geometries, the one that deforms."""
     read = []
-    mesh = persistent.read_placed.__globals__["read_geometries"].__globals__["read_geometry"]
+    mesh = geometry.read_geometry
 
     def counted(data, label, *rest):
         read.append(label)
         return mesh(data, label, *rest)
 
-    monkeypatch.setitem(
-        persistent.read_placed.__globals__["read_geometries"].__globals__, "read_geometry", counted
-    )
+    monkeypatch.setattr(geometry, "read_geometry", counted)
 
     def change(scene, square):
         instances_that_move(scene, scene_parts.add_square(scene, "Leaf"))
@@ -359,7 +357,20 @@ def test_a_static_crowd_costs_little_in_the_second_frame(scene):
     assert min(seconds[1:]) <= 0.05 * seconds[0]
 
 
-def test_pictures_of_an_animation_are_those_without_it(blend, tmp_path):
+OTHER_LAYER = """
+part = bpy.data.collections.new("Part")
+scene.collection.children.link(part)
+for name in ("Left", "Right"):
+    thing = bpy.data.objects.new(name, square.data)
+    thing.location.x = -1.5 if name == "Left" else 1.5
+    part.objects.link(thing)
+thing.driver_add("location", 1).driver.expression = "frame / 9"
+scene.view_layers.new("Other").layer_collection.children["Part"].exclude = True
+"""
+
+
+@pytest.mark.parametrize("more", ["", OTHER_LAYER], ids=["one layer", "two layers"])
+def test_pictures_of_an_animation_are_those_without_it(blend, tmp_path, more):
     prepare = """
 import bpy
 scene = bpy.context.scene
@@ -371,11 +382,12 @@ lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "SUN"))
 scene.collection.objects.link(lamp)
 """
     with_it, without = (
-        render_host.run(blend, tmp_path / str(on), prepare.format(on), first=3, last=5)
+        render_host.run(blend, tmp_path / str(on), prepare.format(on) + more, first=3, last=5)
         for on in (True, False)
     )
     assert with_it.code == without.code == 0, with_it.output
     assert len(with_it.files) == len(without.files) == 3
     for file, expected in zip(with_it.files, without.files):
         pixels, truth = exr.read(file), exr.read(expected)
+        assert len(truth) == (8 if more else 4)
         assert all(np.array_equal(pixels[name], truth[name]) for name in truth)
