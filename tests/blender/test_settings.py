@@ -15,6 +15,8 @@ DEFAULTS = {
     "filter_width": 1.5,
     "dicing_rate": 1.0,
     "shading_rate": 0.0,
+    "motion_factor": 1.0,
+    "focus_factor": 1.0,
     "grid_size": 256,
     "bucket_size": 64,
     "z_batch_size": 26,
