@@ -2,7 +2,6 @@
 #include "hider/time_slabs.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "dice/raster_bound.h"
 
@@ -11,15 +10,17 @@ namespace {
 
 constexpr int kLeastSlabs = 8;
 
-/// Box of the finite vertices at a part of the segment from `knot` on.
-Bounds3f box_at(const Grid& grid, int knot, float part) {
-    const Vec3f* const begin = grid.positions.data() + knot * grid.vertex_count();
-    const Vec3f* const end = begin + grid.vertex_count();
+Bounds3f box_at(const Grid& grid, int knot) {
+    const Vec3f* const points = grid.positions.data() + knot * grid.vertex_count();
     Bounds3f box;
     for (int v = 0; v < grid.vertex_count(); ++v)
-        if (is_finite(begin[v]) && is_finite(end[v]))
-            box.add(begin[v] + part * (end[v] - begin[v]));
+        if (is_finite(points[v])) box.add(points[v]);
     return box;
+}
+
+/// Positions move linearly between knots, so the box between their boxes holds them.
+Bounds3f mix(const Bounds3f& a, const Bounds3f& b, float part) {
+    return {a.lo + part * (b.lo - a.lo), a.hi + part * (b.hi - a.hi)};
 }
 
 }  // namespace
@@ -27,30 +28,30 @@ Bounds3f box_at(const Grid& grid, int knot, float part) {
 std::vector<TimeSlab> time_slabs(const Grid& grid, const Projection& projection) {
     const int segments = grid.knots - 1;
     const int parts = (kLeastSlabs + segments - 1) / segments;
+    const auto count = static_cast<float>(segments * parts);
     std::vector<TimeSlab> slabs;
-    Bounds3f begin = box_at(grid, 0, 0.0f);
-    for (int segment = 0; segment < segments; ++segment)
+    Bounds3f begin = box_at(grid, 0);
+    for (int segment = 0; segment < segments; ++segment) {
+        const Bounds3f end = box_at(grid, segment + 1);
         for (int part = 0; part < parts; ++part) {
-            const auto time = [&](int p) {
-                return static_cast<float>(segment * parts + p) /
-                       static_cast<float>(segments * parts);
-            };
-            const auto fraction = [&](int p) {
-                return static_cast<float>(p) / static_cast<float>(parts);
-            };
-            // At the end of the part; it begins where the last one ended.
-            const Bounds3f end = box_at(grid, segment, fraction(part + 1));
-            Bounds3f box = std::exchange(begin, end);
-            box.add(end);
             RasterBounds bounds;
-            if (!box.empty()) {
+            if (!begin.empty() && !end.empty()) {
+                const auto fraction = [&](int p) {
+                    return static_cast<float>(p) / static_cast<float>(parts);
+                };
+                Bounds3f box = mix(begin, end, fraction(part));
+                box.add(mix(begin, end, fraction(part + 1)));
                 // More than single precision moves anything.
                 const Vec3f largest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
                 box.grow(4e-6f * std::max({largest.x, largest.y, largest.z}));
                 bounds = raster_bound(projection, box);
             }
-            slabs.push_back({time(part), time(part + 1), bounds});
+            const int first = segment * parts + part;
+            slabs.push_back(
+                {static_cast<float>(first) / count, static_cast<float>(first + 1) / count, bounds});
         }
+        begin = end;
+    }
     return slabs;
 }
 
