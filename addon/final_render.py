@@ -9,7 +9,7 @@ from time import perf_counter
 
 from . import bridge, passes
 from .export import export_frame
-from .export.report import Cancelled, Report
+from .export.report import Cancelled, Report, lines
 from .properties import TILE_PIXELS
 from .status_line import StatusLine
 
@@ -112,6 +112,5 @@ class FinalRender:
             passes.deliver(self.engine, tile, self.passes, self.layer, origin)
 
     def _tell(self, warnings):
-        for datablock, message, count in warnings:
-            times = f" ({count} times)" if count > 1 else ""
-            self.engine.report({"WARNING"}, f"{datablock}: {message}{times}")
+        for line in lines(warnings):
+            self.engine.report({"WARNING"}, line)

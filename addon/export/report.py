@@ -54,3 +54,29 @@ class Report:
 
     def __len__(self):
         return len(self._counts)
+
+
+NAMED = 3  # datablocks that one line names
+
+
+def lines(entries):
+    """One line for each message, however many datablocks it is about.
+
+    Args:
+        entries: [(datablock, message, times met)].
+
+    Returns:
+        ["mesh 'A', mesh 'B', mesh 'C' and 23 more: is empty"], in the order in which the messages
+        first come.
+    """
+    about = {}
+    for datablock, message, count in entries:
+        about.setdefault(message, []).append((datablock, count))
+    found = []
+    for message, met in about.items():
+        names = ", ".join(datablock for datablock, _ in met[:NAMED])
+        more = f" and {len(met) - NAMED} more" if len(met) > NAMED else ""
+        times = sum(count for _, count in met)
+        repeated = f" ({times} times)" if times > len(met) else ""
+        found.append(f"{names}{more}: {message}{repeated}")
+    return found
