@@ -13,7 +13,9 @@ namespace {
 constexpr double kSag = 0.03;
 /// The least dicing rate, pixels: below it nothing more can be seen, and 0 would never end.
 constexpr double kFinest = 0.01;
-constexpr double kShortest = 0.3;
+/// Sag over length of what is bent too much however small it is: a sixth of a right angle.
+constexpr double kBend = 0.04;
+constexpr double kShortest = 0.15;
 /// Pixels outside the frame for one more pixel of target length.
 constexpr double kOutside = 8.0;
 /// Halves this equal are taken for equal all the way down: lengths may then leave their range by as
@@ -187,17 +189,19 @@ int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, 
         }
     }
     if (!swept.seen) return 0;
-    const bool bent = sag > kSag * coarser && longest > kShortest * coarser;
-    if (!(counted > M_SQRT2 * target) && !bent) return 0;
+    // Sag falls to a quarter and length to half with each level.
+    const auto bent = [&](int level) {
+        const double h = std::ldexp(sag, -2 * level), l = std::ldexp(longest, -level);
+        return (h > kSag * coarser || h > kBend * l) && l > kShortest * coarser;
+    };
+    if (!(counted > M_SQRT2 * target) && !bent(0)) return 0;
     const bool inside = swept.x0 > -m_width && swept.x1 < 2.0 * m_width && swept.y0 > -m_height &&
                         swept.y1 < 2.0 * m_height;
     // A bent piece's halves are looked at anew until they are nearly straight.
     if (!equal || swept.clipped || off > 0.0 || !inside || sag > 0.05 * longest) return kAdaptive;
     int levels = 1;
     while (levels < budget && std::ldexp(counted, -levels) > M_SQRT2 * target) ++levels;
-    while (levels < budget && std::ldexp(sag, -2 * levels) > kSag * coarser &&
-           std::ldexp(longest, -levels) > kShortest * coarser)
-        ++levels;
+    while (levels < budget && bent(levels)) ++levels;
     return levels;
 }
 

@@ -5,7 +5,8 @@
 // A piece of an edge is bisected at its parametric middle while
 //   its projected length exceeds sqrt(2) * target, so that lengths end in
 //   (target / sqrt(2), sqrt(2) * target], or
-//   its middle lies more than kSag pixels off its chord and it is longer than kShortest pixels.
+//   its middle lies more than kSag pixels, or kBend of its length, off its chord and it is longer
+//   than kShortest pixels.
 // Lengths are the largest over all knots.  target is the dicing rate inside the frame and grows by
 // an eighth of a pixel for each pixel that the piece's swept bound lies outside of it.
 //
