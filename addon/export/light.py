@@ -9,6 +9,8 @@ import math
 
 import bpy
 
+from .constant_nodes import as_number, constant
+
 _AREA_SHAPES = {"SQUARE", "RECTANGLE", "DISK", "ELLIPSE"}
 
 
@@ -102,7 +104,15 @@ def _emission(light, label, report):
     if node.type != "EMISSION" or node.mute:
         report(label, f"its node '{node.name}' is not understood: it shines white, strength 1")
         return [1.0] * 3, 1.0
+    found = []
     for name in ("Color", "Strength"):
-        if node.inputs[name].is_linked:
-            report(label, f"what is linked to {name} of '{node.name}' is not used")
-    return list(node.inputs["Color"].default_value[:3]), node.inputs["Strength"].default_value
+        value = constant(light.node_tree, node.inputs[name])
+        if value is None:
+            report(label, f"what is linked to {name} of '{node.name}' varies and is not used")
+            value = node.inputs[name].default_value
+        found.append(value)
+    return _color(found[0]), as_number(found[1])
+
+
+def _color(value):
+    return list(value[:3]) if hasattr(value, "__len__") else [value] * 3

@@ -166,6 +166,25 @@ def test_the_emission_node_of_a_light(scene, render):
     expect_alike(scene, render, DIFFUSE)
 
 
+def test_constants_linked_to_the_emission_node_of_a_light(scene, render):
+    set_stage(scene, lambert())
+    light = add_light(scene, "POINT", 500.0).data
+    light.use_nodes = True
+    tree = light.node_tree
+    color, falloff, times = (
+        tree.nodes.new(kind)
+        for kind in ("ShaderNodeRGB", "ShaderNodeLightFalloff", "ShaderNodeMath")
+    )
+    color.outputs[0].default_value = (1.0, 0.5, 0.2, 1.0)
+    falloff.inputs["Strength"].default_value = 0.4
+    times.operation = "MULTIPLY"
+    times.inputs[1].default_value = 2.0
+    tree.links.new(falloff.outputs["Quadratic"], times.inputs[0])
+    tree.links.new(times.outputs[0], tree.nodes["Emission"].inputs["Strength"])
+    tree.links.new(color.outputs[0], tree.nodes["Emission"].inputs["Color"])
+    expect_alike(scene, render, DIFFUSE)
+
+
 def test_exposure_temperature_and_power_of_a_unit_area(scene, render):
     set_stage(scene, lambert())
     light = add_light(scene, "AREA", 50.0, shape="DISK", size=1.5).data
@@ -225,14 +244,16 @@ def test_glass_panes_let_light_through(scene, render):
     expect_alike(scene, render, DIFFUSE)
 
 
-def test_a_linked_strength_is_named(scene):
+def test_a_linked_strength_that_varies_is_named(scene):
     from granita.export.light import light_record
 
     light = add_light(scene, "POINT", 10.0)
     light.data.use_nodes = True
     tree = light.data.node_tree
-    value = tree.nodes.new("ShaderNodeValue")
-    tree.links.new(value.outputs[0], tree.nodes["Emission"].inputs["Strength"])
+    falloff = tree.nodes.new("ShaderNodeLightFalloff")
+    tree.links.new(falloff.outputs["Linear"], tree.nodes["Emission"].inputs["Strength"])
     said = []
     light_record(light, np.eye(4)[None], lambda *words: said.append(words))
-    assert said == [("light 'Light'", "what is linked to Strength of 'Emission' is not used")]
+    assert said == [
+        ("light 'Light'", "what is linked to Strength of 'Emission' varies and is not used")
+    ]
