@@ -49,23 +49,29 @@ RasterBounds CurveBatch::bounds() const {
 }
 
 void CurveBatch::measure() {
-    if (!find_across() || scattered()) {
+    // Gathered once for all questions; kept for its memory.
+    static thread_local Controls controls;
+    if (controls.size() < m_count) controls.resize(m_count);
+    Bounds3f box;
+    for (std::size_t i = 0; i < m_count; ++i) {
+        const std::uint32_t curve = element(m_first + i);
+        controls[i].gather(*m_elements, curve, start(), end(curve));
+        if (m_count > 1) box.add(controls[i].swept_box(0.0, end(curve)));
+    }
+    if (!find_across(controls) || scattered(raster_bounds(box))) {
         m_across = 0;
         return;
     }
-    m_diceable = find_rows(static_cast<std::size_t>(m_elements->grid_size() / m_across));
+    m_diceable = find_rows(controls, static_cast<std::size_t>(m_elements->grid_size() / m_across));
     if (!m_diceable && m_count > 1) m_across = 0;
 }
 
-/// Of whole curves, so that all parts of one agree.  False: they cannot share a grid.
-bool CurveBatch::find_across() {
+/// Of whole curves, so that all parts of one agree: it is known before one is split.  False: they
+/// cannot share a grid.
+bool CurveBatch::find_across(const Controls& controls) {
     if (m_across > 0) return true;
-    CurveControl control;
     double width = 0.0;
-    for (std::size_t i = m_first; i < m_first + m_count; ++i) {
-        control.gather(*m_elements, element(i), 0.0, end_of(element(i)));
-        width = std::max(width, control.width_pixels());
-    }
+    for (std::size_t i = 0; i < m_count; ++i) width = std::max(width, controls[i].width_pixels());
     m_across = 1;
     while (m_across < std::min(kMostAcross, m_elements->grid_size() / 2) &&
            width > M_SQRT2 * m_elements->rate().rate() * m_across)
@@ -75,21 +81,19 @@ bool CurveBatch::find_across() {
 }
 
 /// False: more than `most` steps.
-bool CurveBatch::find_rows(std::size_t most) {
-    CurveControl control;
+bool CurveBatch::find_rows(const Controls& controls, std::size_t most) {
     std::vector<double> ends;
-    for (std::size_t i = m_first; i < m_first + m_count; ++i) {
-        const std::uint32_t c = element(i);
+    for (std::size_t i = 0; i < m_count; ++i) {
+        const std::uint32_t c = element(m_first + i);
         const double lo = start(), hi = end(c);
-        control.gather(*m_elements, c, lo, hi);
-        if (i > m_first) {
+        if (i > 0) {
             const Row last = m_rows.back();
             m_rows.push_back({last.curve, last.t, true});
             m_rows.push_back({c, lo, true});
         }
         m_rows.push_back({c, lo, false});
         ends.clear();
-        control.steps(lo, hi, most, ends);
+        controls[i].steps(lo, hi, most, ends);
         for (const double end : ends) m_rows.push_back({c, end, false});
         if (m_rows.size() - 1 > most) {
             m_rows = {};

@@ -40,8 +40,10 @@ class CurveBatch final : public ElementBatch {
         bool shrunk = false;  ///< to its left end
     };
 
-    bool find_across();
-    bool find_rows(std::size_t most);
+    /// [m_count] of this batch's curves, or of the part of one.
+    using Controls = std::vector<CurveControl>;
+    bool find_across(const Controls& controls);
+    bool find_rows(const Controls& controls, std::size_t most);
     double end_of(std::uint32_t curve) const;
     double start() const { return m_count == 1 ? m_lo : 0.0; }
     double end(std::uint32_t curve) const {

@@ -24,10 +24,8 @@ RasterBounds ElementBatch::raster_bounds(Bounds3f box) const {
     return raster_bound(m_elements->view().projection, box);
 }
 
-bool ElementBatch::scattered() const {
-    if (m_count == 1) return false;
-    const RasterBounds b = bounds();
-    return b.visible && !(b.x1 - b.x0 <= kRegion && b.y1 - b.y0 <= kRegion);
+bool ElementBatch::scattered(const RasterBounds& b) const {
+    return m_count > 1 && b.visible && !(b.x1 - b.x0 <= kRegion && b.y1 - b.y0 <= kRegion);
 }
 
 void ElementBatch::own(std::shared_ptr<const OpenedElements> elements) {

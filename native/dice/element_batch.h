@@ -37,9 +37,9 @@ class ElementBatch : public Primitive {
     std::uint32_t element(std::size_t i) const { return m_elements->shared().batch(m_batch)[i]; }
     /// Of a camera-space box, with the rounding of positions.
     RasterBounds raster_bounds(Bounds3f box) const;
-    /// Several that lie too far from each other for one grid: buckets beside them should not meet
-    /// them.
-    bool scattered() const;
+    /// Several elements, of these bounds, that lie too far from each other for one grid: buckets
+    /// beside them should not meet them.
+    bool scattered(const RasterBounds& bounds) const;
     /// Keeps the opened instance alive, and measures.
     void own(std::shared_ptr<const OpenedElements> elements);
 

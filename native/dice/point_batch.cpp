@@ -124,7 +124,7 @@ void PointBatch::measure() {
         rows += needed.v + 1;
     }
     if (m_count > 1) {
-        m_diceable = rows * m_longitudes <= most && !scattered();
+        m_diceable = rows * m_longitudes <= most && !scattered(bounds());
         return;
     }
     if (m_part.v1 == 0) m_part = {0, m_latitudes[0], 0, m_longitudes};
