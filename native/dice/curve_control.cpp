@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "dice/opened_mesh.h"
-#include "geometry/catmull_rom.h"
 
 namespace granita {
 namespace {
@@ -61,23 +60,26 @@ CurveControl::Span CurveControl::span(int knot, double t) const {
     return span;
 }
 
+ElementPoint CurveControl::Span::at(const CatmullRom& basis) const {
+    return {CatmullRom::sum<Vec3d>(basis.w, [&](int i) { return p[i]->p; }),
+            std::max(CatmullRom::sum<double>(basis.w, [&](int i) { return p[i]->radius; }), 0.0)};
+}
+
+Vec3d CurveControl::Span::tangent(const CatmullRom& basis) const {
+    return CatmullRom::sum<Vec3d>(basis.d, [&](int i) { return p[i]->p; });
+}
+
 ElementPoint CurveControl::at(int knot, double t) const {
     const Span s = span(knot, t);
-    const CatmullRom basis(s.t);
-    return {CatmullRom::sum<Vec3d>(basis.w, [&](int i) { return s.p[i]->p; }),
-            std::max(CatmullRom::sum<double>(basis.w, [&](int i) { return s.p[i]->radius; }), 0.0)};
+    return s.at(CatmullRom(s.t));
 }
 
 Vec3d CurveControl::tangent(int knot, double t) const {
     const Span s = span(knot, t);
-    return CatmullRom::sum<Vec3d>(CatmullRom(s.t).d, [&](int i) { return s.p[i]->p; });
+    return s.tangent(CatmullRom(s.t));
 }
 
-Vec3d CurveControl::direction(int knot, double t) const {
-    const Vec3d d = tangent(knot, t);
-    const Vec3d center = at(knot, t).p;
-    // Rounding leaves a cusp's derivative a little off zero, in any direction.
-    if (glm::length(d) > 1e-12 * (glm::length(center) + 1e-30)) return d;
+Vec3d CurveControl::chord(int knot, double t) const {
     const double before = std::max(t - kChord, 0.0);
     const double after = std::min(t + kChord, static_cast<double>(m_segments));
     return at(knot, after).p - at(knot, before).p;
@@ -85,9 +87,14 @@ Vec3d CurveControl::direction(int knot, double t) const {
 
 RibbonRow CurveControl::row(int knot, double t) const {
     RibbonRow row;
-    const ElementPoint here = at(knot, t);
+    const Span s = span(knot, t);
+    const CatmullRom basis(s.t);
+    const ElementPoint here = s.at(basis);
     row.center = here.p;
-    const Vec3d view = m_elements->view_direction(here.p), along = direction(knot, t);
+    Vec3d along = s.tangent(basis);
+    // Rounding leaves a cusp's derivative a little off zero, in any direction.
+    if (!(glm::length(along) > 1e-12 * (glm::length(here.p) + 1e-30))) along = chord(knot, t);
+    const Vec3d view = m_elements->view_direction(here.p);
     const Vec3d across = glm::cross(view, along);
     // A curve that runs straight to the eye has no side of its own.
     const bool seen_along = !(glm::length(across) > 1e-9 * glm::length(view) * glm::length(along));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dice/opened_elements.h"
+#include "geometry/catmull_rom.h"
 #include "math/bounds.h"
 
 namespace granita {
@@ -40,10 +41,13 @@ class CurveControl {
     struct Span {
         const ElementPoint* p[4];
         double t;
+        ElementPoint at(const CatmullRom& basis) const;
+        Vec3d tangent(const CatmullRom& basis) const;
     };
     Span span(int knot, double t) const;
     Vec3d tangent(int knot, double t) const;
-    Vec3d direction(int knot, double t) const;
+    /// The curve's direction where it has no tangent.
+    Vec3d chord(int knot, double t) const;
     /// Longest way over the control points from lo to hi at a knot.
     double polygon_length(int knot, double lo, double hi) const;
 
