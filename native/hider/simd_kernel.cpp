@@ -49,6 +49,7 @@ HWY_INLINE void for_each_lane(M mask, Visit visit) {
 
 #include "hider/squeeze.inl"
 #include "hider/tile_bounds.inl"
+#include "hider/tile_paths.inl"
 #include "hider/triangle_pair.inl"
 
 class Kernel {
@@ -59,7 +60,8 @@ class Kernel {
           m_tile(tile),
           m_fragments(fragments),
           m_counts(counts),
-          m_where(grid, tile) {
+          m_where(grid, tile),
+          m_paths(grid, tile) {
         for (int i = 0; i < kPacket; ++i)
             m_window[i] = i / kWindow * tile.blocks_wide + i % kWindow;
     }
@@ -89,7 +91,7 @@ class Kernel {
     }
 
   private:
-    /// Samples of a tile's vector.
+    /// A vector of samples, as far as the test needs them.
     struct Samples {
         V x, y, t, u, v;
     };
@@ -131,7 +133,7 @@ class Kernel {
         RankPaths paths;
         std::size_t found = 0;
         for (; first < end; first += lane_count()) {
-            M touching = m_where.bound_ranks<kMoving, kLens>(shape, first, cull, paths);
+            M touching = m_paths.find<kMoving, kLens>(shape, m_where.segment, first, cull, paths);
             touching = hn::And(touching, hn::FirstN(kTag, static_cast<std::size_t>(end - first)));
             for_each_lane(touching, [&](int k) HWY_ATTR {
                 // Windows side by side that do not leave the tile.
@@ -421,6 +423,7 @@ class Kernel {
     std::vector<Fragment>& m_fragments;
     SimdCounts& m_counts;
     TileBounds m_where;
+    RankPathFinder m_paths;
     std::uint8_t m_class = 0;
     SurfaceId m_id = 0;
     SurfaceId m_tied[2] = {kNoSurface, kNoSurface};  ///< the last two to settle
