@@ -17,6 +17,7 @@
 #include <thread>
 #include <type_traits>
 
+#include "gl/device_clock.h"
 #include "gl/egl_context.h"
 
 namespace granita::gl {
@@ -48,14 +49,25 @@ class GlThread {
     /// submit() and wait.
     template <class Job>
     auto run(Job job) -> std::invoke_result_t<Job&> {
+        const Waiting waiting(m_clock);
         return submit(std::move(job)).get();
     }
 
+    DeviceClock& clock() { return m_clock; }
+
   private:
+    struct Waiting {
+        explicit Waiting(DeviceClock& device_clock) : clock(device_clock) { clock.add_waiting(1); }
+        ~Waiting() { clock.add_waiting(-1); }
+        Waiting(const Waiting&) = delete;
+        Waiting& operator=(const Waiting&) = delete;
+        DeviceClock& clock;
+    };
     void push(std::function<void()> job);
     void work(const ContextOptions& options, std::promise<ContextInfo>& started);
 
     ContextInfo m_info;
+    DeviceClock m_clock;
     std::mutex m_mutex;
     std::condition_variable m_wake;
     std::deque<std::function<void()>> m_jobs;

@@ -98,22 +98,24 @@ RasterPeel& RasterDevice::peel() {
 
 std::vector<RasterDevice::Command> RasterDevice::commands(
     const RasterGeometry& geometry, const std::vector<RasterGeometry::Range>& ranges,
-    const std::vector<std::uint32_t>& among, const RasterCell& cell,
-    const RasterPasses& passes) const {
+    const std::vector<std::uint32_t>& among, const RasterCell& cell, const RasterPasses& passes,
+    const RasterSeen& seen) const {
     std::vector<Command> commands;
     for (const std::uint32_t i : among) {
         const RasterGeometry::Range& range = ranges[i];
         if (!reaches(range.swept, cell)) continue;
         int first = 0, end = m_samples ? std::max(1, range.knots - 1) : passes.count;
-        if (range.knots > 1 && !m_samples) {
-            const auto touches = [&](int layer) {
-                const double t = m_frame.passes[passes.first + layer].t;
-                return reaches(geometry.bounds_at(range, m_frame.projection, t), cell);
-            };
-            while (first < end && !touches(first)) ++first;
-            while (end > first && !touches(end - 1)) --end;
-            if (first == end) continue;
-        }
+        const auto touches = [&](int layer) {
+            const int pass = m_samples ? 0 : passes.first + layer;
+            if (!seen.in_pass(range.first_grid, range.end_grid, passes.still ? 0 : pass))
+                return false;
+            if (range.knots == 1 || m_samples) return true;
+            const double t = m_frame.passes[pass].t;
+            return reaches(geometry.bounds_at(range, m_frame.projection, t), cell);
+        };
+        while (first < end && !touches(first)) ++first;
+        while (end > first && !touches(end - 1)) --end;
+        if (first == end) continue;
         const auto layer = static_cast<GLuint>(first), layers = static_cast<GLuint>(end - first);
         if (!commands.empty()) {
             Command& last = commands.back();
@@ -144,6 +146,7 @@ void RasterDevice::draw(RasterOutput output, const RasterBuffers& buffers,
                         const RasterPasses& passes) {
     program(output).use();
     set_cell(cell);
+    if (output == RasterOutput::Mark) set_marked(passes);
     buffers.positions.bind_storage(RASTER_POSITIONS);
     buffers.grids.bind_storage(RASTER_GRIDS);
     buffers.array.bind();
@@ -185,7 +188,9 @@ void RasterDevice::draw_ways(const RasterBuffers& buffers,
     m_samples->bind();
     buffers.indices.bind_storage(RASTER_TRIANGLES);
     buffers.vertex_grids.bind_storage(RASTER_VERTEX_GRIDS);
-    buffers.radiance.bind_storage(RASTER_VERTEX_RADIANCE);
+    // Before shading there is no radiance, and what peeling reads of it is not used.
+    const bool shaded = buffers.radiance.name() != 0;
+    (shaded ? buffers.radiance : buffers.opacity).bind_storage(RASTER_VERTEX_RADIANCE);
     buffers.opacity.bind_storage(RASTER_VERTEX_OPACITY);
     // Six vertices for the three indices of a triangle; an instance a segment of the motion.
     std::vector<std::array<GLuint, 4>> draws;
@@ -217,12 +222,17 @@ void RasterDevice::accumulate(const RasterCell& cell, const RasterPasses& passes
     gl::check("accumulating passes");
 }
 
-void RasterDevice::mark_surfaces(const RasterCell& cell, const RasterPasses& passes,
-                                 const RasterBuffers& buffers, const gl::Buffer& seen) const {
+void RasterDevice::mark_names(const gl::Texture& names, bool but_saturated, const RasterCell& cell,
+                              const RasterPasses& passes, const RasterBuffers& buffers,
+                              const gl::Buffer& seen) const {
     m_mark.use();
-    m_target.surfaces().bind(0);
+    set_marked(passes);
+    glUniform1i(RASTER_HIDE_SATURATED, but_saturated);
+    if (but_saturated) m_peel->peeled_depth().bind(1);
+    names.bind(0);
     buffers.vertex_grids.bind_storage(RASTER_GRIDS);
     seen.bind_storage(RASTER_SEEN);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     m_target.dispatch(cell, passes.count);
     gl::check("marking what is seen");
 }
@@ -234,6 +244,12 @@ void RasterDevice::begin_marks(const RasterCell& cell, const gl::Buffer& seen) c
     m_target.depth().bind(RASTER_OPAQUE_DEPTH);
     seen.bind_storage(RASTER_SEEN);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void RasterDevice::set_marked(const RasterPasses& passes) const {
+    glUniform2ui(
+        RASTER_MARKED, static_cast<GLuint>(passes.first),
+        static_cast<GLuint>(RasterSeen::words_for(static_cast<int>(m_frame.passes.size()))));
 }
 
 std::uint64_t RasterDevice::take_primitives() {

@@ -13,6 +13,7 @@
 #include "hider/raster_hider.h"
 #include "hider/raster_peel.h"
 #include "hider/raster_samples.h"
+#include "hider/raster_seen.h"
 #include "hider/raster_target.h"
 
 namespace granita {
@@ -29,6 +30,7 @@ struct RasterBuffers {
 /// Consecutive time and lens passes that are drawn at once, a layer of the target each.
 struct RasterPasses {
     int first = 0, count = 1;
+    bool still = false;  ///< nothing moves in the cell: all passes see what the first one sees
 };
 
 /// Used on the thread that owns OpenGL.
@@ -40,14 +42,15 @@ class RasterDevice {
     void begin(const RasterCell& cell);
     static bool reaches(const RasterBounds& bounds, const RasterCell& cell);
     /// Draws of ranges, as OpenGL reads them: in ascending order, each only in the layers whose
-    /// instants it touches the cell at; with samples(), one instance a segment of the motion.
+    /// instants it touches the cell at and is seen; with samples(), one instance a segment of the
+    /// motion.
     struct Command {
         GLuint count, instances, first_index, base_vertex, first_instance;
     };
     std::vector<Command> commands(const RasterGeometry& geometry,
                                   const std::vector<RasterGeometry::Range>& ranges,
                                   const std::vector<std::uint32_t>& among, const RasterCell& cell,
-                                  const RasterPasses& passes) const;
+                                  const RasterPasses& passes, const RasterSeen& seen) const;
     /// Into the target that is bound.
     void draw(RasterOutput output, const RasterBuffers& buffers,
               const std::vector<Command>& commands, const RasterCell& cell,
@@ -55,9 +58,11 @@ class RasterDevice {
     /// Adds what was drawn to the mean of the passes before.
     void accumulate(const RasterCell& cell, const RasterPasses& passes, bool peeled,
                     const RasterBackground& background, const gl::Buffer& corners) const;
-    /// Marks in `seen` the grids of the micropolygons in the target.
-    void mark_surfaces(const RasterCell& cell, const RasterPasses& passes,
-                       const RasterBuffers& buffers, const gl::Buffer& seen) const;
+    /// Marks in `seen` the grids that `names` has, but for samples that peeling has saturated where
+    /// `but_saturated`.
+    void mark_names(const gl::Texture& names, bool but_saturated, const RasterCell& cell,
+                    const RasterPasses& passes, const RasterBuffers& buffers,
+                    const gl::Buffer& seen) const;
     /// Binds what RasterOutput::Mark reads and writes.
     void begin_marks(const RasterCell& cell, const gl::Buffer& seen) const;
 
@@ -75,6 +80,8 @@ class RasterDevice {
     gl::Program& program(RasterOutput output);
     gl::Program make_program(RasterOutput output) const;
     void set_cell(const RasterCell& cell) const;
+    /// For the program in use, which includes raster/marks.glsl.
+    void set_marked(const RasterPasses& passes) const;
     void draw_passes(const RasterBuffers& buffers, const std::vector<Command>& commands,
                      const RasterPasses& passes) const;
     /// A quadrilateral around each triangle's way: raster/sample.*.

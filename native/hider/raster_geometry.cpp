@@ -99,11 +99,13 @@ void RasterGeometry::append_range(std::vector<Range>& ranges, const Grid& grid, 
     const bool join = combine && !ranges.empty() && ranges.back().knots == knots &&
                       ranges.back().index_count + count <= kCombinedIndices;
     if (!join) {
-        ranges.push_back({first, 0, knots, {}, m_boxes.size()});
+        const auto number = static_cast<std::uint32_t>(m_places.size()) - 1;
+        ranges.push_back({first, 0, knots, number, number, {}, m_boxes.size()});
         m_boxes.resize(m_boxes.size() + static_cast<std::size_t>(knots));
     }
     Range& range = ranges.back();
     range.index_count += count;
+    range.end_grid = static_cast<std::uint32_t>(m_places.size());
     range.swept = united(range.swept, grid.bounds);
     for (int k = 0; k < knots; ++k)
         for (int v = 0; v < vertices; ++v) {

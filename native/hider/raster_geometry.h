@@ -23,9 +23,10 @@ class RasterGeometry {
     struct Range {
         std::uint32_t first_index = 0;  ///< of `indices`
         std::uint32_t index_count = 0;
-        int knots = 1;          ///< 1: does not move
-        RasterBounds swept;     ///< over shutter and lens
-        std::size_t first_box;  ///< of the camera-space boxes at its knots
+        int knots = 1;                               ///< 1: does not move
+        std::uint32_t first_grid = 0, end_grid = 0;  ///< by key: those that it is of are among them
+        RasterBounds swept;                          ///< over shutter and lens
+        std::size_t first_box;                       ///< of the camera-space boxes at its knots
     };
     struct Place {
         std::uint32_t input;  ///< index in the list handed over

@@ -100,51 +100,59 @@ class RasterHider::Bucket : public RasterBucket {
 
     /// Calls `draw` with the passes of a cell, as many at once as the target has layers.
     template <class Draw>
-    void for_passes(int passes, const Draw& draw) const {
+    void for_passes(int passes, bool still, const Draw& draw) const {
         const int layers = m_device.target().layers();
         for (int first = 0; first < passes; first += layers)
-            draw(RasterPasses{first, std::min(layers, passes - first)});
+            draw(RasterPasses{first, std::min(layers, passes - first), still});
     }
 
     void draw_opaque(RasterOutput output, const RasterCell& cell, const RasterPasses& passes) {
-        m_device.draw(output, *m_buffers,
-                      m_device.commands(m_geometry, m_geometry.opaque(), m_opaque, cell, passes),
-                      cell, passes);
+        m_device.draw(
+            output, *m_buffers,
+            m_device.commands(m_geometry, m_geometry.opaque(), m_opaque, cell, passes, m_seen),
+            cell, passes);
     }
 
     std::vector<RasterDevice::Command> transparent_commands(const Ranges& among,
                                                             const RasterCell& cell,
                                                             const RasterPasses& passes) const {
-        return m_device.commands(m_geometry, m_geometry.transparent(), among, cell, passes);
+        return m_device.commands(m_geometry, m_geometry.transparent(), among, cell, passes, m_seen);
     }
 
     std::vector<bool> find_seen_here() {
         const std::size_t grids = m_geometry.inputs().size();
-        const gl::Buffer marks = gl::Buffer::of(std::vector<std::uint32_t>(grids, 0));
+        const int passes_of_frame = static_cast<int>(m_frame.passes.size());
+        const gl::Buffer marks = gl::Buffer::of(
+            std::vector<std::uint32_t>(grids * RasterSeen::words_for(passes_of_frame), 0));
+        const bool saturates = m_frame.opacity_threshold < 1.0f;
         for (const RasterCell& cell : m_device.target().cells(m_pixels)) {
             m_device.begin(cell);
-            for_passes(pass_count(cell, false), [&](const RasterPasses& passes) {
+            const std::vector<ZBatch> batches =
+                saturates ? batches_of(cell) : std::vector<ZBatch>{};
+            for_passes(pass_count(cell, false), false, [&](const RasterPasses& passes) {
                 m_device.target().begin_surfaces(cell, m_device.farthest());
                 draw_opaque(RasterOutput::Surface, cell, passes);
-                m_device.mark_surfaces(cell, passes, *m_buffers, marks);
+                if (!batches.empty()) peel(batches, cell, passes, &marks);
+                m_device.mark_names(m_device.target().surfaces(), !batches.empty(), cell, passes,
+                                    *m_buffers, marks);
+                if (saturates) return;
                 const auto commands = transparent_commands(m_transparent, cell, passes);
                 if (commands.empty()) return;
                 m_device.begin_marks(cell, marks);
                 m_device.draw(RasterOutput::Mark, *m_buffers, commands, cell, passes);
             });
         }
-        const auto marked = marks.read<std::uint32_t>();
+        m_seen = RasterSeen(marks.read<std::uint32_t>(), passes_of_frame);
         std::vector<bool> seen(grids);
-        for (std::size_t i = 0; i < grids; ++i) seen[m_geometry.inputs()[i]] = marked[i] != 0;
+        for (std::size_t i = 0; i < grids; ++i) seen[m_geometry.inputs()[i]] = m_seen.ever(i);
         add(Counter::GlPrimitives, m_device.take_primitives());
-        m_seen = seen;
         return seen;
     }
 
     void upload_radiance() {
         for (std::size_t i = 0; i < m_geometry.grids().size(); ++i) {
             const Grid& grid = *m_geometry.grids()[i];
-            if ((m_seen && !(*m_seen)[m_geometry.inputs()[i]]) || grid.holdout) continue;
+            if (!m_seen.ever(i) || grid.holdout) continue;
             GRANITA_CHECK_EQ(grid.radiance.size(), static_cast<std::size_t>(grid.vertex_count()));
         }
         m_buffers->radiance = gl::Buffer::of(m_geometry.radiance());
@@ -160,9 +168,9 @@ class RasterHider::Bucket : public RasterBucket {
     }
 
     /// The transparent grids of a cell, batch by batch and layer by layer, until no sample finds
-    /// another one (paper, listing 1).
+    /// another one (paper, listing 1).  `marks`: what of them samples see, or nullptr.
     void peel(const std::vector<ZBatch>& batches, const RasterCell& cell,
-              const RasterPasses& passes) {
+              const RasterPasses& passes, const gl::Buffer* marks = nullptr) {
         RasterPeel& peel = m_device.peel();
         peel.begin(cell);
         for (const ZBatch& batch : batches) {
@@ -177,6 +185,8 @@ class RasterHider::Bucket : public RasterBucket {
                 m_device.draw(RasterOutput::Layer, *m_buffers, commands, cell, passes);
                 any.end();
                 peel.composite(cell, passes.count, m_frame.opacity_threshold);
+                if (marks != nullptr)
+                    m_device.mark_names(peel.names(), false, cell, passes, *m_buffers, *marks);
                 if (last && last->result() == 0) break;
                 last.emplace(std::move(any));
             }
@@ -192,7 +202,7 @@ class RasterHider::Bucket : public RasterBucket {
             m_device.begin(cell);
             const int count = pass_count(cell, background.passes > 1);
             const std::vector<ZBatch> batches = batches_of(cell);
-            for_passes(count, [&](const RasterPasses& passes) {
+            for_passes(count, pass_count(cell, false) == 1, [&](const RasterPasses& passes) {
                 m_device.target().begin_radiance(cell, m_device.farthest());
                 draw_opaque(RasterOutput::Radiance, cell, passes);
                 if (!batches.empty()) peel(batches, cell, passes);
@@ -281,7 +291,7 @@ class RasterHider::Bucket : public RasterBucket {
     RasterGeometry m_geometry;
     Ranges m_opaque, m_transparent;
     std::optional<RasterBuffers> m_buffers;
-    std::optional<std::vector<bool>> m_seen;
+    RasterSeen m_seen;
 };
 
 RasterHider::RasterHider(gl::GlThread& thread, const RasterFrame& frame)

@@ -39,6 +39,10 @@ class RasterPeel {
     void begin_layer(const RasterCell& cell, float farther_than) const;
     /// Puts what was drawn under the layers so far.
     void composite(const RasterCell& cell, int layers, float threshold) const;
+    /// What the last layer has seen.
+    const gl::Texture& names() const { return m_name; }
+    /// -1 where a sample is saturated.
+    const gl::Texture& peeled_depth() const { return m_peeled_depth; }
     /// For raster/accumulate.comp.
     void bind_result() const;
 

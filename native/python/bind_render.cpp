@@ -41,6 +41,9 @@ py::dict statistics_dict(const RenderJob& job) {
                                      : py::object(py::int_(static_cast<std::uint64_t>(value)));
     }
     dict["device"] = job.device();
+    const gl::DeviceUse use = job.device_use();
+    dict["seconds_device"] = use.seconds;
+    dict["seconds_device_hidden"] = use.hidden_seconds;
     return dict;
 }
 

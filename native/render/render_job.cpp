@@ -28,6 +28,7 @@ struct RenderJob::Impl {
     std::atomic<int> attempt{0};
     Progress progress;
     std::string device;
+    gl::DeviceUse device_use;
 
     std::mutex mutex;
     std::condition_variable changed;
@@ -67,7 +68,9 @@ struct RenderJob::Impl {
         const std::vector<int> order = frame.layout.spiral();
         std::atomic<std::size_t> next{0};
         std::optional<GlError> lost;
+        gl::GlThread* const gl = frame.choice.gl.get();
         const auto work = [&] {
+            if (gl != nullptr) gl->clock().add_worker(1);
             try {
                 for (std::size_t i = next++; i < order.size(); i = next++) {
                     deliver(render_bucket(frame, order[i]));
@@ -80,11 +83,18 @@ struct RenderJob::Impl {
             } catch (...) {
                 fail(std::current_exception());
             }
+            if (gl != nullptr) gl->clock().add_worker(-1);
         };
+        // While one waits for the device, another dices and shades the next bucket.
+        const int count = thread_count() + (gl != nullptr ? 1 : 0);
         std::vector<std::thread> workers;
-        for (int i = 1; i < thread_count(); ++i) workers.emplace_back(work);
+        for (int i = 1; i < count; ++i) workers.emplace_back(work);
         work();
         for (std::thread& worker : workers) worker.join();
+        if (gl != nullptr) {
+            const std::lock_guard lock(mutex);
+            device_use = gl->clock().use();
+        }
         progress.check();
         if (lost) throw *lost;
     }
@@ -165,6 +175,10 @@ const Statistics& RenderJob::statistics() const {
 }
 const Report& RenderJob::report() const {
     return m_impl->reports[m_impl->attempt];
+}
+gl::DeviceUse RenderJob::device_use() const {
+    const std::lock_guard lock(m_impl->mutex);
+    return m_impl->device_use;
 }
 std::string RenderJob::device() const {
     return m_impl->device;

@@ -40,6 +40,8 @@ class RenderJob {
     const Statistics& statistics() const;
     const Report& report() const;
     std::string device() const;
+    /// Of the GPU, once the frame is finished; 0 where there was none.
+    gl::DeviceUse device_use() const;
 
   private:
     struct Impl;

@@ -30,7 +30,7 @@ layout(location = 2) out uint seen_name;
 layout(location = 3) out float seen_depth;
 #else
 layout(binding = RASTER_OPAQUE_DEPTH) uniform sampler2DArray opaque_depth;
-layout(std430, binding = RASTER_SEEN) buffer Seen { uint seen[]; };
+#include "raster/marks.glsl"
 #endif
 
 void leave(Fragment f) {
@@ -50,6 +50,6 @@ void leave(Fragment f) {
     seen_depth = f.depth;
 #else
     const ivec3 at = ivec3(ivec2(gl_FragCoord.xy), f.layer);
-    if (f.depth > texelFetch(opaque_depth, at, 0).r) seen[f.grid] = 1u;
+    if (f.depth > texelFetch(opaque_depth, at, 0).r) mark(f.grid, uint(f.layer));
 #endif
 }

@@ -37,6 +37,9 @@
 #define RASTER_SAMPLE_AREA 12
 #define RASTER_SAMPLE_CORNER 13
 #define RASTER_SAMPLE_COUNT 14
+// Of raster/marks.glsl and mark_seen.comp.
+#define RASTER_MARKED 15
+#define RASTER_HIDE_SATURATED 16
 
 // Texture units of raster/grid.frag.
 #define RASTER_OPAQUE_DEPTH 0

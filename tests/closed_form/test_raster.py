@@ -49,6 +49,15 @@ def test_the_device_draws_and_the_cpu_tests_no_sample():
     assert statistics["sample_tests_static"] == statistics["sample_tests_moving"] == 0
 
 
+def test_the_next_bucket_is_prepared_while_the_device_draws():
+    """One thread for the CPU's work: it dices and shades during the device's seconds instead of waiting."""
+    snapshot = tilted("RASTER", bucket_size=16, threads=1)
+    statistics = s.render(snapshot)["statistics"]
+    assert 0 < statistics["seconds_device_hidden"] <= statistics["seconds_device"]
+    snapshot["options"]["executor"] = "SIMD"
+    assert s.render(snapshot)["statistics"]["seconds_device"] == 0
+
+
 @pytest.mark.parametrize("pixel_filter", FILTERS)
 def test_filters_are_those_of_the_cpu(pixel_filter):
     options = {"pixel_filter": pixel_filter, "filter_width": FILTERS[pixel_filter]}

@@ -74,5 +74,23 @@ TEST(GlThread, two_at_once_and_one_after_the_other) {
     EXPECT_EQ(third.info().renderer, first.info().renderer);
 }
 
+TEST(DeviceClock, tells_what_is_hidden_from_what_is_waited_for) {
+    using std::chrono::milliseconds;
+    GlThread thread;
+    thread.clock().add_worker(1);
+    thread.run([] { std::this_thread::sleep_for(milliseconds(20)); });
+    const DeviceUse waited = thread.clock().use();
+    EXPECT_GE(waited.seconds, 0.02);
+    EXPECT_EQ(waited.hidden_seconds, 0.0);  // the only worker waited
+    // Another one that works until the job ends.
+    thread.clock().add_worker(1);
+    thread.run([] { std::this_thread::sleep_for(milliseconds(20)); });
+    thread.clock().add_worker(-1);
+    const DeviceUse both = thread.clock().use();
+    EXPECT_GE(both.hidden_seconds, 0.02);
+    EXPECT_GE(both.seconds, waited.seconds + 0.02);
+    EXPECT_LE(both.hidden_seconds, both.seconds);
+}
+
 }  // namespace
 }  // namespace granita::gl

@@ -114,6 +114,58 @@ TEST(RasterPasses, grids_are_not_drawn_at_instants_when_they_touch_nothing) {
     EXPECT_NEAR(alpha, 3 * 100.0 / 8, 1e-4);
 }
 
+TEST(RasterPasses, grids_are_not_drawn_at_instants_when_they_are_hidden) {
+    // A wall left of 32, and behind it a grid whose right side is at 10 + 48 t: of the instants
+    // 1/16, 3/16... it shows at the last four.
+    const Grid wall = make_rectangle(1, -5, -5, 32, 70, 2);
+    Grid grid = make_rectangle(2, 0, 8, 10, 18, 3);
+    set_motion(grid, {{48, 0, 0}});
+    for (const int layers : {1, 3, 8}) {
+        Statistics statistics;
+        RasterFrame frame = pixel_frame(1, 8, &statistics);
+        frame.most_layers = layers;
+        RasterHider hider(gl_thread(), frame);
+        const auto bucket = hider.open({0, 0, 64, 64}, {&wall, &grid});
+        EXPECT_EQ(bucket->find_seen(), (std::vector<bool>{true, true}));
+        EXPECT_EQ(statistics.get(Counter::GlPrimitives), 2u * 8 + 2u * 8);
+        const RasterImage image = bucket->render();
+        EXPECT_EQ(statistics.get(Counter::GlPrimitives), 2u * 16 + 2u * 8 + 2u * 4) << layers;
+        double alpha = 0.0;
+        for (const Vec4f& pixel : image.combined) alpha += pixel.w;
+        // Right sides at 37, 43, 49 and 55: 5 and three times 10 columns of 10 pixels.
+        EXPECT_NEAR(alpha, 32 * 64 + (5 + 3 * 10) * 10 / 8.0, 1e-3);
+    }
+}
+
+TEST(RasterPeel, what_lies_behind_saturated_samples_is_not_seen) {
+    std::vector<Grid> grids;
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        grids.push_back(
+            make_rectangle(k, -2, -2, 20, 20, 1.0f + static_cast<float>(k), 1, 1, Vec3f(0.9f)));
+        set_opacity(grids.back(), Vec3f(0.9f));
+    }
+    grids.push_back(make_rectangle(9, -2, -2, 20, 20, 7));
+    for (const int batch : {1, 26}) {
+        RasterFrame frame = pixel_frame(2, 1);
+        frame.opacity_threshold = 0.95f;
+        frame.z_batch_size = batch;
+        RasterHider hider(gl_thread(), frame);
+        const auto bucket = hider.open({0, 0, 16, 16}, pointers(grids));
+        EXPECT_EQ(bucket->find_seen(), (std::vector<bool>{true, true, false, false, false}));
+        for (const Vec4f& pixel : bucket->render().combined) {
+            EXPECT_NEAR(pixel.x, 0.99, 1e-6);
+            EXPECT_NEAR(pixel.w, 0.99, 1e-6);
+        }
+    }
+    // A hole in the second layer, left of pixel 8, lets the third one be seen.
+    grids[1] = make_rectangle(1, 8, -2, 20, 20, 2, 1, 1, Vec3f(0.9f));
+    set_opacity(grids[1], Vec3f(0.9f));
+    RasterFrame frame = pixel_frame(2, 1);
+    frame.opacity_threshold = 0.95f;
+    EXPECT_EQ(RasterHider(gl_thread(), frame).open({0, 0, 16, 16}, pointers(grids))->find_seen(),
+              (std::vector<bool>{true, true, true, false, false}));
+}
+
 TEST(RasterPasses, a_moving_tiling_covers_each_sample_exactly_once) {
     // Hard case 42: a transparent patch of many grids has no seams and no double hits.
     std::vector<Grid> grids;
