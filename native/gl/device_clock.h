@@ -24,8 +24,9 @@ class DeviceClock {
     void add_waiting(int change) {
         set([&] { m_waiting += change; });
     }
-    void set_busy(bool busy) {
-        set([&] { m_busy = busy; });
+    /// A job begins (1) or ends (-1); jobs nest.
+    void add_job(int change) {
+        set([&] { m_jobs += change; });
     }
     DeviceUse use() {
         set([] {});
@@ -39,16 +40,15 @@ class DeviceClock {
         const std::lock_guard lock(m_mutex);
         const auto now = std::chrono::steady_clock::now();
         const double seconds = std::chrono::duration<double>(now - m_last).count();
-        if (m_busy) m_use.seconds += seconds;
-        if (m_busy && m_workers > m_waiting) m_use.hidden_seconds += seconds;
+        if (m_jobs > 0) m_use.seconds += seconds;
+        if (m_jobs > 0 && m_workers > m_waiting) m_use.hidden_seconds += seconds;
         m_last = now;
         change();
     }
 
     std::mutex m_mutex;
     std::chrono::steady_clock::time_point m_last = std::chrono::steady_clock::now();
-    int m_workers = 0, m_waiting = 0;
-    bool m_busy = false;
+    int m_workers = 0, m_waiting = 0, m_jobs = 0;
     DeviceUse m_use;
 };
 

@@ -54,9 +54,7 @@ void GlThread::work(const ContextOptions& options, std::promise<ContextInfo>& st
             job = std::move(m_jobs.front());
             m_jobs.pop_front();
         }
-        m_clock.set_busy(true);
         job();  // a packaged task: never throws
-        m_clock.set_busy(false);
     }
     context.reset();
     eglReleaseThread();

@@ -37,7 +37,11 @@ class GlThread {
     template <class Job>
     auto submit(Job job) -> std::future<std::invoke_result_t<Job&>> {
         using Result = std::invoke_result_t<Job&>;
-        auto task = std::make_shared<std::packaged_task<Result()>>(std::move(job));
+        auto task =
+            std::make_shared<std::packaged_task<Result()>>([this, job = std::move(job)]() mutable {
+                const Counted running(m_clock, &DeviceClock::add_job);  // until the result is there
+                return job();
+            });
         auto result = task->get_future();
         if (std::this_thread::get_id() == m_thread.get_id())
             (*task)();  // a job that waits for a job must not wait for itself
@@ -49,19 +53,26 @@ class GlThread {
     /// submit() and wait.
     template <class Job>
     auto run(Job job) -> std::invoke_result_t<Job&> {
-        const Waiting waiting(m_clock);
+        const Counted waiting(m_clock, &DeviceClock::add_waiting);
         return submit(std::move(job)).get();
     }
 
     DeviceClock& clock() { return m_clock; }
 
   private:
-    struct Waiting {
-        explicit Waiting(DeviceClock& device_clock) : clock(device_clock) { clock.add_waiting(1); }
-        ~Waiting() { clock.add_waiting(-1); }
-        Waiting(const Waiting&) = delete;
-        Waiting& operator=(const Waiting&) = delete;
-        DeviceClock& clock;
+    /// 1 more during its life.
+    class Counted {
+      public:
+        Counted(DeviceClock& clock, void (DeviceClock::*add)(int)) : m_clock(clock), m_add(add) {
+            (m_clock.*m_add)(1);
+        }
+        ~Counted() { (m_clock.*m_add)(-1); }
+        Counted(const Counted&) = delete;
+        Counted& operator=(const Counted&) = delete;
+
+      private:
+        DeviceClock& m_clock;
+        void (DeviceClock::*m_add)(int);
     };
     void push(std::function<void()> job);
     void work(const ContextOptions& options, std::promise<ContextInfo>& started);

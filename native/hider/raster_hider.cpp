@@ -124,7 +124,7 @@ class RasterHider::Bucket : public RasterBucket {
         const int passes_of_frame = static_cast<int>(m_frame.passes.size());
         const gl::Buffer marks = gl::Buffer::of(
             std::vector<std::uint32_t>(grids * RasterSeen::words_for(passes_of_frame), 0));
-        const bool saturates = m_frame.opacity_threshold < 1.0f;
+        const bool saturates = m_frame.cull_saturated && m_frame.opacity_threshold < 1.0f;
         for (const RasterCell& cell : m_device.target().cells(m_pixels)) {
             m_device.begin(cell);
             const std::vector<ZBatch> batches =

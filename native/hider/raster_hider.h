@@ -58,6 +58,8 @@ struct RasterFrame {
     int z_batch_size = 26;           ///< transparent grids that are peeled together
     int most_layers =
         8;  ///< passes drawn at once, where the device can; 1 = multipass accumulation
+    /// find_seen() asks what saturated samples hide, too: transparent grids are peeled twice.
+    bool cull_saturated = true;
     Statistics* statistics = nullptr;
     /// Where dropped micropolygons are named; both or neither.
     const Scene* scene = nullptr;

@@ -64,8 +64,8 @@ Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& fra
       choice(std::move(frame_choice)),
       raster(choice.executor == Executor::Raster
                  ? std::make_unique<RasterHider>(
-                       *choice.gl,
-                       make_raster_frame(scene, view.projection, table, statistics, report))
+                       *choice.gl, make_raster_frame(scene, view.projection, table, statistics,
+                                                     report, choice.gl->info()))
                  : nullptr),
       film(scene.options),
       layout(make_layout(scene, film, raster != nullptr)),

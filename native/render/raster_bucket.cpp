@@ -59,7 +59,8 @@ void count_needs(Frame& frame, const std::vector<const Grid*>& grids) {
 }  // namespace
 
 RasterFrame make_raster_frame(const Scene& scene, const Projection& projection,
-                              const SampleTable& table, Statistics& statistics, Report& report) {
+                              const SampleTable& table, Statistics& statistics, Report& report,
+                              const gl::ContextInfo& device) {
     const PixelFilter filter(scene.options.pixel_filter, scene.options.filter_width);
     RasterFrame frame;
     frame.projection = projection;
@@ -76,6 +77,8 @@ RasterFrame make_raster_frame(const Scene& scene, const Projection& projection,
     frame.opacity_threshold = scene.options.opacity_threshold;
     frame.film_transparent = scene.options.film_transparent;
     frame.z_batch_size = scene.options.z_batch_size;
+    // A software driver peels at the price of shading (docs/decisions/gl.md).
+    frame.cull_saturated = !device.software;
     frame.statistics = &statistics;
     frame.scene = &scene;
     frame.report = &report;

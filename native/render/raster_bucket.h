@@ -10,7 +10,8 @@ namespace granita {
 
 /// The filter's weights, the sample lattice, the passes and what else a frame needs.
 RasterFrame make_raster_frame(const Scene& scene, const Projection& projection,
-                              const SampleTable& table, Statistics& statistics, Report& report);
+                              const SampleTable& table, Statistics& statistics, Report& report,
+                              const gl::ContextInfo& device);
 
 /// The finished pixels of the bucket.  Throws Cancelled, GlError.
 Tile raster_bucket(Frame& frame, int bucket);
