@@ -100,17 +100,21 @@ def test_coverage_is_that_of_cycles(scene, render, build):
     assert abs(difference).max() < 4 * LIMIT, difference.round(3)
 
 
-def test_shading_is_that_of_cycles(scene, render):
-    """Rounded ribbons in the light of a sun from the side, without shadows: means of colour."""
-    scene_parts.add_camera(scene, (0, -5, 2.5)).rotation_euler.x = 1.15
-    thing = spiral_curves(scene, radius=0.08)
+def matte():
     material = bpy.data.materials.new("Matte")
     material.use_nodes = True
     material.node_tree.nodes.clear()
     diffuse = material.node_tree.nodes.new("ShaderNodeBsdfDiffuse")
     output = material.node_tree.nodes.new("ShaderNodeOutputMaterial")
     material.node_tree.links.new(diffuse.outputs[0], output.inputs[0])
-    thing.data.materials.append(material)
+    return material
+
+
+def test_shading_is_that_of_cycles(scene, render):
+    """Rounded ribbons in the light of a sun from the side, without shadows: means of colour."""
+    scene_parts.add_camera(scene, (0, -5, 2.5)).rotation_euler.x = 1.15
+    thing = spiral_curves(scene, radius=0.08)
+    thing.data.materials.append(matte())
     sun = bpy.data.lights.new("Sun", "SUN")
     sun.energy, sun.use_shadow = 2.0, False
     sun.cycles.cast_shadow = False
@@ -128,3 +132,44 @@ def test_shading_is_that_of_cycles(scene, render):
         alpha = next(values for key, values in passes.items() if key.endswith("Combined.A"))
         means.append(color.sum() / alpha.sum())
     assert abs(means[0] / means[1] - 1.0) < 0.02, means
+
+
+@pytest.mark.parametrize("build", [spiral_curves, grid_points])
+def test_shadows_are_those_of_cycles(scene, render, build):
+    """On a floor that the camera sees from above, of moving things: means of colour in blocks."""
+    scene_parts.add_camera(scene, (0, 0, 8), ortho_scale=6.0)
+    scene_parts.add_square(scene, "Floor", 8.0, (0, 0, -0.7), matte())
+    thing = build(scene)
+    thing.data.materials.append(matte())
+    drive(thing, "location", "(frame - 10) / 2", 0)
+    sun = bpy.data.lights.new("Sun", "SUN")
+    sun.energy, sun.angle = 2.0, 0.0
+    scene_parts.add_object(scene, "Sun", sun).rotation_euler = (0.5, 0.6, 0.0)
+    scene.render.use_motion_blur = True
+    scene.render.motion_blur_shutter = 1.0
+    set_position(scene, "CENTER")
+    scene.frame_set(10)
+    scene.granita.samples = scene.cycles.samples = SAMPLES
+    scene.granita.pixel_filter, scene.granita.filter_width = "BOX", 1.0
+    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 1.0
+    scene.cycles.max_bounces = 0
+    scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
+    scene.cycles_curves.shape = "RIBBONS"
+    blocks = []
+    for engine in ("GRANITA", "CYCLES"):
+        scene.render.engine = engine
+        passes = render(scene, engine)
+        color = next(values for key, values in passes.items() if key.endswith("Combined.R"))
+        height, width = color.shape
+        blocks.append(color.reshape(height // 8, 8, width // 8, 8).mean(axis=(1, 3)))
+    ours, theirs = blocks
+    lit = np.quantile(theirs, 0.95)
+    assert theirs.min() < 0.9 * lit  # there are shadows
+    print(
+        "RMS",
+        build.__name__,
+        np.sqrt(((ours - theirs) ** 2).mean()) / lit,
+        ours.mean() / theirs.mean(),
+    )
+    assert abs(ours.mean() / theirs.mean() - 1.0) < 0.01
+    assert np.sqrt(((ours - theirs) ** 2).mean()) < 0.02 * lit
