@@ -86,6 +86,27 @@ def test_buckets_threads_and_crop_change_no_bit(executor, change):
     assert np.array_equal(base, render(**change))
 
 
+@pytest.mark.parametrize("ends", [(0.0, 0.0), (-1.0, 1.5)], ids=["still", "moving"])
+def test_opengl_draws_the_same_small_faces(ends):
+    def render(executor):
+        options = {"sampling": "REGULAR", "samples": 16, "time_samples": 4}
+        snapshot = s.orthographic((48, 32), executor=executor, **options)
+        points, faces = sheet(60, 40, 40, 26)
+        s.mesh(
+            snapshot,
+            points + [3.3, 2.7, 0],
+            faces,
+            position_emission(snapshot),
+            transforms=[s.translation(x, 0.5 * x) for x in ends],
+        )
+        return s.render(snapshot)
+
+    raster, cpu = render("RASTER"), render("SIMD")
+    assert raster["statistics"]["gl_primitives"] > 0
+    assert raster["statistics"]["points_shaded"] == cpu["statistics"]["points_shaded"]
+    assert np.abs(raster["combined"] - cpu["combined"]).max() < 1e-4
+
+
 def test_what_small_faces_hide_is_not_shaded():
     """A ball of faces of half a pixel: its back costs nothing."""
     n = 200
