@@ -41,9 +41,10 @@ class Table:
     def header(self):
         print("| what | measured | limit | |\n|---|---|---|---|", flush=True)
 
-    def row(self, what, value, limit, form="{:.2f}"):
-        """Held where the value is at most the limit."""
-        held = bool(value <= limit)
+    def row(self, what, value, limit, form="{:.2f}", least=False):
+        """Held where the value is at most the limit, or at least."""
+        held = bool(value >= limit if least else value <= limit)
         self.rows.append({"what": what, "measured": value, "limit": limit, "held": held})
+        bound = ("at least " if least else "") + form.format(limit)
         word = "held" if held else "NOT HELD"
-        print(f"| {what} | {form.format(value)} | {form.format(limit)} | {word} |", flush=True)
+        print(f"| {what} | {form.format(value)} | {bound} | {word} |", flush=True)
