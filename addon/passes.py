@@ -15,6 +15,7 @@ PASSES = (
     Pass("Combined", "Combined", 4, "RGBA", "COLOR", None),
     Pass("Depth", "Depth", 1, "Z", "VALUE", "use_pass_z"),
     Pass("Mist", "Mist", 1, "Z", "VALUE", "use_pass_mist"),
+    Pass("Vector", "Vector", 4, "XYZW", "VECTOR", "use_pass_vector"),
     Pass("Position", "Position", 3, "XYZ", "VECTOR", "use_pass_position"),
     Pass("Normal", "Normal", 3, "XYZ", "VECTOR", "use_pass_normal"),
     Pass("UV", "UV", 3, "UVA", "VECTOR", "use_pass_uv"),

@@ -19,9 +19,8 @@ Value value_at(const SharedGeometry& geometry, const AttributeRequest& request,
                const Attribute* attribute, std::uint32_t face, std::uint32_t corner) {
     Value value{};
     const std::size_t vertex = static_cast<std::size_t>(geometry.data().corner_verts[corner]);
-    if (request.source == AttributeSource::ObjectPosition ||
-        request.source == AttributeSource::Generated) {
-        Vec3d p(geometry.frame_points()[vertex]);
+    if (is_position(request.source)) {
+        Vec3d p(geometry.points(request.source)[vertex]);
         if (request.source == AttributeSource::Generated) p = generated(geometry.frame_box(), p);
         return {p.x, p.y, p.z, 1.0};
     }

@@ -16,11 +16,14 @@ void element_value(const SharedElements& elements, const AttributeRequest& reque
     const auto along = [&](const auto& at) {
         return at(place.point) * (1.0 - place.fraction) + at(place.next) * place.fraction;
     };
-    const auto position = [&](std::size_t v) { return elements.frame_point(v); };
+    const std::span<const Vec3f> other = neighbour_points(elements.data(), request.source);
+    const auto position = [&](std::size_t v) {
+        return other.empty() ? elements.frame_point(v) : Vec3d(other[v]);
+    };
     if (request.source == AttributeSource::Generated) {
         // One place a hair, its root's, as in Cycles.
         set(generated(elements.frame_box(), position(elements.first_point(place.element))));
-    } else if (request.source == AttributeSource::ObjectPosition) {
+    } else if (is_position(request.source)) {
         set(along(position));
     } else if (const Attribute* attribute = find_attribute(elements.data(), request)) {
         const std::size_t n = static_cast<std::size_t>(attribute->width);

@@ -23,12 +23,15 @@ std::uint64_t next_id() {
     return ++id;
 }
 
-bool wants_object_position(const View& view) {
+/// Generated coordinates are made of the object's own.
+AttributeSource set_of(AttributeSource source) {
+    return source == AttributeSource::Generated ? AttributeSource::ObjectPosition : source;
+}
+
+bool wants_positions(const View& view, AttributeSource set) {
     for (const auto& requests : view.requests)
         for (const AttributeRequest& request : requests)
-            if (request.source == AttributeSource::ObjectPosition ||
-                request.source == AttributeSource::Generated)
-                return true;
+            if (is_position(request.source) && set_of(request.source) == set) return true;
     return false;
 }
 
@@ -51,7 +54,13 @@ OpenedSubdivision::OpenedSubdivision(const View& view, std::size_t instance,
                                      Report& report)
     : OpenedMesh(view, instance, std::move(shared), std::move(knots), report), m_id(next_id()) {
     for (int k = 0; k < knot_count(); ++k) m_sets.push_back(&point(k, 0));
-    if (wants_object_position(view)) m_sets.push_back(this->shared().frame_points().data());
+    for (const AttributeSource set :
+         {AttributeSource::ObjectPosition, AttributeSource::PreviousPosition,
+          AttributeSource::NextPosition}) {
+        if (!wants_positions(view, set)) continue;
+        m_position_column[set] = 3 * m_sets.size();
+        m_sets.push_back(this->shared().points(set).data());
+    }
 }
 
 OpenedSubdivision::FaceSlot& OpenedSubdivision::slot(int face) const {
@@ -298,8 +307,7 @@ void OpenedSubdivision::attribute(const BasePatch& patch, const AttributeRequest
     const int channel =
         found ? topology().uv_channel(static_cast<std::size_t>(found - data().attributes.data()))
               : -1;
-    const bool position = request.source == AttributeSource::ObjectPosition ||
-                          request.source == AttributeSource::Generated;
+    const bool position = is_position(request.source);
     if (channel < 0 && !position) {
         interpolate(corner_values(shared(), patch, request), patch.kind, uv, request.width, values,
                     du, dv);
@@ -310,8 +318,8 @@ void OpenedSubdivision::attribute(const BasePatch& patch, const AttributeRequest
     const FaceCoordinates coordinates(topology(), index);
     const std::size_t columns = static_cast<std::size_t>(limit.columns());
     const std::size_t width = static_cast<std::size_t>(request.width);
-    const std::size_t first = position ? columns - 3 : 0;
-    const std::size_t given = std::min(width, columns - first);
+    const std::size_t first = position ? m_position_column.at(set_of(request.source)) : 0;
+    const std::size_t given = std::min(width, position ? 3 : columns);
     std::vector<double> p(columns), by_u(columns), by_v(columns);
     for (std::vector<float>* out : {&values, &du, &dv}) out->assign(uv.size() * width, 0.0f);
     const Vec3d box = Vec3d(shared().frame_box().hi) - Vec3d(shared().frame_box().lo);

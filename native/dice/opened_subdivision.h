@@ -6,6 +6,8 @@
 // the edge that leaves this corner to the face's centre, between two sub-faces.
 #pragma once
 
+#include <map>
+
 #include "dice/opened_mesh.h"
 #include "geometry/limit_face.h"
 
@@ -42,6 +44,7 @@ class OpenedSubdivision final : public OpenedMesh {
 
     std::uint64_t m_id;                ///< of this opened instance, in each thread's face cache
     std::vector<const Vec3f*> m_sets;  ///< points at the knots, then in object space if asked for
+    std::map<AttributeSource, std::size_t> m_position_column;  ///< of the latter, in a limit point
 };
 
 }  // namespace granita

@@ -2,7 +2,10 @@
 // What a material wants to know at grid vertices.
 #pragma once
 
+#include <span>
 #include <string>
+
+#include "scene/geometry_data.h"
 
 namespace granita {
 
@@ -11,8 +14,26 @@ enum class AttributeSource {
     DefaultUv,  ///< the UV map that is active for render
     DefaultColor,
     Generated,  ///< Blender's Generated: position in the object's undeformed bounding box, [0,1]^3
-    ObjectPosition,  ///< object space, at the frame time
+    ObjectPosition,    ///< object space, at the frame time
+    PreviousPosition,  ///< object space, one frame before
+    NextPosition,      ///< object space, one frame after
 };
+
+/// Whether the value is a place on the surface itself.
+constexpr bool is_position(AttributeSource source) {
+    return source == AttributeSource::Generated || source == AttributeSource::ObjectPosition ||
+           source == AttributeSource::PreviousPosition || source == AttributeSource::NextPosition;
+}
+
+/// The points of another frame that a source asks for; empty for any other, and where they are
+/// those of the frame.
+inline std::span<const Vec3f> neighbour_points(const GeometryData& data, AttributeSource source) {
+    if (data.neighbours.empty()) return {};
+    const std::span<const Vec3f> both(data.neighbours);
+    if (source == AttributeSource::PreviousPosition) return both.first(both.size() / 2);
+    if (source == AttributeSource::NextPosition) return both.last(both.size() / 2);
+    return {};
+}
 
 struct AttributeRequest {
     AttributeSource source = AttributeSource::Named;

@@ -79,6 +79,11 @@ void SharedGeometry::find_frame_points(float frame_time) {
         if (is_finite(p)) m_frame_box.add(p);
 }
 
+std::span<const Vec3f> SharedGeometry::points(AttributeSource source) const {
+    const std::span<const Vec3f> other = neighbour_points(*m_data, source);
+    return other.empty() ? m_frame_points : other;
+}
+
 std::vector<std::uint8_t> SharedGeometry::usable_faces() const {
     std::vector<std::uint8_t> usable(m_data->face_count(), 1);
     const std::size_t n = m_data->vertex_count();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/report.h"
+#include "geometry/attribute_request.h"
 #include "math/bounds.h"
 #include "scene/geometry_data.h"
 
@@ -44,6 +45,8 @@ class SharedGeometry {
     bool is_static() const { return m_static; }
     /// [V] object space, at the frame time.
     std::span<const Vec3f> frame_points() const { return m_frame_points; }
+    /// [V] what positions of a source are made of: frame_points(), or those of another frame.
+    std::span<const Vec3f> points(AttributeSource source) const;
     /// Of the finite frame points.
     const Bounds3f& frame_box() const { return m_frame_box; }
     /// [V] object space, at the frame time; empty when no face asks for them.

@@ -113,6 +113,14 @@ void read_geometry(const Record& r, GeometryData& g) {
     if (!g.points.empty())
         std::memcpy(g.points.data(), points.data(), g.points.size() * sizeof(Vec3f));
 
+    if (r.has("neighbours")) {
+        const auto others =
+            r.array<float>("neighbours", {2, static_cast<py::ssize_t>(g.vertex_count()), 3});
+        g.neighbours.resize(2 * g.vertex_count());
+        if (!g.neighbours.empty())
+            std::memcpy(g.neighbours.data(), others.data(), g.neighbours.size() * sizeof(Vec3f));
+    }
+
     if (g.kind == GeometryKind::Mesh)
         read_faces(r, g);
     else
@@ -134,6 +142,10 @@ void read_instances(const Record& r, Scene& scene) {
     const auto geometry = r.values<std::int32_t>("geometry", {n});
     const auto knots = r.values<std::int32_t>("knots", {n});
     const auto transforms = n > 0 ? matrices(r, "world_from_object") : std::vector<Mat4d>{};
+    const auto neighbours =
+        n > 0 && r.has("neighbours") ? matrices(r, "neighbours") : std::vector<Mat4d>{};
+    if (!neighbours.empty() && neighbours.size() != 2 * static_cast<std::size_t>(n))
+        r.fail("'neighbours' must hold two matrices an instance");
     const auto slots = r.values<std::int32_t>("slots", {n});
     const auto materials = r.values<std::int32_t>("materials", {-1});
     const auto flags = r.values<std::uint32_t>("flags", {n});
@@ -161,6 +173,7 @@ void read_instances(const Record& r, Scene& scene) {
             transforms.begin() + static_cast<std::ptrdiff_t>(knot),
             transforms.begin() + static_cast<std::ptrdiff_t>(knot) + knots[i]);
         knot += static_cast<std::size_t>(knots[i]);
+        if (!neighbours.empty()) instance.neighbours = {neighbours[2 * i], neighbours[2 * i + 1]};
         if (slots[i] < 0 || slot + static_cast<std::size_t>(slots[i]) > materials.size())
             fail("'slots' do not match 'materials'");
         for (int s = 0; s < slots[i]; ++s) {

@@ -12,7 +12,9 @@ namespace granita {
 struct Camera {
     std::string name;
     std::vector<Mat4d>
-        world_from_camera;        ///< [K], camera space as in projection.h (z forward), no scale
+        world_from_camera;  ///< [K], camera space as in projection.h (z forward), no scale
+    /// The frame before and the one after, for the pass Vector; empty = as at the frame.
+    std::vector<Mat4d> neighbours;
     Projection projection;        ///< lens at the frame time
     int blades = 0;               ///< 0..2 = round
     float blade_rotation = 0.0f;  ///< radians

@@ -30,6 +30,7 @@ const PassKind kPasses[] = {
     {"Mist", Quantity::Clarity, Merge::Layers, 1, {}, true},
     {"Normal", Quantity::Normal, Merge::First, 3},
     {"UV", Quantity::Uv, Merge::First, 3},
+    {"Vector", Quantity::Speed, Merge::First, 4, Quantity::Surface},
     {"Position", Quantity::Position, Merge::Center, 3},
     {"Object Index", Quantity::ObjectIndex, Merge::CenterConstant, 1},
     {"Material Index", Quantity::MaterialIndex, Merge::CenterConstant, 1},

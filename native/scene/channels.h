@@ -32,6 +32,8 @@ enum class Quantity {
     Position,  ///< world space, metres
     ObjectIndex,
     MaterialIndex,
+    Speed,    ///< pixels from here to the place one frame before, and to here from the one after
+    Surface,  ///< 1, four times: what Speed is divided by
     Environment,  ///< the world as the camera sees it; known at samples alone
 };
 

@@ -54,7 +54,8 @@ struct GeometryData {
     std::string name;  ///< Blender's, for messages: "mesh 'Cube'"
     GeometryKind kind = GeometryKind::Mesh;
     int knots = 1;
-    std::vector<Vec3f> points;  ///< [knots][V] object space, metres
+    std::vector<Vec3f> points;      ///< [knots][V] object space, metres
+    std::vector<Vec3f> neighbours;  ///< [2][V] of the frame before and the one after, or empty
     std::size_t vertex_count() const { return points.size() / static_cast<std::size_t>(knots); }
     std::vector<std::int32_t> face_sizes;      ///< [F] corners a face, >= 3
     std::vector<std::int32_t> corner_verts;    ///< [C]

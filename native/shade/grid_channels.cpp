@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shade/speed.h"
 #include "shade/spread_points.h"
 
 namespace granita {
@@ -115,6 +116,17 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                 fill([&](std::size_t i) { return value[i]; });
                 break;
             }
+            case Quantity::Speed: {
+                const Speed speed(scene, scene.instances[grid.instance]);
+                const auto now = shaded.run.read(shaded.sources.now);
+                const auto previous = shaded.run.read(shaded.sources.previous);
+                const auto next = shaded.run.read(shaded.sources.next);
+                fill([&](std::size_t i) { return speed.at(now[i], previous[i], next[i]); });
+                break;
+            }
+            case Quantity::Surface:
+                fill([&](std::size_t) { return Vec4f(1.0f); });
+                break;
             case Quantity::Position: {
                 const Vec3d origin(camera.world_from_camera[3]);
                 fill([&](std::size_t i) { return Vec3f(origin + Vec3d(points.p[i])); });

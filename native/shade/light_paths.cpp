@@ -25,6 +25,16 @@ Vec3f position_at(const Grid& grid, std::size_t vertex, const KnotTime& t) {
     return before + (after - before) * static_cast<float>(t.fraction);
 }
 
+/// What a point goes along with, of `place(vertex)`: its vertex, or the middle of its separate
+/// face, which turns with the face as a corner with a distance to it would not.
+template <class Place>
+Vec3f anchor_place(const Grid& grid, std::size_t vertex, const Place& place) {
+    if (!grid.apart) return place(vertex);
+    const Grid::Corners c = grid.corners(static_cast<int>(vertex) % grid.n_u);
+    const Vec3f a = place(c.v0), b = place(c.v1), d = place(c.v2);
+    return d == place(c.v3) ? (a + b + d) / 3.0f : 0.5f * (a + d);
+}
+
 /// From the neighbours in the grid: deformation turns a surface as well as a transform does.
 /// `places` [vertices]; the point's side is the one that is seen of it.
 Vec3f normal_at(const Grid& grid, const std::vector<Vec3f>& places, std::size_t vertex,
@@ -62,13 +72,17 @@ PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints
     m_positions.reserve(knots * m_count);
     m_normals.reserve(knots * m_count);
     const auto vertices = static_cast<std::size_t>(grid.vertex_count());
-    // A point that is no vertex goes along with one, at the distance that it has at the frame time.
+    // A point that is no vertex goes along with its anchor, at the distance that it has at the
+    // frame.
     const std::vector<std::uint32_t>& anchors = grid.places.anchors;
     const KnotTime frame = knot_time(static_cast<double>(scene.options.frame_time), grid.knots);
     const Mat3f frame_rotation{Mat3d(matrix_at(camera, scene.options.frame_time))};
     std::vector<Vec3f> beside;
-    for (std::size_t i = 0; i < anchors.size(); ++i)
-        beside.push_back(frame_rotation * (grid.p[i] - position_at(grid, anchors[i], frame)));
+    for (std::size_t i = 0; i < anchors.size(); ++i) {
+        const Vec3f anchor = anchor_place(
+            grid, anchors[i], [&](std::size_t v) { return position_at(grid, v, frame); });
+        beside.push_back(frame_rotation * (grid.p[i] - anchor));
+    }
     for (std::size_t knot = 0; knot < knots; ++knot) {
         const double time = static_cast<double>(knot) / (m_knots - 1);
         const Mat4d m = matrix_at(camera, time);
@@ -80,7 +94,9 @@ PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints
             places[v] = rotation * position_at(grid, v, t) + offset;
         for (std::size_t i = 0; i < m_count; ++i) {
             const std::size_t vertex = anchors.empty() ? i : anchors[i];
-            m_positions.push_back(anchors.empty() ? places[i] : places[vertex] + beside[i]);
+            const auto place = [&](std::size_t v) { return places[v]; };
+            m_positions.push_back(anchors.empty() ? places[i]
+                                                  : anchor_place(grid, vertex, place) + beside[i]);
             m_normals.push_back(normal_at(grid, places, vertex, points, i));
         }
     }

@@ -66,7 +66,8 @@ void push_root(std::vector<int>& roots, int slot) {
 
 std::vector<int> roots_of(const SurfaceSources& sources, const PassSources& passes) {
     std::vector<int> roots;
-    push_root(roots, passes.uv.slot);
+    for (const int slot : {passes.uv.slot, passes.now.slot, passes.previous.slot, passes.next.slot})
+        push_root(roots, slot);
     for (const VectorSource& color : passes.aov_colors) push_root(roots, color.slot);
     for (const FloatSource& value : passes.aov_values) push_root(roots, value.slot);
     push_root(roots, sources.emission.slot);
@@ -86,6 +87,12 @@ PassSources pass_sources(ProgramBuilder& builder, const NodeGraph& graph,
     if (passes.find(Quantity::Uv)) {
         NodeBuilder b(builder, none, 0, Shift::None);
         sources.uv = b.attribute({AttributeSource::DefaultUv, "", 2});
+    }
+    if (passes.find(Quantity::Speed)) {
+        NodeBuilder b(builder, none, 0, Shift::None);
+        sources.now = b.attribute({AttributeSource::ObjectPosition, "", 3});
+        sources.previous = b.attribute({AttributeSource::PreviousPosition, "", 3});
+        sources.next = b.attribute({AttributeSource::NextPosition, "", 3});
     }
     for (const int index : aov_outputs) {
         const Node& node = index < 0 ? none : graph.nodes[index];

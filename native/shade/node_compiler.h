@@ -15,6 +15,7 @@ namespace granita {
 /// Values for passes alone, beside what the surface sends out.
 struct PassSources {
     VectorSource uv;                       ///< the constant 0 where it is not asked for
+    VectorSource now, previous, next;      ///< places in object space, of Speed; likewise
     std::vector<bool> writes_aov;          ///< [Options::aovs] whether some node does
     std::vector<VectorSource> aov_colors;  ///< [Options::aovs]; 0 where no node writes it
     std::vector<FloatSource> aov_values;   ///< likewise

@@ -137,6 +137,8 @@ def render(snapshot):
     }
     if "flags" in table:
         packed["flags"] = np.array(table["flags"], np.uint32)
+    if "neighbours" in table:
+        packed["neighbours"] = table["neighbours"]
     return granita_core.render({**snapshot, "instances": packed})
 
 

@@ -6,11 +6,11 @@ import pytest
 import snapshots
 
 ALL = [
-    "Depth", "Mist", "Position", "Normal", "UV", "Object Index", "Material Index",
+    "Depth", "Mist", "Vector", "Position", "Normal", "UV", "Object Index", "Material Index",
     "Diffuse Direct", "Diffuse Color", "Glossy Direct", "Glossy Color", "Emission",
     "Environment", "Shadow",
 ]  # fmt: skip
-FLOATS = {"Mist": 1, "Object Index": 1, "Material Index": 1}
+FLOATS = {"Vector": 4, "Mist": 1, "Object Index": 1, "Material Index": 1}
 # float32 sums over a pixel's samples, relative.
 ROUNDING = 1e-5
 

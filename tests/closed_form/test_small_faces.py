@@ -128,3 +128,50 @@ def test_what_small_faces_hide_is_not_shaded():
     result = s.render(snapshot)
     # The half in front has twice its outline's area; towards the outline points crowd.
     assert result["statistics"]["points_shaded"] <= 2.5 * np.pi * 20**2
+
+
+def ball(radius, across=32, down=16):
+    """Points and faces of a sphere about the origin, poles along z."""
+    polar = np.linspace(0.0, np.pi, down + 1)[:, None]
+    round_ = np.arange(across)[None] * 2 * np.pi / across
+    rings = np.stack(
+        [
+            np.sin(polar) * np.cos(round_),
+            np.sin(polar) * np.sin(round_),
+            np.cos(polar) + 0 * round_,
+        ],
+        -1,
+    )
+    v = np.arange(across)
+    w = (v + 1) % across
+    quads = [np.stack([v, w, w + across, v + across], 1) + r * across for r in range(1, down - 1)]
+    top = np.stack([0 * v, w + across, v + across], 1)
+    bottom = np.stack([v + (down - 1) * across, w + (down - 1) * across, 0 * v + down * across], 1)
+    faces = [f.tolist() for f in np.concatenate(quads)] + top.tolist() + bottom.tolist()
+    return radius * rings.reshape(-1, 3), faces
+
+
+@pytest.mark.parametrize("frame_time", [0.0, 0.5, 1.0])
+def test_a_ball_that_turns_does_not_shadow_itself(frame_time):
+    """About the axis that it is seen along: its points go round with their faces, so it is lit as if it stood."""
+
+    def render(angle):
+        snapshot = s.orthographic(
+            (16, 16), executor="SIMD", samples=16, light_samples=16, frame_time=frame_time
+        )
+        turns = [s.translation(8, 8, 20) for _ in range(9)]
+        for turn, a in zip(turns, angle * (np.linspace(0, 1, 9) - frame_time)):
+            turn[:2, :2] = [[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]]
+        nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.8, 0.8, 0.8, 1)}}]
+        snapshot["materials"].append({"name": "Matte", "nodes": nodes, "surface": (0, "BSDF")})
+        s.mesh(snapshot, *ball(6.0), 0, transforms=turns)
+        tilt = np.eye(4)
+        tilt[:3, :3] = [[0.8, 0, -0.6], [0, -1, 0], [-0.6, 0, -0.8]]  # shines along (.6, 0, .8)
+        snapshot["lights"] = [
+            {"name": "Sun", "kind": "SUN", "world_from_light": tilt[None], "energy": 3.0}
+        ]
+        return s.render(snapshot)["combined"][5:11, 5:11, 0]
+
+    still, turning = render(0.0), render(0.7)
+    assert still.mean() > 0.3
+    assert turning.mean() == pytest.approx(still.mean(), rel=0.02)
