@@ -5,6 +5,7 @@
 #include <OpenImageIO/texture.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <mutex>
 #include <tuple>
@@ -45,12 +46,34 @@ OIIO::TextureOpt options_for(const TextureMode& mode) {
     return options;
 }
 
+constexpr int kMostProbes = 16;
+
+/// A long footprint as short ones in a row.
+struct Probes {
+    int count = 1;
+    Vec2f step{0.0f};  ///< between two of them; the footprint's longer edge becomes this
+    bool along_u = true;
+};
+
+Probes probes_of(const TexturePlace& place, const Vec2f& size) {
+    const float u = glm::length(place.along_u * size), v = glm::length(place.along_v * size);
+    Probes probes;
+    probes.along_u = u >= v;
+    const float ratio = std::max(u, v) / std::max(std::min(u, v), 1.0f);
+    if (ratio > 1.0f)
+        probes.count = static_cast<int>(std::ceil(std::min(ratio, float{kMostProbes})));
+    probes.step =
+        (probes.along_u ? place.along_u : place.along_v) / static_cast<float>(probes.count);
+    return probes;
+}
+
 class CachedTexture final : public Texture {
   public:
-    CachedTexture(const Image& image, TexelKind kind, OIIO::TextureSystem& system,
+    CachedTexture(const Image& image, const TextureHeader& header, OIIO::TextureSystem& system,
                   OIIO::ImageCache& cache, Statistics& statistics, Report& report)
         : m_image(image),
-          m_kind(kind),
+          m_kind(header.kind),
+          m_size(header.width, header.height),
           m_registration(image, cache),
           m_system(system),
           m_handle(system.get_texture_handle(OIIO::ustring(m_registration.name()))),
@@ -70,20 +93,11 @@ class CachedTexture final : public Texture {
                 out[i] = Vec4f(0.0f);
                 continue;
             }
-            // OpenImageIO's t runs downward.
             Vec4f texel;
-            if (!m_system.texture(m_handle, thread, options, p.x, 1.0f - p.y, place.along_u.x,
-                                  -place.along_u.y, place.along_v.x, -place.along_v.y, 4,
-                                  &texel.x)) {
+            if (!look(thread, options, mode, place, texel)) {
                 ++failures;
-                out[i] = kMagenta;
-                continue;
+                texel = kMagenta;
             }
-            if (mode.unassociate && texel.w != 0.0f && texel.w != 1.0f)
-                texel = Vec4f(Vec3f(texel) / texel.w, texel.w);
-            if (is_encoded(m_kind))
-                texel = Vec4f(linear_from_srgb(texel.x), linear_from_srgb(texel.y),
-                              linear_from_srgb(texel.z), texel.w);
             out[i] = texel;
         }
         m_statistics.add(Counter::TextureLookups, places.size());
@@ -95,8 +109,46 @@ class CachedTexture final : public Texture {
     }
 
   private:
+    using Thread = OIIO::TextureSystem::Perthread;
+
+    /// What is encoded must not be averaged along a long footprint before it is decoded: a mean of
+    /// black and white would be a fifth of white.  Its probes are therefore taken one by one.
+    bool look(Thread* thread, OIIO::TextureOpt& options, const TextureMode& mode,
+              const TexturePlace& place, Vec4f& sum) const {
+        if (!is_encoded(m_kind)) return probe(thread, options, mode, place, sum);
+        const Probes probes = probes_of(place, m_size);
+        TexturePlace part = place;
+        (probes.along_u ? part.along_u : part.along_v) = probes.step;
+        const auto count = static_cast<float>(probes.count);
+        sum = Vec4f(0.0f);
+        for (int k = 0; k < probes.count; ++k) {
+            part.center =
+                place.center + probes.step * (static_cast<float>(k) + 0.5f - 0.5f * count);
+            Vec4f texel;
+            if (!probe(thread, options, mode, part, texel)) return false;
+            sum += texel / count;
+        }
+        return true;
+    }
+
+    bool probe(Thread* thread, OIIO::TextureOpt& options, const TextureMode& mode,
+               const TexturePlace& place, Vec4f& texel) const {
+        const Vec2f p = place.center;
+        // OpenImageIO's t runs downward.
+        if (!m_system.texture(m_handle, thread, options, p.x, 1.0f - p.y, place.along_u.x,
+                              -place.along_u.y, place.along_v.x, -place.along_v.y, 4, &texel.x))
+            return false;
+        if (mode.unassociate && texel.w != 0.0f && texel.w != 1.0f)
+            texel = Vec4f(Vec3f(texel) / texel.w, texel.w);
+        if (is_encoded(m_kind))
+            texel = Vec4f(linear_from_srgb(texel.x), linear_from_srgb(texel.y),
+                          linear_from_srgb(texel.z), texel.w);
+        return true;
+    }
+
     const Image& m_image;
     TexelKind m_kind;
+    Vec2f m_size;  ///< texels
     TextureRegistration m_registration;
     OIIO::TextureSystem& m_system;
     OIIO::TextureSystem::TextureHandle* m_handle;
@@ -183,8 +235,8 @@ std::shared_ptr<const Texture> TextureStore::find(const std::string& name,
         return texture;
     }
     texture =
-        std::make_shared<CachedTexture>(*image, header.kind, *m_impl->lent.system,
-                                        *m_impl->lent.cache, m_impl->statistics, m_impl->report);
+        std::make_shared<CachedTexture>(*image, header, *m_impl->lent.system, *m_impl->lent.cache,
+                                        m_impl->statistics, m_impl->report);
     return texture;
 }
 

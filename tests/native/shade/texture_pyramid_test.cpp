@@ -39,11 +39,13 @@ struct Look {
     Report report;
 
     Vec4f at(const Image& image, Vec2f center, float size, TextureMode mode = {}) {
+        return at(image, TexturePlace{center, Vec2f(size, 0), Vec2f(0, size)}, mode);
+    }
+    Vec4f at(const Image& image, const TexturePlace& place, TextureMode mode = {}) {
         scene.images = {image};
         TextureStore store(scene, statistics, report);
         std::vector<Vec4f> out;
-        store.find("Image", "node 'N'")
-            ->look_up(mode, {{center, Vec2f(size, 0), Vec2f(0, size)}}, out);
+        store.find("Image", "node 'N'")->look_up(mode, {place}, out);
         return out[0];
     }
 };
@@ -61,6 +63,16 @@ TEST(Texture, a_footprint_over_everything_sees_the_mean) {
     for (int i = 0; i < 64 * 64; ++i) colors.push_back(Vec3f((i / 64 + i) % 2 ? 1.0f : 0.0f));
     const Image image = image_of(64, 64, colors, "sRGB");
     EXPECT_NEAR(Look().at(image, {0.3f, 0.7f}, 1.0f).x, 0.5f, 0.01f);
+}
+
+TEST(Texture, a_footprint_across_stripes_sees_the_mean_of_their_light) {
+    std::vector<Vec3f> colors;
+    for (int i = 0; i < 64 * 64; ++i) colors.push_back(Vec3f(i % 2 ? 1.0f : 0.0f));
+    for (const char* space : {"sRGB", "Non-Color"}) {
+        const Image image = image_of(64, 64, colors, space);
+        const TexturePlace across{{0.5f, 0.5f}, {8.0f / 64, 0}, {0, 1.0f / 64}};
+        EXPECT_NEAR(Look().at(image, across).x, 0.5f, 0.03f) << space;
+    }
 }
 
 TEST(Texture, missing_file_is_magenta_and_named) {
