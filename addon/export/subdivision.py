@@ -17,8 +17,6 @@ from .changes import originals
 # infinitely sharp.
 MAX_SHARPNESS = 10.0
 
-_SCHEMES = {"CATMULL_CLARK": "CATMULL_CLARK", "SIMPLE": "SIMPLE"}
-
 
 @dataclass(frozen=True)
 class Cage:
@@ -53,7 +51,9 @@ def find_cage(evaluated, mode, simplify_level):
         return None
     modifier = evaluated.modifiers[enabled[-1]]
     levels = modifier.render_levels if mode == "RENDER" else modifier.levels
-    if min(levels, simplify_level) < 1 or modifier.subdivision_type not in _SCHEMES:
+    # A simple subdivision is no smoother than its cage, but where its faces are smooth its normals
+    # are: they belong to the vertices that Blender makes.
+    if min(levels, simplify_level) < 1 or modifier.subdivision_type != "CATMULL_CLARK":
         return None
     # Particles and instances on vertices or faces sit on the subdivided mesh.
     if len(evaluated.particle_systems) or evaluated.instance_type in {"VERTS", "FACES"}:
@@ -62,7 +62,7 @@ def find_cage(evaluated, mode, simplify_level):
     if getattr(modifier, "use_custom_normals", False) and original_mesh.has_custom_normals:
         return None
     settings = (
-        _SCHEMES[modifier.subdivision_type],
+        modifier.subdivision_type,
         modifier.boundary_smooth,
         modifier.uv_smooth,
         modifier.use_creases,

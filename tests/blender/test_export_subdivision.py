@@ -62,11 +62,18 @@ def test_cage_is_deformed_by_what_comes_before(scene, cube):
     mirror = cube.modifiers.new("Array", "ARRAY")
     mirror.count = 3
     mirror.relative_offset_displace = (2, 0, 0)
-    add_subsurf(cube).subdivision_type = "SIMPLE"
+    add_subsurf(cube)
     geometry = geometry_of(export_probe.through_engine(scene)[0], "Cube")
     assert geometry["points"].shape == (1, 24, 3)
     assert geometry["points"][0, :, 0].max() == pytest.approx(9)
-    assert geometry["subdivision"]["scheme"] == "SIMPLE"
+
+
+def test_simple_subdivision_is_blenders_own_mesh(scene, cube):
+    cube.data.polygons.foreach_set("use_smooth", [True] * 6)
+    add_subsurf(cube, 2).subdivision_type = "SIMPLE"
+    geometry = geometry_of(export_probe.through_engine(scene)[0], "Cube")
+    assert geometry.get("subdivision") is None
+    assert len(geometry["face_sizes"]) == 6 * 16 and geometry["smooth"].all()
 
 
 def test_creases_become_sharpness(scene, cube):
