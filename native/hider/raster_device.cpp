@@ -17,7 +17,8 @@ namespace granita {
 namespace {
 
 const char* name_of(RasterOutput output) {
-    constexpr const char* kNames[] = {"SURFACE", "RADIANCE", "LAYER", "MARK"};
+    constexpr const char* kNames[] = {"SURFACE",    "RADIANCE",       "LAYER",        "MARK",
+                                      "LAYER_NAME", "LAYER_RADIANCE", "LAYER_OPACITY"};
     return kNames[static_cast<int>(output)];
 }
 
@@ -92,7 +93,7 @@ gl::Program& RasterDevice::program(RasterOutput output) {
 }
 
 RasterPeel& RasterDevice::peel() {
-    if (!m_peel) m_peel.emplace(m_target);
+    if (!m_peel) m_peel.emplace(m_target, m_frame.most_targets);
     return *m_peel;
 }
 

@@ -11,15 +11,13 @@
 #include "gl/query.h"
 #include "gl/vertex_array.h"
 #include "hider/raster_hider.h"
+#include "hider/raster_output.h"
 #include "hider/raster_peel.h"
 #include "hider/raster_samples.h"
 #include "hider/raster_seen.h"
 #include "hider/raster_target.h"
 
 namespace granita {
-
-/// What drawing leaves behind: OUTPUT of shaders/raster/grid_output.glsl.
-enum class RasterOutput { Surface, Radiance, Layer, Mark };
 
 /// A bucket's grids on the device: uploaded once, drawn in every pass (paper, 9.3.5).
 struct RasterBuffers {
@@ -91,7 +89,7 @@ class RasterDevice {
     RasterTarget m_target;
     std::optional<RasterSamples> m_samples;
     std::optional<RasterPeel> m_peel;
-    std::optional<gl::Program> m_programs[4];
+    std::optional<gl::Program> m_programs[7];
     gl::Program m_accumulate, m_mark;
     gl::Framebuffer m_mark_target;
     gl::Buffer m_passes, m_layers;

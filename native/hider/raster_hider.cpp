@@ -181,9 +181,13 @@ class RasterHider::Bucket : public RasterBucket {
             for (;;) {
                 peel.begin_layer(cell, batch.farther_than);
                 gl::Query any(GL_ANY_SAMPLES_PASSED);
-                any.begin();
-                m_device.draw(RasterOutput::Layer, *m_buffers, commands, cell, passes);
-                any.end();
+                for (const RasterOutput output : peel.outputs()) {
+                    peel.begin_output(output, cell);
+                    const bool finds = output == peel.outputs().front();
+                    if (finds) any.begin();
+                    m_device.draw(output, *m_buffers, commands, cell, passes);
+                    if (finds) any.end();
+                }
                 peel.composite(cell, passes.count, m_frame.opacity_threshold);
                 if (marks != nullptr)
                     m_device.mark_names(peel.names(), false, cell, passes, *m_buffers, *marks);

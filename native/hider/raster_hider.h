@@ -58,6 +58,7 @@ struct RasterFrame {
     int z_batch_size = 26;           ///< transparent grids that are peeled together
     int most_layers =
         8;  ///< passes drawn at once, where the device can; 1 = multipass accumulation
+    int most_targets = 8;  ///< that a draw fills; with fewer than 4 a layer is peeled in 3 passes
     /// find_seen() asks what saturated samples hide, too: transparent grids are peeled twice.
     bool cull_saturated = true;
     Statistics* statistics = nullptr;

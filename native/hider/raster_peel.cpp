@@ -58,7 +58,7 @@ std::vector<ZBatch> z_batches(const RasterGeometry& geometry,
     return batches;
 }
 
-RasterPeel::RasterPeel(const RasterTarget& target) : m_target(target) {
+RasterPeel::RasterPeel(const RasterTarget& target, int most_targets) : m_target(target) {
     const int side = target.texel_size(), layers = target.layers();
     const auto texture = [&](GLenum format) { return gl::Texture(format, side, side, layers); };
     m_color = texture(GL_RGBA32F);
@@ -68,9 +68,22 @@ RasterPeel::RasterPeel(const RasterTarget& target) : m_target(target) {
     m_radiance = texture(GL_RGBA32F);
     m_opacity = texture(GL_RGBA32F);
     m_name = texture(GL_R32UI);
-    m_layer_depth = texture(GL_R32F);
     m_depth = texture(GL_DEPTH_COMPONENT32F);
-    m_layer = gl::Framebuffer({&m_radiance, &m_opacity, &m_name, &m_layer_depth}, &m_depth);
+    GLint device_targets = 0;
+    glGetIntegerv(GL_MAX_DRAW_BUFFERS, &device_targets);
+    if (std::min(most_targets, static_cast<int>(device_targets)) >= 4) {
+        m_layer_depth = texture(GL_R32F);
+        m_outputs = {RasterOutput::Layer};
+        m_targets.emplace_back(
+            std::vector<const gl::Texture*>{&m_radiance, &m_opacity, &m_name, &m_layer_depth},
+            &m_depth);
+    } else {
+        m_outputs = {RasterOutput::LayerName, RasterOutput::LayerRadiance,
+                     RasterOutput::LayerOpacity};
+        m_targets.emplace_back(&m_name, &m_depth);
+        m_targets.emplace_back(&m_radiance, nullptr);
+        m_targets.emplace_back(&m_opacity, nullptr);
+    }
     m_composite =
         gl::Program("layers", {{GL_COMPUTE_SHADER, gl::shader_source("raster/composite.comp")}});
 }
@@ -88,9 +101,22 @@ void RasterPeel::begin(const RasterCell& cell) const {
 void RasterPeel::begin_layer(const RasterCell& cell, float farther_than) const {
     constexpr GLuint kNone = 0;
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-    m_target.bind(m_layer, cell);
-    glClearNamedFramebufferuiv(m_layer.name(), GL_COLOR, 2, &kNone);
-    glClearNamedFramebufferfv(m_layer.name(), GL_DEPTH, 0, &farther_than);
+    const gl::Framebuffer& first = m_targets.front();
+    m_target.bind(first, cell);
+    glClearNamedFramebufferuiv(first.name(), GL_COLOR, m_targets.size() == 1 ? 2 : 0, &kNone);
+    glClearNamedFramebufferfv(first.name(), GL_DEPTH, 0, &farther_than);
+}
+
+void RasterPeel::begin_output(RasterOutput output, const RasterCell& cell) const {
+    const auto i = static_cast<std::size_t>(std::find(m_outputs.begin(), m_outputs.end(), output) -
+                                            m_outputs.begin());
+    m_target.bind(m_targets[i], cell);
+    if (i > 0) {
+        glDisable(GL_DEPTH_TEST);
+        m_name.bind(RASTER_LAYER_NAME);
+        m_depth.bind(RASTER_LAYER_DEPTH);
+        return;
+    }
     m_target.depth().bind(RASTER_OPAQUE_DEPTH);
     m_peeled_depth.bind(RASTER_PEELED_DEPTH);
     m_peeled_name.bind(RASTER_PEELED_NAME);
@@ -100,7 +126,7 @@ void RasterPeel::composite(const RasterCell& cell, int layers, float threshold) 
     m_radiance.bind(0);
     m_opacity.bind(1);
     m_name.bind(2);
-    m_layer_depth.bind(3);
+    (m_outputs.size() == 1 ? m_layer_depth : m_depth).bind(3);
     m_color.bind_image(0, GL_READ_WRITE);
     m_transmission.bind_image(1, GL_READ_WRITE);
     m_peeled_depth.bind_image(2, GL_WRITE_ONLY);

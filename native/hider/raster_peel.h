@@ -10,6 +10,7 @@
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "hider/raster_geometry.h"
+#include "hider/raster_output.h"
 #include "hider/raster_target.h"
 
 namespace granita {
@@ -30,13 +31,19 @@ std::vector<ZBatch> z_batches(const RasterGeometry& geometry,
 /// Used on the thread that owns OpenGL.
 class RasterPeel {
   public:
-    explicit RasterPeel(const RasterTarget& target);
+    /// `most_targets`: as RasterFrame has it; the device may have fewer.
+    RasterPeel(const RasterTarget& target, int most_targets);
 
     /// No layers yet, in all of the cell's samples.
     void begin(const RasterCell& cell) const;
-    /// Binds the target of the next layer and what its shader reads.  Only what is nearer than
-    /// `farther_than` and the opaque surfaces is peeled.
+    /// The next layer.  Only what is nearer than `farther_than` and the opaque surfaces is peeled.
     void begin_layer(const RasterCell& cell, float farther_than) const;
+    /// What must be drawn for a layer, in this order: all at once, or its names, and then radiance
+    /// and opacity of what they name (the paper's three passes, one a colour channel, without its
+    /// repetition of the whole algorithm).
+    const std::vector<RasterOutput>& outputs() const { return m_outputs; }
+    /// Binds the target of an output and what its shader reads.
+    void begin_output(RasterOutput output, const RasterCell& cell) const;
     /// Puts what was drawn under the layers so far.
     void composite(const RasterCell& cell, int layers, float threshold) const;
     /// What the last layer has seen.
@@ -52,7 +59,8 @@ class RasterPeel {
     gl::Texture m_color, m_transmission, m_peeled_depth, m_peeled_name;
     // The next layer.
     gl::Texture m_radiance, m_opacity, m_name, m_layer_depth, m_depth;
-    gl::Framebuffer m_layer;
+    std::vector<RasterOutput> m_outputs;
+    std::vector<gl::Framebuffer> m_targets;  ///< of each output
     gl::Program m_composite;
 };
 

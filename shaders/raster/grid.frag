@@ -13,10 +13,10 @@ flat in uint layer_here;
 #if OUTPUT == MARK
 flat in uint grid_here;
 #endif
-#if OUTPUT == RADIANCE || OUTPUT == LAYER
+#if HAS_RADIANCE
 in vec4 radiance_here;
 #endif
-#if OUTPUT == LAYER
+#if HAS_OPACITY
 in vec4 opacity_here;
 #endif
 
@@ -34,10 +34,10 @@ void main() {
 #if OUTPUT == MARK
     f.grid = grid_here;
 #endif
-#if OUTPUT == RADIANCE || OUTPUT == LAYER
+#if HAS_RADIANCE
     f.radiance = radiance_here;
 #endif
-#if OUTPUT == LAYER
+#if HAS_OPACITY
     f.opacity = opacity_here;
 #endif
     leave(f);

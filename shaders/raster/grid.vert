@@ -39,11 +39,11 @@ flat out uint layer_here;
 #if OUTPUT == MARK
 flat out uint grid_here;
 #endif
-#if OUTPUT == RADIANCE || OUTPUT == LAYER
+#if HAS_RADIANCE
 layout(location = RASTER_RADIANCE) in vec4 radiance;
 out vec4 radiance_here;
 #endif
-#if OUTPUT == LAYER
+#if HAS_OPACITY
 layout(location = RASTER_OPACITY) in vec4 opacity;
 out vec4 opacity_here;
 #endif
@@ -86,10 +86,10 @@ void main() {
 #if OUTPUT == MARK
     grid_here = grid_index;
 #endif
-#if OUTPUT == RADIANCE || OUTPUT == LAYER
+#if HAS_RADIANCE
     radiance_here = radiance;
 #endif
-#if OUTPUT == LAYER
+#if HAS_OPACITY
     opacity_here = opacity;
 #endif
 }

@@ -19,10 +19,10 @@ flat in vec3 begin[3];
 flat in vec3 end[3];
 flat in uvec2 segment;
 #endif
-#if OUTPUT == RADIANCE || OUTPUT == LAYER
+#if HAS_RADIANCE
 layout(std430, binding = RASTER_VERTEX_RADIANCE) readonly buffer Radiance { vec4 radiance[]; };
 #endif
-#if OUTPUT == LAYER
+#if HAS_OPACITY
 layout(std430, binding = RASTER_VERTEX_OPACITY) readonly buffer Opacity { vec4 opacity[]; };
 #endif
 
@@ -71,13 +71,15 @@ void main() {
     f.corner = corners.x;
     f.grid = grid_here;
     f.layer = 0;
-#if OUTPUT == RADIANCE || OUTPUT == LAYER
+#if HAS_RADIANCE || HAS_OPACITY
     const vec3 edges = vec3(edge(d[1], d[2]), edge(d[2], d[0]), edge(d[0], d[1]));
     const float sum = edges.x + edges.y + edges.z;
     const vec2 share = sum != 0.0 ? clamp(edges.yz / sum, 0.0, 1.0) : vec2(0.0);
+#endif
+#if HAS_RADIANCE
     f.radiance = interpolate(radiance[corners.x], radiance[corners.y], radiance[corners.z], share);
 #endif
-#if OUTPUT == LAYER
+#if HAS_OPACITY
     f.opacity = interpolate(opacity[corners.x], opacity[corners.y], opacity[corners.z], share);
 #endif
     gl_FragDepth = f.depth;

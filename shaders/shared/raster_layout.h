@@ -45,6 +45,8 @@
 #define RASTER_OPAQUE_DEPTH 0
 #define RASTER_PEELED_DEPTH 1
 #define RASTER_PEELED_NAME 2
+#define RASTER_LAYER_NAME 3
+#define RASTER_LAYER_DEPTH 4
 
 // Uniform locations of the compute shaders of raster/; work groups are squares of texels.
 #define RASTER_GROUP 8

@@ -79,6 +79,28 @@ TEST(RasterPasses, z_batches_change_no_bit) {
     }
 }
 
+TEST(RasterPasses, three_passes_a_layer_are_the_bits_of_one) {
+    // Spectral opacity on a device that fills one target at a time (paper, 9.3.4).
+    std::vector<Grid> grids = mixed_sheets();
+    grids.push_back(make_rectangle(20, 3, 3, 40, 30, 4, 3, 3, Vec3f(0.1f, 0.2f, 0.3f)));
+    set_opacity(grids.back(), Vec3f(0.2f, 0.5f, 1.0f));
+    grids.push_back(grids.back());  // coincident
+    grids.back().key.instance = 21;
+    for (const bool perspective : {false, true}) {
+        RasterFrame frame = pixel_frame(4, 5);
+        if (perspective) frame.projection = perspective_projection(48, 32);
+        frame.opacity_threshold = 0.9f;
+        const RasterImage one =
+            RasterHider(gl_thread(), frame).open({0, 0, 48, 32}, pointers(grids))->render();
+        Statistics statistics;
+        frame.statistics = &statistics;
+        frame.most_targets = 1;
+        RasterHider hider(gl_thread(), frame);
+        EXPECT_TRUE(same_bits(one, hider.open({0, 0, 48, 32}, pointers(grids))->render()));
+        EXPECT_GT(statistics.get(Counter::GlPrimitives), 0u);
+    }
+}
+
 TEST(RasterPasses, what_does_not_move_costs_one_pass_and_keeps_its_bits) {
     Statistics still, moving;
     std::vector<Grid> grids;
