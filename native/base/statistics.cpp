@@ -18,6 +18,12 @@ constexpr std::array kStageNames = {"open",  "split",   "dice", "hide",
                                     "shade", "resolve", "film", "ray_build"};
 static_assert(kStageNames.size() == static_cast<std::size_t>(Stage::kCount));
 
+void raise(std::atomic<std::uint64_t>& peak, std::uint64_t value) {
+    auto last = peak.load(std::memory_order_relaxed);
+    while (value > last && !peak.compare_exchange_weak(last, value)) {
+    }
+}
+
 }  // namespace
 
 const char* counter_name(Counter counter) {
@@ -37,10 +43,11 @@ double Statistics::seconds(Stage stage) const {
 }
 
 void Statistics::add_grid_bytes(std::uint64_t added) {
-    const std::uint64_t bytes = m_grid_bytes.fetch_add(added) + added;
-    auto peak = m_peak_grid_bytes.load(std::memory_order_relaxed);
-    while (bytes > peak && !m_peak_grid_bytes.compare_exchange_weak(peak, bytes)) {
-    }
+    raise(m_peak_grid_bytes, m_grid_bytes.fetch_add(added) + added);
+}
+
+void Statistics::note_list_bytes(std::uint64_t bytes) {
+    raise(m_peak_list_bytes, bytes);
 }
 
 std::vector<std::pair<std::string, double>> Statistics::list() const {
@@ -52,6 +59,7 @@ std::vector<std::pair<std::string, double>> Statistics::list() const {
                           1e-9 * static_cast<double>(m_nanoseconds[i].load()));
     list.emplace_back("peak_grid_bytes", static_cast<double>(m_peak_grid_bytes.load()));
     list.emplace_back("peak_ray_bytes", static_cast<double>(m_peak_ray_bytes.load()));
+    list.emplace_back("peak_list_bytes", static_cast<double>(m_peak_list_bytes.load()));
     return list;
 }
 

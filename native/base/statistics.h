@@ -67,6 +67,9 @@ class Statistics {
     /// Bytes of the structure that rays trace, its triangles included.
     void peak_ray_bytes(std::uint64_t bytes) { m_peak_ray_bytes.store(bytes); }
     std::uint64_t peak_ray_bytes() const { return m_peak_ray_bytes.load(); }
+    /// Bytes of a bucket's transparent lists; the most that any had are peak_list_bytes().
+    void note_list_bytes(std::uint64_t bytes);
+    std::uint64_t peak_list_bytes() const { return m_peak_list_bytes.load(); }
     /// Name and value of everything above, seconds as "seconds_<stage>".
     std::vector<std::pair<std::string, double>> list() const;
 
@@ -74,7 +77,7 @@ class Statistics {
     std::array<std::atomic<std::uint64_t>, static_cast<int>(Counter::kCount)> m_counters{};
     std::array<std::atomic<std::uint64_t>, static_cast<int>(Stage::kCount)> m_nanoseconds{};
     std::atomic<std::uint64_t> m_grid_bytes{0}, m_peak_grid_bytes{0};
-    std::atomic<std::uint64_t> m_peak_ray_bytes{0};
+    std::atomic<std::uint64_t> m_peak_ray_bytes{0}, m_peak_list_bytes{0};
 };
 
 /// Adds the life time of the object to a stage.

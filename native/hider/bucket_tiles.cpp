@@ -39,11 +39,19 @@ BucketTiles::BucketTiles(const HiderFrame& frame, const Rect& tiles, const Rect&
             store.id.assign(m_samples.back().x.size(), kNoSurface);
         }
     m_needs.assign(m_stores.size(), needs);
+    m_arrived.resize(m_stores.size());
+}
+
+SurfaceId BucketTiles::add(const Grid& grid, const GridClasses& classes) {
+    const SurfaceId base = m_pool.add(grid);
+    if (!classes.opacity.empty()) m_pool.set_opacity(classes.opacity);
+    report_dropped(grid, classes.dropped);
+    return base;
 }
 
 BucketTiles::~BucketTiles() {
     for (TileStore& store : m_stores) {
-        store.fragments = {};  // as many as there are layers: not worth keeping
+        store.lists = {};  // as many as there are layers: not worth keeping
         Spares<TileStore>::give(std::move(store));
     }
     for (TileSamples& samples : m_samples) Spares<TileSamples>::give(std::move(samples));
@@ -77,12 +85,20 @@ void BucketTiles::need_time(std::size_t i) {
     m_frame.table->fill_tile(m_stores[i].tile, m_needs[i], m_samples[i]);
 }
 
-void BucketTiles::drop_hidden_fragments(std::size_t i) {
+void BucketTiles::limit_lists(std::uint64_t more) {
+    std::uint64_t bytes = more;
+    for (const auto& arrived : m_arrived) bytes += arrived.capacity() * sizeof(SampleFragment);
+    if (m_frame.statistics) m_frame.statistics->note_list_bytes(bytes);
+    m_overflowed = m_overflowed || bytes > m_frame.list_bytes;
+    if (!m_overflowed) return;
+    for (auto& arrived : m_arrived) arrived = {};
+}
+
+void BucketTiles::finish_lists(std::size_t i, const ListEnd& end) {
     TileStore& store = m_stores[i];
-    std::erase_if(store.fragments, [&](const Fragment& f) {
-        const SurfaceId opaque = store.id[f.sample];
-        return opaque != kNoSurface && !wins(f.key, f.id, store.key[f.sample], opaque);
-    });
+    store.lists = make_lists(m_arrived[i], {store.key.data(), store.id.data(), store.key.size()},
+                             m_pool, end);
+    m_arrived[i] = {};
 }
 
 void BucketTiles::report_dropped(const Grid& grid, std::uint64_t dropped) const {

@@ -5,6 +5,8 @@
 
 #include "hider/hider.h"
 #include "hider/micropolygon.h"
+#include "hider/micropolygon_class.h"
+#include "hider/sample_lists.h"
 
 namespace granita {
 
@@ -40,27 +42,36 @@ class BucketTiles {
     const TileSamples& samples(std::size_t i) const { return m_samples[i]; }
     std::vector<TileStore>& stores() { return m_stores; }
     const GridPool& pool() const { return m_pool; }
-    GridPool& pool() { return m_pool; }
+    /// Adds the grid to the pool; counts and reports the micropolygons that are left out of it.
+    SurfaceId add(const Grid& grid, const GridClasses& classes);
 
     /// Whether a surface at this depth is in front of the sample's nearest opaque one.
     bool wins(float key, SurfaceId id, float stored_key, SurfaceId stored_id) const {
         return key > stored_key ||
                (key == stored_key && stored_id != kNoSurface && m_pool.before(id, stored_id));
     }
-    /// Drops the fragments that ended up behind the sample's opaque surface.
-    void drop_hidden_fragments(std::size_t i);
+    /// Fragments of the tile's samples, in any order, for finish_lists().
+    std::vector<SampleFragment>& arrived(std::size_t i) { return m_arrived[i]; }
+    /// Notes how much the lists take, `more` of it elsewhere.  Past the limit what has arrived is
+    /// given up, now and from now on: overflowed().
+    void limit_lists(std::uint64_t more = 0);
+    bool overflowed() const { return m_overflowed; }
+    /// Makes the tile's lists of what has arrived, once its opaque surfaces are known.
+    void finish_lists(std::size_t i, const ListEnd& end);
     /// Throws Cancelled; called between tiles, whose samples may be millions.
     void check_cancelled() const;
-    /// Counts and reports micropolygons left out of the grid.
-    void report_dropped(const Grid& grid, std::uint64_t dropped) const;
 
   private:
+    void report_dropped(const Grid& grid, std::uint64_t dropped) const;
+
     const HiderFrame& m_frame;
     Rect m_tiles, m_pixels;
     GridPool m_pool;
     std::vector<TileStore> m_stores;
+    std::vector<std::vector<SampleFragment>> m_arrived;
     std::vector<TileSamples> m_samples;
     std::vector<SampleNeeds> m_needs;
+    bool m_overflowed = false;
 };
 
 /// Depth keys that the clip range admits, and the kind of key.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From what the hider saw to one colour a sample: sort the fragments, interpolate shading at the
-// sample's own place, time and lens point, put the layers over each other.
+// From what the hider saw to one colour a sample: interpolate shading at the sample's own place,
+// time and lens point, put the layers over each other.
 #pragma once
 
 #include <span>
@@ -16,13 +16,8 @@ namespace granita {
 
 struct CompositeSettings {
     Projection projection;
-    /// A sample's list ends after the fragment that brings the smallest channel of accumulated
-    /// opacity here; 1 = never.  What was accumulated stays as it is.
-    float opacity_threshold = 1.0f;
-    bool film_transparent = false;  ///< no background; alpha is what covers it
-    /// Depth and channels of the first surface are those of the first layer of so much mean
-    /// opacity.
-    float pass_alpha_threshold = 0.0f;
+    ListEnd end;                           ///< the hider's: what was accumulated stays as it is
+    bool film_transparent = false;         ///< no background; alpha is what covers it
     const ChannelSet* channels = nullptr;  ///< nullptr = no passes
 };
 
@@ -35,7 +30,7 @@ struct CompositeSettings {
 /// Alpha is the mean of the three opacities without those of holdout surfaces; with a background it
 /// is 1 less what holdouts cut out.  Depth is that of the first layer.  Fills `channels` where
 /// settings.channels asks for some; holdouts take part in Merge::First and Center alone.
-void composite_tile(TileStore& store, const TileSamples& samples, const GridPool& pool,
+void composite_tile(const TileStore& store, const TileSamples& samples, const GridPool& pool,
                     std::span<const Vec3f> background, const CompositeSettings& settings,
                     SampleColors& colors, SampleChannels* channels = nullptr);
 

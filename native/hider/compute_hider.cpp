@@ -6,6 +6,7 @@
 
 #include "hider/compute_tiles.h"
 #include "hider/micropolygon_class.h"
+#include "hider/surface_interpolator.h"
 #include "hider/tile_grid.h"
 
 namespace granita {
@@ -51,9 +52,8 @@ class ComputeHider : public Hider {
     }
 
     void hide(const Grid& grid) override {
-        const SurfaceId base = m_tiles.pool().add(grid);
         const GridClasses classes = classify(grid);
-        m_tiles.report_dropped(grid, classes.dropped);
+        const SurfaceId base = m_tiles.add(grid, classes);
         if (m_frame.statistics)
             m_frame.statistics->add(Counter::Micropolygons,
                                     static_cast<std::uint64_t>(grid.micropolygon_count()));
@@ -73,6 +73,8 @@ class ComputeHider : public Hider {
             }
     }
 
+    bool overflowed() const override { return m_tiles.overflowed(); }
+
     std::vector<TileStore>& finish() override {
         for (TileGroup& group : m_groups) {
             if (!group.batch.empty()) run(group);
@@ -82,13 +84,29 @@ class ComputeHider : public Hider {
                 group.device.reset();
             });
         }
-        for (std::size_t i = 0; i < m_tiles.count(); ++i) m_tiles.drop_hidden_fragments(i);
+        for (std::size_t i = 0; i < m_tiles.count(); ++i) {
+            m_tiles.finish_lists(i, m_frame.list_end);
+            weigh_fragments(i);
+        }
         return m_tiles.stores();
     }
     const GridPool& pool() const override { return m_tiles.pool(); }
     const TileSamples& tile_samples(std::size_t i) const override { return m_tiles.samples(i); }
 
   private:
+    /// Where samples meet their fragments: the device hands over keys and ids.
+    void weigh_fragments(std::size_t i) {
+        TileStore& store = m_tiles.store(i);
+        if (store.lists.begin.empty()) return;
+        SurfaceInterpolator surface(m_frame.projection, store.tile, m_tiles.samples(i),
+                                    m_tiles.pool());
+        for (std::uint32_t s = 0; s < store.key.size(); ++s)
+            for (std::uint32_t f = store.lists.begin[s]; f < store.lists.begin[s + 1]; ++f) {
+                Fragment& fragment = store.lists.fragments[f];
+                fragment = surface.fragment(s, fragment.id, fragment.key);
+            }
+    }
+
     void run(TileGroup& group) {
         m_tiles.check_cancelled();
         const std::vector<float> farthest = m_device.thread().run([&] {
@@ -101,6 +119,7 @@ class ComputeHider : public Hider {
             farthest.begin(), farthest.end(),
             m_farthest.begin() + static_cast<std::ptrdiff_t>(group.first * kBlocks * kBlocks));
         group.batch.clear();
+        m_tiles.limit_lists();
     }
 
     /// Whether the last batch left nothing of the tile that is farther than the bounds.  Keys only

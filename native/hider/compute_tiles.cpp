@@ -15,8 +15,14 @@ namespace {
 
 constexpr std::size_t kPixels = kTileSize * kTileSize;
 constexpr std::size_t kSampleBytes = 5 * sizeof(float);  ///< x, y, t, u, v
-constexpr std::size_t kFragmentBytes = sizeof(Fragment);
-static_assert(kFragmentBytes == 12, "hide.comp writes three words a fragment");
+/// As hide.comp writes it.
+struct DeviceFragment {
+    float key;
+    std::uint32_t sample;
+    SurfaceId id;
+};
+constexpr std::size_t kFragmentBytes = sizeof(DeviceFragment);
+static_assert(kFragmentBytes == 12);
 constexpr std::uint32_t kSkip = ~std::uint32_t{0};
 
 struct GridOrder {
@@ -179,13 +185,13 @@ void ComputeTiles::fill(const std::vector<ComputeBlock>& blocks,
     fragment_buffer.bind_storage(COMPUTE_OUTPUT);
     dispatch(m_device.hide({COMPUTE_PASS_FILL, moving, m_frame.projection.has_lens()}), blocks);
 
-    const auto fragments = fragment_buffer.read<Fragment>();
+    const auto fragments = fragment_buffer.read<DeviceFragment>();
     auto from = fragments.begin();
     const std::size_t cells = std::size_t{16} * m_samples_a_pixel;
     for (std::size_t cell = begin; cell < end; ++cell) {
-        TileStore& store = m_bucket.store(m_first + blocks[cell / cells].tile);
-        store.fragments.insert(store.fragments.end(), from, from + counts[cell]);
-        from += counts[cell];
+        auto& arrived = m_bucket.arrived(m_first + blocks[cell / cells].tile);
+        for (const auto end_of_cell = from + counts[cell]; from != end_of_cell; ++from)
+            arrived.push_back({from->sample, {from->key, from->id, 0.0f, 0.0f, false}});
     }
     if (m_frame.statistics) m_frame.statistics->add(Counter::FragmentsStored, total);
 }

@@ -16,6 +16,7 @@
 #include "base/report.h"
 #include "base/statistics.h"
 #include "dice/grid.h"
+#include "hider/sample_lists.h"
 #include "hider/sample_store.h"
 #include "hider/sample_table.h"
 #include "math/projection.h"
@@ -30,6 +31,9 @@ struct HiderFrame {
     const Scene* scene = nullptr;
     Report* report = nullptr;
     const Progress* progress = nullptr;  ///< asked between tiles; may be absent
+    ListEnd list_end{};  ///< that of compositing, so that what it never follows is left out
+    std::uint64_t list_bytes = ~std::uint64_t{0};  ///< that lists may take, see overflowed()
+    int z_batch_size = 26;  ///< transparent grids after which lists are looked through for ends
 };
 
 class Hider {
@@ -39,6 +43,9 @@ class Hider {
     /// was hidden so far.
     virtual bool occluded(const RasterBounds& bounds) const = 0;
     virtual void hide(const Grid& grid) = 0;
+    /// The lists were given up because they took more than HiderFrame::list_bytes.  Opaque surfaces
+    /// and occlusion hold; hiders of fewer pixels are to hide the same grids.
+    virtual bool overflowed() const = 0;
     /// In raster order of tiles.  No hide() afterwards.
     virtual std::vector<TileStore>& finish() = 0;
     virtual const GridPool& pool() const = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hider/micropolygon_class.h"
 
+#include <algorithm>
+
 #include "hider/micropolygon.h"
 
 namespace granita {
@@ -16,6 +18,23 @@ std::uint8_t opacity_class(const Grid& grid, const Grid::Corners& c) {
     if (opaque) return kTriangleA | kTriangleB;
     if (clear && !grid.additive) return 0;
     return kTriangleA | kTriangleB | kTransparent;
+}
+
+OpacityBounds opacity_bounds(const Grid& grid, const Grid::Corners& c) {
+    // Interpolation may round this far past a corner.
+    constexpr float kRounding = 0x1p-20f;
+    OpacityBounds bounds{1.0f, 0.0f};
+    for (const int v : {c.v0, c.v1, c.v2, c.v3}) {
+        float sum = 0.0f;
+        for (int channel = 0; channel < 3; ++channel) {
+            const float x = grid.opacity[v][channel];
+            const float a = x > 0.0f ? std::min(x, 1.0f) : 0.0f;  // not a number: clear
+            bounds.least = std::min(bounds.least, a);
+            sum += a;
+        }
+        bounds.most = std::max(bounds.most, sum / 3.0f);
+    }
+    return {bounds.least * (1.0f - kRounding), bounds.most * (1.0f + kRounding)};
 }
 
 }  // namespace
@@ -49,7 +68,9 @@ GridClasses classify(const Grid& grid) {
         if (diagonal || coincide(c.v2, c.v3) || coincide(c.v3, c.v0)) kind &= ~kTriangleB;
         if ((kind & (kTriangleA | kTriangleB)) == 0) kind = 0;
         out.classes[m] = kind;
-        out.transparent = out.transparent || (kind & kTransparent);
+        if (!(kind & kTransparent)) continue;
+        if (out.opacity.empty()) out.opacity.resize(out.classes.size());
+        out.opacity[m] = opacity_bounds(grid, c);
     }
     return out;
 }

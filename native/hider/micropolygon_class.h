@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dice/grid.h"
+#include "hider/sample_store.h"
 
 namespace granita {
 
@@ -12,9 +13,9 @@ namespace granita {
 inline constexpr std::uint8_t kTransparent = 4;
 
 struct GridClasses {
-    std::vector<std::uint8_t> classes;  ///< [micropolygons]
-    std::uint64_t dropped = 0;          ///< micropolygons with a vertex that is not finite
-    bool transparent = false;           ///< any
+    std::vector<std::uint8_t> classes;   ///< [micropolygons]
+    std::uint64_t dropped = 0;           ///< micropolygons with a vertex that is not finite
+    std::vector<OpacityBounds> opacity;  ///< [micropolygons] where any is transparent, else empty
 };
 
 /// Triangles whose corners coincide at every knot have no area and are left out; so are

@@ -24,9 +24,8 @@ class ReferenceHider : public Hider {
     bool occluded(const RasterBounds&) const override { return false; }
 
     void hide(const Grid& grid) override {
-        const SurfaceId base = m_tiles.pool().add(grid);
         const GridClasses classes = classify(grid);
-        m_tiles.report_dropped(grid, classes.dropped);
+        const SurfaceId base = m_tiles.add(grid, classes);
         if (m_statistics)
             m_statistics->add(Counter::Micropolygons,
                               static_cast<std::uint64_t>(grid.micropolygon_count()));
@@ -34,10 +33,13 @@ class ReferenceHider : public Hider {
             for (int m = 0; m < grid.micropolygon_count(); ++m)
                 if (classes.classes[m])
                     hide_in_tile(grid, m, classes.classes[m], base + static_cast<SurfaceId>(m), i);
+        if (!classes.opacity.empty()) m_tiles.limit_lists();
     }
+    bool overflowed() const override { return m_tiles.overflowed(); }
 
     std::vector<TileStore>& finish() override {
-        for (std::size_t i = 0; i < m_tiles.count(); ++i) m_tiles.drop_hidden_fragments(i);
+        // Whole lists: what compositing does not follow changes nothing.
+        for (std::size_t i = 0; i < m_tiles.count(); ++i) m_tiles.finish_lists(i, ListEnd{});
         return m_tiles.stores();
     }
     const GridPool& pool() const override { return m_tiles.pool(); }
@@ -91,7 +93,7 @@ class ReferenceHider : public Hider {
                     const SurfaceHit hit = test(grid, corners, kind, tile, i);
                     if (!hit.hit) continue;
                     ++hits;
-                    record(m_tiles.store(tile), i, hit.key, id, kind & kTransparent);
+                    record(tile, i, hit, id, kind & kTransparent);
                 }
         if (!m_statistics) return;
         m_statistics->add(grid.motion || m_projection.has_lens() ? Counter::SampleTestsMoving
@@ -132,12 +134,14 @@ class ReferenceHider : public Hider {
         return hit_micropolygon(c, d, triangles, m_range);
     }
 
-    void record(TileStore& store, std::uint32_t i, float key, SurfaceId id, bool transparent) {
+    void record(std::size_t tile, std::uint32_t i, const SurfaceHit& hit, SurfaceId id,
+                bool transparent) {
+        TileStore& store = m_tiles.store(tile);
         if (transparent) {
-            store.fragments.push_back({key, i, id});
+            m_tiles.arrived(tile).push_back({i, fragment_of(hit, id)});
             if (m_statistics) m_statistics->add(Counter::FragmentsStored);
-        } else if (m_tiles.wins(key, id, store.key[i], store.id[i])) {
-            store.key[i] = key;
+        } else if (m_tiles.wins(hit.key, id, store.key[i], store.id[i])) {
+            store.key[i] = hit.key;
             store.id[i] = id;
         }
     }

@@ -21,6 +21,12 @@ SurfaceId GridPool::add(const Grid& grid) {
     return base;
 }
 
+void GridPool::set_opacity(std::span<const OpacityBounds> bounds) {
+    GRANITA_DCHECK(m_bases.back() + bounds.size() == id_end());
+    m_opacity.resize(m_bases.back());
+    m_opacity.insert(m_opacity.end(), bounds.begin(), bounds.end());
+}
+
 GridPool::Place GridPool::locate(SurfaceId id) const {
     GRANITA_DCHECK(id / kPage < m_pages.size());
     std::uint32_t slot = m_pages[id / kPage];

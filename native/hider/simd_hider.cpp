@@ -21,6 +21,8 @@ class SimdHider : public Hider {
     SimdHider(const HiderFrame& frame, const Rect& tiles, const Rect& pixels)
         : m_projection(frame.projection),
           m_statistics(frame.statistics),
+          m_list_end(frame.list_end),
+          m_z_batch_size(frame.z_batch_size),
           m_tiles(frame, tiles, pixels),
           m_working(m_tiles.count()),
           m_tile_grid(frame.projection, frame.table->lens()),
@@ -36,9 +38,8 @@ class SimdHider : public Hider {
     }
 
     void hide(const Grid& grid) override {
-        const SurfaceId base = m_tiles.pool().add(grid);
         const GridClasses classes = classify(grid);
-        m_tiles.report_dropped(grid, classes.dropped);
+        const SurfaceId base = m_tiles.add(grid, classes);
         m_tile_grid.load(grid);
         const Sweep sweep = m_tile_grid.sweep();
         SimdCounts counts;
@@ -55,6 +56,7 @@ class SimdHider : public Hider {
                 arrange(i, grid.motion, sweep);
                 fragments += hide_in_tile(classes, base, i, counts);
             }
+        if (fragments > 0) limit_lists();
         if (!m_statistics) return;
         m_statistics->add(Counter::GridsCulled, hidden && !touched.empty());
         m_statistics->add(Counter::Micropolygons,
@@ -66,12 +68,14 @@ class SimdHider : public Hider {
         m_statistics->add(Counter::FragmentsStored, fragments);
     }
 
+    bool overflowed() const override { return m_tiles.overflowed(); }
+
     std::vector<TileStore>& finish() override {
         for (std::size_t i = 0; i < m_tiles.count(); ++i) {
             if (!m_working[i].tile) continue;
-            m_working[i].tile->store(m_tiles.store(i));
+            m_working[i].tile->store(m_tiles.store(i), m_tiles.arrived(i));
             Spares<std::unique_ptr<WorkingTile>>::give(std::move(m_working[i].tile));
-            m_tiles.drop_hidden_fragments(i);
+            m_tiles.finish_lists(i, m_list_end);
         }
         return m_tiles.stores();
     }
@@ -79,6 +83,16 @@ class SimdHider : public Hider {
     const TileSamples& tile_samples(std::size_t i) const override { return m_tiles.samples(i); }
 
   private:
+    void limit_lists() {
+        std::uint64_t bytes = 0;
+        for (const Working& working : m_working)
+            if (working.tile) bytes += working.tile->fragments.capacity() * sizeof(SampleFragment);
+        m_tiles.limit_lists(bytes);
+        if (!m_tiles.overflowed()) return;
+        for (Working& working : m_working)
+            if (working.tile) working.tile->fragments = {};
+    }
+
     /// By the grid's bounds over the shutter or, where it moves, by those of each part of it.
     bool tile_hides(std::size_t i, const Grid& grid, std::vector<TimeSlab>& slabs) const {
         if (tile_hides(i, grid.bounds, 0.0f, 1.0f)) return true;
@@ -138,8 +152,11 @@ class SimdHider : public Hider {
         const std::uint64_t writes = counts.writes;
         hide_grid_in_tile(simd_grid, working.view(), working.fragments, counts);
         working.note_writes(counts.writes - writes);
+        const std::size_t arrived = working.fragments.size() - fragments;
+        if (!classes.opacity.empty() && m_list_end.opacity_threshold < 1.0f)
+            working.end_lists(m_tiles.pool(), m_list_end, m_z_batch_size);
         working.update_depth();
-        return working.fragments.size() - fragments;
+        return arrived;
     }
 
     /// A tile from the first grid that comes, and the largest sweep it was arranged for.
@@ -156,6 +173,8 @@ class SimdHider : public Hider {
 
     Projection m_projection;
     Statistics* m_statistics;
+    ListEnd m_list_end;
+    int m_z_batch_size;
     BucketTiles m_tiles;
     std::vector<Working> m_working;
     TileGrid m_tile_grid;

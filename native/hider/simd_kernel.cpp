@@ -54,7 +54,7 @@ HWY_INLINE void for_each_lane(M mask, Visit visit) {
 
 class Kernel {
   public:
-    Kernel(const SimdGrid& grid, const SimdTile& tile, std::vector<Fragment>& fragments,
+    Kernel(const SimdGrid& grid, const SimdTile& tile, std::vector<SampleFragment>& fragments,
            SimdCounts& counts)
         : m_grid(grid),
           m_tile(tile),
@@ -117,9 +117,9 @@ class Kernel {
         Samples at;
         at.x = hn::LoadU(kTag, m_tile.x + first);
         at.y = hn::LoadU(kTag, m_tile.y + first);
-        V key;
-        const M hit = test<false, false>(shape, at, hn::FirstN(kTag, kPacket), key);
-        if (!hn::AllFalse(kTag, hit)) record(key, hit, first);
+        Hits hits;
+        const M hit = test<false, false>(shape, at, hn::FirstN(kTag, kPacket), hits);
+        if (!hn::AllFalse(kTag, hit)) record(hits, hit, first);
     }
 
     /// What is swept, and what is still in a tile where other things are swept: ranks are bounded a
@@ -213,7 +213,7 @@ class Kernel {
     template <bool kMoving, bool kLens>
     HWY_INLINE void test_listed(const Shape& shape, std::size_t count) {
         m_counts.tests += count;
-        std::size_t hits = 0;
+        std::size_t covered = 0;
         for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lane_count())) {
             Samples at;
             at.x = hn::LoadU(kTag, m_listed.x + i);
@@ -223,15 +223,19 @@ class Kernel {
                 at.u = hn::LoadU(kTag, m_listed.u + i);
                 at.v = hn::LoadU(kTag, m_listed.v + i);
             }
-            V key;
-            const M hit = test<kMoving, kLens>(shape, at, hn::FirstN(kTag, count - i), key);
+            Hits hits;
+            const M hit = test<kMoving, kLens>(shape, at, hn::FirstN(kTag, count - i), hits);
             if (hn::AllFalse(kTag, hit)) continue;
             const Squeeze squeeze(hit);
-            hn::StoreU(squeeze(key), kTag, m_hit_key + hits);
-            hn::StoreU(squeeze(hn::LoadU(kTag, m_listed.slot + i)), kTag, m_hit_slot + hits);
-            hits += squeeze.count();
+            hn::StoreU(squeeze(hits.key), kTag, m_hit.key + covered);
+            hn::StoreU(squeeze(hn::LoadU(kTag, m_listed.slot + i)), kTag, m_hit.slot + covered);
+            if (m_class & kTransparent) {
+                hn::StoreU(squeeze(hits.signed_b1), kTag, m_hit.signed_b1 + covered);
+                hn::StoreU(squeeze(hits.b2), kTag, m_hit.b2 + covered);
+            }
+            covered += squeeze.count();
         }
-        record_hits(hits);
+        record_hits(covered);
     }
 
     /// Time of the samples in the segment, which may lie outside [0, 1].
@@ -257,9 +261,19 @@ class Kernel {
             return offset_pinhole(c, at.x, at.y);
     }
 
-    /// A vector of samples against the micropolygon: which it covers, and their keys.
+    /// Where a vector of samples meets the micropolygon; weights as in Fragment.
+    struct Hits {
+        V key, signed_b1, b2;
+    };
+    /// The same by way of memory, with the samples: x, y, t, u, v as far as there are.
+    struct Exact {
+        alignas(64) float key[kPacket], hit[kPacket], signed_b1[kPacket], b2[kPacket];
+        alignas(64) float samples[5][kPacket];
+    };
+
+    /// A vector of samples against the micropolygon: which it covers, and where.
     template <bool kMoving, bool kLens>
-    HWY_INLINE M test(const Shape& shape, const Samples& at, M valid, V& key) {
+    HWY_INLINE M test(const Shape& shape, const Samples& at, M valid, Hits& hits) {
         const V zero = set(0.0f);
         const V local = kMoving ? local_time(at) : zero;
         const Offset<V> d0 = offset<kLens>(corner_at<kMoving>(shape, 0, local), at);
@@ -289,40 +303,44 @@ class Kernel {
         const V z = z0 + weights.second * (second_z - z0) + weights.third * (third_z - z0);
         const V z_in = hn::Min(hn::Max(z, hn::Min(z0, hn::Min(second_z, third_z))),
                                hn::Max(z0, hn::Max(second_z, third_z)));
-        key = m_grid.range.perspective ? set(1.0f) / z_in : hn::Neg(z_in);
-        M hit = hn::And(clean, hn::And(hn::Ge(key, set(m_grid.range.key_far)),
-                                       hn::Le(key, set(m_grid.range.key_near))));
+        hits.key = m_grid.range.perspective ? set(1.0f) / z_in : hn::Neg(z_in);
+        M hit = hn::And(clean, hn::And(hn::Ge(hits.key, set(m_grid.range.key_far)),
+                                       hn::Le(hits.key, set(m_grid.range.key_near))));
+        hits.signed_b1 = hn::IfThenElse(a.strict, weights.second, hn::Neg(weights.second));
+        hits.b2 = weights.third;
         const M unclear = hn::AndNot(clean, touched);
         if (HWY_UNLIKELY(!hn::AllFalse(kTag, unclear))) {
             // By way of memory: what a call can see would be kept there in every test.
-            alignas(64) float keys[kPacket], hits[kPacket], copies[5][kPacket];
-            hn::StoreU(key, kTag, keys);
-            hn::StoreU(hn::IfThenElseZero(hit, set(1.0f)), kTag, hits);
-            hn::StoreU(at.x, kTag, copies[0]);
-            hn::StoreU(at.y, kTag, copies[1]);
-            if constexpr (kMoving) hn::StoreU(at.t, kTag, copies[2]);
+            Exact exact;
+            hn::StoreU(hits.key, kTag, exact.key);
+            hn::StoreU(hn::IfThenElseZero(hit, set(1.0f)), kTag, exact.hit);
+            hn::StoreU(hits.signed_b1, kTag, exact.signed_b1);
+            hn::StoreU(hits.b2, kTag, exact.b2);
+            hn::StoreU(at.x, kTag, exact.samples[0]);
+            hn::StoreU(at.y, kTag, exact.samples[1]);
+            if constexpr (kMoving) hn::StoreU(at.t, kTag, exact.samples[2]);
             if constexpr (kLens) {
-                hn::StoreU(at.u, kTag, copies[3]);
-                hn::StoreU(at.v, kTag, copies[4]);
+                hn::StoreU(at.u, kTag, exact.samples[3]);
+                hn::StoreU(at.v, kTag, exact.samples[4]);
             }
-            test_exactly<kMoving, kLens>(shape, copies, unclear, keys, hits);
-            key = hn::LoadU(kTag, keys);
-            hit = hn::Gt(hn::LoadU(kTag, hits), zero);
+            test_exactly<kMoving, kLens>(shape, unclear, exact);
+            hits.key = hn::LoadU(kTag, exact.key);
+            hits.signed_b1 = hn::LoadU(kTag, exact.signed_b1);
+            hits.b2 = hn::LoadU(kTag, exact.b2);
+            hit = hn::Gt(hn::LoadU(kTag, exact.hit), zero);
         }
         return hit;
     }
 
-    /// `samples`: x, y, t, u, v as far as there are.
     template <bool kMoving, bool kLens>
-    HWY_NOINLINE void test_exactly(const Shape& shape, const float (&samples)[5][kPacket],
-                                   M unclear, float* keys, float* hits) {
+    HWY_NOINLINE void test_exactly(const Shape& shape, M unclear, Exact& exact) {
         Samples at;
-        at.x = hn::LoadU(kTag, samples[0]);
-        at.y = hn::LoadU(kTag, samples[1]);
-        if constexpr (kMoving) at.t = hn::LoadU(kTag, samples[2]);
+        at.x = hn::LoadU(kTag, exact.samples[0]);
+        at.y = hn::LoadU(kTag, exact.samples[1]);
+        if constexpr (kMoving) at.t = hn::LoadU(kTag, exact.samples[2]);
         if constexpr (kLens) {
-            at.u = hn::LoadU(kTag, samples[3]);
-            at.v = hn::LoadU(kTag, samples[4]);
+            at.u = hn::LoadU(kTag, exact.samples[3]);
+            at.v = hn::LoadU(kTag, exact.samples[4]);
         }
         const V local = kMoving ? local_time(at) : set(0.0f);
         alignas(64) float values[4][4][kPacket];
@@ -341,19 +359,23 @@ class Kernel {
                 offset[k] = {values[k][0][lane], values[k][1][lane]};
                 corner[k] = {0.0, 0.0, values[k][2][lane], values[k][3][lane]};
             }
-            const SurfaceHit exact = hit_micropolygon(corner, offset, m_class, m_grid.range);
-            keys[lane] = exact.key;
-            hits[lane] = exact.hit ? 1.0f : 0.0f;
+            const SurfaceHit hit = hit_micropolygon(corner, offset, m_class, m_grid.range);
+            const Fragment fragment = fragment_of(hit, m_id);
+            exact.key[lane] = fragment.key;
+            exact.hit[lane] = hit.hit ? 1.0f : 0.0f;
+            exact.signed_b1[lane] = fragment.signed_b1;
+            exact.b2[lane] = fragment.b2;
         });
     }
 
-    HWY_INLINE void record(V key, M hit, std::size_t first) {
+    HWY_INLINE void record(const Hits& hits, M hit, std::size_t first) {
+        const V key = hits.key;
         m_counts.hits += hn::CountTrue(kTag, hit);
         const V stored = hn::LoadU(kTag, m_tile.key + first);
         const M nearer = hn::And(hit, hn::Gt(key, stored));
         const M equal = hn::And(hit, hn::Eq(key, stored));
         if (m_class & kTransparent) {
-            record_fragments(key, hn::Or(nearer, equal), first);
+            record_fragments(hits, hn::Or(nearer, equal), first);
             return;
         }
         if (HWY_UNLIKELY(!hn::AllFalse(kTag, equal))) settle_ties(equal, first);
@@ -383,27 +405,35 @@ class Kernel {
         return m_wins_tie;
     }
 
-    HWY_NOINLINE void record_fragments(V key, M visible, std::size_t first) {
-        alignas(64) float keys[kPacket];
-        hn::StoreU(key, kTag, keys);
-        for_each_lane(visible, [&](int lane) { record_fragment(keys[lane], first + lane); });
+    HWY_NOINLINE void record_fragments(Hits hits, M visible, std::size_t first) {
+        hn::StoreU(hits.key, kTag, m_hit.key);
+        hn::StoreU(hits.signed_b1, kTag, m_hit.signed_b1);
+        hn::StoreU(hits.b2, kTag, m_hit.b2);
+        for_each_lane(visible, [&](int lane) { record_fragment(lane, first + lane); });
     }
 
-    HWY_INLINE void record_fragment(float key, std::size_t slot) {
-        if (key > m_tile.key[slot] || wins_tie(m_tile.id[slot]))
-            m_fragments.push_back({key, static_cast<std::uint32_t>(slot), m_id});
+    /// Hit i, if it is before the slot's opaque surface.
+    HWY_INLINE void record_fragment(std::size_t i, std::size_t slot) {
+        const float key = m_hit.key[i];
+        if (!(key > m_tile.key[slot] || wins_tie(m_tile.id[slot]))) return;
+        SampleFragment& out = m_fragments.emplace_back();
+        out.sample = static_cast<std::uint32_t>(slot);
+        out.fragment.key = key;
+        out.fragment.id = m_id;
+        out.fragment.signed_b1 = m_hit.signed_b1[i];
+        out.fragment.b2 = m_hit.b2[i];
     }
 
-    /// Of m_hit_key and m_hit_slot, in different places: one after another.
+    /// Of m_hit, in different places: one after another.
     HWY_INLINE void record_hits(std::size_t count) {
         m_counts.hits += count;
         for (std::size_t i = 0; i < count; ++i) {
-            const int slot = std::bit_cast<int>(m_hit_slot[i]);
-            const float key = m_hit_key[i];
+            const int slot = std::bit_cast<int>(m_hit.slot[i]);
+            const float key = m_hit.key[i];
             float& stored = m_tile.key[slot];
             if (key < stored) continue;
             if (m_class & kTransparent) {
-                record_fragment(key, slot);
+                record_fragment(i, slot);
             } else if (key > stored) {
                 ++m_counts.writes;
                 stored = key;
@@ -420,7 +450,7 @@ class Kernel {
 
     const SimdGrid& m_grid;
     const SimdTile& m_tile;
-    std::vector<Fragment>& m_fragments;
+    std::vector<SampleFragment>& m_fragments;
     SimdCounts& m_counts;
     TileBounds m_where;
     RankPathFinder m_paths;
@@ -432,12 +462,13 @@ class Kernel {
         alignas(64) float x[kListed], y[kListed], t[kListed], u[kListed], v[kListed],
             slot[kListed];  ///< slot: bits of an int
     } m_listed;             ///< samples to be tested
-    float m_hit_key[kListed];
-    float m_hit_slot[kListed];          ///< bits of an int
+    struct {
+        float key[kListed], slot[kListed], signed_b1[kListed], b2[kListed];
+    } m_hit;                            ///< samples that were
     alignas(64) int m_window[kPacket];  ///< slots of a vector's rows from the first
 };
 
-void hide_grid(const SimdGrid& grid, const SimdTile& tile, std::vector<Fragment>& fragments,
+void hide_grid(const SimdGrid& grid, const SimdTile& tile, std::vector<SampleFragment>& fragments,
                SimdCounts& counts) {
     Kernel kernel(grid, tile, fragments, counts);
     const bool lens = grid.lens_x > 0.0f;
@@ -456,8 +487,8 @@ namespace granita {
 
 HWY_EXPORT(hide_grid);
 
-void hide_grid_in_tile(const SimdGrid& grid, const SimdTile& tile, std::vector<Fragment>& fragments,
-                       SimdCounts& counts) {
+void hide_grid_in_tile(const SimdGrid& grid, const SimdTile& tile,
+                       std::vector<SampleFragment>& fragments, SimdCounts& counts) {
     HWY_DYNAMIC_DISPATCH(hide_grid)(grid, tile, fragments, counts);
 }
 

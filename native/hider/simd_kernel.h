@@ -56,7 +56,7 @@ struct SimdCounts {
 
 /// Opaque hits go into the tile's key and id; transparent ones that are not behind them into
 /// `fragments`, whose sample is a slot.
-void hide_grid_in_tile(const SimdGrid& grid, const SimdTile& tile, std::vector<Fragment>& fragments,
-                       SimdCounts& counts);
+void hide_grid_in_tile(const SimdGrid& grid, const SimdTile& tile,
+                       std::vector<SampleFragment>& fragments, SimdCounts& counts);
 
 }  // namespace granita

@@ -142,28 +142,38 @@ SurfaceInterpolator::Seen SurfaceInterpolator::see(std::uint32_t sample, Surface
     return seen;
 }
 
+void SurfaceInterpolator::weigh(const Seen& seen, bool& second, float weight[3]) const {
+    if (plain_weights(seen.offsets, second, weight)) return;
+    Corner<double> corners[4];
+    Offset<double> d[4];
+    for (int i = 0; i < 4; ++i) {
+        const Corner<float>& c = seen.corners[i];
+        corners[i] = {c.x, c.y, c.w, c.z};
+        d[i] = {seen.offsets[i].x, seen.offsets[i].y};
+    }
+    // The clip range is left out: the hider applied it.
+    const DepthRange any{m_projection.perspective, -INFINITY, INFINITY};
+    SurfaceHit hit = hit_micropolygon(corners, d, kTriangleA | kTriangleB, any);
+    if (!hit.hit) hit = nearest_triangle(d);
+    second = hit.second;
+    weight[0] = static_cast<float>(1.0 - hit.b1 - hit.b2);
+    weight[1] = static_cast<float>(hit.b1);
+    weight[2] = static_cast<float>(hit.b2);
+}
+
 SurfacePoint SurfaceInterpolator::locate(std::uint32_t sample, SurfaceId id) {
     const Seen seen = see(sample, id);
     bool second = false;
     float weight[3];
-    if (!plain_weights(seen.offsets, second, weight)) {
-        Corner<double> corners[4];
-        Offset<double> d[4];
-        for (int i = 0; i < 4; ++i) {
-            const Corner<float>& c = seen.corners[i];
-            corners[i] = {c.x, c.y, c.w, c.z};
-            d[i] = {seen.offsets[i].x, seen.offsets[i].y};
-        }
-        // The clip range is left out: the hider applied it.
-        const DepthRange any{m_projection.perspective, -INFINITY, INFINITY};
-        SurfaceHit hit = hit_micropolygon(corners, d, kTriangleA | kTriangleB, any);
-        if (!hit.hit) hit = nearest_triangle(d);
-        second = hit.second;
-        weight[0] = static_cast<float>(1.0 - hit.b1 - hit.b2);
-        weight[1] = static_cast<float>(hit.b1);
-        weight[2] = static_cast<float>(hit.b2);
-    }
+    weigh(seen, second, weight);
     return point_of(seen.surface->corners, second, weight);
+}
+
+Fragment SurfaceInterpolator::fragment(std::uint32_t sample, SurfaceId id, float key) {
+    bool second = false;
+    float weight[3];
+    weigh(see(sample, id), second, weight);
+    return {key, id, weight[1], weight[2], second};
 }
 
 void SurfaceInterpolator::locate_run(std::uint32_t first, const SurfaceId* ids, bool points,

@@ -64,6 +64,8 @@ class SurfaceInterpolator {
     SurfaceInterpolator(const Projection& projection, Vec2i tile, const TileSamples& samples,
                         const GridPool& pool);
     SurfacePoint locate(std::uint32_t sample, SurfaceId id);
+    /// The same as a fragment of this depth key.
+    Fragment fragment(std::uint32_t sample, SurfaceId id, float key);
     /// The same bits for SurfaceRun::kCount samples from `first` on, as far as `plain` says.
     /// `points`: SurfaceRun::point() will be asked.
     void locate_run(std::uint32_t first, const SurfaceId* ids, bool points, SurfaceRun& out);
@@ -82,6 +84,7 @@ class SurfaceInterpolator {
     };
     void load_corners(SurfaceRecord& record, int segment) const;
     Seen see(std::uint32_t sample, SurfaceId id);
+    void weigh(const Seen& seen, bool& second, float weight[3]) const;
 
     Projection m_projection;
     Vec2d m_origin;

@@ -12,6 +12,8 @@ void WorkingTile::begin(const TileSamples& samples, const Rect& pixels, Vec2f le
     m_pixels = pixels;
     m_lens = lens;
     fragments = {};
+    m_grids_since = 0;
+    m_fragments_then = 0;
     arrange(samples, shape);
     m_id.assign(m_order.slots(), kNoSurface);
     m_key.resize(m_order.slots());
@@ -56,7 +58,7 @@ void WorkingTile::reorder(const TileSamples& samples, const OrderShape& shape) {
         m_key[slot[before[i]]] = key[i];
         m_id[slot[before[i]]] = id[i];
     }
-    for (Fragment& fragment : fragments) fragment.sample = slot[before[fragment.sample]];
+    for (SampleFragment& fragment : fragments) fragment.sample = slot[before[fragment.sample]];
     m_depth.rebuild(m_key.data());
 }
 
@@ -81,15 +83,33 @@ SimdTile WorkingTile::view() {
     return tile;
 }
 
-void WorkingTile::store(TileStore& out) {
+void WorkingTile::end_lists(const GridPool& pool, const ListEnd& end, int z_batch_size) {
+    // A list is sorted anew each time: growth by half bounds how often.
+    if (++m_grids_since < z_batch_size ||
+        fragments.size() < m_fragments_then + m_fragments_then / 2 + m_key.size())
+        return;
+    m_grids_since = 0;
+    const std::vector<float> before = m_key;
+    const SampleLists lists =
+        make_lists(fragments, {m_key.data(), m_id.data(), m_key.size()}, pool, end);
+    fragments.clear();
+    for (std::uint32_t slot = 0; slot < m_key.size(); ++slot)
+        for (const Fragment& fragment : lists.of(slot)) fragments.push_back({slot, fragment});
+    m_fragments_then = fragments.size();
+    std::uint64_t ended = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) ended += before[i] != m_key[i];
+    m_depth.note_writes(ended);
+}
+
+void WorkingTile::store(TileStore& out, std::vector<SampleFragment>& arrived) {
     const std::vector<std::uint32_t>& index = m_order.table_index();
     for (std::size_t i = 0; i < index.size(); ++i) {
         if (index[i] == SampleOrder::kNone) continue;
         out.key[index[i]] = m_key[i];
         out.id[index[i]] = m_id[i];
     }
-    out.fragments = std::move(fragments);
-    for (Fragment& fragment : out.fragments) fragment.sample = index[fragment.sample];
+    arrived = std::move(fragments);
+    for (SampleFragment& fragment : arrived) fragment.sample = index[fragment.sample];
 }
 
 }  // namespace granita

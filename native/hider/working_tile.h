@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hider/depth_blocks.h"
+#include "hider/sample_lists.h"
 #include "hider/sample_order.h"
 #include "hider/sample_store.h"
 #include "hider/simd_kernel.h"
@@ -25,8 +26,12 @@ class WorkingTile {
     /// Another order of the samples; what was seen moves along.
     void reorder(const TileSamples& samples, const OrderShape& shape);
     SimdTile view();
-    /// Moves what was seen to the store, in table order.
-    void store(TileStore& out);
+    /// Moves what was seen to the store, and the fragments, in table order.
+    void store(TileStore& out, std::vector<SampleFragment>& arrived);
+    /// Another grid with transparent micropolygons was hidden.  Once there are `z_batch_size` of
+    /// them and the fragments have grown by half, looks for samples whose list has ended, drops
+    /// what is behind and has the depth hide what is still to come there.
+    void end_lists(const GridPool& pool, const ListEnd& end, int z_batch_size);
     /// Brings the hierarchical depth up to date when it is worth while.
     void update_depth() { m_depth.update(m_key.data()); }
     void note_writes(std::uint64_t written) { m_depth.note_writes(written); }
@@ -38,7 +43,7 @@ class WorkingTile {
     /// Whether it is worth while to ask hides() more than once.
     bool hides_something() const { return m_depth.filled(); }
 
-    std::vector<Fragment> fragments;  ///< sample = slot of the order
+    std::vector<SampleFragment> fragments;  ///< sample = slot of the order
 
   private:
     void arrange(const TileSamples& samples, const OrderShape& shape);
@@ -50,6 +55,8 @@ class WorkingTile {
     std::vector<float> m_x, m_y, m_t, m_u, m_v, m_key;
     std::vector<SurfaceId> m_id;
     RankBounds m_bounds;
+    int m_grids_since = 0;             ///< end_lists() looked at the lists
+    std::size_t m_fragments_then = 0;  ///< that were left
 };
 
 }  // namespace granita

@@ -74,6 +74,7 @@ void read_options(const Record& r, Options& o) {
         in_range(r, "z_batch_size", r.integer("z_batch_size", o.z_batch_size), 1, 65536);
     o.opacity_threshold =
         at_least(r, "opacity_threshold", r.number("opacity_threshold", o.opacity_threshold), 0.0);
+    o.list_memory = in_range(r, "list_memory", r.integer("list_memory", o.list_memory), 1, 1 << 20);
     o.seed = static_cast<std::uint32_t>(r.integer("seed", 0));
     o.light_samples =
         in_range(r, "light_samples", r.integer("light_samples", o.light_samples), 1, 65536);

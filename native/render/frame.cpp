@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/frame.h"
 
+#include <algorithm>
+#include <thread>
+
 #include "render/frame_blur.h"
 #include "render/raster_bucket.h"
 
@@ -31,6 +34,19 @@ SampleTable make_table(const Scene& scene, const View& view, Report& report) {
     return SampleTable(options, scene.camera, needs, automatic_passes(view, filter, report));
 }
 
+HiderFrame make_hider_frame(const Frame& frame) {
+    HiderFrame out{&frame.table, frame.view.projection, &frame.statistics,
+                   &frame.scene, &frame.report,         &frame.progress};
+    const Options& options = frame.scene.options;
+    const bool has_passes = options.depth_pass || !ChannelSet(options).empty();
+    out.list_end = {options.opacity_threshold, has_passes ? options.pass_alpha_threshold : 0.0f};
+    out.z_batch_size = options.z_batch_size;
+    const unsigned threads =
+        options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+    out.list_bytes = (static_cast<std::uint64_t>(options.list_memory) << 20) / threads;
+    return out;
+}
+
 Vec3f constant_background_of(const ShadingSystem& shading) {
     if (!shading.background_is_constant()) return Vec3f(0.0f);
     std::vector<Vec3f> color;
@@ -59,7 +75,7 @@ Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& fra
       view(make_view(scene, statistics, shading,
                      PixelFilter(scene.options.pixel_filter, scene.options.filter_width))),
       table(make_table(scene, view, report)),
-      hider{&table, view.projection, &statistics, &scene, &report, &progress},
+      hider(make_hider_frame(*this)),
       constant_background(constant_background_of(shading)),
       choice(std::move(frame_choice)),
       raster(choice.executor == Executor::Raster

@@ -51,8 +51,13 @@ struct Options {
     float motion_factor = 1.0f, focus_factor = 1.0f;
     int grid_size = 256;
     int bucket_size = 64;
-    int z_batch_size = 26;  ///< transparent grids that the raster executor peels together
+    /// Transparent grids after which samples are looked through for saturation; that the raster
+    /// executor peels together.
+    int z_batch_size = 26;
     float opacity_threshold = 0.996f;
+    /// MiB of transparent samples' lists, in all threads together: buckets that want more of it are
+    /// rendered in parts.
+    int list_memory = 1024;
     std::uint32_t seed =
         0;  ///< of the sample table, the frame already mixed in where animate_seed is on
     int light_samples = 8;  ///< shadow rays a light and shading point, for lights with a size

@@ -59,11 +59,6 @@ inline Seen look(HiderMaker make, Shot& shot, const Rect& tiles) {
     seen.stores = hider->finish();
     for (std::size_t i = 0; i < seen.stores.size(); ++i)
         seen.samples.push_back(hider->tile_samples(i));
-    for (TileStore& store : seen.stores)
-        std::sort(store.fragments.begin(), store.fragments.end(),
-                  [](const Fragment& a, const Fragment& b) {
-                      return a.sample != b.sample ? a.sample < b.sample : a.id < b.id;
-                  });
     return seen;
 }
 
@@ -112,6 +107,12 @@ struct Differences {
     int far_keys = 0;     ///< the same surface more than 4 ulp apart
 };
 
+inline std::vector<Fragment> by_id(std::span<const Fragment> list) {
+    std::vector<Fragment> out(list.begin(), list.end());
+    std::sort(out.begin(), out.end(), [](auto& a, auto& b) { return a.id < b.id; });
+    return out;
+}
+
 inline Differences compare(const Shot& shot, const Seen& a, const Seen& b) {
     // A sample may differ where it lies within 2^-12 pixel of an edge of what either has seen.
     const double margin = 0x1p-12;
@@ -121,7 +122,6 @@ inline Differences compare(const Shot& shot, const Seen& a, const Seen& b) {
         const auto near_edge = [&](std::uint32_t i, SurfaceId id) {
             return id != kNoSurface && edge_distance(shot, b.samples[tile], p.tile, i, id) < margin;
         };
-        std::size_t f = 0, g = 0;
         for (std::uint32_t i = 0; i < p.key.size(); ++i) {
             ++d.compared;
             const bool same_surface = p.id[i] == q.id[i];
@@ -132,16 +132,15 @@ inline Differences compare(const Shot& shot, const Seen& a, const Seen& b) {
             } else {
                 d.far_keys += ulps(p.key[i], q.key[i]) > 4;
             }
-            while ((f < p.fragments.size() && p.fragments[f].sample == i) ||
-                   (g < q.fragments.size() && q.fragments[g].sample == i)) {
-                const bool in_p = f < p.fragments.size() && p.fragments[f].sample == i;
-                const bool in_q = g < q.fragments.size() && q.fragments[g].sample == i;
-                if (in_p && in_q && p.fragments[f].id == q.fragments[g].id) {
-                    d.far_keys += ulps(p.fragments[f++].key, q.fragments[g++].key) > 4;
+            const std::vector<Fragment> in_p = by_id(p.lists.of(i)), in_q = by_id(q.lists.of(i));
+            auto f = in_p.begin(), g = in_q.begin();
+            while (f != in_p.end() || g != in_q.end()) {
+                if (f != in_p.end() && g != in_q.end() && f->id == g->id) {
+                    d.far_keys += ulps((f++)->key, (g++)->key) > 4;
                     continue;
                 }
-                const bool take_p = in_p && (!in_q || p.fragments[f].id < q.fragments[g].id);
-                const SurfaceId id = take_p ? p.fragments[f++].id : q.fragments[g++].id;
+                const bool take_p = g == in_q.end() || (f != in_p.end() && f->id < g->id);
+                const SurfaceId id = take_p ? (f++)->id : (g++)->id;
                 ++d.other_fragments;
                 d.unexplained += !near_edge(i, id) && same_surface;
             }
@@ -154,11 +153,13 @@ inline Differences compare(const Shot& shot, const Seen& a, const Seen& b) {
 inline void expect_equal(const TileStore& a, const TileStore& b) {
     ASSERT_EQ(a.key, b.key);
     ASSERT_EQ(a.id, b.id);
-    ASSERT_EQ(a.fragments.size(), b.fragments.size());
-    for (std::size_t i = 0; i < a.fragments.size(); ++i) {
-        ASSERT_EQ(a.fragments[i].key, b.fragments[i].key);
-        ASSERT_EQ(a.fragments[i].sample, b.fragments[i].sample);
-        ASSERT_EQ(a.fragments[i].id, b.fragments[i].id);
+    ASSERT_EQ(a.lists.begin, b.lists.begin);
+    for (std::size_t i = 0; i < a.lists.fragments.size(); ++i) {
+        const Fragment &f = a.lists.fragments[i], &g = b.lists.fragments[i];
+        ASSERT_EQ(f.key, g.key);
+        ASSERT_EQ(f.id, g.id);
+        ASSERT_EQ(f.signed_b1, g.signed_b1);
+        ASSERT_EQ(f.b2, g.b2);
     }
 }
 

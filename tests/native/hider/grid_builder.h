@@ -128,7 +128,9 @@ inline Picture render(HiderMaker make, Shot& shot) {
     out.pixels = {tiles.x0 * 16, tiles.y0 * 16, tiles.x1 * 16, tiles.y1 * 16};
     out.combined.assign(static_cast<std::size_t>(out.pixels.width()) * out.pixels.height(),
                         Vec4f(0.0f));
-    const HiderFrame frame{&table, shot.camera.projection, &shot.statistics};
+    HiderFrame frame{&table, shot.camera.projection, &shot.statistics};
+    frame.list_end = shot.composite.end;
+    frame.z_batch_size = shot.options.z_batch_size;
     shot.composite.projection = shot.camera.projection;
     const auto hider = make(frame, tiles, out.pixels);
     for (const Grid& grid : shot.grids)
@@ -195,9 +197,8 @@ inline std::vector<int> layers_per_sample(HiderMaker make, Shot& shot) {
     for (const Grid& grid : shot.grids) hider->hide(grid);
     std::vector<int> layers;
     for (const TileStore& store : hider->finish()) {
-        std::vector<int> tile(store.key.size(), 0);
-        for (const Fragment& fragment : store.fragments) ++tile[fragment.sample];
-        layers.insert(layers.end(), tile.begin(), tile.end());
+        for (std::size_t i = 0; i < store.key.size(); ++i)
+            layers.push_back(static_cast<int>(store.lists.of(i).size()));
     }
     return layers;
 }

@@ -16,7 +16,7 @@ inline std::unique_ptr<Hider> raster_executor(const HiderFrame&, const Rect&, co
 inline RasterFrame raster_frame(const Shot& shot, const SampleTable& table) {
     RasterFrame frame;
     frame.projection = shot.camera.projection;
-    frame.opacity_threshold = shot.composite.opacity_threshold;
+    frame.opacity_threshold = shot.composite.end.opacity_threshold;
     frame.film_transparent = shot.composite.film_transparent;
     SampleNeeds needs{false, shot.camera.projection.has_lens()};
     for (const Grid& grid : shot.grids) needs.time |= grid.motion;

@@ -39,6 +39,13 @@ struct Stack {
         grids.push_back(std::move(grid));
         return pool.add(grids.back());
     }
+    /// The list of sample 77, nearest first.
+    void layers(const std::vector<Fragment>& list) {
+        store.lists.fragments = list;
+        store.lists.begin.assign(257, 0);
+        std::fill(store.lists.begin.begin() + 78, store.lists.begin.end(),
+                  static_cast<std::uint32_t>(list.size()));
+    }
     void run() {
         const ChannelSet channels(options);
         ASSERT_EQ(channels.vertex_width(), 7);
@@ -53,7 +60,7 @@ TEST(SampleChannels, LayersAreAttenuatedByWhatIsBeforeThem) {
     Stack stack;
     const SurfaceId pane = stack.add(2, Vec3f(1, 2, 3), Vec3f(0.25f, 0.5f, 1.0f), 4);
     const SurfaceId wall = stack.add(3, Vec3f(8, 8, 8), Vec3f(1), 9);
-    stack.store.fragments = {{-2, 77, pane}};
+    stack.layers({{-2, pane, 0, 0, false}});
     stack.store.key[77] = stack.store.key[78] = -3;
     stack.store.id[77] = stack.store.id[78] = wall;
     stack.run();
@@ -70,11 +77,11 @@ TEST(SampleChannels, TheFirstSurfaceIsTheFirstThatIsOpaqueEnough) {
     Stack stack;
     const SurfaceId pane = stack.add(2, Vec3f(1), Vec3f(0.25f), 4);
     const SurfaceId wall = stack.add(3, Vec3f(8), Vec3f(1), 9);
-    stack.store.fragments = {{-2, 77, pane}};
+    stack.layers({{-2, pane, 0, 0, false}});
     stack.store.key[77] = -3;
     stack.store.id[77] = wall;
     for (const float threshold : {0.0f, 0.25f, 0.26f, 1.0f}) {
-        stack.settings.pass_alpha_threshold = threshold;
+        stack.settings.end.pass_alpha_threshold = threshold;
         stack.run();
         const float index = threshold > 0.25f ? 9 : 4;
         EXPECT_FLOAT_EQ(stack.row(77)[3], index);
@@ -87,11 +94,11 @@ TEST(SampleChannels, AListThatHasEndedStillFindsTheFirstSurface) {
     const SurfaceId panes[] = {stack.add(2, Vec3f(1), Vec3f(0.4f), 4),
                                stack.add(3, Vec3f(1), Vec3f(0.4f), 5)};
     const SurfaceId wall = stack.add(4, Vec3f(8), Vec3f(1), 9);
-    stack.store.fragments = {{-2, 77, panes[0]}, {-3, 77, panes[1]}};
+    stack.layers({{-2, panes[0], 0, 0, false}, {-3, panes[1], 0, 0, false}});
     stack.store.key[77] = -4;
     stack.store.id[77] = wall;
-    stack.settings.opacity_threshold = 0.6f;
-    stack.settings.pass_alpha_threshold = 0.5f;
+    stack.settings.end.opacity_threshold = 0.6f;
+    stack.settings.end.pass_alpha_threshold = 0.5f;
     stack.run();
     EXPECT_FLOAT_EQ(stack.row(77)[0], 1 + 0.6f);
     EXPECT_EQ(stack.values.center[77], 9);

@@ -72,7 +72,9 @@ TEST(Composite, MillionLayersOfAMillionth) {
     TileStore store;
     store.key.assign(256, -INFINITY);
     store.id.assign(256, kNoSurface);
-    for (int i = 0; i < 1000000; ++i) store.fragments.push_back({-5, 77, 4});
+    store.lists.fragments.assign(1000000, {-5, 4, 0.25f, 0.25f, false});
+    store.lists.begin.assign(257, 0);
+    std::fill(store.lists.begin.begin() + 78, store.lists.begin.end(), 1000000);
     CompositeSettings settings;
     settings.projection = pixel_camera().projection;
     const Vec3f background(1);
@@ -92,13 +94,13 @@ TEST_P(Transparency, ThresholdEndsTheListAfterTheFragmentThatReachesIt) {
     shot.options.samples = 4;
     for (int i = 7; i >= 0; --i)
         shot.grids.push_back(layer(5 + static_cast<float>(i), Vec3f(1), Vec3f(.1f)));
-    shot.composite.opacity_threshold = .2f;  // after two layers .19, after three .271
+    shot.composite.end.opacity_threshold = .2f;  // after two layers .19, after three .271
     EXPECT_NEAR(render(GetParam(), shot).alpha(3, 3), .271, 1e-6);
-    shot.composite.opacity_threshold = 1;
+    shot.composite.end.opacity_threshold = 1;
     EXPECT_NEAR(render(GetParam(), shot).alpha(3, 3), 1 - std::pow(.9, 8), 1e-6);
     // The smallest channel decides.
     for (Grid& grid : shot.grids) set_color(grid, Vec3f(1), Vec3f(.5f, .1f, .1f));
-    shot.composite.opacity_threshold = .2f;
+    shot.composite.end.opacity_threshold = .2f;
     EXPECT_NEAR(render(GetParam(), shot).at(3, 3).y, .271, 1e-6);
 }
 
@@ -278,7 +280,7 @@ TEST_P(StoredDepth, IsThatOfTheNearestSurface) {
     const auto hider = GetParam()(frame, {0, 0, 1, 1}, {0, 0, 16, 16});
     for (const Grid& grid : shot.grids) hider->hide(grid);
     shot.composite.projection = shot.camera.projection;
-    TileStore& store = hider->finish()[0];
+    const TileStore& store = hider->finish()[0];
     SampleColors colors;
     composite_tile(store, hider->tile_samples(0), hider->pool(), {}, shot.composite, colors);
     for (const float depth : colors.depth) EXPECT_EQ(depth, 4.0f);

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/tile_colors.h"
+
+#include <algorithm>
+
+#include "hider/composite.h"
+#include "render/background.h"
+
+namespace granita {
+
+void TileColors::composite(const TileStore& store, const TileSamples& samples,
+                           const GridPool& pool) {
+    m_frame.progress.check();
+    const Options& options = m_frame.scene.options;
+    const ChannelSet& channels = m_frame.film.channels();
+    std::vector<Vec3f> background{Vec3f(0.0f)};
+    if (!options.film_transparent || channels.has_environment()) {
+        const StageTimer timer(m_frame.statistics, Stage::Shade);
+        background = tile_background(m_frame.scene.camera, m_frame.table, m_frame.shading,
+                                     m_frame.constant_background, store);
+    }
+    const StageTimer timer(m_frame.statistics, Stage::Resolve);
+    const CompositeSettings settings{m_frame.view.projection, m_frame.hider.list_end,
+                                     options.film_transparent, &channels};
+    composite_tile(store, samples, pool, background, settings, m_colors, &m_channels);
+}
+
+void TileColors::take(const TileColors& part, const Rect& pixels, int samples) {
+    m_colors.resize(part.m_colors.size());
+    m_channels.filtered.resize(part.m_channels.filtered.size());
+    m_channels.center.resize(part.m_channels.center.size());
+    const ChannelSet& channels = m_frame.film.channels();
+    // Pixels of a row follow each other, and so do their samples.
+    const auto copy = [&](const std::vector<float>& from, std::vector<float>& to, int width) {
+        for (int y = pixels.y0; y < pixels.y1; ++y) {
+            const std::ptrdiff_t row = y * kTileSize;
+            std::copy(from.begin() + (row + pixels.x0) * width,
+                      from.begin() + (row + pixels.x1) * width,
+                      to.begin() + (row + pixels.x0) * width);
+        }
+    };
+    for (std::vector<float> SampleColors::*plane :
+         {&SampleColors::red, &SampleColors::green, &SampleColors::blue, &SampleColors::alpha,
+          &SampleColors::depth})
+        copy(part.m_colors.*plane, m_colors.*plane, samples);
+    if (channels.empty()) return;
+    copy(part.m_channels.filtered, m_channels.filtered, samples * channels.sample_width());
+    copy(part.m_channels.center, m_channels.center, channels.center_width());
+}
+
+TileContribution TileColors::filter(Vec2i tile, const TileSamples& samples) const {
+    m_frame.statistics.add(Counter::SamplesTotal, samples.x.size());
+    const StageTimer timer(m_frame.statistics, Stage::Resolve);
+    return m_frame.film.filter_tile(tile, samples, m_colors, &m_channels);
+}
+
+}  // namespace granita
