@@ -16,17 +16,10 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "tests" / "blender"))
-import exr  # noqa: E402
+sys.path.insert(0, str(HERE.parent / "tests" / "images"))
+import pictures  # noqa: E402
 
 CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "granita" / "bench"
-
-
-def rgb(path):
-    """f32 [h,w,3], linear, top row first."""
-    channels = exr.read(path)
-    pick = lambda letter: next(v for k, v in channels.items() if k.split(".")[-1] == letter)  # noqa: E731
-    return np.stack([pick(c) for c in "RGB"], -1)[::-1].astype(np.float32)
 
 
 def render(job, clock="processor"):
@@ -42,7 +35,10 @@ def render(job, clock="processor"):
         column = {"wall": 0, "processor": 1}[clock]
         seconds = json.loads((Path(folder) / "seconds.json").read_text())
         return [
-            (rgb(Path(folder) / f"{i}.exr"), statistics.median(run[column] for run in runs))
+            (
+                pictures.load(Path(folder) / f"{i}.exr"),
+                statistics.median(run[column] for run in runs),
+            )
             for i, runs in enumerate(seconds)
         ]
 
@@ -70,14 +66,9 @@ def reference(scene, samples, all_scenes):
     return np.load(CACHE / name)
 
 
-def srgb(linear):
-    x = np.clip(linear, 0, 1)
-    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055).astype(np.float32)
-
-
 def save_png(path, linear):
     """8 bits a channel, as a screen shows it."""
-    pixels = (srgb(linear) * 255 + 0.5).astype(np.uint8)
+    pixels = (pictures.srgb(linear) * 255 + 0.5).astype(np.uint8)
     height, width, _ = pixels.shape
     rows = np.insert(pixels.reshape(height, -1), 0, 0, axis=1)  # each row behind its filter, none
 
@@ -92,12 +83,9 @@ def save_png(path, linear):
 
 def errors(image, truth):
     """{rmse, percentile (99.9, of the largest channel), flip (mean, 0 to 1)}"""
-    import flip_evaluator
-
     difference = np.abs(image - truth)
-    flip = flip_evaluator.evaluate(srgb(truth), srgb(image), "LDR", applyMagma=False)[1]
     return {
         "rmse": float(np.sqrt(np.mean(difference**2))),
         "percentile": float(np.percentile(difference.max(-1), 99.9)),
-        "flip": float(flip),
+        "flip": float(pictures.flip(image, truth)[1]),
     }

@@ -17,17 +17,11 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "blender"))
-import exr  # noqa: E402
+sys.path.insert(0, str(HERE))
+import pictures  # noqa: E402
 
 SAMPLES = {"emission": 4096, "lit": 4096, "still": 512}
 SCENES = ("bend", "camera", "snake", "instances", "particles", "morph", "alien", "hair")
-
-
-def rgb(path):
-    channels = exr.read(path)
-    pick = lambda letter: next(v for k, v in channels.items() if k.split(".")[-1] == letter)  # noqa: E731
-    return np.stack([pick(c) for c in "RGB"], -1)[::-1]
 
 
 def render(name, variant, folder):
@@ -42,7 +36,7 @@ def render(name, variant, folder):
         *[line for line in done.stdout.splitlines() if line.startswith("seconds")],
         flush=True,
     )
-    return rgb(out)
+    return pictures.load(out)
 
 
 def keep(name, images):

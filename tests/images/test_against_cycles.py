@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "blender"))
-import exr  # noqa: E402
+sys.path.insert(0, str(HERE))
+from pictures import flip, load, srgb  # noqa: E402
 
-flip_evaluator = pytest.importorskip("flip_evaluator", reason="FLIP is installed by ./dev test")
+pytest.importorskip("flip_evaluator", reason="FLIP is installed by ./dev test")
 
 # Reyes shades at vertices and interpolates: highlights and fine textures want finer micropolygons than
 # 1 px.  Scene -> (samples, light samples, dicing rate).
@@ -28,18 +28,6 @@ SCENES = {
     "demo": (512, 64, 0.5),
 }
 MOST_FLIP = 0.02
-
-
-def load(path):
-    """Linear RGB [h,w,3], top row first."""
-    channels = exr.read(path)
-    pick = lambda letter: next(v for k, v in channels.items() if k.split(".")[-1] == letter)  # noqa: E731
-    return np.stack([pick(c) for c in "RGB"], -1)[::-1].astype(np.float32)
-
-
-def srgb(x):
-    x = np.clip(x, 0, 1)
-    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055).astype(np.float32)
 
 
 def luminance(x):
@@ -64,11 +52,11 @@ def test_like_cycles(name, tmp_path):
     done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-1000:]
     picture, reference = load(out), load(HERE / "references" / f"{name}.exr")
-    flip, mean, _ = flip_evaluator.evaluate(srgb(reference), srgb(picture), "LDR", applyMagma=False)
+    difference, mean = flip(picture, reference)
     ratio = luminance(picture) / luminance(reference)
     np.save(
         tmp_path / "side_by_side.npy",
-        np.concatenate([srgb(picture), srgb(reference), np.repeat(flip[..., :1], 3, 2)], 1),
+        np.concatenate([srgb(picture), srgb(reference), np.repeat(difference[..., :1], 3, 2)], 1),
     )
     print(f"{name}: FLIP {mean:.4f}, luminance ratio {ratio:.4f}")
     assert mean < MOST_FLIP
