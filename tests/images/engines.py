@@ -56,6 +56,17 @@ def set_granita(scene, samples, **settings):
         setattr(scene.granita, name, value)
 
 
+def normalize_normals(tree):
+    """Gives Principled a unit normal: Cycles of Blender 3.4 leaves the one that it interpolates over a deforming face
+    shorter than 1, which dims highlights (a fifth of the picture's FLIP before this stood here)."""
+    bsdf = tree.nodes["Principled BSDF"]
+    geometry = tree.nodes.new("ShaderNodeNewGeometry")
+    normalize = tree.nodes.new("ShaderNodeVectorMath")
+    normalize.operation = "NORMALIZE"
+    tree.links.new(geometry.outputs["Normal"], normalize.inputs[0])
+    tree.links.new(normalize.outputs["Vector"], bsdf.inputs["Normal"])
+
+
 def render(scene, path):
     """Renders to linear 32-bit OpenEXR without compression; returns the seconds of the whole frame."""
     image = scene.render.image_settings

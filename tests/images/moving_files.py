@@ -127,6 +127,9 @@ def alien():
     """A skinned creature of many limbs."""
     shutter = import_file(DEMO_ASSETS / "Alien_Scolitex.gltf", 10, 3.0, "")
     look((3, -7, 3), (0, 0, 1.2))
+    for material in bpy.data.materials:
+        if material.use_nodes:
+            engines.normalize_normals(material.node_tree)
     return shutter
 
 

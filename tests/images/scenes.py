@@ -19,6 +19,9 @@ from mathutils import Vector
 HERE = Path(__file__).resolve().parent
 ASSETS = HERE / "assets"
 DEMO = HERE.parent.parent / "demo"
+sys.path.insert(0, str(HERE))
+from engines import normalize_normals  # noqa: E402
+
 if "bool" not in vars(np):
     np.bool = bool  # the glTF importer of Blender 3.4 asks for it
 
@@ -149,17 +152,6 @@ def demo():
     for material in bpy.data.materials:
         if material.use_nodes:
             normalize_normals(material.node_tree)
-
-
-def normalize_normals(tree):
-    """Gives Principled a unit normal: Cycles of Blender 3.4 leaves the one that it interpolates over a deforming face
-    shorter than 1, which dims highlights (a fifth of the picture's FLIP before this stood here)."""
-    bsdf = tree.nodes["Principled BSDF"]
-    geometry = tree.nodes.new("ShaderNodeNewGeometry")
-    normalize = tree.nodes.new("ShaderNodeVectorMath")
-    normalize.operation = "NORMALIZE"
-    tree.links.new(geometry.outputs["Normal"], normalize.inputs[0])
-    tree.links.new(normalize.outputs["Vector"], bsdf.inputs["Normal"])
 
 
 SCENES = {"metal": metal, "object_alpha": object_alpha, "creased": creased, "demo": demo}
