@@ -12,7 +12,7 @@ namespace granita {
 namespace {
 
 /// Cosine of the largest angle between the normals of a cluster.
-constexpr float kLeastCosine = 0.9f;
+constexpr float kLeastCosine = 0.99f;
 /// Of the shading rate: the longest side of a cluster's box.
 constexpr float kLongest = 1.5f;
 
@@ -29,15 +29,17 @@ struct FaceBatch::Face {
     Vec3f middle{0.0f}, normal{0.0f}, geometric_normal{0.0f}, su{0.0f}, sv{0.0f};
     Vec2f place{0.0f};  ///< of the middle, pixels
     float area = 0.0f;  ///< as seen, square pixels
+    /// In a cluster: something is left for a face that is seen edge-on.
+    float weight(float cluster_area) const { return area + 1e-6f * cluster_area; }
 };
 
 struct FaceBatch::Cluster {
     std::size_t first = 0, end = 0;  ///< faces
-    std::size_t largest = 0;         ///< the face that it is shaded at
+    std::size_t center = 0;          ///< the face in the middle: textures are looked up there
     float area = 0.0f;
     /// How much further its neighbours' points are than the next face's.
     float stretch(const std::vector<Face>& faces) const {
-        return faces[largest].area > 0.0f ? std::sqrt(area / faces[largest].area) : 1.0f;
+        return faces[center].area > 0.0f ? std::sqrt(area / faces[center].area) : 1.0f;
     }
 };
 
@@ -89,24 +91,9 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
     faces.reserve(count);
     for (std::size_t i = 0; i < count; ++i) faces.push_back(face(*grid, i));
     const std::vector<Cluster> points = clusters(*grid, faces);
+    const std::vector<Vec3f> vertices = grid->shading_p();
     grid->p.clear();
-    for (const Cluster& cluster : points) {
-        const Face& largest = faces[cluster.largest];
-        Vec3f normal(0.0f), geometric_normal(0.0f);
-        for (std::size_t i = cluster.first; i < cluster.end; ++i) {
-            // Something of it is left for a face that is seen edge-on.
-            const float weight = faces[i].area + 1e-6f * cluster.area;
-            normal += faces[i].normal * weight;
-            geometric_normal += faces[i].geometric_normal * weight;
-        }
-        grid->places.anchors.push_back(static_cast<std::uint32_t>(cluster.largest));
-        grid->p.push_back(largest.middle);
-        grid->normal.push_back(Vec3f(unit_or(Vec3d(normal), Vec3d(largest.normal))));
-        grid->geometric_normal.push_back(
-            Vec3f(unit_or(Vec3d(geometric_normal), Vec3d(largest.geometric_normal))));
-        grid->dp_du.push_back(largest.su * cluster.stretch(faces));
-        grid->dp_dv.push_back(largest.sv * cluster.stretch(faces));
-    }
+    for (const Cluster& cluster : points) add_point(*grid, faces, cluster, vertices);
     float area = 0.0f;
     for (const Cluster& cluster : points) area += cluster.area;
     const auto rate = static_cast<float>(m_mesh->rate().rate());
@@ -114,6 +101,39 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
     if (share < 1.0f) grid->point_share = share;
     dice_attributes(*grid, faces, points);
     return grid;
+}
+
+void FaceBatch::add_point(Grid& grid, const std::vector<Face>& faces, const Cluster& cluster,
+                          const std::vector<Vec3f>& vertices) const {
+    const Face& center = faces[cluster.center];
+    Vec3f normal(0.0f), geometric_normal(0.0f), p(0.0f);
+    float total = 0.0f;
+    for (std::size_t i = cluster.first; i < cluster.end; ++i) {
+        const float weight = faces[i].weight(cluster.area);
+        normal += faces[i].normal * weight;
+        geometric_normal += faces[i].geometric_normal * weight;
+        p += faces[i].middle * weight;
+        total += weight;
+    }
+    // The mean, or light would be taken from where the larger faces are: those that face the eye.
+    p = total > 0.0f ? p / total : center.middle;
+    const Vec3f outward(unit_or(Vec3d(geometric_normal), Vec3d(center.geometric_normal)));
+    grid.places.anchors.push_back(static_cast<std::uint32_t>(cluster.center));
+    grid.p.push_back(p);
+    grid.normal.push_back(Vec3f(unit_or(Vec3d(normal), Vec3d(center.normal))));
+    grid.geometric_normal.push_back(outward);
+    grid.dp_du.push_back(center.su * cluster.stretch(faces));
+    grid.dp_dv.push_back(center.sv * cluster.stretch(faces));
+    // Rays start above all of the cluster, on the side that is seen.
+    const Vec3f view = m_mesh->view().projection.perspective ? p : Vec3f(0.0f, 0.0f, 1.0f);
+    const Vec3f up = glm::dot(outward, view) > 0.0f ? -outward : outward;
+    float height = 0.0f;
+    for (std::size_t i = cluster.first; i < cluster.end; ++i) {
+        const Grid::Corners c = grid.corners(static_cast<int>(i));
+        for (const int v : {c.v0, c.v1, c.v2, c.v3})
+            height = std::max(height, glm::dot(vertices[v] - p, up));
+    }
+    grid.ray_offset.push_back(up * height);
 }
 
 FaceBatch::Face FaceBatch::face(const Grid& grid, std::size_t i) const {
@@ -165,7 +185,6 @@ std::vector<FaceBatch::Cluster> FaceBatch::clusters(Grid& grid,
                 glm::dot(face.geometric_normal, first.geometric_normal) >= kLeastCosine) {
                 lo = low;
                 hi = high;
-                if (face.area > faces[last.largest].area) last.largest = i;
                 last.area += face.area;
                 last.end = i + 1;
                 grid.places.point_of.push_back(static_cast<std::uint32_t>(clusters.size() - 1));
@@ -176,7 +195,22 @@ std::vector<FaceBatch::Cluster> FaceBatch::clusters(Grid& grid,
         clusters.push_back({i, i + 1, i, face.area});
         lo = hi = face.place;
     }
+    for (Cluster& cluster : clusters) find_center(cluster, faces);
     return clusters;
+}
+
+void FaceBatch::find_center(Cluster& cluster, const std::vector<Face>& faces) {
+    Vec2f mean(0.0f);
+    float total = 0.0f;
+    for (std::size_t i = cluster.first; i < cluster.end; ++i) {
+        mean += faces[i].place * faces[i].weight(cluster.area);
+        total += faces[i].weight(cluster.area);
+    }
+    if (!(total > 0.0f)) return;
+    mean /= total;
+    const auto distance = [&](std::size_t i) { return glm::distance(faces[i].place, mean); };
+    for (std::size_t i = cluster.first; i < cluster.end; ++i)
+        if (distance(i) < distance(cluster.center)) cluster.center = i;
 }
 
 void FaceBatch::dice_attributes(Grid& grid, const std::vector<Face>& faces,
@@ -197,7 +231,7 @@ void FaceBatch::dice_attributes(Grid& grid, const std::vector<Face>& faces,
         std::vector<float> values, du, dv, mean;
         for (const Cluster& cluster : clusters) {
             if (requests[a].derivatives) {
-                values_at(cluster.largest, values, du, dv);
+                values_at(cluster.center, values, du, dv);
                 for (std::size_t c = 0; c < width; ++c) {
                     out.du.push_back(du[c] * cluster.stretch(faces));
                     out.dv.push_back(dv[c] * cluster.stretch(faces));
@@ -208,13 +242,13 @@ void FaceBatch::dice_attributes(Grid& grid, const std::vector<Face>& faces,
             mean.assign(width, 0.0f);
             float total = 0.0f;
             for (std::size_t i = cluster.first; i < cluster.end; ++i) {
-                const float weight = faces[i].area + 1e-6f * cluster.area;
+                const float weight = faces[i].weight(cluster.area);
                 values_at(i, values, du, dv);
                 for (std::size_t c = 0; c < width; ++c) mean[c] += values[c] * weight;
                 total += weight;
             }
             // A cluster that is seen edge-on has no area.
-            if (!(total > 0.0f)) values_at(cluster.largest, mean, du, dv), total = 1.0f;
+            if (!(total > 0.0f)) values_at(cluster.center, mean, du, dv), total = 1.0f;
             for (const float value : mean) out.values.push_back(value / total);
         }
     }

@@ -3,10 +3,10 @@
 // micropolygon that its patch would be.
 //
 // Shading: neighbours are gathered into clusters of about the shading rate's area, each shaded once
-// and of one colour all over.  A cluster's point is the middle of its largest face, with the mean
-// of the faces' normals and of what does not ask for derivatives; what does (textures) is looked up
-// where that face is, with the footprint of the cluster.  A colour so moves by half the shading
-// rate at most; faces of a cluster differ by no more than 25 degrees.
+// and of one colour all over.  A cluster's point is the mean of its faces by the area that is seen
+// of them, and so are its normal and what does not ask for derivatives; what does (textures) is
+// looked up at the face in its middle, with the footprint of the cluster.  A colour so moves by
+// half the shading rate at most; faces of a cluster differ by no more than 8 degrees.
 #pragma once
 
 #include <memory>
@@ -35,6 +35,10 @@ class FaceBatch final : public Primitive {
     const BasePatch& patch(std::size_t i) const { return m_mesh->shared().patches()[m_faces[i]]; }
     Face face(const Grid& grid, std::size_t i) const;
     std::vector<Cluster> clusters(Grid& grid, const std::vector<Face>& faces) const;
+    static void find_center(Cluster& cluster, const std::vector<Face>& faces);
+    /// `vertices`: the grid's, at the frame time.
+    void add_point(Grid& grid, const std::vector<Face>& faces, const Cluster& cluster,
+                   const std::vector<Vec3f>& vertices) const;
     void dice_attributes(Grid& grid, const std::vector<Face>& faces,
                          const std::vector<Cluster>& clusters) const;
 
