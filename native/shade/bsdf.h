@@ -22,6 +22,14 @@ struct BsdfValue {
     Vec3f diffuse{0.0f}, glossy{0.0f};
 };
 
+inline Vec3f total(const BsdfValue& value) {
+    return value.diffuse + value.glossy;
+}
+
+inline BsdfValue operator*(const BsdfValue& value, const Vec3f& factor) {
+    return {value.diffuse * factor, value.glossy * factor};
+}
+
 class PointBsdf {
   public:
     /// `albedo` is read only for lobes with `multiscatter`.

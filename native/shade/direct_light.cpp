@@ -9,9 +9,9 @@
 #include "shade/bsdf.h"
 #include "shade/bsdf_albedo.h"
 #include "shade/light_lamp.h"
-#include "shade/light_world_looks.h"
+#include "shade/lit_grid.h"
+#include "shade/lit_point.h"
 #include "shade/ray_scene.h"
-#include "shade/sampling.h"
 #include "shade/shading_points.h"
 
 namespace granita {
@@ -19,111 +19,30 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-Vec3f total(const BsdfValue& value) {
-    return value.diffuse + value.glossy;
-}
-
-/// What a grid's points share while they are lit.
-struct Work {
-    std::vector<Vec3f>& radiance;
-    ReflectionParts* parts;  ///< nullptr = not asked for
-    WorldLooks blurred, sharp;
-    std::uint64_t shadow_rays = 0, occlusion_rays = 0;
-
-    /// Light of a lamp: `value` reflected without shadow.
-    void add_lamp(std::size_t point, const BsdfValue& value, const Vec3f& shadow) {
-        if (!parts) return;
-        parts->diffuse[point] += value.diffuse * shadow;
-        parts->glossy[point] += value.glossy * shadow;
-        parts->arriving[point] += total(value) * shadow;
-        parts->unblocked[point] += total(value);
-    }
-    /// Asks the world later; `weight` is 0 where nothing can be seen of it.
-    void look(WorldLooks& looks, std::size_t point, const Vec3f& direction,
-              const BsdfValue& weight) {
-        if (total(weight) == Vec3f(0.0f)) return;
-        looks.add(point, direction, total(weight));
-        if (parts) looks.parts.push_back(weight);
-    }
-    void add_world(std::size_t point, const BsdfValue& value) {
-        if (!parts) return;
-        parts->diffuse[point] += value.diffuse;
-        parts->glossy[point] += value.glossy;
-    }
-};
-
-BsdfValue operator*(const BsdfValue& value, const Vec3f& factor) {
-    return {value.diffuse * factor, value.glossy * factor};
-}
-
-/// A shaded point at one time of the shutter.
-struct Place {
-    float time = 0.0f;
-    Vec3f p{0.0f}, normal{0.0f};  ///< geometric normal
-    Vec3f start{0.0f};            ///< of rays
-};
-
-/// A shaded point while it is lit.
-struct Point {
-    std::size_t index;
-    const PointBsdf& bsdf;
-    const PointPaths& paths;
-    const GridKey& key;
-    Place at_frame;
-    Vec3f ray_offset{0.0f};    ///< ShadingPoints::ray_offset
-    int sample_count = 1;      ///< of a soft light, of the world's image, of all lobes together
-    std::uint64_t seed;        ///< of the grid
-    std::uint32_t place;       ///< in the grid, along Morton's curve
-    std::vector<int> samples;  ///< [lobes] taken of each lobe; 0 for sharp ones
-
-    /// This point's `count` samples of a sequence that the grid shares.  Each takes as many as it
-    /// uses: if all left out the ends of equal runs, all would miss the same strata.
-    SobolPoints sequence(std::uint64_t dimension, int count) const {
-        return SobolPoints(seed + 0x9e3779b97f4a7c15ULL * (dimension + 1),
-                           place * static_cast<std::uint32_t>(count));
-    }
-    /// Expected samples a solid angle around `wo` over the lobes that `which` accepts.
-    template <class Which>
-    float lobe_density(const Vec3f& wo, Which which) const {
-        float sum = 0.0f;
-        for (std::size_t k = 0; k < samples.size(); ++k)
-            if (samples[k] > 0 && which(k)) sum += static_cast<float>(samples[k]) * bsdf.pdf(k, wo);
-        return sum;
-    }
-    /// Lamps are met by samples of glossy lobes alone: over a diffuse lobe, sampling the lamp is
-    /// never much worse.
-    float glossy_density(const Vec3f& wo) const {
-        return lobe_density(wo, [&](std::size_t k) { return bsdf.kind(k) == LobeKind::Glossy; });
-    }
-    float all_density(const Vec3f& wo) const {
-        return lobe_density(wo, [](std::size_t) { return true; });
-    }
-};
-
 }  // namespace
 
 struct DirectLight::Impl {
     Impl(const Scene& scene, WorldEvaluator world_evaluator, Statistics& frame_statistics,
          Report& report, const Progress& progress, ShadowOpacity opacity);
 
-    void light_point(Work& work, Point& point) const;
-    void sample_lamp(Work& work, const Point& point, const Lamp& lamp, std::uint64_t dimension,
-                     Vec3f& sum) const;
-    void sample_world(Work& work, const Point& point) const;
-    void sample_lobe(Work& work, const Point& point, std::size_t lobe, Vec3f& sum) const;
-    void mirror(Work& work, const Point& point, std::size_t lobe, Vec3f& sum) const;
-    void look(Work& work, const WorldLooks& looks, float spread) const;
-    Place place_at(const Point& point, float uniform) const;
+    void light_point(LitGrid& grid, LitPoint& point) const;
+    void sample_lamp(LitGrid& grid, const LitPoint& point, const Lamp& lamp,
+                     std::uint64_t dimension, Vec3f& sum) const;
+    void sample_world(LitGrid& grid, const LitPoint& point) const;
+    void sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe, Vec3f& sum) const;
+    void mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe, Vec3f& sum) const;
+    void look(LitGrid& grid, const WorldLooks& looks, float spread) const;
+    LitPlace place_at(const LitPoint& point, float uniform) const;
     Vec3f ray_start(const GridKey& key, const Vec3f& p, const Vec3f& normal) const {
         return rays ? rays->lift(key, p, normal) : p;
     }
     bool changes(const Lamp& lamp) const;
-    int samples_of(const Point& point, const Lamp& lamp) const;
-    Vec3f trace(const Point& point, const Place& place, const Vec3f& direction,
+    int samples_of(const LitPoint& point, const Lamp& lamp) const;
+    Vec3f trace(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
                 float distance) const;
-    Vec3f shadow(Work& work, const Point& point, const Place& place, const Lamp& lamp,
+    Vec3f shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                  const LightSample& sample) const;
-    Vec3f occlusion(Work& work, const Point& point, const Place& place,
+    Vec3f occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
                     const Vec3f& direction) const;
 
     const Scene& scene;
@@ -179,8 +98,8 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
 
 /// The point at a time drawn by `uniform` in [0, 1) through the shutter; at the frame time where
 /// nothing that light depends on changes.
-Place DirectLight::Impl::place_at(const Point& point, float uniform) const {
-    Place place = point.at_frame;
+LitPlace DirectLight::Impl::place_at(const LitPoint& point, float uniform) const {
+    LitPlace place = point.at_frame;
     if (!varies) return place;
     place.time = shutter.time(uniform);
     if (!point.paths.moves()) return place;
@@ -196,7 +115,7 @@ bool DirectLight::Impl::changes(const Lamp& lamp) const {
 
 /// None of a lamp below the horizon; one tells all about a lamp without size that nothing moving
 /// can come before.
-int DirectLight::Impl::samples_of(const Point& point, const Lamp& lamp) const {
+int DirectLight::Impl::samples_of(const LitPoint& point, const Lamp& lamp) const {
     Vec3f center;
     float radius;
     const bool still = !lamp.varies() && !point.paths.moves();
@@ -206,42 +125,42 @@ int DirectLight::Impl::samples_of(const Point& point, const Lamp& lamp) const {
     if (!lamp.is_hard()) return point.sample_count;
     if (!changes(lamp)) return 1;
     if (lamp.varies() || point.paths.moves()) return point.sample_count;
-    const Place& place = point.at_frame;
+    const LitPlace& place = point.at_frame;
     LightSample sample;
     if (!lamp.at(place.time).sample(place.p, Vec2f(0.0f), sample)) return 0;
     return rays->varies(place.start, sample.direction, sample.distance) ? point.sample_count : 1;
 }
 
-Vec3f DirectLight::Impl::trace(const Point& point, const Place& place, const Vec3f& direction,
+Vec3f DirectLight::Impl::trace(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
                                float distance) const {
     const bool turned_away = glm::dot(place.normal, direction) <= 0.0f &&
                              glm::dot(point.at_frame.normal, direction) > 0.0f;
-    const Place& from = turned_away ? point.at_frame : place;
+    const LitPlace& from = turned_away ? point.at_frame : place;
     return rays->transmittance(from.start, direction, distance, from.time);
 }
 
-Vec3f DirectLight::Impl::shadow(Work& work, const Point& point, const Place& place,
+Vec3f DirectLight::Impl::shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place,
                                 const Lamp& lamp, const LightSample& sample) const {
     if (!rays || !lamp.casts_shadow()) return Vec3f(1.0f);
-    ++work.shadow_rays;
+    ++grid.shadow_rays;
     return trace(point, place, sample.direction, sample.distance);
 }
 
-Vec3f DirectLight::Impl::occlusion(Work& work, const Point& point, const Place& place,
+Vec3f DirectLight::Impl::occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
                                    const Vec3f& direction) const {
     if (!rays) return Vec3f(1.0f);
-    ++work.occlusion_rays;
+    ++grid.occlusion_rays;
     return trace(point, place, direction, kInfinity);
 }
 
-void DirectLight::Impl::sample_lamp(Work& work, const Point& point, const Lamp& lamp,
+void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const Lamp& lamp,
                                     std::uint64_t dimension, Vec3f& sum) const {
     const int count = samples_of(point, lamp);
     const bool timed = count > 1 && changes(lamp);
     const SobolPoints sequence = point.sequence(dimension, count);
     for (int s = 0; s < count; ++s) {
         const auto index = static_cast<std::uint32_t>(s);
-        const Place place = timed ? place_at(point, sequence.third(index)) : point.at_frame;
+        const LitPlace place = timed ? place_at(point, sequence.third(index)) : point.at_frame;
         const LightSource& source = lamp.at(place.time);
         LightSample sample;
         if (!source.sample(place.p, sequence(index), sample)) continue;
@@ -251,13 +170,13 @@ void DirectLight::Impl::sample_lamp(Work& work, const Point& point, const Lamp& 
         float density = static_cast<float>(count) * sample.pdf;
         if (!source.is_hard() && lamp.reaches_glossy())
             density += point.glossy_density(sample.direction);
-        const Vec3f seen = shadow(work, point, place, lamp, sample);
+        const Vec3f seen = shadow(grid, point, place, lamp, sample);
         sum += value / density * seen;
-        work.add_lamp(point.index, bsdf * (sample.radiance / density), seen);
+        grid.add_lamp(point.index, bsdf * (sample.radiance / density), seen);
     }
 }
 
-void DirectLight::Impl::sample_world(Work& work, const Point& point) const {
+void DirectLight::Impl::sample_world(LitGrid& grid, const LitPoint& point) const {
     // A constant world needs no table: the lobes themselves are its best samples.
     if (!environment || environment->is_constant()) return;
     const SobolPoints sequence = point.sequence(0, point.sample_count);
@@ -268,12 +187,12 @@ void DirectLight::Impl::sample_world(Work& work, const Point& point) const {
         const BsdfValue value = point.bsdf.evaluate(wo);
         if (total(value) == Vec3f(0.0f) || !(pdf > 0.0f)) continue;
         const float density = static_cast<float>(point.sample_count) * pdf + point.all_density(wo);
-        const Vec3f seen = occlusion(work, point, place_at(point, sequence.third(index)), wo);
-        work.look(work.blurred, point.index, wo, value * (seen / density));
+        const Vec3f seen = occlusion(grid, point, place_at(point, sequence.third(index)), wo);
+        grid.look(grid.blurred, point.index, wo, value * (seen / density));
     }
 }
 
-void DirectLight::Impl::sample_lobe(Work& work, const Point& point, std::size_t lobe,
+void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
                                     Vec3f& sum) const {
     const bool glossy = point.bsdf.kind(lobe) == LobeKind::Glossy;
     if (!environment && !glossy) return;
@@ -284,18 +203,18 @@ void DirectLight::Impl::sample_lobe(Work& work, const Point& point, std::size_t 
         if (!point.bsdf.sample(lobe, sequence(index), wo)) continue;
         const BsdfValue value = point.bsdf.evaluate(wo);
         if (total(value) == Vec3f(0.0f)) continue;
-        const Place place = place_at(point, sequence.third(index));
+        const LitPlace place = place_at(point, sequence.third(index));
         if (environment) {
             float density = point.all_density(wo);
             if (!environment->is_constant())
                 density += static_cast<float>(point.sample_count) * environment->pdf(wo);
-            const BsdfValue weight = value * (occlusion(work, point, place, wo) / density);
+            const BsdfValue weight = value * (occlusion(grid, point, place, wo) / density);
             if (environment->is_constant()) {
                 const Vec3f radiance = environment->constant_radiance();
                 sum += total(weight) * radiance;
-                work.add_world(point.index, weight * radiance);
+                grid.add_world(point.index, weight * radiance);
             } else {
-                work.look(work.blurred, point.index, wo, weight);
+                grid.look(grid.blurred, point.index, wo, weight);
             }
         }
         if (!glossy) continue;
@@ -306,14 +225,15 @@ void DirectLight::Impl::sample_lobe(Work& work, const Point& point, std::size_t 
             const float density =
                 static_cast<float>(point.sample_count) * sample.pdf + point.glossy_density(wo);
             const BsdfValue bsdf = lamp.apply(value);
-            const Vec3f seen = shadow(work, point, place, lamp, sample);
+            const Vec3f seen = shadow(grid, point, place, lamp, sample);
             sum += total(bsdf) * sample.radiance / density * seen;
-            work.add_lamp(point.index, bsdf * (sample.radiance / density), seen);
+            grid.add_lamp(point.index, bsdf * (sample.radiance / density), seen);
         }
     }
 }
 
-void DirectLight::Impl::mirror(Work& work, const Point& point, std::size_t lobe, Vec3f& sum) const {
+void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe,
+                               Vec3f& sum) const {
     Vec3f wo, reflectance;
     if (!point.bsdf.reflect(lobe, wo, reflectance)) return;
     const int count = varies ? point.sample_count : 1;
@@ -321,22 +241,22 @@ void DirectLight::Impl::mirror(Work& work, const Point& point, std::size_t lobe,
     const SobolPoints sequence = point.sequence(1 + lobe, count);
     Vec3f open(0.0f);
     for (int s = 0; s < count; ++s) {
-        const Place place = place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
+        const LitPlace place = place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
         for (const Lamp& lamp : lamps) {
             LightSample sample;
             if (!lamp.reaches_glossy() || !lamp.at(place.time).intersect(place.p, wo, sample))
                 continue;
             const Vec3f value = reflectance * lamp.glossy() * sample.radiance;
-            const Vec3f seen = shadow(work, point, place, lamp, sample);
+            const Vec3f seen = shadow(grid, point, place, lamp, sample);
             sum += value * seen;
-            work.add_lamp(point.index, {Vec3f(0.0f), value}, seen);
+            grid.add_lamp(point.index, {Vec3f(0.0f), value}, seen);
         }
-        if (environment) open += reflectance * occlusion(work, point, place, wo);
+        if (environment) open += reflectance * occlusion(grid, point, place, wo);
     }
-    work.look(work.sharp, point.index, wo, {Vec3f(0.0f), open});
+    grid.look(grid.sharp, point.index, wo, {Vec3f(0.0f), open});
 }
 
-void DirectLight::Impl::light_point(Work& work, Point& point) const {
+void DirectLight::Impl::light_point(LitGrid& grid, LitPoint& point) const {
     Vec3f sum(0.0f);
     const std::size_t lobes = point.bsdf.lobe_count();
     point.samples.assign(lobes, 0);
@@ -346,25 +266,25 @@ void DirectLight::Impl::light_point(Work& work, Point& point) const {
                 std::max(1, static_cast<int>(std::lround(point.bsdf.importance(k) *
                                                          static_cast<float>(point.sample_count))));
     for (std::size_t l = 0; l < lamps.size(); ++l)
-        sample_lamp(work, point, lamps[l], 1 + lobes + l, sum);
-    sample_world(work, point);
+        sample_lamp(grid, point, lamps[l], 1 + lobes + l, sum);
+    sample_world(grid, point);
     for (std::size_t k = 0; k < lobes; ++k) {
         if (point.bsdf.is_sharp(k))
-            mirror(work, point, k, sum);
+            mirror(grid, point, k, sum);
         else
-            sample_lobe(work, point, k, sum);
+            sample_lobe(grid, point, k, sum);
     }
-    work.radiance[point.index] += sum;
+    grid.radiance[point.index] += sum;
 }
 
-void DirectLight::Impl::look(Work& work, const WorldLooks& looks, float spread) const {
+void DirectLight::Impl::look(LitGrid& grid, const WorldLooks& looks, float spread) const {
     if (looks.directions.empty()) return;
     std::vector<Vec3f> seen;
     world(looks.directions, spread, seen);
     for (std::size_t k = 0; k < seen.size(); ++k) {
         if (!is_finite(seen[k])) continue;
-        work.radiance[looks.points[k]] += looks.weights[k] * seen[k];
-        if (work.parts) work.add_world(looks.points[k], looks.parts[k] * seen[k]);
+        grid.radiance[looks.points[k]] += looks.weights[k] * seen[k];
+        if (grid.parts) grid.add_world(looks.points[k], looks.parts[k] * seen[k]);
     }
 }
 
@@ -389,7 +309,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     const std::uint64_t seed = grid_seed(key, m_impl->scene.options.seed);
     const std::size_t columns = points.columns > 0 ? points.columns : points.count;
-    Work work{radiance, parts, {}, {}};
+    LitGrid grid{radiance, parts, {}, {}};
     // Points that lie closer share the light that a pixel's worth of them is due.
     const int sample_count = std::max(
         1, static_cast<int>(std::lround(points.share * static_cast<float>(m_impl->sample_count))));
@@ -406,18 +326,18 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         const Vec3f &p = points.p[i], &normal = points.geometric_normal[i];
         const Vec3f offset = points.ray_offset.empty() ? Vec3f(0.0f) : points.ray_offset[i];
         const Vec3f start = m_impl->ray_start(key, p + offset, normal);
-        const Place at_frame{m_impl->scene.options.frame_time, p, normal, start};
+        const LitPlace at_frame{m_impl->scene.options.frame_time, p, normal, start};
         // Neighbours share a sequence: aligned squares of points, and so the pixels that average
         // them, are stratified as one (Ahmed and Wonka 2020, without their shuffling of squares).
         const std::uint32_t place = morton_index(static_cast<std::uint32_t>(i % columns),
                                                  static_cast<std::uint32_t>(i / columns));
-        Point point{i, bsdf, paths, key, at_frame, offset, sample_count, seed, place, {}};
-        m_impl->light_point(work, point);
+        LitPoint point{i, bsdf, paths, key, at_frame, offset, sample_count, seed, place, {}};
+        m_impl->light_point(grid, point);
     }
-    if (m_impl->environment) m_impl->look(work, work.blurred, m_impl->environment->texel_angle());
-    m_impl->look(work, work.sharp, work.sharp.spread());
-    m_impl->statistics.add(Counter::RaysShadow, work.shadow_rays);
-    m_impl->statistics.add(Counter::RaysOcclusion, work.occlusion_rays);
+    if (m_impl->environment) m_impl->look(grid, grid.blurred, m_impl->environment->texel_angle());
+    m_impl->look(grid, grid.sharp, grid.sharp.spread());
+    m_impl->statistics.add(Counter::RaysShadow, grid.shadow_rays);
+    m_impl->statistics.add(Counter::RaysOcclusion, grid.occlusion_rays);
     return radiance;
 }
 

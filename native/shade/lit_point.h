@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "shade/bsdf.h"
+#include "shade/light_paths.h"
+#include "shade/sampling.h"
+
+namespace granita {
+
+/// A shaded point at one time of the shutter.
+struct LitPlace {
+    float time = 0.0f;
+    Vec3f p{0.0f}, normal{0.0f};  ///< geometric normal
+    Vec3f start{0.0f};            ///< of rays
+};
+
+/// A shaded point while it is lit.
+struct LitPoint {
+    std::size_t index;
+    const PointBsdf& bsdf;
+    const PointPaths& paths;
+    const GridKey& key;
+    LitPlace at_frame;
+    Vec3f ray_offset{0.0f};    ///< ShadingPoints::ray_offset
+    int sample_count = 1;      ///< of a soft light, of the world's image, of all lobes together
+    std::uint64_t seed;        ///< of the grid
+    std::uint32_t place;       ///< in the grid, along Morton's curve
+    std::vector<int> samples;  ///< [lobes] taken of each lobe; 0 for sharp ones
+
+    /// This point's `count` samples of a sequence that the grid shares.  Each takes as many as it
+    /// uses: if all left out the ends of equal runs, all would miss the same strata.
+    SobolPoints sequence(std::uint64_t dimension, int count) const {
+        return SobolPoints(seed + 0x9e3779b97f4a7c15ULL * (dimension + 1),
+                           place * static_cast<std::uint32_t>(count));
+    }
+    /// Expected samples a solid angle around `wo` over the lobes that `which` accepts.
+    template <class Which>
+    float lobe_density(const Vec3f& wo, Which which) const {
+        float sum = 0.0f;
+        for (std::size_t k = 0; k < samples.size(); ++k)
+            if (samples[k] > 0 && which(k)) sum += static_cast<float>(samples[k]) * bsdf.pdf(k, wo);
+        return sum;
+    }
+    /// Lamps are met by samples of glossy lobes alone: over a diffuse lobe, sampling the lamp is
+    /// never much worse.
+    float glossy_density(const Vec3f& wo) const {
+        return lobe_density(wo, [&](std::size_t k) { return bsdf.kind(k) == LobeKind::Glossy; });
+    }
+    float all_density(const Vec3f& wo) const {
+        return lobe_density(wo, [](std::size_t) { return true; });
+    }
+};
+
+}  // namespace granita
