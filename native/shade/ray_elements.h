@@ -20,7 +20,7 @@ class RayElements final : public RayShape {
     RTCGeometry hand_over(RTCDevice device) override;
     std::string size() const override;
     int knots() const override { return m_knots; }
-    float extent() const override { return m_extent; }
+    float extent(std::uint32_t) const override { return m_extent; }
     /// Rays start outside of their own element (Grid::ray_offset).
     float error(std::uint32_t) const override { return 0.0f; }
     void locate(std::uint32_t primitive, float u, float v, ShadowHit& hit) const override;

@@ -40,6 +40,11 @@ float height_off(const Vec3f& offset, const Vec3f& a, const Vec3f& b, const Vec3
                     height_off(offset, glm::cross(c - a, d - a), face));
 }
 
+/// 0 where p is not finite: rays meet nothing there.
+float largest_coordinate(const Vec3f& p) {
+    return is_finite(p) ? std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) : 0.0f;
+}
+
 Report& no_report() {
     // What cannot be diced is reported by dicing, which reads the same data.
     static Report report;
@@ -54,9 +59,7 @@ RayMesh::RayMesh(const GeometryData& data, float frame_time, const Progress& pro
         add_limit_surface(progress);
     else
         add_polygons();
-    for (const Vec3f& p : m_points)
-        if (is_finite(p))
-            m_extent = std::max({m_extent, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    for (const Vec3f& p : m_points) m_extent = std::max(m_extent, largest_coordinate(p));
 }
 
 std::span<const Vec3f> RayMesh::vertices(int knot) const {
@@ -73,11 +76,16 @@ void RayMesh::add_polygons() {
         m_points.insert(m_points.end(), vertices(knot).begin(), vertices(knot).end());
     m_triangles.reserve(2 * patches.size());
     m_patches.reserve(2 * patches.size());
+    m_extents.assign(data.face_count(), 0.0f);
     for (std::uint32_t k = 0; k < patches.size(); ++k) {
         const BasePatch& patch = patches[k];
         std::array<std::uint32_t, 4> v;
         for (std::size_t i = 0; i < 4; ++i)
             v[i] = static_cast<std::uint32_t>(data.corner_verts[patch.corner[i]]);
+        float& extent = m_extents[patch.face];
+        for (int knot = 0; knot < m_knots; ++knot)
+            for (const std::uint32_t vertex : v)
+                extent = std::max(extent, largest_coordinate(points(knot)[vertex]));
         m_triangles.push_back({v[0], v[1], v[2]});
         m_patches.push_back(2 * k);
         if (patch.kind != PatchKind::Quad) continue;
@@ -200,6 +208,10 @@ std::string RayMesh::size() const {
     return std::to_string(m_triangles.size()) + " triangles";
 }
 
+float RayMesh::extent(std::uint32_t face) const {
+    return face < m_extents.size() ? m_extents[face] : m_extent;
+}
+
 float RayMesh::error(std::uint32_t face) const {
     return face < m_errors.size() ? m_errors[face] : 0.0f;
 }
@@ -226,7 +238,8 @@ void RayMesh::locate(std::uint32_t triangle, float u, float v, ShadowHit& hit) c
 
 std::size_t RayMesh::bytes() const {
     return m_points.size() * sizeof(Vec3f) + m_triangles.size() * sizeof(m_triangles[0]) +
-           (m_patches.size() + m_errors.size()) * 4 + m_shared.bytes();
+           (m_patches.size() + m_errors.size()) * 4 + m_shared.bytes() +
+           m_extents.size() * sizeof(float);
 }
 
 }  // namespace granita

@@ -22,7 +22,7 @@ class RayMesh final : public RayShape {
     std::string size() const override;
     int knots() const override { return m_knots; }
     float error(std::uint32_t face) const override;
-    float extent() const override { return m_extent; }
+    float extent(std::uint32_t face) const override;
     const SharedGeometry& shared() const { return m_shared; }
     /// (u, v): the barycentric point of a triangle.
     void locate(std::uint32_t triangle, float u, float v, ShadowHit& hit) const override;
@@ -46,6 +46,7 @@ class RayMesh final : public RayShape {
     std::vector<std::array<std::uint32_t, 3>> m_triangles;
     std::vector<std::uint32_t> m_patches;  ///< [triangles] polygons: patch, doubled, plus half
     std::vector<float> m_errors;           ///< [faces]; empty = all 0
+    std::vector<float> m_extents;          ///< [faces] polygons; empty: m_extent for all
     float m_extent = 0.0f;
 };
 

@@ -72,7 +72,7 @@ std::int32_t material_of(const Instance& instance, std::int32_t slot) {
 struct RayInstance {
     std::uint32_t index = 0;  ///< in Scene::instances
     float scale = 1.0f;       ///< largest stretch of the transform at any knot
-    float rounding = 0.0f;    ///< metres
+    float distance = 0.0f;    ///< of its origin at any knot from that of shading space, metres
 };
 
 /// A ray and what is left of its light.
@@ -172,9 +172,7 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
         for (int c = 0; c < 3; ++c)
             scale = std::max(scale, static_cast<float>(glm::length(Vec3d(m[c]))));
         added.scale = std::max(added.scale, scale);
-        added.rounding =
-            std::max(added.rounding, kRounding * (static_cast<float>(glm::length(Vec3d(m[3]))) +
-                                                  scale * shapes[geometry]->extent()));
+        added.distance = std::max(added.distance, static_cast<float>(glm::length(Vec3d(m[3]))));
         has_volume = has_volume || glm::determinant(Mat3d(m)) != 0.0;
         columns.emplace_back();
         for (std::size_t c = 0, k = 0; c < 4; ++c)
@@ -300,14 +298,18 @@ std::size_t RayScene::bytes() const {
 }
 
 Vec3f RayScene::lift(const GridKey& key, const Vec3f& p, const Vec3f& geometric_normal) const {
-    float height = kRounding * glm::length(p);
+    float size = glm::length(p), error = 0.0f;  // size: of all numbers on the way, summed
     const auto found = m_impl->by_key.find(key.instance);
     if (found != m_impl->by_key.end()) {
         const RayInstance& instance = m_impl->instances[found->second];
         const auto geometry =
             static_cast<std::size_t>(m_impl->scene.instances[instance.index].geometry);
-        height += instance.rounding + instance.scale * m_impl->shapes[geometry]->error(key.face);
+        const RayShape& shape = *m_impl->shapes[geometry];
+        const float from_origin = size + instance.distance;  // of p, at most
+        size = from_origin + std::max(from_origin, instance.scale * shape.extent(key.face));
+        error = instance.scale * shape.error(key.face);
     }
+    const float height = kRounding * size + error;
     return p + geometric_normal * height;
 }
 

@@ -22,8 +22,9 @@ class RayShape {
     virtual std::string size() const = 0;
     /// 1 = it does not deform.
     virtual int knots() const = 0;
-    /// Largest absolute coordinate: rounding grows with it.
-    virtual float extent() const = 0;
+    /// Largest absolute coordinate of a face, or batch: the rounding of rays that meet it grows
+    /// with that, not with what else the geometry holds.
+    virtual float extent(std::uint32_t face) const = 0;
     /// Largest distance between the surface of a face, or batch, and what rays meet of it at any
     /// knot, object space.
     virtual float error(std::uint32_t face) const = 0;
