@@ -105,7 +105,8 @@ LitPlace DirectLight::Impl::place_at(const LitPoint& point, float uniform) const
     if (!point.paths.moves()) return place;
     place.p = point.paths.position(point.index, place.time);
     place.normal = point.paths.normal(point.index, place.time);
-    place.start = ray_start(point.key, place.p + point.ray_offset, place.normal);
+    place.start = ray_start(point.key, place.p + point.paths.ray_offset(point.index, place.time),
+                            place.normal);
     return place;
 }
 
@@ -331,7 +332,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         // them, are stratified as one (Ahmed and Wonka 2020, without their shuffling of squares).
         const std::uint32_t place = morton_index(static_cast<std::uint32_t>(i % columns),
                                                  static_cast<std::uint32_t>(i / columns));
-        LitPoint point{i, bsdf, paths, key, at_frame, offset, sample_count, seed, place, {}};
+        LitPoint point{i, bsdf, paths, key, at_frame, sample_count, seed, place, {}};
         m_impl->light_point(grid, point);
     }
     if (m_impl->environment) m_impl->look(grid, grid.blurred, m_impl->environment->texel_angle());

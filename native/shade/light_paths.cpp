@@ -25,14 +25,25 @@ Vec3f position_at(const Grid& grid, std::size_t vertex, const KnotTime& t) {
     return before + (after - before) * static_cast<float>(t.fraction);
 }
 
-/// What a point goes along with, of `place(vertex)`: its vertex, or the middle of its separate
-/// face, which turns with the face as a corner with a distance to it would not.
+/// What a point goes along with: a vertex, or the middle of its separate face and how that face is
+/// turned, as neither a corner nor a distance kept to it would follow a body that rotates.
+struct Anchor {
+    Vec3f place{0.0f};
+    Mat3f turned{1.0f};
+};
+
+/// Of `place(vertex)`.
 template <class Place>
-Vec3f anchor_place(const Grid& grid, std::size_t vertex, const Place& place) {
-    if (!grid.apart) return place(vertex);
+Anchor anchor_of(const Grid& grid, std::size_t vertex, const Place& place) {
+    if (!grid.apart) return {place(vertex)};
     const Grid::Corners c = grid.corners(static_cast<int>(vertex) % grid.n_u);
     const Vec3f a = place(c.v0), b = place(c.v1), d = place(c.v2);
-    return d == place(c.v3) ? (a + b + d) / 3.0f : 0.5f * (a + d);
+    Anchor anchor{d == place(c.v3) ? (a + b + d) / 3.0f : 0.5f * (a + d)};
+    const Vec3f along = d - a, out = glm::cross(b - a, along);
+    const float length = glm::length(along), area = glm::length(out);
+    if (length > 0.0f && area > 0.0f)
+        anchor.turned = {along / length, glm::cross(out / area, along / length), out / area};
+    return anchor;
 }
 
 /// From the neighbours in the grid: deformation turns a surface as well as a transform does.
@@ -72,16 +83,19 @@ PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints
     m_positions.reserve(knots * m_count);
     m_normals.reserve(knots * m_count);
     const auto vertices = static_cast<std::size_t>(grid.vertex_count());
-    // A point that is no vertex goes along with its anchor, at the distance that it has at the
-    // frame.
+    // As the anchor sees it: where a point is beside it, and its rays' offset.
     const std::vector<std::uint32_t>& anchors = grid.places.anchors;
+    const auto anchor = [&](std::size_t i, const auto& place) {
+        return anchor_of(grid, anchors.empty() ? i : anchors[i], place);
+    };
     const KnotTime frame = knot_time(static_cast<double>(scene.options.frame_time), grid.knots);
     const Mat3f frame_rotation{Mat3d(matrix_at(camera, scene.options.frame_time))};
-    std::vector<Vec3f> beside;
-    for (std::size_t i = 0; i < anchors.size(); ++i) {
-        const Vec3f anchor = anchor_place(
-            grid, anchors[i], [&](std::size_t v) { return position_at(grid, v, frame); });
-        beside.push_back(frame_rotation * (grid.p[i] - anchor));
+    std::vector<Vec3f> beside, offsets;
+    for (std::size_t i = 0; i < m_count; ++i) {
+        const Anchor at =
+            anchor(i, [&](std::size_t v) { return frame_rotation * position_at(grid, v, frame); });
+        if (!anchors.empty()) beside.push_back((frame_rotation * grid.p[i] - at.place) * at.turned);
+        if (!points.ray_offset.empty()) offsets.push_back(points.ray_offset[i] * at.turned);
     }
     for (std::size_t knot = 0; knot < knots; ++knot) {
         const double time = static_cast<double>(knot) / (m_knots - 1);
@@ -93,11 +107,11 @@ PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints
         for (std::size_t v = 0; v < vertices; ++v)
             places[v] = rotation * position_at(grid, v, t) + offset;
         for (std::size_t i = 0; i < m_count; ++i) {
-            const std::size_t vertex = anchors.empty() ? i : anchors[i];
-            const auto place = [&](std::size_t v) { return places[v]; };
-            m_positions.push_back(anchors.empty() ? places[i]
-                                                  : anchor_place(grid, vertex, place) + beside[i]);
-            m_normals.push_back(normal_at(grid, places, vertex, points, i));
+            const Anchor at = anchor(i, [&](std::size_t v) { return places[v]; });
+            m_positions.push_back(anchors.empty() ? at.place : at.place + at.turned * beside[i]);
+            if (!offsets.empty()) m_offsets.push_back(at.turned * offsets[i]);
+            m_normals.push_back(
+                normal_at(grid, places, anchors.empty() ? i : anchors[i], points, i));
         }
     }
 }

@@ -21,6 +21,10 @@ class PointPaths {
 
     bool moves() const { return m_knots > 1; }
     Vec3f position(std::size_t point, float time) const { return at(m_positions, point, time); }
+    /// From the position to where rays may start (Grid::ray_offset).
+    Vec3f ray_offset(std::size_t point, float time) const {
+        return m_offsets.empty() ? Vec3f(0.0f) : at(m_offsets, point, time);
+    }
     /// Unit geometric normal on the side that the viewer sees at the frame time.
     Vec3f normal(std::size_t point, float time) const;
 
@@ -30,6 +34,7 @@ class PointPaths {
     int m_knots = 1;
     std::size_t m_count = 0;
     std::vector<Vec3f> m_positions, m_normals;  ///< [knots][points]
+    std::vector<Vec3f> m_offsets;               ///< [knots][points]; empty: none
 };
 
 }  // namespace granita

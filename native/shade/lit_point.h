@@ -24,7 +24,6 @@ struct LitPoint {
     const PointPaths& paths;
     const GridKey& key;
     LitPlace at_frame;
-    Vec3f ray_offset{0.0f};    ///< ShadingPoints::ray_offset
     int sample_count = 1;      ///< of a soft light, of the world's image, of all lobes together
     std::uint64_t seed;        ///< of the grid
     std::uint32_t place;       ///< in the grid, along Morton's curve
