@@ -96,7 +96,7 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
     )
     light_samples: _whole(
         "Light Samples",
-        "Shadow rays from each shaded point to each light that has a size",
+        "Shadow rays from each shaded point to each light that has a size and to the world",
         8,
         (1, 4096),
         usual=(1, 64),
@@ -156,8 +156,8 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
     )
     z_batch_size: _whole(
         "Z-Batch Size",
-        "Regular sampling on the GPU: transparent grids that are peeled together. "
-        "Changes the time, never the picture",
+        "Transparent grids that are taken together: peeled (Regular sampling on the GPU), or hidden "
+        "before full samples are looked for (else). Changes the time, never the picture",
         26,
         (1, 65536),
     )

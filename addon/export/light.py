@@ -58,12 +58,18 @@ def light_record(light_object, matrices, report):
         "shape": shape if shape in _AREA_SHAPES else "SQUARE",
         "size": [size, getattr(light, "size_y", size) if _has_two_sizes(shape) else size],
         "spread": getattr(light, "spread", math.pi),
-        "casts_shadow": bool(_cycles(light, "cast_shadow", getattr(light, "use_shadow", True))),
+        "casts_shadow": bool(getattr(*shadow_switch(light))),
         "visible_diffuse": bool(light_object.visible_diffuse),
         "visible_glossy": bool(light_object.visible_glossy),
         "diffuse_factor": 1.0,
         "specular_factor": 1.0,
     }
+
+
+def shadow_switch(light):
+    """(owner, property) that says whether a light casts shadows: Cycles' own, where it has one."""
+    cycles = getattr(light, "cycles", None)
+    return (cycles, "cast_shadow") if hasattr(cycles, "cast_shadow") else (light, "use_shadow")
 
 
 def _has_two_sizes(shape):

@@ -53,7 +53,6 @@ class GRANITA_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         column.prop(settings, "sampling")
         if settings.sampling == "REGULAR":
             column.prop(settings, "time_samples")
-            column.prop(settings, "z_batch_size")
         column.prop(settings, "light_samples")
         column.prop(settings, "opacity_threshold")
         row = column.row(align=True)
@@ -139,6 +138,7 @@ class GRANITA_RENDER_PT_performance(RenderPanel, bpy.types.Panel):
         threads.prop(render, "threads")
         column.prop(settings, "bucket_size")
         column.prop(settings, "grid_size")
+        column.prop(settings, "z_batch_size")
         column.prop(render, "use_persistent_data", text="Persistent Data")
 
 

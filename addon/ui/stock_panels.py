@@ -18,6 +18,7 @@ _EEVEE_PANELS = {
     "EEVEE_MATERIAL_PT_context_material",
     "EEVEE_MATERIAL_PT_displacement",
     "EEVEE_MATERIAL_PT_surface",
+    "EEVEE_WORLD_PT_mist",
     "EEVEE_WORLD_PT_surface",
     "MATERIAL_PT_preview",
     "NODE_DATA_PT_EEVEE_light",

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """scene.granita's names and numbers are API; panels are those of Granita and of common data."""
 
+import inspect
 import sys
+from functools import partial
+from types import SimpleNamespace
 
 import bpy
 import pytest
@@ -80,6 +83,7 @@ SERVED = [
     "DATA_PT_EEVEE_light",
     "DATA_PT_spot",
     "EEVEE_MATERIAL_PT_surface",
+    "EEVEE_WORLD_PT_mist",
     "EEVEE_WORLD_PT_surface",
     "MATERIAL_PT_preview",
     "OBJECT_PT_visibility",
@@ -87,17 +91,73 @@ SERVED = [
 ]
 
 
-def served():
-    def below(cls):
-        for sub in cls.__subclasses__():
-            yield sub
-            yield from below(sub)
+def below(cls):
+    for sub in cls.__subclasses__():
+        yield sub
+        yield from below(sub)
 
+
+def served():
     return {
         panel.__name__
         for panel in below(bpy.types.Panel)
         if "GRANITA" in getattr(panel, "COMPAT_ENGINES", ())
     }
+
+
+class Layout:
+    """Stands for Blender's layout, which exists in a window alone: notes what is drawn."""
+
+    def __init__(self, drawn):
+        self.drawn = drawn
+
+    def prop(self, owner, name, **_):
+        assert name in owner.bl_rna.properties
+        self.drawn.add(name)
+
+    def __getattr__(self, name):  # column(), row(), label(), ...
+        return lambda *_, **__: self
+
+
+class Drawn:
+    """Stands for a panel on the screen."""
+
+    def __init__(self, panel, layout):
+        self.panel, self.layout = panel, layout
+
+    def __getattr__(self, name):
+        found = getattr(self.panel, name)
+        own = inspect.getattr_static(self.panel, name)
+        return partial(found, self) if inspect.isfunction(own) else found
+
+
+def drawn(**context):
+    """Names of all properties that Granita's own panels show."""
+    scene, layer = bpy.context.scene, bpy.context.view_layer
+    context = {"light": None, "object": None, **context}
+    context = SimpleNamespace(engine="GRANITA", scene=scene, view_layer=layer, **context)
+    names = set()
+    for panel in below(bpy.types.Panel):
+        if panel.__module__.startswith("granita.") and hasattr(panel, "draw"):
+            if not hasattr(panel, "poll") or panel.poll(context):
+                panel.draw(Drawn(panel, Layout(names)), context)
+    return names
+
+
+def test_all_that_is_read_is_shown():
+    """What no panel shows could be set in Cycles alone."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    scene = bpy.context.scene
+    scene.granita.sampling = "REGULAR"
+    assert drawn() >= DEFAULTS.keys() | {"pass_alpha_threshold"}
+    scene.granita.sampling = "INDEPENDENT"
+    assert "z_batch_size" in drawn()
+
+    lamp = bpy.data.lights.new("lamp", "AREA")
+    assert drawn(light=lamp) & {"cast_shadow", "use_shadow"} and "spread" in drawn(light=lamp)
+    cube, light = bpy.data.objects["Cube"], bpy.data.objects["Light"]
+    assert drawn(object=cube) >= {"visible_camera", "visible_shadow"}
+    assert drawn(object=light) >= {"visible_diffuse", "visible_glossy"}
 
 
 def test_stock_panels_come_and_go():

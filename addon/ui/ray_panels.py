@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What rays see: switches that the export reads and that Blender shows to Cycles alone."""
+
+import bpy
+
+from ..export.light import shadow_switch
+
+
+class _Panel:
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_options = {"DEFAULT_CLOSED"}
+    COMPAT_ENGINES = {"GRANITA"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine in cls.COMPAT_ENGINES and cls.concerns(context)
+
+
+class GRANITA_LIGHT_PT_rays(_Panel, bpy.types.Panel):
+    bl_label = "Shadow and Beam"
+    bl_context = "data"
+
+    @staticmethod
+    def concerns(context):
+        return context.light is not None
+
+    def draw(self, context):
+        column = self.layout.column()
+        column.use_property_split = True
+        column.prop(*shadow_switch(context.light), text="Cast Shadow")
+        if context.light.type == "AREA":
+            column.prop(context.light, "spread", text="Spread")
+
+
+class GRANITA_OBJECT_PT_rays(_Panel, bpy.types.Panel):
+    bl_label = "Ray Visibility"
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_visibility"
+
+    _LIGHT = (("visible_diffuse", "Diffuse"), ("visible_glossy", "Glossy"))
+    _SURFACE = (("visible_camera", "Camera"), ("visible_shadow", "Shadow"))
+    _TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "EMPTY", "LIGHT"}
+
+    @classmethod
+    def concerns(cls, context):
+        return context.object is not None and context.object.type in cls._TYPES
+
+    def draw(self, context):
+        column = self.layout.column()
+        column.use_property_split = True
+        for name, text in self._LIGHT if context.object.type == "LIGHT" else self._SURFACE:
+            column.prop(context.object, name, text=text)
+
+
+_CLASSES = (GRANITA_LIGHT_PT_rays, GRANITA_OBJECT_PT_rays)
+
+
+def register():
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)
