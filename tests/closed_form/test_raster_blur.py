@@ -155,6 +155,32 @@ def test_z_batches_change_no_bit():
     assert np.array_equal(scenes[0], scenes[1]) and np.array_equal(scenes[0], scenes[2])
 
 
+def test_z_batches_of_bent_strips_that_cross_change_no_bit():
+    """Faces of a pixel, whose depths the rasterizer gets less exactly than their corners' are."""
+    random = np.random.default_rng(7)
+    u, v = np.meshgrid(np.linspace(-0.5, 0.5, 3), np.linspace(-0.5, 0.5, 13))
+    cells = (np.arange(12)[:, None] * 3 + np.arange(2)).reshape(-1, 1) + [0, 1, 4, 3]
+    strips = []
+    for _ in range(30):
+        turn, bend = random.uniform(0, 2 * np.pi), random.uniform(4, 20)
+        x, y, z = 16 * u, 80 * v, bend * np.cos(np.pi * v)
+        place = random.uniform((0, 0, 230), (32, 32, 270))
+        points = [x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn), z]
+        strips.append((np.stack(points, -1).reshape(-1, 3) + place, random.uniform(0.1, 1, 3)))
+
+    def picture(size):
+        snapshot = s.orthographic(
+            (32, 32), executor="RASTER", sampling="REGULAR", samples=16, z_batch_size=size
+        )
+        for points, color in strips:
+            s.mesh(snapshot, points, cells.tolist(), s.emission(snapshot, color, 0.4))
+        return s.render(snapshot)["combined"]
+
+    whole = picture(65536)
+    for size in (1, 10):
+        assert np.array_equal(picture(size), whole)
+
+
 def test_opaque_hides_what_is_behind():
     """Case 44 and M6."""
     front = [(1, 0.25, (1, 0, 0)), (2, None, (0, 1, 0))]
