@@ -97,7 +97,7 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
     light_samples: _whole(
         "Light Samples",
         "Shadow rays from each shaded point to each light that has a size and to the world",
-        8,
+        16,
         (1, 4096),
         usual=(1, 64),
     )

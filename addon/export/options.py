@@ -22,7 +22,7 @@ _SETTINGS = (
     ("bucket_size", 64),
     ("z_batch_size", 26),
     ("opacity_threshold", 0.996),
-    ("light_samples", 8),
+    ("light_samples", 16),
     ("device", "AUTO"),
     ("executor", "AUTO"),
 )

@@ -60,7 +60,7 @@ struct Options {
     int list_memory = 1024;
     std::uint32_t seed =
         0;  ///< of the sample table, the frame already mixed in where animate_seed is on
-    int light_samples = 8;  ///< shadow rays a light and shading point, for lights with a size
+    int light_samples = 16;  ///< shadow rays a light and shading point, for lights with a size
     Device device = Device::Auto;
     Executor executor = Executor::Auto;  ///< overrides device; tests and benches
     int threads = 0;                     ///< 0 = all

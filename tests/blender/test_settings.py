@@ -27,7 +27,7 @@ DEFAULTS = {
     "motion_steps": 17,
     "seed": 0,
     "animate_seed": False,
-    "light_samples": 8,
+    "light_samples": 16,
 }
 
 NUMBERS = {

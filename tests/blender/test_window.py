@@ -63,7 +63,7 @@ def test_f12_keeps_the_window_alive(scene, tmp_path, render):
     parts.add_camera(scene)
     glow = parts.emission("Glow", (0.25, 0.5, 0.75))
     parts.add_square(scene, material=glow).rotation_euler = (0.3, 0.2, 0.7)
-    scene.render.resolution_x = scene.render.resolution_y = 128
+    scene.render.resolution_x = scene.render.resolution_y = 384  # seconds of rendering
     scene.granita.samples = 1024
     scene.render.threads_mode, scene.render.threads = "FIXED", 1  # a core is left for the window
     expected = render(scene)
