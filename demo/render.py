@@ -12,6 +12,9 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "addon"))
+from export.report import lines  # noqa: E402  the add-on's part that needs no Blender
+
 STATUS = re.compile(r"\bSample (\d+)/(\d+)")
 
 
@@ -82,8 +85,8 @@ def report(statistics: Path, picture: Path, build_seconds: float) -> None:
         print("of the render, summed over threads")
         for name, value in sorted(stages.items(), key=lambda stage: -stage[1]):
             print(f"  {name:<24}{value:8.2f} s")
-    for warning in frame["warnings"]:
-        print(f"note: {warning['datablock']}: {warning['message']}")
+    for line in lines([(w["datablock"], w["message"], w["count"]) for w in frame["warnings"]]):
+        print(f"note: {line}")
 
 
 def main() -> None:
