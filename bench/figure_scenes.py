@@ -8,6 +8,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "closed_form"))
 import snapshots as s  # noqa: E402
+from snapshot_scenes import unit_sphere  # noqa: E402
 
 FILTER = {"pixel_filter": "MITCHELL", "filter_width": 4.0}
 
@@ -49,25 +50,6 @@ def shaded(snapshot, color, alpha=None):
     index = len(snapshot["materials"])
     snapshot["materials"].append({"name": f"Shaded {index}", "nodes": nodes, "surface": surface})
     return index
-
-
-def ball(sides=32, rings=16):
-    """Unit sphere: points and faces, counter-clockwise from outside."""
-    v, u = np.meshgrid(np.arange(1, rings), np.arange(sides), indexing="ij")
-    polar, turn = np.pi * v / rings, 2 * np.pi * u / sides
-    points = np.stack(
-        [np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), np.cos(polar)], -1
-    )
-    points = np.concatenate([points.reshape(-1, 3), [[0, 0, 1], [0, 0, -1]]])
-    north, south = len(points) - 2, len(points) - 1
-    faces = []
-    for j in range(sides):
-        k = (j + 1) % sides
-        faces.append((north, j, k))
-        for i in range(rings - 2):
-            faces.append((i * sides + j, (i + 1) * sides + j, (i + 1) * sides + k, i * sides + k))
-        faces.append(((rings - 2) * sides + j, south, (rings - 2) * sides + k))
-    return points, faces
 
 
 def affine(scale, place, turn=0.0):
@@ -153,7 +135,7 @@ def creature(options, motion=40.0, size=(150, 110)):
     """9.8 to 9.10: a figure of 26 balls that runs `motion` pixels along x."""
     random = np.random.default_rng(11)
     snapshot = s.perspective(size, 200.0 * size[1] / 110, **FILTER, **options)
-    points, faces = ball()
+    points, faces = unit_sphere(32, 16)
     colors = [(0.9, 0.6, 0.3), (0.5, 0.7, 0.9), (0.8, 0.3, 0.3)]
     materials = [shaded(snapshot, color) for color in colors]
     path = motion * 5.0 / (200.0 * size[1] / 110) / 2
@@ -173,7 +155,7 @@ def creature(options, motion=40.0, size=(150, 110)):
 def army(count, options):
     """9.11: figures of four balls each, in ranks to the horizon."""
     snapshot = s.perspective((320, 160), 260.0, (160, 125), **FILTER, **options)
-    points, faces = ball(24, 12)
+    points, faces = unit_sphere(24, 12)
     materials = [shaded(snapshot, c) for c in ((0.75, 0.65, 0.5), (0.6, 0.3, 0.25))]
     row = int(np.ceil(np.sqrt(count / 2)))
     parts = [(0, 0.0, 0.3), (0, 0.45, 0.22), (0.22, 0.1, 0.12), (-0.22, 0.1, 0.12)]

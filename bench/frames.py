@@ -6,11 +6,9 @@ import json
 import os
 import re
 import statistics
-import struct
 import subprocess
 import sys
 import tempfile
-import zlib
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +16,7 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "tests" / "images"))
 import pictures  # noqa: E402
+from figure_files import write_png  # noqa: E402
 
 CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "granita" / "bench"
 
@@ -68,17 +67,7 @@ def reference(scene, samples, all_scenes):
 
 def save_png(path, linear):
     """8 bits a channel, as a screen shows it."""
-    pixels = (pictures.srgb(linear) * 255 + 0.5).astype(np.uint8)
-    height, width, _ = pixels.shape
-    rows = np.insert(pixels.reshape(height, -1), 0, 0, axis=1)  # each row behind its filter, none
-
-    def chunk(kind, data):
-        body = kind + data
-        return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
-
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    body = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 9))
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + body + chunk(b"IEND", b""))
+    write_png(path, (pictures.srgb(linear) * 255 + 0.5).astype(np.uint8))
 
 
 def errors(image, truth):

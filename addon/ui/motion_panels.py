@@ -3,6 +3,8 @@
 
 import bpy
 
+from .engine_panel import EnginePanel
+
 
 class GRANITA_RENDER_PT_rolling_shutter(bpy.types.Panel):
     """Cycles' settings, where its add-on is enabled: Blender has none."""
@@ -30,10 +32,8 @@ class GRANITA_RENDER_PT_rolling_shutter(bpy.types.Panel):
         row.prop(cycles, "rolling_shutter_duration", text="Duration")
 
 
-class GRANITA_OBJECT_PT_motion_blur(bpy.types.Panel):
+class GRANITA_OBJECT_PT_motion_blur(EnginePanel, bpy.types.Panel):
     bl_label = "Motion Blur"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
     bl_context = "object"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -41,7 +41,7 @@ class GRANITA_OBJECT_PT_motion_blur(bpy.types.Panel):
     def poll(cls, context):
         types = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CAMERA", "CURVES", "POINTCLOUD"}
         return (
-            context.engine == "GRANITA"
+            super().poll(context)
             and context.object is not None
             and (context.object.type in types or context.object.is_instancer)
         )
@@ -67,12 +67,4 @@ class GRANITA_OBJECT_PT_motion_blur(bpy.types.Panel):
 
 _CLASSES = (GRANITA_RENDER_PT_rolling_shutter, GRANITA_OBJECT_PT_motion_blur)
 
-
-def register():
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister():
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

@@ -4,17 +4,15 @@
 import bpy
 
 from ..export.light import shadow_switch
+from .engine_panel import EnginePanel
 
 
-class _Panel:
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
+class _Panel(EnginePanel):
     bl_options = {"DEFAULT_CLOSED"}
-    COMPAT_ENGINES = {"GRANITA"}
 
     @classmethod
     def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES and cls.concerns(context)
+        return super().poll(context) and cls.concerns(context)
 
 
 class GRANITA_LIGHT_PT_rays(_Panel, bpy.types.Panel):
@@ -55,12 +53,4 @@ class GRANITA_OBJECT_PT_rays(_Panel, bpy.types.Panel):
 
 _CLASSES = (GRANITA_LIGHT_PT_rays, GRANITA_OBJECT_PT_rays)
 
-
-def register():
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister():
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

@@ -4,6 +4,7 @@
 import bpy
 
 from .. import bridge
+from .engine_panel import EnginePanel
 from .problem import draw_problem
 
 
@@ -15,15 +16,8 @@ def shutter_position_owner(scene):
     return None
 
 
-class RenderPanel:
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
+class RenderPanel(EnginePanel):
     bl_context = "render"
-    COMPAT_ENGINES = {"GRANITA"}
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
 
     def column(self):
         self.layout.use_property_split = True
@@ -152,12 +146,4 @@ _CLASSES = (
     GRANITA_RENDER_PT_performance,
 )
 
-
-def register():
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister():
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

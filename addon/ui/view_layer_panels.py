@@ -4,18 +4,12 @@
 import bpy
 
 from .. import passes
+from .engine_panel import EnginePanel
 
 
-class GRANITA_VIEWLAYER_PT_passes(bpy.types.Panel):
+class GRANITA_VIEWLAYER_PT_passes(EnginePanel, bpy.types.Panel):
     bl_label = "Passes"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
     bl_context = "view_layer"
-    COMPAT_ENGINES = {"GRANITA"}
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
 
     def draw(self, context):
         layout = self.layout
@@ -49,12 +43,4 @@ class GRANITA_VIEWLAYER_PT_aovs(bpy.types.Panel):
 
 _CLASSES = (GRANITA_VIEWLAYER_PT_passes, GRANITA_VIEWLAYER_PT_aovs)
 
-
-def register():
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister():
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

@@ -8,11 +8,6 @@
 namespace granita {
 namespace {
 
-bool is_static(const std::vector<Mat4d>& matrices) {
-    return std::all_of(matrices.begin(), matrices.end(),
-                       [&](const Mat4d& m) { return m == matrices.front(); });
-}
-
 /// Element by element, as Blender's knots are meant: straight paths between them.
 Mat4d at_time(const std::vector<Mat4d>& matrices, const KnotTime& t) {
     if (t.fraction == 0.0) return matrices[t.knot];
@@ -27,6 +22,11 @@ bool is_finite(const Mat4d& m) {
 }
 
 }  // namespace
+
+bool is_static(const std::vector<Mat4d>& matrices) {
+    return std::all_of(matrices.begin(), matrices.end(),
+                       [&](const Mat4d& m) { return m == matrices.front(); });
+}
 
 KnotTime knot_time(int step, int steps, int knots) {
     if (knots == 1 || steps == 0) return {};

@@ -29,6 +29,9 @@ struct Knots {
     bool finite = true;  ///< every matrix is
 };
 
+/// All knots are the same.
+bool is_static(const std::vector<Mat4d>& matrices);
+
 /// `geometry_static`: all knots of the geometry hold the same points.
 Knots combine_knots(const Scene& scene, const Instance& instance, const GeometryData& geometry,
                     bool geometry_static);

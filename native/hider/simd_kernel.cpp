@@ -21,30 +21,13 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #include "hider/corner_arithmetic.inl"
-
-// At most a packet wide, on machines with wider vectors too.
-using Tag = hn::CappedTag<float, kPacket>;
-using IdTag = hn::RebindToUnsigned<Tag>;
-using IntTag = hn::RebindToSigned<Tag>;
-using V = hn::Vec<Tag>;
-using M = hn::Mask<Tag>;
-constexpr Tag kTag;
-constexpr IdTag kIdTag;
-constexpr IntTag kIntTag;
-inline int lane_count() {
-    return static_cast<int>(hn::Lanes(kTag));
-}
-HWY_INLINE V set(float x) {
-    return hn::Set(kTag, x);
-}
+#include "hider/packet_vectors.inl"
 
 /// Calls visit(lane) for every lane of the mask.
 template <class Visit>
 HWY_INLINE void for_each_lane(M mask, Visit visit) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(kTag, mask, bytes);
-    std::uint32_t bits = bytes[0] | (bytes[1] << 8);
-    for (; bits != 0; bits &= bits - 1) visit(static_cast<int>(__builtin_ctz(bits)));
+    for (std::uint32_t bits = bits_of(mask); bits != 0; bits &= bits - 1)
+        visit(static_cast<int>(__builtin_ctz(bits)));
 }
 
 #include "hider/squeeze.inl"

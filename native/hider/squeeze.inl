@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chosen lanes moved together: included once a SIMD target inside its namespace, after V, M and
-// kTag.
+// Chosen lanes moved together: included once a SIMD target inside its namespace, after
+// packet_vectors.inl.
 
 /// Brings the lanes of the mask to the front, in order; what follows is anything.  Several vectors
 /// may share the mask.  Eight lanes have their own table: Highway 1.0's is copied in every call.
@@ -8,11 +8,9 @@ class Squeeze {
   public:
     HWY_INLINE explicit Squeeze(M mask) : m_mask(mask) {
         if constexpr (kByTable) {
-            std::uint8_t bits[8] = {};
-            hn::StoreMaskBits(kTag, mask, bits);
             const auto digits = hn::Iota(kIdTag, 0) * hn::Set(kIdTag, 4);
             const auto lanes =
-                hn::And(hn::Set(kIdTag, kLanes[bits[0]]) >> digits, hn::Set(kIdTag, 7));
+                hn::And(hn::Set(kIdTag, kLanes[bits_of(mask)]) >> digits, hn::Set(kIdTag, 7));
             m_lanes = hn::BitCast(kIntTag, lanes);
         }
     }

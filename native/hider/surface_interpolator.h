@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hider/micropolygon.h"
+#include "hider/sample_order.h"
 #include "hider/sample_store.h"
 #include "hider/sample_table.h"
 #include "math/projection.h"
@@ -41,7 +42,7 @@ struct SurfaceRecord {
 
 /// Where kCount samples in a row meet their surfaces.  Bit or element i: sample first + i.
 struct SurfaceRun {
-    static constexpr int kCount = 16;
+    static constexpr int kCount = kPacket;
 
     std::uint32_t seen = 0;     ///< see any surface
     std::uint32_t plain = 0;    ///< located here; the others that see anything need locate()

@@ -12,27 +12,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #include "hider/corner_arithmetic.inl"
-
-using Tag = hn::CappedTag<float, SurfaceRun::kCount>;
-using IdTag = hn::RebindToUnsigned<Tag>;
-using IntTag = hn::RebindToSigned<Tag>;
-using V = hn::Vec<Tag>;
-using M = hn::Mask<Tag>;
-constexpr Tag kTag;
-constexpr IdTag kIdTag;
-constexpr IntTag kIntTag;
-
-HWY_INLINE V set(float x) {
-    return hn::Set(kTag, x);
-}
-
+#include "hider/packet_vectors.inl"
 #include "hider/triangle_pair.inl"
-
-HWY_INLINE std::uint32_t bits_of(M mask) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(kTag, mask, bytes);
-    return bytes[0] | (bytes[1] << 8);
-}
 
 /// A vector of samples, some of which see the micropolygon.
 struct Lanes {
@@ -71,8 +52,7 @@ void locate(SurfaceInterpolator& surfaces, const TileSamples& samples, std::uint
             const SurfaceId* ids, SurfaceRun& out) {
     const V zero = set(0.0f);
     const bool moving = !samples.t.empty();
-    const int lanes = static_cast<int>(hn::Lanes(kTag));
-    for (int part = 0; part < SurfaceRun::kCount; part += lanes) {
+    for (int part = 0; part < SurfaceRun::kCount; part += lane_count()) {
         const std::uint32_t at = first + static_cast<std::uint32_t>(part);
         Lanes sample{hn::LoadU(kTag, &samples.x[at]), hn::LoadU(kTag, &samples.y[at]), zero, zero,
                      zero};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where vectors of samples lie in the two triangles of a micropolygon: included once a SIMD target
-// inside its namespace, like corner_arithmetic.inl, after V, M, kTag and set().
+// inside its namespace, like corner_arithmetic.inl, after packet_vectors.inl.
 
 struct PairEdges {
     V e01, e12, e02, e23, e30;

@@ -11,9 +11,8 @@ namespace granita {
 namespace {
 
 bool stands_still(const Scene& scene, const Instance& instance) {
-    const auto& knots = instance.world_from_object;
     return scene.geometries[static_cast<std::size_t>(instance.geometry)].knots == 1 &&
-           std::all_of(knots.begin(), knots.end(), [&](const Mat4d& m) { return m == knots[0]; });
+           is_static(instance.world_from_object);
 }
 
 /// Of the grid in camera space, at a time.

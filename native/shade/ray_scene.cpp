@@ -10,6 +10,7 @@
 #include <exception>
 #include <unordered_map>
 
+#include "dice/knots.h"
 #include "shade/ray_elements.h"
 #include "shade/ray_mesh.h"
 #include "shade/shading_points.h"
@@ -55,11 +56,6 @@ bool meets_box(const Bounds3f& box, const Vec3f& start, const Vec3f& direction, 
         farthest = std::min(farthest, std::max(a, b));
     }
     return nearest <= farthest;
-}
-
-bool stands_still(const Instance& instance) {
-    const auto& knots = instance.world_from_object;
-    return std::all_of(knots.begin(), knots.end(), [&](const Mat4d& m) { return m == knots[0]; });
 }
 
 std::int32_t material_of(const Instance& instance, std::int32_t slot) {
@@ -155,7 +151,7 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     const auto geometry = static_cast<std::size_t>(instance.geometry);
     // One knot where it stands still: Embree then needs no motion hierarchy for it.
     std::vector<Mat4d> knots = instance.world_from_object;
-    if (stands_still(instance)) knots.resize(1);
+    if (is_static(instance.world_from_object)) knots.resize(1);
     if (knots.size() > kMostKnots) {
         knots.resize(kMostKnots);
         for (std::size_t k = 0; k < kMostKnots; ++k)

@@ -3,6 +3,7 @@
 
 import bpy
 import exr
+import film_parts
 import pytest
 import scene_parts
 
@@ -20,6 +21,11 @@ def scene():
     yield scene
     # A scene left to the engine would keep its class from being unregistered.
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+
+
+@pytest.fixture
+def film(scene):
+    return film_parts.film_of_pixels(scene)
 
 
 @pytest.fixture

@@ -16,6 +16,24 @@ def multilayer_exr(scene):
         image.use_exr_interleave = True
 
 
+def direct_light_of_both(scene, render, samples):
+    """[Granita's, Cycles'] channels of the same picture without bounces, Cycles' of `samples` samples."""
+    settings, cycles = scene.granita, scene.cycles
+    settings.samples, settings.light_samples = 16, 64
+    settings.pixel_filter, settings.filter_width = "BOX", 1.0
+    cycles.samples = samples
+    cycles.use_adaptive_sampling = cycles.use_denoising = False
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 0
+    cycles.pixel_filter_type = "BOX"
+    cycles.blur_glossy = cycles.sample_clamp_direct = cycles.light_sampling_threshold = 0.0
+    made = []
+    for engine in ("GRANITA", "CYCLES"):
+        scene.render.engine = engine
+        made.append(render(scene, engine))
+    scene.render.engine = "GRANITA"
+    return made
+
+
 def add_object(scene, name, data, location=(0.0, 0.0, 0.0)):
     thing = bpy.data.objects.new(name, data)
     thing.location = location

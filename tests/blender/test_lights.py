@@ -75,21 +75,10 @@ def add_light(
 
 def both(scene, render):
     """Linear RGB of Granita and of Cycles with direct light alone, [height, width, 3]."""
-    settings, cycles = scene.granita, scene.cycles
-    settings.samples, settings.light_samples = 16, 64
-    settings.pixel_filter, settings.filter_width = "BOX", 1.0
-    cycles.samples = 144
-    cycles.use_adaptive_sampling = cycles.use_denoising = False
-    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 0
-    cycles.pixel_filter_type = "BOX"
-    cycles.blur_glossy = cycles.sample_clamp_direct = cycles.light_sampling_threshold = 0.0
     pictures = []
-    for engine in ("GRANITA", "CYCLES"):
-        scene.render.engine = engine
-        channels = render(scene, engine)
+    for channels in scene_parts.direct_light_of_both(scene, render, 144):
         combined = {name[-1]: values for name, values in channels.items() if ".Combined." in name}
         pictures.append(np.stack([combined[c] for c in "RGB"], axis=-1).astype(np.float64))
-    scene.render.engine = "GRANITA"
     return pictures
 
 

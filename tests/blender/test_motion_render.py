@@ -12,18 +12,12 @@ from film_parts import (
     WIDTH,
     WORST,
     alpha,
-    film_of_pixels,
     hold,
     left_of,
     over_time,
     wall,
 )
 from motion_parts import drive, set_position
-
-
-@pytest.fixture
-def film(scene):
-    return film_of_pixels(scene)
 
 
 @pytest.mark.smoke

@@ -12,7 +12,6 @@ from film_parts import (
     WIDTH,
     WORST,
     alpha,
-    film_of_pixels,
     hold,
     left_of,
     over_time,
@@ -22,11 +21,6 @@ from motion_parts import drive, set_position
 
 WAY = "6 + 20 * (frame - 10)"
 PIXELS = np.arange(WIDTH)
-
-
-@pytest.fixture
-def film(scene):
-    return film_of_pixels(scene)
 
 
 def goer(scene, name="Goer"):

@@ -120,20 +120,7 @@ def pair(scene, render):
         aov.name, aov.type = name, kind
     add_aov_output(materials[1], "Tint", (0.25, 0.5, 2.0), 0.0)
     add_aov_output(materials[0], "Mask", (0.0, 0.0, 0.0), 3.0)
-    settings, cycles = scene.granita, scene.cycles
-    settings.samples, settings.light_samples = 16, 64
-    settings.pixel_filter, settings.filter_width = "BOX", 1.0
-    cycles.samples = 100
-    cycles.use_adaptive_sampling = cycles.use_denoising = False
-    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 0
-    cycles.pixel_filter_type = "BOX"
-    cycles.blur_glossy = cycles.sample_clamp_direct = cycles.light_sampling_threshold = 0.0
-    made = []
-    for engine in ("GRANITA", "CYCLES"):
-        scene.render.engine = engine
-        made.append(render(scene, engine))
-    scene.render.engine = "GRANITA"
-    return made
+    return scene_parts.direct_light_of_both(scene, render, 100)
 
 
 def rms(values):

@@ -6,44 +6,19 @@ import pytest
 import snapshots as s
 
 
-def busy_scene(executor, **options):
-    """Moving, transparent, overlapping and lens-blurred things in perspective."""
-    random = np.random.default_rng(7)
-    options = {"samples": 16, "pixel_filter": "MITCHELL", "filter_width": 4.0, **options}
-    snapshot = s.perspective((96, 72), 90.0, executor=executor, **options)
-    snapshot["camera"].update(lens_radius=0.02, focus_distance=4.0)
-    materials = [
-        s.emission(snapshot, c, a)
-        for c, a in [((1, 0.2, 0), None), ((0, 1, 0.3), 0.4), ((0.1, 0.2, 1), None)]
-    ]
-    for i in range(24):
-        z = random.uniform(2, 8)
-        center = random.uniform(-0.5, 0.5, 2) * z
-        corners = center + random.uniform(-0.8, 0.8, (4, 2))
-        points = np.concatenate([corners, z + random.uniform(-0.4, 0.4, (4, 1))], 1)
-        motion = random.uniform(-0.3, 0.3, 3) if i % 2 else np.zeros(3)
-        s.quad(
-            snapshot,
-            points,
-            materials[i % 3],
-            transforms=[s.translation(*-motion), s.translation(*motion)],
-        )
-    return snapshot
-
-
 @pytest.mark.parametrize(
     "change", [{"bucket_size": 16}, {"bucket_size": 128}, {"threads": 1}, {"threads": 3}], ids=str
 )
 def test_buckets_and_threads_change_no_bit(executor, change):
-    base = s.render(busy_scene(executor))["combined"]
+    base = s.render(s.busy(executor))["combined"]
     assert np.ptp(base[..., 3]) > 0.5
-    assert np.array_equal(base, s.render(busy_scene(executor, **change))["combined"])
+    assert np.array_equal(base, s.render(s.busy(executor, **change))["combined"])
 
 
 @pytest.mark.parametrize("crop", [(0, 0, 96, 1), (13, 17, 64, 41), (95, 71, 96, 72)])
 def test_crop_changes_no_bit(executor, crop):
-    whole = s.render(busy_scene(executor))["combined"]
-    part = s.render(busy_scene(executor, crop=np.array(crop, np.int32)))["combined"]
+    whole = s.render(s.busy(executor))["combined"]
+    part = s.render(s.busy(executor, crop=np.array(crop, np.int32)))["combined"]
     assert np.array_equal(whole[crop[1] : crop[3], crop[0] : crop[2]], part)
 
 
@@ -51,7 +26,7 @@ def test_hidden_and_off_screen_geometry_changes_no_bit(executor):
     """M6: things behind an opaque wall, off screen, behind the camera, or degenerate."""
 
     def scene(extra):
-        snapshot = busy_scene(executor)
+        snapshot = s.busy(executor)
         wall = s.emission(snapshot, (0.3, 0.3, 0.3))
         s.quad(snapshot, [(-90, -90, 20), (90, -90, 20), (90, 90, 20), (-90, 90, 20)], wall)
         if extra:

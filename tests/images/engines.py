@@ -7,12 +7,24 @@ No bounces, as many transparent surfaces as there are, Blackman-Harris 1.5, neit
 import time
 
 import bpy
+from mathutils import Vector
 
 # Cycles' box shutter ends at 127/128 of what is asked, from the open end on (measured: 3.4 by a ramp of 100 pixels,
 # to 6e-4), a bias of .0045 over the ramp.  Longer by as much it exposes the time that was asked for.
 CYCLES_SHUTTER = 128 / 127
 # 2^3 + 1 knots: chords of a path within the reference's noise.
 CYCLES_MOTION_STEPS = 3
+
+
+def add_camera(scene, location, target, lens=50.0):
+    """Looks at the target; `lens` in millimetres."""
+    data = bpy.data.cameras.new("Camera")
+    data.lens = lens
+    item = bpy.data.objects.new("Camera", data)
+    item.location = location
+    item.rotation_euler = (Vector(target) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
+    scene.collection.objects.link(item)
+    scene.camera = item
 
 
 def set_size(scene, width, height):

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from mathutils import Vector
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
@@ -43,16 +42,6 @@ def import_file(path, frame, shutter, clip):
             track.mute = not track.name.startswith(clip)
     bpy.context.scene.frame_set(frame)
     return shutter
-
-
-def look(location, target, lens=50.0):
-    data = bpy.data.cameras.new("Camera")
-    data.lens = lens
-    item = bpy.data.objects.new("Camera", data)
-    item.location = location
-    item.rotation_euler = (Vector(target) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
-    bpy.context.scene.collection.objects.link(item)
-    bpy.context.scene.camera = item
 
 
 def move(item, path, value, index):
@@ -119,14 +108,14 @@ def hair():
 def morph():
     """Shape keys that follow each other in a wave."""
     shutter = import_file(ASSETS / "morph.glb", 20, 2.0, "TheWave")
-    look((0, -6, 2.5), (0, 0, 0.8))
+    engines.add_camera(bpy.context.scene, (0, -6, 2.5), (0, 0, 0.8))
     return shutter
 
 
 def alien():
     """A skinned creature of many limbs."""
     shutter = import_file(DEMO_ASSETS / "Alien_Scolitex.gltf", 10, 3.0, "")
-    look((3, -7, 3), (0, 0, 1.2))
+    engines.add_camera(bpy.context.scene, (3, -7, 3), (0, 0, 1.2))
     for material in bpy.data.materials:
         if material.use_nodes:
             engines.normalize_normals(material.node_tree)

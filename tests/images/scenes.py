@@ -20,7 +20,7 @@ HERE = Path(__file__).resolve().parent
 ASSETS = HERE / "assets"
 DEMO = HERE.parent.parent / "demo"
 sys.path.insert(0, str(HERE))
-from engines import normalize_normals  # noqa: E402
+import engines  # noqa: E402
 
 if "bool" not in vars(np):
     np.bool = bool  # the glTF importer of Blender 3.4 asks for it
@@ -32,16 +32,6 @@ def empty():
     scene.world = bpy.data.worlds.new("World")
     scene.world.use_nodes = True
     return scene
-
-
-def camera(location, target, lens=50.0):
-    data = bpy.data.cameras.new("Camera")
-    data.lens = lens
-    item = bpy.data.objects.new("Camera", data)
-    item.location = location
-    item.rotation_euler = (Vector(target) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
-    bpy.context.scene.collection.objects.link(item)
-    bpy.context.scene.camera = item
 
 
 def light(kind, energy, location, target=(0, 0, 0), **properties):
@@ -84,7 +74,7 @@ def metal():
             item.data.materials.append(gold)
         if item.animation_data:
             item.animation_data_clear()
-    camera((4.2, -6.6, 3.2), (0.35, 0, 1.35))
+    engines.add_camera(bpy.context.scene, (4.2, -6.6, 3.2), (0.35, 0, 1.35))
 
 
 def object_alpha():
@@ -139,7 +129,7 @@ def creased():
     floor(min(p[2] for p in points))
     light("AREA", 120, (3, -3, 3), size=2.0)
     light("SUN", 1.5, (-3, -2, 4), angle=0.1)
-    camera((3.6, -5.2, 2.2), (0, 0, 1.2), 55)
+    engines.add_camera(bpy.context.scene, (3.6, -5.2, 2.2), (0, 0, 1.2), 55)
 
 
 def demo():
@@ -151,7 +141,7 @@ def demo():
     bpy.context.scene.frame_set(build_scene.FRAME)
     for material in bpy.data.materials:
         if material.use_nodes:
-            normalize_normals(material.node_tree)
+            engines.normalize_normals(material.node_tree)
 
 
 SCENES = {"metal": metal, "object_alpha": object_alpha, "creased": creased, "demo": demo}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/nodes/coordinates.h"
+#include "shade/nodes/dimensions.h"
 #include "shade/nodes/gradient_noise.h"
 #include "shade/nodes/nodes.h"
 
@@ -73,11 +74,7 @@ void build(NodeBuilder& b) {
 void build_noise_texture(NodeBuilder& b) {
     const std::string type = b.text("noise_type", "FBM");
     if (type != "FBM") b.warn("its type " + type + " is shown as fBM");
-    const std::string dimensions = b.text("noise_dimensions", "3D");
-    if (dimensions == "1D") return build<1>(b);
-    if (dimensions == "2D") return build<2>(b);
-    if (dimensions == "4D") return build<4>(b);
-    build<3>(b);
+    with_dimensions(b, "noise_dimensions", [&](auto n) { build<n()>(b); });
 }
 
 }  // namespace granita

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "shade/nodes/coordinates.h"
+#include "shade/nodes/dimensions.h"
 #include "shade/nodes/hash.h"
 #include "shade/nodes/nodes.h"
 
@@ -152,11 +153,7 @@ void build_voronoi_texture(NodeBuilder& b) {
     if (b.linked("Detail") || b.number("Detail").constant > 0.0f || b.flag("normalize"))
         b.warn("it is shown without Detail and Normalize");
     const Settings settings{metric_of(b.text("distance")), feature == "F2"};
-    const std::string dimensions = b.text("voronoi_dimensions", "3D");
-    if (dimensions == "1D") return build<1>(b, settings);
-    if (dimensions == "2D") return build<2>(b, settings);
-    if (dimensions == "4D") return build<4>(b, settings);
-    build<3>(b, settings);
+    with_dimensions(b, "voronoi_dimensions", [&](auto n) { build<n()>(b, settings); });
 }
 
 }  // namespace granita

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/nodes/dimensions.h"
 #include "shade/nodes/hash.h"
 #include "shade/nodes/nodes.h"
 
@@ -23,11 +24,7 @@ void build(NodeBuilder& b) {
 }  // namespace
 
 void build_white_noise_texture(NodeBuilder& b) {
-    const std::string dimensions = b.text("noise_dimensions", "3D");
-    if (dimensions == "1D") return build<1>(b);
-    if (dimensions == "2D") return build<2>(b);
-    if (dimensions == "4D") return build<4>(b);
-    build<3>(b);
+    with_dimensions(b, "noise_dimensions", [&](auto n) { build<n()>(b); });
 }
 
 }  // namespace granita

@@ -149,6 +149,17 @@ inline Differences compare(const Shot& shot, const Seen& a, const Seen& b) {
     return d;
 }
 
+/// A quarter as many hits and as many fragments as samples: there was something to compare.
+inline void expect_busy(const Seen& seen, int samples) {
+    std::size_t hits = 0, fragments = 0;
+    for (const TileStore& store : seen.stores) {
+        for (const SurfaceId id : store.id) hits += id != kNoSurface;
+        fragments += store.lists.fragments.size();
+    }
+    EXPECT_GT(hits, static_cast<std::size_t>(samples) / 4);
+    EXPECT_GT(fragments, static_cast<std::size_t>(samples) / 4);
+}
+
 /// Bit for bit, fragments in their order too.
 inline void expect_equal(const TileStore& a, const TileStore& b) {
     ASSERT_EQ(a.key, b.key);

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vectors of samples of a packet: included once a SIMD target inside its namespace.
+
+// At most a packet wide, on machines with wider vectors too.
+using Tag = hn::CappedTag<float, kPacket>;
+using IdTag = hn::RebindToUnsigned<Tag>;
+using IntTag = hn::RebindToSigned<Tag>;
+using V = hn::Vec<Tag>;
+using M = hn::Mask<Tag>;
+constexpr Tag kTag;
+constexpr IdTag kIdTag;
+constexpr IntTag kIntTag;
+
+inline int lane_count() {
+    return static_cast<int>(hn::Lanes(kTag));
+}
+HWY_INLINE V set(float x) {
+    return hn::Set(kTag, x);
+}
+/// Bit i: lane i.
+HWY_INLINE std::uint32_t bits_of(M mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(kTag, mask, bytes);
+    return bytes[0] | (bytes[1] << 8);
+}
