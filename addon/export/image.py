@@ -45,7 +45,7 @@ def _record(image, name, path, report):
     record = {"name": name, "path": "", "colorspace": space, "alpha_mode": image.alpha_mode}
     if path is not None:
         record["path"] = path
-    elif image.source in ("FILE", "TILED") and not image.is_dirty and not _is_packed_hdr(image):
+    elif _is_in_a_file(image):
         record["path"] = _packed_file(image) or _file_path(image, label, report)
     else:
         pixels = _pixels(image)
@@ -55,6 +55,13 @@ def _record(image, name, path, report):
         else:
             record["pixels"] = pixels
     return record
+
+
+def _is_in_a_file(image):
+    """Tiled images that were never saved have neither file nor bytes, and are not dirty."""
+    if image.source not in ("FILE", "TILED") or image.is_dirty or _is_packed_hdr(image):
+        return False
+    return bool(image.filepath or image.packed_file)
 
 
 def _file_path(image, label, report):

@@ -91,6 +91,7 @@ void read_options(const Record& r, Options& o) {
     o.shutter_curve = r.values<float>("shutter_curve", {-1});
     o.rolling_shutter = static_cast<float>(r.number("rolling_shutter", -1.0));
     if (o.rolling_shutter > 1.0f) r.fail("'rolling_shutter' must be at most 1");
+    r.refuse_others();
 }
 
 void read_camera(const Record& r, Camera& camera) {
@@ -120,6 +121,7 @@ void read_camera(const Record& r, Camera& camera) {
     camera.blade_rotation = static_cast<float>(r.number("blade_rotation", 0.0));
     camera.lens_ratio = static_cast<float>(r.number("lens_ratio", 1.0));
     if (!(camera.lens_ratio > 0.0f)) r.fail("the aperture ratio must be greater than 0");
+    r.refuse_others();
 }
 
 }  // namespace granita::python

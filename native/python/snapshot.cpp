@@ -21,7 +21,16 @@ void Record::fail(const std::string& message) const {
     throw SceneError(m_datablock, message);
 }
 
+void Record::refuse_others() const {
+    for (const auto& [key, value] : m_dict) {
+        const auto name = py::cast<std::string>(key);
+        if (std::find(m_asked.begin(), m_asked.end(), name) == m_asked.end())
+            fail("'" + name + "' is unknown");
+    }
+}
+
 bool Record::has(const char* key) const {
+    m_asked.push_back(key);
     return m_dict.contains(key) && !m_dict[key].is_none();
 }
 

@@ -46,10 +46,13 @@ class Record {
     std::vector<T> values(const char* key, const std::vector<py::ssize_t>& shape) const;
 
     [[noreturn]] void fail(const std::string& message) const;
+    /// Fails where the dict has a key that nobody asked for: a name spelled wrongly.
+    void refuse_others() const;
 
   private:
     py::dict m_dict;
     std::string m_datablock;
+    mutable std::vector<const char*> m_asked;
 };
 
 /// The index of `text` in the identifiers, or a SceneError that lists them.

@@ -49,6 +49,17 @@ def test_image(scene, render, tmp_path, interpolation, source):
     check(scene, render, SAMPLES)
 
 
+def test_tiles_that_were_never_saved(scene, render):
+    """The first is shown, as Blender made it.  (Cycles looks for files.)"""
+    image = bpy.data.images.new("Tiles", 8, 8, tiled=True, float_buffer=True)
+    image.pixels.foreach_set(np.tile(np.float32([0.25, 0.5, 0.75, 1.0]), 64))
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    seen = render(scene)
+    middle = [seen[f"ViewLayer.Combined.{c}"][16, 16] for c in "RGB"]
+    assert middle == pytest.approx([0.25, 0.5, 0.75], abs=1e-3)
+
+
 @pytest.mark.parametrize("interpolation", ["Closest", "Linear", "Cubic"])
 @pytest.mark.parametrize("extension", enum_values("ShaderNodeTexImage", "extension"))
 def test_extension(scene, render, interpolation, extension):
