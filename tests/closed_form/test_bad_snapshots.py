@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a snapshot must not hold is refused by an error that names the datablock and what is wrong with it."""
 
-import granita_core
 import numpy as np
 import pytest
 import snapshots as s
+
+import granita_core
 
 
 def wrong(path, value):
