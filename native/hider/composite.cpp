@@ -44,7 +44,7 @@ struct Layers {
 };
 
 /// TileComposite::opaque_alone for a run of samples at once.
-void set_opaque(const TileStore& store, const Projection& projection, std::uint32_t first,
+void set_opaque(const TileStore& store, const CompositeSettings& settings, std::uint32_t first,
                 const SurfaceRun& run, SampleColors& colors) {
     const auto copy = [&](const float* from, std::vector<float>& to) {
         for (int i = 0; i < SurfaceRun::kCount; ++i) to[first + i] = from[i] + 0.0f;
@@ -53,8 +53,9 @@ void set_opaque(const TileStore& store, const Projection& projection, std::uint3
     copy(run.color[1], colors.green);
     copy(run.color[2], colors.blue);
     for (int i = 0; i < SurfaceRun::kCount; ++i) colors.alpha[first + i] = 1.0f;
+    if (!settings.depth) return;
     for (int i = 0; i < SurfaceRun::kCount; ++i)
-        colors.depth[first + i] = projection.depth_from_key(store.key[first + i]);
+        colors.depth[first + i] = settings.projection.depth_from_key(store.key[first + i]);
 }
 
 /// The samples of a run that see nothing.
@@ -209,7 +210,7 @@ void composite_tile(const TileStore& store, const TileSamples& samples, const Gr
         const std::uint32_t lists = with_lists(store.lists, first), known = run.plain & run.colored;
         // Most samples of most pictures: one opaque surface and nothing else.
         std::uint32_t done = has_channels ? 0u : known & ~lists;
-        if (done != 0) set_opaque(store, settings.projection, first, run, colors);
+        if (done != 0) set_opaque(store, settings, first, run, colors);
         const std::uint32_t something = run.seen | lists;
         if (constant && something != kAll) {
             set_empty(first, something, empty, colors);

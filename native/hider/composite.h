@@ -19,6 +19,7 @@ struct CompositeSettings {
     ListEnd end;                           ///< the hider's: what was accumulated stays as it is
     bool film_transparent = false;         ///< no background; alpha is what covers it
     const ChannelSet* channels = nullptr;  ///< nullptr = no passes
+    bool depth = true;                     ///< whether SampleColors::depth is wanted
 };
 
 /// Fills [256 * samples] colours in sample order.  `background`: premultiplied radiance behind
@@ -28,7 +29,8 @@ struct CompositeSettings {
 /// Layers from front to back, each channel by itself: C += T c, O += a T, T -= a T, in double.
 /// Interpolated opacity is clamped to [0, 1] here and nowhere earlier; radiance is not clamped.
 /// Alpha is the mean of the three opacities without those of holdout surfaces; with a background it
-/// is 1 less what holdouts cut out.  Depth is that of the first layer.  Fills `channels` where
+/// is 1 less what holdouts cut out.  Depth is that of the first layer, or
+/// anything where it is not wanted.  Fills `channels` where
 /// settings.channels asks for some; holdouts take part in Merge::First and Center alone.
 void composite_tile(const TileStore& store, const TileSamples& samples, const GridPool& pool,
                     std::span<const Vec3f> background, const CompositeSettings& settings,

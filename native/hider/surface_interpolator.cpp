@@ -88,21 +88,27 @@ SurfaceInterpolator::SurfaceInterpolator(const Projection& projection, Vec2i til
              static_cast<float>(projection.lens_radius * projection.scale.y)),
       m_cache(kCached) {}
 
-const SurfaceRecord& SurfaceInterpolator::load(SurfaceId id, float time) {
+SurfaceRecord& SurfaceInterpolator::load_colors(SurfaceId id) {
     SurfaceRecord& record = m_cache[id % kCached];
-    if (record.id != id) {
-        const GridPool::Place place = m_pool.locate(id);
-        const Grid& grid = *place.grid;
-        const Grid::Corners c = grid.corners(place.micropolygon);
-        record.id = id;
-        record.segment = -1;
-        record.segments = grid.motion ? grid.knots - 1 : 0;
-        record.corners = {&grid, {c.v0, c.v1, c.v2, c.v3}};
-        record.colored = !grid.holdout && !grid.radiance.empty();
-        if (record.colored)
-            for (int i = 0; i < 4; ++i)
-                record.radiance[i] = grid.radiance[record.corners.vertex[i]];
+    if (record.id == id) return record;
+    const GridPool::Place place = m_pool.locate(id);
+    const Grid& grid = *place.grid;
+    const Grid::Corners c = grid.corners(place.micropolygon);
+    record.id = id;
+    record.segment = -1;
+    record.segments = grid.motion ? grid.knots - 1 : 0;
+    record.corners = {&grid, {c.v0, c.v1, c.v2, c.v3}};
+    record.colored = record.constant = !grid.holdout && !grid.radiance.empty();
+    if (!record.colored) return record;
+    for (int i = 0; i < 4; ++i) {
+        record.radiance[i] = grid.radiance[record.corners.vertex[i]];
+        record.constant = record.constant && record.radiance[i] == record.radiance[0];
     }
+    return record;
+}
+
+const SurfaceRecord& SurfaceInterpolator::load(SurfaceId id, float time) {
+    SurfaceRecord& record = load_colors(id);
     const int segment = record.segments > 0 ? segment_of(time, record.segments) : 0;
     if (record.segment != segment) load_corners(record, segment);
     return record;

@@ -18,9 +18,11 @@ struct SurfacePoint {
     int vertex[3] = {0, 0, 0};
     float weight[3] = {1.0f, 0.0f, 0.0f};
 
+    /// From the first corner on, so that what is constant comes out as it is.
     Vec3f operator()(const std::vector<Vec3f>& values) const {
-        return weight[0] * values[vertex[0]] + weight[1] * values[vertex[1]] +
-               weight[2] * values[vertex[2]];
+        const Vec3f& first = values[vertex[0]];
+        return first + weight[1] * (values[vertex[1]] - first) +
+               weight[2] * (values[vertex[2]] - first);
     }
 };
 
@@ -36,8 +38,9 @@ struct SurfaceRecord {
     int segment = 0, segments = 0;  ///< segments 0 = static
     SurfaceCorners corners;
     Corner<float> begin[4], delta[4];
-    bool colored = false;  ///< light that a sample takes as it is: no holdout, and shaded
-    Vec3f radiance[4];     ///< of a coloured one
+    bool colored = false;   ///< light that a sample takes as it is: no holdout, and shaded
+    bool constant = false;  ///< of one colour, wherever it is met
+    Vec3f radiance[4];      ///< of a coloured one
 };
 
 /// Where kCount samples in a row meet their surfaces.  Bit or element i: sample first + i.
@@ -45,7 +48,7 @@ struct SurfaceRun {
     static constexpr int kCount = kPacket;
 
     std::uint32_t seen = 0;     ///< see any surface
-    std::uint32_t plain = 0;    ///< located here; the others that see anything need locate()
+    std::uint32_t plain = 0;    ///< known here; the others that see anything need locate()
     std::uint32_t colored = 0;  ///< SurfaceRecord::colored
     alignas(64) float color[3][kCount] = {};  ///< of coloured ones; else anything
 
@@ -71,6 +74,8 @@ class SurfaceInterpolator {
     /// `points`: SurfaceRun::point() will be asked.
     void locate_run(std::uint32_t first, const SurfaceId* ids, bool points, SurfaceRun& out);
 
+    /// The colours alone, not where it is.  Stays until the next call.
+    SurfaceRecord& load_colors(SurfaceId id);
     /// Stays until the next call.
     const SurfaceRecord& load(SurfaceId id, float time);
     Vec2f lens() const { return m_lens; }  ///< lens radius times pixels per unit shear

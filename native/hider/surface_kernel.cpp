@@ -38,13 +38,14 @@ HWY_INLINE void blend(V value, M mask, float* to) {
     hn::BlendedStore(value, mask, kTag, to);
 }
 
-/// weight[0] c[0] + ..., in the order of SurfacePoint.
-HWY_INLINE void blend_color(const SurfaceRecord& surface, int channel, const V weight[3],
+/// As SurfacePoint does it.
+HWY_INLINE void blend_color(const SurfaceRecord& surface, int channel, const PairWeights& weight,
                             M in_first, M mask, float* to) {
     const auto corner = [&](int k) HWY_ATTR { return set(surface.radiance[k][channel]); };
+    const V first = corner(0);
     const V second = hn::IfThenElse(in_first, corner(1), corner(2));
     const V third = hn::IfThenElse(in_first, corner(2), corner(3));
-    blend(weight[0] * corner(0) + weight[1] * second + weight[2] * third, mask, to);
+    blend(first + weight.second * (second - first) + weight.third * (third - first), mask, to);
 }
 
 template <bool kLens>
@@ -67,8 +68,19 @@ void locate(SurfaceInterpolator& surfaces, const TileSamples& samples, std::uint
         out.seen |= pending << part;
         while (pending != 0) {
             const int lane = __builtin_ctz(pending);
+            const SurfaceRecord& colors = surfaces.load_colors(ids[part + lane]);
+            if (colors.constant && !out.wants_points) {
+                const M all = hn::RebindMask(kTag, hn::Eq(id, hn::Set(kIdTag, colors.id)));
+                const std::uint32_t these = bits_of(all);
+                pending &= ~these;
+                out.plain |= these << part;
+                out.colored |= these << part;
+                for (int channel = 0; channel < 3; ++channel)
+                    blend(set(colors.radiance[0][channel]), all, out.color[channel] + part);
+                continue;
+            }
             const SurfaceRecord& surface =
-                surfaces.load(ids[part + lane], moving ? samples.t[at + lane] : 0.0f);
+                surfaces.load(colors.id, moving ? samples.t[at + lane] : 0.0f);
             M mask = hn::RebindMask(kTag, hn::Eq(id, hn::Set(kIdTag, surface.id)));
             V local = zero;
             if (surface.segments > 0) {
@@ -88,14 +100,13 @@ void locate(SurfaceInterpolator& surfaces, const TileSamples& samples, std::uint
                                          offset_of<kLens>(surface, 3, sample, local, focus));
             const Side a = first_side(e), b = second_side(e);
             const PairWeights w = weights_of(e, a.strict);
-            const V weight[3] = {set(1.0f) - w.second - w.third, w.second, w.third};
             out.plain |= (bits_of(is_clean(a, b)) & these) << part;
             out.colored |= (surface.colored ? these : 0u) << part;
             if (surface.colored)
                 for (int channel = 0; channel < 3; ++channel)
-                    blend_color(surface, channel, weight, a.strict, mask,
-                                out.color[channel] + part);
+                    blend_color(surface, channel, w, a.strict, mask, out.color[channel] + part);
             if (!out.wants_points) continue;
+            const V weight[3] = {set(1.0f) - w.second - w.third, w.second, w.third};
             for (int k = 0; k < 3; ++k) blend(weight[k], mask, out.weight[k] + part);
             out.second |= (these & ~bits_of(a.strict)) << part;
             for (std::uint32_t rest = these; rest != 0; rest &= rest - 1)

@@ -21,7 +21,7 @@ void TileColors::composite(const TileStore& store, const TileSamples& samples,
     }
     const StageTimer timer(m_frame.statistics, Stage::Resolve);
     const CompositeSettings settings{m_frame.view.projection, m_frame.hider.list_end,
-                                     options.film_transparent, &channels};
+                                     options.film_transparent, &channels, options.depth_pass};
     composite_tile(store, samples, pool, background, settings, m_colors, &m_channels);
 }
 

@@ -55,14 +55,38 @@ void expect_runs_equal_singles(const Camera& camera, const Grid& grid, bool on_l
         }
     }
     EXPECT_GT(located, ids.size() / 8);  // jitter folds and misplaces the others
+    // Colours alone: of a micropolygon with one colour they are known without a place, and the
+    // same.
+    std::size_t constant = 0;
+    for (std::uint32_t first = 0; first < ids.size(); first += SurfaceRun::kCount) {
+        SurfaceRun run;
+        many.locate_run(first, &ids[first], false, run);
+        for (std::uint32_t i = 0; i < SurfaceRun::kCount; ++i) {
+            if (!(run.plain >> i & 1u)) continue;
+            const Vec3f color = one.locate(first + i, ids[first + i])(grid.radiance);
+            for (int channel = 0; channel < 3; ++channel)
+                ASSERT_EQ(run.color[channel][i], color[channel]) << first + i;
+            if (static_cast<int>(ids[first + i]) % grid.n_u >= grid.n_u / 2) continue;
+            ++constant;
+            ASSERT_EQ(run.color[0][i], 0.1f);
+        }
+    }
+    EXPECT_GT(constant, ids.size() / 4);
 }
 
 Grid jittered(int knots, float jitter, float z) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> at(-jitter, jitter);
-    return make_grid(16, 16, knots, [&](float u, float v, int) {
+    Grid grid = make_grid(16, 16, knots, [&](float u, float v, int) {
         return Vec3f(u * 16 + at(random), v * 16 + at(random), z + at(random));
     });
+    // The left half has one colour.
+    std::uniform_real_distribution<float> light(0.0f, 3.0f);
+    for (int vertex = 0; vertex < grid.vertex_count(); ++vertex)
+        grid.radiance[vertex] = vertex % (grid.n_u + 1) <= grid.n_u / 2
+                                    ? Vec3f(0.1f, 0.7f, 3.3f)
+                                    : Vec3f(light(random), light(random), light(random));
+    return grid;
 }
 
 TEST(SurfaceInterpolator, RunsEqualSingles) {
