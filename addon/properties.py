@@ -64,7 +64,7 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
         "INDEPENDENT",
         ("INDEPENDENT", "Independent", "Every sample has its own time and lens point"),
         ("INTERLEAVED", "Interleaved", "A few hundred times and lens points, shared"),
-        ("REGULAR", "Regular", "The same square lattice at every time sample"),
+        ("REGULAR", "Regular", "The same lattice of places at every time sample"),
     )
     time_samples: _whole(
         "Time Samples",

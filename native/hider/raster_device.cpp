@@ -27,9 +27,9 @@ int layers_wanted(const RasterFrame& frame, const gl::ContextInfo& info) {
     return std::clamp(frame.most_layers, 1, static_cast<int>(frame.passes.size()));
 }
 
-gl::Program accumulate_program(const RasterFrame& frame) {
-    const gl::Defines defines{{"LATTICE", std::to_string(frame.filter.lattice)},
-                              {"AT_SAMPLE", frame.table != nullptr ? "1" : "0"}};
+gl::Program accumulate_program(const RasterFrame& frame, const RasterTarget& target) {
+    gl::Defines defines = target.lattice_defines();
+    defines.emplace_back("AT_SAMPLE", frame.table != nullptr ? "1" : "0");
     return gl::Program("passes",
                        {{GL_COMPUTE_SHADER, gl::shader_source("raster/accumulate.comp", defines)}});
 }
@@ -47,7 +47,7 @@ std::vector<Vec4f> device_passes(const RasterFrame& frame) {
 RasterDevice::RasterDevice(const RasterFrame& frame, const gl::ContextInfo& info)
     : m_frame(frame),
       m_target(frame.filter, layers_wanted(frame, info), info.max_texture_size),
-      m_accumulate(accumulate_program(frame)),
+      m_accumulate(accumulate_program(frame, m_target)),
       m_mark("seen grids", {{GL_COMPUTE_SHADER, gl::shader_source("raster/mark_seen.comp")}}),
       m_mark_target(&m_target.radiance(), nullptr),
       m_passes(gl::Buffer::of(device_passes(frame))) {
@@ -131,11 +131,22 @@ std::vector<RasterDevice::Command> RasterDevice::commands(
     return commands;
 }
 
+double RasterDevice::lattice_turn() const {
+    const RegularLattice& lattice = m_target.lattice();
+    return lattice.turned ? 1.0 / lattice.side : 0.0;
+}
+
 void RasterDevice::set_cell(const RasterCell& cell) const {
     const Projection& p = m_frame.projection;
-    const Vec2d per_pixel(2.0 / m_target.pixel_size());
+    const RegularLattice& lattice = m_target.lattice();
+    const double texel = 2.0 / m_target.texel_size(), turn = lattice_turn();
+    const double per_pixel = 2.0 * lattice.side / m_target.texel_size();
+    // Where the corner's place, turned, must be; half a texel as regular_lattice.h says.
+    Vec2d corner = texel * Vec2d(m_target.origin()) - Vec2d(1.0);
+    if (lattice.turned && lattice.side % 2 == 1) corner.y += 0.5 * texel;
+    corner = (corner - turn * Vec2d(corner.y, -corner.x)) / (1.0 + turn * turn);
     const Vec2d scale = p.scale * per_pixel;
-    const Vec2d center = (p.center - Vec2d(cell.corner)) * per_pixel - Vec2d(1.0);
+    const Vec2d center = (p.center - Vec2d(cell.corner)) * per_pixel + corner;
     glUniform2d(RASTER_CLIP_SCALE, scale.x, scale.y);
     glUniform2d(RASTER_CLIP_CENTER, center.x, center.y);
     glUniform1f(RASTER_NEAR, static_cast<float>(p.near_clip));
@@ -165,6 +176,7 @@ void RasterDevice::draw(RasterOutput output, const RasterBuffers& buffers,
 void RasterDevice::draw_passes(const RasterBuffers& buffers, const std::vector<Command>& commands,
                                const RasterPasses& passes) const {
     glUniform1ui(RASTER_FIRST_PASS, static_cast<GLuint>(passes.first));
+    glUniform1d(RASTER_LATTICE_TURN, lattice_turn());
     m_passes.bind_storage(RASTER_PASSES);
     buffers.array.set_uints(RASTER_LAYER, m_layers, true);
     const gl::Buffer indirect = gl::Buffer::of(commands);

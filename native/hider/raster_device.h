@@ -77,6 +77,7 @@ class RasterDevice {
   private:
     gl::Program& program(RasterOutput output);
     gl::Program make_program(RasterOutput output) const;
+    double lattice_turn() const;
     void set_cell(const RasterCell& cell) const;
     /// For the program in use, which includes raster/marks.glsl.
     void set_marked(const RasterPasses& passes) const;

@@ -1,20 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pixel filter as the raster executor uses it, in a generated shader (paper, 9.3.6): on a
 // regular lattice every pixel has the same weights, which are its constants; samples that lie
-// anywhere weigh by the filter's factor, a table of constants.
+// anywhere weigh by the filter's factor, a table of constants.  Along a turned lattice the filter
+// is not separable: its weights are a list of texels.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "hider/regular_lattice.h"
+
 namespace granita {
 
-/// One axis of a separable filter on a lattice of sub-samples.
 struct RasterFilter {
-    int lattice = 1;              ///< sub-samples along a pixel's side
+    RegularLattice lattice;
+
+    /// One axis of a separable filter on a lattice that is not turned.
     int first = 0;                ///< sub-sample of weights[0]; 0 is the pixel's own lowest
     std::vector<double> weights;  ///< consecutive sub-samples; sum 1
+
+    /// On a turned lattice.
+    struct Tap {
+        Vec2i texel{0, 0};  ///< from RegularLattice::first_texel of the pixel
+        float weight = 0.0f;
+        float unused = 0.0f;  // std430 on the device
+    };
+    std::vector<Tap> taps;  ///< sum 1
+    int tap_pixels = 0;     ///< that they reach beyond their own
 
     /// Samples anywhere: the factor at equal steps from 0 to `radius`, unnormalised; else empty.
     std::vector<double> factor;
@@ -27,7 +40,7 @@ struct RasterFilter {
 
 /// `factor`: the filter's 1-D factor at a distance from the pixel's centre, pixels; 0 beyond
 /// `radius`. Weights are divided by their sum, as film/ does with the samples of a pixel.
-RasterFilter make_raster_filter(int lattice, double radius,
+RasterFilter make_raster_filter(RegularLattice lattice, double radius,
                                 const std::function<double(double)>& factor);
 
 /// For samples that lie anywhere in their pixels, of which `lattice`^2 have room.  The table's

@@ -214,12 +214,11 @@ class RasterHider::Bucket : public RasterBucket {
             });
             copy(m_device.target().resolve(cell, m_device.samples()), cell.pixels, 1,
                  image.combined);
-            const int lattice = m_frame.filter.lattice;
             add(Counter::SamplesTotal,
                 static_cast<std::uint64_t>(cell.samples.width()) *
                     static_cast<std::uint64_t>(cell.samples.height()) *
                     static_cast<std::uint64_t>(m_frame.table ? m_frame.table->samples()
-                                                             : lattice * lattice * count));
+                                                             : lattice().cells() * count));
             add(Counter::GlPrimitives, m_device.take_primitives());
         }
         return image;
@@ -254,18 +253,18 @@ class RasterHider::Bucket : public RasterBucket {
     }
 
     RasterSurfaces surfaces_here(int pass) {
-        const int lattice = m_frame.filter.lattice;
+        const int cells = lattice().cells();
         const std::size_t count =
-            static_cast<std::size_t>(m_pixels.width()) * m_pixels.height() * lattice * lattice;
+            static_cast<std::size_t>(m_pixels.width()) * m_pixels.height() * cells;
         std::vector<std::uint32_t> names(count);
         std::vector<float> depths(count);
         for (const RasterCell& cell : m_device.target().cells(m_pixels)) {
             draw_surfaces(cell, {pass, 1});
-            copy(m_device.target().read_surfaces(cell), cell.pixels, lattice, names);
-            copy(m_device.target().read_depth(cell), cell.pixels, lattice, depths);
+            copy(m_device.target().read_surfaces(cell), cell.pixels, cells, names);
+            copy(m_device.target().read_depth(cell), cell.pixels, cells, depths);
         }
         add(Counter::GlPrimitives, m_device.take_primitives());
-        RasterSurfaces result{m_pixels, lattice, {}, {}};
+        RasterSurfaces result{m_pixels, {}, {}};
         result.surface.resize(count);
         result.key.resize(count, -std::numeric_limits<float>::infinity());
         for (std::size_t i = 0; i < count; ++i) {
@@ -277,15 +276,17 @@ class RasterHider::Bucket : public RasterBucket {
         return result;
     }
 
-    // Rows of a cell into the bucket's image; `scale` values a pixel and axis.
+    const RegularLattice& lattice() const { return m_frame.filter.lattice; }
+
+    // Rows of a cell into the bucket's image; `values` a pixel.
     template <class T>
-    void copy(const std::vector<T>& from, const Rect& cell, int scale, std::vector<T>& to) const {
-        const std::ptrdiff_t width = static_cast<std::ptrdiff_t>(cell.width()) * scale;
-        const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(m_pixels.width()) * scale;
-        for (int row = 0; row < cell.height() * scale; ++row)
+    void copy(const std::vector<T>& from, const Rect& cell, int values, std::vector<T>& to) const {
+        const std::ptrdiff_t width = static_cast<std::ptrdiff_t>(cell.width()) * values;
+        const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(m_pixels.width()) * values;
+        for (int row = 0; row < cell.height(); ++row)
             std::copy_n(from.begin() + row * width, width,
-                        to.begin() + ((cell.y0 - m_pixels.y0) * scale + row) * stride +
-                            (cell.x0 - m_pixels.x0) * scale);
+                        to.begin() + (cell.y0 - m_pixels.y0 + row) * stride +
+                            (cell.x0 - m_pixels.x0) * values);
     }
 
     gl::GlThread& m_thread;

@@ -73,15 +73,14 @@ struct RasterImage {
     std::vector<Vec4f> combined;
 };
 
-/// What each sample of a rectangle sees in one pass, [height * lattice][width * lattice],
-/// lower-left first: the nearest surface, opaque or not.
+/// What each sample of a rectangle sees in one pass, [height][width][cells of the lattice],
+/// lower-left pixel first: the nearest surface, opaque or not.
 struct RasterSurfaces {
     struct Surface {
         std::int32_t grid = -1;  ///< index in the list given to open(); -1 = nothing
         std::int32_t micropolygon = -1;
     };
     Rect pixels;
-    int lattice = 1;
     std::vector<Surface> surface;
     std::vector<float> key;  ///< Projection::depth_key of the surface; -inf = nothing
 };

@@ -20,7 +20,10 @@ constexpr int kWantedTexels = 2048;  ///< side: 64 MiB of colour and 16 of depth
 constexpr int kLayeredTexels = 1 << 21;
 
 int choose_cell(const RasterFilter& filter, int max_texture_size) {
-    const auto side = [&](int cell) { return (cell + 2 * filter.apron()) * filter.lattice; };
+    const auto side = [&](int cell) {
+        const int pixels = cell + 2 * filter.apron();
+        return filter.lattice.texels_of({0, 0, pixels, pixels}).width();
+    };
     int cell = kLargestCell;
     while (cell > kSmallestCell && side(cell) > std::min(kWantedTexels, max_texture_size))
         cell /= 2;
@@ -40,7 +43,7 @@ gl::Program filter_program(const RasterFilter& filter, const std::string& axis) 
     const gl::Defines defines{{"TAP_WEIGHTS", list_source(filter.weights)},
                               {"TAP_COUNT", std::to_string(filter.weights.size())},
                               {"TAP_FIRST", std::to_string(filter.first)},
-                              {"LATTICE", std::to_string(filter.lattice)},
+                              {"LATTICE", std::to_string(filter.lattice.side)},
                               {"AXIS", axis}};
     return screen_program("pixel filter along " + axis, "resolve/filter.frag", defines);
 }
@@ -54,6 +57,10 @@ gl::Program gather_program(const RasterFilter& filter) {
     return screen_program("pixel filter", "resolve/gather.frag", defines);
 }
 
+std::string vector_source(Vec2i v) {
+    return "ivec2(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ")";
+}
+
 int floor_to(int value, int step) {
     return (value >= 0 ? value : value - step + 1) / step * step;
 }
@@ -64,6 +71,9 @@ RasterTarget::RasterTarget(const RasterFilter& filter, int most_layers, int max_
     : m_lattice(filter.lattice),
       m_apron(filter.apron()),
       m_cell(choose_cell(filter, max_texture_size)) {
+    const Rect whole = m_lattice.texels_of({0, 0, pixel_size(), pixel_size()});
+    m_origin = {-whole.x0, -whole.y0};
+    m_texel_size = whole.width();
     const int side = texel_size();
     const int most = std::clamp(kLayeredTexels / (side * side), 1, most_layers);
     const int draws = (most_layers + most - 1) / most;
@@ -78,10 +88,21 @@ RasterTarget::RasterTarget(const RasterFilter& filter, int most_layers, int max_
         m_gather = gather_program(filter);
         return;
     }
+    if (!filter.taps.empty()) {
+        m_taps = gl::Buffer::of(filter.taps);
+        m_gather = screen_program("pixel filter", "resolve/taps.frag", lattice_defines());
+        return;
+    }
     m_rows = gl::Texture(GL_RGBA32F, m_cell, side);
     m_rows_target = gl::Framebuffer(&m_rows, nullptr);
     m_filter_x = filter_program(filter, "ivec2(1, 0)");
     m_filter_y = filter_program(filter, "ivec2(0, 1)");
+}
+
+gl::Defines RasterTarget::lattice_defines() const {
+    return {{"LATTICE", std::to_string(m_lattice.side)},
+            {"TURNED", m_lattice.turned ? "1" : "0"},
+            {"ORIGIN", vector_source(m_origin)}};
 }
 
 std::vector<RasterCell> RasterTarget::cells(const Rect& pixels) const {
@@ -93,9 +114,7 @@ std::vector<RasterCell> RasterTarget::cells(const Rect& pixels) const {
             cell.pixels = pixels.intersect({x, y, x + m_cell, y + m_cell});
             cell.samples = {cell.pixels.x0 - m_apron, cell.pixels.y0 - m_apron,
                             cell.pixels.x1 + m_apron, cell.pixels.y1 + m_apron};
-            cell.texels = {(cell.samples.x0 - cell.corner.x) * m_lattice,
-                           (cell.samples.y0 - cell.corner.y) * m_lattice,
-                           cell.samples.width() * m_lattice, cell.samples.height() * m_lattice};
+            cell.texels = texels_of(cell, cell.samples);
             if (!cell.pixels.empty()) cells.push_back(cell);
         }
     return cells;
@@ -159,11 +178,14 @@ void RasterTarget::fill(const gl::Framebuffer& target, const gl::Texture& textur
 std::vector<Vec4f> RasterTarget::resolve(const RasterCell& cell,
                                          const RasterSamples* samples) const {
     const gl::TexelRect own = own_pixels(cell);
-    const int apron_texels = m_apron * m_lattice;
+    const int apron_texels = m_apron * m_lattice.side;
     m_mean.bind(FILTER_SOURCE);
-    if (samples != nullptr) {
+    if (samples != nullptr || m_lattice.turned) {
         m_gather.use();
-        samples->bind();
+        if (samples != nullptr)
+            samples->bind();
+        else
+            m_taps.bind_storage(FILTER_TAPS);
         fill(m_pixels_target, m_pixels, own, {m_apron, m_apron});
     } else {
         m_filter_x.use();
@@ -185,11 +207,15 @@ std::vector<Vec4f> RasterTarget::resolve(const RasterCell& cell,
 std::vector<float> RasterTarget::center_depths(const RasterCell& cell,
                                                const RasterSamples* samples) {
     if (m_center.name() == 0) {
+        // Of four on a square lattice, the first.
+        const Vec2i center = m_lattice.turned ? m_lattice.texel(m_lattice.center_cell())
+                                              : Vec2i((m_lattice.side - 1) / 2);
+        gl::Defines defines = lattice_defines();
+        defines.emplace_back("AT_SAMPLE", samples != nullptr ? "1" : "0");
+        defines.emplace_back("CENTER", vector_source(center));
         m_center_depths = gl::Texture(GL_R32F, m_cell, m_cell);
         m_center_depths_target = gl::Framebuffer(&m_center_depths, nullptr);
-        m_center = screen_program("depth of pixels", "resolve/depth.frag",
-                                  {{"AT_SAMPLE", samples != nullptr ? "1" : "0"},
-                                   {"LATTICE", std::to_string(m_lattice)}});
+        m_center = screen_program("depth of pixels", "resolve/depth.frag", defines);
     }
     const gl::TexelRect own = own_pixels(cell);
     m_center.use();
@@ -206,18 +232,36 @@ gl::TexelRect RasterTarget::own_pixels(const RasterCell& cell) const {
             cell.pixels.width(), cell.pixels.height()};
 }
 
-gl::TexelRect RasterTarget::own_texels(const RasterCell& cell) const {
-    return {(cell.pixels.x0 - cell.corner.x) * m_lattice,
-            (cell.pixels.y0 - cell.corner.y) * m_lattice, cell.pixels.width() * m_lattice,
-            cell.pixels.height() * m_lattice};
+gl::TexelRect RasterTarget::texels_of(const RasterCell& cell, const Rect& pixels) const {
+    const Vec2i corner = cell.corner;
+    const Rect texels = m_lattice.texels_of(
+        {pixels.x0 - corner.x, pixels.y0 - corner.y, pixels.x1 - corner.x, pixels.y1 - corner.y});
+    return {texels.x0 + m_origin.x, texels.y0 + m_origin.y, texels.width(), texels.height()};
+}
+
+template <class T>
+std::vector<T> RasterTarget::by_sample(const RasterCell& cell, const std::vector<T>& texels) const {
+    const gl::TexelRect box = texels_of(cell, cell.pixels);
+    std::vector<T> samples;
+    for (int y = cell.pixels.y0; y < cell.pixels.y1; ++y)
+        for (int x = cell.pixels.x0; x < cell.pixels.x1; ++x) {
+            const Vec2i first = m_lattice.first_texel(Vec2i(x, y) - cell.corner) + m_origin;
+            for (int s = 0; s < m_lattice.cells(); ++s) {
+                const Vec2i at = first + m_lattice.texel(s) - Vec2i(box.x, box.y);
+                samples.push_back(texels[static_cast<std::size_t>(at.y) * box.width + at.x]);
+            }
+        }
+    return samples;
 }
 
 std::vector<std::uint32_t> RasterTarget::read_surfaces(const RasterCell& cell) const {
-    return m_surfaces.read<std::uint32_t>(own_texels(cell), GL_RED_INTEGER, 1);
+    return by_sample(
+        cell, m_surfaces.read<std::uint32_t>(texels_of(cell, cell.pixels), GL_RED_INTEGER, 1));
 }
 
 std::vector<float> RasterTarget::read_depth(const RasterCell& cell) const {
-    return m_depth.read<float>(own_texels(cell), GL_DEPTH_COMPONENT, 1);
+    return by_sample(cell,
+                     m_depth.read<float>(texels_of(cell, cell.pixels), GL_DEPTH_COMPONENT, 1));
 }
 
 }  // namespace granita

@@ -12,8 +12,10 @@
 #include <memory>
 #include <vector>
 
+#include "gl/buffer.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
+#include "gl/shader_source.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "hider/raster_filter.h"
@@ -51,8 +53,14 @@ class RasterTarget {
     std::vector<RasterCell> cells(const Rect& pixels) const;
     /// Side of the target in frame pixels: one cell and its apron.
     int pixel_size() const { return m_cell + 2 * m_apron; }
-    int texel_size() const { return pixel_size() * m_lattice; }
+    int texel_size() const { return m_texel_size; }
     int layers() const { return m_layers; }
+    const RegularLattice& lattice() const { return m_lattice; }
+    /// The target's texel at the first texel of a cell's corner pixel: a turned cell is a turned
+    /// square in the target.
+    Vec2i origin() const { return m_origin; }
+    /// Of raster/lattice.glsl.
+    gl::Defines lattice_defines() const;
 
     /// Binds the target and clears the cell's samples: colour to nothing, depth to `farthest`.
     void begin_radiance(const RasterCell& cell, float farthest) const;
@@ -76,26 +84,33 @@ class RasterTarget {
     /// Of what begin_surfaces() and drawing left in layer 0: the depths of the samples nearest to
     /// the pixels' centres, 0 where they see nothing; [height][width] of cell.pixels.
     std::vector<float> center_depths(const RasterCell& cell, const RasterSamples* samples);
-    /// What begin_surfaces() and drawing left in layer 0 of the cell's own pixels, [height *
-    /// lattice][width * lattice].
+    /// What begin_surfaces() and drawing left in layer 0 of the cell's own pixels,
+    /// [height][width][lattice().cells()].
     std::vector<std::uint32_t> read_surfaces(const RasterCell& cell) const;
     std::vector<float> read_depth(const RasterCell& cell) const;
 
   private:
-    gl::TexelRect own_texels(const RasterCell& cell) const;
+    /// The target's texels that hold the samples of these frame pixels.
+    gl::TexelRect texels_of(const RasterCell& cell, const Rect& pixels) const;
+    /// Texels of the cell's own pixels in the order of samples.
+    template <class T>
+    std::vector<T> by_sample(const RasterCell& cell, const std::vector<T>& texels) const;
     /// The cell's own pixels, relative to the first one of whole cells.
     gl::TexelRect own_pixels(const RasterCell& cell) const;
     /// Draws a pass of the resolve over a part of a target.
     void fill(const gl::Framebuffer& target, const gl::Texture& texture, const gl::TexelRect& part,
               Vec2i origin) const;
 
-    int m_lattice, m_apron, m_cell, m_layers;
+    RegularLattice m_lattice;
+    int m_apron, m_cell, m_texel_size, m_layers;
+    Vec2i m_origin;
     gl::Texture m_radiance, m_depth, m_mean, m_rows, m_pixels;
     gl::Framebuffer m_radiance_target, m_rows_target, m_pixels_target;
     gl::Texture m_surfaces;  ///< made at the first begin_surfaces()
     gl::Framebuffer m_surfaces_target;
     gl::Program m_filter_x, m_filter_y;  ///< of a lattice
-    gl::Program m_gather;                ///< of samples anywhere
+    gl::Program m_gather;                ///< of a turned lattice or of samples anywhere
+    gl::Buffer m_taps;                   ///< of a turned lattice
     gl::Texture m_center_depths;         ///< made at the first center_depths()
     gl::Framebuffer m_center_depths_target;
     gl::Program m_center;

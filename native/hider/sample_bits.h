@@ -107,9 +107,17 @@ GRANITA_BITS_FN uint owen(uint x, uint seed) {
     return reverse_bits(x);
 }
 
-/// REGULAR: centre of cell i of n on the unit interval, 20 fraction bits; n <= 4096.
+/// REGULAR: centre of cell i of n on the unit interval, 20 fraction bits; n <= 2^17.
 GRANITA_BITS_FN uint cell_center(uint i, uint n) {
-    return ((2u * i + 1u) << 19) / n;
+    uint a = (2u * i + 1u) << 13;  // in two steps of 32 bits
+    return (a / n << 6) + ((a % n) << 6) / n;
+}
+
+/// REGULAR, turned: the row of the sample in column i of side^2 + 1, a Korobov lattice that is its
+/// own mirror image about the pixel's centre; side <= 256.
+GRANITA_BITS_FN uint turned_row(uint i, uint side) {
+    uint points = side * side + 1u;
+    return (side * (side - 1u) / 2u + (points - side) % points * i) % points;
 }
 
 #ifdef __cplusplus

@@ -51,12 +51,13 @@ SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNee
                                                 std::to_string(options.time_samples));
     if (m_sampling == Sampling::Interleaved) m_class_pixels = class_pixels(m_samples);
     if (m_sampling == Sampling::Regular) {
-        m_lattice = nearest_square_side(m_samples);
         const bool blur = frame.time || (frame.lens && camera.projection.has_lens());
         const int passes = !blur                  ? 1
                            : options.time_samples ? options.time_samples
                                                   : automatic_passes;
-        m_samples = m_lattice * m_lattice * passes;
+        const int side = nearest_square_side(m_samples);
+        m_lattice = {side, passes > 1 && side > 1};
+        m_samples = m_lattice.cells() * passes;
     }
 }
 
@@ -135,18 +136,17 @@ void SampleTable::fill_dimension(Vec2i tile, int dimension, std::vector<float>& 
 }
 
 void SampleTable::fill_regular(SampleNeeds needs, TileSamples& out) const {
-    const int cells = m_lattice * m_lattice;
-    const auto lattice = static_cast<std::uint32_t>(m_lattice);
+    const int cells = m_lattice.cells();
+    std::vector<Vec2f> places;
+    for (int cell = 0; cell < cells; ++cell) places.push_back(m_lattice.place(cell));
     const auto passes = static_cast<std::uint32_t>(m_samples / cells);
     for (int p = 0; p < kPixels; ++p)
         for (int s = 0; s < m_samples; ++s) {
             const std::size_t i = static_cast<std::size_t>(p) * m_samples + s;
-            const auto cell = static_cast<std::uint32_t>(s % cells);
             const auto pass = static_cast<std::uint32_t>(s / cells);
-            out.x[i] = static_cast<float>(p % kTileSize) +
-                       static_cast<float>(bits::cell_center(cell % lattice, lattice)) * 0x1p-20f;
-            out.y[i] = static_cast<float>(p / kTileSize) +
-                       static_cast<float>(bits::cell_center(cell / lattice, lattice)) * 0x1p-20f;
+            const Vec2f place = places[static_cast<std::size_t>(s % cells)];
+            out.x[i] = static_cast<float>(p % kTileSize) + place.x;
+            out.y[i] = static_cast<float>(p / kTileSize) + place.y;
             if (needs.time)
                 out.t[i] = static_cast<float>(bits::cell_center(pass, passes)) * 0x1p-20f;
             if (needs.lens) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hider/lens_shape.h"
+#include "hider/regular_lattice.h"
 #include "math/bounds.h"
 #include "scene/scene.h"
 #include "scene/shutter_warp.h"
@@ -32,10 +33,11 @@ struct SampleNeeds {
 /// INDEPENDENT: every sample its own place, time and lens point (sample_bits.h).
 /// INTERLEAVED: places as INDEPENDENT; (t, u, v) from at most 1024 classes that repeat over squares
 /// of 1 to 8 pixels (Keller and Heidrich 2001).
-/// REGULAR: sample = pass * lattice^2 + cell; the lattice is the square nearest to
-/// Options::samples, and all pixels share a pass's time and lens point (the paper, 9.3.5). Passes:
+/// REGULAR: sample = pass * cells + cell of the lattice, whose side's square is the nearest to
+/// Options::samples; all pixels share a pass's time and lens point (the paper, 9.3.5). Passes:
 /// Options::time_samples, or what the constructor is told where that is 0, if the frame has motion
-/// or a lens, else 1.
+/// or a lens, else 1. Where there are more than one the lattice is turned (regular_lattice.h), and
+/// a pass has a sample more.
 class SampleTable {
   public:
     static constexpr int kDefaultPasses = 16;
@@ -46,7 +48,7 @@ class SampleTable {
     /// A pixel's samples.
     int samples() const { return m_samples; }
     Sampling sampling() const { return m_sampling; }
-    int lattice() const { return m_lattice; }  ///< REGULAR: cells along a pixel's side
+    const RegularLattice& lattice() const { return m_lattice; }  ///< REGULAR
     std::uint32_t seed() const { return m_seed; }
     /// Makes x and y, and of t, u, v what is needed; the same bits whatever else is asked for.
     void fill_tile(Vec2i tile, SampleNeeds needs, TileSamples& out) const;
@@ -57,7 +59,8 @@ class SampleTable {
     void fill_dimension(Vec2i tile, int dimension, std::vector<float>& out) const;
     void roll(Vec2i tile, std::vector<float>& t) const;
 
-    int m_samples, m_lattice = 0;
+    int m_samples;
+    RegularLattice m_lattice;
     Sampling m_sampling;
     std::uint32_t m_seed;
     int m_class_pixels = 1;  ///< INTERLEAVED: side of the square of pixels that holds every class

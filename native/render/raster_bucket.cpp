@@ -15,7 +15,7 @@ namespace {
 std::vector<RasterPass> passes_of(const SampleTable& table, const Scene& scene) {
     TileSamples samples;
     table.fill_tile({0, 0}, {scene.moves(), scene.camera.projection.has_lens()}, samples);
-    const int cells = table.lattice() * table.lattice();
+    const int cells = table.lattice().cells();
     std::vector<RasterPass> passes;
     for (int s = 0; s < table.samples(); s += cells)
         passes.push_back({samples.t.empty() ? 0.0f : samples.t[s],

@@ -5,7 +5,8 @@
 // The running mean m += (x - m) / n leaves a sample that is the same in all passes exactly as it is:
 // a cell where nothing moves takes one pass, and its bits are those of many.
 //
-// Defines: LATTICE, samples along a pixel's side; AT_SAMPLE 0 or 1: they lie at its cells, or anywhere.
+// Defines: AT_SAMPLE 0 or 1: samples lie at the lattice, or anywhere; those of raster/lattice.glsl.
+#include "raster/lattice.glsl"
 #include "shared/raster_layout.h"
 #if AT_SAMPLE
 #include "raster/samples.glsl"
@@ -30,11 +31,12 @@ layout(location = RASTER_FLAGS) uniform ivec2 flags;               // layers wer
 
 vec4 background(ivec2 texel, int pass) {
     if (size.x == 0) return constant;
-    const ivec2 pixel = texel / LATTICE, corner = cell_pixel + pixel;
+    vec2 f;
+    ivec2 corner = cell_pixel + pixel_of(texel, f);
 #if AT_SAMPLE
-    const vec2 f = place_in_pixel(texel);
-#else
-    const vec2 f = (vec2(texel - pixel * LATTICE) + 0.5) / float(LATTICE);
+    f = place_in_pixel(texel);
+#elif TURNED
+    corner = clamp(corner, ivec2(0), size.xy - 2);  // around the turned cell nobody asks
 #endif
     const int i = ((size.z > 1 ? pass : 0) * size.y + corner.y) * size.x + corner.x;
     return mix(mix(corners[i], corners[i + 1], f.x),

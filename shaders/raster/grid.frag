@@ -7,6 +7,7 @@
 // Orthographic depth keeps the precision of float z over any clip range only as a reciprocal.
 layout(location = RASTER_NEAR) uniform float near_clip;
 in float z_camera;
+flat in float z_corner;
 #endif
 flat in uint corner;
 flat in uint layer_here;
@@ -15,18 +16,28 @@ flat in uint grid_here;
 #endif
 #if HAS_RADIANCE
 in vec4 radiance_here;
+flat in vec4 radiance_corner;
 #endif
 #if HAS_OPACITY
 in vec4 opacity_here;
+flat in vec4 opacity_corner;
 #endif
+
+/// A triangle whose corners lie on a line may cover samples once they are snapped to the sub-pixel
+/// grid, and its interpolation then divides by no area: it has the value of its first corner.
+vec4 finite(vec4 interpolated, vec4 corner_value) {
+    const float kLargest = 3.4028235e38;
+    return all(lessThanEqual(abs(interpolated), vec4(kLargest))) ? interpolated : corner_value;
+}
 
 void main() {
     Fragment f;
 #if PERSPECTIVE
     f.depth = gl_FragCoord.z;
 #else
-    if (z_camera < near_clip) discard;
-    f.depth = near_clip / z_camera;
+    const float z = finite(vec4(z_camera), vec4(z_corner)).x;
+    if (z < near_clip) discard;
+    f.depth = near_clip / z;
     gl_FragDepth = f.depth;
 #endif
     f.corner = corner;
@@ -35,10 +46,10 @@ void main() {
     f.grid = grid_here;
 #endif
 #if HAS_RADIANCE
-    f.radiance = radiance_here;
+    f.radiance = finite(radiance_here, radiance_corner);
 #endif
 #if HAS_OPACITY
-    f.opacity = opacity_here;
+    f.opacity = finite(opacity_here, opacity_corner);
 #endif
     leave(f);
 }

@@ -29,6 +29,7 @@ layout(location = RASTER_CLIP_CENTER) uniform dvec2 clip_center;
 layout(location = RASTER_NEAR) uniform float near_clip;
 layout(location = RASTER_FIRST_PASS) uniform uint first_pass;
 layout(location = RASTER_INVERSE_FOCUS) uniform double inverse_focus;  // 0: no lens
+layout(location = RASTER_LATTICE_TURN) uniform double turn;            // tangent; 0: not turned
 
 // Two passes over the same geometry must find the same depth.
 invariant gl_Position;
@@ -42,13 +43,16 @@ flat out uint grid_here;
 #if HAS_RADIANCE
 layout(location = RASTER_RADIANCE) in vec4 radiance;
 out vec4 radiance_here;
+flat out vec4 radiance_corner;
 #endif
 #if HAS_OPACITY
 layout(location = RASTER_OPACITY) in vec4 opacity;
 out vec4 opacity_here;
+flat out vec4 opacity_corner;
 #endif
 #if !PERSPECTIVE
 out float z_camera;
+flat out float z_corner;
 #endif
 
 dvec3 position(uint i) {
@@ -73,11 +77,11 @@ void main() {
 #else
     const double w = 1.0LF;
     const float z_clip = 0.5;  // never clipped: grid.frag cuts at the sample
-    z_camera = float(p.z);
+    z_camera = z_corner = float(p.z);
 #endif
     if (inverse_focus != 0.0LF) p.xy += dvec2(pass.yz) * (p.z * inverse_focus - 1.0LF);
     const dvec2 xy = clip_scale * p.xy + clip_center * w;
-    gl_Position = vec4(vec2(xy), z_clip, float(w));
+    gl_Position = vec4(vec2(xy + turn * dvec2(xy.y, -xy.x)), z_clip, float(w));
 #if LAYERED
     gl_Layer = int(layer);
 #endif
@@ -87,9 +91,9 @@ void main() {
     grid_here = grid_index;
 #endif
 #if HAS_RADIANCE
-    radiance_here = radiance;
+    radiance_here = radiance_corner = radiance;
 #endif
 #if HAS_OPACITY
-    opacity_here = opacity;
+    opacity_here = opacity_corner = opacity;
 #endif
 }

@@ -2,7 +2,9 @@
 // Depth is not filtered: the sample nearest to the pixel's centre, as film/ does it.  0 where it sees
 // nothing.
 //
-// Defines: AT_SAMPLE 0 or 1: samples lie at the lattice, or anywhere; LATTICE.
+// Defines: AT_SAMPLE 0 or 1: samples lie at the lattice, or anywhere; CENTER, ivec2: the lattice's
+// texel; those of raster/lattice.glsl.
+#include "raster/lattice.glsl"
 #include "raster/samples.glsl"
 
 layout(binding = 0) uniform usampler2DArray names;
@@ -11,8 +13,8 @@ layout(location = FILTER_ORIGIN) uniform ivec2 origin;  // the source's pixel of
 layout(location = 0) out float depth;
 
 void main() {
-    const ivec2 first = (origin + ivec2(gl_FragCoord.xy)) * LATTICE;
-    ivec2 nearest = first + (LATTICE - 1) / 2;
+    const ivec2 first = first_texel(origin + ivec2(gl_FragCoord.xy));
+    ivec2 nearest = first + CENTER;
 #if AT_SAMPLE
     float least = 1e9;
     for (int s = 0; s < count.y; ++s) {

@@ -28,6 +28,7 @@
 #define RASTER_NEAR 2
 #define RASTER_FIRST_PASS 3
 #define RASTER_INVERSE_FOCUS 4
+#define RASTER_LATTICE_TURN 5
 // Of raster/sample.*; 5 to 7 are those of compute/corner.glsl.
 #define RASTER_LENS_RADIUS 8
 #define RASTER_CELL_SIZE 9
@@ -58,8 +59,9 @@
 #define RASTER_BACKGROUND_CONSTANT 5
 #define RASTER_FLAGS 6
 
-// Uniform location and texture unit of resolve/filter.frag.
+// Uniform location, texture unit and storage block of the filters of resolve/.
 #define FILTER_ORIGIN 0
 #define FILTER_SOURCE 0
+#define FILTER_TAPS 0
 
 #endif

@@ -21,16 +21,20 @@ float independent_sample(ivec2 pixel, uint s, uint samples, uint table_seed, uin
     return d <= kY ? fraction20(bits) : fraction24(bits);
 }
 
+/// REGULAR: samples of a pixel in a pass; the lattice is turned where passes are many.
+uint regular_cells(uint side, bool turned) { return side * side + (turned ? 1u : 0u); }
+
 /// REGULAR: the lattice's place of sample s relative to the pixel.
-vec2 regular_place(uint s, uint lattice) {
-    const uint cell = s % (lattice * lattice);
-    return vec2(uvec2(cell_center(cell % lattice, lattice), cell_center(cell / lattice, lattice))) *
-           (1.0 / 1048576.0);
+vec2 regular_place(uint s, uint side, bool turned) {
+    const uint cell = s % regular_cells(side, turned), points = turned ? side * side + 1u : side;
+    const uint column = turned ? cell : cell % side;
+    const uint row = turned ? turned_row(cell, side) : cell / side;
+    return vec2(uvec2(cell_center(column, points), cell_center(row, points))) * (1.0 / 1048576.0);
 }
 
 /// REGULAR: t, u, v of the pass of sample s, each in [0, 1].
-vec3 regular_pass(uint s, uint lattice, uint passes) {
-    const uint pass = s / (lattice * lattice);
+vec3 regular_pass(uint s, uint cells, uint passes) {
+    const uint pass = s / cells;
     return vec3(float(cell_center(pass, passes)) * (1.0 / 1048576.0), fraction24(reverse_bits(pass)),
                 fraction24(reverse_bits(sobol_reversed(pass, 1u))));
 }

@@ -7,6 +7,18 @@ pixels.  The perspective camera sits at the origin, looks along +z and has focal
 
 import numpy as np
 
+# Natural widths of the filters.
+FILTERS = {
+    "BOX": 1.0,
+    "TENT": 2.0,
+    "GAUSSIAN": 1.5,
+    "BLACKMAN_HARRIS": 1.5,
+    "MITCHELL": 4.0,
+    "CATMULL_ROM": 4.0,
+    "LANCZOS": 6.0,
+    "BSPLINE": 4.0,
+}
+
 
 def orthographic(size, **options):
     """Snapshot without geometry, `size` = (width, height) pixels."""

@@ -7,16 +7,6 @@ import snapshots as s
 
 import granita_core
 
-FILTERS = {
-    "BOX": 1.0,
-    "TENT": 2.0,
-    "GAUSSIAN": 1.5,
-    "BLACKMAN_HARRIS": 1.5,
-    "MITCHELL": 4.0,
-    "CATMULL_ROM": 4.0,
-    "LANCZOS": 6.0,
-    "BSPLINE": 4.0,
-}
 REGULAR = {"sampling": "REGULAR", "samples": 16, "time_samples": 1}
 
 
@@ -58,9 +48,9 @@ def test_the_next_bucket_is_prepared_while_the_device_draws():
     assert s.render(snapshot)["statistics"]["seconds_device"] == 0
 
 
-@pytest.mark.parametrize("pixel_filter", FILTERS)
+@pytest.mark.parametrize("pixel_filter", s.FILTERS)
 def test_filters_are_those_of_the_cpu(pixel_filter):
-    options = {"pixel_filter": pixel_filter, "filter_width": FILTERS[pixel_filter]}
+    options = {"pixel_filter": pixel_filter, "filter_width": s.FILTERS[pixel_filter]}
     raster = s.render(rectangles("RASTER", **options))["combined"]
     reference = s.render(rectangles("REFERENCE", **options))["combined"]
     assert np.ptp(reference[..., 3]) > 0.9

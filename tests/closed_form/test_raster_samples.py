@@ -9,7 +9,6 @@ costs every sample around its way.
 import numpy as np
 import pytest
 import snapshots as s
-from test_raster import FILTERS
 from test_raster_blur import busy_scene, ramp, render
 
 
@@ -46,9 +45,9 @@ def test_a_busy_scene_is_that_of_the_cpu(sampling, lens, samples):
     assert np.median(error) < 2e-6
 
 
-@pytest.mark.parametrize("pixel_filter", FILTERS)
+@pytest.mark.parametrize("pixel_filter", s.FILTERS)
 def test_filters_are_those_of_the_cpu(pixel_filter):
-    options = {"pixel_filter": pixel_filter, "filter_width": FILTERS[pixel_filter]}
+    options = {"pixel_filter": pixel_filter, "filter_width": s.FILTERS[pixel_filter]}
     snapshot = s.orthographic((40, 30), samples=9, executor="RASTER", dicing_rate=30, **options)
     s.quad(snapshot, s.rectangle(-9, 4.3, 21.8, 22.2), s.emission(snapshot, (0.5, 2, 1)))
     picture = render(snapshot)

@@ -100,6 +100,7 @@ TEST_P(Coverage, FarFromTheOriginLikeNearIt) {
     Shot near, far;
     near.options.samples = far.options.samples = 64;
     near.options.sampling = far.options.sampling = Sampling::Regular;
+    near.options.time_samples = far.options.time_samples = 1;  // a square lattice
     near.grids.push_back(rectangle(3.25f, 2.5f, 12.25f, 9.75f, 5, 9, 7));
     far.tiles = {1023, 700, 1024, 701};
     far.grids.push_back(rectangle(16371.25f, 11202.5f, 16380.25f, 11209.75f, 5, 9, 7));

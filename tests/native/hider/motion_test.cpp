@@ -87,6 +87,7 @@ TEST_P(Motion, MirroredInstance) {
         return Vec3f(sign * (-7 + 9 * u + 3 * v), 2 + 11 * v - 2 * u, 5 + u);
     };
     shot.options.sampling = mirrored.options.sampling = Sampling::Regular;
+    shot.options.time_samples = mirrored.options.time_samples = 1;  // a square lattice
     shot.tiles = mirrored.tiles = {-1, 0, 1, 1};
     shot.grids.push_back(make_grid(5, 6, 1, [=](float u, float v, int) { return shape(u, v, 1); }));
     mirrored.grids.push_back(

@@ -31,7 +31,7 @@ inline RasterFrame raster_frame(const Shot& shot, const SampleTable& table) {
     TileSamples samples;
     table.fill_tile({0, 0}, {true, true}, samples);
     frame.passes.clear();
-    for (int s = 0; s < table.samples(); s += table.lattice() * table.lattice())
+    for (int s = 0; s < table.samples(); s += table.lattice().cells())
         frame.passes.push_back({samples.t[s], samples.u[s], samples.v[s]});
     return frame;
 }

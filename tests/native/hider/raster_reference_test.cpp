@@ -19,7 +19,7 @@
 namespace granita::raster_test {
 namespace {
 
-constexpr int kLattice = 4;
+constexpr int kSide = 4;  // of the lattice; turned where there are several passes
 
 struct Sample {
     std::int32_t grid = -1, micropolygon = -1;
@@ -36,7 +36,7 @@ struct TestScene {
     SampleTable table() const {
         Options options;
         options.sampling = Sampling::Regular;
-        options.samples = kLattice * kLattice;
+        options.samples = kSide * kSide;
         options.time_samples = passes;
         Camera camera;
         camera.projection = projection;
@@ -44,7 +44,7 @@ struct TestScene {
     }
 };
 
-/// [passes][height * lattice][width * lattice], each as RasterSurfaces.
+/// [passes], each as RasterSurfaces.
 std::vector<std::vector<Sample>> reference_samples(const TestScene& scene) {
     const SampleTable table = scene.table();
     HiderFrame frame;
@@ -55,8 +55,8 @@ std::vector<std::vector<Sample>> reference_samples(const TestScene& scene) {
     const auto hider = make_reference_hider(frame, tiles, scene.pixels);
     for (const Grid& grid : scene.grids) hider->hide(grid);
 
-    const int width = scene.pixels.width() * kLattice, cells = kLattice * kLattice;
-    const std::size_t count = static_cast<std::size_t>(width) * scene.pixels.height() * kLattice;
+    const int width = scene.pixels.width(), cells = table.lattice().cells();
+    const std::size_t count = static_cast<std::size_t>(width) * scene.pixels.height() * cells;
     std::vector<std::vector<Sample>> samples(table.samples() / cells, std::vector<Sample>(count));
     for (const TileStore& store : hider->finish())
         for (std::size_t i = 0; i < store.id.size(); ++i) {
@@ -67,8 +67,7 @@ std::vector<std::vector<Sample>> reference_samples(const TestScene& scene) {
             const int y = store.tile.y * kTileSize + pixel / kTileSize;
             if (store.id[i] == kNoSurface || x >= scene.pixels.x1 || y >= scene.pixels.y1) continue;
             const GridPool::Place place = hider->pool().locate(store.id[i]);
-            samples[pass][static_cast<std::size_t>(y * kLattice + s / kLattice) * width +
-                          x * kLattice + s % kLattice] = {
+            samples[pass][static_cast<std::size_t>(y * width + x) * cells + s] = {
                 static_cast<std::int32_t>(place.grid - scene.grids.data()), place.micropolygon,
                 store.key[i]};
         }
@@ -89,7 +88,7 @@ Vec3d position_at(const Grid& grid, int vertex, double t) {
 }
 
 /// The two triangles of a micropolygon wholly in front of the near plane, in one pass.
-std::array<Triangle, 2> triangles(const TestScene& scene, const RasterPass& pass,
+std::array<Triangle, 2> triangles(const TestScene& scene, const RasterPass& pass, double texels,
                                   const Sample& sample) {
     const Grid& grid = scene.grids[sample.grid];
     const Grid::Corners c = grid.corners(sample.micropolygon);
@@ -104,7 +103,7 @@ std::array<Triangle, 2> triangles(const TestScene& scene, const RasterPass& pass
             result[t].p[i] =
                 (projection.scale * (Vec2d(p) + lens * (p.z / projection.focus - 1.0)) / w +
                  projection.center) *
-                static_cast<double>(kLattice);
+                texels;
             result[t].key[i] = scene.projection.perspective ? 1.0 / p.z : -p.z;
         }
     return result;
@@ -144,17 +143,21 @@ struct Differences {
 void compare_pass(const TestScene& scene, const RasterPass& pass, double unit,
                   const RasterSurfaces& drawn, const std::vector<Sample>& expected,
                   Differences& d) {
-    const int width = scene.pixels.width() * kLattice;
+    const RegularLattice lattice = scene.table().lattice();
+    const int width = scene.pixels.width(), cells = lattice.cells();
+    const double texels = std::sqrt(cells);  // a pixel; turned or not
     for (std::size_t i = 0; i < expected.size(); ++i) {
         const Sample a{drawn.surface[i].grid, drawn.surface[i].micropolygon, drawn.key[i]};
         const Sample& b = expected[i];
         d.seen += b.grid >= 0;
         if (a.grid < 0 && b.grid < 0) continue;
-        const Vec2d at(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);
+        const int pixel = static_cast<int>(i) / cells;
+        const Vec2d at = texels * (Vec2d(pixel % width, pixel / width) +
+                                   Vec2d(lattice.place(static_cast<int>(i) % cells)));
         double distance = std::numeric_limits<double>::infinity(), slope = 0.0;
         for (const Sample& s : {a, b}) {
             if (s.grid < 0) continue;
-            const auto t = triangles(scene, pass, s);
+            const auto t = triangles(scene, pass, texels, s);
             distance = std::min(distance, edge_distance(t, at));
             slope = std::max(slope, key_slope(t));
         }
@@ -181,7 +184,7 @@ Differences compare(const TestScene& scene) {
     const double unit = std::ldexp(1.0, -subpixel_bits);
     RasterFrame frame;
     frame.projection = scene.projection;
-    frame.filter = box_filter(kLattice);
+    frame.filter = box_filter(scene.table().lattice());
     frame.passes = passes_of(scene.table(), scene.needs());
     RasterHider hider(gl_thread(), frame);
     const auto bucket = hider.open(scene.pixels, pointers(scene.grids));
@@ -285,23 +288,23 @@ TEST(RasterReferencePlane, ground_through_the_eye_has_no_holes_up_to_the_horizon
         1, 7, 28, [](float u, float v) { return Vec3f(400 * u - 200, -1, 140 * v - 50); }));
     RasterFrame frame;
     frame.projection = scene.projection;
-    frame.filter = box_filter(kLattice);
+    frame.filter = box_filter(kSide);
     RasterHider hider(gl_thread(), frame);
     const RasterSurfaces drawn = hider.open(scene.pixels, pointers(scene.grids))->surfaces();
     const std::vector<Sample> expected = reference_samples(scene).at(0);
-    const int width = 48 * kLattice;
     // The plane's far edge at z = 90 lies 24 / 90 pixels below the horizon at y = 24.
-    const double far_edge = (24.0 - 24.0 / 90.0) * kLattice;
-    for (int y = 0; y < width; ++y)
-        for (int x = 0; x < width; ++x) {
-            const std::size_t i = static_cast<std::size_t>(y) * width + x;
-            EXPECT_EQ(drawn.surface[i].grid, y + 0.5 < far_edge ? 0 : -1) << x << ", " << y;
-            EXPECT_EQ(drawn.surface[i].grid, expected[i].grid) << x << ", " << y;
-            if (y + 0.5 >= far_edge) continue;
-            const double key = (24.0 - (y + 0.5) / kLattice) / 24.0;
-            // Vertices behind the eye are clipped: a unit of 2^-8 texel of slope, and rounding.
-            EXPECT_NEAR(drawn.key[i], key, 0x1p-8 / (24.0 * kLattice) + 1e-6) << x << ", " << y;
-        }
+    const double far_edge = 24.0 - 24.0 / 90.0;
+    constexpr int kCells = kSide * kSide;
+    ASSERT_EQ(expected.size(), std::size_t{48} * 48 * kCells);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const int s = static_cast<int>(i) % kCells, row = static_cast<int>(i) / kCells / 48;
+        const double y = row + (s / kSide + 0.5) / kSide;
+        EXPECT_EQ(drawn.surface[i].grid, y < far_edge ? 0 : -1) << "sample " << i;
+        EXPECT_EQ(drawn.surface[i].grid, expected[i].grid) << "sample " << i;
+        if (y >= far_edge) continue;
+        // Vertices behind the eye are clipped: a unit of 2^-8 texel of slope, and rounding.
+        EXPECT_NEAR(drawn.key[i], (24.0 - y) / 24.0, 0x1p-8 / (24.0 * kSide) + 1e-6) << i;
+    }
 }
 
 }  // namespace

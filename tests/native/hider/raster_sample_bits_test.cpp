@@ -21,7 +21,8 @@ layout(std430, binding = 0) writeonly buffer Table { uint table[]; };
 layout(location = 0) uniform ivec2 tile;
 layout(location = 1) uniform uint samples;
 layout(location = 2) uniform uint seed;
-layout(location = 3) uniform uint lattice;  // 0 = INDEPENDENT
+layout(location = 3) uniform uint lattice;  // side; 0 = INDEPENDENT
+layout(location = 4) uniform bool turned;
 
 void main() {
     const uint i = gl_GlobalInvocationID.x;
@@ -33,8 +34,9 @@ void main() {
     if (lattice == 0u) {
         for (uint d = 0u; d < 5u; ++d) values[d] = independent_sample(pixel, s, samples, seed, d);
     } else {
-        const vec2 place = regular_place(s, lattice);
-        const vec3 pass = regular_pass(s, lattice, samples / (lattice * lattice));
+        const uint cells = regular_cells(lattice, turned);
+        const vec2 place = regular_place(s, lattice, turned);
+        const vec3 pass = regular_pass(s, cells, samples / cells);
         values = float[5](place.x, place.y, pass.x, pass.y, pass.z);
     }
     values[0] += float(in_tile.x);
@@ -56,7 +58,9 @@ std::vector<std::uint32_t> table_on_device(const SampleTable& table, Vec2i tile)
         glUniform2i(0, tile.x, tile.y);
         glUniform1ui(1, samples);
         glUniform1ui(2, table.seed());
-        glUniform1ui(3, table.sampling() == Sampling::Regular ? table.lattice() : 0);
+        const bool regular = table.sampling() == Sampling::Regular;
+        glUniform1ui(3, regular ? static_cast<GLuint>(table.lattice().side) : 0);
+        glUniform1i(4, table.lattice().turned);
         glDispatchCompute((256 * samples + 63) / 64, 1, 1);
         gl::check("filling a sample table");
         return buffer.read<std::uint32_t>();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/error.h"
 #include "hider/sample_bits.h"
@@ -195,22 +196,76 @@ TEST(SampleTable, RegularIsALatticeInEveryPass) {
     Options options = make_options(15, Sampling::Regular);  // nearest square: 16
     options.time_samples = 5;
     const SampleTable table(options, lens_camera());
-    ASSERT_EQ(table.lattice(), 4);
-    ASSERT_EQ(table.samples(), 80);
+    ASSERT_EQ(table.lattice().cells(), 17);
+    ASSERT_EQ(table.samples(), 85);
     TileSamples s;
     table.fill_tile({0, 0}, {true, true}, s);
     for (int p = 0; p < 256; ++p)
-        for (int i = 0; i < 80; ++i) {
-            const int at = p * 80 + i, cell = i % 16, pass = i / 16;
-            EXPECT_EQ(s.x[at],
-                      static_cast<float>(p % 16) + (static_cast<float>(cell % 4) + .5f) / 4);
-            EXPECT_EQ(s.y[at],
-                      static_cast<float>(p / 16) + (static_cast<float>(cell / 4) + .5f) / 4);
+        for (int i = 0; i < 85; ++i) {
+            const int at = p * 85 + i, cell = i % 17, pass = i / 17;
+            EXPECT_EQ(s.x[at], static_cast<float>(p % 16) + s.x[cell]);
+            EXPECT_EQ(s.y[at], static_cast<float>(p / 16) + s.y[cell]);
             EXPECT_NEAR(s.t[at], (pass + .5) / 5, 1e-6);
-            EXPECT_EQ(s.u[at], s.u[pass * 16]);
+            EXPECT_EQ(s.u[at], s.u[pass * 17]);
         }
+}
+
+TEST(SampleTable, RegularWithOnePassIsSquare) {
+    Options options = make_options(15, Sampling::Regular);
+    options.time_samples = 5;
+    const SampleTable table(options, Camera(), {false, true});
+    ASSERT_EQ(table.samples(), 16);
     EXPECT_EQ(SampleTable(options, lens_camera(), {false, false}).samples(), 16);
-    EXPECT_EQ(SampleTable(options, Camera(), {false, true}).samples(), 16);
+    TileSamples s;
+    table.fill_tile({0, 0}, {false, false}, s);
+    for (int p = 0; p < 256; ++p)
+        for (int i = 0; i < 16; ++i) {
+            EXPECT_EQ(s.x[p * 16 + i],
+                      static_cast<float>(p % 16) + (static_cast<float>(i % 4) + .5f) / 4);
+            EXPECT_EQ(s.y[p * 16 + i],
+                      static_cast<float>(p / 16) + (static_cast<float>(i / 4) + .5f) / 4);
+        }
+}
+
+TEST(SampleTable, TurnedLatticesShareNoColumnAndNoRow) {
+    for (const int side : {2, 3, 4, 5, 8, 15, 32, 256}) {
+        const RegularLattice lattice(side, true);
+        const int n = side * side + 1;
+        ASSERT_EQ(lattice.cells(), n);
+        std::set<std::pair<int, int>> texels;
+        std::vector<int> row_of(n, -1);
+        for (int cell = 0; cell < n; ++cell) {
+            const Vec2f place = lattice.place(cell);
+            EXPECT_NEAR(place.x, (cell + .5) / n, 0x1p-20);
+            const int row = static_cast<int>(place.y * static_cast<float>(n));
+            EXPECT_NEAR(place.y, (row + .5) / n, 0x1p-20);
+            row_of[static_cast<std::size_t>(cell)] = row;
+            // Texels are squares turned by atan(1 / side), a sample at the centre of each.
+            const Vec2i texel = lattice.texel(cell);
+            texels.insert({texel.x, texel.y});
+            const double half = side % 2 == 1 ? 0.5 : 0.0;
+            EXPECT_NEAR(side * place.x + place.y, texel.x + .5, 1e-3) << side;
+            EXPECT_NEAR(side * place.y - place.x + half, texel.y + .5, 1e-3) << side;
+        }
+        EXPECT_EQ(texels.size(), static_cast<std::size_t>(n));
+        for (int cell = 0; cell < n; ++cell)  // its own mirror image about the pixel's centre
+            EXPECT_EQ(row_of[cell] + row_of[n - 1 - cell], n - 1);
+        std::sort(row_of.begin(), row_of.end());
+        for (int row = 0; row < n; ++row) EXPECT_EQ(row_of[row], row);
+    }
+}
+
+TEST(SampleTable, TurnedTexelsAreAlignedWithWholePixels) {
+    const RegularLattice lattice(3, true);
+    EXPECT_EQ(lattice.first_texel({2, 5}), Vec2i(3 * 2 + 5, 3 * 5 - 2));
+    const Rect texels = lattice.texels_of({2, 5, 4, 9});
+    for (int y = 5; y < 9; ++y)
+        for (int x = 2; x < 4; ++x)
+            for (int cell = 0; cell < lattice.cells(); ++cell) {
+                const Vec2i at = lattice.first_texel({x, y}) + lattice.texel(cell);
+                EXPECT_TRUE(at.x >= texels.x0 && at.x < texels.x1 && at.y >= texels.y0 &&
+                            at.y < texels.y1);
+            }
 }
 
 TEST(SampleTable, RefusesWhatItCannotIndex) {

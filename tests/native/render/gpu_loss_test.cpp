@@ -57,7 +57,7 @@ std::shared_ptr<Scene> make_scene(Sampling sampling) {
         scene->materials.push_back(material);
         GeometryData sheet;
         sheet.name = "mesh 'Sheet'";
-        const float x0 = 5.3f + 9.0f * k, y0 = 3.7f + 13.0f * k, z = 3.0f - k;
+        const float x0 = 5.3f + 9.0f * k, y0 = 3.71f + 13.0f * k, z = 3.0f - k;
         sheet.points = {{x0, y0, z}, {x0 + 50, y0 + 5, z}, {x0 + 45, y0 + 40, z}, {x0, y0 + 38, z}};
         sheet.face_sizes = {4};
         sheet.corner_verts = {0, 1, 2, 3};
