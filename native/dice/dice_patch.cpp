@@ -152,6 +152,7 @@ std::unique_ptr<Grid> Patch::dice() const {
     grid->n_v = layout.n_v;
     grid->knots = knots;
     grid->holdout = m_mesh->instance().holdout;
+    grid->lifespan = m_mesh->instance().lifespan;
     grid->positions = std::move(samples.positions);
     if (displaced) {
         const float bound = m_mesh->displacement(grid->material).bound;

@@ -70,6 +70,7 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
     grid->instance = static_cast<std::uint32_t>(m_mesh->instance_index());
     grid->material = m_mesh->material(patch(0).face);
     grid->holdout = m_mesh->instance().holdout;
+    grid->lifespan = m_mesh->instance().lifespan;
     grid->apart = true;
     grid->n_u = static_cast<int>(count);
     grid->n_v = 1;

@@ -13,10 +13,16 @@ void finish_motion(Grid& grid, const Projection& projection) {
         grid.motion = !std::equal(grid.positions.begin(),
                                   grid.positions.begin() + static_cast<std::ptrdiff_t>(count),
                                   grid.positions.begin() + k * static_cast<std::ptrdiff_t>(count));
-    if (!grid.motion) {
+    if (!grid.motion && grid.lifespan.is_whole()) {
         grid.knots = 1;
         grid.positions.resize(count);
+    } else if (grid.knots == 1) {
+        grid.knots = 2;
+        grid.positions.resize(2 * count);
+        std::copy_n(grid.positions.begin(), count,
+                    grid.positions.begin() + static_cast<std::ptrdiff_t>(count));
     }
+    grid.motion = grid.knots > 1;
     grid.bounds = raster_bound(projection, grid.positions);
 }
 

@@ -7,8 +7,9 @@
 
 namespace granita {
 
-/// Once positions are set at every knot: whether the grid moves (where it does not, one knot is
-/// kept), and its swept bounds.
+/// Once lifespan and positions at every knot are set: whether the grid moves (where it does not,
+/// one knot is kept), and its swept bounds.  What is still and appears or vanishes has equal knots:
+/// all that follows then knows it as something that depends on time.
 void finish_motion(Grid& grid, const Projection& projection);
 /// Then, where it moves: `p` of the vertices, their positions at the frame time.
 void set_frame_positions(Grid& grid, const Knots& knots);

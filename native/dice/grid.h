@@ -27,6 +27,7 @@
 
 #include "math/bounds.h"
 #include "math/vec.h"
+#include "scene/lifespan.h"
 
 namespace granita {
 
@@ -82,7 +83,9 @@ struct Grid {
     float point_share = 1.0f;
 
     RasterBounds bounds;   ///< swept over shutter and lens
-    bool motion = false;   ///< knots differ
+    bool motion = false;   ///< knots differ, or it does not exist throughout
+    Lifespan lifespan;     ///< when it exists; less than the shutter only with motion, so that what
+                           ///< is always there costs no test
     bool holdout = false;  ///< Instance::holdout: hides what is behind and cuts alpha, adds nothing
     std::uint64_t bytes() const;
 

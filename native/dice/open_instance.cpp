@@ -58,6 +58,7 @@ RasterBounds instance_bounds(const View& view, std::size_t index) {
     const Instance& instance = view.scene->instances[index];
     const std::size_t geometry = static_cast<std::size_t>(instance.geometry);
     const GeometryData& data = view.scene->geometries[geometry];
+    if (instance.lifespan.is_empty()) return {};
     const auto boxes = view.geometries->boxes(*view.scene, geometry);
     const Knots knots = combine_knots(*view.scene, instance, data, data.knots == 1);
     if (!knots.finite) return {};

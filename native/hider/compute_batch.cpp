@@ -33,6 +33,13 @@ Rect touched(const SimdGrid& grid, const int vertex[4], int segment, const Rect&
     return pixels.intersect({pixel(x0), pixel(y0), pixel(x1) + 1, pixel(y1) + 1});
 }
 
+/// When the grid exists, ends included: what lies just before a half-open interval's end belongs to
+/// it.  Anything for what is always there, whose entries may mean a lens coordinate.
+Interval life_of(const SimdGrid& grid) {
+    if (grid.lifespan.is_whole()) return {};
+    return {grid.lifespan.open, std::nextafter(grid.lifespan.close, -INFINITY)};
+}
+
 }  // namespace
 
 void ComputeBatch::add(const SimdGrid& grid, std::uint32_t tile, const Rect& pixels,
@@ -42,6 +49,7 @@ void ComputeBatch::add(const SimdGrid& grid, std::uint32_t tile, const Rect& pix
     if (vertices * sizeof(Vec4f) > m_limits.buffer_bytes)
         throw GlError("a grid of " + std::to_string(grid.vertices) +
                       " vertices is too big for the compute executor");
+    const Interval life = life_of(grid);
     for (int segment = 0; segment < std::max(1, grid.segments); ++segment) {
         std::uint32_t first_vertex = kNotYet;
         for (int m = 0; m < grid.n_u * grid.n_v; ++m) {
@@ -73,7 +81,7 @@ void ComputeBatch::add(const SimdGrid& grid, std::uint32_t tile, const Rect& pix
                 grid.classes[m],
                 0.0f,
                 0.0f};
-            add_to_blocks(entry, tile, range, MicropolygonSweep(grid, vertex, segment));
+            add_to_blocks(entry, tile, range, MicropolygonSweep(grid, vertex, segment), life);
         }
     }
 }
@@ -90,14 +98,14 @@ std::uint32_t ComputeBatch::add_vertices(const SimdGrid& grid, int segment) {
 }
 
 void ComputeBatch::add_to_blocks(ComputeEntry entry, std::uint32_t tile, const Rect& pixels,
-                                 const MicropolygonSweep& sweep) {
+                                 const MicropolygonSweep& sweep, const Interval& life) {
     for (int y = pixels.y0 / kBlockSide; y <= (pixels.y1 - 1) / kBlockSide; ++y)
         for (int x = pixels.x0 / kBlockSide; x <= (pixels.x1 - 1) / kBlockSide; ++x) {
             const Interval seen = sweep.over(
                 {x * kBlockSide, y * kBlockSide, (x + 1) * kBlockSide, (y + 1) * kBlockSide});
-            if (seen.from > seen.to) continue;
-            entry.from = seen.from;
-            entry.to = seen.to;
+            entry.from = std::max(seen.from, life.from);
+            entry.to = std::min(seen.to, life.to);
+            if (!(entry.from <= entry.to)) continue;
             const auto block = static_cast<std::uint32_t>(y * kBlocks + x);
             const std::uint32_t list =
                 (tile * kBlocksOfTile + block) * 2 + (entry.kind & kTransparent ? 1 : 0);

@@ -58,7 +58,7 @@ class ComputeBatch {
 
   private:
     void add_to_blocks(ComputeEntry entry, std::uint32_t tile, const Rect& pixels,
-                       const MicropolygonSweep& sweep);
+                       const MicropolygonSweep& sweep, const Interval& life);
     std::uint32_t add_vertices(const SimdGrid& grid, int segment);
 
     ComputeLimits m_limits;

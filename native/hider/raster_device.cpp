@@ -80,6 +80,7 @@ gl::Program RasterDevice::make_program(RasterOutput output) const {
     if (m_samples) {
         defines.emplace_back("MOTION", m_samples->needs().time ? "1" : "0");
         defines.emplace_back("LENS", m_samples->needs().lens ? "1" : "0");
+        defines.emplace_back("LIFESPANS", m_frame.lifespans ? "1" : "0");
     }
     return gl::Program("grids",
                        {{GL_VERTEX_SHADER, gl::shader_source(shaders + ".vert", defines)},
@@ -111,8 +112,9 @@ std::vector<RasterDevice::Command> RasterDevice::commands(
             if (!seen.in_pass(range.first_grid, range.end_grid, passes.still ? 0 : pass))
                 return false;
             if (range.knots == 1 || m_samples) return true;
-            const double t = m_frame.passes[pass].t;
-            return reaches(geometry.bounds_at(range, m_frame.projection, t), cell);
+            const float t = m_frame.passes[pass].t;
+            return range.lifespan.contains(t) &&
+                   reaches(geometry.bounds_at(range, m_frame.projection, t), cell);
         };
         while (first < end && !touches(first)) ++first;
         while (end > first && !touches(end - 1)) --end;

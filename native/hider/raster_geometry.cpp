@@ -63,7 +63,8 @@ void RasterGeometry::append(const Grid& grid, Triangles& triangles) {
     const auto base = static_cast<std::uint32_t>(m_vertex_grids.size());
     const auto vertices = static_cast<std::uint32_t>(grid.vertex_count());
     const auto knots = static_cast<std::uint32_t>(knots_of(grid));
-    m_places.push_back({base, static_cast<std::uint32_t>(m_positions.size()), vertices, knots});
+    m_places.push_back(
+        {base, static_cast<std::uint32_t>(m_positions.size()), vertices, knots, grid.lifespan});
     m_vertex_grids.insert(m_vertex_grids.end(), vertices, index);
     // Static: all knots are equal.
     m_positions.insert(m_positions.end(), grid.positions.begin(),
@@ -97,10 +98,11 @@ void RasterGeometry::append_range(std::vector<Range>& ranges, const Grid& grid, 
     if (count == 0) return;
     const int knots = knots_of(grid), vertices = grid.vertex_count();
     const bool join = combine && !ranges.empty() && ranges.back().knots == knots &&
+                      ranges.back().lifespan == grid.lifespan &&
                       ranges.back().index_count + count <= kCombinedIndices;
     if (!join) {
         const auto number = static_cast<std::uint32_t>(m_places.size()) - 1;
-        ranges.push_back({first, 0, knots, number, number, {}, m_boxes.size()});
+        ranges.push_back({first, 0, knots, grid.lifespan, number, number, {}, m_boxes.size()});
         m_boxes.resize(m_boxes.size() + static_cast<std::size_t>(knots));
     }
     Range& range = ranges.back();
@@ -141,7 +143,7 @@ std::vector<Vec4f> RasterGeometry::radiance() const {
         if (m_grids[g]->holdout) continue;
         const std::vector<Vec3f>& radiance = m_grids[g]->radiance;
         for (std::size_t v = 0; v < radiance.size(); ++v)
-            colors[m_places[g][0] + v] = Vec4f(radiance[v], 1.0f);
+            colors[m_places[g].vertex + v] = Vec4f(radiance[v], 1.0f);
     }
     return colors;
 }
@@ -150,14 +152,14 @@ std::vector<Vec4f> RasterGeometry::opacity() const {
     std::vector<Vec4f> values(m_vertex_grids.size(), Vec4f(1.0f));
     for (std::size_t g = 0; g < m_grids.size(); ++g)
         for (std::size_t v = 0; v < m_grids[g]->opacity.size(); ++v)
-            values[m_places[g][0] + v] =
+            values[m_places[g].vertex + v] =
                 Vec4f(m_grids[g]->opacity[v], m_grids[g]->holdout ? 1.0f : 0.0f);
     return values;
 }
 
 RasterGeometry::Place RasterGeometry::locate(std::uint32_t vertex) const {
     const std::uint32_t grid = m_vertex_grids.at(vertex);
-    const auto local = static_cast<int>(vertex - m_places[grid][0]);
+    const auto local = static_cast<int>(vertex - m_places[grid].vertex);
     return {m_inputs[grid], m_grids[grid]->micropolygon_at(local)};
 }
 

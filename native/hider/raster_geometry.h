@@ -24,9 +24,16 @@ class RasterGeometry {
         std::uint32_t first_index = 0;  ///< of `indices`
         std::uint32_t index_count = 0;
         int knots = 1;                               ///< 1: does not move
+        Lifespan lifespan;                           ///< of all of them
         std::uint32_t first_grid = 0, end_grid = 0;  ///< by key: those that it is of are among them
         RasterBounds swept;                          ///< over shutter and lens
         std::size_t first_box;                       ///< of the camera-space boxes at its knots
+    };
+    /// As raster/grid_places.glsl has it.
+    struct GridPlace {
+        std::uint32_t vertex, position;  ///< the first of each
+        std::uint32_t vertices, knots;   ///< vertices of a knot
+        Lifespan lifespan;
     };
     struct Place {
         std::uint32_t input;  ///< index in the list handed over
@@ -45,8 +52,7 @@ class RasterGeometry {
 
     const std::vector<Vec3f>& positions() const { return m_positions; }
     const std::vector<std::uint32_t>& vertex_grids() const { return m_vertex_grids; }
-    /// First vertex, first position, vertices of a knot, knots: as raster/grid.vert has it.
-    const std::vector<std::array<std::uint32_t, 4>>& grid_places() const { return m_places; }
+    const std::vector<GridPlace>& grid_places() const { return m_places; }
     /// Two triangles a micropolygon, its corner 0 first in both.
     const std::vector<std::uint32_t>& indices() const { return m_indices; }
     /// In the order of their keys.
@@ -79,7 +85,7 @@ class RasterGeometry {
 
     std::vector<const Grid*> m_grids;  ///< by key
     std::vector<std::uint32_t> m_inputs;
-    std::vector<std::array<std::uint32_t, 4>> m_places;
+    std::vector<GridPlace> m_places;
     std::vector<Range> m_opaque, m_transparent;
     std::vector<Bounds3f> m_boxes;
     std::vector<Vec3f> m_positions;

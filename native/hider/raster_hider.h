@@ -53,6 +53,7 @@ struct RasterFrame {
     /// Not REGULAR: places, times and lens points of all samples, in one pass; `filter` gathers.
     const SampleTable* table = nullptr;
     SampleNeeds needs;               ///< of `table`
+    bool lifespans = false;          ///< some grids do not exist throughout the shutter
     float opacity_threshold = 1.0f;  ///< as CompositeSettings::opacity_threshold
     bool film_transparent = true;    ///< alpha is what surfaces cover
     int z_batch_size = 26;           ///< transparent grids that are peeled together

@@ -90,6 +90,7 @@ class ReferenceHider : public Hider {
             for (int x = pixels.x0; x < pixels.x1; ++x)
                 for (int s = 0; s < samples; ++s) {
                     const auto i = static_cast<std::uint32_t>((y * kTileSize + x) * samples + s);
+                    if (!exists(grid, tile, i)) continue;
                     const SurfaceHit hit = test(grid, corners, kind, tile, i);
                     if (!hit.hit) continue;
                     ++hits;
@@ -100,6 +101,10 @@ class ReferenceHider : public Hider {
                                                                  : Counter::SampleTestsStatic,
                           static_cast<std::uint64_t>(pixels.width()) * pixels.height() * samples);
         m_statistics->add(Counter::SampleHits, hits);
+    }
+
+    bool exists(const Grid& grid, std::size_t tile, std::uint32_t i) const {
+        return grid.lifespan.is_whole() || grid.lifespan.contains(m_tiles.samples(tile).t[i]);
     }
 
     SurfaceHit test(const Grid& grid, const int corners[4], unsigned triangles, std::size_t tile,

@@ -93,14 +93,18 @@ class SimdHider : public Hider {
             if (working.tile) working.tile->fragments = {};
     }
 
-    /// By the grid's bounds over the shutter or, where it moves, by those of each part of it.
+    /// By the grid's bounds while it exists or, where it moves, by those of each part of the
+    /// shutter.
     bool tile_hides(std::size_t i, const Grid& grid, std::vector<TimeSlab>& slabs) const {
-        if (tile_hides(i, grid.bounds, 0.0f, 1.0f)) return true;
+        const Lifespan& life = grid.lifespan;
+        if (tile_hides(i, grid.bounds, std::max(0.0f, life.open), std::min(life.close, 1.0f)))
+            return true;
         if (!grid.motion || !m_working[i].tile || !m_working[i].tile->hides_something())
             return false;
         if (slabs.empty()) slabs = time_slabs(grid, m_projection);
         return std::all_of(slabs.begin(), slabs.end(), [&](const TimeSlab& slab) {
-            return !slab.bounds.visible || tile_hides(i, slab.bounds, slab.t0, slab.t1);
+            return !slab.bounds.visible || !life.meets(slab.t0, slab.t1) ||
+                   tile_hides(i, slab.bounds, slab.t0, slab.t1);
         });
     }
 

@@ -275,6 +275,10 @@ class Kernel {
             if (m_where.segment + 1 < m_grid.segments)
                 touched = hn::And(touched, hn::Lt(local, set(1.0f)));
         }
+        if (kMoving && m_grid.lifespan.close <= 1.0f)
+            touched = hn::And(touched, hn::Lt(at.t, set(m_grid.lifespan.close)));
+        if (kMoving && m_grid.lifespan.open > 0.0f)
+            touched = hn::And(touched, hn::Ge(at.t, set(m_grid.lifespan.open)));
         const M clean = hn::And(touched, is_clean(a, b));
         const V z0 = corner_at<kMoving>(shape, 0, local).z;
         const V z1 = corner_at<kMoving>(shape, 1, local).z;

@@ -9,6 +9,7 @@
 #include "hider/depth_blocks.h"
 #include "hider/micropolygon.h"
 #include "hider/sample_store.h"
+#include "scene/lifespan.h"
 
 namespace granita {
 
@@ -42,6 +43,7 @@ struct SimdGrid {
     int n_u = 0, n_v = 0, vertices = 0;
     int right = 1, up = 0;  ///< Grid::right(), Grid::up()
     int segments = 0;       ///< knots - 1; 0 = static
+    Lifespan lifespan;      ///< Grid::lifespan
     const std::uint8_t* classes = nullptr;
     SurfaceId base = 0;
     const GridPool* pool = nullptr;

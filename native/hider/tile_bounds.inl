@@ -108,9 +108,11 @@ class TileBounds {
         const V t1 = hn::Min(hn::Min(to[0], to[1]), hn::Min(to[2], to[3]));
         const V widen = set(0x1p-18f), start = set(static_cast<float>(segment));
         const V scale = set(1.0f / static_cast<float>(m_grid.segments));
-        hn::StoreU((start + t0 - widen) * scale - widen, kTag, out.t0);
-        hn::StoreU((start + t1 + widen) * scale + widen, kTag, out.t1);
-        return hn::Le(t0, t1 + widen);
+        const V first = hn::Max((start + t0 - widen) * scale - widen, set(m_grid.lifespan.open));
+        const V last = hn::Min((start + t1 + widen) * scale + widen, set(m_grid.lifespan.close));
+        hn::StoreU(first, kTag, out.t0);
+        hn::StoreU(last, kTag, out.t1);
+        return hn::And(hn::Le(t0, t1 + widen), hn::Le(first, last));
     }
 
     /// Ranks [first, end) may look while the micropolygon is over the tile; `lane` of the last

@@ -40,6 +40,7 @@ void TileGrid::project(const Vec2d& origin, SimdGrid& out) {
     out.up = grid.up();
     out.vertices = grid.vertex_count();
     out.segments = grid.motion ? grid.knots - 1 : 0;
+    out.lifespan = grid.lifespan;
     out.inverse_focus = m_inverse_focus;
     out.lens_x = m_lens_x;
     out.lens_y = m_lens_y;

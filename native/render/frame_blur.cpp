@@ -12,6 +12,9 @@
 namespace granita {
 namespace {
 
+/// What appears or vanishes is off by at most half a pass: .02, as the ripple of longest_step().
+constexpr int kLifespanPasses = 25;
+
 /// What an instance's motion is measured at: the corners of its box where all of it moves as one,
 /// which bound the motion of what is inside, else all points.
 std::vector<Vec3d> points_at(const View& view, const Instance& instance, const KnotTime& time) {
@@ -88,7 +91,8 @@ int automatic_passes(const View& view, const PixelFilter& filter, Report& report
         report.warn("render settings", "REGULAR sampling stops at " + std::to_string(kMostPasses) +
                                            " time samples; this frame's blur wants more, and "
                                            "copies may show");
-    return pass_count(blur, step);
+    const int passes = pass_count(blur, step);
+    return view.scene->has_lifespans() ? std::max(passes, kLifespanPasses) : passes;
 }
 
 }  // namespace granita

@@ -73,6 +73,7 @@ RasterFrame make_raster_frame(const Scene& scene, const Projection& projection,
                                              filter.is_box(), factor);
         frame.table = &table;
         frame.needs = {scene.moves(), scene.camera.projection.has_lens()};
+        frame.lifespans = scene.has_lifespans();
     }
     frame.opacity_threshold = scene.options.opacity_threshold;
     frame.film_transparent = scene.options.film_transparent;

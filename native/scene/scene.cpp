@@ -6,11 +6,16 @@
 namespace granita {
 
 bool Scene::moves() const {
-    return camera.world_from_camera.size() > 1 ||
+    return camera.world_from_camera.size() > 1 || has_lifespans() ||
            std::any_of(instances.begin(), instances.end(), [&](const Instance& instance) {
                return instance.world_from_object.size() > 1 ||
                       geometries[static_cast<std::size_t>(instance.geometry)].knots > 1;
            });
+}
+
+bool Scene::has_lifespans() const {
+    return std::any_of(instances.begin(), instances.end(),
+                       [](const Instance& instance) { return !instance.lifespan.is_whole(); });
 }
 
 }  // namespace granita

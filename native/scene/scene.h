@@ -9,6 +9,7 @@
 
 #include "scene/camera.h"
 #include "scene/geometry_data.h"
+#include "scene/lifespan.h"
 #include "scene/light.h"
 #include "scene/node_graph.h"
 #include "scene/options.h"
@@ -20,6 +21,7 @@ struct Instance {
     int geometry = 0;
     std::vector<Mat4d> world_from_object;  ///< [K] equidistant knots; one = static
     std::vector<Mat4d> neighbours;         ///< as Camera::neighbours
+    Lifespan lifespan;                     ///< when it exists; places are given throughout
     std::vector<std::int32_t>
         materials;  ///< [slots] index in Scene::materials, -1 = none (Blender's default grey)
     bool visible_camera = true;
@@ -40,8 +42,10 @@ struct Scene {
     std::vector<Light> lights;
     World world;
 
-    /// Whether camera or geometry has more than one knot.
+    /// Whether camera or geometry has more than one knot, or something appears or vanishes.
     bool moves() const;
+    /// Whether some instance does not exist throughout the shutter.
+    bool has_lifespans() const;
 };
 
 }  // namespace granita

@@ -36,4 +36,14 @@ ShutterWarp::ShutterWarp(const std::vector<float>& opening) {
     }
 }
 
+float ShutterWarp::uniform(float time) const {
+    if (m_time.empty()) return time;
+    const auto after = std::upper_bound(m_time.begin(), m_time.end(), time);
+    if (after == m_time.begin()) return 0.0f;
+    if (after == m_time.end()) return 1.0f;
+    const float before = *(after - 1);
+    const auto cell = static_cast<float>(after - m_time.begin() - 1);
+    return (cell + (time - before) / (*after - before)) / kCells;
+}
+
 }  // namespace granita

@@ -21,6 +21,9 @@ class ShutterWarp {
                (place - static_cast<float>(cell)) * (m_time[cell + 1] - m_time[cell]);
     }
 
+    /// The number that time() turns into this one of [0, 1].
+    float uniform(float time) const;
+
   private:
     static constexpr int kCells = 4096;
     std::vector<float> m_time;  ///< [kCells + 1]

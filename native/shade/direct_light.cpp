@@ -96,12 +96,12 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
     varies = varies || casters_move;
 }
 
-/// The point at a time drawn by `uniform` in [0, 1) through the shutter; at the frame time where
-/// nothing that light depends on changes.
+/// The point at a time of its life drawn by `uniform` in [0, 1) through the shutter; at the frame
+/// time where nothing that light depends on changes.
 LitPlace DirectLight::Impl::place_at(const LitPoint& point, float uniform) const {
     LitPlace place = point.at_frame;
     if (!varies) return place;
-    place.time = shutter.time(uniform);
+    place.time = shutter.time(point.exposed.x + uniform * (point.exposed.y - point.exposed.x));
     if (!point.paths.moves()) return place;
     place.p = point.paths.position(point.index, place.time);
     place.normal = point.paths.normal(point.index, place.time);
@@ -311,6 +311,9 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     const std::uint64_t seed = grid_seed(key, m_impl->scene.options.seed);
     const std::size_t columns = points.columns > 0 ? points.columns : points.count;
     LitGrid grid{radiance, parts, {}, {}};
+    const Lifespan& life = paths.lifespan();
+    const Vec2f exposed(m_impl->shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),
+                        m_impl->shutter.uniform(std::clamp(life.close, 0.0f, 1.0f)));
     // Points that lie closer share the light that a pixel's worth of them is due.
     const int sample_count = std::max(
         1, static_cast<int>(std::lround(points.share * static_cast<float>(m_impl->sample_count))));
@@ -332,7 +335,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         // them, are stratified as one (Ahmed and Wonka 2020, without their shuffling of squares).
         const std::uint32_t place = morton_index(static_cast<std::uint32_t>(i % columns),
                                                  static_cast<std::uint32_t>(i / columns));
-        LitPoint point{i, bsdf, paths, key, at_frame, sample_count, seed, place, {}};
+        LitPoint point{i, bsdf, paths, key, at_frame, sample_count, seed, place, exposed, {}};
         m_impl->light_point(grid, point);
     }
     if (m_impl->environment) m_impl->look(grid, grid.blurred, m_impl->environment->texel_angle());

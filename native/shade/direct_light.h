@@ -45,8 +45,8 @@ class DirectLight {
     bool varies() const;
 
     /// Radiance reflected by the closure's lobes towards the view, [points.count]: the mean over
-    /// the shutter of what arrives, on the surface as it is at the frame time.  Fills `parts`
-    /// where given.
+    /// the shutter, as far as the points are there, of what arrives, on the surface as it is at the
+    /// frame time.  Fills `parts` where given.
     std::vector<Vec3f> reflect(const ShadingPoints& points, const SurfaceClosure& closure,
                                const GridKey& seed, ReflectionParts* parts = nullptr,
                                const PointPaths& paths = {}) const;

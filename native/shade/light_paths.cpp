@@ -69,7 +69,8 @@ Vec3f normal_at(const Grid& grid, const std::vector<Vec3f>& places, std::size_t 
 
 }  // namespace
 
-PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints& points) {
+PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints& points)
+    : m_lifespan(grid.lifespan) {
     if (stands_still(scene, scene.instances[grid.instance])) return;
     // What moves with the camera has one knot in its space: the camera's own count too.
     const auto& camera = scene.camera.world_from_camera;

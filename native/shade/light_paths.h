@@ -20,6 +20,7 @@ class PointPaths {
     PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints& points);
 
     bool moves() const { return m_knots > 1; }
+    const Lifespan& lifespan() const { return m_lifespan; }
     Vec3f position(std::size_t point, float time) const { return at(m_positions, point, time); }
     /// From the position to where rays may start (Grid::ray_offset).
     Vec3f ray_offset(std::size_t point, float time) const {
@@ -31,6 +32,7 @@ class PointPaths {
   private:
     Vec3f at(const std::vector<Vec3f>& values, std::size_t point, float time) const;
 
+    Lifespan m_lifespan;
     int m_knots = 1;
     std::size_t m_count = 0;
     std::vector<Vec3f> m_positions, m_normals;  ///< [knots][points]

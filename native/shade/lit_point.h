@@ -24,10 +24,11 @@ struct LitPoint {
     const PointPaths& paths;
     const GridKey& key;
     LitPlace at_frame;
-    int sample_count = 1;      ///< of a soft light, of the world's image, of all lobes together
-    std::uint64_t seed;        ///< of the grid
-    std::uint32_t place;       ///< in the grid, along Morton's curve
-    std::vector<int> samples;  ///< [lobes] taken of each lobe; 0 for sharp ones
+    int sample_count = 1;       ///< of a soft light, of the world's image, of all lobes together
+    std::uint64_t seed;         ///< of the grid
+    std::uint32_t place;        ///< in the grid, along Morton's curve
+    Vec2f exposed{0.0f, 1.0f};  ///< the part of the shutter's light that it is there for
+    std::vector<int> samples;   ///< [lobes] taken of each lobe; 0 for sharp ones
 
     /// This point's `count` samples of a sequence that the grid shares.  Each takes as many as it
     /// uses: if all left out the ends of equal runs, all would miss the same strata.

@@ -64,11 +64,15 @@ std::int32_t material_of(const Instance& instance, std::int32_t slot) {
     return instance.materials[static_cast<std::size_t>(std::clamp(slot, 0, last))];
 }
 
+/// How instances use a geometry; for all but the first, hits are looked at one by one.
+enum Use : std::uint8_t { kCasts = 1, kLetsLightThrough = 2, kAppears = 4 };
+
 /// What an instance tells a ray.
 struct RayInstance {
     std::uint32_t index = 0;  ///< in Scene::instances
     float scale = 1.0f;       ///< largest stretch of the transform at any knot
     float distance = 0.0f;    ///< of its origin at any knot from that of shading space, metres
+    bool lets_light_through = false;
 };
 
 /// A ray and what is left of its light.
@@ -86,11 +90,14 @@ struct RayScene::Impl {
         : scene(frame_scene), opacity(std::move(shadow_opacity)) {}
 
     void check(const std::string& what, const Progress& progress) const;
-    void build_geometry(int geometry, bool filtered, const Progress& progress);
+    void build_geometry(int geometry, std::uint8_t use, const Progress& progress);
     void add_instance(std::uint32_t index, const Vec3d& origin);
     void add_way(RTCScene geometry, const std::vector<Mat4d>& knots);
+    static bool casts_shadow(const Instance& instance) {
+        return instance.casts_shadow && !instance.lifespan.is_empty();
+    }
     bool lets_light_through(const Instance& instance) const;
-    Vec3f transparency(const RTCRay& ray, const RTCHit& hit, unsigned id) const;
+    Vec3f transparency(const RTCRay& ray, const RTCHit& hit, const RayInstance& instance) const;
     static void pass_through(const RTCFilterFunctionNArguments* arguments);
 
     const Scene& scene;
@@ -121,21 +128,21 @@ bool RayScene::Impl::lets_light_through(const Instance& instance) const {
                        [&](std::int32_t material) { return opacity.is_transparent(material); });
 }
 
-void RayScene::Impl::build_geometry(int index, bool filtered, const Progress& progress) {
+void RayScene::Impl::build_geometry(int index, std::uint8_t use, const Progress& progress) {
     const GeometryData& data = scene.geometries[static_cast<std::size_t>(index)];
     const float time = scene.options.frame_time;
     std::unique_ptr<RayShape> shape;
     if (data.kind == GeometryKind::Mesh)
         shape = std::make_unique<RayMesh>(data, time, progress);
     else
-        shape = std::make_unique<RayElements>(data, time, filtered);
+        shape = std::make_unique<RayElements>(data, time, (use & kLetsLightThrough) != 0);
     const std::string what = data.name + " of " + shape->size();
     Handle<RTCScene> built(rtcNewScene(device.get()));
     rtcSetSceneFlags(built.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(built.get(), RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneProgressMonitorFunction(built.get(), goes_on, const_cast<Progress*>(&progress));
     if (RTCGeometry handed = shape->hand_over(device.get())) {
-        if (filtered) rtcSetGeometryOccludedFilterFunction(handed, pass_through);
+        if (use & ~kCasts) rtcSetGeometryOccludedFilterFunction(handed, pass_through);
         rtcCommitGeometry(handed);
         rtcAttachGeometry(built.get(), handed);
         rtcReleaseGeometry(handed);
@@ -160,6 +167,7 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     }
     RayInstance added;
     added.index = index;
+    added.lets_light_through = lets_light_through(instance);
     bool has_volume = false;
     std::vector<std::array<float, 12>> columns;
     for (Mat4d& m : knots) {
@@ -185,7 +193,7 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     for (unsigned k = 0; k < columns.size(); ++k)
         rtcSetGeometryTransform(node, k, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns[k].data());
     rtcCommitGeometry(node);
-    if (knots.size() > 1 || shapes[geometry]->knots() > 1)
+    if (knots.size() > 1 || shapes[geometry]->knots() > 1 || !instance.lifespan.is_whole())
         add_way(geometries[geometry].get(), knots);
     rtcAttachGeometryByID(top.get(), node, static_cast<unsigned>(instances.size()));
     rtcReleaseGeometry(node);
@@ -211,8 +219,8 @@ void RayScene::Impl::add_way(RTCScene geometry, const std::vector<Mat4d>& knots)
         ways.back().add(way);
 }
 
-Vec3f RayScene::Impl::transparency(const RTCRay& ray, const RTCHit& hit, unsigned id) const {
-    const RayInstance& instance = instances[id];
+Vec3f RayScene::Impl::transparency(const RTCRay& ray, const RTCHit& hit,
+                                   const RayInstance& instance) const {
     const Instance& source = scene.instances[instance.index];
     ShadowHit shadow;
     shadow.instance = instance.index;
@@ -232,16 +240,23 @@ Vec3f RayScene::Impl::transparency(const RTCRay& ray, const RTCHit& hit, unsigne
     return opacity.transparency(shadow);
 }
 
-/// Called for hits on geometry that may let light through: goes on while light is left.  Without
-/// spatial splits (medium quality) Embree meets a triangle once.
+/// Called for hits on geometry that may let light through or not exist: goes on while light is
+/// left. Without spatial splits (medium quality) Embree meets a triangle once.
 void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) {
     if (arguments->valid[0] != -1) return;
     auto* context = reinterpret_cast<ShadowContext*>(arguments->context);
     const auto* scene = static_cast<const Impl*>(context->scene);
+    const RayInstance& instance = scene->instances[arguments->context->instID[0]];
+    const float time = reinterpret_cast<const RTCRay*>(arguments->ray)->time;
+    if (!scene->scene.instances[instance.index].lifespan.contains(time)) {
+        arguments->valid[0] = 0;
+        return;
+    }
+    if (!instance.lets_light_through) return;
     try {
-        context->left *= scene->transparency(*reinterpret_cast<const RTCRay*>(arguments->ray),
-                                             *reinterpret_cast<const RTCHit*>(arguments->hit),
-                                             arguments->context->instID[0]);
+        context->left *=
+            scene->transparency(*reinterpret_cast<const RTCRay*>(arguments->ray),
+                                *reinterpret_cast<const RTCHit*>(arguments->hit), instance);
     } catch (...) {
         context->failure = std::current_exception();  // thrown on after Embree's frames are left
         return;
@@ -253,27 +268,30 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacit
                    const Progress& progress)
     : m_impl(std::make_unique<Impl>(scene, std::move(opacity))) {
     Impl& impl = *m_impl;
-    std::vector<std::uint8_t> used(scene.geometries.size(), 0);  // bit 1: by a shadow, 2: filtered
-    for (const Instance& instance : scene.instances)
-        if (instance.casts_shadow)
-            used[static_cast<std::size_t>(instance.geometry)] |=
-                impl.lets_light_through(instance) ? 3 : 1;
-    if (std::all_of(used.begin(), used.end(), [](std::uint8_t bits) { return bits == 0; })) return;
+    std::vector<std::uint8_t> uses(scene.geometries.size(), 0);
+    for (const Instance& instance : scene.instances) {
+        if (!impl.casts_shadow(instance)) continue;
+        std::uint8_t& use = uses[static_cast<std::size_t>(instance.geometry)];
+        use |= kCasts;
+        if (impl.lets_light_through(instance)) use |= kLetsLightThrough;
+        if (!instance.lifespan.is_whole()) use |= kAppears;
+    }
+    if (std::all_of(uses.begin(), uses.end(), [](std::uint8_t use) { return use == 0; })) return;
     impl.device.reset(rtcNewDevice(nullptr));
     if (!impl.device)
         throw Error("Embree cannot start: error " + std::to_string(rtcGetDeviceError(nullptr)));
     rtcSetDeviceMemoryMonitorFunction(impl.device.get(), add_bytes, &impl.embree_bytes);
     impl.shapes.resize(scene.geometries.size());
     impl.geometries.resize(scene.geometries.size());
-    for (std::size_t g = 0; g < used.size(); ++g) {
+    for (std::size_t g = 0; g < uses.size(); ++g) {
         progress.check();
-        if (used[g]) impl.build_geometry(static_cast<int>(g), (used[g] & 2) != 0, progress);
+        if (uses[g]) impl.build_geometry(static_cast<int>(g), uses[g], progress);
     }
     impl.top.reset(rtcNewScene(impl.device.get()));
     rtcSetSceneFlags(impl.top.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneProgressMonitorFunction(impl.top.get(), goes_on, const_cast<Progress*>(&progress));
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
-        if (scene.instances[i].casts_shadow) impl.add_instance(i, origin);
+        if (impl.casts_shadow(scene.instances[i])) impl.add_instance(i, origin);
     rtcCommitScene(impl.top.get());
     impl.check("scene of " + std::to_string(impl.instances.size()) + " instances", progress);
     // Embree keeps the pointer; the frame's progress may die before the scene does.

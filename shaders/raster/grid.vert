@@ -14,11 +14,9 @@
 #extension GL_ARB_shader_viewport_layer_array : require
 #endif
 #include "raster/grid_output.glsl"
-#include "shared/raster_layout.h"
+#include "raster/grid_places.glsl"
 
 layout(std430, binding = RASTER_POSITIONS) readonly buffer Positions { float positions[]; };
-// First vertex, first position, vertices of a knot, knots.
-layout(std430, binding = RASTER_GRIDS) readonly buffer Grids { uvec4 grids[]; };
 // Shutter time, lens point in metres.
 layout(std430, binding = RASTER_PASSES) readonly buffer Passes { vec4 passes[]; };
 
@@ -60,16 +58,16 @@ dvec3 position(uint i) {
 }
 
 void main() {
-    const uvec4 grid = grids[grid_index];
+    const GridPlace grid = grids[grid_index];
     const vec4 pass = passes[first_pass + layer];
-    uint i = grid.y + uint(gl_VertexID) - grid.x;
+    uint i = grid.position + uint(gl_VertexID) - grid.vertex;
     dvec3 p = position(i);
-    if (grid.w > 1u) {
-        const double place = double(pass.x) * double(grid.w - 1u);
-        const uint segment = min(uint(place), grid.w - 2u);
-        i += segment * grid.z;
+    if (grid.knots > 1u) {
+        const double place = double(pass.x) * double(grid.knots - 1u);
+        const uint segment = min(uint(place), grid.knots - 2u);
+        i += segment * grid.vertices;
         p = position(i);
-        p += (place - double(segment)) * (position(i + grid.z) - p);
+        p += (place - double(segment)) * (position(i + grid.vertices) - p);
     }
 #if PERSPECTIVE
     const double w = p.z;

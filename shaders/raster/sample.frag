@@ -4,7 +4,7 @@
 //
 // Corners are projected, moved and tested as compute/corner.glsl does it, relative to the sample's
 // tile of 16 pixels, so a sample sees what it sees on the other executors.
-// Defines: MOTION, LENS 0 or 1; OUTPUT as in leave.glsl.
+// Defines: MOTION, LENS, LIFESPANS 0 or 1; OUTPUT as in leave.glsl.
 #include "compute/corner.glsl"
 #include "raster/leave.glsl"
 #include "raster/samples.glsl"
@@ -18,6 +18,9 @@ flat in vec3 begin[3];
 #if MOTION
 flat in vec3 end[3];
 flat in uvec2 segment;
+#endif
+#if LIFESPANS
+flat in vec2 lifespan;
 #endif
 #if HAS_RADIANCE
 layout(std430, binding = RASTER_VERTEX_RADIANCE) readonly buffer Radiance { vec4 radiance[]; };
@@ -42,6 +45,9 @@ void main() {
     const ivec2 texel = ivec2(gl_FragCoord.xy);
     if (!has_sample(texel)) discard;
     const vec4 here = sample_at(texel);  // x, y in its tile, t
+#if LIFESPANS
+    if (!(here.z >= lifespan.x && here.z < lifespan.y)) discard;
+#endif
     const dvec2 origin = dvec2(tile_of(texel) * 16);
     vec4 c[4];
     for (int k = 0; k < 3; ++k) c[k] = homogeneous(begin[k], origin);

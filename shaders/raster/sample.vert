@@ -4,14 +4,12 @@
 // attributes.  The fragment program gets the triangle's corners as they are: reading them there, a
 // sample at a time, took llvmpipe most of its time.
 //
-// Defines: PERSPECTIVE, MOTION 0 or 1.  Samples lie anywhere in their pixels, so the quadrilateral consists
+// Defines: PERSPECTIVE, MOTION, LIFESPANS 0 or 1.  Samples lie anywhere in their pixels, so the quadrilateral consists
 // of whole pixels.  Between knots vertices move linearly before projection: what lies in front of the
 // near clip stays between its projections at the knots, whatever the lens point.
-#include "shared/raster_layout.h"
+#include "raster/grid_places.glsl"
 
 layout(std430, binding = RASTER_POSITIONS) readonly buffer Positions { float positions[]; };
-// First vertex, first position, vertices of a knot, knots.
-layout(std430, binding = RASTER_GRIDS) readonly buffer Grids { uvec4 grids[]; };
 layout(std430, binding = RASTER_TRIANGLES) readonly buffer Triangles { uint triangles[]; };
 layout(std430, binding = RASTER_VERTEX_GRIDS) readonly buffer VertexGrids { uint vertex_grids[]; };
 
@@ -29,25 +27,32 @@ flat out vec3 begin[3];
 flat out vec3 end[3];
 flat out uvec2 segment;  // and how many; 0: does not move
 #endif
+#if LIFESPANS
+flat out vec2 lifespan;
+#endif
 
 void main() {
     const uint triangle = uint(gl_VertexID) / 6u, k = uint(gl_VertexID) % 6u;
     corners = uvec3(triangles[3u * triangle], triangles[3u * triangle + 1u],
                     triangles[3u * triangle + 2u]);
     grid_here = vertex_grids[corners.x];
-    const uvec4 grid = grids[grid_here];
+    const GridPlace grid = grids[grid_here];
+#if LIFESPANS
+    lifespan = vec2(grid.open, grid.close);
+#endif
     vec2 lo = vec2(1.0), hi = vec2(-1.0);
     bool behind = false, before = false;
 #if MOTION
-    segment = uvec2(gl_InstanceID, grid.w - 1u);
-    const uint knots = min(grid.w, 2u);
+    segment = uvec2(gl_InstanceID, grid.knots - 1u);
+    const uint knots = min(grid.knots, 2u);
 #else
     const uint knots = 1u;
 #endif
     for (uint knot = 0u; knot < knots; ++knot)
         for (int i = 0; i < 3; ++i) {
             const uint at =
-                3u * (grid.y + (uint(gl_InstanceID) + knot) * grid.z + corners[i] - grid.x);
+                3u * (grid.position + (uint(gl_InstanceID) + knot) * grid.vertices + corners[i] -
+                      grid.vertex);
             const vec3 corner = vec3(positions[at], positions[at + 1u], positions[at + 2u]);
             const dvec3 p = dvec3(corner);
             if (knot == 0u) begin[i] = corner;

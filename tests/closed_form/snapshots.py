@@ -57,6 +57,7 @@ def _snapshot(size, camera, options):
             "world_from_object": [],
             "slots": [],
             "materials": [],
+            "lifespan": [],
         },
         "materials": [],
     }
@@ -80,7 +81,7 @@ def emission(snapshot, color=(1, 1, 1), alpha=None):
     return index
 
 
-def mesh(snapshot, points, faces, material=None, transforms=None, **extra):
+def mesh(snapshot, points, faces, material=None, transforms=None, lifespan=(0.0, 1.0), **extra):
     """Adds a mesh and one instance of it.
 
     points: [V,3] or [K,V,3]; faces: list of vertex index lists; transforms: [K,4,4] world_from_object, default identity.
@@ -98,11 +99,12 @@ def mesh(snapshot, points, faces, material=None, transforms=None, **extra):
             **extra,
         }
     )
-    instance(snapshot, index, material, transforms)
+    instance(snapshot, index, material, transforms, lifespan)
     return index
 
 
-def instance(snapshot, geometry, material=None, transforms=None):
+def instance(snapshot, geometry, material=None, transforms=None, lifespan=(0.0, 1.0)):
+    """Adds one; `lifespan`: when it exists, of the shutter."""
     transforms = np.eye(4)[None] if transforms is None else np.asarray(transforms, float)
     table = snapshot["instances"]
     table["name"].append(f"Object {len(table['name'])}")
@@ -111,6 +113,7 @@ def instance(snapshot, geometry, material=None, transforms=None):
     table["world_from_object"].extend(transforms)
     table["slots"].append(1)
     table["materials"].append(-1 if material is None else material)
+    table["lifespan"].append(lifespan)
 
 
 def rectangle(x0, y0, x1, y1, z=1.0):
@@ -146,6 +149,7 @@ def render(snapshot):
         "world_from_object": np.array(table["world_from_object"], float).reshape(-1, 4, 4),
         "slots": np.array(table["slots"], np.int32),
         "materials": np.array(table["materials"], np.int32),
+        "lifespan": np.array(table["lifespan"], np.float32).reshape(-1, 2),
     }
     if "flags" in table:
         packed["flags"] = np.array(table["flags"], np.uint32)

@@ -19,7 +19,10 @@ inline RasterFrame raster_frame(const Shot& shot, const SampleTable& table) {
     frame.opacity_threshold = shot.composite.end.opacity_threshold;
     frame.film_transparent = shot.composite.film_transparent;
     SampleNeeds needs{false, shot.camera.projection.has_lens()};
-    for (const Grid& grid : shot.grids) needs.time |= grid.motion;
+    for (const Grid& grid : shot.grids) {
+        needs.time |= grid.motion;
+        frame.lifespans |= !grid.lifespan.is_whole();
+    }
     const auto box = [](double d) { return std::fabs(d) <= 0.5 ? 1.0 : 0.0; };
     if (table.sampling() != Sampling::Regular) {
         frame.filter = make_gathering_filter(sample_lattice(table.samples()), 0.5, true, box);
