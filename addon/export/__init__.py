@@ -16,6 +16,7 @@ from .frame_scene import FrameScene
 from .instance import place
 from .motion import sample_motion
 from .neighbours import read_neighbours
+from .newcomers import with_newcomers
 from .options import options_record, scene_frame
 from .path import no_tracks
 from .persistent import Kept
@@ -66,36 +67,37 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         placed = read_placed(depsgraph, None, report, check_cancel)
     world, lights, images = _lighting(depsgraph, placed, report)
     placed.choose(report)
-    scan, sources = placed.scan, placed.sources
     at_frame = FrameScene(
         depsgraph=depsgraph,
         camera=camera,
         camera_blurs=blurs(camera),
         camera_record=camera_at_frame,
         frame=frame,
-        visit=scan,
+        visit=placed.scan,
         plain=placed.plain,
-        sources=sources,
+        sources=placed.sources,
         geometry_of_kind=placed.table.geometry,
         is_light=placed.is_light,
         energies={thing: light["energy"] for thing, light in lights},
     )
     fps = scene.render.fps / scene.render.fps_base
-    tracks, points, neighbours = no_tracks(), {}, {}
+    tracks, points, neighbours, lifespans, seen = no_tracks(), {}, {}, ([], []), placed
     if shutter.segments:
         motion = sample_motion(clock, shutter, at_frame, report, check_cancel)
         camera_at_frame["world_from_camera"] = motion.camera
-        tracks, points = motion.tracks, motion.points
+        tracks, points, lifespans = motion.tracks, motion.points, motion.lifespans
+        seen = with_newcomers(placed, at_frame.visit, depsgraph, report, check_cancel)
         for thing, light in lights:
             if thing in motion.energies:
                 light["energy_knots"] = motion.energies[thing]
-        points.update(flying_points(sources, shutter, fps))
+        points.update(flying_points(seen.sources, shutter, fps))
+    scan = seen.scan
     _place_lights(lights, scan, tracks, report)
-    instances = place(placed.instances, scan, placed.chosen, tracks, report)
+    instances = place(seen.instances, scan, seen.chosen, tracks, lifespans, report)
     if view_layer.use_pass_vector:
         found = read_neighbours(clock, at_frame, fps, report, check_cancel)
         camera_at_frame["neighbours"] = found.camera
-        instances = found.instances(instances, scan, placed.chosen)
+        instances = found.instances(instances, scan, seen.chosen)
         neighbours = found.points
     if kept is not None:
         kept.keep(placed)
@@ -104,14 +106,18 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         camera=camera_at_frame,
         geometries=[
             source.exported(points.get(index), neighbours.get(index))
-            for index, source in enumerate(sources)
+            for index, source in enumerate(seen.sources)
         ],
         instances=instances,
-        materials=placed.materials,
-        images=images,
+        materials=seen.materials,
+        images=_each_once(images + seen.images),
         lights=[light for _, light in lights],
         world=world,
     ).as_dict()
+
+
+def _each_once(images):
+    return list({image["name"]: image for image in images}.values())
 
 
 def _render_camera(engine, scene):

@@ -12,7 +12,7 @@ The rules of that iterator, each learnt the hard way:
 """
 
 from array import array
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import SimpleNamespace
 
@@ -58,6 +58,8 @@ class Visit:
     identity: np.ndarray  # uint64 [n], unique, the same at every time and in every frame
     random: np.ndarray  # uint32 [n], Blender's random id; 0 where it is no instance
     is_instance: np.ndarray  # bool [n]
+    persistent: np.ndarray  # int32 [n, 2], of the persistent id: particles' index, their system's
+    hashes: np.ndarray  # uint64 [kinds], of names
     cages: dict  # address of an evaluated object -> its Cage or None
 
     @cached_property
@@ -70,17 +72,41 @@ class Visit:
         """bool [n]; `move` keeps it true."""
         return has_area(self.matrices)
 
+    def same_kinds(self, now):
+        """int [kinds of another Visit]: index in `kinds`, -1 = none.  Several of one name, as nodes make
+        them, go by their order where there are as many."""
+        found = np.full(len(now.kinds), -1)
+        for value in np.unique(now.hashes):
+            here, there = np.flatnonzero(self.hashes == value), np.flatnonzero(now.hashes == value)
+            if len(here) == len(there):
+                found[there] = here
+        return found
+
+    def with_more(self, now, which, kind):
+        """A Visit with things of another one after its own.
+
+        Args:
+            now: Visit at another time.
+            which: int [k], things of it.
+            kind: int [k], theirs here.
+        """
+        names = ("matrices", "identity", "random", "is_instance", "persistent")
+        more = {n: np.concatenate([getattr(self, n), getattr(now, n)[which]]) for n in names}
+        return replace(self, kind=np.concatenate([self.kind, kind]).astype(np.int32), **more)
+
     def move(self, thing, matrix):
         """Puts one thing elsewhere; matrix: float64 [4, 4]."""
         self.matrices[thing] = matrix
         self.has_area[thing] = has_area(matrix[None])[0]
 
 
-def kind_again(thing, depsgraph):
-    """The Kind of an evaluated Object that stands for itself, as a visit at the frame finds it; None where
-    it is not rendered.  What there is to report about it was reported by the visit."""
+def kind_again(thing, depsgraph, parent=None):
+    """The Kind of an evaluated Object that stands for itself, or is instanced by another one as it is, as a
+    visit at the frame finds it; None where it is not rendered.  What there is to report about it was
+    reported by the visit."""
     walk = _Walk(depsgraph, lambda _datablock, _message: None, None)
-    index = walk.kind_of(SimpleNamespace(object=thing), False)
+    instance = SimpleNamespace(object=thing, instance_object=thing, parent=parent)
+    index = walk.kind_of(instance, parent is not None)
     return walk.kinds[index] if index >= 0 else None
 
 
@@ -116,14 +142,17 @@ def visit(depsgraph, report, check_cancel, cages=None):
             pass
 
     kind = np.array(kind, dtype=np.int32)
+    persistent = np.array(persistent, dtype=np.int32).reshape(-1, 8)
     hashes = np.array([name_hash(k) for k in walk.kinds], dtype=np.uint64)
     return Visit(
         kinds=walk.kinds,
         kind=kind,
         matrices=np.frombuffer(rows, dtype=np.float64).reshape(-1, 4, 4),
-        identity=combine(hashes[kind], np.array(persistent, dtype=np.int32).reshape(-1, 8)),
+        identity=combine(hashes[kind], persistent),
         random=np.array(random, dtype=np.int32).view(np.uint32),
         is_instance=np.array(is_instance, dtype=bool),
+        persistent=persistent[:, :2].copy(),
+        hashes=hashes,
         cages=walk.cages,
     )
 
@@ -232,6 +261,7 @@ class _Walk:
         kind.parent_address = owners[1].original.as_pointer() if kind.parent is not None else 0
         kind.blurs = all(blurs(owner) for owner in owners)
         kind.fewest_segments = fewest_segments(kind.source)
+        kind.hidden = frozenset(o.original.as_pointer() for o in owners if o.hide_render)
         kind.unbaked = tuple((owner.name, name) for owner in owners for name in unbaked(owner))
         for owner in owners:
             for trouble in troubles(owner):

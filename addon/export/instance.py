@@ -24,6 +24,17 @@ class KindTable:
     object_index: np.ndarray  # int32
     slots: list  # of int32 arrays, material indices
 
+    def with_more(self, names):
+        """A table with more kinds at its end, of which nothing is known but names."""
+        more = np.zeros(len(names), dtype=np.uint32)
+        return KindTable(
+            name=[*self.name, *names],
+            geometry=np.append(self.geometry, np.full(len(names), -1, dtype=np.int32)),
+            flags=np.append(self.flags, more),
+            object_index=np.append(self.object_index, more.astype(np.int32)),
+            slots=[*self.slots, *(np.zeros(0, dtype=np.int32) for _ in names)],
+        )
+
     def renew(self, index, kind, view_layer):
         """Reads the settings of a kind again; whether they are others."""
         before = self.flags[index], self.object_index[index]
@@ -142,13 +153,14 @@ def unplaced_instances(scan, chosen, table):
     )
 
 
-def place(instances, scan, chosen, tracks, report):
-    """The same with places.
+def place(instances, scan, chosen, tracks, lifespans, report):
+    """The same with places, and when they are there.
 
     Args:
         instances: of `unplaced_instances`.
         scan, chosen: as there.
         tracks: path.Tracks of the things of the scan.
+        lifespans: (int [m] things, float32 [m, 2]) of those that come or go within the shutter.
         report: called with (datablock, message).
     """
     matrices, knots = tracks.table(scan.matrices, chosen)
@@ -157,4 +169,9 @@ def place(instances, scan, chosen, tracks, report):
     for i in np.flatnonzero(~scan.has_area[chosen]):
         if not has_area(matrices[first[i] : first[i] + knots[i]]).any():
             report(f"object '{instances.name[i]}'", "is scaled to nothing: not visible")
-    return replace(instances, world_from_object=matrices, knots=knots)
+    lifespan = None
+    if len(lifespans[0]):
+        lifespan = np.tile(np.array([0.0, 1.0], dtype=np.float32), (len(scan.kind), 1))
+        lifespan[lifespans[0]] = lifespans[1]
+        lifespan = lifespan[chosen]
+    return replace(instances, world_from_object=matrices, knots=knots, lifespan=lifespan)

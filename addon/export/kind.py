@@ -28,6 +28,7 @@ class Kind:
     blurs: bool = True
     fewest_segments: int = 1
     unbaked: tuple = ()  # of simulations.unbaked: (object's name, simulation)
+    hidden: frozenset = frozenset()  # addresses of the two, where they are hidden in renders
 
     @property
     def label(self):

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .blur_settings import fewest_segments
+from .newcomers import Newcomers
 from .path import MAX_BEND_PIXELS, Tracks, bends_still, finer_level, keep_fewest, no_tracks
 from .pixels import PixelScale
 from .report import poll
@@ -27,10 +28,13 @@ class Motion:
     tracks: Tracks = field(default_factory=no_tracks)
     points: dict = field(default_factory=dict)  # geometry index -> float32 [K, V, 3]
     energies: dict = field(default_factory=dict)  # thing that shines -> float32 [K]
+    lifespans: tuple = None  # of Steps.lifespans
 
 
 def sample_motion(clock, shutter, scene, report, check_cancel):
     """Visits as many times of the shutter as the paths want, at most `shutter.segments` and one.
+
+    The scene's visit has more things afterwards, where some appear within the shutter (newcomers.py).
 
     Args:
         clock: shutter.Clock, standing at the frame.
@@ -45,7 +49,9 @@ def sample_motion(clock, shutter, scene, report, check_cancel):
     _report_unbaked(scene, report)
     wanted = _wanted_segments(scene)
     ticks = max(shutter.segments, wanted)
-    steps = Steps(scene, round(shutter.frame_time * ticks), report, check_cancel)
+    newcomers = Newcomers(report)
+    frame_tick = round(shutter.frame_time * ticks)
+    steps = Steps(scene, frame_tick, shutter.length / ticks, report, check_cancel, newcomers)
 
     def read(level_ticks):
         for tick in level_ticks:
@@ -69,7 +75,9 @@ def sample_motion(clock, shutter, scene, report, check_cancel):
             f"camera '{scene.camera_record['name']}'",
             "its focus or f-stop changes within the shutter: taken at the frame",
         )
-    return _result(scene, steps, ticks, level)
+    motion = _result(scene, steps, ticks, level)
+    motion.lifespans = steps.lifespans(clock.start)
+    return motion
 
 
 def _report_unbaked(scene, report):

@@ -48,7 +48,7 @@ def read_neighbours(clock, scene, fps, report, check_cancel):
             datablock, "its topology changes between frames: Vector holds its place's motion alone"
         )
 
-    steps = Steps(scene, _TWO_FRAMES.frame_tick, lose, check_cancel)
+    steps = Steps(scene, _TWO_FRAMES.frame_tick, 1.0, lose, check_cancel)
     with cages_only(scene.cages(), scene.depsgraph):
         try:
             for tick in _ENDS:

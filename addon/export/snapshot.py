@@ -68,6 +68,7 @@ class Instances:
     random: np.ndarray  # float32 [n], 0 to 1
     key: np.ndarray  # uint32 [n], unique; from the persistent identity
     neighbours: Optional[np.ndarray] = None  # float64 [2 n, 4, 4], as of geometries
+    lifespan: Optional[np.ndarray] = None  # float32 [n, 2], within the shutter; None = all of it
 
 
 @dataclass

@@ -4,8 +4,9 @@
 import numpy as np
 
 from .camera import camera_knot, lens_state
-from .changes import changed_geometry, lights_changed, moved
+from .changes import changed_geometry, lights_changed, moved, originals
 from .depsgraph import visit
+from .lifespan import complete, lifespans, particle_life, runs
 from .report import poll
 from .subdivision import cage_mesh
 from .transforms import is_finite
@@ -20,8 +21,13 @@ class Steps:
         focus_moves: whether lens or focus are another at any tick.
     """
 
-    def __init__(self, scene, frame_tick, report, check_cancel):
+    def __init__(self, scene, frame_tick, tick_frames, report, check_cancel, newcomers=None):
         self._scene = scene
+        self._tick_frames = tick_frames  # frames a tick
+        self._newcomers = (
+            newcomers  # newcomers.Newcomers; None: what is not at the frame is not there
+        )
+        self._at_frame = len(scene.visit.kind)  # things from here on are newcomers
         self._report = report
         self._check_cancel = check_cancel
         self._plain = scene.plain
@@ -33,6 +39,8 @@ class Steps:
         # As things were at the last time that was visited.
         self._now = scene.visit.matrices.copy()
         self._present = np.ones(len(self._now), dtype=bool)
+        self._stays = ~scene.visit.is_instance  # throughout the shutter, even where it is not seen
+        self._lives = {}  # thing that came or went -> lifespan.Life or None
         self._touched = np.zeros(len(self._now), dtype=bool)
         self._last_points = {}
         self.frame_tick = frame_tick
@@ -55,13 +63,19 @@ class Steps:
             changes = self._plain.changes(self._scene.depsgraph) if knows_updates else None
             if knows_updates:
                 self._changed |= changed_geometry(self._scene.depsgraph)
-            if changes is None:
+            if changes is None or self._may_make_instances(changes):
                 self._walk(knows_updates)
             else:
                 self._take(changes)
         things = np.flatnonzero(self._touched)
         self._records[tick] = (things, self._present[things], self._now[things])
         self._point_records[tick] = dict(self._last_points)
+
+    def _may_make_instances(self, changes):
+        """What has nothing to show at the frame may have nodes that make instances now."""
+        kinds = self._scene.visit.kind[list(changes.objects)]
+        nothing = (self._scene.geometry_of_kind < 0) & ~self._scene.is_light
+        return bool(nothing[kinds].any())
 
     def _report_gone(self):
         for name in self._plain.gone():
@@ -103,11 +117,17 @@ class Steps:
         scan = self._scene.visit
         now = visit(self._scene.depsgraph, _silent, self._check_cancel, scan.cages)
         here, there = match(scan.identity, scan.order, now.identity)
+        if self._newcomers is not None and len(there) < len(now.kind):
+            self._take_newcomers(now, there)
+            scan = self._scene.visit
+            here, there = match(scan.identity, scan.order, now.identity)
         usable = is_finite(now.matrices[there]) & self._can_blur[here]
+        self._stays[here[~is_finite(now.matrices[there])]] = True
         self._present[:] = ~self._can_blur
         self._present[here[usable]] = True
         self._now[here[usable]] = now.matrices[there[usable]]
         self._touched |= ~self._present | (self._now != scan.matrices).any(axis=(1, 2))
+        self._look_at(np.flatnonzero(~self._present & ~self._stays))
         place = np.full(len(scan.kind), -1)
         place[here] = there
         for index, source in enumerate(self._scene.sources):
@@ -119,6 +139,46 @@ class Steps:
             elif not knows_updates or self._changed & source.pointers:
                 kind = now.kinds[now.kind[place[source.example]]]
                 self._read_points(index, source, kind.source, kind.data, kind.cage)
+
+    def _take_newcomers(self, now, known):
+        new = now.is_instance & is_finite(now.matrices)
+        new[known] = False
+        which, kind = self._newcomers.find(self._scene, now, np.flatnonzero(new))
+        if len(which) == 0:
+            return
+        self._scene.visit = self._scene.visit.with_more(now, which, kind)
+        more = len(which)
+        self._now = np.concatenate([self._now, now.matrices[which]])
+        self._present, self._touched, self._can_blur = (
+            np.concatenate([mask, np.ones(more, dtype=bool)])
+            for mask in (self._present, self._touched, self._can_blur)
+        )
+        self._stays = np.concatenate([self._stays, np.zeros(more, dtype=bool)])
+        count = len(self._now)
+        self._look_at(np.arange(count - more, count))
+
+    def _look_at(self, things):
+        """What came or went: why, while it can be asked.  What is hidden now and not at the frame stays:
+        an animated visibility belongs to the frame."""
+        things = [int(thing) for thing in things if thing not in self._lives]
+        everything = originals() if things else {}
+        scan, hidden = self._scene.visit, {}
+        for thing in things:
+            kind = scan.kinds[scan.kind[thing]]
+            owners = [
+                everything[address].evaluated_get(self._scene.depsgraph)
+                for address in (kind.address, kind.parent_address)
+                if address in everything
+            ]
+            if scan.kind[thing] not in hidden:
+                hidden[scan.kind[thing]] = any(
+                    owner.hide_render and owner.original.as_pointer() not in kind.hidden
+                    for owner in owners
+                )
+            self._stays[thing] = hidden[scan.kind[thing]]
+            if not self._stays[thing]:
+                life = particle_life(owners[-1], *scan.persistent[thing]) if owners else None
+                self._lives[thing] = life
 
     def _deforms(self, index, source):
         return source.deforms and index not in self._rigid
@@ -146,21 +206,51 @@ class Steps:
     def places(self):
         """(int [m] things that ever move, {tick: float64 [m, 4, 4]})."""
         things = np.flatnonzero(self._touched)
-        at_frame = self._scene.visit.matrices[things]
-        path = {self.frame_tick: at_frame}
-        absent = {}
-        for tick, (known, present, matrices) in self._records.items():
-            row = np.searchsorted(things, known)
-            path[tick] = at_frame.copy()
-            path[tick][row] = matrices
-            absent[tick] = np.zeros(len(things), dtype=bool)
-            absent[tick][row] = ~present
-        for tick, nearer in hold_order(self.ticks, self.frame_tick):
-            path[tick][absent[tick]] = path[nearer][absent[tick]]
-        moves = np.zeros(len(things), dtype=bool)
-        for matrices in path.values():
-            moves |= (matrices != at_frame).any(axis=(1, 2))
-        return things[moves], {tick: path[tick][moves] for tick in sorted(path)}
+        ticks = sorted(self.ticks)
+        path = np.repeat(self._scene.visit.matrices[things][None], len(ticks), axis=0)
+        for tick, (known, _, matrices) in self._records.items():
+            path[ticks.index(tick), np.searchsorted(things, known)] = matrices
+        rows, first, last = self._comers_and_goers(things, ticks)
+        if len(rows):
+            partial = path[:, rows]
+            complete(partial, ticks, first, last, *self._going_on(things[rows]))
+            path[:, rows] = partial
+        moves = (path != path[:1]).any(axis=(0, 2, 3))
+        return things[moves], {tick: path[i, moves] for i, tick in enumerate(ticks)}
+
+    def lifespans(self, start):
+        """(int [m] things that come or go, float32 [m, 2] when they exist: of lifespan.lifespans).
+
+        Args:
+            start: Blender's frame.
+        """
+        ticks = sorted(self.ticks)
+        things = np.flatnonzero(self._touched)
+        rows, first, last = self._comers_and_goers(things, ticks)
+        goes = ~self._stays[things[rows]]
+        things, first, last = things[rows[goes]], first[goes], last[goes]
+        lives = [self._lives.get(int(thing)) for thing in things]
+        own = np.array(
+            [(np.nan, np.nan) if life is None else (life.birth, life.death) for life in lives]
+        ).reshape(-1, 2)
+        own = ((own - start) / self._tick_frames + self.frame_tick) / ticks[-1]
+        return things, lifespans(np.array(ticks) / ticks[-1], first, last, *own.T)
+
+    def _comers_and_goers(self, things, ticks):
+        """Which of the things that were touched are not there at every tick, by index; and the runs of ticks
+        at which they are."""
+        seen = np.repeat((things < self._at_frame)[None], len(ticks), axis=0)
+        for tick, (known, present, _) in self._records.items():
+            seen[ticks.index(tick), np.searchsorted(things, known)] = present
+        rows = np.flatnonzero(~seen.all(axis=0))
+        return rows, *runs(seen[:, rows], ticks.index(self.frame_tick))
+
+    def _going_on(self, things):
+        """(float64 [m, 3] metres a tick of what is seen at one tick, bool [m] whether it goes on at all)."""
+        lives = [self._lives.get(int(thing)) for thing in things]
+        velocity = [np.zeros(3) if life is None else life.velocity for life in lives]
+        velocity = np.reshape(velocity, (-1, 3)) * self._tick_frames
+        return velocity, ~self._stays[things]
 
     def energies(self):
         """{thing: {tick: float64 [1]}} of lights whose strength changes."""

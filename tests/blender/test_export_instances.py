@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scene_parts
 from mesh_parts import cube_in_view  # noqa: F401
+from node_parts import hidden_collection, instances_on_line
 
 from granita.export import Cancelled
 
@@ -16,14 +17,6 @@ from granita.export import Cancelled
 def instances_of(snapshot, name):
     """Indices of the instances of an object."""
     return [i for i, own in enumerate(snapshot["instances"]["name"]) if own == name]
-
-
-def hidden_collection(scene, thing):
-    """A collection that is in no scene, holding just this object."""
-    collection = bpy.data.collections.new("Part")
-    collection.objects.link(thing)
-    scene.collection.objects.unlink(thing)
-    return collection
 
 
 def collection_instances(scene, cube, count=5):
@@ -72,26 +65,7 @@ def by_particles(scene, cube):
 
 
 def by_nodes(scene, cube, count=9):
-    """Geometry nodes: a line of points, an instance of the object on each."""
-    tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
-    if hasattr(tree, "interface"):
-        tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
-    else:
-        tree.outputs.new("NodeSocketGeometry", "Geometry")
-    line = tree.nodes.new("GeometryNodeMeshLine")
-    line.inputs["Count"].default_value = count
-    line.inputs["Offset"].default_value = (3, 0, 0)
-    info = tree.nodes.new("GeometryNodeObjectInfo")
-    info.inputs["Object"].default_value = cube
-    info.inputs["As Instance"].default_value = True
-    place = tree.nodes.new("GeometryNodeInstanceOnPoints")
-    output = tree.nodes.new("NodeGroupOutput")
-    tree.links.new(line.outputs["Mesh"], place.inputs["Points"])
-    tree.links.new(info.outputs["Geometry"], place.inputs["Instance"])
-    tree.links.new(place.outputs["Instances"], output.inputs[0])
-    host = scene_parts.add_square(scene, "Host")
-    host.modifiers.new("Nodes", "NODES").node_group = tree
-    hidden_collection(scene, cube)
+    instances_on_line(scene, cube, count)
     return count
 
 

@@ -101,9 +101,8 @@ def test_particles_are_blurred_as_in_cycles(stage, render, build):
 
 
 def test_particles_keep_their_identity_through_births_and_deaths(stage):
-    """Each goes its own way: none jumps to where another was.  Those of the frame are there, throughout the
-    shutter; those that are born after it are not: as many as there are at any time.  (Cycles hides
-    whatever does not live through all of it.)"""
+    """Each goes its own way: none jumps to where another was.  Each is there while it lives, to the fraction
+    of a frame.  (Cycles hides whatever does not live through the whole shutter.)"""
     those_that_are_born_and_die(stage)
     played(stage)
     snapshot, _, _ = export_probe.through_engine(stage)
@@ -115,9 +114,71 @@ def test_particles_keep_their_identity_through_births_and_deaths(stage):
         np.linalg.norm(places[first[i] + instances["knots"][i] - 1] - places[first[i]])
         for i in flying
     ]
-    living = stage.objects["Emitter"].evaluated_get(bpy.context.evaluated_depsgraph_get())
-    states = [p.alive_state for p in living.particle_systems[0].particles]
-    # The flake itself stands far below.
-    assert len(instances["name"]) == states.count("ALIVE") + 1
     # 4 metres a second, and less up against gravity: at most .16 m in a frame of 1/24 s.
     assert len(flying) > 20 and max(steps) < 0.2
+    living = stage.objects["Emitter"].evaluated_get(bpy.context.evaluated_depsgraph_get())
+    lives = [
+        (max(0.0, p.birth_time - 9.5), min(p.die_time - 9.5, 1.0))
+        for p in living.particle_systems[0].particles
+        if p.birth_time < 10.5 and p.die_time > 9.5
+    ]
+    # The flake itself stands far below.
+    expected = np.array(sorted([*lives, (0.0, 1.0)]))
+    assert np.array(sorted(instances["lifespan"].tolist())) == pytest.approx(expected, abs=1e-5)
+    comes = [open for open, close in lives if open > 0]
+    goes = [close for open, close in lives if close < 1]
+    assert len(comes) > 5 and len(goes) > 5
+
+
+@pytest.mark.parametrize(
+    "birth, lifetime, alone, alpha",
+    [
+        (9.8, 50, False, 0.7),
+        (10.2, 50, False, 0.3),
+        (5.0, 5.25, False, 0.75),
+        (10.2, 50, True, 0.3),
+    ],
+    ids=["born before the frame", "born after it", "dying", "the first of its kind"],
+)
+def test_a_particle_that_is_born_or_dies_covers_its_share_of_the_shutter(
+    stage, render, birth, lifetime, alone, alpha
+):
+    """One particle, as large as the picture; the shutter is open from 9.5 to 10.5."""
+    thing = flake(stage, size=40.0)
+    thing.location.x = 500.0  # out of the picture itself
+    system = emitter(
+        stage,
+        count=1,
+        frame_start=birth,
+        frame_end=birth,
+        lifetime=lifetime,
+        normal_factor=0.0,
+        render_type="OBJECT",
+        instance_object=thing,
+    )
+    system.effector_weights.gravity = 0.0
+    if alone:
+        stage.collection.objects.unlink(thing)
+        hidden = bpy.data.collections.new("Elsewhere")
+        hidden.objects.link(thing)
+    played(stage)
+    stage.granita.samples = 64
+    stage.granita.pixel_filter, stage.granita.filter_width = "BOX", 1.0
+    passes = render(stage, "GRANITA")
+    values = next(values for key, values in passes.items() if key.endswith("Combined.A"))
+    # A pixel has a sample in each 64th of the shutter.
+    assert values[8:-8, 8:-8] == pytest.approx(alpha, abs=1 / 64 + 1e-5)
+
+
+def test_a_spray_is_the_same_frame_by_frame_with_persistent_data(stage):
+    """What appears within one frame's shutter is not kept for the next."""
+    those_that_are_born_and_die(stage)
+    played(stage)
+
+    def counts(persistent):
+        return [
+            (len(job.snapshot["instances"]["name"]), job.snapshot["instances"]["lifespan"].tolist())
+            for job in export_probe.frame_by_frame(stage, (9, 10, 11), persistent=persistent)
+        ]
+
+    assert counts(True) == counts(False)

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""When instances exist that come and go within the shutter; particles: test_motion_particles.py."""
+
+import bpy
+import export_probe
+import numpy as np
+import pytest
+import scene_parts
+from motion_parts import drive, set_position, with_shutter
+from node_parts import instances_on_line
+
+
+@pytest.fixture
+def moving(scene):
+    """The shutter is open from 9.75 to 10.25."""
+    return with_shutter(scene)
+
+
+def line(scene, count):
+    """As many squares in a row as `count`, a formula of the frame, says; the number of persistent ids
+    too."""
+    part = scene_parts.add_square(scene, "Part", 0.5)
+    tree, node = instances_on_line(scene, part, 3)
+    drive(tree, f'nodes["{node.name}"].inputs["Count"].default_value', count)
+
+
+def lives(snapshot):
+    """{x: lifespan} of the instances, by where they are at first."""
+    instances = snapshot["instances"]
+    first = np.cumsum(instances["knots"]) - instances["knots"]
+    xs = instances["world_from_object"][first, 0, 3]
+    return {float(x): tuple(life) for x, life in zip(xs, instances["lifespan"])}
+
+
+# Read at 5 times with 17 steps: 9.75, 9.875, 10, 10.125, 10.25; and at 3 with 3.
+@pytest.mark.parametrize(
+    "count, steps, expected",
+    [
+        ("3 if frame < 10.05 else 4", 17, {9: (0.625, 1)}),
+        ("3 if frame < 9.9 else 4", 17, {9: (0.375, 1)}),
+        ("3 if frame < 9.9 else 4", 3, {9: (0.25, 1)}),
+        ("4 if frame < 10.05 else 3", 17, {9: (0, 0.625)}),
+        ("2 if frame < 9.9 else 3 if frame < 10.05 else 4", 17, {6: (0.375, 1), 9: (0.625, 1)}),
+        ("4 if 9.9 < frame < 10.05 else 3", 17, {9: (0.375, 0.625)}),
+        # Comes back: it is there around the frame alone.
+        ("3 if frame < 9.8 or 9.9 < frame < 10.05 else 2", 17, {6: (0.375, 0.625)}),
+    ],
+)
+def test_instances_of_nodes_come_and_go_half_way(moving, count, steps, expected):
+    line(moving, count)
+    snapshot, report, _ = export_probe.through_engine(moving, motion_steps=steps)
+    found = lives(snapshot)
+    assert {x: life for x, life in found.items() if life != (0.0, 1.0)} == expected
+    assert set(found) >= {0.0, 3.0} and len(report) == 0
+
+
+@pytest.mark.parametrize("position, open", [("START", 0.625), ("END", None)])
+def test_what_comes_later_belongs_to_the_shutter_and_nothing_beyond_it(moving, position, open):
+    """The shutter from 10 to 10.5, or from 9.5 to 10."""
+    set_position(moving, position)
+    line(moving, "3 if frame < 10.3 else 4")
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
+    if open is None:
+        assert "lifespan" not in snapshot["instances"] and len(snapshot["instances"]["name"]) == 3
+    else:
+        assert lives(snapshot)[9.0] == (open, 1.0)
+
+
+def test_what_comes_later_goes_along_its_own_way(moving):
+    """It is seen at the last two of five times, and lies on their line before."""
+    line(moving, "3 if frame < 10.05 else 4")
+    drive(moving.objects["Host"], "location", "4 * frame", 1)
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
+    instances = snapshot["instances"]
+    late = [i for i, life in enumerate(instances["lifespan"]) if life[0] > 0]
+    first = np.cumsum(instances["knots"]) - instances["knots"]
+    (i,) = late
+    ends = instances["world_from_object"][first[i] : first[i] + instances["knots"][i], 1, 3]
+    assert ends == pytest.approx([39.0, 41.0], abs=1e-4)
+
+
+def test_an_animated_visibility_belongs_to_the_frame(moving):
+    """Of the instancer, of an object, of what is instanced."""
+    line(moving, "3")
+    collection = bpy.data.collections.new("Group")
+    inside = scene_parts.add_square(moving, "Inside")
+    collection.objects.link(inside)
+    moving.collection.objects.unlink(inside)
+    place = scene_parts.add_object(moving, "Place", None)
+    place.instance_type, place.instance_collection = "COLLECTION", collection
+    plain = scene_parts.add_square(moving, "Plain")
+    for thing in (moving.objects["Host"], inside, plain):
+        thing.keyframe_insert("hide_render", frame=9)
+        thing.hide_render = True
+        thing.keyframe_insert("hide_render", frame=10.1)
+        thing.keyframe_insert("hide_render", frame=11)
+        thing.hide_render = False
+    moving.frame_set(9)
+    moving.frame_set(10)
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
+    assert sorted(snapshot["instances"]["name"]) == ["Inside", "Part", "Part", "Part", "Plain"]
+    assert "lifespan" not in snapshot["instances"]
+
+
+def test_a_later_frame_with_persistent_data_is_the_same_as_without(moving):
+    line(moving, "3 if frame < 10.05 else 4")
+
+    def frames(persistent):
+        return [
+            (len(job.snapshot["instances"]["name"]), lives(job.snapshot))
+            if "lifespan" in job.snapshot["instances"]
+            else len(job.snapshot["instances"]["name"])
+            for job in export_probe.frame_by_frame(
+                moving, (9, 10, 11), persistent=persistent, motion_steps=17
+            )
+        ]
+
+    found = frames(True)
+    assert found == frames(False)
+    assert found[0] == 3 and found[1][0] == 4 and found[2] == 4
+
+
+def test_the_first_of_its_kind_brings_its_own_material(moving):
+    line(moving, "0 if frame < 10.05 else 1")
+    paint = bpy.data.materials.new("Paint")
+    moving.objects.get("Part", bpy.data.objects["Part"]).data.materials.append(paint)
+    snapshot, report, _ = export_probe.through_engine(moving, motion_steps=17)
+    instances = snapshot["instances"]
+    assert instances["name"] == ["Part"] and instances["lifespan"].tolist() == [[0.625, 1.0]]
+    assert [m["name"] for m in snapshot["materials"]] == ["Paint"]
+    assert instances["materials"].tolist() == [0] and len(report) == 0
+
+
+def test_two_that_take_turns_cover_everything_once(moving, render):
+    """The instances of two objects at one place, of which one goes when the other comes."""
+    part = scene_parts.add_square(moving, "Part", 40.0)
+    for name, count in (("First", "frame < 10.1"), ("Second", "frame >= 10.1")):
+        tree, node = instances_on_line(moving, part, 1, name)
+        drive(tree, f'nodes["{node.name}"].inputs["Count"].default_value', f"1 if {count} else 0")
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
+    assert sorted(snapshot["instances"]["lifespan"].tolist()) == [[0.0, 0.625], [0.625, 1.0]]
+    moving.granita.samples = 16
+    moving.render.film_transparent = True
+    passes = render(moving, "GRANITA")
+    values = next(values for key, values in passes.items() if key.endswith("Combined.A"))
+    assert (values == 1.0).all()
