@@ -26,6 +26,7 @@ static_assert(kPacket == 16);
 
 void DepthBlocks::reset(const SampleOrder& order, const RankBounds& bounds) {
     m_bounds = &bounds;
+    m_packets = &order.packets();
     m_blocks_wide = order.blocks_wide();
     m_ranks = order.ranks();
     m_ranked = order.shape().ranked;
@@ -57,9 +58,11 @@ void DepthBlocks::rebuild(const float* keys) {
 void DepthBlocks::rebuild_packets(const float* keys) {
     for (std::size_t p = 0; p < m_packet.size(); ++p)
         m_packet[p] = least_of_packet(keys + p * kPacket);
-    const int packets = m_ranks / kPacket;
-    for (std::size_t b = 0; b < m_block.size(); ++b)
-        m_block[b] = *std::min_element(&m_packet[b * packets], &m_packet[b * packets] + packets);
+    const std::uint32_t* packet = m_packets->data();
+    for (float& block : m_block) {
+        block = INFINITY;
+        for (int i = 0; i < m_ranks; i += kPacket) block = std::min(block, m_packet[*packet++]);
+    }
 }
 
 void DepthBlocks::rebuild_ranks(const float* keys) {

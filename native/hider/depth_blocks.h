@@ -29,7 +29,7 @@ class DepthBlocks {
     bool hide(const Rect& pixels, float time0, float time1, float nearest_key) const;
     /// Whether any rebuild has happened since reset().
     bool filled() const { return m_filled; }
-    /// [block][packet]; not of a ranked order.
+    /// [slot / kPacket]; not of a ranked order.
     const float* farthest_of_packets() const { return m_packet.data(); }
     /// [square][rank], squares row by row, 2^square_shift() blocks a side; of a ranked order.
     const float* farthest_of_ranks() const { return m_rank.data(); }
@@ -44,6 +44,7 @@ class DepthBlocks {
     bool hide_in_square(std::size_t square, float time0, float time1, float limit) const;
 
     const RankBounds* m_bounds = nullptr;
+    const std::vector<std::uint32_t>* m_packets = nullptr;
     int m_blocks_wide = 0, m_ranks = 0, m_square_shift = 0;
     bool m_ranked = false;
     std::uint64_t m_writes = 0;

@@ -3,7 +3,8 @@
 // so that every device makes the same bits (design, section 5 and decision 15).
 //
 //   seed  = block_seed(table_seed, pixel_x >> 7, pixel_y >> 7)       blocks of 128 pixels
-//   index = morton(pixel_x & 127, pixel_y & 127) * samples + s
+//   place = morton(pixel_x & 127, pixel_y & 127) * samples + s
+//   index = sequence_place(place, square_digits(samples))            sixteen a square
 //   bits  = owen(sobol_reversed(index, d), dimension_seed(seed, d))  d: 0 x, 1 y, 2 t, 3 u, 4 v
 //
 // 32 fraction bits each; x and y keep the upper 20 (tile coordinates stay exact in a float), t, u,
@@ -86,6 +87,38 @@ GRANITA_BITS_FN uint reverse_bits(uint x) {
     x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
     x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
     return (x >> 16) | (x << 16);
+}
+
+/// 4^m squares of a pixel that a table of 16 * 4^m samples a pixel goes through one by one, sixteen
+/// samples in each; 0 for other numbers of samples.
+GRANITA_BITS_FN uint square_digits(uint samples) {
+    uint m = 0u;
+    while (m < 4u && (16u << (2u * m)) < samples) ++m;
+    return (16u << (2u * m)) == samples ? m : 0u;
+}
+
+/// Bits 0 to 3 of a place, each as the m bits of a place that change the first m digits of y alike:
+/// [m][bit].
+#define GRANITA_SQUARE_TWINS \
+    0u, 0u, 0u, 0u, 1u, 1u, 1u, 1u, 1u, 2u, 1u, 2u, 1u, 2u, 4u, 7u, 1u, 2u, 4u, 8u
+#ifdef __cplusplus
+inline constexpr uint kSquareTwins[20] = {GRANITA_SQUARE_TWINS};
+#else
+const uint kSquareTwins[20] = uint[20](GRANITA_SQUARE_TWINS);
+#endif
+
+/// The place in the sequence of number i of the table, i's lowest 4 + 2 m bits permuted: sixteen in
+/// a row have the same first m digits of x (the lowest bits of the place) and of y (a sum of all
+/// bits: four lower bits count through the square, the uppermost m make up for them).  Linear over
+/// exclusive or.
+GRANITA_BITS_FN uint sequence_place(uint i, uint m) {
+    const uint mask = (1u << m) - 1u, within = i & 15u;
+    const uint x = (i >> 4) & mask;
+    uint y = (i >> (4u + m)) & mask;
+    for (uint bit = 0u; bit < 4u; ++bit)
+        if (((within >> bit) & 1u) != 0u) y ^= kSquareTwins[4u * m + bit];
+    const uint all = 4u + 2u * m;
+    return ((i >> all) << all) | (y << (m + 4u)) | (within << m) | x;
 }
 
 /// Sobol point with its bits reversed: the first binary digit is the lowest bit.

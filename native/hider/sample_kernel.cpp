@@ -44,26 +44,28 @@ HWY_INLINE V owen(V x, std::uint32_t seed) {
     return reverse(x);
 }
 
-void fill(std::uint32_t first, std::size_t count, int dimension, std::uint32_t seed, int digits,
-          float* out) {
-    const auto d = static_cast<std::uint32_t>(dimension);
+void fill(const SobolDimension& dimension, std::uint32_t first, std::size_t count, float* out) {
+    const int digits = dimension.digits;
+    const auto point = [&](std::uint32_t i) {
+        return bits::sobol_reversed(bits::sequence_place(i, dimension.square_digits),
+                                    static_cast<std::uint32_t>(dimension.dimension));
+    };
     // The lowest digits of the index choose within a run; from run to run all direction numbers up
     // to the lowest zero bit of the rest toggle.
     alignas(64) std::uint32_t within[kSobolRun];
-    for (std::uint32_t i = 0; i < kSobolRun; ++i) within[i] = bits::sobol_reversed(i, d);
+    for (std::uint32_t i = 0; i < kSobolRun; ++i) within[i] = point(i);
     std::uint32_t toggle[32], sum = 0;
     constexpr int kLog = std::countr_zero(kSobolRun);
-    for (int i = 0; i + kLog < 32; ++i)
-        toggle[i] = sum ^= bits::sobol_reversed(1u << (i + kLog), d);
+    for (int i = 0; i + kLog < 32; ++i) toggle[i] = sum ^= point(1u << (i + kLog));
 
     const hn::RebindToSigned<Tag> as_int;
     const hn::RebindToFloat<Tag> as_float;
     const auto scale = hn::Set(as_float, std::ldexp(1.0f, -digits));
-    std::uint32_t run = first / kSobolRun, base = bits::sobol_reversed(first, d);
+    std::uint32_t run = first / kSobolRun, base = point(first);
     for (std::size_t i = 0; i < count; i += kSobolRun) {
         for (std::size_t k = 0; k < kSobolRun; k += hn::Lanes(kTag)) {
             const V x = hn::Xor(hn::Load(kTag, within + k), hn::Set(kTag, base));
-            const V upper = hn::ShiftRightSame(owen(x, seed), 32 - digits);
+            const V upper = hn::ShiftRightSame(owen(x, dimension.seed), 32 - digits);
             const auto value = hn::ConvertTo(as_float, hn::BitCast(as_int, upper)) * scale;
             hn::StoreU(value, as_float, out + i + k);
         }
@@ -80,9 +82,9 @@ namespace granita {
 
 HWY_EXPORT(fill);
 
-void fill_sobol(std::uint32_t first, std::size_t count, int dimension, std::uint32_t seed,
-                int digits, float* out) {
-    HWY_DYNAMIC_DISPATCH(fill)(first, count, dimension, seed, digits, out);
+void fill_sobol(const SobolDimension& dimension, std::uint32_t first, std::size_t count,
+                float* out) {
+    HWY_DYNAMIC_DISPATCH(fill)(dimension, first, count, out);
 }
 
 }  // namespace granita

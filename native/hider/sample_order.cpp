@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace granita {
 namespace {
@@ -111,6 +112,8 @@ OrderShape best_order(int samples, const Sweep& sweep) {
 
 void SampleOrder::arrange(const TileSamples& samples, const Rect& pixels, const OrderShape& shape) {
     m_shape = shape;
+    m_is_table = take_table(samples, pixels);
+    if (m_is_table) return;
     distribute(samples, pixels);
     // Samples that are not a net may crowd in a part of a pixel; then blocks are whole pixels.
     const int expected = samples_of_block(m_shape.side_log2, samples.samples);
@@ -118,6 +121,33 @@ void SampleOrder::arrange(const TileSamples& samples, const Rect& pixels, const 
         m_shape.side_log2 = 0;
         distribute(samples, pixels);
     }
+    m_slots = m_table_index.size();
+    number_packets();
+}
+
+bool SampleOrder::take_table(const TileSamples& samples, const Rect& pixels) {
+    const bool whole = pixels.width() == kTileSize && pixels.height() == kTileSize;
+    if (m_shape.ranked || !whole || samples.samples % kPacket != 0 || m_shape.side_log2 > 0 ||
+        -m_shape.side_log2 > samples.square_digits)
+        return false;
+    m_blocks_wide = kTileSize << -m_shape.side_log2;
+    m_ranks = samples.samples >> (-2 * m_shape.side_log2);
+    m_slots = samples.x.size();
+    m_table_index.clear();
+    const Blocks blocks{samples, m_blocks_wide};
+    const std::size_t packets = static_cast<std::size_t>(m_ranks) / kPacket;
+    m_packets.resize(blocks.count() * packets);
+    m_scratch.assign(blocks.count(), 0);
+    for (std::uint32_t p = 0; p < m_packets.size(); ++p) {
+        const std::uint32_t block = blocks.of(p * kPacket);
+        m_packets[block * packets + m_scratch[block]++] = p;
+    }
+    return true;
+}
+
+void SampleOrder::number_packets() {
+    m_packets.resize(m_shape.ranked ? 0 : m_slots / kPacket);
+    std::iota(m_packets.begin(), m_packets.end(), 0u);
 }
 
 void SampleOrder::distribute(const TileSamples& samples, const Rect& pixels) {

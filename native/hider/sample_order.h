@@ -40,7 +40,8 @@ OrderShape best_order(int samples, const Sweep& sweep);
 /// The place of a tile's samples in memory.
 ///
 /// Where nothing is swept, [block][samples of the block]: packets of kPacket samples are neighbours
-/// in place, seen or missed together.
+/// in place, seen or missed together.  Where the table is made of such packets it is the order
+/// itself, and nothing is moved: then only packets() tells the blocks.
 ///
 /// Ranked, [rank][block]: a rank stands for a stratum of time and lens and has one sample in every
 /// block, so that the samples which look where and when a micropolygon is lie in a small window of
@@ -56,12 +57,20 @@ class SampleOrder {
     int blocks_wide() const { return m_blocks_wide; }  ///< a tile has as many rows of blocks
     /// Slots of a block; a multiple of kPacket unless ranked.
     int ranks() const { return m_ranks; }
-    std::size_t slots() const { return m_table_index.size(); }
-    /// Index in the table.
+    std::size_t slots() const { return m_slots; }
+    bool is_table() const { return m_is_table; }
+    /// Index in the table of each slot; empty where they are the same.
     const std::vector<std::uint32_t>& table_index() const { return m_table_index; }
+    std::uint32_t index(std::size_t slot) const {
+        return m_is_table ? static_cast<std::uint32_t>(slot) : m_table_index[slot];
+    }
+    /// [block][packet of the block]: first slot / kPacket; unless ranked.
+    const std::vector<std::uint32_t>& packets() const { return m_packets; }
 
   private:
     void distribute(const TileSamples& samples, const Rect& pixels);
+    bool take_table(const TileSamples& samples, const Rect& pixels);
+    void number_packets();
     /// Where the samples are a net, every stratum of a block has as many: no sort.  False
     /// otherwise.
     bool place_net(const TileSamples& samples, const Rect& pixels);
@@ -69,7 +78,9 @@ class SampleOrder {
 
     OrderShape m_shape;
     int m_blocks_wide = 0, m_ranks = 0;
-    std::vector<std::uint32_t> m_table_index, m_scratch;
+    std::size_t m_slots = 0;
+    bool m_is_table = false;
+    std::vector<std::uint32_t> m_table_index, m_packets, m_scratch;
 };
 
 }  // namespace granita

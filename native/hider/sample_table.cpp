@@ -49,6 +49,8 @@ SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNee
     if (options.time_samples < 0 || options.time_samples > 2048)
         throw SceneError("render settings", "time_samples must be 0 to 2048, not " +
                                                 std::to_string(options.time_samples));
+    if (m_sampling != Sampling::Regular)
+        m_square_digits = bits::square_digits(static_cast<std::uint32_t>(m_samples));
     if (m_sampling == Sampling::Interleaved) m_class_pixels = class_pixels(m_samples);
     if (m_sampling == Sampling::Regular) {
         const bool blur = frame.time || (frame.lens && camera.projection.has_lens());
@@ -63,6 +65,7 @@ SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNee
 
 void SampleTable::fill_tile(Vec2i tile, SampleNeeds needs, TileSamples& out) const {
     out.samples = m_samples;
+    out.square_digits = static_cast<int>(m_square_digits);
     const std::size_t count = static_cast<std::size_t>(kPixels) * m_samples;
     out.x.resize(count);
     out.y.resize(count);
@@ -120,8 +123,8 @@ void SampleTable::fill_dimension(Vec2i tile, int dimension, std::vector<float>& 
     const std::size_t pixels = in_classes ? (mask + 1) * (mask + 1) : kPixels;
     const std::size_t count = (pixels * samples + kSobolRun - 1) / kSobolRun * kSobolRun;
     std::vector<float> run(count);
-    fill_sobol(first * static_cast<std::uint32_t>(m_samples), count, dimension, seed,
-               dimension <= kY ? 20 : 24, run.data());
+    fill_sobol({dimension, seed, m_square_digits, dimension <= kY ? 20 : 24},
+               first * static_cast<std::uint32_t>(m_samples), count, run.data());
     for (int p = 0; p < kPixels; ++p) {
         const int x = p % kTileSize, y = p / kTileSize;
         const std::uint32_t place = bits::morton(static_cast<std::uint32_t>(x) & mask,

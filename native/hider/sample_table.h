@@ -21,6 +21,9 @@ inline constexpr int kTileSize =
 /// (blades and ratio applied).
 struct TileSamples {
     int samples = 0;
+    /// Sixteen samples in a row, from each multiple of sixteen on, lie in one of the
+    /// 4^square_digits equal squares of their pixel.  Only where sixteen divides `samples`.
+    int square_digits = 0;
     std::vector<float> x, y, t, u, v;  ///< t empty without motion, u and v without lens
 };
 
@@ -63,6 +66,7 @@ class SampleTable {
     RegularLattice m_lattice;
     Sampling m_sampling;
     std::uint32_t m_seed;
+    std::uint32_t m_square_digits = 0;  ///< bits::square_digits
     int m_class_pixels = 1;  ///< INTERLEAVED: side of the square of pixels that holds every class
     ShutterWarp m_shutter;
     int m_height;     ///< rows of the frame

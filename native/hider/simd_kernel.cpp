@@ -87,7 +87,8 @@ class Kernel {
         for (int by = ranges.y0[lane]; by <= y1; ++by)
             for (int bx = x0; bx <= x1; ++bx) {
                 const std::size_t block = static_cast<std::size_t>(by) * m_tile.blocks_wide + bx;
-                for (std::size_t p = block * packets; p < (block + 1) * packets; ++p) {
+                for (std::size_t i = block * packets; i < (block + 1) * packets; ++i) {
+                    const std::size_t p = m_tile.packets[i];
                     if (nearest < m_tile.farthest_of_packets[p]) continue;
                     m_counts.tests += kPacket;
                     for (int l = 0; l < kPacket; l += lane_count())

@@ -16,15 +16,15 @@ namespace granita {
 /// Arrays that are read in whole vectors end in this many spare elements.
 inline constexpr int kLanePadding = 16;
 
-/// Samples of a tile in the order of SampleOrder, blocks row by row.  A slot without sample has NaN
-/// for a place.
+/// Samples of a tile in the order of SampleOrder.  A slot without sample has NaN for a place.
 struct SimdTile {
     const float *x = nullptr, *y = nullptr, *t = nullptr;
     const float *u = nullptr, *v = nullptr;  ///< times lens radius and scale: pixels per unit shear
     float* key = nullptr;
     SurfaceId* id = nullptr;
     bool ranked = false;
-    int blocks_wide = 0, ranks = 0;  ///< blocks in a row of the tile; slots of a block
+    int blocks_wide = 0, ranks = 0;          ///< blocks in a row of the tile; slots of a block
+    const std::uint32_t* packets = nullptr;  ///< SampleOrder::packets
     const RankBounds* bounds = nullptr;
     // Hierarchical depth (DepthBlocks), maybe out of date.
     const float* farthest_of_packets = nullptr;

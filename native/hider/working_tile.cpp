@@ -16,14 +16,17 @@ void WorkingTile::begin(const TileSamples& samples, const Rect& pixels, Vec2f le
     m_fragments_then = 0;
     arrange(samples, shape);
     m_id.assign(m_order.slots(), kNoSurface);
-    m_key.resize(m_order.slots());
+    m_key.assign(m_order.slots(), -INFINITY);
     // A slot without sample is nearer than everything, so that it never keeps a block from hiding.
-    for (std::size_t i = 0; i < m_key.size(); ++i)
-        m_key[i] = m_order.table_index()[i] == SampleOrder::kNone ? INFINITY : -INFINITY;
+    for (std::size_t i = 0; i < m_order.table_index().size(); ++i)
+        if (m_order.table_index()[i] == SampleOrder::kNone) m_key[i] = INFINITY;
 }
 
 void WorkingTile::arrange(const TileSamples& samples, const OrderShape& shape) {
+    m_samples = &samples;
     m_order.arrange(samples, m_pixels, shape);
+    m_depth.reset(m_order, m_bounds);
+    if (m_order.is_table()) return;
     const std::vector<std::uint32_t>& index = m_order.table_index();
     const auto copy = [&](const std::vector<float>& from, float factor, float none,
                           std::vector<float>& to) {
@@ -40,32 +43,33 @@ void WorkingTile::arrange(const TileSamples& samples, const OrderShape& shape) {
     copy(samples.u, m_lens.x, kNowhere, m_u);
     copy(samples.v, m_lens.y, kNowhere, m_v);
     if (m_order.shape().ranked) m_bounds = bound_ranks(m_order, m_t, m_u, m_v);
-    m_depth.reset(m_order, m_bounds);
 }
 
 void WorkingTile::reorder(const TileSamples& samples, const OrderShape& shape) {
-    const std::vector<std::uint32_t> before = m_order.table_index();
+    const SampleOrder before = m_order;
     const std::vector<float> key = std::move(m_key);
     const std::vector<SurfaceId> id = std::move(m_id);
     arrange(samples, shape);
     std::vector<std::uint32_t> slot(samples.x.size(), 0);  // by index in the table
     for (std::uint32_t i = 0; i < m_order.slots(); ++i)
-        if (m_order.table_index()[i] != SampleOrder::kNone) slot[m_order.table_index()[i]] = i;
+        if (m_order.index(i) != SampleOrder::kNone) slot[m_order.index(i)] = i;
     m_key.assign(m_order.slots(), INFINITY);
     m_id.assign(m_order.slots(), kNoSurface);
-    for (std::size_t i = 0; i < before.size(); ++i) {
-        if (before[i] == SampleOrder::kNone) continue;
-        m_key[slot[before[i]]] = key[i];
-        m_id[slot[before[i]]] = id[i];
+    for (std::size_t i = 0; i < before.slots(); ++i) {
+        if (before.index(i) == SampleOrder::kNone) continue;
+        m_key[slot[before.index(i)]] = key[i];
+        m_id[slot[before.index(i)]] = id[i];
     }
-    for (SampleFragment& fragment : fragments) fragment.sample = slot[before[fragment.sample]];
+    for (SampleFragment& fragment : fragments)
+        fragment.sample = slot[before.index(fragment.sample)];
     m_depth.rebuild(m_key.data());
 }
 
 SimdTile WorkingTile::view() {
     SimdTile tile;
-    tile.x = m_x.data();
-    tile.y = m_y.data();
+    const bool is_table = m_order.is_table();
+    tile.x = is_table ? m_samples->x.data() : m_x.data();
+    tile.y = is_table ? m_samples->y.data() : m_y.data();
     tile.t = m_t.data();
     tile.u = m_u.data();
     tile.v = m_v.data();
@@ -74,6 +78,7 @@ SimdTile WorkingTile::view() {
     tile.ranked = m_order.shape().ranked;
     tile.blocks_wide = m_order.blocks_wide();
     tile.ranks = m_order.ranks();
+    tile.packets = m_order.packets().data();
     tile.bounds = &m_bounds;
     tile.farthest_of_packets = m_depth.farthest_of_packets();
     tile.farthest_of_ranks = m_depth.farthest_of_ranks();
@@ -102,13 +107,18 @@ void WorkingTile::end_lists(const GridPool& pool, const ListEnd& end, int z_batc
 }
 
 void WorkingTile::store(TileStore& out, std::vector<SampleFragment>& arrived) {
+    arrived = std::move(fragments);
+    if (m_order.is_table()) {
+        out.key.swap(m_key);
+        out.id.swap(m_id);
+        return;
+    }
     const std::vector<std::uint32_t>& index = m_order.table_index();
     for (std::size_t i = 0; i < index.size(); ++i) {
         if (index[i] == SampleOrder::kNone) continue;
         out.key[index[i]] = m_key[i];
         out.id[index[i]] = m_id[i];
     }
-    arrived = std::move(fragments);
     for (SampleFragment& fragment : arrived) fragment.sample = index[fragment.sample];
 }
 

@@ -20,6 +20,7 @@ class WorkingTile {
     WorkingTile& operator=(const WorkingTile&) = delete;
 
     /// Nothing seen yet.  `lens`: lens radius times pixels per unit shear, multiplied into u and v.
+    /// The samples stay where they are, and may get times, until store().
     void begin(const TileSamples& samples, const Rect& pixels, Vec2f lens, const OrderShape& shape);
 
     const OrderShape& shape() const { return m_order.shape(); }
@@ -48,11 +49,13 @@ class WorkingTile {
   private:
     void arrange(const TileSamples& samples, const OrderShape& shape);
 
+    const TileSamples* m_samples = nullptr;
     Rect m_pixels;
     Vec2f m_lens;
     SampleOrder m_order;
     DepthBlocks m_depth;
-    std::vector<float> m_x, m_y, m_t, m_u, m_v, m_key;
+    std::vector<float> m_x, m_y, m_t, m_u, m_v;  ///< unless the order is the table's
+    std::vector<float> m_key;
     std::vector<SurfaceId> m_id;
     RankBounds m_bounds;
     int m_grids_since = 0;             ///< end_lists() looked at the lists

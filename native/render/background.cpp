@@ -93,10 +93,11 @@ std::vector<Vec3f> from_corners(const Directions& directions, const ShadingSyste
 std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& table,
                                    const ShadingSystem& shading, const Vec3f& constant,
                                    const TileStore& store) {
+    if (shading.background_is_constant()) return {constant};
     std::vector<std::size_t> uncovered;
     for (std::size_t i = 0; i < store.id.size(); ++i)
         if (store.id[i] == kNoSurface) uncovered.push_back(i);
-    if (uncovered.empty() || shading.background_is_constant()) return {constant};
+    if (uncovered.empty()) return {constant};
 
     // The hider may have met no motion and no lens in this tile; what lies at infinity still has
     // both.

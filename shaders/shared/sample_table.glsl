@@ -16,7 +16,8 @@ float independent_sample(ivec2 pixel, uint s, uint samples, uint table_seed, uin
     const uvec2 block = uvec2(pixel >> 7);  // blocks of 128 pixels; shifts round down
     const uvec2 place = uvec2(pixel & 127);
     const uint seed = dimension_seed(block_seed(table_seed, block.x, block.y), d);
-    const uint index = morton(place.x, place.y) * samples + s;
+    const uint number = morton(place.x, place.y) * samples + s;
+    const uint index = sequence_place(number, square_digits(samples));
     const uint bits = owen(sobol_reversed(index, d), seed);
     return d <= kY ? fraction20(bits) : fraction24(bits);
 }

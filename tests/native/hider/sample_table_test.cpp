@@ -109,6 +109,38 @@ TEST(SampleTable, NeighbouringPixelsShareANet) {
     expect_net(x, y, 6, 1);
 }
 
+TEST(SampleTable, SixteenInARowShareASquare) {
+    for (const int n : {16, 64, 256, 1024, 4096})
+        for (const Sampling kind : {Sampling::Independent, Sampling::Interleaved}) {
+            const TileSamples s = fill(make_options(n, kind));
+            const int side = 1 << s.square_digits;
+            ASSERT_EQ(16 * side * side, n);
+            const auto square = [&](std::size_t i) {
+                return std::pair(static_cast<int>(s.x[i] * static_cast<float>(side)),
+                                 static_cast<int>(s.y[i] * static_cast<float>(side)));
+            };
+            for (std::size_t i = 0; i < s.x.size(); ++i) ASSERT_EQ(square(i), square(i & ~15ul));
+        }
+    EXPECT_EQ(fill(make_options(48, Sampling::Independent)).square_digits, 0);
+    EXPECT_EQ(fill(make_options(64, Sampling::Regular)).square_digits, 0);
+}
+
+TEST(SampleTable, SquaresKeepThePixelsSequence) {
+    for (std::uint32_t m = 0; m <= 4; ++m) {
+        const std::uint32_t n = 16u << 2 * m;
+        EXPECT_EQ(bits::square_digits(n), m);
+        std::vector<bool> met(n, false);
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t place = bits::sequence_place(3 * n + i, m);
+            ASSERT_EQ(place / n, 3u);
+            met[place % n] = true;
+        }
+        EXPECT_EQ(std::count(met.begin(), met.end(), true), n);
+    }
+    EXPECT_EQ(bits::square_digits(128), 0u);
+    EXPECT_EQ(bits::square_digits(16384), 0u);
+}
+
 TEST(SampleTable, SameBitsWhateverIsAskedFor) {
     for (const Sampling kind : {Sampling::Independent, Sampling::Interleaved}) {
         const SampleTable table(make_options(24, kind), lens_camera());
