@@ -76,6 +76,43 @@ TEST(Motion, equal_knots_cost_nothing) {
     for (const auto& grid : s.grids()) EXPECT_EQ(grid->knots, 1);
 }
 
+TEST(Motion, what_appears_has_knots_though_it_stands_still) {
+    for (const std::size_t knots : {1u, 5u})
+        for (const bool subdivided : {false, true}) {
+            GeometryData data = square(20.0f);
+            data.is_subdivision = subdivided;
+            DiceScene s(data);
+            s.scene.options.frame_time = 0.5f;
+            s.scene.instances[0].world_from_object.assign(knots, translation(1, 2, 3));
+            s.scene.instances[0].lifespan = {0.25f, 0.5f};
+            EXPECT_TRUE(s.scene.moves());
+            const auto grids = s.grids();
+            ASSERT_FALSE(grids.empty());
+            for (const auto& grid : grids) {
+                EXPECT_EQ(grid->lifespan, (Lifespan{0.25f, 0.5f}));
+                EXPECT_TRUE(grid->motion);
+                ASSERT_EQ(grid->knots, 2);
+                const auto n = static_cast<std::ptrdiff_t>(grid->vertex_count());
+                const std::vector<Vec3f> first(grid->positions.begin(),
+                                               grid->positions.begin() + n);
+                EXPECT_TRUE(std::equal(first.begin(), first.end(), grid->positions.begin() + n));
+                EXPECT_EQ(grid->p, first);
+            }
+        }
+}
+
+TEST(Motion, what_never_exists_is_nowhere) {
+    for (const Lifespan life : {Lifespan{0.5f, 0.5f}, {1.5f, 2.0f}, {-2.0f, 0.0f}}) {
+        DiceScene s(square(20.0f));
+        s.scene.instances[0].lifespan = life;
+        EXPECT_FALSE(instance_bounds(s.view, 0).visible);
+    }
+    DiceScene s(square(20.0f));
+    s.scene.instances[0].lifespan = {-1.0f, 1.5f};
+    EXPECT_TRUE(instance_bounds(s.view, 0).visible);
+    EXPECT_FALSE(s.scene.moves());
+}
+
 TEST(Motion, positions_at_knots_and_at_the_frame) {
     GeometryData data = square(20.0f);
     data.knots = 3;  // grows by a tenth, then by another

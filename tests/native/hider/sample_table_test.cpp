@@ -344,6 +344,20 @@ TEST(ShutterWarp, TimesHaveTheOpeningsDensity) {
     EXPECT_TRUE(ShutterWarp({-1, -1}).is_box());
 }
 
+TEST(ShutterWarp, TimesLeadBackToTheirNumbers) {
+    // The opening's integral: 2 t^2 up to the middle of a tent.
+    const ShutterWarp tent({0, 1, 0});
+    for (const float t : {0.0f, .1f, .25f, .5f}) EXPECT_NEAR(tent.uniform(t), 2 * t * t, 1e-6);
+    EXPECT_NEAR(tent.uniform(.75f), .875f, 1e-6);
+    // Closed at both ends.
+    const ShutterWarp late({0, 0, 1, 1, 0, 0});
+    EXPECT_EQ(late.uniform(0.0f), 0.0f);
+    EXPECT_EQ(late.uniform(.15f), 0.0f);
+    EXPECT_NEAR(late.uniform(.5f), .5f, 1e-6);
+    EXPECT_EQ(late.uniform(1.0f), 1.0f);
+    EXPECT_EQ(ShutterWarp({}).uniform(.37f), .37f);
+}
+
 struct Moments {
     double u = 0, v = 0, uu = 0, vv = 0, uv = 0;
 };

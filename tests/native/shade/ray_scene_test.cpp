@@ -197,6 +197,45 @@ TEST(RayScene, transparent_materials_multiply_and_opaque_ones_end) {
     EXPECT_EQ(blocked.transmittance({0.5f, 0.2f, 0}, kUp, kInfinity), Vec3f(0.0f));
 }
 
+TEST(RayScene, casters_are_there_for_their_part_of_the_shutter) {
+    // Two of one geometry that take turns at .37, one of them glass; and an opaque one below until
+    // .1.
+    Scene scene = empty_scene();
+    scene.materials.resize(2);
+    const std::size_t before = add_instance(scene, square(1), at({0, 0, 2}));
+    scene.instances[before].lifespan = {0.0f, 0.37f};
+    Instance after = scene.instances[before];
+    after.lifespan = {0.37f, kInfinity};
+    after.key = 7;
+    after.materials = {0};
+    scene.instances.push_back(after);
+    scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].lifespan = {0.0f, 0.1f};
+    ShadowOpacity opacity;
+    opacity.is_transparent = [](std::int32_t material) { return material == 0; };
+    opacity.transparency = [](const ShadowHit&) { return Vec3f(0.5f); };
+    const Progress progress;
+    const RayScene rays(scene, Vec3d(0.0), opacity, progress);
+    const auto left = [&](float time, float distance) {
+        return rays.transmittance({0.3f, 0.2f, 0}, kUp, distance, time);
+    };
+    const float last = std::nextafter(0.37f, 0.0f);
+    for (const float time : {0.0f, 0.2f, last}) EXPECT_EQ(left(time, kInfinity), Vec3f(0.0f));
+    for (const float time : {0.37f, 0.8f, 1.0f}) EXPECT_EQ(left(time, kInfinity), Vec3f(0.5f));
+    EXPECT_EQ(left(0.05f, 1.5f), Vec3f(0.0f));
+    EXPECT_EQ(left(0.1f, 1.5f), Vec3f(1.0f));
+    // Still, but what passes depends on time where they are.
+    EXPECT_TRUE(rays.moves());
+    EXPECT_TRUE(rays.varies({0.3f, 0.2f, 0}, kUp, kInfinity));
+    EXPECT_FALSE(rays.varies({5, 5, 0}, kUp, kInfinity));
+}
+
+TEST(RayScene, what_never_exists_casts_nothing) {
+    Scene scene = empty_scene();
+    scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].lifespan = {0.4f, 0.4f};
+    const Progress progress;
+    EXPECT_TRUE(RayScene(scene, Vec3d(0.0), {}, progress).empty());
+}
+
 TEST(RayScene, hits_on_a_limit_surface_name_the_patch_and_the_place_on_it) {
     GeometryData cage = cube();
     cage.is_subdivision = true;
