@@ -15,17 +15,22 @@ import xml.etree.ElementTree as tree
 LARGEST_TOLERANCE = 0.1
 
 
-def cell(case):
-    if case.find("skipped") is not None:
-        return "not there"
-    if case.find("failure") is not None or case.find("error") is not None:
-        return "FAILED"
+def measured(case, largest=LARGEST_TOLERANCE):
+    """(error, limit) of a test's assertions."""
     pairs = [
         tuple(map(float, item.get("value").split()))
         for item in case.iter("property")
         if item.get("name") == "held"
     ]
-    pairs = [pair for pair in pairs if pair[1] <= LARGEST_TOLERANCE]
+    return [pair for pair in pairs if pair[1] <= largest]
+
+
+def cell(case):
+    if case.find("skipped") is not None:
+        return "not there"
+    if case.find("failure") is not None or case.find("error") is not None:
+        return "FAILED"
+    pairs = measured(case)
     seconds = f"{float(case.get('time')):.2f} s"
     if not pairs:
         return f"held, {seconds}"

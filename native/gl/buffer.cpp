@@ -28,10 +28,19 @@ void Buffer::bind_storage(GLuint binding) const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name());
 }
 
-void Buffer::read_bytes(void* out) const {
+void Buffer::read_bytes(void* out, std::size_t from, std::size_t size) const {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    if (m_size > 0) glGetNamedBufferSubData(name(), 0, static_cast<GLsizeiptr>(m_size), out);
+    if (size > 0)
+        glGetNamedBufferSubData(name(), static_cast<GLintptr>(from), static_cast<GLsizeiptr>(size),
+                                out);
     check("reading a buffer");
+}
+
+void Buffer::copy_from(const Buffer& source, std::size_t to) const {
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glCopyNamedBufferSubData(source.name(), name(), 0, static_cast<GLintptr>(to),
+                             static_cast<GLsizeiptr>(source.size()));
+    check("writing a buffer");
 }
 
 }  // namespace granita::gl

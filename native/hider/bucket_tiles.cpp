@@ -40,6 +40,7 @@ BucketTiles::BucketTiles(const HiderFrame& frame, const Rect& tiles, const Rect&
         }
     m_needs.assign(m_stores.size(), needs);
     m_arrived.resize(m_stores.size());
+    m_left.resize(m_stores.size(), 0);
 }
 
 SurfaceId BucketTiles::add(const Grid& grid, const GridClasses& classes) {
@@ -92,6 +93,17 @@ void BucketTiles::limit_lists(std::uint64_t more) {
     m_overflowed = m_overflowed || bytes > m_frame.list_bytes;
     if (!m_overflowed) return;
     for (auto& arrived : m_arrived) arrived = {};
+}
+
+bool BucketTiles::lists_grew(std::size_t i) const {
+    return worth_cutting(m_arrived[i].size(), m_left[i], m_stores[i].key.size());
+}
+
+void BucketTiles::cut_lists(std::size_t i, const ListEnd& end) {
+    TileStore& store = m_stores[i];
+    granita::cut_lists(m_arrived[i], {store.key.data(), store.id.data(), store.key.size()}, m_pool,
+                       end);
+    m_left[i] = m_arrived[i].size();
 }
 
 void BucketTiles::finish_lists(std::size_t i, const ListEnd& end) {

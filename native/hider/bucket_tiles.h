@@ -56,6 +56,11 @@ class BucketTiles {
     /// given up, now and from now on: overflowed().
     void limit_lists(std::uint64_t more = 0);
     bool overflowed() const { return m_overflowed; }
+    /// Whether so much has arrived since cut_lists() that it is worth while again.
+    bool lists_grew(std::size_t i) const;
+    /// Leaves out of what has arrived what does not count whatever else may come.  The tile's
+    /// store must hold the nearest opaque surfaces so far; what hides the rest is put there.
+    void cut_lists(std::size_t i, const ListEnd& end);
     /// Makes the tile's lists of what has arrived, once its opaque surfaces are known.
     void finish_lists(std::size_t i, const ListEnd& end);
     /// Throws Cancelled; called between tiles, whose samples may be millions.
@@ -69,6 +74,7 @@ class BucketTiles {
     GridPool m_pool;
     std::vector<TileStore> m_stores;
     std::vector<std::vector<SampleFragment>> m_arrived;
+    std::vector<std::size_t> m_left;  ///< of m_arrived, when its lists were last cut
     std::vector<TileSamples> m_samples;
     std::vector<SampleNeeds> m_needs;
     bool m_overflowed = false;

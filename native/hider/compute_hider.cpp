@@ -80,7 +80,8 @@ class ComputeHider : public Hider {
             if (!group.batch.empty()) run(group);
             if (!group.device) continue;
             m_device.thread().run([&] {
-                group.device->read_back();
+                for (std::size_t i = 0; i < group.count; ++i)
+                    group.device->read_back(group.first + i);
                 group.device.reset();
             });
         }
@@ -107,14 +108,34 @@ class ComputeHider : public Hider {
             }
     }
 
+    /// Tiles whose lists may have ended.
+    std::vector<std::size_t> grown_lists(const TileGroup& group) const {
+        std::vector<std::size_t> grown;
+        if (m_frame.list_end.opacity_threshold < 1.0f)
+            for (std::size_t i = group.first; i < group.first + group.count; ++i)
+                if (m_tiles.lists_grew(i)) grown.push_back(i);
+        return grown;
+    }
+
     void run(TileGroup& group) {
         m_tiles.check_cancelled();
-        const std::vector<float> farthest = m_device.thread().run([&] {
+        std::vector<std::size_t> grown;
+        std::vector<float> farthest = m_device.thread().run([&] {
             if (!group.device)
                 group.device.emplace(m_device, m_tiles, m_frame, group.first, group.count);
             group.device->hide(group.batch);
+            grown = grown_lists(group);
+            for (const std::size_t i : grown) group.device->read_back(i);
             return group.device->farthest();
         });
+        // z-batches: what is behind the end of a list is dropped, and hidden as behind opaque
+        // surfaces.  Sorted on the bucket's own thread.
+        for (const std::size_t i : grown) m_tiles.cut_lists(i, m_frame.list_end);
+        if (!grown.empty())
+            farthest = m_device.thread().run([&] {
+                for (const std::size_t i : grown) group.device->write_back(i);
+                return group.device->farthest();
+            });
         std::copy(
             farthest.begin(), farthest.end(),
             m_farthest.begin() + static_cast<std::ptrdiff_t>(group.first * kBlocks * kBlocks));

@@ -226,16 +226,21 @@ std::vector<float> ComputeTiles::farthest() {
     return out.read<float>();
 }
 
-void ComputeTiles::read_back() {
-    const auto seen = m_seen.read<Seen>();
+void ComputeTiles::read_back(std::size_t tile) {
     const std::size_t samples = kPixels * m_samples_a_pixel;
-    for (std::size_t tile = 0; tile < m_count; ++tile) {
-        TileStore& store = m_bucket.store(m_first + tile);
-        for (std::size_t i = 0; i < samples; ++i) {
-            store.key[i] = seen[tile * samples + i].key;
-            store.id[i] = seen[tile * samples + i].id;
-        }
+    const auto seen = m_seen.read<Seen>((tile - m_first) * samples, samples);
+    TileStore& store = m_bucket.store(tile);
+    for (std::size_t i = 0; i < samples; ++i) {
+        store.key[i] = seen[i].key;
+        store.id[i] = seen[i].id;
     }
+}
+
+void ComputeTiles::write_back(std::size_t tile) {
+    const TileStore& store = m_bucket.store(tile);
+    std::vector<Seen> seen(store.key.size());
+    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = {store.key[i], store.id[i]};
+    m_seen.write((tile - m_first) * seen.size(), seen);
 }
 
 }  // namespace granita

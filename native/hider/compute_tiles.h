@@ -26,8 +26,9 @@ class ComputeTiles {
     void hide(const ComputeBatch& batch);
     /// The farthest key of each block, [count][16].
     std::vector<float> farthest();
-    /// Copies the nearest opaque surfaces to the bucket's stores.
-    void read_back();
+    /// Copies the nearest opaque surfaces of one of the tiles to the bucket's store, and back.
+    void read_back(std::size_t tile);
+    void write_back(std::size_t tile);
 
   private:
     void upload_samples(bool time);

@@ -114,4 +114,12 @@ SampleLists make_lists(std::vector<SampleFragment>& arrived, const OpaqueSurface
     return lists;
 }
 
+void cut_lists(std::vector<SampleFragment>& arrived, const OpaqueSurfaces& surfaces,
+               const GridPool& pool, const ListEnd& end) {
+    const SampleLists lists = make_lists(arrived, surfaces, pool, end);
+    arrived.clear();
+    for (std::uint32_t sample = 0; sample < surfaces.count; ++sample)
+        for (const Fragment& fragment : lists.of(sample)) arrived.push_back({sample, fragment});
+}
+
 }  // namespace granita

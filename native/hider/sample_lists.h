@@ -33,4 +33,14 @@ struct OpaqueSurfaces {
 SampleLists make_lists(std::vector<SampleFragment>& arrived, const OpaqueSurfaces& surfaces,
                        const GridPool& pool, const ListEnd& end);
 
+/// The same while more is to come: what is left out goes from `arrived`.
+void cut_lists(std::vector<SampleFragment>& arrived, const OpaqueSurfaces& surfaces,
+               const GridPool& pool, const ListEnd& end);
+
+/// Lists are sorted anew each time that they are cut: growth by half, and by a fragment a sample,
+/// bounds how often.
+inline bool worth_cutting(std::size_t fragments, std::size_t left_then, std::size_t samples) {
+    return fragments >= left_then + left_then / 2 + samples;
+}
+
 }  // namespace granita

@@ -89,17 +89,12 @@ SimdTile WorkingTile::view() {
 }
 
 void WorkingTile::end_lists(const GridPool& pool, const ListEnd& end, int z_batch_size) {
-    // A list is sorted anew each time: growth by half bounds how often.
     if (++m_grids_since < z_batch_size ||
-        fragments.size() < m_fragments_then + m_fragments_then / 2 + m_key.size())
+        !worth_cutting(fragments.size(), m_fragments_then, m_key.size()))
         return;
     m_grids_since = 0;
     const std::vector<float> before = m_key;
-    const SampleLists lists =
-        make_lists(fragments, {m_key.data(), m_id.data(), m_key.size()}, pool, end);
-    fragments.clear();
-    for (std::uint32_t slot = 0; slot < m_key.size(); ++slot)
-        for (const Fragment& fragment : lists.of(slot)) fragments.push_back({slot, fragment});
+    cut_lists(fragments, {m_key.data(), m_id.data(), m_key.size()}, pool, end);
     m_fragments_then = fragments.size();
     std::uint64_t ended = 0;
     for (std::size_t i = 0; i < before.size(); ++i) ended += before[i] != m_key[i];

@@ -10,6 +10,8 @@
 #include <random>
 #include <thread>
 
+#include "measured.h"
+
 namespace granita {
 namespace {
 
@@ -120,7 +122,7 @@ TEST(Film, EdgeResponse) {
             const PixelFilter filter(kind, width);
             for (int x = 0; x < 40; ++x) {
                 const double expected = filter.edge_response(20 + shift - (x + .5));
-                EXPECT_NEAR(out.at(x, 0).w, expected, 2e-4)
+                EXPECT_WITHIN(out.at(x, 0).w, expected, 2e-4)
                     << static_cast<int>(kind) << " x " << x << " shift " << shift;
                 // Colour rings together with alpha, beyond 0 and 1, unclamped.
                 EXPECT_EQ(out.at(x, 0).x, out.at(x, 0).w);
@@ -146,12 +148,12 @@ TEST(Film, SlantedEdge) {
             // (0, 2)-net under a straight edge: at most sqrt(N) + 1 strips of the net are cut, each
             // off by less than one sample; four standard errors of those, s = sqrt(sqrt(N)) / 2 /
             // N.
-            EXPECT_NEAR(box.at(x, y).w, area, 4 * std::sqrt(2 * 8.0) / 2 / 64);
+            EXPECT_WITHIN(box.at(x, y).w, area, 4 * std::sqrt(2 * 8.0) / 2 / 64);
             const double d = (2 + (x + .5) * slope - (y + .5)) * std::cos(.3);
             const double phi = .5 * std::erfc(-d / sigma / std::sqrt(2.0));
             // N_eff of a gaussian: 4 pi sigma^2 N samples; and the cut.
-            EXPECT_NEAR(gauss.at(x, y).w, phi,
-                        4 * std::sqrt(phi * (1 - phi) / (4 * M_PI * sigma * sigma * 64)) + 3e-3);
+            EXPECT_WITHIN(gauss.at(x, y).w, phi,
+                          4 * std::sqrt(phi * (1 - phi) / (4 * M_PI * sigma * sigma * 64)) + 3e-3);
         }
 }
 
@@ -174,10 +176,10 @@ TEST(Film, ConstantStaysConstant) {
             paste(film.add(std::move(one)), out);
         }
         for (const Vec4f& c : out.combined) {
-            EXPECT_NEAR(c.x, .3f, 1e-6);  // rounding of sums
-            EXPECT_NEAR(c.y, 7, 2e-5);
-            EXPECT_NEAR(c.z, 1, 4e-6);
-            EXPECT_NEAR(c.w, 1, 4e-6);
+            EXPECT_WITHIN(c.x, .3f, 1e-6);  // rounding of sums
+            EXPECT_WITHIN(c.y, 7, 2e-5);
+            EXPECT_WITHIN(c.z, 1, 4e-6);
+            EXPECT_WITHIN(c.w, 1, 4e-6);
         }
     }
 }
@@ -199,7 +201,7 @@ TEST(Film, SeamBetweenSampleCountsDoesNotMoveAnEdge) {
     }
     const PixelFilter filter(FilterKind::Mitchell, 4);
     for (int x = 8; x < 24; ++x)
-        EXPECT_NEAR(out.at(x, 16).w, filter.edge_response(16 - (x + .5)), 2e-4);
+        EXPECT_WITHIN(out.at(x, 16).w, filter.edge_response(16 - (x + .5)), 2e-4);
 }
 
 TEST(Film, FilterWiderThanTheBuckets) {
@@ -218,7 +220,7 @@ TEST(Film, FilterWiderThanTheBuckets) {
         EXPECT_EQ(small.combined[i], large.combined[i]);
         sum += small.combined[i].w;
     }
-    EXPECT_NEAR(sum, 80, 80 * 4 / std::sqrt(80.0 * 16));
+    EXPECT_WITHIN(sum, 80, 80 * 4 / std::sqrt(80.0 * 16));
 }
 
 TEST(Film, SpillReachesEmptyBuckets) {
@@ -232,7 +234,7 @@ TEST(Film, SpillReachesEmptyBuckets) {
             double column = 0;
             for (int y = 0; y < 32; ++y) column += p.at(x, y).w / 32;
             const double e = filter.edge_response(63.7 - (x + .5));
-            EXPECT_NEAR(column, e, 4 * std::sqrt(.25 / (32 * 256 * 2.15))) << bucket << ' ' << x;
+            EXPECT_WITHIN(column, e, 4 * std::sqrt(.25 / (32 * 256 * 2.15))) << bucket << ' ' << x;
         }
     }
 }
@@ -242,7 +244,7 @@ TEST(Film, ExtremeShapes) {
     for (const Rect crop :
          {Rect{0, 0, 1, 1}, Rect{0, 0, 1, 50}, Rect{15, 15, 17, 17}, Rect{16000, 3, 16400, 4}}) {
         const Picture p = expose(make_options(crop, FilterKind::BlackmanHarris, 1.5f, 16), grey);
-        for (const Vec4f& c : p.combined) EXPECT_NEAR(c.w, .5, 1e-6);
+        for (const Vec4f& c : p.combined) EXPECT_WITHIN(c.w, .5, 1e-6);
     }
     Options empty = make_options({5, 5, 5, 9}, FilterKind::Box, 1);
     Film film(empty);
@@ -271,7 +273,7 @@ TEST(Film, ThinLinesKeepTheirEnergy) {
         });
     double sum = 0;
     for (const Vec4f& c : p.combined) sum += c.w;
-    EXPECT_NEAR(sum / 128, w, 4 * std::sqrt(w * (1 - w) / (64 * 128)));
+    EXPECT_WITHIN(sum / 128, w, 4 * std::sqrt(w * (1 - w) / (64 * 128)));
 }
 
 TEST(Film, CropOrderAndThreadsChangeNoBit) {
@@ -334,7 +336,7 @@ TEST(Film, DepthIsThatOfTheCentralSample) {
                 EXPECT_EQ(depth, 1e10f);
             } else {
                 // 256 stratified samples: one is within 1/8 pixel of the centre.
-                EXPECT_NEAR(depth, 1000 * (y + .5) + x + .5, 1000 * .125 + .125);
+                EXPECT_WITHIN(depth, 1000 * (y + .5) + x + .5, 1000 * .125 + .125);
             }
         }
 }

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "film/weigh_pixel.h"
+#include "measured.h"
 
 namespace granita {
 namespace {
@@ -39,9 +40,9 @@ TEST(PixelFilter, EdgeResponses) {
         EXPECT_EQ(filter.radius(), c.radius);
         for (int i = 0; i < 6; ++i) {
             // The table has four digits.
-            EXPECT_NEAR(filter.edge_response(at[i]), c.response[i], 6e-5)
+            EXPECT_WITHIN(filter.edge_response(at[i]), c.response[i], 6e-5)
                 << static_cast<int>(c.kind) << " at " << at[i];
-            EXPECT_NEAR(filter.edge_response(-at[i]), 1 - c.response[i], 6e-5);
+            EXPECT_WITHIN(filter.edge_response(-at[i]), 1 - c.response[i], 6e-5);
         }
     }
 }
@@ -90,18 +91,18 @@ TEST(PixelFilter, IntegralVarianceAndEnergy) {
             second += f * d * d * h;
             square += f * f * h;
         }
-        EXPECT_NEAR(sum, 1, 1e-5) << static_cast<int>(c.kind);
-        EXPECT_NEAR(square, c.square, 6e-4) << static_cast<int>(c.kind);
+        EXPECT_WITHIN(sum, 1, 1e-5) << static_cast<int>(c.kind);
+        EXPECT_WITHIN(square, c.square, 6e-4) << static_cast<int>(c.kind);
         // Lanczos' variance is given as 0 to two digits.
-        EXPECT_NEAR(second, c.variance, c.kind == FilterKind::Lanczos ? 2e-2 : 1e-4)
+        EXPECT_WITHIN(second, c.variance, c.kind == FilterKind::Lanczos ? 2e-2 : 1e-4)
             << static_cast<int>(c.kind);
     }
 }
 
 TEST(PixelFilter, Overshoot) {
     const PixelFilter catmull(FilterKind::CatmullRom, 4), mitchell(FilterKind::Mitchell, 4);
-    EXPECT_NEAR(catmull.edge_response(1) - 1, 1.0 / 24, 1e-7);
-    EXPECT_NEAR(mitchell.edge_response(1.143) - 1, .0175, 5e-5);
+    EXPECT_WITHIN(catmull.edge_response(1) - 1, 1.0 / 24, 1e-7);
+    EXPECT_WITHIN(mitchell.edge_response(1.143) - 1, .0175, 5e-5);
 }
 
 TEST(PixelFilter, WidthScales) {
@@ -109,9 +110,9 @@ TEST(PixelFilter, WidthScales) {
         const PixelFilter one(c.kind, c.width), three(c.kind, 3 * c.width);
         EXPECT_FLOAT_EQ(three.radius(), 3 * one.radius());
         for (const double d : {.1, .4, .9}) {
-            EXPECT_NEAR(three.edge_response(3 * d), one.edge_response(d), 1e-9);
-            EXPECT_NEAR(three.evaluate(static_cast<float>(3 * d)),
-                        one.evaluate(static_cast<float>(d)) / 3, 1e-6);
+            EXPECT_WITHIN(three.edge_response(3 * d), one.edge_response(d), 1e-9);
+            EXPECT_WITHIN(three.evaluate(static_cast<float>(3 * d)),
+                          one.evaluate(static_cast<float>(d)) / 3, 1e-6);
         }
         EXPECT_EQ(one.evaluate(c.radius * 1.001f), 0.0f);
     }
@@ -127,7 +128,7 @@ TEST(PixelFilter, PartitionOfUnity) {
         for (float x = -.5f; x < .5f; x += .01f) {
             double sum = 0;
             for (int i = -3; i <= 3; ++i) sum += filter.evaluate(x + static_cast<float>(i));
-            EXPECT_NEAR(sum, 1, 1e-6);
+            EXPECT_WITHIN(sum, 1, 1e-6);
         }
     }
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "film/filter.h"
+#include "measured.h"
 
 namespace granita {
 namespace {
@@ -41,8 +42,8 @@ TEST_P(Strobing, RippleOfATranslatingEdge) {
     const Row& row = GetParam();
     const PixelFilter filter(row.kind, row.width);
     for (int i = 0; i < 7; ++i)
-        EXPECT_NEAR(strobing_ripple(factor(filter), filter.radius(), kSteps[i]), row.ripple[i],
-                    std::max(.1 * row.ripple[i], .003))
+        EXPECT_WITHIN(strobing_ripple(factor(filter), filter.radius(), kSteps[i]), row.ripple[i],
+                      std::max(.1 * row.ripple[i], .003))
             << "step " << kSteps[i];
 }
 
@@ -51,7 +52,7 @@ TEST_P(Strobing, LongestStep) {
     const PixelFilter filter(row.kind, row.width);
     const double step = longest_step(factor(filter), filter.radius());
     // The table's two digits and the search's one in a hundred.
-    EXPECT_NEAR(step, row.step, .01 + .011 * row.step);
+    EXPECT_WITHIN(step, row.step, .01 + .011 * row.step);
     for (double s = step; s > .04; s *= .97)
         EXPECT_LE(strobing_ripple(factor(filter), filter.radius(), s), .0205) << "step " << s;
 }

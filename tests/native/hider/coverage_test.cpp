@@ -127,7 +127,7 @@ TEST_P(Coverage, SliversAndDegenerateMicropolygons) {
         1, 40, 1, [](float u, float v, int) { return Vec3f(2 + 11 * v + u / 64, 1 + 14 * v, 5); }));
     double sum = 0;
     for (const Vec4f& p : render(GetParam(), shot).combined) sum += p.w;
-    EXPECT_NEAR(sum, 14.0 / 64, four_sigma(14.0 / 64 / 256, 256 * 256) * 256);
+    EXPECT_WITHIN(sum, 14.0 / 64, four_sigma(14.0 / 64 / 256, 256 * 256) * 256);
 
     // A bow-tie: each half once, nothing twice, no NaN; and a quad bent out of its plane has its
     // square as silhouette and the diagonal's depth in the middle.
@@ -138,7 +138,7 @@ TEST_P(Coverage, SliversAndDegenerateMicropolygons) {
     sum = 0;
     for (const Vec4f& p : render(GetParam(), shot).combined) sum += p.w;
     // Triangles (2,2) (10,2) (2,10) and (2,2) (2,10) (10,10): they overlap in a quarter of 64.
-    EXPECT_NEAR(sum, 48.0, 4 * std::sqrt(64.0 / 256));
+    EXPECT_WITHIN(sum, 48.0, 4 * std::sqrt(64.0 / 256));
     shot.grids[0] = make_grid(
         1, 1, 1, [](float u, float v, int) { return Vec3f(2 + 8 * u, 2 + 8 * v, 5 + 4 * u * v); });
     const Picture bent = render(GetParam(), shot);

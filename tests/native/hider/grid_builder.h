@@ -11,6 +11,7 @@
 
 #include "hider/composite.h"
 #include "hider/hider.h"
+#include "measured.h"
 
 namespace granita::test {
 
@@ -176,8 +177,10 @@ inline double worst_excess(const Picture& picture, const std::function<double(do
     for (int y = picture.pixels.y0; y < picture.pixels.y1; ++y)
         for (int x = picture.pixels.x0; x < picture.pixels.x1; ++x) {
             const double expected = pixel_mean(f, x, y), got = picture.alpha(x, y);
-            worst = std::fmax(
-                worst, std::fabs(got - expected) - four_sigma(expected, samples) - 1.0 / samples);
+            const double error = std::fabs(got - expected);
+            const double limit = four_sigma(expected, samples) + 1.0 / samples;
+            note_held(error, limit);
+            worst = std::fmax(worst, error - limit);
             sum += got;
             expected_sum += expected;
             variance += std::fmax(expected * (1.0 - expected), 1e-6) / samples;

@@ -44,15 +44,15 @@ TEST_P(Lens, SmallSquareSpreadsOverItsDisc) {
         }
     // Over the 100 pixels that it can reach, p = .05: relative error of I0 four_sigma / p.
     const double disc = M_PI * 25, p0 = 4 / disc, slack = four_sigma(p0, 256 * disc) / p0;
-    EXPECT_NEAR(i0, 4, 4 * slack);
-    EXPECT_NEAR(i1 / i0, 16, 5 * slack);
+    EXPECT_WITHIN(i0, 4, 4 * slack);
+    EXPECT_WITHIN(i1 / i0, 16, 5 * slack);
     // Disc R^2 / 4, the square 2^2 / 12, the pixel 1 / 12.
-    EXPECT_NEAR(i2x / i0, 25.0 / 4 + 4.0 / 12 + 1.0 / 12, 7 * slack);
-    EXPECT_NEAR(i2y / i0, 25.0 / 4 + 4.0 / 12 + 1.0 / 12, 7 * slack);
+    EXPECT_WITHIN(i2x / i0, 25.0 / 4 + 4.0 / 12 + 1.0 / 12, 7 * slack);
+    EXPECT_WITHIN(i2y / i0, 25.0 / 4 + 4.0 / 12 + 1.0 / 12, 7 * slack);
     double middle = 0;  // well inside the disc it is flat
     for (int y = 14; y < 18; ++y)
         for (int x = 14; x < 18; ++x) middle += p.alpha(x, y) / 16;
-    EXPECT_NEAR(middle, p0, four_sigma(p0, 16 * 256));
+    EXPECT_WITHIN(middle, p0, four_sigma(p0, 16 * 256));
 }
 
 TEST_P(Lens, PolygonalBokehHasThePolygonsArea) {
@@ -67,7 +67,7 @@ TEST_P(Lens, PolygonalBokehHasThePolygonsArea) {
     double middle = 0;
     for (int y = 14; y < 18; ++y)
         for (int x = 14; x < 18; ++x) middle += p.alpha(x, y) / 16;
-    EXPECT_NEAR(middle, p0, four_sigma(p0, 16 * 256));
+    EXPECT_WITHIN(middle, p0, four_sigma(p0, 16 * 256));
 }
 
 TEST_P(Lens, DefocusedEdge) {
@@ -99,7 +99,7 @@ TEST_P(Lens, SharpBackgroundBehindADefocusedEdge) {
         const double a =
             pixel_mean([](double px, double) { return edge_in_disc(8 - px, 3); }, x, 0);
         const double b = x < 10 ? 1 : 3;
-        EXPECT_NEAR(column, (1 - a) * b, b * four_sigma(a, 16 * 256)) << x;
+        EXPECT_WITHIN(column, (1 - a) * b, b * four_sigma(a, 16 * 256)) << x;
         for (int y = 0; y < 16; ++y) EXPECT_EQ(p.alpha(x, y), 1.0f);
     }
 }

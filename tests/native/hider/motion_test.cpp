@@ -22,7 +22,8 @@ TEST_P(Motion, MovingEdge) {
             double column = 0;
             for (int y = 0; y < 16; ++y) column += p.alpha(x, y) / 16.0;
             const double expected = (g(e0 - x + v) - g(e0 - x)) / v;
-            EXPECT_NEAR(column, expected, four_sigma(expected, 16 * 64)) << "v " << v << " x " << x;
+            EXPECT_WITHIN(column, expected, four_sigma(expected, 16 * 64))
+                << "v " << v << " x " << x;
         }
     }
 }
@@ -99,7 +100,8 @@ TEST_P(Motion, MirroredInstance) {
             EXPECT_EQ(a.alpha(x, y), b.alpha(-1 - x, y));
             sum += a.alpha(x, y);
         }
-    EXPECT_NEAR(sum, 9 * 11 + 2 * 3, 2.0);  // the parallelogram's area; lattice error of its border
+    EXPECT_WITHIN(sum, 9 * 11 + 2 * 3,
+                  2.0);  // the parallelogram's area; lattice error of its border
 }
 
 TEST_P(Motion, VeryFastAndSmall) {

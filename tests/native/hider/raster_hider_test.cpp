@@ -67,8 +67,8 @@ TEST(RasterHider, samples_lie_where_the_regular_table_has_them) {
     for (int pixel : {0, 17, 255})
         for (int s = 0; s < 25; ++s) {
             // 2^-20 is the table's own unit; the largest coordinate is below 16.
-            EXPECT_NEAR(samples.x[pixel * 25 + s], pixel % 16 + (s % 5 + 0.5) / 5, 0x1p-20);
-            EXPECT_NEAR(samples.y[pixel * 25 + s], pixel / 16 + (s / 5 + 0.5) / 5, 0x1p-20);
+            EXPECT_WITHIN(samples.x[pixel * 25 + s], pixel % 16 + (s % 5 + 0.5) / 5, 0x1p-20);
+            EXPECT_WITHIN(samples.y[pixel * 25 + s], pixel / 16 + (s / 5 + 0.5) / 5, 0x1p-20);
         }
 }
 
@@ -95,9 +95,9 @@ TEST(RasterHider, interpolates_radiance_perspective_correctly) {
             // Vertices move by up to 2^-9 pixel when OpenGL snaps them: 2^-9 / 16 in slope, times
             // dz/dslope = z^2 / 6.
             const double tolerance = 0x1p-9 / 16 * (z * z / 6 + z) * 2;
-            EXPECT_NEAR(pixel.x, slope_x * z, tolerance);
-            EXPECT_NEAR(pixel.y, slope_y * z, tolerance);
-            EXPECT_NEAR(pixel.z, z, tolerance);
+            EXPECT_WITHIN(pixel.x, slope_x * z, tolerance);
+            EXPECT_WITHIN(pixel.y, slope_y * z, tolerance);
+            EXPECT_WITHIN(pixel.z, z, tolerance);
         }
     EXPECT_GT(seen, 500);
 }

@@ -133,7 +133,7 @@ TEST(RasterPasses, grids_are_not_drawn_at_instants_when_they_touch_nothing) {
     double alpha = 0.0;
     for (const Vec4f& pixel : image.combined) alpha += pixel.w;
     // Ten by ten pixels' centres.
-    EXPECT_NEAR(alpha, 3 * 100.0 / 8, 1e-4);
+    EXPECT_WITHIN(alpha, 3 * 100.0 / 8, 1e-4);
 }
 
 TEST(RasterPasses, grids_are_not_drawn_at_instants_when_they_are_hidden) {
@@ -155,7 +155,7 @@ TEST(RasterPasses, grids_are_not_drawn_at_instants_when_they_are_hidden) {
         double alpha = 0.0;
         for (const Vec4f& pixel : image.combined) alpha += pixel.w;
         // Right sides at 37, 43, 49 and 55: 5 and three times 10 columns of 10 pixels.
-        EXPECT_NEAR(alpha, 32 * 64 + (5 + 3 * 10) * 10 / 8.0, 1e-3);
+        EXPECT_WITHIN(alpha, 32 * 64 + (5 + 3 * 10) * 10 / 8.0, 1e-3);
     }
 }
 
@@ -175,8 +175,8 @@ TEST(RasterPeel, what_lies_behind_saturated_samples_is_not_seen) {
         const auto bucket = hider.open({0, 0, 16, 16}, pointers(grids));
         EXPECT_EQ(bucket->find_seen(), (std::vector<bool>{true, true, false, false, false}));
         for (const Vec4f& pixel : bucket->render().combined) {
-            EXPECT_NEAR(pixel.x, 0.99, 1e-6);
-            EXPECT_NEAR(pixel.w, 0.99, 1e-6);
+            EXPECT_WITHIN(pixel.x, 0.99, 1e-6);
+            EXPECT_WITHIN(pixel.w, 0.99, 1e-6);
         }
     }
     // A hole in the second layer, left of pixel 8, lets the third one be seen.
@@ -203,7 +203,7 @@ TEST(RasterPasses, a_moving_tiling_covers_each_sample_exactly_once) {
     RasterHider hider(gl_thread(), pixel_frame(4, 9));
     const RasterImage image = hider.open({0, 0, 24, 24}, pointers(grids))->render();
     for (const Vec4f& pixel : image.combined) EXPECT_EQ(pixel.w, image.combined[0].w);
-    EXPECT_NEAR(image.combined[0].w, 0.37, 1e-7);
+    EXPECT_WITHIN(image.combined[0].w, 0.37, 1e-7);
 }
 
 TEST(RasterPeel, coincident_layers_all_count_in_any_order) {
@@ -218,10 +218,10 @@ TEST(RasterPeel, coincident_layers_all_count_in_any_order) {
     for (const auto& list : {std::vector<const Grid*>{&a, &b, &c}, {&c, &a, &b}}) {
         const RasterImage image = hider.open({0, 0, 8, 8}, list)->render();
         for (const Vec4f& pixel : image.combined) {
-            EXPECT_NEAR(pixel.w, 1 - 0.7 * 0.4 * 0.5, 1e-6);
-            EXPECT_NEAR(pixel.x, 0.3, 1e-6);  // the smaller key is in front
-            EXPECT_NEAR(pixel.y, 0.7 * 0.6, 1e-6);
-            EXPECT_NEAR(pixel.z, 0.7 * 0.4 * 0.5, 1e-6);
+            EXPECT_WITHIN(pixel.w, 1 - 0.7 * 0.4 * 0.5, 1e-6);
+            EXPECT_WITHIN(pixel.x, 0.3, 1e-6);  // the smaller key is in front
+            EXPECT_WITHIN(pixel.y, 0.7 * 0.6, 1e-6);
+            EXPECT_WITHIN(pixel.z, 0.7 * 0.4 * 0.5, 1e-6);
         }
     }
 }
@@ -242,12 +242,12 @@ TEST(RasterPeel, opacity_is_spectral_and_holdouts_cut) {
         hider.open({0, 0, 8, 1}, {&glass, &holdout, &wall})->render(background);
     // Through the glass .8 .5 0, the holdout takes half of that: T = .4 .25 0, cut = 1.3 / 6.
     const Vec4f on_wall = image.combined[1], beside = image.combined[6];
-    for (const Vec4f& pixel : {on_wall, beside}) EXPECT_NEAR(pixel.w, 1.0 - 1.3 / 6, 1e-6);
-    EXPECT_NEAR(on_wall.x, 0.1 + 0.4 * 1.0, 1e-6);
-    EXPECT_NEAR(on_wall.y, 0.25 * 2.0, 1e-6);
-    EXPECT_NEAR(on_wall.z, 0.2, 1e-6);
-    EXPECT_NEAR(beside.x, 0.1 + 0.4 * 0.25, 1e-6);
-    EXPECT_NEAR(beside.y, 0.25 * 0.5, 1e-6);
+    for (const Vec4f& pixel : {on_wall, beside}) EXPECT_WITHIN(pixel.w, 1.0 - 1.3 / 6, 1e-6);
+    EXPECT_WITHIN(on_wall.x, 0.1 + 0.4 * 1.0, 1e-6);
+    EXPECT_WITHIN(on_wall.y, 0.25 * 2.0, 1e-6);
+    EXPECT_WITHIN(on_wall.z, 0.2, 1e-6);
+    EXPECT_WITHIN(beside.x, 0.1 + 0.4 * 0.25, 1e-6);
+    EXPECT_WITHIN(beside.y, 0.25 * 0.5, 1e-6);
 }
 
 TEST(RasterPeel, opaque_surfaces_hide_and_are_hidden_at_the_right_depth) {

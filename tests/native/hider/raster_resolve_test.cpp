@@ -95,9 +95,9 @@ TEST_P(RasterEdge, response_is_the_closed_form_in_x_and_y) {
             const RasterImage image = hider.open({8, 8, 9, 9}, {&grid})->render();
             ASSERT_EQ(image.combined.size(), 1u);
             const Vec4f& pixel = image.combined[0];
-            EXPECT_NEAR(pixel.w, f.response[i], kTolerance) << "d = " << kDistances[i];
+            EXPECT_WITHIN(pixel.w, f.response[i], kTolerance) << "d = " << kDistances[i];
             // Colour rings with coverage; weights of up to 96 taps are rounded to floats.
-            for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c], color[c] * pixel.w, 4e-6);
+            for (int c = 0; c < 3; ++c) EXPECT_WITHIN(pixel[c], color[c] * pixel.w, 4e-6);
         }
 }
 
@@ -112,7 +112,7 @@ TEST(RasterResolve, far_from_the_origin_an_edge_has_the_same_bits) {
         return hider.open({x, 0, x + 1, 1}, {&grid})->render().combined[0].w;
     };
     const float near_zero = at(0);
-    EXPECT_NEAR(near_zero, 1.0 - .7129, kTolerance);
+    EXPECT_WITHIN(near_zero, 1.0 - .7129, kTolerance);
     EXPECT_EQ(at(16384), near_zero);
     EXPECT_EQ(at(-16384), near_zero);
 }
@@ -130,7 +130,7 @@ TEST(RasterResolve, a_filter_wider_than_a_cell_keeps_the_energy) {
     double energy = 0.0;
     for (const Vec4f& pixel : image.combined) energy += pixel.w;
     // 10 square pixels; float sums of 192 taps.
-    EXPECT_NEAR(energy, 10.0, 1e-4);
+    EXPECT_WITHIN(energy, 10.0, 1e-4);
 }
 
 TEST(RasterResolve, background_fills_what_nothing_covers) {
@@ -140,7 +140,7 @@ TEST(RasterResolve, background_fills_what_nothing_covers) {
     const RasterImage image = hider.open({0, 0, 5, 3}, {})->render(background);
     ASSERT_EQ(image.combined.size(), 15u);
     for (const Vec4f& pixel : image.combined)
-        for (int c = 0; c < 4; ++c) EXPECT_NEAR(pixel[c], background.constant[c], 4e-6);
+        for (int c = 0; c < 4; ++c) EXPECT_WITHIN(pixel[c], background.constant[c], 4e-6);
 }
 
 TEST(RasterResolve, a_filter_that_no_target_holds_is_an_error) {

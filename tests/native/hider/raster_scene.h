@@ -12,6 +12,7 @@
 #include "hider/raster_hider.h"
 #include "hider/sample_table.h"
 #include "math/projection.h"
+#include "measured.h"
 
 namespace granita::raster_test {
 

@@ -41,7 +41,7 @@ TEST(TimeSlabs, WhatShowsForAMomentIsSeen) {
     // from 1 less that on.
     for (int x = 5; x < 11; ++x) {
         const double covered = 2 * (x + 0.5 + 4) / 80;
-        EXPECT_NEAR(picture.at(x, 8).x, 1 - covered, four_sigma(covered, shot.options.samples));
+        EXPECT_WITHIN(picture.at(x, 8).x, 1 - covered, four_sigma(covered, shot.options.samples));
     }
 }
 
@@ -54,9 +54,9 @@ TEST(TimeSlabs, CoverTheShutterAndTheirGrid) {
         EXPECT_EQ(slab.t0, time);
         time = slab.t1;
         // A hundredth of a pixel for what bounds may grow.
-        EXPECT_NEAR(slab.bounds.x0, 40 * slab.t0, .01);
-        EXPECT_NEAR(slab.bounds.x1, 4 + 40 * slab.t1, .01);
-        EXPECT_NEAR(slab.bounds.y1, 2 + 8 * slab.t1, .01);
+        EXPECT_WITHIN(slab.bounds.x0, 40 * slab.t0, .01);
+        EXPECT_WITHIN(slab.bounds.x1, 4 + 40 * slab.t1, .01);
+        EXPECT_WITHIN(slab.bounds.y1, 2 + 8 * slab.t1, .01);
         EXPECT_LE(slab.bounds.x0, 40 * slab.t0);
         EXPECT_GE(slab.bounds.x1, 4 + 40 * slab.t1);
     }

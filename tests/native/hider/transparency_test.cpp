@@ -38,9 +38,9 @@ TEST_P(Transparency, ManyEqualLayers) {
         // OpenGL adds the layers in float: half an ulp of 1 each, at most.
         const double error = GetParam() == raster_executor ? n * 0x1p-25 : 2e-7;
         for (const Vec4f& c : p.combined) {
-            EXPECT_NEAR(c.w, expected, error);
-            EXPECT_NEAR(c.x, red, error);
-            EXPECT_NEAR(c.y, expected, error);
+            EXPECT_WITHIN(c.w, expected, error);
+            EXPECT_WITHIN(c.x, red, error);
+            EXPECT_WITHIN(c.y, expected, error);
         }
     }
 }
@@ -53,7 +53,7 @@ TEST_P(Transparency, ExtremeOpacities) {
         return render(GetParam(), shot).alpha(8, 8);
     };
     EXPECT_EQ(alpha_of(0), 0.0f);
-    EXPECT_NEAR(alpha_of(1e-7f), 1e-7, 1e-13);
+    EXPECT_WITHIN(alpha_of(1e-7f), 1e-7, 1e-13);
     EXPECT_EQ(alpha_of(1 - 1e-7f), 1 - 1e-7f);
     EXPECT_EQ(alpha_of(1), 1.0f);
     EXPECT_EQ(alpha_of(1.5f), 1.0f);
@@ -81,12 +81,12 @@ TEST(Composite, MillionLayersOfAMillionth) {
     SampleColors colors;
     composite_tile(store, samples, pool, std::span(&background, 1), settings, colors);
     const double a = 1e-6f, t = std::exp(1e6 * std::log1p(-a));
-    EXPECT_NEAR(colors[77].color.x, 2 * (1 - t) + t, 1e-6);
-    EXPECT_NEAR(colors[77].color.z, t, 1e-6);
+    EXPECT_WITHIN(colors[77].color.x, 2 * (1 - t) + t, 1e-6);
+    EXPECT_WITHIN(colors[77].color.z, t, 1e-6);
     EXPECT_EQ(colors[77].alpha, 1.0f);
     settings.film_transparent = true;
     composite_tile(store, samples, pool, {}, settings, colors);
-    EXPECT_NEAR(colors[77].alpha, 1 - t, 1e-6);
+    EXPECT_WITHIN(colors[77].alpha, 1 - t, 1e-6);
 }
 
 TEST_P(Transparency, ThresholdEndsTheListAfterTheFragmentThatReachesIt) {
@@ -95,13 +95,13 @@ TEST_P(Transparency, ThresholdEndsTheListAfterTheFragmentThatReachesIt) {
     for (int i = 7; i >= 0; --i)
         shot.grids.push_back(layer(5 + static_cast<float>(i), Vec3f(1), Vec3f(.1f)));
     shot.composite.end.opacity_threshold = .2f;  // after two layers .19, after three .271
-    EXPECT_NEAR(render(GetParam(), shot).alpha(3, 3), .271, 1e-6);
+    EXPECT_WITHIN(render(GetParam(), shot).alpha(3, 3), .271, 1e-6);
     shot.composite.end.opacity_threshold = 1;
-    EXPECT_NEAR(render(GetParam(), shot).alpha(3, 3), 1 - std::pow(.9, 8), 1e-6);
+    EXPECT_WITHIN(render(GetParam(), shot).alpha(3, 3), 1 - std::pow(.9, 8), 1e-6);
     // The smallest channel decides.
     for (Grid& grid : shot.grids) set_color(grid, Vec3f(1), Vec3f(.5f, .1f, .1f));
     shot.composite.end.opacity_threshold = .2f;
-    EXPECT_NEAR(render(GetParam(), shot).at(3, 3).y, .271, 1e-6);
+    EXPECT_WITHIN(render(GetParam(), shot).at(3, 3).y, .271, 1e-6);
 }
 
 TEST_P(Transparency, SpectralOpacityIsAProductPerChannel) {
@@ -112,12 +112,12 @@ TEST_P(Transparency, SpectralOpacityIsAProductPerChannel) {
     shot.background = Vec3f(1);
     shot.composite.film_transparent = false;
     const Vec4f p = render(GetParam(), shot).at(5, 5);
-    EXPECT_NEAR(p.x, .8 * .7, 1e-6);
-    EXPECT_NEAR(p.y, 0, 1e-6);
-    EXPECT_NEAR(p.z, .3, 1e-6);
+    EXPECT_WITHIN(p.x, .8 * .7, 1e-6);
+    EXPECT_WITHIN(p.y, 0, 1e-6);
+    EXPECT_WITHIN(p.z, .3, 1e-6);
     EXPECT_EQ(p.w, 1.0f);
     shot.composite.film_transparent = true;
-    EXPECT_NEAR(render(GetParam(), shot).alpha(5, 5), (.44 + 1 + .7) / 3, 1e-6);
+    EXPECT_WITHIN(render(GetParam(), shot).alpha(5, 5), (.44 + 1 + .7) / 3, 1e-6);
 }
 
 TEST_P(Transparency, InterpenetratingPlanesSwapAtTheirLine) {
@@ -134,8 +134,8 @@ TEST_P(Transparency, InterpenetratingPlanesSwapAtTheirLine) {
     set_color(shot.grids[1], Vec3f(0, 1, 0), Vec3f(.5f));
     Picture p = render(GetParam(), shot);
     for (int x = 0; x < 16; ++x) {
-        EXPECT_NEAR(p.at(x, 7).x, x < 5 ? .5 : .25, 1e-6) << x;
-        EXPECT_NEAR(p.at(x, 7).y, x < 5 ? .25 : .5, 1e-6) << x;
+        EXPECT_WITHIN(p.at(x, 7).x, x < 5 ? .5 : .25, 1e-6) << x;
+        EXPECT_WITHIN(p.at(x, 7).y, x < 5 ? .25 : .5, 1e-6) << x;
     }
     // The second recedes by 4 during the shutter: the line runs from 5 to 7.
     shot.grids[1] = plane(-1, 20, 4);
@@ -144,8 +144,8 @@ TEST_P(Transparency, InterpenetratingPlanesSwapAtTheirLine) {
     for (const auto& [x, first_in_front] : {std::pair{4, 1.0}, {5, .75}, {6, .25}, {7, 0.0}}) {
         double column = 0;
         for (int y = 0; y < 16; ++y) column += p.at(x, y).x / 16;
-        EXPECT_NEAR(column, .25 + .25 * first_in_front,
-                    .25 * four_sigma(first_in_front, 16 * 64) + 1e-6);
+        EXPECT_WITHIN(column, .25 + .25 * first_in_front,
+                      .25 * four_sigma(first_in_front, 16 * 64) + 1e-6);
     }
 }
 
@@ -154,7 +154,7 @@ TEST_P(Transparency, CoincidentLayersBothCount) {
     shot.options.samples = 16;
     shot.grids.push_back(layer(5, Vec3f(1), Vec3f(.3f)));
     shot.grids.push_back(layer(5, Vec3f(1), Vec3f(.6f)));
-    for (const Vec4f& c : render(GetParam(), shot).combined) EXPECT_NEAR(c.w, 1 - .7 * .4, 1e-6);
+    for (const Vec4f& c : render(GetParam(), shot).combined) EXPECT_WITHIN(c.w, 1 - .7 * .4, 1e-6);
 }
 
 TEST_P(Transparency, CoincidentOpaqueSurfacesHaveOneWinner) {
@@ -186,7 +186,7 @@ TEST_P(Transparency, LayersCorrelatedInTime) {
     const Picture p = render(GetParam(), shot);
     double column = 0;
     for (int y = 0; y < 16; ++y) column += p.alpha(8, y) / 16;
-    EXPECT_NEAR(column, 1 - .59, four_sigma(.41, 16 * 256));
+    EXPECT_WITHIN(column, 1 - .59, four_sigma(.41, 16 * 256));
     EXPECT_LT(four_sigma(.41, 16 * 256), (.59 - .52) / 2);  // it can tell the two apart
 }
 
@@ -205,7 +205,7 @@ TEST_P(Transparency, DicedSphereHasNoSeams) {
     for (int y = 0; y < 16; ++y)
         for (int x = 0; x < 16; ++x)
             if (std::hypot(x + .5 - 8, y + .5 - 8) < 6) {
-                EXPECT_NEAR(p.alpha(x, y), 1 - (1 - a) * (1 - a), 1e-6);
+                EXPECT_WITHIN(p.alpha(x, y), 1 - (1 - a) * (1 - a), 1e-6);
             }
 }
 
@@ -264,7 +264,7 @@ TEST_P(Transparency, MixedGridsAreClassifiedByMicropolygon) {
         double column = 0;
         for (int y = 0; y < 16; ++y) column += p.alpha(x, y) / 16;
         // Linear from 1 at x = 8 to 0 at x = 12; the sampling error of x within the pixel.
-        EXPECT_NEAR(column, 1 - (x + .5 - 8) / 4, 4 * .25 / std::sqrt(12 * 16 * 64));
+        EXPECT_WITHIN(column, 1 - (x + .5 - 8) / 4, 4 * .25 / std::sqrt(12 * 16 * 64));
     }
     EXPECT_LT(shot.statistics.get(Counter::FragmentsStored), 4u * 17 * 64 * 4);
 }

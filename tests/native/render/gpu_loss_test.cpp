@@ -104,17 +104,24 @@ Result render(const std::shared_ptr<Scene>& scene, const gl::DriverFaults& fault
     return result;
 }
 
-Result render_on_cpu(Sampling sampling) {
-    const auto scene = make_scene(sampling);
+Result render_on_cpu(const std::shared_ptr<Scene>& scene) {
     scene->options.device = Device::Cpu;
     return render(scene);
+}
+
+/// No more than a few samples at edges fall otherwise.
+void expect_same_picture(const Result& a, const Result& b) {
+    int different = 0;
+    for (std::size_t i = 0; i < a.picture.size(); ++i)
+        different += glm::length(a.picture[i] - b.picture[i]) > 1e-5f;
+    EXPECT_LE(different, 10);
 }
 
 /// Regular is the raster executor's, Independent the compute executor's.
 class GpuLoss : public testing::TestWithParam<Sampling> {
   protected:
     void expect_cpu_picture(const Result& result, const std::string& reason) {
-        const Result cpu = render_on_cpu(GetParam());
+        const Result cpu = render_on_cpu(make_scene(GetParam()));
         EXPECT_EQ(std::memcmp(result.picture.data(), cpu.picture.data(),
                               cpu.picture.size() * sizeof(Vec4f)),
                   0);
@@ -146,12 +153,28 @@ TEST_P(GpuLoss, nothing_lost_nothing_on_the_cpu) {
     EXPECT_GT(result.gl_work, 0u);
     EXPECT_TRUE(result.warnings.empty());
     EXPECT_NE(result.device.find("GPU"), std::string::npos);
-    // And the picture is the CPU's: no more than a few samples of 27 or 9 at edges fall otherwise.
-    const Result cpu = render_on_cpu(GetParam());
-    int different = 0;
-    for (std::size_t i = 0; i < cpu.picture.size(); ++i)
-        different += glm::length(result.picture[i] - cpu.picture[i]) > 1e-5f;
-    EXPECT_LE(different, 10);
+    expect_same_picture(result, render_on_cpu(make_scene(GetParam())));
+}
+
+/// What the raster executor does not do, the compute executor does on the same device: nobody has
+/// to be told.
+TEST(GpuChoice, passes_and_a_rolling_shutter_are_rendered_by_the_gpu_too) {
+    for (const bool rolling : {true, false}) {
+        const auto scene = [=] {
+            auto made = make_scene(Sampling::Regular);
+            if (rolling)
+                made->options.rolling_shutter = 0.1f;
+            else
+                made->options.passes = {"Normal"};
+            return made;
+        };
+        const Result result = render(scene());
+        EXPECT_NE(result.device.find("compute"), std::string::npos) << result.device;
+        EXPECT_EQ(result.cpu_tests, 0u);
+        EXPECT_GT(result.gl_work, 0u);
+        EXPECT_TRUE(result.warnings.empty());
+        expect_same_picture(result, render_on_cpu(scene()));
+    }
 }
 
 TEST_P(GpuLoss, no_context) {
@@ -185,7 +208,7 @@ TEST(RasterLoss, target_too_big) {
     const Result result = render(make_scene(Sampling::Regular), faults);
     ASSERT_EQ(result.warnings.size(), 1u);
     EXPECT_NE(result.warnings[0].message.find("texels a side"), std::string::npos);
-    const Result cpu = render_on_cpu(Sampling::Regular);
+    const Result cpu = render_on_cpu(make_scene(Sampling::Regular));
     EXPECT_EQ(result.picture, cpu.picture);
 }
 
