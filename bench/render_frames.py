@@ -4,8 +4,8 @@
     blender -b --factory-startup --addons granita --python bench/render_frames.py -- JOB.json
 
 JOB: {"module": "scenes" or "moving_files", "scene", "variant" (of moving_files), "folder", "runs", "seed" (of
-Cycles), "settings": [{"engine": "CYCLES" or "GRANITA", "samples", other properties of scene.granita}]}.  Frame i of
-the settings is kept as FOLDER/i.exr; FOLDER/seconds.json lists for each setting its runs as [wall, processor] seconds
+Cycles), "size" (width and height, the scene's own without), "settings": [{"engine": "CYCLES" or "GRANITA", "samples",
+"shutter" (the scene's own without), other properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FOLDER/seconds.json lists for each setting its runs as [wall, processor] seconds
 of the whole frame, export included.
 """
 
@@ -35,16 +35,19 @@ def build(job):
 def main():
     job = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
     scene, opens, shutter = build(job)
+    if "size" in job:
+        engines.set_size(scene, *job["size"])
     seconds = [[] for _ in job["settings"]]
     for _ in range(job["runs"]):
         for index, setting in enumerate(job["settings"]):
             setting = dict(setting)
             engine, samples = setting.pop("engine"), setting.pop("samples")
+            open_for = setting.pop("shutter", shutter)
             if engine == "CYCLES":
                 engines.set_cycles(scene, samples, job.get("seed", 0))
             else:
                 engines.set_granita(scene, samples, **setting)
-            engines.set_motion(scene, engine, opens, shutter)
+            engines.set_motion(scene, engine, opens, open_for)
             bpy.context.view_layer.update()
             processor = time.process_time()
             wall = engines.render(scene, Path(job["folder"]) / f"{index}.exr")

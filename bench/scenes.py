@@ -2,8 +2,8 @@
 """Scenes of the benches, built inside Blender so that every engine renders the same ones.
 
 Each builder starts from an empty file, moves things linearly through frames 0 to 2 and returns the scene at frame 1;
-a shutter of half a frame from there sees the motion that the builder's docstring names.  Colours glow where lighting
-is not the point.  Pixels are those of a frame of WIDTH x HEIGHT.
+a shutter of half a frame from there sees the motion that the builder's docstring names, in pixels of its own frame.
+Colours glow where lighting is not the point.  Frames are 16 to 9, as large as a reference can be had for in minutes.
 """
 
 import math
@@ -11,21 +11,24 @@ import math
 import bpy
 import numpy as np
 
-WIDTH, HEIGHT = 320, 180
 SHUTTER = 0.5
 SCALE = 16.0  # metres across the frame, where the camera is orthographic
-PIXEL = SCALE / WIDTH
 
 
-def empty():
+def empty(width):
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     scene = bpy.context.scene
     scene.world = bpy.data.worlds.new("World")
     scene.world.color = (0, 0, 0)
-    scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
+    scene.render.resolution_x, scene.render.resolution_y = width, width * 9 // 16
     scene.render.threads_mode, scene.render.threads = "FIXED", 1
     scene.cycles_curves.shape = "RIBBONS"
     return scene
+
+
+def pixel(scene):
+    """Metres, where the camera is orthographic."""
+    return SCALE / scene.render.resolution_x
 
 
 def add(scene, name, data, location=(0, 0, 0), parent=None):
@@ -94,11 +97,11 @@ def add_spheres(scene, shader, parent, low, high, count=60):
 
 def spheres(pixels=20):
     """60 spheres that glow and move to the right, 20 pixels."""
-    scene = empty()
+    scene = empty(960)
     mover = add(scene, "Mover", None)
     add_spheres(scene, "ShaderNodeEmission", mover, (-7, -4, -5), (7, 4, 5))
     if pixels:
-        animate(mover, "location", 0, pixels * PIXEL)
+        animate(mover, "location", 0, pixels * pixel(scene))
     add_camera(scene, (0, 0, 20))
     scene.frame_set(1)
     return scene
@@ -106,15 +109,15 @@ def spheres(pixels=20):
 
 def lens():
     """The same through a lens whose circles of confusion reach a radius of 8 pixels."""
-    scene = empty()
+    scene = empty(960)
     mover = add(scene, "Mover", None)
     add_spheres(scene, "ShaderNodeEmission", mover, (-7, -4, -8), (7, 4, 8))
-    animate(mover, "location", 0, 20 * PIXEL)
+    animate(mover, "location", 0, 20 * pixel(scene))
     camera = add_camera(scene, (0, 0, 24), focal=50)
     dof = camera.data.dof
     dof.use_dof, dof.focus_distance = True, 24.0
-    # At depth z the radius is (focal / fstop / 2) |1 / z - 1 / 24| WIDTH focal / sensor; z = 16: 8 pixels.
-    radius = 8 / (abs(1 / 16 - 1 / 24) * WIDTH * 50 / 36)
+    # At depth z the radius is (focal / fstop / 2) |1 / z - 1 / 24| width focal / sensor; z = 16: 8 pixels.
+    radius = 8 / (abs(1 / 16 - 1 / 24) * scene.render.resolution_x * 50 / 36)
     dof.aperture_fstop = 0.05 / (2 * radius)
     scene.frame_set(1)
     return scene
@@ -122,7 +125,7 @@ def lens():
 
 def lit():
     """Spheres on a floor under a sun and an area lamp; lights and casters are still, the camera moves 10 pixels."""
-    scene = empty()
+    scene = empty(640)
     add_spheres(scene, "ShaderNodeBsdfDiffuse", None, (-7, -4, 0), (7, 4, 2), 30)
     floor = bpy.data.meshes.new("Floor")
     floor.from_pydata([(-30, -30, -1), (30, -30, -1), (30, 30, -1), (-30, 30, -1)], [], [range(4)])
@@ -134,7 +137,7 @@ def lit():
     area = bpy.data.lights.new("Area", "AREA")
     area.energy, area.size = 900, 3.0
     add(scene, "Area", area, (-5, 3, 9)).rotation_euler = (-0.3, -0.5, 0)
-    animate(add_camera(scene, (0, -8, 18), focal=45, tilt=0.4), "location", 0, 10 * PIXEL)
+    animate(add_camera(scene, (0, -8, 18), focal=45, tilt=0.4), "location", 0, 10 * pixel(scene))
     scene.frame_set(1)
     return scene
 
@@ -169,7 +172,7 @@ def feather_material(name, color):
 
 
 def feather_mesh(name, random, count, spread):
-    """`count` strips, 80 by 16 pixels, bent along their length only, so that their faces are flat."""
+    """`count` strips, 4 by .8 metres (80 by 16 pixels), bent along their length only, so that their faces are flat."""
     across, along = 2, 12
     u, v = np.meshgrid(np.linspace(0, 1, across + 1), np.linspace(0, 1, along + 1))
     points, faces, uvs = [], [], []
@@ -177,7 +180,7 @@ def feather_mesh(name, random, count, spread):
     cells = (np.arange(along)[:, None] * (across + 1) + np.arange(across)).reshape(-1, 1) + cell
     for _ in range(count):
         angle, bend = random.uniform(0, 2 * math.pi), random.uniform(0.2, 1)
-        x, y = 16 * PIXEL * (u - 0.5), 80 * PIXEL * (v - 0.5)
+        x, y = 0.8 * (u - 0.5), 4.0 * (v - 0.5)
         z = bend * np.sin(math.pi * v)
         place = random.uniform(-spread, spread)
         turned = (
@@ -196,7 +199,7 @@ def feather_mesh(name, random, count, spread):
 
 def feathers(moving=True):
     """400 half-transparent feathers in ten bunches; each bunch turns by .5, 20 pixels at 40 from its middle."""
-    scene = empty()
+    scene = empty(320)
     random = np.random.default_rng(7)
     for i in range(10):
         mesh = feather_mesh(f"Bunch {i}", random, 40, np.array([2.5, 2.0, 1.0]))
@@ -212,7 +215,7 @@ def feathers(moving=True):
 
 def grass():
     """1,500 blades of hair, 2 pixels wide at the root, on sixty clods that sway: 20 pixels at the tips."""
-    scene = empty()
+    scene = empty(480)
     random = np.random.default_rng(11)
     for i in range(60):
         color = random.uniform((0.05, 0.2, 0.02), (0.5, 0.8, 0.2))
@@ -227,8 +230,9 @@ def grass():
         hair = clod.particle_systems[0].settings
         hair.type, hair.count, hair.hair_length, hair.render_step = "HAIR", 25, 2.0, 3
         hair.brownian_factor = 0.1
-        hair.root_radius, hair.tip_radius, hair.radius_scale = 2 * PIXEL, 0.3 * PIXEL, 1.0
-        animate(clod, "rotation_euler", 1, 0.4 * (-1) ** i)
+        px = pixel(scene)
+        hair.root_radius, hair.tip_radius, hair.radius_scale = 2 * px, 0.3 * px, 1.0
+        animate(clod, "rotation_euler", 1, 8 * px * (-1) ** i)
     add_camera(scene, (0, -9, 8), focal=36, tilt=0.95)
     scene.frame_set(1)
     return scene

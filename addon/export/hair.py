@@ -10,7 +10,7 @@ import numpy as np
 
 from .elements import Elements
 from .snapshot import Attribute, Geometry
-from .transforms import from_matrix
+from .transforms import from_matrix, inverse
 
 
 def hair_systems(thing, mode):
@@ -102,8 +102,10 @@ def _read(thing, _data, name, mode):
         ended = (strands[:, step] == 0.0).all(axis=1)
         strands[ended, step] = strands[ended, step - 1]
     matrix = from_matrix(thing.matrix_world)
-    if abs(np.linalg.det(matrix)) > 0.0:
-        world = (world - matrix[:3, 3]) @ np.linalg.inv(matrix[:3, :3]).T
+    x, y, z = matrix[:3, :3].T
+    if np.cross(x, y) @ z != 0.0:
+        from_world = inverse(matrix)
+        world = world @ from_world[:3, :3].T + from_world[:3, 3]
     return world.astype(np.float32), np.full(last - first, steps, dtype=np.int32)
 
 

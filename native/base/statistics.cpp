@@ -5,13 +5,14 @@ namespace granita {
 namespace {
 
 constexpr std::array kCounterNames = {
-    "primitives_opened", "primitives_split",    "primitives_culled",    "grids_diced",
-    "grids_culled",      "grids_shaded",        "grids_opacity_shaded", "points_diced",
-    "points_spared",     "points_shaded",       "micropolygons",        "micropolygons_dropped",
-    "samples_total",     "sample_tests_static", "sample_tests_moving",  "sample_hits",
-    "fragments_stored",  "buckets_moving",      "buckets_transparent",  "gl_primitives",
-    "gl_passes",         "gl_dispatches",       "rays_shadow",          "rays_occlusion",
-    "texture_lookups"};
+    "primitives_opened",     "primitives_split", "primitives_culled",   "primitives_culled_in_time",
+    "grids_diced",           "grids_culled",     "grids_shaded",        "grids_opacity_shaded",
+    "points_diced",          "points_spared",    "points_shaded",       "micropolygons",
+    "micropolygons_dropped", "samples_total",    "sample_tests_static", "sample_tests_moving",
+    "sample_hits",           "fragments_stored", "buckets_moving",      "buckets_transparent",
+    "gl_primitives",         "gl_passes",        "gl_dispatches",       "rays_shadow",
+    "rays_occlusion",        "texture_lookups",
+};
 static_assert(kCounterNames.size() == static_cast<std::size_t>(Counter::kCount));
 
 constexpr std::array kStageNames = {"open",  "split",   "dice", "hide",

@@ -18,6 +18,7 @@ enum class Counter {
     PrimitivesSplit,   ///< split() calls
     PrimitivesCulled,  ///< culled by bound: off screen or behind the hierarchical depth, counted a
                        ///< bucket
+    PrimitivesCulledInTime,  ///< of these, what only its bounds in parts of the shutter ruled out
     GridsDiced,
     GridsCulled,         ///< diced grids that the hierarchical depth rejected, counted a bucket
     GridsShaded,         ///< radiance run

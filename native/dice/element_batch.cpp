@@ -18,9 +18,7 @@ GridKey ElementBatch::key() const {
 }
 
 RasterBounds ElementBatch::raster_bounds(Bounds3f box) const {
-    if (box.empty()) return {};
-    const Vec3f largest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
-    box.grow(1e-6f * std::max({largest.x, largest.y, largest.z}));
+    box.grow_relative(1e-6f);
     return raster_bound(m_elements->view().projection, box);
 }
 

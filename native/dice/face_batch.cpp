@@ -47,15 +47,22 @@ FaceBatch::FaceBatch(std::shared_ptr<const OpenedPolygons> mesh,
                      std::span<const std::uint32_t> faces)
     : m_mesh(std::move(mesh)), m_faces(faces) {}
 
-RasterBounds FaceBatch::bounds(const OpenedPolygons& mesh, std::span<const std::uint32_t> faces) {
-    Bounds3f box;
+std::vector<Bounds3f> FaceBatch::boxes(const OpenedPolygons& mesh,
+                                       std::span<const std::uint32_t> faces) {
+    std::vector<Bounds3f> boxes(static_cast<std::size_t>(mesh.knot_count()));
     for (int k = 0; k < mesh.knot_count(); ++k) {
         const std::span<const Vec3f> points = mesh.points(k);
+        Bounds3f& box = boxes[static_cast<std::size_t>(k)];
         for (const std::uint32_t face : faces)
             for (const std::uint32_t corner : mesh.shared().patches()[face].corner)
                 box.add(points[static_cast<std::size_t>(mesh.data().corner_verts[corner])]);
+        box.grow_relative(1e-6f);  // of what lies between the corners
     }
-    return raster_bound(mesh.view().projection, box);
+    return boxes;
+}
+
+RasterBounds FaceBatch::bounds() const {
+    return raster_bound_of(m_mesh->view().projection, knot_boxes());
 }
 
 /// Bit 63 is never set in the path of a patch, and a patch is in one batch at most.
@@ -63,8 +70,7 @@ GridKey FaceBatch::key() const {
     return {m_mesh->instance().key, patch(0).face, std::uint64_t{1} << 63 | patch(0).sub};
 }
 
-std::unique_ptr<Grid> FaceBatch::dice() const {
-    const std::size_t count = m_faces.size();
+std::unique_ptr<Grid> FaceBatch::make_grid(std::size_t micropolygons) const {
     auto grid = std::make_unique<Grid>();
     grid->key = key();
     grid->instance = static_cast<std::uint32_t>(m_mesh->instance_index());
@@ -72,10 +78,22 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
     grid->holdout = m_mesh->instance().holdout;
     grid->lifespan = m_mesh->instance().lifespan;
     grid->apart = true;
-    grid->n_u = static_cast<int>(count);
+    grid->n_u = static_cast<int>(micropolygons);
     grid->n_v = 1;
     grid->knots = m_mesh->knot_count();
-    grid->positions.resize(4 * count * static_cast<std::size_t>(grid->knots));
+    grid->positions.resize(4 * micropolygons * static_cast<std::size_t>(grid->knots));
+    return grid;
+}
+
+void FaceBatch::set_share(Grid& grid, double area) const {
+    const double rate = m_mesh->rate().rate();
+    const double share = area / (rate * rate * static_cast<double>(grid.point_count()));
+    if (share < 1.0) grid.point_share = static_cast<float>(share);
+}
+
+std::unique_ptr<Grid> FaceBatch::dice() const {
+    const std::size_t count = m_faces.size();
+    auto grid = make_grid(count);
     constexpr std::size_t kPlane[4] = {0, 1, 3, 2};
     for (int k = 0; k < grid->knots; ++k) {
         const std::span<const Vec3f> points = m_mesh->points(k);
@@ -95,11 +113,9 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
     const std::vector<Vec3f> vertices = grid->shading_p();
     grid->p.clear();
     for (const Cluster& cluster : points) add_point(*grid, faces, cluster, vertices);
-    float area = 0.0f;
+    double area = 0.0;
     for (const Cluster& cluster : points) area += cluster.area;
-    const auto rate = static_cast<float>(m_mesh->rate().rate());
-    const float share = area / (rate * rate * static_cast<float>(points.size()));
-    if (share < 1.0f) grid->point_share = share;
+    set_share(*grid, area);
     dice_attributes(*grid, faces, points);
     return grid;
 }
@@ -172,7 +188,8 @@ std::vector<FaceBatch::Cluster> FaceBatch::clusters(Grid& grid,
                                                     const std::vector<Face>& faces) const {
     const auto rate = static_cast<float>(m_mesh->rate().shading_rate());
     std::vector<Cluster> clusters;
-    Vec2f lo(0.0f), hi(0.0f);  // of the last cluster
+    std::vector<std::uint32_t> point_of;  // [faces]
+    Vec2f lo(0.0f), hi(0.0f);             // of the last cluster
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const Face& face = faces[i];
         if (!clusters.empty()) {
@@ -188,15 +205,17 @@ std::vector<FaceBatch::Cluster> FaceBatch::clusters(Grid& grid,
                 hi = high;
                 last.area += face.area;
                 last.end = i + 1;
-                grid.places.point_of.push_back(static_cast<std::uint32_t>(clusters.size() - 1));
+                point_of.push_back(static_cast<std::uint32_t>(clusters.size() - 1));
                 continue;
             }
         }
-        grid.places.point_of.push_back(static_cast<std::uint32_t>(clusters.size()));
+        point_of.push_back(static_cast<std::uint32_t>(clusters.size()));
         clusters.push_back({i, i + 1, i, face.area});
         lo = hi = face.place;
     }
     for (Cluster& cluster : clusters) find_center(cluster, faces);
+    for (int corner = 0; corner < 4; ++corner)
+        grid.places.point_of.insert(grid.places.point_of.end(), point_of.begin(), point_of.end());
     return clusters;
 }
 

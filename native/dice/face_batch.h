@@ -16,23 +16,34 @@
 
 namespace granita {
 
-class FaceBatch final : public Primitive {
+class FaceBatch : public Primitive {
   public:
     /// `faces`: patches of the mesh, which keeps them.
     FaceBatch(std::shared_ptr<const OpenedPolygons> mesh, std::span<const std::uint32_t> faces);
 
-    static RasterBounds bounds(const OpenedPolygons& mesh, std::span<const std::uint32_t> faces);
+    static std::vector<Bounds3f> boxes(const OpenedPolygons& mesh,
+                                       std::span<const std::uint32_t> faces);
 
-    RasterBounds bounds() const override { return bounds(*m_mesh, m_faces); }
+    RasterBounds bounds() const override;
+    std::vector<Bounds3f> knot_boxes() const override { return boxes(*m_mesh, m_faces); }
     GridKey key() const override;
     bool diceable() const override { return true; }
     std::vector<std::unique_ptr<Primitive>> split() const override { return {}; }
     std::unique_ptr<Grid> dice() const override;
 
+  protected:
+    std::size_t face_count() const { return m_faces.size(); }
+    const BasePatch& patch(std::size_t i) const { return m_mesh->shared().patches()[m_faces[i]]; }
+    /// Room for `micropolygons` at every knot; what all of them have in common.
+    std::unique_ptr<Grid> make_grid(std::size_t micropolygons) const;
+    /// Part of a square pixel that a point stands for, where all of them cover `area`.
+    void set_share(Grid& grid, double area) const;
+
+    std::shared_ptr<const OpenedPolygons> m_mesh;
+
   private:
     struct Face;
     struct Cluster;
-    const BasePatch& patch(std::size_t i) const { return m_mesh->shared().patches()[m_faces[i]]; }
     Face face(const Grid& grid, std::size_t i) const;
     std::vector<Cluster> clusters(Grid& grid, const std::vector<Face>& faces) const;
     static void find_center(Cluster& cluster, const std::vector<Face>& faces);
@@ -42,7 +53,6 @@ class FaceBatch final : public Primitive {
     void dice_attributes(Grid& grid, const std::vector<Face>& faces,
                          const std::vector<Cluster>& clusters) const;
 
-    std::shared_ptr<const OpenedPolygons> m_mesh;
     std::span<const std::uint32_t> m_faces;
 };
 

@@ -8,8 +8,8 @@
 //   |  0---1   it is the two triangles (0, 1, 2) and (0, 2, 3): the diagonal is fixed
 //   +-----> u
 //
-// Small faces of a mesh share a grid though they share no vertices (`apart`): micropolygon m has
-// its corners 0, 1, 3 and 2 at m, m + n_u, m + 2 n_u and m + 3 n_u, in one row.
+// Small faces of a mesh share a grid, though its micropolygons then share no vertices (`apart`):
+// micropolygon m has its corners 0, 1, 3 and 2 at m, m + n_u, m + 2 n_u and m + 3 n_u, in one row.
 //
 // Where a border of the patch carries fewer vertices than the interior (crack-free dicing),
 // neighbouring border vertices of the grid coincide bit for bit: micropolygons there are triangles
@@ -55,7 +55,7 @@ struct ShadingPlaces {
     std::vector<std::uint32_t> anchors;
     /// A lattice is shaded at every step_u-th vertex of every step_v-th row; steps divide n_u, n_v.
     int step_u = 1, step_v = 1;
-    /// [micropolygons] of a grid of separate ones: the point whose colour each has all over.
+    /// [vertices] of a grid of separate micropolygons: the point whose colour each has.
     std::vector<std::uint32_t> point_of;
 };
 

@@ -54,7 +54,7 @@ class Nothing final : public OpenedInstance {
 
 }  // namespace
 
-RasterBounds instance_bounds(const View& view, std::size_t index) {
+std::vector<Bounds3f> instance_boxes(const View& view, std::size_t index) {
     const Instance& instance = view.scene->instances[index];
     const std::size_t geometry = static_cast<std::size_t>(instance.geometry);
     const GeometryData& data = view.scene->geometries[geometry];
@@ -63,20 +63,21 @@ RasterBounds instance_bounds(const View& view, std::size_t index) {
     const Knots knots = combine_knots(*view.scene, instance, data, data.knots == 1);
     if (!knots.finite) return {};
     const float radius = view.geometries->largest_radius(*view.scene, geometry);
-    Bounds3f box;
+    std::vector<Bounds3f> out(static_cast<std::size_t>(knots.count));
     for (int k = 0; k < knots.count; ++k) {
         const Mat4d& m = knots.camera_from_object[static_cast<std::size_t>(k)];
-        Bounds3f at_knot;
-        add_transformed(at_knot, m, box_at(*boxes, knot_time(k, knots.count - 1, data.knots)));
-        if (radius > 0.0f && !at_knot.empty())
-            at_knot.grow(kWidest * radius * static_cast<float>(uniform_scale(m)));
-        box.add(at_knot);
+        Bounds3f& box = out[static_cast<std::size_t>(k)];
+        add_transformed(box, m, box_at(*boxes, knot_time(k, knots.count - 1, data.knots)));
+        if (box.empty()) continue;
+        if (radius > 0.0f) box.grow(kWidest * radius * static_cast<float>(uniform_scale(m)));
+        box.grow_relative(4e-6f);
+        box.grow(displacement_bound(view, instance));
     }
-    if (box.empty()) return {};
-    const Vec3f largest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
-    box.grow(4e-6f * std::max({largest.x, largest.y, largest.z}) +
-             displacement_bound(view, instance));
-    return raster_bound(view.projection, box);
+    return out;
+}
+
+RasterBounds instance_bounds(const View& view, std::size_t index) {
+    return raster_bound_of(view.projection, instance_boxes(view, index));
 }
 
 std::shared_ptr<const OpenedInstance> open_instance(const View& view, std::size_t index,

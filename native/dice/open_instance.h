@@ -8,8 +8,10 @@
 
 namespace granita {
 
-/// Camera-space bounds of an instance from its geometry's object-space box at each knot, without
-/// opening it.
+/// [knots] camera-space boxes of an instance from its geometry's object-space boxes, without
+/// opening it; empty where a transform is not finite.
+std::vector<Bounds3f> instance_boxes(const View& view, std::size_t instance);
+/// All of them in the raster.
 RasterBounds instance_bounds(const View& view, std::size_t instance);
 
 /// Transforms the geometry into camera space at its knots (composed in double, rounded once a

@@ -7,6 +7,7 @@
 #include "dice/curve_batch.h"
 #include "dice/finish_motion.h"
 #include "dice/point_batch.h"
+#include "dice/seen_area.h"
 
 namespace granita {
 
@@ -110,19 +111,8 @@ void OpenedElements::finish_shading(Grid& grid, std::span<const ElementPlace> pl
 }
 
 void OpenedElements::finish_share(Grid& grid) const {
-    const Projection& projection = m_view->projection;
     const std::vector<Vec3f>& p = grid.shading_p();
-    std::vector<Vec2f> place;
-    place.reserve(p.size());
-    for (const Vec3f& at : p)
-        place.push_back(Vec2f(projection.scale) * Vec2f(at) /
-                        (projection.perspective ? at.z : 1.0f));
-    double area = 0.0;
-    for (int m = 0; m < grid.micropolygon_count(); ++m) {
-        const Grid::Corners c = grid.corners(m);
-        const Vec2f a = place[c.v2] - place[c.v0], b = place[c.v3] - place[c.v1];
-        area += 0.5 * std::abs(a.x * b.y - a.y * b.x);
-    }
+    const double area = seen_area(grid, p, m_view->projection);
     const double share = area / (m_rate.rate() * m_rate.rate() * static_cast<double>(p.size()));
     if (share < 1.0) grid.point_share = static_cast<float>(share);
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "dice/patch.h"
+#include "dice/raster_bound.h"
 
 namespace granita {
 namespace {
@@ -124,10 +125,14 @@ Vec3d OpenedMesh::camera_normal(const Vec3f& normal_object) const {
 }
 
 RasterBounds OpenedMesh::bounds(std::size_t primitive) const {
+    return raster_bound_of(view().projection, knot_boxes(primitive));
+}
+
+std::vector<Bounds3f> OpenedMesh::knot_boxes(std::size_t primitive) const {
     const BasePatch& patch = m_shared->patches()[primitive];
     static const Vec2d triangle[4] = {{0, 0}, {1, 0}, {0, 1}, {0, 1}};
     static const Vec2d quad[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    return patch_bounds(*this, patch, patch.kind == PatchKind::Triangle ? triangle : quad);
+    return patch_boxes(*this, patch, patch.kind == PatchKind::Triangle ? triangle : quad);
 }
 
 std::unique_ptr<Primitive> OpenedMesh::primitive(std::size_t primitive) const {

@@ -37,14 +37,15 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
 
     std::size_t primitive_count() const override { return m_shared->patches().size(); }
     RasterBounds bounds(std::size_t primitive) const override;
+    std::vector<Bounds3f> knot_boxes(std::size_t primitive) const override;
     std::unique_ptr<Primitive> primitive(std::size_t primitive) const override;
     std::uint64_t bytes() const override;
 
     virtual Start start(const BasePatch& patch, int budget) const = 0;
     /// Base edges are straight in camera space: their two ends tell their length.
     virtual bool straight_edges() const = 0;
-    /// Conservative over all knots, not displaced, for the patch inside `corner_uv`.
-    virtual Bounds3f swept_box(const BasePatch& patch, const Vec2d* corner_uv) const = 0;
+    /// [knots] conservative, not displaced, for the patch inside `corner_uv`.
+    virtual std::vector<Bounds3f> boxes(const BasePatch& patch, const Vec2d* corner_uv) const = 0;
     virtual void edge_point(const EdgeRef& edge, double t, EdgePoint& out) const = 0;
     virtual void surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const = 0;
     virtual void sample(const BasePatch& patch, std::span<const Vec2d> uv,

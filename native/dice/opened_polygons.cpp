@@ -5,6 +5,7 @@
 
 #include "dice/corner_values.h"
 #include "dice/face_batch.h"
+#include "dice/patch_batch.h"
 #include "geometry/vertex_normals.h"
 
 namespace granita {
@@ -77,7 +78,7 @@ OpenedPolygons::Corners OpenedPolygons::corners(const BasePatch& patch, int knot
     return corners;
 }
 
-Bounds3f OpenedPolygons::swept_box(const BasePatch& patch, const Vec2d* corner_uv) const {
+std::vector<Bounds3f> OpenedPolygons::boxes(const BasePatch& patch, const Vec2d* corner_uv) const {
     Vec2d uv[4];
     std::copy_n(corner_uv, 4, uv);
     if (patch.kind != PatchKind::Triangle) {
@@ -86,12 +87,14 @@ Bounds3f OpenedPolygons::swept_box(const BasePatch& patch, const Vec2d* corner_u
         for (const Vec2d& c : uv) lo = glm::min(lo, c), hi = glm::max(hi, c);
         uv[0] = lo, uv[1] = {hi.x, lo.y}, uv[2] = hi, uv[3] = {lo.x, hi.y};
     }
-    Bounds3f box;
+    std::vector<Bounds3f> boxes(static_cast<std::size_t>(knot_count()));
     for (int k = 0; k < knot_count(); ++k) {
         const Corners at = corners(patch, k);
-        for (const Vec2d& c : uv) box.add(Vec3f(blend(at.p, CornerWeights(patch.kind, c).w)));
+        for (const Vec2d& c : uv)
+            boxes[static_cast<std::size_t>(k)].add(
+                Vec3f(blend(at.p, CornerWeights(patch.kind, c).w)));
     }
-    return box;
+    return boxes;
 }
 
 void OpenedPolygons::edge_point(const EdgeRef& edge, double t, EdgePoint& out) const {
@@ -151,18 +154,20 @@ void OpenedPolygons::frame_normals(const BasePatch& patch, const Vec3f* p,
                                             : geometric_normal;
 }
 
-RasterBounds OpenedPolygons::bounds(std::size_t primitive) const {
+std::vector<Bounds3f> OpenedPolygons::knot_boxes(std::size_t primitive) const {
     const std::size_t others = m_small.others().size();
-    return primitive < others ? OpenedMesh::bounds(m_small.others()[primitive])
-                              : FaceBatch::bounds(*this, m_small.batch(primitive - others));
+    return primitive < others ? OpenedMesh::knot_boxes(m_small.others()[primitive])
+                              : FaceBatch::boxes(*this, m_small.batch(primitive - others));
 }
 
 std::unique_ptr<Primitive> OpenedPolygons::primitive(std::size_t primitive) const {
     const std::size_t others = m_small.others().size();
     if (primitive < others) return OpenedMesh::primitive(m_small.others()[primitive]);
-    return std::make_unique<FaceBatch>(
-        std::static_pointer_cast<const OpenedPolygons>(shared_from_this()),
-        m_small.batch(primitive - others));
+    const std::size_t batch = primitive - others;
+    auto self = std::static_pointer_cast<const OpenedPolygons>(shared_from_this());
+    if (m_small.is_whole(batch))
+        return std::make_unique<FaceBatch>(std::move(self), m_small.batch(batch));
+    return std::make_unique<PatchBatch>(std::move(self), m_small.batch(batch));
 }
 
 void OpenedPolygons::surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const {

@@ -15,13 +15,13 @@ class OpenedPolygons final : public OpenedMesh {
     std::size_t primitive_count() const override {
         return m_small.others().size() + m_small.batch_count();
     }
-    RasterBounds bounds(std::size_t primitive) const override;
+    std::vector<Bounds3f> knot_boxes(std::size_t primitive) const override;
     std::unique_ptr<Primitive> primitive(std::size_t primitive) const override;
     std::uint64_t bytes() const override { return OpenedMesh::bytes() + m_small.bytes(); }
 
     Start start(const BasePatch& patch, int budget) const override;
     bool straight_edges() const override { return true; }
-    Bounds3f swept_box(const BasePatch& patch, const Vec2d* corner_uv) const override;
+    std::vector<Bounds3f> boxes(const BasePatch& patch, const Vec2d* corner_uv) const override;
     void edge_point(const EdgeRef& edge, double t, EdgePoint& out) const override;
     void surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const override;
     void sample(const BasePatch& patch, std::span<const Vec2d> uv,

@@ -137,7 +137,8 @@ OpenedMesh::Start OpenedSubdivision::start(const BasePatch& patch, int budget) c
     return start;
 }
 
-Bounds3f OpenedSubdivision::swept_box(const BasePatch& patch, const Vec2d* corner_uv) const {
+std::vector<Bounds3f> OpenedSubdivision::boxes(const BasePatch& patch,
+                                               const Vec2d* corner_uv) const {
     const LimitFace& limit = face(static_cast<int>(patch.face));
     const FaceCoordinates coordinates(topology(), static_cast<int>(patch.face));
     Vec2d lo = corner_uv[0], hi = corner_uv[0];
@@ -156,8 +157,10 @@ Bounds3f OpenedSubdivision::swept_box(const BasePatch& patch, const Vec2d* corne
     // bicubic. An irregular one is left by its second differences: at most an eighth of the largest
     // could lie beyond the samples if it were the same all over, so the whole of it is a wide
     // margin.
-    Bounds3f box, hull;
-    for (std::size_t set = 0; set < static_cast<std::size_t>(knot_count()); ++set) {
+    std::vector<Bounds3f> boxes(static_cast<std::size_t>(knot_count()));
+    const std::span<const double> control = limit.control_points();
+    for (std::size_t set = 0; set < boxes.size(); ++set) {
+        Bounds3f& box = boxes[set];
         Vec3d b[16], slack(0.0);
         for (std::size_t i = 0; i < 16; ++i) {
             const double* from = &p[i * columns + 3 * set];
@@ -182,16 +185,14 @@ Bounds3f OpenedSubdivision::swept_box(const BasePatch& patch, const Vec2d* corne
             box.add(Vec3f(corner - slack));
             box.add(Vec3f(corner + slack));
         }
+        if (limit.is_regular()) continue;
+        Bounds3f hull;
+        for (std::size_t i = 3 * set; i < control.size(); i += columns)
+            hull.add(Vec3f(control[i], control[i + 1], control[i + 2]));
+        box.lo = glm::max(box.lo, hull.lo);
+        box.hi = glm::min(box.hi, hull.hi);
     }
-    if (limit.is_regular()) return box;
-    const std::span<const double> control = limit.control_points();
-    for (std::size_t i = 0; i < control.size(); i += columns)
-        for (std::size_t set = 0; set < static_cast<std::size_t>(knot_count()); ++set)
-            hull.add(
-                Vec3f(control[i + 3 * set], control[i + 3 * set + 1], control[i + 3 * set + 2]));
-    box.lo = glm::max(box.lo, hull.lo);
-    box.hi = glm::min(box.hi, hull.hi);
-    return box;
+    return boxes;
 }
 
 void OpenedSubdivision::limit_point(int index, const Vec2d& uv, double amount,

@@ -20,7 +20,7 @@ class OpenedSubdivision final : public OpenedMesh {
 
     Start start(const BasePatch& patch, int budget) const override;
     bool straight_edges() const override { return false; }
-    Bounds3f swept_box(const BasePatch& patch, const Vec2d* corner_uv) const override;
+    std::vector<Bounds3f> boxes(const BasePatch& patch, const Vec2d* corner_uv) const override;
     void edge_point(const EdgeRef& edge, double t, EdgePoint& out) const override;
     void surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const override;
     void sample(const BasePatch& patch, std::span<const Vec2d> uv,

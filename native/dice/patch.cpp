@@ -17,19 +17,21 @@ constexpr int kMostLevels = 25;
 
 }  // namespace
 
-RasterBounds patch_bounds(const OpenedMesh& mesh, const BasePatch& patch, const Vec2d* corner_uv) {
-    Bounds3f box = mesh.swept_box(patch, corner_uv);
-    if (box.empty()) return {};
-    // Rounding of positions, and the displacement that the material admits.
-    const Vec3f largest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
-    box.grow(1e-6f * std::max({largest.x, largest.y, largest.z}));
+std::vector<Bounds3f> patch_boxes(const OpenedMesh& mesh, const BasePatch& patch,
+                                  const Vec2d* corner_uv) {
+    float reach = 0.0f;
     if (mesh.displaced()) {
-        float bound = 0.0f;  // of all materials: a border vertex may follow its neighbour's
+        // Of all materials: a border vertex may follow its neighbour's.
         for (const std::int32_t m : mesh.instance().materials)
-            bound = std::max(bound, mesh.displacement(m).bound);
-        box.grow(std::max(bound, mesh.displacement(mesh.material(patch.face)).bound));
+            reach = std::max(reach, mesh.displacement(m).bound);
+        reach = std::max(reach, mesh.displacement(mesh.material(patch.face)).bound);
     }
-    return raster_bound(mesh.view().projection, box);
+    std::vector<Bounds3f> boxes = mesh.boxes(patch, corner_uv);
+    for (Bounds3f& box : boxes) {
+        box.grow_relative(1e-6f);  // of positions
+        box.grow(reach);
+    }
+    return boxes;
 }
 
 Patch::Patch(std::shared_ptr<const OpenedMesh> mesh, const BasePatch& patch)
@@ -120,7 +122,11 @@ GridKey Patch::key() const {
 }
 
 RasterBounds Patch::bounds() const {
-    return patch_bounds(*m_mesh, *m_patch, m_corner_uv);
+    return raster_bound_of(m_mesh->view().projection, knot_boxes());
+}
+
+std::vector<Bounds3f> Patch::knot_boxes() const {
+    return patch_boxes(*m_mesh, *m_patch, m_corner_uv);
 }
 
 Patch::Cut Patch::cut(int side, bool collapsed_before, int before, int after) const {

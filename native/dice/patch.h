@@ -14,8 +14,9 @@
 
 namespace granita {
 
-/// Of the part of a base patch inside four corners, displacement included.
-RasterBounds patch_bounds(const OpenedMesh& mesh, const BasePatch& patch, const Vec2d* corner_uv);
+/// [knots] of the part of a base patch inside four corners, displacement included.
+std::vector<Bounds3f> patch_boxes(const OpenedMesh& mesh, const BasePatch& patch,
+                                  const Vec2d* corner_uv);
 
 class Patch final : public Primitive {
   public:
@@ -23,6 +24,7 @@ class Patch final : public Primitive {
                                        const BasePatch& patch);
 
     RasterBounds bounds() const override;
+    std::vector<Bounds3f> knot_boxes() const override;
     GridKey key() const override;
     bool diceable() const override;
     std::vector<std::unique_ptr<Primitive>> split() const override;

@@ -33,6 +33,9 @@ class Primitive {
   public:
     virtual ~Primitive() = default;
     virtual RasterBounds bounds() const = 0;
+    /// [knots] boxes in camera space, equidistant, between which everything moves linearly.  Empty:
+    /// not known, bounds() must do.
+    virtual std::vector<Bounds3f> knot_boxes() const { return {}; }
     virtual GridKey key() const = 0;
     virtual bool diceable() const = 0;
     /// At least two children, in a fixed order, that tile this one exactly.
@@ -51,6 +54,8 @@ class OpenedInstance {
     virtual ~OpenedInstance() = default;
     virtual std::size_t primitive_count() const = 0;
     virtual RasterBounds bounds(std::size_t primitive) const = 0;
+    /// As Primitive::knot_boxes().
+    virtual std::vector<Bounds3f> knot_boxes(std::size_t) const { return {}; }
     virtual std::unique_ptr<Primitive> primitive(std::size_t primitive) const = 0;
     virtual std::uint64_t bytes() const = 0;
 };

@@ -70,6 +70,12 @@ RasterBounds raster_bound(const Projection& projection, const Bounds3f& box) {
     return finish(projection, axis(0, box.lo.x, box.hi.x), axis(1, box.lo.y, box.hi.y), box.lo.z);
 }
 
+RasterBounds raster_bound_of(const Projection& projection, std::span<const Bounds3f> boxes) {
+    Bounds3f all;
+    for (const Bounds3f& box : boxes) all.add(box);
+    return raster_bound(projection, all);
+}
+
 RasterBounds raster_bound(const Projection& projection, std::span<const Vec3f> points) {
     Bounds3f box;
     for (const Vec3f& p : points) box.add(p);

@@ -75,23 +75,51 @@ Corners corners_of(const OpenedPolygons& mesh, const BasePatch& patch) {
     return corners;
 }
 
-/// [patches] 1 = all sides are short at every knot and meet the frame.
-std::vector<std::uint8_t> find_small(const OpenedPolygons& mesh, ScreenPoints& screen) {
+/// The most levels of the trees of a small face's edges: sides of four micropolygons.
+constexpr int kMostLevels = 2;
+
+/// log2 of the micropolygons along u and v, by the sides' lengths.
+struct Levels {
+    std::uint8_t u = 0, v = 0;
+    bool whole() const { return u + v == 0; }
+    int micropolygons() const { return 1 << (u + v); }
+};
+constexpr Levels kLarge{255, 255};
+
+int most_levels(const OpenedPolygons& mesh) {
+    // Points of a coarser shading rate lie on lattices.
+    if (mesh.rate().shading_rate() > mesh.rate().rate()) return 0;
+    int most = kMostLevels;
+    while (1 << 2 * most > mesh.view().scene->options.grid_size && most > 0) --most;
+    return most;
+}
+
+/// [patches] what the sides need at any knot; kLarge: more than a small face may, or some do not
+/// meet the frame.
+std::vector<Levels> find_levels(const OpenedPolygons& mesh, ScreenPoints& screen) {
     const auto& patches = mesh.shared().patches();
-    std::vector<std::uint8_t> small(patches.size(), 1);
+    std::vector<Levels> levels(patches.size());
     // A thousandth less than EdgeRate's own limit: this is single precision.
     const float longest = static_cast<float>(0.999 * M_SQRT2 * mesh.rate().rate());
+    const int most = most_levels(mesh);
     std::size_t left = patches.size();
     for (int k = 0; k < mesh.knot_count() && left > 0; ++k) {
         screen.project(mesh.points(k));
         for (std::size_t p = 0; p < patches.size(); ++p) {
-            if (!small[p]) continue;
+            if (levels[p].u > most) continue;
             const Corners c = corners_of(mesh, patches[p]);
             for (int i = 0; i < c.count; ++i) {
                 const Vec2f side = screen[c.v[(i + 1) % c.count]] - screen[c.v[i]];
+                const float length2 = glm::dot(side, side);
+                std::uint8_t& along = i % 2 == 0 ? levels[p].u : levels[p].v;
+                const auto fits = [&] {
+                    const float limit = longest * static_cast<float>(1 << along);
+                    return length2 <= limit * limit;
+                };
                 // Written so that what is not a number is not small.
-                if (glm::dot(side, side) <= longest * longest) continue;
-                small[p] = 0;
+                while (along <= most && !fits()) ++along;
+                if (along <= most) continue;
+                levels[p] = kLarge;
                 --left;
                 break;
             }
@@ -99,20 +127,25 @@ std::vector<std::uint8_t> find_small(const OpenedPolygons& mesh, ScreenPoints& s
     }
     for (std::size_t p = 0; p < patches.size(); ++p) {
         const Corners c = corners_of(mesh, patches[p]);
-        for (int i = 0; i < c.count && small[p]; ++i)
+        for (int i = 0; i < c.count && levels[p].u <= most; ++i)
             if (!screen.met_frame(c.v[i]) && !screen.met_frame(c.v[(i + 1) % c.count]))
-                small[p] = 0;
+                levels[p] = kLarge;
     }
-    return small;
+    return levels;
 }
 
 /// A small face among its neighbours.
 struct Member {
-    std::uint64_t code;  ///< by material, side seen and place
+    std::uint64_t code;  ///< by material, side seen, size and place
     std::uint32_t patch;
     Vec3f place;  ///< x, y, depth in pixels
     std::int32_t material;
+    Levels levels;
     bool back;
+    bool goes_with(const Member& other) const {
+        return material == other.material && back == other.back &&
+               levels.whole() == other.levels.whole();
+    }
 };
 
 Member member_of(const OpenedPolygons& mesh, std::uint32_t index, const ScreenPoints& screen,
@@ -135,44 +168,49 @@ Member member_of(const OpenedPolygons& mesh, std::uint32_t index, const ScreenPo
 
 SmallFaces::SmallFaces(const OpenedPolygons& mesh) {
     ScreenPoints screen(mesh);
-    const std::vector<std::uint8_t> small =
-        mesh.displaced() ? std::vector<std::uint8_t>(mesh.shared().patches().size(), 0)
-                         : find_small(mesh, screen);
-    const auto count =
-        static_cast<std::size_t>(std::count(small.begin(), small.end(), std::uint8_t{1}));
+    const std::vector<Levels> levels =
+        mesh.displaced() ? std::vector<Levels>(mesh.shared().patches().size(), kLarge)
+                         : find_levels(mesh, screen);
+    const auto count = static_cast<std::size_t>(std::count_if(
+        levels.begin(), levels.end(), [](const Levels& l) { return l.u != kLarge.u; }));
     if (count > 0) screen.project(mesh.points(mesh.knots().frame_knot));
-    m_others.reserve(small.size() - count);
+    m_others.reserve(levels.size() - count);
     std::vector<Member> members;
     members.reserve(count);
     Vec3f lowest(INFINITY);
-    for (std::uint32_t p = 0; p < small.size(); ++p) {
-        if (!small[p]) {
+    for (std::uint32_t p = 0; p < levels.size(); ++p) {
+        if (levels[p].u == kLarge.u) {
             m_others.push_back(p);
             continue;
         }
         members.push_back(member_of(mesh, p, screen, mesh.points(mesh.knots().frame_knot)));
+        members.back().levels = levels[p];
         lowest = glm::min(lowest, members.back().place);
     }
     if (members.empty()) return;
     for (Member& m : members) {
-        const auto group =
-            (static_cast<std::uint64_t>(m.material + 1) << 1 | (m.back ? 1 : 0)) & 0x1ff;
+        const auto group = (static_cast<std::uint64_t>(m.material + 1) << 2 | (m.back ? 2 : 0) |
+                            (m.levels.whole() ? 0 : 1)) &
+                           0x3ff;
         m.code = group << 54 | morton_code((m.place - lowest) * kStepsAPixel, 18);
     }
     std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
         return std::pair(a.code, a.patch) < std::pair(b.code, b.patch);
     });
-    const auto most = static_cast<std::size_t>(std::max(mesh.view().scene->options.grid_size, 1));
+    const int most = std::max(mesh.view().scene->options.grid_size, 1);
     m_order.reserve(members.size());
     Bounds3f region;
+    int micropolygons = 0;  // of the last batch
     for (const Member& m : members) {
         Bounds3f wider = region;
         wider.add(m.place);
         const Vec3f size = wider.hi - wider.lo;
-        const Member* last = m_order.empty() ? nullptr : &m - 1;
-        if (!last || m_order.size() - m_batches.back() >= most || m.material != last->material ||
-            m.back != last->back || std::max({size.x, size.y, size.z}) > kRegion) {
+        micropolygons += m.levels.micropolygons();
+        if (m_order.empty() || micropolygons > most || !m.goes_with(*(&m - 1)) ||
+            std::max({size.x, size.y, size.z}) > kRegion) {
             m_batches.push_back(static_cast<std::uint32_t>(m_order.size()));
+            m_whole.push_back(m.levels.whole());
+            micropolygons = m.levels.micropolygons();
             wider = {};
             wider.add(m.place);
         }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces of a polygon mesh that dice into one micropolygon each, and their batches: a million of
+// Faces of a polygon mesh that dice into few micropolygons each, and their batches: a million of
 // them must not be a million grids (the paper names the cost of tiny grids in 9.4).
 //
 // Batches are made when an instance is opened, for the camera and from all of its faces: neighbours
 // on screen and in depth that show the same side and have one material.  What shows its back is
-// apart, so that it is culled and never shaded where the front hides it.
+// apart, so that it is culled and never shaded where the front hides it.  Faces of one micropolygon
+// (FaceBatch) do not mix with larger ones (PatchBatch).
 #pragma once
 
 #include <cstdint>
@@ -17,15 +18,17 @@ class OpenedPolygons;
 
 class SmallFaces {
   public:
-    /// Every face that this takes has four sides (or three) that EdgeRate leaves whole; not every
-    /// such face is taken.
+    /// Every face of a batch of whole ones has four sides (or three) that EdgeRate leaves whole;
+    /// not every such face is in one.
     explicit SmallFaces(const OpenedPolygons& mesh);
 
     std::size_t batch_count() const { return m_batches.empty() ? 0 : m_batches.size() - 1; }
-    /// Patches of a batch; at most Options::grid_size.
+    /// Patches of a batch, in all probability of at most Options::grid_size micropolygons;
+    /// certainly where they are whole.
     std::span<const std::uint32_t> batch(std::size_t index) const {
         return {m_order.data() + m_batches[index], m_batches[index + 1] - m_batches[index]};
     }
+    bool is_whole(std::size_t index) const { return m_whole[index]; }
     /// Patches in no batch.
     std::span<const std::uint32_t> others() const { return m_others; }
     std::uint64_t bytes() const {
@@ -34,6 +37,7 @@ class SmallFaces {
 
   private:
     std::vector<std::uint32_t> m_order, m_batches, m_others;
+    std::vector<bool> m_whole;  ///< [batches]
 };
 
 }  // namespace granita

@@ -43,7 +43,9 @@ class ComputeHider : public Hider {
     ComputeHider(const ComputeHider&) = delete;
     ComputeHider& operator=(const ComputeHider&) = delete;
 
-    bool occluded(const RasterBounds& bounds) const override {
+    /// Its depth knows no times.
+    bool occluded(const TimeSlab& slab) const override {
+        const RasterBounds& bounds = slab.bounds;
         const Rect touched = m_tiles.touched(bounds);
         for (int y = touched.y0; y < touched.y1; ++y)
             for (int x = touched.x0; x < touched.x1; ++x)

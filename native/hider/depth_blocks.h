@@ -24,6 +24,7 @@ class DepthBlocks {
     /// Rebuilds when enough samples changed to make it worth while.
     void update(const float* keys);
     void rebuild(const float* keys);
+    bool lags() const { return m_writes > 0; }
     /// Whether all samples of these pixels of the tile with times in [time0, time1] are nearer than
     /// `nearest_key`.
     bool hide(const Rect& pixels, float time0, float time1, float nearest_key) const;

@@ -19,6 +19,7 @@
 #include "hider/sample_lists.h"
 #include "hider/sample_store.h"
 #include "hider/sample_table.h"
+#include "hider/time_slabs.h"
 #include "math/projection.h"
 
 namespace granita {
@@ -41,7 +42,9 @@ class Hider {
     virtual ~Hider() = default;
     /// True only if nothing inside the bounds can be seen by any sample of the bucket, given what
     /// was hidden so far.
-    virtual bool occluded(const RasterBounds& bounds) const = 0;
+    bool occluded(const RasterBounds& bounds) const { return occluded(TimeSlab{0, 1, bounds}); }
+    /// The same for what is there during a part of the shutter.
+    virtual bool occluded(const TimeSlab& slab) const = 0;
     virtual void hide(const Grid& grid) = 0;
     /// The lists were given up because they took more than HiderFrame::list_bytes.  Opaque surfaces
     /// and occlusion hold; hiders of fewer pixels are to hide the same grids.

@@ -21,7 +21,7 @@ class ReferenceHider : public Hider {
           m_range(depth_range(frame.projection)) {}
 
     /// Never culls: what it says cannot be wrong.
-    bool occluded(const RasterBounds&) const override { return false; }
+    bool occluded(const TimeSlab&) const override { return false; }
 
     void hide(const Grid& grid) override {
         const GridClasses classes = classify(grid);

@@ -29,11 +29,11 @@ class SimdHider : public Hider {
           m_range(depth_range(frame.projection)),
           m_lens(frame.projection.lens_radius * frame.projection.scale) {}
 
-    bool occluded(const RasterBounds& bounds) const override {
-        const Rect touched = m_tiles.touched(bounds);
+    bool occluded(const TimeSlab& slab) const override {
+        const Rect touched = m_tiles.touched(slab.bounds);
         for (int y = touched.y0; y < touched.y1; ++y)
             for (int x = touched.x0; x < touched.x1; ++x)
-                if (!tile_hides(m_tiles.index(x, y), bounds, 0.0f, 1.0f)) return false;
+                if (!tile_hides(m_tiles.index(x, y), slab, Depth::Refreshed)) return false;
         return true;
     }
 
@@ -97,19 +97,21 @@ class SimdHider : public Hider {
     /// shutter.
     bool tile_hides(std::size_t i, const Grid& grid, std::vector<TimeSlab>& slabs) const {
         const Lifespan& life = grid.lifespan;
-        if (tile_hides(i, grid.bounds, std::max(0.0f, life.open), std::min(life.close, 1.0f)))
-            return true;
+        const TimeSlab whole{std::max(0.0f, life.open), std::min(life.close, 1.0f), grid.bounds};
+        if (tile_hides(i, whole)) return true;
         if (!grid.motion || !m_working[i].tile || !m_working[i].tile->hides_something())
             return false;
         if (slabs.empty()) slabs = time_slabs(grid, m_projection);
         return std::all_of(slabs.begin(), slabs.end(), [&](const TimeSlab& slab) {
-            return !slab.bounds.visible || !life.meets(slab.t0, slab.t1) ||
-                   tile_hides(i, slab.bounds, slab.t0, slab.t1);
+            return !slab.bounds.visible || !life.meets(slab.t0, slab.t1) || tile_hides(i, slab);
         });
     }
 
-    bool tile_hides(std::size_t i, const RasterBounds& bounds, float time0, float time1) const {
+    enum class Depth { AsItIs, Refreshed };
+    bool tile_hides(std::size_t i, const TimeSlab& slab, Depth depth = Depth::AsItIs) const {
         if (!m_working[i].tile) return false;
+        WorkingTile& tile = *m_working[i].tile;
+        const RasterBounds& bounds = slab.bounds;
         const Vec2d origin = m_tiles.origin(i);
         const auto pixel = [](double x) {
             return static_cast<int>(std::floor(std::fmin(std::fmax(x, -1.0), kTileSize)));
@@ -119,7 +121,8 @@ class SimdHider : public Hider {
                           std::isnan(bounds.y0) ? 0 : pixel(bounds.y0 - origin.y),
                           std::isnan(bounds.x1) ? kTileSize : pixel(bounds.x1 - origin.x) + 1,
                           std::isnan(bounds.y1) ? kTileSize : pixel(bounds.y1 - origin.y) + 1};
-        return m_working[i].tile->hides(pixels, time0, time1, bounds.nearest_key);
+        const auto hides = [&] { return tile.hides(pixels, slab.t0, slab.t1, bounds.nearest_key); };
+        return hides() || (depth == Depth::Refreshed && tile.refresh_depth() && hides());
     }
 
     /// Sees to it that the tile's samples lie in an order that suits grids which go this far.

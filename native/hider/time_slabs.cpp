@@ -23,35 +23,40 @@ Bounds3f mix(const Bounds3f& a, const Bounds3f& b, float part) {
     return {a.lo + part * (b.lo - a.lo), a.hi + part * (b.hi - a.hi)};
 }
 
+int slabs_a_segment(std::size_t knots) {
+    const int segments = static_cast<int>(knots) - 1;
+    return (kLeastSlabs + segments - 1) / segments;
+}
+
 }  // namespace
 
+int slab_count(std::size_t knots) {
+    return (static_cast<int>(knots) - 1) * slabs_a_segment(knots);
+}
+
+TimeSlab time_slab(std::span<const Bounds3f> boxes, int index, const Projection& projection) {
+    const int parts = slabs_a_segment(boxes.size());
+    const auto count = static_cast<float>(slab_count(boxes.size()));
+    TimeSlab slab{static_cast<float>(index) / count, static_cast<float>(index + 1) / count, {}};
+    const auto segment = static_cast<std::size_t>(index / parts);
+    const Bounds3f &begin = boxes[segment], &end = boxes[segment + 1];
+    if (begin.empty() || end.empty()) return slab;
+    const auto at = [&](int part) {
+        return mix(begin, end, static_cast<float>(part) / static_cast<float>(parts));
+    };
+    Bounds3f box = at(index % parts);
+    box.add(at(index % parts + 1));
+    box.grow_relative(4e-6f);  // more than single precision moves anything
+    slab.bounds = raster_bound(projection, box);
+    return slab;
+}
+
 std::vector<TimeSlab> time_slabs(const Grid& grid, const Projection& projection) {
-    const int segments = grid.knots - 1;
-    const int parts = (kLeastSlabs + segments - 1) / segments;
-    const auto count = static_cast<float>(segments * parts);
+    std::vector<Bounds3f> boxes;
+    for (int k = 0; k < grid.knots; ++k) boxes.push_back(box_at(grid, k));
     std::vector<TimeSlab> slabs;
-    Bounds3f begin = box_at(grid, 0);
-    for (int segment = 0; segment < segments; ++segment) {
-        const Bounds3f end = box_at(grid, segment + 1);
-        for (int part = 0; part < parts; ++part) {
-            RasterBounds bounds;
-            if (!begin.empty() && !end.empty()) {
-                const auto fraction = [&](int p) {
-                    return static_cast<float>(p) / static_cast<float>(parts);
-                };
-                Bounds3f box = mix(begin, end, fraction(part));
-                box.add(mix(begin, end, fraction(part + 1)));
-                // More than single precision moves anything.
-                const Vec3f largest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
-                box.grow(4e-6f * std::max({largest.x, largest.y, largest.z}));
-                bounds = raster_bound(projection, box);
-            }
-            const int first = segment * parts + part;
-            slabs.push_back(
-                {static_cast<float>(first) / count, static_cast<float>(first + 1) / count, bounds});
-        }
-        begin = end;
-    }
+    for (int i = 0; i < slab_count(boxes.size()); ++i)
+        slabs.push_back(time_slab(boxes, i, projection));
     return slabs;
 }
 

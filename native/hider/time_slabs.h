@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "dice/grid.h"
@@ -14,9 +15,14 @@ struct TimeSlab {
     RasterBounds bounds;
 };
 
-/// Bounds of a moving grid over slabs of the shutter, at least eight and never across a knot.  The
-/// bounds over the whole shutter hide nothing that moves fast; those of a slab do (space-time
+/// How many slabs a path with so many knots, at least two, has: at least eight, none across a knot.
+/// The bounds over the whole shutter hide nothing that moves fast; those of a slab do (space-time
 /// occlusion culling: Boulos et al. 2010).
+int slab_count(std::size_t knots);
+/// One of them.  `boxes` [knots] camera space, between which everything moves linearly.
+TimeSlab time_slab(std::span<const Bounds3f> boxes, int index, const Projection& projection);
+
+/// All slabs of a moving grid.
 std::vector<TimeSlab> time_slabs(const Grid& grid, const Projection& projection);
 
 }  // namespace granita

@@ -12,7 +12,7 @@ void WorkingTile::begin(const TileSamples& samples, const Rect& pixels, Vec2f le
     m_pixels = pixels;
     m_lens = lens;
     fragments = {};
-    m_grids_since = 0;
+    m_misses = m_grids_since = 0;
     m_fragments_then = 0;
     arrange(samples, shape);
     m_id.assign(m_order.slots(), kNoSurface);

@@ -35,10 +35,24 @@ class WorkingTile {
     void end_lists(const GridPool& pool, const ListEnd& end, int z_batch_size);
     /// Brings the hierarchical depth up to date when it is worth while.
     void update_depth() { m_depth.update(m_key.data()); }
-    void note_writes(std::uint64_t written) { m_depth.note_writes(written); }
+    void note_writes(std::uint64_t written) {
+        m_depth.note_writes(written);
+        if (written > 0) m_misses = 0;
+    }
     /// Whether all samples of these pixels (relative to the tile) and times see something nearer.
     bool hides(const Rect& pixels, float time0, float time1, float nearest_key) const {
         return m_depth.hide(pixels.intersect(m_pixels), time0, time1, nearest_key);
+    }
+
+    /// Something that is yet to be diced was not hidden.  True: the hierarchical depth lagged and
+    /// was brought up to date, so that it is worth while to ask again.  What is drawn comes from
+    /// front to back: after a few such misses without a sample seen, what still lags hides the
+    /// rest.
+    bool refresh_depth() {
+        constexpr int kPatience = 4;
+        if (!m_depth.lags() || ++m_misses < kPatience) return false;
+        m_depth.rebuild(m_key.data());
+        return true;
     }
 
     /// Whether it is worth while to ask hides() more than once.
@@ -58,6 +72,7 @@ class WorkingTile {
     std::vector<float> m_key;
     std::vector<SurfaceId> m_id;
     RankBounds m_bounds;
+    int m_misses = 0;                  ///< since a sample saw something
     int m_grids_since = 0;             ///< end_lists() looked at the lists
     std::size_t m_fragments_then = 0;  ///< that were left
 };

@@ -25,6 +25,12 @@ struct Bounds3f {
         lo -= Vec3f(d);
         hi += Vec3f(d);
     }
+    /// By a part of the largest coordinate: what rounding may move.
+    void grow_relative(float part) {
+        if (empty()) return;
+        const Vec3f largest = glm::max(glm::abs(lo), glm::abs(hi));
+        grow(part * glm::max(largest.x, glm::max(largest.y, largest.z)));
+    }
 };
 
 /// Half-open rectangle of whole pixels (or tiles, or buckets) in the frame; lower-left origin, may

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/frame_geometry.h"
 
+#include "dice/raster_bound.h"
+
 namespace granita {
 namespace {
 
@@ -25,9 +27,11 @@ FrameGeometry::FrameGeometry(const View& view, const BucketLayout& layout, Repor
       m_finished(static_cast<std::size_t>(layout.count())) {
     for (std::uint32_t i = 0; i < m_states.size(); ++i) {
         if (!view.scene->instances[i].visible_camera) continue;
-        m_states[i].bounds = instance_bounds(view, i);
+        std::vector<Bounds3f> boxes = instance_boxes(view, i);
+        m_states[i].bounds = raster_bound_of(view.projection, boxes);
         const Rect range = layout.range(m_states[i].bounds);
         if (range.empty()) continue;
+        if (boxes.size() > 1) m_states[i].boxes = std::move(boxes);
         m_states[i].buckets_left = range.width() * range.height();
         for_each_bucket(range, layout, [&](int bucket) { m_buckets[bucket].push_back(i); });
     }

@@ -23,6 +23,10 @@ class FrameGeometry {
     /// Instances whose bound touches the bucket.
     const std::vector<std::uint32_t>& instances(int bucket) const { return m_buckets[bucket]; }
     const RasterBounds& bounds(std::uint32_t instance) const { return m_states[instance].bounds; }
+    /// [knots] in camera space; empty where it stands still.
+    std::span<const Bounds3f> knot_boxes(std::uint32_t instance) const {
+        return m_states[instance].boxes;
+    }
 
     /// An opened instance with its faces binned.
     struct Opened {
@@ -48,6 +52,7 @@ class FrameGeometry {
   private:
     struct State {
         RasterBounds bounds;
+        std::vector<Bounds3f> boxes;
         std::mutex mutex;
         std::shared_ptr<Opened> opened;
         std::atomic<int> buckets_left{0};

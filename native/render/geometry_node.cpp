@@ -124,6 +124,11 @@ GeometryNode::Content GeometryNode::expand(const BucketLayout& layout, Statistic
     return m_content;
 }
 
+std::vector<Bounds3f> GeometryNode::knot_boxes() {
+    const std::lock_guard lock(m_mutex);
+    return m_primitive ? m_primitive->knot_boxes() : std::vector<Bounds3f>{};
+}
+
 void GeometryNode::release(int bucket) {
     Content freed;  // destroyed outside the lock
     std::vector<std::shared_ptr<GeometryNode>> children;

@@ -58,6 +58,8 @@ class GeometryNode {
     /// Bucket `b` will not ask again, here or below.  After the last one everything is freed.
     void release(int bucket);
     const RasterBounds& bounds() const { return m_bounds; }
+    /// As Primitive::knot_boxes(); empty once it is expanded.
+    std::vector<Bounds3f> knot_boxes();
 
   private:
     std::size_t bit(int bucket) const;

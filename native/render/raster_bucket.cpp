@@ -90,7 +90,7 @@ Tile raster_bucket(Frame& frame, int bucket) {
     const Rect pixels = frame.layout.pixels(bucket);
     std::vector<std::shared_ptr<SharedGrid>> grids;
     visit_geometry(
-        frame, bucket, [](const RasterBounds&) { return false; },
+        frame, bucket, [](const TimeSlab&) { return false; },
         [&](std::shared_ptr<SharedGrid> grid) {
             if (frame.shading.opacity_varies(grid->grid().material))
                 grid->ensure_opacity(frame.shading);

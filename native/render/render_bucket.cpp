@@ -35,7 +35,7 @@ void count_needs(Frame& frame, const HiddenGrids& grids) {
 }
 
 void hide_geometry(Frame& frame, int bucket, Hider& hider, HiddenGrids& grids) {
-    const auto occluded = [&](const RasterBounds& bounds) { return hider.occluded(bounds); };
+    const auto occluded = [&](const TimeSlab& slab) { return hider.occluded(slab); };
     visit_geometry(frame, bucket, occluded, [&](std::shared_ptr<SharedGrid> grid) {
         if (frame.shading.opacity_varies(grid->grid().material))
             grid->ensure_opacity(frame.shading);

@@ -48,11 +48,7 @@ class Visit {
             std::pop_heap(m_heap.begin(), m_heap.end());
             const Entry entry = std::move(m_heap.back());
             m_heap.pop_back();
-            if (m_occlusion(entry.bounds)) {
-                m_frame.statistics.add(Counter::PrimitivesCulled);
-                continue;
-            }
-            visit(entry);
+            if (!is_hidden(entry)) visit(entry);
         }
     }
 
@@ -70,6 +66,43 @@ class Visit {
         return b.visible && b.x0 <= static_cast<float>(m_reach.x1) &&
                b.x1 >= static_cast<float>(m_reach.x0) && b.y0 <= static_cast<float>(m_reach.y1) &&
                b.y1 >= static_cast<float>(m_reach.y0);
+    }
+
+    /// By its bounds over the shutter or, where it moves, by those of each part of it.
+    bool is_hidden(const Entry& entry) {
+        if (occluded(entry.bounds)) {
+            m_frame.statistics.add(Counter::PrimitivesCulled);
+            return true;
+        }
+        const std::vector<Bounds3f> boxes = knot_boxes(entry);
+        if (boxes.size() < 2) return false;
+        for (int i = 0; i < slab_count(boxes.size()); ++i) {
+            const TimeSlab slab = time_slab(boxes, i, m_frame.view.projection);
+            if (slab.bounds.visible && !m_occlusion(slab)) return false;
+        }
+        m_frame.statistics.add(Counter::PrimitivesCulled);
+        m_frame.statistics.add(Counter::PrimitivesCulledInTime);
+        return true;
+    }
+
+    bool occluded(const RasterBounds& bounds) const {
+        return m_occlusion(TimeSlab{0.0f, 1.0f, bounds});
+    }
+
+    std::vector<Bounds3f> knot_boxes(const Entry& entry) const {
+        switch (entry.kind) {
+            case Kind::Instance: {
+                const auto boxes = m_frame.geometry.knot_boxes(entry.index);
+                return {boxes.begin(), boxes.end()};
+            }
+            case Kind::Face:
+                return entry.opened->geometry->knot_boxes(entry.index);
+            case Kind::Node:
+                return entry.node->knot_boxes();
+            case Kind::Local:
+                return entry.primitive->knot_boxes();
+        }
+        return {};
     }
 
     void visit(const Entry& entry) {
@@ -130,7 +163,7 @@ class Visit {
 
     void hide(std::shared_ptr<SharedGrid> grid) {
         if (!touches(grid->grid().bounds)) return;
-        if (m_occlusion(grid->grid().bounds)) {
+        if (occluded(grid->grid().bounds)) {
             m_frame.statistics.add(Counter::GridsCulled);
             return;
         }

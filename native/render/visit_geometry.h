@@ -11,12 +11,14 @@
 #include <memory>
 #include <vector>
 
+#include "hider/time_slabs.h"
 #include "render/frame.h"
 
 namespace granita {
 
-/// Whether nothing inside the bounds can still be seen in the bucket.
-using Occlusion = std::function<bool(const RasterBounds&)>;
+/// Whether nothing inside the bounds can still be seen in the bucket during that part of the
+/// shutter.
+using Occlusion = std::function<bool(const TimeSlab&)>;
 
 /// Calls `hide` with every grid of the bucket that is not yet occluded, roughly from
 /// front to back. The order follows depth keys, then keys of identity: the same in every run.

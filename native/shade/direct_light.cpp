@@ -309,7 +309,6 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     if (closure.lobes.empty() || (dark && !parts)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     const std::uint64_t seed = grid_seed(key, m_impl->scene.options.seed);
-    const std::size_t columns = points.columns > 0 ? points.columns : points.count;
     LitGrid grid{radiance, parts, {}, {}};
     const Lifespan& life = paths.lifespan();
     const Vec2f exposed(m_impl->shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),
@@ -333,8 +332,11 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         const LitPlace at_frame{m_impl->scene.options.frame_time, p, normal, start};
         // Neighbours share a sequence: aligned squares of points, and so the pixels that average
         // them, are stratified as one (Ahmed and Wonka 2020, without their shuffling of squares).
-        const std::uint32_t place = morton_index(static_cast<std::uint32_t>(i % columns),
-                                                 static_cast<std::uint32_t>(i / columns));
+        // Faces of a batch are in Morton order already.
+        const auto place = static_cast<std::uint32_t>(
+            points.columns == 0 ? i
+                                : morton_index(static_cast<std::uint32_t>(i % points.columns),
+                                               static_cast<std::uint32_t>(i / points.columns)));
         LitPoint point{i, bsdf, paths, key, at_frame, sample_count, seed, place, exposed, {}};
         m_impl->light_point(grid, point);
     }

@@ -12,18 +12,17 @@
 namespace granita {
 
 /// `values` [points][width] becomes [vertices][width]: linear between the points of a lattice,
-/// constant over separate micropolygons.  What is equal at points is equal at vertices.
+/// each vertex's point of separate micropolygons.  What is equal at points is equal at vertices.
 template <class T>
 void spread_points(const Grid& grid, std::size_t width, std::vector<T>& values) {
     if (grid.places.anchors.empty() || values.empty()) return;
     std::vector<T> spread;
     spread.reserve(static_cast<std::size_t>(grid.vertex_count()) * width);
     if (grid.apart) {
-        for (int corner = 0; corner < 4; ++corner)
-            for (const std::uint32_t point : grid.places.point_of) {
-                const T* from = &values[point * width];
-                spread.insert(spread.end(), from, from + width);
-            }
+        for (const std::uint32_t point : grid.places.point_of) {
+            const T* from = &values[point * width];
+            spread.insert(spread.end(), from, from + width);
+        }
         values = std::move(spread);
         return;
     }

@@ -75,6 +75,35 @@ def test_a_moving_thing_costs_motion_only_in_its_buckets(executor):
     assert 1 <= result["buckets_moving"] <= 2
 
 
+@pytest.mark.parametrize("size", [2, 10])
+def test_what_a_moving_wall_always_hides_is_not_diced(size):
+    """Sheets of faces fly along behind a wall: over the whole shutter they sweep past what the wall covers
+    throughout, at no time do they pass its edge."""
+
+    def scene(*parts):
+        snapshot = s.orthographic((256, 64), samples=64, executor="SIMD")
+        flight = [s.translation(0), s.translation(60)]
+        if "wall" in parts:
+            wall = s.rectangle(-60, -8, 180, 72, 1.0)
+            s.quad(snapshot, wall, s.emission(snapshot, (1, 0, 0)), transforms=flight)
+        if "sheets" in parts:
+            x, y = np.meshgrid(np.arange(100, 151, size), np.arange(2, 63, size))
+            row, green = x.shape[1], s.emission(snapshot, (0, 1, 0))
+            faces = [
+                (v, v + 1, v + row + 1, v + row) for v in range(x.size - row) if v % row < row - 1
+            ]
+            for z in range(2, 18):
+                points = np.stack([x, y, np.full_like(x, z)], -1).reshape(-1, 3)
+                s.mesh(snapshot, points, faces, green, transforms=flight)
+        return s.render(snapshot)
+
+    wall, sheets, both = scene("wall"), scene("sheets"), scene("wall", "sheets")
+    assert (both["combined"] == wall["combined"]).all()
+    wall, sheets, both = (r["statistics"] for r in (wall, sheets, both))
+    assert both["primitives_culled_in_time"] > 0
+    assert both["points_diced"] - wall["points_diced"] <= 0.1 * sheets["points_diced"]
+
+
 @pytest.mark.parametrize("distance, bound", [(2000.0, 64), (1e6, 4)])
 def test_far_objects_are_not_finely_diced(executor, distance, bound):
     """A cube of 2 m under a focal length of 2000 px: its faces are distance-limited to few micropolygons."""

@@ -101,7 +101,7 @@ def test_shading_rate_shades_fewer_points_of_the_same_shapes(executor):
 
     fine, all_points = render(dicing_rate=0.5)
     coarse, fewer = render(dicing_rate=0.5, shading_rate=4.0)
-    assert fewer["points_diced"] == all_points["points_diced"]
+    assert fewer["micropolygons"] == all_points["micropolygons"]
     assert fewer["points_shaded"] < 0.1 * all_points["points_shaded"]
     assert np.array_equal(fine[..., 3], coarse[..., 3])
     # A colour that is linear is so between any points; but vertices that were moved onto a coarser side

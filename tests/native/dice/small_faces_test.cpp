@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces of a pixel or less share grids: the same micropolygons, fewer points.
+// Faces of a pixel or less share grids: the same micropolygons, fewer points.  Faces of a few
+// pixels share them too: the same micropolygons and points.
 #include <gtest/gtest.h>
 
 #include <set>
 
+#include "dice/opened_mesh.h"
+#include "dice/patch.h"
 #include "dice_scene.h"
 
 namespace granita::testing {
@@ -80,13 +83,53 @@ TEST(SmallFaces, their_borders_to_larger_faces_have_no_cracks) {
             data.face_sizes.push_back(4);
         }
     DiceScene s(std::move(data));
-    s.perspective(250.0);
-    const auto grids = s.grids();
-    const auto apart =
-        std::count_if(grids.begin(), grids.end(), [](const auto& grid) { return grid->apart; });
-    EXPECT_GT(apart, 5);
-    EXPECT_LT(apart, static_cast<long>(grids.size()));
-    EXPECT_TRUE(open_edges(grids).empty());
+    // All of them are of a few pixels at most; some are larger.
+    for (const double focal : {250.0, 800.0}) {
+        s.perspective(focal);
+        const auto grids = s.grids();
+        const auto apart =
+            std::count_if(grids.begin(), grids.end(), [](const auto& grid) { return grid->apart; });
+        EXPECT_GT(apart, 5);
+        EXPECT_EQ(apart == static_cast<long>(grids.size()), focal == 250.0);
+        EXPECT_TRUE(open_edges(grids).empty());
+    }
+}
+
+using Corner = std::array<float, 6>;  ///< place and the normal it is shaded with
+
+/// Of all micropolygons, sorted: their corners in order.
+std::vector<std::array<Corner, 4>> shaded_corners(const std::vector<std::unique_ptr<Grid>>& grids) {
+    std::vector<std::array<Corner, 4>> found;
+    for (const auto& grid : grids)
+        for (int m = 0; m < grid->micropolygon_count(); ++m) {
+            const Grid::Corners c = grid->corners(m);
+            found.emplace_back();
+            for (std::size_t i = 0; const int vertex : {c.v0, c.v1, c.v2, c.v3}) {
+                const auto v = static_cast<std::size_t>(vertex);
+                const std::size_t point = grid->apart ? grid->places.point_of[v] : v;
+                EXPECT_EQ(grid->shading_p()[point], grid->positions[v]);
+                const Vec3f &p = grid->positions[v], &n = grid->normal[point];
+                found.back()[i++] = {p.x, p.y, p.z, n.x, n.y, n.z};
+            }
+        }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+TEST(SmallFaces, faces_of_a_few_pixels_share_grids_and_keep_their_micropolygons_and_points) {
+    const auto wave = [](float x, float y) { return 50.0f + std::sin(0.3f * x) + 0.02f * x * y; };
+    DiceScene shared(sheet(24, 72.0f, wave));
+    DiceScene single(sheet(24, 72.0f, wave));
+    const auto opened = open_instance(single.view, 0, single.report);
+    const auto& mesh = dynamic_cast<const OpenedMesh&>(*opened);
+    std::vector<std::unique_ptr<Grid>> alone;
+    for (const BasePatch& patch : mesh.shared().patches())
+        DiceScene::dice_all(*Patch::open(mesh.shared_from_this(), patch), alone);
+    const auto grids = shared.grids();
+    EXPECT_EQ(alone.size(), 576u);
+    EXPECT_LT(grids.size(), 100u);
+    for (const auto& grid : grids) EXPECT_LE(grid->micropolygon_count(), 256);
+    EXPECT_EQ(shaded_corners(grids), shaded_corners(alone));
 }
 
 TEST(SmallFaces, points_follow_the_picture_and_not_the_mesh) {
@@ -107,8 +150,7 @@ TEST(SmallFaces, a_point_lies_on_a_face_of_its_colour) {
     DiceScene s(flat_sheet(100, 32.0f));
     for (const auto& grid : s.grids()) {
         ASSERT_EQ(grid->p.size(), grid->point_count());
-        ASSERT_EQ(grid->places.point_of.size(),
-                  static_cast<std::size_t>(grid->micropolygon_count()));
+        ASSERT_EQ(grid->places.point_of.size(), static_cast<std::size_t>(grid->vertex_count()));
         for (std::size_t i = 0; i < grid->point_count(); ++i) {
             const std::uint32_t anchor = grid->places.anchors[i];
             const auto face = anchor % static_cast<std::uint32_t>(grid->n_u);

@@ -178,7 +178,7 @@ TEST(Compute, CullsWhatIsHiddenAndNothingElse) {
         holed->hide(keep(rectangle(11, 10, 33, 11, z, 32, 2)));
     }
     EXPECT_FALSE(holed->occluded(behind));
-    EXPECT_TRUE(holed->occluded({16, 16, 30, 30, -9, true}));
+    EXPECT_TRUE(holed->occluded(RasterBounds{16, 16, 30, 30, -9, true}));
     // A moving wall that leaves its pixels hides nothing; transparent ones neither.
     const auto moving = make_small_device_hider(frame, tiles, pixels);
     for (const float z : {5.0f, 6.0f})

@@ -136,7 +136,7 @@ TEST(Occlusion, CullsWhatIsHiddenAndNothingElse) {
     holed->hide(keep(rectangle(-1, 10, 10, 11, 5, 32, 2)));
     holed->hide(keep(rectangle(11, 10, 33, 11, 5, 32, 2)));
     EXPECT_FALSE(holed->occluded(behind));
-    EXPECT_TRUE(holed->occluded({16, 16, 30, 30, -9, true}));
+    EXPECT_TRUE(holed->occluded(RasterBounds{16, 16, 30, 30, -9, true}));
     // A moving wall that leaves its pixels hides nothing; transparent ones neither.
     const auto moving = make_simd_hider(frame, {0, 0, 2, 2}, {0, 0, 32, 32});
     moving->hide(keep(moving_rectangle(-1, -1, 33, 33, 5, 40, 0, 32, 32)));

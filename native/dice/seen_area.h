@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+#include "dice/grid.h"
+#include "math/projection.h"
+
+namespace granita {
+
+/// Square pixels that a grid's micropolygons cover, each counted by itself, with its vertices at
+/// `p` [vertices] (camera space).
+double seen_area(const Grid& grid, std::span<const Vec3f> p, const Projection& projection);
+
+}  // namespace granita
