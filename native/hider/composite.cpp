@@ -66,6 +66,10 @@ void set_empty(std::uint32_t first, std::uint32_t seen, const SampleColor& empty
                                           &colors.depth};
     for (int k = 0; k < 5; ++k) {
         float* const to = planes[k]->data() + first;
+        if (seen == 0) {
+            std::fill_n(to, SurfaceRun::kCount, values[k]);
+            continue;
+        }
         for (int i = 0; i < SurfaceRun::kCount; ++i) to[i] = seen >> i & 1u ? to[i] : values[k];
     }
 }

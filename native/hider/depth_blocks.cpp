@@ -67,21 +67,24 @@ void DepthBlocks::rebuild_packets(const float* keys) {
 
 void DepthBlocks::rebuild_ranks(const float* keys) {
     std::fill(m_block.begin(), m_block.end(), INFINITY);
-    std::fill(m_rank.begin(), m_rank.end(), INFINITY);
-    const int square = 1 << m_square_shift;
+    const int wide = m_blocks_wide, square = 1 << m_square_shift;
+    // Rows of blocks one by one, in vectors; only then the columns of each square.
+    std::vector<float> least(static_cast<std::size_t>(wide));
     for (int r = 0; r < m_ranks; ++r)
-        for (int y = 0; y < m_blocks_wide; ++y)
-            for (int x = 0; x < m_blocks_wide; x += square, keys += square) {
-                float* const block = &m_block[static_cast<std::size_t>(y) * m_blocks_wide + x];
-                float least = keys[0];
-                for (int i = 0; i < square; ++i) {
-                    block[i] = std::min(block[i], keys[i]);
-                    least = std::min(least, keys[i]);
+        for (int square_y = 0; square_y < squares_wide(); ++square_y) {
+            std::fill(least.begin(), least.end(), INFINITY);
+            float* block = &m_block[static_cast<std::size_t>(square_y) * square * wide];
+            for (int y = 0; y < square; ++y, block += wide, keys += wide)
+                for (int x = 0; x < wide; ++x) {
+                    block[x] = std::min(block[x], keys[x]);
+                    least[x] = std::min(least[x], keys[x]);
                 }
-                const int at = (y >> m_square_shift) * squares_wide() + (x >> m_square_shift);
-                float& rank = m_rank[static_cast<std::size_t>(at) * m_ranks + r];
-                rank = std::min(rank, least);
+            for (int square_x = 0; square_x < squares_wide(); ++square_x) {
+                const float* const first = &least[static_cast<std::size_t>(square_x) * square];
+                const auto at = static_cast<std::size_t>(square_y * squares_wide() + square_x);
+                m_rank[at * m_ranks + r] = *std::min_element(first, first + square);
             }
+        }
     m_nearest_rank = *std::max_element(m_rank.begin(), m_rank.end() - kPacket);
 }
 
