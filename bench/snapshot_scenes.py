@@ -103,7 +103,7 @@ def feathers(angle=0.0, alpha=0.4, **options):
 
 def sheet(pixels, **options):
     """An opaque sheet of one-pixel micropolygons however fast it moves, by `pixels`; wholly on screen."""
-    snapshot = frame(dicing_rate=1.0, motion_factor=0.0, **options)
+    snapshot = frame(**{"dicing_rate": 1.0, "motion_factor": 0.0, **options})
     corners = s.rectangle(56, 10, WIDTH - 56, HEIGHT - 10)
     s.quad(snapshot, corners, s.emission(snapshot, (0.2, 0.5, 0.4)), transforms=shift(pixels))
     return snapshot

@@ -58,6 +58,20 @@ def motion(table, runs):
         table.row(f"hiding at 100 px over 5 px, {sampling}", taken[100] / taken[5], limit)
 
 
+def growth(table, runs):
+    """Exponents of hiding: with micropolygons, of a pixel to a quarter of one, and with samples."""
+    for pixels in (0, 20):
+        rates = {r: scenes.sheet(pixels, samples=64, dicing_rate=r) for r in (1.0, 0.25)}
+        taken = measure.interleaved(rates, measure.hide_seconds, max(1, runs // 2))
+        row = f"exponent of hiding with micropolygons, {pixels} px"
+        # Both edges are a quarter as long.
+        table.row(row, np.log(taken[0.25] / taken[1.0]) / np.log(16), 1.05)
+        samples = {n: scenes.sheet(pixels, samples=n) for n in (16, 1024)}
+        taken = measure.interleaved(samples, measure.hide_seconds, max(1, runs // 2))
+        row = f"exponent of hiding with samples, {pixels} px"
+        table.row(row, np.log(taken[1024] / taken[16]) / np.log(1024 / 16), 1.05)
+
+
 def feathers(table, runs):
     cases = {a: scenes.feathers(a, samples=64) for a in (0.0, 0.5)}
     taken = measure.interleaved(cases, measure.frame_seconds, runs)
@@ -163,7 +177,8 @@ def unused(table, runs):
 
 
 CASES = {
-    c.__name__: c for c in (strobing, motion, feathers, tiny, threshold, passes, coincident, unused)
+    c.__name__: c
+    for c in (strobing, motion, growth, feathers, tiny, threshold, passes, coincident, unused)
 }
 
 

@@ -30,6 +30,7 @@ HWY_INLINE void for_each_lane(M mask, Visit visit) {
         visit(static_cast<int>(__builtin_ctz(bits)));
 }
 
+#include "hider/path_extents.inl"
 #include "hider/squeeze.inl"
 #include "hider/tile_bounds.inl"
 #include "hider/tile_paths.inl"
@@ -59,6 +60,9 @@ class Kernel {
                     M touching = m_where.find_touched(first, m_grid.n_u - i, ranges);
                     if (kMoving && !hn::AllFalse(kTag, touching))
                         touching = hn::And(touching, m_where.find_times<kLens>(first, ranges));
+                    if ((kMoving || kLens) && !hn::AllFalse(kTag, touching))
+                        m_paths.find_paths<kMoving, kLens>(m_where.segment, first, ranges,
+                                                           m_tile_paths);
                     for_each_lane(touching, [&](int lane) HWY_ATTR {
                         const int m = j * m_grid.n_u + i + lane;
                         m_class = m_grid.classes[m];
@@ -114,10 +118,14 @@ class Kernel {
         int first = 0, end = m_tile.ranks;
         if constexpr (kMoving) m_where.find_ranks(swept, lane, first, end);
         const bool cull = swept.nearest[lane] < m_tile.nearest_of_ranks;
+        const bool straight = (kMoving || kLens) && (m_tile_paths.straight >> lane & 1u);
         RankPaths paths;
         std::size_t found = 0;
         for (; first < end; first += lane_count()) {
-            M touching = m_paths.find<kMoving, kLens>(shape, m_where.segment, first, cull, paths);
+            M touching =
+                straight ? m_paths.follow<kMoving, kLens>(m_tile_paths, lane, m_where.segment,
+                                                          first, cull, paths)
+                         : m_paths.find<kMoving, kLens>(shape, m_where.segment, first, cull, paths);
             touching = hn::And(touching, hn::FirstN(kTag, static_cast<std::size_t>(end - first)));
             for_each_lane(touching, [&](int k) HWY_ATTR {
                 // Windows side by side that do not leave the tile.
@@ -442,6 +450,7 @@ class Kernel {
     SimdCounts& m_counts;
     TileBounds m_where;
     RankPathFinder m_paths;
+    TilePaths m_tile_paths;
     std::uint8_t m_class = 0;
     SurfaceId m_id = 0;
     SurfaceId m_tied[2] = {kNoSurface, kNoSurface};  ///< the last two to settle

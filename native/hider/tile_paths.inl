@@ -11,112 +11,149 @@ struct RankPaths {
     } x, y;
 };
 
+/// Where micropolygons go while they are over a tile, a vector of them: a rank's samples see a part
+/// of that path.
+struct TilePaths {
+    struct Axis {
+        alignas(64) float place[kPacket], speed[kPacket], reach[kPacket];  ///< StraightPath
+    } x, y;
+    alignas(64) float shear_lo[kPacket], shear_hi[kPacket], z_lo[kPacket];
+    std::uint32_t straight = 0;  ///< bit i: micropolygon i stays that near to one line
+};
+
 /// A grid over the ranks of a tile.
 class RankPathFinder {
   public:
     RankPathFinder(const SimdGrid& grid, const SimdTile& tile) : m_grid(grid), m_tile(tile) {}
 
-    /// Where the micropolygon can meet the samples of each of these ranks, and which of the ranks
-    /// have any that do not see something nearer.  For a fixed lens point a corner moves
-    /// monotonically between the ends of its interval of time, whatever the perspective, and for a
-    /// fixed time linearly in the lens point (compare Laine et al. 2011): its extremes are at the
-    /// corners of the stratum.
+    /// The paths of the micropolygons from `vertex` on between the times at which they are over the
+    /// tile (TileBounds::find_times).
     template <bool kMoving, bool kLens>
-    HWY_INLINE M find(const Shape& shape, int segment, int first, bool cull, RankPaths& out) const {
-        const RankBounds& bounds = *m_tile.bounds;
-        const auto rank = [&](const std::vector<float>& values)
-                              HWY_ATTR { return hn::LoadU(kTag, values.data() + first); };
+    HWY_INLINE void find_paths(int segment, int vertex, const BlockRanges& times,
+                               TilePaths& out) const {
         const V zero = set(0.0f), one = set(1.0f);
-        M present = hn::Le(rank(bounds.t_lo), rank(bounds.t_hi));
-        V ends[2] = {zero, zero};
-        const V knots = set(static_cast<float>(m_grid.segments));
+        const V knots = set(static_cast<float>(std::max(1, m_grid.segments)));
         const V start = set(static_cast<float>(segment));
+        V ends[2] = {zero, zero};
         if constexpr (kMoving) {
-            const V lo = rank(bounds.t_lo) * knots - start, hi = rank(bounds.t_hi) * knots - start;
-            present = hn::And(present, hn::And(hn::Ge(hi, zero), hn::Le(lo, one)));
-            ends[0] = hn::Max(lo, zero);
-            ends[1] = hn::Min(hi, one);
+            const auto end = [&](const float* time) HWY_ATTR {
+                return hn::Min(hn::Max(hn::LoadU(kTag, time) * knots - start, zero), one);
+            };
+            ends[0] = end(times.t0);
+            ends[1] = hn::Max(ends[0], end(times.t1));
         }
-        Extent x, y, shear;
-        V z_lo = set(INFINITY), margin = zero, bend_x = zero, bend_y = zero;
-        M sane = present;
-        for (int k = 0; k < 4; ++k) {
-            const Corner<float>& c = shape.begin[k];
-            const float rounding = rounding_of<kMoving>(shape, k);
-            V was_x = zero, was_y = zero, was_w = zero, most = zero;
-            for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
-                V h_x = set(c.x), h_y = set(c.y), w = set(c.w), z = set(c.z);
-                if constexpr (kMoving) {
-                    const Corner<float>& d = shape.delta[k];
-                    h_x = h_x + ends[e] * set(d.x);
-                    h_y = h_y + ends[e] * set(d.y);
-                    w = w + ends[e] * set(d.w);
-                    z = z + ends[e] * set(d.z);
-                }
-                const V inverse = one / w;
-                const V at_x = h_x * inverse, at_y = h_y * inverse;
-                x.add(at_x, e);
-                y.add(at_y, e);
-                if constexpr (kLens) shear.add((z * set(m_grid.inverse_focus) - one) * inverse, 0);
-                z_lo = hn::Min(z_lo, z);
-                margin = hn::Max(margin, set(rounding) * inverse);
-                sane = hn::And(sane, hn::Gt(w, set(1e-15f)));
-                most = hn::Max(most, inverse);
-                if (e == 1) {
-                    // A path in perspective leaves its chord by at most |chord| |dw| / (4 w).
-                    const V curved = hn::Abs(w - was_w) * most * set(0.25f);
-                    bend_x = hn::Max(bend_x, hn::Abs(at_x - was_x) * curved);
-                    bend_y = hn::Max(bend_y, hn::Abs(at_y - was_y) * curved);
-                }
-                was_x = at_x;
-                was_y = at_y;
-                was_w = w;
+        const std::size_t knot = static_cast<std::size_t>(segment) * m_grid.vertices;
+        PathExtents<kMoving, kLens> extents(hn::FirstN(kTag, kPacket));
+        for (const int corner : {vertex, vertex + m_grid.right, vertex + m_grid.up,
+                                 vertex + m_grid.up + m_grid.right}) {
+            const std::size_t a = knot + static_cast<std::size_t>(corner);
+            const Corner<V> begin = load(a);
+            Corner<V> delta = begin;
+            if constexpr (kMoving) {
+                const Corner<V> end = load(a + static_cast<std::size_t>(m_grid.vertices));
+                delta = {end.x - begin.x, end.y - begin.y, end.w - begin.w, end.z - begin.z};
             }
+            extents.add(m_grid, begin, delta, ends);
         }
-        const V share = set(1.0f / static_cast<float>(std::max(1, m_grid.segments)));
-        const V time0 = (ends[0] + start) * share, time1 = (ends[1] + start) * share;
-        const auto axis = [&](const Extent& at, V bend, const std::vector<float>& lens_lo,
+        const V time0 = (ends[0] + start) / knots, time1 = (ends[1] + start) / knots;
+        M straight = extents.sane;
+        const auto axis = [&](const Extent& at, V bend, TilePaths::Axis& to) HWY_ATTR {
+            const StraightPath path = extents.straight(at, bend, time0, time1);
+            const V reach = path.reach + extents.margin;
+            straight = hn::And(straight, hn::And(hn::Le(bend, set(kMostBend)),
+                                                 hn::Lt(hn::Abs(path.place) + reach, set(1e15f))));
+            hn::StoreU(path.place, kTag, to.place);
+            hn::StoreU(path.speed, kTag, to.speed);
+            hn::StoreU(reach, kTag, to.reach);
+        };
+        axis(extents.x, extents.bend_x, out.x);
+        axis(extents.y, extents.bend_y, out.y);
+        hn::StoreU(extents.shear.lo[0], kTag, out.shear_lo);
+        hn::StoreU(extents.shear.hi[0], kTag, out.shear_hi);
+        hn::StoreU(extents.z_lo, kTag, out.z_lo);
+        out.straight = bits_of(straight);
+    }
+
+    /// The part of a straight path, `lane` of find_paths(), that the samples of each of these ranks
+    /// can see, and which of the ranks have any that do not see something nearer.
+    template <bool kMoving, bool kLens>
+    HWY_INLINE M follow(const TilePaths& paths, int lane, int segment, int first, bool cull,
+                        RankPaths& out) const {
+        const RankBounds& bounds = *m_tile.bounds;
+        const V t_lo = rank(bounds.t_lo, first), t_hi = rank(bounds.t_hi, first);
+        M present = hn::Le(t_lo, t_hi);
+        if constexpr (kMoving) present = hn::And(present, in_segment(t_lo, t_hi, segment));
+        Extent shear;
+        shear.lo[0] = set(paths.shear_lo[lane]);
+        shear.hi[0] = set(paths.shear_hi[lane]);
+        Box box;
+        const auto axis = [&](const TilePaths::Axis& path, const std::vector<float>& lens_lo,
                               const std::vector<float>& lens_hi, RankPaths::Axis& to, V& lo,
                               V& hi) HWY_ATTR {
-            const V begin = (at.lo[0] + at.hi[0]) * set(0.5f);
-            V reach = (at.hi[0] - at.lo[0]) * set(0.5f), place = begin;
-            lo = at.lo[0];
-            hi = at.hi[0];
+            const V place = set(path.place[lane]), speed = set(path.speed[lane]);
+            V reach = set(path.reach[lane]), a = place, b = place;
             if constexpr (kMoving) {
-                const V end = (at.lo[1] + at.hi[1]) * set(0.5f), span = time1 - time0;
-                reach = hn::Max(reach, (at.hi[1] - at.lo[1]) * set(0.5f)) + bend;
-                lo = hn::Min(lo, at.lo[1]);
-                hi = hn::Max(hi, at.hi[1]);
-                const M long_enough = hn::Gt(span, set(1e-6f));
-                const V speed = hn::IfThenElseZero(long_enough, (end - begin) / span);
-                reach = hn::IfThenElse(long_enough, reach, reach + hn::Abs(end - begin));
-                place = begin - speed * time0;
-                reach = reach + (hn::Abs(place) + hn::Abs(speed)) * set(0x1p-20f);
-                hn::StoreU(hn::IfThenElseZero(sane, speed), kTag, to.speed);
+                a = place + speed * t_lo;
+                b = place + speed * t_hi;
+                hn::StoreU(speed, kTag, to.speed);
             }
-            if constexpr (kLens) {
-                const V u_lo = rank(lens_lo), u_hi = rank(lens_hi);
-                const V middle = (shear.lo[0] + shear.hi[0]) * set(0.5f);
-                const V rest =
-                    (shear.hi[0] - shear.lo[0]) * set(0.5f) + hn::Abs(middle) * set(0x1p-20f);
-                const V far = hn::Max(hn::Abs(u_lo), hn::Abs(u_hi));
-                reach = reach + far * rest;
-                const V a = shear.lo[0] * u_lo, b = shear.lo[0] * u_hi;
-                const V c = shear.hi[0] * u_lo, d = shear.hi[0] * u_hi;
-                lo = lo + hn::Min(hn::Min(a, b), hn::Min(c, d));
-                hi = hi + hn::Max(hn::Max(a, b), hn::Max(c, d));
-                hn::StoreU(hn::IfThenElseZero(sane, middle), kTag, to.shear);
-            }
-            reach = reach + margin;
-            lo = lo - margin;
-            hi = hi + margin;
-            sane = hn::And(sane, hn::Lt(reach + hn::Abs(lo) + hn::Abs(hi), set(1e15f)));
+            lo = hn::Min(a, b) - reach;
+            hi = hn::Max(a, b) + reach;
+            if constexpr (kLens)
+                add_lens(shear, rank(lens_lo, first), rank(lens_hi, first), reach, lo, hi,
+                         to.shear);
             hn::StoreU(place, kTag, to.place);
             hn::StoreU(reach, kTag, to.reach);
         };
-        V x_lo, x_hi, y_lo, y_hi;
-        axis(x, bend_x, bounds.u_lo, bounds.u_hi, out.x, x_lo, x_hi);
-        axis(y, bend_y, bounds.v_lo, bounds.v_hi, out.y, y_lo, y_hi);
+        axis(paths.x, bounds.u_lo, bounds.u_hi, out.x, box.x_lo, box.x_hi);
+        axis(paths.y, bounds.v_lo, bounds.v_hi, out.y, box.y_lo, box.y_hi);
+        return find_blocks(present, box, set(paths.z_lo[lane]), first, cull, out);
+    }
+
+    /// The same by where the micropolygon is during each of the ranks: for paths that are bent.
+    template <bool kMoving, bool kLens>
+    HWY_INLINE M find(const Shape& shape, int segment, int first, bool cull, RankPaths& out) const {
+        const RankBounds& bounds = *m_tile.bounds;
+        const V zero = set(0.0f), one = set(1.0f);
+        const V t_lo = rank(bounds.t_lo, first), t_hi = rank(bounds.t_hi, first);
+        M present = hn::Le(t_lo, t_hi);
+        const V knots = set(static_cast<float>(std::max(1, m_grid.segments)));
+        const V start = set(static_cast<float>(segment));
+        V ends[2] = {zero, zero};
+        if constexpr (kMoving) {
+            present = hn::And(present, in_segment(t_lo, t_hi, segment));
+            ends[0] = hn::Max(t_lo * knots - start, zero);
+            ends[1] = hn::Min(t_hi * knots - start, one);
+        }
+        PathExtents<kMoving, kLens> extents(present);
+        for (int k = 0; k < 4; ++k)
+            extents.add(m_grid, broadcast(shape.begin[k]), broadcast(shape.delta[k]), ends);
+        const V time0 = (ends[0] + start) / knots, time1 = (ends[1] + start) / knots;
+        M sane = extents.sane;
+        Box box;
+        const auto axis = [&](const Extent& at, V bend, const std::vector<float>& lens_lo,
+                              const std::vector<float>& lens_hi, RankPaths::Axis& to, V& lo,
+                              V& hi) HWY_ATTR {
+            const StraightPath path = extents.straight(at, bend, time0, time1);
+            V reach = path.reach + extents.margin;
+            lo = at.lo[0];
+            hi = at.hi[0];
+            if constexpr (kMoving) {
+                lo = hn::Min(lo, at.lo[1]);
+                hi = hn::Max(hi, at.hi[1]);
+                hn::StoreU(hn::IfThenElseZero(sane, path.speed), kTag, to.speed);
+            }
+            lo = lo - extents.margin;
+            hi = hi + extents.margin;
+            if constexpr (kLens)
+                add_lens(extents.shear, rank(lens_lo, first), rank(lens_hi, first), reach, lo, hi,
+                         to.shear);
+            sane = hn::And(sane, hn::Lt(reach + hn::Abs(lo) + hn::Abs(hi), set(1e15f)));
+            hn::StoreU(path.place, kTag, to.place);
+            hn::StoreU(reach, kTag, to.reach);
+        };
+        axis(extents.x, extents.bend_x, bounds.u_lo, bounds.u_hi, out.x, box.x_lo, box.x_hi);
+        axis(extents.y, extents.bend_y, bounds.v_lo, bounds.v_hi, out.y, box.y_lo, box.y_hi);
         if (HWY_UNLIKELY(!hn::AllTrue(kTag, hn::Or(sane, hn::Not(present))))) {
             // At or behind the eye plane: anywhere.
             const V never = set(INFINITY);
@@ -125,34 +162,65 @@ class RankPathFinder {
                 hn::StoreU(hn::IfThenElse(sane, hn::LoadU(kTag, to->reach), never), kTag,
                            to->reach);
             }
-            x_lo = hn::IfThenElse(sane, x_lo, hn::Neg(never));
-            y_lo = hn::IfThenElse(sane, y_lo, hn::Neg(never));
-            x_hi = hn::IfThenElse(sane, x_hi, never);
-            y_hi = hn::IfThenElse(sane, y_hi, never);
+            box.x_lo = hn::IfThenElse(sane, box.x_lo, hn::Neg(never));
+            box.y_lo = hn::IfThenElse(sane, box.y_lo, hn::Neg(never));
+            box.x_hi = hn::IfThenElse(sane, box.x_hi, never);
+            box.y_hi = hn::IfThenElse(sane, box.y_hi, never);
         }
-        present = hn::And(present, store_blocks(m_tile, x_lo, x_hi, y_lo, y_hi, out));
+        return find_blocks(present, box, extents.z_lo, first, cull, out);
+    }
+
+  private:
+    /// Paths that bend more are looked at rank by rank, pixels.
+    static constexpr float kMostBend = 0.125f;
+
+    struct Box {
+        V x_lo, x_hi, y_lo, y_hi;
+    };
+
+    static HWY_INLINE V rank(const std::vector<float>& values, int first) {
+        return hn::LoadU(kTag, values.data() + first);
+    }
+    static HWY_INLINE Corner<V> broadcast(const Corner<float>& c) {
+        return {set(c.x), set(c.y), set(c.w), set(c.z)};
+    }
+    HWY_INLINE Corner<V> load(std::size_t i) const {
+        return {hn::LoadU(kTag, m_grid.x + i), hn::LoadU(kTag, m_grid.y + i),
+                hn::LoadU(kTag, m_grid.w + i), hn::LoadU(kTag, m_grid.z + i)};
+    }
+
+    /// Which of these intervals of time touch the segment.
+    HWY_INLINE M in_segment(V t_lo, V t_hi, int segment) const {
+        const V knots = set(static_cast<float>(m_grid.segments));
+        const V start = set(static_cast<float>(segment));
+        return hn::And(hn::Ge(t_hi * knots - start, set(0.0f)),
+                       hn::Le(t_lo * knots - start, set(1.0f)));
+    }
+
+    /// Shears what is bounded by lens coordinates from u_lo to u_hi.
+    static HWY_INLINE void add_lens(const Extent& shear, V u_lo, V u_hi, V& reach, V& lo, V& hi,
+                                    float* middle_to) {
+        const V middle = (shear.lo[0] + shear.hi[0]) * set(0.5f);
+        const V rest = (shear.hi[0] - shear.lo[0]) * set(0.5f) + hn::Abs(middle) * set(0x1p-20f);
+        reach = reach + hn::Max(hn::Abs(u_lo), hn::Abs(u_hi)) * rest;
+        const V a = shear.lo[0] * u_lo, b = shear.lo[0] * u_hi;
+        const V c = shear.hi[0] * u_lo, d = shear.hi[0] * u_hi;
+        lo = lo + hn::Min(hn::Min(a, b), hn::Min(c, d));
+        hi = hi + hn::Max(hn::Max(a, b), hn::Max(c, d));
+        hn::StoreU(middle, kTag, middle_to);
+    }
+
+    HWY_INLINE M find_blocks(M present, const Box& box, V z_lo, int first, bool cull,
+                             RankPaths& out) const {
+        present = hn::And(present,
+                          store_blocks(m_tile, box.x_lo, box.x_hi, box.y_lo, box.y_hi, out));
         if (!cull || hn::AllFalse(kTag, present)) return present;
         // The key of a sample may round a few ulp past the nearest corner's.
         V nearest = hn::Neg(z_lo);
         if (m_grid.range.perspective)
-            nearest = hn::IfThenElse(hn::Gt(z_lo, zero), one / z_lo, set(INFINITY));
+            nearest = hn::IfThenElse(hn::Gt(z_lo, set(0.0f)), set(1.0f) / z_lo, set(INFINITY));
         return hn::AndNot(hidden(nearest + hn::Abs(nearest) * set(0x1p-18f), first, out), present);
     }
-
-  private:
-    /// Extremes of corners at the ends of an interval of time.
-    struct Extent {
-        V lo[2], hi[2];
-
-        HWY_INLINE Extent() {
-            lo[0] = lo[1] = set(INFINITY);
-            hi[0] = hi[1] = set(-INFINITY);
-        }
-        HWY_INLINE void add(V value, int end) {
-            lo[end] = hn::Min(lo[end], value);
-            hi[end] = hn::Max(hi[end], value);
-        }
-    };
 
     /// Whether all samples of the blocks see something nearer, by the hierarchical depth of the
     /// ranks; only where the blocks lie in at most two by two of its squares.
@@ -177,22 +245,6 @@ class RankPathFinder {
         const V least = hn::Min(hn::Min(farthest(x0, y0), farthest(x1, y0)),
                                 hn::Min(farthest(x0, y1), farthest(x1, y1)));
         return hn::And(hn::RebindMask(kTag, few), hn::Lt(nearest, least));
-    }
-
-    /// More than a corner's offset from a sample of the tile can round by, times w.
-    template <bool kMoving>
-    float rounding_of(const Shape& shape, int k) const {
-        const Corner<float>& a = shape.begin[k];
-        const Corner<float> b = kMoving ? load_end(shape, k) : a;
-        const float place = std::max(std::max(std::fabs(a.x), std::fabs(b.x)),
-                                     std::max(std::fabs(a.y), std::fabs(b.y)));
-        const float depth = std::max(std::fabs(a.z), std::fabs(b.z)) * m_grid.inverse_focus + 1.0f;
-        return std::max(std::fabs(a.w), std::fabs(b.w)) / 256 + place * 0x1p-20f +
-               std::max(m_grid.lens_x, m_grid.lens_y) * depth * 0x1p-20f;
-    }
-    static Corner<float> load_end(const Shape& shape, int k) {
-        const Corner<float>&a = shape.begin[k], &d = shape.delta[k];
-        return {a.x + d.x, a.y + d.y, a.w + d.w, a.z + d.z};
     }
 
     const SimdGrid& m_grid;
