@@ -129,8 +129,9 @@ void composite(benchmark::State& state) {
     auto& store = hider->finish()[0];
     const CompositeSettings settings{camera.projection, 1, true};
     SampleColors colors;
+    LayerTable layers(hider->pool());
     for (auto _ : state) {
-        composite_tile(store, hider->tile_samples(0), hider->pool(), {}, settings, colors);
+        composite_tile(store, hider->tile_samples(0), layers, {}, settings, colors);
         benchmark::DoNotOptimize(colors.red.data());
     }
     state.counters["samples"] = benchmark::Counter(

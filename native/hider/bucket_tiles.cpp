@@ -26,7 +26,7 @@ DepthRange depth_range(const Projection& p) {
 }
 
 BucketTiles::BucketTiles(const HiderFrame& frame, const Rect& tiles, const Rect& pixels)
-    : m_frame(frame), m_tiles(tiles), m_pixels(pixels) {
+    : m_frame(frame), m_tiles(tiles), m_pixels(pixels), m_list_memory(Spares<SlabMemory>::take()) {
     const SampleNeeds needs{false, frame.projection.has_lens()};
     for (int y = tiles.y0; y < tiles.y1; ++y)
         for (int x = tiles.x0; x < tiles.x1; ++x) {
@@ -37,9 +37,9 @@ BucketTiles::BucketTiles(const HiderFrame& frame, const Rect& tiles, const Rect&
             frame.table->fill_tile(store.tile, needs, m_samples.back());
             store.key.assign(m_samples.back().x.size(), -std::numeric_limits<float>::infinity());
             store.id.assign(m_samples.back().x.size(), kNoSurface);
+            store.lists.reset();
         }
     m_needs.assign(m_stores.size(), needs);
-    m_arrived.resize(m_stores.size());
     m_left.resize(m_stores.size(), 0);
 }
 
@@ -51,10 +51,9 @@ SurfaceId BucketTiles::add(const Grid& grid, const GridClasses& classes) {
 }
 
 BucketTiles::~BucketTiles() {
-    for (TileStore& store : m_stores) {
-        store.lists = {};  // as many as there are layers: not worth keeping
-        Spares<TileStore>::give(std::move(store));
-    }
+    for (TileStore& store : m_stores) Spares<TileStore>::give(std::move(store));
+    m_list_memory.clear();
+    Spares<SlabMemory>::give(std::move(m_list_memory));
     for (TileSamples& samples : m_samples) Spares<TileSamples>::give(std::move(samples));
 }
 
@@ -86,31 +85,47 @@ void BucketTiles::need_time(std::size_t i) {
     m_frame.table->fill_tile(m_stores[i].tile, m_needs[i], m_samples[i]);
 }
 
-void BucketTiles::limit_lists(std::uint64_t more) {
-    std::uint64_t bytes = more;
-    for (const auto& arrived : m_arrived) bytes += arrived.capacity() * sizeof(SampleFragment);
+bool BucketTiles::limit_lists() {
+    const std::uint64_t bytes = m_list_memory.bytes();
     if (m_frame.statistics) m_frame.statistics->note_list_bytes(bytes);
     m_overflowed = m_overflowed || bytes > m_frame.list_bytes;
-    if (!m_overflowed) return;
-    for (auto& arrived : m_arrived) arrived = {};
+    return m_overflowed;
 }
 
 bool BucketTiles::lists_grew(std::size_t i) const {
-    return worth_cutting(m_arrived[i].size(), m_left[i], m_stores[i].key.size());
+    return worth_cutting(m_stores[i].lists.total(), m_left[i], m_stores[i].key.size());
 }
 
 void BucketTiles::cut_lists(std::size_t i, const ListEnd& end) {
     TileStore& store = m_stores[i];
-    granita::cut_lists(m_arrived[i], {store.key.data(), store.id.data(), store.key.size()}, m_pool,
-                       end);
-    m_left[i] = m_arrived[i].size();
+    sort_lists(store.lists, surfaces_of(store), m_pool, end);
+    m_left[i] = store.lists.total();
 }
 
-void BucketTiles::finish_lists(std::size_t i, const ListEnd& end) {
-    TileStore& store = m_stores[i];
-    store.lists = make_lists(m_arrived[i], {store.key.data(), store.id.data(), store.key.size()},
-                             m_pool, end);
-    m_arrived[i] = {};
+void BucketTiles::clear_lists() {
+    for (TileStore& store : m_stores) store.lists.clear();
+}
+
+void BucketTiles::finish_lists(std::size_t i, const OpaqueSurfaces& surfaces, const ListEnd& end) {
+    m_listed.resize(m_pool.id_end(), 0);
+    sort_lists(m_stores[i].lists, surfaces, m_pool, end, m_listed.data());
+}
+
+std::vector<bool> BucketTiles::seen_grids() const {
+    // A mark for each micropolygon, and one for nothing: no question a sample.
+    const SurfaceId end = m_pool.id_end();
+    std::vector<char> marks = m_listed;
+    marks.resize(static_cast<std::size_t>(end) + 1, 0);
+    for (const TileStore& store : m_stores)
+        for (const SurfaceId id : store.id) marks[std::min(id, end)] = 1;
+    std::vector<bool> seen(m_pool.size(), false);
+    auto next = marks.begin();
+    for (std::uint32_t slot = 0; slot < m_pool.size(); ++slot) {
+        const auto first = next;
+        next += m_pool.grid(slot).micropolygon_count();
+        seen[slot] = std::find(first, next, 1) != next;
+    }
+    return seen;
 }
 
 void BucketTiles::report_dropped(const Grid& grid, std::uint64_t dropped) const {

@@ -50,19 +50,23 @@ class BucketTiles {
         return key > stored_key ||
                (key == stored_key && stored_id != kNoSurface && m_pool.before(id, stored_id));
     }
-    /// Fragments of the tile's samples, in any order, for finish_lists().
-    std::vector<SampleFragment>& arrived(std::size_t i) { return m_arrived[i]; }
-    /// Notes how much the lists take, `more` of it elsewhere.  Past the limit what has arrived is
-    /// given up, now and from now on: overflowed().
-    void limit_lists(std::uint64_t more = 0);
+    /// Of all lists of the bucket.
+    SlabMemory& list_memory() { return m_list_memory; }
+    /// Notes how much the lists take.  True past the limit: then and from then on all lists of the
+    /// bucket are to be emptied.
+    bool limit_lists();
+    void clear_lists();
     bool overflowed() const { return m_overflowed; }
     /// Whether so much has arrived since cut_lists() that it is worth while again.
     bool lists_grew(std::size_t i) const;
-    /// Leaves out of what has arrived what does not count whatever else may come.  The tile's
-    /// store must hold the nearest opaque surfaces so far; what hides the rest is put there.
+    /// Leaves out of store i's lists what does not count whatever else may come.  The store must
+    /// hold the nearest opaque surfaces so far; what hides the rest is put there.  Slots are
+    /// samples.
     void cut_lists(std::size_t i, const ListEnd& end);
-    /// Makes the tile's lists of what has arrived, once its opaque surfaces are known.
-    void finish_lists(std::size_t i, const ListEnd& end);
+    /// Sorts the lists of store i once its opaque surfaces are known; these by slot of the lists.
+    void finish_lists(std::size_t i, const OpaqueSurfaces& surfaces, const ListEnd& end);
+    /// Of the pool's grids, by arrival, those that some sample sees; after finish_lists().
+    std::vector<bool> seen_grids() const;
     /// Throws Cancelled; called between tiles, whose samples may be millions.
     void check_cancelled() const;
 
@@ -73,8 +77,9 @@ class BucketTiles {
     Rect m_tiles, m_pixels;
     GridPool m_pool;
     std::vector<TileStore> m_stores;
-    std::vector<std::vector<SampleFragment>> m_arrived;
-    std::vector<std::size_t> m_left;  ///< of m_arrived, when its lists were last cut
+    SlabMemory m_list_memory;
+    std::vector<std::uint64_t> m_left;  ///< fragments of a tile when its lists were last cut
+    std::vector<char> m_listed;         ///< 1 for ids that are in some list
     std::vector<TileSamples> m_samples;
     std::vector<SampleNeeds> m_needs;
     bool m_overflowed = false;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hider/hider.h"
+#include "hider/layer_table.h"
 #include "hider/sample_channels.h"
 #include "hider/sample_store.h"
 #include "hider/sample_table.h"
@@ -24,7 +25,7 @@ struct CompositeSettings {
 
 /// Fills [256 * samples] colours in sample order.  `background`: premultiplied radiance behind
 /// everything: one value, or one a sample; read where the film is not transparent or channels have
-/// the environment.
+/// the environment.  `table`: of the hider's pool.
 ///
 /// Layers from front to back, each channel by itself: C += T c, O += a T, T -= a T, in double.
 /// Interpolated opacity is clamped to [0, 1] here and nowhere earlier; radiance is not clamped.
@@ -32,7 +33,7 @@ struct CompositeSettings {
 /// is 1 less what holdouts cut out.  Depth is that of the first layer, or
 /// anything where it is not wanted.  Fills `channels` where
 /// settings.channels asks for some; holdouts take part in Merge::First and Center alone.
-void composite_tile(const TileStore& store, const TileSamples& samples, const GridPool& pool,
+void composite_tile(const TileStore& store, const TileSamples& samples, LayerTable& table,
                     std::span<const Vec3f> background, const CompositeSettings& settings,
                     SampleColors& colors, SampleChannels* channels = nullptr);
 

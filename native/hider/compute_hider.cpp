@@ -88,24 +88,25 @@ class ComputeHider : public Hider {
             });
         }
         for (std::size_t i = 0; i < m_tiles.count(); ++i) {
-            m_tiles.finish_lists(i, m_frame.list_end);
+            m_tiles.finish_lists(i, surfaces_of(m_tiles.store(i)), m_frame.list_end);
             weigh_fragments(i);
         }
         return m_tiles.stores();
     }
     const GridPool& pool() const override { return m_tiles.pool(); }
+    std::vector<bool> seen_grids() const override { return m_tiles.seen_grids(); }
     const TileSamples& tile_samples(std::size_t i) const override { return m_tiles.samples(i); }
 
   private:
     /// Where samples meet their fragments: the device hands over keys and ids.
     void weigh_fragments(std::size_t i) {
         TileStore& store = m_tiles.store(i);
-        if (store.lists.begin.empty()) return;
+        if (store.lists.empty()) return;
         SurfaceInterpolator surface(m_frame.projection, store.tile, m_tiles.samples(i),
                                     m_tiles.pool());
         for (std::uint32_t s = 0; s < store.key.size(); ++s)
-            for (std::uint32_t f = store.lists.begin[s]; f < store.lists.begin[s + 1]; ++f) {
-                Fragment& fragment = store.lists.fragments[f];
+            for (std::uint32_t k = 0; k < store.lists.counts()[s]; ++k) {
+                Fragment& fragment = store.lists.at(s, k);
                 fragment = surface.fragment(s, fragment.id, fragment.key);
             }
     }
@@ -142,7 +143,7 @@ class ComputeHider : public Hider {
             farthest.begin(), farthest.end(),
             m_farthest.begin() + static_cast<std::ptrdiff_t>(group.first * kBlocks * kBlocks));
         group.batch.clear();
-        m_tiles.limit_lists();
+        if (m_tiles.limit_lists()) m_tiles.clear_lists();
     }
 
     /// Whether the last batch left nothing of the tile that is farther than the bounds.  Keys only

@@ -189,9 +189,11 @@ void ComputeTiles::fill(const std::vector<ComputeBlock>& blocks,
     auto from = fragments.begin();
     const std::size_t cells = std::size_t{16} * m_samples_a_pixel;
     for (std::size_t cell = begin; cell < end; ++cell) {
-        auto& arrived = m_bucket.arrived(m_first + blocks[cell / cells].tile);
+        TileStore& store = m_bucket.store(m_first + blocks[cell / cells].tile);
+        FragmentLists& lists = store.lists;
+        lists.prepare(store.key.size(), m_bucket.list_memory());
         for (const auto end_of_cell = from + counts[cell]; from != end_of_cell; ++from)
-            arrived.push_back({from->sample, {from->key, from->id, 0.0f, 0.0f, false}});
+            lists.add(from->sample, {from->key, from->id, 0.0f, 0.0f, false});
     }
     if (m_frame.statistics) m_frame.statistics->add(Counter::FragmentsStored, total);
 }

@@ -52,6 +52,8 @@ class Hider {
     /// In raster order of tiles.  No hide() afterwards.
     virtual std::vector<TileStore>& finish() = 0;
     virtual const GridPool& pool() const = 0;
+    /// Of the pool's grids, by arrival, those that some sample of finish() sees.
+    virtual std::vector<bool> seen_grids() const = 0;
     /// The samples of a tile of finish(), by index: made with exactly the needs that the bucket
     /// met.
     virtual const TileSamples& tile_samples(std::size_t tile_index) const = 0;

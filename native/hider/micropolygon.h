@@ -21,10 +21,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace granita {
 
 #include "hider/corner_arithmetic.inl"
+
+/// A micropolygon of a bucket: what GridPool::add gave its grid plus its index in the grid.
+using SurfaceId = std::uint32_t;
+inline constexpr SurfaceId kNoSurface = ~SurfaceId{0};
 
 /// Which of a micropolygon's triangles exist: bits, so that both fit in a class byte.
 enum Triangles : unsigned char { kTriangleA = 1, kTriangleB = 2 };

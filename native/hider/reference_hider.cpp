@@ -33,16 +33,18 @@ class ReferenceHider : public Hider {
             for (int m = 0; m < grid.micropolygon_count(); ++m)
                 if (classes.classes[m])
                     hide_in_tile(grid, m, classes.classes[m], base + static_cast<SurfaceId>(m), i);
-        if (!classes.opacity.empty()) m_tiles.limit_lists();
+        if (!classes.opacity.empty() && m_tiles.limit_lists()) m_tiles.clear_lists();
     }
     bool overflowed() const override { return m_tiles.overflowed(); }
 
     std::vector<TileStore>& finish() override {
         // Whole lists: what compositing does not follow changes nothing.
-        for (std::size_t i = 0; i < m_tiles.count(); ++i) m_tiles.finish_lists(i, ListEnd{});
+        for (std::size_t i = 0; i < m_tiles.count(); ++i)
+            m_tiles.finish_lists(i, surfaces_of(m_tiles.store(i)), ListEnd{});
         return m_tiles.stores();
     }
     const GridPool& pool() const override { return m_tiles.pool(); }
+    std::vector<bool> seen_grids() const override { return m_tiles.seen_grids(); }
     const TileSamples& tile_samples(std::size_t i) const override { return m_tiles.samples(i); }
 
   private:
@@ -143,7 +145,8 @@ class ReferenceHider : public Hider {
                 bool transparent) {
         TileStore& store = m_tiles.store(tile);
         if (transparent) {
-            m_tiles.arrived(tile).push_back({i, fragment_of(hit, id)});
+            store.lists.prepare(store.key.size(), m_tiles.list_memory());
+            store.lists.add(i, fragment_of(hit, id));
             if (m_statistics) m_statistics->add(Counter::FragmentsStored);
         } else if (m_tiles.wins(hit.key, id, store.key[i], store.id[i])) {
             store.key[i] = hit.key;

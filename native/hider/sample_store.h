@@ -3,20 +3,15 @@
 // (decision 7). One layout for all executors; compositing and resolve read nothing else.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "dice/grid.h"
-#include "hider/micropolygon.h"
+#include "hider/fragment_lists.h"
 #include "math/bounds.h"
 
 namespace granita {
-
-/// A micropolygon of a bucket: GridPool::base of its grid plus its index in the grid.
-using SurfaceId = std::uint32_t;
-inline constexpr SurfaceId kNoSurface = ~SurfaceId{0};
 
 /// What is known of a micropolygon's opacity without asking where on it.
 struct OpacityBounds {
@@ -55,45 +50,6 @@ class GridPool {
     std::vector<OpacityBounds> m_opacity;  ///< by id, up to the last transparent grid
 };
 
-/// A transparent surface over a sample, and where the sample meets it: found once, while hiding.
-struct Fragment {
-    float key;  ///< depth key, larger is nearer
-    SurfaceId id;
-    float signed_b1, b2;  ///< weights of the triangle's second and third corner, below
-
-    Fragment() = default;
-    Fragment(float depth_key, SurfaceId surface, float b1, float b2_, bool second_triangle)
-        : key(depth_key),
-          id(surface),
-          signed_b1(std::copysign(b1, second_triangle ? -1.0f : 1.0f)),
-          b2(b2_) {}
-    float b1() const { return std::fabs(signed_b1); }
-    /// Triangle (0, 2, 3) instead of (0, 1, 2).
-    bool second() const { return std::signbit(signed_b1); }
-};
-static_assert(sizeof(Fragment) == 16);
-
-inline Fragment fragment_of(const SurfaceHit& hit, SurfaceId id) {
-    return {hit.key, id, static_cast<float>(hit.b1), static_cast<float>(hit.b2), hit.second};
-}
-
-/// A fragment as it arrives, in any order.
-struct SampleFragment {
-    std::uint32_t sample;
-    Fragment fragment;
-};
-
-/// The fragments of a tile's samples, each sample's nearest first, ties by `before`.
-struct SampleLists {
-    std::vector<std::uint32_t> begin;  ///< [samples + 1]; empty where no sample has any
-    std::vector<Fragment> fragments;
-
-    std::span<const Fragment> of(std::size_t sample) const {
-        if (begin.empty()) return {};
-        return {fragments.data() + begin[sample], fragments.data() + begin[sample + 1]};
-    }
-};
-
 /// The samples of one tile.  Sample index as in TileSamples.
 struct TileStore {
     Vec2i tile{0, 0};  ///< tile coordinates: pixel / 16 rounded down, may be negative
@@ -101,7 +57,7 @@ struct TileStore {
         key;  ///< [256 * samples] depth key of the nearest opaque surface; where id is kNoSurface
               ///< the key behind which nothing counts, -inf = everything does
     std::vector<SurfaceId> id;  ///< [256 * samples] or kNoSurface
-    SampleLists lists;          ///< what is nearer than `key`
+    FragmentLists lists;        ///< what is nearer than `key`, nearest first, ties by `before`
 };
 
 /// A composited sample, premultiplied.

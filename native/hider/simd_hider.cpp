@@ -43,7 +43,6 @@ class SimdHider : public Hider {
         m_tile_grid.load(grid);
         const Sweep sweep = m_tile_grid.sweep();
         SimdCounts counts;
-        std::uint64_t fragments = 0;
         bool hidden = true;
         std::vector<TimeSlab> slabs;  // made when a tile asks
         const Rect touched = m_tiles.touched(grid.bounds);
@@ -54,9 +53,9 @@ class SimdHider : public Hider {
                 hidden = false;
                 m_tiles.check_cancelled();
                 arrange(i, grid.motion, sweep);
-                fragments += hide_in_tile(classes, base, i, counts);
+                hide_in_tile(classes, base, i, counts);
             }
-        if (fragments > 0) limit_lists();
+        if (counts.fragments > 0) limit_lists();
         if (!m_statistics) return;
         m_statistics->add(Counter::GridsCulled, hidden && !touched.empty());
         m_statistics->add(Counter::Micropolygons,
@@ -65,7 +64,7 @@ class SimdHider : public Hider {
                                                                  : Counter::SampleTestsStatic,
                           counts.tests);
         m_statistics->add(Counter::SampleHits, counts.hits);
-        m_statistics->add(Counter::FragmentsStored, fragments);
+        m_statistics->add(Counter::FragmentsStored, counts.fragments);
     }
 
     bool overflowed() const override { return m_tiles.overflowed(); }
@@ -73,24 +72,23 @@ class SimdHider : public Hider {
     std::vector<TileStore>& finish() override {
         for (std::size_t i = 0; i < m_tiles.count(); ++i) {
             if (!m_working[i].tile) continue;
-            m_working[i].tile->store(m_tiles.store(i), m_tiles.arrived(i));
+            WorkingTile& working = *m_working[i].tile;
+            working.store_lists(m_tiles.store(i));
+            m_tiles.finish_lists(i, working.surfaces(), m_list_end);
+            working.store_surfaces(m_tiles.store(i));
             Spares<std::unique_ptr<WorkingTile>>::give(std::move(m_working[i].tile));
-            m_tiles.finish_lists(i, m_list_end);
         }
         return m_tiles.stores();
     }
     const GridPool& pool() const override { return m_tiles.pool(); }
+    std::vector<bool> seen_grids() const override { return m_tiles.seen_grids(); }
     const TileSamples& tile_samples(std::size_t i) const override { return m_tiles.samples(i); }
 
   private:
     void limit_lists() {
-        std::uint64_t bytes = 0;
-        for (const Working& working : m_working)
-            if (working.tile) bytes += working.tile->fragments.capacity() * sizeof(SampleFragment);
-        m_tiles.limit_lists(bytes);
-        if (!m_tiles.overflowed()) return;
+        if (!m_tiles.limit_lists()) return;
         for (Working& working : m_working)
-            if (working.tile) working.tile->fragments = {};
+            if (working.tile) working.tile->lists.clear();
     }
 
     /// By the grid's bounds while it exists or, where it moves, by those of each part of the
@@ -136,7 +134,8 @@ class SimdHider : public Hider {
         const TileSamples& samples = m_tiles.samples(i);
         const OrderShape shape = best_order(samples.samples, working.sweep);
         if (!working.tile)
-            (working.tile = take_tile())->begin(samples, m_tiles.local_pixels(i), m_lens, shape);
+            (working.tile = take_tile())
+                ->begin(samples, m_tiles.local_pixels(i), m_lens, shape, m_tiles.list_memory());
         else if (needs_time || shape != working.tile->shape())
             working.tile->reorder(samples, shape);
     }
@@ -146,8 +145,8 @@ class SimdHider : public Hider {
         return tile ? std::move(tile) : std::make_unique<WorkingTile>();
     }
 
-    std::uint64_t hide_in_tile(const GridClasses& classes, SurfaceId base, std::size_t i,
-                               SimdCounts& counts) {
+    void hide_in_tile(const GridClasses& classes, SurfaceId base, std::size_t i,
+                      SimdCounts& counts) {
         WorkingTile& working = *m_working[i].tile;
         SimdGrid simd_grid;
         m_tile_grid.project(m_tiles.origin(i), simd_grid);
@@ -155,15 +154,14 @@ class SimdHider : public Hider {
         simd_grid.base = base;
         simd_grid.pool = &m_tiles.pool();
         simd_grid.range = m_range;
-        const std::size_t fragments = working.fragments.size();
-        const std::uint64_t writes = counts.writes;
-        hide_grid_in_tile(simd_grid, working.view(), working.fragments, counts);
-        working.note_writes(counts.writes - writes);
-        const std::size_t arrived = working.fragments.size() - fragments;
+        if (!classes.opacity.empty()) working.prepare_lists();
+        const SimdCounts before = counts;
+        hide_grid_in_tile(simd_grid, working.view(), working.lists, counts);
+        working.note_writes(counts.writes - before.writes);
         if (!classes.opacity.empty() && m_list_end.opacity_threshold < 1.0f)
-            working.end_lists(m_tiles.pool(), m_list_end, m_z_batch_size);
+            working.end_lists(counts.fragments - before.fragments, m_tiles.pool(), m_list_end,
+                              m_z_batch_size);
         working.update_depth();
-        return arrived;
     }
 
     /// A tile from the first grid that comes, and the largest sweep it was arranged for.

@@ -35,14 +35,14 @@ HWY_INLINE void for_each_lane(M mask, Visit visit) {
 #include "hider/tile_bounds.inl"
 #include "hider/tile_paths.inl"
 #include "hider/triangle_pair.inl"
+#include "hider/vector_fragments.inl"
 
 class Kernel {
   public:
-    Kernel(const SimdGrid& grid, const SimdTile& tile, std::vector<SampleFragment>& fragments,
-           SimdCounts& counts)
+    Kernel(const SimdGrid& grid, const SimdTile& tile, FragmentLists& lists, SimdCounts& counts)
         : m_grid(grid),
           m_tile(tile),
-          m_fragments(fragments),
+          m_lists(lists),
           m_counts(counts),
           m_where(grid, tile),
           m_paths(grid, tile) {
@@ -371,7 +371,18 @@ class Kernel {
         const M nearer = hn::And(hit, hn::Gt(key, stored));
         const M equal = hn::And(hit, hn::Eq(key, stored));
         if (m_class & kTransparent) {
-            record_fragments(hits, hn::Or(nearer, equal), first);
+            M visible = nearer;
+            if (HWY_UNLIKELY(!hn::AllFalse(kTag, equal))) {
+                alignas(64) float wins[kPacket] = {};
+                for_each_lane(equal, [&](int lane) {
+                    wins[lane] = wins_tie(m_tile.id[first + lane]) ? 1.0f : 0.0f;
+                });
+                visible = hn::Or(visible, hn::Gt(hn::Load(kTag, wins), set(0.0f)));
+            }
+            if (hn::AllFalse(kTag, visible)) return;
+            m_counts.fragments += hn::CountTrue(kTag, visible);
+            const V id = hn::BitCast(kTag, hn::Set(kIdTag, m_id));
+            add_fragments({hits.key, id, hits.signed_b1, hits.b2}, visible, first, m_lists);
             return;
         }
         if (HWY_UNLIKELY(!hn::AllFalse(kTag, equal))) settle_ties(equal, first);
@@ -401,23 +412,17 @@ class Kernel {
         return m_wins_tie;
     }
 
-    HWY_NOINLINE void record_fragments(Hits hits, M visible, std::size_t first) {
-        hn::StoreU(hits.key, kTag, m_hit.key);
-        hn::StoreU(hits.signed_b1, kTag, m_hit.signed_b1);
-        hn::StoreU(hits.b2, kTag, m_hit.b2);
-        for_each_lane(visible, [&](int lane) { record_fragment(lane, first + lane); });
-    }
-
     /// Hit i, if it is before the slot's opaque surface.
     HWY_INLINE void record_fragment(std::size_t i, std::size_t slot) {
         const float key = m_hit.key[i];
         if (!(key > m_tile.key[slot] || wins_tie(m_tile.id[slot]))) return;
-        SampleFragment& out = m_fragments.emplace_back();
-        out.sample = static_cast<std::uint32_t>(slot);
-        out.fragment.key = key;
-        out.fragment.id = m_id;
-        out.fragment.signed_b1 = m_hit.signed_b1[i];
-        out.fragment.b2 = m_hit.b2[i];
+        Fragment fragment;
+        fragment.key = key;
+        fragment.id = m_id;
+        fragment.signed_b1 = m_hit.signed_b1[i];
+        fragment.b2 = m_hit.b2[i];
+        m_lists.add(static_cast<std::uint32_t>(slot), fragment);
+        ++m_counts.fragments;
     }
 
     /// Of m_hit, in different places: one after another.
@@ -446,7 +451,7 @@ class Kernel {
 
     const SimdGrid& m_grid;
     const SimdTile& m_tile;
-    std::vector<SampleFragment>& m_fragments;
+    FragmentLists& m_lists;
     SimdCounts& m_counts;
     TileBounds m_where;
     RankPathFinder m_paths;
@@ -465,9 +470,9 @@ class Kernel {
     alignas(64) int m_window[kPacket];  ///< slots of a vector's rows from the first
 };
 
-void hide_grid(const SimdGrid& grid, const SimdTile& tile, std::vector<SampleFragment>& fragments,
+void hide_grid(const SimdGrid& grid, const SimdTile& tile, FragmentLists& lists,
                SimdCounts& counts) {
-    Kernel kernel(grid, tile, fragments, counts);
+    Kernel kernel(grid, tile, lists, counts);
     const bool lens = grid.lens_x > 0.0f;
     if (grid.segments > 0)
         lens ? kernel.run<true, true>() : kernel.run<true, false>();
@@ -484,9 +489,9 @@ namespace granita {
 
 HWY_EXPORT(hide_grid);
 
-void hide_grid_in_tile(const SimdGrid& grid, const SimdTile& tile,
-                       std::vector<SampleFragment>& fragments, SimdCounts& counts) {
-    HWY_DYNAMIC_DISPATCH(hide_grid)(grid, tile, fragments, counts);
+void hide_grid_in_tile(const SimdGrid& grid, const SimdTile& tile, FragmentLists& lists,
+                       SimdCounts& counts) {
+    HWY_DYNAMIC_DISPATCH(hide_grid)(grid, tile, lists, counts);
 }
 
 }  // namespace granita

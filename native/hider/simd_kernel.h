@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "hider/depth_blocks.h"
 #include "hider/micropolygon.h"
@@ -53,12 +52,12 @@ struct SimdGrid {
 };
 
 struct SimdCounts {
-    std::uint64_t tests = 0, hits = 0, writes = 0;
+    std::uint64_t tests = 0, hits = 0, writes = 0, fragments = 0;
 };
 
 /// Opaque hits go into the tile's key and id; transparent ones that are not behind them into
-/// `fragments`, whose sample is a slot.
-void hide_grid_in_tile(const SimdGrid& grid, const SimdTile& tile,
-                       std::vector<SampleFragment>& fragments, SimdCounts& counts);
+/// `lists`, whose slots are the tile's.
+void hide_grid_in_tile(const SimdGrid& grid, const SimdTile& tile, FragmentLists& lists,
+                       SimdCounts& counts);
 
 }  // namespace granita

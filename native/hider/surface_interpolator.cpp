@@ -72,6 +72,16 @@ SurfacePoint point_of(const SurfaceCorners& corners, bool second, const float we
 
 }  // namespace
 
+SurfacePoint point_of(const Fragment& fragment, const GridPool& pool) {
+    const GridPool::Place place = pool.locate(fragment.id);
+    const Grid::Corners c = place.grid->corners(place.micropolygon);
+    // As in compositing, none is negative.
+    const float b1 = fragment.b1();
+    const float weight[3] = {std::max(0.0f, 1.0f - b1 - fragment.b2), b1, fragment.b2};
+    return point_of(SurfaceCorners{place.grid, {c.v0, c.v1, c.v2, c.v3}}, fragment.second(),
+                    weight);
+}
+
 SurfacePoint SurfaceRun::point(int lane) const {
     const float w[3] = {weight[0][lane], weight[1][lane], weight[2][lane]};
     return point_of(corners[lane], (second >> lane & 1u) != 0, w);

@@ -26,6 +26,9 @@ struct SurfacePoint {
     }
 };
 
+/// Where a sample meets the fragment's micropolygon.
+SurfacePoint point_of(const Fragment& fragment, const GridPool& pool);
+
 /// The vertices of a micropolygon.
 struct SurfaceCorners {
     const Grid* grid = nullptr;

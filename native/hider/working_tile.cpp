@@ -8,13 +8,14 @@
 namespace granita {
 
 void WorkingTile::begin(const TileSamples& samples, const Rect& pixels, Vec2f lens,
-                        const OrderShape& shape) {
+                        const OrderShape& shape, SlabMemory& memory) {
     m_pixels = pixels;
     m_lens = lens;
-    fragments = {};
+    m_memory = &memory;
     m_misses = m_grids_since = 0;
-    m_fragments_then = 0;
+    m_fragments = m_fragments_then = 0;
     arrange(samples, shape);
+    lists.reset();
     m_id.assign(m_order.slots(), kNoSurface);
     m_key.assign(m_order.slots(), -INFINITY);
     // A slot without sample is nearer than everything, so that it never keeps a block from hiding.
@@ -60,8 +61,15 @@ void WorkingTile::reorder(const TileSamples& samples, const OrderShape& shape) {
         m_key[slot[before.index(i)]] = key[i];
         m_id[slot[before.index(i)]] = id[i];
     }
-    for (SampleFragment& fragment : fragments)
-        fragment.sample = slot[before.index(fragment.sample)];
+    FragmentLists from;
+    std::swap(lists, from);
+    if (!from.empty()) {
+        prepare_lists();
+        for (std::uint32_t i = 0; i < before.slots(); ++i)
+            for (std::uint32_t k = 0; k < from.counts()[i]; ++k)
+                lists.add(slot[before.index(i)], from.at(i, k));
+        from.clear();
+    }
     m_depth.rebuild(m_key.data());
 }
 
@@ -88,21 +96,27 @@ SimdTile WorkingTile::view() {
     return tile;
 }
 
-void WorkingTile::end_lists(const GridPool& pool, const ListEnd& end, int z_batch_size) {
+void WorkingTile::end_lists(std::uint64_t arrived, const GridPool& pool, const ListEnd& end,
+                            int z_batch_size) {
+    m_fragments += arrived;
     if (++m_grids_since < z_batch_size ||
-        !worth_cutting(fragments.size(), m_fragments_then, m_key.size()))
+        !worth_cutting(m_fragments, m_fragments_then, m_key.size()))
         return;
     m_grids_since = 0;
     const std::vector<float> before = m_key;
-    cut_lists(fragments, {m_key.data(), m_id.data(), m_key.size()}, pool, end);
-    m_fragments_then = fragments.size();
+    sort_lists(lists, surfaces(), pool, end);
+    m_fragments = m_fragments_then = lists.total();
     std::uint64_t ended = 0;
     for (std::size_t i = 0; i < before.size(); ++i) ended += before[i] != m_key[i];
     m_depth.note_writes(ended);
 }
 
-void WorkingTile::store(TileStore& out, std::vector<SampleFragment>& arrived) {
-    arrived = std::move(fragments);
+void WorkingTile::store_lists(TileStore& out) {
+    std::swap(out.lists, lists);  // the store's were empty
+    if (!out.lists.empty()) out.lists.order = m_order.table_index();
+}
+
+void WorkingTile::store_surfaces(TileStore& out) {
     if (m_order.is_table()) {
         out.key.swap(m_key);
         out.id.swap(m_id);
@@ -114,7 +128,6 @@ void WorkingTile::store(TileStore& out, std::vector<SampleFragment>& arrived) {
         out.key[index[i]] = m_key[i];
         out.id[index[i]] = m_id[i];
     }
-    for (SampleFragment& fragment : arrived) fragment.sample = index[fragment.sample];
 }
 
 }  // namespace granita

@@ -20,19 +20,28 @@ class WorkingTile {
     WorkingTile& operator=(const WorkingTile&) = delete;
 
     /// Nothing seen yet.  `lens`: lens radius times pixels per unit shear, multiplied into u and v.
-    /// The samples stay where they are, and may get times, until store().
-    void begin(const TileSamples& samples, const Rect& pixels, Vec2f lens, const OrderShape& shape);
+    /// The samples stay where they are, and may get times, until store_surfaces(); `memory`, of the
+    /// lists, longer than these.
+    void begin(const TileSamples& samples, const Rect& pixels, Vec2f lens, const OrderShape& shape,
+               SlabMemory& memory);
 
     const OrderShape& shape() const { return m_order.shape(); }
     /// Another order of the samples; what was seen moves along.
     void reorder(const TileSamples& samples, const OrderShape& shape);
     SimdTile view();
-    /// Moves what was seen to the store, and the fragments, in table order.
-    void store(TileStore& out, std::vector<SampleFragment>& arrived);
-    /// Another grid with transparent micropolygons was hidden.  Once there are `z_batch_size` of
-    /// them and the fragments have grown by half, looks for samples whose list has ended, drops
-    /// what is behind and has the depth hide what is still to come there.
-    void end_lists(const GridPool& pool, const ListEnd& end, int z_batch_size);
+    /// A grid with transparent micropolygons comes.
+    void prepare_lists() { lists.prepare(m_order.slots(), *m_memory); }
+    /// Moves the lists to the store.
+    void store_lists(TileStore& out);
+    /// Moves the surfaces to the store, in table order; the last that is done with the tile.
+    void store_surfaces(TileStore& out);
+    OpaqueSurfaces surfaces() { return {m_key.data(), m_id.data()}; }
+    /// Another grid with transparent micropolygons was hidden, of which `arrived` fragments came.
+    /// Once there are `z_batch_size` of them and the fragments have grown by half, looks for
+    /// samples whose list has ended, drops what is behind and has the depth hide what is still to
+    /// come there.
+    void end_lists(std::uint64_t arrived, const GridPool& pool, const ListEnd& end,
+                   int z_batch_size);
     /// Brings the hierarchical depth up to date when it is worth while.
     void update_depth() { m_depth.update(m_key.data()); }
     void note_writes(std::uint64_t written) {
@@ -58,7 +67,7 @@ class WorkingTile {
     /// Whether it is worth while to ask hides() more than once.
     bool hides_something() const { return m_depth.filled(); }
 
-    std::vector<SampleFragment> fragments;  ///< sample = slot of the order
+    FragmentLists lists;  ///< by slot of the order
 
   private:
     void arrange(const TileSamples& samples, const OrderShape& shape);
@@ -72,9 +81,10 @@ class WorkingTile {
     std::vector<float> m_key;
     std::vector<SurfaceId> m_id;
     RankBounds m_bounds;
-    int m_misses = 0;                  ///< since a sample saw something
-    int m_grids_since = 0;             ///< end_lists() looked at the lists
-    std::size_t m_fragments_then = 0;  ///< that were left
+    SlabMemory* m_memory = nullptr;
+    int m_misses = 0;                                     ///< since a sample saw something
+    int m_grids_since = 0;                                ///< end_lists() looked at the lists
+    std::uint64_t m_fragments = 0, m_fragments_then = 0;  ///< now, at most; and that were left
 };
 
 }  // namespace granita

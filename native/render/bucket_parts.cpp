@@ -32,10 +32,11 @@ class TileParts {
             stores = &hider->finish();
         }
         if (hider->overflowed()) return add_halves(pixels);
-        shade_seen(m_frame, *stores, hider->pool(), hidden);
+        shade_seen(m_frame, *hider, hidden);
         m_samples = hider->tile_samples(0);
         TileColors part(m_frame);
-        part.composite(stores->front(), m_samples, hider->pool());
+        LayerTable table(hider->pool());
+        part.composite(stores->front(), m_samples, table);
         const Vec2i corner = m_tile * kTileSize;
         m_colors.take(part,
                       {pixels.x0 - corner.x, pixels.y0 - corner.y, pixels.x1 - corner.x,

@@ -53,13 +53,14 @@ std::vector<TileContribution> resolve(Frame& frame, Hider& hider, const HiddenGr
         stores = &hider.finish();
     }
     if (hider.overflowed()) return {};
-    shade_seen(frame, *stores, hider.pool(), grids);
+    shade_seen(frame, hider, grids);
     std::vector<TileContribution> contributions;
     contributions.reserve(stores->size());
     TileColors colors(frame);
+    LayerTable table(hider.pool());
     for (std::size_t i = 0; i < stores->size(); ++i) {
         const TileSamples& samples = hider.tile_samples(i);
-        colors.composite((*stores)[i], samples, hider.pool());
+        colors.composite((*stores)[i], samples, table);
         contributions.push_back(colors.filter((*stores)[i].tile, samples));
     }
     return contributions;

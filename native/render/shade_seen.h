@@ -4,15 +4,14 @@
 #include <memory>
 #include <vector>
 
-#include "hider/sample_store.h"
+#include "hider/hider.h"
 #include "render/frame.h"
 
 namespace granita {
 
 using HiddenGrids = std::vector<std::shared_ptr<SharedGrid>>;  ///< in a hider's arrival order
 
-/// Shades the grids that some sample sees; `grids` are those of the pool.
-void shade_seen(Frame& frame, const std::vector<TileStore>& stores, const GridPool& pool,
-                const HiddenGrids& grids);
+/// Shades the grids that some sample sees, once the hider has finished; `grids` are its pool's.
+void shade_seen(Frame& frame, const Hider& hider, const HiddenGrids& grids);
 
 }  // namespace granita

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hider/hider.h"
+#include "hider/layer_table.h"
 #include "render/frame.h"
 
 namespace granita {
@@ -11,7 +12,7 @@ class TileColors {
   public:
     explicit TileColors(Frame& frame) : m_frame(frame) {}
     /// All samples of a tile whose grids are shaded.
-    void composite(const TileStore& store, const TileSamples& samples, const GridPool& pool);
+    void composite(const TileStore& store, const TileSamples& samples, LayerTable& table);
     /// Takes over the samples of these pixels (relative to the tile) of the same tile.
     void take(const TileColors& part, const Rect& pixels, int samples);
     TileContribution filter(Vec2i tile, const TileSamples& samples) const;

@@ -293,7 +293,7 @@ def test_sixteen_thousand_spheres_under_a_memory_limit(executor, size):
         random = np.random.default_rng(43)
         snapshot = s.orthographic(
             (32, 32),
-            samples=16,
+            samples=20,
             crop=(0, 0, size, size),
             executor=executor,
             threads=1,

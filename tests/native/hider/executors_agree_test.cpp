@@ -62,7 +62,7 @@ TEST_P(ExecutorsAgree, FastAndThroughTheEye) {
         }
         EXPECT_LT(other_surface, compared * 4.0 * 8 / 2048) << z0;
         std::size_t hits = 0;
-        for (const TileStore& store : b.stores)
+        for (const SeenTile& store : b.stores)
             for (const SurfaceId id : store.id) hits += id != kNoSurface;
         EXPECT_GT(hits, static_cast<std::size_t>(compared) / 20) << z0;
     }

@@ -33,6 +33,15 @@ inline Camera pinhole_camera(double f) {
     return camera;
 }
 
+/// The fragments of a tile's samples, nearest first.
+inline std::vector<std::vector<Fragment>> lists_of(const TileStore& store) {
+    std::vector<std::vector<Fragment>> lists(store.key.size());
+    for (std::uint32_t slot = 0; slot < store.lists.slots(); ++slot)
+        for (std::uint32_t k = 0; k < store.lists.counts()[slot]; ++k)
+            lists[store.lists.sample(slot)].push_back(store.lists.at(slot, k));
+    return lists;
+}
+
 using Surface = std::function<Vec3f(float u, float v, int knot)>;
 
 /// White and opaque; seen from anywhere (infinite bounds).
@@ -140,8 +149,9 @@ inline Picture render(HiderMaker make, Shot& shot) {
     for (std::size_t i = 0; i < stores.size(); ++i) {
         const int n = hider->tile_samples(i).samples;
         SampleColors colors;
-        composite_tile(stores[i], hider->tile_samples(i), hider->pool(),
-                       std::span(&shot.background, 1), shot.composite, colors);
+        LayerTable table(hider->pool());
+        composite_tile(stores[i], hider->tile_samples(i), table, std::span(&shot.background, 1),
+                       shot.composite, colors);
         for (int p = 0; p < 256; ++p) {
             const int x = stores[i].tile.x * 16 + p % 16, y = stores[i].tile.y * 16 + p / 16;
             Vec4d sum(0.0);
@@ -200,8 +210,7 @@ inline std::vector<int> layers_per_sample(HiderMaker make, Shot& shot) {
     for (const Grid& grid : shot.grids) hider->hide(grid);
     std::vector<int> layers;
     for (const TileStore& store : hider->finish()) {
-        for (std::size_t i = 0; i < store.key.size(); ++i)
-            layers.push_back(static_cast<int>(store.lists.of(i).size()));
+        for (const auto& list : lists_of(store)) layers.push_back(static_cast<int>(list.size()));
     }
     return layers;
 }

@@ -16,6 +16,7 @@ struct Stack {
     GridPool pool;
     std::vector<Grid> grids;
     TileSamples samples;
+    SlabMemory memory;
     TileStore store;
     CompositeSettings settings;
     SampleChannels values;
@@ -41,17 +42,17 @@ struct Stack {
     }
     /// The list of sample 77, nearest first.
     void layers(const std::vector<Fragment>& list) {
-        store.lists.fragments = list;
-        store.lists.begin.assign(257, 0);
-        std::fill(store.lists.begin.begin() + 78, store.lists.begin.end(),
-                  static_cast<std::uint32_t>(list.size()));
+        store.lists.prepare(256, memory);
+        store.lists.clear();
+        for (const Fragment& fragment : list) store.lists.add(77, fragment);
     }
     void run() {
         const ChannelSet channels(options);
         ASSERT_EQ(channels.vertex_width(), 7);
         settings.channels = &channels;
         SampleColors colors;
-        composite_tile(store, samples, pool, {}, settings, colors, &values);
+        LayerTable table(pool);
+        composite_tile(store, samples, table, {}, settings, colors, &values);
     }
     const float* row(int sample) const { return &values.filtered[sample * 6]; }
 };

@@ -72,20 +72,21 @@ TEST(Composite, MillionLayersOfAMillionth) {
     TileStore store;
     store.key.assign(256, -INFINITY);
     store.id.assign(256, kNoSurface);
-    store.lists.fragments.assign(1000000, {-5, 4, 0.25f, 0.25f, false});
-    store.lists.begin.assign(257, 0);
-    std::fill(store.lists.begin.begin() + 78, store.lists.begin.end(), 1000000);
+    SlabMemory memory;
+    store.lists.prepare(256, memory);
+    for (int i = 0; i < 1000000; ++i) store.lists.add(77, {-5, 4, 0.25f, 0.25f, false});
+    LayerTable table(pool);
     CompositeSettings settings;
     settings.projection = pixel_camera().projection;
     const Vec3f background(1);
     SampleColors colors;
-    composite_tile(store, samples, pool, std::span(&background, 1), settings, colors);
+    composite_tile(store, samples, table, std::span(&background, 1), settings, colors);
     const double a = 1e-6f, t = std::exp(1e6 * std::log1p(-a));
     EXPECT_WITHIN(colors[77].color.x, 2 * (1 - t) + t, 1e-6);
     EXPECT_WITHIN(colors[77].color.z, t, 1e-6);
     EXPECT_EQ(colors[77].alpha, 1.0f);
     settings.film_transparent = true;
-    composite_tile(store, samples, pool, {}, settings, colors);
+    composite_tile(store, samples, table, {}, settings, colors);
     EXPECT_WITHIN(colors[77].alpha, 1 - t, 1e-6);
 }
 
@@ -282,7 +283,8 @@ TEST_P(StoredDepth, IsThatOfTheNearestSurface) {
     shot.composite.projection = shot.camera.projection;
     const TileStore& store = hider->finish()[0];
     SampleColors colors;
-    composite_tile(store, hider->tile_samples(0), hider->pool(), {}, shot.composite, colors);
+    LayerTable layers(hider->pool());
+    composite_tile(store, hider->tile_samples(0), layers, {}, shot.composite, colors);
     for (const float depth : colors.depth) EXPECT_EQ(depth, 4.0f);
 }
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hider/sample_store.h"
+
+namespace granita {
+
+/// Opacity and radiance of a vertex (radiance 0 where the grid has none), and two unused floats.
+using LayerRow = std::array<float, 8>;
+
+/// What a transparent micropolygon looks like, wherever on it.
+struct alignas(32) LayerLook {
+    enum : std::uint32_t {
+        kVaries = 1,   ///< its corners differ
+        kColored = 2,  ///< and the channels of its opacity
+        kHoldout = 4,
+    };
+    union {
+        float value[6];        ///< opacity within [0, 1], and radiance; 0 where it is a holdout
+        std::uint32_t row[4];  ///< of the corners, where it varies
+    };
+    std::uint32_t flags = 0;
+
+    LayerLook() : value{} {}
+};
+
+/// The looks of a bucket's transparent micropolygons, once they are shaded: side by side, so that
+/// lists, which meet them in any order, find each in one place.
+class LayerTable {
+  public:
+    /// Of the grids that the pool holds when the table is first filled.
+    explicit LayerTable(const GridPool& pool) : m_pool(pool) {}
+    /// Once, as most buckets have no lists.
+    void fill();
+
+    const GridPool& pool() const { return m_pool; }
+    const LayerLook& look(SurfaceId id) const { return m_looks[id]; }
+    const float* row(std::uint32_t index) const { return m_rows[index].data(); }
+
+  private:
+    void add(const Grid& grid, SurfaceId base);
+
+    const GridPool& m_pool;
+    bool m_filled = false;
+    std::vector<LayerLook> m_looks;  ///< by id
+    std::vector<LayerRow> m_rows;
+};
+
+/// 0 for what is not a number.
+inline float clamp_opacity(float x) {
+    return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f;
+}
+
+}  // namespace granita
