@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where a micropolygon is while the samples of ranks look: included once a SIMD target inside its
-// namespace, after tile_bounds.inl.
+// namespace, after path_extents.inl and tile_bounds.inl.
 
 /// Where a micropolygon is while the samples of a rank look, a vector of ranks.
 struct RankPaths {
