@@ -45,7 +45,8 @@ class Kernel {
           m_lists(lists),
           m_counts(counts),
           m_where(grid, tile),
-          m_paths(grid, tile) {
+          m_paths(grid, tile),
+          m_appears(!grid.lifespan.is_whole()) {
         for (int i = 0; i < kPacket; ++i)
             m_window[i] = i / kWindow * tile.blocks_wide + i % kWindow;
     }
@@ -284,10 +285,9 @@ class Kernel {
             if (m_where.segment + 1 < m_grid.segments)
                 touched = hn::And(touched, hn::Lt(local, set(1.0f)));
         }
-        if (kMoving && m_grid.lifespan.close <= 1.0f)
-            touched = hn::And(touched, hn::Lt(at.t, set(m_grid.lifespan.close)));
-        if (kMoving && m_grid.lifespan.open > 0.0f)
-            touched = hn::And(touched, hn::Ge(at.t, set(m_grid.lifespan.open)));
+        if (kMoving && m_appears)
+            touched = hn::And(touched, hn::And(hn::Ge(at.t, set(m_grid.lifespan.open)),
+                                               hn::Lt(at.t, set(m_grid.lifespan.close))));
         const M clean = hn::And(touched, is_clean(a, b));
         const V z0 = corner_at<kMoving>(shape, 0, local).z;
         const V z1 = corner_at<kMoving>(shape, 1, local).z;
@@ -456,6 +456,7 @@ class Kernel {
     TileBounds m_where;
     RankPathFinder m_paths;
     TilePaths m_tile_paths;
+    const bool m_appears;  ///< or vanishes
     std::uint8_t m_class = 0;
     SurfaceId m_id = 0;
     SurfaceId m_tied[2] = {kNoSurface, kNoSurface};  ///< the last two to settle

@@ -3,22 +3,7 @@
 
 import bpy
 import scene_parts
-
-
-def with_nodes(thing, build, name="Nodes"):
-    """Gives an object a node group that `build(nodes, links, input socket)` makes; it returns the
-    geometry's socket."""
-    group = bpy.data.node_groups.new(name, "GeometryNodeTree")
-    if hasattr(group, "interface"):
-        for in_out in ("INPUT", "OUTPUT"):
-            group.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
-    else:
-        group.inputs.new("NodeSocketGeometry", "Geometry")
-        group.outputs.new("NodeSocketGeometry", "Geometry")
-    start, end = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
-    group.links.new(build(group.nodes, group.links, start.outputs[0]), end.inputs[0])
-    thing.modifiers.new(name, "NODES").node_group = group
-    return thing
+from node_parts import with_nodes
 
 
 def spiral_curves(scene, radius=0.06, name="Curves"):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scene_parts
 from motion_parts import drive, set_position, with_shutter
-from node_parts import instances_on_line
+from node_parts import hidden_collection, instances_on_line, line_of_points
 
 
 @pytest.fixture
@@ -144,3 +144,41 @@ def test_two_that_take_turns_cover_everything_once(moving, render):
     passes = render(moving, "GRANITA")
     values = next(values for key, values in passes.items() if key.endswith("Combined.A"))
     assert (values == 1.0).all()
+
+
+def test_nested_instances_come_and_go_too(moving):
+    """A collection that holds an object whose nodes make instances, placed twice: the ids of all levels count,
+    and each placed one comes by itself."""
+    part = scene_parts.add_square(moving, "Part", 0.5)
+    tree, node = instances_on_line(moving, part, 3)
+    drive(tree, f'nodes["{node.name}"].inputs["Count"].default_value', "3 if frame < 10.05 else 4")
+    collection = hidden_collection(moving, moving.objects["Host"])
+    for i in range(2):
+        place = scene_parts.add_object(moving, f"Place{i}", None, (0, 3 * i, 0))
+        place.instance_type, place.instance_collection = "COLLECTION", collection
+    snapshot, report, _ = export_probe.through_engine(moving, motion_steps=17)
+    instances = snapshot["instances"]
+    assert len(instances["name"]) == 8 and len(np.unique(instances["key"])) == 8
+    places = instances["world_from_object"][:, :2, 3]
+    late = {tuple(p) for p, life in zip(places.tolist(), instances["lifespan"]) if life[0] > 0}
+    assert late == {(9.0, 0.0), (9.0, 3.0)} and len(report) == 0
+
+
+def test_instances_on_vertices_that_come(moving):
+    """As many vertices as nodes make, each with an instance of the child."""
+    grid = scene_parts.add_square(moving, "Grid")
+    tree, node = line_of_points(grid)
+    drive(tree, f'nodes["{node.name}"].inputs["Count"].default_value', "2 if frame < 10.05 else 3")
+    scene_parts.add_square(moving, "Child", 0.5).parent = grid
+    grid.instance_type = "VERTS"
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
+    assert snapshot["instances"]["name"].count("Child") == 3
+    assert {x: life for x, life in lives(snapshot).items() if life[0] > 0} == {6.0: (0.625, 1.0)}
+
+
+def test_what_does_not_blur_is_that_of_the_frame(moving):
+    line(moving, "3 if frame < 10.05 else 4")
+    host = moving.objects["Host"]
+    (getattr(host, "cycles", None) or host.granita).use_motion_blur = False
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
+    assert len(snapshot["instances"]["name"]) == 3 and "lifespan" not in snapshot["instances"]
