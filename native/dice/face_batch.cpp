@@ -62,7 +62,11 @@ std::vector<Bounds3f> FaceBatch::boxes(const OpenedPolygons& mesh,
 }
 
 RasterBounds FaceBatch::bounds() const {
-    return raster_bound_of(m_mesh->view().projection, knot_boxes());
+    return raster_bound_of(m_mesh->view().projection, boxes(*m_mesh, m_faces));
+}
+
+std::vector<Bounds3f> FaceBatch::knot_boxes() const {
+    return m_mesh->knot_count() > 1 ? boxes(*m_mesh, m_faces) : std::vector<Bounds3f>{};
 }
 
 /// Bit 63 is never set in the path of a patch, and a patch is in one batch at most.

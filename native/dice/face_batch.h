@@ -25,7 +25,7 @@ class FaceBatch : public Primitive {
                                        std::span<const std::uint32_t> faces);
 
     RasterBounds bounds() const override;
-    std::vector<Bounds3f> knot_boxes() const override { return boxes(*m_mesh, m_faces); }
+    std::vector<Bounds3f> knot_boxes() const override;
     GridKey key() const override;
     bool diceable() const override { return true; }
     std::vector<std::unique_ptr<Primitive>> split() const override { return {}; }

@@ -125,10 +125,10 @@ Vec3d OpenedMesh::camera_normal(const Vec3f& normal_object) const {
 }
 
 RasterBounds OpenedMesh::bounds(std::size_t primitive) const {
-    return raster_bound_of(view().projection, knot_boxes(primitive));
+    return raster_bound_of(view().projection, primitive_boxes(primitive));
 }
 
-std::vector<Bounds3f> OpenedMesh::knot_boxes(std::size_t primitive) const {
+std::vector<Bounds3f> OpenedMesh::primitive_boxes(std::size_t primitive) const {
     const BasePatch& patch = m_shared->patches()[primitive];
     static const Vec2d triangle[4] = {{0, 0}, {1, 0}, {0, 1}, {0, 1}};
     static const Vec2d quad[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};

@@ -36,8 +36,10 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
                Knots knots, Report& report);
 
     std::size_t primitive_count() const override { return m_shared->patches().size(); }
-    RasterBounds bounds(std::size_t primitive) const override;
-    std::vector<Bounds3f> knot_boxes(std::size_t primitive) const override;
+    RasterBounds bounds(std::size_t primitive) const final;
+    std::vector<Bounds3f> knot_boxes(std::size_t primitive) const final {
+        return knot_count() > 1 ? primitive_boxes(primitive) : std::vector<Bounds3f>{};
+    }
     std::unique_ptr<Primitive> primitive(std::size_t primitive) const override;
     std::uint64_t bytes() const override;
 
@@ -77,6 +79,8 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     DisplacementHook displacement(int material) const;
 
   protected:
+    /// [knots]
+    virtual std::vector<Bounds3f> primitive_boxes(std::size_t primitive) const;
     const Vec3f& point(int knot, std::size_t vertex) const {
         return m_points[static_cast<std::size_t>(knot) * m_vertex_count + vertex];
     }

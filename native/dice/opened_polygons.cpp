@@ -154,9 +154,9 @@ void OpenedPolygons::frame_normals(const BasePatch& patch, const Vec3f* p,
                                             : geometric_normal;
 }
 
-std::vector<Bounds3f> OpenedPolygons::knot_boxes(std::size_t primitive) const {
+std::vector<Bounds3f> OpenedPolygons::primitive_boxes(std::size_t primitive) const {
     const std::size_t others = m_small.others().size();
-    return primitive < others ? OpenedMesh::knot_boxes(m_small.others()[primitive])
+    return primitive < others ? OpenedMesh::primitive_boxes(m_small.others()[primitive])
                               : FaceBatch::boxes(*this, m_small.batch(primitive - others));
 }
 

@@ -15,7 +15,6 @@ class OpenedPolygons final : public OpenedMesh {
     std::size_t primitive_count() const override {
         return m_small.others().size() + m_small.batch_count();
     }
-    std::vector<Bounds3f> knot_boxes(std::size_t primitive) const override;
     std::unique_ptr<Primitive> primitive(std::size_t primitive) const override;
     std::uint64_t bytes() const override { return OpenedMesh::bytes() + m_small.bytes(); }
 
@@ -34,6 +33,9 @@ class OpenedPolygons final : public OpenedMesh {
     /// of the face itself.
     void frame_normals(const BasePatch& patch, const Vec3f* p, const struct CornerWeights& weights,
                        Vec3d& normal, Vec3d& geometric_normal) const;
+
+  protected:
+    std::vector<Bounds3f> primitive_boxes(std::size_t primitive) const override;
 
   private:
     struct Corners {

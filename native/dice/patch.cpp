@@ -122,10 +122,11 @@ GridKey Patch::key() const {
 }
 
 RasterBounds Patch::bounds() const {
-    return raster_bound_of(m_mesh->view().projection, knot_boxes());
+    return raster_bound_of(m_mesh->view().projection, patch_boxes(*m_mesh, *m_patch, m_corner_uv));
 }
 
 std::vector<Bounds3f> Patch::knot_boxes() const {
+    if (m_mesh->knot_count() == 1) return {};
     return patch_boxes(*m_mesh, *m_patch, m_corner_uv);
 }
 

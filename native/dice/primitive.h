@@ -34,7 +34,7 @@ class Primitive {
     virtual ~Primitive() = default;
     virtual RasterBounds bounds() const = 0;
     /// [knots] boxes in camera space, equidistant, between which everything moves linearly.  Empty:
-    /// not known, bounds() must do.
+    /// it stands still, or bounds() must do.
     virtual std::vector<Bounds3f> knot_boxes() const { return {}; }
     virtual GridKey key() const = 0;
     virtual bool diceable() const = 0;

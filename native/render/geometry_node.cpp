@@ -81,6 +81,7 @@ GeometryNode::GeometryNode(std::unique_ptr<Primitive> primitive, const RasterBou
       m_layout_width(layout.buckets().width()),
       m_layout_x0(layout.buckets().x0),
       m_layout_y0(layout.buckets().y0),
+      m_knot_boxes(primitive->knot_boxes()),
       m_primitive(std::move(primitive)) {
     if (parent) m_buckets = m_buckets.intersect(parent->m_buckets);
     if (m_buckets.empty()) {
@@ -122,11 +123,6 @@ GeometryNode::Content GeometryNode::expand(const BucketLayout& layout, Statistic
         m_expanded = true;
     }
     return m_content;
-}
-
-std::vector<Bounds3f> GeometryNode::knot_boxes() {
-    const std::lock_guard lock(m_mutex);
-    return m_primitive ? m_primitive->knot_boxes() : std::vector<Bounds3f>{};
 }
 
 void GeometryNode::release(int bucket) {

@@ -58,8 +58,8 @@ class GeometryNode {
     /// Bucket `b` will not ask again, here or below.  After the last one everything is freed.
     void release(int bucket);
     const RasterBounds& bounds() const { return m_bounds; }
-    /// As Primitive::knot_boxes(); empty once it is expanded.
-    std::vector<Bounds3f> knot_boxes();
+    /// As Primitive::knot_boxes().
+    const std::vector<Bounds3f>& knot_boxes() const { return m_knot_boxes; }
 
   private:
     std::size_t bit(int bucket) const;
@@ -68,6 +68,7 @@ class GeometryNode {
     RasterBounds m_bounds;
     Rect m_buckets;  ///< that want it, bucket coordinates
     int m_layout_width, m_layout_x0, m_layout_y0;
+    std::vector<Bounds3f> m_knot_boxes;
     std::vector<bool> m_released;  ///< [m_buckets]
     std::size_t m_left = 0;        ///< not yet released
     std::unique_ptr<Primitive> m_primitive;

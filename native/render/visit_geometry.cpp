@@ -75,7 +75,7 @@ class Visit {
             return true;
         }
         const std::vector<Bounds3f> boxes = knot_boxes(entry);
-        if (boxes.size() < 2) return false;
+        if (boxes.empty()) return false;
         for (int i = 0; i < slab_count(boxes.size()); ++i) {
             const TimeSlab slab = time_slab(boxes, i, m_frame.view.projection);
             if (slab.bounds.visible && !m_occlusion(slab)) return false;
