@@ -70,9 +70,10 @@ std::vector<Grid> make_layers(float motion) {
     return grids;
 }
 
-void hide(benchmark::State& state, float motion, double lens) {
+/// `lens`: knots of (radius, focus distance).
+void hide(benchmark::State& state, float motion, const std::vector<Vec2d>& lens) {
     Camera camera = pixel_camera();
-    camera.projection.lens_radius = lens;
+    camera.lens = LensKnots(lens, camera.projection);
     const SampleTable table(bench_options(), camera);
     const std::vector<Grid> grids = make_layers(motion);
     Statistics statistics;
@@ -97,15 +98,21 @@ void hide(benchmark::State& state, float motion, double lens) {
     state.counters["tests_per_hit"] =
         static_cast<double>(tests) / static_cast<double>(statistics.get(Counter::SampleHits));
 }
-BENCHMARK_CAPTURE(hide, still, 0.0f, 0.0);
-BENCHMARK_CAPTURE(hide, motion_5px, 5.0f, 0.0);
-BENCHMARK_CAPTURE(hide, motion_20px, 20.0f, 0.0);
-BENCHMARK_CAPTURE(hide, motion_100px, 100.0f, 0.0);
-BENCHMARK_CAPTURE(hide, lens_5px, 0.0f, 5.0);
+const std::vector<Vec2d> kPinhole{{0, 10}};
+BENCHMARK_CAPTURE(hide, still, 0.0f, kPinhole);
+BENCHMARK_CAPTURE(hide, motion_5px, 5.0f, kPinhole);
+BENCHMARK_CAPTURE(hide, motion_20px, 20.0f, kPinhole);
+BENCHMARK_CAPTURE(hide, motion_100px, 100.0f, kPinhole);
+BENCHMARK_CAPTURE(hide, lens_5px, 0.0f, std::vector<Vec2d>{{5, 10}});
+/// From 2 to 8 pixels.
+BENCHMARK_CAPTURE(hide, lens_opens, 0.0f, std::vector<Vec2d>{{2, 10}, {8, 10}});
+/// From 8 to 2 pixels.
+BENCHMARK_CAPTURE(hide, lens_refocuses, 0.0f, std::vector<Vec2d>{{5, 7.7}, {5, 14.3}});
+BENCHMARK_CAPTURE(hide, lens_refocuses_motion_20px, 20.0f, std::vector<Vec2d>{{5, 7.7}, {5, 14.3}});
 
-void fill_table(benchmark::State& state, SampleNeeds needs) {
+void fill_table(benchmark::State& state, SampleNeeds needs, double last_focus) {
     Camera camera = pixel_camera();
-    camera.projection.lens_radius = 1;
+    camera.lens = LensKnots({{1, 10}, {1, last_focus}}, camera.projection);
     const SampleTable table(bench_options(), camera);
     TileSamples samples;
     for (auto _ : state) {
@@ -115,9 +122,10 @@ void fill_table(benchmark::State& state, SampleNeeds needs) {
     state.counters["samples"] = benchmark::Counter(
         static_cast<double>(state.iterations()) * 256 * 64, benchmark::Counter::kIsRate);
 }
-BENCHMARK_CAPTURE(fill_table, xy, SampleNeeds{false, false});
-BENCHMARK_CAPTURE(fill_table, xyt, SampleNeeds{true, false});
-BENCHMARK_CAPTURE(fill_table, xytuv, SampleNeeds{true, true});
+BENCHMARK_CAPTURE(fill_table, xy, SampleNeeds{false, false}, 10);
+BENCHMARK_CAPTURE(fill_table, xyt, SampleNeeds{true, false}, 10);
+BENCHMARK_CAPTURE(fill_table, xytuv, SampleNeeds{true, true}, 10);
+BENCHMARK_CAPTURE(fill_table, refocuses, SampleNeeds{true, true}, 20);
 
 void composite(benchmark::State& state) {
     const Camera camera = pixel_camera();

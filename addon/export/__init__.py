@@ -85,6 +85,8 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
     if shutter.segments:
         motion = sample_motion(clock, shutter, at_frame, report, check_cancel)
         camera_at_frame["world_from_camera"] = motion.camera
+        if motion.lens is not None:
+            camera_at_frame["lens_knots"] = motion.lens
         tracks, points, lifespans = motion.tracks, motion.points, motion.lifespans
         seen = with_newcomers(placed, at_frame.visit, depsgraph, report, check_cancel)
         for thing, light in lights:

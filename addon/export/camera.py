@@ -163,13 +163,26 @@ def other_projection(at_frame, scale, center):
     return change
 
 
-def lens_state(camera, depsgraph):
-    """(f-stop, focus distance) at the depsgraph's time; None without depth of field."""
+def lens_knot(camera, frame, depsgraph, at_frame):
+    """float64 [2] radius and focus distance, metres, at the depsgraph's time.
+
+    Circles of confusion are the scale times the radius, so a larger scale (a longer focal length) is
+    a wider lens under the frame's scale.
+
+    Args:
+        as of `camera_knot`, which has found the camera usable at this time.
+
+    Returns:
+        None where the camera focuses on itself.
+    """
     evaluated = camera.evaluated_get(depsgraph)
-    dof = evaluated.data.dof
-    if not dof.use_dof:
+    data, kind = evaluated.data, at_frame["kind"]
+    focus = _focus_distance(data.dof, evaluated, depsgraph)
+    if not _can_focus(focus):
         return None
-    return dof.aperture_fstop, _focus_distance(dof, evaluated, depsgraph)
+    scale, _ = _projection(data, kind, frame)
+    radius = lens_radius(kind, data.lens, data.dof.aperture_fstop)
+    return np.array([radius * (scale[0] / at_frame["scale"][0]), focus])
 
 
 def camera_matrix(camera, depsgraph):
@@ -179,7 +192,7 @@ def camera_matrix(camera, depsgraph):
 
 def _add_lens(record, data, evaluated, depsgraph, report):
     focus = _focus_distance(data.dof, evaluated, depsgraph)
-    if not (math.isfinite(focus) and focus > 0.0):
+    if not _can_focus(focus):
         report(f"camera '{evaluated.name}'", "focuses on itself: rendered without depth of field")
         return
     record.update(
@@ -189,6 +202,10 @@ def _add_lens(record, data, evaluated, depsgraph, report):
         blade_rotation=data.dof.aperture_rotation,
         lens_ratio=data.dof.aperture_ratio,
     )
+
+
+def _can_focus(distance):
+    return math.isfinite(distance) and distance > 0.0
 
 
 def _focus_distance(dof, evaluated, depsgraph):

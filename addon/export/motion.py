@@ -25,6 +25,7 @@ class Motion:
     """Everything with the knots that it needs."""
 
     camera: np.ndarray  # float64 [K, 4, 4]
+    lens: np.ndarray | None = None  # float64 [K, 2] radius and focus distance, metres; None: still
     tracks: Tracks = field(default_factory=no_tracks)
     points: dict = field(default_factory=dict)  # geometry index -> float32 [K, V, 3]
     energies: dict = field(default_factory=dict)  # thing that shines -> float32 [K]
@@ -70,11 +71,6 @@ def sample_motion(clock, shutter, scene, report, check_cancel):
                 level, finer = finer, finer_level(finer, ticks)
         finally:
             clock.go(0.0)
-    if steps.focus_moves:
-        report(
-            f"camera '{scene.camera_record['name']}'",
-            "its focus or f-stop changes within the shutter: taken at the frame",
-        )
     motion = _result(scene, steps, ticks, level)
     motion.lifespans = steps.lifespans(clock.start)
     return motion
@@ -105,7 +101,7 @@ def _first_level(ticks):
 
 
 def _paths(scene, steps):
-    """(key, path, checks) of the camera, of places, of deformations, of the strength of lights.
+    """(key, path, checks) of the camera, its lens, places, deformations, the strength of lights.
 
     `path` is what is exported, {tick: array [m, ...]}.  `checks` are [(path, measure in pixels)] of what
     has to be straight.  Native code draws straight lines in camera space between the knots of camera
@@ -119,6 +115,11 @@ def _paths(scene, steps):
     if moves:
         views = {tick: scale.views[tick][None] for tick in cameras}
         yield "CAMERA", cameras, [(cameras, scale.camera()), (views, scale.view())]
+    lenses = {tick: steps.lenses[tick][None] for tick in sorted(steps.lenses)}
+    if scene.camera_blurs and any(
+        (lens != lenses[steps.frame_tick]).any() for lens in lenses.values()
+    ):
+        yield "LENS", lenses, [(lenses, scale.lens(lenses))]
     things, places = steps.places()
     if len(things):
         measure = scale.places(things, places)
@@ -158,7 +159,7 @@ def _result(scene, steps, ticks, level):
             continue
         knots = np.stack([path[t] for t in range(0, ticks + 1, ticks // int(segments[0]))])
         if isinstance(key, str):
-            motion.camera = knots[:, 0]
+            setattr(motion, key.lower(), knots[:, 0])
         elif isinstance(key, tuple):
             motion.energies[key[1]] = knots[:, 0].astype(np.float32)
         else:

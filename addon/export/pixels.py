@@ -70,6 +70,26 @@ class PixelScale:
         """The same with a camera_from_world that is wrong by so much."""
         return self._astray(self._probes[0])
 
+    def lens(self, path):
+        """measure([1, 2]) -> pixels [1] by which radii of circles of confusion go astray with the
+        lens's radius R and focus distance F: they are R |1 / F - 1 / z|, orthographic R |z / F - 1|.
+
+        Args:
+            path: {tick: float64 [1, 2]}.
+        """
+        radius = max(lens[0, 0] for lens in path.values())
+        focus = min(lens[0, 1] for lens in path.values())
+        _, depth, _ = self._before
+        if self._perspective:
+            per_radius = 1.0 / min(focus, np.min(depth, initial=np.inf))
+            per_focus = radius / focus**2
+        else:
+            farthest = np.max(depth, initial=focus)
+            per_radius, per_focus = farthest / focus, radius * farthest / focus**2
+        return lambda difference: np.abs(difference) @ (
+            self._focal * np.array([per_radius, per_focus])
+        )
+
     def _astray(self, probes):
         def measure(difference):
             astray = np.linalg.norm(probes @ difference[0].T, axis=1)
@@ -78,9 +98,9 @@ class PixelScale:
         return measure
 
     @cached_property
-    def _probes(self):
-        """Homogeneous places of the world, float64 [p, 4], scaled to lie 1 m before the camera where
-        it is perspective; and the view that they were scaled by."""
+    def _before(self):
+        """Homogeneous places of the world before the camera, float64 [p, 4], their depths [p], and the
+        view of which."""
         scan = self._scene.visit
         things = np.arange(0, len(scan.kind), max(len(scan.kind) // _MOST_PROBES, 1))
         center, _ = self._scene.bounds(things)
@@ -88,11 +108,18 @@ class PixelScale:
         places = np.einsum("njk,nk->nj", scan.matrices[things], center)
         depth = places @ view[2]
         kept = np.isfinite(places).all(axis=1) & np.isfinite(depth)
+        if self._perspective:
+            kept &= depth > self._near
+        return places[kept], depth[kept], view
+
+    @cached_property
+    def _probes(self):
+        """Those places, where the camera is perspective scaled to lie 1 m before it; and the view."""
+        places, depth, view = self._before
         if not self._perspective:
-            return places[kept], view
-        kept &= depth > self._near
+            return places, view
         far = np.append(view[2, :3], 0.0)
-        return np.vstack([places[kept] / depth[kept, None], far]), view
+        return np.vstack([places / depth[:, None], far]), view
 
     def _per_metre(self, things, path):
         """Pixels a metre, float64 [m]; 0 for what is behind the camera all the time."""

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .camera import camera_knot, lens_state
+from .camera import camera_knot, lens_knot
 from .changes import changed_geometry, lights_changed, moved, originals
 from .depsgraph import visit
 from .lifespan import complete, lifespans, particle_life, runs
@@ -18,7 +18,7 @@ class Steps:
     Attributes:
         ticks: list of int, in the order in which they were read; the frame's is the first.
         cameras: {tick: float64 [4, 4]}.
-        focus_moves: whether lens or focus are another at any tick.
+        lenses: {tick: float64 [2]}, radius and focus distance; empty for a pinhole.
     """
 
     def __init__(self, scene, frame_tick, tick_frames, report, check_cancel, newcomers=None):
@@ -49,8 +49,12 @@ class Steps:
         self._records = {}  # tick -> (things, present, matrices)
         self._point_records = {frame_tick: {}}  # tick -> {geometry: points, None = not there}
         self._energies = {frame_tick: scene.energies}
-        self._lens = lens_state(scene.camera, scene.depsgraph)
-        self.focus_moves = False
+        record = scene.camera_record
+        self.lenses = {}
+        if record["lens_radius"] > 0.0:
+            at_frame = np.array([record["lens_radius"], record["focus_distance"]])
+            self.lenses[frame_tick] = at_frame
+        self._focused_on_itself = False
 
     def read(self, tick, knows_updates):
         """Reads the scene, which stands at the tick's time."""
@@ -87,14 +91,22 @@ class Steps:
             self._report(datablock, f"was {how} while the frame was read: it stays as it was")
 
     def _read_camera(self, tick):
-        scene = self._scene
+        scene, last = self._scene, self.ticks[-2]
+        seen = scene.camera, scene.frame, scene.depsgraph, scene.camera_record
+        name = f"camera '{scene.camera_record['name']}'"
+        knot = lens = None
         try:
-            knot = camera_knot(scene.camera, scene.frame, scene.depsgraph, scene.camera_record)
-            self.focus_moves |= lens_state(scene.camera, scene.depsgraph) != self._lens
+            knot = camera_knot(*seen)
+            if self.lenses and knot is not None:
+                lens = lens_knot(*seen)
+                if lens is None and not self._focused_on_itself:
+                    self._focused_on_itself = True
+                    self._report(name, "focuses on itself within the shutter: its focus waits")
         except ReferenceError:  # a handler of another add-on deleted it
-            knot = None
-            self._lose(f"camera '{scene.camera_record['name']}'", "deleted")
-        self.cameras[tick] = self.cameras[self.ticks[-2]] if knot is None else knot
+            self._lose(name, "deleted")
+        self.cameras[tick] = self.cameras[last] if knot is None else knot
+        if self.lenses:
+            self.lenses[tick] = self.lenses[last] if lens is None else lens
 
     def _read_energies(self, tick, knows_updates):
         energies = self._energies[self.ticks[-2]]

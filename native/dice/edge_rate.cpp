@@ -66,10 +66,7 @@ Vec2d EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b) const {
         const double z = ends[i]->z, w = m_projection.perspective ? 1.0 / z : 1.0;
         x[i] = m_projection.center.x + m_projection.scale.x * ends[i]->x * w;
         y[i] = m_projection.center.y + m_projection.scale.y * ends[i]->y * w;
-        const double reach =
-            m_projection.has_lens()
-                ? m_projection.lens_radius * std::abs(z / m_projection.focus - 1.0) * w
-                : 0.0;
+        const double reach = m_projection.lens_reach(z) * w;
         swept.x0 = std::min(swept.x0, x[i] - m_projection.scale.x * reach);
         swept.x1 = std::max(swept.x1, x[i] + m_projection.scale.x * reach);
         swept.y0 = std::min(swept.y0, y[i] - m_projection.scale.y * reach);
@@ -107,12 +104,15 @@ EdgeRate::Blur EdgeRate::blur(const Vec3f* start, const Vec3f* middle, const Vec
             const double z = p.z;
             if (m_projection.perspective && !(z >= m_near)) return blur;
             const double w = m_projection.perspective ? 1.0 / z : 1.0;
-            const double shear = z / m_projection.focus - 1.0;
-            (shear < 0.0 ? before : behind) = true;
-            smallest = std::min(smallest, std::abs(shear) * w);
+            for (const double focus : {m_projection.focus, m_projection.farthest_focus()}) {
+                const double shear = z / focus - 1.0;
+                (shear < 0.0 ? before : behind) = true;
+                smallest = std::min(smallest, std::abs(shear) * w);
+            }
         }
     if (before && behind) return blur;
-    const double diameter = 2.0 * smallest * m_projection.lens_radius * std::min(scale.x, scale.y);
+    const double narrowest = m_projection.lens_radius - m_projection.lens_closing;
+    const double diameter = 2.0 * smallest * narrowest * std::min(scale.x, scale.y);
     blur.all = std::max(1.0, diameter * m_focus_factor / kBlurSteps);
     return blur;
 }

@@ -52,18 +52,16 @@ RasterBounds raster_bound(const Projection& projection, const Bounds3f& box) {
                               : box.lo.z;
     const double z_far = std::max<double>(box.hi.z, z_near);
     // What is seen has z in [z_near, z_far].  On either side of the focus (v +- R |z / focus - 1|)
-    // / z is monotone in z, and at the focus it is v / z without a reach: the ends bound it.  So a
-    // floor that passes below the lens stays below the frame, however large its circle of confusion
-    // grows.
+    // / z is monotone in z, and at the focus it is v / z without a reach: the ends bound it, also
+    // of the larger of two focuses' reaches.  So a floor that passes below the lens stays below the
+    // frame, however large its circle of confusion grows.
     const auto axis = [&](int i, double lo, double hi) {
         Interval interval;
         for (const double z : {z_near, z_far}) {
             const double w = projection.perspective ? 1.0 / z : 1.0;
-            const double reach =
-                projection.scale[i] * projection.lens_radius * std::abs(z / projection.focus - 1.0);
+            const double reach = projection.scale[i] * projection.lens_reach(z) * w;
             for (const double v : {lo, hi})
-                interval.add(projection.center[i] + projection.scale[i] * v * w,
-                             projection.has_lens() ? reach * w : 0.0);
+                interval.add(projection.center[i] + projection.scale[i] * v * w, reach);
         }
         return interval;
     };
@@ -84,9 +82,7 @@ RasterBounds raster_bound(const Projection& projection, std::span<const Vec3f> p
     Interval x, y;
     for (const Vec3f& p : points) {
         const double w = projection.perspective ? 1.0 / p.z : 1.0;
-        const double reach = projection.has_lens() ? projection.lens_radius *
-                                                         std::abs(p.z / projection.focus - 1.0) * w
-                                                   : 0.0;
+        const double reach = projection.lens_reach(p.z) * w;
         x.add(projection.center.x + projection.scale.x * p.x * w, projection.scale.x * reach);
         y.add(projection.center.y + projection.scale.y * p.y * w, projection.scale.y * reach);
     }

@@ -23,9 +23,7 @@ MicropolygonSweep::MicropolygonSweep(const SimdGrid& grid, const int vertex[4], 
     for (int k = 0; k < 4; ++k) {
         const std::size_t a = static_cast<std::size_t>(segment) * grid.vertices + vertex[k];
         const std::size_t b = moving ? a + grid.vertices : a;
-        const float shear_a = grid.z[a] * grid.inverse_focus - 1.0f;
-        const float shear_b = grid.z[b] * grid.inverse_focus - 1.0f;
-        const float shear = std::max(std::fabs(shear_a), std::fabs(shear_b));
+        const float shear = std::max(grid.most_shear(grid.z[a]), grid.most_shear(grid.z[b]));
         // 1/256 pixel and a few ulp of far positions: more than rounding can move an offset.
         const float w_margin = std::max(std::fabs(grid.w[a]), std::fabs(grid.w[b])) / 256;
         const float x_margin = std::max(std::fabs(grid.x[a]), std::fabs(grid.x[b])) * 0x1p-21f;
@@ -36,9 +34,14 @@ MicropolygonSweep::MicropolygonSweep(const SimdGrid& grid, const int vertex[4], 
         if (moving) {
             m_x[k].margin += grid.lens_x * shear;
         } else {
-            // Under a still lens x + u shear is linear in u, as it is in time above.
-            m_x[k].p0 -= grid.lens_x * shear_a;
-            m_x[k].p1 += grid.lens_x * shear_a;
+            // At a focus x + u shear is linear in u, as it is in time above; other focuses are
+            // within the margin of that in the middle.
+            const float middle = 0.5f * (grid.inverse_focus + grid.inverse_farthest);
+            const float sheared = grid.lens_x * (grid.z[a] * middle - 1.0f);
+            m_x[k].p0 -= sheared;
+            m_x[k].p1 += sheared;
+            m_x[k].margin += grid.lens_x * std::fabs(grid.z[a]) * 0.5f *
+                             (grid.inverse_focus - grid.inverse_farthest);
         }
     }
     if (moving) {

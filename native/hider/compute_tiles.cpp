@@ -14,7 +14,7 @@ namespace granita {
 namespace {
 
 constexpr std::size_t kPixels = kTileSize * kTileSize;
-constexpr std::size_t kSampleBytes = 5 * sizeof(float);  ///< x, y, t, u, v
+constexpr std::size_t kSampleBytes = 6 * sizeof(float);  ///< x, y, t, u, v, 1 / focus
 /// As hide.comp writes it.
 struct DeviceFragment {
     float key;
@@ -65,7 +65,7 @@ void ComputeTiles::upload_samples(bool time) {
     const Projection& projection = m_frame.projection;
     const Vec2f lens(projection.lens_radius * projection.scale);
     std::vector<float> values;
-    values.reserve(static_cast<std::size_t>(m_stride) * 5);
+    values.reserve(static_cast<std::size_t>(m_stride) * 6);
     const auto append = [&](std::vector<float> TileSamples::*dimension, float factor) {
         for (std::size_t i = m_first; i < m_first + m_count; ++i)
             for (const float x : m_bucket.samples(i).*dimension) values.push_back(x * factor);
@@ -75,6 +75,9 @@ void ComputeTiles::upload_samples(bool time) {
     if (projection.has_lens()) {
         append(&TileSamples::u, lens.x);
         append(&TileSamples::v, lens.y);
+        append(&TileSamples::inverse_focus, 1.0f);
+        values.resize(static_cast<std::size_t>(m_stride) * 5,
+                      static_cast<float>(1.0 / projection.focus));
     }
     if (time) {
         for (std::size_t i = m_first; i < m_first + m_count; ++i) m_bucket.need_time(i);
@@ -134,11 +137,10 @@ void ComputeTiles::dispatch(const gl::Program& program, const std::vector<Comput
     glUniform1ui(COMPUTE_SAMPLES_A_PIXEL, m_samples_a_pixel);
     glUniform1ui(COMPUTE_SAMPLE_STRIDE, m_stride);
     glUniform1ui(COMPUTE_LENS_AT, 2 * m_stride);
-    glUniform1ui(COMPUTE_TIME_AT, (projection.has_lens() ? 4 : 2) * m_stride);
+    glUniform1ui(COMPUTE_TIME_AT, (projection.has_lens() ? 5 : 2) * m_stride);
     glUniform1ui(COMPUTE_GRID_COUNT, static_cast<GLuint>(m_bucket.pool().size()));
     glUniform1i(COMPUTE_PERSPECTIVE, range.perspective);
     glUniform2f(COMPUTE_KEY_RANGE, range.key_far, range.key_near);
-    glUniform1f(COMPUTE_INVERSE_FOCUS, static_cast<float>(1.0 / projection.focus));
     const auto groups =
         static_cast<GLuint>((16 * m_samples_a_pixel + COMPUTE_GROUP_SIZE - 1) / COMPUTE_GROUP_SIZE);
     glDispatchCompute(static_cast<GLuint>(blocks.size()), groups, 1);

@@ -22,12 +22,20 @@ struct StraightPath {
     V place, speed, reach;
 };
 
+/// Of (z / focus - 1) / w at both ends together: a still lens has `shear`; where samples have a focus
+/// each it is `depth` / focus - `reciprocal`, of which perspective leaves depth = 1.
+struct LensExtents {
+    Extent shear, depth, reciprocal;
+    HWY_INLINE LensExtents() {}  // the implicit one is of no target
+};
+
 /// For a fixed lens point a corner moves monotonically between the ends of its interval of time,
 /// whatever the perspective, and for a fixed time linearly in the lens point (compare Laine et al.
 /// 2011): its extremes are at the ends.
-template <bool kMoving, bool kLens>
+template <bool kMoving, Lens kLens>
 struct PathExtents {
-    Extent x, y, shear;
+    Extent x, y;
+    LensExtents lens;
     V z_lo;
     V margin;          ///< more than rounding and the exact test need
     V bend_x, bend_y;  ///< how far paths leave their chords
@@ -50,7 +58,12 @@ struct PathExtents {
             const V at_x = at.x * inverse, at_y = at.y * inverse;
             x.add(at_x, e);
             y.add(at_y, e);
-            if constexpr (kLens) shear.add((at.z * set(grid.inverse_focus) - one) * inverse, 0);
+            if constexpr (kLens == Lens::Still)
+                lens.shear.add((at.z * set(grid.inverse_focus) - one) * inverse, 0);
+            if constexpr (kLens == Lens::Refocused) {
+                lens.depth.add(at.z * inverse, 0);
+                lens.reciprocal.add(inverse, 0);
+            }
             z_lo = hn::Min(z_lo, at.z);
             margin = hn::Max(margin, rounding * inverse);
             sane = hn::And(sane, hn::Gt(at.w, set(1e-15f)));
@@ -92,7 +105,7 @@ struct PathExtents {
         };
         const V place = hn::Max(largest(c.x, d.x), largest(c.y, d.y));
         V rounding = largest(c.w, d.w) * set(1.0f / 256) + place * set(0x1p-20f);
-        if constexpr (kLens) {
+        if constexpr (kLens != Lens::None) {
             const V depth = largest(c.z, d.z) * set(grid.inverse_focus) + set(1.0f);
             rounding = rounding + set(std::max(grid.lens_x, grid.lens_y) * 0x1p-20f) * depth;
         }

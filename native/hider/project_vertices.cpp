@@ -48,8 +48,10 @@ void bound(const SimdGrid& grid, int segment, bool perspective, const VertexBoun
             const auto inverse = one / w;
             const auto x = hn::LoadU(tag, grid.x + i) * inverse;
             const auto y = hn::LoadU(tag, grid.y + i) * inverse;
-            const auto shear =
-                hn::Abs(z * set(grid.inverse_focus) - one) * hn::Abs(inverse) * slack;
+            auto shear = hn::Abs(z * set(grid.inverse_focus) - one);
+            if (grid.refocuses())
+                shear = hn::Max(shear, hn::Abs(z * set(grid.inverse_farthest) - one));
+            shear = shear * hn::Abs(inverse) * slack;
             const auto more_x = margin + hn::Abs(x) * relative + set(grid.lens_x) * shear;
             const auto more_y = margin + hn::Abs(y) * relative + set(grid.lens_y) * shear;
             const auto seen = hn::And(hn::Gt(w, zero), hn::And(hn::Lt(hn::Abs(x) + more_x, huge),

@@ -47,13 +47,16 @@ void find_slabs(std::size_t ranks, RankBounds& bounds) {
 }  // namespace
 
 RankBounds bound_ranks(const SampleOrder& order, const std::vector<float>& t,
-                       const std::vector<float>& u, const std::vector<float>& v) {
+                       const std::vector<float>& u, const std::vector<float>& v,
+                       const std::vector<float>& inverse_focus) {
     const auto ranks = static_cast<std::size_t>(order.ranks());
     const std::size_t blocks = order.slots() / ranks;
     RankBounds out;
     bound(t, ranks, blocks, 1.0f, out.t_lo, out.t_hi);
     bound(u, ranks, blocks, 0.0f, out.u_lo, out.u_hi);
     bound(v, ranks, blocks, 0.0f, out.v_lo, out.v_hi);
+    if (!inverse_focus.empty())
+        bound(inverse_focus, ranks, blocks, 0.0f, out.focus_lo, out.focus_hi);
     find_slabs(ranks, out);
     return out;
 }

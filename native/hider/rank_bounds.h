@@ -14,15 +14,18 @@ class SampleOrder;
 struct RankBounds {
     /// [ranks], and spare elements for whole vectors; lo > hi where there is no sample.
     std::vector<float> t_lo, t_hi, u_lo, u_hi, v_lo, v_hi;
+    /// Of 1 / focus distance, where the lens refocuses.
+    std::vector<float> focus_lo, focus_hi;
 
     static constexpr int kSlabs = 64;
     /// Ranks with times in slab s of kSlabs of the shutter are among [first[s], end[s]).
     std::array<int, kSlabs> first{}, end{};
 };
 
-/// `t`, `u`, `v`: [slots] of the order, NaN without sample; may be empty: then t is the whole
-/// shutter and the lens a point.
+/// `t`, `u`, `v`, `inverse_focus`: [slots] of the order, NaN without sample; may be empty: then t
+/// is the whole shutter, the lens a point and the focus not bounded.
 RankBounds bound_ranks(const SampleOrder& order, const std::vector<float>& t,
-                       const std::vector<float>& u, const std::vector<float>& v);
+                       const std::vector<float>& u, const std::vector<float>& v,
+                       const std::vector<float>& inverse_focus);
 
 }  // namespace granita

@@ -38,7 +38,7 @@ std::vector<Vec4f> device_passes(const RasterFrame& frame) {
     const auto radius = static_cast<float>(frame.projection.lens_radius);
     std::vector<Vec4f> passes;
     for (const RasterPass& p : frame.passes)
-        passes.emplace_back(p.t, p.u * radius, p.v * radius, 0.0f);
+        passes.emplace_back(p.t, p.u * radius, p.v * radius, p.inverse_focus);
     return passes;
 }
 
@@ -152,7 +152,6 @@ void RasterDevice::set_cell(const RasterCell& cell) const {
     glUniform2d(RASTER_CLIP_SCALE, scale.x, scale.y);
     glUniform2d(RASTER_CLIP_CENTER, center.x, center.y);
     glUniform1f(RASTER_NEAR, static_cast<float>(p.near_clip));
-    glUniform1d(RASTER_INVERSE_FOCUS, p.has_lens() ? 1.0 / p.focus : 0.0);
 }
 
 void RasterDevice::draw(RasterOutput output, const RasterBuffers& buffers,
@@ -199,7 +198,7 @@ void RasterDevice::draw_ways(const RasterBuffers& buffers,
     glUniform2d(RASTER_RASTER_CENTER, p.center.x, p.center.y);
     glUniform1i(COMPUTE_PERSPECTIVE, range.perspective);
     glUniform2f(COMPUTE_KEY_RANGE, range.key_far, range.key_near);
-    glUniform1f(COMPUTE_INVERSE_FOCUS, static_cast<float>(1.0 / p.focus));
+    if (p.has_lens()) glUniform2d(RASTER_INVERSE_FOCUS, 1.0 / p.focus, 1.0 / p.farthest_focus());
     m_samples->bind();
     buffers.indices.bind_storage(RASTER_TRIANGLES);
     buffers.vertex_grids.bind_storage(RASTER_VERTEX_GRIDS);

@@ -299,6 +299,26 @@ class RasterHider::Bucket : public RasterBucket {
     RasterSeen m_seen;
 };
 
+std::vector<RasterPass> raster_passes(const SampleTable& table, SampleNeeds needs,
+                                      const Projection& projection) {
+    // Any pixel's samples of one place on the lattice.
+    TileSamples samples;
+    table.fill_tile({0, 0}, needs, samples);
+    const int cells = table.lattice().cells();
+    std::vector<RasterPass> passes;
+    for (int s = 0; s < table.samples(); s += cells) {
+        RasterPass& pass = passes.emplace_back();
+        if (!samples.t.empty()) pass.t = samples.t[s];
+        if (samples.u.empty()) continue;
+        pass.u = samples.u[s];
+        pass.v = samples.v[s];
+        pass.inverse_focus = samples.inverse_focus.empty()
+                                 ? static_cast<float>(1.0 / projection.focus)
+                                 : samples.inverse_focus[s];
+    }
+    return passes;
+}
+
 RasterHider::RasterHider(gl::GlThread& thread, const RasterFrame& frame)
     : m_thread(thread), m_frame(frame) {
     GRANITA_CHECK(!frame.passes.empty());

@@ -41,10 +41,14 @@
 
 namespace granita {
 
-/// Shutter time in [0, 1] and place on the unit lens of all samples of one pass.
+/// Shutter time in [0, 1] and place on the unit lens of all samples of one pass, and 1 / the focus
+/// distance then.
 struct RasterPass {
-    float t = 0.0f, u = 0.0f, v = 0.0f;
+    float t = 0.0f, u = 0.0f, v = 0.0f, inverse_focus = 0.0f;
 };
+/// Those of a REGULAR table.
+std::vector<RasterPass> raster_passes(const SampleTable& table, SampleNeeds needs,
+                                      const Projection& projection);
 
 struct RasterFrame {
     Projection projection;

@@ -18,6 +18,7 @@ RasterSamples::RasterSamples(const SampleTable& table, SampleNeeds needs,
     : m_table(table),
       m_needs(needs),
       m_lens(projection.lens_radius * projection.scale),
+      m_inverse_focus(static_cast<float>(1.0 / projection.focus)),
       m_lattice(sample_lattice(table.samples())) {}
 
 void RasterSamples::load(const RasterCell& cell) {
@@ -51,8 +52,11 @@ void RasterSamples::load(const RasterCell& cell) {
                         values[texel] = {samples.x[i], samples.y[i],
                                          m_needs.time ? samples.t[i] : 0.0f, 0.0f};
                         if (m_needs.lens)
-                            values[texels + texel] = {samples.u[i] * m_lens.x,
-                                                      samples.v[i] * m_lens.y, 0.0f, 0.0f};
+                            values[texels + texel] = {
+                                samples.u[i] * m_lens.x, samples.v[i] * m_lens.y,
+                                samples.inverse_focus.empty() ? m_inverse_focus
+                                                              : samples.inverse_focus[i],
+                                0.0f};
                     }
         }
     m_buffer = gl::Buffer::of(values);

@@ -31,7 +31,8 @@ class RasterSamples {
   private:
     const SampleTable& m_table;
     SampleNeeds m_needs;
-    Vec2f m_lens;  ///< raster shift a unit of lens and shear
+    Vec2f m_lens;           ///< raster shift a unit of lens and shear
+    float m_inverse_focus;  ///< where it stands still
     int m_lattice;
     std::optional<RasterCell> m_cell;
     gl::Buffer m_buffer;

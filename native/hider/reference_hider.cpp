@@ -64,8 +64,7 @@ class ReferenceHider : public Hider {
                 const Vec3f& p = grid.positions[k * grid.vertex_count() + corners[i]];
                 const Corner<double> c = corner(p, m_tiles.origin(tile));
                 if (c.w <= 0.0) return m_tiles.local_pixels(tile);
-                const double blur =
-                    m_projection.lens_radius * std::fabs(c.z / m_projection.focus - 1.0) / c.w;
+                const double blur = m_projection.lens_reach(c.z) / c.w;
                 const double blur_x = m_projection.scale.x * blur * m_lens.extent_u() + 0.01;
                 const double blur_y = m_projection.scale.y * blur * m_lens.extent_v() + 0.01;
                 x0 = std::min(x0, c.x / c.w - std::fabs(blur_x));
@@ -134,7 +133,9 @@ class ReferenceHider : public Hider {
                 d[k] = offset_lens(c[k], x, y,
                                    samples.u[i] * m_projection.lens_radius * m_projection.scale.x,
                                    samples.v[i] * m_projection.lens_radius * m_projection.scale.y,
-                                   1.0 / m_projection.focus, 1.0);
+                                   samples.inverse_focus.empty() ? 1.0 / m_projection.focus
+                                                                 : samples.inverse_focus[i],
+                                   1.0);
             else
                 d[k] = offset_pinhole(c[k], x, y);
         }

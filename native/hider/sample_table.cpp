@@ -42,7 +42,8 @@ SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNee
       m_shutter(options.shutter_curve),
       m_height(options.height),
       m_rolling(options.rolling_shutter),
-      m_lens(camera.blades, camera.blade_rotation, camera.lens_ratio) {
+      m_lens(camera.blades, camera.blade_rotation, camera.lens_ratio),
+      m_lens_knots(camera.lens) {
     if (options.samples < 1 || options.samples > 1 << 16)
         throw SceneError("render settings",
                          "samples must be 1 to 65536, not " + std::to_string(options.samples));
@@ -64,6 +65,8 @@ SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNee
 }
 
 void SampleTable::fill_tile(Vec2i tile, SampleNeeds needs, TileSamples& out) const {
+    const bool wants_time = needs.time, moves_lens = needs.lens && m_lens_knots.moves();
+    needs.time = wants_time || moves_lens;
     out.samples = m_samples;
     out.square_digits = static_cast<int>(m_square_digits);
     const std::size_t count = static_cast<std::size_t>(kPixels) * m_samples;
@@ -72,6 +75,7 @@ void SampleTable::fill_tile(Vec2i tile, SampleNeeds needs, TileSamples& out) con
     out.t.resize(needs.time ? count : 0);
     out.u.resize(needs.lens ? count : 0);
     out.v.resize(needs.lens ? count : 0);
+    out.inverse_focus.resize(moves_lens && m_lens_knots.refocuses() ? count : 0);
     if (m_sampling == Sampling::Regular) {
         fill_regular(needs, out);
     } else {
@@ -87,6 +91,18 @@ void SampleTable::fill_tile(Vec2i tile, SampleNeeds needs, TileSamples& out) con
         for (float& t : out.t) t = m_shutter.time(t);
     if (needs.time && m_rolling >= 0.0f) roll(tile, out.t);
     if (needs.lens) m_lens.map(out.u.data(), out.v.data(), count);
+    if (moves_lens) move_lens(out);
+    if (!wants_time) out.t.clear();
+}
+
+void SampleTable::move_lens(TileSamples& samples) const {
+    for (std::size_t i = 0; i < samples.t.size(); ++i) {
+        const float opening = m_lens_knots.opening(samples.t[i]);
+        samples.u[i] *= opening;
+        samples.v[i] *= opening;
+    }
+    for (std::size_t i = 0; i < samples.inverse_focus.size(); ++i)
+        samples.inverse_focus[i] = m_lens_knots.inverse_focus(samples.t[i]);
 }
 
 /// A rolling shutter exposes the rows one after the other, the top one first: each sees a part

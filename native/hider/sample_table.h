@@ -18,13 +18,16 @@ inline constexpr int kTileSize =
 
 /// The samples of one tile, structure of arrays, sample s of tile pixel p at [p * samples + s], p =
 /// y * 16 + x. x, y are pixels relative to the tile's corner; t in [0, 1]; u, v in the unit lens
-/// (blades and ratio applied).
+/// (blades and ratio applied), as open as it is at the sample's time.
 struct TileSamples {
     int samples = 0;
     /// Sixteen samples in a row, from each multiple of sixteen on, lie in one of the
     /// 4^square_digits equal squares of their pixel.  Only where sixteen divides `samples`.
     int square_digits = 0;
     std::vector<float> x, y, t, u, v;  ///< t empty without motion, u and v without lens
+    /// 1 / focus distance at the sample's time; empty where the focus stands still, or without
+    /// lens.
+    std::vector<float> inverse_focus;
 };
 
 /// What the scene needs of the table: only what is asked for is made.
@@ -61,6 +64,7 @@ class SampleTable {
     void fill_regular(SampleNeeds needs, TileSamples& out) const;
     void fill_dimension(Vec2i tile, int dimension, std::vector<float>& out) const;
     void roll(Vec2i tile, std::vector<float>& t) const;
+    void move_lens(TileSamples& samples) const;
 
     int m_samples;
     RegularLattice m_lattice;
@@ -72,6 +76,7 @@ class SampleTable {
     int m_height;     ///< rows of the frame
     float m_rolling;  ///< Options::rolling_shutter
     LensShape m_lens;
+    LensKnots m_lens_knots;
 };
 
 }  // namespace granita

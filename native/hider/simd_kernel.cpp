@@ -22,6 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #include "hider/corner_arithmetic.inl"
 #include "hider/packet_vectors.inl"
+#include "hider/sample_packet.inl"
 
 /// Calls visit(lane) for every lane of the mask.
 template <class Visit>
@@ -51,7 +52,13 @@ class Kernel {
             m_window[i] = i / kWindow * tile.blocks_wide + i % kWindow;
     }
 
-    template <bool kMoving, bool kLens>
+    template <Lens kLens>
+    void run() {
+        m_grid.segments > 0 ? run<true, kLens>() : run<false, kLens>();
+    }
+
+  private:
+    template <bool kMoving, Lens kLens>
     void run() {
         BlockRanges ranges;
         for (int& segment = m_where.segment; segment < std::max(1, m_grid.segments); ++segment)
@@ -61,7 +68,7 @@ class Kernel {
                     M touching = m_where.find_touched(first, m_grid.n_u - i, ranges);
                     if (kMoving && !hn::AllFalse(kTag, touching))
                         touching = hn::And(touching, m_where.find_times<kLens>(first, ranges));
-                    if ((kMoving || kLens) && !hn::AllFalse(kTag, touching))
+                    if ((kMoving || kLens != Lens::None) && !hn::AllFalse(kTag, touching))
                         m_paths.find_paths<kMoving, kLens>(m_where.segment, first, ranges,
                                                            m_tile_paths);
                     for_each_lane(touching, [&](int lane) HWY_ATTR {
@@ -70,19 +77,13 @@ class Kernel {
                         if (m_class == 0) return;
                         m_id = m_grid.base + static_cast<SurfaceId>(m);
                         const Shape shape = m_where.load_shape(first + lane);
-                        if (kMoving || kLens || m_tile.ranked)
+                        if (kMoving || kLens != Lens::None || m_tile.ranked)
                             visit_ranks<kMoving, kLens>(shape, ranges, lane);
                         else
                             visit_packets(shape, ranges, lane);
                     });
                 }
     }
-
-  private:
-    /// A vector of samples, as far as the test needs them.
-    struct Samples {
-        V x, y, t, u, v;
-    };
 
     /// What is still is tested against all packets of the blocks of ranges[lane].
     HWY_INLINE void visit_packets(const Shape& shape, const BlockRanges& ranges, int lane) {
@@ -107,19 +108,20 @@ class Kernel {
         at.x = hn::LoadU(kTag, m_tile.x + first);
         at.y = hn::LoadU(kTag, m_tile.y + first);
         Hits hits;
-        const M hit = test<false, false>(shape, at, hn::FirstN(kTag, kPacket), hits);
+        const M hit = test<false, Lens::None>(shape, at, hn::FirstN(kTag, kPacket), hits);
         if (!hn::AllFalse(kTag, hit)) record(hits, hit, first);
     }
 
     /// What is swept, and what is still in a tile where other things are swept: ranks are bounded a
     /// vector at a time, the samples in each rank's window of blocks are compared with the
     /// micropolygon's path, and what remains, about twice what is hit, is tested in whole vectors.
-    template <bool kMoving, bool kLens>
+    template <bool kMoving, Lens kLens>
     HWY_INLINE void visit_ranks(const Shape& shape, const BlockRanges& swept, int lane) {
         int first = 0, end = m_tile.ranks;
         if constexpr (kMoving) m_where.find_ranks(swept, lane, first, end);
         const bool cull = swept.nearest[lane] < m_tile.nearest_of_ranks;
-        const bool straight = (kMoving || kLens) && (m_tile_paths.straight >> lane & 1u);
+        const bool straight =
+            (kMoving || kLens != Lens::None) && (m_tile_paths.straight >> lane & 1u);
         RankPaths paths;
         std::size_t found = 0;
         for (; first < end; first += lane_count()) {
@@ -164,7 +166,7 @@ class Kernel {
     }
 
     /// Of the window at `slot`, adds the samples within the micropolygon's reach to the list.
-    template <bool kMoving, bool kLens>
+    template <bool kMoving, Lens kLens>
     HWY_INLINE std::size_t filter_window(const RankPaths& paths, int k, int slot,
                                          std::size_t found) {
         constexpr int kRows = hn::MaxLanes(kTag) / kWindow;
@@ -178,24 +180,24 @@ class Kernel {
                 x = x + set(paths.x.speed[k]) * at.t;
                 y = y + set(paths.y.speed[k]) * at.t;
             }
-            if constexpr (kLens) {
+            if constexpr (kLens != Lens::None) {
                 at.u = load_rows(kTag, m_tile.u + slot);
                 at.v = load_rows(kTag, m_tile.v + slot);
-                x = x + set(paths.x.shear[k]) * at.u;
-                y = y + set(paths.y.shear[k]) * at.v;
+                V shear = set(paths.shear[k]);
+                if constexpr (kLens == Lens::Refocused) {
+                    at.inverse_focus = load_rows(kTag, m_tile.inverse_focus + slot);
+                    shear = shear + set(paths.depth[k]) * at.inverse_focus;
+                }
+                x = x + shear * at.u;
+                y = y + shear * at.v;
             }
             const M near = hn::And(hn::Le(hn::Abs(at.x - x), set(paths.x.reach[k])),
                                    hn::Le(hn::Abs(at.y - y), set(paths.y.reach[k])));
             const Squeeze squeeze(near);
             const auto add = [&](V value, float* to)
                                  HWY_ATTR { hn::StoreU(squeeze(value), kTag, to + found); };
-            add(at.x, m_listed.x);
-            add(at.y, m_listed.y);
-            if constexpr (kMoving) add(at.t, m_listed.t);
-            if constexpr (kLens) {
-                add(at.u, m_listed.u);
-                add(at.v, m_listed.v);
-            }
+            at.for_each<kMoving, kLens>([&](V value, int k)
+                                            HWY_ATTR { add(value, m_listed.samples[k]); });
             const auto slots = hn::LoadU(kIntTag, m_window) + hn::Set(kIntTag, slot);
             add(hn::BitCast(kTag, slots), m_listed.slot);
             found += squeeze.count();
@@ -203,19 +205,15 @@ class Kernel {
         return found;
     }
 
-    template <bool kMoving, bool kLens>
+    template <bool kMoving, Lens kLens>
     HWY_INLINE void test_listed(const Shape& shape, std::size_t count) {
         m_counts.tests += count;
         std::size_t covered = 0;
         for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lane_count())) {
             Samples at;
-            at.x = hn::LoadU(kTag, m_listed.x + i);
-            at.y = hn::LoadU(kTag, m_listed.y + i);
-            if constexpr (kMoving) at.t = hn::LoadU(kTag, m_listed.t + i);
-            if constexpr (kLens) {
-                at.u = hn::LoadU(kTag, m_listed.u + i);
-                at.v = hn::LoadU(kTag, m_listed.v + i);
-            }
+            at.for_each<kMoving, kLens>([&](V& value, int k) HWY_ATTR {
+                value = hn::LoadU(kTag, m_listed.samples[k] + i);
+            });
             Hits hits;
             const M hit = test<kMoving, kLens>(shape, at, hn::FirstN(kTag, count - i), hits);
             if (hn::AllFalse(kTag, hit)) continue;
@@ -246,27 +244,30 @@ class Kernel {
         return at_time(begin, {set(d.x), set(d.y), set(d.w), set(d.z)}, local);
     }
 
-    template <bool kLens>
+    template <Lens kLens>
     HWY_INLINE Offset<V> offset(const Corner<V>& c, const Samples& at) const {
-        if constexpr (kLens)
-            return offset_lens(c, at.x, at.y, at.u, at.v, set(m_grid.inverse_focus), set(1.0f));
-        else
+        const V one = set(1.0f);
+        if constexpr (kLens == Lens::None)
             return offset_pinhole(c, at.x, at.y);
+        else if constexpr (kLens == Lens::Still)
+            return offset_lens(c, at.x, at.y, at.u, at.v, set(m_grid.inverse_focus), one);
+        else
+            return offset_lens(c, at.x, at.y, at.u, at.v, at.inverse_focus, one);
     }
 
     /// Where a vector of samples meets the micropolygon; weights as in Fragment.
     struct Hits {
         V key, signed_b1, b2;
     };
-    /// The same by way of memory, with the samples: x, y, t, u, v as far as there are.
+    /// The same by way of memory, with the samples' coordinates as far as there are.
     struct Exact {
         alignas(64) float key[kPacket], hit[kPacket], signed_b1[kPacket], b2[kPacket];
-        alignas(64) float samples[5][kPacket];
+        alignas(64) float samples[Samples::kCoordinates][kPacket];
     };
 
     /// A vector of samples against the micropolygon: which it covers, and where.
-    template <bool kMoving, bool kLens>
-    HWY_INLINE M test(const Shape& shape, const Samples& at, M valid, Hits& hits) {
+    template <bool kMoving, Lens kLens>
+    HWY_INLINE M test(const Shape& shape, Samples at, M valid, Hits& hits) {
         const V zero = set(0.0f);
         const V local = kMoving ? local_time(at) : zero;
         const Offset<V> d0 = offset<kLens>(corner_at<kMoving>(shape, 0, local), at);
@@ -312,13 +313,8 @@ class Kernel {
             hn::StoreU(hn::IfThenElseZero(hit, set(1.0f)), kTag, exact.hit);
             hn::StoreU(hits.signed_b1, kTag, exact.signed_b1);
             hn::StoreU(hits.b2, kTag, exact.b2);
-            hn::StoreU(at.x, kTag, exact.samples[0]);
-            hn::StoreU(at.y, kTag, exact.samples[1]);
-            if constexpr (kMoving) hn::StoreU(at.t, kTag, exact.samples[2]);
-            if constexpr (kLens) {
-                hn::StoreU(at.u, kTag, exact.samples[3]);
-                hn::StoreU(at.v, kTag, exact.samples[4]);
-            }
+            at.for_each<kMoving, kLens>(
+                [&](V value, int k) HWY_ATTR { hn::StoreU(value, kTag, exact.samples[k]); });
             test_exactly<kMoving, kLens>(shape, unclear, exact);
             hits.key = hn::LoadU(kTag, exact.key);
             hits.signed_b1 = hn::LoadU(kTag, exact.signed_b1);
@@ -328,16 +324,11 @@ class Kernel {
         return hit;
     }
 
-    template <bool kMoving, bool kLens>
+    template <bool kMoving, Lens kLens>
     HWY_NOINLINE void test_exactly(const Shape& shape, M unclear, Exact& exact) {
         Samples at;
-        at.x = hn::LoadU(kTag, exact.samples[0]);
-        at.y = hn::LoadU(kTag, exact.samples[1]);
-        if constexpr (kMoving) at.t = hn::LoadU(kTag, exact.samples[2]);
-        if constexpr (kLens) {
-            at.u = hn::LoadU(kTag, exact.samples[3]);
-            at.v = hn::LoadU(kTag, exact.samples[4]);
-        }
+        at.for_each<kMoving, kLens>([&](V& value, int k)
+                                        HWY_ATTR { value = hn::LoadU(kTag, exact.samples[k]); });
         const V local = kMoving ? local_time(at) : set(0.0f);
         alignas(64) float values[4][4][kPacket];
         for (int k = 0; k < 4; ++k) {
@@ -462,7 +453,7 @@ class Kernel {
     SurfaceId m_tied[2] = {kNoSurface, kNoSurface};  ///< the last two to settle
     bool m_wins_tie = false;
     struct {
-        alignas(64) float x[kListed], y[kListed], t[kListed], u[kListed], v[kListed],
+        alignas(64) float samples[Samples::kCoordinates][kListed],
             slot[kListed];  ///< slot: bits of an int
     } m_listed;             ///< samples to be tested
     struct {
@@ -474,11 +465,12 @@ class Kernel {
 void hide_grid(const SimdGrid& grid, const SimdTile& tile, FragmentLists& lists,
                SimdCounts& counts) {
     Kernel kernel(grid, tile, lists, counts);
-    const bool lens = grid.lens_x > 0.0f;
-    if (grid.segments > 0)
-        lens ? kernel.run<true, true>() : kernel.run<true, false>();
+    if (grid.lens_x == 0.0f)
+        kernel.run<Lens::None>();
+    else if (grid.refocuses())
+        kernel.run<Lens::Refocused>();
     else
-        lens ? kernel.run<false, true>() : kernel.run<false, false>();
+        kernel.run<Lens::Still>();
 }
 
 }  // namespace HWY_NAMESPACE

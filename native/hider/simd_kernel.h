@@ -3,6 +3,8 @@
 // (Highway).  All targets give the same bits: no fused operations, no sums over lanes.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "hider/depth_blocks.h"
@@ -19,6 +21,7 @@ inline constexpr int kLanePadding = 16;
 struct SimdTile {
     const float *x = nullptr, *y = nullptr, *t = nullptr;
     const float *u = nullptr, *v = nullptr;  ///< times lens radius and scale: pixels per unit shear
+    const float* inverse_focus = nullptr;    ///< where SimdGrid::refocuses()
     float* key = nullptr;
     SurfaceId* id = nullptr;
     bool ranked = false;
@@ -47,9 +50,21 @@ struct SimdGrid {
     SurfaceId base = 0;
     const GridPool* pool = nullptr;
     DepthRange range;
-    float inverse_focus = 0.0f;
+    float inverse_focus = 0.0f,
+          inverse_farthest = 0.0f;       ///< 1 / the nearest and the farthest focus
     float lens_x = 0.0f, lens_y = 0.0f;  ///< largest |u|, |v| of SimdTile; 0 = no lens
+
+    bool refocuses() const { return inverse_farthest < inverse_focus; }
+    /// Largest |z / focus - 1|.
+    float most_shear(float z) const {
+        const float near = std::fabs(z * inverse_focus - 1.0f);
+        return refocuses() ? std::max(near, std::fabs(z * inverse_farthest - 1.0f)) : near;
+    }
 };
+
+/// What a kernel is compiled for: a pinhole; a lens whose focus stands still (it may open and
+/// close: samples know); one whose samples have a focus each.
+enum class Lens { None, Still, Refocused };
 
 struct SimdCounts {
     std::uint64_t tests = 0, hits = 0, writes = 0, fragments = 0;

@@ -146,13 +146,15 @@ SurfaceInterpolator::Seen SurfaceInterpolator::see(std::uint32_t sample, Surface
     const float local =
         time * static_cast<float>(surface.segments) - static_cast<float>(surface.segment);
     const float x = m_samples.x[sample], y = m_samples.y[sample];
+    const float focus =
+        m_samples.inverse_focus.empty() ? m_inverse_focus : m_samples.inverse_focus[sample];
     for (int i = 0; i < 4; ++i) {
         Corner<float>& c = seen.corners[i];
         c = surface.segments > 0 ? at_time(surface.begin[i], surface.delta[i], local)
                                  : surface.begin[i];
         seen.offsets[i] = m_projection.has_lens()
                               ? offset_lens(c, x, y, m_samples.u[sample] * m_lens.x,
-                                            m_samples.v[sample] * m_lens.y, m_inverse_focus, 1.0f)
+                                            m_samples.v[sample] * m_lens.y, focus, 1.0f)
                               : offset_pinhole(c, x, y);
     }
     return seen;

@@ -82,7 +82,7 @@ class SurfaceInterpolator {
     /// Stays until the next call.
     const SurfaceRecord& load(SurfaceId id, float time);
     Vec2f lens() const { return m_lens; }  ///< lens radius times pixels per unit shear
-    float inverse_focus() const { return m_inverse_focus; }
+    float inverse_focus() const { return m_inverse_focus; }  ///< where samples have none
 
   private:
     /// The corners from which a sample is seen through the lens, at its time.

@@ -13,23 +13,18 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #include "hider/corner_arithmetic.inl"
 #include "hider/packet_vectors.inl"
+#include "hider/sample_packet.inl"
 #include "hider/triangle_pair.inl"
 
-/// A vector of samples, some of which see the micropolygon.
-struct Lanes {
-    V x, y, t, u, v;
-};
-
 template <bool kLens>
-HWY_INLINE Offset<V> offset_of(const SurfaceRecord& surface, int k, const Lanes& at, V local,
-                               float inverse_focus) {
+HWY_INLINE Offset<V> offset_of(const SurfaceRecord& surface, int k, const Samples& at, V local) {
     const auto broadcast = [](const granita::Corner<float>& c) HWY_ATTR {
         return Corner<V>{set(c.x), set(c.y), set(c.w), set(c.z)};
     };
     Corner<V> c = broadcast(surface.begin[k]);
     if (surface.segments > 0) c = at_time(c, broadcast(surface.delta[k]), local);
     if constexpr (kLens)
-        return offset_lens(c, at.x, at.y, at.u, at.v, set(inverse_focus), set(1.0f));
+        return offset_lens(c, at.x, at.y, at.u, at.v, at.inverse_focus, set(1.0f));
     else
         return offset_pinhole(c, at.x, at.y);
 }
@@ -55,12 +50,19 @@ void locate(SurfaceInterpolator& surfaces, const TileSamples& samples, std::uint
     const bool moving = !samples.t.empty();
     for (int part = 0; part < SurfaceRun::kCount; part += lane_count()) {
         const std::uint32_t at = first + static_cast<std::uint32_t>(part);
-        Lanes sample{hn::LoadU(kTag, &samples.x[at]), hn::LoadU(kTag, &samples.y[at]), zero, zero,
-                     zero};
+        Samples sample{hn::LoadU(kTag, &samples.x[at]),
+                       hn::LoadU(kTag, &samples.y[at]),
+                       zero,
+                       zero,
+                       zero,
+                       zero};
         if (moving) sample.t = hn::LoadU(kTag, &samples.t[at]);
         if constexpr (kLens) {
             sample.u = hn::LoadU(kTag, &samples.u[at]) * set(surfaces.lens().x);
             sample.v = hn::LoadU(kTag, &samples.v[at]) * set(surfaces.lens().y);
+            sample.inverse_focus = samples.inverse_focus.empty()
+                                       ? set(surfaces.inverse_focus())
+                                       : hn::LoadU(kTag, &samples.inverse_focus[at]);
         }
         const auto id = hn::LoadU(kIdTag, ids + part);
         std::uint32_t pending =
@@ -93,11 +95,10 @@ void locate(SurfaceInterpolator& surfaces, const TileSamples& samples, std::uint
             }
             const std::uint32_t these = bits_of(mask);
             pending &= ~these;
-            const float focus = surfaces.inverse_focus();
-            const PairEdges e = edges_of(offset_of<kLens>(surface, 0, sample, local, focus),
-                                         offset_of<kLens>(surface, 1, sample, local, focus),
-                                         offset_of<kLens>(surface, 2, sample, local, focus),
-                                         offset_of<kLens>(surface, 3, sample, local, focus));
+            const PairEdges e = edges_of(offset_of<kLens>(surface, 0, sample, local),
+                                         offset_of<kLens>(surface, 1, sample, local),
+                                         offset_of<kLens>(surface, 2, sample, local),
+                                         offset_of<kLens>(surface, 3, sample, local));
             const Side a = first_side(e), b = second_side(e);
             const PairWeights w = weights_of(e, a.strict);
             out.plain |= (bits_of(is_clean(a, b)) & these) << part;

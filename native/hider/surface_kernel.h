@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "hider/simd_kernel.h"
 #include "hider/surface_interpolator.h"
 
 namespace granita {

@@ -75,7 +75,7 @@ class TileBounds {
     /// When they are over the tile, and which are at all: some corner right of its left side, some
     /// corner left of its right side, and so on.  Each condition is linear in time for every
     /// corner, whatever the sign of w (Laine et al. 2011).
-    template <bool kLens>
+    template <Lens kLens>
     HWY_INLINE M find_times(int vertex, BlockRanges& out) const {
         const std::size_t knot = static_cast<std::size_t>(segment) * m_grid.vertices;
         const int right = m_grid.right, up = m_grid.up;
@@ -86,11 +86,16 @@ class TileBounds {
             const std::size_t a = knot + static_cast<std::size_t>(corner), b = a + m_grid.vertices;
             const V w0 = hn::LoadU(kTag, m_grid.w + a), w1 = hn::LoadU(kTag, m_grid.w + b);
             V shear = zero;
-            if constexpr (kLens) {
-                const V focus = set(m_grid.inverse_focus), one = set(1.0f);
-                shear = hn::Max(hn::Abs(hn::LoadU(kTag, m_grid.z + a) * focus - one),
-                                hn::Abs(hn::LoadU(kTag, m_grid.z + b) * focus - one)) *
-                        set(1.0f + 0x1p-18f);
+            if constexpr (kLens != Lens::None) {
+                const auto at = [&](float inverse_focus) HWY_ATTR {
+                    const V focus = set(inverse_focus), one = set(1.0f);
+                    return hn::Max(hn::Abs(hn::LoadU(kTag, m_grid.z + a) * focus - one),
+                                   hn::Abs(hn::LoadU(kTag, m_grid.z + b) * focus - one));
+                };
+                shear = at(m_grid.inverse_focus);
+                if constexpr (kLens == Lens::Refocused)
+                    shear = hn::Max(shear, at(m_grid.inverse_farthest));
+                shear = shear * set(1.0f + 0x1p-18f);
             }
             const V base = hn::Max(hn::Abs(w0), hn::Abs(w1)) * set(1.0f / 256);
             const auto extend_axis = [&](const float* values, float lens, int axis) HWY_ATTR {

@@ -9,7 +9,9 @@
 namespace granita {
 
 TileGrid::TileGrid(const Projection& projection, const LensShape& lens)
-    : m_projection(projection), m_inverse_focus(static_cast<float>(1.0 / projection.focus)) {
+    : m_projection(projection),
+      m_inverse_focus(static_cast<float>(1.0 / projection.focus)),
+      m_inverse_farthest(static_cast<float>(1.0 / projection.farthest_focus())) {
     if (!projection.has_lens()) return;
     const double radius = projection.lens_radius * (1.0 + 1e-6);
     m_lens_x = static_cast<float>(std::fabs(projection.scale.x) * radius * lens.extent_u());
@@ -42,6 +44,7 @@ void TileGrid::project(const Vec2d& origin, SimdGrid& out) {
     out.segments = grid.motion ? grid.knots - 1 : 0;
     out.lifespan = grid.lifespan;
     out.inverse_focus = m_inverse_focus;
+    out.inverse_farthest = m_inverse_farthest;
     out.lens_x = m_lens_x;
     out.lens_y = m_lens_y;
     out.x = m_x.data();
@@ -77,7 +80,10 @@ Sweep TileGrid::sweep() const {
             const Vec2f now = Vec2f(h) / h.z;
             if (k > 0) length += glm::abs(now - place);
             place = now;
-            const float shear = 2.0f * std::fabs(p.z * m_inverse_focus - 1.0f) / std::fabs(h.z);
+            const float shear = 2.0f *
+                                std::max(std::fabs(p.z * m_inverse_focus - 1.0f),
+                                         std::fabs(p.z * m_inverse_farthest - 1.0f)) /
+                                std::fabs(h.z);
             sweep.lens = glm::max(sweep.lens, shear * Vec2f(m_lens_x, m_lens_y));
         }
         sweep.motion = glm::max(sweep.motion, length);

@@ -26,8 +26,8 @@ class TileGrid {
 
   private:
     Projection m_projection;
-    float m_inverse_focus;
-    float m_lens_x = 0.0f, m_lens_y = 0.0f;  ///< largest shift a unit of shear, pixels
+    float m_inverse_focus, m_inverse_farthest;  ///< SimdGrid::inverse_focus, inverse_farthest
+    float m_lens_x = 0.0f, m_lens_y = 0.0f;     ///< largest shift a unit of shear, pixels
     const Grid* m_grid = nullptr;
     std::vector<float> m_px, m_py, m_z;  ///< camera space; padded like the following
     std::vector<float> m_x, m_y, m_w;

@@ -5,10 +5,12 @@
 /// Where a micropolygon is while the samples of a rank look, a vector of ranks.
 struct RankPaths {
     alignas(64) int x0[kPacket], x1[kPacket], y0[kPacket], y1[kPacket];  ///< blocks, inclusive
-    /// On an axis: it stays within `reach` of place + speed t + shear u for a sample's t and u.
+    /// On an axis: it stays within `reach` of place + speed t + shear u for a sample's t and u;
+    /// where samples have a focus each, of place + speed t + (shear + depth / focus) u.
     struct Axis {
-        alignas(64) float place[kPacket], speed[kPacket], shear[kPacket], reach[kPacket];
+        alignas(64) float place[kPacket], speed[kPacket], reach[kPacket];
     } x, y;
+    alignas(64) float shear[kPacket], depth[kPacket];
 };
 
 /// Where micropolygons go while they are over a tile, a vector of them: a rank's samples see a part
@@ -17,7 +19,10 @@ struct TilePaths {
     struct Axis {
         alignas(64) float place[kPacket], speed[kPacket], reach[kPacket];  ///< StraightPath
     } x, y;
-    alignas(64) float shear_lo[kPacket], shear_hi[kPacket], z_lo[kPacket];
+    /// LensExtents, as far as the lens has them.
+    alignas(64) float shear_lo[kPacket], shear_hi[kPacket], depth_lo[kPacket], depth_hi[kPacket],
+        reciprocal_lo[kPacket], reciprocal_hi[kPacket];
+    alignas(64) float z_lo[kPacket];
     std::uint32_t straight = 0;  ///< bit i: micropolygon i stays that near to one line
 };
 
@@ -28,7 +33,7 @@ class RankPathFinder {
 
     /// The paths of the micropolygons from `vertex` on between the times at which they are over the
     /// tile (TileBounds::find_times).
-    template <bool kMoving, bool kLens>
+    template <bool kMoving, Lens kLens>
     HWY_INLINE void find_paths(int segment, int vertex, const BlockRanges& times,
                                TilePaths& out) const {
         const V zero = set(0.0f), one = set(1.0f);
@@ -68,24 +73,41 @@ class RankPathFinder {
         };
         axis(extents.x, extents.bend_x, out.x);
         axis(extents.y, extents.bend_y, out.y);
-        hn::StoreU(extents.shear.lo[0], kTag, out.shear_lo);
-        hn::StoreU(extents.shear.hi[0], kTag, out.shear_hi);
+        if constexpr (kLens == Lens::Still) {
+            hn::StoreU(extents.lens.shear.lo[0], kTag, out.shear_lo);
+            hn::StoreU(extents.lens.shear.hi[0], kTag, out.shear_hi);
+        }
+        if constexpr (kLens == Lens::Refocused) {
+            hn::StoreU(extents.lens.depth.lo[0], kTag, out.depth_lo);
+            hn::StoreU(extents.lens.depth.hi[0], kTag, out.depth_hi);
+            hn::StoreU(extents.lens.reciprocal.lo[0], kTag, out.reciprocal_lo);
+            hn::StoreU(extents.lens.reciprocal.hi[0], kTag, out.reciprocal_hi);
+        }
         hn::StoreU(extents.z_lo, kTag, out.z_lo);
         out.straight = bits_of(straight);
     }
 
     /// The part of a straight path, `lane` of find_paths(), that the samples of each of these ranks
     /// can see, and which of the ranks have any that do not see something nearer.
-    template <bool kMoving, bool kLens>
+    template <bool kMoving, Lens kLens>
     HWY_INLINE M follow(const TilePaths& paths, int lane, int segment, int first, bool cull,
                         RankPaths& out) const {
         const RankBounds& bounds = *m_tile.bounds;
         const V t_lo = rank(bounds.t_lo, first), t_hi = rank(bounds.t_hi, first);
         M present = hn::Le(t_lo, t_hi);
         if constexpr (kMoving) present = hn::And(present, in_segment(t_lo, t_hi, segment));
-        Extent shear;
-        shear.lo[0] = set(paths.shear_lo[lane]);
-        shear.hi[0] = set(paths.shear_hi[lane]);
+        LensExtents lens;
+        if constexpr (kLens == Lens::Still) {
+            lens.shear.lo[0] = set(paths.shear_lo[lane]);
+            lens.shear.hi[0] = set(paths.shear_hi[lane]);
+        }
+        if constexpr (kLens == Lens::Refocused) {
+            lens.depth.lo[0] = set(paths.depth_lo[lane]);
+            lens.depth.hi[0] = set(paths.depth_hi[lane]);
+            lens.reciprocal.lo[0] = set(paths.reciprocal_lo[lane]);
+            lens.reciprocal.hi[0] = set(paths.reciprocal_hi[lane]);
+        }
+        const Shear shear = shear_of<kLens>(lens, first);
         Box box;
         const auto axis = [&](const TilePaths::Axis& path, const std::vector<float>& lens_lo,
                               const std::vector<float>& lens_hi, RankPaths::Axis& to, V& lo,
@@ -99,19 +121,19 @@ class RankPathFinder {
             }
             lo = hn::Min(a, b) - reach;
             hi = hn::Max(a, b) + reach;
-            if constexpr (kLens)
-                add_lens(shear, rank(lens_lo, first), rank(lens_hi, first), reach, lo, hi,
-                         to.shear);
+            if constexpr (kLens != Lens::None)
+                add_lens(shear, rank(lens_lo, first), rank(lens_hi, first), reach, lo, hi);
             hn::StoreU(place, kTag, to.place);
             hn::StoreU(reach, kTag, to.reach);
         };
         axis(paths.x, bounds.u_lo, bounds.u_hi, out.x, box.x_lo, box.x_hi);
         axis(paths.y, bounds.v_lo, bounds.v_hi, out.y, box.y_lo, box.y_hi);
+        store_shear<kLens>(shear, present, out);
         return find_blocks(present, box, set(paths.z_lo[lane]), first, cull, out);
     }
 
     /// The same by where the micropolygon is during each of the ranks: for paths that are bent.
-    template <bool kMoving, bool kLens>
+    template <bool kMoving, Lens kLens>
     HWY_INLINE M find(const Shape& shape, int segment, int first, bool cull, RankPaths& out) const {
         const RankBounds& bounds = *m_tile.bounds;
         const V zero = set(0.0f), one = set(1.0f);
@@ -129,6 +151,7 @@ class RankPathFinder {
         for (int k = 0; k < 4; ++k)
             extents.add(m_grid, broadcast(shape.begin[k]), broadcast(shape.delta[k]), ends);
         const V time0 = (ends[0] + start) / knots, time1 = (ends[1] + start) / knots;
+        const Shear shear = shear_of<kLens>(extents.lens, first);
         M sane = extents.sane;
         Box box;
         const auto axis = [&](const Extent& at, V bend, const std::vector<float>& lens_lo,
@@ -145,15 +168,15 @@ class RankPathFinder {
             }
             lo = lo - extents.margin;
             hi = hi + extents.margin;
-            if constexpr (kLens)
-                add_lens(extents.shear, rank(lens_lo, first), rank(lens_hi, first), reach, lo, hi,
-                         to.shear);
+            if constexpr (kLens != Lens::None)
+                add_lens(shear, rank(lens_lo, first), rank(lens_hi, first), reach, lo, hi);
             sane = hn::And(sane, hn::Lt(reach + hn::Abs(lo) + hn::Abs(hi), set(1e15f)));
             hn::StoreU(path.place, kTag, to.place);
             hn::StoreU(reach, kTag, to.reach);
         };
         axis(extents.x, extents.bend_x, bounds.u_lo, bounds.u_hi, out.x, box.x_lo, box.x_hi);
         axis(extents.y, extents.bend_y, bounds.v_lo, bounds.v_hi, out.y, box.y_lo, box.y_hi);
+        store_shear<kLens>(shear, sane, out);
         if (HWY_UNLIKELY(!hn::AllTrue(kTag, hn::Or(sane, hn::Not(present))))) {
             // At or behind the eye plane: anywhere.
             const V never = set(INFINITY);
@@ -197,17 +220,49 @@ class RankPathFinder {
                        hn::Le(t_lo * knots - start, set(1.0f)));
     }
 
+    /// What a lens coordinate of 1 shifts by at the times of ranks: from lo to hi, and within `rest`
+    /// of middle + depth / focus for a sample's own focus.
+    struct Shear {
+        V lo, hi, middle, depth, rest;
+    };
+    template <Lens kLens>
+    HWY_INLINE Shear shear_of(const LensExtents& lens, int first) const {
+        const V zero = set(0.0f), half = set(0.5f), rounding = set(0x1p-20f);
+        if constexpr (kLens == Lens::None) return {zero, zero, zero, zero, zero};
+        if constexpr (kLens == Lens::Still) {
+            const V lo = lens.shear.lo[0], hi = lens.shear.hi[0], middle = (lo + hi) * half;
+            return {lo, hi, middle, zero, (hi - lo) * half + hn::Abs(middle) * rounding};
+        }
+        const RankBounds& bounds = *m_tile.bounds;
+        const V far = rank(bounds.focus_lo, first), near = rank(bounds.focus_hi, first);
+        const V d0 = lens.depth.lo[0], d1 = lens.depth.hi[0];
+        const V r0 = lens.reciprocal.lo[0], r1 = lens.reciprocal.hi[0];
+        Shear shear;
+        shear.lo = hn::Min(hn::Min(d0 * far, d0 * near), hn::Min(d1 * far, d1 * near)) - r1;
+        shear.hi = hn::Max(hn::Max(d0 * far, d0 * near), hn::Max(d1 * far, d1 * near)) - r0;
+        shear.middle = hn::Neg((r0 + r1) * half);
+        shear.depth = (d0 + d1) * half;
+        shear.rest = (r1 - r0) * half + near * (d1 - d0) * half +
+                     (hn::Abs(shear.middle) + near * hn::Abs(shear.depth)) * rounding;
+        return shear;
+    }
+
     /// Shears what is bounded by lens coordinates from u_lo to u_hi.
-    static HWY_INLINE void add_lens(const Extent& shear, V u_lo, V u_hi, V& reach, V& lo, V& hi,
-                                    float* middle_to) {
-        const V middle = (shear.lo[0] + shear.hi[0]) * set(0.5f);
-        const V rest = (shear.hi[0] - shear.lo[0]) * set(0.5f) + hn::Abs(middle) * set(0x1p-20f);
-        reach = reach + hn::Max(hn::Abs(u_lo), hn::Abs(u_hi)) * rest;
-        const V a = shear.lo[0] * u_lo, b = shear.lo[0] * u_hi;
-        const V c = shear.hi[0] * u_lo, d = shear.hi[0] * u_hi;
+    static HWY_INLINE void add_lens(const Shear& shear, V u_lo, V u_hi, V& reach, V& lo, V& hi) {
+        reach = reach + hn::Max(hn::Abs(u_lo), hn::Abs(u_hi)) * shear.rest;
+        const V a = shear.lo * u_lo, b = shear.lo * u_hi;
+        const V c = shear.hi * u_lo, d = shear.hi * u_hi;
         lo = lo + hn::Min(hn::Min(a, b), hn::Min(c, d));
         hi = hi + hn::Max(hn::Max(a, b), hn::Max(c, d));
-        hn::StoreU(middle, kTag, middle_to);
+    }
+
+    /// 0 where not `known`.
+    template <Lens kLens>
+    static HWY_INLINE void store_shear(const Shear& shear, M known, RankPaths& out) {
+        if constexpr (kLens != Lens::None)
+            hn::StoreU(hn::IfThenElseZero(known, shear.middle), kTag, out.shear);
+        if constexpr (kLens == Lens::Refocused)
+            hn::StoreU(hn::IfThenElseZero(known, shear.depth), kTag, out.depth);
     }
 
     HWY_INLINE M find_blocks(M present, const Box& box, V z_lo, int first, bool cull,

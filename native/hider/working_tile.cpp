@@ -43,7 +43,8 @@ void WorkingTile::arrange(const TileSamples& samples, const OrderShape& shape) {
     copy(samples.t, 1.0f, kNowhere, m_t);
     copy(samples.u, m_lens.x, kNowhere, m_u);
     copy(samples.v, m_lens.y, kNowhere, m_v);
-    if (m_order.shape().ranked) m_bounds = bound_ranks(m_order, m_t, m_u, m_v);
+    copy(samples.inverse_focus, 1.0f, kNowhere, m_inverse_focus);
+    if (m_order.shape().ranked) m_bounds = bound_ranks(m_order, m_t, m_u, m_v, m_inverse_focus);
 }
 
 void WorkingTile::reorder(const TileSamples& samples, const OrderShape& shape) {
@@ -81,6 +82,7 @@ SimdTile WorkingTile::view() {
     tile.t = m_t.data();
     tile.u = m_u.data();
     tile.v = m_v.data();
+    tile.inverse_focus = m_inverse_focus.data();
     tile.key = m_key.data();
     tile.id = m_id.data();
     tile.ranked = m_order.shape().ranked;

@@ -78,7 +78,7 @@ class WorkingTile {
     SampleOrder m_order;
     DepthBlocks m_depth;
     std::vector<float> m_x, m_y, m_t, m_u, m_v;  ///< unless the order is the table's
-    std::vector<float> m_key;
+    std::vector<float> m_inverse_focus, m_key;
     std::vector<SurfaceId> m_id;
     RankBounds m_bounds;
     SlabMemory* m_memory = nullptr;

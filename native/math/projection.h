@@ -7,10 +7,13 @@
 // plane) at
 //   perspective   X = cx + sx * (x + lx * (z / focus - 1)) / z
 //   orthographic  X = cx + sx * (x + lx * (z / focus - 1))
-// (thin lens: Potmesil and Chakravarty 1981; hider-research 5.3).  Both are kept homogeneous, h =
-// (X*w, Y*w, w) with w = z or w = 1, which is linear in P: motion interpolates h and nothing is
-// ever divided before coverage.
+// (thin lens: Potmesil and Chakravarty 1981; hider-research 5.3; lens_radius and focus may move:
+// scene/lens_knots.h).  Both are kept homogeneous, h = (X*w, Y*w, w) with w = z or w = 1, which is
+// linear in P: motion interpolates h and nothing is ever divided before coverage.
 #pragma once
+
+#include <algorithm>
+#include <cmath>
 
 #include "math/vec.h"
 
@@ -23,8 +26,20 @@ struct Projection {
     double near_clip = 0.01, far_clip = 1000.0;  ///< camera-space z, metres
     double lens_radius = 0.0;                    ///< metres; 0 = pinhole
     double focus = 10.0;                         ///< camera-space z of the sharp plane, metres
+    // Within the shutter the lens may close and focus farther away (Camera::lens): the two above
+    // are then the widest and the nearest, and these, metres, the way from there.
+    double lens_closing = 0.0, focus_travel = 0.0;
 
     bool has_lens() const { return lens_radius > 0.0; }
+    double farthest_focus() const { return focus + focus_travel; }
+    /// Farthest that the lens shifts what lies at depth z, at any time: metres in h's units.
+    double lens_reach(double z) const {
+        if (!has_lens()) return 0.0;
+        // |z / focus - 1| is convex in 1 / focus.
+        const double near = std::abs(z / focus - 1.0);
+        return lens_radius *
+               (focus_travel > 0.0 ? std::max(near, std::abs(z / farthest_focus() - 1.0)) : near);
+    }
 
     /// Homogeneous raster coordinates relative to `origin` (pixels), subtracted in double and
     /// rounded once (decision 2): a tile's own coordinates keep sub-pixel bits at pixel 16,000.
@@ -33,13 +48,6 @@ struct Projection {
         return {static_cast<float>(scale.x * p.x + (center.x - origin.x) * w),
                 static_cast<float>(scale.y * p.y + (center.y - origin.y) * w),
                 static_cast<float>(w)};
-    }
-
-    /// Raster shift of h.x, h.y per unit-disc lens coordinate: h.x += u * lens_shear(z), in h's
-    /// units (X*w). x and y scales differ only by pixel aspect.
-    Vec2f lens_shear(float z) const {
-        const double c = lens_radius * (static_cast<double>(z) / focus - 1.0);
-        return {static_cast<float>(scale.x * c), static_cast<float>(scale.y * c)};
     }
 
     /// Larger is nearer: 1/z in perspective, -z in orthographic; affine in raster space over a

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Options and camera of the snapshot.
 #include <algorithm>
+#include <cmath>
 
 #include "hider/sample_table.h"
 #include "python/snapshot.h"
@@ -38,6 +39,19 @@ void read_passes(const Record& r, Options& o) {
     o.mist = {mist[0], mist[1], mist[2]};
     if (!(o.mist.depth >= 0.0f && o.mist.exponent > 0.0f))
         r.fail("'mist' must have a depth of at least 0 and an exponent above 0");
+}
+
+std::vector<Vec2d> lens_knots(const Record& r) {
+    const std::vector<double> values = r.values<double>("lens_knots", {-1, 2});
+    std::vector<Vec2d> knots;
+    for (std::size_t i = 0; i < values.size(); i += 2) {
+        const Vec2d knot(values[i], values[i + 1]);
+        if (!(knot.x >= 0.0 && knot.y > 0.0 && std::isfinite(knot.x) && std::isfinite(knot.y)))
+            r.fail("'lens_knots' must hold radii of at least 0 and focus distances above 0");
+        knots.push_back(knot);
+    }
+    if (knots.empty()) r.fail("'lens_knots' must hold at least one knot");
+    return knots;
 }
 
 }  // namespace
@@ -114,9 +128,11 @@ void read_camera(const Record& r, Camera& camera) {
     }
     if (p.perspective && !(p.near_clip > 0.0)) r.fail("the near clip must be greater than 0");
     if (!(p.far_clip > p.near_clip)) r.fail("the far clip must lie behind the near clip");
-    p.lens_radius = at_least(r, "lens_radius", r.number("lens_radius", 0.0), 0.0);
+    p.lens_radius = r.number("lens_radius", 0.0);
+    if (!(p.lens_radius >= 0.0)) r.fail("'lens_radius' must be at least 0");
     p.focus = r.number("focus_distance", p.focus);
     if (p.has_lens() && !(p.focus > 0.0)) r.fail("the focus distance must be greater than 0");
+    if (r.has("lens_knots")) camera.lens = LensKnots(lens_knots(r), p);
     camera.blades = r.integer("blades", 0);
     camera.blade_rotation = static_cast<float>(r.number("blade_rotation", 0.0));
     camera.lens_ratio = static_cast<float>(r.number("lens_ratio", 1.0));

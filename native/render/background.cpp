@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hider/raster_hider.h"
+
 namespace granita {
 namespace {
 
@@ -17,18 +19,24 @@ Mat3d rotation_at(const Camera& camera, double t) {
     return Mat3d(knots[k]) * (1.0 - f) + Mat3d(knots[next]) * f;
 }
 
-/// World direction through a raster position (pixels), at time t, from a lens point in the unit
-/// disc: a point at infinity obeys X = cx + sx (slope + lx / focus) (math/projection.h with z ->
-/// infinity).
-Vec3f world_direction(const Camera& camera, Vec2d raster, double t, Vec2d lens) {
+/// When and from which point of the unit lens a sample looks.
+struct Look {
+    double t = 0.0;
+    Vec2d lens{0.0};
+    double inverse_focus = 0.0;
+};
+
+/// World direction through a raster position (pixels): a point at infinity obeys X = cx + sx (slope
+/// + lx / focus) (math/projection.h with z -> infinity).
+Vec3f world_direction(const Camera& camera, Vec2d raster, const Look& look) {
     const Projection& p = camera.projection;
     Vec3d direction(0.0, 0.0, 1.0);
     if (p.perspective) {
         direction.x = (raster.x - p.center.x) / p.scale.x;
         direction.y = (raster.y - p.center.y) / p.scale.y;
-        if (p.has_lens()) direction -= Vec3d(lens, 0.0) * (p.lens_radius / p.focus);
+        direction -= Vec3d(look.lens, 0.0) * (p.lens_radius * look.inverse_focus);
     }
-    return Vec3f(glm::normalize(rotation_at(camera, t) * direction));
+    return Vec3f(glm::normalize(rotation_at(camera, look.t) * direction));
 }
 
 /// Angle of a pixel, radians.
@@ -47,14 +55,19 @@ class Directions {
     }
 
     /// World direction through a tile position (pixels).
-    Vec3f at(double x, double y, double t, double u, double v) const {
-        return world_direction(m_camera, {m_origin.x + x, m_origin.y + y}, t, {u, v});
+    Vec3f at(double x, double y, const Look& look) const {
+        return world_direction(m_camera, {m_origin.x + x, m_origin.y + y}, look);
     }
 
     Vec3f of_sample(std::size_t i) const {
-        return at(m_samples.x[i], m_samples.y[i], m_samples.t.empty() ? 0.0 : m_samples.t[i],
-                  m_samples.u.empty() ? 0.0 : m_samples.u[i],
-                  m_samples.v.empty() ? 0.0 : m_samples.v[i]);
+        Look look;
+        if (!m_samples.t.empty()) look.t = m_samples.t[i];
+        if (!m_samples.u.empty()) {
+            look.lens = {m_samples.u[i], m_samples.v[i]};
+            look.inverse_focus = m_samples.inverse_focus.empty() ? 1.0 / m_camera.projection.focus
+                                                                 : m_samples.inverse_focus[i];
+        }
+        return at(m_samples.x[i], m_samples.y[i], look);
     }
 
   private:
@@ -70,8 +83,7 @@ std::vector<Vec3f> from_corners(const Directions& directions, const ShadingSyste
     constexpr int kCorners = kTileSize + 1;
     std::vector<Vec3f> corner_directions;
     for (int y = 0; y < kCorners; ++y)
-        for (int x = 0; x < kCorners; ++x)
-            corner_directions.push_back(directions.at(x, y, 0.0, 0.0, 0.0));
+        for (int x = 0; x < kCorners; ++x) corner_directions.push_back(directions.at(x, y, {}));
     std::vector<Vec3f> corners;
     shading.background(corner_directions, spread, corners);
 
@@ -118,11 +130,12 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
 }
 
 std::vector<Vec3f> corner_background(const Camera& camera, const ShadingSystem& shading,
-                                     const Rect& pixels, double time, Vec2d lens) {
+                                     const Rect& pixels, const RasterPass& pass) {
+    const Look look{pass.t, {pass.u, pass.v}, pass.inverse_focus};
     std::vector<Vec3f> directions, colors;
     for (int y = pixels.y0; y <= pixels.y1; ++y)
         for (int x = pixels.x0; x <= pixels.x1; ++x)
-            directions.push_back(world_direction(camera, {x, y}, time, lens));
+            directions.push_back(world_direction(camera, {x, y}, look));
     shading.background(directions, pixel_spread(camera), colors);
     return colors;
 }

@@ -12,15 +12,17 @@
 
 namespace granita {
 
+struct RasterPass;
+
 /// Background radiance for composite_tile: one value where it does not vary over the tile or is not
 /// seen, otherwise one a sample.
 std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& table,
                                    const ShadingSystem& shading, const Vec3f& constant,
                                    const TileStore& store);
 
-/// The world at the corners of pixels at one time and from one point of the unit lens,
-/// [height + 1][width + 1]: within a pass of REGULAR sampling it is a smooth function of the pixel.
+/// The world at the corners of pixels in one pass of REGULAR sampling, within which it is a smooth
+/// function of the pixel: [height + 1][width + 1].
 std::vector<Vec3f> corner_background(const Camera& camera, const ShadingSystem& shading,
-                                     const Rect& pixels, double time, Vec2d lens);
+                                     const Rect& pixels, const RasterPass& pass);
 
 }  // namespace granita

@@ -59,10 +59,9 @@ void add_instance(const View& view, const Instance& instance, FrameBlur& blur) {
             if (k > 0) path[i] += glm::length(now - place[i]);
             place[i] = now;
             blur.motion = std::fmax(blur.motion, path[i]);
-            const double shear = projection.lens_radius * std::fabs(p.z / projection.focus - 1.0);
             const double scale =
                 std::max(std::fabs(projection.scale.x), std::fabs(projection.scale.y));
-            blur.lens = std::fmax(blur.lens, scale * shear / w);
+            blur.lens = std::fmax(blur.lens, scale * projection.lens_reach(p.z) / w);
         }
     }
 }

@@ -11,19 +11,6 @@
 namespace granita {
 namespace {
 
-/// Pass i of the table: any pixel's samples of one place on the lattice.
-std::vector<RasterPass> passes_of(const SampleTable& table, const Scene& scene) {
-    TileSamples samples;
-    table.fill_tile({0, 0}, {scene.moves(), scene.camera.projection.has_lens()}, samples);
-    const int cells = table.lattice().cells();
-    std::vector<RasterPass> passes;
-    for (int s = 0; s < table.samples(); s += cells)
-        passes.push_back({samples.t.empty() ? 0.0f : samples.t[s],
-                          samples.u.empty() ? 0.0f : samples.u[s],
-                          samples.v.empty() ? 0.0f : samples.v[s]});
-    return passes;
-}
-
 RasterBackground background(const Frame& frame, const Rect& pixels) {
     RasterBackground out;
     if (frame.scene.options.film_transparent) return out;
@@ -38,8 +25,7 @@ RasterBackground background(const Frame& frame, const Rect& pixels) {
     for (int p = 0; p < out.passes; ++p) {
         frame.progress.check();
         const RasterPass& pass = passes[p];
-        for (const Vec3f& color :
-             corner_background(camera, frame.shading, out.pixels, pass.t, {pass.u, pass.v}))
+        for (const Vec3f& color : corner_background(camera, frame.shading, out.pixels, pass))
             out.corners.emplace_back(color, 1.0f);
     }
     return out;
@@ -67,7 +53,8 @@ RasterFrame make_raster_frame(const Scene& scene, const Projection& projection,
     const auto factor = [&](double d) { return filter.evaluate(static_cast<float>(d)); };
     if (table.sampling() == Sampling::Regular) {
         frame.filter = make_raster_filter(table.lattice(), filter.radius(), factor);
-        frame.passes = passes_of(table, scene);
+        frame.passes =
+            raster_passes(table, {scene.moves(), scene.camera.projection.has_lens()}, projection);
     } else {
         frame.filter = make_gathering_filter(sample_lattice(table.samples()), filter.radius(),
                                              filter.is_box(), factor);

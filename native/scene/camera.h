@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "math/projection.h"
+#include "scene/lens_knots.h"
 
 namespace granita {
 
@@ -15,7 +16,8 @@ struct Camera {
         world_from_camera;  ///< [K], camera space as in projection.h (z forward), no scale
     /// The frame before and the one after, for the pass Vector; empty = as at the frame.
     std::vector<Mat4d> neighbours;
-    Projection projection;        ///< lens at the frame time
+    Projection projection;
+    LensKnots lens;               ///< where the projection's lens moves
     int blades = 0;               ///< 0..2 = round
     float blade_rotation = 0.0f;  ///< radians
     float lens_ratio =

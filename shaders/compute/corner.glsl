@@ -10,7 +10,6 @@
 
 layout(location = COMPUTE_PERSPECTIVE) uniform bool perspective;
 layout(location = COMPUTE_KEY_RANGE) uniform vec2 key_range;  // far, near
-layout(location = COMPUTE_INVERSE_FOCUS) uniform float inverse_focus;
 
 const uint kTriangleA = 1u, kTriangleB = 2u, kTransparent = 4u;
 
@@ -25,9 +24,10 @@ vec2 offset_pinhole(vec4 c, vec2 sample_xy) {
     return d;
 }
 
-vec2 offset_lens(vec4 c, vec2 sample_xy, vec2 lens) {
-    precise const float shear = c.w * inverse_focus - 1.0;
-    precise const vec2 d = (c.xy + lens * shear) - sample_xy * c.z;
+/// `lens`: u, v, 1 / focus distance.
+vec2 offset_lens(vec4 c, vec2 sample_xy, vec3 lens) {
+    precise const float shear = c.w * lens.z - 1.0;
+    precise const vec2 d = (c.xy + lens.xy * shear) - sample_xy * c.z;
     return d;
 }
 

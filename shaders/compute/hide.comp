@@ -24,7 +24,7 @@ struct Entry {
 };
 layout(std430, binding = COMPUTE_ENTRIES) readonly buffer Entries { Entry entries[]; };
 layout(std430, binding = COMPUTE_VERTICES) readonly buffer Vertices { vec4 vertices[]; };
-// x and y of all samples, then t, then u and v where there are any.
+// x and y of all samples, then, where there are any, u, v and 1 / focus distance, and t.
 layout(std430, binding = COMPUTE_SAMPLES) readonly buffer Samples { float samples[]; };
 // Key (bits of a float) and surface.
 layout(std430, binding = COMPUTE_SEEN) buffer Seen { uvec2 seen[]; };
@@ -68,9 +68,10 @@ void main() {
     const float time = 0.0;
 #endif
 #if LENS
-    const vec2 lens = vec2(samples[lens_at + i], samples[lens_at + stride + i]);
+    const vec3 lens = vec3(samples[lens_at + i], samples[lens_at + stride + i],
+                           samples[lens_at + 2u * stride + i]);
 #else
-    const vec2 lens = vec2(0.0);
+    const vec3 lens = vec3(0.0);
 #endif
     const uvec2 before = seen[i];
     float nearest = uintBitsToFloat(before.x);

@@ -6,7 +6,7 @@
 // pass of its own; OUTPUT as in grid.frag.
 //
 // A vertex moves linearly between its grid's knots in camera space, before projection, and is then
-// sheared by the lens as Projection::lens_shear says.  All that, and the cell's corner, is computed
+// sheared by the lens as math/projection.h says.  All that, and the cell's corner, is computed
 // in double and rounded once, as on the CPU: vertices that grids share stay shared, and pixel 16,000
 // has the sub-pixel bits of pixel 0 (decision 2).  gl_Position.z is the near distance, so that the
 // depth is near / w: the reversed float depth that is proportional to the depth key.
@@ -17,7 +17,7 @@
 #include "raster/grid_places.glsl"
 
 layout(std430, binding = RASTER_POSITIONS) readonly buffer Positions { float positions[]; };
-// Shutter time, lens point in metres.
+// Shutter time, lens point in metres, 1 / focus distance.
 layout(std430, binding = RASTER_PASSES) readonly buffer Passes { vec4 passes[]; };
 
 layout(location = RASTER_GRID) in uint grid_index;
@@ -26,8 +26,7 @@ layout(location = RASTER_CLIP_SCALE) uniform dvec2 clip_scale;
 layout(location = RASTER_CLIP_CENTER) uniform dvec2 clip_center;
 layout(location = RASTER_NEAR) uniform float near_clip;
 layout(location = RASTER_FIRST_PASS) uniform uint first_pass;
-layout(location = RASTER_INVERSE_FOCUS) uniform double inverse_focus;  // 0: no lens
-layout(location = RASTER_LATTICE_TURN) uniform double turn;            // tangent; 0: not turned
+layout(location = RASTER_LATTICE_TURN) uniform double turn;  // tangent; 0: not turned
 
 // Two passes over the same geometry must find the same depth.
 invariant gl_Position;
@@ -77,7 +76,7 @@ void main() {
     const float z_clip = 0.5;  // never clipped: grid.frag cuts at the sample
     z_camera = z_corner = float(p.z);
 #endif
-    if (inverse_focus != 0.0LF) p.xy += dvec2(pass.yz) * (p.z * inverse_focus - 1.0LF);
+    p.xy += dvec2(pass.yz) * (p.z * double(pass.w) - 1.0LF);
     const dvec2 xy = clip_scale * p.xy + clip_center * w;
     gl_Position = vec4(vec2(xy + turn * dvec2(xy.y, -xy.x)), z_clip, float(w));
 #if LAYERED

@@ -16,7 +16,7 @@ layout(std430, binding = RASTER_VERTEX_GRIDS) readonly buffer VertexGrids { uint
 layout(location = RASTER_CLIP_SCALE) uniform dvec2 clip_scale;
 layout(location = RASTER_CLIP_CENTER) uniform dvec2 clip_center;
 layout(location = RASTER_NEAR) uniform float near_clip;
-layout(location = RASTER_INVERSE_FOCUS) uniform double reciprocal_focus;  // 0: no lens
+layout(location = RASTER_INVERSE_FOCUS) uniform dvec2 inverse_focus;  // of the nearest and the farthest; 0: no lens
 layout(location = RASTER_LENS_RADIUS) uniform vec2 lens_radius;        // metres, along x and y
 layout(location = RASTER_CELL_SIZE) uniform float cell_size;           // pixels
 
@@ -69,7 +69,9 @@ void main() {
             const double w = 1.0LF;
 #endif
             const vec2 place = vec2((clip_scale * p.xy + clip_center * w) / w);
-            const double shear = reciprocal_focus == 0.0LF ? 0.0LF : p.z * reciprocal_focus - 1.0LF;
+            const dvec2 shears = inverse_focus.x == 0.0LF ? dvec2(0.0LF)
+                                                          : abs(p.z * inverse_focus - 1.0LF);
+            const double shear = max(shears.x, shears.y);
             const vec2 reach = lens_radius * vec2(abs(clip_scale * shear / w));
             lo = before ? min(lo, place - reach) : place - reach;
             hi = before ? max(hi, place + reach) : place + reach;

@@ -3,7 +3,7 @@
 // last of which may have none.
 #include "shared/raster_layout.h"
 
-// x and y relative to the tile, t, 0; then, with a lens, u and v in offset_lens' units.
+// x and y relative to the tile, t, 0; then, with a lens, what offset_lens wants.
 layout(std430, binding = RASTER_SAMPLES) readonly buffer Samples { vec4 samples[]; };
 layout(location = RASTER_SAMPLE_AREA) uniform ivec4 area;       // texels that have samples: corner, size
 layout(location = RASTER_SAMPLE_CORNER) uniform ivec2 corner_pixel;  // of the frame, at texel (0, 0)
@@ -18,7 +18,7 @@ bool has_sample(ivec2 texel) {
 
 vec4 sample_at(ivec2 texel) { return samples[index_of(texel)]; }
 
-vec2 lens_at(ivec2 texel) { return samples[area.z * area.w + index_of(texel)].xy; }
+vec3 lens_at(ivec2 texel) { return samples[area.z * area.w + index_of(texel)].xyz; }
 
 /// The tile of 16 pixels of the frame in which the texel lies; shifts round down.
 ivec2 tile_of(ivec2 texel) { return (corner_pixel + texel / count.x) >> 4; }

@@ -27,9 +27,9 @@
 #define RASTER_CLIP_CENTER 1
 #define RASTER_NEAR 2
 #define RASTER_FIRST_PASS 3
-#define RASTER_INVERSE_FOCUS 4
-#define RASTER_LATTICE_TURN 5
-// Of raster/sample.*; 5 to 7 are those of compute/corner.glsl.
+#define RASTER_LATTICE_TURN 4
+// Of raster/sample.*; 5 and 6 are those of compute/corner.glsl.
+#define RASTER_INVERSE_FOCUS 7
 #define RASTER_LENS_RADIUS 8
 #define RASTER_CELL_SIZE 9
 #define RASTER_RASTER_SCALE 10

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pictures of moving things through Blender's render, against closed forms (film_parts)."""
 
-import bpy
 import numpy as np
 import pytest
 import scene_parts
@@ -189,13 +188,3 @@ def test_a_number_that_is_no_vector_is_refused_by_name(film):
     _, report, _ = export_probe.through_engine(film)
     ((name, message, _),) = report.entries()
     assert name == "mesh 'Wall'" and "FLOAT on POINT" in message
-
-
-def test_a_focus_that_changes_is_named(film):
-    import export_probe
-
-    film.camera.data.dof.use_dof = True
-    drive(film.camera.data.dof, "focus_distance", "frame")
-    _, report, _ = export_probe.through_engine(film)
-    assert ("camera 'Camera'", 1) in [(name, count) for name, _, count in report.entries()]
-    assert bpy.context.scene.frame_current == 10

@@ -164,12 +164,17 @@ def alpha(snapshot):
 
 
 def busy(executor, lens=True, **options):
-    """Moving, transparent, overlapping and lens-blurred things in perspective, 96 x 72 pixels."""
+    """Moving, transparent, overlapping and lens-blurred things in perspective, 96 x 72 pixels.
+
+    lens: False, True, or "moving".
+    """
     random = np.random.default_rng(7)
     options = {"samples": 16, "pixel_filter": "MITCHELL", "filter_width": 4.0, **options}
     snapshot = perspective((96, 72), 90.0, executor=executor, **options)
     if lens:
         snapshot["camera"].update(lens_radius=0.02, focus_distance=4.0)
+    if lens == "moving":
+        snapshot["camera"]["lens_knots"] = np.array([(0.005, 6.0), (0.02, 4.0), (0.03, 2.5)])
     colors = [((1, 0.2, 0), None), ((0, 1, 0.3), 0.4), ((0.1, 0.2, 1), None)]
     materials = [emission(snapshot, c, a) for c, a in colors]
     for i in range(24):

@@ -74,6 +74,19 @@ def test_focus_factor_spares_points_that_the_lens_hides():
     assert np.sqrt(np.mean((coarse - fine) ** 2)) < 0.01
 
 
+@pytest.mark.parametrize(
+    "knots", [[(0.32, 1), (0.32, 3)], [(0, 1), (0.32, 1)]], ids=["rack focus", "opens"]
+)
+def test_what_is_sharp_for_a_moment_is_diced_as_ever(knots):
+    def points(factor):
+        snapshot = s.perspective((96, 64), 100.0, executor="SIMD", samples=4, focus_factor=factor)
+        snapshot["camera"]["lens_knots"] = np.array(knots, float)
+        s.quad(snapshot, s.rectangle(-4, -3, 4, 3, 2.0), s.emission(snapshot))
+        return s.render(snapshot)["statistics"]["points_diced"]
+
+    assert points(1.0) == points(0.0) > 1000
+
+
 def test_what_stands_still_in_focus_is_diced_as_ever():
     def render(**factors):
         snapshot = s.perspective((64, 48), 60.0, executor="SIMD", samples=16, **factors)

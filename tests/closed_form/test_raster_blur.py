@@ -226,7 +226,7 @@ def busy_scene(executor, lens=True, **options):
     return s.busy(executor, lens, **{"time_samples": 6, "sampling": "REGULAR", **options})
 
 
-@pytest.mark.parametrize("lens", [False, True], ids=["pinhole", "lens"])
+@pytest.mark.parametrize("lens", [False, True, "moving"], ids=["pinhole", "lens", "moving"])
 @pytest.mark.parametrize("options", [{}, {"opacity_threshold": 0.3}], ids=["all", "threshold"])
 def test_a_busy_scene_is_that_of_the_reference(lens, options):
     raster, reference = both(
@@ -257,13 +257,18 @@ def test_crop_changes_no_bit(crop):
     assert np.array_equal(whole[crop[1] : crop[3], crop[0] : crop[2]], part)
 
 
-@pytest.mark.parametrize("blur", ["still", "turning", "lens"])
+LENSES = {"lens": True, "moving lens": "moving"}
+
+
+@pytest.mark.parametrize("blur", ["still", "turning", "lens", "moving lens"])
 def test_worlds_that_vary_are_those_of_the_reference(blur):
     """The world is evaluated at the corners of pixels and interpolated: exact to the second order of a pixel's angle,
     (1/90)^2 / 8 = 2e-5 rad of a gradient of slope .5 a radian; and once a pass where the camera turns or has a lens."""
 
     def make(executor):
-        snapshot = busy_scene(executor, lens=blur == "lens", pixel_filter="BOX", filter_width=1.0)
+        snapshot = busy_scene(
+            executor, LENSES.get(blur, False), pixel_filter="BOX", filter_width=1.0
+        )
         snapshot["options"]["film_transparent"] = False
         snapshot["world"] = {
             "name": "World",

@@ -23,7 +23,7 @@ def simd(snapshot):
 
 
 @pytest.mark.parametrize("samples", [1, 7, 16])
-@pytest.mark.parametrize("lens", [False, True], ids=["pinhole", "lens"])
+@pytest.mark.parametrize("lens", [False, True, "moving"], ids=["pinhole", "lens", "moving"])
 def test_a_busy_scene_is_that_of_the_cpu(sampling, lens, samples):
     """Moving, transparent, defocused, through three knots; sample numbers that fill no square too."""
     options = {

@@ -134,13 +134,15 @@ void expect_inside(const Grid& grid, const Projection& projection) {
             const Vec3f b = grid.positions[static_cast<std::size_t>((grid.knots - 1) * n + v)];
             const Vec3f p = a + t * (b - a);
             if (p.z < projection.near_clip || p.z > projection.far_clip) continue;
-            const Vec2f shear = projection.lens_shear(p.z);
-            for (const float lens : {-1.0f, 0.0f, 1.0f}) {
-                const Vec3f h = projection.homogeneous(p, {0.0, 0.0});
-                const float x = (h.x + lens * shear.x) / h.z, y = (h.y + lens * shear.y) / h.z;
-                ASSERT_TRUE(x >= grid.bounds.x0 && x <= grid.bounds.x1) << x << " at t " << t;
-                ASSERT_TRUE(y >= grid.bounds.y0 && y <= grid.bounds.y1) << y << " at t " << t;
-            }
+            for (const double focus : {projection.focus, projection.farthest_focus()})
+                for (const double lens : {-1.0, 0.0, 1.0}) {
+                    const Vec3d h = projection.homogeneous(p, {0.0, 0.0});
+                    const Vec2d shift =
+                        lens * projection.lens_radius * (p.z / focus - 1.0) * projection.scale;
+                    const double x = (h.x + shift.x) / h.z, y = (h.y + shift.y) / h.z;
+                    ASSERT_TRUE(x >= grid.bounds.x0 && x <= grid.bounds.x1) << x << " at t " << t;
+                    ASSERT_TRUE(y >= grid.bounds.y0 && y <= grid.bounds.y1) << y << " at t " << t;
+                }
         }
 }
 
@@ -191,6 +193,19 @@ TEST(EyePlane, a_lens_widens_bounds_by_its_circle_of_confusion) {
         EXPECT_NEAR(b.x1, 128.0 + 256.0 * 0.01 / 4.0 + circle, 0.02);
         EXPECT_LE(b.x0, 128.0 - circle);
     }
+}
+
+TEST(EyePlane, a_lens_that_moves_widens_bounds_by_its_widest_circle) {
+    DiceScene s(mesh({{0, 0, 4}, {0.01f, 0, 4}, {0, 0.01f, 4}}, {3}, {0, 1, 2}));
+    s.perspective(256.0);
+    // At 4 m the circle of the nearer focus is the larger; on its way it is sharp there.
+    const LensKnots lens({{0.02, 8.0}, {0.1, 2.0}}, s.view.projection);
+    const double circle = 256.0 * 0.1 * (1.0 / 2.0 - 1.0 / 4.0);
+    const auto grids = s.grids();
+    ASSERT_EQ(grids.size(), 1u);
+    expect_inside(*grids[0], s.view.projection);
+    EXPECT_NEAR(grids[0]->bounds.x0, 128.0 - circle, 0.02);
+    EXPECT_NEAR(grids[0]->bounds.y1, 128.0 + 256.0 * 0.01 / 4.0 + circle, 0.02);
 }
 
 TEST(EyePlane, off_screen_geometry_is_coarse_and_crop_does_not_matter) {

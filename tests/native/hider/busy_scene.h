@@ -13,7 +13,14 @@
 
 namespace granita::test {
 
-enum Blur { kStatic, kMoving, kLens, kBoth };
+enum Blur { kStatic, kMoving, kLens, kBoth, kRackFocus, kAllMoves };
+
+inline bool moves(Blur blur) {
+    return blur == kMoving || blur == kBoth || blur == kAllMoves;
+}
+inline bool has_lens(Blur blur) {
+    return blur != kStatic && blur != kMoving;
+}
 
 /// Eight bent, overlapping, partly transparent grids in front of a perspective camera; with
 /// three knots where they move.
@@ -23,15 +30,17 @@ inline void make_busy(Shot& shot, Blur blur, unsigned seed = 3) {
     shot.options.samples = 16;
     shot.tiles = {-1, -1, 2, 2};
     shot.camera = pinhole_camera(120);
-    if (blur == kLens || blur == kBoth) {
+    if (has_lens(blur)) {
         shot.camera.projection.lens_radius = .15;
         shot.camera.projection.focus = 11;
     }
+    if (blur == kRackFocus || blur == kAllMoves)
+        shot.camera.lens = LensKnots({{.05, 14}, {.15, 11}, {.2, 8}}, shot.camera.projection);
     for (int g = 0; g < 8; ++g) {
         const float x = -2 + 3 * uniform(random), y = -2 + 3 * uniform(random);
         const float z = 8 + 6 * uniform(random), turn = 6 * uniform(random);
         const float dx = uniform(random) - .5f, dz = 2 * uniform(random) - 1;
-        const int knots = blur == kMoving || blur == kBoth ? 3 : 1;
+        const int knots = moves(blur) ? 3 : 1;
         shot.grids.push_back(make_grid(17, 13, knots, [=](float u, float v, int k) {
             const auto t = static_cast<float>(k) / 2;
             const float a = 3 * (u - .5f), b = 2.4f * (v - .5f), angle = turn + t;
@@ -95,9 +104,11 @@ inline double edge_distance(const Shot& shot, const TileSamples& samples, Vec2i 
             q = a + (place - segment) * (b - a);
         }
         Vec2d lens(0);
-        if (projection.has_lens())
-            lens = projection.lens_radius * (q.z / projection.focus - 1) *
-                   Vec2d(samples.u[i], samples.v[i]);
+        if (projection.has_lens()) {
+            const double focus =
+                samples.inverse_focus.empty() ? projection.focus : 1.0 / samples.inverse_focus[i];
+            lens = projection.lens_radius * (q.z / focus - 1) * Vec2d(samples.u[i], samples.v[i]);
+        }
         p[k] = projection.center + projection.scale * (Vec2d(q) + lens) / q.z - Vec2d(tile * 16);
     }
     const Vec2d s(samples.x[i], samples.y[i]);

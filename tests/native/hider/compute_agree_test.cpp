@@ -14,7 +14,8 @@ namespace granita::test {
 namespace {
 
 class ComputeAgrees : public testing::TestWithParam<Blur> {};
-INSTANTIATE_TEST_SUITE_P(Blurs, ComputeAgrees, testing::Values(kStatic, kMoving, kLens, kBoth));
+INSTANTIATE_TEST_SUITE_P(Blurs, ComputeAgrees,
+                         testing::Values(kStatic, kMoving, kLens, kBoth, kRackFocus, kAllMoves));
 
 TEST_P(ComputeAgrees, SampleBySampleWithSimd) {
     Shot shot;

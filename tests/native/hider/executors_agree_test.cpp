@@ -14,7 +14,8 @@ namespace granita::test {
 namespace {
 
 class ExecutorsAgree : public testing::TestWithParam<Blur> {};
-INSTANTIATE_TEST_SUITE_P(Blurs, ExecutorsAgree, testing::Values(kStatic, kMoving, kLens, kBoth));
+INSTANTIATE_TEST_SUITE_P(Blurs, ExecutorsAgree,
+                         testing::Values(kStatic, kMoving, kLens, kBoth, kRackFocus, kAllMoves));
 
 TEST_P(ExecutorsAgree, SampleBySample) {
     Shot shot;
@@ -36,15 +37,16 @@ TEST_P(ExecutorsAgree, SampleBySample) {
 TEST_P(ExecutorsAgree, FastAndThroughTheEye) {
     // Paths of a hundred pixels and more, bent by perspective: the depth grows fourfold, shrinks to
     // a quarter, or passes the eye.
-    const bool lens = GetParam() == kLens || GetParam() == kBoth;
     for (const auto& [z0, z1] : {std::pair{4.0f, 16.0f}, {12.0f, 3.0f}, {5.0f, -1.0f}}) {
         Shot shot;
         shot.options.samples = 64;
         shot.tiles = {0, 0, 2, 2};
         shot.camera = pinhole_camera(120);
-        shot.camera.projection.lens_radius = lens ? .1 : 0;
+        shot.camera.projection.lens_radius = has_lens(GetParam()) ? .1 : 0;
         shot.camera.projection.focus = 7;
-        const int knots = GetParam() == kMoving || GetParam() == kBoth ? 2 : 1;
+        if (GetParam() == kRackFocus || GetParam() == kAllMoves)
+            shot.camera.lens = LensKnots({{.1, 7}, {.05, 3}}, shot.camera.projection);
+        const int knots = moves(GetParam()) ? 2 : 1;
         for (int g = 0; g < 3; ++g)
             shot.grids.push_back(make_grid(9, 9, knots, [&](float u, float v, int k) {
                 const float z = k ? z1 : z0;

@@ -3,6 +3,7 @@
 // circle of confusion of radius lens_radius |z / focus - 1| pixels.
 #include <algorithm>
 
+#include "defocus.h"
 #include "executor_test.h"
 
 namespace granita::test {
@@ -16,13 +17,6 @@ Camera lens_camera(double radius, double focus = 10) {
     camera.projection.lens_radius = radius;
     camera.projection.focus = focus;
     return camera;
-}
-
-/// Part of the disc of radius r that lies left of its centre's distance x to the edge.
-double edge_in_disc(double x, double r) {
-    if (x <= -r) return 0;
-    if (x >= r) return 1;
-    return .5 + (x * std::sqrt(r * r - x * x) + r * r * std::asin(x / r)) / (M_PI * r * r);
 }
 
 TEST_P(Lens, SmallSquareSpreadsOverItsDisc) {

@@ -31,11 +31,7 @@ inline RasterFrame raster_frame(const Shot& shot, const SampleTable& table) {
         return frame;
     }
     frame.filter = make_raster_filter(table.lattice(), 0.5, box);
-    TileSamples samples;
-    table.fill_tile({0, 0}, {true, true}, samples);
-    frame.passes.clear();
-    for (int s = 0; s < table.samples(); s += table.lattice().cells())
-        frame.passes.push_back({samples.t[s], samples.u[s], samples.v[s]});
+    frame.passes = raster_passes(table, {true, true}, frame.projection);
     return frame;
 }
 

@@ -19,7 +19,7 @@ RasterFrame pixel_frame(int lattice, int passes, Statistics* statistics = nullpt
     RasterFrame frame;
     frame.projection = pixel_projection();
     frame.filter = box_filter(lattice);
-    frame.passes = passes_of(SampleTable(options, Camera{}, {true, false}), {true, false});
+    frame.passes = raster_passes(SampleTable(options, Camera{}, {true, false}), {true, false}, {});
     frame.statistics = statistics;
     return frame;
 }

@@ -189,7 +189,7 @@ Differences compare(const TestScene& scene) {
     RasterFrame frame;
     frame.projection = scene.projection;
     frame.filter = box_filter(scene.table().lattice());
-    frame.passes = passes_of(scene.table(), scene.needs());
+    frame.passes = raster_passes(scene.table(), scene.needs(), scene.projection);
     RasterHider hider(gl_thread(), frame);
     const auto bucket = hider.open(scene.pixels, pointers(scene.grids));
     const auto expected = reference_samples(scene);

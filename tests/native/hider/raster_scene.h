@@ -95,17 +95,6 @@ inline std::vector<const Grid*> pointers(const std::vector<Grid>& grids) {
     return list;
 }
 
-/// The passes of a table of REGULAR sampling, from the samples of one pixel.
-inline std::vector<RasterPass> passes_of(const SampleTable& table, SampleNeeds needs) {
-    TileSamples samples;
-    table.fill_tile({0, 0}, needs, samples);
-    std::vector<RasterPass> passes;
-    for (int s = 0; s < samples.samples; s += table.lattice().cells())
-        passes.push_back({needs.time ? samples.t[s] : 0.0f, needs.lens ? samples.u[s] : 0.0f,
-                          needs.lens ? samples.v[s] : 0.0f});
-    return passes;
-}
-
 inline RasterFilter box_filter(RegularLattice lattice) {
     return make_raster_filter(lattice, 0.5,
                               [](double d) { return std::abs(d) <= 0.5 ? 1.0 : 0.0; });
