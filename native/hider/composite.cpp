@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hider/composite.h"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 #include <optional>

@@ -6,6 +6,7 @@ namespace granita {
 void LayerTable::fill() {
     if (m_filled) return;
     m_filled = true;
+    m_looks.reserve(m_pool.id_end());
     SurfaceId base = 0;
     for (std::uint32_t slot = 0; slot < m_pool.size(); ++slot) {
         const Grid& grid = m_pool.grid(slot);
@@ -16,6 +17,7 @@ void LayerTable::fill() {
 
 void LayerTable::add(const Grid& grid, SurfaceId base) {
     const auto first = static_cast<std::uint32_t>(m_rows.size());
+    bool varies = false;
     const bool shaded = !grid.radiance.empty() && !grid.holdout;
     for (int v = 0; v < grid.vertex_count(); ++v) {
         const Vec3f& o = grid.opacity[v];
@@ -35,12 +37,14 @@ void LayerTable::add(const Grid& grid, SurfaceId base) {
             if (row[0] != row[1] || row[0] != row[2]) look.flags |= LayerLook::kColored;
         }
         if (look.flags & LayerLook::kVaries) {
+            varies = true;
             for (int k = 0; k < 4; ++k)
                 look.row[k] = first + static_cast<std::uint32_t>(corners[k]);
             continue;
         }
         for (int k = 0; k < 6; ++k) look.value[k] = k < 3 ? clamp_opacity(at[k]) : at[k];
     }
+    if (!varies) m_rows.resize(first);
 }
 
 }  // namespace granita
