@@ -57,6 +57,7 @@ class CurveBatch final : public ElementBatch {
 
     double m_lo = 0.0, m_hi = 0.0;  ///< of a single curve; m_hi 0: to its end
     int m_across = 0;               ///< micropolygons across; 0 = not yet known
+    bool m_thin = false;            ///< its rows share places of normals
     std::vector<Row> m_rows;        ///< of what can be diced
 };
 

@@ -20,7 +20,6 @@ pytest.importorskip("flip_evaluator", reason="FLIP is installed by ./dev test")
 
 SAMPLES = 1024
 SCENES = ("bend", "camera", "snake", "instances", "morph", "alien", "particles", "hair")
-LIT = SCENES[:6]  # particles and hair have no lit reference yet
 
 
 def picture(name, variant, folder):
@@ -50,7 +49,7 @@ def test_blurs_like_cycles(name, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", LIT)
+@pytest.mark.parametrize("name", SCENES)
 def test_lit_like_cycles(name, tmp_path):
     truth = reference(name)["lit"].astype(np.float32)
     image = picture(name, "lit", tmp_path)
