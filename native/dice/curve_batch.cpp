@@ -199,7 +199,8 @@ void CurveBatch::shade_row(Grid& grid, int j, const Row& row, const CurveControl
         const double sine = m_thin ? place_across(i == 0, (j + row.curve) % 2 == 1) : u * drawn;
         const Vec3d normal =
             unit_or(side * sine + front * std::sqrt(std::max(1.0 - sine * sine, 0.0)), front);
-        const auto v = static_cast<std::size_t>(j * (grid.n_u + 1) + i);
+        const auto v = static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.n_u + 1) +
+                       static_cast<std::size_t>(i);
         grid.normal[v] = Vec3f(normal);
         grid.geometric_normal[v] = Vec3f(front);
         // Rays start off the axis along the normal: an element that faces them is met only where

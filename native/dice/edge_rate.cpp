@@ -51,7 +51,8 @@ EdgeRate::EdgeRate(const View& view)
       m_motion_factor(view.scene->options.motion_factor),
       m_focus_factor(view.scene->options.focus_factor),
       m_near(view.projection.perspective ? std::max(view.projection.near_clip, 1e-9)
-                                         : view.projection.near_clip) {}
+                                         : view.projection.near_clip),
+      m_seen(m_projection, m_width, m_height) {}
 
 Vec2d EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b) const {
     Vec3d p(a), q(b);
@@ -162,10 +163,10 @@ int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, 
     Swept swept;
     double longest = 0.0, counted = 0.0, sag = 0.0;
     bool equal = true;
-    for (int k = 0; k < knots; ++k) {
-        const Vec2d pieces[2] = {add(swept, start[k], middle[k]), add(swept, middle[k], end[k])};
+    const auto measure = [&](const Vec3f& a, const Vec3f& m, const Vec3f& b) {
+        const Vec2d pieces[2] = {add(swept, a, m), add(swept, m, b)};
         const double first = glm::length(pieces[0]), second = glm::length(pieces[1]);
-        const double chord = glm::length(add(swept, start[k], end[k]));
+        const double chord = glm::length(add(swept, a, b));
         const double length = first + second;
         longest = std::max(longest, length);
         counted = std::max(counted, blurred.length(pieces[0]) + blurred.length(pieces[1]));
@@ -176,6 +177,14 @@ int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, 
         const double height =
             chord > 0.25 * length ? 2.0 * std::sqrt(std::max(area2, 0.0)) / chord : 0.5 * length;
         sag = std::max(sag, height);
+    };
+    if (m_projection.perspective && knots > 1) {
+        // All knots are in the bound, those at which it is seen are measured.
+        for (int k = 0; k < knots; ++k)
+            for (const Vec3f* p : {start, end}) add(swept, middle[k], p[k]);
+        m_seen.for_each(start, middle, end, knots, measure);
+    } else {
+        for (int k = 0; k < knots; ++k) measure(start[k], middle[k], end[k]);
     }
     const double off = swept.seen ? std::min(outside(swept), most_outside) : 0.0;
     const double target = (m_rate + off / kOutside) * blurred.all, coarser = target / m_rate;

@@ -123,3 +123,46 @@ def test_shading_rate_shades_fewer_points_of_the_same_shapes(executor):
     x, y = np.meshgrid(np.arange(64) + 0.5, np.arange(48) + 0.5)
     assert error[np.hypot(x - 30, y - 20) > 13].max() < 1e-3
     assert error.max() < 0.5
+
+
+def pan(k):
+    """A quarter turn about y, 0 to 1 of it."""
+    turn = np.pi / 2 * (k - 0.5)
+    return np.array(
+        [
+            [np.cos(turn), 0, np.sin(turn), 0],
+            [0, 1, 0, 0],
+            [-np.sin(turn), 0, np.cos(turn), 0],
+            [0, 0, 0, 1],
+        ]
+    )
+
+
+def dolly(k):
+    return s.translation(0, 0, 3 * k)
+
+
+@pytest.mark.parametrize("way", [pan, dolly])
+def test_what_leaves_the_frame_is_diced_for_what_is_seen_of_it(way):
+    """Walls on both sides and posts all around go through the eye plane within the shutter."""
+
+    def render(rate, times):
+        snapshot = s.perspective((96, 72), 90.0, executor="SIMD", samples=64, dicing_rate=rate)
+        material = stripes(snapshot, 0.5)
+        for x in (-1.5, 1.5):
+            s.quad(snapshot, [(x, -1, -5), (x, 1, -5), (x, 1, 20), (x, -1, 20)], material)
+        for x in np.arange(-8.0, 9.0, 2.0):
+            corners = np.array([(x, -1, 6), (x + 0.5, -1, 6), (x + 0.5, 1, 6), (x, 1, 6)])
+            s.quad(snapshot, corners, material)
+        snapshot["camera"]["world_from_camera"] = np.array([way(t) for t in times])
+        return picture(snapshot)
+
+    def difference(times):
+        (fine, _), (coarse, points) = render(0.25, times), render(1.0, times)
+        return np.sqrt(np.mean((coarse - fine) ** 2)), points["points_diced"]
+
+    error, points = difference(np.linspace(0, 1, 13))
+    still_error, still_points = difference([0.5])
+    # The frame sees several times as much of the scene, and no pixel is finer than its own edges of squares.
+    assert points < 5 * still_points
+    assert error < still_error / 2
