@@ -128,6 +128,7 @@ BENCHMARK_CAPTURE(fill_table, xytuv, SampleNeeds{true, true}, 10);
 BENCHMARK_CAPTURE(fill_table, refocuses, SampleNeeds{true, true}, 20);
 
 void composite(benchmark::State& state) {
+    const Vec3f black(0.0f);
     const Camera camera = pixel_camera();
     const SampleTable table(bench_options(), camera);
     const std::vector<Grid> grids = make_layers(0);
@@ -139,7 +140,7 @@ void composite(benchmark::State& state) {
     SampleColors colors;
     LayerTable layers(hider->pool());
     for (auto _ : state) {
-        composite_tile(store, hider->tile_samples(0), layers, {}, settings, colors);
+        composite_tile(store, hider->tile_samples(0), layers, {&black, 1}, settings, colors);
         benchmark::DoNotOptimize(colors.red.data());
     }
     state.counters["samples"] = benchmark::Counter(
