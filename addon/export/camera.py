@@ -185,6 +185,11 @@ def lens_knot(camera, frame, depsgraph, at_frame):
     return np.array([radius * (scale[0] / at_frame["scale"][0]), focus])
 
 
+def follows_object(camera, depsgraph):
+    """Whether the camera focuses on an object, which a handler of another add-on may delete."""
+    return camera.evaluated_get(depsgraph).data.dof.focus_object is not None
+
+
 def camera_matrix(camera, depsgraph):
     """float64 [4, 4] world from camera at the depsgraph's time; None when it has no extent."""
     return world_from_camera(from_matrix(camera.evaluated_get(depsgraph).matrix_world))

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .camera import camera_knot, lens_knot
+from .camera import camera_knot, follows_object, lens_knot
 from .changes import changed_geometry, lights_changed, moved, originals
 from .depsgraph import visit
 from .lifespan import complete, lifespans, particle_life, runs
@@ -54,6 +54,7 @@ class Steps:
         if record["lens_radius"] > 0.0:
             at_frame = np.array([record["lens_radius"], record["focus_distance"]])
             self.lenses[frame_tick] = at_frame
+        self._follows = follows_object(scene.camera, scene.depsgraph)
         self._focused_on_itself = False
 
     def read(self, tick, knows_updates):
@@ -97,11 +98,17 @@ class Steps:
         knot = lens = None
         try:
             knot = camera_knot(*seen)
-            if self.lenses and knot is not None:
+            target_lost = self._follows and not follows_object(scene.camera, scene.depsgraph)
+            if target_lost and self.lenses:
+                self._lose(name, "left without its focus object")
+            elif self.lenses and knot is not None:
                 lens = lens_knot(*seen)
                 if lens is None and not self._focused_on_itself:
                     self._focused_on_itself = True
-                    self._report(name, "focuses on itself within the shutter: its focus waits")
+                    self._report(
+                        name,
+                        "focuses on itself within the shutter: its focus stays as it was just before",
+                    )
         except ReferenceError:  # a handler of another add-on deleted it
             self._lose(name, "deleted")
         self.cameras[tick] = self.cameras[last] if knot is None else knot
@@ -177,11 +184,11 @@ class Steps:
         scan, hidden = self._scene.visit, {}
         for thing in things:
             kind = scan.kinds[scan.kind[thing]]
-            owners = [
-                everything[address].evaluated_get(self._scene.depsgraph)
-                for address in (kind.address, kind.parent_address)
-                if address in everything
-            ]
+            addresses = [address for address in (kind.address, kind.parent_address) if address]
+            if not all(address in everything for address in addresses):
+                self._stays[thing] = True  # a handler of another add-on deleted its owner
+                continue
+            owners = [everything[a].evaluated_get(self._scene.depsgraph) for a in addresses]
             if scan.kind[thing] not in hidden:
                 hidden[scan.kind[thing]] = any(
                     owner.hide_render and owner.original.as_pointer() not in kind.hidden

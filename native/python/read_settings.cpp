@@ -47,7 +47,9 @@ std::vector<Vec2d> lens_knots(const Record& r) {
     for (std::size_t i = 0; i < values.size(); i += 2) {
         const Vec2d knot(values[i], values[i + 1]);
         if (!(knot.x >= 0.0 && knot.y > 0.0 && std::isfinite(knot.x) && std::isfinite(knot.y)))
-            r.fail("'lens_knots' must hold radii of at least 0 and focus distances above 0");
+            r.fail(
+                "'lens_knots' must hold finite radii of at least 0 and finite focus distances "
+                "above 0");
         knots.push_back(knot);
     }
     if (knots.empty()) r.fail("'lens_knots' must hold at least one knot");

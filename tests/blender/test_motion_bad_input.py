@@ -54,6 +54,8 @@ def test_what_a_handler_deletes_stays_where_it_was(moving, collection, doomed):
     assert time_after == 10.0
     assert sorted(names) == ["Cage", "Inside", "Inside", "Mover"]
     assert snapshot["lights"][0]["name"] == "Lamp"
+    # Nothing came or went: all are there throughout the shutter.
+    assert np.all(snapshot["instances"].get("lifespan", (0.0, 1.0)) == np.array([0.0, 1.0]))
     # An empty that makes instances is nothing to see itself; its instances stay.
     if doomed != "Place":
         label = f"{'camera' if doomed == 'Camera' else 'object'} '{doomed}'"
@@ -62,6 +64,22 @@ def test_what_a_handler_deletes_stays_where_it_was(moving, collection, doomed):
         assert xs(snapshot, "Mover") == pytest.approx([9.75, 10.25])
     else:
         assert xs(snapshot, "Mover").tolist() == [10.0]
+
+
+def test_a_focus_object_that_a_handler_deletes_is_focused_on(moving):
+    target = scene_parts.add_object(moving, "Target", None, (0, 0, 6))
+    dof = moving.camera.data.dof
+    dof.use_dof, dof.focus_object, dof.focus_distance = True, target, 1.0
+
+    def delete(*_):
+        if "Target" in bpy.data.objects:
+            bpy.data.objects.remove(bpy.data.objects["Target"])
+
+    snapshot, report, _ = export_probe.through_engine(moving, **on_every_step(delete))
+    camera = snapshot["camera"]
+    assert camera["focus_distance"] == pytest.approx(4.0)
+    assert np.ptp(np.asarray(camera.get("lens_knots", np.zeros((1, 2))))[:, 1]) < 1e-6
+    assert "without its focus object" in warnings(report)["camera 'Camera'"]
 
 
 def test_what_a_handler_renames_stays_where_it_was(moving):
