@@ -31,6 +31,8 @@ def wrong(path, value):
         (("options", "frame_time"), np.nan, "'frame_time' must be finite"),
         (("camera", "fstop"), 2.8, "camera 'Camera': 'fstop' is unknown"),
         (("camera", "world_from_camera"), np.full((1, 4, 4), np.inf), "holds a value that is not"),
+        (("camera", "lens_knots"), np.ones((2, 3)), "'lens_knots' must have shape [any, 2]"),
+        (("camera", "lens_knots"), np.array([[0.1, np.nan]]), "must hold finite radii"),
         (("camera", "scale"), np.zeros(2), "camera 'Camera': 'scale' must be positive"),
         (("geometries", 0, "points"), lambda p: p[..., :2], "'points' must have shape"),
         (("geometries", 0, "corner_verts"), lambda c: c + 9, "corner_verts"),
