@@ -54,7 +54,7 @@ class Steps:
         if record["lens_radius"] > 0.0:
             at_frame = np.array([record["lens_radius"], record["focus_distance"]])
             self.lenses[frame_tick] = at_frame
-        self._follows = follows_object(scene.camera, scene.depsgraph)
+        self._follows = bool(self.lenses) and follows_object(scene.camera, scene.depsgraph)
         self._focused_on_itself = False
 
     def read(self, tick, knows_updates):
@@ -98,8 +98,7 @@ class Steps:
         knot = lens = None
         try:
             knot = camera_knot(*seen)
-            target_lost = self._follows and not follows_object(scene.camera, scene.depsgraph)
-            if target_lost and self.lenses:
+            if self._follows and not follows_object(scene.camera, scene.depsgraph):
                 self._lose(name, "left without its focus object")
             elif self.lenses and knot is not None:
                 lens = lens_knot(*seen)

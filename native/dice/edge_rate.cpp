@@ -180,9 +180,11 @@ int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, 
     };
     if (m_projection.perspective && knots > 1) {
         // All knots are in the bound, those at which it is seen are measured.
-        for (int k = 0; k < knots; ++k)
-            for (const Vec3f* p : {start, end}) add(swept, middle[k], p[k]);
-        m_seen.for_each(start, middle, end, knots, measure);
+        const auto bound = [&](const Vec3f& a, const Vec3f& m, const Vec3f& b) {
+            add(swept, m, a);
+            add(swept, m, b);
+        };
+        m_seen.for_each(start, middle, end, knots, measure, bound);
     } else {
         for (int k = 0; k < knots; ++k) measure(start[k], middle[k], end[k]);
     }

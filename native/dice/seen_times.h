@@ -23,15 +23,17 @@ class SeenTimes {
 
     /// visit(start, middle, end), camera space: at each knot at which the piece may be in the
     /// frame, and where it comes into the frame on the way from another knot to its neighbours.
-    template <class Visit>
-    void for_each(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots,
-                  Visit visit) const {
+    /// pass_by(start, middle, end): at the other knots.
+    template <class Visit, class PassBy>
+    void for_each(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots, Visit visit,
+                  PassBy pass_by) const {
         for (int k = 0; k < knots; ++k) {
             const Piece here = piece(start[k], middle[k], end[k]);
             if (is_in(here)) {
                 visit(start[k], middle[k], end[k]);
                 continue;
             }
+            pass_by(start[k], middle[k], end[k]);
             // What comes out of the eye plane is large for a moment alone: its knots tell.
             if (is_outside(here, kNear)) continue;
             for (const int j : {k - 1, k + 1}) {

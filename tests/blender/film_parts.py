@@ -40,6 +40,13 @@ def wall(scene, right, name="Wall"):
     return scene_parts.add_mesh(scene, name, corners, [(0, 1, 2, 3)], (right, 0, 0))
 
 
+def half_plane(scene):
+    """Covers all that is above the middle of the film, around which it turns."""
+    corners = [(-60, 0, 0), (60, 0, 0), (60, 60, 0), (-60, 60, 0)]
+    middle = (WIDTH / 2, HEIGHT / 2, 0)
+    return scene_parts.add_mesh(scene, "Half", corners, [(0, 1, 2, 3)], middle)
+
+
 def left_of(edge, pixels):
     """Share of each pixel that is left of an edge."""
     return np.clip(edge - pixels, 0.0, 1.0)

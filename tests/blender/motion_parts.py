@@ -13,8 +13,13 @@ from export_probe import knots_of
 def with_shutter(scene):
     """The scene with motion blur: shutter of half a frame around frame 10."""
     scene_parts.add_camera(scene, (0, 0, 10))
+    return open_shutter(scene, 0.5)
+
+
+def open_shutter(scene, frames):
+    """Around frame 10."""
     scene.render.use_motion_blur = True
-    scene.render.motion_blur_shutter = 0.5
+    scene.render.motion_blur_shutter = frames
     set_position(scene, "CENTER")
     scene.frame_set(10)
     return scene

@@ -9,6 +9,7 @@ import scene_parts
 from export_probe import geometry_of
 from hair_parts import grid_points, spiral_curves
 from motion_parts import drive, on_every_step, shape_key, with_shutter, xs
+from node_parts import with_nodes
 
 
 @pytest.fixture
@@ -138,22 +139,15 @@ def test_armature(moving):
 
 def wave_of_nodes(thing):
     """Geometry nodes that lift every point by the scene's time."""
-    tree = bpy.data.node_groups.new("Lift", "GeometryNodeTree")
-    if hasattr(tree, "interface"):
-        for way in ("INPUT", "OUTPUT"):
-            tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
-    else:
-        tree.inputs.new("NodeSocketGeometry", "Geometry")
-        tree.outputs.new("NodeSocketGeometry", "Geometry")
-    start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
-    time = tree.nodes.new("GeometryNodeInputSceneTime")
-    vector = tree.nodes.new("ShaderNodeCombineXYZ")
-    lift = tree.nodes.new("GeometryNodeSetPosition")
-    tree.links.new(time.outputs["Frame"], vector.inputs["Z"])
-    tree.links.new(vector.outputs[0], lift.inputs["Offset"])
-    tree.links.new(start.outputs[0], lift.inputs["Geometry"])
-    tree.links.new(lift.outputs[0], end.inputs[0])
-    thing.modifiers.new("Nodes", "NODES").node_group = tree
+
+    def build(nodes, links, geometry):
+        vector, lift = nodes.new("ShaderNodeCombineXYZ"), nodes.new("GeometryNodeSetPosition")
+        links.new(nodes.new("GeometryNodeInputSceneTime").outputs["Frame"], vector.inputs["Z"])
+        links.new(vector.outputs[0], lift.inputs["Offset"])
+        links.new(geometry, lift.inputs["Geometry"])
+        return lift.outputs[0]
+
+    with_nodes(thing, build)
 
 
 def test_geometry_nodes_that_ask_for_the_time(moving):

@@ -7,7 +7,7 @@ surface at the time of each sample, Granita once, with the mean over the shutter
 
 import numpy as np
 import pytest
-from motion_parts import drive, set_position
+from motion_parts import drive, open_shutter
 from test_lights import add_light, both, expect_alike, lambert, set_stage, set_world
 
 # As for lights at rest: the same noise and no more.  Measured on 3.4: .0047 to .0054.
@@ -18,10 +18,7 @@ BLURRED = 0.025
 def flight(scene):
     """The ball crosses 2.4 m, more than its width, while the shutter is open."""
     ball = set_stage(scene, lambert())
-    scene.render.use_motion_blur = True
-    scene.render.motion_blur_shutter = 1.0
-    set_position(scene, "CENTER")
-    scene.frame_set(10)
+    open_shutter(scene, 1.0)
     drive(ball, "location", "2.4 * (frame - 10)", 0)
     ball.visible_camera = False
     return ball

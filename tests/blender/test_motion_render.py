@@ -3,7 +3,6 @@
 
 import numpy as np
 import pytest
-import scene_parts
 from film_parts import (
     HEIGHT,
     MIDPOINTS,
@@ -11,6 +10,7 @@ from film_parts import (
     WIDTH,
     WORST,
     alpha,
+    half_plane,
     hold,
     left_of,
     over_time,
@@ -74,13 +74,7 @@ def test_one_and_a_half_turns(film, render):
     """Case 15: a half plane that turns by 3 pi covers what lies at the angle a for pi + min(a, 2 pi - a)
     of it."""
     film.granita.motion_steps = 65
-    half = scene_parts.add_mesh(
-        film,
-        "Half",
-        [(-60, 0, 0), (60, 0, 0), (60, 60, 0), (-60, 60, 0)],
-        [(0, 1, 2, 3)],
-        (WIDTH / 2, HEIGHT / 2, 0),
-    )
+    half = half_plane(film)
     drive(half, "rotation_euler", "3 * pi * (frame - 10)", 2)
     image = alpha(render, film)
     fine = 16
@@ -102,8 +96,7 @@ def test_one_and_a_half_turns(film, render):
 def test_the_wheel_that_turns_by_whole_turns_is_not_still(film, render):
     """Two turns: every angle is covered half of the time."""
     film.granita.motion_steps = 129
-    corners = [(-60, 0, 0), (60, 0, 0), (60, 60, 0), (-60, 60, 0)]
-    half = scene_parts.add_mesh(film, "Half", corners, [(0, 1, 2, 3)], (16, 8, 0))
+    half = half_plane(film)
     drive(half, "rotation_euler", "4 * pi * (frame - 10)", 2)
     error = alpha(render, film) - 0.5
     assert np.abs(error).max() <= WORST * 2  # four edges pass

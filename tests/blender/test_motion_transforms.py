@@ -12,6 +12,7 @@ from film_parts import (
     WIDTH,
     WORST,
     alpha,
+    half_plane,
     hold,
     left_of,
     over_time,
@@ -191,13 +192,7 @@ def test_a_scale_through_nothing(film, render):
 def test_a_camera_that_rolls_sees_what_turns_the_other_way(film, render):
     """By one and a half turns."""
     film.granita.motion_steps = 65
-    half = scene_parts.add_mesh(
-        film,
-        "Half",
-        [(-60, 0, 0), (60, 0, 0), (60, 60, 0), (-60, 60, 0)],
-        [(0, 1, 2, 3)],
-        (16, 8, 0),
-    )
+    half = half_plane(film)
     drive(film.camera, "rotation_euler", "3 * pi * (frame - 10)", 2)
     rolled = alpha(render, film)
     film.camera.driver_remove("rotation_euler", 2)
