@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What export of motion costs: static things cost nothing a step; steps are taken where paths bend."""
+"""What export of motion reads: nothing of static things a step; steps are taken where paths bend.
 
-import time
+Seconds are in bench/export_cost.py.
+"""
 
 import export_probe
+import pytest
 import scene_parts
 from motion_parts import drive, on_every_step, with_shutter
+
+from granita.export import changes, steps
 
 
 def crowd(scene, count):
@@ -17,26 +21,24 @@ def crowd(scene, count):
     drive(turning, "rotation_euler", "3 * frame", 2)
 
 
-def seconds(scene, all_steps):
-    """{steps: seconds} of this thread's own time, so that other programs do not count; the best of
-    turns that take each number of steps once."""
-    best = dict.fromkeys(all_steps, 1e9)
-    for _ in range(6):
-        for steps in all_steps:
-            started = time.thread_time()
-            export_probe.through_engine(scene, motion_steps=steps)
-            best[steps] = min(best[steps], time.thread_time() - started)
-    return best
+@pytest.mark.parametrize("count", [10, 1000])
+def test_static_objects_are_read_at_no_step(scene, monkeypatch, count):
+    """Of however many: a step reads the place of the one that turns, and walks over nothing."""
+    read = {"places": 0, "walks": 0}
 
+    def counted(what, function):
+        def call(*arguments):
+            read[what] += 1
+            return function(*arguments)
 
-def test_static_objects_cost_nothing_a_step(scene):
-    """Seventeen knots instead of three, of 1,000 objects: at most 1.3 times the export."""
-    crowd(with_shutter(scene), 1000)
+        return call
+
+    monkeypatch.setattr(changes, "from_matrix", counted("places", changes.from_matrix))
+    monkeypatch.setattr(steps, "visit", counted("walks", steps.visit))
+    crowd(with_shutter(scene), count)
     snapshot, _, _ = export_probe.through_engine(scene, motion_steps=17)
     assert sorted(set(snapshot["instances"]["knots"].tolist())) == [1, 17]
-    few, many = seconds(scene, (3, 17)).values()
-    print(f"export of 1,000 objects: {few:.3f} s with 3 knots, {many:.3f} s with 17")
-    assert many <= 1.3 * few
+    assert read == {"places": 16, "walks": 0}  # the seventeenth is the frame's own
 
 
 def test_straight_movers_take_four_steps_of_time_and_the_way_back(scene):
