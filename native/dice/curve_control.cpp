@@ -9,9 +9,14 @@
 namespace granita {
 namespace {
 
-/// Where a derivative is zero (a cusp, a doubled point), the curve's direction is that of a chord
-/// this long, in segments.
+/// Where a derivative is zero (a cusp) the curve's direction is that in which it arrives: of a
+/// chord this long, in segments.
 constexpr double kChord = 1e-3;
+
+/// Whether a difference of two places, seen from `from`, is more than their rounding.
+bool apart(const Vec3d& difference, const Vec3d& from) {
+    return glm::length(difference) > 1e-12 * (glm::length(from) + 1e-30);
+}
 
 Vec3d any_perpendicular(const Vec3d& v) {
     const Vec3d a = glm::abs(v);
@@ -79,10 +84,21 @@ Vec3d CurveControl::tangent(int knot, double t) const {
     return s.tangent(CatmullRom(s.t));
 }
 
-Vec3d CurveControl::chord(int knot, double t) const {
-    const double before = std::max(t - kChord, 0.0);
-    const double after = std::min(t + kChord, static_cast<double>(m_segments));
-    return at(knot, after).p - at(knot, before).p;
+Vec3d CurveControl::arrival(int knot, double t) const {
+    const Vec3d here = at(knot, t).p;
+    const Vec3d chord = here - at(knot, std::max(t - kChord, 0.0)).p;
+    if (apart(chord, here)) return chord;
+    // Points in one place: it stands there, and comes from the last one that is elsewhere.
+    const std::size_t first = m_elements->shared().first_point(m_curve);
+    const auto point = [&](int i) {
+        return m_elements->point(knot, first + static_cast<std::size_t>(i)).p;
+    };
+    const int last = std::min(static_cast<int>(std::floor(t)), m_segments);
+    for (int i = last; i >= 0; --i)
+        if (const Vec3d way = here - point(i); apart(way, here)) return way;
+    for (int i = last + 1; i <= m_segments; ++i)
+        if (const Vec3d way = point(i) - here; apart(way, here)) return way;
+    return Vec3d(0.0);
 }
 
 RibbonRow CurveControl::row(int knot, double t) const {
@@ -93,7 +109,7 @@ RibbonRow CurveControl::row(int knot, double t) const {
     row.center = here.p;
     Vec3d along = s.tangent(basis);
     // Rounding leaves a cusp's derivative a little off zero, in any direction.
-    if (!(glm::length(along) > 1e-12 * (glm::length(here.p) + 1e-30))) along = chord(knot, t);
+    if (!apart(along, here.p)) along = arrival(knot, t);
     const Vec3d view = m_elements->view_direction(here.p);
     const Vec3d across = glm::cross(view, along);
     // A curve that runs straight to the eye has no side of its own.

@@ -46,8 +46,8 @@ class CurveControl {
     };
     Span span(int knot, double t) const;
     Vec3d tangent(int knot, double t) const;
-    /// The curve's direction where it has no tangent.
-    Vec3d chord(int knot, double t) const;
+    /// The curve's direction where it has no tangent; zero where all its points are one.
+    Vec3d arrival(int knot, double t) const;
     /// Longest way over the control points from lo to hi at a knot.
     double polygon_length(int knot, double lo, double hi) const;
 

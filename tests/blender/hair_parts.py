@@ -3,7 +3,7 @@
 
 import bpy
 import scene_parts
-from node_parts import with_nodes
+from node_parts import hidden_collection, with_nodes
 
 
 def spiral_curves(scene, radius=0.06, name="Curves"):
@@ -30,10 +30,30 @@ def spiral_curves(scene, radius=0.06, name="Curves"):
     return with_nodes(thing, build)
 
 
-def grid_points(scene, radius=0.15, name="Cloud"):
-    """A mesh of 7 by 5 vertices, a metre wide and .75 high apart, that nodes turn into points."""
-    vertices = [(x - 3.0, 0.75 * (y - 2.0), 0.3 * (x % 3)) for y in range(5) for x in range(7)]
-    faces = [(i, i + 1, i + 8, i + 7) for y in range(4) for i in range(7 * y, 7 * y + 6)]
+def curve_through(scene, places, radius, name="Curve"):
+    """A Curves object with one curve through `places`, metres."""
+    edges = [(i, i + 1) for i in range(len(places) - 1)]
+    path = bpy.data.meshes.new("Path")
+    path.from_pydata(places, edges, [])
+    source = scene_parts.add_object(scene, "Path", path)
+    hidden_collection(scene, source)
+    thing = scene_parts.add_object(scene, name, bpy.data.hair_curves.new(name))
+
+    def build(nodes, links, _geometry):
+        info = nodes.new("GeometryNodeObjectInfo")
+        info.inputs["Object"].default_value = source
+        curve = nodes.new("GeometryNodeMeshToCurve")
+        width = nodes.new("GeometryNodeSetCurveRadius")
+        width.inputs["Radius"].default_value = radius
+        links.new(info.outputs["Geometry"], curve.inputs[0])
+        links.new(curve.outputs[0], width.inputs["Curve"])
+        return width.outputs[0]
+
+    return with_nodes(thing, build)
+
+
+def mesh_points(scene, vertices, faces, radius, name="Cloud"):
+    """A mesh whose vertices nodes turn into points."""
     thing = scene_parts.add_mesh(scene, name, vertices, faces)
 
     def build(nodes, links, geometry):
@@ -43,6 +63,13 @@ def grid_points(scene, radius=0.15, name="Cloud"):
         return points.outputs[0]
 
     return with_nodes(thing, build)
+
+
+def grid_points(scene, radius=0.15, name="Cloud"):
+    """A mesh of 7 by 5 vertices, a metre wide and .75 high apart, that nodes turn into points."""
+    vertices = [(x - 3.0, 0.75 * (y - 2.0), 0.3 * (x % 3)) for y in range(5) for x in range(7)]
+    faces = [(i, i + 1, i + 8, i + 7) for y in range(4) for i in range(7 * y, 7 * y + 6)]
+    return mesh_points(scene, vertices, faces, radius, name)
 
 
 def furry(scene, count=60, name="Furry", **settings):

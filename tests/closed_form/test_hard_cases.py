@@ -7,7 +7,7 @@ The raster executor draws REGULAR passes: its tolerances are those of a lattice 
 import numpy as np
 import pytest
 import snapshots as s
-from test_elements import cloud
+from test_elements import cloud, curves
 from test_raster_blur import ramp
 
 # RMSE of a (0,2)-net of 64 samples for an edge that moves 20 pixels (hider-research 1.2).
@@ -193,3 +193,61 @@ def test_a_thousand_grids_of_one_micropolygon_are_one_large_one(executor):
         pictures.append(s.render(snapshot)["combined"])
     assert np.array_equal(*pictures)
     assert (pictures[0][4:33, 4:33, 3] == 0.5).all()
+
+
+def test_hair_and_points_of_no_width_are_not_there(executor):
+    """Case 57, at rest and in motion."""
+    snapshot = s.orthographic((64, 32), **options(executor, 16, 4))
+    material = s.emission(snapshot)
+    hair = np.array([(10.5, 16.5, 1), (30, 20, 1), (50.5, 16.5, 1)])
+    for knots in (hair, [hair, hair + (5, 3, 0)]):
+        curves(snapshot, knots, [3], 0.0, material)
+        cloud(snapshot, knots, 0.0, material)
+    assert not s.alpha(snapshot).any()
+
+
+def test_hair_that_narrows_to_nothing_is_a_triangle(executor):
+    """Case 57: 40 px long, 8 px wide at its root."""
+    snapshot = s.orthographic((64, 32), **options(executor))
+    curves(snapshot, [(10.5, 16.5, 1), (50.5, 16.5, 1)], [2], [4, 0], s.emission(snapshot))
+    # Two outlines of 40 pixels, each pixel with a 64-sample error of .044 (64^-.75).
+    assert abs(s.alpha(snapshot).sum() - 160) <= 4 * 0.044 * np.sqrt(80)
+
+
+def test_a_cusp_covers_what_the_way_there_covers(executor):
+    """Case 57: out and back by the same way; at the turn the curve has no direction, and its ribbon does not
+    stick out."""
+    snapshot = s.orthographic((64, 32), **options(executor))
+    curves(snapshot, [(10, 16, 1), (50, 16, 1), (10, 16, 1)], [3], 8.0, s.emission(snapshot))
+    expected = np.zeros((32, 64))
+    expected[8:24, 10:50] = 1
+    assert np.array_equal(s.alpha(snapshot), expected)
+
+
+def test_hair_that_stands_at_its_root_does_not_stick_out(executor):
+    """Case 57: its first points are one.  The curve swings past it by 4/27 of its speed there, 10 px, and back."""
+    snapshot = s.orthographic((64, 32), **options(executor))
+    root = [(10, 16, 1)] * 5
+    curves(snapshot, [*root, (30, 16, 1), (50, 16, 1)], [7], 8.0, s.emission(snapshot))
+    alpha = s.alpha(snapshot)
+    assert (alpha[8:24, 10:50] == 1).all()
+    alpha[8:24, 8:50] = 0
+    assert not alpha.any()
+
+
+def test_the_camera_inside_of_hair(executor):
+    """Case 57: the axis runs parallel to the view, a metre to the right and 10 metres far; the ribbon, 3 metres
+    to both sides, is the plane x = 1, of which the pixel (u, v) sees the depth f / u."""
+    focal = 20.0
+    snapshot = s.perspective((64, 48), focal, **options(executor))
+    curves(snapshot, [(1, 0, -10), (1, 0, 0), (1, 0, 10)], [3], 3.0, s.emission(snapshot))
+    fine = 16
+    u = (np.arange(64 * fine) + 0.5) / fine - 32
+    v = (np.arange(48 * fine) + 0.5) / fine - 24
+    seen = (u[None] > focal / 10) & (np.abs(v[:, None]) < 3 * u[None])
+    expected = seen.reshape(48, fine, 64, fine).mean(axis=(1, 3))
+    alpha = s.alpha(snapshot)
+    outline = (expected > 0) & (expected < 1)
+    assert np.array_equal(alpha[~outline], expected[~outline])
+    # A slanted edge's 64-sample error (64^-.75), four times.
+    assert np.abs(alpha - expected).max() <= 4 * 0.044
