@@ -118,20 +118,26 @@ def read_source(kind, example, requested, depsgraph, report, check_cancel):
 
 
 def _read(kind, example, requested, depsgraph, report, check_cancel):
+    def with_velocity(data, found):
+        """(what a reader found, the velocity of its points)."""
+        if found is None:
+            return None, None
+        return found, read_velocity(data, found[0].points.shape[1], kind.label, report)
+
     if kind.type in _READERS:
         found = _READERS[kind.type](kind.data, kind.label, requested, report)
-        velocity = read_velocity(kind.data, kind.label, report)
+        found, velocity = with_velocity(kind.data, found)
     elif kind.type == "HAIR":
         found = read_hair(kind.source, kind.system, kind.label, depsgraph.mode, report)
         velocity = None
     elif kind.cage is None:
         found = read_geometry(kind.data, kind.label, requested, report, check_cancel)
-        velocity = read_velocity(kind.data, kind.label, report)
+        found, velocity = with_velocity(kind.data, found)
     else:
         with cage_mesh(kind.source, kind.cage, depsgraph) as mesh:
             record = subdivision_record(kind.cage, mesh)
             found = read_geometry(mesh, kind.label, requested, report, check_cancel, record)
-            velocity = read_velocity(mesh, kind.label, report)
+            found, velocity = with_velocity(mesh, found)
     if found is None:
         return None
     can_deform = deforms(kind.source)

@@ -12,15 +12,16 @@ from .report import counted
 NAME = "velocity"
 
 
-def read_velocity(mesh, label, report):
+def read_velocity(data, count, label, report):
     """float32 [V, 3] metres a second, or None.
 
     Args:
-        mesh: evaluated Mesh.
+        data: evaluated Mesh, Curves or PointCloud.
+        count: of its points.
         label: its name for messages.
         report: called with (datablock, message).
     """
-    attribute = mesh.attributes.get(NAME)
+    attribute = data.attributes.get(NAME)
     if attribute is None:
         return None
     if attribute.domain != "POINT" or attribute.data_type != "FLOAT_VECTOR":
@@ -29,6 +30,9 @@ def read_velocity(mesh, label, report):
             f"attribute '{NAME}' ({attribute.data_type} on {attribute.domain}) is not used: motion "
             "wants vectors on points",
         )
+        return None
+    if len(attribute.data) != count:
+        report(label, f"its '{NAME}' has {len(attribute.data)} values for {count} points: not used")
         return None
     velocity = np.empty((len(attribute.data), 3), dtype=np.float32)
     attribute.data.foreach_get("vector", velocity.reshape(-1))

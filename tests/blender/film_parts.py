@@ -57,6 +57,17 @@ def over_time(share_at, times):
     return np.mean([share_at(t) for t in times], axis=0)
 
 
+def moving_disc(center, radius, way):
+    """A disc moves right: it covers a place for the share of its way that the place's chord of it is."""
+    fine = 16
+    x = (np.arange(WIDTH * fine) + 0.5) / fine - center[0]
+    y = (np.arange(HEIGHT * fine) + 0.5) / fine - center[1]
+    half = np.sqrt(np.maximum(radius**2 - y**2, 0.0))[:, None]
+    covered = np.minimum(x + half, way) - np.maximum(x - half, 0.0)
+    share = np.clip(covered, 0.0, None) / way
+    return share.reshape(HEIGHT, fine, WIDTH, fine).mean(axis=(1, 3))
+
+
 MIDPOINTS = (np.arange(4096) + 0.5) / 4096
 
 

@@ -21,6 +21,22 @@ def with_nodes(thing, build, name="Nodes"):
     return thing
 
 
+def store_attribute(thing, name, kind, domain, vector):
+    """Has nodes give all points, faces, ... of an object an attribute."""
+
+    def build(nodes, links, geometry):
+        store = nodes.new("GeometryNodeStoreNamedAttribute")
+        store.data_type, store.domain = kind, domain
+        store.inputs["Name"].default_value = name
+        for socket in store.inputs:
+            if socket.name == "Value" and socket.type == "VECTOR":
+                socket.default_value = vector
+        links.new(geometry, store.inputs["Geometry"])
+        return store.outputs[0]
+
+    return with_nodes(thing, build, "Store")
+
+
 def instances_on_line(scene, part, count, host="Host"):
     """A line of points, 3 metres apart, with an instance of an object on each; the object is taken out of the
     scene.

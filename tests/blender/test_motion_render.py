@@ -126,18 +126,6 @@ def test_an_orthographic_scale_and_a_shift_that_change(film, render):
     hold(alpha(render, film), np.broadcast_to(expected, (HEIGHT, WIDTH)))
 
 
-def test_points_that_say_their_velocity(film, render):
-    """Metres a second: 500 at 25 frames a second are 20 a frame, about the frame's place."""
-    film.render.fps, film.render.fps_base = 50, 2.0
-    set_position(film, "CENTER")
-    thing = wall(film, 16.0)
-    attribute = thing.data.attributes.new("velocity", "FLOAT_VECTOR", "POINT")
-    attribute.data.foreach_set("vector", np.tile(np.float32([500, 0, 0]), 4))
-    pixels = np.arange(WIDTH)
-    expected = over_time(lambda t: left_of(6 + 20 * t, pixels), MIDPOINTS)
-    hold(alpha(render, film), np.broadcast_to(expected, (HEIGHT, WIDTH)))
-
-
 def test_motion_of_camera_and_object_is_composed(film, render):
     """Case 24: the same path is nothing to see, whatever the knots of the two."""
     drive(wall(film, 16.5), "location", "16.5 + 30 * (frame - 10) ** 2", 0)
@@ -145,39 +133,3 @@ def test_motion_of_camera_and_object_is_composed(film, render):
     image = alpha(render, film)
     # A path may leave its chords by a 32nd of a pixel, that of the camera and that of the wall.
     assert np.abs(image - left_of(16.5, np.arange(WIDTH))).max() <= 2 / 32 + 2 / 16
-
-
-def test_vanishing_numbers_in_velocity_are_named(film, render):
-    import export_probe
-
-    thing = wall(film, 16.0)
-    attribute = thing.data.attributes.new("velocity", "FLOAT_VECTOR", "POINT")
-    attribute.data.foreach_set("vector", np.float32([np.nan, 0, 0] + [0, 0, 0] * 3))
-    _, report, _ = export_probe.through_engine(film)
-    assert [entry[:2] for entry in report.entries()] == [
-        ("mesh 'Wall'", "its 'velocity' is not finite at 1 point, taken as 0")
-    ]
-
-
-def test_a_changed_topology_moves_by_its_velocity(film):
-    import export_probe
-
-    thing = wall(film, 16.0)
-    attribute = thing.data.attributes.new("velocity", "FLOAT_VECTOR", "POINT")
-    attribute.data.foreach_set("vector", np.tile(np.float32([24, 0, 0]), 4))
-    build = thing.modifiers.new("Screw", "SCREW")
-    drive(build, "steps", "4 + int(10 * (frame - 10))")
-    snapshot, report, _ = export_probe.through_engine(film)
-    points = snapshot["geometries"][0]["points"]
-    assert len(report) == 0 and points.shape[0] == 2
-    assert points[1] - points[0] == pytest.approx(np.tile([1.0, 0.0, 0.0], (points.shape[1], 1)))
-
-
-def test_a_number_that_is_no_vector_is_refused_by_name(film):
-    import export_probe
-
-    thing = wall(film, 16.0)
-    thing.data.attributes.new("velocity", "FLOAT", "POINT")
-    _, report, _ = export_probe.through_engine(film)
-    ((name, message, _),) = report.entries()
-    assert name == "mesh 'Wall'" and "FLOAT on POINT" in message
