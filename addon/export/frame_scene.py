@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene at Blender's frame, as the other times of the shutter are held against it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from .changes import Plain, originals
 from .depsgraph import Visit
+from .identity import distinct
 
 
 @dataclass
@@ -22,7 +23,15 @@ class FrameScene:
     geometry_of_kind: np.ndarray  # int32 [kinds], -1 = none
     is_light: np.ndarray  # bool [kinds]
     energies: dict  # thing of the visit that shines -> the light's energy
+    again: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))  # of come_again
     _bounds: tuple = None
+
+    def come_again(self, things):
+        """Adds things to the visit, at its end, that are others of it at another time: int [c]."""
+        self.again = things
+        if len(things):
+            more = self.visit.with_more(self.visit, things, self.visit.kind[things])
+            self.visit = replace(more, identity=distinct(more.identity))
 
     def energies_now(self, before):
         """`energies` at the depsgraph's time; `before` serves what a handler has deleted."""

@@ -34,6 +34,11 @@ def combine(hashes, persistent_ids):
     identity = _scramble(hashes)
     for column in persistent_ids.T:
         identity = _scramble(identity + column.astype(np.uint64))
+    return distinct(identity)
+
+
+def distinct(identity):
+    """uint64 [n], unique: all but the first of equal identities replaced, by their order."""
     return _separate(identity, lambda value, ordinal: _scramble(value + ordinal))
 
 

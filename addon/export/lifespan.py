@@ -35,26 +35,39 @@ def particle_life(owner, index, system):
     return Life(particle.birth_time, particle.die_time, velocity)
 
 
-def runs(seen, frame):
-    """Of each thing the ticks that it is seen at without a gap: around the frame's or, where it is not seen
-    then, around the nearest.
+@dataclass
+class Runs:
+    """Stretches of ticks during which things are there without a gap."""
+
+    things: np.ndarray  # int [r]
+    numbers: (
+        np.ndarray
+    )  # int [r], ascending: that of the thing, or a new one for all its runs but one
+    first: np.ndarray  # int [r], index of the tick
+    last: np.ndarray  # int [r]
+
+
+def runs(things, seen, frame, stays, next_number):
+    """All Runs.  A thing keeps its number for the one around the frame's tick, or for the nearest.
 
     Args:
+        things: int [m], ascending.
         seen: bool [T, m], at least one a column.
         frame: index of the frame's tick.
-
-    Returns:
-        (int [m] first, int [m] last).
+        stays: bool [m]; what is there throughout, seen or not, has one run.
+        next_number: of the first run that needs a new one.
     """
-    count = len(seen)
-    distance = np.where(seen, np.abs(np.arange(count) - frame)[:, None], count)
-    first = distance.argmin(axis=0)
-    last = first.copy()
-    column = np.arange(seen.shape[1])
-    for _ in range(count):
-        first -= (first > 0) & seen[np.maximum(first - 1, 0), column]
-        last += (last < count - 1) & seen[np.minimum(last + 1, count - 1), column]
-    return first, last
+    edges = np.diff(np.pad(seen, ((1, 1), (0, 0))).astype(np.int8), axis=0).T
+    column, first = np.nonzero(edges == 1)
+    last = np.nonzero(edges == -1)[1] - 1
+    order = np.lexsort((np.maximum(first - frame, frame - last).clip(0), column))
+    column, first, last = column[order], first[order], last[order]
+    again = np.zeros(len(column), dtype=bool)
+    again[1:] = column[1:] == column[:-1]
+    main, more = np.flatnonzero(~again), np.flatnonzero(again & ~stays[column])
+    kept = np.append(main, more)
+    numbers = np.append(things, next_number + np.arange(len(more)))
+    return Runs(things[column[kept]], numbers, first[kept], last[kept])
 
 
 def complete(path, ticks, first, last, velocity, goes_on):
@@ -62,9 +75,9 @@ def complete(path, ticks, first, last, velocity, goes_on):
     along a straight line.
 
     Args:
-        path: float64 [T, m, 4, 4], world from object; written where a tick lies outside of the run.
+        path: float64 [T, m, 4, 4], world from object; written where a tick lies outside of its run.
         ticks: ascending, of T.
-        first, last: of `runs`.
+        first, last: of Runs.
         velocity: float64 [m, 3] a tick, of what is seen at one tick alone; others go as they were seen to.
         goes_on: bool [m]; false for what stays where it was.
     """
@@ -88,7 +101,7 @@ def lifespans(times, first, last, births, deaths):
 
     Args:
         times: float [T], shutter times of the ticks, ascending.
-        first, last: of `runs`.
+        first, last: of Runs.
         births, deaths: float [m], shutter times; not a number = not known.
     """
     times = np.asarray(times, dtype=np.float64)

@@ -35,7 +35,8 @@ class Motion:
 def sample_motion(clock, shutter, scene, report, check_cancel):
     """Visits as many times of the shutter as the paths want, at most `shutter.segments` and one.
 
-    The scene's visit has more things afterwards, where some appear within the shutter (newcomers.py).
+    The scene's visit has more things afterwards, where some appear within the shutter (newcomers.py), or
+    come more than once: then there is one for every time.
 
     Args:
         clock: shutter.Clock, standing at the frame.
@@ -73,6 +74,7 @@ def sample_motion(clock, shutter, scene, report, check_cancel):
             clock.go(0.0)
     motion = _result(scene, steps, ticks, level)
     motion.lifespans = steps.lifespans(clock.start)
+    scene.come_again(steps.come_again())
     return motion
 
 
@@ -120,13 +122,13 @@ def _paths(scene, steps):
         (lens != lenses[steps.frame_tick]).any() for lens in lenses.values()
     ):
         yield "LENS", lenses, [(lenses, scale.lens(lenses))]
-    things, places = steps.places()
-    if len(things):
+    numbers, things, places = steps.places()
+    if len(numbers):
         measure = scale.places(things, places)
         checks = [(places, measure)]
         if moves:
             checks.append(({t: scale.views[t] @ m for t, m in places.items()}, measure))
-        yield things, places, checks
+        yield numbers, places, checks
     for index, path in steps.points().items():
         yield index, path, [(path, scale.points(index))]
     for thing, path in steps.energies().items():

@@ -23,11 +23,13 @@ class Neighbours:
     things: np.ndarray  # int [m], those of the scan that move
     matrices: np.ndarray  # float64 [2, m, 4, 4]
     points: dict  # geometry index -> float32 [2, V, 3]
+    again: np.ndarray  # int [c], of FrameScene
 
     def instances(self, instances, scan, chosen):
         """snapshot.Instances with where they are then."""
         both = np.repeat(scan.matrices[None], 2, axis=0)
         both[:, self.things] = self.matrices
+        both[:, len(scan.kind) - len(self.again) :] = both[:, self.again]
         both = both[:, chosen].swapaxes(0, 1)
         return replace(instances, neighbours=np.ascontiguousarray(both).reshape(-1, 4, 4))
 
@@ -56,7 +58,7 @@ def read_neighbours(clock, scene, fps, report, check_cancel):
                 steps.read(tick, clock.knows_updates)
         finally:
             clock.go(0.0)
-    things, places = steps.places()
+    things, _, places = steps.places()  # at three times, one of them the frame's, all have one run
     points = {
         index: np.stack([path[tick] for tick in _ENDS]) for index, path in steps.points().items()
     }
@@ -66,4 +68,5 @@ def read_neighbours(clock, scene, fps, report, check_cancel):
         things=things,
         matrices=np.stack([places[tick] for tick in _ENDS]),
         points=points,
+        again=scene.again,
     )

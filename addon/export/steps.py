@@ -222,46 +222,56 @@ class Steps:
         self._last_points[index] = points
 
     def places(self):
-        """(int [m] things that ever move, {tick: float64 [m, 4, 4]})."""
-        things = np.flatnonzero(self._touched)
-        ticks = sorted(self.ticks)
+        """(int [m] numbers of the Runs of things that ever move, int [m] these things, {tick: float64
+        [m, 4, 4]})."""
+        things, ticks, runs = self._runs()
         path = np.repeat(self._scene.visit.matrices[things][None], len(ticks), axis=0)
         for tick, (known, _, matrices) in self._records.items():
             path[ticks.index(tick), np.searchsorted(things, known)] = matrices
-        rows, first, last = self._comers_and_goers(things, ticks)
+        if len(runs.things) > len(things):
+            path = path[:, np.searchsorted(things, runs.things)]
+        rows = np.flatnonzero((runs.first > 0) | (runs.last < len(ticks) - 1))
         if len(rows):
             partial = path[:, rows]
-            complete(partial, ticks, first, last, *self._going_on(things[rows]))
+            going_on = self._going_on(runs.things[rows])
+            complete(partial, ticks, runs.first[rows], runs.last[rows], *going_on)
             path[:, rows] = partial
         moves = (path != path[:1]).any(axis=(0, 2, 3))
-        return things[moves], {tick: path[i, moves] for i, tick in enumerate(ticks)}
+        path = {tick: path[i, moves] for i, tick in enumerate(ticks)}
+        return runs.numbers[moves], runs.things[moves], path
 
     def lifespans(self, start):
-        """(int [m] things that come or go, float32 [m, 2] when they exist: of lifespan.lifespans).
+        """(int [m] numbers of Runs that do not last throughout, float32 [m, 2] when they do: of
+        lifespan.lifespans).
 
         Args:
             start: Blender's frame.
         """
-        ticks = sorted(self.ticks)
-        things = np.flatnonzero(self._touched)
-        rows, first, last = self._comers_and_goers(things, ticks)
-        goes = ~self._stays[things[rows]]
-        things, first, last = things[rows[goes]], first[goes], last[goes]
-        lives = [self._lives.get(int(thing)) for thing in things]
+        _, ticks, runs = self._runs()
+        ends = (runs.first > 0) | (runs.last < len(ticks) - 1)
+        goes = np.flatnonzero(ends & ~self._stays[runs.things])
+        lives = [self._lives.get(int(thing)) for thing in runs.things[goes]]
         own = np.array(
             [(np.nan, np.nan) if life is None else (life.birth, life.death) for life in lives]
         ).reshape(-1, 2)
         own = ((own - start) / self._tick_frames + self.frame_tick) / ticks[-1]
-        return things, lifespans(np.array(ticks) / ticks[-1], first, last, *own.T)
+        times = np.array(ticks) / ticks[-1]
+        return runs.numbers[goes], lifespans(times, runs.first[goes], runs.last[goes], *own.T)
 
-    def _comers_and_goers(self, things, ticks):
-        """Which of the things that were touched are not there at every tick, by index; and the runs of ticks
-        at which they are."""
+    def come_again(self):
+        """int [c], the things of Runs with numbers that the visit does not have, in their order."""
+        _, _, runs = self._runs()
+        return runs.things[runs.numbers >= len(self._scene.visit.kind)]
+
+    def _runs(self):
+        """(int [m] things that were touched, their ticks, lifespan.Runs)."""
+        ticks = sorted(self.ticks)
+        things = np.flatnonzero(self._touched)
         seen = np.repeat((things < self._at_frame)[None], len(ticks), axis=0)
         for tick, (known, present, _) in self._records.items():
             seen[ticks.index(tick), np.searchsorted(things, known)] = present
-        rows = np.flatnonzero(~seen.all(axis=0))
-        return rows, *runs(seen[:, rows], ticks.index(self.frame_tick))
+        frame, count = ticks.index(self.frame_tick), len(self._scene.visit.kind)
+        return things, ticks, runs(things, seen, frame, self._stays[things], count)
 
     def _going_on(self, things):
         """(float64 [m, 3] metres a tick of what is seen at one tick, bool [m] whether it goes on at all)."""

@@ -42,8 +42,6 @@ def lives(snapshot):
         ("4 if frame < 10.05 else 3", 17, {9: (0, 0.625)}),
         ("2 if frame < 9.9 else 3 if frame < 10.05 else 4", 17, {6: (0.375, 1), 9: (0.625, 1)}),
         ("4 if 9.9 < frame < 10.05 else 3", 17, {9: (0.375, 0.625)}),
-        # Comes back: it is there around the frame alone.
-        ("3 if frame < 9.8 or 9.9 < frame < 10.05 else 2", 17, {6: (0.375, 0.625)}),
     ],
 )
 def test_instances_of_nodes_come_and_go_half_way(moving, count, steps, expected):
@@ -52,6 +50,45 @@ def test_instances_of_nodes_come_and_go_half_way(moving, count, steps, expected)
     found = lives(snapshot)
     assert {x: life for x, life in found.items() if life != (0.0, 1.0)} == expected
     assert set(found) >= {0.0, 3.0} and len(report) == 0
+
+
+def test_what_comes_again_and_again_is_there_each_time(moving):
+    """At the first, the middle and the last of five times; each time on its own way."""
+    line(moving, "2 if 9.8 < frame < 9.9 or 10.05 < frame < 10.2 else 3")
+    drive(moving.objects["Host"], "location", "4 * frame", 1)
+    snapshot, report, _ = export_probe.through_engine(moving, motion_steps=17)
+    instances = snapshot["instances"]
+    first = np.cumsum(instances["knots"]) - instances["knots"]
+    matrices = instances["world_from_object"]
+    third = np.flatnonzero(matrices[first, 0, 3] == 6.0)
+    spans = sorted(tuple(instances["lifespan"][i]) for i in third)
+    assert spans == [(0.0, 0.125), (0.375, 0.625), (0.875, 1.0)]
+    assert len(instances["name"]) == 5 and len(np.unique(instances["key"])) == 5
+    assert len(set(instances["random"][third])) == 1 and len(report) == 0
+
+
+def test_each_time_has_the_vector_of_its_thing(moving):
+    """The frames before and after, whatever happens within the shutter."""
+    moving.view_layers[0].use_pass_vector = True
+    line(moving, "0 if 9.8 < frame < 9.9 or 10.05 < frame < 10.2 else 1")
+    drive(moving.objects["Host"], "location", "4 * frame", 1)
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
+    neighbours = snapshot["instances"]["neighbours"].reshape(3, 2, 4, 4)
+    assert neighbours[:, :, 1, 3] == pytest.approx(np.tile([36.0, 44.0], (3, 1)))
+
+
+def test_what_comes_again_goes_on_along_each_way_that_it_was_seen_to_go(moving):
+    """Seen at two times on both sides of a gap; it goes up before, down after it."""
+    line(moving, "0 if 9.95 < frame < 10.05 else 1")
+    drive(moving.objects["Host"], "location", "frame if frame < 10 else -frame", 1)
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
+    instances = snapshot["instances"]
+    ways = {}
+    for i, span in enumerate(instances["lifespan"]):
+        end = int(instances["knots"][: i + 1].sum())
+        knots = instances["world_from_object"][end - int(instances["knots"][i]) : end, 1, 3]
+        ways[tuple(span)] = knots[-1] - knots[0]
+    assert ways == pytest.approx({(0.0, 0.375): 0.5, (0.625, 1.0): -0.5})
 
 
 @pytest.mark.parametrize("position, open", [("START", 0.625), ("END", None)])
@@ -102,14 +139,19 @@ def test_an_animated_visibility_belongs_to_the_frame(moving):
     assert "lifespan" not in snapshot["instances"]
 
 
-def test_a_later_frame_with_persistent_data_is_the_same_as_without(moving):
-    line(moving, "3 if frame < 10.05 else 4")
+@pytest.mark.parametrize(
+    "count, expected",
+    [("3 if frame < 10.05 else 4", [3, 4, 4]), ("3 if 9.95 < frame < 10.05 else 4", [4, 5, 4])],
+)
+def test_a_later_frame_with_persistent_data_is_the_same_as_without(moving, count, expected):
+    line(moving, count)
 
     def frames(persistent):
         return [
-            (len(job.snapshot["instances"]["name"]), lives(job.snapshot))
-            if "lifespan" in job.snapshot["instances"]
-            else len(job.snapshot["instances"]["name"])
+            {
+                name: job.snapshot["instances"].get(name, np.zeros(0)).tolist()
+                for name in ("key", "lifespan", "knots", "world_from_object")
+            }
             for job in export_probe.frame_by_frame(
                 moving, (9, 10, 11), persistent=persistent, motion_steps=17
             )
@@ -117,7 +159,7 @@ def test_a_later_frame_with_persistent_data_is_the_same_as_without(moving):
 
     found = frames(True)
     assert found == frames(False)
-    assert found[0] == 3 and found[1][0] == 4 and found[2] == 4
+    assert [len(frame["key"]) for frame in found] == expected
 
 
 def test_the_first_of_its_kind_brings_its_own_material(moving):
@@ -144,6 +186,27 @@ def test_two_that_take_turns_cover_everything_once(moving, render):
     passes = render(moving, "GRANITA")
     values = next(values for key, values in passes.items() if key.endswith("Combined.A"))
     assert (values == 1.0).all()
+
+
+def test_two_that_alternate_are_one_that_stays(moving, render):
+    """Bit by bit: at each of five times the instances of one of two objects, at one place."""
+    glow = scene_parts.emission("Glow", (0.25, 0.5, 0.75))
+    part = scene_parts.add_square(moving, "Part", 3.0, material=glow)
+    moving.granita.samples = 16
+    moving.render.film_transparent = True
+    still = render(moving, "still")
+    odd = "int(round((frame - 9.75) * 8)) % 2"
+    for name, count in (("First", f"1 - {odd}"), ("Second", odd)):
+        tree, node = instances_on_line(moving, part, 1, name)
+        moving.objects[name].location.z = 0.0
+        drive(tree, f'nodes["{node.name}"].inputs["Count"].default_value', count)
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
+    ends = np.sort(snapshot["instances"]["lifespan"][:, 0])
+    assert ends.tolist() == [0.0, 0.125, 0.375, 0.625, 0.875]
+    passes = render(moving, "alternating")
+    assert still.keys() == passes.keys()
+    for key, values in still.items():
+        assert np.array_equal(values, passes[key]), key
 
 
 def test_nested_instances_come_and_go_too(moving):
