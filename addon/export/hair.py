@@ -1,16 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Particle systems drawn as paths -> curves.
-
-Blender hands out one point a call (.7 microseconds); there is no faster way through its interface.
-"""
+"""Particle systems drawn as paths -> curves."""
 
 from functools import partial
 
 import numpy as np
 
-from .elements import Elements
 from .snapshot import Attribute, Geometry
-from .transforms import from_matrix, inverse
+from .strands import Strands, particle_range, read_strands
 
 
 def hair_systems(thing, mode):
@@ -51,9 +47,9 @@ def read_hair(thing, name, label, mode, report):
         report: called with (datablock, message).
 
     Returns:
-        (Geometry, Elements), or None where there is no hair.
+        (Geometry, Strands), or None where there is no hair.
     """
-    read = partial(_read, name=name, mode=mode)
+    read = partial(read_strands, name=name, mode=mode)
     points, sizes = read(thing, None)
     if len(sizes) == 0:
         return None
@@ -65,48 +61,7 @@ def read_hair(thing, name, label, mode, report):
         radius=_radii(thing.particle_systems[name].settings, points.reshape(len(sizes), -1, 3)),
         attributes=_root_uvs(thing, name, len(sizes), mode),
     )
-    return geometry, Elements(sizes, read)
-
-
-def _range(system, mode):
-    """(first particle, one past the last): children replace their parents."""
-    parents, children = len(system.particles), len(system.child_particles)
-    if mode != "RENDER":
-        children = children * system.settings.display_percentage // 100
-    if system.settings.child_type == "NONE" or children == 0:
-        return 0, parents
-    return parents, parents + children
-
-
-def _steps(settings, mode):
-    steps = (1 << (settings.render_step if mode == "RENDER" else settings.display_step)) + 1
-    return steps + (settings.kink_extra_steps if settings.kink == "SPIRAL" else 0)
-
-
-def _read(thing, _data, name, mode):
-    system = thing.particle_systems.get(name)
-    if system is None:
-        return np.zeros((0, 3), dtype=np.float32), np.zeros(0, dtype=np.int32)
-    first, last = _range(system, mode)
-    steps = _steps(system.settings, mode)
-    co_hair = system.co_hair
-    world = np.empty(((last - first) * steps, 3))
-    row = 0
-    for particle in range(first, last):
-        for step in range(steps):
-            world[row] = co_hair(object=thing, particle_no=particle, step=step)
-            row += 1
-    # What ends early goes on in the world's origin: it stays where it was.
-    strands = world.reshape(-1, steps, 3)
-    for step in range(1, steps):
-        ended = (strands[:, step] == 0.0).all(axis=1)
-        strands[ended, step] = strands[ended, step - 1]
-    matrix = from_matrix(thing.matrix_world)
-    x, y, z = matrix[:3, :3].T
-    if np.cross(x, y) @ z != 0.0:
-        from_world = inverse(matrix)
-        world = world @ from_world[:3, :3].T + from_world[:3, 3]
-    return world.astype(np.float32), np.full(last - first, steps, dtype=np.int32)
+    return geometry, Strands(sizes, read, points, name, mode)
 
 
 def _radii(settings, hairs):
@@ -144,7 +99,7 @@ def _root_uvs(thing, name, count, mode):
         m for m in thing.modifiers if m.type == "PARTICLE_SYSTEM" and m.particle_system.name == name
     )
     active = next(i for i, layer in enumerate(mesh.uv_layers) if layer.active_render)
-    first, last = _range(system, mode)
+    first, last = particle_range(system, mode)
     parents = len(system.particles)
     values = np.zeros((count, 2), dtype=np.float32)
     for row, particle in enumerate(range(first, last)):

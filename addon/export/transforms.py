@@ -39,12 +39,18 @@ def inverse(matrix):
     By hand: for one small matrix NumPy's wakes LAPACK's threads, which costs milliseconds.
     """
     x, y, z, origin = matrix[:3].T
-    rows = np.array([np.cross(y, z), np.cross(z, x), np.cross(x, y)])
+    rows = np.array([_cross(y, z), _cross(z, x), _cross(x, y)])
     rows /= x @ rows[0]
     found = np.eye(4)
     found[:3, :3] = rows
     found[:3, 3] = -rows @ origin
     return found
+
+
+def _cross(a, b):
+    """As np.cross of two vectors, which takes ten times as long (40 microseconds)."""
+    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
 def is_finite(matrices):

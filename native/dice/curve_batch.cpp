@@ -145,8 +145,8 @@ void CurveBatch::for_each_row(Visit visit) const {
 }
 
 std::unique_ptr<Grid> CurveBatch::dice() const {
-    const int n_v = static_cast<int>(m_rows.size()) - 1;
-    auto grid = m_elements->make_grid(m_batch, m_path, m_across, n_v);
+    auto grid =
+        m_elements->make_grid(m_batch, m_path, static_cast<int>(m_rows.size()) - 1, m_across);
     for_each_row([&](int j, const Row& row, const CurveControl& control) {
         place_row(*grid, j, row, control);
     });
@@ -173,11 +173,10 @@ void CurveBatch::place_row(Grid& grid, int j, const Row& row, const CurveControl
     const auto count = static_cast<std::size_t>(grid.vertex_count());
     for (int k = 0; k < m_elements->knot_count(); ++k) {
         const RibbonRow ribbon = control.row(k, row.t);
-        Vec3f* to = &grid.positions[static_cast<std::size_t>(k) * count +
-                                    static_cast<std::size_t>(j * (grid.n_u + 1))];
-        for (int i = 0; i <= grid.n_u; ++i) {
-            const double u = row.shrunk ? -1.0 : 2.0 * i / grid.n_u - 1.0;
-            to[i] = Vec3f(ribbon.center + ribbon.across * u);
+        Vec3f* to = &grid.positions[static_cast<std::size_t>(k) * count];
+        for (int i = 0; i <= m_across; ++i) {
+            const double u = row.shrunk ? -1.0 : 2.0 * i / m_across - 1.0;
+            to[vertex(grid, i, j)] = Vec3f(ribbon.center + ribbon.across * u);
         }
     }
 }
@@ -192,15 +191,14 @@ void CurveBatch::shade_row(Grid& grid, int j, const Row& row, const CurveControl
         facing += ribbon.facing * weight;
         half += ribbon.across * weight;
     }
-    const double drawn = drawn_in(grid.n_u);
+    const double drawn = drawn_in(m_across);
     const Vec3d front = unit_or(facing, Vec3d(0.0, 0.0, -1.0));
-    for (int i = 0; i <= grid.n_u; ++i) {
-        const double u = 2.0 * i / grid.n_u - 1.0;
+    for (int i = 0; i <= m_across; ++i) {
+        const double u = 2.0 * i / m_across - 1.0;
         const double sine = m_thin ? place_across(i == 0, (j + row.curve) % 2 == 1) : u * drawn;
         const Vec3d normal =
             unit_or(side * sine + front * std::sqrt(std::max(1.0 - sine * sine, 0.0)), front);
-        const auto v = static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.n_u + 1) +
-                       static_cast<std::size_t>(i);
+        const std::size_t v = vertex(grid, i, j);
         grid.normal[v] = Vec3f(normal);
         grid.geometric_normal[v] = Vec3f(front);
         // Rays start off the axis along the normal: an element that faces them is met only where

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Curves as ribbons that face the eye at every knot, many to a primitive.
 //
-// A primitive is a run of neighbouring curves, or a part of one.  Its grid is a ladder: u runs
-// across, v along; from one curve to the next lead rows that have shrunk to a point, so that the
+// A primitive is a run of neighbouring curves, or a part of one.  Its grid is a ladder lying
+// down: u runs along; from one curve to the next lead rows that have shrunk to a point, so that the
 // micropolygons between have no area and the hider leaves them out.
 //
 // Ribbons are flat, their shading normals those of a tube: what Cycles calls rounded ribbons.

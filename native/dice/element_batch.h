@@ -40,6 +40,10 @@ class ElementBatch : public Primitive {
     /// Several elements, of these bounds, that lie too far from each other for one grid: buckets
     /// beside them should not meet them.
     bool scattered(const RasterBounds& bounds) const;
+    /// Of row j, which crosses the elements; `i` counts across.
+    static std::size_t vertex(const Grid& grid, int i, int j) {
+        return static_cast<std::size_t>(i * (grid.n_u + 1) + j);
+    }
     /// Keeps the opened instance alive, and measures.
     void own(std::shared_ptr<const OpenedElements> elements);
 

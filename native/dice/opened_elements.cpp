@@ -81,14 +81,14 @@ int OpenedElements::material(std::size_t batch) const {
         std::clamp<std::int32_t>(slot, 0, static_cast<std::int32_t>(slots.size()) - 1))];
 }
 
-std::unique_ptr<Grid> OpenedElements::make_grid(std::size_t batch, std::uint64_t path, int n_u,
-                                                int n_v) const {
+std::unique_ptr<Grid> OpenedElements::make_grid(std::size_t batch, std::uint64_t path, int along,
+                                                int across) const {
     auto grid = std::make_unique<Grid>();
     grid->key = {m_instance->key, static_cast<std::uint32_t>(batch), path};
     grid->instance = static_cast<std::uint32_t>(m_instance_index);
     grid->material = material(batch);
-    grid->n_u = n_u;
-    grid->n_v = n_v;
+    grid->n_u = along;
+    grid->n_v = across;
     grid->knots = m_knots.count;
     grid->holdout = m_instance->holdout;
     grid->lifespan = m_instance->lifespan;
@@ -119,23 +119,24 @@ void OpenedElements::finish_share(Grid& grid) const {
 
 void OpenedElements::finish_derivatives(Grid& grid, std::span<const ElementPlace> places) const {
     const std::vector<Vec3f>& p = grid.shading_p();
-    const int row = grid.n_u + 1;
     grid.dp_du.resize(p.size());
     grid.dp_dv.resize(p.size());
     const auto joined = [&](int a, int b) {
-        return b >= 0 && b <= grid.n_v &&
+        return b >= 0 && b <= grid.n_u &&
                places[static_cast<std::size_t>(a)].element ==
                    places[static_cast<std::size_t>(b)].element;
     };
+    const auto at = [&](int i, int j) {
+        return p[static_cast<std::size_t>(j * (grid.n_u + 1) + i)];
+    };
     for (int j = 0; j <= grid.n_v; ++j) {
-        const int before = joined(j, j - 1) ? j - 1 : j, after = joined(j, j + 1) ? j + 1 : j;
+        const int low = std::max(j - 1, 0), high = std::min(j + 1, grid.n_v);
         for (int i = 0; i <= grid.n_u; ++i) {
-            const auto at = [&](int x, int y) { return p[static_cast<std::size_t>(y * row + x)]; };
-            const std::size_t v = static_cast<std::size_t>(j * row + i);
-            const int left = std::max(i - 1, 0), right = std::min(i + 1, grid.n_u);
-            grid.dp_du[v] = (at(right, j) - at(left, j)) / static_cast<float>(right - left);
+            const int before = joined(i, i - 1) ? i - 1 : i, after = joined(i, i + 1) ? i + 1 : i;
+            const auto v = static_cast<std::size_t>(j * (grid.n_u + 1) + i);
             if (after > before)
-                grid.dp_dv[v] = (at(i, after) - at(i, before)) / static_cast<float>(after - before);
+                grid.dp_du[v] = (at(after, j) - at(before, j)) / static_cast<float>(after - before);
+            grid.dp_dv[v] = (at(i, high) - at(i, low)) / static_cast<float>(high - low);
         }
     }
 }
@@ -147,27 +148,33 @@ void OpenedElements::finish_attributes(Grid& grid, std::span<const ElementPlace>
         : grid.material < 0      ? m_view->requests.back()
                                  : m_view->requests[static_cast<std::size_t>(grid.material)];
     grid.attributes.resize(requests.size());
-    const std::size_t row = static_cast<std::size_t>(grid.n_u) + 1;
+    const std::size_t lines = static_cast<std::size_t>(grid.n_v) + 1;
     for (std::size_t a = 0; a < requests.size(); ++a) {
         GridAttribute& out = grid.attributes[a];
         const std::size_t width = static_cast<std::size_t>(requests[a].width);
         out.attribute = static_cast<int>(a);
         out.width = requests[a].width;
-        out.values.resize(row * places.size() * width);
-        for (std::size_t j = 0; j < places.size(); ++j) {
-            float* first = &out.values[j * row * width];
-            element_value(*m_shared, requests[a], places[j], first);
-            for (std::size_t i = 1; i < row; ++i) std::copy_n(first, width, first + i * width);
+        // The same in each line along the elements.
+        const std::size_t line = places.size() * width;
+        const auto repeat = [&](std::vector<float>& values) {
+            values.reserve(lines * line);
+            for (std::size_t j = 1; j < lines; ++j)
+                values.insert(values.end(), values.begin(),
+                              values.begin() + static_cast<std::ptrdiff_t>(line));
+        };
+        out.values.resize(line);
+        for (std::size_t i = 0; i < places.size(); ++i)
+            element_value(*m_shared, requests[a], places[i], &out.values[i * width]);
+        if (requests[a].derivatives) {
+            out.du.assign(line, 0.0f);
+            for (std::size_t i = 0; i + 1 < places.size(); ++i)
+                for (std::size_t c = i * width; c < (i + 1) * width; ++c)
+                    if (places[i].element == places[i + 1].element)
+                        out.du[c] = out.values[c + width] - out.values[c];
+            repeat(out.du);
+            out.dv.assign(lines * line, 0.0f);
         }
-        if (!requests[a].derivatives) continue;
-        out.du.assign(out.values.size(), 0.0f);
-        out.dv.assign(out.values.size(), 0.0f);
-        const std::size_t step = row * width;
-        for (std::size_t j = 0; j + 1 < places.size(); ++j)
-            for (std::size_t i = 0; i < step; ++i)
-                if (places[j].element == places[j + 1].element)
-                    out.dv[j * step + i] =
-                        out.values[(j + 1) * step + i] - out.values[j * step + i];
+        repeat(out.values);
     }
 }
 

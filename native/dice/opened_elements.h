@@ -55,12 +55,14 @@ class OpenedElements final : public OpenedInstance,
     int grid_size() const;
 
     /// A grid of this instance for a batch: its identity, material and size; every vertex at every
-    /// knot at the origin.
-    std::unique_ptr<Grid> make_grid(std::size_t batch, std::uint64_t path, int n_u, int n_v) const;
+    /// knot at the origin.  u runs along the elements, one after the other, so that the hider finds
+    /// long rows.
+    std::unique_ptr<Grid> make_grid(std::size_t batch, std::uint64_t path, int along,
+                                    int across) const;
     /// Shading positions, and room for normals and offsets of rays.
     void begin_shading(Grid& grid) const;
-    /// Once these are set: share, derivatives and attributes.  `places` [n_v + 1]; rows of one
-    /// place follow each other along an element.
+    /// Once these are set: share, derivatives and attributes.  `places` [n_u + 1]; those of one
+    /// element follow each other.
     void finish_shading(Grid& grid, std::span<const ElementPlace> places) const;
     /// How much a knot counts at the frame time.
     double frame_weight(int knot) const {

@@ -161,8 +161,8 @@ std::vector<PointBatch::Row> PointBatch::rows() const {
 
 std::unique_ptr<Grid> PointBatch::dice() const {
     const std::vector<Row> all = rows();
-    auto grid = m_elements->make_grid(m_batch, m_path, part().u1 - part().u0,
-                                      static_cast<int>(all.size()) - 1);
+    auto grid = m_elements->make_grid(m_batch, m_path, static_cast<int>(all.size()) - 1,
+                                      part().u1 - part().u0);
     for (std::size_t j = 0; j < all.size(); ++j) place_row(*grid, static_cast<int>(j), all[j]);
     finish_motion(*grid, m_elements->view().projection);
     return grid;
@@ -201,11 +201,10 @@ void PointBatch::place_row(Grid& grid, int j, const Row& row) const {
     const auto count = static_cast<std::size_t>(grid.vertex_count());
     for (int k = 0; k < m_elements->knot_count(); ++k) {
         const Vertex sphere(*m_elements, m_elements->point(k, row.point));
-        Vec3f* to = &grid.positions[static_cast<std::size_t>(k) * count +
-                                    static_cast<std::size_t>(j * (grid.n_u + 1))];
-        for (int i = 0; i <= grid.n_u; ++i) {
+        Vec3f* to = &grid.positions[static_cast<std::size_t>(k) * count];
+        for (int i = 0; i <= grid.n_v; ++i) {
             const Vec2d at = lateral(row, i, row.swell());
-            to[i] = Vec3f(sphere.at(at.x, at.y));
+            to[vertex(grid, i, j)] = Vec3f(sphere.at(at.x, at.y));
         }
     }
 }
@@ -217,7 +216,7 @@ void PointBatch::shade_row(Grid& grid, int j, const Row& row) const {
     const double drawn_in =
         1.0 / std::sqrt(1.0 + 1.0 / (static_cast<double>(m_longitudes) * m_longitudes));
     const Vec3d towards(0.0, 0.0, -1.0);
-    for (int i = 0; i <= grid.n_u; ++i) {
+    for (int i = 0; i <= grid.n_v; ++i) {
         const Vec2d on_sphere = lateral(row, i, 1.0), drawn = lateral(row, i, row.swell());
         Vec3d normal(0.0), geometric_normal(0.0), offset(0.0);
         for (int k = 0; k < m_elements->knot_count(); ++k) {
@@ -234,10 +233,10 @@ void PointBatch::shade_row(Grid& grid, int j, const Row& row) const {
             const Vec3d surface = flat ? sphere.to_eye : sphere.offset(on_sphere.x, on_sphere.y);
             geometric_normal += unit_or(surface, sphere.to_eye) * weight;
         }
-        const auto vertex = static_cast<std::size_t>(j * (grid.n_u + 1) + i);
-        grid.normal[vertex] = Vec3f(unit_or(normal, towards));
-        grid.geometric_normal[vertex] = Vec3f(unit_or(geometric_normal, towards));
-        grid.ray_offset[vertex] = Vec3f(offset);
+        const std::size_t at = vertex(grid, i, j);
+        grid.normal[at] = Vec3f(unit_or(normal, towards));
+        grid.geometric_normal[at] = Vec3f(unit_or(geometric_normal, towards));
+        grid.ray_offset[at] = Vec3f(offset);
     }
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Points as spheres, many to a primitive: of each the half that the eye sees, as a grid of
-// latitudes (v) and longitudes (u) whose outline is the sphere's, at every knot.  Its poles lie on
-// the outline, and the row there is a point: micropolygons from one pole to the next sphere's have
-// no area, the hider leaves them out.  A sphere of a pixel is a flat polygon of its area.
+// latitudes (along) and longitudes (across) whose outline is the sphere's, at every knot.  Its
+// poles lie on the outline, and the row there is a point: micropolygons from one pole to the next
+// sphere's have no area, the hider leaves them out.  A sphere of a pixel is a flat polygon of its
+// area.
 #pragma once
 
 #include <memory>

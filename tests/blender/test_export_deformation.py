@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scene_parts
 from export_probe import geometry_of
-from hair_parts import grid_points, spiral_curves
+from hair_parts import furry, grid_points, spiral_curves
 from motion_parts import drive, on_every_step, shape_key, with_shutter, xs
 from node_parts import with_nodes
 
@@ -234,3 +234,45 @@ def test_equal_counts_of_other_faces_do_not_smear(moving):
     snapshot, report, _ = export_probe.through_engine(moving)
     assert geometry_of(snapshot, "Host")["points"].shape == (1, 4, 3)
     assert [(d, "topology" in m) for d, m, _ in report.entries()] == [("mesh 'Host'", True)]
+
+
+def hair_points(snapshot):
+    (hair,) = [g for g in snapshot["geometries"] if g["kind"] == "CURVES"]
+    return hair["points"]
+
+
+@pytest.mark.parametrize("children", [{}, {"child_type": "SIMPLE", "rendered_child_count": 5}])
+def test_hair_goes_along_with_its_emitter(moving, children):
+    thing = furry(moving, brownian_factor=0.1, **children)
+    thing.rotation_euler[2], thing.location[0] = 0.3, 40.0
+    drive(thing, "rotation_euler", "frame", 1)
+    snapshot, _, _ = export_probe.through_engine(moving)
+    (points,) = hair_points(snapshot)
+    assert len(points) == 60 * (5 if children else 1) * 9
+    assert len(np.unique(export_probe.knots_of(snapshot, thing.name), axis=0)) > 2
+
+
+def test_hair_that_shrinks_deforms(moving):
+    thing = furry(moving, child_type="SIMPLE", rendered_child_count=5)
+    drive(thing, "rotation_euler", "frame / 10", 1)
+    drive(thing.particle_systems[0].settings, "child_length", "1 - frame / 100")
+    snapshot, _, _ = export_probe.through_engine(moving)
+    points = hair_points(snapshot)
+    tips = points.reshape(len(points), 300, 9, 3)[:, :, -1, 2]
+    assert (np.diff(tips, axis=0) < -0.001).all()
+
+
+def test_few_hairs_of_many_that_deform(moving):
+    """A fiftieth of the emitter rises; the other hairs stay."""
+    thing = furry(moving, count=500)
+    thing.data.clear_geometry()
+    corners = [(-1, -1), (1, -1), (1, 1), (-1, 1), (2, 0), (2.28, 0), (2.28, 0.28), (2, 0.28)]
+    thing.data.from_pydata([(*c, 0.0) for c in corners], [], [(0, 1, 2, 3), (4, 5, 6, 7)])
+    key = shape_key(thing, lift=0.0)
+    for point in list(key.data)[4:]:
+        point.co.z += 1.0
+    drive(key, "value", "frame / 20")
+    snapshot, _, _ = export_probe.through_engine(moving)
+    points = hair_points(snapshot)
+    rises = points[-1][:, 2] - points[0][:, 2] > 0.02
+    assert 0.0 < rises.mean() < 0.05
