@@ -7,6 +7,7 @@ import zlib
 import numpy as np
 
 COLORS = ["#1b6ca8", "#c8452d", "#3a8f4d", "#8a5ca8"]
+MOST_DOTS = 40  # on a curve; a longer one is a line alone
 
 
 def display(picture, background=0.05):
@@ -53,11 +54,15 @@ def ticks(low, high):
     return np.arange(np.ceil(low / step), high / step + 1e-9) * step
 
 
-def write_curves(path, title, x_name, y_name, curves):
-    """Straight lines through points from the origin's axes; curves: {name: (x, y)}."""
+def write_curves(path, title, x_name, y_name, curves, room=1.05):
+    """Straight lines through points from the origin's axes; curves: {name: (x, y)}.
+
+    Args:
+        room: the axis of y, in highest values; the names stand in its upper left corner.
+    """
     width, height, left, bottom, top = 460, 300, 60, 44, 30
     x_high = max(max(x) for x, _ in curves.values())
-    y_high = 1.05 * max(max(y) for _, y in curves.values())
+    y_high = room * max(max(y) for _, y in curves.values())
 
     def place(x, y):
         return (
@@ -91,6 +96,7 @@ def write_curves(path, title, x_name, y_name, curves):
         points = [place(a, b) for a, b in zip(x, y)]
         line = " ".join(f"{a:.1f},{b:.1f}" for a, b in points)
         out += [f'<polyline points="{line}" fill="none" stroke="{color}" stroke-width="2"/>']
-        out += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3" fill="{color}"/>' for a, b in points]
+        dots = points if len(points) <= MOST_DOTS else []
+        out += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3" fill="{color}"/>' for a, b in dots]
         out += [text(left + 14, top + 14 + 15 * i, name, "start", f' fill="{color}"')]
     path.write_text("\n".join([*out, "</svg>\n"]))

@@ -22,16 +22,24 @@ CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "granit
 SEEDS = (1, 2, 3, 4)  # of the reference; what is measured has 0
 
 
+def run_in_blender(script, argument, python=None):
+    """Runs a script of this folder inside Blender, or inside a Python that has Blender as a module."""
+    if python is None:
+        command = ["blender", "-b", "--factory-startup", "--addons", "granita"]
+        command += ["--python-exit-code", "1", "--python", str(HERE / script)]
+    else:
+        command = [python, str(HERE.parent / "tools" / "bpy_host.py"), str(HERE / script)]
+    done = subprocess.run([*command, "--", str(argument)], capture_output=True, text=True)
+    if done.returncode:
+        raise RuntimeError(done.stdout[-3000:] + done.stderr[-3000:])
+
+
 def render(job, clock="processor"):
     """Runs a job (render_frames.py); returns for each setting (image, median seconds)."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "job.json"
         file.write_text(json.dumps({**job, "folder": folder}))
-        command = ["blender", "-b", "--factory-startup", "--addons", "granita"]
-        command += ["--python-exit-code", "1", "--python", str(HERE / "render_frames.py")]
-        done = subprocess.run([*command, "--", str(file)], capture_output=True, text=True)
-        if done.returncode:
-            raise RuntimeError(done.stdout[-3000:] + done.stderr[-3000:])
+        run_in_blender("render_frames.py", file)
         column = {"wall": 0, "processor": 1}[clock]
         seconds = json.loads((Path(folder) / "seconds.json").read_text())
         return [

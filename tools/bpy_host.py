@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run a script under Blender as a Python module, the add-on enabled: bpy_host.py SCRIPT [ARG]...
 
-Blender's leak detector runs when the module is torn down; an engine class that is still registered
-or still chosen by a scene then prints thousands of lines and may hang, so both are undone before.
+Ends with the script's exit code.  The add-on is disabled before: Blender's leak detector prints thousands of lines for an
+engine class that is still registered or still chosen by a scene.  Blender itself is not torn down: 4.2 crashes then, and 4.5
+waits for ever for a thread of its own that closes files.
 """
 
 import atexit
+import os
 import runpy
 import sys
+import traceback
 
 import bpy  # isort: skip  (first: Blender's own modules are found through it)
 import addon_utils
@@ -21,14 +24,36 @@ def release_engine() -> None:
     addon_utils.disable("granita")
 
 
-def main() -> None:
+def run(script: str) -> int:
+    """Its exit code."""
+    try:
+        runpy.run_path(script, run_name="__main__")
+    except SystemExit as end:
+        if end.code is not None and not isinstance(end.code, int):
+            print(end.code, file=sys.stderr)
+            return 1
+        return end.code or 0
+    except BaseException:
+        traceback.print_exc()
+        return 1
+    return 0
+
+
+def main() -> int:
     if len(sys.argv) < 2:
-        sys.exit("usage: bpy_host.py SCRIPT [ARG]...")
+        print("usage: bpy_host.py SCRIPT [ARG]...", file=sys.stderr)
+        return 1
     if addon_utils.enable("granita") is None:
-        sys.exit("the add-on does not register")
-    atexit.register(release_engine)
+        print("the add-on does not register", file=sys.stderr)
+        return 1
     del sys.argv[0]
-    runpy.run_path(sys.argv[0], run_name="__main__")
+    code = run(sys.argv[0])
+    release_engine()
+    return code
 
 
-main()
+code = main()
+atexit._run_exitfuncs()
+sys.stdout.flush()
+sys.stderr.flush()
+os._exit(code)

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Memory over the frames of one rendered animation, with and without Persistent Data.
+
+    ./dev bench memory_curve [--frames 300] [--python PYTHON]
+
+PYTHON: one that has Blender as a module, instead of the `blender` that is installed.  The heap's slope is taken after the
+first fifty frames; what is resident goes up and down with what the allocator gives back, so its highest fifties are
+compared.  Prints a Markdown table, writes bench/results/memory_curve.json and draws docs/memory_curve.svg.
+"""
+
+import argparse
+import json
+import tempfile
+from pathlib import Path
+
+import figure_files
+import frames
+import measure
+import numpy as np
+from weak_cases import RESULTS
+
+ROOT = Path(__file__).resolve().parent.parent
+WARM_UP = 50  # frames
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--frames", type=int, default=300)
+    parser.add_argument("--python")
+    options = parser.parse_args()
+    table, curves = measure.Table(), {}
+    table.header()
+    for persistent in (False, True):
+        with tempfile.TemporaryDirectory() as folder:
+            job, file = Path(folder) / "job.json", Path(folder) / "bytes.json"
+            how = {"frames": options.frames, "persistent": persistent, "file": str(file)}
+            job.write_text(json.dumps(how))
+            frames.run_in_blender("render_animation.py", job, options.python)
+            taken = json.loads(file.read_text())
+        for kind, values in taken.items():
+            if not values:
+                continue
+            name = kind + (", persistent data" if persistent else "")
+            number = np.arange(1, len(values) + 1)
+            if kind == "heap":
+                slope = np.polyfit(number[WARM_UP:], values[WARM_UP:], 1)[0] / 1e3
+                table.row(f"{name}: KB a frame, of {values[-1] / 1e6:.0f} MB", slope, 20.0)
+            else:
+                early, late = max(values[WARM_UP : 2 * WARM_UP]), max(values[-WARM_UP:])
+                table.row(
+                    f"{name}: last {WARM_UP} frames over the second {WARM_UP}", late / early, 1.05
+                )
+            curves[name] = (number.tolist(), (np.array(values) / 1e6).tolist())
+    RESULTS.mkdir(exist_ok=True)
+    (RESULTS / "memory_curve.json").write_text(json.dumps(table.rows, indent=1) + "\n")
+    title = "Memory after each frame of an animation"
+    file = ROOT / "docs" / "memory_curve.svg"
+    figure_files.write_curves(file, title, "frame", "MB", curves, room=1.4)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders an animation and notes the process's memory after each frame.  Runs inside Blender, for memory_curve.py.
+
+    blender -b --factory-startup --addons granita --python bench/render_animation.py -- JOB.json
+
+JOB: {"file", "frames", "persistent"}.  The file gets {"resident": [bytes a frame], "heap": [bytes a frame]}; "heap", exact,
+is empty where the allocator cannot be asked.
+"""
+
+import json
+import os
+import sys
+from pathlib import Path
+
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "blender"))
+import scene_parts  # noqa: E402
+from heap import heap_bytes  # noqa: E402
+from motion_parts import drive, shape_key, with_shutter  # noqa: E402
+
+
+def resident_bytes():
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def moving_scene():
+    """Things of each kind in motion: a turning and deforming one, instances, a subdivided one, hair, the camera."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    scene = with_shutter(bpy.context.scene)
+    scene.render.engine = "GRANITA"
+    scene.render.resolution_x, scene.render.resolution_y = 96, 64
+    scene.granita.samples = 16
+    square = scene_parts.add_square(scene, material=scene_parts.emission("Glow", (1.0, 0.5, 0.2)))
+    drive(square, "rotation_euler", "frame", 2)
+    drive(shape_key(square), "value", "frame / 300")
+    part = bpy.data.collections.new("Part")
+    part.objects.link(square)
+    place = scene_parts.add_object(scene, "Place", None)
+    place.instance_type, place.instance_collection = "COLLECTION", part
+    drive(place, "location", "sin(frame)", 0)
+    round_one = scene_parts.add_square(scene, "Round", 3.0, (0.0, 0.0, -1.0))
+    round_one.modifiers.new("Subdivision", "SUBSURF").render_levels = 2
+    round_one.modifiers.new("Hair", "PARTICLE_SYSTEM")
+    settings = round_one.particle_systems[0].settings
+    settings.type, settings.count, settings.hair_length = "HAIR", 200, 0.5
+    drive(round_one, "rotation_euler", "frame / 9", 0)
+    drive(scene.camera, "location", "sin(frame / 5)", 1)
+    sun = scene_parts.add_object(scene, "Sun", bpy.data.lights.new("Sun", "SUN"), (0, 0, 5))
+    sun.data.energy = 2.0
+    return scene
+
+
+def main():
+    job = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
+    scene = moving_scene()
+    scene.render.use_persistent_data = job["persistent"]
+    scene.frame_start, scene.frame_end = 1, job["frames"]
+    scene.render.filepath = str(Path(job["file"]).with_name("frame_"))
+    taken = {"resident": [], "heap": []}
+
+    def note(*_):
+        taken["resident"].append(resident_bytes())
+        heap = heap_bytes()
+        taken["heap"] += [] if heap is None else [heap]
+
+    bpy.app.handlers.render_post.append(note)
+    bpy.ops.render.render(animation=True)
+    Path(job["file"]).write_text(json.dumps(taken))
+
+
+main()
