@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "math/least_circle.h"
+
 namespace granita {
 namespace {
 
@@ -98,23 +100,10 @@ EdgeRate::Blur EdgeRate::blur(const Vec3f* start, const Vec3f* middle, const Vec
         }
     }
     if (!defocused) return blur;
-    double smallest = std::numeric_limits<double>::infinity();
-    bool before = false, behind = false;
+    LeastCircle circle(m_projection);
     for (int k = 0; k < knots; ++k)
-        for (const Vec3f& p : {start[k], middle[k], end[k]}) {
-            const double z = p.z;
-            if (m_projection.perspective && !(z >= m_near)) return blur;
-            const double w = m_projection.perspective ? 1.0 / z : 1.0;
-            for (const double focus : {m_projection.focus, m_projection.farthest_focus()}) {
-                const double shear = z / focus - 1.0;
-                (shear < 0.0 ? before : behind) = true;
-                smallest = std::min(smallest, std::abs(shear) * w);
-            }
-        }
-    if (before && behind) return blur;
-    const double narrowest = m_projection.lens_radius - m_projection.lens_closing;
-    const double diameter = 2.0 * smallest * narrowest * std::min(scale.x, scale.y);
-    blur.all = std::max(1.0, diameter * m_focus_factor / kBlurSteps);
+        for (const Vec3f& p : {start[k], middle[k], end[k]}) circle.add(p.z);
+    blur.all = std::max(1.0, circle.diameter() * m_focus_factor / kBlurSteps);
     return blur;
 }
 

@@ -10,7 +10,10 @@
 namespace granita {
 namespace {
 
-bool stands_still(const Scene& scene, const Instance& instance) {
+/// In the world; part of a mesh that deforms may.
+bool stands_still(const Scene& scene, const Grid& grid) {
+    if (grid.knots == 1 && is_static(scene.camera.world_from_camera)) return true;
+    const Instance& instance = scene.instances[grid.instance];
     return scene.geometries[static_cast<std::size_t>(instance.geometry)].knots == 1 &&
            is_static(instance.world_from_object);
 }
@@ -71,7 +74,7 @@ Vec3f normal_at(const Grid& grid, const std::vector<Vec3f>& places, std::size_t 
 
 PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints& points)
     : m_lifespan(grid.lifespan) {
-    if (stands_still(scene, scene.instances[grid.instance])) return;
+    if (stands_still(scene, grid)) return;
     // What moves with the camera has one knot in its space: the camera's own count too.
     const auto& camera = scene.camera.world_from_camera;
     const int segments = static_cast<int>(

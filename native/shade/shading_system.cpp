@@ -5,6 +5,7 @@
 
 #include "shade/direct_light.h"
 #include "shade/grid_channels.h"
+#include "shade/light_share.h"
 #include "shade/node_compiler.h"
 #include "shade/shading_points.h"
 #include "shade/shadow_transparency.h"
@@ -66,6 +67,7 @@ struct ShadingSystem::Impl {
     Statistics& statistics;
     TextureStore textures;
     ShadingCamera camera;
+    ShutterWarp shutter;
     ChannelSet channels;
     std::vector<CompiledSurface> materials;  ///< [materials + 1]
     std::vector<std::vector<AttributeRequest>> requests;
@@ -74,7 +76,12 @@ struct ShadingSystem::Impl {
     std::unique_ptr<DirectLight> light;
 
     Impl(const Scene& s, Statistics& stats, Report& report, const Progress& progress)
-        : scene(s), statistics(stats), textures(s, stats, report), camera(s), channels(s.options) {
+        : scene(s),
+          statistics(stats),
+          textures(s, stats, report),
+          camera(s),
+          shutter(s.options.shutter_curve),
+          channels(s.options) {
         const ChannelSet* passes = channels.empty() ? nullptr : &channels;
         for (const Material& material : scene.materials) {
             progress.check();
@@ -196,7 +203,8 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 
 void ShadingSystem::shade_radiance(Grid& grid) const {
     const CompiledSurface& material = m_impl->material(grid.material);
-    const ShadingPoints points = shading_points(grid, m_impl->camera);
+    ShadingPoints points = shading_points(grid, m_impl->camera);
+    points.share *= light_share(grid, m_impl->scene.camera.projection, m_impl->shutter);
     const ShadingInput input = m_impl->input(grid, points);
     const SurfaceProgram& surface = material.radiance;
     Run run = surface.program.prepare(input, points.count);

@@ -166,3 +166,40 @@ def test_what_leaves_the_frame_is_diced_for_what_is_seen_of_it(way):
     # The frame sees several times as much of the scene, and no pixel is finer than its own edges of squares.
     assert points < 5 * still_points
     assert error < still_error / 2
+
+
+@pytest.mark.parametrize("blurred", ["motion", "lens"])
+def test_blur_spares_light_samples_that_it_averages(blurred):
+    """A wall in the penumbra of a lath, which only shadow rays see."""
+
+    def render(light_samples, **camera):
+        snapshot = s.perspective(
+            (64, 64), 100.0, executor="SIMD", samples=256, light_samples=light_samples
+        )
+        snapshot["camera"].update(camera)
+        lamp = {"name": "Lamp", "kind": "AREA", "energy": 500.0, "size": (2.0, 2.0)}
+        lamp["world_from_light"] = np.diag([1.0, -1.0, -1.0, 1.0])[None]
+        snapshot["lights"] = [lamp]
+        s.quad(snapshot, s.rectangle(-9, -9, 9, 9, 4))
+        s.quad(snapshot, s.rectangle(-9, -0.3, 9, 0.3, 2.0))
+        snapshot["instances"]["flags"] = [3, 2]
+        result = s.render(snapshot)
+        return result["combined"][..., 0], result["statistics"]["rays_shadow"]
+
+    def noise(**camera):
+        (coarse, rays), (fine, _) = render(16, **camera), render(1024, **camera)
+        error = coarse - fine
+        return error.std(), error.reshape(16, 4, 16, 4).mean((1, 3)).std(), rays
+
+    blurs = {
+        # 20 pixels.
+        "motion": {"world_from_camera": np.array([s.translation(x) for x in (-0.4, 0.4)])},
+        # A circle of confusion of 12 pixels.
+        "lens": {"lens_radius": 0.48, "focus_distance": 2.0},
+    }
+    pixel, square, rays = noise(**blurs[blurred])
+    still_pixel, still_square, still_rays = noise()
+    assert rays < 0.5 * still_rays
+    assert pixel < still_pixel
+    # As designed; one picture's noise of 256 such means is known to a twelfth or so.
+    assert square < 1.3 * still_square

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/light_share.h"
+
+#include <gtest/gtest.h>
+
+namespace granita {
+namespace {
+
+Projection pixels() {
+    Projection projection;
+    projection.perspective = false;
+    return projection;
+}
+
+/// A lattice of one micropolygon, a pixel wide, whose corners go from 0 by `ways[knot][corner]`.
+Grid grid_with(const std::vector<std::array<Vec2f, 4>>& ways) {
+    constexpr Vec2f kCorners[4] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+    Grid grid;
+    grid.n_u = grid.n_v = 1;
+    grid.knots = static_cast<int>(ways.size());
+    grid.motion = grid.knots > 1;
+    for (const auto& way : ways)
+        for (std::size_t v = 0; v < 4; ++v) grid.positions.emplace_back(kCorners[v] + way[v], 5.0f);
+    return grid;
+}
+
+/// All corners at the same places.
+Grid moved(const std::vector<Vec2f>& places) {
+    std::vector<std::array<Vec2f, 4>> ways;
+    for (const Vec2f& place : places) ways.push_back({place, place, place, place});
+    return grid_with(ways);
+}
+
+/// Of the variance: the error of n stratified samples falls as 1 / n.
+float share(const Grid& grid, const Projection& projection = pixels(),
+            const std::vector<float>& curve = {}) {
+    const float samples = light_share(grid, projection, ShutterWarp(curve));
+    return samples * samples;
+}
+
+/// 4 times the integral of the squared convolution of boxes of 4 and `length`, summed.
+double integrated(double length) {
+    constexpr int kSteps = 200000;
+    const double wide = std::max(4.0, length), half = 0.5 * (4.0 + length),
+                 step = 2 * half / kSteps;
+    double sum = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double x = std::abs((i + 0.5) * step - half);
+        const double overlap = std::min({4.0, length, half - x});
+        sum += overlap * overlap / (4.0 * length * 4.0 * length) * step;
+    }
+    EXPECT_LE(sum * wide, 1.0 + 1e-6);
+    return 4.0 * sum;
+}
+
+TEST(LightShareTest, is_what_keeps_the_variance_of_the_mean_over_four_pixels) {
+    for (const float length : {1.0f, 3.0f, 5.0f, 16.0f, 60.0f})
+        EXPECT_NEAR(share(moved({{0, 0}, {0.6f * length, 0.8f * length}})), integrated(length),
+                    1e-4)
+            << length;
+}
+
+TEST(LightShareTest, what_stands_still_has_all_of_it) {
+    EXPECT_EQ(share(moved({{0, 0}})), 1.0f);
+    EXPECT_EQ(share(moved({{0, 0}, {0, 0}})), 1.0f);
+}
+
+TEST(LightShareTest, the_least_blurred_vertex_decides) {
+    const std::array<Vec2f, 4> rest{}, turned{Vec2f(0), Vec2f(20, 0), Vec2f(20, 0), Vec2f(40, 0)};
+    EXPECT_EQ(share(grid_with({rest, turned})), 1.0f);
+}
+
+TEST(LightShareTest, blur_counts_while_light_arrives) {
+    const std::vector<Vec2f> stop = {{0, 0}, {0, 0}, {0, 0}, {0, 0}, {40, 0}};
+    EXPECT_EQ(share(moved(stop)), 1.0f);  // still for three quarters of the time
+    const std::vector<Vec2f> way = {{0, 0}, {40, 0}};
+    // Half of the light of an opening that falls to 0 arrives before 1 - sqrt(1/2), a quarter
+    // before 1 - sqrt(3/4) and before 1/2 three.
+    const double seen = 2.0 * 40.0 * (0.5 - (1.0 - std::sqrt(0.75)));
+    EXPECT_NEAR(share(moved(way), pixels(), {1.0f, 0.0f}), integrated(seen), 1e-3);
+    Grid brief = moved(way);
+    brief.lifespan = {0.2f, 0.4f};
+    EXPECT_EQ(share(brief), 1.0f);
+}
+
+TEST(LightShareTest, a_point_that_stands_for_more_pixels_has_more_of_it) {
+    Grid grid = moved({{0, 0}, {40, 0}});
+    for (Vec3f& p : grid.positions) p.x = p.x < 20 ? 8 * p.x : 40 + 8 * (p.x - 40);
+    // Eight square pixels and four points.
+    EXPECT_NEAR(share(grid), 2.0 * integrated(40), 1e-4);
+}
+
+TEST(LightShareTest, a_lens_blurs_both_ways) {
+    Projection lens = pixels();
+    lens.lens_radius = 12.0;
+    lens.focus = 10.0;  // at 5 metres the circle is 12 pixels wide
+    const double side = integrated(12.0 * std::sqrt(M_PI) / 2.0);
+    EXPECT_NEAR(share(moved({{0, 0}}), lens), side * side, 1e-4);
+    lens.focus = 5.0;
+    EXPECT_EQ(share(moved({{0, 0}}), lens), 1.0f);
+}
+
+}  // namespace
+}  // namespace granita
