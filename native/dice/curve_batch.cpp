@@ -50,40 +50,46 @@ double CurveBatch::end_of(std::uint32_t curve) const {
     return static_cast<double>(m_elements->shared().point_count(curve) - 1);
 }
 
+/// Of the part that is this batch's.
+CurveBatch::Measures CurveBatch::measures(std::uint32_t curve, bool with_ends) const {
+    static thread_local CurveControl control;  // kept for its memory
+    const double lo = start(), hi = end(curve);
+    control.gather(*m_elements, curve, lo, hi);
+    Measures measures{control.swept_box(lo, hi), control.width_pixels(), {}};
+    if (with_ends)
+        control.steps(lo, hi, static_cast<std::size_t>(m_elements->grid_size()), measures.ends);
+    return measures;
+}
+
 RasterBounds CurveBatch::bounds() const {
     Bounds3f box;
-    CurveControl control;
-    for (std::size_t i = m_first; i < m_first + m_count; ++i) {
-        control.gather(*m_elements, element(i), start(), end(element(i)));
-        box.add(control.swept_box(start(), end(element(i))));
-    }
+    for (std::size_t i = 0; i < m_count; ++i)
+        box.add(m_measures ? measured(i).box : measures(element(m_first + i), false).box);
     return raster_bounds(box);
 }
 
 void CurveBatch::measure() {
-    // Gathered once for all questions; kept for its memory.
-    static thread_local Controls controls;
-    if (controls.size() < m_count) controls.resize(m_count);
-    Bounds3f box;
-    for (std::size_t i = 0; i < m_count; ++i) {
-        const std::uint32_t curve = element(m_first + i);
-        controls[i].gather(*m_elements, curve, start(), end(curve));
-        if (m_count > 1) box.add(controls[i].swept_box(0.0, end(curve)));
+    if (!m_measures || is_part()) {
+        auto all = std::make_shared<std::vector<Measures>>();
+        for (std::size_t i = 0; i < m_count; ++i)
+            all->push_back(measures(element(m_first + i), true));
+        m_measures = std::move(all);
+        m_first_measured = m_first;
     }
-    if (!find_across(controls) || scattered(raster_bounds(box))) {
+    if (!find_across() || scattered(bounds())) {
         m_across = 0;
         return;
     }
-    m_diceable = find_rows(controls, static_cast<std::size_t>(m_elements->grid_size() / m_across));
+    m_diceable = find_rows(static_cast<std::size_t>(m_elements->grid_size() / m_across));
     if (!m_diceable && m_count > 1) m_across = 0;
 }
 
 /// Of whole curves, so that all parts of one agree: it is known before one is split.  False: they
 /// cannot share a grid.
-bool CurveBatch::find_across(const Controls& controls) {
+bool CurveBatch::find_across() {
     if (m_across > 0) return true;
     double width = 0.0;
-    for (std::size_t i = 0; i < m_count; ++i) width = std::max(width, controls[i].width_pixels());
+    for (std::size_t i = 0; i < m_count; ++i) width = std::max(width, measured(i).width);
     m_thin = width <= kThin;
     m_across = 1;
     while (m_across < std::min(kMostAcross, m_elements->grid_size() / 2) &&
@@ -94,24 +100,21 @@ bool CurveBatch::find_across(const Controls& controls) {
 }
 
 /// False: more than `most` steps.
-bool CurveBatch::find_rows(const Controls& controls, std::size_t most) {
-    std::vector<double> ends;
+bool CurveBatch::find_rows(std::size_t most) {
+    std::size_t steps = 3 * (m_count - 1);  // from each curve to the next
+    for (std::size_t i = 0; i < m_count; ++i) steps += measured(i).ends.size();
+    if (steps > most) return false;
+    m_rows.reserve(steps + 1);
     for (std::size_t i = 0; i < m_count; ++i) {
         const std::uint32_t c = element(m_first + i);
-        const double lo = start(), hi = end(c);
+        const double lo = start();
         if (i > 0) {
             const Row last = m_rows.back();
             m_rows.push_back({last.curve, last.t, true});
             m_rows.push_back({c, lo, true});
         }
         m_rows.push_back({c, lo, false});
-        ends.clear();
-        controls[i].steps(lo, hi, most, ends);
-        for (const double end : ends) m_rows.push_back({c, end, false});
-        if (m_rows.size() - 1 > most) {
-            m_rows = {};
-            return false;
-        }
+        for (const double end : measured(i).ends) m_rows.push_back({c, end, false});
     }
     return true;
 }
@@ -125,6 +128,8 @@ std::unique_ptr<ElementBatch> CurveBatch::child() const {
     child->m_thin = m_thin;
     child->m_lo = m_lo;
     child->m_hi = m_hi;
+    child->m_measures = m_measures;
+    child->m_first_measured = m_first_measured;
     return child;
 }
 
@@ -155,7 +160,9 @@ std::unique_ptr<Grid> CurveBatch::dice() const {
 }
 
 std::shared_ptr<const ElementBatch> CurveBatch::copy() const {
-    return std::make_shared<CurveBatch>(*this);
+    auto copy = std::make_shared<CurveBatch>(*this);
+    copy->m_measures.reset();
+    return copy;
 }
 
 void CurveBatch::fill_shading_state(Grid& grid) const {

@@ -40,21 +40,31 @@ class CurveBatch final : public ElementBatch {
         bool shrunk = false;  ///< to its left end
     };
 
-    /// [m_count] of this batch's curves, or of the part of one.
-    using Controls = std::vector<CurveControl>;
-    bool find_across(const Controls& controls);
-    bool find_rows(const Controls& controls, std::size_t most);
-    double end_of(std::uint32_t curve) const;
-    double start() const { return m_count == 1 ? m_lo : 0.0; }
-    double end(std::uint32_t curve) const {
-        return m_count == 1 && m_hi > 0.0 ? m_hi : end_of(curve);
+    /// A curve's, or of the part of one.
+    struct Measures {
+        Bounds3f box;              ///< swept
+        double width = 0.0;        ///< pixels, the largest
+        std::vector<double> ends;  ///< of the steps that dice it; more than a grid holds: too many
+    };
+    Measures measures(std::uint32_t curve, bool with_ends) const;
+    const Measures& measured(std::size_t i) const {
+        return (*m_measures)[m_first - m_first_measured + i];
     }
+    bool find_across();
+    bool find_rows(std::size_t most);
+    double end_of(std::uint32_t curve) const;
+    bool is_part() const { return m_lo > 0.0 || m_hi > 0.0; }
+    double start() const { return m_lo; }
+    double end(std::uint32_t curve) const { return m_hi > 0.0 ? m_hi : end_of(curve); }
     /// visit(j, row, the curve's control points) for every row.
     template <class Visit>
     void for_each_row(Visit visit) const;
     void place_row(Grid& grid, int j, const Row& row, const CurveControl& control) const;
     void shade_row(Grid& grid, int j, const Row& row, const CurveControl& control) const;
 
+    /// Of the curves of the batch that this one was cut from, made once for all that are cut.
+    std::shared_ptr<const std::vector<Measures>> m_measures;
+    std::size_t m_first_measured = 0;
     double m_lo = 0.0, m_hi = 0.0;  ///< of a single curve; m_hi 0: to its end
     int m_across = 0;               ///< micropolygons across; 0 = not yet known
     bool m_thin = false;            ///< its rows share places of normals

@@ -49,9 +49,13 @@ void CurveControl::gather(const OpenedElements& elements, std::uint32_t curve, d
     m_count = std::min(static_cast<int>(std::floor(hi)) + 4, n) - m_first;
     const std::size_t first = shared.first_point(curve) + static_cast<std::size_t>(m_first);
     m_points.clear();
+    m_width = 0.0;
     for (int k = 0; k < elements.knot_count(); ++k)
-        for (int i = 0; i < m_count; ++i)
-            m_points.push_back(elements.point(k, first + static_cast<std::size_t>(i)));
+        for (int i = 0; i < m_count; ++i) {
+            const ElementPoint& point =
+                m_points.emplace_back(elements.point(k, first + static_cast<std::size_t>(i)));
+            m_width = std::max(m_width, elements.pixels(point.p, 2.0 * point.radius));
+        }
 }
 
 CurveControl::Span CurveControl::span(int knot, double t) const {
@@ -151,13 +155,6 @@ Bounds3f CurveControl::swept_box(double lo, double hi) const {
     return box;
 }
 
-double CurveControl::width_pixels() const {
-    double width = 0.0;
-    for (const ElementPoint& point : m_points)
-        width = std::max(width, m_elements->pixels(point.p, 2.0 * point.radius));
-    return width;
-}
-
 double CurveControl::polygon_length(int knot, double lo, double hi) const {
     double length = 0.0;
     Vec3d from = at(knot, lo).p;
@@ -191,7 +188,9 @@ void CurveControl::steps(double lo, double hi, std::size_t most, std::vector<dou
             end[k] = Vec3f(q);
         }
     }
-    const int levels = m_elements->rate().levels(start, middle, end, knots, budget);
+    // Of several segments it is not known how they bend.
+    const EdgeRate& rate = several ? m_elements->rate() : m_elements->rate_along(m_width);
+    const int levels = rate.levels(start, middle, end, knots, budget);
     if (levels == 0) {
         ends.push_back(hi);
     } else if (levels == EdgeRate::kAdaptive || several) {

@@ -33,7 +33,7 @@ class CurveControl {
     /// Over all knots of the curve's part [lo, hi], its width included.
     Bounds3f swept_box(double lo, double hi) const;
     /// Of its points, the largest width at any knot, pixels.
-    double width_pixels() const;
+    double width_pixels() const { return m_width; }
     /// Appends the ends of the steps that dice [lo, hi], until there are more than `most`.
     void steps(double lo, double hi, std::size_t most, std::vector<double>& ends) const;
 
@@ -53,6 +53,7 @@ class CurveControl {
 
     const OpenedElements* m_elements = nullptr;
     std::uint32_t m_curve = 0;
+    double m_width = 0.0;
     int m_segments = 0, m_first = 0, m_count = 0;
     std::vector<ElementPoint> m_points;  ///< [knots][m_count]
 };

@@ -44,9 +44,9 @@ struct EdgeRate::Swept {
     bool seen = false;
 };
 
-EdgeRate::EdgeRate(const View& view)
+EdgeRate::EdgeRate(const View& view, double longer)
     : m_projection(view.projection),
-      m_rate(std::max<double>(view.scene->options.dicing_rate, kFinest)),
+      m_rate(std::max<double>(view.scene->options.dicing_rate, kFinest) * longer),
       m_shading_rate(std::max<double>(m_rate, view.scene->options.shading_rate)),
       m_width(view.scene->options.width),
       m_height(view.scene->options.height),

@@ -35,7 +35,8 @@ namespace granita {
 
 class EdgeRate {
   public:
-    explicit EdgeRate(const View& view);
+    /// `longer`: times the dicing rate of the view.
+    explicit EdgeRate(const View& view, double longer = 1.0);
 
     /// A piece stays whole, has a uniform tree of so many levels below it, or is adaptive: bisected
     /// once, its halves looked at anew.

@@ -24,7 +24,8 @@ OpenedElements::OpenedElements(const View& view, std::size_t instance,
       m_shared(std::move(shared)),
       m_knots(std::move(knots)),
       m_report(&report),
-      m_rate(view) {
+      m_rate(view),
+      m_long_rates{EdgeRate(view, 2.0), EdgeRate(view, 4.0)} {
     const int geometry_knots = m_shared->is_static() ? 1 : m_shared->data().knots;
     for (int k = 0; k < m_knots.count; ++k) {
         m_times.push_back(knot_time(k, m_knots.count - 1, geometry_knots));
@@ -34,6 +35,11 @@ OpenedElements::OpenedElements(const View& view, std::size_t instance,
     for (const std::int32_t m : m_instance->materials)
         if (m >= 0 && view.displacement[static_cast<std::size_t>(m)].constant != 0.0f)
             report.warn(m_instance->name, "displacement has no effect on curves and points");
+}
+
+const EdgeRate& OpenedElements::rate_along(double width) const {
+    if (4.0 * width <= m_rate.rate()) return m_long_rates[1];
+    return 2.0 * width <= m_rate.rate() ? m_long_rates[0] : m_rate;
 }
 
 RasterBounds OpenedElements::bounds(std::size_t primitive) const {

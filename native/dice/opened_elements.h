@@ -51,6 +51,9 @@ class OpenedElements final : public OpenedInstance,
     int knot_count() const { return m_knots.count; }
     const Knots& knots() const { return m_knots; }
     const EdgeRate& rate() const { return m_rate; }
+    /// Along a curve of this largest width, pixels.  The dicing rate means areas: what is narrow
+    /// has long micropolygons.
+    const EdgeRate& rate_along(double width) const;
     Report& report() const { return *m_report; }
     int grid_size() const;
 
@@ -84,6 +87,7 @@ class OpenedElements final : public OpenedInstance,
     Knots m_knots;
     Report* m_report;
     EdgeRate m_rate;
+    EdgeRate m_long_rates[2];       ///< twice, four times
     std::vector<KnotTime> m_times;  ///< [knots] among the geometry's own
     std::vector<double> m_scales;   ///< [knots] metres of camera space in one of object space
 };

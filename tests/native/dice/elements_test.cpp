@@ -126,6 +126,25 @@ TEST(Curves, smaller_than_a_pixel_take_one_step) {
     EXPECT_EQ(micropolygons(scene.grids()), 1);
 }
 
+TEST(Curves, narrower_than_a_pixel_have_long_micropolygons) {
+    for (const auto& [width, longest] :
+         {std::pair(0.9f, 1.0), {0.4f, 2.0}, {0.2f, 4.0}, {0.01f, 4.0}}) {
+        DiceScene scene(curves({{{-50, 0, 0}, {50, 0, 0}}}, 0.5f * width));
+        const double length = 100.0 / micropolygons(scene.grids());
+        EXPECT_LE(length, M_SQRT2 * longest);
+        EXPECT_GT(length, M_SQRT1_2 * longest);
+    }
+    // What bends keeps its shape.
+    std::vector<Vec3f> circle;
+    for (int i = 0; i <= 32; ++i) {
+        const double angle = 2.0 * M_PI * i / 32;
+        circle.emplace_back(5.0 * std::cos(angle), 5.0 * std::sin(angle), 0.0);
+    }
+    DiceScene scene(curves({circle}, 0.1f));
+    const double length = 10.0 * M_PI / micropolygons(scene.grids());
+    EXPECT_LE(length * length / (8.0 * 5.0), 0.03);  // the sag of a chord
+}
+
 TEST(Curves, that_close_to_a_tip) {
     GeometryData data = curves({{{0, -50, 0}, {0, 50, 0}}}, 4.0f);
     data.radius = {4.0f, 0.0f};
