@@ -16,6 +16,7 @@ from pathlib import Path
 import figure_files as files
 import figure_scenes as scenes
 import numpy as np
+import plot
 import snapshots as s
 
 RATES = [1, 4, 16, 36]
@@ -54,8 +55,9 @@ def curve(runs, out, name, title, x_name, values, makers):
         value: timed(runs, {n: lambda m=m, v=value: m(v) for n, m in makers.items()})
         for value in values
     }
-    curves = {n: (list(values), [rows[v][n] for v in values]) for n in makers}
-    files.write_curves(out / f"{name}.svg", title, x_name, "processor seconds", curves)
+    curves = {n: [(v, rows[v][n]) for v in values] for n in makers}
+    panel = plot.Panel(title, curves, from_origin=True)
+    plot.save(out / f"{name}.svg", [panel], x_name, "processor seconds")
     return {str(value): row for value, row in rows.items()}
 
 

@@ -13,10 +13,10 @@ import json
 import tempfile
 from pathlib import Path
 
-import figure_files
 import frames
 import measure
 import numpy as np
+import plot
 from weak_cases import RESULTS
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -50,12 +50,11 @@ def main():
                 table.row(
                     f"{name}: last {WARM_UP} frames over the second {WARM_UP}", late / early, 1.05
                 )
-            curves[name] = (number.tolist(), (np.array(values) / 1e6).tolist())
+            curves[name] = list(zip(number.tolist(), (np.array(values) / 1e6).tolist()))
     RESULTS.mkdir(exist_ok=True)
     (RESULTS / "memory_curve.json").write_text(json.dumps(table.rows, indent=1) + "\n")
-    title = "Memory after each frame of an animation"
-    file = ROOT / "docs" / "memory_curve.svg"
-    figure_files.write_curves(file, title, "frame", "MB", curves, room=1.4)
+    panel = plot.Panel("Memory after each frame of an animation", curves, from_origin=True)
+    plot.save(ROOT / "docs" / "memory_curve.svg", [panel], "frame", "MB")
 
 
 if __name__ == "__main__":
