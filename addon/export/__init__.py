@@ -7,24 +7,20 @@
 All of it is copied: no reference to anything of Blender's is kept after `export_frame` returns.
 """
 
-import numpy as np
-
 from .blur_settings import blurs
 from .camera import camera_record
-from .changes import originals
 from .frame_scene import FrameScene
 from .instance import place
-from .motion import sample_motion
+from .lamps import place_lamps, read_lamps
+from .motion import Motion, sample_motion
 from .neighbours import read_neighbours
 from .newcomers import with_newcomers
 from .options import options_record, scene_frame
-from .path import no_tracks
 from .persistent import Kept
 from .placed import read_placed
 from .report import Cancelled, ExportError, Report
 from .shutter import Clock, scene_shutter
 from .snapshot import Snapshot
-from .transforms import is_finite
 from .velocity import flying_points
 
 __all__ = ["Cancelled", "ExportError", "Kept", "Report", "export_frame"]
@@ -65,7 +61,8 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         placed = kept.placed(depsgraph, report, check_cancel)
     else:
         placed = read_placed(depsgraph, None, report, check_cancel)
-    world, lights, images = _lighting(depsgraph, placed, report)
+    world, world_images = _world(depsgraph, report)
+    lamps = read_lamps(depsgraph, placed.scan, placed.lights(), report)
     placed.choose(report)
     at_frame = FrameScene(
         depsgraph=depsgraph,
@@ -78,24 +75,21 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         sources=placed.sources,
         geometry_of_kind=placed.table.geometry,
         is_light=placed.is_light,
-        energies={thing: light["energy"] for thing, light in lights},
+        energies={placed.address(thing): lamp["energy"] for thing, lamp in lamps},
     )
     fps = scene.render.fps / scene.render.fps_base
-    tracks, points, neighbours, lifespans, seen = no_tracks(), {}, {}, ([], []), placed
+    motion, points, neighbours, seen = Motion(camera_at_frame["world_from_camera"]), {}, {}, placed
     if shutter.segments:
         motion = sample_motion(clock, shutter, at_frame, report, check_cancel)
         camera_at_frame["world_from_camera"] = motion.camera
         if motion.lens is not None:
             camera_at_frame["lens_knots"] = motion.lens
-        tracks, points, lifespans = motion.tracks, motion.points, motion.lifespans
         seen = with_newcomers(placed, at_frame.visit, depsgraph, report, check_cancel)
-        for thing, light in lights:
-            if thing in motion.energies:
-                light["energy_knots"] = motion.energies[thing]
-        points.update(flying_points(seen.sources, shutter, fps))
+        later = seen.lights()[len(placed.lights()) :]
+        lamps += read_lamps(depsgraph, seen.scan, later, report)
+        points = {**motion.points, **flying_points(seen.sources, shutter, fps)}
     scan = seen.scan
-    _place_lights(lights, scan, tracks, report)
-    instances = place(seen.instances, scan, seen.chosen, tracks, lifespans, report)
+    instances = place(seen.instances, scan, seen.chosen, motion.tracks, motion.lifespans, report)
     if view_layer.use_pass_vector:
         found = read_neighbours(clock, at_frame, fps, report, check_cancel)
         camera_at_frame["neighbours"] = found.camera
@@ -112,8 +106,8 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         ],
         instances=instances,
         materials=seen.materials,
-        images=_each_once(images + seen.images),
-        lights=[light for _, light in lights],
+        images=_each_once(seen.images + world_images),
+        lights=place_lamps(lamps, scan, motion, report),
         world=world,
     ).as_dict()
 
@@ -130,30 +124,10 @@ def _render_camera(engine, scene):
     return camera.original
 
 
-def _lighting(depsgraph, placed, report):
-    """World, lights without a place [(thing of the scan, record)], and the images of all nodes."""
-    from .light import light_record
+def _world(depsgraph, report):
+    """(record of the world, those of its images)."""
     from .world import export_world
 
-    images = list(placed.images)
+    images = []
     world = export_world(depsgraph.scene_eval, depsgraph.view_layer_eval, report, images)
-    things = placed.lights()
-    everything = originals() if len(things) else {}
-    no_place = np.eye(4)[None]
-    lights = []
-    for thing in things:
-        address = placed.scan.kinds[placed.scan.kind[thing]].address
-        lamp = everything[address].evaluated_get(depsgraph)
-        lights.append((thing, light_record(lamp, no_place, report)))
-    return world, lights, images
-
-
-def _place_lights(lights, scan, tracks, report):
-    """Gives lights their matrices; those that are nowhere are left out."""
-    for entry in list(lights):
-        i, light = entry
-        if not is_finite(scan.matrices[i : i + 1])[0]:
-            report(f"light '{light['name']}'", "its transform is not finite: left out")
-            lights.remove(entry)
-            continue
-        light["world_from_light"], _ = tracks.table(scan.matrices, np.array([i]))
+    return world, images

@@ -21,7 +21,7 @@ import numpy as np
 from .blur_settings import blurs, fewest_segments
 from .hair import hair_material, hair_systems
 from .identity import combine, name_hash
-from .kind import Kind
+from .kind import Kind, hidden_owners
 from .report import poll
 from .simulations import troubles, unbaked
 from .subdivision import find_cage, simplify_level
@@ -261,7 +261,7 @@ class _Walk:
         kind.parent_address = owners[1].original.as_pointer() if kind.parent is not None else 0
         kind.blurs = all(blurs(owner) for owner in owners)
         kind.fewest_segments = fewest_segments(kind.source)
-        kind.hidden = frozenset(o.original.as_pointer() for o in owners if o.hide_render)
+        kind.hidden = hidden_owners(owners)
         kind.unbaked = tuple((owner.name, name) for owner in owners for name in unbaked(owner))
         for owner in owners:
             for trouble in troubles(owner):

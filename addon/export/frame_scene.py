@@ -22,7 +22,7 @@ class FrameScene:
     sources: list  # of geometry.GeometrySource
     geometry_of_kind: np.ndarray  # int32 [kinds], -1 = none
     is_light: np.ndarray  # bool [kinds]
-    energies: dict  # thing of the visit that shines -> the light's energy
+    energies: dict  # address of an original lamp -> its light's energy
     again: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))  # of come_again
     _bounds: tuple = None
 
@@ -42,11 +42,11 @@ class FrameScene:
 
         everything = originals()
         found = dict(before)
-        for thing in before:
-            lamp = everything.get(self.visit.kinds[self.visit.kind[thing]].address)
+        for address in before:
+            lamp = everything.get(address)
             if lamp is not None:
                 record = light_record(lamp.evaluated_get(self.depsgraph), None, silent)
-                found[thing] = record["energy"]
+                found[address] = record["energy"]
         return found
 
     def cages(self):

@@ -6,6 +6,11 @@ from dataclasses import dataclass, field
 from .subdivision import Cage
 
 
+def hidden_owners(owners):
+    """Kind.hidden of evaluated objects."""
+    return frozenset(owner.original.as_pointer() for owner in owners if owner.hide_render)
+
+
 @dataclass
 class Kind:
     """One object as it is placed by itself, or by one instancer.
@@ -28,7 +33,7 @@ class Kind:
     blurs: bool = True
     fewest_segments: int = 1
     unbaked: tuple = ()  # of simulations.unbaked: (object's name, simulation)
-    hidden: frozenset = frozenset()  # addresses of the two, where they are hidden in renders
+    hidden: frozenset = frozenset()  # addresses of those of the two that are hidden in renders
 
     @property
     def label(self):
@@ -39,6 +44,11 @@ class Kind:
         if original.type == "MESH" and self.type == "MESH":
             return f"mesh '{original.data.name}'"
         return f"object '{original.name}'"
+
+    def is_hidden_now(self, owners):
+        """Whether one of its two evaluated objects is hidden, at another time, that was not when it was seen.
+        (Nodes make instances of hidden objects.)"""
+        return any(o.hide_render and o.original.as_pointer() not in self.hidden for o in owners)
 
     def forget(self):
         """Lets go of everything that dies when time is moved."""

@@ -19,7 +19,7 @@ def light_record(light_object, matrices, report):
 
     Args:
         light_object: evaluated Object of type LIGHT.
-        matrices: float64 [K, 4, 4], world from light.
+        matrices: float64 [K, 4, 4], world from light; None: not yet known.
         report: called with (datablock, message) for what cannot be taken over.
 
     Returns:

@@ -28,8 +28,8 @@ class Motion:
     lens: np.ndarray | None = None  # float64 [K, 2] radius and focus distance, metres; None: still
     tracks: Tracks = field(default_factory=no_tracks)
     points: dict = field(default_factory=dict)  # geometry index -> float32 [K, V, 3]
-    energies: dict = field(default_factory=dict)  # thing that shines -> float32 [K]
-    lifespans: tuple = None  # of Steps.lifespans
+    energies: dict = field(default_factory=dict)  # address of an original lamp -> float32 [K]
+    lifespans: tuple = ((), ())  # of Steps.lifespans
 
 
 def sample_motion(clock, shutter, scene, report, check_cancel):
@@ -131,8 +131,8 @@ def _paths(scene, steps):
         yield numbers, places, checks
     for index, path in steps.points().items():
         yield index, path, [(path, scale.points(index))]
-    for thing, path in steps.energies().items():
-        yield ("ENERGY", int(thing)), path, [(path, _share_of(path))]
+    for address, path in steps.energies().items():
+        yield ("ENERGY", address), path, [(path, _share_of(path))]
 
 
 def _share_of(path):

@@ -15,7 +15,7 @@ from .changes import originals
 from .depsgraph import kind_again
 from .geometry import read_source
 from .instance import collect_materials
-from .kind import Kind
+from .kind import Kind, hidden_owners
 from .placed import shade
 
 
@@ -39,9 +39,9 @@ class Newcomers:
         """
         kind = scene.visit.same_kinds(now)
         for number in np.unique(now.kind[which]):
-            if kind[number] < 0 and now.kinds[number].type != "LIGHT":
+            if kind[number] < 0:
                 kind[number] = self._learn(scene, now.kinds[number], now.hashes[number])
-        can_blur = np.array([k.blurs and k.type != "LIGHT" for k in scene.visit.kinds], dtype=bool)
+        can_blur = np.array([k.blurs for k in scene.visit.kinds], dtype=bool)
         kind = kind[now.kind[which]]
         taken = (kind >= 0) & can_blur[kind]
         return which[taken], kind[taken]
@@ -60,11 +60,12 @@ class Newcomers:
         owners = kind.source, kind.parent
         known = Kind(kind.type, kind.name, None, None, blurs=all(blurs(owner) for owner in owners))
         known.address, known.parent_address = (owner.original.as_pointer() for owner in owners)
+        known.hidden = hidden_owners(owners)
         scan = scene.visit
         hashes = np.append(scan.hashes, name_hash)
         scene.visit = replace(scan, kinds=[*scan.kinds, known], hashes=hashes)
         scene.geometry_of_kind = np.append(scene.geometry_of_kind, np.int32(-1))
-        scene.is_light = np.append(scene.is_light, False)
+        scene.is_light = np.append(scene.is_light, kind.type == "LIGHT")
         return len(scan.kinds)
 
 
@@ -99,6 +100,8 @@ def with_newcomers(placed, scan, depsgraph, report, check_cancel):
     sources = list(placed.sources)
     table = placed.table.with_more([scan.kinds[number].name for number in strangers])
     for (number, kind), own in zip(found.items(), slots):
+        if kind.type == "LIGHT":
+            continue
         example = int(np.flatnonzero(scan.kind == number)[0])
         source = read_source(kind, example, names, depsgraph, report, check_cancel)
         if source is not None:
@@ -128,6 +131,6 @@ def _at_frame(stranger, depsgraph):
     if None in owners:
         return None
     thing, parent = (owner.evaluated_get(depsgraph) for owner in owners)
-    if thing.hide_render or parent.hide_render:
+    if stranger.is_hidden_now((thing, parent)):
         return None
     return kind_again(thing, depsgraph, parent)

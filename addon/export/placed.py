@@ -42,6 +42,10 @@ class Placed:
         """bool [kinds]."""
         return np.array([kind.type == "LIGHT" for kind in self.scan.kinds], dtype=bool)
 
+    def address(self, thing):
+        """Of the original Object of a thing of the scan."""
+        return self.scan.kinds[self.scan.kind[thing]].address
+
     def lights(self):
         """int [lights], things of the scan."""
         return np.flatnonzero(self.is_light[self.scan.kind])

@@ -189,10 +189,7 @@ class Steps:
                 continue
             owners = [everything[a].evaluated_get(self._scene.depsgraph) for a in addresses]
             if scan.kind[thing] not in hidden:
-                hidden[scan.kind[thing]] = any(
-                    owner.hide_render and owner.original.as_pointer() not in kind.hidden
-                    for owner in owners
-                )
+                hidden[scan.kind[thing]] = kind.is_hidden_now(owners)
             self._stays[thing] = hidden[scan.kind[thing]]
             if not self._stays[thing]:
                 life = particle_life(owners[-1], *scan.persistent[thing]) if owners else None
@@ -281,14 +278,16 @@ class Steps:
         return velocity, ~self._stays[things]
 
     def energies(self):
-        """{thing: {tick: float64 [1]}} of lights whose strength changes."""
+        """{address of an original lamp: {tick: float64 [1]}} of those whose strength changes."""
         paths = {
-            thing: {tick: np.array([self._energies[tick][thing]]) for tick in sorted(self.ticks)}
-            for thing in self._scene.energies
+            address: {
+                tick: np.array([self._energies[tick][address]]) for tick in sorted(self.ticks)
+            }
+            for address in self._scene.energies
         }
         return {
-            thing: path
-            for thing, path in paths.items()
+            address: path
+            for address, path in paths.items()
             if np.ptp(np.stack(list(path.values()))) > 0.0
         }
 

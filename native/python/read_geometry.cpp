@@ -152,7 +152,7 @@ void read_instances(const Record& r, Scene& scene) {
     const auto object_index = r.values<std::int32_t>("object_index", {n});
     const auto random = r.values<float>("random", {n});
     const auto key = r.values<std::uint32_t>("key", {n});
-    const auto lifespan = r.values<float>("lifespan", {n, 2});
+    const auto lifespans = r.values<float>("lifespan", {n, 2});
     if (n > 0 && (geometry.empty() || knots.empty() || slots.empty()))
         r.fail("'geometry', 'knots' and 'slots' are needed for every instance");
 
@@ -161,9 +161,8 @@ void read_instances(const Record& r, Scene& scene) {
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         Instance& instance = scene.instances[i];
         instance.name = py::cast<std::string>(names[i]);
-        const auto fail = [&](const std::string& message) {
-            throw SceneError("object '" + instance.name + "'", message);
-        };
+        const std::string datablock = "object '" + instance.name + "'";
+        const auto fail = [&](const std::string& message) { throw SceneError(datablock, message); };
         instance.geometry = geometry[i];
         if (instance.geometry < 0 ||
             static_cast<std::size_t>(instance.geometry) >= scene.geometries.size())
@@ -190,14 +189,8 @@ void read_instances(const Record& r, Scene& scene) {
         instance.object_index = object_index.empty() ? 0 : object_index[i];
         instance.random = random.empty() ? 0.0f : random[i];
         instance.key = key.empty() ? static_cast<std::uint32_t>(i) : key[i];
-        if (lifespan.empty()) continue;
-        const float open = lifespan[2 * i], close = lifespan[2 * i + 1];
-        if (!(open <= close))  // nor a number
-            fail("'lifespan' is not an interval: " + std::to_string(open) + " to " +
-                 std::to_string(close));
-        instance.lifespan.open = open;
-        // The shutter's end is a time like others: 1 means to its end and with it.
-        if (close < 1.0f) instance.lifespan.close = close;
+        if (!lifespans.empty())
+            instance.lifespan = lifespan(datablock, lifespans[2 * i], lifespans[2 * i + 1]);
     }
     if (knot != transforms.size())
         r.fail("'world_from_object' holds more matrices than 'knots' ask for");

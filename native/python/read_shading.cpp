@@ -88,6 +88,8 @@ void read_light(const Record& r, Light& light) {
     if (color.size() == 3) light.color = {color[0], color[1], color[2]};
     light.energy = static_cast<float>(r.number("energy"));
     light.energy_knots = r.values<float>("energy_knots", {-1});
+    const auto life = r.values<float>("lifespan", {2});
+    if (!life.empty()) light.lifespan = lifespan(r.datablock(), life[0], life[1]);
     light.radius = static_cast<float>(r.number("radius", 0.0));
     light.soft_falloff = r.boolean("soft_falloff", true);
     light.sun_angle = static_cast<float>(r.number("sun_angle", 0.0));

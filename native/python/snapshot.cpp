@@ -153,6 +153,16 @@ int choice(const Record& record, const char* key, const std::string& value,
     record.fail(std::string("'") + key + "' is '" + value + "', expected one of " + known);
 }
 
+Lifespan lifespan(const std::string& datablock, float open, float close) {
+    if (!(open <= close))
+        throw SceneError(datablock, "'lifespan' is not an interval: " + std::to_string(open) +
+                                        " to " + std::to_string(close));
+    Lifespan life;
+    life.open = open;
+    if (close < 1.0f) life.close = close;
+    return life;
+}
+
 std::vector<Mat4d> matrices(const Record& record, const char* key) {
     const auto a = record.array<double>(key, {-1, 4, 4});
     std::vector<Mat4d> list(static_cast<std::size_t>(a.shape(0)));

@@ -59,6 +59,10 @@ class Record {
 int choice(const Record& record, const char* key, const std::string& value,
            const std::vector<const char*>& identifiers);
 
+/// When a thing exists.  The shutter's end is a time like others: 1 means to its end and with it.
+/// Throws a SceneError where these ends are no interval, or no numbers.
+Lifespan lifespan(const std::string& datablock, float open, float close);
+
 /// [n,4,4] row-major f64 -> matrices; checked finite.
 std::vector<Mat4d> matrices(const Record& record, const char* key);
 

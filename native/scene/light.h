@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "math/vec.h"
+#include "scene/lifespan.h"
 #include "scene/node_graph.h"
 
 namespace granita {
@@ -20,6 +21,7 @@ struct Light {
     Vec3f color{1.0f};
     float energy = 0.0f;
     std::vector<float> energy_knots;  ///< [K] over the shutter; empty = `energy` at all times
+    Lifespan lifespan;                ///< when it shines; places are given throughout
     float radius = 0.0f;              ///< point, spot: metres
     bool soft_falloff = true;  ///< a radius means a disc that faces the point; false: a sphere
     float sun_angle = 0.0f;    ///< radians, full angle

@@ -72,7 +72,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
     for (const Light& light : scene.lights) {
         float energy = std::abs(light.energy);
         for (const float knot : light.energy_knots) energy = std::max(energy, std::abs(knot));
-        if (light.color * energy == Vec3f(0.0f)) continue;
+        if (light.color * energy == Vec3f(0.0f) || light.lifespan.is_empty()) continue;
         lamps.emplace_back(light, time, origin);
         varies = varies || lamps.back().varies();
     }
@@ -162,6 +162,7 @@ void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const 
     for (int s = 0; s < count; ++s) {
         const auto index = static_cast<std::uint32_t>(s);
         const LitPlace place = timed ? place_at(point, sequence.third(index)) : point.at_frame;
+        if (!lamp.exists(place.time)) continue;
         const LightSource& source = lamp.at(place.time);
         LightSample sample;
         if (!source.sample(place.p, sequence(index), sample)) continue;
@@ -221,8 +222,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         if (!glossy) continue;
         for (const Lamp& lamp : lamps) {
             LightSample sample;
-            if (!lamp.reaches_glossy() || !lamp.at(place.time).intersect(place.p, wo, sample))
-                continue;
+            if (!lamp.reaches_glossy() || !lamp.meets(place.time, place.p, wo, sample)) continue;
             const float density =
                 static_cast<float>(point.sample_count) * sample.pdf + point.glossy_density(wo);
             const BsdfValue bsdf = lamp.apply(value);
@@ -245,8 +245,7 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
         const LitPlace place = place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
         for (const Lamp& lamp : lamps) {
             LightSample sample;
-            if (!lamp.reaches_glossy() || !lamp.at(place.time).intersect(place.p, wo, sample))
-                continue;
+            if (!lamp.reaches_glossy() || !lamp.meets(place.time, place.p, wo, sample)) continue;
             const Vec3f value = reflectance * lamp.glossy() * sample.radiance;
             const Vec3f seen = shadow(grid, point, place, lamp, sample);
             sum += value * seen;

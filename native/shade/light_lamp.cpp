@@ -20,7 +20,8 @@ bool varies_over_time(const Light& light) {
 }  // namespace
 
 Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin)
-    : m_casts_shadow(light.casts_shadow),
+    : m_lifespan(light.lifespan),
+      m_casts_shadow(light.casts_shadow),
       m_diffuse(light.visible_diffuse ? light.diffuse_factor : 0.0f),
       m_glossy(light.visible_glossy ? light.specular_factor : 0.0f) {
     const int places = varies_over_time(light) ? kPlaces : 1;

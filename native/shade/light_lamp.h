@@ -17,7 +17,9 @@ class Lamp {
     Lamp(const Light& light, float frame_time, const Vec3d& origin);
 
     /// Whether its place or its strength changes within the shutter.
-    bool varies() const { return m_sources.size() > 1; }
+    bool varies() const { return m_sources.size() > 1 || !m_lifespan.is_whole(); }
+    /// Whether it is there.
+    bool exists(float time) const { return m_lifespan.contains(time); }
     /// Without a size at all times.
     bool is_hard() const { return m_hard; }
     bool casts_shadow() const { return m_casts_shadow; }
@@ -28,6 +30,10 @@ class Lamp {
         const auto place = static_cast<std::size_t>(time * static_cast<float>(count));
         return *m_sources[place < count ? place : count - 1];
     }
+    /// What a ray of that time meets of it: LightSource::intersect.
+    bool meets(float time, const Vec3f& p, const Vec3f& direction, LightSample& sample) const {
+        return exists(time) && at(time).intersect(p, direction, sample);
+    }
     /// Reflected light, by the lobes that see this lamp.
     BsdfValue apply(const BsdfValue& value) const {
         return {value.diffuse * m_diffuse, value.glossy * m_glossy};
@@ -35,6 +41,7 @@ class Lamp {
 
   private:
     std::vector<std::unique_ptr<LightSource>> m_sources;  ///< one, or at equal parts of the shutter
+    Lifespan m_lifespan;
     bool m_hard = true, m_casts_shadow;
     float m_diffuse, m_glossy;
 };

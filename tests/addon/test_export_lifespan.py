@@ -11,17 +11,33 @@ def columns(*patterns):
     return np.array([[c == "x" for c in pattern] for pattern in patterns]).T
 
 
-def test_runs_are_around_the_frame_or_nearest_to_it():
+def ends(found):
+    return list(
+        zip(*(part.tolist() for part in (found.things, found.numbers, found.first, found.last)))
+    )
+
+
+def test_every_run_has_a_number_the_one_at_the_frame_or_nearest_to_it_its_things():
     seen = columns("xxxxx", "..xxx", "xxx..", "x.x.x", "...xx", "x...x", "xx...")
-    first, last = runs(seen, 2)
-    assert first.tolist() == [0, 2, 0, 2, 3, 0, 0]
-    assert last.tolist() == [4, 4, 2, 2, 4, 0, 1]
+    things = np.array([1, 3, 4, 6, 7, 8, 11])
+    found = runs(things, seen, 2, np.zeros(7, dtype=bool), 20)
+    main = [(1, 1, 0, 4), (3, 3, 2, 4), (4, 4, 0, 2), (6, 6, 2, 2), (7, 7, 3, 4), (8, 8, 0, 0)]
+    main.append((11, 11, 0, 1))
+    assert ends(found) == [*main, (6, 20, 0, 0), (6, 21, 4, 4), (8, 22, 4, 4)]
+
+
+def test_what_stays_has_one_run():
+    found = runs(np.array([5]), columns("x.x.x"), 2, np.array([True]), 20)
+    assert ends(found) == [(5, 5, 2, 2)]
 
 
 def test_nothing_comes_or_goes():
-    first, last = runs(np.zeros((5, 0), dtype=bool), 2)
-    assert len(first) == len(last) == 0
-    assert lifespans(np.linspace(0, 1, 5), first, last, np.zeros(0), np.zeros(0)).shape == (0, 2)
+    nothing = np.zeros(0, dtype=int)
+    found = runs(nothing, np.zeros((5, 0), dtype=bool), 2, nothing == 0, 20)
+    assert ends(found) == []
+    times = np.linspace(0, 1, 5)
+    spans = lifespans(times, found.first, found.last, np.zeros(0), np.zeros(0))
+    assert spans.shape == (0, 2)
 
 
 def test_ways_go_on_as_they_were_seen():

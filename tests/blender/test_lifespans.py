@@ -245,3 +245,13 @@ def test_what_does_not_blur_is_that_of_the_frame(moving):
     (getattr(host, "cycles", None) or host.granita).use_motion_blur = False
     snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
     assert len(snapshot["instances"]["name"]) == 3 and "lifespan" not in snapshot["instances"]
+
+
+def test_the_first_of_its_kind_may_be_hidden_itself(moving):
+    """Nodes make instances of hidden objects."""
+    line(moving, "0 if frame < 10.05 else 1")
+    bpy.data.objects["Part"].hide_render = True
+    snapshot, report, _ = export_probe.through_engine(moving, motion_steps=17)
+    instances = snapshot["instances"]
+    assert instances["name"] == ["Part"] and instances["lifespan"].tolist() == [[0.625, 1.0]]
+    assert len(report) == 0

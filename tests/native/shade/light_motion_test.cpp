@@ -207,6 +207,29 @@ TEST_F(LightMotionTest, a_moving_lamp_and_a_changing_strength_light_with_their_m
     EXPECT_NEAR(lit(0.0f), 0.5f, 1e-3f);
 }
 
+TEST_F(LightMotionTest, a_lamp_that_comes_or_goes_shines_for_its_part_of_the_shutter) {
+    // Hard, soft, and in a mirror; of two that take turns every time sees exactly one.
+    const Light kinds[] = {light_of(LightKind::Sun, kPi, aimed({0, 0, 9}, {0, 0, -1})),
+                           light_of(LightKind::Area, 100.0f, aimed({0, 0, 3}, {0, 0, -1}))};
+    for (const Light& light : kinds) {
+        const ShadingPoints points = points_facing_up({{0.5f, 0, 0}});
+        const auto seen = [&](const std::vector<Lifespan>& lives) {
+            scene.lights.assign(lives.size(), light);
+            for (std::size_t i = 0; i < lives.size(); ++i) scene.lights[i].lifespan = lives[i];
+            return Vec2f(lit(0.5f), reflect(points, glossy(points, 0.0f)).x);
+        };
+        const Vec2f whole = seen({{}});
+        for (const float end : {0.25f, 0.3f}) {
+            const Vec2f before = seen({{0.0f, end}}), after = seen({{end}});
+            for (int i = 0; i < 2; ++i) {
+                EXPECT_NEAR(before[i], end * whole[i], kNet * whole[i] + 1e-6f);
+                EXPECT_NEAR(before[i] + after[i], whole[i], 1e-5f * whole[i]);
+            }
+        }
+        EXPECT_EQ(seen({{2.0f, 3.0f}}), Vec2f(0.0f));
+    }
+}
+
 TEST_F(LightMotionTest, mirrors_show_a_lamp_behind_what_moves) {
     Light light = light_of(LightKind::Area, 100.0f, aimed({0, 0, 3}, {0, 0, -1}));
     scene.lights = {light};

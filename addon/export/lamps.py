@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The lights of a frame: which ones, how strong over the shutter, where and when."""
+
+import numpy as np
+
+from .changes import originals
+from .transforms import is_finite
+
+
+def read_lamps(depsgraph, scan, things, report):
+    """Records of the snapshot without their places, each lamp read once.
+
+    Args:
+        depsgraph: evaluated, at the frame.
+        scan: depsgraph.Visit.
+        things: of it, lights.  What is hidden at the frame, or deleted by a handler of another add-on, is left
+            out.
+        report: called with (datablock, message).
+
+    Returns:
+        [(thing, record)].
+    """
+    from .light import light_record
+
+    everything = originals() if len(things) else {}
+    records, found = {}, []
+    for thing in things:
+        kind = scan.kinds[scan.kind[thing]]
+        addresses = [address for address in (kind.address, kind.parent_address) if address]
+        if not all(address in everything for address in addresses):
+            continue
+        owners = [everything[address].evaluated_get(depsgraph) for address in addresses]
+        if kind.is_hidden_now(owners):
+            continue
+        if kind.address not in records:
+            records[kind.address] = light_record(owners[0], None, report)
+        found.append((thing, dict(records[kind.address])))
+    return found
+
+
+def place_lamps(lamps, scan, motion, report):
+    """The records with their places, and with what motion says of their strength and when they exist.
+
+    Args:
+        lamps: of `read_lamps`.
+        scan: depsgraph.Visit.
+        motion: motion.Motion.
+        report: called with (datablock, message).
+    """
+    lives = dict(zip(*motion.lifespans))
+    placed = []
+    for thing, record in lamps:
+        if not is_finite(scan.matrices[thing : thing + 1])[0]:
+            report(f"light '{record['name']}'", "its transform is not finite: left out")
+            continue
+        record["world_from_light"], _ = motion.tracks.table(scan.matrices, np.array([thing]))
+        address = scan.kinds[scan.kind[thing]].address
+        if address in motion.energies:
+            record["energy_knots"] = motion.energies[address]
+        if thing in lives:
+            record["lifespan"] = lives[thing]
+        placed.append(record)
+    return placed
