@@ -33,9 +33,6 @@ struct DirectLight::Impl {
     void mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe, Vec3f& sum) const;
     void look(LitGrid& grid, const WorldLooks& looks, float spread) const;
     LitPlace place_at(const LitPoint& point, float uniform) const;
-    Vec3f ray_start(const GridKey& key, const Vec3f& p, const Vec3f& normal) const {
-        return rays ? rays->lift(key, p, normal) : p;
-    }
     bool changes(const Lamp& lamp) const;
     int samples_of(const LitPoint& point, const Lamp& lamp) const;
     Vec3f trace(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
@@ -103,10 +100,10 @@ LitPlace DirectLight::Impl::place_at(const LitPoint& point, float uniform) const
     if (!varies) return place;
     place.time = shutter.time(point.exposed.x + uniform * (point.exposed.y - point.exposed.x));
     if (!point.paths.moves()) return place;
-    place.p = point.paths.position(point.index, place.time);
-    place.normal = point.paths.normal(point.index, place.time);
-    place.start = ray_start(point.key, place.p + point.paths.ray_offset(point.index, place.time),
-                            place.normal);
+    const PointPaths::Place on_path = point.paths.at(point.index, place.time);
+    place.p = on_path.p;
+    place.normal = on_path.normal;
+    place.start = point.lift(on_path.start, on_path.normal);
     return place;
 }
 
@@ -309,6 +306,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     const std::uint64_t seed = grid_seed(key, m_impl->scene.options.seed);
     LitGrid grid{radiance, parts, {}, {}};
+    const RayLift lift = m_impl->rays ? m_impl->rays->lift(key) : RayLift{};
     const Lifespan& life = paths.lifespan();
     const Vec2f exposed(m_impl->shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),
                         m_impl->shutter.uniform(std::clamp(life.close, 0.0f, 1.0f)));
@@ -327,7 +325,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         if (dark) continue;
         const Vec3f &p = points.p[i], &normal = points.geometric_normal[i];
         const Vec3f offset = points.ray_offset.empty() ? Vec3f(0.0f) : points.ray_offset[i];
-        const Vec3f start = m_impl->ray_start(key, p + offset, normal);
+        const Vec3f start = lift(p + offset, normal);
         const LitPlace at_frame{m_impl->scene.options.frame_time, p, normal, start};
         // Neighbours share a sequence: aligned squares of points, and so the pixels that average
         // them, are stratified as one (Ahmed and Wonka 2020, without their shuffling of squares).
@@ -336,7 +334,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
             points.columns == 0 ? i
                                 : morton_index(static_cast<std::uint32_t>(i % points.columns),
                                                static_cast<std::uint32_t>(i / points.columns)));
-        LitPoint point{i, bsdf, paths, key, at_frame, sample_count, seed, place, exposed, {}};
+        LitPoint point{i, bsdf, paths, lift, at_frame, sample_count, seed, place, exposed, {}};
         m_impl->light_point(grid, point);
     }
     if (m_impl->environment) m_impl->look(grid, grid.blurred, m_impl->environment->texel_angle());

@@ -83,8 +83,7 @@ PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints
     m_count = points.count;
     const Vec3d origin(matrix_at(camera, scene.options.frame_time)[3]);
     const auto knots = static_cast<std::size_t>(m_knots);
-    m_positions.reserve(knots * m_count);
-    m_normals.reserve(knots * m_count);
+    m_places.reserve(knots * m_count);
     const auto vertices = static_cast<std::size_t>(grid.vertex_count());
     // As the anchor sees it: where a point is beside it, and its rays' offset.
     const std::vector<std::uint32_t>& anchors = grid.places.anchors;
@@ -111,26 +110,28 @@ PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints
             places[v] = rotation * position_at(grid, v, t) + offset;
         for (std::size_t i = 0; i < m_count; ++i) {
             const Anchor at = anchor(i, [&](std::size_t v) { return places[v]; });
-            m_positions.push_back(anchors.empty() ? at.place : at.place + at.turned * beside[i]);
-            if (!offsets.empty()) m_offsets.push_back(at.turned * offsets[i]);
-            m_normals.push_back(
-                normal_at(grid, places, anchors.empty() ? i : anchors[i], points, i));
+            Place place;
+            place.p = anchors.empty() ? at.place : at.place + at.turned * beside[i];
+            place.start = offsets.empty() ? place.p : place.p + at.turned * offsets[i];
+            place.normal = normal_at(grid, places, anchors.empty() ? i : anchors[i], points, i);
+            m_places.push_back(place);
         }
     }
 }
 
-Vec3f PointPaths::at(const std::vector<Vec3f>& values, std::size_t point, float time) const {
+PointPaths::Place PointPaths::at(std::size_t point, float time) const {
     const KnotTime t = knot_time(static_cast<double>(time), m_knots);
-    const Vec3f& before = values[t.knot * m_count + point];
+    const Place& before = m_places[t.knot * m_count + point];
     if (t.fraction == 0.0) return before;
-    return before +
-           (values[(t.knot + 1) * m_count + point] - before) * static_cast<float>(t.fraction);
-}
-
-Vec3f PointPaths::normal(std::size_t point, float time) const {
-    const Vec3f n = at(m_normals, point, time);
-    const float length = glm::length(n);
-    return length > 0.0f ? n / length : m_normals[point];
+    const Place& after = m_places[(t.knot + 1) * m_count + point];
+    const auto mix = [&](const Vec3f& a, const Vec3f& b) {
+        return a + (b - a) * static_cast<float>(t.fraction);
+    };
+    Place place{mix(before.p, after.p), mix(before.start, after.start),
+                mix(before.normal, after.normal)};
+    const float length = glm::length(place.normal);
+    place.normal = length > 0.0f ? place.normal / length : m_places[point].normal;
+    return place;
 }
 
 }  // namespace granita

@@ -21,22 +21,18 @@ class PointPaths {
 
     bool moves() const { return m_knots > 1; }
     const Lifespan& lifespan() const { return m_lifespan; }
-    Vec3f position(std::size_t point, float time) const { return at(m_positions, point, time); }
-    /// From the position to where rays may start (Grid::ray_offset).
-    Vec3f ray_offset(std::size_t point, float time) const {
-        return m_offsets.empty() ? Vec3f(0.0f) : at(m_offsets, point, time);
-    }
-    /// Unit geometric normal on the side that the viewer sees at the frame time.
-    Vec3f normal(std::size_t point, float time) const;
+    struct Place {
+        Vec3f p;
+        Vec3f start;   ///< where rays may, as far as the grid knows (Grid::ray_offset)
+        Vec3f normal;  ///< unit, geometric, on the side that the viewer sees at the frame time
+    };
+    Place at(std::size_t point, float time) const;
 
   private:
-    Vec3f at(const std::vector<Vec3f>& values, std::size_t point, float time) const;
-
     Lifespan m_lifespan;
     int m_knots = 1;
     std::size_t m_count = 0;
-    std::vector<Vec3f> m_positions, m_normals;  ///< [knots][points]
-    std::vector<Vec3f> m_offsets;               ///< [knots][points]; empty: none
+    std::vector<Place> m_places;  ///< [knots][points]
 };
 
 }  // namespace granita

@@ -80,13 +80,15 @@ class GridBlur {
 
 }  // namespace
 
-float light_share(const Grid& grid, const Projection& projection, const ShutterWarp& shutter) {
+float light_share(const Grid& grid, const Projection& projection, const ShutterWarp& shutter,
+                  int samples) {
     const GridBlur blur(grid, projection);
     const double way = blur.way(shutter);
     const double side = projection.has_lens() ? std::sqrt(M_PI_4) * blur.circle() : 0.0;
     if (!(way + side > 0.0)) return 1.0f;
     const double share = share_along(std::hypot(way, side)) * share_along(side);
-    return static_cast<float>(std::sqrt(std::min(1.0, share * blur.area())));
+    const double variance = share * blur.area() + 1.0 / samples;
+    return static_cast<float>(std::sqrt(std::min(1.0, variance)));
 }
 
 }  // namespace granita

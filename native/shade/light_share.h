@@ -14,9 +14,11 @@ namespace granita {
 /// streaks, which the eye sees better than grain, so what is kept is the noise of the mean over a
 /// square of four pixels.  Its variance is that of a point times the square pixels that a point
 /// stands for times the integral of the square of the weights: boxes of 4 and of the blur's L
-/// pixels, convolved (a circle of confusion counts as a square of its area).  That of a point falls
-/// with the square of its samples, which are stratified (measured in a penumbra: error as n to the
-/// power -.95).  The least blurred point of the grid decides.
-float light_share(const Grid& grid, const Projection& projection, const ShutterWarp& shutter);
+/// pixels, convolved (a circle of confusion counts as a square of its area).  Each of the `samples`
+/// of a pixel sees one point alone, which adds the variance of a point over their number.  That of
+/// a point falls with the square of its light samples, which are stratified (measured in a
+/// penumbra: error as n to the power -.95).  The least blurred point of the grid decides.
+float light_share(const Grid& grid, const Projection& projection, const ShutterWarp& shutter,
+                  int samples);
 
 }  // namespace granita

@@ -6,6 +6,7 @@
 
 #include "shade/bsdf.h"
 #include "shade/light_paths.h"
+#include "shade/ray_scene.h"
 #include "shade/sampling.h"
 
 namespace granita {
@@ -22,7 +23,7 @@ struct LitPoint {
     std::size_t index;
     const PointBsdf& bsdf;
     const PointPaths& paths;
-    const GridKey& key;
+    const RayLift& lift;
     LitPlace at_frame;
     int sample_count = 1;       ///< of a soft light, of the world's image, of all lobes together
     std::uint64_t seed;         ///< of the grid

@@ -311,20 +311,24 @@ std::size_t RayScene::bytes() const {
     return sum;
 }
 
-Vec3f RayScene::lift(const GridKey& key, const Vec3f& p, const Vec3f& geometric_normal) const {
-    float size = glm::length(p), error = 0.0f;  // size: of all numbers on the way, summed
+RayLift RayScene::lift(const GridKey& key) const {
     const auto found = m_impl->by_key.find(key.instance);
-    if (found != m_impl->by_key.end()) {
-        const RayInstance& instance = m_impl->instances[found->second];
-        const auto geometry =
-            static_cast<std::size_t>(m_impl->scene.instances[instance.index].geometry);
-        const RayShape& shape = *m_impl->shapes[geometry];
-        const float from_origin = size + instance.distance;  // of p, at most
-        size = from_origin + std::max(from_origin, instance.scale * shape.extent(key.face));
-        error = instance.scale * shape.error(key.face);
+    if (found == m_impl->by_key.end()) return {};
+    const RayInstance& instance = m_impl->instances[found->second];
+    const auto geometry =
+        static_cast<std::size_t>(m_impl->scene.instances[instance.index].geometry);
+    const RayShape& shape = *m_impl->shapes[geometry];
+    return {instance.distance, instance.scale * shape.extent(key.face),
+            instance.scale * shape.error(key.face), true};
+}
+
+Vec3f RayLift::operator()(const Vec3f& p, const Vec3f& geometric_normal) const {
+    float size = glm::length(p);  // of all numbers on the way, summed
+    if (casts) {
+        const float from_origin = size + distance;  // of p, at most
+        size = from_origin + std::max(from_origin, extent);
     }
-    const float height = kRounding * size + error;
-    return p + geometric_normal * height;
+    return p + geometric_normal * (kRounding * size + error);
 }
 
 bool RayScene::moves() const {

@@ -13,6 +13,18 @@
 
 namespace granita {
 
+/// Where a ray from a grid's point `p` must start so as to clear the grid's own triangles: lifted
+/// along the geometric normal by the rounding of positions and by the largest distance between the
+/// surface and its triangles.
+struct RayLift {
+    float distance = 0.0f;  ///< of the object's origin from that of shading space, metres
+    float extent = 0.0f;    ///< largest coordinate of the face in its object, metres
+    float error = 0.0f;     ///< between surface and triangles, metres
+    bool casts = false;     ///< false: rays meet no triangles of it
+
+    Vec3f operator()(const Vec3f& p, const Vec3f& geometric_normal) const;
+};
+
 class RayScene {
   public:
     /// `origin`: the camera's world position.  Only instances that cast shadows are in it.  Throws
@@ -29,10 +41,8 @@ class RayScene {
     bool varies(const Vec3f& start, const Vec3f& direction, float distance) const;
     std::size_t bytes() const;
 
-    /// Where a ray from a grid's point `p` must start so as to clear the grid's own triangles:
-    /// lifted along the geometric normal by the rounding of positions and by the largest distance
-    /// between the surface and its triangles.
-    Vec3f lift(const GridKey& key, const Vec3f& p, const Vec3f& geometric_normal) const;
+    /// Of the points of a grid.
+    RayLift lift(const GridKey& key) const;
 
     /// Share of light that passes along the segment at a shutter time in [0, 1], per channel.
     /// `direction` is unit.

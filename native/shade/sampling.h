@@ -4,6 +4,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -41,6 +43,41 @@ inline std::uint32_t morton_index(std::uint32_t x, std::uint32_t y) {
     return spread(x) | (spread(y) << 1);
 }
 
+/// A generator matrix of Sobol's sequence: exclusive-ors the columns at an index's bits, a byte of
+/// them at a time.
+class SobolMatrix {
+  public:
+    explicit constexpr SobolMatrix(const std::array<std::uint32_t, 32>& columns) {
+        for (std::size_t byte = 0; byte < 4; ++byte)
+            for (std::uint32_t value = 1; value < 256; ++value) {
+                const std::uint32_t rest = value & (value - 1);
+                const auto bit = static_cast<std::size_t>(std::countr_zero(value));
+                m_sums[byte][value] = m_sums[byte][rest] ^ columns[8 * byte + bit];
+            }
+    }
+    constexpr std::uint32_t operator()(std::uint32_t index) const {
+        return m_sums[0][index & 255u] ^ m_sums[1][index >> 8 & 255u] ^
+               m_sums[2][index >> 16 & 255u] ^ m_sums[3][index >> 24];
+    }
+
+  private:
+    std::array<std::array<std::uint32_t, 256>, 4> m_sums{};
+};
+
+/// Of the primitive polynomial x + 1.
+inline constexpr SobolMatrix kSobolSecond([] {
+    std::array<std::uint32_t, 32> columns{1u << 31};
+    for (std::size_t i = 1; i < 32; ++i) columns[i] = columns[i - 1] ^ (columns[i - 1] >> 1);
+    return columns;
+}());
+/// Of x^2 + x + 1.
+inline constexpr SobolMatrix kSobolThird([] {
+    std::array<std::uint32_t, 32> columns{1u << 31, 3u << 30};
+    for (std::size_t i = 2; i < 32; ++i)
+        columns[i] = columns[i - 1] ^ columns[i - 2] ^ (columns[i - 2] >> 2);
+    return columns;
+}());
+
 /// The first three dimensions of Sobol's sequence, Owen-scrambled by hashing (Laine and Karras
 /// 2011; Burley 2020).  Any power-of-two prefix of the first two is a (0, m, 2)-net: stratified in
 /// every elementary interval.
@@ -56,25 +93,14 @@ class SobolPoints {
     /// In [0, 1)^2.
     Vec2f operator()(std::uint32_t index) const {
         index += m_first;
-        std::uint32_t y = 0;
-        for (std::uint32_t i = index, v = 1u << 31; i != 0; i >>= 1, v ^= v >> 1)
-            if (i & 1u) y ^= v;
         // van der Corput is the bit reversal of the index, which Owen's scramble wants anyway.
         return {unit(reverse(scramble(index, m_seed_x))),
-                unit(reverse(scramble(reverse(y), m_seed_y)))};
+                unit(reverse(scramble(reverse(kSobolSecond(index)), m_seed_y)))};
     }
 
     /// The third coordinate, in [0, 1).
     float third(std::uint32_t index) const {
-        // Direction numbers of the primitive polynomial x^2 + x + 1.
-        std::uint32_t z = 0, v = 1u << 31, next = 3u << 30;
-        for (std::uint32_t i = m_first + index; i != 0; i >>= 1) {
-            if (i & 1u) z ^= v;
-            const std::uint32_t after = next ^ v ^ (v >> 2);
-            v = next;
-            next = after;
-        }
-        return unit(reverse(scramble(reverse(z), m_seed_z)));
+        return unit(reverse(scramble(reverse(kSobolThird(m_first + index)), m_seed_z)));
     }
 
   private:

@@ -204,7 +204,8 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 void ShadingSystem::shade_radiance(Grid& grid) const {
     const CompiledSurface& material = m_impl->material(grid.material);
     ShadingPoints points = shading_points(grid, m_impl->camera);
-    points.share *= light_share(grid, m_impl->scene.camera.projection, m_impl->shutter);
+    points.share *= light_share(grid, m_impl->scene.camera.projection, m_impl->shutter,
+                                m_impl->scene.options.samples);
     const ShadingInput input = m_impl->input(grid, points);
     const SurfaceProgram& surface = material.radiance;
     Run run = surface.program.prepare(input, points.count);

@@ -130,8 +130,8 @@ TEST_F(LightMotionTest, a_receiver_goes_with_its_shade) {
         std::vector<Vec3f>(grid.positions.begin(), grid.positions.begin() + grid.vertex_count()));
     const PointPaths paths(grid, scene, points);
     ASSERT_TRUE(paths.moves());
-    EXPECT_EQ(paths.position(kMiddle, 0.75f), Vec3f(2, 0, 0));
-    EXPECT_EQ(paths.normal(kMiddle, 0.75f), Vec3f(0, 0, 1));
+    EXPECT_EQ(paths.at(kMiddle, 0.75f).p, Vec3f(2, 0, 0));
+    EXPECT_EQ(paths.at(kMiddle, 0.75f).normal, Vec3f(0, 0, 1));
     EXPECT_EQ(reflect(points, lambert(points, 1.0f), kMiddle, paths).x, 0.0f);
     EXPECT_NEAR(lit(0.0f), 0.75f, kNet);
 }
@@ -149,11 +149,11 @@ TEST_F(LightMotionTest, the_cameras_motion_alone_moves_nothing) {
     scene.instances[0].world_from_object = {at({0, 0, 0}), at({2, 0, 0})};
     grid = moving_grid({{1, 0, -5}, {1, 0, -5}});
     const PointPaths paths(grid, scene, points);
-    EXPECT_EQ(paths.position(kMiddle, 0.0f), Vec3f(0, 0, -5));
-    EXPECT_EQ(paths.position(kMiddle, 1.0f), Vec3f(2, 0, -5));
+    EXPECT_EQ(paths.at(kMiddle, 0.0f).p, Vec3f(0, 0, -5));
+    EXPECT_EQ(paths.at(kMiddle, 1.0f).p, Vec3f(2, 0, -5));
     // What goes with the camera has one knot before it, but moves.
     const PointPaths carried(moving_grid({{0, 0, -5}}), scene, points);
-    EXPECT_EQ(carried.position(kMiddle, 1.0f) - carried.position(kMiddle, 0.0f), Vec3f(2, 0, 0));
+    EXPECT_EQ(carried.at(kMiddle, 1.0f).p - carried.at(kMiddle, 0.0f).p, Vec3f(2, 0, 0));
 }
 
 TEST_F(LightMotionTest, only_points_near_the_way_of_a_caster_take_more_rays) {
@@ -184,7 +184,7 @@ TEST_F(LightMotionTest, a_surface_that_turns_away_does_not_shade_itself) {
     const ShadingPoints points =
         points_facing_up(std::vector<Vec3f>(grid.positions.begin(), grid.positions.begin() + 9));
     const PointPaths paths(grid, scene, points);
-    EXPECT_EQ(paths.normal(kMiddle, 1.0f), Vec3f(0, 0, -1));
+    EXPECT_EQ(paths.at(kMiddle, 1.0f).normal, Vec3f(0, 0, -1));
     const DirectLight light(scene, world, statistics, report, progress);
     const GridKey key{scene.instances[0].key, 0, 1};
     const auto radiance =

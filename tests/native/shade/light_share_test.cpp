@@ -34,7 +34,7 @@ Grid moved(const std::vector<Vec2f>& places) {
 /// Of the variance: the error of n stratified samples falls as 1 / n.
 float share(const Grid& grid, const Projection& projection = pixels(),
             const std::vector<float>& curve = {}) {
-    const float samples = light_share(grid, projection, ShutterWarp(curve));
+    const float samples = light_share(grid, projection, ShutterWarp(curve), 1 << 20);
     return samples * samples;
 }
 
@@ -88,6 +88,11 @@ TEST(LightShareTest, a_point_that_stands_for_more_pixels_has_more_of_it) {
     for (Vec3f& p : grid.positions) p.x = p.x < 20 ? 8 * p.x : 40 + 8 * (p.x - 40);
     // Eight square pixels and four points.
     EXPECT_NEAR(share(grid), 2.0 * integrated(40), 1e-4);
+}
+
+TEST(LightShareTest, few_samples_see_few_points) {
+    const float samples = light_share(moved({{0, 0}, {40, 0}}), pixels(), ShutterWarp({}), 16);
+    EXPECT_NEAR(samples * samples, integrated(40) + 1.0 / 16, 1e-4);
 }
 
 TEST(LightShareTest, a_lens_blurs_both_ways) {

@@ -161,8 +161,8 @@ float passing(Scene scene) {
         const auto grid = primitive.dice();
         primitive.shading_state()(*grid);
         for (std::size_t i = 0; i < grid->point_count(); ++i) {
-            const Vec3f start = rays.lift(grid->key, grid->shading_p()[i] + grid->ray_offset[i],
-                                          grid->geometric_normal[i]);
+            const Vec3f start = rays.lift(grid->key)(grid->shading_p()[i] + grid->ray_offset[i],
+                                                     grid->geometric_normal[i]);
             const SobolPoints sequence(i);
             for (std::uint32_t s = 0; s < 16; ++s) {
                 const Vec2f u = sequence(s);

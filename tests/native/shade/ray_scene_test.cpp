@@ -123,7 +123,7 @@ TEST(RayScene, lifted_points_of_a_limit_surface_do_not_shade_themselves) {
             const Vec3f n = glm::normalize(glm::cross(du, dv));
             ASSERT_GT(glm::dot(n, p), 0.0f);
             const GridKey key{0, face, 1};
-            const Vec3f start = rays.lift(key, p, n);
+            const Vec3f start = rays.lift(key)(p, n);
             EXPECT_LT(glm::length(start - p), 0.02f);  // the lift stays small
             const Vec3f local = sample_cone(points(i + 1000), 0.98f);
             EXPECT_EQ(rays.transmittance(start, Frame(n).to_world(local), kInfinity), Vec3f(1.0f));
@@ -150,7 +150,7 @@ TEST(RayScene, lifted_points_of_scaled_and_twisted_quads_do_not_shade_themselves
         const float z = 0.1f * (1 - 2 * u.x) * (1 - 2 * u.y);  // the bilinear patch
         const Vec3f p(500 + 10 * u.x, 10 * u.y, 10 * z);
         const Vec3f n = glm::normalize(Vec3f(0.2f * (1 - 2 * u.y), 0.2f * (1 - 2 * u.x), 1.0f));
-        EXPECT_EQ(rays.transmittance(rays.lift({0, 0, 1}, p, n), kUp, kInfinity), Vec3f(1.0f));
+        EXPECT_EQ(rays.transmittance(rays.lift({0, 0, 1})(p, n), kUp, kInfinity), Vec3f(1.0f));
     }
 }
 
@@ -166,8 +166,8 @@ TEST(RayScene, flat_faces_of_any_shape_and_size_lift_by_rounding_alone) {
         add_instance(scene, floor, at({0, 0, 0}));
         const Progress progress;
         const RayScene rays(scene, Vec3d(0.0), {}, progress);
-        EXPECT_LT(rays.lift({0, 0, 1}, {10, 20, 0}, kUp).z, 0.01f) << floor.name;
-        EXPECT_GT(rays.lift({0, 0, 1}, {10, 20, 0}, kUp).z, 0.0f) << floor.name;
+        EXPECT_LT(rays.lift({0, 0, 1})({10, 20, 0}, kUp).z, 0.01f) << floor.name;
+        EXPECT_GT(rays.lift({0, 0, 1})({10, 20, 0}, kUp).z, 0.0f) << floor.name;
     }
 }
 
@@ -314,13 +314,13 @@ TEST(RayScene, a_small_detail_of_a_huge_mesh_keeps_its_contact_shadow) {
         const Vec2f u = points(i);
         const Vec3f direction = glm::normalize(Vec3f(u.x - 0.5f, u.y - 0.5f, 1.0f));
         const Vec3f below(5.1f + 0.8f * u.y, 5.1f + 0.8f * u.x, 1.0f);
-        const Vec3f start = rays.lift({0, 1, 1}, below, kUp);
+        const Vec3f start = rays.lift({0, 1, 1})(below, kUp);
         EXPECT_EQ(rays.transmittance(start, direction, kInfinity), Vec3f(0.0f));
         // Neither lid nor land shades itself.
-        const Vec3f above = rays.lift({0, 2, 1}, Vec3f(below.x, below.y, 1.0005f), kUp);
+        const Vec3f above = rays.lift({0, 2, 1})(Vec3f(below.x, below.y, 1.0005f), kUp);
         EXPECT_EQ(rays.transmittance(above, direction, kInfinity), Vec3f(1.0f));
         const Vec3f far_away(9000.0f * u.x + 100.0f, 9000.0f * u.y + 100.0f, -50.0f);
-        const Vec3f land = rays.lift({0, 0, 1}, far_away, kUp);
+        const Vec3f land = rays.lift({0, 0, 1})(far_away, kUp);
         EXPECT_EQ(rays.transmittance(land, direction, kInfinity), Vec3f(1.0f));
     }
 }
