@@ -23,3 +23,13 @@ HWY_INLINE std::uint32_t bits_of(M mask) {
     hn::StoreMaskBits(kTag, mask, bytes);
     return bytes[0] | (bytes[1] << 8);
 }
+/// Calls visit(i) for every bit i that is set.
+template <class Visit>
+HWY_INLINE void for_each_bit(std::uint32_t bits, Visit visit) {
+    for (; bits != 0; bits &= bits - 1) visit(static_cast<int>(__builtin_ctz(bits)));
+}
+/// Calls visit(lane) for every lane of the mask.
+template <class Visit>
+HWY_INLINE void for_each_lane(M mask, Visit visit) {
+    for_each_bit(bits_of(mask), visit);
+}

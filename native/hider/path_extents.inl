@@ -15,6 +15,11 @@ struct Extent {
         lo[end] = hn::Min(lo[end], value);
         hi[end] = hn::Max(hi[end], value);
     }
+    /// All lanes are of one thing.
+    HWY_INLINE void reduce() {
+        for (V& value : lo) value = hn::MinOfLanes(kTag, value);
+        for (V& value : hi) value = hn::MaxOfLanes(kTag, value);
+    }
 };
 
 /// Along one axis something stays within `reach` of place + speed t.
@@ -22,8 +27,8 @@ struct StraightPath {
     V place, speed, reach;
 };
 
-/// Of (z / focus - 1) / w at both ends together: a still lens has `shear`; where samples have a focus
-/// each it is `depth` / focus - `reciprocal`, of which perspective leaves depth = 1.
+/// Of (z / focus - 1) / w at both ends together: a still lens has `shear`; where samples have a
+/// focus each it is `depth` / focus - `reciprocal`, of which perspective leaves depth = 1.
 struct LensExtents {
     Extent shear, depth, reciprocal;
     HWY_INLINE LensExtents() {}  // the implicit one is of no target
@@ -37,9 +42,10 @@ struct PathExtents {
     Extent x, y;
     LensExtents lens;
     V z_lo;
-    V margin;          ///< more than rounding and the exact test need
-    V bend_x, bend_y;  ///< how far paths leave their chords
-    M sane;            ///< before the eye plane
+    V margin;                ///< more than rounding and the exact test need
+    V bend_x, bend_y;        ///< how far paths leave their chords
+    M sane;                  ///< before the eye plane
+    V last_x[2], last_y[2];  ///< where the corner that was added last is at the ends
 
     HWY_INLINE explicit PathExtents(M present) : sane(present) {
         z_lo = set(INFINITY);
@@ -56,6 +62,8 @@ struct PathExtents {
             const Corner<V> at = kMoving ? at_time(c, d, ends[e]) : c;
             const V inverse = one / at.w;
             const V at_x = at.x * inverse, at_y = at.y * inverse;
+            last_x[e] = at_x;
+            last_y[e] = at_y;
             x.add(at_x, e);
             y.add(at_y, e);
             if constexpr (kLens == Lens::Still)
@@ -78,6 +86,20 @@ struct PathExtents {
             was_y = at_y;
             was_w = at.w;
         }
+    }
+
+    /// All lanes are of one thing.
+    HWY_INLINE void reduce() {
+        x.reduce();
+        y.reduce();
+        lens.shear.reduce();
+        lens.depth.reduce();
+        lens.reciprocal.reduce();
+        z_lo = hn::MinOfLanes(kTag, z_lo);
+        margin = hn::MaxOfLanes(kTag, margin);
+        bend_x = hn::MaxOfLanes(kTag, bend_x);
+        bend_y = hn::MaxOfLanes(kTag, bend_y);
+        sane = hn::AllTrue(kTag, sane) ? sane : hn::MaskFromVec(set(0.0f));
     }
 
     /// `time0`, `time1`: the ends, times of the shutter.  Without lens and margin.

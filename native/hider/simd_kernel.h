@@ -45,6 +45,7 @@ struct SimdGrid {
     int n_u = 0, n_v = 0, vertices = 0;
     int right = 1, up = 0;  ///< Grid::right(), Grid::up()
     int segments = 0;       ///< knots - 1; 0 = static
+    bool finite = true;     ///< all vertices, at all knots
     Lifespan lifespan;      ///< Grid::lifespan
     const std::uint8_t* classes = nullptr;
     SurfaceId base = 0;

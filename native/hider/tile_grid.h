@@ -18,8 +18,8 @@ class TileGrid {
     TileGrid(const Projection& projection, const LensShape& lens);
     /// The grid that project() is about; it must outlive the calls.
     void load(const Grid& grid);
-    /// Fills all of `out` but classes, base, pool and range; it refers to this object until the
-    /// next call.
+    /// Fills all of `out` but finite, classes, base, pool and range; it refers to this object until
+    /// the next call.
     void project(const Vec2d& origin, SimdGrid& out);
     /// How far the grid's micropolygons go, roughly.
     Sweep sweep() const;

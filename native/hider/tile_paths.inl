@@ -26,6 +26,29 @@ struct TilePaths {
     std::uint32_t straight = 0;  ///< bit i: micropolygon i stays that near to one line
 };
 
+/// The part of a segment of motion in which something is over a tile.
+template <bool kMoving>
+struct SegmentPart {
+    V ends[2];       ///< in parts of the segment
+    V time0, time1;  ///< of the shutter
+
+    HWY_INLINE SegmentPart(const SimdGrid& grid, int segment, const BlockRanges& times) {
+        const V zero = set(0.0f), one = set(1.0f);
+        const V knots = set(static_cast<float>(std::max(1, grid.segments)));
+        const V start = set(static_cast<float>(segment));
+        ends[0] = ends[1] = zero;
+        if constexpr (kMoving) {
+            const auto end = [&](const float* time) HWY_ATTR {
+                return hn::Min(hn::Max(hn::LoadU(kTag, time) * knots - start, zero), one);
+            };
+            ends[0] = end(times.t0);
+            ends[1] = hn::Max(ends[0], end(times.t1));
+        }
+        time0 = (ends[0] + start) / knots;
+        time1 = (ends[1] + start) / knots;
+    }
+};
+
 /// A grid over the ranks of a tile.
 class RankPathFinder {
   public:
@@ -36,34 +59,29 @@ class RankPathFinder {
     template <bool kMoving, Lens kLens>
     HWY_INLINE void find_paths(int segment, int vertex, const BlockRanges& times,
                                TilePaths& out) const {
-        const V zero = set(0.0f), one = set(1.0f);
-        const V knots = set(static_cast<float>(std::max(1, m_grid.segments)));
-        const V start = set(static_cast<float>(segment));
-        V ends[2] = {zero, zero};
-        if constexpr (kMoving) {
-            const auto end = [&](const float* time) HWY_ATTR {
-                return hn::Min(hn::Max(hn::LoadU(kTag, time) * knots - start, zero), one);
-            };
-            ends[0] = end(times.t0);
-            ends[1] = hn::Max(ends[0], end(times.t1));
-        }
+        const SegmentPart<kMoving> part(m_grid, segment, times);
         const std::size_t knot = static_cast<std::size_t>(segment) * m_grid.vertices;
         PathExtents<kMoving, kLens> extents(hn::FirstN(kTag, kPacket));
         for (const int corner : {vertex, vertex + m_grid.right, vertex + m_grid.up,
                                  vertex + m_grid.up + m_grid.right}) {
             const std::size_t a = knot + static_cast<std::size_t>(corner);
-            const Corner<V> begin = load(a);
+            const Corner<V> begin = load_corner(m_grid, a);
             Corner<V> delta = begin;
-            if constexpr (kMoving) {
-                const Corner<V> end = load(a + static_cast<std::size_t>(m_grid.vertices));
-                delta = {end.x - begin.x, end.y - begin.y, end.w - begin.w, end.z - begin.z};
-            }
-            extents.add(m_grid, begin, delta, ends);
+            if constexpr (kMoving)
+                delta = from_to(begin,
+                                load_corner(m_grid, a + static_cast<std::size_t>(m_grid.vertices)));
+            extents.add(m_grid, begin, delta, part.ends);
         }
-        const V time0 = (ends[0] + start) / knots, time1 = (ends[1] + start) / knots;
+        store_paths(extents, part, out);
+    }
+
+    /// Of what has these extents, a vector of things.
+    template <bool kMoving, Lens kLens>
+    HWY_INLINE void store_paths(const PathExtents<kMoving, kLens>& extents,
+                                const SegmentPart<kMoving>& part, TilePaths& out) const {
         M straight = extents.sane;
         const auto axis = [&](const Extent& at, V bend, TilePaths::Axis& to) HWY_ATTR {
-            const StraightPath path = extents.straight(at, bend, time0, time1);
+            const StraightPath path = extents.straight(at, bend, part.time0, part.time1);
             const V reach = path.reach + extents.margin;
             straight = hn::And(straight, hn::And(hn::Le(bend, set(kMostBend)),
                                                  hn::Lt(hn::Abs(path.place) + reach, set(1e15f))));
@@ -193,6 +211,31 @@ class RankPathFinder {
         return find_blocks(present, box, extents.z_lo, first, cull, out);
     }
 
+    /// What a lens coordinate of 1 shifts by: from lo to hi, and within `rest` of middle + depth /
+    /// focus for a sample's own focus, of which 1 / focus is from far to near.
+    struct Shear {
+        V lo, hi, middle, depth, rest;
+    };
+    template <Lens kLens>
+    static HWY_INLINE Shear shear_of(const LensExtents& lens, V far, V near) {
+        const V zero = set(0.0f), half = set(0.5f), rounding = set(0x1p-20f);
+        if constexpr (kLens == Lens::None) return {zero, zero, zero, zero, zero};
+        if constexpr (kLens == Lens::Still) {
+            const V lo = lens.shear.lo[0], hi = lens.shear.hi[0], middle = (lo + hi) * half;
+            return {lo, hi, middle, zero, (hi - lo) * half + hn::Abs(middle) * rounding};
+        }
+        const V d0 = lens.depth.lo[0], d1 = lens.depth.hi[0];
+        const V r0 = lens.reciprocal.lo[0], r1 = lens.reciprocal.hi[0];
+        Shear shear;
+        shear.lo = hn::Min(hn::Min(d0 * far, d0 * near), hn::Min(d1 * far, d1 * near)) - r1;
+        shear.hi = hn::Max(hn::Max(d0 * far, d0 * near), hn::Max(d1 * far, d1 * near)) - r0;
+        shear.middle = hn::Neg((r0 + r1) * half);
+        shear.depth = (d0 + d1) * half;
+        shear.rest = (r1 - r0) * half + near * (d1 - d0) * half +
+                     (hn::Abs(shear.middle) + near * hn::Abs(shear.depth)) * rounding;
+        return shear;
+    }
+
   private:
     /// Paths that bend more are looked at rank by rank, pixels.
     static constexpr float kMostBend = 0.125f;
@@ -207,11 +250,6 @@ class RankPathFinder {
     static HWY_INLINE Corner<V> broadcast(const Corner<float>& c) {
         return {set(c.x), set(c.y), set(c.w), set(c.z)};
     }
-    HWY_INLINE Corner<V> load(std::size_t i) const {
-        return {hn::LoadU(kTag, m_grid.x + i), hn::LoadU(kTag, m_grid.y + i),
-                hn::LoadU(kTag, m_grid.w + i), hn::LoadU(kTag, m_grid.z + i)};
-    }
-
     /// Which of these intervals of time touch the segment.
     HWY_INLINE M in_segment(V t_lo, V t_hi, int segment) const {
         const V knots = set(static_cast<float>(m_grid.segments));
@@ -220,31 +258,15 @@ class RankPathFinder {
                        hn::Le(t_lo * knots - start, set(1.0f)));
     }
 
-    /// What a lens coordinate of 1 shifts by at the times of ranks: from lo to hi, and within `rest`
-    /// of middle + depth / focus for a sample's own focus.
-    struct Shear {
-        V lo, hi, middle, depth, rest;
-    };
+    /// At the times of ranks.
     template <Lens kLens>
     HWY_INLINE Shear shear_of(const LensExtents& lens, int first) const {
-        const V zero = set(0.0f), half = set(0.5f), rounding = set(0x1p-20f);
-        if constexpr (kLens == Lens::None) return {zero, zero, zero, zero, zero};
-        if constexpr (kLens == Lens::Still) {
-            const V lo = lens.shear.lo[0], hi = lens.shear.hi[0], middle = (lo + hi) * half;
-            return {lo, hi, middle, zero, (hi - lo) * half + hn::Abs(middle) * rounding};
+        V far = set(0.0f), near = far;
+        if constexpr (kLens == Lens::Refocused) {
+            far = rank(m_tile.bounds->focus_lo, first);
+            near = rank(m_tile.bounds->focus_hi, first);
         }
-        const RankBounds& bounds = *m_tile.bounds;
-        const V far = rank(bounds.focus_lo, first), near = rank(bounds.focus_hi, first);
-        const V d0 = lens.depth.lo[0], d1 = lens.depth.hi[0];
-        const V r0 = lens.reciprocal.lo[0], r1 = lens.reciprocal.hi[0];
-        Shear shear;
-        shear.lo = hn::Min(hn::Min(d0 * far, d0 * near), hn::Min(d1 * far, d1 * near)) - r1;
-        shear.hi = hn::Max(hn::Max(d0 * far, d0 * near), hn::Max(d1 * far, d1 * near)) - r0;
-        shear.middle = hn::Neg((r0 + r1) * half);
-        shear.depth = (d0 + d1) * half;
-        shear.rest = (r1 - r0) * half + near * (d1 - d0) * half +
-                     (hn::Abs(shear.middle) + near * hn::Abs(shear.depth)) * rounding;
-        return shear;
+        return shear_of<kLens>(lens, far, near);
     }
 
     /// Shears what is bounded by lens coordinates from u_lo to u_hi.
@@ -267,8 +289,8 @@ class RankPathFinder {
 
     HWY_INLINE M find_blocks(M present, const Box& box, V z_lo, int first, bool cull,
                              RankPaths& out) const {
-        present = hn::And(present,
-                          store_blocks(m_tile, box.x_lo, box.x_hi, box.y_lo, box.y_hi, out));
+        present =
+            hn::And(present, store_blocks(m_tile, box.x_lo, box.x_hi, box.y_lo, box.y_hi, out));
         if (!cull || hn::AllFalse(kTag, present)) return present;
         // The key of a sample may round a few ulp past the nearest corner's.
         V nearest = hn::Neg(z_lo);

@@ -70,6 +70,47 @@ TEST_P(ExecutorsAgree, FastAndThroughTheEye) {
     }
 }
 
+/// The same micropolygons without a common vertex, so that each is looked for by itself.
+Grid take_apart(const Grid& grid) {
+    Grid apart = grid;
+    apart.n_u = grid.micropolygon_count();
+    apart.n_v = 1;
+    apart.apart = true;
+    apart.positions.clear();
+    apart.opacity.clear();
+    for (int knot = 0; knot < grid.knots; ++knot)
+        for (const auto corner :
+             {&Grid::Corners::v0, &Grid::Corners::v1, &Grid::Corners::v3, &Grid::Corners::v2})
+            for (int m = 0; m < grid.micropolygon_count(); ++m) {
+                const int vertex = grid.corners(m).*corner;
+                apart.positions.push_back(grid.positions[knot * grid.vertex_count() + vertex]);
+                if (knot == 0 && grid.opacity_varies) apart.opacity.push_back(grid.opacity[vertex]);
+            }
+    apart.radiance.assign(apart.vertex_count(), Vec3f(1.0f));
+    return apart;
+}
+
+TEST_P(ExecutorsAgree, TogetherAndApart) {
+    std::uint64_t tests[2] = {0, 0};
+    for (const float spread : {1.0f, 0.3f, 4.0f}) {
+        Shot together, apart;
+        for (Shot* shot : {&together, &apart}) {
+            make_busy(*shot, GetParam(), 5);
+            for (Grid& grid : shot->grids)  // smaller and larger micropolygons, slower and faster
+                for (Vec3f& p : grid.positions) p *= Vec3f(spread, spread, 1);
+        }
+        for (Grid& grid : apart.grids) grid = take_apart(grid);
+        const Seen a = look(make_simd_hider, together, together.tiles);
+        const Seen b = look(make_simd_hider, apart, apart.tiles);
+        for (std::size_t i = 0; i < a.stores.size(); ++i) expect_equal(a.stores[i], b.stores[i]);
+        tests[0] += together.statistics.get(Counter::SampleTestsMoving);
+        tests[1] += apart.statistics.get(Counter::SampleTestsMoving);
+    }
+    if (GetParam() != kStatic) {  // they were found in two ways
+        EXPECT_NE(tests[0], tests[1]);
+    }
+}
+
 TEST_P(ExecutorsAgree, AllSimdTargetsMakeTheSameBits) {
     Shot shot;
     make_busy(shot, GetParam(), 8);

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts of grids that stay together while they are over a tile: included once a SIMD target inside
+// its namespace, after tile_paths.inl.
+
+/// A rectangle of micropolygons of a grid.
+struct Patch {
+    static constexpr int kSide = 8;
+    int i, j, n_u, n_v;  ///< the first, and how many, at most kSide
+};
+
+/// Parameters over a patch in the frame that moves with it: micropolygon (i, j) of the patch stays
+/// within [i - u.reach, i + 1 + u.reach] x [j - v.reach, j + 1 + v.reach] of them.
+struct PatchFrame {
+    /// x * dx + y * dy + origin, dx and dy pixels from the patch's path.
+    struct Axis {
+        float x, y, origin, reach;
+    } u, v;
+};
+
+/// What is known of a patch over a tile.
+struct PatchPath {
+    BlockRanges times;  ///< lane 0
+    TilePaths paths;    ///< lane 0
+    PatchFrame frame;
+    float nearest;
+};
+
+class PatchFinder {
+  public:
+    enum class Found { Nowhere, Framed, Loose };
+
+    PatchFinder(const SimdGrid& grid, const RankPathFinder& paths) : m_grid(grid), m_paths(paths) {}
+
+    /// Nowhere: not over the tile.  Loose: it bends, turns, grows or is curved too much to have a
+    /// frame; `out` is undefined.
+    template <bool kMoving, Lens kLens>
+    Found find(const Patch& patch, int segment, PatchPath& out) {
+        if (!touches(patch, segment, out.nearest)) return Found::Nowhere;
+        load<kMoving>(patch, segment);
+        if constexpr (kMoving) {
+            TimesOverTile over;
+            for (int k = 0; k < m_count; k += lane_count())
+                over.add<kLens>(m_grid, corner(0, k), corner(1, k));
+            over.reduce();
+            if (hn::AllFalse(kTag, over.store(m_grid, segment, out.times))) return Found::Nowhere;
+        }
+        const SegmentPart<kMoving> part(m_grid, segment, out.times);
+        PathExtents<kMoving, kLens> extents(hn::FirstN(kTag, kPacket));
+        for (int k = 0; k < m_count; k += lane_count()) {
+            const Corner<V> begin = corner(0, k);
+            Corner<V> delta = begin;
+            if constexpr (kMoving) delta = from_to(begin, corner(1, k));
+            extents.add(m_grid, begin, delta, part.ends);
+            for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
+                hn::StoreU(extents.last_x[e], kTag, m_at_x[e] + k);
+                hn::StoreU(extents.last_y[e], kTag, m_at_y[e] + k);
+            }
+        }
+        extents.reduce();
+        m_paths.store_paths(extents, part, out.paths);
+        if (!(out.paths.straight & 1u)) return Found::Loose;
+        return find_frame<kMoving, kLens>(patch, extents, part, out) ? Found::Framed : Found::Loose;
+    }
+
+  private:
+    /// Then a sample is near to two by two micropolygons at most.
+    static constexpr float kMostReach = 0.5f;
+    static constexpr int kMost = (Patch::kSide + 1) * (Patch::kSide + 1) + 2 * kPacket;
+
+    /// By the bounds over the whole segment and lens.
+    bool touches(const Patch& patch, int segment, float& nearest) const {
+        V x_lo = set(INFINITY), y_lo = x_lo, x_hi = set(-INFINITY), y_hi = x_hi, key = x_hi;
+        for (int j = 0; j <= patch.n_v; ++j)
+            for (int i = 0; i <= patch.n_u; i += lane_count()) {
+                const std::size_t at = static_cast<std::size_t>(segment) * m_grid.vertices +
+                                       (patch.j + j) * m_grid.up + patch.i + i;
+                const M in = hn::FirstN(kTag, static_cast<std::size_t>(patch.n_u + 1 - i));
+                const auto least = [&](V so_far, const float* a) HWY_ATTR {
+                    return hn::Min(so_far, hn::IfThenElse(in, hn::LoadU(kTag, a + at), so_far));
+                };
+                const auto most = [&](V so_far, const float* a) HWY_ATTR {
+                    return hn::Max(so_far, hn::IfThenElse(in, hn::LoadU(kTag, a + at), so_far));
+                };
+                x_lo = least(x_lo, m_grid.x_lo);
+                x_hi = most(x_hi, m_grid.x_hi);
+                y_lo = least(y_lo, m_grid.y_lo);
+                y_hi = most(y_hi, m_grid.y_hi);
+                key = most(key, m_grid.nearest);
+            }
+        const V zero = set(0.0f), side = set(static_cast<float>(kTileSize));
+        nearest = hn::GetLane(hn::MaxOfLanes(kTag, key));
+        const V least = hn::Max(hn::MinOfLanes(kTag, x_lo), hn::MinOfLanes(kTag, y_lo));
+        const V most = hn::Min(hn::MaxOfLanes(kTag, x_hi), hn::MaxOfLanes(kTag, y_hi));
+        return !hn::AllFalse(kTag, hn::And(hn::Lt(least, side), hn::Ge(most, zero)));
+    }
+
+    /// The vertices one after another; the last one fills up the last vector.
+    template <bool kMoving>
+    void load(const Patch& patch, int segment) {
+        const int wide = patch.n_u + 1;
+        m_count = wide * (patch.n_v + 1);
+        const auto copy = [&](const float* from, float* to) HWY_ATTR {
+            for (int j = 0; j <= patch.n_v; ++j)
+                for (int i = 0; i < wide; i += lane_count())
+                    hn::StoreU(hn::LoadU(kTag, from + (patch.j + j) * m_grid.up + patch.i + i),
+                               kTag, to + j * wide + i);
+            hn::StoreU(set(to[m_count - 1]), kTag, to + m_count);
+        };
+        for (int knot = 0; knot < (kMoving ? 2 : 1); ++knot) {
+            const std::size_t first = static_cast<std::size_t>(segment + knot) * m_grid.vertices;
+            copy(m_grid.x + first, m_x[knot]);
+            copy(m_grid.y + first, m_y[knot]);
+            copy(m_grid.w + first, m_w[knot]);
+            copy(m_grid.z + first, m_z[knot]);
+        }
+        for (int j = 0; j <= patch.n_v; ++j)
+            for (int i = 0; i < wide; i += lane_count()) {
+                hn::StoreU(hn::Iota(kTag, static_cast<float>(i)), kTag, m_i + j * wide + i);
+                hn::StoreU(set(static_cast<float>(j)), kTag, m_j + j * wide + i);
+            }
+        hn::StoreU(set(static_cast<float>(patch.n_u)), kTag, m_i + m_count);
+        hn::StoreU(set(static_cast<float>(patch.n_v)), kTag, m_j + m_count);
+    }
+
+    HWY_INLINE Corner<V> corner(int knot, int k) const {
+        return {hn::LoadU(kTag, m_x[knot] + k), hn::LoadU(kTag, m_y[knot] + k),
+                hn::LoadU(kTag, m_w[knot] + k), hn::LoadU(kTag, m_z[knot] + k)};
+    }
+
+    /// The affine map that takes the corners of the patch, halfway, nearest to their parameters;
+    /// `reach` from how far it takes the vertices from theirs.  Between the ends a vertex is no
+    /// farther: the map and the chords are linear.
+    template <bool kMoving, Lens kLens>
+    bool find_frame(const Patch& patch, const PathExtents<kMoving, kLens>& extents,
+                    const SegmentPart<kMoving>& part, PatchPath& out) const {
+        const int right = patch.n_u, above = patch.n_v * (patch.n_u + 1);
+        float right_x = 0, right_y = 0, up_x = 0, up_y = 0;
+        constexpr int kEnds = kMoving ? 2 : 1;
+        for (int e = 0; e < kEnds; ++e) {
+            const float *x = m_at_x[e], *y = m_at_y[e];
+            right_x += x[right] - x[0] + (x[above + right] - x[above]);
+            right_y += y[right] - y[0] + (y[above + right] - y[above]);
+            up_x += x[above] - x[0] + (x[above + right] - x[right]);
+            up_y += y[above] - y[0] + (y[above + right] - y[right]);
+        }
+        const float scale = 2.0f * kEnds / (right_x * up_y - right_y * up_x);
+        PatchFrame::Axis& u = out.frame.u;
+        PatchFrame::Axis& v = out.frame.v;
+        u.x = up_y * scale * static_cast<float>(patch.n_u);
+        u.y = -up_x * scale * static_cast<float>(patch.n_u);
+        v.x = -right_y * scale * static_cast<float>(patch.n_v);
+        v.y = right_x * scale * static_cast<float>(patch.n_v);
+        const TilePaths::Axis &path_x = out.paths.x, &path_y = out.paths.y;
+        const float end[2] = {hn::GetLane(part.time0), hn::GetLane(part.time1)};
+        V u_lo = set(INFINITY), u_hi = set(-INFINITY), v_lo = u_lo, v_hi = u_hi;
+        for (int e = 0; e < kEnds; ++e) {
+            const V x0 = set(path_x.place[0] + path_x.speed[0] * end[e]);
+            const V y0 = set(path_y.place[0] + path_y.speed[0] * end[e]);
+            for (int k = 0; k < m_count; k += lane_count()) {
+                const V x = hn::LoadU(kTag, m_at_x[e] + k) - x0;
+                const V y = hn::LoadU(kTag, m_at_y[e] + k) - y0;
+                const V off_u = hn::LoadU(kTag, m_i + k) - (set(u.x) * x + set(u.y) * y);
+                const V off_v = hn::LoadU(kTag, m_j + k) - (set(v.x) * x + set(v.y) * y);
+                u_lo = hn::Min(u_lo, off_u);
+                u_hi = hn::Max(u_hi, off_u);
+                v_lo = hn::Min(v_lo, off_v);
+                v_hi = hn::Max(v_hi, off_v);
+            }
+        }
+        const auto lens = RankPathFinder::shear_of<kLens>(
+            extents.lens, set(m_grid.inverse_farthest), set(m_grid.inverse_focus));
+        const float rest = hn::GetLane(lens.rest), margin = hn::GetLane(extents.margin);
+        const auto slack = [&](V bend, const TilePaths::Axis& path, float lens_extent) HWY_ATTR {
+            return margin + hn::GetLane(bend) + rest * lens_extent +
+                   (std::fabs(path.place[0]) + std::fabs(path.speed[0])) * 0x1p-20f;
+        };
+        const float slack_x = slack(extents.bend_x, path_x, m_grid.lens_x);
+        const float slack_y = slack(extents.bend_y, path_y, m_grid.lens_y);
+        const auto bound = [&](V lo, V hi, PatchFrame::Axis& axis) HWY_ATTR {
+            const float least = hn::GetLane(hn::MinOfLanes(kTag, lo));
+            const float most = hn::GetLane(hn::MaxOfLanes(kTag, hi));
+            axis.origin = 0.5f * (least + most);
+            axis.reach = 0.5f * (most - least) + std::fabs(axis.x) * slack_x +
+                         std::fabs(axis.y) * slack_y + 0x1p-16f;
+            return axis.reach < kMostReach;  // false where it is not a number
+        };
+        return bound(u_lo, u_hi, u) & bound(v_lo, v_hi, v);
+    }
+
+    const SimdGrid& m_grid;
+    const RankPathFinder& m_paths;
+    int m_count = 0;                                                   ///< vertices
+    float m_x[2][kMost], m_y[2][kMost], m_w[2][kMost], m_z[2][kMost];  ///< at the knots
+    float m_at_x[2][kMost], m_at_y[2][kMost];                          ///< at the ends, raster
+    float m_i[kMost], m_j[kMost];                                      ///< parameters
+};
