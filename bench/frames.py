@@ -75,7 +75,28 @@ def reference(scene, samples, all_scenes):
         job = {"module": "scenes", "scene": scene, "runs": 1}
         job["settings"] = [{"engine": "CYCLES", "samples": samples // len(SEEDS)}]
         np.save(file, [render({**job, "seed": seed})[0][0] for seed in SEEDS])
-    parts = np.load(file)
+    return mean_and_error(np.load(file))
+
+
+def still_reference(scene, samples, all_scenes, stills=32):
+    """The same as the mean of Cycles' pictures without blur, spread over the shutter: each of the four parts has
+    `stills` times of its own."""
+    file = CACHE / f"{scene}-stills-{samples}-{fingerprint(scene, all_scenes)}.npy"
+    if not file.exists():
+        CACHE.mkdir(parents=True, exist_ok=True)
+        parts = []
+        for part, seed in enumerate(SEEDS):
+            times = [(i + (part + 0.5) / len(SEEDS)) / stills for i in range(stills)]
+            each = {"engine": "CYCLES", "samples": samples // (len(SEEDS) * stills)}
+            job = {"module": "scenes", "scene": scene, "runs": 1, "seed": seed}
+            job["settings"] = [{**each, "at": at} for at in times]
+            parts.append(np.mean([image for image, _ in render(job)], axis=0))
+        np.save(file, parts)
+    return mean_and_error(np.load(file))
+
+
+def mean_and_error(parts):
+    """(mean of independent pictures, the RMSE that it has itself)"""
     return parts.mean(axis=0), float(np.sqrt(parts.var(axis=0, ddof=1).mean() / len(parts)))
 
 

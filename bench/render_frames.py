@@ -5,7 +5,8 @@
 
 JOB: {"module": "scenes" or "moving_files", "scene", "variant" (of moving_files), "folder", "runs", "seed" (of
 Cycles), "size" (width and height, the scene's own without), "settings": [{"engine": "CYCLES" or "GRANITA", "samples",
-"shutter" (the scene's own without), other properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FOLDER/seconds.json lists for each setting its runs as [wall, processor] seconds
+"shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), other
+properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FOLDER/seconds.json lists for each setting its runs as [wall, processor] seconds
 of the whole frame, export included.
 """
 
@@ -43,11 +44,13 @@ def main():
             setting = dict(setting)
             engine, samples = setting.pop("engine"), setting.pop("samples")
             open_for = setting.pop("shutter", shutter)
+            at = setting.pop("at", None)
+            begins, open_for = (opens, open_for) if at is None else (opens + at * open_for, 0.0)
             if engine == "CYCLES":
                 engines.set_cycles(scene, samples, job.get("seed", 0))
             else:
                 engines.set_granita(scene, samples, **setting)
-            engines.set_motion(scene, engine, opens, open_for)
+            engines.set_motion(scene, engine, begins, open_for)
             bpy.context.view_layer.update()
             processor = time.process_time()
             wall = engines.render(scene, Path(job["folder"]) / f"{index}.exr")

@@ -73,7 +73,7 @@ struct ShadingSystem::Impl {
     std::vector<std::vector<AttributeRequest>> requests;
     std::vector<DisplacementHook> displacement;
     CompiledSurface world;
-    std::unique_ptr<DirectLight> light;
+    std::unique_ptr<DirectLight> light;  ///< nullptr where nothing that is seen reflects any
 
     Impl(const Scene& s, Statistics& stats, Report& report, const Progress& progress)
         : scene(s),
@@ -98,6 +98,7 @@ struct ShadingSystem::Impl {
         warn_of_emission(report);
         world = compile_surface(scene.world.graph, scene, textures, report,
                                 {"world '" + scene.world.name + "'", true});
+        if (!anything_reflects()) return;
         light = std::make_unique<DirectLight>(
             scene,
             [this](const std::vector<Vec3f>& directions, float spread, std::vector<Vec3f>& out) {
@@ -106,12 +107,25 @@ struct ShadingSystem::Impl {
             statistics, report, progress, shadow_opacity());
     }
 
+    bool reflects(std::int32_t index) const {
+        return !material(index).radiance.sources.lobes.empty();
+    }
+
+    bool anything_reflects() const {
+        return std::ranges::any_of(scene.instances, [this](const Instance& instance) {
+            if (!instance.visible_camera) return false;
+            if (instance.materials.empty()) return reflects(-1);
+            return std::ranges::any_of(instance.materials,
+                                       [this](std::int32_t index) { return reflects(index); });
+        });
+    }
+
     /// Only lamps and the world are sampled: a surface that shines is seen, but sheds no light.
     void warn_of_emission(Report& report) const {
-        const auto reflects = [](const CompiledSurface& m) {
-            return !m.radiance.sources.lobes.empty();
-        };
-        if (std::none_of(materials.begin(), materials.end() - 1, reflects)) return;
+        const auto count = static_cast<std::int32_t>(scene.materials.size());
+        bool any = false;
+        for (std::int32_t i = 0; i < count && !any; ++i) any = reflects(i);
+        if (!any) return;
         for (std::size_t i = 0; i < scene.materials.size(); ++i) {
             const auto& emission = materials[i].radiance.sources.emission;
             if (emission.is_constant() && luminance(emission.constant) < kDimmestEmission) continue;
@@ -145,7 +159,7 @@ struct ShadingSystem::Impl {
     }
 
     PointPaths paths(const Grid& grid, const ShadingPoints& points) const {
-        return light->varies() ? PointPaths(grid, scene, points) : PointPaths();
+        return light && light->varies() ? PointPaths(grid, scene, points) : PointPaths();
     }
 
     void background(const std::vector<Vec3f>& directions, float spread,
@@ -213,8 +227,12 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     const SurfaceClosure closure = closure_of(run, surface.sources);
     const bool has_passes = !m_impl->channels.empty();
     ReflectionParts parts;
-    std::vector<Vec3f> radiance = m_impl->light->reflect(
-        points, closure, grid.key, has_passes ? &parts : nullptr, m_impl->paths(grid, points));
+    std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
+    if (m_impl->light)
+        radiance = m_impl->light->reflect(points, closure, grid.key, has_passes ? &parts : nullptr,
+                                          m_impl->paths(grid, points));
+    else
+        parts.resize(has_passes ? points.count : 0);
     for (std::size_t i = 0; i < closure.emission.size(); ++i) radiance[i] += closure.emission[i];
     spread_points(grid, 1, radiance);
     grid.radiance = std::move(radiance);
