@@ -7,7 +7,8 @@
 
 namespace granita {
 
-void finish_motion(Grid& grid, const Projection& projection) {
+void find_motion(Grid& grid) {
+    grid.motion = false;
     const std::size_t count = static_cast<std::size_t>(grid.vertex_count());
     for (int k = 1; k < grid.knots && !grid.motion; ++k)
         grid.motion = !std::equal(grid.positions.begin(),
@@ -23,6 +24,10 @@ void finish_motion(Grid& grid, const Projection& projection) {
                     grid.positions.begin() + static_cast<std::ptrdiff_t>(count));
     }
     grid.motion = grid.knots > 1;
+}
+
+void finish_motion(Grid& grid, const Projection& projection) {
+    find_motion(grid);
     grid.bounds = raster_bound(projection, grid.positions);
 }
 

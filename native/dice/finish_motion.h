@@ -8,8 +8,10 @@
 namespace granita {
 
 /// Once lifespan and positions at every knot are set: whether the grid moves (where it does not,
-/// one knot is kept), and its swept bounds.  What is still and appears or vanishes has equal knots:
+/// one knot is kept).  What is still and appears or vanishes has equal knots:
 /// all that follows then knows it as something that depends on time.
+void find_motion(Grid& grid);
+/// The same, and its swept bounds.
 void finish_motion(Grid& grid, const Projection& projection);
 /// Then, where it moves: `p` of the vertices, their positions at the frame time.
 void set_frame_positions(Grid& grid, const Knots& knots);

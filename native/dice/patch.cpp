@@ -5,17 +5,11 @@
 #include <bit>
 #include <cmath>
 
+#include "dice/coarsen_shading.h"
+#include "dice/lattice.h"
 #include "dice/raster_bound.h"
 
 namespace granita {
-namespace {
-
-/// An edge of 1e5 m may end in pieces of 3 mm: two pixels at the feet of a camera at eye height.  A
-/// path of 64 bits holds two such budgets and the sub-faces of a face of 4,000 corners; beyond that
-/// the face gets fewer levels.
-constexpr int kMostLevels = 25;
-
-}  // namespace
 
 std::vector<Bounds3f> patch_boxes(const OpenedMesh& mesh, const BasePatch& patch,
                                   const Vec2d* corner_uv) {
@@ -43,7 +37,7 @@ std::unique_ptr<Patch> Patch::open(std::shared_ptr<const OpenedMesh> mesh, const
     const int bits =
         patch.whole_face ? 0 : static_cast<int>(std::bit_width(static_cast<unsigned>(corners)));
     opened->m_path = (std::uint64_t{1} << bits) | patch.sub;
-    const int budget = std::min(kMostLevels, (62 - bits) / 2);
+    const int budget = std::min(kMostEdgeLevels, (62 - bits) / 2);
     opened->m_budget_u = opened->m_budget_v = budget;
     OpenedMesh::Start start = opened->m_mesh->start(patch, budget);
     std::copy_n(start.corner_uv, 4, opened->m_corner_uv);
@@ -193,6 +187,26 @@ std::vector<std::unique_ptr<Primitive>> Patch::split() const {
         children.push_back(std::move(child));
     }
     return children;
+}
+
+std::unique_ptr<Grid> Patch::dice() const {
+    auto grid = std::make_unique<Grid>();
+    grid->key = key();
+    grid->instance = static_cast<std::uint32_t>(m_mesh->instance_index());
+    grid->material = m_mesh->material(m_patch->face);
+    grid->holdout = m_mesh->instance().holdout;
+    grid->lifespan = m_mesh->instance().lifespan;
+    dice_lattice(*m_mesh, *m_patch, {m_corner_uv, m_sides, 1 << m_rates.u, 1 << m_rates.v}, *grid);
+    const Projection& projection = m_mesh->view().projection;
+    grid->bounds = raster_bound(projection, grid->positions);
+    if (!grid->bounds.visible &&
+        std::ranges::none_of(grid->positions, [](const Vec3f& p) { return is_finite(p); })) {
+        m_mesh->report().warn(m_mesh->instance().name, "a grid without any finite vertex left out");
+        return nullptr;
+    }
+    if (m_mesh->rate().shading_rate() > m_mesh->rate().rate())
+        coarsen_shading(*grid, projection, m_mesh->rate().shading_rate());
+    return grid;
 }
 
 }  // namespace granita

@@ -14,6 +14,11 @@
 
 namespace granita {
 
+/// An edge of 1e5 m may end in pieces of 3 mm: two pixels at the feet of a camera at eye height.  A
+/// path of 64 bits holds two such budgets and the sub-faces of a face of 4,000 corners; beyond that
+/// the face gets fewer levels.
+inline constexpr int kMostEdgeLevels = 25;
+
 /// [knots] of the part of a base patch inside four corners, displacement included.
 std::vector<Bounds3f> patch_boxes(const OpenedMesh& mesh, const BasePatch& patch,
                                   const Vec2d* corner_uv);
@@ -49,8 +54,6 @@ class Patch final : public Primitive {
         Side halves[2];
     };
     Cut cut(int side, bool collapsed_before, int before, int after) const;
-    void dice_attributes(Grid& grid, const std::vector<Vec2d>& uv, const std::vector<Vec2d>& step_u,
-                         const std::vector<Vec2d>& step_v) const;
 
     std::shared_ptr<const OpenedMesh> m_mesh;
     const BasePatch* m_patch;

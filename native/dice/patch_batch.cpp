@@ -2,8 +2,10 @@
 #include "dice/patch_batch.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "dice/finish_motion.h"
+#include "dice/lattice.h"
 #include "dice/patch.h"
 #include "dice/seen_area.h"
 
@@ -75,38 +77,72 @@ class Joiner {
 
 }  // namespace
 
+/// A face as a lattice, by its sides alone, or a piece of it as Patch diced it.
+struct PatchBatch::Part {
+    std::size_t face = 0;
+    OpenedMesh::Start start;
+    int n_u = 0, n_v = 0;
+    std::unique_ptr<Grid> diced;
+    int micropolygons() const { return diced ? diced->micropolygon_count() : n_u * n_v; }
+};
+
+/// Where this is all that Patch would find.  `inside`: in the frame, at every knot.
+bool PatchBatch::is_lattice(Part& part, bool inside) const {
+    const BasePatch& face = patch(part.face);
+    if (!inside || !face.whole_face) return false;
+    part.start = m_mesh->start(face, kMostEdgeLevels);
+    const Side* const sides = part.start.sides;
+    if (std::any_of(sides, sides + 4, [](const Side& s) { return s.levels < 0; })) return false;
+    const int u = std::max(sides[0].levels, sides[2].levels);
+    const int v = std::max(sides[1].levels, sides[3].levels);
+    part.n_u = 1 << u;
+    part.n_v = 1 << v;
+    return part.n_u * part.n_v <= m_mesh->view().scene->options.grid_size;
+}
+
 /// Where a face should not dice in one piece after all, its pieces do.
-std::vector<std::unique_ptr<Grid>> PatchBatch::dice_faces() const {
-    std::vector<std::unique_ptr<Grid>> parts;
+void PatchBatch::dice_face(std::size_t face, std::vector<Part>& parts) const {
     std::vector<std::unique_ptr<Primitive>> left;
-    for (std::size_t i = 0; i < face_count(); ++i) {
-        left.push_back(Patch::open(m_mesh, patch(i)));
-        while (!left.empty()) {
-            const auto primitive = std::move(left.back());
-            left.pop_back();
-            if (!primitive->diceable()) {
-                for (auto& child : primitive->split()) left.push_back(std::move(child));
-            } else if (auto part = primitive->dice()) {
-                parts.push_back(std::move(part));
-            }
+    left.push_back(Patch::open(m_mesh, patch(face)));
+    while (!left.empty()) {
+        const auto primitive = std::move(left.back());
+        left.pop_back();
+        if (!primitive->diceable()) {
+            for (auto& child : primitive->split()) left.push_back(std::move(child));
+        } else if (auto diced = primitive->dice()) {
+            parts.emplace_back().diced = std::move(diced);
         }
     }
-    return parts;
 }
 
 std::unique_ptr<Grid> PatchBatch::dice() const {
-    const std::vector<std::unique_ptr<Grid>> parts = dice_faces();
+    const bool inside = m_mesh->rate().inside(bounds());
+    std::vector<Part> parts;
+    parts.reserve(face_count());
     std::size_t micropolygons = 0;
-    for (const auto& part : parts)
-        micropolygons += static_cast<std::size_t>(part->micropolygon_count());
+    for (std::size_t i = 0; i < face_count(); ++i) {
+        parts.emplace_back().face = i;
+        if (is_lattice(parts.back(), inside)) continue;
+        parts.pop_back();
+        dice_face(i, parts);
+    }
+    for (const Part& part : parts) micropolygons += static_cast<std::size_t>(part.micropolygons());
     if (micropolygons == 0) return nullptr;
     const Projection& projection = m_mesh->view().projection;
     auto grid = make_grid(micropolygons);
     Joiner joiner(*grid);
     double area = 0.0;
-    for (const auto& part : parts) {
-        joiner.add(*part);
-        area += seen_area(*part, part->shading_p(), projection);
+    static thread_local Grid lattice;  // kept for its memory
+    for (const Part& part : parts) {
+        if (!part.diced) {
+            lattice.material = grid->material;
+            lattice.lifespan = grid->lifespan;
+            dice_lattice(*m_mesh, patch(part.face),
+                         {part.start.corner_uv, part.start.sides, part.n_u, part.n_v}, lattice);
+        }
+        const Grid& diced = part.diced ? *part.diced : lattice;
+        joiner.add(diced);
+        area += seen_area(diced, diced.shading_p(), projection);
     }
     finish_motion(*grid, projection);
     set_share(*grid, area);

@@ -15,7 +15,9 @@ class PatchBatch final : public FaceBatch {
     std::unique_ptr<Grid> dice() const override;
 
   private:
-    std::vector<std::unique_ptr<Grid>> dice_faces() const;
+    struct Part;
+    bool is_lattice(Part& part, bool inside) const;
+    void dice_face(std::size_t face, std::vector<Part>& parts) const;
 };
 
 }  // namespace granita

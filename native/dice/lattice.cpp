@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/lattice.h"
+
+#include <algorithm>
+
+#include "dice/finish_motion.h"
+
+namespace granita {
+namespace {
+
+/// Corners of a side in the patch's direction: bottom, right, top, left.
+constexpr int kStart[4] = {0, 1, 3, 0}, kEnd[4] = {1, 2, 2, 3};
+
+Vec2d bilinear(const Vec2d* c, double s, double t) {
+    return (c[0] * (1.0 - s) + c[1] * s) * (1.0 - t) + (c[3] * (1.0 - s) + c[2] * s) * t;
+}
+
+class LatticeDicer {
+  public:
+    void dice(const OpenedMesh& mesh, const BasePatch& patch, const Lattice& lattice, Grid& grid) {
+        m_mesh = &mesh;
+        m_patch = &patch;
+        m_lattice = lattice;
+        m_count = static_cast<std::size_t>((lattice.n_u + 1) * (lattice.n_v + 1));
+        find_places();
+        mesh.sample(patch, m_uv, m_samples);
+        place_border();
+        grid.n_u = lattice.n_u;
+        grid.n_v = lattice.n_v;
+        grid.knots = mesh.knot_count();
+        std::swap(grid.positions, m_samples.positions);
+        if (mesh.displaced()) displace(grid);
+        find_motion(grid);
+        grid.p.clear();
+        set_frame_positions(grid, mesh.knots());
+        std::swap(grid.normal, m_samples.normal);
+        std::swap(grid.geometric_normal, m_samples.geometric_normal);
+        count_spared(grid);
+        find_steps();
+        find_derivatives(grid);
+        find_attributes(grid);
+    }
+
+  private:
+    int side_steps(int side) const { return side % 2 == 0 ? m_lattice.n_u : m_lattice.n_v; }
+    /// Lattice vertex at step i of a side.
+    int vertex(int side, int i) const {
+        const int row = m_lattice.n_u + 1;
+        switch (side) {
+            case 0:
+                return i;
+            case 1:
+                return i * row + m_lattice.n_u;
+            case 2:
+                return m_lattice.n_v * row + i;
+            default:
+                return i * row;
+        }
+    }
+
+    void find_places() {
+        const Vec2d* const corner = m_lattice.corner_uv;
+        m_uv.clear();
+        for (int j = 0; j <= m_lattice.n_v; ++j)
+            for (int i = 0; i <= m_lattice.n_u; ++i)
+                m_uv.push_back(bilinear(corner, static_cast<double>(i) / m_lattice.n_u,
+                                        static_cast<double>(j) / m_lattice.n_v));
+        for (int side = 0; side < 4; ++side) {
+            if (m_lattice.sides[side].collapsed) continue;
+            const int steps = side_steps(side);
+            snap(side, steps);
+            for (int i = 0; i <= steps; ++i) {
+                const double s =
+                    static_cast<double>(m_snapped[side][static_cast<std::size_t>(i)]) / steps;
+                m_uv[static_cast<std::size_t>(vertex(side, i))] =
+                    corner[kStart[side]] * (1.0 - s) + corner[kEnd[side]] * s;
+            }
+        }
+    }
+
+    /// For each step of a side the vertex of the edge that it lies on: the nearest, so that order
+    /// is kept and each is met.
+    void snap(int side, int steps) {
+        m_ends.assign(1, 0);
+        SideWalker(*m_mesh, *m_patch).leaf_ends(m_lattice.sides[side], 0, steps, m_ends);
+        m_snapped[side].clear();
+        std::size_t leaf = 1;
+        for (int i = 0; i <= steps; ++i) {
+            while (leaf + 1 < m_ends.size() && i >= m_ends[leaf]) ++leaf;
+            m_snapped[side].push_back(2 * i < m_ends[leaf - 1] + m_ends[leaf] ? m_ends[leaf - 1]
+                                                                              : m_ends[leaf]);
+        }
+    }
+
+    /// Every point from the edge that owns it.
+    void place_border() {
+        const SideWalker walk(*m_mesh, *m_patch);
+        EdgePoint point;
+        for (int side = 0; side < 4; ++side) {
+            if (m_lattice.sides[side].collapsed) continue;
+            const int steps = side_steps(side);
+            int evaluated = -1;  // step whose point the last vertex got
+            for (int i = 0; i <= steps; ++i) {
+                const int at = m_snapped[side][static_cast<std::size_t>(i)];
+                if (at == evaluated) {
+                    copy(vertex(side, i - 1), vertex(side, i));
+                    continue;
+                }
+                evaluated = at;
+                walk.point(m_lattice.sides[side], static_cast<double>(at) / steps, point);
+                place(point, vertex(side, i));
+            }
+        }
+        for (int side = 0; side < 4; ++side)
+            if (m_lattice.sides[side].collapsed)
+                for (int i = 1; i < side_steps(side); ++i) copy(vertex(side, 0), vertex(side, i));
+    }
+
+    void place(const EdgePoint& point, int vertex) {
+        for (int k = 0; k < m_mesh->knot_count(); ++k) {
+            const std::size_t index = at_knot(k, vertex);
+            m_samples.positions[index] = point.p[k];
+            if (m_mesh->displaced()) m_samples.offset[index] = point.offset[k];
+        }
+    }
+
+    void copy(int from, int to) {
+        for (int k = 0; k < m_mesh->knot_count(); ++k) {
+            m_samples.positions[at_knot(k, to)] = m_samples.positions[at_knot(k, from)];
+            if (m_mesh->displaced())
+                m_samples.offset[at_knot(k, to)] = m_samples.offset[at_knot(k, from)];
+        }
+    }
+
+    std::size_t at_knot(int knot, int vertex) const {
+        return static_cast<std::size_t>(knot) * m_count + static_cast<std::size_t>(vertex);
+    }
+
+    void displace(Grid& grid) const {
+        const float bound = m_mesh->displacement(grid.material).bound;
+        std::uint64_t beyond = 0;
+        for (std::size_t i = 0; i < grid.positions.size(); ++i) {
+            grid.positions[i] += m_samples.offset[i];
+            if (glm::length(m_samples.offset[i]) > bound * 1.0001f + 1e-12f) ++beyond;
+        }
+        if (beyond)
+            m_mesh->report().warn(m_mesh->instance().name,
+                                  "vertices displaced beyond the displacement bound", beyond);
+    }
+
+    void count_spared(const Grid& grid) {
+        Statistics* const statistics = m_mesh->view().statistics;
+        if (!statistics) return;
+        m_path.clear();
+        for (int k = 0; k < grid.knots; ++k)
+            m_path.push_back(grid.positions[at_knot(k, static_cast<int>(m_count / 2))]);
+        const double spared = m_mesh->rate().spared(m_path.data(), grid.knots) - 1.0;
+        statistics->add(Counter::PointsSpared,
+                        static_cast<std::uint64_t>(spared * static_cast<double>(m_count)));
+    }
+
+    /// Change of (u, v) over one step.  At a corner where a side is a point, the step in the middle
+    /// of the lattice stands in: a texture look-up there needs a footprint too.
+    void find_steps() {
+        const Vec2d* const c = m_lattice.corner_uv;
+        const Side* const sides = m_lattice.sides;
+        const bool middle_u = sides[0].collapsed || sides[2].collapsed;
+        const bool middle_v = sides[1].collapsed || sides[3].collapsed;
+        const double n_u = m_lattice.n_u, n_v = m_lattice.n_v;
+        m_step_u.clear();
+        m_step_v.clear();
+        for (int j = 0; j <= m_lattice.n_v; ++j)
+            for (int i = 0; i <= m_lattice.n_u; ++i) {
+                const double s = middle_v ? 0.5 : i / n_u, t = middle_u ? 0.5 : j / n_v;
+                m_step_u.push_back(((c[1] - c[0]) * (1.0 - t) + (c[2] - c[3]) * t) / n_u);
+                m_step_v.push_back(((c[3] - c[0]) * (1.0 - s) + (c[2] - c[1]) * s) / n_v);
+            }
+    }
+
+    void find_derivatives(Grid& grid) const {
+        grid.dp_du.resize(m_count);
+        grid.dp_dv.resize(m_count);
+        for (std::size_t i = 0; i < m_count; ++i) {
+            const Vec3d su(m_samples.su[i]), sv(m_samples.sv[i]);
+            grid.dp_du[i] = Vec3f(su * m_step_u[i].x + sv * m_step_u[i].y);
+            grid.dp_dv[i] = Vec3f(su * m_step_v[i].x + sv * m_step_v[i].y);
+        }
+    }
+
+    void find_attributes(Grid& grid) {
+        const std::vector<AttributeRequest>& requests = m_mesh->requests(grid.material);
+        grid.attributes.resize(requests.size());
+        for (std::size_t a = 0; a < requests.size(); ++a) {
+            GridAttribute& out = grid.attributes[a];
+            out.attribute = static_cast<int>(a);
+            out.width = requests[a].width;
+            m_mesh->attribute(*m_patch, requests[a], m_uv, out.values, m_by_u, m_by_v);
+            if (!requests[a].derivatives) continue;
+            const std::size_t width = static_cast<std::size_t>(out.width);
+            out.du.resize(out.values.size());
+            out.dv.resize(out.values.size());
+            for (std::size_t i = 0; i < out.values.size(); ++i) {
+                const Vec2d &u = m_step_u[i / width], &v = m_step_v[i / width];
+                out.du[i] = static_cast<float>(m_by_u[i] * u.x + m_by_v[i] * u.y);
+                out.dv[i] = static_cast<float>(m_by_u[i] * v.x + m_by_v[i] * v.y);
+            }
+        }
+    }
+
+    const OpenedMesh* m_mesh = nullptr;
+    const BasePatch* m_patch = nullptr;
+    Lattice m_lattice{};
+    std::size_t m_count = 0;  ///< vertices
+    std::vector<Vec2d> m_uv;  ///< [m_count]
+    std::vector<Vec2d> m_step_u, m_step_v;
+    std::vector<int> m_ends, m_snapped[4];
+    std::vector<float> m_by_u, m_by_v;
+    std::vector<Vec3f> m_path;
+    SurfaceSamples m_samples;
+};
+
+}  // namespace
+
+void dice_lattice(const OpenedMesh& mesh, const BasePatch& patch, const Lattice& lattice,
+                  Grid& grid) {
+    static thread_local LatticeDicer dicer;
+    dicer.dice(mesh, patch, lattice, grid);
+}
+
+}  // namespace granita
