@@ -63,7 +63,7 @@ void RayElements::fill_curves(int knot, float* out) const {
     }
 }
 
-RTCGeometry RayElements::hand_over(RTCDevice device) {
+std::vector<RTCGeometry> RayElements::hand_over(RTCDevice device) {
     const bool curves = m_data->kind == GeometryKind::Curves;
     const std::size_t count = curves ? m_segments + 3 * m_curves.size() : m_data->vertex_count();
     RTCGeometry geometry = rtcNewGeometry(
@@ -93,12 +93,13 @@ RTCGeometry RayElements::hand_over(RTCDevice device) {
             first += segments + 3;
         }
     }
-    if (allocated) return geometry;
+    if (allocated) return {geometry};
     rtcReleaseGeometry(geometry);
-    return nullptr;
+    return {};
 }
 
-void RayElements::locate(std::uint32_t primitive, float u, float, ShadowHit& hit) const {
+void RayElements::locate(std::uint32_t, std::uint32_t primitive, float u, float,
+                         ShadowHit& hit) const {
     hit.elements = m_shared.get();
     if (m_curves.empty()) {
         hit.place = {primitive, primitive, primitive, 0.0};

@@ -17,13 +17,14 @@ class RayElements final : public RayShape {
     /// `located`: locate() will be asked.
     RayElements(const GeometryData& data, float frame_time, bool located);
 
-    RTCGeometry hand_over(RTCDevice device) override;
+    std::vector<RTCGeometry> hand_over(RTCDevice device) override;
     std::string size() const override;
     int knots() const override { return m_knots; }
     float extent(std::uint32_t) const override { return m_extent; }
     /// Rays start outside of their own element (Grid::ray_offset).
     float error(std::uint32_t) const override { return 0.0f; }
-    void locate(std::uint32_t primitive, float u, float v, ShadowHit& hit) const override;
+    void locate(std::uint32_t geometry, std::uint32_t primitive, float u, float v,
+                ShadowHit& hit) const override;
     std::size_t bytes() const override;
 
   private:

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "geometry/subdivision_topology.h"
 
@@ -59,6 +60,7 @@ RayMesh::RayMesh(const GeometryData& data, float frame_time, const Progress& pro
         add_limit_surface(progress);
     else
         add_polygons();
+    if (m_knots > 1) put_still_first();
     for (const Vec3f& p : m_points) m_extent = std::max(m_extent, largest_coordinate(p));
 }
 
@@ -176,32 +178,64 @@ void RayMesh::add_limit_surface(const Progress& progress) {
         m_errors[patches[k].face] = std::max(m_errors[patches[k].face], errors[k]);
 }
 
-RTCGeometry RayMesh::hand_over(RTCDevice device) {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(m_knots));
-    // Copied: Embree reads 16 bytes at the last vertex, so a shared buffer needs padding.
+void RayMesh::put_still_first() {
+    std::vector<bool> moves(point_count(), false);
+    for (int knot = 1; knot < m_knots; ++knot)
+        for (std::size_t v = 0; v < moves.size(); ++v)
+            if (points(knot)[v] != points(0)[v]) moves[v] = true;
+    std::vector<std::uint32_t> order(m_triangles.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto moving = std::stable_partition(order.begin(), order.end(), [&](std::uint32_t k) {
+        return std::ranges::none_of(m_triangles[k], [&](std::uint32_t v) { return moves[v]; });
+    });
+    m_still = static_cast<std::size_t>(moving - order.begin());
+    if (m_still == 0) return;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    triangles.reserve(order.size());
+    for (const std::uint32_t k : order) triangles.push_back(m_triangles[k]);
+    m_triangles = std::move(triangles);
+    m_order = std::move(order);
+}
+
+std::vector<RTCGeometry> RayMesh::hand_over(RTCDevice device) {
     bool allocated = true;
+    // Embree reads 16 bytes at the last vertex.
+    constexpr std::size_t kPadding = 16 - sizeof(Vec3f);
+    std::vector<RTCBuffer> knots;
     for (int knot = 0; knot < m_knots && allocated; ++knot) {
-        void* vertices =
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(knot),
-                                    RTC_FORMAT_FLOAT3, sizeof(Vec3f), point_count());
-        allocated = vertices != nullptr;
-        if (allocated) std::ranges::copy(points(knot), static_cast<Vec3f*>(vertices));
+        knots.push_back(rtcNewBuffer(device, point_count() * sizeof(Vec3f) + kPadding));
+        void* data = knots.back() ? rtcGetBufferData(knots.back()) : nullptr;
+        allocated = data != nullptr;
+        if (allocated) std::ranges::copy(points(knot), static_cast<Vec3f*>(data));
     }
-    if (allocated) {
+    std::vector<RTCGeometry> handed;
+    const auto add = [&](std::size_t first, std::size_t last, int knot_count) {
+        if (first == last) return;
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        handed.push_back(geometry);
+        rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(knot_count));
+        for (int knot = 0; knot < knot_count; ++knot)
+            rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(knot),
+                                 RTC_FORMAT_FLOAT3, knots[static_cast<std::size_t>(knot)], 0,
+                                 sizeof(Vec3f), point_count());
         void* indices =
             rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    3 * sizeof(std::uint32_t), m_triangles.size());
+                                    3 * sizeof(std::uint32_t), last - first);
         allocated = indices != nullptr;
         if (allocated)
-            std::copy(m_triangles.begin(), m_triangles.end(),
+            std::copy(m_triangles.begin() + static_cast<std::ptrdiff_t>(first),
+                      m_triangles.begin() + static_cast<std::ptrdiff_t>(last),
                       static_cast<std::array<std::uint32_t, 3>*>(indices));
-    }
+    };
+    if (allocated) add(0, m_still, 1);
+    if (allocated) add(m_still, m_triangles.size(), m_knots);
+    for (RTCBuffer buffer : knots)
+        if (buffer) rtcReleaseBuffer(buffer);
     std::vector<Vec3f>().swap(m_points);
     std::vector<std::array<std::uint32_t, 3>>().swap(m_triangles);
-    if (allocated) return geometry;
-    rtcReleaseGeometry(geometry);
-    return nullptr;
+    if (allocated) return handed;
+    for (RTCGeometry geometry : handed) rtcReleaseGeometry(geometry);
+    return {};
 }
 
 std::string RayMesh::size() const {
@@ -216,7 +250,9 @@ float RayMesh::error(std::uint32_t face) const {
     return face < m_errors.size() ? m_errors[face] : 0.0f;
 }
 
-void RayMesh::locate(std::uint32_t triangle, float u, float v, ShadowHit& hit) const {
+void RayMesh::locate(std::uint32_t part, std::uint32_t triangle, float u, float v,
+                     ShadowHit& hit) const {
+    if (!m_order.empty()) triangle = m_order[part == 0 ? triangle : m_still + triangle];
     hit.geometry = &m_shared;
     const GeometryData& data = m_shared.data();
     const auto& patches = m_shared.patches();
@@ -238,7 +274,7 @@ void RayMesh::locate(std::uint32_t triangle, float u, float v, ShadowHit& hit) c
 
 std::size_t RayMesh::bytes() const {
     return m_points.size() * sizeof(Vec3f) + m_triangles.size() * sizeof(m_triangles[0]) +
-           (m_patches.size() + m_errors.size()) * 4 + m_shared.bytes() +
+           (m_patches.size() + m_errors.size() + m_order.size()) * 4 + m_shared.bytes() +
            m_extents.size() * sizeof(float);
 }
 

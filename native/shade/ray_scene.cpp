@@ -79,6 +79,7 @@ struct RayInstance {
 struct ShadowContext {
     RTCIntersectContext embree;  // first: Embree hands a pointer to it back
     const void* scene = nullptr;
+    Vec3f start, direction;  ///< shading space: what Embree hands back is in the object's
     Vec3f left{1.0f};
     std::exception_ptr failure;
 };
@@ -97,7 +98,8 @@ struct RayScene::Impl {
         return instance.casts_shadow && !instance.lifespan.is_empty();
     }
     bool lets_light_through(const Instance& instance) const;
-    Vec3f transparency(const RTCRay& ray, const RTCHit& hit, const RayInstance& instance) const;
+    Vec3f transparency(const ShadowContext& context, const RTCRay& ray, const RTCHit& hit,
+                       const RayInstance& instance) const;
     static void pass_through(const RTCFilterFunctionNArguments* arguments);
 
     const Scene& scene;
@@ -141,7 +143,7 @@ void RayScene::Impl::build_geometry(int index, std::uint8_t use, const Progress&
     rtcSetSceneFlags(built.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(built.get(), RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneProgressMonitorFunction(built.get(), goes_on, const_cast<Progress*>(&progress));
-    if (RTCGeometry handed = shape->hand_over(device.get())) {
+    for (RTCGeometry handed : shape->hand_over(device.get())) {
         if (use & ~kCasts) rtcSetGeometryOccludedFilterFunction(handed, pass_through);
         rtcCommitGeometry(handed);
         rtcAttachGeometry(built.get(), handed);
@@ -219,16 +221,17 @@ void RayScene::Impl::add_way(RTCScene geometry, const std::vector<Mat4d>& knots)
         ways.back().add(way);
 }
 
-Vec3f RayScene::Impl::transparency(const RTCRay& ray, const RTCHit& hit,
-                                   const RayInstance& instance) const {
+Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& ray,
+                                   const RTCHit& hit, const RayInstance& instance) const {
     const Instance& source = scene.instances[instance.index];
     ShadowHit shadow;
     shadow.instance = instance.index;
-    shapes[static_cast<std::size_t>(source.geometry)]->locate(hit.primID, hit.u, hit.v, shadow);
+    shapes[static_cast<std::size_t>(source.geometry)]->locate(hit.geomID, hit.primID, hit.u, hit.v,
+                                                              shadow);
     shadow.material = material_of(source, shadow.slot);
     if (!opacity.is_transparent(shadow.material)) return Vec3f(0.0f);
-    shadow.direction = {ray.dir_x, ray.dir_y, ray.dir_z};
-    shadow.p = Vec3f(ray.org_x, ray.org_y, ray.org_z) + shadow.direction * ray.tfar;
+    shadow.direction = context.direction;
+    shadow.p = context.start + context.direction * ray.tfar;
     shadow.time = ray.time;
     if (shadow.elements) {  // they face the ray
         shadow.normal = -shadow.direction;
@@ -255,7 +258,7 @@ void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) 
     if (!instance.lets_light_through) return;
     try {
         context->left *=
-            scene->transparency(*reinterpret_cast<const RTCRay*>(arguments->ray),
+            scene->transparency(*context, *reinterpret_cast<const RTCRay*>(arguments->ray),
                                 *reinterpret_cast<const RTCHit*>(arguments->hit), instance);
     } catch (...) {
         context->failure = std::current_exception();  // thrown on after Embree's frames are left
@@ -347,9 +350,11 @@ Vec3f RayScene::transmittance(const Vec3f& start, const Vec3f& direction, float 
 
 Vec3f RayScene::transmittance(const Vec3f& start, const Vec3f& direction, float distance,
                               float time) const {
-    ShadowContext context;
+    ShadowContext context{};
     rtcInitIntersectContext(&context.embree);
     context.scene = m_impl.get();
+    context.start = start;
+    context.direction = direction;
     RTCRay ray{};
     ray.org_x = start.x, ray.org_y = start.y, ray.org_z = start.z;
     ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "shade/shadow_opacity.h"
 
@@ -15,9 +16,10 @@ namespace granita {
 class RayShape {
   public:
     virtual ~RayShape() = default;
-    /// Embree's own copy, to be committed and released by the caller; what only it needs is given
-    /// back here.  nullptr: not enough memory.
-    virtual RTCGeometry hand_over(RTCDevice device) = 0;
+    /// Embree's own copies, to be committed and released by the caller and numbered as they come;
+    /// what only they need is given back here.  Empty: nothing to meet, or not enough memory (the
+    /// device's error tells).
+    virtual std::vector<RTCGeometry> hand_over(RTCDevice device) = 0;
     /// How much there is of it, for messages: "12 triangles".
     virtual std::string size() const = 0;
     /// 1 = it does not deform.
@@ -28,8 +30,9 @@ class RayShape {
     /// Largest distance between the surface of a face, or batch, and what rays meet of it at any
     /// knot, object space.
     virtual float error(std::uint32_t face) const = 0;
-    /// Fills the place of a hit and its material slot.
-    virtual void locate(std::uint32_t primitive, float u, float v, ShadowHit& hit) const = 0;
+    /// Fills the place of a hit and its material slot.  `geometry`: which of hand_over()'s.
+    virtual void locate(std::uint32_t geometry, std::uint32_t primitive, float u, float v,
+                        ShadowHit& hit) const = 0;
     virtual std::size_t bytes() const = 0;
 };
 

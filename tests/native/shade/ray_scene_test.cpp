@@ -258,6 +258,46 @@ TEST(RayScene, hits_on_a_limit_surface_name_the_patch_and_the_place_on_it) {
     EXPECT_EQ(seen.size(), 2u);
 }
 
+TEST(RayScene, hits_on_what_moves_and_what_stands_still_of_a_mesh_name_their_faces) {
+    // Four squares side by side, of which the first and the third go up within the shutter.
+    GeometryData data;
+    data.name = "mesh 'Row'";
+    data.knots = 2;
+    for (const float height : {0.0f, 4.0f})
+        for (int f = 0; f < 4; ++f)
+            for (const Vec2f& c : {Vec2f(0, 0), Vec2f(1, 0), Vec2f(1, 1), Vec2f(0, 1)})
+                data.points.emplace_back(c.x + 2.0f * static_cast<float>(f), c.y,
+                                         f % 2 == 0 ? height : 0.0f);
+    for (std::int32_t v = 0; v < 16; ++v) data.corner_verts.push_back(v);
+    data.face_sizes.assign(4, 4);
+    Scene scene = empty_scene();
+    Mat4d upside_down = at({0, 0, 2});
+    upside_down[1] *= -1.0;
+    upside_down[2] *= -1.0;
+    add_instance(scene, data, upside_down);
+
+    std::uint32_t face = 9;
+    float height = 0.0f;
+    ShadowOpacity opacity;
+    opacity.is_transparent = [](std::int32_t) { return true; };
+    opacity.transparency = [&](const ShadowHit& hit) {
+        face = hit.patch->face;
+        height = hit.p.z;
+        EXPECT_EQ(hit.direction, -kUp);
+        EXPECT_NEAR(hit.normal.z, -1.0f, 1e-6f);
+        return Vec3f(0.5f);
+    };
+    const Progress progress;
+    const RayScene rays(scene, Vec3d(0.0), opacity, progress);
+    for (std::uint32_t f = 0; f < 4; ++f)
+        for (const float x : {0.3f, 0.7f}) {
+            const Vec3f start(x + 2.0f * static_cast<float>(f), -0.5f, 9.0f);
+            EXPECT_EQ(rays.transmittance(start, -kUp, kInfinity, 0.25f), Vec3f(0.5f));
+            EXPECT_EQ(face, f);
+            EXPECT_NEAR(height, f % 2 == 0 ? 1.0f : 2.0f, 1e-5f);
+        }
+}
+
 TEST(RayScene, an_error_inside_a_material_comes_out_of_the_ray) {
     Scene scene = empty_scene();
     scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].materials = {0};
