@@ -13,6 +13,7 @@ from .mesh import read_geometry
 from .points import read_point_cloud
 from .report import poll
 from .snapshot import Geometry
+from .strands import Strands
 from .subdivision import Cage, cage_mesh, subdivision_record
 from .velocity import read_velocity
 
@@ -33,10 +34,18 @@ class GeometrySource:
     velocity: np.ndarray  # float32 [V, 3] metres a second, or None
     said: list  # [(datablock, message)], what there was to report
 
+    @property
+    def swells(self):
+        """Whether radii may be others at another time without an update that says so."""
+        return isinstance(self.topology, Strands) and self.topology.swells
+
     def at_frame(self, columns):
         """What `points_again` gives at the frame: float32 [V, columns]."""
-        points = self.geometry.points[0]
-        if columns == 3:
+        return self.widened(self.geometry.points[0], columns)
+
+    def widened(self, points, columns):
+        """Points of any time, with the frame's radii where they are wanted and have none."""
+        if points.shape[1] == columns:
             return points
         return np.hstack([points, self.geometry.radius[0][:, None]])
 
@@ -60,7 +69,11 @@ class GeometrySource:
         """Whether it need not be read again after what a changes.Touched holds."""
         # Blender hands hair out in world space: a place that changes moves its last bits.
         moved = touched.moved if self.key[0] == "HAIR" else frozenset()
-        return self.pointers.isdisjoint(touched.formed) and self.pointers.isdisjoint(moved)
+        return (
+            not self.swells
+            and self.pointers.isdisjoint(touched.formed)
+            and self.pointers.isdisjoint(moved)
+        )
 
 
 def read_geometries(scan, requested, depsgraph, report, check_cancel, known=()):

@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 
+from .hair_width import hair_radii, widths
 from .snapshot import Attribute, Geometry
 from .strands import Strands, particle_range, read_strands
 
@@ -49,6 +50,7 @@ def read_hair(thing, name, label, mode, report):
     Returns:
         (Geometry, Strands), or None where there is no hair.
     """
+    settings = thing.particle_systems[name].settings
     read = partial(read_strands, name=name, mode=mode)
     points, sizes = read(thing, None)
     if len(sizes) == 0:
@@ -58,35 +60,12 @@ def read_hair(thing, name, label, mode, report):
         kind="CURVES",
         points=points[None],
         curve_sizes=sizes,
-        radius=_radii(thing.particle_systems[name].settings, points.reshape(len(sizes), -1, 3)),
+        radius=hair_radii(settings, points.reshape(len(sizes), -1, 3)).reshape(1, -1),
         attributes=_root_uvs(thing, name, len(sizes), mode),
     )
-    return geometry, Strands(sizes, read, points, name, mode)
-
-
-def _radii(settings, hairs):
-    """float32 [1, V], metres; Cycles' shape over the length.  Blender's root and tip are diameters.
-
-    Args:
-        hairs: float32 [n, steps, 3].
-    """
-    lengths = np.linalg.norm(np.diff(hairs, axis=1), axis=2)
-    along = np.zeros(hairs.shape[:2])
-    np.cumsum(lengths, axis=1, out=along[:, 1:])
-    whole = along[:, -1:]
-    rest = 1.0 - np.divide(along, whole, out=np.zeros_like(along), where=whole > 0.0)
-    shape = settings.shape
-    if shape < 0.0:
-        rest = rest ** (1.0 + shape)
-    elif shape > 0.0:
-        rest = rest ** (1.0 / max(1.0 - shape, 1e-6))
-    root, tip = (
-        0.5 * settings.radius_scale * d for d in (settings.root_radius, settings.tip_radius)
+    return geometry, Strands(
+        sizes, read, points, widths(settings), settings.animation_data is not None, name, mode
     )
-    radius = rest * (root - tip) + tip
-    if settings.use_close_tip:
-        radius[:, -1] = 0.0
-    return radius.astype(np.float32).reshape(1, -1)
 
 
 def _root_uvs(thing, name, count, mode):

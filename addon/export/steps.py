@@ -72,6 +72,7 @@ class Steps:
                 self._walk(knows_updates)
             else:
                 self._take(changes)
+        self._read_radii()
         things = np.flatnonzero(self._touched)
         self._records[tick] = (things, self._present[things], self._now[things])
         self._point_records[tick] = dict(self._last_points)
@@ -218,6 +219,21 @@ class Steps:
         points[broken] = source.at_frame(points.shape[1])[broken]
         self._last_points[index] = points
 
+    def _read_radii(self):
+        scan = self._scene.visit
+        swelling = [
+            (index, source)
+            for index, source in enumerate(self._scene.sources)
+            if source.swells and self._deforms(index, source)
+        ]
+        everything = originals() if swelling else {}
+        for index, source in swelling:
+            points = self._last_points.get(index, source.at_frame(3))
+            owner = everything.get(scan.kinds[scan.kind[source.example]].address)
+            if points is not None and owner is not None:
+                thing = owner.evaluated_get(self._scene.depsgraph)
+                self._last_points[index] = source.topology.with_radii(points[:, :3], thing)
+
     def places(self):
         """(int [m] numbers of the Runs of things that ever move, int [m] these things, {tick: float64
         [m, 4, 4]})."""
@@ -296,12 +312,14 @@ class Steps:
         found = {}
         for index in set().union(*self._point_records.values()) - self._rigid:
             records = [record.get(index) for record in self._point_records.values()]
-            columns = next((points.shape[1] for points in records if points is not None), 3)
-            at_frame = self._scene.sources[index].at_frame(columns)
+            columns = max((points.shape[1] for points in records if points is not None), default=3)
+            source = self._scene.sources[index]
+            at_frame = source.at_frame(columns)
             path = {t: record.get(index, at_frame) for t, record in self._point_records.items()}
             for tick, nearer in hold_order(self.ticks, self.frame_tick):
                 if path[tick] is None:
                     path[tick] = path[nearer]
+                path[tick] = source.widened(path[tick], columns)
             if any(not np.array_equal(points, at_frame) for points in path.values()):
                 found[index] = {tick: path[tick] for tick in sorted(path)}
         return found

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .elements import Elements
+from .hair_width import hair_radii, widths
 from .transforms import from_matrix, inverse
 
 # Children come out a little different wherever their emitter stands: of 13,608 on a head that turns, one
@@ -18,11 +19,24 @@ class Strands(Elements):
     """Hair that goes along with its emitter is read once: its tips tell whether it does."""
 
     points: np.ndarray  # float32 [V, 3] at the frame
+    widths: tuple  # hair_width.widths at the frame
+    swells: bool  # these may be others at other times
     name: str  # of the particle system
     mode: str  # of the depsgraph
 
     def points_again(self, thing, data):
         return self.points if self._goes_along(thing) else super().points_again(thing, data)
+
+    def with_radii(self, points, thing):
+        """float32 [V, 3] at another time, or [V, 4] where radii are not the frame's then.
+
+        They are settings, whose changes no update of the depsgraph names as one of geometry.
+        """
+        system = thing.particle_systems.get(self.name)
+        if system is None or widths(system.settings) == self.widths:
+            return points
+        radii = hair_radii(system.settings, points.reshape(len(self.sizes), -1, 3))
+        return np.hstack([points, radii.reshape(-1, 1)])
 
     def _goes_along(self, thing):
         system = thing.particle_systems.get(self.name)

@@ -70,6 +70,43 @@ def test_radii_in_motion(moving, build):
     assert all("Catmull-Rom" in message for _, message, _ in report.entries())
 
 
+@pytest.mark.parametrize("children", ["NONE", "SIMPLE"])
+def test_radii_of_particle_hair_in_motion(moving, children):
+    """Half the diameter; the first point is a root."""
+    settings = {"child_type": children, "rendered_child_count": 3, "shape": 0.0}
+    thing = furry(moving, count=2, use_close_tip=False, **settings)
+    hair = thing.particle_systems[0].settings
+    drive(hair, "radius_scale", ".01 * frame")
+    hair.root_radius, hair.tip_radius = 2.0, 1.0
+    snapshot, report, _ = export_probe.through_engine(moving)
+    (geometry,) = (g for g in snapshot["geometries"] if g["kind"] == "CURVES")
+    steps = geometry["curve_sizes"][0]
+    assert geometry["radius"][:, 0] == pytest.approx([0.0975, 0.1025], rel=1e-5)
+    assert geometry["radius"][:, steps - 1] == pytest.approx([0.04875, 0.05125], rel=1e-5)
+    assert np.array_equal(*geometry["points"]) and len(report) == 0
+
+
+def test_hair_that_only_bends_keeps_its_radii(moving):
+    thing = furry(moving, count=2)
+    drive(thing.particle_systems[0].settings, "tip_radius", "0.01")
+    key = shape_key(thing)
+    for point in key.data:
+        point.co.z += point.co.x
+    drive(key, "value", "frame - 10")
+    snapshot, _, _ = export_probe.through_engine(moving)
+    (geometry,) = (g for g in snapshot["geometries"] if g["kind"] == "CURVES")
+    assert len(geometry["points"]) > 1 and len(geometry["radius"]) == 1
+
+
+def test_a_tip_that_grows_in_half_of_the_shutter(moving):
+    thing = furry(moving, count=2, use_close_tip=False)
+    drive(thing.particle_systems[0].settings, "tip_radius", "0.1 + max(frame - 10, 0)")
+    snapshot, _, _ = export_probe.through_engine(moving)
+    (geometry,) = (g for g in snapshot["geometries"] if g["kind"] == "CURVES")
+    steps = geometry["curve_sizes"][0]
+    assert geometry["radius"][:, steps - 1] == pytest.approx([0.05, 0.05, 0.175], rel=1e-5)
+
+
 def sphere(scene):
     bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=32)
     return bpy.context.object

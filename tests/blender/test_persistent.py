@@ -84,6 +84,13 @@ def hair_that_moves(scene, square):
     drive(square, "rotation_euler", "frame / 3", 1)
 
 
+def hair_that_swells(scene, square):
+    square.modifiers.new("Hair", "PARTICLE_SYSTEM")
+    settings = square.particle_systems[0].settings
+    settings.type, settings.count = "HAIR", 3
+    drive(settings, "root_radius", "frame")
+
+
 def lamps(scene, square):
     lamp = scene_parts.add_object(scene, "Lamp", bpy.data.lights.new("Lamp", "POINT"))
     drive(lamp.data, "energy", "frame")
@@ -223,6 +230,7 @@ CHANGES = [
     a_topology_that_changes,
     a_child,
     instances_that_move,
+    hair_that_swells,
     lamps,
     a_focal_length,
     a_material_in_motion,
