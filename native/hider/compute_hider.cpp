@@ -106,8 +106,8 @@ class ComputeHider : public Hider {
                                     m_tiles.pool());
         for (std::uint32_t s = 0; s < store.key.size(); ++s)
             for (std::uint32_t k = 0; k < store.lists.counts()[s]; ++k) {
-                Fragment& fragment = store.lists.at(s, k);
-                fragment = surface.fragment(s, fragment.id, fragment.key);
+                const Fragment fragment = store.lists.at(s, k);
+                store.lists.set(s, k, surface.fragment(s, fragment.id, fragment.key));
             }
     }
 

@@ -8,19 +8,14 @@
 #include "base/check.h"
 
 namespace granita {
-namespace {
-
-constexpr std::size_t kLayerBytes = FragmentLists::kLanes * sizeof(Fragment);
-
-int block_log2(std::uint32_t capacity) {
-    return std::countr_zero(capacity * kLayerBytes);
+int FragmentLists::block_log2(std::uint32_t chunk) {
+    const std::uint32_t layers = chunk == 0 ? kFirst : first_of(chunk);
+    return std::countr_zero(layers * sizeof(FragmentLayer));
 }
-
-}  // namespace
 
 void FragmentLists::reset() {
     m_any = false;
-    m_packets.clear();
+    m_chunks.clear();
     m_counts.clear();
     order.clear();
 }
@@ -28,16 +23,18 @@ void FragmentLists::reset() {
 void FragmentLists::begin(std::size_t slots, SlabMemory& memory) {
     GRANITA_DCHECK(slots % kLanes == 0);
     m_memory = &memory;
-    m_packets.resize(slots / kLanes);
+    m_stride = 4;
+    m_chunks.resize(slots / kLanes * m_stride);
     m_counts.resize(slots, 0);
 }
 
 void FragmentLists::clear() {
     if (!m_any) return;
-    for (Packet& packet : m_packets)
-        if (packet.capacity > 0) m_memory->give(packet.layers, block_log2(packet.capacity));
+    for (std::size_t i = 0; i < m_chunks.size(); ++i)
+        if (m_chunks[i])
+            m_memory->give(m_chunks[i], block_log2(static_cast<std::uint32_t>(i % m_stride)));
     m_any = false;
-    std::fill(m_packets.begin(), m_packets.end(), Packet{});
+    std::fill(m_chunks.begin(), m_chunks.end(), nullptr);
     std::fill(m_counts.begin(), m_counts.end(), 0);
 }
 
@@ -45,14 +42,16 @@ std::uint64_t FragmentLists::total() const {
     return std::accumulate(m_counts.begin(), m_counts.end(), std::uint64_t{0});
 }
 
-void FragmentLists::grow(Packet& packet) {
-    const std::uint32_t capacity = std::max(2u, 2 * packet.capacity);
-    auto* const layers = static_cast<Fragment*>(m_memory->take(block_log2(capacity)));
-    if (packet.capacity > 0) {
-        std::copy_n(packet.layers, std::size_t{packet.capacity} * kLanes, layers);
-        m_memory->give(packet.layers, block_log2(packet.capacity));
+void FragmentLists::grow(std::size_t packet, std::uint32_t chunk) {
+    if (chunk >= m_stride) {
+        std::vector<FragmentLayer*> wider(packets() * 2 * m_stride);
+        for (std::size_t p = 0; p < packets(); ++p)
+            std::copy_n(&m_chunks[p * m_stride], m_stride, &wider[p * 2 * m_stride]);
+        m_chunks.swap(wider);
+        m_stride *= 2;
     }
-    packet = {layers, capacity};
+    m_chunks[packet * m_stride + chunk] =
+        static_cast<FragmentLayer*>(m_memory->take(block_log2(chunk)));
     m_any = true;
 }
 

@@ -2,6 +2,7 @@
 // The transparent surfaces over a tile's samples, one list a sample.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -33,12 +34,41 @@ inline Fragment fragment_of(const SurfaceHit& hit, SurfaceId id) {
     return {hit.key, id, static_cast<float>(hit.b1), static_cast<float>(hit.b2), hit.second};
 }
 
+/// The k-th fragments of sixteen slots.  A hit that is written by itself touches two cache lines;
+/// what only sorts or looks micropolygons up reads half.
+struct FragmentLayer {
+    static constexpr std::uint32_t kLanes = 16;
+    struct Head {
+        float key;
+        SurfaceId id;
+    };
+    struct Weights {
+        float signed_b1, b2;
+    };
+    alignas(64) Head head[kLanes];
+    alignas(64) Weights weights[kLanes];
+
+    void set(std::uint32_t lane, const Fragment& f) {
+        head[lane] = {f.key, f.id};
+        weights[lane] = {f.signed_b1, f.b2};
+    }
+    Fragment at(std::uint32_t lane) const {
+        Fragment f;
+        f.key = head[lane].key;
+        f.id = head[lane].id;
+        f.signed_b1 = weights[lane].signed_b1;
+        f.b2 = weights[lane].b2;
+        return f;
+    }
+};
+
 /// The lists of kLanes slots lie side by side: layer k of the packet is the k-th fragments of its
 /// slots, so that sorting and compositing take a layer at a time.  A slot is a sample by its index
-/// in the table, or by its place in `order`.
+/// in the table, or by its place in `order`.  A packet's layers lie in chunks of 4, 4, 8, 16 ...:
+/// nothing is copied when lists grow.
 class FragmentLists {
   public:
-    static constexpr std::uint32_t kLanes = 16;
+    static constexpr std::uint32_t kLanes = FragmentLayer::kLanes;
 
     FragmentLists() = default;
     FragmentLists(FragmentLists&&) = default;
@@ -54,47 +84,55 @@ class FragmentLists {
     /// Empties the lists, gives their memory back.
     void clear();
     void add(std::uint32_t slot, const Fragment& fragment) {
-        next_layer(slot / kLanes, m_counts[slot]++)[slot % kLanes] = fragment;
+        next_layer(slot / kLanes, m_counts[slot]++).set(slot % kLanes, fragment);
     }
-    /// [kLanes] where fragment number `layer` of a slot of the packet goes: the list's end.
-    Fragment* next_layer(std::size_t packet, std::uint32_t layer) {
-        Packet& lists = m_packets[packet];
-        if (layer == lists.capacity) grow(lists);
-        return lists.layers + std::size_t{layer} * kLanes;
+    /// Where fragment number `k` of a slot of the packet goes: the list's end.
+    FragmentLayer& next_layer(std::size_t packet, std::uint32_t k) {
+        const std::uint32_t c = chunk_of(k);
+        if (c >= m_stride || !m_chunks[packet * m_stride + c]) grow(packet, c);
+        return layer(packet, k);
     }
 
     bool empty() const { return !m_any; }
     std::uint64_t total() const;  ///< fragments
     std::size_t slots() const { return m_counts.size(); }
-    std::size_t packets() const { return m_packets.size(); }
-    /// [layers][kLanes]; a slot has the first count() of them, what follows is anything.
-    Fragment* layers(std::size_t packet) { return m_packets[packet].layers; }
-    const Fragment* layers(std::size_t packet) const { return m_packets[packet].layers; }
+    std::size_t packets() const { return m_counts.size() / kLanes; }
+    /// Of slots with fewer fragments it is anything.  k: less than the packet's largest count.
+    FragmentLayer& layer(std::size_t packet, std::uint32_t k) {
+        const std::uint32_t c = chunk_of(k);
+        return m_chunks[packet * m_stride + c][k - first_of(c)];
+    }
+    const FragmentLayer& layer(std::size_t packet, std::uint32_t k) const {
+        return const_cast<FragmentLists*>(this)->layer(packet, k);
+    }
     /// [slots]
     std::uint32_t* counts() { return m_counts.data(); }
     const std::uint32_t* counts() const { return m_counts.data(); }
     /// Fragment k of the slot.
-    Fragment& at(std::uint32_t slot, std::uint32_t k) {
-        return layers(slot / kLanes)[std::size_t{k} * kLanes + slot % kLanes];
+    Fragment at(std::uint32_t slot, std::uint32_t k) const {
+        return layer(slot / kLanes, k).at(slot % kLanes);
     }
-    const Fragment& at(std::uint32_t slot, std::uint32_t k) const {
-        return const_cast<FragmentLists*>(this)->at(slot, k);
+    void set(std::uint32_t slot, std::uint32_t k, const Fragment& fragment) {
+        layer(slot / kLanes, k).set(slot % kLanes, fragment);
     }
     std::uint32_t sample(std::uint32_t slot) const { return order.empty() ? slot : order[slot]; }
 
     std::vector<std::uint32_t> order;  ///< [slots] sample of a slot; empty: the slot itself
 
   private:
-    struct Packet {
-        Fragment* layers = nullptr;
-        std::uint32_t capacity = 0;
-    };
+    static constexpr std::uint32_t kFirst = 4;  ///< layers of the first chunk
+    static std::uint32_t chunk_of(std::uint32_t k) {
+        return static_cast<std::uint32_t>(std::bit_width(k / kFirst));
+    }
+    static std::uint32_t first_of(std::uint32_t chunk) { return (kFirst << chunk >> 1) & -kFirst; }
     void begin(std::size_t slots, SlabMemory& memory);
-    void grow(Packet& packet);
+    static int block_log2(std::uint32_t chunk);
+    void grow(std::size_t packet, std::uint32_t chunk);
 
     SlabMemory* m_memory = nullptr;
     bool m_any = false;
-    std::vector<Packet> m_packets;
+    std::uint32_t m_stride = 0;            ///< chunks that each packet has a place for
+    std::vector<FragmentLayer*> m_chunks;  ///< [packets][m_stride]
     std::vector<std::uint32_t> m_counts;
 };
 

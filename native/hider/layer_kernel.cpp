@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hider/layer_kernel.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "hider/layer_kernel.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -26,8 +31,8 @@ constexpr WideTag kWideTag;
 /// A layer of a vector of lists: opacity within [0, 1] and radiance, 0 where there is none.
 struct Layer {
     V opacity[3], radiance[3];
-    M holdout, colored;
-    V key;
+    M holdout;
+    bool colored;  ///< some lane's opacity
 };
 
 /// The lists of a packet, a vector of them at a time.
@@ -36,14 +41,15 @@ class PacketCompositor {
     PacketCompositor(const FragmentLists& lists, std::size_t packet, const LayerTable& table,
                      const ListEnd& end, LayerVisitor* visitor, PacketLayers& out)
         : m_lists(lists),
+          m_packet(packet),
           m_slot(static_cast<std::uint32_t>(packet * kPacket)),
-          m_fragments(lists.layers(packet)),
           m_table(table),
           m_end(end),
           m_visitor(visitor),
           m_out(out) {}
 
     void run() {
+        fetch_ahead(m_lists, m_packet + 1);
         clear();
         for (m_part = 0; m_part < kPacket; m_part += lane_count()) {
             const auto count = hn::LoadU(kIdTag, m_lists.counts() + m_slot + m_part);
@@ -72,9 +78,10 @@ class PacketCompositor {
 
     /// Layer k of the lanes; returns those that are complete.
     HWY_INLINE std::uint32_t add_layer(std::uint32_t k, std::uint32_t lanes) {
-        const Layer layer = look(m_fragments + k * kPacket + m_part, lanes);
-        if (HWY_UNLIKELY(!m_colored && !hn::AllFalse(kTag, layer.colored))) spread();
-        const std::uint32_t first = find_first(layer, lanes);
+        const FragmentLayer& fragments = m_lists.layer(m_packet, k);
+        const Layer layer = look(fragments, lanes);
+        if (HWY_UNLIKELY(!m_colored && layer.colored)) spread();
+        const std::uint32_t first = find_first(layer, fragments, lanes);
         const std::uint32_t adding = lanes & ~(m_out.ended >> m_part);
         if (HWY_UNLIKELY(m_visitor != nullptr)) visit(k, layer, lanes, first, adding);
         const M adds = mask_of(adding);
@@ -93,65 +100,70 @@ class PacketCompositor {
         return hn::RebindMask(kTag, hn::TestBit(hn::Set(kIdTag, lanes), bit));
     }
 
-    /// One micropolygon after another with all lists that have it in this layer: neighbouring
-    /// samples see few.
-    HWY_INLINE Layer look(const Fragment* fragments, std::uint32_t lanes) const {
-        const FragmentVectors f = load_fragments(fragments);
-        const auto id = hn::BitCast(kIdTag, f.id);
-        const V zero = set(0.0f);
-        const M none = hn::MaskFromVec(zero);
-        Layer layer{{zero, zero, zero}, {zero, zero, zero}, none, none, f.key};
-        for (std::uint32_t pending = lanes; pending != 0;) {
-            const SurfaceId surface = fragments[__builtin_ctz(pending)].id;
-            const LayerLook& look = m_table.look(surface);
-            const M these = hn::RebindMask(kTag, hn::Eq(id, hn::Set(kIdTag, surface)));
-            pending &= ~bits_of(these);
-            if (look.flags & LayerLook::kColored) layer.colored = hn::Or(layer.colored, these);
-            if (look.flags & LayerLook::kHoldout) layer.holdout = hn::Or(layer.holdout, these);
-            if (look.flags & LayerLook::kVaries) {
-                interpolate(look, f.signed_b1, f.b2, these, layer);
-                continue;
-            }
-            for (int c = 0; c < 3; ++c) {
-                layer.opacity[c] = hn::IfThenElse(these, set(look.value[c]), layer.opacity[c]);
-                layer.radiance[c] =
-                    hn::IfThenElse(these, set(look.value[3 + c]), layer.radiance[c]);
-            }
+    /// Lane by lane into rows of eight floats, which are then turned into vectors: it costs the
+    /// same whether neighbours see one micropolygon or, as in motion, each its own.
+    HWY_INLINE Layer look(const FragmentLayer& fragments, std::uint32_t lanes) const {
+        alignas(64) float rows[2][4 * kPacket];
+        std::uint32_t flags = 0;
+        for (int i = 0; i < lane_count(); ++i) {
+            const FragmentLayer::Head& head = fragments.head[m_part + i];
+            const LayerLook& look = lanes >> i & 1u ? m_table.look(head.id) : m_nothing;
+            const auto* const from = reinterpret_cast<const char*>(&look);
+            std::memcpy(rows[0] + 4 * i, from, sizeof look / 2);
+            std::memcpy(rows[1] + 4 * i, from + sizeof look / 2, sizeof look / 2);
+            flags |= look.flags;
+            if (look.flags & LayerLook::kVaries)
+                interpolate(look, fragments.weights[m_part + i], rows[0] + 4 * i, rows[1] + 4 * i);
         }
+        Layer layer;
+        V flag_bits, unused;
+        hn::LoadInterleaved4(kTag, rows[0], layer.opacity[0], layer.opacity[1], layer.opacity[2],
+                             layer.radiance[0]);
+        hn::LoadInterleaved4(kTag, rows[1], layer.radiance[1], layer.radiance[2], flag_bits,
+                             unused);
+        layer.colored = (flags & LayerLook::kColored) != 0;
+        layer.holdout = hn::RebindMask(kTag, hn::TestBit(hn::BitCast(kIdTag, flag_bits),
+                                                         hn::Set(kIdTag, LayerLook::kHoldout)));
         return layer;
     }
 
-    HWY_INLINE void interpolate(const LayerLook& look, V signed_b1, V b2, M these,
-                                Layer& layer) const {
-        const V zero = set(0.0f), one = set(1.0f), b1 = hn::Abs(signed_b1);
-        const M second =
-            hn::MaskFromVec(hn::BitCast(kTag, hn::ShiftRight<31>(hn::BitCast(kIntTag, signed_b1))));
+    /// The row where the fragment is, in two halves.
+    HWY_INLINE void interpolate(const LayerLook& look, const FragmentLayer::Weights& weights,
+                                float* first, float* second) const {
+        constexpr hn::FixedTag<float, 4> d;
+        const bool is_second = std::signbit(weights.signed_b1);
+        const float b1 = std::fabs(weights.signed_b1), b2 = weights.b2;
         // None is negative, so that no value leaves the range of its corners (OpacityBounds).
-        const V b0 = hn::Max(zero, one - b1 - b2);
-        const float* row[4];
-        for (int k = 0; k < 4; ++k) row[k] = m_table.row(look.row[k]);
-        const auto value = [&](int c) HWY_ATTR {
-            const V one_more = set(row[2][c]);
-            return b0 * set(row[0][c]) + b1 * hn::IfThenElse(second, one_more, set(row[1][c])) +
-                   b2 * hn::IfThenElse(second, set(row[3][c]), one_more);
+        const float b0 = std::max(0.0f, 1.0f - b1 - b2);
+        const float* const row[] = {m_table.row(look.row[0]),
+                                    m_table.row(look.row[is_second ? 2 : 1]),
+                                    m_table.row(look.row[is_second ? 3 : 2])};
+        const auto value = [&](int from) HWY_ATTR {
+            return hn::Set(d, b0) * hn::LoadU(d, row[0] + from) +
+                   hn::Set(d, b1) * hn::LoadU(d, row[1] + from) +
+                   hn::Set(d, b2) * hn::LoadU(d, row[2] + from);
         };
-        for (int c = 0; c < 3; ++c) {
-            const V opacity = value(c);
-            // Not a number: clear.
-            const V clamped = hn::IfThenElseZero(hn::Gt(opacity, zero), hn::Min(opacity, one));
-            layer.opacity[c] = hn::IfThenElse(these, clamped, layer.opacity[c]);
-            layer.radiance[c] = hn::IfThenElse(these, value(3 + c), layer.radiance[c]);
-        }
+        const auto opacity = value(0);
+        // Not a number: clear.
+        const auto clamped =
+            hn::IfThenElseZero(hn::Gt(opacity, hn::Zero(d)), hn::Min(opacity, hn::Set(d, 1.0f)));
+        const auto is_opacity = hn::FirstN(d, 3);
+        hn::StoreU(hn::IfThenElse(is_opacity, clamped, opacity), d, first);
+        hn::StoreU(value(4), d, second);
+        second[2] = std::bit_cast<float>(look.flags);
     }
 
     /// Lanes whose first surface this layer is.
-    HWY_INLINE std::uint32_t find_first(const Layer& layer, std::uint32_t lanes) const {
+    HWY_INLINE std::uint32_t find_first(const Layer& layer, const FragmentLayer& fragments,
+                                        std::uint32_t lanes) const {
         const V found = hn::Load(kTag, m_out.first_key + m_part);
         M first =
             hn::And(mask_of(lanes), hn::Eq(found, set(-std::numeric_limits<float>::infinity())));
         if (hn::AllFalse(kTag, first)) return 0;
         if (m_end.pass_alpha_threshold > 0.0f) first = hn::And(first, covers_enough(layer));
-        hn::Store(hn::IfThenElse(first, layer.key, found), kTag, m_out.first_key + m_part);
+        V key, id;
+        load_heads(fragments, m_part, key, id);
+        hn::Store(hn::IfThenElse(first, key, found), kTag, m_out.first_key + m_part);
         return bits_of(first);
     }
 
@@ -252,12 +264,13 @@ class PacketCompositor {
     }
 
     const FragmentLists& m_lists;
+    std::size_t m_packet;
     std::uint32_t m_slot;  ///< first of the packet
-    const Fragment* m_fragments;
     const LayerTable& m_table;
     const ListEnd& m_end;
     LayerVisitor* m_visitor;
     PacketLayers& m_out;
+    const LayerLook m_nothing;
     int m_part = 0;  ///< first lane of the vector at hand
     bool m_colored = false;
 };

@@ -10,6 +10,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "hider/sample_lists.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -126,20 +127,25 @@ class PacketSorter {
         const std::uint32_t most = *std::max_element(counts, counts + kPacket);
         if (most == 0) return;
         if (m_layers.size() < most) m_layers.resize(most);
-        Fragment* const fragments = m_lists.layers(packet);
         const bool may_end = m_end.opacity_threshold < 1.0f;
-        bool changed = false;
+        const bool may_drop = may_end && m_end.pass_alpha_threshold > 0.0f;
+        std::uint32_t moved = 0;  // parts, by first lane
         for (m_part = 0; m_part < kPacket; m_part += lane_count()) {
-            const bool hidden = load(fragments, slot, most);
-            changed |= hidden;
-            changed |= sort_part(counts, most);
+            const bool hidden = load(packet, most);
+            const std::uint32_t sorted = count_sorted(most);
+            if (sorted < most || may_drop) {
+                load_weights(packet, most);
+                moved |= 1u << m_part;
+            }
+            if (sorted < most) sort_part(counts, sorted, most);
             if (hidden) recount(counts, most);
         }
         if (may_end)
             for (int lane = 0; lane < kPacket; ++lane)
                 counts[lane] = cut_lane(m_layers, counts[lane], lane, m_pool, m_end,
                                         m_surfaces.key[slot + lane], m_surfaces.id[slot + lane]);
-        if (changed || (may_end && m_end.pass_alpha_threshold > 0.0f)) store(fragments, counts);
+        for (m_part = 0; m_part < kPacket; m_part += lane_count())
+            if (moved >> m_part & 1u) store(packet, counts);
         if (!m_seen) return;
         for (int lane = 0; lane < kPacket; ++lane)
             for (std::uint32_t k = 0; k < counts[lane]; ++k) m_seen[m_layers[k].surface(lane)] = 1;
@@ -148,21 +154,20 @@ class PacketSorter {
   private:
     /// Of the part, with the lanes' fragments that do not count behind all.  Whether any of the
     /// lists' own is among them.
-    bool load(const Fragment* fragments, std::size_t slot, std::uint32_t most) {
+    bool load(std::size_t packet, std::uint32_t most) {
+        const std::size_t slot = packet * kPacket;
         const V behind_all = set(kBehindAll);
         const V surface = hn::LoadU(kTag, m_surfaces.key + slot + m_part);
         const auto count = hn::LoadU(kIdTag, m_lists.counts() + slot + m_part);
         bool hidden = false;
         for (std::uint32_t k = 0; k < most; ++k) {
             Layer& to = m_layers[k];
-            const FragmentVectors f = load_fragments(fragments + k * kPacket + m_part);
+            V key, id;
+            load_heads(m_lists.layer(packet, k), m_part, key, id);
             const M valid = hn::RebindMask(kTag, hn::Gt(count, hn::Set(kIdTag, k)));
-            M counts = hn::And(valid, hn::Gt(f.key, surface));
-            const M equal = hn::And(valid, hn::Eq(f.key, surface));
-            hn::Store(f.key, kTag, to.key + m_part);
-            hn::Store(f.id, kTag, to.id + m_part);
-            hn::Store(f.signed_b1, kTag, to.signed_b1 + m_part);
-            hn::Store(f.b2, kTag, to.b2 + m_part);
+            M counts = hn::And(valid, hn::Gt(key, surface));
+            const M equal = hn::And(valid, hn::Eq(key, surface));
+            hn::Store(id, kTag, to.id + m_part);
             if (HWY_UNLIKELY(!hn::AllFalse(kTag, equal)))
                 counts = hn::Or(counts, of_lanes(equal, [&](int lane) {
                                     const SurfaceId opaque = m_surfaces.id[slot + lane];
@@ -170,7 +175,7 @@ class PacketSorter {
                                            m_pool.before(to.surface(lane), opaque);
                                 }));
             hidden |= !hn::AllFalse(kTag, hn::AndNot(counts, valid));
-            hn::Store(hn::IfThenElse(counts, f.key, behind_all), kTag, to.key + m_part);
+            hn::Store(hn::IfThenElse(counts, key, behind_all), kTag, to.key + m_part);
         }
         return hidden;
     }
@@ -186,17 +191,29 @@ class PacketSorter {
         return hn::Gt(hn::Load(kTag, chosen), set(0.0f));
     }
 
-    /// Whether anything moved.  By insertion, all lanes at once: grids come roughly from front to
-    /// back, and lists are short.
-    bool sort_part(const std::uint32_t* counts, std::uint32_t most) {
-        constexpr std::uint32_t kShort = 64;
+    void load_weights(std::size_t packet, std::uint32_t most) {
+        for (std::uint32_t k = 0; k < most; ++k) {
+            V signed_b1, b2;
+            HWY_NAMESPACE::load_weights(m_lists.layer(packet, k), m_part, signed_b1, b2);
+            hn::Store(signed_b1, kTag, m_layers[k].signed_b1 + m_part);
+            hn::Store(b2, kTag, m_layers[k].b2 + m_part);
+        }
+    }
+
+    /// Layers that are in order as they are.
+    std::uint32_t count_sorted(std::uint32_t most) const {
         std::uint32_t sorted = 1;
         while (sorted < most && hn::AllFalse(kTag, out_of_order(sorted))) ++sorted;
-        if (sorted >= most) return false;
+        return sorted;
+    }
+
+    /// By insertion, all lanes at once: grids come roughly from front to back, and lists are short.
+    void sort_part(const std::uint32_t* counts, std::uint32_t sorted, std::uint32_t most) {
+        constexpr std::uint32_t kShort = 64;
         if (most > kShort) {
             for (int lane = m_part; lane < m_part + lane_count(); ++lane)
                 sort_lane(m_layers, counts[lane], lane, m_scratch, m_before);
-            return true;
+            return;
         }
         for (; sorted < most; ++sorted)
             for (std::uint32_t k = sorted; k > 0; --k) {
@@ -207,7 +224,6 @@ class PacketSorter {
                 exchange(swap, m_layers[k - 1].signed_b1, m_layers[k].signed_b1);
                 exchange(swap, m_layers[k - 1].b2, m_layers[k].b2);
             }
-        return true;
     }
 
     /// Lanes in which layer k belongs before the one before it.
@@ -237,15 +253,14 @@ class PacketSorter {
         }
     }
 
-    void store(Fragment* fragments, const std::uint32_t* counts) const {
+    void store(std::size_t packet, const std::uint32_t* counts) {
         const std::uint32_t most = *std::max_element(counts, counts + kPacket);
         for (std::uint32_t k = 0; k < most; ++k) {
             const Layer& from = m_layers[k];
-            for (int part = 0; part < kPacket; part += lane_count())
-                store_fragments(
-                    {hn::Load(kTag, from.key + part), hn::Load(kTag, from.id + part),
-                     hn::Load(kTag, from.signed_b1 + part), hn::Load(kTag, from.b2 + part)},
-                    reinterpret_cast<float*>(fragments + k * kPacket + part));
+            store_fragments(
+                {hn::Load(kTag, from.key + m_part), hn::Load(kTag, from.id + m_part),
+                 hn::Load(kTag, from.signed_b1 + m_part), hn::Load(kTag, from.b2 + m_part)},
+                m_lists.layer(packet, k), m_part);
         }
     }
 
@@ -263,7 +278,10 @@ class PacketSorter {
 void sort_packets(FragmentLists& lists, const OpaqueSurfaces& surfaces, const GridPool& pool,
                   const ListEnd& end, char* seen) {
     PacketSorter sorter(lists, surfaces, pool, end, seen);
-    for (std::size_t p = 0; p < lists.packets(); ++p) sorter.sort(p);
+    for (std::size_t p = 0; p < lists.packets(); ++p) {
+        fetch_ahead(lists, p + 1);
+        sorter.sort(p);
+    }
 }
 
 }  // namespace HWY_NAMESPACE
