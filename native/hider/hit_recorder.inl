@@ -5,7 +5,8 @@
 /// Hits in different slots, in the order in which they came.
 template <std::size_t kMost>
 struct HitList {
-    float key[kMost], slot[kMost], signed_b1[kMost], b2[kMost];  ///< slot: bits of an int
+    float key[kMost], signed_b1[kMost], b2[kMost];
+    float slot[kMost], id[kMost];  ///< bits of an int and of a SurfaceId
 };
 
 /// Opaque hits go into the tile's key and id; transparent ones that are not behind them into lists.
@@ -27,7 +28,7 @@ class HitRecorder {
             if (HWY_UNLIKELY(!hn::AllFalse(kTag, equal))) {
                 alignas(64) float wins[kPacket] = {};
                 for_each_lane(equal, [&](int lane) {
-                    wins[lane] = wins_tie(m_tile.id[first + lane]) ? 1.0f : 0.0f;
+                    wins[lane] = wins_tie(m_target.id, m_tile.id[first + lane]) ? 1.0f : 0.0f;
                 });
                 visible = hn::Or(visible, hn::Gt(hn::Load(kTag, wins), set(0.0f)));
             }
@@ -49,55 +50,50 @@ class HitRecorder {
     template <std::size_t kMost>
     HWY_INLINE void record(const HitList<kMost>& hits, std::size_t count) {
         m_counts.hits += count;
+        const bool some_transparent = m_target.kind & kTransparent;
         for (std::size_t i = 0; i < count; ++i) {
             const int slot = std::bit_cast<int>(hits.slot[i]);
             const float key = hits.key[i];
             float& stored = m_tile.key[slot];
             if (key < stored) continue;
-            if (m_target.kind & kTransparent) {
-                record_fragment(hits, i, slot);
+            const auto id = std::bit_cast<SurfaceId>(hits.id[i]);
+            if (some_transparent && m_grid.classes[id - m_grid.base] & kTransparent) {
+                if (key > stored || wins_tie(id, m_tile.id[slot])) {
+                    Fragment fragment;
+                    fragment.key = key;
+                    fragment.id = id;
+                    fragment.signed_b1 = hits.signed_b1[i];
+                    fragment.b2 = hits.b2[i];
+                    m_lists.add(static_cast<std::uint32_t>(slot), fragment);
+                    ++m_counts.fragments;
+                }
             } else if (key > stored) {
                 ++m_counts.writes;
                 stored = key;
-                m_tile.id[slot] = m_target.id;
-            } else {
-                settle_tie(m_tile.id[slot]);
+                m_tile.id[slot] = id;
+            } else if (wins_tie(id, m_tile.id[slot])) {
+                m_tile.id[slot] = id;
             }
         }
     }
 
   private:
     HWY_NOINLINE void settle_ties(M equal, std::size_t first) {
-        for_each_lane(equal, [&](int lane) { settle_tie(m_tile.id[first + lane]); });
-    }
-
-    HWY_INLINE void settle_tie(SurfaceId& id) {
-        if (wins_tie(id)) id = m_target.id;
+        for_each_lane(equal, [&](int lane) {
+            SurfaceId& other = m_tile.id[first + lane];
+            if (wins_tie(m_target.id, other)) other = m_target.id;
+        });
     }
 
     /// Where surfaces coincide, neighbours see the same two.
-    HWY_INLINE bool wins_tie(SurfaceId id) {
-        if (id == kNoSurface) return false;
-        if (id != m_tied[0] || m_target.id != m_tied[1]) {
-            m_tied[0] = id;
-            m_tied[1] = m_target.id;
-            m_wins_tie = m_grid.pool->before(m_target.id, id);
+    HWY_INLINE bool wins_tie(SurfaceId id, SurfaceId other) {
+        if (other == kNoSurface) return false;
+        if (other != m_tied[0] || id != m_tied[1]) {
+            m_tied[0] = other;
+            m_tied[1] = id;
+            m_wins_tie = m_grid.pool->before(id, other);
         }
         return m_wins_tie;
-    }
-
-    /// Hit i, if it is before the slot's opaque surface.
-    template <std::size_t kMost>
-    HWY_INLINE void record_fragment(const HitList<kMost>& hits, std::size_t i, std::size_t slot) {
-        const float key = hits.key[i];
-        if (!(key > m_tile.key[slot] || wins_tie(m_tile.id[slot]))) return;
-        Fragment fragment;
-        fragment.key = key;
-        fragment.id = m_target.id;
-        fragment.signed_b1 = hits.signed_b1[i];
-        fragment.b2 = hits.b2[i];
-        m_lists.add(static_cast<std::uint32_t>(slot), fragment);
-        ++m_counts.fragments;
     }
 
     const SimdGrid& m_grid;

@@ -2,13 +2,25 @@
 // Samples of a tile by the micropolygons of a patch: included once a SIMD target inside its
 // namespace, after rank_windows.inl and patch_frame.inl.
 
+/// Micropolygons of a row side by side share a list, so that one vector tests a few samples of each
+/// (ShapeRow): where they move fast, a tile has few for each.
 class PatchBins {
   public:
-    static constexpr std::size_t kBin = 32;  ///< samples
-    static constexpr int kBins = Patch::kSide * Patch::kSide;
-    using List = SampleList<kBin>;
+    static constexpr std::size_t kBin = 32;  ///< samples of a micropolygon
+    static constexpr int kRow = ShapeRow::kWide;
+    static constexpr int kRows = Patch::kSide * Patch::kSide / kRow;
 
-    /// The samples of the mask, each to bin `i` + kSide `j`; full() must not hold.
+    /// The samples of micropolygon i are at [kRow * n + i] for n < count[i].
+    struct Row {
+        SampleList<kBin * kRow> list;
+        alignas(16) int count[kRow];
+    };
+
+    PatchBins() {
+        for (Row& row : m_rows) std::fill_n(row.count, kRow, 0);
+    }
+
+    /// The samples of the mask, each to micropolygon (i, j); full() must not hold.
     template <bool kMoving, Lens kLens>
     HWY_INLINE void add(M mask, const Samples& at, V slots, V i, V j) {
         const Squeeze squeeze(mask);
@@ -19,48 +31,45 @@ class PatchBins {
     }
     bool full() const { return m_queued > kQueued; }
 
-    /// Puts what was added into its bins; calls empty(bin, list, count) for those that are full.
-    template <bool kMoving, Lens kLens, class Empty>
-    HWY_INLINE void distribute(Empty empty) {
+    /// Puts what was added into its lists; calls test(number, row) for rows in which there is no
+    /// more place, and empties them.
+    template <bool kMoving, Lens kLens, class Test>
+    HWY_INLINE void distribute(Test test) {
         for (std::size_t k = 0; k < m_queued; ++k) {
             const int bin = std::bit_cast<int>(m_bin[k]);
-            List& list = m_lists[bin];
-            const std::size_t n = m_count[bin];
-            list.samples[0][n] = m_queue.samples[0][k];
-            list.samples[1][n] = m_queue.samples[1][k];
-            if constexpr (kMoving) list.samples[2][n] = m_queue.samples[2][k];
-            if constexpr (kLens != Lens::None) {
-                list.samples[3][n] = m_queue.samples[3][k];
-                list.samples[4][n] = m_queue.samples[4][k];
-            }
-            if constexpr (kLens == Lens::Refocused) list.samples[5][n] = m_queue.samples[5][k];
-            list.slot[n] = m_queue.slot[k];
-            m_count[bin] = static_cast<std::uint32_t>(n + 1);
-            if (n + 1 == kBin) {
-                empty(bin, list, kBin);
-                m_count[bin] = 0;
-            }
+            Row& row = m_rows[bin / kRow];
+            int& count = row.count[bin % kRow];
+            const int to = kRow * count + bin % kRow;
+            for (int c = 0; c < Samples::kCoordinates; ++c)
+                if (Samples::has<kMoving, kLens>(c))
+                    row.list.samples[c][to] = m_queue.samples[c][k];
+            row.list.slot[to] = m_queue.slot[k];
+            if (++count == kBin) empty(bin / kRow, test);
         }
         m_queued = 0;
     }
-    /// The same for all that are not empty.
-    template <class Empty>
-    HWY_INLINE void empty_all(Empty empty) {
-        for (int bin = 0; bin < kBins; ++bin) {
-            if (m_count[bin] == 0) continue;
-            empty(bin, m_lists[bin], m_count[bin]);
-            m_count[bin] = 0;
+    /// The same for all that have any.
+    template <class Test>
+    HWY_INLINE void empty_all(Test test) {
+        for (int number = 0; number < kRows; ++number) {
+            const int* const count = m_rows[number].count;
+            if (std::any_of(count, count + kRow, [](int n) { return n > 0; })) empty(number, test);
         }
     }
 
   private:
+    template <class Test>
+    HWY_INLINE void empty(int number, Test test) {
+        test(number, m_rows[number]);
+        std::fill_n(m_rows[number].count, kRow, 0);
+    }
+
     static constexpr std::size_t kQueued = 256;
-    /// A vector of samples is added to four bins each at most.
+    /// A vector of samples is added to four micropolygons each at most.
     static constexpr std::size_t kSpare = 5 * kPacket;
 
     SampleList<kQueued + kSpare> m_queue;
     float m_bin[kQueued + kSpare];  ///< bits of an int
     std::size_t m_queued = 0;
-    List m_lists[kBins];
-    std::uint32_t m_count[kBins] = {};
+    Row m_rows[kRows];
 };

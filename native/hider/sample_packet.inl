@@ -6,6 +6,12 @@ struct Samples {
     V x, y, t, u, v, inverse_focus;
     static constexpr int kCoordinates = 6;
 
+    template <bool kMoving, Lens kLens>
+    static constexpr bool has(int k) {
+        return k < 2 || (k == 2 && kMoving) || ((k == 3 || k == 4) && kLens != Lens::None) ||
+               (k == 5 && kLens == Lens::Refocused);
+    }
+
     /// Calls visit(coordinate, its number) for those that there are.
     template <bool kMoving, Lens kLens, class Visit>
     HWY_INLINE void for_each(Visit visit) {

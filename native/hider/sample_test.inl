@@ -2,11 +2,11 @@
 // Vectors of samples against one micropolygon: included once a SIMD target inside its namespace,
 // after packet_vectors.inl, sample_packet.inl and tile_bounds.inl.
 
-/// The micropolygon that is looked at.
+/// The micropolygon that is looked at, or several side by side.
 struct Target {
-    std::uint8_t kind = 0;  ///< SimdGrid::classes
-    SurfaceId id = 0;
-    int segment = 0;  ///< of its motion
+    int kind = 0;      ///< SimdGrid::classes; of several: bits that any has
+    SurfaceId id = 0;  ///< of the first
+    int segment = 0;   ///< of its motion
 };
 
 /// Where a vector of samples meets the micropolygon; weights as in Fragment.
@@ -19,9 +19,10 @@ class SampleTest {
     SampleTest(const SimdGrid& grid, const Target& target)
         : m_grid(grid), m_target(target), m_appears(!grid.lifespan.is_whole()) {}
 
-    /// A vector of samples against the micropolygon: which it covers, and where.
-    template <bool kMoving, Lens kLens>
-    HWY_INLINE M covers(const Shape& shape, Samples at, M valid, Hits& hits) {
+    /// A vector of samples against the target, or those of a ShapeRow: which are covered, and
+    /// where.
+    template <bool kMoving, Lens kLens, class S>
+    HWY_INLINE M covers(const S& shape, Samples at, M valid, Hits& hits) {
         const V zero = set(0.0f);
         const V local = kMoving ? local_time(at) : zero;
         const Offset<V> d0 = offset<kLens>(corner_at<kMoving>(shape, 0, local), at);
@@ -29,10 +30,7 @@ class SampleTest {
         const Offset<V> d2 = offset<kLens>(corner_at<kMoving>(shape, 2, local), at);
         const Offset<V> d3 = offset<kLens>(corner_at<kMoving>(shape, 3, local), at);
         const PairEdges e = edges_of(d0, d1, d2, d3);
-        const M never = hn::MaskFromVec(zero);
-        Side a{never, never}, b{never, never};
-        if (m_target.kind & kTriangleA) a = first_side(e);
-        if (m_target.kind & kTriangleB) b = second_side(e);
+        const Side a = first_of(shape, e), b = second_of(shape, e);
         M touched = hn::And(valid, hn::Or(a.in, b.in));
         if (hn::AllFalse(kTag, touched)) return touched;
         if (kMoving && m_grid.segments > 1) {
@@ -91,14 +89,32 @@ class SampleTest {
                set(static_cast<float>(m_target.segment));
     }
 
-    template <bool kMoving>
-    static HWY_INLINE Corner<V> corner_at(const Shape& shape, int k, V local) {
-        const Corner<float>& b = shape.begin[k];
-        const Corner<V> begin{set(b.x), set(b.y), set(b.w), set(b.z)};
+    template <bool kMoving, class S>
+    static HWY_INLINE Corner<V> corner_at(const S& shape, int k, V local) {
+        const Corner<V> begin = shape.begin_of(k);
         if constexpr (!kMoving) return begin;
-        const Corner<float>& d = shape.delta[k];
-        return at_time(begin, {set(d.x), set(d.y), set(d.w), set(d.z)}, local);
+        return at_time(begin, shape.delta_of(k), local);
     }
+
+    static HWY_INLINE Side within(M lanes, Side side) {
+        return {hn::And(lanes, side.in), hn::And(lanes, side.strict)};
+    }
+    HWY_INLINE Side first_of(const Shape&, const PairEdges& e) const {
+        const M never = hn::MaskFromVec(set(0.0f));
+        return m_target.kind & kTriangleA ? first_side(e) : Side{never, never};
+    }
+    HWY_INLINE Side second_of(const Shape&, const PairEdges& e) const {
+        const M never = hn::MaskFromVec(set(0.0f));
+        return m_target.kind & kTriangleB ? second_side(e) : Side{never, never};
+    }
+    HWY_INLINE Side first_of(const ShapeRow& row, const PairEdges& e) const {
+        return within(row.lanes_with(kTriangleA), first_side(e));
+    }
+    HWY_INLINE Side second_of(const ShapeRow& row, const PairEdges& e) const {
+        return within(row.lanes_with(kTriangleB), second_side(e));
+    }
+    int kind_of(const Shape&, int) const { return m_target.kind; }
+    int kind_of(const ShapeRow& row, int lane) const { return row.kind[lane % ShapeRow::kWide]; }
 
     template <Lens kLens>
     HWY_INLINE Offset<V> offset(const Corner<V>& c, const Samples& at) const {
@@ -111,8 +127,8 @@ class SampleTest {
             return offset_lens(c, at.x, at.y, at.u, at.v, at.inverse_focus, one);
     }
 
-    template <bool kMoving, Lens kLens>
-    HWY_NOINLINE void test_exactly(const Shape& shape, M unclear, Exact& exact) {
+    template <bool kMoving, Lens kLens, class S>
+    HWY_NOINLINE void test_exactly(const S& shape, M unclear, Exact& exact) {
         Samples at;
         at.for_each<kMoving, kLens>([&](V& value, int k)
                                         HWY_ATTR { value = hn::LoadU(kTag, exact.samples[k]); });
@@ -133,7 +149,8 @@ class SampleTest {
                 offset[k] = {values[k][0][lane], values[k][1][lane]};
                 corner[k] = {0.0, 0.0, values[k][2][lane], values[k][3][lane]};
             }
-            const SurfaceHit hit = hit_micropolygon(corner, offset, m_target.kind, m_grid.range);
+            const SurfaceHit hit = hit_micropolygon(
+                corner, offset, static_cast<std::uint8_t>(kind_of(shape, lane)), m_grid.range);
             const Fragment fragment = fragment_of(hit, m_target.id);
             exact.key[lane] = fragment.key;
             exact.hit[lane] = hit.hit ? 1.0f : 0.0f;

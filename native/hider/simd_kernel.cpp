@@ -28,6 +28,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 #include "hider/squeeze.inl"
 // Where micropolygons are, and what of them is seen.
 #include "hider/path_extents.inl"
+#include "hider/shapes.inl"
 #include "hider/tile_bounds.inl"
 #include "hider/tile_paths.inl"
 #include "hider/triangle_pair.inl"
@@ -127,11 +128,10 @@ class Kernel {
         int first = 0, end = m_tile.ranks;
         if constexpr (kMoving) m_where.find_ranks(m_patch.times, 0, first, end);
         const bool cull = m_patch.nearest < m_tile.nearest_of_ranks;
-        const auto test = [&](int bin, const PatchBins::List& list, std::size_t count) HWY_ATTR {
-            const int i = patch.i + bin % Patch::kSide, j = patch.j + bin / Patch::kSide;
-            if (!aim_at(i, j)) return;
-            const Shape shape = m_where.load_shape(m_target.segment, j * m_grid.up + i);
-            test_listed<kMoving, kLens>(shape, list, count);
+        const auto test = [&](int number, const PatchBins::Row& row) HWY_ATTR {
+            constexpr int kAcross = Patch::kSide / PatchBins::kRow;
+            test_row<kMoving, kLens>(patch.i + number % kAcross * PatchBins::kRow,
+                                     patch.j + number / kAcross, row);
         };
         const PatchFrame& frame = m_patch.frame;
         const V n_u = set(static_cast<float>(patch.n_u)), n_v = set(static_cast<float>(patch.n_v));
@@ -230,35 +230,73 @@ class Kernel {
                         m_listed.add<kMoving, kLens>(near, at, slots, found);
                         found += near.count();
                         if (HWY_UNLIKELY(found > kMostListed)) {
-                            test_listed<kMoving, kLens>(shape, m_listed, found);
+                            test_listed<kMoving, kLens>(shape, found);
                             found = 0;
                         }
                     });
             });
         }
-        test_listed<kMoving, kLens>(shape, m_listed, found);
+        test_listed<kMoving, kLens>(shape, found);
     }
 
-    template <bool kMoving, Lens kLens, std::size_t kMost>
-    HWY_INLINE void test_listed(const Shape& shape, const SampleList<kMost>& list,
-                                std::size_t count) {
+    template <bool kMoving, Lens kLens>
+    HWY_INLINE void test_listed(const Shape& shape, std::size_t count) {
         m_counts.tests += count;
         std::size_t covered = 0;
-        for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lane_count())) {
-            Hits hits;
-            const M hit = m_test.covers<kMoving, kLens>(
-                shape, list.template load<kMoving, kLens>(i), hn::FirstN(kTag, count - i), hits);
-            if (hn::AllFalse(kTag, hit)) continue;
-            const Squeeze squeeze(hit);
-            hn::StoreU(squeeze(hits.key), kTag, m_hit.key + covered);
-            hn::StoreU(squeeze(hn::LoadU(kTag, list.slot + i)), kTag, m_hit.slot + covered);
-            if (m_target.kind & kTransparent) {
-                hn::StoreU(squeeze(hits.signed_b1), kTag, m_hit.signed_b1 + covered);
-                hn::StoreU(squeeze(hits.b2), kTag, m_hit.b2 + covered);
-            }
-            covered += squeeze.count();
+        for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lane_count()))
+            covered += cover<kMoving, kLens>(shape, m_listed, i, hn::FirstN(kTag, count - i),
+                                             hn::Set(kIdTag, m_target.id), covered);
+        m_recorder.record(m_hit, covered);
+    }
+
+    /// The samples of micropolygons (i, j) and its neighbours on the right.
+    template <bool kMoving, Lens kLens>
+    HWY_INLINE void test_row(int i, int j, const PatchBins::Row& row) {
+        constexpr int kRow = PatchBins::kRow;
+        ShapeRow shapes;
+        const int first = j * m_grid.n_u + i;
+        m_target.kind = 0;
+        m_target.id = m_grid.base + static_cast<SurfaceId>(first);
+        for (int k = 0; k < kRow; ++k) {
+            shapes.kind[k] = i + k < m_grid.n_u ? m_grid.classes[first + k] : 0;
+            m_target.kind |= shapes.kind[k];
+            m_counts.tests += shapes.kind[k] == 0 ? 0 : row.count[k];
+        }
+        if (m_target.kind == 0) return;
+        shapes.load<kMoving>(m_grid, m_target.segment, j * m_grid.up + i);
+        const auto lanes = hn::Iota(kIdTag, 0);
+        const auto ids = hn::Set(kIdTag, m_target.id) + hn::And(lanes, hn::Set(kIdTag, kRow - 1));
+        const auto counts = hn::LoadDup128(kIntTag, row.count);
+        const int most = *std::max_element(row.count, row.count + kRow);
+        std::size_t covered = 0;
+        for (int n = 0; n < most; n += lane_count() / kRow) {
+            const auto number =
+                hn::BitCast(kIntTag, hn::ShiftRight<2>(lanes)) + hn::Set(kIntTag, n);
+            covered +=
+                cover<kMoving, kLens>(shapes, row.list, static_cast<std::size_t>(n) * kRow,
+                                      hn::RebindMask(kTag, hn::Lt(number, counts)), ids, covered);
         }
         m_recorder.record(m_hit, covered);
+    }
+
+    /// A vector of listed samples from i on; appends the hits to the first `covered` ones and
+    /// returns how many they are.
+    template <bool kMoving, Lens kLens, class S, std::size_t kMost>
+    HWY_INLINE std::size_t cover(const S& shape, const SampleList<kMost>& list, std::size_t i,
+                                 M valid, hn::Vec<IdTag> ids, std::size_t covered) {
+        Hits hits;
+        const M hit = m_test.covers<kMoving, kLens>(shape, list.template load<kMoving, kLens>(i),
+                                                    valid, hits);
+        if (hn::AllFalse(kTag, hit)) return 0;
+        const Squeeze squeeze(hit);
+        hn::StoreU(squeeze(hits.key), kTag, m_hit.key + covered);
+        hn::StoreU(squeeze(hn::LoadU(kTag, list.slot + i)), kTag, m_hit.slot + covered);
+        hn::StoreU(squeeze(hn::BitCast(kTag, ids)), kTag, m_hit.id + covered);
+        if (m_target.kind & kTransparent) {
+            hn::StoreU(squeeze(hits.signed_b1), kTag, m_hit.signed_b1 + covered);
+            hn::StoreU(squeeze(hits.b2), kTag, m_hit.b2 + covered);
+        }
+        return squeeze.count();
     }
 
     /// Whole vectors and whole patches.

@@ -9,11 +9,6 @@ struct BlockRanges {
     alignas(64) float t0[kPacket], t1[kPacket];  ///< shutter times over the tile; moving only
 };
 
-/// A micropolygon during one segment of its motion.
-struct Shape {
-    Corner<float> begin[4], delta[4];
-};
-
 /// Raster bounds -> blocks; which of them are in the tile.
 template <class Out>
 HWY_INLINE M store_blocks(const SimdTile& tile, V x_lo, V x_hi, V y_lo, V y_hi, Out& out) {
