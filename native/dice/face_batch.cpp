@@ -44,29 +44,16 @@ struct FaceBatch::Cluster {
 };
 
 FaceBatch::FaceBatch(std::shared_ptr<const OpenedPolygons> mesh,
-                     std::span<const std::uint32_t> faces)
-    : m_mesh(std::move(mesh)), m_faces(faces) {}
-
-std::vector<Bounds3f> FaceBatch::boxes(const OpenedPolygons& mesh,
-                                       std::span<const std::uint32_t> faces) {
-    std::vector<Bounds3f> boxes(static_cast<std::size_t>(mesh.knot_count()));
-    for (int k = 0; k < mesh.knot_count(); ++k) {
-        const std::span<const Vec3f> points = mesh.points(k);
-        Bounds3f& box = boxes[static_cast<std::size_t>(k)];
-        for (const std::uint32_t face : faces)
-            for (const std::uint32_t corner : mesh.shared().patches()[face].corner)
-                box.add(points[static_cast<std::size_t>(mesh.data().corner_verts[corner])]);
-        box.grow_relative(1e-6f);  // of what lies between the corners
-    }
-    return boxes;
-}
+                     std::span<const std::uint32_t> faces, std::span<const Bounds3f> boxes)
+    : m_mesh(std::move(mesh)), m_faces(faces), m_boxes(boxes) {}
 
 RasterBounds FaceBatch::bounds() const {
-    return raster_bound_of(m_mesh->view().projection, boxes(*m_mesh, m_faces));
+    return raster_bound_of(m_mesh->view().projection, m_boxes);
 }
 
 std::vector<Bounds3f> FaceBatch::knot_boxes() const {
-    return m_mesh->knot_count() > 1 ? boxes(*m_mesh, m_faces) : std::vector<Bounds3f>{};
+    if (m_boxes.size() == 1) return {};
+    return {m_boxes.begin(), m_boxes.end()};
 }
 
 /// Bit 63 is never set in the path of a patch, and a patch is in one batch at most.

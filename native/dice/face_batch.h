@@ -18,11 +18,9 @@ namespace granita {
 
 class FaceBatch : public Primitive {
   public:
-    /// `faces`: patches of the mesh, which keeps them.
-    FaceBatch(std::shared_ptr<const OpenedPolygons> mesh, std::span<const std::uint32_t> faces);
-
-    static std::vector<Bounds3f> boxes(const OpenedPolygons& mesh,
-                                       std::span<const std::uint32_t> faces);
+    /// `faces`: patches of the mesh, which keeps them; `boxes` [knots]: theirs, likewise.
+    FaceBatch(std::shared_ptr<const OpenedPolygons> mesh, std::span<const std::uint32_t> faces,
+              std::span<const Bounds3f> boxes);
 
     RasterBounds bounds() const override;
     std::vector<Bounds3f> knot_boxes() const override;
@@ -54,6 +52,7 @@ class FaceBatch : public Primitive {
                          const std::vector<Cluster>& clusters) const;
 
     std::span<const std::uint32_t> m_faces;
+    std::span<const Bounds3f> m_boxes;
 };
 
 }  // namespace granita

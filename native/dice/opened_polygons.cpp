@@ -156,8 +156,9 @@ void OpenedPolygons::frame_normals(const BasePatch& patch, const Vec3f* p,
 
 std::vector<Bounds3f> OpenedPolygons::primitive_boxes(std::size_t primitive) const {
     const std::size_t others = m_small.others().size();
-    return primitive < others ? OpenedMesh::primitive_boxes(m_small.others()[primitive])
-                              : FaceBatch::boxes(*this, m_small.batch(primitive - others));
+    if (primitive < others) return OpenedMesh::primitive_boxes(m_small.others()[primitive]);
+    const std::span<const Bounds3f> boxes = m_small.boxes(primitive - others);
+    return {boxes.begin(), boxes.end()};
 }
 
 std::unique_ptr<Primitive> OpenedPolygons::primitive(std::size_t primitive) const {
@@ -166,8 +167,10 @@ std::unique_ptr<Primitive> OpenedPolygons::primitive(std::size_t primitive) cons
     const std::size_t batch = primitive - others;
     auto self = std::static_pointer_cast<const OpenedPolygons>(shared_from_this());
     if (m_small.is_whole(batch))
-        return std::make_unique<FaceBatch>(std::move(self), m_small.batch(batch));
-    return std::make_unique<PatchBatch>(std::move(self), m_small.batch(batch));
+        return std::make_unique<FaceBatch>(std::move(self), m_small.batch(batch),
+                                           m_small.boxes(batch));
+    return std::make_unique<PatchBatch>(std::move(self), m_small.batch(batch),
+                                        m_small.boxes(batch));
 }
 
 void OpenedPolygons::surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const {

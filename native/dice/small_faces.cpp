@@ -218,6 +218,15 @@ SmallFaces::SmallFaces(const OpenedPolygons& mesh) {
         m_order.push_back(m.patch);
     }
     m_batches.push_back(static_cast<std::uint32_t>(m_order.size()));
+    for (std::size_t b = 0; b < batch_count(); ++b)
+        for (int k = 0; k < mesh.knot_count(); ++k) {
+            const std::span<const Vec3f> points = mesh.points(k);
+            Bounds3f& box = m_boxes.emplace_back();
+            for (const std::uint32_t face : batch(b))
+                for (const std::uint32_t corner : mesh.shared().patches()[face].corner)
+                    box.add(points[static_cast<std::size_t>(mesh.data().corner_verts[corner])]);
+            box.grow_relative(1e-6f);  // of what lies between the corners
+        }
 }
 
 }  // namespace granita

@@ -12,6 +12,8 @@
 #include <span>
 #include <vector>
 
+#include "math/bounds.h"
+
 namespace granita {
 
 class OpenedPolygons;
@@ -28,16 +30,23 @@ class SmallFaces {
     std::span<const std::uint32_t> batch(std::size_t index) const {
         return {m_order.data() + m_batches[index], m_batches[index + 1] - m_batches[index]};
     }
+    /// [knots] of a batch, camera space.
+    std::span<const Bounds3f> boxes(std::size_t index) const {
+        const std::size_t knots = m_boxes.size() / batch_count();
+        return {m_boxes.data() + index * knots, knots};
+    }
     bool is_whole(std::size_t index) const { return m_whole[index]; }
     /// Patches in no batch.
     std::span<const std::uint32_t> others() const { return m_others; }
     std::uint64_t bytes() const {
-        return 4 * (m_order.size() + m_batches.size() + m_others.size());
+        return 4 * (m_order.size() + m_batches.size() + m_others.size()) +
+               sizeof(Bounds3f) * m_boxes.size();
     }
 
   private:
     std::vector<std::uint32_t> m_order, m_batches, m_others;
-    std::vector<bool> m_whole;  ///< [batches]
+    std::vector<bool> m_whole;      ///< [batches]
+    std::vector<Bounds3f> m_boxes;  ///< [batches][knots]
 };
 
 }  // namespace granita

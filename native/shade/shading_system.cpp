@@ -218,10 +218,11 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 void ShadingSystem::shade_radiance(Grid& grid) const {
     const CompiledSurface& material = m_impl->material(grid.material);
     ShadingPoints points = shading_points(grid, m_impl->camera);
-    points.share *= light_share(grid, m_impl->scene.camera.projection, m_impl->shutter,
-                                m_impl->scene.options.samples);
-    const ShadingInput input = m_impl->input(grid, points);
     const SurfaceProgram& surface = material.radiance;
+    if (!surface.sources.lobes.empty())
+        points.share *= light_share(grid, m_impl->scene.camera.projection, m_impl->shutter,
+                                    m_impl->scene.options.samples);
+    const ShadingInput input = m_impl->input(grid, points);
     Run run = surface.program.prepare(input, points.count);
     surface.program.execute(run);
     const SurfaceClosure closure = closure_of(run, surface.sources);
