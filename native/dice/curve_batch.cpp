@@ -179,7 +179,7 @@ void CurveBatch::fill_shading_state(Grid& grid) const {
 void CurveBatch::place_row(Grid& grid, int j, const Row& row, const CurveControl& control) const {
     const auto count = static_cast<std::size_t>(grid.vertex_count());
     for (int k = 0; k < m_elements->knot_count(); ++k) {
-        const RibbonRow ribbon = control.row(k, row.t);
+        const RibbonRow ribbon = control.row(k, row.t, false);
         Vec3f* to = &grid.positions[static_cast<std::size_t>(k) * count];
         for (int i = 0; i <= m_across; ++i) {
             const double u = row.shrunk ? -1.0 : 2.0 * i / m_across - 1.0;
@@ -193,7 +193,7 @@ void CurveBatch::shade_row(Grid& grid, int j, const Row& row, const CurveControl
     for (int k = 0; k < m_elements->knot_count(); ++k) {
         const double weight = m_elements->frame_weight(k);
         if (weight == 0.0) continue;
-        const RibbonRow ribbon = control.row(k, row.t);
+        const RibbonRow ribbon = control.row(k, row.t, true);
         side += ribbon.side * weight;
         facing += ribbon.facing * weight;
         half += ribbon.across * weight;

@@ -105,7 +105,7 @@ Vec3d CurveControl::arrival(int knot, double t) const {
     return Vec3d(0.0);
 }
 
-RibbonRow CurveControl::row(int knot, double t) const {
+RibbonRow CurveControl::row(int knot, double t, bool with_facing) const {
     RibbonRow row;
     const Span s = span(knot, t);
     const CatmullRom basis(s.t);
@@ -121,6 +121,7 @@ RibbonRow CurveControl::row(int knot, double t) const {
     row.side =
         seen_along ? any_perpendicular(glm::length(view) > 0.0 ? view : along) : unit(across);
     row.across = row.side * here.radius;
+    if (!with_facing) return row;
     row.facing = unit(glm::cross(along, row.side));
     if (seen_along || glm::length(row.facing) == 0.0) row.facing = unit(-view);
     if (glm::dot(row.facing, view) > 0.0) row.facing = -row.facing;

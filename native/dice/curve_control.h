@@ -28,7 +28,8 @@ class CurveControl {
 
     int segments() const { return m_segments; }
     ElementPoint at(int knot, double t) const;
-    RibbonRow row(int knot, double t) const;
+    /// `with_facing`: shading asks for it, places do not.
+    RibbonRow row(int knot, double t, bool with_facing) const;
     ElementPlace place(double t) const;
     /// Over all knots of the curve's part [lo, hi], its width included.
     Bounds3f swept_box(double lo, double hi) const;
