@@ -41,7 +41,6 @@ struct Rect {
     int width() const { return x1 - x0; }
     int height() const { return y1 - y0; }
     bool empty() const { return x0 >= x1 || y0 >= y1; }
-    bool overlaps(const Rect& r) const { return x0 < r.x1 && r.x0 < x1 && y0 < r.y1 && r.y0 < y1; }
     Rect intersect(const Rect& r) const {
         return {x0 > r.x0 ? x0 : r.x0, y0 > r.y0 ? y0 : r.y0, x1 < r.x1 ? x1 : r.x1,
                 y1 < r.y1 ? y1 : r.y1};
