@@ -30,6 +30,10 @@ class Plain:
     def __init__(self, scan):
         self.names = object_names()
         self.seen = {kind.name for kind in scan.kinds} & set(self.names)
+        makers = {kind.parent_address for kind in scan.kinds if kind.parent_address}
+        if makers:
+            self.seen |= {thing.name for pointer, thing in originals().items() if pointer in makers}
+        self._missed = set()
         first = np.full(len(scan.kinds), -1)
         first[scan.kind[::-1]] = np.arange(len(scan.kind))[::-1]
         many = np.bincount(scan.kind, minlength=len(scan.kinds)) != 1
@@ -42,9 +46,12 @@ class Plain:
             self.thing[kind.address] = int(first[index])
 
     def gone(self):
-        """Names of what is not there any more by that name: handlers of other add-ons delete and rename."""
+        """Names of what is not there any more by that name, each once: handlers of other add-ons delete and
+        rename."""
         here = object_names()
-        return [] if here == self.names else sorted(self.seen - set(here))
+        missing = set() if here == self.names else self.seen - set(here) - self._missed
+        self._missed |= missing
+        return sorted(missing)
 
     def changes(self, depsgraph):
         """Changes of the last step, or None where only a walk can tell."""

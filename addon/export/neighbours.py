@@ -44,13 +44,14 @@ def read_neighbours(clock, scene, fps, report, check_cancel):
         report: called with (datablock, message).
         check_cancel: true when the user has cancelled.
     """
-
-    def lose(datablock, _message):
-        report(
-            datablock, "its topology changes between frames: Vector holds its place's motion alone"
-        )
-
-    steps = Steps(scene, _TWO_FRAMES.frame_tick, 1.0, lose, check_cancel)
+    steps = Steps(
+        scene,
+        _TWO_FRAMES.frame_tick,
+        1.0,
+        report,
+        check_cancel,
+        rigid="its topology changes between frames: Vector holds its place's motion alone",
+    )
     with cages_only(scene.cages(), scene.depsgraph):
         try:
             for tick in _ENDS:

@@ -8,7 +8,7 @@ from .changes import changed_geometry, lights_changed, moved, originals
 from .depsgraph import visit
 from .lifespan import complete, lifespans, particle_life, runs
 from .report import poll
-from .subdivision import cage_mesh
+from .subdivision import cage_mesh, has_cage
 from .transforms import is_finite
 
 
@@ -21,7 +21,18 @@ class Steps:
         lenses: {tick: float64 [2]}, radius and focus distance; empty for a pinhole.
     """
 
-    def __init__(self, scene, frame_tick, tick_frames, report, check_cancel, newcomers=None):
+    def __init__(
+        self,
+        scene,
+        frame_tick,
+        tick_frames,
+        report,
+        check_cancel,
+        newcomers=None,
+        rigid="its topology changes within the shutter: rendered without deformation blur; "
+        "a 'velocity' attribute on its points would blur it",
+    ):
+        self._rigid_message = rigid
         self._scene = scene
         self._tick_frames = tick_frames  # frames a tick
         self._newcomers = (
@@ -34,7 +45,7 @@ class Steps:
         can_blur = np.array([kind.blurs for kind in scene.visit.kinds], dtype=bool)
         self._can_blur = scene.is_seen() & can_blur[scene.visit.kind]
         self._changed = set()  # addresses of datablocks
-        self._lost = set()  # names of what a handler took away
+        self._lost = set()  # what was reported to stay as it was
         self._rigid = set()  # geometries whose topology changed
         # As things were at the last time that was visited.
         self._now = scene.visit.matrices.copy()
@@ -85,12 +96,19 @@ class Steps:
 
     def _report_gone(self):
         for name in self._plain.gone():
-            self._lose(f"object '{name}'", "deleted or renamed")
+            self._lose(f"object '{name}'", "was deleted or renamed")
 
     def _lose(self, datablock, how):
-        if datablock not in self._lost:
-            self._lost.add(datablock)
-            self._report(datablock, f"was {how} while the frame was read: it stays as it was")
+        if (datablock, how) not in self._lost:
+            self._lost.add((datablock, how))
+            self._report(datablock, f"{how} while the frame was read: it stays as it was")
+
+    def _lose_place(self, things):
+        """Of things whose transform is not finite now; what had none at the frame is not there at all."""
+        scan = self._scene.visit
+        for thing in things[self._can_blur[things] & is_finite(scan.matrices[things])]:
+            kind = scan.kinds[scan.kind[thing]]
+            self._lose(f"object '{kind.name}'", "had no finite transform at a time")
 
     def _read_camera(self, tick):
         scene, last = self._scene, self.ticks[-2]
@@ -100,7 +118,7 @@ class Steps:
         try:
             knot = camera_knot(*seen)
             if self._follows and not follows_object(scene.camera, scene.depsgraph):
-                self._lose(name, "left without its focus object")
+                self._lose(name, "was left without its focus object")
             elif self.lenses and knot is not None:
                 lens = lens_knot(*seen)
                 if lens is None and not self._focused_on_itself:
@@ -110,7 +128,7 @@ class Steps:
                         "focuses on itself within the shutter: its focus stays as it was just before",
                     )
         except ReferenceError:  # a handler of another add-on deleted it
-            self._lose(name, "deleted")
+            self._lose(name, "was deleted")
         self.cameras[tick] = self.cameras[last] if knot is None else knot
         if self.lenses:
             self.lenses[tick] = self.lenses[last] if lens is None else lens
@@ -123,7 +141,9 @@ class Steps:
 
     def _take(self, changes):
         for thing, matrix in changes.places.items():
-            if self._can_blur[thing] and np.isfinite(matrix).all():
+            if not np.isfinite(matrix).all():
+                self._lose_place(np.array([thing]))
+            elif self._can_blur[thing]:
                 self._now[thing] = matrix
                 self._touched[thing] = True
         for index, source in enumerate(self._scene.sources):
@@ -141,7 +161,9 @@ class Steps:
             scan = self._scene.visit
             here, there = match(scan.identity, scan.order, now.identity)
         usable = is_finite(now.matrices[there]) & self._can_blur[here]
-        self._stays[here[~is_finite(now.matrices[there])]] = True
+        nowhere = here[~is_finite(now.matrices[there])]
+        self._lose_place(nowhere)
+        self._stays[nowhere] = True
         self._present[:] = ~self._can_blur
         self._present[here[usable]] = True
         self._now[here[usable]] = now.matrices[there[usable]]
@@ -200,7 +222,7 @@ class Steps:
         return source.deforms and index not in self._rigid
 
     def _read_points(self, index, source, thing, mesh, cage):
-        if (cage is None) != (source.cage is None):
+        if (cage is None) != (source.cage is None) or (cage and not has_cage(thing, cage)):
             points = None
         elif cage is None:
             points = source.topology.points_again(thing, mesh)
@@ -209,11 +231,7 @@ class Steps:
                 points = source.topology.points_again(thing, mesh)
         if points is None:
             self._rigid.add(index)
-            self._report(
-                source.geometry.name,
-                "its topology changes within the shutter: rendered without deformation blur; "
-                "a 'velocity' attribute on its points would blur it",
-            )
+            self._report(source.geometry.name, self._rigid_message)
             return
         broken = ~(np.isfinite(points).all(axis=1))
         points[broken] = source.at_frame(points.shape[1])[broken]

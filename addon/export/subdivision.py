@@ -80,6 +80,12 @@ def simplify_level(render, mode):
     return render.simplify_subdivision_render if mode == "RENDER" else render.simplify_subdivision
 
 
+def has_cage(evaluated, cage):
+    """Whether it is still there: a handler of another add-on may have taken its modifier away."""
+    modifiers = evaluated.modifiers
+    return cage.index < len(modifiers) and modifiers[cage.index].type == "SUBSURF"
+
+
 @contextmanager
 def cage_mesh(evaluated, cage, depsgraph):
     """The deformed cage as a temporary Mesh; gone, and the modifier back on, afterwards."""
@@ -108,6 +114,12 @@ def cages_only(cages, depsgraph):
         depsgraph: evaluated.
     """
     everything = originals() if cages else {}
+    # Not what a handler of another add-on has deleted, or freed of its modifier, since they were found.
+    cages = {
+        address: cage
+        for address, cage in cages.items()
+        if address in everything and has_cage(everything[address].evaluated_get(depsgraph), cage)
+    }
     read = _referenced([everything[address] for address in cages])
     switched = []
     try:
