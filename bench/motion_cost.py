@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What motion blur costs a whole frame: blur on over blur off at equal samples, Granita and Cycles.
 
-    ./dev bench motion_cost [--runs 3] [--samples 64] [--size 960 540] [--files bend camera instances snake morph]
-        [--clock wall]
+    ./dev bench motion_cost [--runs 3] [--samples 64] [--size 960 540] [--clock wall]
+        [--files demo bend camera instances snake morph]
 
-Animated files of tests/images/assets/moving with their own materials and lights, one thread each, in turns, medians of
-the whole frame, export included.  Prints a Markdown table and writes bench/results/motion_cost.json.
+The demo, as ordinary a moving scene as there is here (textures, lights, lens), and animated files of
+tests/images/assets/moving with their own materials and lights; one thread each, in turns, medians of the whole frame,
+export included.  Prints a Markdown table and writes bench/results/motion_cost.json.
 """
 
 import argparse
@@ -24,7 +25,8 @@ def seconds(file, options):
     for engine in ("GRANITA", "CYCLES"):
         for still in ({}, {"shutter": 0}):
             settings.append({"engine": engine, "samples": options.samples, **still})
-    job = {"module": "moving_files", "scene": file, "variant": "lit", "settings": settings}
+    module = "demo" if file == "demo" else "moving_files"
+    job = {"module": module, "scene": file, "variant": "lit", "settings": settings}
     job |= {"runs": options.runs, "size": options.size}
     taken = [took for _, took in frames.render(job, options.clock)]
     return {"GRANITA": taken[:2], "CYCLES": taken[2:]}
@@ -36,7 +38,7 @@ def main():
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--size", type=int, nargs=2, default=(960, 540))
     parser.add_argument(
-        "--files", nargs="+", default=("bend", "camera", "instances", "snake", "morph")
+        "--files", nargs="+", default=("demo", "bend", "camera", "instances", "snake", "morph")
     )
     parser.add_argument("--clock", choices=("processor", "wall"), default="processor")
     options = parser.parse_args()
@@ -45,7 +47,7 @@ def main():
     for file in options.files:
         taken = seconds(file, options)
         blurred, still = taken["CYCLES"]
-        what = f"{file}: blur on over off (Cycles {blurred / still:.2f})"
+        what = f"{file}: blur on over off (Cycles {blurred / still:.2f}, {blurred:.2f} s)"
         blurred, still = taken["GRANITA"]
         table.row(f"{what}, {blurred:.2f} s", blurred / still, LIMIT)
     RESULTS.mkdir(exist_ok=True)

@@ -3,7 +3,7 @@
 
     blender -b --factory-startup --addons granita --python bench/render_frames.py -- JOB.json
 
-JOB: {"module": "scenes" or "moving_files", "scene", "variant" (of moving_files), "folder", "runs", "seed" (of
+JOB: {"module": "scenes", "moving_files" or "demo", "scene", "variant" (of moving_files), "folder", "runs", "seed" (of
 Cycles), "size" (width and height, the scene's own without), "settings": [{"engine": "CYCLES" or "GRANITA", "samples",
 "shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), other
 properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FOLDER/seconds.json lists for each setting its runs as [wall, processor] seconds
@@ -28,9 +28,22 @@ def build(job):
         import scenes
 
         return scenes.SCENES[job["scene"]](), 1, scenes.SHUTTER
+    if job["module"] == "demo":
+        return build_demo()
     import moving_files
 
     return moving_files.build(job["scene"], job["variant"])
+
+
+def build_demo():
+    sys.path.insert(0, str(HERE.parent / "demo"))
+    import build_scene
+
+    build_scene.build()
+    scene = bpy.context.scene
+    scene.render.threads_mode, scene.render.threads = "FIXED", 1
+    shutter = scene.render.motion_blur_shutter
+    return scene, scene.frame_current - shutter / 2, shutter
 
 
 def main():
