@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/check.h"
+#include "base/spares.h"
 #include "hider/channel_layers.h"
 #include "hider/layer_kernel.h"
 #include "hider/surface_interpolator.h"
@@ -17,6 +18,15 @@ namespace {
 constexpr std::uint32_t kRun = SurfaceRun::kCount, kAll = (1u << kRun) - 1u;
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
+/// Of a run of samples that see surfaces without holdout.
+void set_alpha_and_depth(const TileStore& store, const CompositeSettings& settings,
+                         std::uint32_t first, SampleColors& colors) {
+    for (int i = 0; i < SurfaceRun::kCount; ++i) colors.alpha[first + i] = 1.0f;
+    if (!settings.depth) return;
+    for (int i = 0; i < SurfaceRun::kCount; ++i)
+        colors.depth[first + i] = settings.projection.depth_from_key(store.key[first + i]);
+}
+
 /// Colours of a run of samples that see surfaces without holdout.
 void set_opaque(const TileStore& store, const CompositeSettings& settings, std::uint32_t first,
                 const SurfaceRun& run, SampleColors& colors) {
@@ -26,10 +36,7 @@ void set_opaque(const TileStore& store, const CompositeSettings& settings, std::
     copy(run.color[0], colors.red);
     copy(run.color[1], colors.green);
     copy(run.color[2], colors.blue);
-    for (int i = 0; i < SurfaceRun::kCount; ++i) colors.alpha[first + i] = 1.0f;
-    if (!settings.depth) return;
-    for (int i = 0; i < SurfaceRun::kCount; ++i)
-        colors.depth[first + i] = settings.projection.depth_from_key(store.key[first + i]);
+    set_alpha_and_depth(store, settings, first, colors);
 }
 
 /// The samples of a run that see nothing.
@@ -60,11 +67,14 @@ class TileComposite {
           m_settings(settings),
           m_channels(channels),
           m_colors(colors),
+          m_blurred(!samples.t.empty() || !samples.u.empty()),
           m_surface(settings.projection, store.tile, samples, table.pool()) {}
 
     void run() {
         if (m_channels && !m_store.lists.empty()) mark_lists();
-        for (std::uint32_t first = 0; first < m_store.key.size(); first += kRun) set_behind(first);
+        if (!m_channels && m_blurred) color_by_surface();
+        for (std::uint32_t first = 0; first < m_store.key.size(); first += kRun)
+            if (m_done.empty() || !finish_run(first)) set_behind(first);
         if (m_store.lists.empty()) return;
         m_table.fill();
         for (std::size_t p = 0; p < m_store.lists.packets(); ++p) add_lists(p);
@@ -76,6 +86,28 @@ class TileComposite {
         m_listed.assign(m_store.key.size(), false);
         for (std::uint32_t slot = 0; slot < m_store.lists.slots(); ++slot)
             if (m_store.lists.counts()[slot] > 0) m_listed[m_store.lists.sample(slot)] = true;
+    }
+
+    void color_by_surface() {
+        SurfaceGroups groups = Spares<SurfaceGroups>::take();
+        if (groups.sort(m_store.id)) {
+            m_done.assign(m_store.id.size() / kRun, 0);
+            m_surface.color_groups(groups, m_colors, m_done);
+        }
+        Spares<SurfaceGroups>::give(std::move(groups));
+    }
+
+    /// False where a sample of the run still wants its colour.
+    bool finish_run(std::uint32_t first) {
+        const std::uint32_t done = m_done[first / kRun];
+        if (done == 0) return false;
+        std::uint32_t seen = 0;
+        for (std::uint32_t i = 0; i < kRun; ++i)
+            seen |= (m_store.id[first + i] != kNoSurface ? 1u : 0u) << i;
+        if (seen != done || (seen != kAll && m_background.size() > 1)) return false;
+        set_alpha_and_depth(m_store, m_settings, first, m_colors);
+        if (seen != kAll) set_empty(first, seen, nothing(first), m_colors);
+        return true;
     }
 
     void set_behind(std::uint32_t first) {
@@ -206,6 +238,8 @@ class TileComposite {
     const CompositeSettings& m_settings;
     ChannelLayers* m_channels;
     SampleColors& m_colors;
+    bool m_blurred;
+    std::vector<std::uint16_t> m_done;  ///< [runs] samples coloured by surface; empty: none
     SurfaceInterpolator m_surface;
     SurfaceRun m_run;
     std::vector<bool> m_listed;  ///< by sample; empty without channels or lists

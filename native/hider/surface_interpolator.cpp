@@ -138,6 +138,54 @@ void SurfaceInterpolator::load_corners(SurfaceRecord& record, int segment) const
     }
 }
 
+void SurfaceInterpolator::load_knots(const SurfaceRecord& record,
+                                     std::span<const std::int32_t> samples) {
+    m_knots.first = m_knots.last = 0;
+    if (record.segments > 1) {
+        const auto time = [&](std::int32_t s) { return m_samples.t[static_cast<std::size_t>(s)]; };
+        const auto [least, most] = std::ranges::minmax(samples, {}, time);
+        m_knots.first = segment_of(time(least), record.segments);
+        m_knots.last = segment_of(time(most), record.segments);
+    }
+    const Grid& grid = *record.corners.grid;
+    const int count = m_knots.last - m_knots.first + (record.segments > 0 ? 2 : 1);
+    for (auto* values : {&m_knots.x, &m_knots.y, &m_knots.w, &m_knots.z})
+        values->resize(static_cast<std::size_t>(count) * 4);
+    for (int k = 0; k < count; ++k) {
+        const Vec3f* const knot = grid.positions.data() + (m_knots.first + k) * grid.vertex_count();
+        for (int i = 0; i < 4; ++i) {
+            const Corner<float> c = corner(m_projection, knot[record.corners.vertex[i]], m_origin);
+            const auto at = static_cast<std::size_t>(k * 4 + i);
+            m_knots.x[at] = c.x;
+            m_knots.y[at] = c.y;
+            m_knots.w[at] = c.w;
+            m_knots.z[at] = c.z;
+        }
+    }
+}
+
+void SurfaceInterpolator::color_groups(const SurfaceGroups& groups, SampleColors& colors,
+                                       std::span<std::uint16_t> done) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        const SurfaceRecord& surface = load_colors(groups.id(g));
+        if (!surface.colored) continue;
+        const std::span<const std::int32_t> samples = groups.samples(g);
+        if (!surface.constant) {
+            load_knots(surface, samples);
+            color_group(*this, m_samples, surface, m_knots, samples, colors, done);
+            continue;
+        }
+        for (const std::int32_t sample : samples) {
+            const auto s = static_cast<std::size_t>(sample);
+            colors.red[s] = surface.radiance[0].x + 0.0f;
+            colors.green[s] = surface.radiance[0].y + 0.0f;
+            colors.blue[s] = surface.radiance[0].z + 0.0f;
+            done[s / SurfaceRun::kCount] |=
+                static_cast<std::uint16_t>(1u << s % SurfaceRun::kCount);
+        }
+    }
+}
+
 SurfaceInterpolator::Seen SurfaceInterpolator::see(std::uint32_t sample, SurfaceId id) {
     const float time = m_samples.t.empty() ? 0.0f : m_samples.t[sample];
     const SurfaceRecord& surface = load(id, time);

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "hider/micropolygon.h"
 #include "hider/sample_order.h"
 #include "hider/sample_store.h"
 #include "hider/sample_table.h"
+#include "hider/surface_groups.h"
 #include "math/projection.h"
 
 namespace granita {
@@ -46,6 +49,13 @@ struct SurfaceRecord {
     Vec3f radiance[4];      ///< of a coloured one
 };
 
+/// Where a micropolygon is at its knots from one segment to another, a corner after another, in a
+/// tile's homogeneous raster space.
+struct SurfaceKnots {
+    int first = 0, last = 0;        ///< segments
+    std::vector<float> x, y, w, z;  ///< [last - first + 2][4]; a knot less without motion
+};
+
 /// Where kCount samples in a row meet their surfaces.  Bit or element i: sample first + i.
 struct SurfaceRun {
     static constexpr int kCount = kPacket;
@@ -77,6 +87,11 @@ class SurfaceInterpolator {
     /// `points`: SurfaceRun::point() will be asked.
     void locate_run(std::uint32_t first, const SurfaceId* ids, bool points, SurfaceRun& out);
 
+    /// The colours of what locate_run() calls plain and coloured, surface by surface: the same
+    /// bits. Sets bit i of done[r] for sample SurfaceRun::kCount r + i; leaves alpha and depth.
+    void color_groups(const SurfaceGroups& groups, SampleColors& colors,
+                      std::span<std::uint16_t> done);
+
     /// The colours alone, not where it is.  Stays until the next call.
     SurfaceRecord& load_colors(SurfaceId id);
     /// Stays until the next call.
@@ -92,6 +107,7 @@ class SurfaceInterpolator {
         Offset<float> offsets[4];
     };
     void load_corners(SurfaceRecord& record, int segment) const;
+    void load_knots(const SurfaceRecord& record, std::span<const std::int32_t> samples);
     Seen see(std::uint32_t sample, SurfaceId id);
     void weigh(const Seen& seen, bool& second, float weight[3]) const;
 
@@ -102,6 +118,7 @@ class SurfaceInterpolator {
     float m_inverse_focus;
     Vec2f m_lens;
     static constexpr std::size_t kCached = 256;
+    SurfaceKnots m_knots;
     std::vector<SurfaceRecord> m_cache;  ///< by id; neighbouring samples ask for the same few
 };
 

@@ -17,16 +17,21 @@ namespace hn = hwy::HWY_NAMESPACE;
 #include "hider/triangle_pair.inl"
 
 template <bool kLens>
+HWY_INLINE Offset<V> offset_from(const Corner<V>& c, const Samples& at) {
+    if constexpr (kLens)
+        return offset_lens(c, at.x, at.y, at.u, at.v, at.inverse_focus, set(1.0f));
+    else
+        return offset_pinhole(c, at.x, at.y);
+}
+
+template <bool kLens>
 HWY_INLINE Offset<V> offset_of(const SurfaceRecord& surface, int k, const Samples& at, V local) {
     const auto broadcast = [](const granita::Corner<float>& c) HWY_ATTR {
         return Corner<V>{set(c.x), set(c.y), set(c.w), set(c.z)};
     };
     Corner<V> c = broadcast(surface.begin[k]);
     if (surface.segments > 0) c = at_time(c, broadcast(surface.delta[k]), local);
-    if constexpr (kLens)
-        return offset_lens(c, at.x, at.y, at.u, at.v, at.inverse_focus, set(1.0f));
-    else
-        return offset_pinhole(c, at.x, at.y);
+    return offset_from<kLens>(c, at);
 }
 
 HWY_INLINE void blend(V value, M mask, float* to) {
@@ -34,13 +39,13 @@ HWY_INLINE void blend(V value, M mask, float* to) {
 }
 
 /// As SurfacePoint does it.
-HWY_INLINE void blend_color(const SurfaceRecord& surface, int channel, const PairWeights& weight,
-                            M in_first, M mask, float* to) {
+HWY_INLINE V color_of(const SurfaceRecord& surface, int channel, const PairWeights& weight,
+                      M in_first) {
     const auto corner = [&](int k) HWY_ATTR { return set(surface.radiance[k][channel]); };
     const V first = corner(0);
     const V second = hn::IfThenElse(in_first, corner(1), corner(2));
     const V third = hn::IfThenElse(in_first, corner(2), corner(3));
-    blend(first + weight.second * (second - first) + weight.third * (third - first), mask, to);
+    return first + weight.second * (second - first) + weight.third * (third - first);
 }
 
 template <bool kLens>
@@ -105,7 +110,7 @@ void locate(SurfaceInterpolator& surfaces, const TileSamples& samples, std::uint
             out.colored |= (surface.colored ? these : 0u) << part;
             if (surface.colored)
                 for (int channel = 0; channel < 3; ++channel)
-                    blend_color(surface, channel, w, a.strict, mask, out.color[channel] + part);
+                    blend(color_of(surface, channel, w, a.strict), mask, out.color[channel] + part);
             if (!out.wants_points) continue;
             const V weight[3] = {set(1.0f) - w.second - w.third, w.second, w.third};
             for (int k = 0; k < 3; ++k) blend(weight[k], mask, out.weight[k] + part);
@@ -122,6 +127,104 @@ void locate_any(SurfaceInterpolator& surfaces, const TileSamples& samples, std::
                       : locate<true>(surfaces, samples, first, ids, out);
 }
 
+/// Corner k at the time of each lane, between its knots.
+struct KnotLanes {
+    KnotLanes(const SurfaceRecord& surface, const SurfaceKnots& surface_knots, V time)
+        : knots(surface_knots), moves(surface.segments > 0), local(set(0.0f)) {
+        if (!moves) return;
+        const V scaled = time * set(static_cast<float>(surface.segments));
+        const auto segment =
+            hn::Min(hn::ConvertTo(kIntTag, scaled), hn::Set(kIntTag, surface.segments - 1));
+        local = scaled - hn::ConvertTo(kTag, segment);
+        place = hn::ShiftLeft<2>(hn::Sub(segment, hn::Set(kIntTag, knots.first)));
+    }
+
+    template <bool kLens>
+    HWY_INLINE Corner<V> corner(int k) const {
+        if (knots.first == knots.last) {
+            const auto all = [&](const std::vector<float>& v, int knot) HWY_ATTR {
+                return set(v[static_cast<std::size_t>(4 * knot + k)]);
+            };
+            return between<kLens>(all);
+        }
+        const auto gathered = [&](const std::vector<float>& v, int knot) HWY_ATTR {
+            return hn::GatherIndex(kTag, v.data() + 4 * knot + k, place);
+        };
+        return between<kLens>(gathered);
+    }
+
+  private:
+    template <bool kLens, class At>
+    HWY_INLINE Corner<V> between(At at) const {
+        const auto all = [&](int knot) HWY_ATTR {
+            return Corner<V>{at(knots.x, knot), at(knots.y, knot), at(knots.w, knot),
+                             kLens ? at(knots.z, knot) : set(0.0f)};
+        };
+        const Corner<V> begin = all(0);
+        if (!moves) return begin;
+        const Corner<V> end = all(1);
+        return at_time(
+            begin, Corner<V>{end.x - begin.x, end.y - begin.y, end.w - begin.w, end.z - begin.z},
+            local);
+    }
+
+    const SurfaceKnots& knots;
+    bool moves;
+    V local;
+    hn::Vec<IntTag> place = hn::Zero(kIntTag);
+};
+
+template <bool kLens>
+void color(const SurfaceInterpolator& surfaces, const TileSamples& samples,
+           const SurfaceRecord& surface, const SurfaceKnots& knots,
+           std::span<const std::int32_t> group, SampleColors& colors,
+           std::span<std::uint16_t> done) {
+    const V zero = set(0.0f);
+    const auto width = static_cast<std::size_t>(lane_count());
+    for (std::size_t first = 0; first < group.size(); first += width) {
+        const std::size_t count = std::min(width, group.size() - first);
+        alignas(64) std::int32_t index[kPacket];
+        for (std::size_t i = 0; i < width; ++i) index[i] = group[first + std::min(i, count - 1)];
+        const auto at = hn::Load(kIntTag, index);
+        const auto gather = [&](const std::vector<float>& values)
+                                HWY_ATTR { return hn::GatherIndex(kTag, values.data(), at); };
+        Samples sample{gather(samples.x), gather(samples.y), zero, zero, zero, zero};
+        if (surface.segments > 0) sample.t = gather(samples.t);
+        if constexpr (kLens) {
+            sample.u = gather(samples.u) * set(surfaces.lens().x);
+            sample.v = gather(samples.v) * set(surfaces.lens().y);
+            sample.inverse_focus = samples.inverse_focus.empty() ? set(surfaces.inverse_focus())
+                                                                 : gather(samples.inverse_focus);
+        }
+        const KnotLanes lanes(surface, knots, sample.t);
+        const PairEdges e = edges_of(offset_from<kLens>(lanes.corner<kLens>(0), sample),
+                                     offset_from<kLens>(lanes.corner<kLens>(1), sample),
+                                     offset_from<kLens>(lanes.corner<kLens>(2), sample),
+                                     offset_from<kLens>(lanes.corner<kLens>(3), sample));
+        const Side a = first_side(e), b = second_side(e);
+        const PairWeights w = weights_of(e, a.strict);
+        alignas(64) float out[3][kPacket];
+        for (int channel = 0; channel < 3; ++channel)
+            hn::Store(color_of(surface, channel, w, a.strict) + zero, kTag, out[channel]);
+        for_each_bit(bits_of(is_clean(a, b)) & ((1u << count) - 1u), [&](int lane) {
+            const auto s = static_cast<std::size_t>(index[lane]);
+            colors.red[s] = out[0][lane];
+            colors.green[s] = out[1][lane];
+            colors.blue[s] = out[2][lane];
+            done[s / SurfaceRun::kCount] |=
+                static_cast<std::uint16_t>(1u << s % SurfaceRun::kCount);
+        });
+    }
+}
+
+void color_any(const SurfaceInterpolator& surfaces, const TileSamples& samples,
+               const SurfaceRecord& surface, const SurfaceKnots& knots,
+               std::span<const std::int32_t> group, SampleColors& colors,
+               std::span<std::uint16_t> done) {
+    samples.u.empty() ? color<false>(surfaces, samples, surface, knots, group, colors, done)
+                      : color<true>(surfaces, samples, surface, knots, group, colors, done);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace granita
 HWY_AFTER_NAMESPACE();
@@ -130,10 +233,18 @@ HWY_AFTER_NAMESPACE();
 namespace granita {
 
 HWY_EXPORT(locate_any);
+HWY_EXPORT(color_any);
 
 void locate_lanes(SurfaceInterpolator& surfaces, const TileSamples& samples, std::uint32_t first,
                   const SurfaceId* ids, SurfaceRun& out) {
     HWY_DYNAMIC_DISPATCH(locate_any)(surfaces, samples, first, ids, out);
+}
+
+void color_group(const SurfaceInterpolator& surfaces, const TileSamples& samples,
+                 const SurfaceRecord& surface, const SurfaceKnots& knots,
+                 std::span<const std::int32_t> group, SampleColors& colors,
+                 std::span<std::uint16_t> done) {
+    HWY_DYNAMIC_DISPATCH(color_any)(surfaces, samples, surface, knots, group, colors, done);
 }
 
 }  // namespace granita

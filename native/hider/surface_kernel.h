@@ -16,4 +16,11 @@ namespace granita {
 void locate_lanes(SurfaceInterpolator& surfaces, const TileSamples& samples, std::uint32_t first,
                   const SurfaceId* ids, SurfaceRun& out);
 
+/// The same samples of all that see one coloured micropolygon, wherever in the tile they lie; each
+/// lane has its own segment of the motion (SurfaceInterpolator::color_groups).
+void color_group(const SurfaceInterpolator& surfaces, const TileSamples& samples,
+                 const SurfaceRecord& surface, const SurfaceKnots& knots,
+                 std::span<const std::int32_t> group, SampleColors& colors,
+                 std::span<std::uint16_t> done);
+
 }  // namespace granita

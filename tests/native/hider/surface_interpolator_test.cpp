@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <random>
+#include <set>
 
 #include "hider/grid_builder.h"
 
@@ -72,6 +74,47 @@ void expect_runs_equal_singles(const Camera& camera, const Grid& grid, bool on_l
         }
     }
     EXPECT_GT(constant, ids.size() / 4);
+    // Surface by surface: the same samples, the same colours.
+    SurfaceGroups groups;
+    ASSERT_TRUE(groups.sort(ids));
+    SampleColors colors(ids.size());
+    std::vector<std::uint16_t> done(ids.size() / SurfaceRun::kCount, 0);
+    many.color_groups(groups, colors, done);
+    for (std::uint32_t first = 0; first < ids.size(); first += SurfaceRun::kCount) {
+        SurfaceRun run;
+        one.locate_run(first, &ids[first], false, run);
+        ASSERT_EQ(done[first / SurfaceRun::kCount], run.plain & run.colored) << first;
+        for (std::uint32_t i = 0; i < SurfaceRun::kCount; ++i) {
+            if (!(run.plain >> i & 1u)) continue;
+            ASSERT_EQ(colors[first + i].color,
+                      Vec3f(run.color[0][i], run.color[1][i], run.color[2][i]))
+                << first + i;
+        }
+    }
+}
+
+TEST(SurfaceGroups, hold_every_sample_once_under_its_surface) {
+    std::mt19937 random(8);
+    std::vector<SurfaceId> ids;
+    for (int i = 0; i < 5000; ++i)
+        ids.push_back(random() % 5 == 0 ? kNoSurface : random() % 700 * 8192);
+    SurfaceGroups groups;
+    for (int round = 0; round < 2; ++round) {  // again with what the first left in it
+        ASSERT_TRUE(groups.sort(ids));
+        std::vector<SurfaceId> found(ids.size(), kNoSurface);
+        std::set<SurfaceId> surfaces;
+        for (std::size_t g = 0; g < groups.size(); ++g) {
+            EXPECT_TRUE(surfaces.insert(groups.id(g)).second);
+            EXPECT_TRUE(std::ranges::is_sorted(groups.samples(g)));
+            for (const std::int32_t s : groups.samples(g))
+                found[static_cast<std::size_t>(s)] = groups.id(g);
+        }
+        EXPECT_EQ(found, ids);
+        ids.resize(300);
+    }
+    ids.resize(5000);
+    std::iota(ids.begin(), ids.end(), 0u);
+    EXPECT_FALSE(groups.sort(ids));
 }
 
 Grid jittered(int knots, float jitter, float z) {
