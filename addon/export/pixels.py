@@ -79,7 +79,7 @@ class PixelScale:
         """
         radius = max(lens[0, 0] for lens in path.values())
         focus = min(lens[0, 1] for lens in path.values())
-        _, depth, _ = self._before
+        depth = self._before[1][:, 2]
         if self._perspective:
             per_radius = 1.0 / min(focus, np.min(depth, initial=np.inf))
             per_focus = radius / focus**2
@@ -99,27 +99,44 @@ class PixelScale:
 
     @cached_property
     def _before(self):
-        """Homogeneous places of the world before the camera, float64 [p, 4], their depths [p], and the
-        view of which."""
+        """What lies before the camera: homogeneous places in the world and in camera space, float64 [p, 4],
+        the radii around them [p], and the view of which."""
         scan = self._scene.visit
         things = np.arange(0, len(scan.kind), max(len(scan.kind) // _MOST_PROBES, 1))
-        center, _ = self._scene.bounds(things)
+        center, radius = self._scene.bounds(things)
         view = next(iter(self.views.values()))
         places = np.einsum("njk,nk->nj", scan.matrices[things], center)
-        depth = places @ view[2]
-        kept = np.isfinite(places).all(axis=1) & np.isfinite(depth)
+        seen = places @ view.T
+        reach = radius * np.linalg.norm(scan.matrices[things, :3, :3], axis=(1, 2))
+        kept = np.isfinite(seen).all(axis=1) & np.isfinite(reach)
         if self._perspective:
-            kept &= depth > self._near
-        return places[kept], depth[kept], view
+            kept &= seen[:, 2] > self._near
+        return places[kept], seen[kept], reach[kept], view
 
     @cached_property
     def _probes(self):
-        """Those places, where the camera is perspective scaled to lie 1 m before it; and the view."""
-        places, depth, view = self._before
-        if not self._perspective:
-            return places, view
-        far = np.append(view[2, :3], 0.0)
-        return np.vstack([places / depth[:, None], far]), view
+        """Those places, and the outermost ones of the frame in which there is something, at the least and the
+        largest of their depths.  Perspective: scaled to lie 1 m before the camera, and infinitely far too.
+        And the view.
+        """
+        places, seen, reach, view = self._before
+        depth = seen[:, 2] if self._perspective else np.ones(len(seen))
+        far = (np.abs(seen[:, :2]) + reach[:, None]) / depth[:, None]
+        across, up = np.minimum(np.max(far, axis=0, initial=0.0), self._frame_edges())
+        depths = [seen[:, 2].min(), seen[:, 2].max()] if len(seen) else []
+        if self._perspective:
+            places = places / depth[:, None]
+            ends = [(1.0, 1.0 / d) for d in depths] + [(1.0, 0.0)]
+        else:
+            ends = [(d, 1.0) for d in depths]
+        corners = [(x, y, *end) for end in ends for x in (-across, across) for y in (-up, up)]
+        return np.vstack([places, np.reshape(corners, (-1, 4)) @ inverse(view).T]), view
+
+    def _frame_edges(self):
+        """How far from the view axis the frame reaches, float64 (x, y); perspective: at 1 m."""
+        frame, record = self._scene.frame, self._scene.camera_record
+        center, scale = np.array(record["center"]), np.array(record["scale"])
+        return np.maximum(np.abs(center), np.abs([frame.width, frame.height] - center)) / scale
 
     def _per_metre(self, things, path):
         """Pixels a metre, float64 [m]; 0 for what is behind the camera all the time."""

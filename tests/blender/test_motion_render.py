@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+import scene_parts
 from film_parts import (
     HEIGHT,
     MIDPOINTS,
@@ -114,6 +115,25 @@ def test_a_focal_length_that_changes(film, render):
     # A millimetre of focal length is a pixel: x = 16 - (1 + 40 t) 5 / 10.
     expected = over_time(lambda t: left_of(15.5 - 20 * t, pixels), MIDPOINTS)
     hold(alpha(render, film), np.broadcast_to(expected, (HEIGHT, WIDTH)))
+
+
+def test_a_sensor_that_changes_before_what_lies_on_the_axis(film, render):
+    """A strip of 8 metres, 10 metres away: its edges are seen 16 * 32 / sensor * 4 / 10 pixels from the middle.  Its
+    own middle does not move at all."""
+    camera = film.camera
+    camera.data.type, camera.data.lens, camera.location.z = "PERSP", 16.0, 10.0
+    drive(camera.data, "sensor_width", "16 + 32 * (frame - 10)")
+    strip = [(-4, -100, 0), (4, -100, 0), (4, 100, 0), (-4, 100, 0)]
+    scene_parts.add_mesh(film, "Strip", strip, [(0, 1, 2, 3)], (WIDTH / 2, HEIGHT / 2, 0))
+    pixels = np.arange(WIDTH)
+
+    def strip_at(t):
+        half = 16 * 32 / (16 + 32 * t) * 4 / 10
+        return left_of(16 + half, pixels) - left_of(16 - half, pixels)
+
+    expected = np.broadcast_to(over_time(strip_at, MIDPOINTS), (HEIGHT, WIDTH))
+    # Its edges go 8.5 pixels: over 5 they are 1.5 times as noisy as over 20 (hider-research 1.2).
+    hold(alpha(render, film), expected, crossings=2)
 
 
 def test_an_orthographic_scale_and_a_shift_that_change(film, render):
