@@ -91,7 +91,7 @@ class TileComposite {
     void color_by_surface() {
         SurfaceGroups groups = Spares<SurfaceGroups>::take();
         if (groups.sort(m_store.id)) {
-            m_done.assign(m_store.id.size() / kRun, 0);
+            m_done.assign(m_store.id.size(), 0);
             m_surface.color_groups(groups, m_colors, m_done);
         }
         Spares<SurfaceGroups>::give(std::move(groups));
@@ -99,12 +99,12 @@ class TileComposite {
 
     /// False where a sample of the run still wants its colour.
     bool finish_run(std::uint32_t first) {
-        const std::uint32_t done = m_done[first / kRun];
-        if (done == 0) return false;
-        std::uint32_t seen = 0;
-        for (std::uint32_t i = 0; i < kRun; ++i)
+        std::uint32_t done = 0, seen = 0;
+        for (std::uint32_t i = 0; i < kRun; ++i) {
+            done |= std::uint32_t{m_done[first + i]} << i;
             seen |= (m_store.id[first + i] != kNoSurface ? 1u : 0u) << i;
-        if (seen != done || (seen != kAll && m_background.size() > 1)) return false;
+        }
+        if (done == 0 || seen != done || (seen != kAll && m_background.size() > 1)) return false;
         set_alpha_and_depth(m_store, m_settings, first, m_colors);
         if (seen != kAll) set_empty(first, seen, nothing(first), m_colors);
         return true;
@@ -239,7 +239,7 @@ class TileComposite {
     ChannelLayers* m_channels;
     SampleColors& m_colors;
     bool m_blurred;
-    std::vector<std::uint16_t> m_done;  ///< [runs] samples coloured by surface; empty: none
+    std::vector<std::uint8_t> m_done;  ///< [samples] 1 = coloured by surface; empty: none is
     SurfaceInterpolator m_surface;
     SurfaceRun m_run;
     std::vector<bool> m_listed;  ///< by sample; empty without channels or lists

@@ -165,7 +165,7 @@ void SurfaceInterpolator::load_knots(const SurfaceRecord& record,
 }
 
 void SurfaceInterpolator::color_groups(const SurfaceGroups& groups, SampleColors& colors,
-                                       std::span<std::uint16_t> done) {
+                                       std::span<std::uint8_t> done) {
     for (std::size_t g = 0; g < groups.size(); ++g) {
         const SurfaceRecord& surface = load_colors(groups.id(g));
         if (!surface.colored) continue;
@@ -180,8 +180,7 @@ void SurfaceInterpolator::color_groups(const SurfaceGroups& groups, SampleColors
             colors.red[s] = surface.radiance[0].x + 0.0f;
             colors.green[s] = surface.radiance[0].y + 0.0f;
             colors.blue[s] = surface.radiance[0].z + 0.0f;
-            done[s / SurfaceRun::kCount] |=
-                static_cast<std::uint16_t>(1u << s % SurfaceRun::kCount);
+            done[s] = 1;
         }
     }
 }

@@ -88,9 +88,9 @@ class SurfaceInterpolator {
     void locate_run(std::uint32_t first, const SurfaceId* ids, bool points, SurfaceRun& out);
 
     /// The colours of what locate_run() calls plain and coloured, surface by surface: the same
-    /// bits. Sets bit i of done[r] for sample SurfaceRun::kCount r + i; leaves alpha and depth.
+    /// bits. Sets done[sample] to 1; leaves alpha and depth.
     void color_groups(const SurfaceGroups& groups, SampleColors& colors,
-                      std::span<std::uint16_t> done);
+                      std::span<std::uint8_t> done);
 
     /// The colours alone, not where it is.  Stays until the next call.
     SurfaceRecord& load_colors(SurfaceId id);

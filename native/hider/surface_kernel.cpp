@@ -178,7 +178,7 @@ template <bool kLens>
 void color(const SurfaceInterpolator& surfaces, const TileSamples& samples,
            const SurfaceRecord& surface, const SurfaceKnots& knots,
            std::span<const std::int32_t> group, SampleColors& colors,
-           std::span<std::uint16_t> done) {
+           std::span<std::uint8_t> done) {
     const V zero = set(0.0f);
     const auto width = static_cast<std::size_t>(lane_count());
     for (std::size_t first = 0; first < group.size(); first += width) {
@@ -211,8 +211,7 @@ void color(const SurfaceInterpolator& surfaces, const TileSamples& samples,
             colors.red[s] = out[0][lane];
             colors.green[s] = out[1][lane];
             colors.blue[s] = out[2][lane];
-            done[s / SurfaceRun::kCount] |=
-                static_cast<std::uint16_t>(1u << s % SurfaceRun::kCount);
+            done[s] = 1;
         });
     }
 }
@@ -220,7 +219,7 @@ void color(const SurfaceInterpolator& surfaces, const TileSamples& samples,
 void color_any(const SurfaceInterpolator& surfaces, const TileSamples& samples,
                const SurfaceRecord& surface, const SurfaceKnots& knots,
                std::span<const std::int32_t> group, SampleColors& colors,
-               std::span<std::uint16_t> done) {
+               std::span<std::uint8_t> done) {
     samples.u.empty() ? color<false>(surfaces, samples, surface, knots, group, colors, done)
                       : color<true>(surfaces, samples, surface, knots, group, colors, done);
 }
@@ -243,7 +242,7 @@ void locate_lanes(SurfaceInterpolator& surfaces, const TileSamples& samples, std
 void color_group(const SurfaceInterpolator& surfaces, const TileSamples& samples,
                  const SurfaceRecord& surface, const SurfaceKnots& knots,
                  std::span<const std::int32_t> group, SampleColors& colors,
-                 std::span<std::uint16_t> done) {
+                 std::span<std::uint8_t> done) {
     HWY_DYNAMIC_DISPATCH(color_any)(surfaces, samples, surface, knots, group, colors, done);
 }
 

@@ -21,6 +21,6 @@ void locate_lanes(SurfaceInterpolator& surfaces, const TileSamples& samples, std
 void color_group(const SurfaceInterpolator& surfaces, const TileSamples& samples,
                  const SurfaceRecord& surface, const SurfaceKnots& knots,
                  std::span<const std::int32_t> group, SampleColors& colors,
-                 std::span<std::uint16_t> done);
+                 std::span<std::uint8_t> done);
 
 }  // namespace granita

@@ -18,10 +18,6 @@
 namespace granita {
 namespace {
 
-/// Positions are rounded to float in shading space and again in object space, each to 2^-24 of the
-/// largest coordinate on the way; 2^-20 leaves room for a dozen such steps.
-constexpr float kRounding = 0x1p-20f;
-
 struct Releaser {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
     void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
@@ -214,7 +210,7 @@ void RayScene::Impl::add_way(RTCScene geometry, const std::vector<Mat4d>& knots)
                                          corner & 2 ? box.upper_y : box.lower_y,
                                          corner & 4 ? box.upper_z : box.lower_z, 1.0)));
     if (way.empty()) return;
-    way.grow(kRounding * std::max(glm::length(way.lo), glm::length(way.hi)));
+    way.grow(RayLift::kRounding * std::max(glm::length(way.lo), glm::length(way.hi)));
     if (ways.size() < kMostWays)
         ways.push_back(way);
     else
@@ -323,15 +319,6 @@ RayLift RayScene::lift(const GridKey& key) const {
     const RayShape& shape = *m_impl->shapes[geometry];
     return {instance.distance, instance.scale * shape.extent(key.face),
             instance.scale * shape.error(key.face), true};
-}
-
-Vec3f RayLift::operator()(const Vec3f& p, const Vec3f& geometric_normal) const {
-    float size = glm::length(p);  // of all numbers on the way, summed
-    if (casts) {
-        const float from_origin = size + distance;  // of p, at most
-        size = from_origin + std::max(from_origin, extent);
-    }
-    return p + geometric_normal * (kRounding * size + error);
 }
 
 bool RayScene::moves() const {

@@ -4,6 +4,7 @@
 // What moves in the world has its motion knots in Embree; the camera's motion moves nothing.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "base/progress.h"
@@ -22,7 +23,18 @@ struct RayLift {
     float error = 0.0f;     ///< between surface and triangles, metres
     bool casts = false;     ///< false: rays meet no triangles of it
 
-    Vec3f operator()(const Vec3f& p, const Vec3f& geometric_normal) const;
+    /// Positions are rounded to float in shading space and again in object space, each to 2^-24 of
+    /// the largest coordinate on the way; 2^-20 leaves room for a dozen such steps.
+    static constexpr float kRounding = 0x1p-20f;
+
+    Vec3f operator()(const Vec3f& p, const Vec3f& geometric_normal) const {
+        float size = glm::length(p);  // of all numbers on the way, summed
+        if (casts) {
+            const float from_origin = size + distance;  // of p, at most
+            size = from_origin + std::max(from_origin, extent);
+        }
+        return p + geometric_normal * (kRounding * size + error);
+    }
 };
 
 class RayScene {

@@ -78,14 +78,14 @@ void expect_runs_equal_singles(const Camera& camera, const Grid& grid, bool on_l
     SurfaceGroups groups;
     ASSERT_TRUE(groups.sort(ids));
     SampleColors colors(ids.size());
-    std::vector<std::uint16_t> done(ids.size() / SurfaceRun::kCount, 0);
+    std::vector<std::uint8_t> done(ids.size(), 0);
     many.color_groups(groups, colors, done);
     for (std::uint32_t first = 0; first < ids.size(); first += SurfaceRun::kCount) {
         SurfaceRun run;
         one.locate_run(first, &ids[first], false, run);
-        ASSERT_EQ(done[first / SurfaceRun::kCount], run.plain & run.colored) << first;
         for (std::uint32_t i = 0; i < SurfaceRun::kCount; ++i) {
-            if (!(run.plain >> i & 1u)) continue;
+            ASSERT_EQ(done[first + i], (run.plain & run.colored) >> i & 1u) << first + i;
+            if (!done[first + i]) continue;
             ASSERT_EQ(colors[first + i].color,
                       Vec3f(run.color[0][i], run.color[1][i], run.color[2][i]))
                 << first + i;
