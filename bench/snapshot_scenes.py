@@ -14,8 +14,8 @@ WIDTH, HEIGHT = 320, 180
 DEFAULT_FILTER = {"pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5, "threads": 1}
 
 
-def frame(**options):
-    return s.orthographic((WIDTH, HEIGHT), **{**DEFAULT_FILTER, **options})
+def frame(size=(WIDTH, HEIGHT), **options):
+    return s.orthographic(size, **{**DEFAULT_FILTER, **options})
 
 
 def shift(pixels):
@@ -101,10 +101,10 @@ def feathers(angle=0.0, alpha=0.4, **options):
     return snapshot
 
 
-def sheet(pixels, **options):
+def sheet(pixels, size=(WIDTH, HEIGHT), margin=(56, 10), **options):
     """An opaque sheet of one-pixel micropolygons however fast it moves, by `pixels`; wholly on screen."""
-    snapshot = frame(**{"dicing_rate": 1.0, "motion_factor": 0.0, **options})
-    corners = s.rectangle(56, 10, WIDTH - 56, HEIGHT - 10)
+    snapshot = frame(size, **{"dicing_rate": 1.0, "motion_factor": 0.0, **options})
+    corners = s.rectangle(*margin, size[0] - margin[0], size[1] - margin[1])
     s.quad(snapshot, corners, s.emission(snapshot, (0.2, 0.5, 0.4)), transforms=shift(pixels))
     return snapshot
 

@@ -80,9 +80,11 @@ void DepthBlocks::rebuild_ranks(const float* keys) {
                     least[x] = std::min(least[x], keys[x]);
                 }
             for (int square_x = 0; square_x < squares_wide(); ++square_x) {
-                const float* const first = &least[static_cast<std::size_t>(square_x) * square];
+                float farthest = INFINITY;
+                for (int x = square_x * square; x < (square_x + 1) * square; ++x)
+                    farthest = std::min(farthest, least[x]);
                 const auto at = static_cast<std::size_t>(square_y * squares_wide() + square_x);
-                m_rank[at * m_ranks + r] = *std::min_element(first, first + square);
+                m_rank[at * m_ranks + r] = farthest;
             }
         }
     m_nearest_rank = *std::max_element(m_rank.begin(), m_rank.end() - kPacket);

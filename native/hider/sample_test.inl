@@ -99,22 +99,26 @@ class SampleTest {
     static HWY_INLINE Side within(M lanes, Side side) {
         return {hn::And(lanes, side.in), hn::And(lanes, side.strict)};
     }
-    HWY_INLINE Side first_of(const Shape&, const PairEdges& e) const {
+    static HWY_INLINE Side first_of(const Shape& shape, const PairEdges& e) {
         const M never = hn::MaskFromVec(set(0.0f));
-        return m_target.kind & kTriangleA ? first_side(e) : Side{never, never};
+        Side side{never, never};
+        if (shape.kind & kTriangleA) side = first_side(e);
+        return side;
     }
-    HWY_INLINE Side second_of(const Shape&, const PairEdges& e) const {
+    static HWY_INLINE Side second_of(const Shape& shape, const PairEdges& e) {
         const M never = hn::MaskFromVec(set(0.0f));
-        return m_target.kind & kTriangleB ? second_side(e) : Side{never, never};
+        Side side{never, never};
+        if (shape.kind & kTriangleB) side = second_side(e);
+        return side;
     }
-    HWY_INLINE Side first_of(const ShapeRow& row, const PairEdges& e) const {
+    static HWY_INLINE Side first_of(const ShapeRow& row, const PairEdges& e) {
         return within(row.lanes_with(kTriangleA), first_side(e));
     }
-    HWY_INLINE Side second_of(const ShapeRow& row, const PairEdges& e) const {
+    static HWY_INLINE Side second_of(const ShapeRow& row, const PairEdges& e) {
         return within(row.lanes_with(kTriangleB), second_side(e));
     }
-    int kind_of(const Shape&, int) const { return m_target.kind; }
-    int kind_of(const ShapeRow& row, int lane) const { return row.kind[lane % ShapeRow::kWide]; }
+    static int kind_of(const Shape& shape, int) { return shape.kind; }
+    static int kind_of(const ShapeRow& row, int lane) { return row.kind[lane % ShapeRow::kWide]; }
 
     template <Lens kLens>
     HWY_INLINE Offset<V> offset(const Corner<V>& c, const Samples& at) const {

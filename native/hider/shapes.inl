@@ -5,6 +5,7 @@
 /// A micropolygon during one segment of its motion.
 struct Shape {
     Corner<float> begin[4], delta[4];
+    int kind;  ///< SimdGrid::classes
 
     HWY_INLINE Corner<V> begin_of(int k) const { return broadcast(begin[k]); }
     HWY_INLINE Corner<V> delta_of(int k) const { return broadcast(delta[k]); }

@@ -89,7 +89,7 @@ class Kernel {
             m_paths.find_paths<kMoving, kLens>(segment, first, ranges, m_tile_paths);
         for_each_bit(bits_of(touching) & which, [&](int lane) HWY_ATTR {
             if (!aim_at(i + lane, j)) return;
-            const Shape shape = m_where.load_shape(segment, first + lane);
+            const Shape shape = m_where.load_shape(segment, first + lane, m_target.kind);
             if (kMoving || kLens != Lens::None || m_tile.ranked)
                 visit_ranks<kMoving, kLens>(shape, ranges, lane);
             else
@@ -137,8 +137,8 @@ class Kernel {
         const V n_u = set(static_cast<float>(patch.n_u)), n_v = set(static_cast<float>(patch.n_v));
         RankPaths paths;
         for (; first < end; first += lane_count()) {
-            M touching = m_paths.follow<kMoving, kLens>(m_patch.paths, 0, m_target.segment, first,
-                                                        cull, paths);
+            M touching = m_paths.follow<kMoving, kLens, RankPathFinder::kAllSquares>(
+                m_patch.paths, 0, m_target.segment, first, cull, paths);
             touching = hn::And(touching, hn::FirstN(kTag, static_cast<std::size_t>(end - first)));
             for_each_lane(touching, [&](int k) HWY_ATTR {
                 m_windows.visit<kMoving, kLens>(

@@ -111,10 +111,11 @@ class TileBounds {
   public:
     TileBounds(const SimdGrid& grid, const SimdTile& tile) : m_grid(grid), m_tile(tile) {}
 
-    Shape load_shape(int segment, int vertex) const {
+    Shape load_shape(int segment, int vertex, int kind) const {
         const int corner[4] = {vertex, vertex + m_grid.right, vertex + m_grid.right + m_grid.up,
                                vertex + m_grid.up};
         Shape shape;
+        shape.kind = kind;
         for (int k = 0; k < 4; ++k) {
             shape.begin[k] = load(corner[k], segment);
             if (m_grid.segments == 0) continue;

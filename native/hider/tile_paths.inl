@@ -52,6 +52,10 @@ struct SegmentPart {
 /// A grid over the ranks of a tile.
 class RankPathFinder {
   public:
+    /// Squares of the hierarchical depth in a row that are looked at: what a micropolygon needs,
+    /// and all that a tile has.
+    static constexpr int kFewSquares = 2, kAllSquares = 4;
+
     RankPathFinder(const SimdGrid& grid, const SimdTile& tile) : m_grid(grid), m_tile(tile) {}
 
     /// The paths of the micropolygons from `vertex` on between the times at which they are over the
@@ -107,7 +111,7 @@ class RankPathFinder {
 
     /// The part of a straight path, `lane` of find_paths(), that the samples of each of these ranks
     /// can see, and which of the ranks have any that do not see something nearer.
-    template <bool kMoving, Lens kLens>
+    template <bool kMoving, Lens kLens, int kSquares = kFewSquares>
     HWY_INLINE M follow(const TilePaths& paths, int lane, int segment, int first, bool cull,
                         RankPaths& out) const {
         const RankBounds& bounds = *m_tile.bounds;
@@ -147,7 +151,7 @@ class RankPathFinder {
         axis(paths.x, bounds.u_lo, bounds.u_hi, out.x, box.x_lo, box.x_hi);
         axis(paths.y, bounds.v_lo, bounds.v_hi, out.y, box.y_lo, box.y_hi);
         store_shear<kLens>(shear, present, out);
-        return find_blocks(present, box, set(paths.z_lo[lane]), first, cull, out);
+        return find_blocks<kSquares>(present, box, set(paths.z_lo[lane]), first, cull, out);
     }
 
     /// The same by where the micropolygon is during each of the ranks: for paths that are bent.
@@ -167,7 +171,7 @@ class RankPathFinder {
         }
         PathExtents<kMoving, kLens> extents(present);
         for (int k = 0; k < 4; ++k)
-            extents.add(m_grid, broadcast(shape.begin[k]), broadcast(shape.delta[k]), ends);
+            extents.add(m_grid, shape.begin_of(k), shape.delta_of(k), ends);
         const V time0 = (ends[0] + start) / knots, time1 = (ends[1] + start) / knots;
         const Shear shear = shear_of<kLens>(extents.lens, first);
         M sane = extents.sane;
@@ -208,7 +212,7 @@ class RankPathFinder {
             box.x_hi = hn::IfThenElse(sane, box.x_hi, never);
             box.y_hi = hn::IfThenElse(sane, box.y_hi, never);
         }
-        return find_blocks(present, box, extents.z_lo, first, cull, out);
+        return find_blocks<kFewSquares>(present, box, extents.z_lo, first, cull, out);
     }
 
     /// What a lens coordinate of 1 shifts by: from lo to hi, and within `rest` of middle + depth /
@@ -247,9 +251,6 @@ class RankPathFinder {
     static HWY_INLINE V rank(const std::vector<float>& values, int first) {
         return hn::LoadU(kTag, values.data() + first);
     }
-    static HWY_INLINE Corner<V> broadcast(const Corner<float>& c) {
-        return {set(c.x), set(c.y), set(c.w), set(c.z)};
-    }
     /// Which of these intervals of time touch the segment.
     HWY_INLINE M in_segment(V t_lo, V t_hi, int segment) const {
         const V knots = set(static_cast<float>(m_grid.segments));
@@ -287,6 +288,7 @@ class RankPathFinder {
             hn::StoreU(hn::IfThenElseZero(known, shear.depth), kTag, out.depth);
     }
 
+    template <int kSquares>
     HWY_INLINE M find_blocks(M present, const Box& box, V z_lo, int first, bool cull,
                              RankPaths& out) const {
         present =
@@ -296,31 +298,36 @@ class RankPathFinder {
         V nearest = hn::Neg(z_lo);
         if (m_grid.range.perspective)
             nearest = hn::IfThenElse(hn::Gt(z_lo, set(0.0f)), set(1.0f) / z_lo, set(INFINITY));
-        return hn::AndNot(hidden(nearest + hn::Abs(nearest) * set(0x1p-18f), first, out), present);
+        return hn::AndNot(hidden<kSquares>(nearest + hn::Abs(nearest) * set(0x1p-18f), first, out),
+                          present);
     }
 
     /// Whether all samples of the blocks see something nearer, by the hierarchical depth of the
-    /// ranks; only where the blocks lie in at most two by two of its squares.
+    /// ranks; only where the blocks lie in at most kSquares by kSquares of its squares.
+    template <int kSquares>
     HWY_INLINE M hidden(V nearest, int first, const RankPaths& blocks) const {
         const auto square = [&](const int* block) HWY_ATTR {
             return hn::ShiftRightSame(hn::LoadU(kIntTag, block), m_tile.square_shift);
         };
         const auto x0 = square(blocks.x0), x1 = square(blocks.x1);
         const auto y0 = square(blocks.y0), y1 = square(blocks.y1);
-        const auto two = hn::Set(kIntTag, 2);
-        const auto few = hn::And(hn::Lt(x1 - x0, two), hn::Lt(y1 - y0, two));
+        const auto most = hn::Set(kIntTag, kSquares);
+        const auto few = hn::And(hn::Lt(x1 - x0, most), hn::Lt(y1 - y0, most));
         const auto wide = hn::Set(kIntTag, m_tile.squares_wide);
         const auto ranks = hn::Set(kIntTag, m_tile.ranks);
         // Lanes without blocks may lie outside.
-        const auto safe = hn::Set(kIntTag, 0), most = wide - hn::Set(kIntTag, 1);
-        const auto farthest = [&](auto x, auto y) HWY_ATTR {
-            x = hn::Min(hn::Max(x, safe), most);
-            y = hn::Min(hn::Max(y, safe), most);
-            return hn::GatherIndex(kTag, m_tile.farthest_of_ranks + first,
-                                   (y * wide + x) * ranks + hn::Iota(kIntTag, 0));
-        };
-        const V least = hn::Min(hn::Min(farthest(x0, y0), farthest(x1, y0)),
-                                hn::Min(farthest(x0, y1), farthest(x1, y1)));
+        const auto safe = hn::Set(kIntTag, 0), last = wide - hn::Set(kIntTag, 1);
+        V least = set(INFINITY);
+        for (int j = 0; j < kSquares; ++j)
+            for (int i = 0; i < kSquares; ++i) {
+                auto x = hn::Min(x0 + hn::Set(kIntTag, i), x1);
+                auto y = hn::Min(y0 + hn::Set(kIntTag, j), y1);
+                x = hn::Min(hn::Max(x, safe), last);
+                y = hn::Min(hn::Max(y, safe), last);
+                least =
+                    hn::Min(least, hn::GatherIndex(kTag, m_tile.farthest_of_ranks + first,
+                                                   (y * wide + x) * ranks + hn::Iota(kIntTag, 0)));
+            }
         return hn::And(hn::RebindMask(kTag, few), hn::Lt(nearest, least));
     }
 
