@@ -116,20 +116,22 @@ class PixelScale:
     @cached_property
     def _probes(self):
         """Those places, and the outermost ones of the frame in which there is something, at the least and the
-        largest of their depths.  Perspective: scaled to lie 1 m before the camera, and infinitely far too.
-        And the view.
+        largest of their depths.  Perspective: scaled to lie 1 m before the camera, and infinitely far, where
+        the world fills the frame.  And the view.
         """
         places, seen, reach, view = self._before
         depth = seen[:, 2] if self._perspective else np.ones(len(seen))
         far = (np.abs(seen[:, :2]) + reach[:, None]) / depth[:, None]
-        across, up = np.minimum(np.max(far, axis=0, initial=0.0), self._frame_edges())
+        edges = self._frame_edges()
+        extent = np.minimum(np.max(far, axis=0, initial=0.0), edges)
         depths = [seen[:, 2].min(), seen[:, 2].max()] if len(seen) else []
         if self._perspective:
             places = places / depth[:, None]
-            ends = [(1.0, 1.0 / d) for d in depths] + [(1.0, 0.0)]
+            ends = [(extent, 1.0, 1.0 / d) for d in depths] + [(edges, 1.0, 0.0)]
         else:
-            ends = [(d, 1.0) for d in depths]
-        corners = [(x, y, *end) for end in ends for x in (-across, across) for y in (-up, up)]
+            ends = [(extent, d, 1.0) for d in depths]
+        signs = [np.array((x, y)) for x in (-1, 1) for y in (-1, 1)]
+        corners = [(*(sign * reach), z, w) for reach, z, w in ends for sign in signs]
         return np.vstack([places, np.reshape(corners, (-1, 4)) @ inverse(view).T]), view
 
     def _frame_edges(self):

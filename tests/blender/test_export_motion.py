@@ -108,6 +108,14 @@ def test_camera_and_lights_move(moving):
     assert lamp["world_from_light"][:, 2, 3] == pytest.approx([19.5, 20.5])
 
 
+def test_a_zoom_before_the_world_alone_has_the_knots_that_it_needs(moving):
+    """The frame's corners go as 1 / sensor."""
+    moving.camera.data.lens = 20.0
+    drive(moving.camera.data, "sensor_width", "36 + 60 * (frame - 10)")
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
+    assert len(snapshot["camera"]["world_from_camera"]) == 17
+
+
 def test_a_parent_and_a_driver(moving):
     parent = scene_parts.add_object(moving, "Parent", None)
     child = scene_parts.add_square(moving, "Child")

@@ -144,3 +144,15 @@ def test_what_is_no_interval_is_named(broken):
     square(snapshot, lifespan=broken)
     with pytest.raises(granita_core.SceneError, match="object 'Object 0'.*lifespan"):
         s.render(snapshot)
+
+
+@pytest.mark.parametrize("broken", [(0.6, 0.4), (np.nan, 1.0), (0.0, np.nan)])
+def test_of_lamps_likewise(broken):
+    import granita_core
+
+    snapshot = s.orthographic((16, 16))
+    lamp = {"name": "Lamp", "kind": "SUN", "world_from_light": np.eye(4)[None]}
+    lamp |= {"color": (1, 1, 1), "energy": 1.0, "lifespan": np.float32(broken)}
+    snapshot["lights"] = [lamp]
+    with pytest.raises(granita_core.SceneError, match="light 'Lamp'.*lifespan"):
+        s.render(snapshot)
