@@ -5,6 +5,10 @@
 #include <cstring>
 #include <new>
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 namespace granita {
 namespace {
 
@@ -18,6 +22,9 @@ void SlabMemory::Free::operator()(void* memory) const {
 
 SlabMemory::Slab SlabMemory::make(std::size_t bytes) {
     Slab slab(static_cast<std::byte*>(::operator new (bytes, std::align_val_t{kSlab})));
+#ifdef __linux__
+    madvise(slab.get(), bytes, MADV_HUGEPAGE);
+#endif
     return slab;
 }
 

