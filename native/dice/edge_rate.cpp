@@ -50,7 +50,7 @@ EdgeRate::EdgeRate(const View& view, double longer)
       m_shading_rate(std::max<double>(m_rate, view.scene->options.shading_rate)),
       m_width(view.scene->options.width),
       m_height(view.scene->options.height),
-      m_motion_factor(view.scene->options.motion_factor),
+      m_motion_factor(view.scene->options.motion_factor * view.scene->options.row_exposure()),
       m_focus_factor(view.scene->options.focus_factor),
       m_near(view.projection.perspective ? std::max(view.projection.near_clip, 1e-9)
                                          : view.projection.near_clip),

@@ -15,8 +15,9 @@
 // way alone: of a piece that goes L pixels, that part of its length which lies along counts max(1,
 // motion_factor L / 16) times less.  A lens blurs everything: target and sag grow max(1,
 // focus_factor D / 16) times, D the smallest diameter of the piece's circle of confusion.  With a
-// factor of 1 vertices are a sixteenth of the blur apart, and of shading detail that they miss
-// (waves shorter than an eighth of the blur) no more than 1 / (8 pi) = 4 % would have been seen.
+// factor of 1 (L: of what a row of a rolling shutter sees) vertices are a sixteenth of the blur
+// apart, and of shading detail that they miss (waves shorter than an eighth of the blur) no more
+// than 1 / (8 pi) = 4 % would have been seen.
 //
 // Near the eye plane raster lengths have no limit, and behind it they mean nothing.  What the frame
 // does not show, or only in part, is therefore measured from the eye as well: it is bisected while

@@ -77,6 +77,9 @@ struct Options {
     /// Rolling shutter, top row first: the part of the shutter in which one row is exposed, 0 to 1.
     /// Negative = all rows at once.
     float rolling_shutter = -1.0f;
+
+    /// Part of the shutter in which one row is exposed.
+    float row_exposure() const { return rolling_shutter >= 0.0f ? rolling_shutter : 1.0f; }
 };
 
 }  // namespace granita

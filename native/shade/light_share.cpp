@@ -80,14 +80,14 @@ class GridBlur {
 
 }  // namespace
 
-float light_share(const Grid& grid, const Projection& projection, const ShutterWarp& shutter,
-                  int samples) {
+float light_share(const Grid& grid, const Scene& scene, const ShutterWarp& shutter) {
+    const Projection& projection = scene.camera.projection;
     const GridBlur blur(grid, projection);
-    const double way = blur.way(shutter);
+    const double way = blur.way(shutter) * static_cast<double>(scene.options.row_exposure());
     const double side = projection.has_lens() ? std::sqrt(M_PI_4) * blur.circle() : 0.0;
     if (!(way + side > 0.0)) return 1.0f;
     const double share = share_along(std::hypot(way, side)) * share_along(side);
-    const double variance = share * blur.area() + 1.0 / samples;
+    const double variance = share * blur.area() + 1.0 / scene.options.samples;
     return static_cast<float>(std::sqrt(std::min(1.0, variance)));
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dice/grid.h"
-#include "math/projection.h"
+#include "scene/scene.h"
 #include "scene/shutter_warp.h"
 
 namespace granita {
@@ -14,11 +14,11 @@ namespace granita {
 /// streaks, which the eye sees better than grain, so what is kept is the noise of the mean over a
 /// square of four pixels.  Its variance is that of a point times the square pixels that a point
 /// stands for times the integral of the square of the weights: boxes of 4 and of the blur's L
-/// pixels, convolved (a circle of confusion counts as a square of its area).  Each of the `samples`
+/// pixels, convolved (a circle of confusion counts as a square of its area).  Each of the samples
 /// of a pixel sees one point alone, which adds the variance of a point over their number.  That of
 /// a point falls with the square of its light samples, which are stratified (measured in a
 /// penumbra: error as n to the power -.95).  The least blurred point of the grid decides.
-float light_share(const Grid& grid, const Projection& projection, const ShutterWarp& shutter,
-                  int samples);
+/// `shutter`: of the scene's curve.
+float light_share(const Grid& grid, const Scene& scene, const ShutterWarp& shutter);
 
 }  // namespace granita

@@ -220,8 +220,7 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     ShadingPoints points = shading_points(grid, m_impl->camera);
     const SurfaceProgram& surface = material.radiance;
     if (!surface.sources.lobes.empty())
-        points.share *= light_share(grid, m_impl->scene.camera.projection, m_impl->shutter,
-                                    m_impl->scene.options.samples);
+        points.share *= light_share(grid, m_impl->scene, m_impl->shutter);
     const ShadingInput input = m_impl->input(grid, points);
     Run run = surface.program.prepare(input, points.count);
     surface.program.execute(run);

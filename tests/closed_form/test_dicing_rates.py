@@ -55,6 +55,17 @@ def test_motion_factor_spares_points_that_blur_hides(period):
     assert np.sqrt(np.mean((coarse - fine) ** 2)) < 0.02
 
 
+def test_what_no_row_of_a_rolling_shutter_blurs_is_diced_as_ever():
+    def points(factor, rolling):
+        snapshot = s.orthographic((96, 64), executor="SIMD", samples=4, motion_factor=factor)
+        snapshot["options"]["rolling_shutter"] = rolling
+        way = [s.translation(-32, -3), s.translation(32, 3)]
+        s.quad(snapshot, s.rectangle(-60, -60, 160, 130), s.emission(snapshot), transforms=way)
+        return s.render(snapshot)["statistics"]["points_diced"]
+
+    assert points(1.0, 0.2) == points(0.0, 0.2) > points(1.0, 1.0)
+
+
 def test_focus_factor_spares_points_that_the_lens_hides():
     def render(factor):
         snapshot = s.perspective(

@@ -6,10 +6,12 @@
 namespace granita {
 namespace {
 
-Projection pixels() {
-    Projection projection;
-    projection.perspective = false;
-    return projection;
+/// A raster of one unit a pixel.
+Scene pixels(int samples = 1 << 20) {
+    Scene scene;
+    scene.camera.projection.perspective = false;
+    scene.options.samples = samples;
+    return scene;
 }
 
 /// A lattice of one micropolygon, a pixel wide, whose corners go from 0 by `ways[knot][corner]`.
@@ -32,9 +34,8 @@ Grid moved(const std::vector<Vec2f>& places) {
 }
 
 /// Of the variance: the error of n stratified samples falls as 1 / n.
-float share(const Grid& grid, const Projection& projection = pixels(),
-            const std::vector<float>& curve = {}) {
-    const float samples = light_share(grid, projection, ShutterWarp(curve), 1 << 20);
+float share(const Grid& grid, const Scene& scene = pixels(), const std::vector<float>& curve = {}) {
+    const float samples = light_share(grid, scene, ShutterWarp(curve));
     return samples * samples;
 }
 
@@ -91,18 +92,24 @@ TEST(LightShareTest, a_point_that_stands_for_more_pixels_has_more_of_it) {
 }
 
 TEST(LightShareTest, few_samples_see_few_points) {
-    const float samples = light_share(moved({{0, 0}, {40, 0}}), pixels(), ShutterWarp({}), 16);
-    EXPECT_NEAR(samples * samples, integrated(40) + 1.0 / 16, 1e-4);
+    EXPECT_NEAR(share(moved({{0, 0}, {40, 0}}), pixels(16)), integrated(40) + 1.0 / 16, 1e-4);
+}
+
+TEST(LightShareTest, a_row_of_a_rolling_shutter_sees_part_of_the_way) {
+    Scene rolling = pixels();
+    rolling.options.rolling_shutter = 0.25f;
+    EXPECT_NEAR(share(moved({{0, 0}, {40, 0}}), rolling), integrated(10), 1e-4);
 }
 
 TEST(LightShareTest, a_lens_blurs_both_ways) {
-    Projection lens = pixels();
+    Scene scene = pixels();
+    Projection& lens = scene.camera.projection;
     lens.lens_radius = 12.0;
     lens.focus = 10.0;  // at 5 metres the circle is 12 pixels wide
     const double side = integrated(12.0 * std::sqrt(M_PI) / 2.0);
-    EXPECT_NEAR(share(moved({{0, 0}}), lens), side * side, 1e-4);
+    EXPECT_NEAR(share(moved({{0, 0}}), scene), side * side, 1e-4);
     lens.focus = 5.0;
-    EXPECT_EQ(share(moved({{0, 0}}), lens), 1.0f);
+    EXPECT_EQ(share(moved({{0, 0}}), scene), 1.0f);
 }
 
 }  // namespace
