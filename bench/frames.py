@@ -81,7 +81,7 @@ def reference(scene, samples, all_scenes):
 def still_reference(scene, samples, all_scenes, stills=32):
     """The same as the mean of Cycles' pictures without blur, spread over the shutter: each of the four parts has
     `stills` times of its own."""
-    file = CACHE / f"{scene}-stills-{samples}-{fingerprint(scene, all_scenes)}.npy"
+    file = CACHE / f"{scene}-stills{stills}-{samples}-{fingerprint(scene, all_scenes)}.npy"
     if not file.exists():
         CACHE.mkdir(parents=True, exist_ok=True)
         parts = []

@@ -195,7 +195,11 @@ class LatticeDicer {
             out.attribute = static_cast<int>(a);
             out.width = requests[a].width;
             m_mesh->attribute(*m_patch, requests[a], m_uv, out.values, m_by_u, m_by_v);
-            if (!requests[a].derivatives) continue;
+            if (!requests[a].derivatives) {
+                out.du.clear();  // of the grid before
+                out.dv.clear();
+                continue;
+            }
             const std::size_t width = static_cast<std::size_t>(out.width);
             out.du.resize(out.values.size());
             out.dv.resize(out.values.size());

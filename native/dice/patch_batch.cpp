@@ -2,7 +2,6 @@
 #include "dice/patch_batch.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "dice/finish_motion.h"
 #include "dice/lattice.h"

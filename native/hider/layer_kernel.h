@@ -11,7 +11,7 @@ namespace granita {
 
 /// The layers of sixteen lists in front of what is behind them.  Each channel by itself, in double:
 /// C += T c, O += a T, T -= a T, which keeps what float's T = (1 - a) T loses: 1e6 layers of 1e-6
-/// (hider-research 4.4, case 36).
+/// (docs/hard_cases.md, case 36).
 struct PacketLayers {
     alignas(64) double transmission[3][kPacket];  ///< T
     alignas(64) double color[3][kPacket];         ///< C

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How many time and lens passes REGULAR sampling needs to keep its copies from showing (paper,
-// 9.3.5; hider-research 1.2).
+// 9.3.5; docs/sampling_error.md).
 #pragma once
 
 #include <functional>

@@ -14,7 +14,9 @@ namespace granita {
 /// different ones, and what is prepared of a surface is prepared once for all that see it.
 class SurfaceGroups {
   public:
-    /// False where so many surfaces are seen that samples hardly share them.
+    /// False where so many surfaces are seen that samples hardly share them: nothing may be asked
+    /// then.
+    /// @param ids [samples]; kNoSurface belongs to no group.
     bool sort(std::span<const SurfaceId> ids);
     std::size_t size() const { return m_ids.size(); }
     SurfaceId id(std::size_t group) const { return m_ids[group]; }

@@ -89,6 +89,7 @@ class SurfaceInterpolator {
 
     /// The colours of what locate_run() calls plain and coloured, surface by surface: the same
     /// bits. Sets done[sample] to 1; leaves alpha and depth.
+    /// @param colors,done [samples of the tile].
     void color_groups(const SurfaceGroups& groups, SampleColors& colors,
                       std::span<std::uint8_t> done);
 

@@ -7,7 +7,7 @@
 // plane) at
 //   perspective   X = cx + sx * (x + lx * (z / focus - 1)) / z
 //   orthographic  X = cx + sx * (x + lx * (z / focus - 1))
-// (thin lens: Potmesil and Chakravarty 1981; hider-research 5.3; lens_radius and focus may move:
+// (thin lens: Potmesil and Chakravarty 1981; lens_radius and focus may move:
 // scene/lens_knots.h).  Both are kept homogeneous, h = (X*w, Y*w, w) with w = z or w = 1, which is
 // linear in P: motion interpolates h and nothing is ever divided before coverage.
 #pragma once

@@ -6,7 +6,7 @@
 namespace granita {
 
 /// Uniform numbers -> shutter times with the density of the shutter's opening: the inverse of the
-/// opening's integral, so that every sample has the same weight (hider-research 1.3, W1).
+/// opening's integral, so that every sample has the same weight.
 class ShutterWarp {
   public:
     /// `opening`: relative opening at equidistant times of [0, 1], linear in between; empty or

@@ -154,7 +154,8 @@ Vec3f DirectLight::Impl::occlusion(LitGrid& grid, const LitPoint& point, const L
 void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const Lamp& lamp,
                                     std::uint64_t dimension, Vec3f& sum) const {
     const int count = samples_of(point, lamp);
-    const bool timed = count > 1 && changes(lamp);
+    // One sample of many tells all where nothing varies along its ray; one of one is any time's.
+    const bool timed = changes(lamp) && (count > 1 || point.sample_count == 1);
     const SobolPoints sequence = point.sequence(dimension, count);
     for (int s = 0; s < count; ++s) {
         const auto index = static_cast<std::uint32_t>(s);

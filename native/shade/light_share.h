@@ -18,7 +18,9 @@ namespace granita {
 /// of a pixel sees one point alone, which adds the variance of a point over their number.  That of
 /// a point falls with the square of its light samples, which are stratified (measured in a
 /// penumbra: error as n to the power -.95).  The least blurred point of the grid decides.
-/// `shutter`: of the scene's curve.
+/// `shutter`: of the scene's curve.  A row exposed for less counts what it sees.
+/// @param grid positions at all its knots, camera space.
+/// @return in (0, 1].
 float light_share(const Grid& grid, const Scene& scene, const ShutterWarp& shutter);
 
 }  // namespace granita

@@ -2,7 +2,7 @@
 """Pictures of moving edges against closed forms.
 
 An orthographic camera sees a pixel a metre, the filter is one pixel's box.  Errors are held against
-the "Owen" column of hider-research 1.2 for an edge that crosses 20 pixels with 256 samples (RMSE
+the "Owen" column of docs/sampling_error.md for an edge that crosses 20 pixels with 256 samples (RMSE
 .0035): 1.3 times that, and 4 times for a single pixel.
 
 No fixtures, for the reason in motion_parts.

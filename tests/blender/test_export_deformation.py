@@ -299,6 +299,22 @@ def test_hair_that_shrinks_deforms(moving):
     assert (np.diff(tips, axis=0) < -0.001).all()
 
 
+def test_hair_that_bends_between_ends_that_stay_deforms(moving):
+    """Children that meet at their parents' tips."""
+    thing = furry(moving, child_type="SIMPLE", rendered_child_count=5)
+    drive(thing, "rotation_euler", "frame / 10", 1)
+    settings = thing.particle_systems[0].settings
+    settings.clump_factor, settings.kink = 1.0, "WAVE"
+    drive(settings, "kink_amplitude", "frame / 20")
+    snapshot, _, _ = export_probe.through_engine(moving)
+    points = hair_points(snapshot)
+    assert len(points) > 1
+    strands = points.reshape(len(points), 300, 9, 3)
+    way = np.linalg.norm(strands[-1] - strands[0], axis=-1)
+    assert way[:, 2].max() > 0.001
+    assert way[:, 8].max() < 1e-4
+
+
 def test_few_hairs_of_many_that_deform(moving):
     """A fiftieth of the emitter rises; the other hairs stay."""
     thing = furry(moving, count=500)

@@ -91,7 +91,7 @@ def test_blur_is_the_mean_of_stills(scene, render, build):
         time = 9.5 + (i + 0.5) / STILLS
         scene.frame_set(math.floor(time), subframe=time % 1.0)
         mean += alpha(16) / STILLS
-    # 256 samples leave .0035 to .005 in pixels that an edge passes in 20 to 5 pixels' way (hider-research 1.2), stills
+    # 256 samples leave .0035 to .005 in pixels that an edge passes in 20 to 5 pixels' way (docs/sampling_error.md), stills
     # their steps; most pixels see neither.  Measured: .0023 to .004.
     limit = 0.005
     assert np.sqrt(np.mean((at_frame - mean) ** 2)) > 3 * limit  # there is something to blur

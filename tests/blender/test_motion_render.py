@@ -132,7 +132,7 @@ def test_a_sensor_that_changes_before_what_lies_on_the_axis(film, render):
         return left_of(16 + half, pixels) - left_of(16 - half, pixels)
 
     expected = np.broadcast_to(over_time(strip_at, MIDPOINTS), (HEIGHT, WIDTH))
-    # Its edges go 8.5 pixels: over 5 they are 1.5 times as noisy as over 20 (hider-research 1.2).
+    # Its edges go 8.5 pixels: over 5 they are 1.5 times as noisy as over 20 (docs/sampling_error.md).
     hold(alpha(render, film), expected, crossings=2)
 
 

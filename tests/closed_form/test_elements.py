@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Curves and points against closed forms (hider-research, cases 9, 13, 27 and 57)."""
+"""Curves and points against closed forms (docs/hard_cases.md, cases 9, 13, 27 and 57)."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ import snapshots as s
 
 import granita_core
 
-OWEN_20_256 = 0.0035  # hider-research 1.2, edges moving 20 px at 256 samples
+OWEN_20_256 = 0.0035  # docs/sampling_error.md, edges moving 20 px at 256 samples
 
 
 def curves(snapshot, points, sizes, radius, material=None, transforms=None, **extra):
@@ -149,7 +149,7 @@ def test_radius_of_a_point_in_motion(executor):
     alpha = s.alpha(snapshot)
     inside = (distance > 1) & (distance < 7)  # nearly linear inside a pixel
     error = (alpha - (1 - distance / 8))[inside]
-    # Four times what 256 samples leave of an edge that moves (hider-research 1.2).
+    # Four times what 256 samples leave of an edge that moves (docs/sampling_error.md).
     assert np.sqrt(np.mean(error**2)) <= 4 * 0.0055
     assert abs(alpha.sum() / (np.pi * 64 / 3) - 1) < 0.01
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry that is hard to place, through the whole renderer (hider-research, section 4.5)."""
+"""Geometry that is hard to place, through the whole renderer (docs/hard_cases.md)."""
 
 import numpy as np
 import pytest

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Moving geometry against closed forms (hider-research, section 4.2).
+"""Moving geometry against closed forms (docs/hard_cases.md).
 
-Predicted sampling error: the "Owen" column of hider-research 1.2 for edges moving L pixels at N samples, one pixel
+Predicted sampling error: the "Owen" column of docs/sampling_error.md for edges moving L pixels at N samples, one pixel
 box; between its rows the next worse one.  A single pixel may be off by 4 times that, the RMSE by 1.3 times.
 """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Motion, lens and transparency through OpenGL (hider-research, section 4): closed forms with the samples of REGULAR,
+"""Motion, lens and transparency through OpenGL (docs/hard_cases.md): closed forms with the samples of REGULAR,
 and the reference executor on the same samples."""
 
 import numpy as np

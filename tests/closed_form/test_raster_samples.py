@@ -65,7 +65,7 @@ def test_moving_edge(sampling):
     e0 = edge - np.arange(48)
     expected = np.broadcast_to((ramp(e0 + speed) - ramp(e0)) / speed, (8, 48))
     error = render(snapshot)[..., 3] - expected
-    # Four times the error of a (0,2)-net of 64 samples over 20 pixels (hider-research 1.2).
+    # Four times the error of a (0,2)-net of 64 samples over 20 pixels (docs/sampling_error.md).
     assert np.abs(error).max() <= 4 * 0.0092
     assert error[expected == 0].max() == 0 and np.abs(error[expected == 1]).max() <= 1e-6
 

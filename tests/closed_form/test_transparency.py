@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Layers of transparency against closed forms (hider-research, section 4.4)."""
+"""Layers of transparency against closed forms (docs/hard_cases.md)."""
 
 import hypothesis
 import hypothesis.strategies as st

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves as ribbons and points as spheres (hider-research, cases 9, 27 and 57).
+// Curves as ribbons and points as spheres (docs/hard_cases.md, cases 9, 27 and 57).
 #include <numeric>
 #include <random>
 

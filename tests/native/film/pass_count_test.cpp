@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strobing of the film's filters against the values computed for hider-research, table 1.2.
+// Strobing of the film's filters against the table of docs/sampling_error.md.
 #include "hider/pass_count.h"
 
 #include <gtest/gtest.h>

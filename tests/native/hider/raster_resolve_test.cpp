@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The filter on the device against closed forms (hider-research 4.1, cases 1, 2, 5, 8).
+// The filter on the device against closed forms (docs/hard_cases.md, cases 1, 2, 5, 8).
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -17,7 +17,7 @@ struct FilterCase {
     const char* name;
     double radius;
     double (*factor)(double);
-    /// E(d) at d = .25, .5, .75, 1, 1.5, 2 (hider-research 4.1, four digits).
+    /// E(d) at d = .25, .5, .75, 1, 1.5, 2 (docs/sampling_error.md, four digits).
     double response[6];
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The hierarchical depth in time: what hides and what is hidden move (hider-research, case 22).
+// The hierarchical depth in time: what hides and what is hidden move (docs/hard_cases.md, case 22).
 #include "hider/time_slabs.h"
 
 #include <gtest/gtest.h>

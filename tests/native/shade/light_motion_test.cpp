@@ -230,6 +230,27 @@ TEST_F(LightMotionTest, a_lamp_that_comes_or_goes_shines_for_its_part_of_the_shu
     }
 }
 
+TEST_F(LightMotionTest, one_light_sample_has_a_time_of_its_own) {
+    // 4,096 points in one place: four standard deviations of as many draws of 0 and 1, and a half.
+    constexpr float kDraws = 4.0f * 0.5f / 64.0f;
+    scene.options.light_samples = 1;
+    const ShadingPoints points = points_facing_up(std::vector<Vec3f>(4096, Vec3f(0.5f, 0, 0)));
+    const auto mean = [&] {
+        const DirectLight light(scene, world, statistics, report, progress);
+        float sum = 0.0f;
+        for (const Vec3f& value :
+             light.reflect(points, closure_of(lambert(points, 1.0f)), {900, 0, 1}, nullptr, {}))
+            sum += value.x / 4096.0f;
+        return sum;
+    };
+    scene.lights = {light_of(LightKind::Sun, kPi, aimed({0, 0, 9}, {0, 0, -1}))};
+    scene.lights[0].lifespan = {0.625f, 1.0f};  // not at the frame time
+    EXPECT_NEAR(mean(), 0.375f, kDraws);
+    scene.lights[0].lifespan = {};
+    add_mover(1.0f, {at({-2, 0, 1}), at({2, 0, 1})});
+    EXPECT_NEAR(mean(), 1.0f - covered(0.5f), kDraws);
+}
+
 TEST_F(LightMotionTest, mirrors_show_a_lamp_behind_what_moves) {
     Light light = light_of(LightKind::Area, 100.0f, aimed({0, 0, 3}, {0, 0, -1}));
     scene.lights = {light};
