@@ -102,7 +102,8 @@ TEST_P(ExecutorsAgree, TogetherAndApart) {
         const Seen a = look(make_simd_hider, together, together.tiles);
         const Seen b = look(make_simd_hider, apart, apart.tiles);
         for (std::size_t i = 0; i < a.stores.size(); ++i) expect_equal(a.stores[i], b.stores[i]);
-        if (GetParam() == kStatic) continue;
+        // The smallest bend by more than half of one, and are looked for one by one anyway.
+        if (GetParam() == kStatic || spread < 1.0f) continue;
         EXPECT_NE(together.statistics.get(Counter::SampleTestsMoving),
                   apart.statistics.get(Counter::SampleTestsMoving))
             << "they were to be found in two ways, spread " << spread;
