@@ -29,6 +29,7 @@ void DepthBlocks::reset(const SampleOrder& order, const RankBounds& bounds) {
     m_packets = &order.packets();
     m_blocks_wide = order.blocks_wide();
     m_ranks = order.ranks();
+    m_rank_stride = order.rank_stride();
     m_ranked = order.shape().ranked;
     m_writes = 0;
     m_square_shift = 0;
@@ -74,10 +75,11 @@ void DepthBlocks::rebuild_ranks(const float* keys) {
         for (int square_y = 0; square_y < squares_wide(); ++square_y) {
             std::fill(least.begin(), least.end(), INFINITY);
             float* block = &m_block[static_cast<std::size_t>(square_y) * square * wide];
-            for (int y = 0; y < square; ++y, block += wide, keys += wide)
+            const float* row = &keys[r * m_rank_stride + (block - m_block.data())];
+            for (int y = 0; y < square; ++y, block += wide, row += wide)
                 for (int x = 0; x < wide; ++x) {
-                    block[x] = std::min(block[x], keys[x]);
-                    least[x] = std::min(least[x], keys[x]);
+                    block[x] = std::min(block[x], row[x]);
+                    least[x] = std::min(least[x], row[x]);
                 }
             for (int square_x = 0; square_x < squares_wide(); ++square_x) {
                 float farthest = INFINITY;

@@ -47,6 +47,7 @@ class DepthBlocks {
     const RankBounds* m_bounds = nullptr;
     const std::vector<std::uint32_t>* m_packets = nullptr;
     int m_blocks_wide = 0, m_ranks = 0, m_square_shift = 0;
+    std::size_t m_rank_stride = 0;
     bool m_ranked = false;
     std::uint64_t m_writes = 0;
     std::vector<float> m_packet, m_block, m_rank;

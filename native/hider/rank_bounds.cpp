@@ -11,7 +11,7 @@ namespace {
 
 /// Values that are not numbers are left out.  In lanes, because the order of minima does not matter
 /// but vectors do.
-void bound(const std::vector<float>& values, std::size_t ranks, std::size_t blocks, float whole,
+void bound(const std::vector<float>& values, std::size_t ranks, std::size_t stride, float whole,
            std::vector<float>& lo, std::vector<float>& hi) {
     lo.assign(ranks + kPacket, 0.0f);
     hi.assign(ranks + kPacket, whole);
@@ -20,8 +20,8 @@ void bound(const std::vector<float>& values, std::size_t ranks, std::size_t bloc
         float least[kPacket], most[kPacket];
         std::fill_n(least, kPacket, INFINITY);
         std::fill_n(most, kPacket, -INFINITY);
-        const float* const of_rank = &values[r * blocks];
-        for (std::size_t block = 0; block < blocks; block += kPacket)
+        const float* const of_rank = &values[r * stride];
+        for (std::size_t block = 0; block < stride; block += kPacket)
             for (int i = 0; i < kPacket; ++i) {
                 const float value = of_rank[block + i];
                 least[i] = value < least[i] ? value : least[i];
@@ -50,13 +50,13 @@ RankBounds bound_ranks(const SampleOrder& order, const std::vector<float>& t,
                        const std::vector<float>& u, const std::vector<float>& v,
                        const std::vector<float>& inverse_focus) {
     const auto ranks = static_cast<std::size_t>(order.ranks());
-    const std::size_t blocks = order.slots() / ranks;
+    const std::size_t stride = order.rank_stride();
     RankBounds out;
-    bound(t, ranks, blocks, 1.0f, out.t_lo, out.t_hi);
-    bound(u, ranks, blocks, 0.0f, out.u_lo, out.u_hi);
-    bound(v, ranks, blocks, 0.0f, out.v_lo, out.v_hi);
+    bound(t, ranks, stride, 1.0f, out.t_lo, out.t_hi);
+    bound(u, ranks, stride, 0.0f, out.u_lo, out.u_hi);
+    bound(v, ranks, stride, 0.0f, out.v_lo, out.v_hi);
     if (!inverse_focus.empty())
-        bound(inverse_focus, ranks, blocks, 0.0f, out.focus_lo, out.focus_hi);
+        bound(inverse_focus, ranks, stride, 0.0f, out.focus_lo, out.focus_hi);
     find_slabs(ranks, out);
     return out;
 }

@@ -44,7 +44,8 @@ class RankWindows {
         for (int y = 0; y < up; ++y)
             for (int x = 0; x < across; ++x)
                 visit_window<kMoving, kLens>(
-                    paths, k, (rank * wide + y0 + kSide * y) * wide + x0 + kSide * x, visit);
+                    paths, k,
+                    rank * m_tile.rank_stride + (y0 + kSide * y) * wide + x0 + kSide * x, visit);
     }
 
   private:

@@ -169,10 +169,10 @@ void SampleOrder::distribute(const TileSamples& samples, const Rect& pixels) {
     if (!m_shape.ranked) return;
     for (std::size_t block = 0; block < blocks.count(); ++block)
         sort_block(samples, m_table_index.data() + block * stride, count[block]);
-    m_scratch.resize(m_table_index.size());
+    m_scratch.assign(stride * rank_stride(), kNone);
     for (std::size_t block = 0; block < blocks.count(); ++block)
         for (std::size_t rank = 0; rank < stride; ++rank)
-            m_scratch[rank * blocks.count() + block] = m_table_index[block * stride + rank];
+            m_scratch[rank * rank_stride() + block] = m_table_index[block * stride + rank];
     std::swap(m_table_index, m_scratch);
 }
 
@@ -182,15 +182,15 @@ bool SampleOrder::place_net(const TileSamples& samples, const Rect& pixels) {
     if (m_shape.ranked ? !by_time : expected % kPacket != 0) return false;
     m_ranks = expected;
     const Blocks blocks{samples, m_blocks_wide};
-    const std::size_t count = blocks.count();
-    m_table_index.assign(count * expected, kNone);
+    const std::size_t count = blocks.count(), stride = rank_stride();
+    m_table_index.assign((m_shape.ranked ? rank_stride() : count) * expected, kNone);
     m_scratch.assign(m_shape.ranked ? 0 : count, 0);
     bool fits = true;
     for_each_sample(samples, pixels, [&](std::uint32_t i) {
         const std::size_t block = blocks.of(i);
         if (m_shape.ranked) {
             const int rank = static_cast<int>(samples.t[i] * static_cast<float>(expected));
-            std::uint32_t& slot = m_table_index[std::min(rank, expected - 1) * count + block];
+            std::uint32_t& slot = m_table_index[std::min(rank, expected - 1) * stride + block];
             fits = fits && slot == kNone;
             slot = i;
         } else {

@@ -55,6 +55,11 @@ class SampleOrder {
 
     const OrderShape& shape() const { return m_shape; }
     int blocks_wide() const { return m_blocks_wide; }  ///< a tile has as many rows of blocks
+    /// Slots from one rank to the next: its blocks, and a packet of empty slots, since a block's
+    /// slots would else lie a power of two apart and share few sets of the cache.
+    std::size_t rank_stride() const {
+        return static_cast<std::size_t>(m_blocks_wide) * m_blocks_wide + kPacket;
+    }
     /// Slots of a block; a multiple of kPacket unless ranked.
     int ranks() const { return m_ranks; }
     std::size_t slots() const { return m_slots; }

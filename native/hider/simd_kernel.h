@@ -26,6 +26,7 @@ struct SimdTile {
     SurfaceId* id = nullptr;
     bool ranked = false;
     int blocks_wide = 0, ranks = 0;          ///< blocks in a row of the tile; slots of a block
+    int rank_stride = 0;                     ///< SampleOrder::rank_stride
     const std::uint32_t* packets = nullptr;  ///< SampleOrder::packets
     const RankBounds* bounds = nullptr;
     // Hierarchical depth (DepthBlocks), maybe out of date.

@@ -88,6 +88,7 @@ SimdTile WorkingTile::view() {
     tile.ranked = m_order.shape().ranked;
     tile.blocks_wide = m_order.blocks_wide();
     tile.ranks = m_order.ranks();
+    tile.rank_stride = static_cast<int>(m_order.rank_stride());
     tile.packets = m_order.packets().data();
     tile.bounds = &m_bounds;
     tile.farthest_of_packets = m_depth.farthest_of_packets();
