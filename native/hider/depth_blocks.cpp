@@ -85,7 +85,7 @@ void DepthBlocks::rebuild_ranks(const float* keys) {
                 float farthest = INFINITY;
                 for (int x = square_x * square; x < (square_x + 1) * square; ++x)
                     farthest = std::min(farthest, least[x]);
-                const auto at = static_cast<std::size_t>(square_y * squares_wide() + square_x);
+                const auto at = static_cast<std::size_t>(square_y) * squares_wide() + square_x;
                 m_rank[at * m_ranks + r] = farthest;
             }
         }
