@@ -6,7 +6,6 @@
 #include "dice/finish_motion.h"
 #include "dice/lattice.h"
 #include "dice/patch.h"
-#include "dice/seen_area.h"
 
 namespace granita {
 namespace {
@@ -127,10 +126,8 @@ std::unique_ptr<Grid> PatchBatch::dice() const {
     }
     for (const Part& part : parts) micropolygons += static_cast<std::size_t>(part.micropolygons());
     if (micropolygons == 0) return nullptr;
-    const Projection& projection = m_mesh->view().projection;
     auto grid = make_grid(micropolygons);
     Joiner joiner(*grid);
-    double area = 0.0;
     static thread_local Grid lattice;  // kept for its memory
     for (const Part& part : parts) {
         if (!part.diced) {
@@ -139,12 +136,11 @@ std::unique_ptr<Grid> PatchBatch::dice() const {
             dice_lattice(*m_mesh, patch(part.face),
                          {part.start.corner_uv, part.start.sides, part.n_u, part.n_v}, lattice);
         }
-        const Grid& diced = part.diced ? *part.diced : lattice;
-        joiner.add(diced);
-        area += seen_area(diced, diced.shading_p(), projection);
+        joiner.add(part.diced ? *part.diced : lattice);
     }
-    finish_motion(*grid, projection);
-    set_share(*grid, area);
+    // All have the light samples of a whole pixel: by the area of a batch, those of its larger
+    // faces were too few, and what light grazes had specks.
+    finish_motion(*grid, m_mesh->view().projection);
     return grid;
 }
 
