@@ -45,6 +45,17 @@ class Kind:
             return f"mesh '{original.data.name}'"
         return f"object '{original.name}'"
 
+    def owners(self, everything, depsgraph):
+        """Its object and what instances it, evaluated; None where a handler of another add-on deleted one.
+
+        Args:
+            everything: of changes.originals.
+        """
+        addresses = [address for address in (self.address, self.parent_address) if address]
+        if not all(address in everything for address in addresses):
+            return None
+        return [everything[address].evaluated_get(depsgraph) for address in addresses]
+
     def is_hidden_now(self, owners):
         """Whether one of its two evaluated objects is hidden, at another time, that was not when it was seen.
         (Nodes make instances of hidden objects.)"""

@@ -26,11 +26,8 @@ def read_lamps(depsgraph, scan, things, report):
     records, found = {}, []
     for thing in things:
         kind = scan.kinds[scan.kind[thing]]
-        addresses = [address for address in (kind.address, kind.parent_address) if address]
-        if not all(address in everything for address in addresses):
-            continue
-        owners = [everything[address].evaluated_get(depsgraph) for address in addresses]
-        if kind.is_hidden_now(owners):
+        owners = kind.owners(everything, depsgraph)
+        if owners is None or kind.is_hidden_now(owners):
             continue
         if kind.address not in records:
             records[kind.address] = light_record(owners[0], None, report)

@@ -126,11 +126,8 @@ def with_newcomers(placed, scan, depsgraph, report, check_cancel):
 
 def _at_frame(stranger, depsgraph):
     """Its Kind, read at the frame; None where it is hidden then, or no more the object's own geometry."""
-    everything = originals()
-    owners = [everything.get(a) for a in (stranger.address, stranger.parent_address)]
-    if None in owners:
+    owners = stranger.owners(originals(), depsgraph)
+    if owners is None or stranger.is_hidden_now(owners):
         return None
-    thing, parent = (owner.evaluated_get(depsgraph) for owner in owners)
-    if stranger.is_hidden_now((thing, parent)):
-        return None
+    thing, parent = owners
     return kind_again(thing, depsgraph, parent)

@@ -206,17 +206,15 @@ class Steps:
         scan, hidden = self._scene.visit, {}
         for thing in things:
             kind = scan.kinds[scan.kind[thing]]
-            addresses = [address for address in (kind.address, kind.parent_address) if address]
-            if not all(address in everything for address in addresses):
-                self._stays[thing] = True  # a handler of another add-on deleted its owner
+            owners = kind.owners(everything, self._scene.depsgraph)
+            if owners is None:
+                self._stays[thing] = True
                 continue
-            owners = [everything[a].evaluated_get(self._scene.depsgraph) for a in addresses]
             if scan.kind[thing] not in hidden:
                 hidden[scan.kind[thing]] = kind.is_hidden_now(owners)
             self._stays[thing] = hidden[scan.kind[thing]]
             if not self._stays[thing]:
-                life = particle_life(owners[-1], *scan.persistent[thing]) if owners else None
-                self._lives[thing] = life
+                self._lives[thing] = particle_life(owners[-1], *scan.persistent[thing])
 
     def _deforms(self, index, source):
         return source.deforms and index not in self._rigid

@@ -7,6 +7,7 @@ Seconds are in bench/export_cost.py.
 import export_probe
 import pytest
 import scene_parts
+from call_counts import count_calls
 from motion_parts import drive, on_every_step, with_shutter
 
 from granita.export import changes, steps
@@ -24,17 +25,7 @@ def crowd(scene, count):
 @pytest.mark.parametrize("count", [10, 1000])
 def test_static_objects_are_read_at_no_step(scene, monkeypatch, count):
     """Of however many: a step reads the place of the one that turns, and walks over nothing."""
-    read = {"places": 0, "walks": 0}
-
-    def counted(what, function):
-        def call(*arguments):
-            read[what] += 1
-            return function(*arguments)
-
-        return call
-
-    monkeypatch.setattr(changes, "from_matrix", counted("places", changes.from_matrix))
-    monkeypatch.setattr(steps, "visit", counted("walks", steps.visit))
+    read = count_calls(monkeypatch, places=(changes, "from_matrix"), walks=(steps, "visit"))
     crowd(with_shutter(scene), count)
     snapshot, _, _ = export_probe.through_engine(scene, motion_steps=17)
     assert sorted(set(snapshot["instances"]["knots"].tolist())) == [1, 17]

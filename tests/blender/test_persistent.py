@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import render_host
 import scene_parts
+from call_counts import count_calls
 from export_probe import frame_by_frame
 from motion_parts import drive, on_every_step, shape_key, with_shutter
 
@@ -347,17 +348,7 @@ def test_what_nothing_touched_is_not_read_again(anew, monkeypatch):
 
 def test_a_static_crowd_is_walked_once(anew, monkeypatch):
     """Of later frames the one thing that moves is read, however many stand still (bench/export_cost.py)."""
-    count = {"walks": 0, "places": 0}
-
-    def counted(what, function):
-        def call(*arguments):
-            count[what] += 1
-            return function(*arguments)
-
-        return call
-
-    monkeypatch.setattr(placed, "visit", counted("walks", placed.visit))
-    monkeypatch.setattr(persistent, "from_matrix", counted("places", persistent.from_matrix))
+    count = count_calls(monkeypatch, walks=(placed, "visit"), places=(persistent, "from_matrix"))
 
     def change(scene, square):
         drive(square, "location", "frame", 0)
