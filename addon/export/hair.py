@@ -7,7 +7,7 @@ import numpy as np
 
 from .hair_width import hair_radii, widths
 from .snapshot import Attribute, Geometry
-from .strands import Strands, particle_range, read_strands
+from .strands import Strands, flat_floats, particle_range, read_strands
 
 
 def hair_systems(thing, mode):
@@ -80,11 +80,15 @@ def _root_uvs(thing, name, count, mode):
     active = next(i for i, layer in enumerate(mesh.uv_layers) if layer.active_render)
     first, last = particle_range(system, mode)
     parents = len(system.particles)
-    values = np.zeros((count, 2), dtype=np.float32)
-    for row, particle in enumerate(range(first, last)):
-        # A child says where it stands by itself; a parent is told apart by its own data.
-        parent = system.particles[min(particle, parents - 1)]
-        values[row] = system.uv_on_emitter(
-            modifier, particle=parent, particle_no=particle, uv_no=active
+    # A child says where it stands by itself; a parent is told apart by its own data.
+    places = (
+        system.uv_on_emitter(
+            modifier,
+            particle=system.particles[min(particle, parents - 1)],
+            particle_no=particle,
+            uv_no=active,
         )
+        for particle in range(first, last)
+    )
+    values = flat_floats(places, 2 * count).astype(np.float32).reshape(count, 2)
     return [Attribute(mesh.uv_layers[active].name, "FACE", "UV", values)]

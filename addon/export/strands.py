@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points of particle hair, one a call (.7 microseconds): there is no faster way through Blender's interface."""
+"""Points of particle hair, one a call (.4 microseconds): there is no faster way through Blender's interface."""
 
+import math
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
 from .elements import Elements
 from .hair_width import hair_radii, widths
-from .transforms import from_matrix, inverse
+from .transforms import from_matrix, inverse, volume
 
 # Children come out a little different wherever their emitter stands: of 13,608 on a head that turns, one
 # in a hundred by 2^-19 to 2^-11 of the head's size.  Fewer than one in twenty, none farther than this:
@@ -100,20 +102,25 @@ def read_strands(thing, _data, name, mode):
 def _world(system, thing, particles, steps):
     """float64 [particles, steps, 3]."""
     co_hair = system.co_hair
-    world = np.empty((len(particles) * len(steps), 3))
-    row = 0
-    for particle in particles:
-        for step in steps:
-            world[row] = co_hair(object=thing, particle_no=particle, step=step)
-            row += 1
-    return world.reshape(len(particles), len(steps), 3)
+    points = (
+        co_hair(thing, particle_no=particle, step=step) for particle in particles for step in steps
+    )
+    shape = len(particles), len(steps), 3
+    return flat_floats(points, math.prod(shape)).reshape(shape)
+
+
+def flat_floats(vectors, count):
+    """float64 [count] of Blender's vectors, one after the other.
+
+    Python takes them apart: as rows of an array, which NumPy reads, each costs 1.3 microseconds more.
+    """
+    return np.fromiter(chain.from_iterable(vectors), np.float64, count)
 
 
 def _from_world(points, thing):
     """float64 [n, 3] in the object's space, where it has a volume."""
     matrix = from_matrix(thing.matrix_world)
-    x, y, z = matrix[:3, :3].T
-    if np.cross(x, y) @ z == 0.0:
+    if volume(matrix) == 0.0:
         return points
     from_world = inverse(matrix)
     return points @ from_world[:3, :3].T + from_world[:3, 3]

@@ -47,6 +47,12 @@ def inverse(matrix):
     return found
 
 
+def volume(matrix):
+    """Of the image of the unit cube under [4, 4], signed."""
+    x, y, z = matrix[:3, :3].T
+    return x @ _cross(y, z)
+
+
 def _cross(a, b):
     """As np.cross of two vectors, which takes ten times as long (40 microseconds)."""
     (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
