@@ -8,14 +8,10 @@ medians.  Prints a Markdown table and writes bench/results/export_cost.json.
 """
 
 import argparse
-import json
 import statistics
-import tempfile
-from pathlib import Path
 
 import frames
 import measure
-from weak_cases import RESULTS
 
 
 def main():
@@ -23,11 +19,7 @@ def main():
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--python")
     options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        job, file = Path(folder) / "job.json", Path(folder) / "seconds.json"
-        job.write_text(json.dumps({"runs": options.runs, "file": str(file)}))
-        frames.run_in_blender("time_export.py", job, options.python)
-        seconds = json.loads(file.read_text())
+    seconds = frames.ask("time_export.py", {"runs": options.runs}, options.python)
     table = measure.Table()
     table.header()
     few, many = (statistics.median(seconds["knots"][count]) for count in ("3", "17"))
@@ -38,8 +30,7 @@ def main():
     )
     what = f"100,000 instances that stand and one thing that moves: fourth frame over the first ({first:.2f} s)"
     table.row(what, later / first, 0.05, "{:.3f}")
-    RESULTS.mkdir(exist_ok=True)
-    (RESULTS / "export_cost.json").write_text(json.dumps(table.rows, indent=1) + "\n")
+    table.save("export_cost")
 
 
 if __name__ == "__main__":

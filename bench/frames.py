@@ -34,14 +34,25 @@ def run_in_blender(script, argument, python=None):
         raise RuntimeError(done.stdout[-3000:] + done.stderr[-3000:])
 
 
+def run_job(script, job, folder, python=None):
+    """Runs a script that is told its job as JSON, in a folder of its own, and answers in the file job["file"] there."""
+    file, answer = Path(folder) / "job.json", Path(folder) / "answer.json"
+    file.write_text(json.dumps({**job, "folder": str(folder), "file": str(answer)}))
+    run_in_blender(script, file, python)
+    return json.loads(answer.read_text())
+
+
+def ask(script, job, python=None):
+    """The answer alone."""
+    with tempfile.TemporaryDirectory() as folder:
+        return run_job(script, job, folder, python)
+
+
 def render(job, clock="processor"):
     """Runs a job (render_frames.py); returns for each setting (image, median seconds)."""
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "job.json"
-        file.write_text(json.dumps({**job, "folder": folder}))
-        run_in_blender("render_frames.py", file)
+        seconds = run_job("render_frames.py", job, folder)
         column = {"wall": 0, "processor": 1}[clock]
-        seconds = json.loads((Path(folder) / "seconds.json").read_text())
         return [
             (
                 pictures.load(Path(folder) / f"{i}.exr"),

@@ -9,11 +9,9 @@ bench/results/marginal_cost.json.
 """
 
 import argparse
-import json
 
 import measure
 import snapshot_scenes as scenes
-from weak_cases import RESULTS
 
 CASES = {
     "spheres, still": (scenes.spheres, 0.0, 9.4),
@@ -41,8 +39,7 @@ def main():
     for name, (_, _, limit) in CASES.items():
         slope = (taken[name, MANY] - taken[name, FEW]) / samples * 1e9
         table.row(f"{name}, ns a sample", slope, limit, "{:.1f}")
-    RESULTS.mkdir(exist_ok=True)
-    (RESULTS / "marginal_cost.json").write_text(json.dumps(table.rows, indent=1) + "\n")
+    table.save("marginal_cost")
 
 
 if __name__ == "__main__":

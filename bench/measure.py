@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How the benches take time, and the table that they print."""
 
+import json
 import statistics
 import time
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from snapshot_scenes import s as snapshots
+
+RESULTS = Path(__file__).resolve().parent / "results"
 
 
 def render(snapshot):
@@ -48,3 +52,12 @@ class Table:
         bound = ("at least " if least else "") + form.format(limit)
         word = "held" if held else "NOT HELD"
         print(f"| {what} | {form.format(value)} | {bound} | {word} |", flush=True)
+
+    def save(self, name):
+        save(name, self.rows)
+
+
+def save(name, rows):
+    """Writes bench/results/NAME.json."""
+    RESULTS.mkdir(exist_ok=True)
+    (RESULTS / f"{name}.json").write_text(json.dumps(rows, indent=1) + "\n")

@@ -9,15 +9,12 @@ compared.  Prints a Markdown table, writes bench/results/memory_curve.json and d
 """
 
 import argparse
-import json
-import tempfile
 from pathlib import Path
 
 import frames
 import measure
 import numpy as np
 import plot
-from weak_cases import RESULTS
 
 ROOT = Path(__file__).resolve().parent.parent
 WARM_UP = 50  # frames
@@ -31,12 +28,8 @@ def main():
     table, curves = measure.Table(), {}
     table.header()
     for persistent in (False, True):
-        with tempfile.TemporaryDirectory() as folder:
-            job, file = Path(folder) / "job.json", Path(folder) / "bytes.json"
-            how = {"frames": options.frames, "persistent": persistent, "file": str(file)}
-            job.write_text(json.dumps(how))
-            frames.run_in_blender("render_animation.py", job, options.python)
-            taken = json.loads(file.read_text())
+        job = {"frames": options.frames, "persistent": persistent}
+        taken = frames.ask("render_animation.py", job, options.python)
         for kind, values in taken.items():
             if not values:
                 continue
@@ -51,8 +44,7 @@ def main():
                     f"{name}: last {WARM_UP} frames over the second {WARM_UP}", late / early, 1.05
                 )
             curves[name] = list(zip(number.tolist(), (np.array(values) / 1e6).tolist()))
-    RESULTS.mkdir(exist_ok=True)
-    (RESULTS / "memory_curve.json").write_text(json.dumps(table.rows, indent=1) + "\n")
+    table.save("memory_curve")
     panel = plot.Panel("Memory after each frame of an animation", curves, from_origin=True)
     plot.save(ROOT / "docs" / "memory_curve.svg", [panel], "frame", "MB")
 

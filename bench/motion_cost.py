@@ -10,11 +10,9 @@ export included.  Prints a Markdown table and writes bench/results/motion_cost.j
 """
 
 import argparse
-import json
 
 import frames
 import measure
-from weak_cases import RESULTS
 
 LIMIT = 1.25
 
@@ -50,8 +48,7 @@ def main():
         what = f"{file}: blur on over off (Cycles {blurred / still:.2f}, {blurred:.2f} s)"
         blurred, still = taken["GRANITA"]
         table.row(f"{what}, {blurred:.2f} s", blurred / still, LIMIT)
-    RESULTS.mkdir(exist_ok=True)
-    (RESULTS / "motion_cost.json").write_text(json.dumps(table.rows, indent=1) + "\n")
+    table.save("motion_cost")
 
 
 if __name__ == "__main__":

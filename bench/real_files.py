@@ -10,11 +10,11 @@ for each file Granita, Cycles at the same samples, the reference, and four times
 """
 
 import argparse
-import json
 from pathlib import Path
 
 import frames
 import numpy as np
+from measure import save
 
 ROOT = Path(__file__).resolve().parent.parent
 REFERENCES = ROOT / "tests" / "images" / "references"
@@ -81,9 +81,7 @@ def main():
             rows.append(row)
             strips.append(strip)
             print_row(row)
-    results = ROOT / "bench" / "results"
-    results.mkdir(exist_ok=True)
-    (results / "real_files.json").write_text(json.dumps(rows, indent=1) + "\n")
+    save("real_files", rows)
     if options.pictures:
         frames.save_png(ROOT / "docs" / "images" / "real_files.png", np.concatenate(strips))
 

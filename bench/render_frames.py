@@ -3,10 +3,10 @@
 
     blender -b --factory-startup --addons granita --python bench/render_frames.py -- JOB.json
 
-JOB: {"module": "scenes", "moving_files" or "demo", "scene", "variant" (of moving_files), "folder", "runs", "seed" (of
+JOB: {"module": "scenes", "moving_files" or "demo", "scene", "variant" (of moving_files), "folder", "file", "runs", "seed" (of
 Cycles), "size" (width and height, the scene's own without), "settings": [{"engine": "CYCLES" or "GRANITA", "samples",
 "shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), other
-properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FOLDER/seconds.json lists for each setting its runs as [wall, processor] seconds
+properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FILE lists for each setting its runs as [wall, processor] seconds
 of the whole frame, export included.
 """
 
@@ -68,7 +68,7 @@ def main():
             processor = time.process_time()
             wall = engines.render(scene, Path(job["folder"]) / f"{index}.exr")
             seconds[index].append([wall, time.process_time() - processor])
-    (Path(job["folder"]) / "seconds.json").write_text(json.dumps(seconds))
+    Path(job["file"]).write_text(json.dumps(seconds))
 
 
 main()

@@ -18,6 +18,7 @@ from pathlib import Path
 
 import frames
 import plot
+from measure import RESULTS, save
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENES = ("spheres", "lens", "lit", "feathers", "grass")
@@ -153,17 +154,16 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--runs", type=int, default=1)
     parser.add_argument("--scenes", nargs="+", default=SCENES)
-    parser.add_argument("--most", type=int, default=256)
+    parser.add_argument("--most", type=int, choices=(64, 256), default=256)
     parser.add_argument("--clock", choices=("processor", "wall"), default="processor")
     options = parser.parse_args()
-    file = ROOT / "bench" / "results" / "speed_against_error.json"
-    file.parent.mkdir(exist_ok=True)
+    file = RESULTS / "speed_against_error.json"
     rows = json.loads(file.read_text()) if file.exists() else []
     for scene in options.scenes:
         measured = measure(scene, options)
         new = {identity(r) for r in measured}
         rows = sorted([r for r in rows if identity(r) not in new] + measured, key=identity)
-        file.write_text(json.dumps(rows, indent=1) + "\n")
+        save("speed_against_error", rows)
     draw(rows)
 
 

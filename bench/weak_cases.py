@@ -8,15 +8,11 @@ and writes bench/results/weak_cases.json.  The ripple of the eight filters is a 
 """
 
 import argparse
-import json
-from pathlib import Path
 
 import measure
 import numpy as np
 import snapshot_scenes as scenes
 from snapshot_scenes import s
-
-RESULTS = Path(__file__).resolve().parent / "results"
 
 
 def strobing(table, runs):
@@ -197,8 +193,7 @@ def main():
     table.header()
     for name in options.only:
         CASES[name](table, options.runs)
-    RESULTS.mkdir(exist_ok=True)
-    (RESULTS / "weak_cases.json").write_text(json.dumps(table.rows, indent=1) + "\n")
+    table.save("weak_cases")
 
 
 if __name__ == "__main__":
