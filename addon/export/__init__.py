@@ -11,7 +11,7 @@ from .blur_settings import blurs
 from .camera import camera_record
 from .frame_scene import FrameScene
 from .instance import place
-from .lamps import place_lamps, read_lamps
+from .lamps import energies, place_lamps, read_lamps
 from .motion import Motion, sample_motion
 from .neighbours import read_neighbours
 from .newcomers import with_newcomers
@@ -75,7 +75,7 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         sources=placed.sources,
         geometry_of_kind=placed.table.geometry,
         is_light=placed.is_light,
-        energies={placed.address(thing): lamp["energy"] for thing, lamp in lamps},
+        energies=energies(depsgraph) if shutter.segments else {},
     )
     fps = scene.render.fps / scene.render.fps_base
     motion, points, neighbours, seen = Motion(camera_at_frame["world_from_camera"]), {}, {}, placed

@@ -27,13 +27,15 @@ class Changes:
 class Plain:
     """Which objects of a visit stand for themselves, and nothing else stands for them."""
 
-    def __init__(self, scan):
+    def __init__(self, scan, view_layer):
         self.names = object_names()
         self.seen = {kind.name for kind in scan.kinds} & set(self.names)
         makers = {kind.parent_address for kind in scan.kinds if kind.parent_address}
         if makers:
             self.seen |= {thing.name for pointer, thing in originals().items() if pointer in makers}
+        self._linked = self.seen & set(view_layer.objects.keys())
         self._missed = set()
+        self.unlinked = set()  # names of what left the view layer since
         first = np.full(len(scan.kinds), -1)
         first[scan.kind[::-1]] = np.arange(len(scan.kind))[::-1]
         many = np.bincount(scan.kind, minlength=len(scan.kinds)) != 1
@@ -45,13 +47,17 @@ class Plain:
                 self.entangled.add(kind.address)
             self.thing[kind.address] = int(first[index])
 
-    def gone(self):
-        """Names of what is not there any more by that name, each once: handlers of other add-ons delete and
-        rename."""
+    def gone(self, view_layer):
+        """[(name, what was done to it)] of what is not there any more, each once: handlers of other add-ons
+        delete, rename and unlink.  What left the view layer is not evaluated any more."""
         here = object_names()
         missing = set() if here == self.names else self.seen - set(here) - self._missed
         self._missed |= missing
-        return sorted(missing)
+        unlinked = self._linked - set(view_layer.objects.keys()) - self._missed - self.unlinked
+        self.unlinked |= unlinked
+        return [(name, "was deleted or renamed") for name in sorted(missing)] + [
+            (name, "was unlinked") for name in sorted(unlinked)
+        ]
 
     def changes(self, depsgraph):
         """Changes of the last step, or None where only a walk can tell."""

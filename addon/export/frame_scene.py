@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .changes import Plain, originals
+from .changes import Plain
 from .depsgraph import Visit
 from .identity import distinct
 
@@ -22,7 +22,7 @@ class FrameScene:
     sources: list  # of geometry.GeometrySource
     geometry_of_kind: np.ndarray  # int32 [kinds], -1 = none
     is_light: np.ndarray  # bool [kinds]
-    energies: dict  # address of an original lamp -> its light's energy
+    energies: dict  # of lamps.energies
     again: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))  # of come_again
     _bounds: tuple = None
 
@@ -32,22 +32,6 @@ class FrameScene:
         if len(things):
             more = self.visit.with_more(self.visit, things, self.visit.kind[things])
             self.visit = replace(more, identity=distinct(more.identity))
-
-    def energies_now(self, before):
-        """`energies` at the depsgraph's time; `before` serves what a handler has deleted."""
-        from .light import light_record
-
-        def silent(_datablock, _message):
-            """What there is to say was said at the frame."""
-
-        everything = originals()
-        found = dict(before)
-        for address in before:
-            lamp = everything.get(address)
-            if lamp is not None:
-                record = light_record(lamp.evaluated_get(self.depsgraph), None, silent)
-                found[address] = record["energy"]
-        return found
 
     def cages(self):
         """{address of an original Object: subdivision.Cage}."""

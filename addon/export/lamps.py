@@ -35,6 +35,25 @@ def read_lamps(depsgraph, scan, things, report):
     return found
 
 
+def energies(depsgraph):
+    """{address of an original lamp: its energy at the depsgraph's time}, of the whole file: what is not
+    placed at the frame may be instanced at another time of the shutter."""
+    import bpy
+
+    from .light import light_record
+
+    def silent(_datablock, _message):
+        """What there is to say is said of those that are placed."""
+
+    if len(bpy.data.lights) == 0:
+        return {}
+    return {
+        thing.as_pointer(): light_record(thing.evaluated_get(depsgraph), None, silent)["energy"]
+        for thing in bpy.data.objects
+        if thing.type == "LIGHT"
+    }
+
+
 def place_lamps(lamps, scan, motion, report):
     """The records with their places, and with what motion says of their strength and when they exist.
 

@@ -42,10 +42,6 @@ class Placed:
         """bool [kinds]."""
         return np.array([kind.type == "LIGHT" for kind in self.scan.kinds], dtype=bool)
 
-    def address(self, thing):
-        """Of the original Object of a thing of the scan."""
-        return self.scan.kinds[self.scan.kind[thing]].address
-
     def lights(self):
         """int [lights], things of the scan."""
         return np.flatnonzero(self.is_light[self.scan.kind])
@@ -80,7 +76,8 @@ def read_placed(depsgraph, known, report, check_cancel):
     for kind in scan.kinds:
         kind.forget()
     addresses = [material.original.as_pointer() for material in used]
-    return Placed(scan, Plain(scan), table, sources, names, addresses, materials, images, said)
+    plain = Plain(scan, depsgraph.view_layer)
+    return Placed(scan, plain, table, sources, names, addresses, materials, images, said)
 
 
 def shade(used, depsgraph, report):

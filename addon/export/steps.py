@@ -6,6 +6,7 @@ import numpy as np
 from .camera import camera_knot, follows_object, lens_knot
 from .changes import changed_geometry, lights_changed, moved, originals
 from .depsgraph import visit
+from .lamps import energies
 from .lifespan import complete, lifespans, particle_life, runs
 from .report import poll
 from .subdivision import cage_mesh, has_cage
@@ -95,8 +96,8 @@ class Steps:
         return bool(nothing[kinds].any())
 
     def _report_gone(self):
-        for name in self._plain.gone():
-            self._lose(f"object '{name}'", "was deleted or renamed")
+        for name, how in self._plain.gone(self._scene.depsgraph.view_layer):
+            self._lose(f"object '{name}'", how)
 
     def _lose(self, datablock, how):
         if (datablock, how) not in self._lost:
@@ -134,10 +135,11 @@ class Steps:
             self.lenses[tick] = self.lenses[last] if lens is None else lens
 
     def _read_energies(self, tick, knows_updates):
-        energies = self._energies[self.ticks[-2]]
-        if energies and (not knows_updates or lights_changed(self._scene.depsgraph)):
-            energies = self._scene.energies_now(energies)
-        self._energies[tick] = energies
+        now = before = self._energies[self.ticks[-2]]
+        if before and (not knows_updates or lights_changed(self._scene.depsgraph)):
+            # What a handler has deleted stays as it was.
+            now = {**before, **energies(self._scene.depsgraph)}
+        self._energies[tick] = now
 
     def _take(self, changes):
         for thing, matrix in changes.places.items():
@@ -207,7 +209,7 @@ class Steps:
         for thing in things:
             kind = scan.kinds[scan.kind[thing]]
             owners = kind.owners(everything, self._scene.depsgraph)
-            if owners is None:
+            if owners is None or owners[-1].name in self._plain.unlinked:
                 self._stays[thing] = True
                 continue
             if scan.kind[thing] not in hidden:
@@ -310,12 +312,15 @@ class Steps:
         return velocity, ~self._stays[things]
 
     def energies(self):
-        """{address of an original lamp: {tick: float64 [1]}} of those whose strength changes."""
+        """{address of an original lamp: {tick: float64 [1]}} of those whose strength changes, and that are
+        placed at some time."""
+        kinds = self._scene.visit.kinds
+        placed = {kind.address for kind in kinds if kind.type == "LIGHT"}
         paths = {
             address: {
                 tick: np.array([self._energies[tick][address]]) for tick in sorted(self.ticks)
             }
-            for address in self._scene.energies
+            for address in placed & set(self._scene.energies)
         }
         return {
             address: path

@@ -79,6 +79,15 @@ def test_each_has_the_strength_of_its_lamp(moving):
         assert light["energy_knots"] == pytest.approx([75.0, 125.0])
 
 
+def test_the_first_of_a_lamp_has_its_own_strength_too(moving):
+    """It comes at 10.0625.  Nothing of it is placed at the frame, when it is twice as strong as at the end."""
+    count_of(moving, "0 if frame < 10.05 else 1")
+    drive(bpy.data.lights["Lamp"], "energy", "200 - 400 * (frame - 10)")
+    (light,) = exported(moving)
+    assert light["lifespan"] == pytest.approx([0.625, 1.0])
+    assert light["energy_knots"] == pytest.approx([300.0, 100.0])
+
+
 def test_particles_carry_lamps(moving):
     """Born at the frames 8, 9 and 10."""
     emitter = scene_parts.add_square(moving, "Emitter")

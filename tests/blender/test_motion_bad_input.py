@@ -112,6 +112,40 @@ def test_what_a_handler_renames_stays_where_it_was(moving):
     assert "renamed" in warnings(report)["object 'Mover'"]
 
 
+@pytest.mark.parametrize("doomed", ["Mover", "Cage", "Place", "Lamp"])
+@pytest.mark.parametrize("how", ["unlinks", "excludes"])
+def test_what_a_handler_unlinks_stays_where_it_was(moving, how, doomed):
+    """So does what it instances."""
+    extra = bpy.data.collections.new("Extra")
+    moving.collection.children.link(extra)
+    extra.objects.link(moving.objects[doomed])
+    moving.collection.objects.unlink(moving.objects[doomed])
+
+    def unlink(scene, _depsgraph):
+        if scene.frame_subframe == 0.0:
+            return
+        if how == "excludes":
+            scene.view_layers[0].layer_collection.children["Extra"].exclude = True
+        elif doomed in extra.objects:
+            extra.objects.unlink(extra.objects[doomed])
+
+    bpy.app.handlers.frame_change_post.append(unlink)
+    try:
+        jobs = list(export_probe.frame_by_frame(moving, (10, 11), persistent=True))
+    finally:
+        bpy.app.handlers.frame_change_post.remove(unlink)
+    instances, label = jobs[0].snapshot["instances"], f"object '{doomed}'"
+    assert sorted(instances["name"]) == ["Cage", "Inside", "Inside", "Mover"]
+    assert np.all(instances.get("lifespan", (0.0, 1.0)) == np.array([0.0, 1.0]))
+    assert len(jobs[0].snapshot["lights"]) == 1
+    assert {name: "was unlinked" in text for name, text in warnings(jobs[0].report).items()} == {
+        label: True
+    }
+    # The next frame is without it.
+    assert len(jobs[1].report) == 0 and doomed not in jobs[1].snapshot["instances"]["name"]
+    assert len(jobs[1].snapshot["lights"]) == (doomed != "Lamp")
+
+
 def test_what_a_handler_makes_is_not_there(moving):
     """The frame is what it was when it began."""
 
