@@ -2,6 +2,7 @@
 #include "shade/bsdf.h"
 
 #include "shade/bsdf_albedo.h"
+#include "shade/fresnel.h"
 #include "shade/microfacet.h"
 
 namespace granita {
@@ -85,16 +86,6 @@ float squared_sine(const Vec3f& a, const Vec3f& b) {
 }
 
 }  // namespace
-
-float fresnel_dielectric(float cos_i, float ior) {
-    const float c = std::abs(cos_i);
-    const float g2 = ior * ior - 1.0f + c * c;
-    if (g2 <= 0.0f) return 1.0f;  // total internal reflection
-    const float g = std::sqrt(g2);
-    const float a = (g - c) / (g + c);
-    const float b = ((g + c) * c - 1.0f) / ((g - c) * c + 1.0f);
-    return 0.5f * a * a * (1.0f + b * b);
-}
 
 PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points, std::size_t point,
                      const GgxAlbedo& albedo)

@@ -86,7 +86,4 @@ class PointBsdf {
     Vec3f m_wi, m_normal, m_geometric_normal;
 };
 
-/// Exact unpolarised reflectance of a dielectric boundary; ior relative, > 0.
-float fresnel_dielectric(float cos_i, float ior);
-
 }  // namespace granita

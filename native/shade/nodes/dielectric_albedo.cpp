@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "math/vec.h"
-#include "shade/nodes/fresnel.h"
+#include "shade/fresnel.h"
 
 namespace granita {
 
@@ -57,7 +57,7 @@ float integrate(float roughness, float cosine, float ior) {
             if (light.z <= 0.0f) continue;
             const float masking = (1.0f + lambda) / (1.0f + lambda + smith_lambda(light.z, alpha));
             total += masking;
-            reflected += masking * (dielectric_reflectance(h, ior) - f0) / (1.0f - f0);
+            reflected += masking * (fresnel_dielectric(h, ior) - f0) / (1.0f - f0);
         }
     }
     return total > 0.0 ? static_cast<float>(reflected / total) : 0.0f;
@@ -117,7 +117,7 @@ float dielectric_mean_albedo(float ior) {
     float sum = 0.0f, weights = 0.0f;
     for (int i = 0; i < kSteps; ++i) {
         const float cosine = (static_cast<float>(i) + 0.5f) / kSteps;
-        sum += cosine * (dielectric_reflectance(cosine, ior) - f0) / (1.0f - f0);
+        sum += cosine * (fresnel_dielectric(cosine, ior) - f0) / (1.0f - f0);
         weights += cosine;
     }
     return sum / weights;

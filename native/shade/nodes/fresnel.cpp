@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fresnel and Layer Weight: how much a surface turns its edge to the viewer.
-#include "shade/nodes/fresnel.h"
+#include "shade/fresnel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,17 +8,6 @@
 #include "shade/nodes/nodes.h"
 
 namespace granita {
-
-float dielectric_reflectance(float cosine, float ior) {
-    const float c = std::abs(cosine);
-    const float g2 = ior * ior - 1.0f + c * c;
-    if (g2 <= 0.0f) return 1.0f;  // total internal reflection
-    const float g = std::sqrt(g2);
-    const float a = (g - c) / (g + c);
-    const float b = ((g + c) * c - 1.0f) / ((g - c) * c + 1.0f);
-    return 0.5f * a * a * (1.0f + b * b);
-}
-
 namespace {
 
 FloatSource backfacing(NodeBuilder& b) {
@@ -34,8 +23,8 @@ void build_fresnel(NodeBuilder& b) {
     b.output("Fac", b.map<float>(
                         [](float ior, const Vec3f& n, const Vec3f& view, float back) {
                             const float eta = std::max(ior, 1e-5f);
-                            return dielectric_reflectance(glm::dot(view, n),
-                                                          back != 0.0f ? 1.0f / eta : eta);
+                            return fresnel_dielectric(glm::dot(view, n),
+                                                      back != 0.0f ? 1.0f / eta : eta);
                         },
                         b.number("IOR", 1.45f), b.normal_input(), b.view(), backfacing(b)));
 }
@@ -46,8 +35,8 @@ void build_layer_weight(NodeBuilder& b) {
     b.output("Fresnel", b.map<float>(
                             [](float x, const Vec3f& n, const Vec3f& v, float back) {
                                 const float eta = std::max(1.0f - x, 1e-5f);
-                                return dielectric_reflectance(glm::dot(v, n),
-                                                              back != 0.0f ? eta : 1.0f / eta);
+                                return fresnel_dielectric(glm::dot(v, n),
+                                                          back != 0.0f ? eta : 1.0f / eta);
                             },
                             blend, normal, view, backfacing(b)));
     b.output("Facing", b.map<float>(

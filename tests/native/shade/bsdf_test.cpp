@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "shade/bsdf_albedo.h"
+#include "shade/fresnel.h"
 #include "shade/light_scene.h"
 #include "shade/sampling.h"
 
