@@ -57,6 +57,8 @@ struct ShadingPlaces {
     int step_u = 1, step_v = 1;
     /// [vertices] of a grid of separate micropolygons: the point whose colour each has.
     std::vector<std::uint32_t> point_of;
+    /// [points] the face that each lies on, where that is not GridKey::face.  Empty: it is.
+    std::vector<std::uint32_t> faces;
 };
 
 struct Grid {

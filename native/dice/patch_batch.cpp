@@ -17,7 +17,7 @@ class Joiner {
         grid.places.point_of.resize(static_cast<std::size_t>(grid.vertex_count()));
     }
 
-    void add(const Grid& part) {
+    void add(const Grid& part, std::uint32_t face) {
         for (int m = 0; m < part.micropolygon_count(); ++m) {
             const Grid::Corners c = part.corners(m);
             const int corner[4] = {c.v0, c.v1, c.v3, c.v2};  // as planes are ordered
@@ -49,6 +49,7 @@ class Joiner {
             append(from.du, to.du);
             append(from.dv, to.dv);
         }
+        m_grid.places.faces.resize(m_grid.p.size(), face);
         m_micropolygons += part.micropolygon_count();
         m_points += part.vertex_count();
     }
@@ -108,7 +109,8 @@ void PatchBatch::dice_face(std::size_t face, std::vector<Part>& parts) const {
         if (!primitive->diceable()) {
             for (auto& child : primitive->split()) left.push_back(std::move(child));
         } else if (auto diced = primitive->dice()) {
-            parts.emplace_back().diced = std::move(diced);
+            parts.emplace_back().face = face;
+            parts.back().diced = std::move(diced);
         }
     }
 }
@@ -136,7 +138,7 @@ std::unique_ptr<Grid> PatchBatch::dice() const {
             dice_lattice(*m_mesh, patch(part.face),
                          {part.start.corner_uv, part.start.sides, part.n_u, part.n_v}, lattice);
         }
-        joiner.add(part.diced ? *part.diced : lattice);
+        joiner.add(part.diced ? *part.diced : lattice, patch(part.face).face);
     }
     // All have the light samples of a whole pixel: by the area of a batch, those of its larger
     // faces were too few, and what light grazes had specks.

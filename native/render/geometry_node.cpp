@@ -10,6 +10,7 @@ void drop_shading_state(Grid& grid) {
                                        &grid.dp_dv, &grid.ray_offset})
         std::vector<Vec3f>().swap(*values);
     std::vector<GridAttribute>().swap(grid.attributes);
+    std::vector<std::uint32_t>().swap(grid.places.faces);
 }
 
 }  // namespace

@@ -307,7 +307,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     const std::uint64_t seed = grid_seed(key, m_impl->scene.options.seed);
     LitGrid grid{radiance, parts, {}, {}};
-    const RayLift lift = m_impl->rays ? m_impl->rays->lift(key) : RayLift{};
+    RayLift lift = m_impl->rays ? m_impl->rays->lift(key) : RayLift{};
     const Lifespan& life = paths.lifespan();
     const Vec2f exposed(m_impl->shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),
                         m_impl->shutter.uniform(std::clamp(life.close, 0.0f, 1.0f)));
@@ -326,6 +326,8 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         if (dark) continue;
         const Vec3f &p = points.p[i], &normal = points.geometric_normal[i];
         const Vec3f offset = points.ray_offset.empty() ? Vec3f(0.0f) : points.ray_offset[i];
+        if (m_impl->rays && !points.faces.empty())
+            lift = m_impl->rays->lift({key.instance, points.faces[i]});
         const Vec3f start = lift(p + offset, normal);
         const LitPlace at_frame{m_impl->scene.options.frame_time, p, normal, start};
         // Neighbours share a sequence: aligned squares of points, and so the pixels that average

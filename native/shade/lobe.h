@@ -58,6 +58,7 @@ struct ShadingPoints {
         view;  ///< [n] unit, from the point to the eye (orthographic: the constant direction)
     std::vector<Vec3f> dp_du, dp_dv;       ///< [n] change over one grid step
     std::vector<Vec3f> ray_offset;         ///< [n] as Grid::ray_offset; may be empty
+    std::vector<std::uint32_t> faces;      ///< [n] as ShadingPlaces::faces; may be empty
     float share = 1.0f;                    ///< as Grid::point_share
     std::vector<std::uint8_t> backfacing;  ///< [n]
 };

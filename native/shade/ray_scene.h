@@ -53,7 +53,7 @@ class RayScene {
     bool varies(const Vec3f& start, const Vec3f& direction, float distance) const;
     std::size_t bytes() const;
 
-    /// Of the points of a grid.
+    /// Of the points of a grid, or of those that lie on one face of several (ShadingPlaces::faces).
     RayLift lift(const GridKey& key) const;
 
     /// Share of light that passes along the segment at a shutter time in [0, 1], per channel.

@@ -26,6 +26,7 @@ ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
     ShadingPoints points;
     points.count = n;
     points.share = grid.point_share;
+    points.faces = grid.places.faces;
     if (!grid.apart) points.columns = static_cast<std::size_t>(grid.n_u) + 1;
     points.p.resize(n);
     points.normal.resize(n);
