@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "dice/knots.h"
+#include "dice/opened_mesh.h"
 #include "shade/ray_elements.h"
 #include "shade/ray_mesh.h"
 #include "shade/shading_points.h"
@@ -52,6 +53,29 @@ bool meets_box(const Bounds3f& box, const Vec3f& start, const Vec3f& direction, 
         farthest = std::min(farthest, std::max(a, b));
     }
     return nearest <= farthest;
+}
+
+/// Embree inverts transforms in single precision, and may abort at rays that come out infinite.
+/// Below these it meets nothing.
+constexpr double kLeastRelativeVolume = 1e-9, kLeastScale = 1e-12;
+
+/// What passes through a transform without volume, or stays in it for a while, gets this much of
+/// its size in all directions: below a ray's lift, and enough to invert it.
+constexpr double kThickness = 0x1p-22;
+/// Of no symmetry, so that no mirrored thing loses its volume at a round time.
+const Mat3d kThickening(1.0, 0.37, -0.21, -0.43, 0.83, 0.29, 0.19, -0.31, 0.71);
+
+double longest_edge(const Mat4d& m) {
+    const auto length = [&](int c) { return glm::length(Vec3d(m[c])); };
+    return std::max({length(0), length(1), length(2)});
+}
+
+/// Volume of a transform's unit cube, signed, over that of a cube of its longest edge; 0 where it
+/// is too small to tell.
+double relative_volume(const Mat4d& m) {
+    const double longest = longest_edge(m);
+    if (longest < kLeastScale) return 0.0;
+    return glm::determinant(Mat3d(m)) / (longest * longest * longest);
 }
 
 std::int32_t material_of(const Instance& instance, std::int32_t slot) {
@@ -166,16 +190,27 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     RayInstance added;
     added.index = index;
     added.lets_light_through = lets_light_through(instance);
-    bool has_volume = false;
+    double least = 1.0, most = -1.0;  // of volumes
+    const auto note = [&](const Mat4d& m) {
+        const double volume = relative_volume(m);
+        least = std::min(least, volume);
+        most = std::max(most, volume);
+    };
+    for (std::size_t k = 0; k < knots.size(); ++k) {
+        note(knots[k]);
+        if (k > 0) note(0.5 * (knots[k - 1] + knots[k]));  // of half a turn nothing is left there
+        added.scale = std::max(added.scale, static_cast<float>(longest_edge(knots[k])));
+    }
+    // A transform without volume casts no shadow that rays could find.
+    if (most < kLeastRelativeVolume && least > -kLeastRelativeVolume) return;
+    const bool passes_through = least < kLeastRelativeVolume && most > -kLeastRelativeVolume;
     std::vector<std::array<float, 12>> columns;
     for (Mat4d& m : knots) {
         m[3] -= glm::dvec4(origin, 0.0);
-        float scale = 0.0f;
-        for (int c = 0; c < 3; ++c)
-            scale = std::max(scale, static_cast<float>(glm::length(Vec3d(m[c]))));
-        added.scale = std::max(added.scale, scale);
+        if (passes_through)
+            for (int c = 0; c < 3; ++c)
+                m[c] += glm::dvec4(kThickness * added.scale * kThickening[c], 0.0);
         added.distance = std::max(added.distance, static_cast<float>(glm::length(Vec3d(m[3]))));
-        has_volume = has_volume || glm::determinant(Mat3d(m)) != 0.0;
         columns.emplace_back();
         for (std::size_t c = 0, k = 0; c < 4; ++c)
             for (std::size_t r = 0; r < 3; ++r, ++k) {
@@ -183,8 +218,6 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
                 if (!std::isfinite(columns.back()[k])) return;
             }
     }
-    // A transform without volume casts no shadow that rays could find.
-    if (!has_volume) return;
     RTCGeometry node = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(node, geometries[geometry].get());
     rtcSetGeometryTimeStepCount(node, static_cast<unsigned>(columns.size()));
@@ -233,9 +266,12 @@ Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& r
         shadow.normal = -shadow.direction;
         return opacity.transparency(shadow);
     }
-    const Mat3d world_from_object(matrix_at(source.world_from_object, ray.time));
-    shadow.normal = Vec3f(glm::normalize(glm::transpose(glm::inverse(world_from_object)) *
-                                         Vec3d(hit.Ng_x, hit.Ng_y, hit.Ng_z)));
+    // By cofactors: there may be no inverse.
+    const Mat3d m(matrix_at(source.world_from_object, ray.time));
+    const Mat3d cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+    const double side = glm::dot(m[0], cofactors[0]) < 0.0 ? -1.0 : 1.0;
+    shadow.normal = Vec3f(
+        unit_or(cofactors * Vec3d(hit.Ng_x, hit.Ng_y, hit.Ng_z) * side, -Vec3d(shadow.direction)));
     return opacity.transparency(shadow);
 }
 
