@@ -24,9 +24,9 @@ HWY_INLINE std::uint32_t bits_of(M mask) {
     return bytes[0] | (bytes[1] << 8);
 }
 /// Calls visit(i) for every bit i that is set.
-template <class Visit>
-HWY_INLINE void for_each_bit(std::uint32_t bits, Visit visit) {
-    for (; bits != 0; bits &= bits - 1) visit(static_cast<int>(__builtin_ctz(bits)));
+template <class Bits, class Visit>
+HWY_INLINE void for_each_bit(Bits bits, Visit visit) {
+    for (; bits != 0; bits &= bits - 1) visit(std::countr_zero(bits));
 }
 /// Calls visit(lane) for every lane of the mask.
 template <class Visit>

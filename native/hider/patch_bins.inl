@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples of a tile by the micropolygons of a patch: included once a SIMD target inside its
+// Samples of a tile by the micropolygons of a patch or flock: included once a SIMD target inside its
 // namespace, after rank_windows.inl and patch_frame.inl.
 
 /// Micropolygons of a row side by side share a list, so that one vector tests a few samples of each
@@ -20,32 +20,31 @@ class PatchBins {
         for (Row& row : m_rows) std::fill_n(row.count, kRow, 0);
     }
 
-    /// The samples of the mask, each to micropolygon (i, j); full() must not hold.
+    /// The samples of the mask, each with what tells its micropolygons; full() must not hold.
     template <bool kMoving, Lens kLens>
-    HWY_INLINE void add(M mask, const Samples& at, V slots, V i, V j) {
+    HWY_INLINE void add(M mask, const Samples& at, V slots, hn::Vec<IntTag> where) {
         const Squeeze squeeze(mask);
         m_queue.add<kMoving, kLens>(squeeze, at, slots, m_queued);
-        const auto bin = hn::ConvertTo(kIntTag, i + j * set(static_cast<float>(Patch::kSide)));
-        hn::StoreU(squeeze(hn::BitCast(kTag, bin)), kTag, m_bin + m_queued);
+        hn::StoreU(squeeze(hn::BitCast(kTag, where)), kTag, m_where + m_queued);
         m_queued += squeeze.count();
     }
     bool full() const { return m_queued > kQueued; }
 
-    /// Puts what was added into its lists; calls test(number, row) for rows in which there is no
-    /// more place, and empties them.
-    template <bool kMoving, Lens kLens, class Test>
-    HWY_INLINE void distribute(Test test) {
-        for (std::size_t k = 0; k < m_queued; ++k) {
-            const int bin = std::bit_cast<int>(m_bin[k]);
-            Row& row = m_rows[bin / kRow];
-            int& count = row.count[bin % kRow];
-            const int to = kRow * count + bin % kRow;
-            for (int c = 0; c < Samples::kCoordinates; ++c)
-                if (Samples::has<kMoving, kLens>(c))
-                    row.list.samples[c][to] = m_queue.samples[c][k];
-            row.list.slot[to] = m_queue.slot[k];
-            if (++count == kBin) empty(bin / kRow, test);
-        }
+    /// Puts what was added into the lists of all micropolygons that for_each(where, visit) visits;
+    /// calls test(number, row) for rows in which there is no more place, and empties them.
+    template <bool kMoving, Lens kLens, class ForEach, class Test>
+    HWY_INLINE void distribute(ForEach for_each, Test test) {
+        for (std::size_t k = 0; k < m_queued; ++k)
+            for_each(std::bit_cast<int>(m_where[k]), [&](int bin) HWY_ATTR {
+                Row& row = m_rows[bin / kRow];
+                int& count = row.count[bin % kRow];
+                const int to = kRow * count + bin % kRow;
+                for (int c = 0; c < Samples::kCoordinates; ++c)
+                    if (Samples::has<kMoving, kLens>(c))
+                        row.list.samples[c][to] = m_queue.samples[c][k];
+                row.list.slot[to] = m_queue.slot[k];
+                if (++count == kBin) empty(bin / kRow, test);
+            });
         m_queued = 0;
     }
     /// The same for all that have any.
@@ -69,7 +68,7 @@ class PatchBins {
     static constexpr std::size_t kSpare = 5 * kPacket;
 
     SampleList<kQueued + kSpare> m_queue;
-    float m_bin[kQueued + kSpare];  ///< bits of an int
+    float m_where[kQueued + kSpare];  ///< bits of an int
     std::size_t m_queued = 0;
     Row m_rows[kRows];
 };

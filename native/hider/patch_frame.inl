@@ -17,6 +17,13 @@ struct PatchFrame {
     } u, v;
 };
 
+/// How far from a common path, lane 0, something may be on one axis beyond what it is at the ends.
+HWY_INLINE V path_slack(V margin, V bend, V lens_rest, const TilePaths::Axis& path,
+                        float lens_extent) {
+    return margin + bend + lens_rest * set(lens_extent) +
+           set((std::fabs(path.place[0]) + std::fabs(path.speed[0])) * 0x1p-20f);
+}
+
 /// What is known of a patch over a tile.
 struct PatchPath {
     BlockRanges times;  ///< lane 0
@@ -169,13 +176,10 @@ class PatchFinder {
         }
         const auto lens = RankPathFinder::shear_of<kLens>(
             extents.lens, set(m_grid.inverse_farthest), set(m_grid.inverse_focus));
-        const float rest = hn::GetLane(lens.rest), margin = hn::GetLane(extents.margin);
-        const auto slack = [&](V bend, const TilePaths::Axis& path, float lens_extent) HWY_ATTR {
-            return margin + hn::GetLane(bend) + rest * lens_extent +
-                   (std::fabs(path.place[0]) + std::fabs(path.speed[0])) * 0x1p-20f;
-        };
-        const float slack_x = slack(extents.bend_x, path_x, m_grid.lens_x);
-        const float slack_y = slack(extents.bend_y, path_y, m_grid.lens_y);
+        const float slack_x = hn::GetLane(
+            path_slack(extents.margin, extents.bend_x, lens.rest, path_x, m_grid.lens_x));
+        const float slack_y = hn::GetLane(
+            path_slack(extents.margin, extents.bend_y, lens.rest, path_y, m_grid.lens_y));
         const auto bound = [&](V lo, V hi, PatchFrame::Axis& axis) HWY_ATTR {
             const float least = hn::GetLane(hn::MinOfLanes(kTag, lo));
             const float most = hn::GetLane(hn::MaxOfLanes(kTag, hi));
@@ -184,7 +188,8 @@ class PatchFinder {
                          std::fabs(axis.y) * slack_y + 0x1p-16f;
             return axis.reach < kMostReach;  // false where it is not a number
         };
-        return bound(u_lo, u_hi, u) & bound(v_lo, v_hi, v);
+        const bool along_u = bound(u_lo, u_hi, u), along_v = bound(v_lo, v_hi, v);
+        return along_u && along_v;
     }
 
     const SimdGrid& m_grid;

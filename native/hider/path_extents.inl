@@ -15,6 +15,13 @@ struct Extent {
         lo[end] = hn::Min(lo[end], value);
         hi[end] = hn::Max(hi[end], value);
     }
+    /// Also what another has in the lanes of the mask.
+    HWY_INLINE void merge(const Extent& other, M mask) {
+        for (int end = 0; end < 2; ++end) {
+            lo[end] = hn::Min(lo[end], hn::IfThenElse(mask, other.lo[end], lo[end]));
+            hi[end] = hn::Max(hi[end], hn::IfThenElse(mask, other.hi[end], hi[end]));
+        }
+    }
     /// All lanes are of one thing.
     HWY_INLINE void reduce() {
         for (V& value : lo) value = hn::MinOfLanes(kTag, value);
@@ -86,6 +93,20 @@ struct PathExtents {
             was_y = at_y;
             was_w = at.w;
         }
+    }
+
+    /// Also what others have in the lanes of the mask.
+    HWY_INLINE void merge(const PathExtents& other, M mask) {
+        x.merge(other.x, mask);
+        y.merge(other.y, mask);
+        lens.shear.merge(other.lens.shear, mask);
+        lens.depth.merge(other.lens.depth, mask);
+        lens.reciprocal.merge(other.lens.reciprocal, mask);
+        z_lo = hn::Min(z_lo, hn::IfThenElse(mask, other.z_lo, z_lo));
+        margin = hn::Max(margin, hn::IfThenElse(mask, other.margin, margin));
+        bend_x = hn::Max(bend_x, hn::IfThenElse(mask, other.bend_x, bend_x));
+        bend_y = hn::Max(bend_y, hn::IfThenElse(mask, other.bend_y, bend_y));
+        sane = hn::And(sane, hn::Or(other.sane, hn::Not(mask)));
     }
 
     /// All lanes are of one thing.

@@ -16,8 +16,7 @@ struct Shape {
     }
 };
 
-/// Micropolygons side by side, of a grid whose micropolygons share vertices: lane l of a vector is
-/// of number l % kWide.
+/// Micropolygons side by side: lane l of a vector is of number l % kWide.
 class ShapeRow {
   public:
     static constexpr int kWide = 4;
@@ -26,7 +25,8 @@ class ShapeRow {
     template <bool kMoving>
     HWY_INLINE void load(const SimdGrid& grid, int segment, int vertex) {
         constexpr hn::CappedTag<float, kWide> row;
-        const int corner[4] = {vertex, vertex + 1, vertex + 1 + grid.up, vertex + grid.up};
+        const int corner[4] = {vertex, vertex + grid.right, vertex + grid.right + grid.up,
+                               vertex + grid.up};
         const float* const from[4] = {grid.x, grid.y, grid.w, grid.z};
         for (int k = 0; k < 4; ++k)
             for (int c = 0; c < 4; ++c) {

@@ -38,6 +38,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 #include "hider/rank_windows.inl"
 #include "hider/sample_test.inl"
 // Those that need them.
+#include "hider/flock.inl"
 #include "hider/hit_recorder.inl"
 #include "hider/patch_bins.inl"
 
@@ -53,7 +54,9 @@ class Kernel {
           m_test(grid, m_target),
           m_recorder(grid, tile, m_target, lists, counts),
           m_patches(grid, m_paths),
-          m_has_patches(grid.finite && grid.right == 1 && grid.n_u * grid.n_v >= kLeastPatch) {}
+          m_flocks(grid, tile, m_where, m_paths),
+          m_together(grid.finite && grid.n_u * grid.n_v >= kLeastPatch),
+          m_in_flocks(grid.right != 1 || grid.n_v <= kNarrow) {}
 
     template <Lens kLens>
     void run() {
@@ -64,7 +67,13 @@ class Kernel {
     template <bool kMoving, Lens kLens>
     void run() {
         int& segment = m_target.segment;
-        for (segment = 0; segment < std::max(1, m_grid.segments); ++segment)
+        for (segment = 0; segment < std::max(1, m_grid.segments); ++segment) {
+            if constexpr (kMoving || kLens != Lens::None) {
+                if (m_together && m_in_flocks) {
+                    visit_flocks<kMoving, kLens>();
+                    continue;
+                }
+            }
             for (int j0 = 0; j0 < m_grid.n_v; j0 += Patch::kSide)
                 for (int i = 0; i < m_grid.n_u; i += kStep) {
                     std::uint32_t loose = ~0u;
@@ -75,6 +84,24 @@ class Kernel {
                         for (int k = 0; k < std::min(kStep, m_grid.n_u - i); k += lane_count())
                             visit_row<kMoving, kLens>(i + k, j, loose >> k);
                 }
+        }
+    }
+
+    /// The whole grid; what parts is looked at one by one.
+    template <bool kMoving, Lens kLens>
+    void visit_flocks() {
+        const int wide = FlockSlices::kMost / m_grid.n_v;
+        for (int i = 0; i < m_grid.n_u; i += wide) {
+            const Patch flock{i, 0, std::min(wide, m_grid.n_u - i), m_grid.n_v};
+            using Found = PatchFinder::Found;
+            const Found found =
+                m_flocks.find<kMoving, kLens>(flock, m_target.segment, m_patch, m_slices);
+            if (found == Found::Framed) visit_flock<kMoving, kLens>(flock);
+            if (found != Found::Loose) continue;
+            for (int j = 0; j < flock.n_v; ++j)
+                for (int k = 0; k < flock.n_u; k += lane_count())
+                    visit_row<kMoving, kLens>(i + k, j, ~0u >> std::max(0, 32 - flock.n_u + k));
+        }
     }
 
     /// A vector of micropolygons from (i, j) on, of which bits of `which` tell whether to look.
@@ -108,7 +135,7 @@ class Kernel {
     /// The patches of a vector of micropolygons from (i, j) on; which micropolygons are of none.
     template <bool kMoving, Lens kLens>
     HWY_INLINE std::uint32_t visit_patches(int i, int j) {
-        if (!m_has_patches) return ~0u;
+        if (!m_together) return ~0u;
         std::uint32_t loose = 0;
         for (int k = 0; k < kStep && i + k < m_grid.n_u; k += Patch::kSide) {
             const Patch patch{i + k, j, std::min(Patch::kSide, m_grid.n_u - i - k),
@@ -121,58 +148,96 @@ class Kernel {
         return loose;
     }
 
-    /// Ranks are bounded a vector at a time for the whole patch; the samples in each rank's windows
-    /// of blocks are sorted by the micropolygons that they may see.
-    template <bool kMoving, Lens kLens>
-    void visit_patch(const Patch& patch) {
+    /// Calls visit(paths, k, samples, their slots, how far they are on x and y from the path) for
+    /// the samples of the windows of all ranks that `times`, of `lane`, and find(first rank, paths)
+    /// leave; the path is lane k of `paths`.  Ranks are bounded a vector at a time.
+    template <bool kMoving, Lens kLens, class Find, class Visit>
+    HWY_INLINE void visit_windows(const BlockRanges& times, int lane, Find find, Visit visit) {
         int first = 0, end = m_tile.ranks;
-        if constexpr (kMoving) m_where.find_ranks(m_patch.times, 0, first, end);
-        const bool cull = m_patch.nearest < m_tile.nearest_of_ranks;
-        const auto test = [&](int number, const PatchBins::Row& row) HWY_ATTR {
-            constexpr int kAcross = Patch::kSide / PatchBins::kRow;
-            test_row<kMoving, kLens>(patch.i + number % kAcross * PatchBins::kRow,
-                                     patch.j + number / kAcross, row);
-        };
-        const PatchFrame& frame = m_patch.frame;
-        const V n_u = set(static_cast<float>(patch.n_u)), n_v = set(static_cast<float>(patch.n_v));
+        if constexpr (kMoving) m_where.find_ranks(times, lane, first, end);
         RankPaths paths;
         for (; first < end; first += lane_count()) {
-            M touching = m_paths.follow<kMoving, kLens, RankPathFinder::kAllSquares>(
-                m_patch.paths, 0, m_target.segment, first, cull, paths);
-            touching = hn::And(touching, hn::FirstN(kTag, static_cast<std::size_t>(end - first)));
+            const M touching = hn::And(find(first, paths),
+                                       hn::FirstN(kTag, static_cast<std::size_t>(end - first)));
             for_each_lane(touching, [&](int k) HWY_ATTR {
                 m_windows.visit<kMoving, kLens>(
                     paths, k, first + k,
                     [&](const Samples& at, V slots, V x, V y) HWY_ATTR
-                    __attribute__((always_inline)) {
-                        const V zero = set(0.0f);
-                        const V u = set(frame.u.x) * x + set(frame.u.y) * y + set(frame.u.origin);
-                        const V v = set(frame.v.x) * x + set(frame.v.y) * y + set(frame.v.origin);
-                        const V i0 = hn::Floor(u - set(frame.u.reach));
-                        const V i1 = hn::Floor(u + set(frame.u.reach));
-                        const V j0 = hn::Floor(v - set(frame.v.reach));
-                        const V j1 = hn::Floor(v + set(frame.v.reach));
-                        const M in_i0 = hn::And(hn::Ge(i0, zero), hn::Lt(i0, n_u));
-                        const M in_j0 = hn::And(hn::Ge(j0, zero), hn::Lt(j0, n_v));
-                        const M in_i1 =
-                            hn::And(hn::Gt(i1, i0), hn::And(hn::Ge(i1, zero), hn::Lt(i1, n_u)));
-                        const M in_j1 =
-                            hn::And(hn::Gt(j1, j0), hn::And(hn::Ge(j1, zero), hn::Lt(j1, n_v)));
-                        const auto add = [&](M mask, V i, V j) HWY_ATTR
-                            __attribute__((always_inline)) {
-                            if (!hn::AllFalse(kTag, mask))
-                                m_bins.add<kMoving, kLens>(mask, at, slots, i, j);
-                        };
-                        add(hn::And(in_i0, in_j0), i0, j0);
-                        add(hn::And(in_i1, in_j0), i1, j0);
-                        add(hn::And(in_i0, in_j1), i0, j1);
-                        add(hn::And(in_i1, in_j1), i1, j1);
-                        if (HWY_UNLIKELY(m_bins.full())) m_bins.distribute<kMoving, kLens>(test);
-                    });
+                    __attribute__((always_inline)) { visit(paths, k, at, slots, x, y); });
             });
         }
-        m_bins.distribute<kMoving, kLens>(test);
+    }
+
+    /// The samples of a patch's windows, sorted by the micropolygons that they may see: find_bins()
+    /// adds those of a vector, for_each() tells the bins of each.
+    template <bool kMoving, Lens kLens, class FindBins, class ForEach>
+    HWY_INLINE void visit_together(const Patch& patch, int pitch, const PatchPath& path,
+                                   FindBins find_bins, ForEach for_each) {
+        const bool cull = path.nearest < m_tile.nearest_of_ranks;
+        const auto test = [&](int number, const PatchBins::Row& row) HWY_ATTR {
+            const int bin = number * PatchBins::kRow;
+            test_row<kMoving, kLens>(patch.i + bin % pitch, patch.j + bin / pitch, row);
+        };
+        visit_windows<kMoving, kLens>(
+            path.times, 0,
+            [&](int first, RankPaths& paths) HWY_ATTR {
+                return m_paths.follow<kMoving, kLens, RankPathFinder::kAllSquares>(
+                    path.paths, 0, m_target.segment, first, cull, paths);
+            },
+            [&](const RankPaths&, int, const Samples& at, V slots, V x, V y) HWY_ATTR
+            __attribute__((always_inline)) {
+                find_bins(at, slots, x, y);
+                if (HWY_UNLIKELY(m_bins.full())) m_bins.distribute<kMoving, kLens>(for_each, test);
+            });
+        m_bins.distribute<kMoving, kLens>(for_each, test);
         m_bins.empty_all(test);
+    }
+
+    template <bool kMoving, Lens kLens>
+    void visit_patch(const Patch& patch) {
+        const PatchFrame& frame = m_patch.frame;
+        const V n_u = set(static_cast<float>(patch.n_u)), n_v = set(static_cast<float>(patch.n_v));
+        visit_together<kMoving, kLens>(
+            patch, Patch::kSide, m_patch,
+            [&](const Samples& at, V slots, V x, V y) HWY_ATTR __attribute__((always_inline)) {
+                const V zero = set(0.0f);
+                const V u = set(frame.u.x) * x + set(frame.u.y) * y + set(frame.u.origin);
+                const V v = set(frame.v.x) * x + set(frame.v.y) * y + set(frame.v.origin);
+                const V i0 = hn::Floor(u - set(frame.u.reach));
+                const V i1 = hn::Floor(u + set(frame.u.reach));
+                const V j0 = hn::Floor(v - set(frame.v.reach));
+                const V j1 = hn::Floor(v + set(frame.v.reach));
+                const M in_i0 = hn::And(hn::Ge(i0, zero), hn::Lt(i0, n_u));
+                const M in_j0 = hn::And(hn::Ge(j0, zero), hn::Lt(j0, n_v));
+                const M in_i1 = hn::And(hn::Gt(i1, i0), hn::And(hn::Ge(i1, zero), hn::Lt(i1, n_u)));
+                const M in_j1 = hn::And(hn::Gt(j1, j0), hn::And(hn::Ge(j1, zero), hn::Lt(j1, n_v)));
+                const auto add = [&](M mask, V i, V j) HWY_ATTR __attribute__((always_inline)) {
+                    if (hn::AllFalse(kTag, mask)) return;
+                    const V bin = i + j * set(static_cast<float>(Patch::kSide));
+                    m_bins.add<kMoving, kLens>(mask, at, slots, hn::ConvertTo(kIntTag, bin));
+                };
+                add(hn::And(in_i0, in_j0), i0, j0);
+                add(hn::And(in_i1, in_j0), i1, j0);
+                add(hn::And(in_i0, in_j1), i0, j1);
+                add(hn::And(in_i1, in_j1), i1, j1);
+            },
+            [](int bin, auto visit) HWY_ATTR { visit(bin); });
+    }
+
+    static_assert(PatchBins::kRows * PatchBins::kRow == FlockSlices::kMost);
+    template <bool kMoving, Lens kLens>
+    void visit_flock(const Patch& flock) {
+        visit_together<kMoving, kLens>(
+            flock, FlockFinder::pitch(flock), m_patch,
+            [&](const Samples& at, V slots, V x, V y) HWY_ATTR __attribute__((always_inline)) {
+                const FlockSlices::Cells cells = m_slices.cells_of(x, y);
+                if (!hn::AllFalse(kTag, cells.inside))
+                    m_bins.add<kMoving, kLens>(cells.inside, at, slots, cells.packed);
+            },
+            [&](int cells, auto visit) HWY_ATTR {
+                for (std::uint64_t bins = m_slices.bins(cells); bins != 0; bins &= bins - 1)
+                    visit(std::countr_zero(bins));
+            });
     }
 
     /// What is still is tested against all packets of the blocks of ranges[lane].
@@ -207,35 +272,29 @@ class Kernel {
     /// micropolygon's path, and what remains, about twice what is hit, is tested in whole vectors.
     template <bool kMoving, Lens kLens>
     HWY_INLINE void visit_ranks(const Shape& shape, const BlockRanges& swept, int lane) {
-        int first = 0, end = m_tile.ranks;
-        if constexpr (kMoving) m_where.find_ranks(swept, lane, first, end);
         const bool cull = swept.nearest[lane] < m_tile.nearest_of_ranks;
         const bool straight =
             (kMoving || kLens != Lens::None) && (m_tile_paths.straight >> lane & 1u);
-        RankPaths paths;
         std::size_t found = 0;
-        for (; first < end; first += lane_count()) {
-            M touching = straight ? m_paths.follow<kMoving, kLens>(
-                                        m_tile_paths, lane, m_target.segment, first, cull, paths)
-                                  : m_paths.find<kMoving, kLens>(shape, m_target.segment, first,
-                                                                 cull, paths);
-            touching = hn::And(touching, hn::FirstN(kTag, static_cast<std::size_t>(end - first)));
-            for_each_lane(touching, [&](int k) HWY_ATTR {
-                m_windows.visit<kMoving, kLens>(
-                    paths, k, first + k,
-                    [&](const Samples& at, V slots, V x, V y) HWY_ATTR
-                    __attribute__((always_inline)) {
-                        const Squeeze near(hn::And(hn::Le(hn::Abs(x), set(paths.x.reach[k])),
-                                                   hn::Le(hn::Abs(y), set(paths.y.reach[k]))));
-                        m_listed.add<kMoving, kLens>(near, at, slots, found);
-                        found += near.count();
-                        if (HWY_UNLIKELY(found > kMostListed)) {
-                            test_listed<kMoving, kLens>(shape, found);
-                            found = 0;
-                        }
-                    });
+        visit_windows<kMoving, kLens>(
+            swept, lane,
+            [&](int first, RankPaths& paths) HWY_ATTR {
+                return straight ? m_paths.follow<kMoving, kLens>(
+                                      m_tile_paths, lane, m_target.segment, first, cull, paths)
+                                : m_paths.find<kMoving, kLens>(shape, m_target.segment, first, cull,
+                                                               paths);
+            },
+            [&](const RankPaths& paths, int k, const Samples& at, V slots, V x, V y) HWY_ATTR
+            __attribute__((always_inline)) {
+                const Squeeze near(hn::And(hn::Le(hn::Abs(x), set(paths.x.reach[k])),
+                                           hn::Le(hn::Abs(y), set(paths.y.reach[k]))));
+                m_listed.add<kMoving, kLens>(near, at, slots, found);
+                found += near.count();
+                if (HWY_UNLIKELY(found > kMostListed)) {
+                    test_listed<kMoving, kLens>(shape, found);
+                    found = 0;
+                }
             });
-        }
         test_listed<kMoving, kLens>(shape, found);
     }
 
@@ -301,7 +360,7 @@ class Kernel {
 
     /// Whole vectors and whole patches.
     static constexpr int kStep = std::max(static_cast<int>(hn::MaxLanes(kTag)), Patch::kSide);
-    static constexpr int kLeastPatch = 4;
+    static constexpr int kLeastPatch = 4, kNarrow = 2;
     static constexpr std::size_t kMostListed = 256;
     static constexpr std::size_t kListed = kMostListed + 2 * kPacket;
 
@@ -316,9 +375,12 @@ class Kernel {
     HitRecorder m_recorder;
     TilePaths m_tile_paths;
     PatchFinder m_patches;
+    FlockFinder m_flocks;
     PatchPath m_patch;
+    FlockSlices m_slices;
     PatchBins m_bins;
-    const bool m_has_patches;
+    const bool m_together;         ///< patches or flocks are looked for
+    const bool m_in_flocks;        ///< micropolygons share no vertices, or lie in few rows
     SampleList<kListed> m_listed;  ///< to be tested
     HitList<kListed> m_hit;        ///< that were
 };

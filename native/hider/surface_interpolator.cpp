@@ -152,7 +152,8 @@ void SurfaceInterpolator::load_knots(const SurfaceRecord& record,
     for (auto* values : {&m_knots.x, &m_knots.y, &m_knots.w, &m_knots.z})
         values->resize(static_cast<std::size_t>(count) * 4);
     for (int k = 0; k < count; ++k) {
-        const Vec3f* const knot = grid.positions.data() + (m_knots.first + k) * grid.vertex_count();
+        const auto number = static_cast<std::size_t>(m_knots.first + k);
+        const Vec3f* const knot = grid.positions.data() + number * grid.vertex_count();
         for (int i = 0; i < 4; ++i) {
             const Corner<float> c = corner(m_projection, knot[record.corners.vertex[i]], m_origin);
             const auto at = static_cast<std::size_t>(k * 4 + i);

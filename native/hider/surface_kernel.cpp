@@ -143,7 +143,7 @@ struct KnotLanes {
     HWY_INLINE Corner<V> corner(int k) const {
         if (knots.first == knots.last) {
             const auto all = [&](const std::vector<float>& v, int knot) HWY_ATTR {
-                return set(v[static_cast<std::size_t>(4 * knot + k)]);
+                return set(v[4 * static_cast<std::size_t>(knot) + static_cast<std::size_t>(k)]);
             };
             return between<kLens>(all);
         }
