@@ -5,6 +5,11 @@
 
 namespace granita {
 
+/// The weights of a pixel sum to about 1.  What is far below says nothing of the pixel: filters
+/// much narrower than the samples' spacing may find none, and negative lobes under few samples may
+/// nearly cancel.
+constexpr float kLeastWeight = 1.0f / 16;
+
 /// What the tiles around a cell of the film have given to its pixels; ratios once divided by the
 /// weight.
 struct Film::CellSums {

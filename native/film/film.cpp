@@ -133,11 +133,8 @@ Tile Film::finish_cell(const Rect& cell,
                             sums.center.begin() + to * center_width);
             }
     }
-    // The weights of a pixel sum to about 1.  Filters much narrower than the samples' spacing may
-    // find none, and negative lobes under few samples may nearly cancel: then the sum stands.
-    constexpr float kLeastWeight = 1.0f / 16;
     for (std::size_t i = 0; i < count; ++i) {
-        if (!(sums.weight[i] > kLeastWeight)) continue;
+        if (!(sums.weight[i] > kLeastWeight)) continue;  // then the sum stands
         out.combined[i] /= sums.weight[i];
         for (std::size_t k = 0; k < width; ++k) sums.channels[i * width + k] /= sums.weight[i];
     }

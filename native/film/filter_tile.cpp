@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
-#include "film/film.h"
+#include "film/cell_sums.h"
 #include "film/weigh_pixel.h"
 
 namespace granita {
@@ -25,6 +25,30 @@ void add_sums(const PixelWork& work, const Rect& to, TileContribution& out) {
             for (std::size_t k = 0; k < width; ++k)
                 out.channel_sum[pixel * width + k] += work.row_sums[tap * width + k];
         }
+}
+
+/// Where a filter within the pixel meets next to none of its samples, the pixel is what is seen
+/// nearest to its centre: what a filter without width would show.
+void take_nearest(PixelWork& work) {
+    const auto distance2 = [&](int i) {
+        const Vec2f d = Vec2f(work.x[i], work.y[i]) - work.center;
+        return glm::dot(d, d);
+    };
+    float least = INFINITY;
+    for (int i = 0; i < work.samples; ++i) least = std::min(least, distance2(i));
+    WeightedSum& sum = work.sums.front() = {};
+    std::fill(work.row_sums.begin(), work.row_sums.end(), 0.0f);
+    const auto width = static_cast<std::size_t>(work.width);
+    for (int i = 0; i < work.samples; ++i) {
+        if (distance2(i) > 1.0001f * least) continue;  // of a lattice several are as near
+        sum.r += work.red[i];
+        sum.g += work.green[i];
+        sum.b += work.blue[i];
+        sum.a += work.alpha[i];
+        sum.weight += 1.0f;
+        const float* const row = work.rows + static_cast<std::size_t>(i) * width;
+        for (std::size_t k = 0; k < width; ++k) work.row_sums[k] += row[k];
+    }
 }
 
 }  // namespace
@@ -63,6 +87,7 @@ TileContribution Film::filter_tile(Vec2i tile, const TileSamples& samples,
                       {static_cast<float>(local_x) + 0.5f, static_cast<float>(local_y) + 0.5f},
                       width > 0 ? &channels->filtered[first * width] : nullptr);
             weigh_pixel(m_pieces, share, work);
+            if (each_side == 0 && !(work.sums.front().weight > kLeastWeight)) take_nearest(work);
             const Rect reached_pixels{x - each_side, y - each_side, x + each_side + 1,
                                       y + each_side + 1};
             add_sums(work, reached_pixels, out);

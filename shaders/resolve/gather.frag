@@ -14,7 +14,7 @@ const float kFactor[FACTOR_COUNT + 1] = float[](FACTOR);
 
 float factor(float d) {
 #if IS_BOX
-    return d >= -RADIUS && d < RADIUS ? 1.0 : 0.0;
+    return d >= -RADIUS && d < RADIUS ? kFactor[0] : 0.0;
 #else
     const float place = abs(d) * (float(FACTOR_COUNT) / RADIUS);
     if (place >= float(FACTOR_COUNT)) return 0.0;
@@ -38,4 +38,17 @@ void main() {
                 weight += w;
             }
     filtered = weight != 0.0 ? sum / weight : vec4(0.0);
+#if APRON == 0
+    // Next to no sample within a narrow filter: what is seen nearest to the pixel's centre, as in film/
+    // (kLeastWeight; samples' weights sum to about their number).
+    if (weight > float(count.y) / 16.0) return;
+    float least = 1e9;
+    for (int s = 0; s < count.y; ++s) {
+        const ivec2 texel = own * count.x + ivec2(s % count.x, s / count.x);
+        const vec2 d = place_in_pixel(texel) - 0.5;
+        if (dot(d, d) >= least) continue;
+        least = dot(d, d);
+        filtered = texelFetch(source, texel, 0);
+    }
+#endif
 }

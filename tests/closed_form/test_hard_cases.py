@@ -54,6 +54,24 @@ def test_a_filter_spills_over_an_empty_bucket(executor):
     assert np.array_equal(pictures[0], pictures[1]) and np.array_equal(pictures[0], pictures[2])
 
 
+@pytest.mark.parametrize("sampling", ["INDEPENDENT", "REGULAR"])
+@pytest.mark.parametrize("pixel_filter", ["BOX", "BLACKMAN_HARRIS", "LANCZOS"])
+def test_a_filter_without_a_sample_shows_the_nearest(executor, sampling, pixel_filter):
+    """Few pixels have a sample within a hundredth of their centre."""
+    more = {"pixel_filter": pixel_filter, "filter_width": 0.01, "sampling": sampling}
+    snapshot = s.orthographic((24, 8), executor=executor, samples=4, **more)
+    s.quad(snapshot, s.rectangle(-9, -9, 12.4, 30), s.emission(snapshot))
+    if executor != "RASTER":
+        snapshot["options"]["passes"] = ["Emission"]
+    made = s.render(snapshot)
+    pictures = [made["combined"][..., 3]]
+    if executor != "RASTER":
+        pictures.append(made["passes"]["Emission"][..., 0])
+    for picture in pictures:
+        assert np.abs(picture[:, :12] - 1).max() <= 1e-6
+        assert np.abs(picture[:, 13:]).max() == 0
+
+
 EDGE = 12.3125  # between two columns of a lattice of 16
 
 

@@ -51,6 +51,16 @@ TEST(Subdivision, closed_cages_close_at_every_rate) {
         }
 }
 
+TEST(Subdivision, straight_edges_of_n_gons_and_quads_share_their_middles) {
+    // Nothing but the n-gon's own corner there has their edges cut in two.
+    GeometryData prism = smooth_prism(40.0f, 7.0f);
+    prism.subdivision.scheme = SubdivisionScheme::Simple;
+    DiceScene s(prism, 1000.0f, 64);
+    const auto grids = s.grids();
+    ASSERT_FALSE(grids.empty());
+    EXPECT_TRUE(open_edges(grids).empty()) << open_edges(grids).size();
+}
+
 TEST(Subdivision, perspective_with_very_different_rates_closes) {
     for (const GeometryData& data :
          {smooth_cube(1.0f), smooth_tetrahedron(1.0f), smooth_prism(1.5f, 1.0f)}) {

@@ -252,6 +252,25 @@ TEST(Film, ExtremeShapes) {
     EXPECT_TRUE(film.add({}).empty());
 }
 
+TEST(Film, FilterNarrowerThanTheSamplesSpacingShowsTheNearest) {
+    // One sample a pixel: each pixel is its own.  Four: of a lattice all are as near to the centre.
+    const auto ramp = [](double x, double) { return white(x); };
+    for (const auto& [kind, width] : kFilters) {
+        Options options = make_options({0, 0, 8, 4}, kind, 0.01f, 1);
+        options.sampling = Sampling::Independent;
+        const SampleTable table(options, Camera());
+        TileSamples samples;
+        table.fill_tile({0, 0}, {}, samples);
+        const Picture one = expose(options, ramp);
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 8; ++x) EXPECT_EQ(one.at(x, y).w, samples.x[y * kTileSize + x]);
+        options.samples = 4;
+        options.sampling = Sampling::Regular;
+        const Picture four = expose(options, ramp);
+        for (int x = 0; x < 8; ++x) EXPECT_WITHIN(four.at(x, 1).w, x + 0.5, 1e-6);
+    }
+}
+
 TEST(Film, FarFromTheOriginLikeNearIt) {
     const auto edge = [](double at) {
         return [=](double x, double) { return white(x < at ? 1 : 0); };
