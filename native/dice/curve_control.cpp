@@ -156,15 +156,21 @@ Bounds3f CurveControl::swept_box(double lo, double hi) const {
     return box;
 }
 
-double CurveControl::polygon_length(int knot, double lo, double hi) const {
-    double length = 0.0;
-    Vec3d from = at(knot, lo).p;
+double CurveControl::polygon_pixels(int knot, double lo, double hi) const {
+    const Projection& projection = m_elements->view().projection;
+    const auto seen = [&](double t) {
+        const Vec3d p = at(knot, t).p;
+        const double z = std::max({p.z, projection.near_clip, 1e-9});
+        return projection.scale * Vec2d(p) / (projection.perspective ? z : 1.0);
+    };
+    double pixels = 0.0;
+    Vec2d from = seen(lo);
     for (double t = std::floor(lo) + 1.0; t < hi; t += 1.0) {
-        const Vec3d to = at(knot, t).p;
-        length += glm::distance(from, to);
+        const Vec2d to = seen(t);
+        pixels += glm::distance(from, to);
         from = to;
     }
-    return length + glm::distance(from, at(knot, hi).p);
+    return pixels + glm::distance(from, seen(hi));
 }
 
 void CurveControl::steps(double lo, double hi, std::size_t most, std::vector<double>& ends) const {
@@ -179,11 +185,18 @@ void CurveControl::steps(double lo, double hi, std::size_t most, std::vector<dou
         const Vec3d p = at(k, lo).p, q = at(k, hi).p;
         start[k] = Vec3f(p);
         if (several) {
-            // Points between may lie anywhere: it asks for a straight piece as long as the way
-            // over them.
-            const Vec3d line = unit_or(q - p, Vec3d(1, 0, 0)) * polygon_length(k, lo, hi);
-            middle[k] = Vec3f(p + 0.5 * line);
-            end[k] = Vec3f(p + line);
+            // Points between may lie anywhere: it asks for a straight piece that is seen as long as
+            // the way over them.  (Along q - p a curl that runs to the eye would be a point.)
+            const Projection& projection = m_elements->view().projection;
+            const double way = polygon_pixels(k, lo, hi) / projection.scale.x;
+            const auto piece = [&](double part) {
+                const double z = p.z + (q.z - p.z) * part;
+                const double scale = projection.perspective && p.z > 0.0 ? z / p.z : 1.0;
+                return Vec3f(Vec3d(p.x * scale + way * part * (projection.perspective ? z : 1.0),
+                                   p.y * scale, z));
+            };
+            middle[k] = piece(0.5);
+            end[k] = piece(1.0);
         } else {
             middle[k] = Vec3f(at(k, half).p);
             end[k] = Vec3f(q);

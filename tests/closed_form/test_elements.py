@@ -51,6 +51,25 @@ def test_thin_line_keeps_its_energy(executor, width):
     assert abs(s.alpha(snapshot).sum() - area) < 4 * np.sqrt(area / samples)
 
 
+@pytest.mark.parametrize("perspective", [False, True])
+@pytest.mark.parametrize("rate", [0.5, 1.0, 2.0])
+def test_a_curl_that_runs_to_the_eye_is_a_ring(executor, perspective, rate):
+    """From its root to its tip it is seen as a point: how long it is in the picture, only its points tell."""
+    options = {"executor": executor, "samples": 64, "dicing_rate": rate}
+    radius, width = 9.0, 1.2
+    angle = np.linspace(0, 4 * np.pi, 33)
+    ring = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.ones(33)], 1)
+    depth = np.linspace(30.0, 20.0, 33)[:, None]
+    if perspective:
+        snapshot = s.perspective((32, 32), 100.0, **options)
+        curves(snapshot, ring * depth * [0.01, 0.01, 1], [33], depth[:, 0] * 0.01 * width / 2)
+    else:
+        snapshot = s.orthographic((32, 32), **options)
+        curves(snapshot, ring * [1, 1, 0] + [16, 16, 0] + depth * [0, 0, 1], [33], width / 2)
+    # Chords of the dicing rate cut corners: of 2 pixels, a twelfth of a width on the outside.
+    assert s.alpha(snapshot).sum() == pytest.approx(2 * np.pi * radius * width, rel=0.05)
+
+
 def test_thin_line_has_no_dashes(executor):
     """Case 9: along a horizontal hair every pixel holds the same share, with its own noise alone."""
     width, samples = 0.1, 256
