@@ -80,7 +80,7 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
     fps = scene.render.fps / scene.render.fps_base
     motion, points, neighbours, seen = Motion(camera_at_frame["world_from_camera"]), {}, {}, placed
     if shutter.segments:
-        motion = sample_motion(clock, shutter, at_frame, report, check_cancel)
+        motion = sample_motion(clock, shutter, fps, at_frame, report, check_cancel)
         camera_at_frame["world_from_camera"] = motion.camera
         if motion.lens is not None:
             camera_at_frame["lens_knots"] = motion.lens

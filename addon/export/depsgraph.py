@@ -30,6 +30,7 @@ from .transforms import has_area
 _POLL_EVERY = 1024
 _RENDERED = {"CURVES", "LIGHT", "MESH", "POINTCLOUD"}
 _NO_ID = (0,) * 8
+_NO_LEVEL = 2**31 - 1  # of a persistent id: less deeply nested
 
 # What the twin of type MESH stands for, or what has no surface.
 _NOT_SEEN = {
@@ -58,7 +59,8 @@ class Visit:
     identity: np.ndarray  # uint64 [n], unique, the same at every time and in every frame
     random: np.ndarray  # uint32 [n], Blender's random id; 0 where it is no instance
     is_instance: np.ndarray  # bool [n]
-    persistent: np.ndarray  # int32 [n, 2], of the persistent id: particles' index, their system's
+    # int32 [n, 3], of the persistent id: particles' index, their system's; that of the outermost instance.
+    persistent: np.ndarray
     hashes: np.ndarray  # uint64 [kinds], of names
     cages: dict  # address of an evaluated object -> its Cage or None
 
@@ -151,10 +153,17 @@ def visit(depsgraph, report, check_cancel, cages=None):
         identity=combine(hashes[kind], persistent),
         random=np.array(random, dtype=np.int32).view(np.uint32),
         is_instance=np.array(is_instance, dtype=bool),
-        persistent=persistent[:, :2].copy(),
+        persistent=_parts(persistent),
         hashes=hashes,
         cages=walk.cages,
     )
+
+
+def _parts(persistent):
+    """Visit.persistent of int32 [n, 8]."""
+    nested = (persistent != _NO_LEVEL).sum(axis=1).clip(1) - 1
+    outermost = np.take_along_axis(persistent, nested[:, None], axis=1)
+    return np.hstack([persistent[:, :2], outermost])
 
 
 class _Walk:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .blur_settings import fewest_segments
+from .flights import Flights
 from .newcomers import Newcomers
 from .path import MAX_BEND_PIXELS, Tracks, bends_still, finer_level, keep_fewest, no_tracks
 from .pixels import PixelScale
@@ -32,7 +33,7 @@ class Motion:
     lifespans: tuple = ((), ())  # of Steps.lifespans
 
 
-def sample_motion(clock, shutter, scene, report, check_cancel):
+def sample_motion(clock, shutter, fps, scene, report, check_cancel):
     """Visits as many times of the shutter as the paths want, at most `shutter.segments` and one.
 
     The scene's visit has more things afterwards, where some appear within the shutter (newcomers.py), or
@@ -41,6 +42,7 @@ def sample_motion(clock, shutter, scene, report, check_cancel):
     Args:
         clock: shutter.Clock, standing at the frame.
         shutter: shutter.Shutter with segments.
+        fps: frames a second.
         scene: frame_scene.FrameScene.
         report: called with (datablock, message).
         check_cancel: true when the user has cancelled.
@@ -53,7 +55,9 @@ def sample_motion(clock, shutter, scene, report, check_cancel):
     ticks = max(shutter.segments, wanted)
     newcomers = Newcomers(report)
     frame_tick = round(shutter.frame_time * ticks)
-    steps = Steps(scene, frame_tick, shutter.length / ticks, report, check_cancel, newcomers)
+    tick_frames = shutter.length / ticks
+    flights = Flights(tick_frames / fps, report)
+    steps = Steps(scene, frame_tick, tick_frames, report, check_cancel, newcomers, flights)
 
     def read(level_ticks):
         for tick in level_ticks:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .flights import Flights
 from .shutter import Shutter
 from .steps import Steps
 from .subdivision import cages_only
@@ -34,6 +35,10 @@ class Neighbours:
         return replace(instances, neighbours=np.ascontiguousarray(both).reshape(-1, 4, 4))
 
 
+def _silent(_datablock, _message):
+    """What there is to say was said of the shutter."""
+
+
 def read_neighbours(clock, scene, fps, report, check_cancel):
     """Neighbours of the frame at which the clock stands, and stands again afterwards.
 
@@ -50,6 +55,7 @@ def read_neighbours(clock, scene, fps, report, check_cancel):
         1.0,
         report,
         check_cancel,
+        flights=Flights(1.0 / fps, _silent),
         rigid="its topology changes between frames: Vector holds its place's motion alone",
     )
     with cages_only(scene.cages(), scene.depsgraph):

@@ -6,6 +6,7 @@ import numpy as np
 from .camera import camera_knot, follows_object, lens_knot
 from .changes import changed_geometry, lights_changed, moved, originals
 from .depsgraph import visit
+from .flights import Flights
 from .lamps import energies
 from .lifespan import complete, lifespans, particle_life, runs
 from .report import poll
@@ -30,6 +31,7 @@ class Steps:
         report,
         check_cancel,
         newcomers=None,
+        flights=None,
         rigid="its topology changes within the shutter: rendered without deformation blur; "
         "a 'velocity' attribute on its points would blur it",
     ):
@@ -39,6 +41,7 @@ class Steps:
         self._newcomers = (
             newcomers  # newcomers.Newcomers; None: what is not at the frame is not there
         )
+        self._flights = flights or Flights(0.0, report)
         self._at_frame = len(scene.visit.kind)  # things from here on are newcomers
         self._report = report
         self._check_cancel = check_cancel
@@ -54,6 +57,7 @@ class Steps:
         self._stays = ~scene.visit.is_instance  # throughout the shutter, even where it is not seen
         self._lives = {}  # thing that came or went -> lifespan.Life or None
         self._touched = np.zeros(len(self._now), dtype=bool)
+        self._fly(np.flatnonzero(self._can_blur & ~self._stays), scene.visit, frame_tick)
         self._last_points = {}
         self.frame_tick = frame_tick
         self.ticks = [frame_tick]
@@ -76,6 +80,7 @@ class Steps:
         self.ticks.append(tick)
         self._read_camera(tick)  # what its lens does is no change of place or geometry
         self._read_energies(tick, knows_updates)
+        self._flights.note(tick, self._scene.depsgraph)
         if not knows_updates or moved(self._scene.depsgraph):
             changes = self._plain.changes(self._scene.depsgraph) if knows_updates else None
             if knows_updates:
@@ -199,6 +204,11 @@ class Steps:
         self._stays = np.concatenate([self._stays, np.zeros(more, dtype=bool)])
         count = len(self._now)
         self._look_at(np.arange(count - more, count))
+        self._fly(np.arange(count - more, count), self._scene.visit, self.ticks[-1])
+
+    def _fly(self, things, scan, tick):
+        self._flights.add(scan, things, tick, self._scene.depsgraph)
+        self._touched[list(self._flights.of)] = True
 
     def _look_at(self, things):
         """What came or went: why, while it can be asked.  What is hidden now and not at the frame stays:
@@ -216,7 +226,7 @@ class Steps:
                 hidden[scan.kind[thing]] = kind.is_hidden_now(owners)
             self._stays[thing] = hidden[scan.kind[thing]]
             if not self._stays[thing]:
-                self._lives[thing] = particle_life(owners[-1], *scan.persistent[thing])
+                self._lives[thing] = particle_life(owners[-1], *scan.persistent[thing, :2])
 
     def _deforms(self, index, source):
         return source.deforms and index not in self._rigid
@@ -267,6 +277,9 @@ class Steps:
             going_on = self._going_on(runs.things[rows])
             complete(partial, ticks, runs.first[rows], runs.last[rows], *going_on)
             path[:, rows] = partial
+        if self._flights.of:
+            whole = (runs.first == 0) & (runs.last == len(ticks) - 1)
+            self._flights.take(runs.things, path, ticks, whole)
         moves = (path != path[:1]).any(axis=(0, 2, 3))
         path = {tick: path[i, moves] for i, tick in enumerate(ticks)}
         return runs.numbers[moves], runs.things[moves], path

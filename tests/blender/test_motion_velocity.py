@@ -5,6 +5,7 @@ names what cannot be used."""
 import math
 from types import SimpleNamespace
 
+import bpy
 import export_probe
 import numpy as np
 import pytest
@@ -60,16 +61,6 @@ def test_instances_turn_the_velocity_of_their_object(film, render, how):
     for corner in part.data.vertices:  # to the upper half, of which a turn makes the left one
         corner.co = (corner.co.y, -corner.co.x - 200.0, 0.0)
     expect_edge(render, film)
-
-
-def test_instances_move_by_their_places_whatever_they_say(film):
-    instances_on_line(film, wall(film, 0.0, "Part"), 1)
-    place = film.objects["Host"]
-    store_attribute(place, "velocity", "FLOAT_VECTOR", "INSTANCE", (480, 0, 0))
-    drive(place, "location", "frame - 10", 1)
-    snapshot, report, _ = export_probe.through_engine(film)
-    ways = np.diff(export_probe.knots_of(snapshot, "Part")[[0, -1], :3, 3], axis=0)
-    assert ways[0] == pytest.approx([0.0, 1.0, 0.0]) and len(report) == 0
 
 
 def test_points_of_a_cloud(film, render):
@@ -154,3 +145,86 @@ def test_another_number_of_values_than_points_is_named():
     )
     assert found is None
     assert said == [("mesh 'Wall'", "its 'velocity' has 3 values for 4 points: not used")]
+
+
+readable = pytest.mark.skipif(
+    not hasattr(bpy.types.Object, "evaluated_geometry"), reason="Blender does not show it"
+)
+
+
+def scatter(film, vector, formula="2", with_ids=False, kind="FLOAT_VECTOR"):
+    """A wall instanced on points in a line, whose instances carry a velocity; the count is a formula."""
+    tree, line = instances_on_line(film, wall(film, 0.0, "Part"), 2)
+    drive(tree, f'nodes["{line.name}"].inputs["Count"].default_value', formula)
+    host = film.objects["Host"]
+    if with_ids:
+        identify = tree.nodes.new("GeometryNodeSetID")
+        place = next(n for n in tree.nodes if n.bl_idname == "GeometryNodeInstanceOnPoints")
+        tree.links.new(line.outputs["Mesh"], identify.inputs["Geometry"])
+        tree.links.new(identify.outputs["Geometry"], place.inputs["Points"])
+    store_attribute(host, "velocity", kind, "INSTANCE", vector)
+    return host
+
+
+def ways(film, **options):
+    """float64 [instances, 3]: from the opening of the shutter to its end."""
+    snapshot, report, _ = export_probe.through_engine(film, motion_steps=17, **options)
+    assert len(report) == 0
+    instances = snapshot["instances"]
+    first = np.cumsum(instances["knots"]) - instances["knots"]
+    places = instances["world_from_object"][:, :3, 3]
+    return places[first + instances["knots"] - 1] - places[first]
+
+
+@readable
+@pytest.mark.parametrize("with_ids", [False, True])
+def test_instances_that_stand_still_fly_by_their_velocity(film, render, with_ids):
+    """One of them; 480 metres a second are 20 in a frame.  It lies and flies the other way before the host is turned."""
+    host = scatter(film, (0, 480, 0), "1", with_ids)
+    host.location.x, host.rotation_euler.z = 6.0, -math.pi / 2
+    assert ways(film) == pytest.approx(np.array([[20.0, 0.0, 0.0]]), abs=1e-5)
+    for corner in bpy.data.objects["Part"].data.vertices:
+        corner.co = (corner.co.y, -corner.co.x - 200.0, 0.0)
+    expect_edge(render, film)
+
+
+@readable
+def test_the_motion_of_their_object_comes_on_top(film):
+    """It turns by half a turn while they fly along an axis of it that is up at first, and goes to the right."""
+    host = scatter(film, (480, 0, 0), "1")
+    drive(host, "location", "5 * (frame - 10)", 0)
+    drive(host, "rotation_euler", "pi * (frame - 10.5)", 2)
+    # Half of the way of 20 is to come at the frame, when the shutter opens.
+    assert ways(film) == pytest.approx(np.array([[5.0, 20.0, 0.0]]), abs=1e-4)
+
+
+@readable
+def test_those_that_come_and_go_fly_by_it_too(film):
+    """The third comes at .4 of the frame, and is seen at its place then."""
+    scatter(film, (0, 48, 0), "2 if frame < 10.4 else 3", with_ids=True)
+    assert ways(film) == pytest.approx(np.tile([0.0, 2.0, 0.0], (3, 1)), abs=1e-5)
+
+
+@readable
+@pytest.mark.parametrize("with_ids, expected", [(False, (0, 2, 0)), (True, (3, 0, 0))])
+def test_places_say_more_where_they_can(film, with_ids, expected):
+    """They go 3 metres to the right, as nodes have it.  Another number of them without ids may be another order."""
+    host = scatter(film, (0, 48, 0), "2 if frame < 10.4 else 3", with_ids)
+    tree = host.modifiers["Nodes"].node_group
+    end = next(n for n in tree.nodes if n.bl_idname == "NodeGroupOutput")
+    move = tree.nodes.new("GeometryNodeTranslateInstances")
+    tree.links.new(end.inputs[0].links[0].from_socket, move.inputs["Instances"])
+    tree.links.new(move.outputs["Instances"], end.inputs[0])
+    drive(tree, f'nodes["{move.name}"].inputs["Translation"].default_value', "3 * (frame - 10)", 0)
+    found = ways(film)
+    assert found[:2] == pytest.approx(np.tile(np.float64(expected), (2, 1)), abs=1e-5)
+
+
+@readable
+def test_instances_of_another_type_are_named(film):
+    scatter(film, (480, 0, 0), kind="FLOAT_COLOR")
+    snapshot, report, _ = export_probe.through_engine(film)
+    assert [entry[:2] for entry in report.entries()] == [
+        ("object 'Host'", "'velocity' of its instances (FLOAT_COLOR) is no vector: not used")
+    ]
+    assert (snapshot["instances"]["knots"] == 1).all()
