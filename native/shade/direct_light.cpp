@@ -157,22 +157,37 @@ void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const 
     // One sample of many tells all where nothing varies along its ray; one of one is any time's.
     const bool timed = changes(lamp) && (count > 1 || point.sample_count == 1);
     const SobolPoints sequence = point.sequence(dimension, count);
-    for (int s = 0; s < count; ++s) {
-        const auto index = static_cast<std::uint32_t>(s);
-        const LitPlace place = timed ? place_at(point, sequence.third(index)) : point.at_frame;
-        if (!lamp.exists(place.time)) continue;
-        const LightSource& source = lamp.at(place.time);
-        LightSample sample;
-        if (!source.sample(place.p, sequence(index), sample)) continue;
+    const auto add = [&](const LitPlace& place, const LightSource& source,
+                         const LightSample& sample) {
+        if (!(sample.pdf > 0.0f)) return;
         const BsdfValue bsdf = lamp.apply(point.bsdf.evaluate(sample.direction));
         const Vec3f value = total(bsdf) * sample.radiance;
-        if (value == Vec3f(0.0f)) continue;
+        if (value == Vec3f(0.0f)) return;
         float density = static_cast<float>(count) * sample.pdf;
         if (!source.is_hard() && lamp.reaches_glossy())
             density += point.glossy_density(sample.direction);
         const Vec3f seen = shadow(grid, point, place, lamp, sample);
         sum += value / density * seen;
         grid.add_lamp(point.index, bsdf * (sample.radiance / density), seen);
+    };
+    grid.lamp_points.clear();
+    for (int s = 0; s < count; ++s)
+        grid.lamp_points.push_back(sequence(static_cast<std::uint32_t>(s)));
+    grid.lamp_samples.resize(grid.lamp_points.size());
+    if (!timed) {
+        const LitPlace& place = point.at_frame;
+        if (!lamp.exists(place.time)) return;
+        const LightSource& source = lamp.at(place.time);
+        source.sample_all(place.p, grid.lamp_points, grid.lamp_samples);
+        for (const LightSample& sample : grid.lamp_samples) add(place, source, sample);
+        return;
+    }
+    for (std::size_t s = 0; s < grid.lamp_points.size(); ++s) {
+        const LitPlace place = place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
+        if (!lamp.exists(place.time)) continue;
+        const LightSource& source = lamp.at(place.time);
+        source.sample(place.p, grid.lamp_points[s], grid.lamp_samples[s]);
+        add(place, source, grid.lamp_samples[s]);
     }
 }
 
@@ -306,7 +321,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     if (closure.lobes.empty() || (dark && !parts)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     const std::uint64_t seed = grid_seed(key, m_impl->scene.options.seed);
-    LitGrid grid{radiance, parts, {}, {}};
+    LitGrid grid{radiance, parts, {}, {}, {}, {}};
     RayLift lift = m_impl->rays ? m_impl->rays->lift(key) : RayLift{};
     const Lifespan& life = paths.lifespan();
     const Vec2f exposed(m_impl->shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),

@@ -73,28 +73,31 @@ class AreaLight : public LightSource {
 
     bool is_hard() const override { return false; }
 
-    bool sample(const Vec3f& p, const Vec2f& u, LightSample& sample) const override {
+    void sample_all(const Vec3f& p, std::span<const Vec2f> u,
+                    std::span<LightSample> samples) const override {
+        for (LightSample& sample : samples) sample.pdf = 0.0f;
         const Vec3f to_center = m_center - p;
         const float height = -glm::dot(to_center, m_front);
-        if (height <= 0.0f || m_area <= 0.0f) return false;
+        if (height <= 0.0f || m_area <= 0.0f) return;
         const Vec2f center(glm::dot(to_center, m_u), glm::dot(to_center, m_v));
         Vec2f lo = center - m_half, hi = center + m_half;
-        if (!clip_to_spread(height, lo, hi)) return false;
-        Vec2f q;
-        double solid_angle = 0.0;
-        if (!m_ellipse) {
-            const SphericalRectangle rectangle(lo.x, hi.x, lo.y, hi.y, -height);
-            const Vec3d point = rectangle.sample(u);
-            solid_angle = rectangle.solid_angle();
-            q = {static_cast<float>(point.x), static_cast<float>(point.y)};
-        } else {
-            q = center + sample_disc(u) * m_half;
+        if (!clip_to_spread(height, lo, hi)) return;
+        const auto finish = [&](const Vec2f& q, double solid_angle, LightSample& sample) {
+            const Vec3f to_light = q.x * m_u + q.y * m_v - height * m_front;
+            const float distance = glm::length(to_light);
+            sample.direction = to_light / distance;
+            sample.distance = distance;
+            if (!shade(solid_angle, sample)) sample.pdf = 0.0f;
+        };
+        if (m_ellipse) {
+            for (std::size_t i = 0; i < u.size(); ++i)
+                finish(center + sample_disc(u[i]) * m_half, 0.0, samples[i]);
+            return;
         }
-        const Vec3f to_light = q.x * m_u + q.y * m_v - height * m_front;
-        const float distance = glm::length(to_light);
-        sample.direction = to_light / distance;
-        sample.distance = distance;
-        return shade(solid_angle, sample);
+        // Once a point: its arcsines and roots take longer than a sample.
+        const SphericalRectangle rectangle(lo.x, hi.x, lo.y, hi.y, -height);
+        for (std::size_t i = 0; i < u.size(); ++i)
+            finish(Vec2f(rectangle.sample(u[i])), rectangle.solid_angle(), samples[i]);
     }
 
     bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const override {

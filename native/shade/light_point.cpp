@@ -52,7 +52,29 @@ class PointLight : public LightSource {
 
     bool is_hard() const override { return m_radius <= 0.0f; }
 
-    bool sample(const Vec3f& p, const Vec2f& u, LightSample& sample) const override {
+    void sample_all(const Vec3f& p, std::span<const Vec2f> u,
+                    std::span<LightSample> samples) const override {
+        for (std::size_t i = 0; i < u.size(); ++i)
+            if (!sample_one(p, u[i], samples[i])) samples[i].pdf = 0.0f;
+    }
+
+    bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const override {
+        if (is_hard()) return false;
+        const Vec3f to_center = m_position - p;
+        const float d2 = glm::dot(to_center, to_center);
+        if (d2 <= 0.0f) return false;
+        return m_sphere ? meet_sphere(to_center, d2, direction, sample)
+                        : meet_disc(to_center, d2, direction, sample);
+    }
+
+    bool bound(Vec3f& center, float& radius) const override {
+        center = m_position;
+        radius = m_radius;
+        return true;
+    }
+
+  private:
+    bool sample_one(const Vec3f& p, const Vec2f& u, LightSample& sample) const {
         const Vec3f to_center = m_position - p;
         const float d2 = glm::dot(to_center, to_center);
         if (d2 <= 0.0f) return false;
@@ -73,22 +95,6 @@ class PointLight : public LightSource {
         return disc_sample(q / distance, distance, std::sqrt(d2) / distance, sample);
     }
 
-    bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const override {
-        if (is_hard()) return false;
-        const Vec3f to_center = m_position - p;
-        const float d2 = glm::dot(to_center, to_center);
-        if (d2 <= 0.0f) return false;
-        return m_sphere ? meet_sphere(to_center, d2, direction, sample)
-                        : meet_disc(to_center, d2, direction, sample);
-    }
-
-    bool bound(Vec3f& center, float& radius) const override {
-        center = m_position;
-        radius = m_radius;
-        return true;
-    }
-
-  private:
     static Vec3f sample_sphere(const Vec2f& u) {
         const float z = 1.0f - 2.0f * u.x, s = std::sqrt(std::max(0.0f, 1.0f - z * z));
         return {s * std::cos(2.0f * kPi * u.y), s * std::sin(2.0f * kPi * u.y), z};

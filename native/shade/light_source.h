@@ -11,6 +11,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "math/vec.h"
 #include "scene/light.h"
@@ -22,7 +23,7 @@ struct LightSample {
     Vec3f direction{0.0f};  ///< unit, from the point to the light
     float distance = 0.0f;  ///< metres; infinite for suns
     Vec3f radiance{0.0f};   ///< of hard lights: the irradiance across the direction
-    float pdf = 0.0f;       ///< per solid angle; 1 of hard lights
+    float pdf = 0.0f;       ///< per solid angle; 1 of hard lights; 0 = nothing arrives
 };
 
 class LightSource {
@@ -30,8 +31,14 @@ class LightSource {
     virtual ~LightSource() = default;
     /// Without a size: one direction a point, never met by a ray.
     virtual bool is_hard() const = 0;
-    /// False when nothing arrives at `p` along the sampled direction.
-    virtual bool sample(const Vec3f& p, const Vec2f& u, LightSample& sample) const = 0;
+    /// What arrives at `p`, a sample for each of `u`.
+    virtual void sample_all(const Vec3f& p, std::span<const Vec2f> u,
+                            std::span<LightSample> samples) const = 0;
+    /// One of them; false when nothing arrives.
+    bool sample(const Vec3f& p, const Vec2f& u, LightSample& sample) const {
+        sample_all(p, {&u, 1}, {&sample, 1});
+        return sample.pdf > 0.0f;
+    }
     /// What arrives at `p` from `direction`; its pdf is that of sample().  False when the ray
     /// misses the light or it sends nothing.
     virtual bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const = 0;

@@ -25,11 +25,13 @@ class SunLight : public LightSource {
 
     bool is_hard() const override { return m_one_minus_cos < 1e-12f; }
 
-    bool sample(const Vec3f&, const Vec2f& u, LightSample& sample) const override {
-        const Vec3f direction =
-            is_hard() ? m_frame.n : m_frame.to_world(sample_cone(u, m_one_minus_cos));
-        sample = {direction, kInfinity, m_radiance, m_pdf};
-        return true;
+    void sample_all(const Vec3f&, std::span<const Vec2f> u,
+                    std::span<LightSample> samples) const override {
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const Vec3f direction =
+                is_hard() ? m_frame.n : m_frame.to_world(sample_cone(u[i], m_one_minus_cos));
+            samples[i] = {direction, kInfinity, m_radiance, m_pdf};
+        }
     }
 
     bool intersect(const Vec3f&, const Vec3f& direction, LightSample& sample) const override {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "shade/light_source.h"
 #include "shade/light_world_looks.h"
 #include "shade/reflection.h"
 
@@ -14,6 +15,8 @@ struct LitGrid {
     std::vector<Vec3f>& radiance;
     ReflectionParts* parts;  ///< nullptr = not asked for
     WorldLooks blurred, sharp;
+    std::vector<Vec2f> lamp_points;         ///< of the lamp and point at hand
+    std::vector<LightSample> lamp_samples;  ///< there
     std::uint64_t shadow_rays = 0, occlusion_rays = 0;
 
     /// Light of a lamp: `value` reflected without shadow.
