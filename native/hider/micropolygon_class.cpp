@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "hider/micropolygon.h"
+#include "math/point_span.h"
 
 namespace granita {
 namespace {
@@ -40,13 +41,15 @@ OpacityBounds opacity_bounds(const Grid& grid, const Grid::Corners& c) {
 }  // namespace
 
 GridClasses classify(const Grid& grid) {
-    const int vertices = grid.vertex_count();
+    const int vertices = grid.vertex_count(), up = grid.up();
     const int knots = grid.motion ? grid.knots : 1;
-    std::vector<char> finite(vertices, 1);
-    for (int k = 0; k < knots; ++k)
-        for (int v = 0; v < vertices; ++v)
-            finite[v] = finite[v] && is_finite(grid.positions[k * vertices + v]);
-
+    const bool all_finite =
+        are_finite({grid.positions.data(), static_cast<std::size_t>(knots * vertices)});
+    const auto finite = [&](int v) {
+        for (int k = 0; k < knots; ++k)
+            if (!is_finite(grid.positions[k * vertices + v])) return false;
+        return true;
+    };
     const auto coincide = [&](int a, int b) {
         for (int k = 0; k < knots; ++k)
             if (grid.positions[k * vertices + a] != grid.positions[k * vertices + b]) return false;
@@ -55,23 +58,25 @@ GridClasses classify(const Grid& grid) {
 
     GridClasses out;
     out.classes.resize(grid.micropolygon_count());
-    for (int m = 0; m < grid.micropolygon_count(); ++m) {
-        const Grid::Corners c = grid.corners(m);
-        if (!(finite[c.v0] && finite[c.v1] && finite[c.v2] && finite[c.v3])) {
-            ++out.dropped;
-            continue;
+    for (int j = 0, m = 0; j < grid.n_v; ++j)
+        for (int i = 0; i < grid.n_u; ++i, ++m) {
+            const int v0 = j * up + i;
+            const Grid::Corners c{v0, v0 + grid.right(), v0 + grid.right() + up, v0 + up};
+            if (!all_finite && !(finite(c.v0) && finite(c.v1) && finite(c.v2) && finite(c.v3))) {
+                ++out.dropped;
+                continue;
+            }
+            std::uint8_t kind = grid.opacity_varies ? opacity_class(grid, c)
+                                                    : std::uint8_t{kTriangleA | kTriangleB};
+            const bool diagonal = coincide(c.v0, c.v2);
+            if (diagonal || coincide(c.v0, c.v1) || coincide(c.v1, c.v2)) kind &= ~kTriangleA;
+            if (diagonal || coincide(c.v2, c.v3) || coincide(c.v3, c.v0)) kind &= ~kTriangleB;
+            if ((kind & (kTriangleA | kTriangleB)) == 0) kind = 0;
+            out.classes[m] = kind;
+            if (!(kind & kTransparent)) continue;
+            if (out.opacity.empty()) out.opacity.resize(out.classes.size());
+            out.opacity[m] = opacity_bounds(grid, c);
         }
-        std::uint8_t kind =
-            grid.opacity_varies ? opacity_class(grid, c) : std::uint8_t{kTriangleA | kTriangleB};
-        const bool diagonal = coincide(c.v0, c.v2);
-        if (diagonal || coincide(c.v0, c.v1) || coincide(c.v1, c.v2)) kind &= ~kTriangleA;
-        if (diagonal || coincide(c.v2, c.v3) || coincide(c.v3, c.v0)) kind &= ~kTriangleB;
-        if ((kind & (kTriangleA | kTriangleB)) == 0) kind = 0;
-        out.classes[m] = kind;
-        if (!(kind & kTransparent)) continue;
-        if (out.opacity.empty()) out.opacity.resize(out.classes.size());
-        out.opacity[m] = opacity_bounds(grid, c);
-    }
     return out;
 }
 

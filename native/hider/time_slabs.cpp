@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "dice/raster_bound.h"
+#include "math/point_span.h"
 
 namespace granita {
 namespace {
@@ -11,10 +12,13 @@ namespace {
 constexpr int kLeastSlabs = 8;
 
 Bounds3f box_at(const Grid& grid, int knot) {
-    const Vec3f* const points = grid.positions.data() + knot * grid.vertex_count();
+    const auto count = static_cast<std::size_t>(grid.vertex_count());
+    const std::span<const Vec3f> points(
+        grid.positions.data() + static_cast<std::size_t>(knot) * count, count);
+    if (are_finite(points)) return bounds_of(points);
     Bounds3f box;
-    for (int v = 0; v < grid.vertex_count(); ++v)
-        if (is_finite(points[v])) box.add(points[v]);
+    for (const Vec3f& p : points)
+        if (is_finite(p)) box.add(p);
     return box;
 }
 
