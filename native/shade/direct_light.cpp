@@ -13,6 +13,7 @@
 #include "shade/lit_point.h"
 #include "shade/ray_scene.h"
 #include "shade/shading_points.h"
+#include "shade/shadow_queue.h"
 
 namespace granita {
 namespace {
@@ -25,18 +26,18 @@ struct DirectLight::Impl {
     Impl(const Scene& scene, WorldEvaluator world_evaluator, Statistics& frame_statistics,
          Report& report, const Progress& progress, ShadowOpacity opacity);
 
-    void light_point(LitGrid& grid, LitPoint& point) const;
+    void light_points(LitGrid& grid, const std::vector<LitPoint>& points) const;
     void sample_lamp(LitGrid& grid, const LitPoint& point, const Lamp& lamp,
-                     std::uint64_t dimension, Vec3f& sum) const;
+                     std::uint64_t dimension, ShadowQueue& shadows) const;
     void sample_world(LitGrid& grid, const LitPoint& point) const;
-    void sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe, Vec3f& sum) const;
-    void mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe, Vec3f& sum) const;
+    void sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe) const;
+    void mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const;
     void look(LitGrid& grid, const WorldLooks& looks, float spread) const;
     LitPlace place_at(const LitPoint& point, float uniform) const;
     bool changes(const Lamp& lamp) const;
     int samples_of(const LitPoint& point, const Lamp& lamp) const;
-    Vec3f trace(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
-                float distance) const;
+    ShadowRay ray(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
+                  float distance) const;
     Vec3f shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                  const LightSample& sample) const;
     Vec3f occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
@@ -129,30 +130,30 @@ int DirectLight::Impl::samples_of(const LitPoint& point, const Lamp& lamp) const
     return rays->varies(place.start, sample.direction, sample.distance) ? point.sample_count : 1;
 }
 
-Vec3f DirectLight::Impl::trace(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
-                               float distance) const {
+ShadowRay DirectLight::Impl::ray(const LitPoint& point, const LitPlace& place,
+                                 const Vec3f& direction, float distance) const {
     const bool turned_away = glm::dot(place.normal, direction) <= 0.0f &&
                              glm::dot(point.at_frame.normal, direction) > 0.0f;
     const LitPlace& from = turned_away ? point.at_frame : place;
-    return rays->transmittance(from.start, direction, distance, from.time);
+    return {from.start, direction, distance, from.time};
 }
 
 Vec3f DirectLight::Impl::shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place,
                                 const Lamp& lamp, const LightSample& sample) const {
     if (!rays || !lamp.casts_shadow()) return Vec3f(1.0f);
     ++grid.shadow_rays;
-    return trace(point, place, sample.direction, sample.distance);
+    return rays->transmittance(ray(point, place, sample.direction, sample.distance));
 }
 
 Vec3f DirectLight::Impl::occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
                                    const Vec3f& direction) const {
     if (!rays) return Vec3f(1.0f);
     ++grid.occlusion_rays;
-    return trace(point, place, direction, kInfinity);
+    return rays->transmittance(ray(point, place, direction, kInfinity));
 }
 
 void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const Lamp& lamp,
-                                    std::uint64_t dimension, Vec3f& sum) const {
+                                    std::uint64_t dimension, ShadowQueue& shadows) const {
     const int count = samples_of(point, lamp);
     // One sample of many tells all where nothing varies along its ray; one of one is any time's.
     const bool timed = changes(lamp) && (count > 1 || point.sample_count == 1);
@@ -166,9 +167,12 @@ void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const 
         float density = static_cast<float>(count) * sample.pdf;
         if (!source.is_hard() && lamp.reaches_glossy())
             density += point.glossy_density(sample.direction);
-        const Vec3f seen = shadow(grid, point, place, lamp, sample);
-        sum += value / density * seen;
-        grid.add_lamp(point.index, bsdf * (sample.radiance / density), seen);
+        const BsdfValue parts = bsdf * (sample.radiance / density);
+        if (rays && lamp.casts_shadow())
+            shadows.send(point.index, value / density, parts,
+                         ray(point, place, sample.direction, sample.distance));
+        else
+            shadows.send(point.index, value / density, parts);
     };
     grid.lamp_points.clear();
     for (int s = 0; s < count; ++s)
@@ -207,8 +211,7 @@ void DirectLight::Impl::sample_world(LitGrid& grid, const LitPoint& point) const
     }
 }
 
-void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
-                                    Vec3f& sum) const {
+void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe) const {
     const bool glossy = point.bsdf.kind(lobe) == LobeKind::Glossy;
     if (!environment && !glossy) return;
     const SobolPoints sequence = point.sequence(1 + lobe, point.samples[lobe]);
@@ -226,7 +229,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             const BsdfValue weight = value * (occlusion(grid, point, place, wo) / density);
             if (environment->is_constant()) {
                 const Vec3f radiance = environment->constant_radiance();
-                sum += total(weight) * radiance;
+                grid.radiance[point.index] += total(weight) * radiance;
                 grid.add_world(point.index, weight * radiance);
             } else {
                 grid.look(grid.blurred, point.index, wo, weight);
@@ -240,14 +243,13 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
                 static_cast<float>(point.sample_count) * sample.pdf + point.glossy_density(wo);
             const BsdfValue bsdf = lamp.apply(value);
             const Vec3f seen = shadow(grid, point, place, lamp, sample);
-            sum += total(bsdf) * sample.radiance / density * seen;
+            grid.radiance[point.index] += total(bsdf) * sample.radiance / density * seen;
             grid.add_lamp(point.index, bsdf * (sample.radiance / density), seen);
         }
     }
 }
 
-void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe,
-                               Vec3f& sum) const {
+void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const {
     Vec3f wo, reflectance;
     if (!point.bsdf.reflect(lobe, wo, reflectance)) return;
     const int count = varies ? point.sample_count : 1;
@@ -261,7 +263,7 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
             if (!lamp.reaches_glossy() || !lamp.meets(place.time, place.p, wo, sample)) continue;
             const Vec3f value = reflectance * lamp.glossy() * sample.radiance;
             const Vec3f seen = shadow(grid, point, place, lamp, sample);
-            sum += value * seen;
+            grid.radiance[point.index] += value * seen;
             grid.add_lamp(point.index, {Vec3f(0.0f), value}, seen);
         }
         if (environment) open += reflectance * occlusion(grid, point, place, wo);
@@ -269,25 +271,26 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
     grid.look(grid.sharp, point.index, wo, {Vec3f(0.0f), open});
 }
 
-void DirectLight::Impl::light_point(LitGrid& grid, LitPoint& point) const {
-    Vec3f sum(0.0f);
-    const std::size_t lobes = point.bsdf.lobe_count();
-    point.samples.assign(lobes, 0);
-    for (std::size_t k = 0; k < lobes; ++k)
-        if (!point.bsdf.is_sharp(k))
-            point.samples[k] =
-                std::max(1, static_cast<int>(std::lround(point.bsdf.importance(k) *
-                                                         static_cast<float>(point.sample_count))));
-    for (std::size_t l = 0; l < lamps.size(); ++l)
-        sample_lamp(grid, point, lamps[l], 1 + lobes + l, sum);
-    sample_world(grid, point);
-    for (std::size_t k = 0; k < lobes; ++k) {
-        if (point.bsdf.is_sharp(k))
-            mirror(grid, point, k, sum);
-        else
-            sample_lobe(grid, point, k, sum);
+/// Lamp by lamp, so that their rays keep together, then what only lobes find.
+void DirectLight::Impl::light_points(LitGrid& grid, const std::vector<LitPoint>& points) const {
+    ShadowQueue shadows(rays.get(), grid);
+    for (std::size_t l = 0; l < lamps.size(); ++l) {
+        for (const LitPoint& point : points) {
+            progress.check();
+            sample_lamp(grid, point, lamps[l], 1 + point.bsdf.lobe_count() + l, shadows);
+        }
+        shadows.deliver();
     }
-    grid.radiance[point.index] += sum;
+    for (const LitPoint& point : points) {
+        progress.check();
+        sample_world(grid, point);
+        for (std::size_t k = 0; k < point.bsdf.lobe_count(); ++k) {
+            if (point.bsdf.is_sharp(k))
+                mirror(grid, point, k);
+            else
+                sample_lobe(grid, point, k);
+        }
+    }
 }
 
 void DirectLight::Impl::look(LitGrid& grid, const WorldLooks& looks, float spread) const {
@@ -329,9 +332,10 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     // Points that lie closer share the light that a pixel's worth of them is due.
     const int sample_count = std::max(
         1, static_cast<int>(std::lround(points.share * static_cast<float>(m_impl->sample_count))));
+    std::vector<LitPoint> lit;
+    lit.reserve(dark ? 0 : points.count);
     for (std::size_t i = 0; i < points.count; ++i) {
-        m_impl->progress.check();
-        const PointBsdf bsdf(closure, points, i, albedo);
+        PointBsdf bsdf(closure, points, i, albedo);
         if (bsdf.lobe_count() == 0) continue;
         if (parts) {
             const BsdfValue color = bsdf.albedo();
@@ -352,9 +356,11 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
             points.columns == 0 ? i
                                 : morton_index(static_cast<std::uint32_t>(i % points.columns),
                                                static_cast<std::uint32_t>(i / points.columns)));
-        LitPoint point{i, bsdf, paths, lift, at_frame, sample_count, seed, place, exposed, {}};
-        m_impl->light_point(grid, point);
+        lit.push_back(
+            {i, std::move(bsdf), paths, lift, at_frame, sample_count, seed, place, exposed, {}});
+        lit.back().share_samples();
     }
+    m_impl->light_points(grid, lit);
     if (m_impl->environment) m_impl->look(grid, grid.blurred, m_impl->environment->texel_angle());
     m_impl->look(grid, grid.sharp, grid.sharp.spread());
     m_impl->statistics.add(Counter::RaysShadow, grid.shadow_rays);

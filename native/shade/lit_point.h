@@ -21,9 +21,9 @@ struct LitPlace {
 /// A shaded point while it is lit.
 struct LitPoint {
     std::size_t index;
-    const PointBsdf& bsdf;
+    PointBsdf bsdf;
     const PointPaths& paths;
-    const RayLift& lift;
+    RayLift lift;
     LitPlace at_frame;
     int sample_count = 1;       ///< of a soft light, of the world's image, of all lobes together
     std::uint64_t seed;         ///< of the grid
@@ -31,6 +31,14 @@ struct LitPoint {
     Vec2f exposed{0.0f, 1.0f};  ///< the part of the shutter's light that it is there for
     std::vector<int> samples;   ///< [lobes] taken of each lobe; 0 for sharp ones
 
+    void share_samples() {
+        samples.assign(bsdf.lobe_count(), 0);
+        for (std::size_t k = 0; k < samples.size(); ++k)
+            if (!bsdf.is_sharp(k))
+                samples[k] =
+                    std::max(1, static_cast<int>(std::lround(bsdf.importance(k) *
+                                                             static_cast<float>(sample_count))));
+    }
     /// This point's `count` samples of a sequence that the grid shares.  Each takes as many as it
     /// uses: if all left out the ends of equal runs, all would miss the same strata.
     SobolPoints sequence(std::uint64_t dimension, int count) const {

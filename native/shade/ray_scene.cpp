@@ -41,6 +41,9 @@ constexpr std::size_t kMostKnots = RTC_MAX_TIME_STEP_COUNT;
 /// Boxes of moving casters that a ray is tested against one by one; more are merged.
 constexpr std::size_t kMostWays = 16;
 
+/// Rays traced at once.
+constexpr std::size_t kPacket = 16;
+
 /// Slabs (Kay and Kajiya 1986); a ray inside a slab's plane, where 0 times infinity is no number,
 /// counts as meeting it.
 bool meets_box(const Bounds3f& box, const Vec3f& start, const Vec3f& direction, float distance) {
@@ -129,6 +132,7 @@ struct RayScene::Impl {
     std::vector<std::unique_ptr<RayShape>> shapes;  ///< [geometries] nullptr = casts no shadow
     std::vector<Handle<RTCScene>> geometries;       ///< [geometries]
     Handle<RTCScene> top;
+    bool all_opaque = true;              ///< and there throughout: no hit is looked at
     std::vector<Bounds3f> ways;          ///< what moving casters sweep, a few boxes
     std::vector<RayInstance> instances;  ///< by Embree's id in `top`
     std::unordered_map<std::uint32_t, std::uint32_t> by_key;  ///< Instance::key to that id
@@ -320,6 +324,7 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacit
     impl.geometries.resize(scene.geometries.size());
     for (std::size_t g = 0; g < uses.size(); ++g) {
         progress.check();
+        if (uses[g] & ~kCasts) impl.all_opaque = false;
         if (uses[g]) impl.build_geometry(static_cast<int>(g), uses[g], progress);
     }
     impl.top.reset(rtcNewScene(impl.device.get()));
@@ -367,27 +372,52 @@ bool RayScene::varies(const Vec3f& start, const Vec3f& direction, float distance
     });
 }
 
-Vec3f RayScene::transmittance(const Vec3f& start, const Vec3f& direction, float distance) const {
-    return transmittance(start, direction, distance, m_impl->scene.options.frame_time);
-}
-
-Vec3f RayScene::transmittance(const Vec3f& start, const Vec3f& direction, float distance,
-                              float time) const {
+Vec3f RayScene::transmittance(const ShadowRay& shadow) const {
     ShadowContext context{};
     rtcInitIntersectContext(&context.embree);
     context.scene = m_impl.get();
-    context.start = start;
-    context.direction = direction;
+    context.start = shadow.start;
+    context.direction = shadow.direction;
     RTCRay ray{};
-    ray.org_x = start.x, ray.org_y = start.y, ray.org_z = start.z;
-    ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
+    ray.org_x = shadow.start.x, ray.org_y = shadow.start.y, ray.org_z = shadow.start.z;
+    ray.dir_x = shadow.direction.x, ray.dir_y = shadow.direction.y, ray.dir_z = shadow.direction.z;
     ray.tnear = 0.0f;
-    ray.tfar = distance;
-    ray.time = time;
+    ray.tfar = shadow.distance;
+    ray.time = shadow.time;
     ray.mask = ~0u;
     rtcOccluded1(m_impl->top.get(), &context.embree, &ray);
     if (context.failure) std::rethrow_exception(context.failure);
     return ray.tfar < 0.0f ? Vec3f(0.0f) : context.left;
+}
+
+void RayScene::transmittances(std::span<const ShadowRay> rays, std::span<Vec3f> left) const {
+    if (!m_impl->all_opaque) {
+        for (std::size_t i = 0; i < rays.size(); ++i) left[i] = transmittance(rays[i]);
+        return;
+    }
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+        const std::size_t count = std::min(kPacket, rays.size() - first);
+        alignas(64) RTCRay16 packet{};
+        alignas(64) int valid[kPacket]{};
+        for (std::size_t i = 0; i < count; ++i) {
+            const ShadowRay& ray = rays[first + i];
+            packet.org_x[i] = ray.start.x;
+            packet.org_y[i] = ray.start.y;
+            packet.org_z[i] = ray.start.z;
+            packet.dir_x[i] = ray.direction.x;
+            packet.dir_y[i] = ray.direction.y;
+            packet.dir_z[i] = ray.direction.z;
+            packet.tfar[i] = ray.distance;
+            packet.time[i] = ray.time;
+            packet.mask[i] = ~0u;
+            valid[i] = -1;
+        }
+        rtcOccluded16(valid, m_impl->top.get(), &context, &packet);
+        for (std::size_t i = 0; i < count; ++i)
+            left[first + i] = Vec3f(packet.tfar[i] < 0.0f ? 0.0f : 1.0f);
+    }
 }
 
 }  // namespace granita

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 
 #include "base/progress.h"
 #include "dice/grid.h"
@@ -37,6 +38,13 @@ struct RayLift {
     }
 };
 
+/// A way of light, in shading space.
+struct ShadowRay {
+    Vec3f start, direction;  ///< direction is unit
+    float distance;          ///< metres; may be infinite
+    float time = 0.5f;       ///< of the shutter, [0, 1]
+};
+
 class RayScene {
   public:
     /// `origin`: the camera's world position.  Only instances that cast shadows are in it.  Throws
@@ -56,12 +64,10 @@ class RayScene {
     /// Of the points of a grid, or of those that lie on one face of several (ShadingPlaces::faces).
     RayLift lift(const GridKey& key) const;
 
-    /// Share of light that passes along the segment at a shutter time in [0, 1], per channel.
-    /// `direction` is unit.
-    Vec3f transmittance(const Vec3f& start, const Vec3f& direction, float distance,
-                        float time) const;
-    /// The same at the frame time.
-    Vec3f transmittance(const Vec3f& start, const Vec3f& direction, float distance) const;
+    /// Share of light that passes, per channel.
+    Vec3f transmittance(const ShadowRay& ray) const;
+    /// The same of many, bit by bit; fastest where neighbours in the list go the same way.
+    void transmittances(std::span<const ShadowRay> rays, std::span<Vec3f> left) const;
 
   private:
     struct Impl;

@@ -46,7 +46,7 @@ std::vector<Vec3f> line(float y) {
 }
 
 bool blocked(const RayScene& rays, const Vec3f& from, float time = 0.5f) {
-    return rays.transmittance(from, kUp, kInfinity, time) == Vec3f(0.0f);
+    return rays.transmittance({from, kUp, kInfinity, time}) == Vec3f(0.0f);
 }
 
 TEST(RayElements, a_curve_blocks_as_far_as_its_radius) {
@@ -133,7 +133,7 @@ TEST(RayElements, transparent_ones_tell_where_they_were_met) {
     };
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
-    const Vec3f left = rays.transmittance({0.6f, 1.02f, 0}, kUp, kInfinity);
+    const Vec3f left = rays.transmittance({{0.6f, 1.02f, 0}, kUp, kInfinity});
     EXPECT_EQ(curves, 1);
     EXPECT_GE(points, 1);
     EXPECT_EQ(left, Vec3f(0.5f * std::pow(0.25f, static_cast<float>(points))));
@@ -170,7 +170,7 @@ float passing(Scene scene) {
                 const Vec3f direction(r * std::cos(a), r * std::sin(a), z);
                 if (glm::dot(direction, grid->normal[i]) < 0.02f) continue;
                 ++cast;
-                passed += rays.transmittance(start, direction, kInfinity) == Vec3f(1.0f);
+                passed += rays.transmittance({start, direction, kInfinity}) == Vec3f(1.0f);
             }
         }
     };

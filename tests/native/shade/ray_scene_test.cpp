@@ -55,17 +55,27 @@ TEST(RayScene, a_square_blocks_exactly_the_rays_through_it) {
     // A lamp at height 2 above the square's centre doubles its shadow on the floor.
     const Vec3f lamp(2, 0, 2);
     const SobolPoints points(1);
+    std::vector<ShadowRay> ways;
+    std::vector<Vec3f> expected;
     for (std::uint32_t i = 0; i < 4096; ++i) {
         const Vec2f u = points(i) * 4.0f - 2.0f;
         const float edge = std::max(std::abs(u.x), std::abs(u.y)) - 1.0f;
         if (std::abs(edge) < 1e-5f) continue;
         const Vec3f p(2 + u.x, u.y, 0), d = lamp - p;
-        const Vec3f left = rays.transmittance(p, glm::normalize(d), glm::length(d));
-        EXPECT_EQ(left, Vec3f(edge < 0 ? 0.0f : 1.0f)) << u.x << " " << u.y;
+        ways.push_back({p, glm::normalize(d), glm::length(d)});
+        expected.emplace_back(edge < 0 ? 0.0f : 1.0f);
+        EXPECT_EQ(rays.transmittance(ways.back()), expected.back()) << u.x << " " << u.y;
+    }
+    // Many at once, also where they are no whole number of packets.
+    for (const std::size_t count :
+         {ways.size(), std::size_t{37}, std::size_t{16}, std::size_t{1}}) {
+        std::vector<Vec3f> left(count);
+        rays.transmittances({ways.data(), count}, left);
+        EXPECT_TRUE(std::equal(left.begin(), left.end(), expected.begin()));
     }
     // What lies beyond the lamp casts no shadow.
-    EXPECT_EQ(rays.transmittance({2, 0, 0}, kUp, 0.9f), Vec3f(1.0f));
-    EXPECT_EQ(rays.transmittance({2, 0, 0}, kUp, kInfinity), Vec3f(0.0f));
+    EXPECT_EQ(rays.transmittance({{2, 0, 0}, kUp, 0.9f}), Vec3f(1.0f));
+    EXPECT_EQ(rays.transmittance({{2, 0, 0}, kUp, kInfinity}), Vec3f(0.0f));
     EXPECT_GT(rays.bytes(), 0u);
 }
 
@@ -83,8 +93,18 @@ TEST(RayScene, stands_at_the_frame_time_between_knots) {
     scene.options.frame_time = 0.5f;
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), {}, progress);
-    EXPECT_EQ(rays.transmittance({1, 0, 0}, kUp, kInfinity), Vec3f(0.0f));
-    EXPECT_EQ(rays.transmittance({-1, 0, 0}, kUp, kInfinity), Vec3f(1.0f));
+    EXPECT_EQ(rays.transmittance({{1, 0, 0}, kUp, kInfinity}), Vec3f(0.0f));
+    EXPECT_EQ(rays.transmittance({{-1, 0, 0}, kUp, kInfinity}), Vec3f(1.0f));
+    // Each ray of many has its own time: the square is at -1 + 4 t.
+    std::vector<ShadowRay> ways;
+    for (int i = 0; i <= 20; ++i)
+        ways.push_back({{-1.0f + 0.2f * static_cast<float>(i), 0, 0}, kUp, kInfinity, 0.25f});
+    std::vector<Vec3f> left(ways.size());
+    rays.transmittances(ways, left);
+    for (std::size_t i = 0; i < left.size(); ++i) EXPECT_EQ(left[i], Vec3f(i == 5 ? 0.0f : 1.0f));
+    for (ShadowRay& way : ways) way.time = 0.25f * (way.start.x + 1.0f);
+    rays.transmittances(ways, left);
+    for (const Vec3f& passes : left) EXPECT_EQ(passes, Vec3f(0.0f));
 }
 
 TEST(RayScene, keeps_its_bits_far_from_the_worlds_origin) {
@@ -93,8 +113,8 @@ TEST(RayScene, keeps_its_bits_far_from_the_worlds_origin) {
     add_instance(scene, square(0.5f), at(far + Vec3d(0, 0, 1)));
     const Progress progress;
     const RayScene rays(scene, far, {}, progress);
-    EXPECT_EQ(rays.transmittance({0.4999f, 0, 0}, kUp, kInfinity), Vec3f(0.0f));
-    EXPECT_EQ(rays.transmittance({0.5001f, 0, 0}, kUp, kInfinity), Vec3f(1.0f));
+    EXPECT_EQ(rays.transmittance({{0.4999f, 0, 0}, kUp, kInfinity}), Vec3f(0.0f));
+    EXPECT_EQ(rays.transmittance({{0.5001f, 0, 0}, kUp, kInfinity}), Vec3f(1.0f));
 }
 
 TEST(RayScene, lifted_points_of_a_limit_surface_do_not_shade_themselves) {
@@ -126,9 +146,10 @@ TEST(RayScene, lifted_points_of_a_limit_surface_do_not_shade_themselves) {
             const Vec3f start = rays.lift(key)(p, n);
             EXPECT_LT(glm::length(start - p), 0.02f);  // the lift stays small
             const Vec3f local = sample_cone(points(i + 1000), 0.98f);
-            EXPECT_EQ(rays.transmittance(start, Frame(n).to_world(local), kInfinity), Vec3f(1.0f));
+            EXPECT_EQ(rays.transmittance({start, Frame(n).to_world(local), kInfinity}),
+                      Vec3f(1.0f));
             // And it is solid: looking inwards is dark.
-            EXPECT_EQ(rays.transmittance(start, -n, kInfinity), Vec3f(0.0f));
+            EXPECT_EQ(rays.transmittance({start, -n, kInfinity}), Vec3f(0.0f));
             ++tested;
         }
     }
@@ -150,7 +171,7 @@ TEST(RayScene, lifted_points_of_scaled_and_twisted_quads_do_not_shade_themselves
         const float z = 0.1f * (1 - 2 * u.x) * (1 - 2 * u.y);  // the bilinear patch
         const Vec3f p(500 + 10 * u.x, 10 * u.y, 10 * z);
         const Vec3f n = glm::normalize(Vec3f(0.2f * (1 - 2 * u.y), 0.2f * (1 - 2 * u.x), 1.0f));
-        EXPECT_EQ(rays.transmittance(rays.lift({0, 0, 1})(p, n), kUp, kInfinity), Vec3f(1.0f));
+        EXPECT_EQ(rays.transmittance({rays.lift({0, 0, 1})(p, n), kUp, kInfinity}), Vec3f(1.0f));
     }
 }
 
@@ -188,13 +209,14 @@ TEST(RayScene, transparent_materials_multiply_and_opaque_ones_end) {
     };
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
-    EXPECT_EQ(rays.transmittance({0.5f, 0.2f, 0}, kUp, kInfinity), Vec3f(1.0f));
-    EXPECT_EQ(rays.transmittance({-0.5f, 0.2f, 0}, kUp, kInfinity), Vec3f(0.125f, 0.015625f, 1.0f));
-    EXPECT_EQ(rays.transmittance({-0.5f, 0.2f, 0}, kUp, 2.5f), Vec3f(0.25f, 0.0625f, 1.0f));
+    EXPECT_EQ(rays.transmittance({{0.5f, 0.2f, 0}, kUp, kInfinity}), Vec3f(1.0f));
+    EXPECT_EQ(rays.transmittance({{-0.5f, 0.2f, 0}, kUp, kInfinity}),
+              Vec3f(0.125f, 0.015625f, 1.0f));
+    EXPECT_EQ(rays.transmittance({{-0.5f, 0.2f, 0}, kUp, 2.5f}), Vec3f(0.25f, 0.0625f, 1.0f));
 
     scene.instances[1].materials = {1};
     const RayScene blocked(scene, Vec3d(0.0), opacity, progress);
-    EXPECT_EQ(blocked.transmittance({0.5f, 0.2f, 0}, kUp, kInfinity), Vec3f(0.0f));
+    EXPECT_EQ(blocked.transmittance({{0.5f, 0.2f, 0}, kUp, kInfinity}), Vec3f(0.0f));
 }
 
 TEST(RayScene, casters_are_there_for_their_part_of_the_shutter) {
@@ -216,7 +238,7 @@ TEST(RayScene, casters_are_there_for_their_part_of_the_shutter) {
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
     const auto left = [&](float time, float distance) {
-        return rays.transmittance({0.3f, 0.2f, 0}, kUp, distance, time);
+        return rays.transmittance({{0.3f, 0.2f, 0}, kUp, distance, time});
     };
     const float last = std::nextafter(0.37f, 0.0f);
     for (const float time : {0.0f, 0.2f, last}) EXPECT_EQ(left(time, kInfinity), Vec3f(0.0f));
@@ -254,7 +276,7 @@ TEST(RayScene, hits_on_a_limit_surface_name_the_patch_and_the_place_on_it) {
     };
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
-    EXPECT_EQ(rays.transmittance({0.33f, -0.71f, -3}, kUp, kInfinity), Vec3f(0.25f));
+    EXPECT_EQ(rays.transmittance({{0.33f, -0.71f, -3}, kUp, kInfinity}), Vec3f(0.25f));
     EXPECT_EQ(seen.size(), 2u);
 }
 
@@ -292,7 +314,7 @@ TEST(RayScene, hits_on_what_moves_and_what_stands_still_of_a_mesh_name_their_fac
     for (std::uint32_t f = 0; f < 4; ++f)
         for (const float x : {0.3f, 0.7f}) {
             const Vec3f start(x + 2.0f * static_cast<float>(f), -0.5f, 9.0f);
-            EXPECT_EQ(rays.transmittance(start, -kUp, kInfinity, 0.25f), Vec3f(0.5f));
+            EXPECT_EQ(rays.transmittance({start, -kUp, kInfinity, 0.25f}), Vec3f(0.5f));
             EXPECT_EQ(face, f);
             EXPECT_NEAR(height, f % 2 == 0 ? 1.0f : 2.0f, 1e-5f);
         }
@@ -307,7 +329,7 @@ TEST(RayScene, an_error_inside_a_material_comes_out_of_the_ray) {
     opacity.transparency = [](const ShadowHit&) -> Vec3f { throw SceneError("material 'M'", "x"); };
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
-    EXPECT_THROW(rays.transmittance({0, 0, 0}, kUp, kInfinity), SceneError);
+    EXPECT_THROW(rays.transmittance({{0, 0, 0}, kUp, kInfinity}), SceneError);
 }
 
 TEST(RayScene, stops_when_cancelled) {
@@ -328,7 +350,7 @@ TEST(RayScene, broken_faces_and_flat_transforms_neither_cast_nor_harm) {
     add_instance(scene, square(1), flat);
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), {}, progress);
-    EXPECT_EQ(rays.transmittance({0, 0, 0}, kUp, kInfinity), Vec3f(1.0f));
+    EXPECT_EQ(rays.transmittance({{0, 0, 0}, kUp, kInfinity}), Vec3f(1.0f));
 }
 
 // Half a millimetre under a lid, on a mesh that goes on for ten kilometres.
@@ -355,13 +377,13 @@ TEST(RayScene, a_small_detail_of_a_huge_mesh_keeps_its_contact_shadow) {
         const Vec3f direction = glm::normalize(Vec3f(u.x - 0.5f, u.y - 0.5f, 1.0f));
         const Vec3f below(5.1f + 0.8f * u.y, 5.1f + 0.8f * u.x, 1.0f);
         const Vec3f start = rays.lift({0, 1, 1})(below, kUp);
-        EXPECT_EQ(rays.transmittance(start, direction, kInfinity), Vec3f(0.0f));
+        EXPECT_EQ(rays.transmittance({start, direction, kInfinity}), Vec3f(0.0f));
         // Neither lid nor land shades itself.
         const Vec3f above = rays.lift({0, 2, 1})(Vec3f(below.x, below.y, 1.0005f), kUp);
-        EXPECT_EQ(rays.transmittance(above, direction, kInfinity), Vec3f(1.0f));
+        EXPECT_EQ(rays.transmittance({above, direction, kInfinity}), Vec3f(1.0f));
         const Vec3f far_away(9000.0f * u.x + 100.0f, 9000.0f * u.y + 100.0f, -50.0f);
         const Vec3f land = rays.lift({0, 0, 1})(far_away, kUp);
-        EXPECT_EQ(rays.transmittance(land, direction, kInfinity), Vec3f(1.0f));
+        EXPECT_EQ(rays.transmittance({land, direction, kInfinity}), Vec3f(1.0f));
     }
 }
 
