@@ -83,13 +83,8 @@ class FlockFinder {
         m_samples = blocks * blocks * static_cast<float>(tile.ranks);
     }
 
-    /// Micropolygon (i, j) of the flock has bit j * pitch + i.
-    static int pitch(const Patch& flock) {
-        return (flock.n_u + ShapeRow::kWide - 1) / ShapeRow::kWide * ShapeRow::kWide;
-    }
-
-    /// Nowhere: not over the tile.  Loose: they part, or are few; `path` and `slices` are
-    /// undefined.
+    /// Micropolygon (i, j) of the flock has bit j * n_u + i.  Nowhere: not over the tile.  Loose:
+    /// they part, or are few; `path` and `slices` are undefined.
     template <bool kMoving, Lens kLens>
     PatchFinder::Found find(const Patch& flock, int segment, PatchPath& path, FlockSlices& slices) {
         using Found = PatchFinder::Found;
@@ -122,10 +117,7 @@ class FlockFinder {
     struct RowVector {
         int vertex, bin;
         std::uint32_t touched;  ///< bit i: micropolygon i of them is over the tile
-        HWY_INLINE M lanes() const {
-            const auto bit = hn::Shl(hn::Set(kIdTag, 1), hn::Iota(kIdTag, 0));
-            return hn::RebindMask(kTag, hn::TestBit(hn::Set(kIdTag, touched), bit));
-        }
+        HWY_INLINE M lanes() const { return lanes_of(touched); }
     };
 
     /// Those over the tile, and when any is.
@@ -146,7 +138,7 @@ class FlockFinder {
                     t0 = hn::Min(t0, hn::IfThenElse(touched, open, t0));
                     t1 = hn::Max(t1, hn::IfThenElse(touched, close, t1));
                 }
-                const int bin = j * pitch(flock) + i;
+                const int bin = j * flock.n_u + i;
                 m_vector[m_vectors++] = {vertex, bin, bits_of(touched)};
                 m_bits |= std::uint64_t{bits_of(touched)} << bin;
             }

@@ -64,6 +64,7 @@ GridClasses classify(const Grid& grid) {
             const Grid::Corners c{v0, v0 + grid.right(), v0 + grid.right() + up, v0 + up};
             if (!all_finite && !(finite(c.v0) && finite(c.v1) && finite(c.v2) && finite(c.v3))) {
                 ++out.dropped;
+                out.common = 0;
                 continue;
             }
             std::uint8_t kind = grid.opacity_varies ? opacity_class(grid, c)
@@ -73,6 +74,8 @@ GridClasses classify(const Grid& grid) {
             if (diagonal || coincide(c.v2, c.v3) || coincide(c.v3, c.v0)) kind &= ~kTriangleB;
             if ((kind & (kTriangleA | kTriangleB)) == 0) kind = 0;
             out.classes[m] = kind;
+            out.common &= kind;
+            out.occurring |= kind;
             if (!(kind & kTransparent)) continue;
             if (out.opacity.empty()) out.opacity.resize(out.classes.size());
             out.opacity[m] = opacity_bounds(grid, c);

@@ -13,8 +13,9 @@ namespace granita {
 inline constexpr std::uint8_t kTransparent = 4;
 
 struct GridClasses {
-    std::vector<std::uint8_t> classes;   ///< [micropolygons]
-    std::uint64_t dropped = 0;           ///< micropolygons with a vertex that is not finite
+    std::vector<std::uint8_t> classes;          ///< [micropolygons]
+    std::uint8_t common = 0xff, occurring = 0;  ///< bits that all classes have, and that any has
+    std::uint64_t dropped = 0;                  ///< micropolygons with a vertex that is not finite
     std::vector<OpacityBounds> opacity;  ///< [micropolygons] where any is transparent, else empty
 };
 

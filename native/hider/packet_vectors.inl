@@ -23,6 +23,11 @@ HWY_INLINE std::uint32_t bits_of(M mask) {
     hn::StoreMaskBits(kTag, mask, bytes);
     return bytes[0] | (bytes[1] << 8);
 }
+/// Lane i: bit i.
+HWY_INLINE M lanes_of(std::uint32_t bits) {
+    const auto bit = hn::Shl(hn::Set(kIdTag, 1), hn::Iota(kIdTag, 0));
+    return hn::RebindMask(kTag, hn::TestBit(hn::Set(kIdTag, bits), bit));
+}
 /// Calls visit(i) for every bit i that is set.
 template <class Bits, class Visit>
 HWY_INLINE void for_each_bit(Bits bits, Visit visit) {

@@ -14,6 +14,9 @@ struct PatchFrame {
     /// x * dx + y * dy + origin, dx and dy pixels from the patch's path.
     struct Axis {
         float x, y, origin, reach;
+
+        /// Micropolygons side by side that a sample may be near to.
+        int most_near() const { return reach < 0.5f ? 2 : 3; }
     } u, v;
 };
 
@@ -70,8 +73,10 @@ class PatchFinder {
     }
 
   private:
-    /// Then a sample is near to two by two micropolygons at most.
-    static constexpr float kMostReach = 0.5f;
+    /// On an axis: then a sample is near to three micropolygons at most.
+    static constexpr float kMostReach = 1.0f;
+    /// Of the samples that each micropolygon is tested against, by those that it covers.
+    static constexpr float kMostTests = 4.0f;
     static constexpr int kMost = (Patch::kSide + 1) * (Patch::kSide + 1) + 2 * kPacket;
 
     /// By the bounds over the whole segment and lens.
@@ -186,10 +191,12 @@ class PatchFinder {
             axis.origin = 0.5f * (least + most);
             axis.reach = 0.5f * (most - least) + std::fabs(axis.x) * slack_x +
                          std::fabs(axis.y) * slack_y + 0x1p-16f;
-            return axis.reach < kMostReach;  // false where it is not a number
         };
-        const bool along_u = bound(u_lo, u_hi, u), along_v = bound(v_lo, v_hi, v);
-        return along_u && along_v;
+        bound(u_lo, u_hi, u);
+        bound(v_lo, v_hi, v);
+        // False where one is not a number.
+        return u.reach < kMostReach && v.reach < kMostReach &&
+               (1.0f + 2.0f * u.reach) * (1.0f + 2.0f * v.reach) < kMostTests;
     }
 
     const SimdGrid& m_grid;

@@ -73,6 +73,14 @@ void bound(const SimdGrid& grid, int segment, bool perspective, const VertexBoun
     }
 }
 
+void interleave(const SimdGrid& grid, std::size_t count, float* to) {
+    const hn::CappedTag<float, kLanePadding> tag;
+    for (std::size_t i = 0; i < count; i += hn::Lanes(tag))
+        hn::StoreInterleaved4(hn::LoadU(tag, grid.x + i), hn::LoadU(tag, grid.y + i),
+                              hn::LoadU(tag, grid.w + i), hn::LoadU(tag, grid.z + i), tag,
+                              to + 4 * i);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace granita
 HWY_AFTER_NAMESPACE();
@@ -82,6 +90,7 @@ namespace granita {
 
 HWY_EXPORT(project);
 HWY_EXPORT(bound);
+HWY_EXPORT(interleave);
 
 void project_vertices(const Projection& projection, const Vec2d& origin, std::size_t count,
                       const CameraPoints& from, const HomogeneousPoints& to) {
@@ -90,6 +99,10 @@ void project_vertices(const Projection& projection, const Vec2d& origin, std::si
 
 void bound_vertices(const SimdGrid& grid, int segment, bool perspective, const VertexBounds& to) {
     HWY_DYNAMIC_DISPATCH(bound)(grid, segment, perspective, to);
+}
+
+void interleave_corners(const SimdGrid& grid, std::size_t count, float* to) {
+    HWY_DYNAMIC_DISPATCH(interleave)(grid, count, to);
 }
 
 }  // namespace granita

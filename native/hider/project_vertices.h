@@ -28,4 +28,7 @@ void project_vertices(const Projection& projection, const Vec2d& origin, std::si
 /// at or behind the eye plane may be anywhere.
 void bound_vertices(const SimdGrid& grid, int segment, bool perspective, const VertexBounds& to);
 
+/// The corners as SimdGrid::corners.  `count`: of vertices at all knots.
+void interleave_corners(const SimdGrid& grid, std::size_t count, float* to);
+
 }  // namespace granita

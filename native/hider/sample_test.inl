@@ -5,7 +5,7 @@
 /// The micropolygon that is looked at, or several side by side.
 struct Target {
     int kind = 0;      ///< SimdGrid::classes; of several: bits that any has
-    SurfaceId id = 0;  ///< of the first
+    SurfaceId id = 0;  ///< of one
     int segment = 0;   ///< of its motion
 };
 
@@ -19,12 +19,12 @@ class SampleTest {
     SampleTest(const SimdGrid& grid, const Target& target)
         : m_grid(grid), m_target(target), m_appears(!grid.lifespan.is_whole()) {}
 
-    /// A vector of samples against the target, or those of a ShapeRow: which are covered, and
-    /// where.
+    /// A vector of samples against the target, or each against its own of a ShapeVector: which are
+    /// covered, and where.
     template <bool kMoving, Lens kLens, class S>
     HWY_INLINE M covers(const S& shape, Samples at, M valid, Hits& hits) {
         const V zero = set(0.0f);
-        const V local = kMoving ? local_time(at) : zero;
+        const V local = kMoving ? local_time(shape, at) : zero;
         const Offset<V> d0 = offset<kLens>(corner_at<kMoving>(shape, 0, local), at);
         const Offset<V> d1 = offset<kLens>(corner_at<kMoving>(shape, 1, local), at);
         const Offset<V> d2 = offset<kLens>(corner_at<kMoving>(shape, 2, local), at);
@@ -35,8 +35,8 @@ class SampleTest {
         if (hn::AllFalse(kTag, touched)) return touched;
         if (kMoving && m_grid.segments > 1) {
             touched = hn::And(touched, hn::Ge(local, zero));
-            if (m_target.segment + 1 < m_grid.segments)
-                touched = hn::And(touched, hn::Lt(local, set(1.0f)));
+            const M last = hn::Eq(shape.segment(), set(static_cast<float>(m_grid.segments - 1)));
+            touched = hn::And(touched, hn::Or(last, hn::Lt(local, set(1.0f))));
         }
         if (kMoving && m_appears)
             touched = hn::And(touched, hn::And(hn::Ge(at.t, set(m_grid.lifespan.open)),
@@ -84,9 +84,9 @@ class SampleTest {
     };
 
     /// Time of the samples in the segment, which may lie outside [0, 1].
-    HWY_INLINE V local_time(const Samples& at) const {
-        return at.t * set(static_cast<float>(m_grid.segments)) -
-               set(static_cast<float>(m_target.segment));
+    template <class S>
+    HWY_INLINE V local_time(const S& shape, const Samples& at) const {
+        return at.t * set(static_cast<float>(m_grid.segments)) - shape.segment();
     }
 
     template <bool kMoving, class S>
@@ -111,14 +111,14 @@ class SampleTest {
         if (shape.kind & kTriangleB) side = second_side(e);
         return side;
     }
-    static HWY_INLINE Side first_of(const ShapeRow& row, const PairEdges& e) {
-        return within(row.lanes_with(kTriangleA), first_side(e));
+    static HWY_INLINE Side first_of(const ShapeVector& shapes, const PairEdges& e) {
+        return within(shapes.lanes_with(kTriangleA), first_side(e));
     }
-    static HWY_INLINE Side second_of(const ShapeRow& row, const PairEdges& e) {
-        return within(row.lanes_with(kTriangleB), second_side(e));
+    static HWY_INLINE Side second_of(const ShapeVector& shapes, const PairEdges& e) {
+        return within(shapes.lanes_with(kTriangleB), second_side(e));
     }
     static int kind_of(const Shape& shape, int) { return shape.kind; }
-    static int kind_of(const ShapeRow& row, int lane) { return row.kind[lane % ShapeRow::kWide]; }
+    static int kind_of(const ShapeVector& shapes, int lane) { return shapes.kind(lane); }
 
     template <Lens kLens>
     HWY_INLINE Offset<V> offset(const Corner<V>& c, const Samples& at) const {
@@ -136,7 +136,7 @@ class SampleTest {
         Samples at;
         at.for_each<kMoving, kLens>([&](V& value, int k)
                                         HWY_ATTR { value = hn::LoadU(kTag, exact.samples[k]); });
-        const V local = kMoving ? local_time(at) : set(0.0f);
+        const V local = kMoving ? local_time(shape, at) : set(0.0f);
         alignas(64) float values[4][4][kPacket];
         for (int k = 0; k < 4; ++k) {
             const Corner<V> c = corner_at<kMoving>(shape, k, local);

@@ -150,6 +150,8 @@ class SimdHider : public Hider {
         WorkingTile& working = *m_working[i].tile;
         SimdGrid simd_grid;
         m_tile_grid.project(m_tiles.origin(i), simd_grid);
+        simd_grid.common = classes.common;
+        simd_grid.occurring = classes.occurring;
         simd_grid.finite = classes.dropped == 0;
         simd_grid.classes = classes.classes.data();
         simd_grid.base = base;

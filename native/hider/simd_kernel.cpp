@@ -40,7 +40,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Those that need them.
 #include "hider/flock.inl"
 #include "hider/hit_recorder.inl"
-#include "hider/patch_bins.inl"
+#include "hider/near_samples.inl"
 
 class Kernel {
   public:
@@ -85,6 +85,7 @@ class Kernel {
                             visit_row<kMoving, kLens>(i + k, j, loose >> k);
                 }
         }
+        if constexpr (kMoving || kLens != Lens::None) test_near<kMoving, kLens>();
     }
 
     /// The whole grid; what parts is looked at one by one.
@@ -168,76 +169,130 @@ class Kernel {
         }
     }
 
-    /// The samples of a patch's windows, sorted by the micropolygons that they may see: find_bins()
-    /// adds those of a vector, for_each() tells the bins of each.
-    template <bool kMoving, Lens kLens, class FindBins, class ForEach>
-    HWY_INLINE void visit_together(const Patch& patch, int pitch, const PatchPath& path,
-                                   FindBins find_bins, ForEach for_each) {
-        const bool cull = path.nearest < m_tile.nearest_of_ranks;
-        const auto test = [&](int number, const PatchBins::Row& row) HWY_ATTR {
-            const int bin = number * PatchBins::kRow;
-            test_row<kMoving, kLens>(patch.i + bin % pitch, patch.j + bin / pitch, row);
-        };
+    /// Calls visit(samples, slots, x, y) for the samples of a patch's windows; x, y: from where the
+    /// patch is then.
+    template <bool kMoving, Lens kLens, class Visit>
+    HWY_INLINE void visit_together(Visit visit) {
+        const bool cull = m_patch.nearest < m_tile.nearest_of_ranks;
         visit_windows<kMoving, kLens>(
-            path.times, 0,
+            m_patch.times, 0,
             [&](int first, RankPaths& paths) HWY_ATTR {
                 return m_paths.follow<kMoving, kLens, RankPathFinder::kAllSquares>(
-                    path.paths, 0, m_target.segment, first, cull, paths);
+                    m_patch.paths, 0, m_target.segment, first, cull, paths);
             },
             [&](const RankPaths&, int, const Samples& at, V slots, V x, V y) HWY_ATTR
-            __attribute__((always_inline)) {
-                find_bins(at, slots, x, y);
-                if (HWY_UNLIKELY(m_bins.full())) m_bins.distribute<kMoving, kLens>(for_each, test);
-            });
-        m_bins.distribute<kMoving, kLens>(for_each, test);
-        m_bins.empty_all(test);
+            __attribute__((always_inline)) { visit(at, slots, x, y); });
+    }
+
+    /// Samples of the segment at hand, with its ends: ranks may be longer than it.
+    template <bool kMoving>
+    HWY_INLINE M in_segment(const Samples& at, M samples) const {
+        if (!kMoving || m_grid.segments == 1) return samples;
+        const V local = at.t * set(static_cast<float>(m_grid.segments)) -
+                        set(static_cast<float>(m_target.segment));
+        return hn::And(samples, hn::And(hn::Ge(local, set(0.0f)), hn::Le(local, set(1.0f))));
+    }
+
+    /// The samples of the mask wait for the micropolygon in their lane (NearSamples::add).
+    template <bool kMoving, Lens kLens>
+    HWY_INLINE void queue(M mask, const Samples& at, V slots, hn::Vec<IntTag> index,
+                          hn::Vec<IntTag> corner) {
+        m_near.add<kMoving, kLens>(mask, at, slots, index, corner,
+                                   static_cast<float>(m_target.segment));
+        if (HWY_UNLIKELY(m_near.full())) test_near<kMoving, kLens>();
     }
 
     template <bool kMoving, Lens kLens>
     void visit_patch(const Patch& patch) {
         const PatchFrame& frame = m_patch.frame;
         const V n_u = set(static_cast<float>(patch.n_u)), n_v = set(static_cast<float>(patch.n_v));
-        visit_together<kMoving, kLens>(
-            patch, Patch::kSide, m_patch,
-            [&](const Samples& at, V slots, V x, V y) HWY_ATTR __attribute__((always_inline)) {
-                const V zero = set(0.0f);
-                const V u = set(frame.u.x) * x + set(frame.u.y) * y + set(frame.u.origin);
-                const V v = set(frame.v.x) * x + set(frame.v.y) * y + set(frame.v.origin);
-                const V i0 = hn::Floor(u - set(frame.u.reach));
-                const V i1 = hn::Floor(u + set(frame.u.reach));
-                const V j0 = hn::Floor(v - set(frame.v.reach));
-                const V j1 = hn::Floor(v + set(frame.v.reach));
-                const M in_i0 = hn::And(hn::Ge(i0, zero), hn::Lt(i0, n_u));
-                const M in_j0 = hn::And(hn::Ge(j0, zero), hn::Lt(j0, n_v));
-                const M in_i1 = hn::And(hn::Gt(i1, i0), hn::And(hn::Ge(i1, zero), hn::Lt(i1, n_u)));
-                const M in_j1 = hn::And(hn::Gt(j1, j0), hn::And(hn::Ge(j1, zero), hn::Lt(j1, n_v)));
-                const auto add = [&](M mask, V i, V j) HWY_ATTR __attribute__((always_inline)) {
-                    if (hn::AllFalse(kTag, mask)) return;
-                    const V bin = i + j * set(static_cast<float>(Patch::kSide));
-                    m_bins.add<kMoving, kLens>(mask, at, slots, hn::ConvertTo(kIntTag, bin));
-                };
-                add(hn::And(in_i0, in_j0), i0, j0);
-                add(hn::And(in_i1, in_j0), i1, j0);
-                add(hn::And(in_i0, in_j1), i0, j1);
-                add(hn::And(in_i1, in_j1), i1, j1);
-            },
-            [](int bin, auto visit) HWY_ATTR { visit(bin); });
+        const V row = set(static_cast<float>(m_grid.n_u));
+        const V rise = set(static_cast<float>(m_grid.up));
+        const auto index = hn::Set(kIntTag, patch.j * m_grid.n_u + patch.i);
+        const auto corner =
+            hn::Set(kIntTag, m_target.segment * m_grid.vertices + patch.j * m_grid.up + patch.i);
+        const int most_u = frame.u.most_near(), most_v = frame.v.most_near();
+        visit_together<kMoving, kLens>([&](const Samples& at, V slots, V x,
+                                           V y) HWY_ATTR __attribute__((always_inline)) {
+            const V zero = set(0.0f);
+            const V u = set(frame.u.x) * x + set(frame.u.y) * y + set(frame.u.origin);
+            const V v = set(frame.v.x) * x + set(frame.v.y) * y + set(frame.v.origin);
+            const V u_lo = u - set(frame.u.reach), u_hi = u + set(frame.u.reach);
+            const V v_lo = v - set(frame.v.reach), v_hi = v + set(frame.v.reach);
+            // Most samples of a window are beside the patch.
+            const M near =
+                in_segment<kMoving>(at, hn::And(hn::And(hn::Lt(u_lo, n_u), hn::Ge(u_hi, zero)),
+                                                hn::And(hn::Lt(v_lo, n_v), hn::Ge(v_hi, zero))));
+            if (hn::AllFalse(kTag, near)) return;
+            const V i0 = hn::Floor(u_lo), i1 = hn::Floor(u_hi);
+            const V j0 = hn::Floor(v_lo), j1 = hn::Floor(v_hi);
+            for (int dj = 0; dj < most_v; ++dj) {
+                const V j = j0 + set(static_cast<float>(dj));
+                const M in_j =
+                    hn::And(hn::And(near, hn::Le(j, j1)), hn::And(hn::Ge(j, zero), hn::Lt(j, n_v)));
+                if (hn::AllFalse(kTag, in_j)) continue;
+                for (int di = 0; di < most_u; ++di) {
+                    const V i = i0 + set(static_cast<float>(di));
+                    const M in = hn::And(hn::And(in_j, hn::Le(i, i1)),
+                                         hn::And(hn::Ge(i, zero), hn::Lt(i, n_u)));
+                    if (!hn::AllFalse(kTag, in))
+                        queue<kMoving, kLens>(in, at, slots,
+                                              hn::ConvertTo(kIntTag, j * row + i) + index,
+                                              hn::ConvertTo(kIntTag, j * rise + i) + corner);
+                }
+            }
+        });
     }
 
-    static_assert(PatchBins::kRows * PatchBins::kRow == FlockSlices::kMost);
     template <bool kMoving, Lens kLens>
     void visit_flock(const Patch& flock) {
-        visit_together<kMoving, kLens>(
-            flock, FlockFinder::pitch(flock), m_patch,
-            [&](const Samples& at, V slots, V x, V y) HWY_ATTR __attribute__((always_inline)) {
-                const FlockSlices::Cells cells = m_slices.cells_of(x, y);
-                if (!hn::AllFalse(kTag, cells.inside))
-                    m_bins.add<kMoving, kLens>(cells.inside, at, slots, cells.packed);
-            },
-            [&](int cells, auto visit) HWY_ATTR {
-                for (std::uint64_t bins = m_slices.bins(cells); bins != 0; bins &= bins - 1)
-                    visit(std::countr_zero(bins));
+        const int knot = m_target.segment * m_grid.vertices;
+        visit_together<kMoving, kLens>([&](const Samples& at, V slots, V x,
+                                           V y) HWY_ATTR __attribute__((always_inline)) {
+            const FlockSlices::Cells cells = m_slices.cells_of(x, y);
+            const M inside = in_segment<kMoving>(at, cells.inside);
+            if (hn::AllFalse(kTag, inside)) return;
+            alignas(64) int packed[kPacket], index[kPacket] = {}, corner[kPacket] = {};
+            std::uint64_t bins[kPacket];
+            hn::Store(cells.packed, kIntTag, packed);
+            std::uint32_t lanes = 0;
+            for_each_lane(inside, [&](int lane) HWY_ATTR {
+                bins[lane] = m_slices.bins(packed[lane]);
+                lanes |= static_cast<std::uint32_t>(bins[lane] != 0) << lane;
             });
+            // Each sample's next micropolygon, until no sample has any.
+            while (lanes != 0) {
+                const std::uint32_t now = lanes;
+                for_each_bit(now, [&](int lane) HWY_ATTR {
+                    const int bin = std::countr_zero(bins[lane]);
+                    const int j = bin / flock.n_u, i = flock.i + bin - j * flock.n_u;
+                    index[lane] = j * m_grid.n_u + i;
+                    corner[lane] = knot + j * m_grid.up + i;
+                    bins[lane] &= bins[lane] - 1;
+                    lanes &= ~(static_cast<std::uint32_t>(bins[lane] == 0) << lane);
+                });
+                queue<kMoving, kLens>(lanes_of(now), at, slots, hn::Load(kIntTag, index),
+                                      hn::Load(kIntTag, corner));
+            }
+        });
+    }
+
+    /// The samples that wait.
+    template <bool kMoving, Lens kLens>
+    HWY_NOINLINE void test_near() {
+        ShapeVector shapes;
+        const std::size_t count = m_near.count();
+        m_target.kind = m_grid.occurring;
+        std::size_t covered = 0;
+        for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lane_count())) {
+            const M valid = hn::FirstN(kTag, count - i);
+            const auto index = m_near.load_shapes<kMoving>(m_grid, i, valid, shapes);
+            const auto ids = hn::BitCast(kIdTag, index) + hn::Set(kIdTag, m_grid.base);
+            covered += cover<kMoving, kLens>(shapes, m_near.list(), i, valid, ids, covered);
+        }
+        m_counts.tests += count;
+        m_near.clear();
+        m_recorder.record(m_hit, covered);
     }
 
     /// What is still is tested against all packets of the blocks of ranges[lane].
@@ -308,36 +363,6 @@ class Kernel {
         m_recorder.record(m_hit, covered);
     }
 
-    /// The samples of micropolygons (i, j) and its neighbours on the right.
-    template <bool kMoving, Lens kLens>
-    HWY_INLINE void test_row(int i, int j, const PatchBins::Row& row) {
-        constexpr int kRow = PatchBins::kRow;
-        ShapeRow shapes;
-        const int first = j * m_grid.n_u + i;
-        m_target.kind = 0;
-        m_target.id = m_grid.base + static_cast<SurfaceId>(first);
-        for (int k = 0; k < kRow; ++k) {
-            shapes.kind[k] = i + k < m_grid.n_u ? m_grid.classes[first + k] : 0;
-            m_target.kind |= shapes.kind[k];
-            m_counts.tests += shapes.kind[k] == 0 ? 0 : row.count[k];
-        }
-        if (m_target.kind == 0) return;
-        shapes.load<kMoving>(m_grid, m_target.segment, j * m_grid.up + i);
-        const auto lanes = hn::Iota(kIdTag, 0);
-        const auto ids = hn::Set(kIdTag, m_target.id) + hn::And(lanes, hn::Set(kIdTag, kRow - 1));
-        const auto counts = hn::LoadDup128(kIntTag, row.count);
-        const int most = *std::max_element(row.count, row.count + kRow);
-        std::size_t covered = 0;
-        for (int n = 0; n < most; n += lane_count() / kRow) {
-            const auto number =
-                hn::BitCast(kIntTag, hn::ShiftRight<2>(lanes)) + hn::Set(kIntTag, n);
-            covered +=
-                cover<kMoving, kLens>(shapes, row.list, static_cast<std::size_t>(n) * kRow,
-                                      hn::RebindMask(kTag, hn::Lt(number, counts)), ids, covered);
-        }
-        m_recorder.record(m_hit, covered);
-    }
-
     /// A vector of listed samples from i on; appends the hits to the first `covered` ones and
     /// returns how many they are.
     template <bool kMoving, Lens kLens, class S, std::size_t kMost>
@@ -378,15 +403,16 @@ class Kernel {
     FlockFinder m_flocks;
     PatchPath m_patch;
     FlockSlices m_slices;
-    PatchBins m_bins;
+    NearSamples m_near;            ///< to be tested, of patches and flocks
     const bool m_together;         ///< patches or flocks are looked for
     const bool m_in_flocks;        ///< micropolygons share no vertices, or lie in few rows
     SampleList<kListed> m_listed;  ///< to be tested
-    HitList<kListed> m_hit;        ///< that were
+    HitList<std::max(kListed, NearSamples::kMost)> m_hit;  ///< that were
 };
 
 void hide_grid(const SimdGrid& grid, const SimdTile& tile, FragmentLists& lists,
                SimdCounts& counts) {
+    if (grid.occurring == 0) return;
     Kernel kernel(grid, tile, lists, counts);
     if (grid.lens_x == 0.0f)
         kernel.run<Lens::None>();

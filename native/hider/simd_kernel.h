@@ -39,6 +39,7 @@ struct SimdTile {
 /// A grid in a tile's homogeneous raster space.
 struct SimdGrid {
     const float *x = nullptr, *y = nullptr, *w = nullptr, *z = nullptr;  ///< [knots][vertices]
+    const float* corners = nullptr;  ///< [knots][vertices][x, y, w, z]; none of what is still
     /// [max(1, knots - 1)][vertices] raster bounds of a vertex over the segment and the lens, and
     /// its nearest key.
     const float *x_lo = nullptr, *x_hi = nullptr, *y_lo = nullptr, *y_hi = nullptr;
@@ -49,6 +50,7 @@ struct SimdGrid {
     bool finite = true;     ///< all vertices, at all knots
     Lifespan lifespan;      ///< Grid::lifespan
     const std::uint8_t* classes = nullptr;
+    std::uint8_t common = 0, occurring = 0;  ///< bits that all classes have, and that any has
     SurfaceId base = 0;
     const GridPool* pool = nullptr;
     DepthRange range;

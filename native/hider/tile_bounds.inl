@@ -33,10 +33,6 @@ HWY_INLINE Corner<V> load_corner(const SimdGrid& grid, std::size_t i) {
             hn::LoadU(kTag, grid.z + i)};
 }
 
-HWY_INLINE Corner<V> from_to(const Corner<V>& a, const Corner<V>& b) {
-    return {b.x - a.x, b.y - a.y, b.w - a.w, b.z - a.z};
-}
-
 /// When what has these corners is over a tile during a segment: some corner right of its left side,
 /// some corner left of its right side, and so on.  Each condition is linear in time for every
 /// corner, whatever the sign of w (Laine et al. 2011).
@@ -116,6 +112,7 @@ class TileBounds {
                                vertex + m_grid.up};
         Shape shape;
         shape.kind = kind;
+        shape.number = segment;
         for (int k = 0; k < 4; ++k) {
             shape.begin[k] = load(corner[k], segment);
             if (m_grid.segments == 0) continue;

@@ -57,8 +57,14 @@ void TileGrid::project(const Vec2d& origin, SimdGrid& out) {
     out.y_hi = m_y_hi.data();
     out.nearest = m_nearest.data();
     const auto vertices = static_cast<std::size_t>(grid.vertex_count());
-    project_vertices(m_projection, origin, vertices * (static_cast<std::size_t>(out.segments) + 1),
-                     {m_px.data(), m_py.data(), m_z.data()}, {m_x.data(), m_y.data(), m_w.data()});
+    const std::size_t count = vertices * (static_cast<std::size_t>(out.segments) + 1);
+    project_vertices(m_projection, origin, count, {m_px.data(), m_py.data(), m_z.data()},
+                     {m_x.data(), m_y.data(), m_w.data()});
+    if (out.segments > 0 || m_projection.has_lens()) {
+        m_corners.resize(4 * (count + kLanePadding));
+        interleave_corners(out, count, m_corners.data());
+        out.corners = m_corners.data();
+    }
     for (int segment = 0; segment < std::max(1, out.segments); ++segment) {
         const std::size_t to = static_cast<std::size_t>(segment) * vertices;
         const VertexBounds bounds{&m_x_lo[to], &m_x_hi[to], &m_y_lo[to], &m_y_hi[to],

@@ -30,7 +30,7 @@ class TileGrid {
     float m_lens_x = 0.0f, m_lens_y = 0.0f;     ///< largest shift a unit of shear, pixels
     const Grid* m_grid = nullptr;
     std::vector<float> m_px, m_py, m_z;  ///< camera space; padded like the following
-    std::vector<float> m_x, m_y, m_w;
+    std::vector<float> m_x, m_y, m_w, m_corners;
     std::vector<float> m_x_lo, m_x_hi, m_y_lo, m_y_hi, m_nearest;
 };
 
