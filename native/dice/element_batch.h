@@ -42,7 +42,8 @@ class ElementBatch : public Primitive {
     bool scattered(const RasterBounds& bounds) const;
     /// Of row j, which crosses the elements; `i` counts across.
     static std::size_t vertex(const Grid& grid, int i, int j) {
-        return static_cast<std::size_t>(i * (grid.n_u + 1) + j);
+        return static_cast<std::size_t>(i) * (static_cast<std::size_t>(grid.n_u) + 1) +
+               static_cast<std::size_t>(j);
     }
     /// Keeps the opened instance alive, and measures.
     void own(std::shared_ptr<const OpenedElements> elements);

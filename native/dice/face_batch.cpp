@@ -6,7 +6,9 @@
 
 #include "dice/corner_values.h"
 #include "dice/finish_motion.h"
+#include "dice/grid_attributes.h"
 #include "dice/raster_bound.h"
+#include "dice/seen_area.h"
 
 namespace granita {
 namespace {
@@ -76,12 +78,6 @@ std::unique_ptr<Grid> FaceBatch::make_grid(std::size_t micropolygons) const {
     return grid;
 }
 
-void FaceBatch::set_share(Grid& grid, double area) const {
-    const double rate = m_mesh->rate().rate();
-    const double share = area / (rate * rate * static_cast<double>(grid.point_count()));
-    if (share < 1.0) grid.point_share = static_cast<float>(share);
-}
-
 std::unique_ptr<Grid> FaceBatch::dice() const {
     const std::size_t count = m_faces.size();
     auto grid = make_grid(count);
@@ -106,7 +102,7 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
     for (const Cluster& cluster : points) add_point(*grid, faces, cluster, vertices);
     double area = 0.0;
     for (const Cluster& cluster : points) area += cluster.area;
-    set_share(*grid, area);
+    set_point_share(*grid, area, m_mesh->rate().rate());
     dice_attributes(*grid, faces, points);
     return grid;
 }
@@ -226,22 +222,17 @@ void FaceBatch::find_center(Cluster& cluster, const std::vector<Face>& faces) {
 
 void FaceBatch::dice_attributes(Grid& grid, const std::vector<Face>& faces,
                                 const std::vector<Cluster>& clusters) const {
-    const std::vector<AttributeRequest>& requests = m_mesh->requests(grid.material);
-    grid.attributes.resize(requests.size());
-    for (std::size_t a = 0; a < requests.size(); ++a) {
-        GridAttribute& out = grid.attributes[a];
-        out.attribute = static_cast<int>(a);
-        out.width = requests[a].width;
+    const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
         const auto width = static_cast<std::size_t>(out.width);
         const auto values_at = [&](std::size_t i, std::vector<float>& values,
                                    std::vector<float>& du, std::vector<float>& dv) {
             const Vec2d uv = middle_of(patch(i).kind);
-            interpolate(corner_values(m_mesh->shared(), patch(i), requests[a]), patch(i).kind,
-                        {&uv, 1}, out.width, values, du, dv);
+            interpolate(corner_values(m_mesh->shared(), patch(i), request), patch(i).kind, {&uv, 1},
+                        out.width, values, du, dv);
         };
         std::vector<float> values, du, dv, mean;
         for (const Cluster& cluster : clusters) {
-            if (requests[a].derivatives) {
+            if (request.derivatives) {
                 values_at(cluster.center, values, du, dv);
                 for (std::size_t c = 0; c < width; ++c) {
                     out.du.push_back(du[c] * cluster.stretch(faces));
@@ -262,7 +253,8 @@ void FaceBatch::dice_attributes(Grid& grid, const std::vector<Face>& faces,
             if (!(total > 0.0f)) values_at(cluster.center, mean, du, dv), total = 1.0f;
             for (const float value : mean) out.values.push_back(value / total);
         }
-    }
+    };
+    make_attributes(grid, m_mesh->view().requests_of(grid.material), fill);
 }
 
 }  // namespace granita

@@ -34,8 +34,6 @@ class FaceBatch : public Primitive {
     const BasePatch& patch(std::size_t i) const { return m_mesh->shared().patches()[m_faces[i]]; }
     /// Room for `micropolygons` at every knot; what all of them have in common.
     std::unique_ptr<Grid> make_grid(std::size_t micropolygons) const;
-    /// Part of a square pixel that a point stands for, where all of them cover `area`.
-    void set_share(Grid& grid, double area) const;
 
     std::shared_ptr<const OpenedPolygons> m_mesh;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "dice/finish_motion.h"
+#include "dice/grid_attributes.h"
 
 namespace granita {
 namespace {
@@ -21,7 +22,8 @@ class LatticeDicer {
         m_mesh = &mesh;
         m_patch = &patch;
         m_lattice = lattice;
-        m_count = static_cast<std::size_t>((lattice.n_u + 1) * (lattice.n_v + 1));
+        m_count =
+            static_cast<std::size_t>(lattice.n_u + 1) * static_cast<std::size_t>(lattice.n_v + 1);
         find_places();
         mesh.sample(patch, m_uv, m_samples);
         place_border();
@@ -188,17 +190,12 @@ class LatticeDicer {
     }
 
     void find_attributes(Grid& grid) {
-        const std::vector<AttributeRequest>& requests = m_mesh->requests(grid.material);
-        grid.attributes.resize(requests.size());
-        for (std::size_t a = 0; a < requests.size(); ++a) {
-            GridAttribute& out = grid.attributes[a];
-            out.attribute = static_cast<int>(a);
-            out.width = requests[a].width;
-            m_mesh->attribute(*m_patch, requests[a], m_uv, out.values, m_by_u, m_by_v);
-            if (!requests[a].derivatives) {
-                out.du.clear();  // of the grid before
+        const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
+            m_mesh->attribute(*m_patch, request, m_uv, out.values, m_by_u, m_by_v);
+            if (!request.derivatives) {
+                out.du.clear();
                 out.dv.clear();
-                continue;
+                return;
             }
             const std::size_t width = static_cast<std::size_t>(out.width);
             out.du.resize(out.values.size());
@@ -208,7 +205,8 @@ class LatticeDicer {
                 out.du[i] = static_cast<float>(m_by_u[i] * u.x + m_by_v[i] * u.y);
                 out.dv[i] = static_cast<float>(m_by_u[i] * v.x + m_by_v[i] * v.y);
             }
-        }
+        };
+        make_attributes(grid, m_mesh->view().requests_of(grid.material), fill);
     }
 
     const OpenedMesh* m_mesh = nullptr;

@@ -6,6 +6,7 @@
 
 #include "dice/curve_batch.h"
 #include "dice/finish_motion.h"
+#include "dice/grid_attributes.h"
 #include "dice/point_batch.h"
 #include "dice/seen_area.h"
 
@@ -111,35 +112,29 @@ void OpenedElements::begin_shading(Grid& grid) const {
 }
 
 void OpenedElements::finish_shading(Grid& grid, std::span<const ElementPlace> places) const {
-    finish_share(grid);
+    set_point_share(grid, seen_area(grid, grid.shading_p(), m_view->projection), m_rate.rate());
     finish_derivatives(grid, places);
     finish_attributes(grid, places);
-}
-
-void OpenedElements::finish_share(Grid& grid) const {
-    const std::vector<Vec3f>& p = grid.shading_p();
-    const double area = seen_area(grid, p, m_view->projection);
-    const double share = area / (m_rate.rate() * m_rate.rate() * static_cast<double>(p.size()));
-    if (share < 1.0) grid.point_share = static_cast<float>(share);
 }
 
 void OpenedElements::finish_derivatives(Grid& grid, std::span<const ElementPlace> places) const {
     const std::vector<Vec3f>& p = grid.shading_p();
     grid.dp_du.resize(p.size());
     grid.dp_dv.resize(p.size());
+    const auto row = static_cast<std::size_t>(grid.n_u) + 1;
     const auto joined = [&](int a, int b) {
         return b >= 0 && b <= grid.n_u &&
                places[static_cast<std::size_t>(a)].element ==
                    places[static_cast<std::size_t>(b)].element;
     };
     const auto at = [&](int i, int j) {
-        return p[static_cast<std::size_t>(j * (grid.n_u + 1) + i)];
+        return p[static_cast<std::size_t>(j) * row + static_cast<std::size_t>(i)];
     };
     for (int j = 0; j <= grid.n_v; ++j) {
         const int low = std::max(j - 1, 0), high = std::min(j + 1, grid.n_v);
         for (int i = 0; i <= grid.n_u; ++i) {
             const int before = joined(i, i - 1) ? i - 1 : i, after = joined(i, i + 1) ? i + 1 : i;
-            const auto v = static_cast<std::size_t>(j * (grid.n_u + 1) + i);
+            const std::size_t v = static_cast<std::size_t>(j) * row + static_cast<std::size_t>(i);
             if (after > before)
                 grid.dp_du[v] = (at(after, j) - at(before, j)) / static_cast<float>(after - before);
             grid.dp_dv[v] = (at(i, high) - at(i, low)) / static_cast<float>(high - low);
@@ -148,18 +143,9 @@ void OpenedElements::finish_derivatives(Grid& grid, std::span<const ElementPlace
 }
 
 void OpenedElements::finish_attributes(Grid& grid, std::span<const ElementPlace> places) const {
-    static const std::vector<AttributeRequest> none;
-    const std::vector<AttributeRequest>& requests =
-        m_view->requests.empty() ? none
-        : grid.material < 0      ? m_view->requests.back()
-                                 : m_view->requests[static_cast<std::size_t>(grid.material)];
-    grid.attributes.resize(requests.size());
     const std::size_t lines = static_cast<std::size_t>(grid.n_v) + 1;
-    for (std::size_t a = 0; a < requests.size(); ++a) {
-        GridAttribute& out = grid.attributes[a];
-        const std::size_t width = static_cast<std::size_t>(requests[a].width);
-        out.attribute = static_cast<int>(a);
-        out.width = requests[a].width;
+    const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
+        const std::size_t width = static_cast<std::size_t>(out.width);
         // The same in each line along the elements.
         const std::size_t line = places.size() * width;
         const auto repeat = [&](std::vector<float>& values) {
@@ -170,8 +156,8 @@ void OpenedElements::finish_attributes(Grid& grid, std::span<const ElementPlace>
         };
         out.values.resize(line);
         for (std::size_t i = 0; i < places.size(); ++i)
-            element_value(*m_shared, requests[a], places[i], &out.values[i * width]);
-        if (requests[a].derivatives) {
+            element_value(*m_shared, request, places[i], &out.values[i * width]);
+        if (request.derivatives) {
             out.du.assign(line, 0.0f);
             for (std::size_t i = 0; i + 1 < places.size(); ++i)
                 for (std::size_t c = i * width; c < (i + 1) * width; ++c)
@@ -181,7 +167,8 @@ void OpenedElements::finish_attributes(Grid& grid, std::span<const ElementPlace>
             out.dv.assign(lines * line, 0.0f);
         }
         repeat(out.values);
-    }
+    };
+    make_attributes(grid, m_view->requests_of(grid.material), fill);
 }
 
 }  // namespace granita

@@ -76,7 +76,6 @@ class OpenedElements final : public OpenedInstance,
 
   private:
     int material(std::size_t batch) const;
-    void finish_share(Grid& grid) const;
     void finish_derivatives(Grid& grid, std::span<const ElementPlace> places) const;
     void finish_attributes(Grid& grid, std::span<const ElementPlace> places) const;
 

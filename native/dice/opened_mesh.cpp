@@ -107,13 +107,6 @@ int OpenedMesh::material(std::uint32_t face) const {
         std::clamp<std::int32_t>(slot, 0, static_cast<std::int32_t>(slots.size()) - 1))];
 }
 
-const std::vector<AttributeRequest>& OpenedMesh::requests(int material) const {
-    static const std::vector<AttributeRequest> none;
-    if (m_view->requests.empty()) return none;
-    return material < 0 ? m_view->requests.back()
-                        : m_view->requests[static_cast<std::size_t>(material)];
-}
-
 DisplacementHook OpenedMesh::displacement(int material) const {
     if (m_view->displacement.empty()) return {};
     return material < 0 ? m_view->displacement.back()

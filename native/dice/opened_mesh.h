@@ -73,7 +73,6 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
 
     /// Index in Scene::materials, -1 = none.
     int material(std::uint32_t face) const;
-    const std::vector<AttributeRequest>& requests(int material) const;
     /// Any material of the instance displaces.
     bool displaced() const { return m_displaced; }
     DisplacementHook displacement(int material) const;

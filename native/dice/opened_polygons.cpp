@@ -187,8 +187,8 @@ void OpenedPolygons::surface_point(const BasePatch& patch, const Vec2d& uv, Edge
 void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
                             SurfaceSamples& out) const {
     const std::size_t n = uv.size();
-    std::vector<CornerWeights> weights;
-    weights.reserve(n);
+    static thread_local std::vector<CornerWeights> weights;  // kept for its memory
+    weights.clear();
     for (const Vec2d& at : uv) weights.emplace_back(patch.kind, at);
 
     out.positions.resize(n * static_cast<std::size_t>(knot_count()));

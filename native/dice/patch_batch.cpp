@@ -13,25 +13,25 @@ namespace {
 /// Puts lattices one after the other into a grid of separate micropolygons.
 class Joiner {
   public:
-    explicit Joiner(Grid& grid) : m_grid(grid) {
+    /// `points`: of all lattices.
+    Joiner(Grid& grid, std::size_t points) : m_grid(grid) {
         grid.places.point_of.resize(static_cast<std::size_t>(grid.vertex_count()));
+        grid.places.anchors.reserve(points);
+        for (auto* values :
+             {&grid.p, &grid.normal, &grid.geometric_normal, &grid.dp_du, &grid.dp_dv})
+            values->reserve(points);
     }
 
     void add(const Grid& part, std::uint32_t face) {
-        for (int m = 0; m < part.micropolygon_count(); ++m) {
-            const Grid::Corners c = part.corners(m);
-            const int corner[4] = {c.v0, c.v1, c.v3, c.v2};  // as planes are ordered
-            for (int plane = 0; plane < 4; ++plane) {
-                const int vertex = plane * m_grid.n_u + m_micropolygons + m;
-                put_vertex(part, corner[plane], vertex);
-            }
-        }
-        for (int j = 0; j <= part.n_v; ++j)
-            for (int i = 0; i <= part.n_u; ++i) {
-                const int m = std::min(j, part.n_v - 1) * part.n_u + std::min(i, part.n_u - 1);
-                const int plane = (i == part.n_u ? 1 : 0) + (j == part.n_v ? 2 : 0);
+        const std::size_t n_u = size(part.n_u), n_v = size(part.n_v);
+        for (std::size_t plane = 0; plane < 4; ++plane)
+            for (std::size_t j = 0; j < n_v; ++j) put_row(part, plane, j);
+        for (std::size_t j = 0; j <= n_v; ++j)
+            for (std::size_t i = 0; i <= n_u; ++i) {
+                const std::size_t m = std::min(j, n_v - 1) * n_u + std::min(i, n_u - 1);
+                const std::size_t plane = (i == n_u ? 1 : 0) + (j == n_v ? 2 : 0);
                 m_grid.places.anchors.push_back(
-                    static_cast<std::uint32_t>(plane * m_grid.n_u + m_micropolygons + m));
+                    static_cast<std::uint32_t>(plane * size(m_grid.n_u) + m_micropolygons + m));
             }
         const std::vector<Vec3f>& p = part.shading_p();
         m_grid.p.insert(m_grid.p.end(), p.begin(), p.begin() + part.vertex_count());
@@ -50,20 +50,24 @@ class Joiner {
             append(from.dv, to.dv);
         }
         m_grid.places.faces.resize(m_grid.p.size(), face);
-        m_micropolygons += part.micropolygon_count();
-        m_points += part.vertex_count();
+        m_micropolygons += n_u * n_v;
+        m_points += size(part.vertex_count());
     }
 
   private:
-    /// A part that stands still has one knot.
-    void put_vertex(const Grid& part, int from, int to) {
-        for (int k = 0; k < m_grid.knots; ++k)
-            m_grid.positions[static_cast<std::size_t>(k * m_grid.vertex_count() + to)] =
-                part.positions[static_cast<std::size_t>(
-                    (part.motion ? k * part.vertex_count() : 0) + from)];
-        m_grid.places.point_of[static_cast<std::size_t>(to)] =
-            static_cast<std::uint32_t>(m_points + from);
+    /// One corner of the micropolygons of a row.  A part that stands still has one knot.
+    void put_row(const Grid& part, std::size_t plane, std::size_t j) {
+        const std::size_t count = size(part.n_u), all = size(m_grid.vertex_count());
+        const std::size_t from = (j + plane / 2) * (count + 1) + plane % 2;
+        const std::size_t to = plane * size(m_grid.n_u) + m_micropolygons + j * count;
+        const std::size_t step = part.motion ? size(part.vertex_count()) : 0;
+        for (std::size_t k = 0; k < size(m_grid.knots); ++k)
+            std::copy_n(&part.positions[k * step + from], count, &m_grid.positions[k * all + to]);
+        for (std::size_t i = 0; i < count; ++i)
+            m_grid.places.point_of[to + i] = static_cast<std::uint32_t>(m_points + from + i);
     }
+
+    static std::size_t size(int count) { return static_cast<std::size_t>(count); }
 
     template <class T>
     static void append(const std::vector<T>& from, std::vector<T>& to) {
@@ -71,7 +75,7 @@ class Joiner {
     }
 
     Grid& m_grid;
-    int m_micropolygons = 0, m_points = 0;  ///< so far
+    std::size_t m_micropolygons = 0, m_points = 0;  ///< so far
 };
 
 }  // namespace
@@ -82,6 +86,7 @@ struct PatchBatch::Part {
     OpenedMesh::Start start;
     int n_u = 0, n_v = 0;
     std::unique_ptr<Grid> diced;
+    int points() const { return diced ? diced->vertex_count() : (n_u + 1) * (n_v + 1); }
     int micropolygons() const { return diced ? diced->micropolygon_count() : n_u * n_v; }
 };
 
@@ -119,17 +124,20 @@ std::unique_ptr<Grid> PatchBatch::dice() const {
     const bool inside = m_mesh->rate().inside(bounds());
     std::vector<Part> parts;
     parts.reserve(face_count());
-    std::size_t micropolygons = 0;
+    std::size_t micropolygons = 0, points = 0;
     for (std::size_t i = 0; i < face_count(); ++i) {
         parts.emplace_back().face = i;
         if (is_lattice(parts.back(), inside)) continue;
         parts.pop_back();
         dice_face(i, parts);
     }
-    for (const Part& part : parts) micropolygons += static_cast<std::size_t>(part.micropolygons());
+    for (const Part& part : parts) {
+        micropolygons += static_cast<std::size_t>(part.micropolygons());
+        points += static_cast<std::size_t>(part.points());
+    }
     if (micropolygons == 0) return nullptr;
     auto grid = make_grid(micropolygons);
-    Joiner joiner(*grid);
+    Joiner joiner(*grid, points);
     static thread_local Grid lattice;  // kept for its memory
     for (const Part& part : parts) {
         if (!part.diced) {

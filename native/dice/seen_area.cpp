@@ -23,4 +23,9 @@ double seen_area(const Grid& grid, std::span<const Vec3f> p, const Projection& p
     return area;
 }
 
+void set_point_share(Grid& grid, double area, double rate) {
+    const double share = area / (rate * rate * static_cast<double>(grid.point_count()));
+    if (share < 1.0) grid.point_share = static_cast<float>(share);
+}
+
 }  // namespace granita

@@ -12,4 +12,7 @@ namespace granita {
 /// `p` [vertices] (camera space).
 double seen_area(const Grid& grid, std::span<const Vec3f> p, const Projection& projection);
 
+/// What each point of a grid of this area (square pixels) stands for, at a dicing rate.
+void set_point_share(Grid& grid, double area, double rate);
+
 }  // namespace granita

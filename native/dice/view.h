@@ -34,6 +34,13 @@ struct View {
     /// Options::width and height they coarsen, whatever the crop and the filter.
     float raster_x0 = 0, raster_y0 = 0, raster_x1 = 0, raster_y1 = 0;
 
+    /// What grids of a material (-1: none) carry.
+    const std::vector<AttributeRequest>& requests_of(int material) const {
+        static const std::vector<AttributeRequest> none;
+        if (requests.empty()) return none;
+        return material < 0 ? requests.back() : requests[static_cast<std::size_t>(material)];
+    }
+
     /// What instances of one geometry share, built when first asked for.
     std::shared_ptr<GeometryCache> geometries = std::make_shared<GeometryCache>();
 };

@@ -6,6 +6,7 @@
 
 #include "render/frame_blur.h"
 #include "render/raster_bucket.h"
+#include "scene/visible_materials.h"
 
 namespace granita {
 namespace {
@@ -54,21 +55,14 @@ Vec3f constant_background_of(const ShadingSystem& shading) {
     return color.at(0);
 }
 
-bool anything_transparent(const Scene& scene, const ShadingSystem& shading) {
-    return std::ranges::any_of(scene.instances, [&shading](const Instance& instance) {
-        return instance.visible_camera &&
-               std::ranges::any_of(instance.materials,
-                                   [&shading](int m) { return shading.opacity_varies(m); });
-    });
-}
-
 /// Pixels along a bucket's side.  The CPU fills the lists of transparent samples, sorts and
 /// composites them while the cache still holds them: at 256 samples feathers take 2.9 s in buckets
 /// of 16 pixels and 4.3 s in buckets of 64 (docs/decisions/transparency.md).
 int bucket_size(const Scene& scene, const ShadingSystem& shading, Executor executor) {
     constexpr std::int64_t kListedSamples = 1 << 16;
     const Options& options = scene.options;
-    if (executor != Executor::Simd || !anything_transparent(scene, shading))
+    const auto transparent = [&](int material) { return shading.opacity_varies(material); };
+    if (executor != Executor::Simd || !any_visible_material(scene, transparent))
         return options.bucket_size;
     std::int64_t size = options.bucket_size;
     while (size > kTileSize && size * size * options.samples > kListedSamples) size -= kTileSize;

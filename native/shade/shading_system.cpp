@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "scene/visible_materials.h"
 #include "shade/direct_light.h"
 #include "shade/grid_channels.h"
 #include "shade/light_share.h"
@@ -98,7 +99,7 @@ struct ShadingSystem::Impl {
         warn_of_emission(report);
         world = compile_surface(scene.world.graph, scene, textures, report,
                                 {"world '" + scene.world.name + "'", true});
-        if (!anything_reflects()) return;
+        if (!any_visible_material(scene, [this](int index) { return reflects(index); })) return;
         light = std::make_unique<DirectLight>(
             scene,
             [this](const std::vector<Vec3f>& directions, float spread, std::vector<Vec3f>& out) {
@@ -109,15 +110,6 @@ struct ShadingSystem::Impl {
 
     bool reflects(std::int32_t index) const {
         return !material(index).radiance.sources.lobes.empty();
-    }
-
-    bool anything_reflects() const {
-        return std::ranges::any_of(scene.instances, [this](const Instance& instance) {
-            if (!instance.visible_camera) return false;
-            if (instance.materials.empty()) return reflects(-1);
-            return std::ranges::any_of(instance.materials,
-                                       [this](std::int32_t index) { return reflects(index); });
-        });
     }
 
     /// Only lamps and the world are sampled: a surface that shines is seen, but sheds no light.
