@@ -132,6 +132,31 @@ def disc(radius, center=(0, 0), z=1.0, sides=512):
     return np.stack([x, y, np.full_like(x, z)], 1), [tuple(range(sides))]
 
 
+def half_world(snapshot):
+    """A world that is 1 where x > 0 and 0 elsewhere, which the film shows."""
+    snapshot["options"]["film_transparent"] = False
+    greater = {"operation": "GREATER_THAN"}
+    nodes = [
+        {"type": "ShaderNodeTexCoord", "inputs": {}},
+        {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": ("LINK", 0, "Generated")}},
+        {
+            "type": "ShaderNodeMath",
+            "inputs": {"Value": ("LINK", 1, "X"), "Value_001": 0.0},
+            "properties": greater,
+        },
+        {
+            "type": "ShaderNodeBackground",
+            "inputs": {"Color": ("LINK", 2, "Value"), "Strength": 1.0},
+        },
+    ]
+    snapshot["world"] = {
+        "name": "World",
+        "nodes": nodes,
+        "surface": (3, "Background"),
+        "lights_scene": False,
+    }
+
+
 def translation(x, y=0.0, z=0.0):
     m = np.eye(4)
     m[:3, 3] = (x, y, z)

@@ -141,3 +141,28 @@ def test_lists_alone_make_buckets_small():
     assert scene(alpha=0.5)["buckets_moving"] == 16
     assert scene(alpha=0.5, flags=2)["buckets_moving"] == 1  # the camera does not see it
     assert scene()["buckets_transparent"] == 0
+
+
+def regular(knots):
+    snapshot = s.orthographic((16, 16), samples=1, sampling="REGULAR", executor="SIMD")
+    points = s.rectangle(2, 2, 5, 5)
+    moves = [s.translation(x) for x in knots]
+    s.quad(snapshot, points, s.emission(snapshot), transforms=moves)
+    return s.render(snapshot)
+
+
+def test_regular_passes_follow_the_way_there_and_back():
+    """As many as for the same way straight on; one where nothing moves."""
+
+    def passes(*knots):
+        return regular(knots)["statistics"]["samples_total"] / 256
+
+    assert passes(0, 0) == 1
+    assert passes(0, 1, 0) == passes(0, 2) > passes(0, 1) > 1
+
+
+def test_more_passes_than_there_are_is_said():
+    assert not regular((0, 1))["warnings"]
+    made = regular((0, 1e5))
+    assert made["statistics"]["samples_total"] == 128 * 256
+    assert [m for _, m, _ in made["warnings"] if "stops at 128 time samples" in m]

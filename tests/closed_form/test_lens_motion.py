@@ -126,29 +126,7 @@ def test_the_world_is_defocused_like_a_wall_that_is_far_away(executor):
         )
         lens(snapshot, (0.1, 1.0), (0.4, 4.0), (0.3, 2.0))
         if world:
-            snapshot["options"]["film_transparent"] = False
-            nodes = [
-                {"type": "ShaderNodeTexCoord", "inputs": {}},
-                {
-                    "type": "ShaderNodeSeparateXYZ",
-                    "inputs": {"Vector": ("LINK", 0, "Generated")},
-                },
-                {
-                    "type": "ShaderNodeMath",
-                    "inputs": {"Value": ("LINK", 1, "X"), "Value_001": 0.0},
-                    "properties": {"operation": "GREATER_THAN"},
-                },
-                {
-                    "type": "ShaderNodeBackground",
-                    "inputs": {"Color": ("LINK", 2, "Value"), "Strength": 1.0},
-                },
-            ]
-            snapshot["world"] = {
-                "name": "World",
-                "nodes": nodes,
-                "surface": (3, "Background"),
-                "lights_scene": False,
-            }
+            s.half_world(snapshot)
         else:
             far = 1e5
             s.quad(snapshot, s.rectangle(0, -far, far, far, far), s.emission(snapshot))

@@ -148,3 +148,21 @@ def test_very_fast_tiny_square(executor):
     # 512 pixels of its row band, each N binary samples of probability 4 / 5000.
     standard_error = np.sqrt(512 * (4 / 5000) / 1024)
     assert abs(s.alpha(snapshot).sum() - expected) <= 4 * standard_error
+
+
+def test_the_world_passes_a_camera_that_turns(executor):
+    """Its axes go straight from knot to knot, as matrices do: the plane x = 0 is seen at
+    -t sin(a) / (1 - t + t cos(a)) focal lengths from the middle."""
+    focal, angle, samples = 64.0, 0.32, 64
+    snapshot = s.perspective((48, 16), focal, samples=samples, executor=executor)
+    s.half_world(snapshot)
+    turned = np.eye(4)
+    turned[0, 0] = turned[2, 2] = np.cos(angle)
+    turned[0, 2], turned[2, 0] = np.sin(angle), -np.sin(angle)
+    snapshot["camera"]["world_from_camera"] = np.stack([np.eye(4), turned])
+    t = (np.arange(4000) + 0.5) / 4000
+    edge = 24 - focal * t * np.sin(angle) / (1 - t + t * np.cos(angle))
+    lit = np.clip(np.arange(48)[:, None] + 1 - edge, 0, 1).mean(axis=1)
+    picture = s.render(snapshot)["combined"][..., 0]
+    # It moves 21 pixels.
+    assert np.abs(picture - lit).max() <= 4 * OWEN[20, samples]
