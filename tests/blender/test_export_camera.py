@@ -103,6 +103,24 @@ def test_focus_object_counts_along_the_view(scene):
     assert camera["focus_distance"] == pytest.approx(7.0)
 
 
+def test_focus_on_a_bone_is_on_its_pose(scene):
+    """The bone starts 2 m from the armature and is posed 1 m further from the camera."""
+    armature = bpy.data.armatures.new("Armature")
+    holder = scene_parts.add_object(scene, "Armature", armature, (0, 0, -2))
+    bpy.context.view_layer.objects.active = holder
+    bpy.ops.object.mode_set(mode="EDIT")
+    bone = armature.edit_bones.new("Bone")
+    bone.head, bone.tail = (0, 0, -2), (0, 0, -3)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    holder.pose.bones["Bone"].location = (0, 1, 0)  # along the bone
+    thing = scene_parts.add_camera(scene, (0, 0, 5))
+    thing.data.dof.use_dof = True
+    thing.data.dof.focus_object = holder
+    thing.data.dof.focus_subtarget = "Bone"
+    camera = export_probe.through_script()[0]["camera"]
+    assert camera["focus_distance"] == pytest.approx(10.0)
+
+
 def test_focus_on_the_camera_itself_is_reported(scene):
     thing = scene_parts.add_camera(scene, (0, 0, 5))
     thing.data.dof.use_dof = True

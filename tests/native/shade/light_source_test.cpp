@@ -55,6 +55,17 @@ TEST(PointLight, soft_sphere_lights_as_a_point_where_it_is_wholly_above_the_hori
     EXPECT_NEAR(irradiance(*source_of(light), Vec3f(0), kUp), 100.0 / (4 * kPi * 4), 1e-3);
 }
 
+TEST(PointLight, soft_sphere_around_a_surface_lights_it_from_everywhere) {
+    // The radiance is the same in all directions: pi times it, wherever inside.
+    Light light = light_of(LightKind::Point, 100.0f, at({0, 0, 0.25}));
+    light.radius = 0.5f;
+    light.soft_falloff = false;
+    const double radiance = 100.0 / (4 * kPi) / (kPi * 0.25);
+    const auto source = source_of(light);
+    for (const Vec3f& n : {kUp, -kUp, Vec3f(1, 0, 0)})
+        EXPECT_NEAR(irradiance(*source, Vec3f(0), n), kPi * radiance, 2e-2 * radiance);
+}
+
 TEST(SunLight, irradiance_is_its_strength_whatever_its_angle) {
     for (const float angle : {0.0f, 0.00918f, 0.5f, 2.0f}) {
         Light light = light_of(LightKind::Sun, 3.0f, aimed({0, 0, 9}, {0, 0, -1}));

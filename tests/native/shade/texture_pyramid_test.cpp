@@ -26,6 +26,13 @@ TEST(TexturePyramid, the_mean_of_black_and_white_is_half_the_light_in_srgb_too) 
     EXPECT_EQ(half.bytes[0], 188);  // sRGB's byte for one half
 }
 
+TEST(TexturePyramid, alpha_is_linear_beside_encoded_colours) {
+    TextureLevel level{2, 1, {255, 255, 255, 0, 255, 255, 255, 255}, {}};
+    EXPECT_EQ(half_level(level, TexelKind::EncodedByte).bytes[3], 128);
+    TextureLevel floats{2, 1, {}, {1, 1, 1, 0, 1, 1, 1, 0.5f}};
+    EXPECT_FLOAT_EQ(half_level(floats, TexelKind::EncodedFloat).floats[3], 0.25f);
+}
+
 TEST(TexturePyramid, odd_sizes_lose_no_texel) {
     TextureLevel level{3, 1, {}, {3, 0, 0, 1, 6, 0, 0, 1, 9, 0, 0, 1}};
     const TextureLevel half = half_level(level, TexelKind::LinearFloat);
