@@ -27,25 +27,50 @@ Vec3f position_at(const Grid& grid, std::size_t vertex, const KnotTime& t) {
     return before + (after - before) * static_cast<float>(t.fraction);
 }
 
-/// What a point goes along with: a vertex, or the middle of its separate face and how that face is
-/// turned, as neither a corner nor a distance kept to it would follow a body that rotates.
+/// Sine of the angle between a sliver's sides.
+constexpr float kSliver = 0.1f;
+
+/// Whether points stand for one or more small faces each (FaceBatch).
+bool stands_for_faces(const Grid& grid) {
+    return grid.apart && grid.places.faces.empty();
+}
+
+/// What a point goes along with: the vertex that it is, or, where it stands for whole faces, the
+/// middle of one and how that is turned and stretched, as neither a corner nor a distance kept to
+/// it would follow a body that rotates.
 struct Anchor {
     Vec3f place{0.0f};
-    Mat3f turned{1.0f};
+    Vec3f along{0.0f}, across{0.0f};  ///< edges or diagonals of the face
 };
+
+/// How what is beside an anchor goes along: as the face is stretched, or turned alone where it is a
+/// sliver or has shrunk to one.
+Mat3f carried(const Anchor& from, const Anchor& to) {
+    const auto out = [](const Anchor& at) { return glm::cross(at.along, at.across); };
+    const auto size = [](const Anchor& at) {
+        return glm::length(at.along) * glm::length(at.across);
+    };
+    const float before = glm::length(out(from)), after = glm::length(out(to));
+    if (!(before > 0.0f && after > 0.0f)) return Mat3f(1.0f);
+    const bool sound = before > kSliver * size(from) && after > kSliver * size(to);
+    const auto frame = [&](const Anchor& at, float area) {
+        const Vec3f up = out(at) / area;
+        if (sound) return Mat3f(at.along, at.across, up * std::sqrt(area));
+        const Vec3f ahead = glm::normalize(at.along);
+        return Mat3f(ahead, glm::cross(up, ahead), up);
+    };
+    return frame(to, after) * glm::inverse(frame(from, before));
+}
 
 /// Of `place(vertex)`.
 template <class Place>
 Anchor anchor_of(const Grid& grid, std::size_t vertex, const Place& place) {
-    if (!grid.apart) return {place(vertex)};
+    if (!stands_for_faces(grid)) return {place(vertex)};
     const Grid::Corners c = grid.corners(static_cast<int>(vertex) % grid.n_u);
     const Vec3f a = place(c.v0), b = place(c.v1), d = place(c.v2);
-    Anchor anchor{d == place(c.v3) ? (a + b + d) / 3.0f : 0.5f * (a + d)};
-    const Vec3f along = d - a, out = glm::cross(b - a, along);
-    const float length = glm::length(along), area = glm::length(out);
-    if (length > 0.0f && area > 0.0f)
-        anchor.turned = {along / length, glm::cross(out / area, along / length), out / area};
-    return anchor;
+    const Vec3f e = place(c.v3);
+    if (d == e) return {(a + b + d) / 3.0f, b - a, d - a};
+    return {0.5f * (a + d), d - a, e - b};
 }
 
 /// From the neighbours in the grid: deformation turns a surface as well as a transform does.
@@ -85,20 +110,16 @@ PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints
     const auto knots = static_cast<std::size_t>(m_knots);
     m_places.reserve(knots * m_count);
     const auto vertices = static_cast<std::size_t>(grid.vertex_count());
-    // As the anchor sees it: where a point is beside it, and its rays' offset.
     const std::vector<std::uint32_t>& anchors = grid.places.anchors;
     const auto anchor = [&](std::size_t i, const auto& place) {
         return anchor_of(grid, anchors.empty() ? i : anchors[i], place);
     };
     const KnotTime frame = knot_time(static_cast<double>(scene.options.frame_time), grid.knots);
     const Mat3f frame_rotation{Mat3d(matrix_at(camera, scene.options.frame_time))};
-    std::vector<Vec3f> beside, offsets;
-    for (std::size_t i = 0; i < m_count; ++i) {
-        const Anchor at =
-            anchor(i, [&](std::size_t v) { return frame_rotation * position_at(grid, v, frame); });
-        if (!anchors.empty()) beside.push_back((frame_rotation * grid.p[i] - at.place) * at.turned);
-        if (!points.ray_offset.empty()) offsets.push_back(points.ray_offset[i] * at.turned);
-    }
+    std::vector<Anchor> at_frame;
+    for (std::size_t i = 0; i < m_count; ++i)
+        at_frame.push_back(
+            anchor(i, [&](std::size_t v) { return frame_rotation * position_at(grid, v, frame); }));
     for (std::size_t knot = 0; knot < knots; ++knot) {
         const double time = static_cast<double>(knot) / (m_knots - 1);
         const Mat4d m = matrix_at(camera, time);
@@ -110,13 +131,30 @@ PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints
             places[v] = rotation * position_at(grid, v, t) + offset;
         for (std::size_t i = 0; i < m_count; ++i) {
             const Anchor at = anchor(i, [&](std::size_t v) { return places[v]; });
-            Place place;
-            place.p = anchors.empty() ? at.place : at.place + at.turned * beside[i];
-            place.start = offsets.empty() ? place.p : place.p + at.turned * offsets[i];
+            Place place{at.place, {}, {}};
+            if (!anchors.empty()) {
+                const Vec3f beside = frame_rotation * grid.p[i] - at_frame[i].place;
+                place.p += carried(at_frame[i], at) * beside;
+            }
+            place.start = place.p;
+            if (!points.ray_offset.empty() && !grid.apart) place.start += points.ray_offset[i];
             place.normal = normal_at(grid, places, anchors.empty() ? i : anchors[i], points, i);
             m_places.push_back(place);
         }
+        if (stands_for_faces(grid)) rise(grid, places, m_places.size() - m_count);
     }
+}
+
+/// Starts of rays above all of the faces that a point stands for, as these are at a knot.
+void PointPaths::rise(const Grid& grid, const std::vector<Vec3f>& places, std::size_t first) {
+    std::vector<float> heights(m_count, 0.0f);
+    for (std::size_t v = 0; v < places.size(); ++v) {
+        const std::size_t i = grid.places.point_of[v];
+        const Place& place = m_places[first + i];
+        heights[i] = std::max(heights[i], glm::dot(places[v] - place.p, place.normal));
+    }
+    for (std::size_t i = 0; i < m_count; ++i)
+        m_places[first + i].start += m_places[first + i].normal * heights[i];
 }
 
 PointPaths::Place PointPaths::at(std::size_t point, float time) const {

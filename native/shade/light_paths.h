@@ -29,6 +29,8 @@ class PointPaths {
     Place at(std::size_t point, float time) const;
 
   private:
+    void rise(const Grid& grid, const std::vector<Vec3f>& places, std::size_t first);
+
     Lifespan m_lifespan;
     int m_knots = 1;
     std::size_t m_count = 0;
