@@ -11,6 +11,11 @@ namespace {
 constexpr int kPixels = kTileSize * kTileSize;
 /// Side of the bounding square of a micropolygon of one pixel, at some angle.
 constexpr double kExtent = 1.3;
+/// Strata of the lens are sorted; where something moves, those of time would do, which are not.
+/// Sorting costs as much more as looking for what is seen with so many samples a pixel.
+constexpr double kSorted = 16.0;
+/// The hierarchical depth is by rank: fewer hide little of what moves.
+constexpr int kLeastRanks = 4;
 /// A tile is at least a window of blocks wide.
 constexpr int kLeastSideLog2 = -2, kMostSideLog2 = 2;
 
@@ -83,7 +88,8 @@ double order_cost(const OrderShape& shape, int samples, const Sweep& sweep) {
     if (!shape.ranked) return std::ceil(static_cast<double>(count) / kPacket) * x * y;
     // Windows of four by four blocks, and what a rank costs by itself.
     const auto windows = [](double n) { return std::max(1.0, (n + 2.5) / 4); };
-    return count * (0.5 + windows(x) * windows(y));
+    const bool sorted = shape.us * shape.vs > 1 && sweep.motion != Vec2f(0.0f);
+    return count * (0.5 + windows(x) * windows(y)) * (sorted ? 1.0 + kSorted / samples : 1.0);
 }
 
 OrderShape best_order(int samples, const Sweep& sweep) {
@@ -95,6 +101,7 @@ OrderShape best_order(int samples, const Sweep& sweep) {
         // Parts of a pixel hold equally many samples only if these divide.
         if (side < 0 && samples % (1 << (-2 * side)) != 0) continue;
         const int count = samples_of_block(side, samples);
+        if (!sweep.still() && count < kLeastRanks) continue;
         for (int times = 1; times <= (moves ? count : 1); times *= 2)
             for (int us = 1; us * times <= (lens ? count : times); us *= 2)
                 for (int vs = us; vs <= 2 * us && vs * us * times <= count; vs *= 2) {
