@@ -148,7 +148,7 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
     bucket_size: _whole(
         "Bucket Size",
         "Edge of the square that a thread renders at a time, in pixels: a multiple of "
-        "16 (others are rounded up); with transparent materials and many samples it is less. "
+        "16 (others are rounded up); with many samples a pixel it is less. "
         "It changes memory and time, never the picture",
         64,
         (TILE_PIXELS, 1024),

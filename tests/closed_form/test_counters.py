@@ -126,21 +126,20 @@ def test_off_screen_geometry_is_never_opened(executor):
     assert statistics(snapshot)["points_diced"] == near["points_diced"]
 
 
-def test_lists_alone_make_buckets_small():
-    """A bucket that may have lists holds 65,536 samples at most, of 256 a pixel: four by four instead of one."""
+def test_many_samples_make_buckets_small():
+    """A bucket holds 65,536 samples at most: of 256 a pixel four by four buckets instead of one."""
 
-    def scene(flags=3, alpha=None):
-        snapshot = s.orthographic((64, 64), samples=256, executor="SIMD", bucket_size=64)
+    def scene(samples, alpha=None):
+        snapshot = s.orthographic((64, 64), samples=samples, executor="SIMD", bucket_size=64)
         moving = [s.translation(0), s.translation(8)]
-        s.quad(snapshot, s.rectangle(-9, 0, 64, 64, 5), s.emission(snapshot), transforms=moving)
-        s.quad(snapshot, s.rectangle(0, 0, 64, 64, 4), s.emission(snapshot, alpha=alpha))
-        snapshot["instances"]["flags"] = [3, flags]
+        emission = s.emission(snapshot, alpha=alpha)
+        s.quad(snapshot, s.rectangle(-9, 0, 64, 64, 5), emission, transforms=moving)
         return statistics(snapshot)
 
-    assert scene(alpha=0.5)["buckets_transparent"] == 16
-    assert scene(alpha=0.5)["buckets_moving"] == 16
-    assert scene(alpha=0.5, flags=2)["buckets_moving"] == 1  # the camera does not see it
-    assert scene()["buckets_transparent"] == 0
+    for samples, buckets in ((16, 1), (64, 4), (256, 16), (1024, 16)):
+        assert scene(samples)["buckets_moving"] == buckets
+        assert scene(samples, alpha=0.5)["buckets_transparent"] == buckets
+    assert scene(16)["buckets_transparent"] == 0
 
 
 def regular(knots):
