@@ -27,8 +27,8 @@ struct DirectLight::Impl {
          Report& report, const Progress& progress, ShadowOpacity opacity);
 
     void light_points(LitGrid& grid, const std::vector<LitPoint>& points) const;
-    void sample_lamp(LitGrid& grid, const LitPoint& point, const Lamp& lamp,
-                     std::uint64_t dimension, ShadowQueue& shadows) const;
+    void sample_lamp(LitGrid& grid, const LitPoint& point, const Lamp& lamp, std::size_t dimension,
+                     ShadowQueue& shadows) const;
     void sample_world(LitGrid& grid, const LitPoint& point) const;
     void sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe) const;
     void mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const;
@@ -153,11 +153,11 @@ Vec3f DirectLight::Impl::occlusion(LitGrid& grid, const LitPoint& point, const L
 }
 
 void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const Lamp& lamp,
-                                    std::uint64_t dimension, ShadowQueue& shadows) const {
+                                    std::size_t dimension, ShadowQueue& shadows) const {
     const int count = samples_of(point, lamp);
     // One sample of many tells all where nothing varies along its ray; one of one is any time's.
     const bool timed = changes(lamp) && (count > 1 || point.sample_count == 1);
-    const SobolPoints sequence = point.sequence(dimension, count);
+    const SobolPoints sequence = grid.sequence(point, dimension, count);
     const auto add = [&](const LitPlace& place, const LightSource& source,
                          const LightSample& sample) {
         if (!(sample.pdf > 0.0f)) return;
@@ -198,7 +198,7 @@ void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const 
 void DirectLight::Impl::sample_world(LitGrid& grid, const LitPoint& point) const {
     // A constant world needs no table: the lobes themselves are its best samples.
     if (!environment || environment->is_constant()) return;
-    const SobolPoints sequence = point.sequence(0, point.sample_count);
+    const SobolPoints sequence = grid.sequence(point, 0, point.sample_count);
     for (int s = 0; s < point.sample_count; ++s) {
         const auto index = static_cast<std::uint32_t>(s);
         float pdf = 0.0f;
@@ -214,7 +214,7 @@ void DirectLight::Impl::sample_world(LitGrid& grid, const LitPoint& point) const
 void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe) const {
     const bool glossy = point.bsdf.kind(lobe) == LobeKind::Glossy;
     if (!environment && !glossy) return;
-    const SobolPoints sequence = point.sequence(1 + lobe, point.samples[lobe]);
+    const SobolPoints sequence = grid.sequence(point, 1 + lobe, point.samples[lobe]);
     for (int s = 0; s < point.samples[lobe]; ++s) {
         const auto index = static_cast<std::uint32_t>(s);
         Vec3f wo;
@@ -254,7 +254,7 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
     if (!point.bsdf.reflect(lobe, wo, reflectance)) return;
     const int count = varies ? point.sample_count : 1;
     reflectance /= static_cast<float>(count);
-    const SobolPoints sequence = point.sequence(1 + lobe, count);
+    const SobolPoints sequence = grid.sequence(point, 1 + lobe, count);
     Vec3f open(0.0f);
     for (int s = 0; s < count; ++s) {
         const LitPlace place = place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
@@ -323,8 +323,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     const bool dark = m_impl->lamps.empty() && !m_impl->environment;
     if (closure.lobes.empty() || (dark && !parts)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
-    const std::uint64_t seed = grid_seed(key, m_impl->scene.options.seed);
-    LitGrid grid{radiance, parts, {}, {}, {}, {}};
+    LitGrid grid{radiance, parts, {}, {}, {}, {}, grid_seed(key, m_impl->scene.options.seed)};
     RayLift lift = m_impl->rays ? m_impl->rays->lift(key) : RayLift{};
     const Lifespan& life = paths.lifespan();
     const Vec2f exposed(m_impl->shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),
@@ -357,7 +356,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
                                 : morton_index(static_cast<std::uint32_t>(i % points.columns),
                                                static_cast<std::uint32_t>(i / points.columns)));
         lit.push_back(
-            {i, std::move(bsdf), paths, lift, at_frame, sample_count, seed, place, exposed, {}});
+            {i, std::move(bsdf), paths, lift, at_frame, sample_count, place, exposed, {}});
         lit.back().share_samples();
     }
     m_impl->light_points(grid, lit);

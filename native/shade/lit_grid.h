@@ -6,6 +6,7 @@
 
 #include "shade/light_source.h"
 #include "shade/light_world_looks.h"
+#include "shade/lit_point.h"
 #include "shade/reflection.h"
 
 namespace granita {
@@ -17,8 +18,17 @@ struct LitGrid {
     WorldLooks blurred, sharp;
     std::vector<Vec2f> lamp_points;         ///< of the lamp and point at hand
     std::vector<LightSample> lamp_samples;  ///< there
+    std::uint64_t seed = 0;
+    std::vector<SobolPoints> sequences = {};  ///< [dimensions] as far as they were asked for
     std::uint64_t shadow_rays = 0, occlusion_rays = 0;
 
+    /// A point's `count` samples of a sequence that the grid shares.  Each takes as many as it
+    /// uses: if all left out the ends of equal runs, all would miss the same strata.
+    SobolPoints sequence(const LitPoint& point, std::size_t dimension, int count) {
+        while (sequences.size() <= dimension)
+            sequences.emplace_back(seed + 0x9e3779b97f4a7c15ULL * (sequences.size() + 1));
+        return sequences[dimension].from(point.place * static_cast<std::uint32_t>(count));
+    }
     /// Light of a lamp: `value` reflected without shadow.
     void add_lamp(std::size_t point, const BsdfValue& value, const Vec3f& shadow) {
         if (!parts) return;

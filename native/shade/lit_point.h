@@ -26,7 +26,6 @@ struct LitPoint {
     RayLift lift;
     LitPlace at_frame;
     int sample_count = 1;       ///< of a soft light, of the world's image, of all lobes together
-    std::uint64_t seed;         ///< of the grid
     std::uint32_t place;        ///< in the grid, along Morton's curve
     Vec2f exposed{0.0f, 1.0f};  ///< the part of the shutter's light that it is there for
     std::vector<int> samples;   ///< [lobes] taken of each lobe; 0 for sharp ones
@@ -38,12 +37,6 @@ struct LitPoint {
                 samples[k] =
                     std::max(1, static_cast<int>(std::lround(bsdf.importance(k) *
                                                              static_cast<float>(sample_count))));
-    }
-    /// This point's `count` samples of a sequence that the grid shares.  Each takes as many as it
-    /// uses: if all left out the ends of equal runs, all would miss the same strata.
-    SobolPoints sequence(std::uint64_t dimension, int count) const {
-        return SobolPoints(seed + 0x9e3779b97f4a7c15ULL * (dimension + 1),
-                           place * static_cast<std::uint32_t>(count));
     }
     /// Expected samples a solid angle around `wo` over the lobes that `which` accepts.
     template <class Which>

@@ -43,8 +43,15 @@ inline std::uint32_t morton_index(std::uint32_t x, std::uint32_t y) {
     return spread(x) | (spread(y) << 1);
 }
 
+constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+    x = ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+    x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+    x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+    return __builtin_bswap32(x);
+}
+
 /// A generator matrix of Sobol's sequence: exclusive-ors the columns at an index's bits, a byte of
-/// them at a time.
+/// them at a time.  Gives the bits in reverse, as Owen's scramble wants them.
 class SobolMatrix {
   public:
     explicit constexpr SobolMatrix(const std::array<std::uint32_t, 32>& columns) {
@@ -52,7 +59,7 @@ class SobolMatrix {
             for (std::uint32_t value = 1; value < 256; ++value) {
                 const std::uint32_t rest = value & (value - 1);
                 const auto bit = static_cast<std::size_t>(std::countr_zero(value));
-                m_sums[byte][value] = m_sums[byte][rest] ^ columns[8 * byte + bit];
+                m_sums[byte][value] = m_sums[byte][rest] ^ reverse_bits(columns[8 * byte + bit]);
             }
     }
     constexpr std::uint32_t operator()(std::uint32_t index) const {
@@ -83,34 +90,31 @@ inline constexpr SobolMatrix kSobolThird([] {
 /// every elementary interval.
 class SobolPoints {
   public:
-    /// `first`: where in the sequence index 0 stands.
-    explicit SobolPoints(std::uint64_t seed, std::uint32_t first = 0)
-        : m_first(first),
-          m_seed_x(static_cast<std::uint32_t>(mix_bits(seed))),
+    explicit SobolPoints(std::uint64_t seed)
+        : m_seed_x(static_cast<std::uint32_t>(mix_bits(seed))),
           m_seed_y(static_cast<std::uint32_t>(mix_bits(seed + 0x632be59bd9b4e019ULL))),
           m_seed_z(static_cast<std::uint32_t>(mix_bits(seed + 0xc6bc279692b5c323ULL))) {}
 
+    /// The same sequence, of which index 0 is what is `first` here.
+    SobolPoints from(std::uint32_t first) const {
+        SobolPoints later = *this;
+        later.m_first += first;
+        return later;
+    }
     /// In [0, 1)^2.
     Vec2f operator()(std::uint32_t index) const {
         index += m_first;
-        // van der Corput is the bit reversal of the index, which Owen's scramble wants anyway.
-        return {unit(reverse(scramble(index, m_seed_x))),
-                unit(reverse(scramble(reverse(kSobolSecond(index)), m_seed_y)))};
+        // van der Corput is the bit reversal of the index.
+        return {unit(reverse_bits(scramble(index, m_seed_x))),
+                unit(reverse_bits(scramble(kSobolSecond(index), m_seed_y)))};
     }
 
     /// The third coordinate, in [0, 1).
     float third(std::uint32_t index) const {
-        return unit(reverse(scramble(reverse(kSobolThird(m_first + index)), m_seed_z)));
+        return unit(reverse_bits(scramble(kSobolThird(m_first + index), m_seed_z)));
     }
 
   private:
-    static std::uint32_t reverse(std::uint32_t x) {
-        x = (x << 16) | (x >> 16);
-        x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
-        x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
-        x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
-        return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
-    }
     /// Each bit is flipped by a hash of the bits below it: a nested scramble of the reversed word.
     static std::uint32_t scramble(std::uint32_t x, std::uint32_t seed) {
         x ^= x * 0x3d20adeau;
@@ -122,7 +126,7 @@ class SobolPoints {
     }
     static float unit(std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
 
-    std::uint32_t m_first, m_seed_x, m_seed_y, m_seed_z;
+    std::uint32_t m_first = 0, m_seed_x, m_seed_y, m_seed_z;
 };
 
 /// Axes x, y that make (x, y, n) a right-handed orthonormal frame (Duff et al. 2017).
