@@ -45,6 +45,15 @@ def test_a_strength_that_nodes_say(scene):
     assert exported(scene)["Sun"]["energy_knots"] == pytest.approx([1.5, 2.5])
 
 
+def test_a_portal_sheds_no_light(scene):
+    """It guides Cycles' samples to the world."""
+    lamp = bpy.data.lights.new("Portal", "AREA")
+    scene_parts.add_object(scene, "Portal", lamp)
+    assert exported(scene)["Portal"]["energy"] > 0.0
+    lamp.cycles.is_portal = True
+    assert exported(scene)["Portal"]["energy"] == 0.0
+
+
 def test_a_lamp_that_a_handler_deletes_shines_on(scene):
     """The frame is what it was when it began."""
     drive(add_sun(scene), "energy", "frame")

@@ -168,6 +168,16 @@ def test_faces_with_vertices_that_are_not_finite_are_left_out_and_named(scene, c
     assert report.entries() == [("mesh 'Cube'", "3 faces left out: 1 vertex not finite", 1)]
 
 
+def test_values_of_faces_that_are_left_out_go_with_them(scene, cube):
+    tint = cube.data.attributes.new("tint", "FLOAT", "FACE")
+    tint.data.foreach_set("value", np.arange(6, dtype=np.float32))
+    cube.data.materials.append(shading("tint"))
+    cube.data.vertices[0].co.x = float("nan")
+    geometry = geometry_of(export_probe.through_script()[0], "Cube")
+    kept = [i for i, face in enumerate(CUBE_FACES) if 0 not in face]
+    assert attribute_of(geometry, "tint")["values"].ravel().tolist() == kept
+
+
 def test_attribute_values_that_are_not_finite_are_named(scene, cube):
     layer = cube.data.uv_layers.new(name="UV")
     values = np.full(48, 0.5, dtype=np.float32)
