@@ -241,6 +241,22 @@ def test_an_object_asks_for_more_knots_than_the_scene_allows(moving):
     assert turned[:, 0, 0] == pytest.approx(np.cos(angles), abs=1e-4)
 
 
+def test_whole_turns_do_not_look_still(moving):
+    """Two turns within the shutter: as at the frame at its start, middle and end."""
+    square = scene_parts.add_square(moving)
+    drive(square, "rotation_euler", f"{8 * np.pi!r} * frame", 2)
+    snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
+    assert len(export_probe.knots_of(snapshot, "Square")) == 17
+
+
+def test_the_camera_asks_for_more_knots_too(moving):
+    camera = moving.camera
+    drive(camera, "rotation_euler", "40 * frame", 2)
+    (getattr(camera, "cycles", None) or camera.granita).motion_steps = 3
+    snapshot, _, _ = export_probe.through_engine(moving)
+    assert len(snapshot["camera"]["world_from_camera"]) == 9
+
+
 def test_a_handler_that_deletes_an_object_leaves_it_where_it_was(moving):
     drive(scene_parts.add_square(moving), "location", "frame", 0)
     scene_parts.add_square(moving, "Doomed", 1.0)

@@ -55,6 +55,20 @@ def test_motion_factor_spares_points_that_blur_hides(period):
     assert np.sqrt(np.mean((coarse - fine) ** 2)) < 0.02
 
 
+def test_motion_spares_what_lies_along_it_and_nothing_across():
+    """A strip of 128 x 1 pixels goes 64: a quarter of its steps where it goes along itself."""
+
+    def points(x, y):
+        snapshot = s.orthographic((200, 100), executor="SIMD", samples=4)
+        way = [s.translation(0, 0), s.translation(x, y)]
+        s.quad(snapshot, s.rectangle(4, 10, 132, 11), s.emission(snapshot), transforms=way)
+        return s.render(snapshot)["statistics"]["points_diced"]
+
+    still = points(0, 0)
+    assert points(0, 64) == still
+    assert 0.2 * still < points(64, 0) < 0.3 * still
+
+
 def test_what_no_row_of_a_rolling_shutter_blurs_is_diced_as_ever():
     def points(factor, rolling):
         snapshot = s.orthographic((96, 64), executor="SIMD", samples=4, motion_factor=factor)

@@ -72,6 +72,21 @@ def test_a_filter_without_a_sample_shows_the_nearest(executor, sampling, pixel_f
         assert np.abs(picture[:, 13:]).max() == 0
 
 
+def test_a_holdout_that_is_clear_in_part_cuts_as_much_as_it_covers(executor):
+    """Of .4, over a wall in the left half and nothing in the right one."""
+    for film_transparent, right in ((True, 0.0), (False, 0.6)):
+        snapshot = s.orthographic(
+            (16, 8), executor=executor, samples=4, film_transparent=film_transparent
+        )
+        s.quad(snapshot, s.rectangle(-9, -9, 40, 40, 2.0), s.emission(snapshot, alpha=0.4))
+        s.quad(snapshot, s.rectangle(-9, -9, 8, 40, 4.0), s.emission(snapshot))
+        snapshot["instances"]["flags"] = [7, 3]
+        picture = s.render(snapshot)["combined"]
+        assert np.abs(picture[:, :8] - 0.6).max() < 1e-6
+        assert np.abs(picture[:, 8:, 3] - right).max() < 1e-6
+        assert np.abs(picture[:, 8:, :3]).max() == 0
+
+
 EDGE = 12.3125  # between two columns of a lattice of 16
 
 

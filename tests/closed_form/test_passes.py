@@ -207,6 +207,20 @@ def test_transparency_weighs_colours_and_passes_through_what_the_threshold_exclu
         assert np.abs(made["passes"]["Mist"] - (0.25 * 0.25 + 0.75 * 0.5)).max() < 1e-5
 
 
+def test_what_stands_for_a_sample_is_found_behind_the_end_of_its_list(executor):
+    """Eight panes of .4 end the list at 98 %; none of them is seen by the passes of surfaces."""
+    options = {"opacity_threshold": 0.9, "pass_alpha_threshold": 0.5, "depth_pass": True}
+    for alpha in (0.6, None):
+        snapshot = snapshots.orthographic((8, 8), executor=executor, samples=4, **options)
+        pane = snapshots.emission(snapshot, (1, 1, 1), alpha=0.4)
+        for z in range(2, 10):
+            snapshots.quad(snapshot, snapshots.rectangle(0, 0, 8, 8, z), pane)
+        wall = snapshots.emission(snapshot, (1, 1, 1), alpha=alpha)
+        for z in (20, 30):
+            snapshots.quad(snapshot, snapshots.rectangle(0, 0, 8, 8, z), wall)
+        assert np.abs(snapshots.render(snapshot)["depth"] - 20).max() < 1e-4
+
+
 def test_aovs_of_materials(executor):
     """AOV Output nodes; where a material has none, 0; half a pixel of coverage halves them."""
     snapshot = snapshots.orthographic((8, 4), executor=executor, samples=64)
