@@ -13,6 +13,10 @@ namespace {
 /// chord this long, in segments.
 constexpr double kChord = 1e-3;
 
+/// Pixels of a curl's length that one step over several segments may lose: as much as a segment may
+/// leave its chord.
+constexpr double kBend = 0.03;
+
 /// Whether a difference of two places, seen from `from`, is more than their rounding.
 bool apart(const Vec3d& difference, const Vec3d& from) {
     return glm::length(difference) > 1e-12 * (glm::length(from) + 1e-30);
@@ -156,7 +160,7 @@ Bounds3f CurveControl::swept_box(double lo, double hi) const {
     return box;
 }
 
-double CurveControl::polygon_pixels(int knot, double lo, double hi) const {
+CurveControl::Way CurveControl::way(int knot, double lo, double hi) const {
     const Projection& projection = m_elements->view().projection;
     const auto seen = [&](double t) {
         const Vec3d p = at(knot, t).p;
@@ -164,13 +168,14 @@ double CurveControl::polygon_pixels(int knot, double lo, double hi) const {
         return projection.scale * Vec2d(p) / (projection.perspective ? z : 1.0);
     };
     double pixels = 0.0;
-    Vec2d from = seen(lo);
+    const Vec2d start = seen(lo), end = seen(hi);
+    Vec2d from = start;
     for (double t = std::floor(lo) + 1.0; t < hi; t += 1.0) {
         const Vec2d to = seen(t);
         pixels += glm::distance(from, to);
         from = to;
     }
-    return pixels + glm::distance(from, seen(hi));
+    return {pixels + glm::distance(from, end), glm::distance(start, end)};
 }
 
 void CurveControl::steps(double lo, double hi, std::size_t most, std::vector<double>& ends) const {
@@ -181,6 +186,7 @@ void CurveControl::steps(double lo, double hi, std::size_t most, std::vector<dou
         several ? kMostCurveLevels : kMostCurveLevels + std::min(std::ilogb(hi - lo), 0);
     Vec3f start[kMaxKnots], middle[kMaxKnots], end[kMaxKnots];
     const double half = curve_middle(lo, hi);
+    bool bent = false;
     for (int k = 0; k < knots; ++k) {
         const Vec3d p = at(k, lo).p, q = at(k, hi).p;
         start[k] = Vec3f(p);
@@ -188,11 +194,13 @@ void CurveControl::steps(double lo, double hi, std::size_t most, std::vector<dou
             // Points between may lie anywhere: it asks for a straight piece that is seen as long as
             // the way over them.  (Along q - p a curl that runs to the eye would be a point.)
             const Projection& projection = m_elements->view().projection;
-            const double way = polygon_pixels(k, lo, hi) / projection.scale.x;
+            const Way seen = way(k, lo, hi);
+            bent = bent || seen.along - seen.straight > kBend;
+            const double length = seen.along / projection.scale.x;
             const auto piece = [&](double part) {
                 const double z = p.z + (q.z - p.z) * part;
                 const double scale = projection.perspective && p.z > 0.0 ? z / p.z : 1.0;
-                return Vec3f(Vec3d(p.x * scale + way * part * (projection.perspective ? z : 1.0),
+                return Vec3f(Vec3d(p.x * scale + length * part * (projection.perspective ? z : 1.0),
                                    p.y * scale, z));
             };
             middle[k] = piece(0.5);
@@ -202,10 +210,10 @@ void CurveControl::steps(double lo, double hi, std::size_t most, std::vector<dou
             end[k] = Vec3f(q);
         }
     }
-    // Of several segments it is not known how they bend.
+    // Of several segments it is not known how they bend, but for what a step over them would lose.
     const EdgeRate& rate = several ? m_elements->rate() : m_elements->rate_along(m_width);
     const int levels = rate.levels(start, middle, end, knots, budget);
-    if (levels == 0) {
+    if (levels == 0 && !bent) {
         ends.push_back(hi);
     } else if (levels == EdgeRate::kAdaptive || several) {
         steps(lo, half, most, ends);

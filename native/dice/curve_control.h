@@ -49,8 +49,11 @@ class CurveControl {
     Vec3d tangent(int knot, double t) const;
     /// The curve's direction where it has no tangent; zero where all its points are one.
     Vec3d arrival(int knot, double t) const;
-    /// How long the way over the curve's points from lo to hi is seen at a knot.
-    double polygon_pixels(int knot, double lo, double hi) const;
+    /// Pixels from lo to hi as seen at a knot: over the curve's points, and straight.
+    struct Way {
+        double along, straight;
+    };
+    Way way(int knot, double lo, double hi) const;
 
     const OpenedElements* m_elements = nullptr;
     std::uint32_t m_curve = 0;

@@ -53,10 +53,10 @@ def test_thin_line_keeps_its_energy(executor, width):
 
 @pytest.mark.parametrize("perspective", [False, True])
 @pytest.mark.parametrize("rate", [0.5, 1.0, 2.0])
-def test_a_curl_that_runs_to_the_eye_is_a_ring(executor, perspective, rate):
+@pytest.mark.parametrize("radius, width", [(9.0, 1.2), (1.5, 0.6)])
+def test_a_curl_that_runs_to_the_eye_is_a_ring(executor, radius, width, perspective, rate):
     """From its root to its tip it is seen as a point: how long it is in the picture, only its points tell."""
     options = {"executor": executor, "samples": 64, "dicing_rate": rate}
-    radius, width = 9.0, 1.2
     angle = np.linspace(0, 4 * np.pi, 33)
     ring = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.ones(33)], 1)
     depth = np.linspace(30.0, 20.0, 33)[:, None]
@@ -66,8 +66,10 @@ def test_a_curl_that_runs_to_the_eye_is_a_ring(executor, perspective, rate):
     else:
         snapshot = s.orthographic((32, 32), **options)
         curves(snapshot, ring * [1, 1, 0] + [16, 16, 0] + depth * [0, 0, 1], [33], width / 2)
-    # Chords of the dicing rate cut corners: of 2 pixels, a twelfth of a width on the outside.
-    assert s.alpha(snapshot).sum() == pytest.approx(2 * np.pi * radius * width, rel=0.05)
+    # Steps of the small one may be 3/100 of a pixel shorter than their arcs: eight a turn, between which a ribbon is
+    # narrower by cos(pi / 8).  Measured: .094 less there, at most .03 of the large one.
+    limit = 0.05 if radius > 5.0 else 0.12
+    assert s.alpha(snapshot).sum() == pytest.approx(2 * np.pi * radius * width, rel=limit)
 
 
 def test_thin_line_has_no_dashes(executor):
