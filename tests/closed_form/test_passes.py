@@ -207,6 +207,17 @@ def test_transparency_weighs_colours_and_passes_through_what_the_threshold_exclu
         assert np.abs(made["passes"]["Mist"] - (0.25 * 0.25 + 0.75 * 0.5)).max() < 1e-5
 
 
+def test_mist_behind_coloured_glass_is_weighed_by_its_mean(executor):
+    """A clear pane of opacity (0, 1/4, 1), 5/12 in the mean, at z = 2 before a wall at z = 4."""
+    snapshot = snapshots.orthographic((8, 8), executor=executor)
+    glass = {"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1, 0.75, 0, 1)}}
+    snapshot["materials"].append({"name": "Glass", "nodes": [glass], "surface": (0, "BSDF")})
+    snapshots.quad(snapshot, snapshots.rectangle(0, 0, 8, 8, 2), 0)
+    snapshots.quad(snapshot, snapshots.rectangle(0, 0, 8, 8, 4), diffuse(snapshot, (1, 1, 1)))
+    made = passes(snapshot, mist=np.array([0.0, 8.0, 1.0], np.float32))["passes"]
+    assert np.abs(made["Mist"] - (5 / 12 * 0.25 + 7 / 12 * 0.5)).max() < 1e-5
+
+
 def test_what_stands_for_a_sample_is_found_behind_the_end_of_its_list(executor):
     """Eight panes of .4 end the list at 98 %; none of them is seen by the passes of surfaces."""
     options = {"opacity_threshold": 0.9, "pass_alpha_threshold": 0.5, "depth_pass": True}

@@ -41,6 +41,25 @@ def test_a_gradient_over_small_faces_keeps_its_place(executor, size):
     assert np.abs(error.mean((0, 1))).max() < 0.03
 
 
+@pytest.mark.parametrize("faces_a_pixel", [2, 1, 0.25])
+def test_each_face_has_its_own_material(executor, faces_a_pixel):
+    """Stripes of 4 pixels of two materials of one mesh, small faces and large ones; grids of sizes that do not
+    divide the number of a material's faces."""
+    snapshot = s.orthographic((32, 16), executor=executor, samples=4, grid_size=100)
+    nx, ny = int(32 * faces_a_pixel), int(16 * faces_a_pixel)
+    points, faces = sheet(nx, ny, 32, 16)
+    stripe = np.arange(nx) * 8 // nx % 2
+    red, green = s.emission(snapshot, (1, 0, 0)), s.emission(snapshot, (0, 1, 0))
+    index = np.tile(stripe, ny).astype(np.int32)
+    s.mesh(snapshot, points, faces, red, material_index=index)
+    snapshot["instances"]["slots"] = [2]
+    snapshot["instances"]["materials"] = [red, green]
+    picture = s.render(snapshot)["combined"]
+    first = np.arange(32) // 4 % 2 == 0
+    assert np.array_equal(picture[..., 0], np.tile(first, (16, 1)))
+    assert np.array_equal(picture[..., 1], np.tile(~first, (16, 1)))
+
+
 def test_points_follow_the_pixels():
     """250,000 quads at 160 x 90 are 17 a pixel."""
     snapshot = s.orthographic((160, 90), executor="SIMD", samples=16)
