@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "hider/lens_kernel.h"
+
 namespace granita {
 
 LensShape::LensShape(int blades, float rotation_rad, float ratio)
@@ -20,28 +22,10 @@ LensShape::LensShape(int blades, float rotation_rad, float ratio)
 
 void LensShape::map(float* u, float* v, std::size_t count) const {
     if (m_blades == 0)
-        map_disc(u, v, count);
+        map_to_disc(u, v, count);
     else
         map_polygon(u, v, count);
     for (std::size_t i = 0; i < count; ++i) u[i] *= m_narrow;
-}
-
-// Concentric map (Shirley and Chiu 1997): the angle within a wedge is q = (b / a) pi / 4, |q| <= pi
-// / 4, where sine and cosine are short polynomials (Taylor; the first term left out is below 4e-8).
-void LensShape::map_disc(float* u, float* v, std::size_t count) const {
-    for (std::size_t i = 0; i < count; ++i) {
-        const float x = 2.0f * u[i] - 1.0f, y = 2.0f * v[i] - 1.0f;
-        const bool wide = std::fabs(x) > std::fabs(y);
-        const float radius = wide ? x : y, other = wide ? y : x;
-        const float q = radius != 0.0f ? other / radius * 0.78539816f : 0.0f;
-        const float q2 = q * q;
-        const float sine =
-            q + q * q2 * (-1.0f / 6 + q2 * (1.0f / 120 + q2 * (-1.0f / 5040 + q2 / 362880)));
-        const float cosine =
-            1.0f + q2 * (-0.5f + q2 * (1.0f / 24 + q2 * (-1.0f / 720 + q2 / 40320)));
-        u[i] = radius * (wide ? cosine : sine);
-        v[i] = radius * (wide ? sine : cosine);
-    }
 }
 
 // The first number picks the wedge; the rest of it and the second one a point of the wedge's

@@ -18,7 +18,6 @@ class LensShape {
     float extent_v() const { return 1.0f; }
 
   private:
-    void map_disc(float* u, float* v, std::size_t count) const;
     void map_polygon(float* u, float* v, std::size_t count) const;
 
     int m_blades;
