@@ -12,8 +12,8 @@
 #include <string>
 
 #include "film/film.h"
-#include "hider/composite.h"
 #include "hider/hider.h"
+#include "hider/resolve/composite.h"
 
 namespace granita {
 namespace {

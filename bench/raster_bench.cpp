@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hider/hider.h"
-#include "hider/raster_hider.h"
+#include "hider/raster/raster_hider.h"
 
 namespace granita {
 namespace {

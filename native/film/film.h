@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "film/filter_pieces.h"
-#include "hider/sample_channels.h"
+#include "hider/resolve/sample_channels.h"
 #include "hider/sample_store.h"
-#include "hider/sample_table.h"
+#include "hider/samples/sample_table.h"
 #include "math/bounds.h"
 
 namespace granita {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "film/filter_pieces.h"
-#include "hider/sample_channels.h"
+#include "hider/resolve/sample_channels.h"
 #include "hider/sample_store.h"
 
 namespace granita {

@@ -18,7 +18,7 @@
 #include "dice/grid.h"
 #include "hider/sample_lists.h"
 #include "hider/sample_store.h"
-#include "hider/sample_table.h"
+#include "hider/samples/sample_table.h"
 #include "hider/time_slabs.h"
 #include "math/projection.h"
 

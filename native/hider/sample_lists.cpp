@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hider/sample_order.h"
+#include "hider/samples/sample_order.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "hider/sample_lists.cpp"

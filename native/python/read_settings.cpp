@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hider/sample_table.h"
+#include "hider/samples/sample_table.h"
 #include "python/snapshot.h"
 #include "scene/channels.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hider/raster_hider.h"
+#include "hider/raster/raster_hider.h"
 
 namespace granita {
 namespace {

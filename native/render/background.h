@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hider/sample_store.h"
-#include "hider/sample_table.h"
+#include "hider/samples/sample_table.h"
 #include "scene/camera.h"
 #include "shade/shading_system.h"
 

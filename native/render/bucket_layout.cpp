@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/check.h"
-#include "hider/sample_table.h"
+#include "hider/samples/sample_table.h"
 
 namespace granita {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/bucket_parts.h"
 
-#include "hider/compute_hider.h"
+#include "hider/compute/compute_hider.h"
 #include "render/tile_colors.h"
 
 namespace granita {

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/report.h"
 #include "gl/gl_thread.h"
-#include "hider/compute_device.h"
+#include "hider/compute/compute_device.h"
 #include "scene/scene.h"
 
 namespace granita {

@@ -7,7 +7,7 @@
 #include "base/progress.h"
 #include "film/film.h"
 #include "hider/hider.h"
-#include "hider/raster_hider.h"
+#include "hider/raster/raster_hider.h"
 #include "render/choose_executor.h"
 #include "render/frame_geometry.h"
 #include "shade/shading_system.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "film/filter.h"
-#include "hider/raster_samples.h"
+#include "hider/raster/raster_samples.h"
 #include "render/background.h"
 #include "render/visit_geometry.h"
 

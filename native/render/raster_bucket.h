@@ -3,7 +3,7 @@
 // that, drawing, filtering, all but the shading on the device.
 #pragma once
 
-#include "hider/raster_hider.h"
+#include "hider/raster/raster_hider.h"
 #include "render/frame.h"
 
 namespace granita {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "hider/composite.h"
+#include "hider/resolve/composite.h"
 #include "render/background.h"
 
 namespace granita {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hider/hider.h"
-#include "hider/layer_table.h"
+#include "hider/resolve/layer_table.h"
 #include "render/frame.h"
 
 namespace granita {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SampleTable on the device: the same bits as native/hider/sample_table.cpp, which says what the
+// SampleTable on the device: the same bits as native/hider/samples/sample_table.cpp, which says what the
 // dimensions and the blocks are.  Only integer arithmetic and exact conversions to float.
 //
 // Without the shutter's and the lens' warps: those are tables made on the CPU (decision 15).
-#include "hider/sample_bits.h"
+#include "hider/samples/sample_bits.h"
 
 const uint kX = 0u, kY = 1u, kT = 2u, kU = 3u, kV = 4u;
 

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "compute_executor.h"
 #include "grid_builder.h"
+#include "hider/compute/compute_executor.h"
 
 namespace granita::test {
 

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "hider/composite.h"
 #include "hider/hider.h"
+#include "hider/resolve/composite.h"
 #include "measured.h"
 
 namespace granita::test {
@@ -217,4 +217,4 @@ inline std::vector<int> layers_per_sample(HiderMaker make, Shot& shot) {
 
 }  // namespace granita::test
 
-#include "raster_executor.h"
+#include "hider/raster/raster_executor.h"

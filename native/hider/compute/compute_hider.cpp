@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hider/compute/compute_hider.h"
+
+#include <cmath>
+#include <optional>
+
+#include "hider/compute/compute_tiles.h"
+#include "hider/micropolygon_class.h"
+#include "hider/resolve/surface_interpolator.h"
+#include "hider/simd/tile_grid.h"
+
+namespace granita {
+namespace {
+
+constexpr int kBlockSide = 4, kBlocks = kTileSize / kBlockSide;
+
+/// Tiles that share buffers, and what is on its way to them.
+struct TileGroup {
+    TileGroup(std::size_t first_tile, std::size_t tile_count, const ComputeLimits& limits)
+        : first(first_tile), count(tile_count), batch(limits) {}
+    std::size_t first, count;
+    ComputeBatch batch;
+    std::optional<ComputeTiles> device;  ///< made with the first batch
+};
+
+class ComputeHider : public Hider {
+  public:
+    ComputeHider(ComputeDevice& device, const HiderFrame& frame, const Rect& tiles,
+                 const Rect& pixels)
+        : m_device(device),
+          m_frame(frame),
+          m_tiles(m_frame, tiles, pixels),
+          m_tile_grid(frame.projection, frame.table->lens()),
+          m_group_size(ComputeTiles::capacity(frame.table->samples(), device.limits())),
+          m_farthest(m_tiles.count() * kBlocks * kBlocks, -INFINITY) {
+        for (std::size_t first = 0; first < m_tiles.count(); first += m_group_size)
+            m_groups.emplace_back(first, std::min(m_group_size, m_tiles.count() - first),
+                                  device.limits());
+    }
+    ~ComputeHider() override {
+        m_device.thread().run([&] { m_groups.clear(); });
+    }
+    ComputeHider(const ComputeHider&) = delete;
+    ComputeHider& operator=(const ComputeHider&) = delete;
+
+    /// Its depth knows no times.
+    bool occluded(const TimeSlab& slab) const override {
+        const RasterBounds& bounds = slab.bounds;
+        const Rect touched = m_tiles.touched(bounds);
+        for (int y = touched.y0; y < touched.y1; ++y)
+            for (int x = touched.x0; x < touched.x1; ++x)
+                if (!tile_hides(m_tiles.index(x, y), bounds)) return false;
+        return true;
+    }
+
+    void hide(const Grid& grid) override {
+        const GridClasses classes = classify(grid);
+        const SurfaceId base = m_tiles.add(grid, classes);
+        if (m_frame.statistics)
+            m_frame.statistics->add(Counter::Micropolygons,
+                                    static_cast<std::uint64_t>(grid.micropolygon_count()));
+        m_tile_grid.load(grid);
+        const Rect touched = m_tiles.touched(grid.bounds);
+        for (int y = touched.y0; y < touched.y1; ++y)
+            for (int x = touched.x0; x < touched.x1; ++x) {
+                const std::size_t i = m_tiles.index(x, y);
+                if (tile_hides(i, grid.bounds)) continue;
+                SimdGrid in_tile;
+                m_tile_grid.project(m_tiles.origin(i), in_tile);
+                in_tile.classes = classes.classes.data();
+                in_tile.base = base;
+                TileGroup& group = m_groups[i / m_group_size];
+                group.batch.add(in_tile, static_cast<std::uint32_t>(i - group.first),
+                                m_tiles.local_pixels(i), [&] { run(group); });
+            }
+    }
+
+    bool overflowed() const override { return m_tiles.overflowed(); }
+
+    std::vector<TileStore>& finish() override {
+        for (TileGroup& group : m_groups) {
+            if (!group.batch.empty()) run(group);
+            if (!group.device) continue;
+            m_device.thread().run([&] {
+                for (std::size_t i = 0; i < group.count; ++i)
+                    group.device->read_back(group.first + i);
+                group.device.reset();
+            });
+        }
+        for (std::size_t i = 0; i < m_tiles.count(); ++i) {
+            m_tiles.finish_lists(i, surfaces_of(m_tiles.store(i)), m_frame.list_end);
+            weigh_fragments(i);
+        }
+        return m_tiles.stores();
+    }
+    const GridPool& pool() const override { return m_tiles.pool(); }
+    std::vector<bool> seen_grids() const override { return m_tiles.seen_grids(); }
+    const TileSamples& tile_samples(std::size_t i) const override { return m_tiles.samples(i); }
+
+  private:
+    /// Where samples meet their fragments: the device hands over keys and ids.
+    void weigh_fragments(std::size_t i) {
+        TileStore& store = m_tiles.store(i);
+        if (store.lists.empty()) return;
+        SurfaceInterpolator surface(m_frame.projection, store.tile, m_tiles.samples(i),
+                                    m_tiles.pool());
+        for (std::uint32_t s = 0; s < store.key.size(); ++s)
+            for (std::uint32_t k = 0; k < store.lists.counts()[s]; ++k) {
+                const Fragment fragment = store.lists.at(s, k);
+                store.lists.set(s, k, surface.fragment(s, fragment.id, fragment.key));
+            }
+    }
+
+    /// Tiles whose lists may have ended.
+    std::vector<std::size_t> grown_lists(const TileGroup& group) const {
+        std::vector<std::size_t> grown;
+        if (m_frame.list_end.opacity_threshold < 1.0f)
+            for (std::size_t i = group.first; i < group.first + group.count; ++i)
+                if (m_tiles.lists_grew(i)) grown.push_back(i);
+        return grown;
+    }
+
+    void run(TileGroup& group) {
+        m_tiles.check_cancelled();
+        std::vector<std::size_t> grown;
+        std::vector<float> farthest = m_device.thread().run([&] {
+            if (!group.device)
+                group.device.emplace(m_device, m_tiles, m_frame, group.first, group.count);
+            group.device->hide(group.batch);
+            grown = grown_lists(group);
+            for (const std::size_t i : grown) group.device->read_back(i);
+            return group.device->farthest();
+        });
+        // z-batches: what is behind the end of a list is dropped, and hidden as behind opaque
+        // surfaces.  Sorted on the bucket's own thread.
+        for (const std::size_t i : grown) m_tiles.cut_lists(i, m_frame.list_end);
+        if (!grown.empty())
+            farthest = m_device.thread().run([&] {
+                for (const std::size_t i : grown) group.device->write_back(i);
+                return group.device->farthest();
+            });
+        std::copy(
+            farthest.begin(), farthest.end(),
+            m_farthest.begin() + static_cast<std::ptrdiff_t>(group.first * kBlocks * kBlocks));
+        group.batch.clear();
+        if (m_tiles.limit_lists()) m_tiles.clear_lists();
+    }
+
+    /// Whether the last batch left nothing of the tile that is farther than the bounds.  Keys only
+    /// come nearer, so what is on its way only culls less.
+    bool tile_hides(std::size_t i, const RasterBounds& bounds) const {
+        const Vec2d origin = m_tiles.origin(i);
+        // An undecidable bound (NaN) covers the tile: fmin and fmax drop the NaN.
+        const auto pixel = [](double x, double if_nan) {
+            if (std::isnan(x)) x = if_nan;
+            return static_cast<int>(std::floor(std::fmin(std::fmax(x, -1.0), kTileSize)));
+        };
+        const Rect r = m_tiles.local_pixels(i).intersect(
+            {pixel(bounds.x0 - origin.x, 0), pixel(bounds.y0 - origin.y, 0),
+             pixel(bounds.x1 - origin.x, kTileSize) + 1,
+             pixel(bounds.y1 - origin.y, kTileSize) + 1});
+        if (r.empty()) return true;
+        // A key at a sample may round a few ulp past the nearest corner's.
+        const float limit = bounds.nearest_key + std::fabs(bounds.nearest_key) * 0x1p-20f;
+        for (int y = r.y0 / kBlockSide; y <= (r.y1 - 1) / kBlockSide; ++y)
+            for (int x = r.x0 / kBlockSide; x <= (r.x1 - 1) / kBlockSide; ++x)
+                if (!(limit < m_farthest[i * kBlocks * kBlocks +
+                                         static_cast<std::size_t>(y * kBlocks + x)]))
+                    return false;
+        return true;
+    }
+
+    ComputeDevice& m_device;
+    HiderFrame m_frame;
+    BucketTiles m_tiles;
+    TileGrid m_tile_grid;
+    std::size_t m_group_size;
+    std::vector<TileGroup> m_groups;
+    std::vector<float> m_farthest;  ///< [tiles][16]
+};
+
+}  // namespace
+
+std::unique_ptr<Hider> make_compute_hider(ComputeDevice& device, const HiderFrame& frame,
+                                          const Rect& tiles, const Rect& pixels) {
+    return std::make_unique<ComputeHider>(device, frame, tiles, pixels);
+}
+
+}  // namespace granita

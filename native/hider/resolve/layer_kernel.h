@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Transparent layers put over each other, for the samples of a packet at once: compiled for every
+// SIMD target and chosen at run time (Highway), with the same bits on all.
+#pragma once
+
+#include "hider/resolve/layer_table.h"
+#include "hider/sample_lists.h"
+#include "hider/samples/sample_order.h"
+
+namespace granita {
+
+/// The layers of sixteen lists in front of what is behind them.  Each channel by itself, in double:
+/// C += T c, O += a T, T -= a T, which keeps what float's T = (1 - a) T loses: 1e6 layers of 1e-6
+/// (docs/hard_cases.md, case 36).
+struct PacketLayers {
+    alignas(64) double transmission[3][kPacket];  ///< T
+    alignas(64) double color[3][kPacket];         ///< C
+    alignas(64) double opacity[3][kPacket];       ///< O; only where lists may end
+    alignas(64) double alpha[kPacket];            ///< mean opacity, of surfaces
+    alignas(64) double cut[kPacket];              ///< and of holdouts
+    alignas(64) float first_key[kPacket];         ///< of ListEnd's first surface; -inf = none
+    std::uint32_t ended = 0;                      ///< bit i: list i reached the threshold
+};
+
+/// What else wants to know of layers, a sample's from front to back.
+class LayerVisitor {
+  public:
+    virtual ~LayerVisitor() = default;
+    /// `first`: it is the one that stands for the sample.  `adds`: it is in front of the list's end
+    /// and no holdout.  `transmission`: in front of it.
+    virtual void layer(std::uint32_t slot, const Fragment& fragment, bool first, bool adds,
+                       const Vec3d& transmission) = 0;
+};
+
+/// Mean of the channels; exactly a channel where they are equal.
+inline double channel_mean(double x, double y, double z) {
+    return x + ((y - x) + (z - x)) / 3.0;
+}
+
+/// `lists` are sorted; `visitor` may be absent.
+void composite_packet(const FragmentLists& lists, std::size_t packet, const LayerTable& table,
+                      const ListEnd& end, LayerVisitor* visitor, PacketLayers& out);
+
+}  // namespace granita
