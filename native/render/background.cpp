@@ -93,7 +93,7 @@ std::vector<Vec3f> from_corners(const Directions& directions, const ShadingSyste
         const int y = std::clamp(static_cast<int>(samples.y[i]), 0, kTileSize - 1);
         const float fx = samples.x[i] - static_cast<float>(x),
                     fy = samples.y[i] - static_cast<float>(y);
-        const Vec3f* c = &corners[static_cast<std::size_t>(y * kCorners + x)];
+        const Vec3f* c = &corners[static_cast<std::size_t>(y) * kCorners + x];
         colors[i] =
             glm::mix(glm::mix(c[0], c[1], fx), glm::mix(c[kCorners], c[kCorners + 1], fx), fy);
     }

@@ -84,6 +84,7 @@ Tile raster_bucket(Frame& frame, int bucket) {
             grids.push_back(std::move(grid));
         });
     std::vector<const Grid*> plain;
+    plain.reserve(grids.size());
     for (const auto& grid : grids) plain.push_back(&grid->grid());
     count_needs(frame, plain);
 

@@ -208,6 +208,7 @@ void RasterDevice::draw_ways(const RasterBuffers& buffers,
     buffers.opacity.bind_storage(RASTER_VERTEX_OPACITY);
     // Six vertices for the three indices of a triangle; an instance a segment of the motion.
     std::vector<std::array<GLuint, 4>> draws;
+    draws.reserve(commands.size());
     for (const Command& c : commands)
         draws.push_back({2 * c.count, c.instances, 2 * c.first_index, 0});
     const gl::Buffer indirect = gl::Buffer::of(draws);

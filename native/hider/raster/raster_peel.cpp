@@ -35,6 +35,7 @@ std::vector<ZBatch> z_batches(const RasterGeometry& geometry,
                               const std::vector<std::uint32_t>& among, double near_clip,
                               float farthest, int size) {
     std::vector<Extent> extents;
+    extents.reserve(among.size());
     for (const std::uint32_t range : among) extents.push_back(extent(geometry, range, near_clip));
     std::stable_sort(extents.begin(), extents.end(),
                      [](const Extent& a, const Extent& b) { return a.nearest > b.nearest; });

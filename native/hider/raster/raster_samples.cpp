@@ -44,7 +44,7 @@ void RasterSamples::load(const RasterCell& cell) {
                 for (int x = part.x0; x < part.x1; ++x)
                     for (int s = 0; s < samples.samples; ++s) {
                         const int pixel = (y - tile.y0) * kTileSize + x - tile.x0;
-                        const auto i = static_cast<std::size_t>(pixel * samples.samples + s);
+                        const auto i = static_cast<std::size_t>(pixel) * samples.samples + s;
                         const std::size_t texel =
                             static_cast<std::size_t>((y - pixels.y0) * m_lattice + s / m_lattice) *
                                 row +

@@ -9,8 +9,9 @@ CenterSamples center_samples(const TileSamples& samples) {
     CenterSamples nearest{};
     const auto n = static_cast<std::uint32_t>(samples.samples);
     for (int pixel = 0; pixel < kTileSize * kTileSize; ++pixel) {
-        const float x = static_cast<float>(pixel % kTileSize) + 0.5f;
-        const float y = static_cast<float>(pixel / kTileSize) + 0.5f;
+        const int row = pixel / kTileSize, column = pixel % kTileSize;
+        const float x = static_cast<float>(column) + 0.5f;
+        const float y = static_cast<float>(row) + 0.5f;
         const std::uint32_t first = static_cast<std::uint32_t>(pixel) * n;
         nearest[pixel] = first;
         float least = INFINITY;

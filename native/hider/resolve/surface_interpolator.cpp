@@ -152,11 +152,11 @@ void SurfaceInterpolator::load_knots(const SurfaceRecord& record,
     for (auto* values : {&m_knots.x, &m_knots.y, &m_knots.w, &m_knots.z})
         values->resize(static_cast<std::size_t>(count) * 4);
     for (int k = 0; k < count; ++k) {
-        const auto number = static_cast<std::size_t>(m_knots.first + k);
+        const auto number = static_cast<std::size_t>(m_knots.first) + k;
         const Vec3f* const knot = grid.positions.data() + number * grid.vertex_count();
         for (int i = 0; i < 4; ++i) {
             const Corner<float> c = corner(m_projection, knot[record.corners.vertex[i]], m_origin);
-            const auto at = static_cast<std::size_t>(k * 4 + i);
+            const auto at = static_cast<std::size_t>(k) * 4 + i;
             m_knots.x[at] = c.x;
             m_knots.y[at] = c.y;
             m_knots.w[at] = c.w;

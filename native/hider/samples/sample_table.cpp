@@ -157,15 +157,17 @@ void SampleTable::fill_dimension(Vec2i tile, int dimension, std::vector<float>& 
 void SampleTable::fill_regular(SampleNeeds needs, TileSamples& out) const {
     const int cells = m_lattice.cells();
     std::vector<Vec2f> places;
+    places.reserve(static_cast<std::size_t>(cells));
     for (int cell = 0; cell < cells; ++cell) places.push_back(m_lattice.place(cell));
     const auto passes = static_cast<std::uint32_t>(m_samples / cells);
-    for (int p = 0; p < kPixels; ++p)
+    for (int p = 0; p < kPixels; ++p) {
+        const int row = p / kTileSize, column = p % kTileSize;
         for (int s = 0; s < m_samples; ++s) {
             const std::size_t i = static_cast<std::size_t>(p) * m_samples + s;
             const auto pass = static_cast<std::uint32_t>(s / cells);
             const Vec2f place = places[static_cast<std::size_t>(s % cells)];
-            out.x[i] = static_cast<float>(p % kTileSize) + place.x;
-            out.y[i] = static_cast<float>(p / kTileSize) + place.y;
+            out.x[i] = static_cast<float>(column) + place.x;
+            out.y[i] = static_cast<float>(row) + place.y;
             if (needs.time)
                 out.t[i] = static_cast<float>(bits::cell_center(pass, passes)) * 0x1p-20f;
             if (needs.lens) {
@@ -175,6 +177,7 @@ void SampleTable::fill_regular(SampleNeeds needs, TileSamples& out) const {
                 out.v[i] = fraction24(bits::reverse_bits(bits::sobol_reversed(pass, 1)));
             }
         }
+    }
 }
 
 }  // namespace granita
