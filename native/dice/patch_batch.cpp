@@ -97,10 +97,8 @@ bool PatchBatch::is_lattice(Part& part, bool inside) const {
     part.start = m_mesh->start(face, kMostEdgeLevels);
     const Side* const sides = part.start.sides;
     if (std::any_of(sides, sides + 4, [](const Side& s) { return s.levels < 0; })) return false;
-    const int u = std::max(sides[0].levels, sides[2].levels);
-    const int v = std::max(sides[1].levels, sides[3].levels);
-    part.n_u = 1 << u;
-    part.n_v = 1 << v;
+    part.n_u = 1 << std::max(sides[0].levels, sides[2].levels);
+    part.n_v = 1 << std::max(sides[1].levels, sides[3].levels);
     return part.n_u * part.n_v <= m_mesh->view().scene->options.grid_size;
 }
 

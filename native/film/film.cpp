@@ -92,6 +92,7 @@ std::vector<Tile> Film::add(std::vector<TileContribution> contributions) {
         }
     }
     std::vector<Tile> tiles;
+    tiles.reserve(complete.size());
     for (Complete& c : complete) tiles.push_back(finish_cell(c.rect, std::move(c.parts)));
     return tiles;
 }

@@ -89,7 +89,7 @@ GeometryNode::GeometryNode(std::unique_ptr<Primitive> primitive, const RasterBou
         m_buckets = {};
         return;
     }
-    m_released.assign(static_cast<std::size_t>(m_buckets.width() * m_buckets.height()), false);
+    m_released.assign(static_cast<std::size_t>(m_buckets.width()) * m_buckets.height(), false);
     m_left = m_released.size();
     if (!parent) return;
     // Buckets that were done with the parent before it was split will never come here.
