@@ -104,7 +104,8 @@ class Flights:
             if flight is not None and not flight.has_id and not all_along
         }
         for column, flight in enumerate(flights):
-            if flight is None:
+            # Where an owner was before it had instances is not known: they go by their places.
+            if flight is None or any(flight.owner not in self._matrices.get(t, {}) for t in ticks):
                 continue
             worlds = [self._matrices[tick][flight.owner] for tick in ticks]
             standing = np.stack([world @ flight.place for world in worlds])

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Exceptions of the library.  Nothing below native/python exits, aborts or prints: it throws one of
-// these and python/exceptions.cpp translates it once.
+// these and python/errors.cpp translates it once.
 #pragma once
 
 #include <stdexcept>

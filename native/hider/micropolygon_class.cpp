@@ -44,7 +44,8 @@ GridClasses classify(const Grid& grid) {
     const int vertices = grid.vertex_count(), up = grid.up();
     const int knots = grid.motion ? grid.knots : 1;
     const bool all_finite =
-        are_finite({grid.positions.data(), static_cast<std::size_t>(knots * vertices)});
+        are_finite({grid.positions.data(),
+                    static_cast<std::size_t>(knots) * static_cast<std::size_t>(vertices)});
     const auto finite = [&](int v) {
         for (int k = 0; k < knots; ++k)
             if (!is_finite(grid.positions[k * vertices + v])) return false;

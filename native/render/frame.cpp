@@ -55,7 +55,7 @@ Vec3f constant_background_of(const ShadingSystem& shading) {
 }
 
 /// Pixels along a bucket's side.  The CPU fills, sorts and composites a bucket's samples and lists
-/// while the cache still holds them: at 256 samples what is opaque takes 7 to 17 % less in buckets
+/// while the cache still holds them: at 256 samples what is opaque takes 7 to 15 % less in buckets
 /// of 16 pixels than in buckets of 64, and feathers half (docs/decisions/transparency.md).
 int bucket_size(const Options& options, Executor executor) {
     constexpr std::int64_t kCachedSamples = 1 << 16;

@@ -372,7 +372,21 @@ bool RayScene::varies(const Vec3f& start, const Vec3f& direction, float distance
     });
 }
 
+namespace {
+
+/// Embree leaves other rays undefined, and as Debian builds it ends the process at them.
+bool is_traceable(const ShadowRay& ray) {
+    constexpr float kFarthest = 1e18f;
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(ray.start[axis]) < kFarthest && std::abs(ray.direction[axis]) < kFarthest))
+            return false;
+    return ray.distance >= 0.0f && ray.time >= 0.0f && ray.time <= 1.0f;
+}
+
+}  // namespace
+
 Vec3f RayScene::transmittance(const ShadowRay& shadow) const {
+    if (!is_traceable(shadow)) return Vec3f(1.0f);
     ShadowContext context{};
     rtcInitIntersectContext(&context.embree);
     context.scene = m_impl.get();
@@ -403,6 +417,7 @@ void RayScene::transmittances(std::span<const ShadowRay> rays, std::span<Vec3f> 
         alignas(64) int valid[kPacket]{};
         for (std::size_t i = 0; i < count; ++i) {
             const ShadowRay& ray = rays[first + i];
+            if (!is_traceable(ray)) continue;
             packet.org_x[i] = ray.start.x;
             packet.org_y[i] = ray.start.y;
             packet.org_z[i] = ray.start.z;

@@ -43,7 +43,7 @@ struct ShadowRay {
     Vec3f start, direction;  ///< direction is unit
     float distance;          ///< metres; may be infinite
     float time = 0.5f;       ///< of the shutter, [0, 1]
-};
+};                           // Whatever is no number, or 1e18 metres away, meets nothing.
 
 class RayScene {
   public:

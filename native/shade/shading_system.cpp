@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "scene/visible_materials.h"
 #include "shade/direct_light.h"
 #include "shade/grid_channels.h"
 #include "shade/light_share.h"
@@ -99,7 +98,12 @@ struct ShadingSystem::Impl {
         warn_of_emission(report);
         world = compile_surface(scene.world.graph, scene, textures, report,
                                 {"world '" + scene.world.name + "'", true});
-        if (!any_visible_material(scene, [this](int index) { return reflects(index); })) return;
+        const bool any_reflects = std::ranges::any_of(scene.instances, [this](const Instance& i) {
+            if (!i.visible_camera) return false;
+            const auto shows = [this](int index) { return reflects(index); };
+            return i.materials.empty() ? shows(-1) : std::ranges::any_of(i.materials, shows);
+        });
+        if (!any_reflects) return;
         light = std::make_unique<DirectLight>(
             scene,
             [this](const std::vector<Vec3f>& directions, float spread, std::vector<Vec3f>& out) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a bucket's grids are in the buffers; native/hider/raster_geometry.h.
+// Where a bucket's grids are in the buffers; native/hider/raster/raster_geometry.h.
 #include "shared/raster_layout.h"
 
 struct GridPlace {

@@ -206,6 +206,13 @@ def test_those_that_come_and_go_fly_by_it_too(film):
 
 
 @readable
+def test_those_of_an_object_that_has_none_at_first_go_by_their_places(film):
+    """Where it was before its first instance is not known."""
+    scatter(film, (0, 48, 0), "0 if frame < 10.4 else 1", with_ids=True)
+    assert ways(film) == pytest.approx(np.zeros((1, 3)), abs=1e-5)
+
+
+@readable
 @pytest.mark.parametrize("with_ids, expected", [(False, (0, 2, 0)), (True, (3, 0, 0))])
 def test_places_say_more_where_they_can(film, with_ids, expected):
     """They go 3 metres to the right, as nodes have it.  Another number of them without ids may be another order."""

@@ -28,7 +28,7 @@ class FlockSlices {
             });
             m_origin[d] = least;
             // The last slice holds `most` too, however it rounds.
-            m_scale[d] = (kSlices - 0x1p-8f) / (most - least);
+            m_scale[d] = (kSlices - 0x1p-8f) / std::max(most - least, 1e-6f);
             // Bits of a slice, by what begins and what has ended.
             std::uint64_t* const slices = m_slices[d];
             std::fill_n(slices, kSlices + 1, 0);

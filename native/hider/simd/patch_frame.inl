@@ -5,7 +5,7 @@
 /// A rectangle of micropolygons of a grid.
 struct Patch {
     static constexpr int kSide = 8;
-    int i, j, n_u, n_v;  ///< the first, and how many, at most kSide
+    int i, j, n_u, n_v;  ///< the first, and how many; of a patch at most kSide
 };
 
 /// Parameters over a patch in the frame that moves with it: micropolygon (i, j) of the patch stays

@@ -2,7 +2,7 @@
 // Vectors of samples against one micropolygon: included once a SIMD target inside its namespace,
 // after packet_vectors.inl, sample_packet.inl and tile_bounds.inl.
 
-/// The micropolygon that is looked at, or several side by side.
+/// The micropolygon that is looked at, or several of the grid.
 struct Target {
     int kind = 0;      ///< SimdGrid::classes; of several: bits that any has
     SurfaceId id = 0;  ///< of one

@@ -56,7 +56,7 @@ class Kernel {
           m_patches(grid, m_paths),
           m_flocks(grid, tile, m_where, m_paths),
           m_together(grid.finite && grid.n_u * grid.n_v >= kLeastPatch),
-          m_in_flocks(grid.right != 1 || grid.n_v <= kNarrow) {}
+          m_in_flocks(grid.n_v <= kNarrow) {}
 
     template <Lens kLens>
     void run() {

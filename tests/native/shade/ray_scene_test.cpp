@@ -79,6 +79,31 @@ TEST(RayScene, a_square_blocks_exactly_the_rays_through_it) {
     EXPECT_GT(rays.bytes(), 0u);
 }
 
+TEST(RayScene, rays_that_are_no_numbers_or_start_out_of_reach_meet_nothing) {
+    Scene scene = empty_scene();
+    add_instance(scene, square(1e3f), at({0, 0, 1}));
+    const Progress progress;
+    const RayScene rays(scene, Vec3d(0.0), {}, progress);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const ShadowRay good{Vec3f(0.0f), kUp, kInfinity};
+    std::vector<ShadowRay> ways;
+    for (const float bad : {nan, kInfinity, -kInfinity, 1e19f, 1e30f})
+        for (int axis = 0; axis < 3; ++axis) {
+            ways.push_back(good);
+            ways.emplace_back(good).start[axis] = bad;
+            ways.emplace_back(good).direction[axis] = bad;
+        }
+    ways.emplace_back(good).distance = nan;
+    ways.emplace_back(good).time = nan;
+    std::vector<Vec3f> left(ways.size());
+    rays.transmittances(ways, left);
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+        const bool is_good = i < 45 && i % 3 == 0;
+        EXPECT_EQ(left[i], Vec3f(is_good ? 0.0f : 1.0f)) << i;
+        EXPECT_EQ(rays.transmittance(ways[i]), left[i]) << i;
+    }
+}
+
 TEST(RayScene, instances_that_cast_no_shadow_are_not_in_it) {
     Scene scene = empty_scene();
     scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].casts_shadow = false;
