@@ -69,7 +69,7 @@ class Kernel {
         int& segment = m_target.segment;
         for (segment = 0; segment < std::max(1, m_grid.segments); ++segment) {
             if constexpr (kMoving || kLens != Lens::None) {
-                if (m_together && m_in_flocks) {
+                if (m_together && m_in_flocks && m_flocks.pay<kLens>()) {
                     visit_flocks<kMoving, kLens>();
                     continue;
                 }
@@ -136,7 +136,7 @@ class Kernel {
     /// The patches of a vector of micropolygons from (i, j) on; which micropolygons are of none.
     template <bool kMoving, Lens kLens>
     HWY_INLINE std::uint32_t visit_patches(int i, int j) {
-        if (!m_together) return ~0u;
+        if (!m_together || m_in_flocks) return ~0u;
         std::uint32_t loose = 0;
         for (int k = 0; k < kStep && i + k < m_grid.n_u; k += Patch::kSide) {
             const Patch patch{i + k, j, std::min(Patch::kSide, m_grid.n_u - i - k),
