@@ -14,9 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .changes import originals
-from .report import counted
-from .transforms import from_matrix, inverse
-from .velocity import NAME
+from .transforms import from_matrix, inverse, volume
+from .velocity import NAME, finite_velocity
 
 
 @dataclass
@@ -70,7 +69,7 @@ class Flights:
             velocities, has_id = makers[address]
             velocity = velocities.get(int(scan.persistent[thing, 2]))
             world = self._matrices[tick][address]
-            if velocity is None or not np.linalg.det(world[:3, :3]):
+            if velocity is None or volume(world) == 0.0:
                 continue
             place = inverse(world) @ scan.matrices[thing]
             self.of[int(thing)] = Flight(address, velocity, tick, place, has_id)
@@ -135,13 +134,7 @@ class Flights:
                 label, f"'{NAME}' of its instances ({attribute.data_type}) is no vector: not used"
             )
             return None
-        velocity = np.empty((len(attribute.data), 3), dtype=np.float32)
-        attribute.data.foreach_get("vector", velocity.reshape(-1))
-        broken = ~np.isfinite(velocity).all(axis=1)
-        if broken.any():
-            count = counted(np.count_nonzero(broken), "instance")
-            self._report(label, f"'{NAME}' is not finite at {count}, taken as 0")
-            velocity[broken] = 0.0
+        velocity = finite_velocity(attribute, "instance", label, self._report)
         ids = np.arange(len(velocity), dtype=np.int32)
         attribute = instances.attributes.get("id")
         if attribute is not None:

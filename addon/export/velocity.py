@@ -34,14 +34,17 @@ def read_velocity(data, count, label, report):
     if len(attribute.data) != count:
         report(label, f"its '{NAME}' has {len(attribute.data)} values for {count} points: not used")
         return None
+    return finite_velocity(attribute, "point", label, report)
+
+
+def finite_velocity(attribute, noun, label, report):
+    """float32 [n, 3] of an attribute of vectors; what is not finite is 0 and named, by the noun for one of n."""
     velocity = np.empty((len(attribute.data), 3), dtype=np.float32)
     attribute.data.foreach_get("vector", velocity.reshape(-1))
     broken = ~np.isfinite(velocity).all(axis=1)
     if broken.any():
-        report(
-            label,
-            f"its '{NAME}' is not finite at {counted(np.count_nonzero(broken), 'point')}, taken as 0",
-        )
+        count = counted(np.count_nonzero(broken), noun)
+        report(label, f"its '{NAME}' is not finite at {count}, taken as 0")
         velocity[broken] = 0.0
     return velocity
 

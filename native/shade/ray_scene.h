@@ -38,12 +38,12 @@ struct RayLift {
     }
 };
 
-/// A way of light, in shading space.
+/// A way of light, in shading space.  What is no number, or 1e18 metres away, meets nothing.
 struct ShadowRay {
     Vec3f start, direction;  ///< direction is unit
     float distance;          ///< metres; may be infinite
     float time = 0.5f;       ///< of the shutter, [0, 1]
-};                           // Whatever is no number, or 1e18 metres away, meets nothing.
+};
 
 class RayScene {
   public:
