@@ -243,6 +243,9 @@ class Steps:
             self._rigid.add(index)
             self._report(source.geometry.name, self._rigid_message)
             return
+        if np.array_equal(points, source.at_frame(points.shape[1])):
+            self._last_points.pop(index, None)
+            return
         broken = ~(np.isfinite(points).all(axis=1))
         points[broken] = source.at_frame(points.shape[1])[broken]
         self._last_points[index] = points

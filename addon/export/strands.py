@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Points of particle hair, one a call (.4 microseconds): there is no faster way through Blender's interface."""
 
-import math
 from dataclasses import dataclass
-from itertools import chain
+from functools import cached_property
+from itertools import chain, product
 
 import numpy as np
 
@@ -14,8 +14,9 @@ from .transforms import from_matrix, inverse, volume
 # Children come out a little different wherever their emitter stands: of 13,608 on a head that turns, one
 # in a hundred by 2^-19 to 2^-11 of the head's size.  Fewer than one in twenty, none farther than this:
 _NOISE, _MOST_NOISE, _NOISY = 2.0**-16, 2.0**-10, 0.05
-# About as many points are asked, whole hairs, evenly: whatever bends hair bends many, but not in every point.
-_ASKED = 8192
+# About as many hairs are asked, evenly, each for its tip and for one point more, from hair to hair the next:
+# whatever bends hair bends many and shows at most tips, but children that meet there may bend in between.
+_ASKED = 1024
 
 
 @dataclass(frozen=True)
@@ -50,14 +51,15 @@ class Strands(Elements):
         steps = step_count(system.settings, self.mode)
         if (self.sizes != steps).any() or last - first != len(self.sizes):
             return False
-        asked = max(1, (last - first) * steps // _ASKED)
-        now = _world(system, thing, range(first, last, asked), range(steps))
-        whole = now.any(axis=2).all(axis=1)
-        at_frame = self.points.reshape(-1, steps, 3)[::asked]
-        here = _from_world(now[whole].reshape(-1, 3), thing)
-        off = np.linalg.norm(here - at_frame[whole].reshape(-1, 3), axis=1)
-        off = off.reshape(-1, steps).max(axis=1, initial=0.0)
-        size = np.abs(self.points).max()
+        hairs, keys, at_frame = self._asked
+        asked = zip((first + hairs).tolist(), keys.tolist(), strict=True)
+        now = _world(system, thing, asked, len(hairs))
+        place = from_matrix(thing.matrix_world)
+        here = at_frame @ place[:3, :3].T
+        off = np.linalg.norm(now - place[:3, 3] - here, axis=1)
+        off[~now.any(axis=1)] = 0.0  # what ends early
+        off = off.reshape(-1, 2).max(axis=1)
+        size = np.abs(here).max()
         # Blender's own coordinates are of the world, in single precision.
         rounding = 2.0**-20 * np.abs(now).max()
         # Written so that what is not a number does not go along.
@@ -65,6 +67,16 @@ class Strands(Elements):
             np.count_nonzero(~(off <= _NOISE * size + rounding)) <= _NOISY * len(off)
             and (off <= _MOST_NOISE * size + rounding).all()
         )
+
+    @cached_property
+    def _asked(self):
+        """What is asked: (int [2 n] hairs, int [2 n] their points, float32 [2 n, 3] where these are at the frame)."""
+        count, steps = len(self.sizes), int(self.sizes[0])
+        hairs = np.arange(0, count, max(1, count // _ASKED))
+        others = np.arange(len(hairs)) % (steps - 1)
+        points = np.stack([np.full(len(hairs), steps - 1), others], axis=1).ravel()
+        hairs = np.repeat(hairs, 2)
+        return hairs, points, self.points.reshape(-1, steps, 3)[hairs, points]
 
 
 def particle_range(system, mode):
@@ -90,7 +102,8 @@ def read_strands(thing, _data, name, mode):
         return np.zeros((0, 3), dtype=np.float32), np.zeros(0, dtype=np.int32)
     first, last = particle_range(system, mode)
     steps = step_count(system.settings, mode)
-    strands = _world(system, thing, range(first, last), range(steps))
+    every = product(range(first, last), range(steps))
+    strands = _world(system, thing, every, (last - first) * steps).reshape(-1, steps, 3)
     # What ends early goes on in the world's origin: it stays where it was.
     for step in range(1, steps):
         ended = (strands[:, step] == 0.0).all(axis=1)
@@ -99,14 +112,11 @@ def read_strands(thing, _data, name, mode):
     return points, np.full(last - first, steps, dtype=np.int32)
 
 
-def _world(system, thing, particles, steps):
-    """float64 [particles, steps, 3]."""
+def _world(system, thing, points, count):
+    """float64 [count, 3] of pairs (particle, step)."""
     co_hair = system.co_hair
-    points = (
-        co_hair(thing, particle_no=particle, step=step) for particle in particles for step in steps
-    )
-    shape = len(particles), len(steps), 3
-    return flat_floats(points, math.prod(shape)).reshape(shape)
+    found = (co_hair(thing, particle_no=particle, step=step) for particle, step in points)
+    return flat_floats(found, 3 * count).reshape(-1, 3)
 
 
 def flat_floats(vectors, count):

@@ -8,9 +8,10 @@ import export_probe
 import pytest
 import scene_parts
 from call_counts import count_calls
+from hair_parts import furry
 from motion_parts import drive, on_every_step, with_shutter
 
-from granita.export import changes, steps
+from granita.export import changes, steps, strands
 
 
 def crowd(scene, count):
@@ -42,3 +43,18 @@ def test_straight_movers_take_four_steps_of_time_and_the_way_back(scene):
 
     export_probe.through_engine(scene, motion_steps=17, **on_every_step(note))
     assert times == [9.75, 9.875, 10.125, 10.25, 10.0]
+
+
+def test_hair_that_goes_along_is_asked_for_two_points_a_hair(scene, monkeypatch):
+    asked = []
+
+    def note(system, thing, points, count):
+        asked.append(count)
+        return in_world(system, thing, points, count)
+
+    in_world = strands._world
+    monkeypatch.setattr(strands, "_world", note)
+    with_shutter(scene)
+    drive(furry(scene, count=60), "location", "frame", 0)
+    export_probe.through_engine(scene, motion_steps=17)
+    assert asked == [60 * 9, *[60 * 2] * 4]
