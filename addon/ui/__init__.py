@@ -1,9 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Panels: Granita's own, and Blender's that serve it as they are."""
 
-from . import motion_panels, ray_panels, render_panels, stock_panels, view_layer_panels
+from . import (
+    motion_panels,
+    ray_panels,
+    render_panels,
+    sampling_presets,
+    stock_panels,
+    view_layer_panels,
+)
 
-_PARTS = (render_panels, motion_panels, ray_panels, view_layer_panels, stock_panels)
+_PARTS = (
+    sampling_presets,
+    render_panels,
+    motion_panels,
+    ray_panels,
+    view_layer_panels,
+    stock_panels,
+)
 
 
 def register():

@@ -6,6 +6,7 @@ import bpy
 from .. import bridge
 from .engine_panel import EnginePanel
 from .problem import draw_problem
+from .sampling_presets import GRANITA_RENDER_PT_sampling_presets
 
 
 def shutter_position_owner(scene):
@@ -39,6 +40,9 @@ class GRANITA_RENDER_PT_device(RenderPanel, bpy.types.Panel):
 
 class GRANITA_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
+
+    def draw_header_preset(self, context):
+        GRANITA_RENDER_PT_sampling_presets.draw_panel_header(self.layout)
 
     def draw(self, context):
         settings = context.scene.granita

@@ -57,6 +57,15 @@ def test_the_extension_zip_has_its_manifest_at_the_top(zips, module):
     assert {"blender_manifest.toml", "__init__.py", module.name, "LICENSE"} <= set(names)
 
 
+def test_both_zips_bring_the_presets(zips):
+    for zip_name, prefix in (
+        (f"granita-{VERSION}-legacy.zip", "granita/"),
+        (f"granita-{VERSION}.zip", ""),
+    ):
+        presets = {prefix + f"presets/{name}.py" for name in ("Preview", "Final")}
+        assert presets <= set(zips[zip_name])
+
+
 def test_the_version_is_the_same_everywhere():
     manifest = tomllib.loads((ROOT / "addon/blender_manifest.toml").read_text())
     assert manifest["version"] == VERSION
