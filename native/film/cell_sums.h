@@ -13,7 +13,7 @@ constexpr float kLeastWeight = 1.0f / 16;
 /// What the tiles around a cell of the film have given to its pixels; ratios once divided by the
 /// weight.
 struct Film::CellSums {
-    std::vector<float> weight;    ///< [pixels]
+    std::vector<float> planes;    ///< [TileSums::kPlanes][pixels]
     std::vector<float> channels;  ///< [pixels][ChannelSet::sample_width()]
     std::vector<float> center;    ///< [pixels][ChannelSet::center_width()]
 };

@@ -23,10 +23,12 @@ Rect cell_pixels(int x, int y, int size) {
 
 /// Pixels of which samples in [x0, x1) can reach the centre; also the other way round: pixels whose
 /// samples can reach the centres in [x0, x1).
-Rect grown(const Rect& r, float radius) {
-    const int d = static_cast<int>(std::ceil(radius - 0.5f));
-    const int more = std::max(d, 0);
-    return {r.x0 - more, r.y0 - more, r.x1 + more, r.y1 + more};
+Rect grown(const Rect& r, int each_side) {
+    return {r.x0 - each_side, r.y0 - each_side, r.x1 + each_side, r.y1 + each_side};
+}
+
+void accumulate(const float* from, std::size_t count, float* to) {
+    for (std::size_t i = 0; i < count; ++i) to[i] += from[i];
 }
 
 }  // namespace
@@ -50,7 +52,8 @@ Film::Film(const Options& options)
       m_channels(options),
       m_filter(options.pixel_filter, options.filter_width),
       m_pieces(m_filter),
-      m_sample_pixels(options.crop.empty() ? Rect{} : grown(options.crop, m_filter.radius())),
+      m_each_side(std::max(0, static_cast<int>(std::ceil(m_filter.radius() - 0.5f)))),
+      m_sample_pixels(options.crop.empty() ? Rect{} : grown(options.crop, m_each_side)),
       m_pending(std::make_unique<Pending>()) {
     GRANITA_CHECK(options.bucket_size > 0);
     if (options.crop.empty()) return;
@@ -60,14 +63,9 @@ Film::Film(const Options& options)
         for (int x = cells.x0; x < cells.x1; ++x) {
             Pending::Cell& cell = m_pending->list.emplace_back();
             cell.rect = cell_pixels(x, y, options.bucket_size).intersect(options.crop);
-            const Rect tiles = cells_over(grown(cell.rect, m_filter.radius()), kTileSize);
+            const Rect tiles = cells_over(grown(cell.rect, m_each_side), kTileSize);
             cell.missing = tiles.width() * tiles.height();
         }
-}
-
-Rect Film::reach(Vec2i tile) const {
-    const Rect pixels = cell_pixels(tile.x, tile.y, kTileSize).intersect(m_sample_pixels);
-    return pixels.empty() ? Rect{} : grown(pixels, m_filter.radius()).intersect(m_options.crop);
 }
 
 std::vector<Tile> Film::add(std::vector<TileContribution> contributions) {
@@ -79,9 +77,10 @@ std::vector<Tile> Film::add(std::vector<TileContribution> contributions) {
     {
         const std::lock_guard lock(m_mutex);
         for (TileContribution& contribution : contributions) {
-            if (contribution.rect.empty()) continue;
+            if (contribution.rect.intersect(m_options.crop).empty()) continue;
             const auto part = std::make_shared<const TileContribution>(std::move(contribution));
-            const Rect cells = cells_over(part->rect, m_options.bucket_size);
+            const Rect cells =
+                cells_over(part->rect.intersect(m_options.crop), m_options.bucket_size);
             for (int y = cells.y0; y < cells.y1; ++y)
                 for (int x = cells.x0; x < cells.x1; ++x) {
                     Pending::Cell& cell = m_pending->at(x, y);
@@ -106,24 +105,24 @@ Tile Film::finish_cell(const Rect& cell,
     out.rect = cell;
     const std::size_t count = static_cast<std::size_t>(cell.width()) * cell.height();
     const std::size_t width = m_channels.sample_width(), center_width = m_channels.center_width();
-    out.combined.assign(count, Vec4f(0.0f));
+    out.combined.resize(count);
     if (m_options.depth_pass) out.depth.assign(count, kNoDepth);
     CellSums sums;
-    sums.weight.assign(count, 0.0f);
+    sums.planes.assign(count * TileSums::kPlanes, 0.0f);
     sums.channels.assign(count * width, 0.0f);
     sums.center.assign(count * center_width, 0.0f);
     for (const auto& part : parts) {
         const Rect r = part->rect.intersect(cell);
-        for (int y = r.y0; y < r.y1; ++y)
-            for (int x = r.x0; x < r.x1; ++x) {
-                const std::size_t to = (y - cell.y0) * cell.width() + x - cell.x0;
-                const std::size_t from =
-                    (y - part->rect.y0) * part->rect.width() + x - part->rect.x0;
-                out.combined[to] += part->sum[from];
-                sums.weight[to] += part->weight[from];
-                for (std::size_t k = 0; k < width; ++k)
-                    sums.channels[to * width + k] += part->channel_sum[from * width + k];
-            }
+        for (int y = r.y0; y < r.y1; ++y) {
+            const std::size_t to = (y - cell.y0) * cell.width() + r.x0 - cell.x0;
+            const std::size_t from =
+                (y - part->rect.y0) * part->rect.width() + r.x0 - part->rect.x0;
+            for (int plane = 0; plane < TileSums::kPlanes; ++plane)
+                accumulate(part->sums.plane(plane) + from, r.width(),
+                           &sums.planes[plane * count + to]);
+            accumulate(part->sums.rows.data() + from * width, r.width() * width,
+                       sums.channels.data() + to * width);
+        }
         const Rect own = part->own.intersect(cell);
         for (int y = own.y0; y < own.y1; ++y)
             for (int x = own.x0; x < own.x1; ++x) {
@@ -134,10 +133,14 @@ Tile Film::finish_cell(const Rect& cell,
                             sums.center.begin() + to * center_width);
             }
     }
+    const auto plane = [&](int which) { return sums.planes.data() + which * count; };
     for (std::size_t i = 0; i < count; ++i) {
-        if (!(sums.weight[i] > kLeastWeight)) continue;  // then the sum stands
-        out.combined[i] /= sums.weight[i];
-        for (std::size_t k = 0; k < width; ++k) sums.channels[i * width + k] /= sums.weight[i];
+        out.combined[i] = Vec4f(plane(TileSums::kRed)[i], plane(TileSums::kGreen)[i],
+                                plane(TileSums::kBlue)[i], plane(TileSums::kAlpha)[i]);
+        const float weight = plane(TileSums::kWeight)[i];
+        if (!(weight > kLeastWeight)) continue;  // then the sum stands
+        out.combined[i] /= weight;
+        for (std::size_t k = 0; k < width; ++k) sums.channels[i * width + k] /= weight;
     }
     finish_passes(sums, out);
     return out;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "film/filter_pieces.h"
+#include "film/tile_sums.h"
 #include "hider/resolve/sample_channels.h"
 #include "hider/sample_store.h"
 #include "hider/samples/sample_table.h"
@@ -35,13 +36,11 @@ struct Tile {
 /// What one sample tile contributes to the pixels around it.
 struct TileContribution {
     Vec2i tile{0, 0};
-    Rect rect;                       ///< pixels it reaches, cut to the crop
-    std::vector<Vec4f> sum;          ///< sum of w * (rgb, a)
-    std::vector<float> weight;       ///< sum of w
-    Rect own;                        ///< pixels inside the tile, cut to the crop
-    std::vector<float> depth;        ///< [own] or empty without the pass
-    std::vector<float> channel_sum;  ///< [rect][ChannelSet::sample_width()] sums of w * channel
-    std::vector<float> center;       ///< [own][ChannelSet::center_width()]
+    Rect rect;                  ///< pixels it reaches; those outside of the crop hold anything
+    TileSums sums;              ///< [rect]
+    Rect own;                   ///< pixels inside the tile, cut to the crop
+    std::vector<float> depth;   ///< [own] or empty without the pass
+    std::vector<float> center;  ///< [own][ChannelSet::center_width()]
 };
 
 /// A sample weighs w = f(dx) f(dy) / (samples of its pixel): pixels with more samples do not pull
@@ -78,7 +77,6 @@ class Film {
   private:
     struct Pending;
     struct CellSums;
-    Rect reach(Vec2i tile) const;
     void finish_passes(const CellSums& sums, Tile& out) const;
     Tile finish_cell(const Rect& cell,
                      std::vector<std::shared_ptr<const TileContribution>> parts) const;
@@ -87,6 +85,7 @@ class Film {
     ChannelSet m_channels;
     PixelFilter m_filter;
     FilterPieces m_pieces;
+    int m_each_side;  ///< pixels that a sample reaches beyond its own
     Rect m_sample_pixels;
     std::mutex m_mutex;
     std::unique_ptr<Pending> m_pending;

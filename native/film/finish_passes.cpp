@@ -26,7 +26,7 @@ void divide_by_color(const float* light, const float* color, int width, float* o
 }  // namespace
 
 void Film::finish_passes(const CellSums& sums, Tile& out) const {
-    const std::size_t pixels = sums.weight.size();
+    const std::size_t pixels = out.combined.size();
     for (const Pass& pass : m_channels.passes()) {
         const Channel& channel = m_channels.channels()[pass.channel];
         const bool of_center =

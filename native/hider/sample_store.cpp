@@ -29,8 +29,7 @@ void GridPool::set_opacity(std::span<const OpacityBounds> bounds) {
 
 GridPool::Place GridPool::locate(SurfaceId id) const {
     GRANITA_DCHECK(id / kPage < m_pages.size());
-    std::uint32_t slot = m_pages[id / kPage];
-    while (slot + 1 < m_bases.size() && m_bases[slot + 1] <= id) ++slot;
+    const std::uint32_t slot = this->slot(id);
     return {m_grids[slot], slot, static_cast<int>(id - m_bases[slot])};
 }
 

@@ -31,6 +31,12 @@ class GridPool {
     /// The id of the grid's micropolygon 0.  The grid must outlive the pool.
     SurfaceId add(const Grid& grid);
     Place locate(SurfaceId id) const;
+    /// Place::slot alone.
+    std::uint32_t slot(SurfaceId id) const {
+        std::uint32_t slot = m_pages[id / kPage];
+        while (slot + 1 < m_bases.size() && m_bases[slot + 1] <= id) ++slot;
+        return slot;
+    }
     /// Whether a wins a tie against b: smaller (GridKey, micropolygon index).
     bool before(SurfaceId a, SurfaceId b) const;
     /// Of the grid that was added last; grids without transparent micropolygons have none.

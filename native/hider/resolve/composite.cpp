@@ -19,9 +19,8 @@ constexpr std::uint32_t kRun = SurfaceRun::kCount, kAll = (1u << kRun) - 1u;
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
 /// Of a run of samples that see surfaces without holdout.
-void set_alpha_and_depth(const TileStore& store, const CompositeSettings& settings,
-                         std::uint32_t first, SampleColors& colors) {
-    for (int i = 0; i < SurfaceRun::kCount; ++i) colors.alpha[first + i] = 1.0f;
+void set_depth(const TileStore& store, const CompositeSettings& settings, std::uint32_t first,
+               SampleColors& colors) {
     if (!settings.depth) return;
     for (int i = 0; i < SurfaceRun::kCount; ++i)
         colors.depth[first + i] = settings.projection.depth_from_key(store.key[first + i]);
@@ -36,7 +35,8 @@ void set_opaque(const TileStore& store, const CompositeSettings& settings, std::
     copy(run.color[0], colors.red);
     copy(run.color[1], colors.green);
     copy(run.color[2], colors.blue);
-    set_alpha_and_depth(store, settings, first, colors);
+    for (int i = 0; i < SurfaceRun::kCount; ++i) colors.alpha[first + i] = 1.0f;
+    set_depth(store, settings, first, colors);
 }
 
 /// The samples of a run that see nothing.
@@ -72,7 +72,7 @@ class TileComposite {
 
     void run() {
         if (m_channels && !m_store.lists.empty()) mark_lists();
-        if (!m_channels && m_blurred) color_by_surface();
+        if (!m_channels) color_surfaces();
         for (std::uint32_t first = 0; first < m_store.key.size(); first += kRun)
             if (m_done.empty() || !finish_run(first)) set_behind(first);
         if (m_store.lists.empty()) return;
@@ -88,12 +88,15 @@ class TileComposite {
             if (m_store.lists.counts()[slot] > 0) m_listed[m_store.lists.sample(slot)] = true;
     }
 
-    void color_by_surface() {
+    /// What does not depend on where runs of samples meet surfaces, or is found sooner by surface.
+    void color_surfaces() {
+        const GridColors& grids = m_table.grid_colors();
+        if (!grids.any() && !m_blurred) return;
+        m_done.assign(m_store.id.size(), 0);
+        const bool rest = !grids.any() || grids.color(m_table.pool(), m_store.id, m_colors, m_done);
+        if (!rest || !m_blurred) return;
         SurfaceGroups groups = Spares<SurfaceGroups>::take();
-        if (groups.sort(m_store.id)) {
-            m_done.assign(m_store.id.size(), 0);
-            m_surface.color_groups(groups, m_colors, m_done);
-        }
+        if (groups.sort(m_store.id, m_done)) m_surface.color_groups(groups, m_colors, m_done);
         Spares<SurfaceGroups>::give(std::move(groups));
     }
 
@@ -104,8 +107,8 @@ class TileComposite {
             done |= std::uint32_t{m_done[first + i]} << i;
             seen |= (m_store.id[first + i] != kNoSurface ? 1u : 0u) << i;
         }
-        if (done == 0 || seen != done || (seen != kAll && m_background.size() > 1)) return false;
-        set_alpha_and_depth(m_store, m_settings, first, m_colors);
+        if (seen != done || (seen != kAll && m_background.size() > 1)) return false;
+        set_depth(m_store, m_settings, first, m_colors);
         if (seen != kAll) set_empty(first, seen, nothing(first), m_colors);
         return true;
     }
@@ -239,7 +242,7 @@ class TileComposite {
     ChannelLayers* m_channels;
     SampleColors& m_colors;
     bool m_blurred;
-    std::vector<std::uint8_t> m_done;  ///< [samples] 1 = coloured by surface; empty: none is
+    std::vector<std::uint8_t> m_done;  ///< [samples] 1 = has its colour; empty: none has
     SurfaceInterpolator m_surface;
     SurfaceRun m_run;
     std::vector<bool> m_listed;  ///< by sample; empty without channels or lists

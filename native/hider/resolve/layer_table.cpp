@@ -1,11 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hider/resolve/layer_table.h"
 
+#include "base/spares.h"
+
 namespace granita {
+
+LayerTable::~LayerTable() {
+    if (!m_filled) return;
+    Spares<std::vector<LayerLook>>::give(std::move(m_looks));
+    Spares<std::vector<LayerRow>>::give(std::move(m_rows));
+}
 
 void LayerTable::fill() {
     if (m_filled) return;
     m_filled = true;
+    m_looks = Spares<std::vector<LayerLook>>::take();
+    m_rows = Spares<std::vector<LayerRow>>::take();
+    m_looks.clear();
+    m_rows.clear();
     m_looks.reserve(m_pool.id_end());
     SurfaceId base = 0;
     for (std::uint32_t slot = 0; slot < m_pool.size(); ++slot) {
@@ -13,6 +25,12 @@ void LayerTable::fill() {
         if (!grid.opacity.empty()) add(grid, base);
         base += static_cast<SurfaceId>(grid.micropolygon_count());
     }
+}
+
+const GridColors& LayerTable::grid_colors() {
+    if (!m_has_colors) m_colors.fill(m_pool);
+    m_has_colors = true;
+    return m_colors;
 }
 
 void LayerTable::add(const Grid& grid, SurfaceId base) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "hider/resolve/grid_colors.h"
 #include "hider/sample_store.h"
 
 namespace granita {
@@ -33,8 +34,13 @@ class LayerTable {
   public:
     /// Of the grids that the pool holds when the table is first filled.
     explicit LayerTable(const GridPool& pool) : m_pool(pool) {}
+    ~LayerTable();
+    LayerTable(const LayerTable&) = delete;
+    LayerTable& operator=(const LayerTable&) = delete;
     /// Once, as most buckets have no lists.
     void fill();
+    /// Of the grids that the pool holds when they are first asked for.
+    const GridColors& grid_colors();
 
     const GridPool& pool() const { return m_pool; }
     const LayerLook& look(SurfaceId id) const { return m_looks[id]; }
@@ -44,7 +50,8 @@ class LayerTable {
     void add(const Grid& grid, SurfaceId base);
 
     const GridPool& m_pool;
-    bool m_filled = false;
+    bool m_filled = false, m_has_colors = false;
+    GridColors m_colors;
     std::vector<LayerLook> m_looks;  ///< by id
     std::vector<LayerRow> m_rows;
 };

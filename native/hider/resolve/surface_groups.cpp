@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hider/resolve/surface_groups.h"
 
+#include <algorithm>
+#include <bit>
+
 namespace granita {
 
-bool SurfaceGroups::sort(std::span<const SurfaceId> ids) {
-    m_slots.assign(std::size_t{1} << kSlotBits, 0);
+bool SurfaceGroups::sort(std::span<const SurfaceId> ids, std::span<const std::uint8_t> done) {
+    const std::size_t slots = std::bit_ceil(2 * std::clamp<std::size_t>(ids.size(), 1, kMost));
+    const int shift = 32 - std::countr_zero(slots);
+    m_slots.assign(slots, 0);
     m_group.resize(ids.size());
     m_ids.clear();
     m_begin.assign(2, 0);  // two ahead: counts become ends, and the walk below makes them begins
     for (std::size_t s = 0; s < ids.size(); ++s) {
         m_group[s] = 0;
-        if (ids[s] == kNoSurface) continue;
-        std::uint32_t slot = ids[s] * 0x9e3779b1u >> (32 - kSlotBits);
+        if (ids[s] == kNoSurface || done[s] != 0) continue;
+        std::size_t slot = ids[s] * 0x9e3779b1u >> shift;
         while (m_slots[slot] != 0 && m_ids[m_slots[slot] - 1u] != ids[s])
-            slot = (slot + 1) & ((1u << kSlotBits) - 1u);
+            slot = (slot + 1) & (slots - 1);
         if (m_slots[slot] == 0) {
             if (m_ids.size() == kMost) return false;
             m_ids.push_back(ids[s]);

@@ -17,7 +17,8 @@ class SurfaceGroups {
     /// False where so many surfaces are seen that samples hardly share them: nothing may be asked
     /// then.
     /// @param ids [samples]; kNoSurface belongs to no group.
-    bool sort(std::span<const SurfaceId> ids);
+    /// @param done [samples] 1 = belongs to none either.
+    bool sort(std::span<const SurfaceId> ids, std::span<const std::uint8_t> done);
     std::size_t size() const { return m_ids.size(); }
     SurfaceId id(std::size_t group) const { return m_ids[group]; }
     /// In ascending order.
@@ -27,7 +28,6 @@ class SurfaceGroups {
 
   private:
     static constexpr std::size_t kMost = 4096;
-    static constexpr int kSlotBits = 13;  ///< twice as many slots as surfaces
 
     std::vector<std::uint16_t> m_slots;  ///< by hash of the id: its group and one, 0 = free
     std::vector<std::uint16_t> m_group;  ///< [samples] and one; 0 = sees none

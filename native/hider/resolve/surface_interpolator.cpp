@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/spares.h"
 #include "hider/resolve/surface_kernel.h"
 
 namespace granita {
@@ -95,10 +96,20 @@ SurfaceInterpolator::SurfaceInterpolator(const Projection& projection, Vec2i til
       m_pool(pool),
       m_inverse_focus(static_cast<float>(1.0 / projection.focus)),
       m_lens(static_cast<float>(projection.lens_radius * projection.scale.x),
-             static_cast<float>(projection.lens_radius * projection.scale.y)),
-      m_cache(kCached) {}
+             static_cast<float>(projection.lens_radius * projection.scale.y)) {}
+
+SurfaceInterpolator::~SurfaceInterpolator() {
+    if (!m_cache.empty()) Spares<std::vector<SurfaceRecord>>::give(std::move(m_cache));
+}
+
+void SurfaceInterpolator::open_cache() {
+    m_cache = Spares<std::vector<SurfaceRecord>>::take();
+    m_cache.resize(kCached);
+    for (SurfaceRecord& record : m_cache) record.id = kNoSurface;
+}
 
 SurfaceRecord& SurfaceInterpolator::load_colors(SurfaceId id) {
+    if (m_cache.empty()) open_cache();
     SurfaceRecord& record = m_cache[id % kCached];
     if (record.id == id) return record;
     const GridPool::Place place = m_pool.locate(id);
@@ -181,6 +192,7 @@ void SurfaceInterpolator::color_groups(const SurfaceGroups& groups, SampleColors
             colors.red[s] = surface.radiance[0].x + 0.0f;
             colors.green[s] = surface.radiance[0].y + 0.0f;
             colors.blue[s] = surface.radiance[0].z + 0.0f;
+            colors.alpha[s] = 1.0f;
             done[s] = 1;
         }
     }

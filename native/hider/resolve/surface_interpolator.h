@@ -80,6 +80,9 @@ class SurfaceInterpolator {
   public:
     SurfaceInterpolator(const Projection& projection, Vec2i tile, const TileSamples& samples,
                         const GridPool& pool);
+    ~SurfaceInterpolator();
+    SurfaceInterpolator(const SurfaceInterpolator&) = delete;
+    SurfaceInterpolator& operator=(const SurfaceInterpolator&) = delete;
     SurfacePoint locate(std::uint32_t sample, SurfaceId id);
     /// The same as a fragment of this depth key.
     Fragment fragment(std::uint32_t sample, SurfaceId id, float key);
@@ -88,7 +91,7 @@ class SurfaceInterpolator {
     void locate_run(std::uint32_t first, const SurfaceId* ids, bool points, SurfaceRun& out);
 
     /// The colours of what locate_run() calls plain and coloured, surface by surface: the same
-    /// bits. Sets done[sample] to 1; leaves alpha and depth.
+    /// bits. Sets done[sample] to 1; leaves the depth.
     /// @param colors,done [samples of the tile].
     void color_groups(const SurfaceGroups& groups, SampleColors& colors,
                       std::span<std::uint8_t> done);
@@ -107,6 +110,7 @@ class SurfaceInterpolator {
         Corner<float> corners[4];
         Offset<float> offsets[4];
     };
+    void open_cache();
     void load_corners(SurfaceRecord& record, int segment) const;
     void load_knots(const SurfaceRecord& record, std::span<const std::int32_t> samples);
     Seen see(std::uint32_t sample, SurfaceId id);
@@ -120,7 +124,8 @@ class SurfaceInterpolator {
     Vec2f m_lens;
     static constexpr std::size_t kCached = 256;
     SurfaceKnots m_knots;
-    std::vector<SurfaceRecord> m_cache;  ///< by id; neighbouring samples ask for the same few
+    /// By id, once it is asked: neighbouring samples ask for the same few.
+    std::vector<SurfaceRecord> m_cache;
 };
 
 }  // namespace granita

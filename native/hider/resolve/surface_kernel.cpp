@@ -211,6 +211,7 @@ void color(const SurfaceInterpolator& surfaces, const TileSamples& samples,
             colors.red[s] = out[0][lane];
             colors.green[s] = out[1][lane];
             colors.blue[s] = out[2][lane];
+            colors.alpha[s] = 1.0f;
             done[s] = 1;
         });
     }

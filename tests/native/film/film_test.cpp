@@ -267,7 +267,8 @@ TEST(Film, FilterNarrowerThanTheSamplesSpacingShowsTheNearest) {
         options.samples = 4;
         options.sampling = Sampling::Regular;
         const Picture four = expose(options, ramp);
-        for (int x = 0; x < 8; ++x) EXPECT_WITHIN(four.at(x, 1).w, x + 0.5, 1e-6);
+        // Where the filter meets samples, sums of eighty round: a few units of the last place of 8.
+        for (int x = 0; x < 8; ++x) EXPECT_WITHIN(four.at(x, 1).w, x + 0.5, 3e-6);
     }
 }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "film/weigh_pixel.h"
+#include "film/weigh_tile.h"
 #include "measured.h"
 
 namespace granita {
@@ -48,32 +48,35 @@ TEST(PixelFilter, EdgeResponses) {
 }
 
 TEST(PixelFilter, PiecesAreTheFilter) {
-    // One sample a pixel: the sum of weights is its weight, f(dx) f(dy).  Odd widths put the
-    // filter's end and knots anywhere.
+    // One sample in sixteen: what a pixel of the tile gives to itself and its neighbours in the row
+    // is that sample's weight, f(dx) f(dy).  Odd widths put the filter's end and knots anywhere.
     for (const float scale : {1.0f, .73f, 2.9f})
         for (const Case& c : kCases) {
             const PixelFilter filter(c.kind, c.width * scale);
             const FilterPieces pieces(filter);
             const int each_side = static_cast<int>(std::ceil(filter.radius()));
-            PixelWork work(1, each_side, 0);
             const double peak = filter.evaluate(0) * filter.evaluate(0);
+            constexpr int kPixels = kTileSize * kTileSize, kRow = 5;
             TileSamples samples;
-            samples.x = samples.y = {0};
-            const SampleColors colors(1);
+            samples.samples = 1;
+            samples.x.resize(kPixels);
+            samples.y.resize(kPixels);
             for (int step = 0; step < 1000; ++step) {
-                samples.x[0] = static_cast<float>(step) / 1000;
-                samples.y[0] = static_cast<float>(step * 7 % 1000) / 1000;
-                work.load(samples, colors, 0, Vec2f(.5f), nullptr);
-                weigh_pixel(pieces, 1, work);
-                for (int tap = 0; tap < work.taps; ++tap) {
-                    const float across = static_cast<float>(tap - each_side) + .5f;
-                    const double expected =
-                        static_cast<double>(filter.evaluate(samples.x[0] - across)) *
-                        filter.evaluate(samples.y[0] - .5f);
-                    ASSERT_NEAR(work.sums[each_side * work.taps + tap].weight, expected,
-                                2e-6 * peak)
-                        << static_cast<int>(c.kind) << " width " << c.width * scale << " at "
-                        << samples.x[0] - across;
+                const int pixel = step % kTileSize;
+                SampleColors colors(kPixels);
+                const auto sample = static_cast<std::size_t>(kRow * kTileSize + pixel);
+                colors.red[sample] = 1.0f;
+                samples.x[sample] = static_cast<float>(pixel) + static_cast<float>(step) / 1000;
+                samples.y[sample] = kRow + static_cast<float>(step * 7 % 1000) / 1000;
+                TileSums sums(each_side, 0);
+                weigh_tile(pieces, samples, colors, nullptr, kRow, kRow + 1, sums);
+                for (int tap = -each_side; tap <= each_side; ++tap) {
+                    const float dx = samples.x[sample] - (static_cast<float>(pixel + tap) + .5f);
+                    const double expected = static_cast<double>(filter.evaluate(dx)) *
+                                            filter.evaluate(samples.y[sample] - (kRow + .5f));
+                    const int at = (kRow + each_side) * sums.side + pixel + tap + each_side;
+                    ASSERT_NEAR(sums.plane(TileSums::kRed)[at], expected, 2e-6 * peak)
+                        << static_cast<int>(c.kind) << " width " << c.width * scale << " at " << dx;
                 }
             }
         }
