@@ -5,8 +5,8 @@
 #include <bit>
 #include <cmath>
 
-#include "dice/finish_motion.h"
 #include "dice/opened_mesh.h"
+#include "math/unit_or.h"
 
 namespace granita {
 namespace {
@@ -155,7 +155,7 @@ std::unique_ptr<Grid> CurveBatch::dice() const {
     for_each_row([&](int j, const Row& row, const CurveControl& control) {
         place_row(*grid, j, row, control);
     });
-    finish_motion(*grid, m_elements->view().projection);
+    finish(*grid);
     return grid;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dice/opened_mesh.h"
+#include "math/unit_or.h"
 
 namespace granita {
 namespace {

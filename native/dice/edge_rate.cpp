@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dice/raster_bound.h"
 #include "math/least_circle.h"
 
 namespace granita {
@@ -25,6 +26,10 @@ constexpr double kOutside = 8.0;
 constexpr double kEqual = 0.05;
 /// Of blur to one of distance between vertices, with factors of 1.
 constexpr double kBlurSteps = 16.0;
+/// Of a length in single precision, the part by which it may be off, blur included.
+constexpr float kSlack = 2e-3f;
+constexpr double kLeastSure = 0.1;             ///< dicing rate, pixels
+constexpr float kMostRounding = 1.0f / 50.0f;  ///< pixels
 /// Largest length over distance of what is not shown.
 constexpr double kNearby = 0.5;
 
@@ -54,6 +59,9 @@ EdgeRate::EdgeRate(const View& view, double longer)
       m_focus_factor(view.scene->options.focus_factor),
       m_near(view.projection.perspective ? std::max(view.projection.near_clip, 1e-9)
                                          : view.projection.near_clip),
+      m_rounding(static_cast<float>(std::ldexp(
+          m_width + m_height + std::abs(m_projection.center.x) + std::abs(m_projection.center.y),
+          -21))),
       m_seen(m_projection, m_width, m_height) {}
 
 Vec2d EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b) const {
@@ -143,6 +151,44 @@ bool EdgeRate::stays_whole(const Vec3f* start, const Vec3f* end, int knots) cons
     for (int k = 0; k < knots; ++k)
         longest = std::max(longest, glm::length(add(swept, start[k], end[k])));
     return !swept.clipped && outside(swept) == 0.0 && longest <= M_SQRT2 * m_rate;
+}
+
+bool EdgeRate::in_frame(std::span<const Bounds3f> boxes) const {
+    if (!inside(raster_bound_of(m_projection, boxes))) return false;
+    const auto ahead = [&](const Bounds3f& box) { return box.lo.z > 1.001 * m_near; };
+    return !m_projection.perspective || std::ranges::all_of(boxes, ahead);
+}
+
+int EdgeRate::sure_levels(const Vec3f* start, const Vec3f* end, int knots) const {
+    // Otherwise the rounding of its middle may bend a piece by what counts.
+    if (m_rate < kLeastSure || m_rounding > kMostRounding) return kUnsure;
+    const auto exceeds = [&](float length, double limit) {
+        const float slack = kSlack * length + m_rounding;
+        return length - slack > limit ? 1 : length + slack <= limit ? 0 : kUnsure;
+    };
+    float longest2 = 0.0f;
+    bool equal = true;  // are its halves
+    for (int k = 0; k < knots; ++k) {
+        const Vec2f there = piece(start[k], end[k]);
+        const float length2 = glm::dot(there, there);
+        if (!std::isfinite(length2)) return kUnsure;
+        longest2 = std::max(longest2, length2);
+        if (m_projection.perspective)
+            equal &= std::abs(start[k].z - end[k].z) <=
+                     0.8f * static_cast<float>(kEqual) * std::min(start[k].z, end[k].z);
+    }
+    if (exceeds(std::sqrt(longest2), M_SQRT2 * m_rate) == 0) return 0;
+    if (!equal) return kUnsure;
+    Vec3f middle[kMaxKnots] = {0.5f * (start[0] + end[0])};
+    for (int k = 1; k < knots; ++k) middle[k] = 0.5f * (start[k] + end[k]);
+    const Blur blurred = blur(start, middle, end, knots);
+    double counted = 0.0;
+    for (int k = 0; k < knots; ++k)
+        counted = std::max(counted, blurred.length(Vec2d(piece(start[k], end[k]))));
+    int levels = 0;
+    double limit = M_SQRT2 * m_rate * blurred.all;
+    while (exceeds(static_cast<float>(counted), limit) == 1) ++levels, limit *= 2.0;
+    return exceeds(static_cast<float>(counted), limit) == 0 ? levels : kUnsure;
 }
 
 int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots,

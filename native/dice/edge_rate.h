@@ -28,7 +28,9 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 
+#include "dice/knots.h"
 #include "dice/seen_times.h"
 #include "dice/view.h"
 
@@ -50,6 +52,13 @@ class EdgeRate {
                double most_outside = std::numeric_limits<double>::infinity()) const;
     /// The same for a straight piece that is probably short enough: true where levels() is 0.
     bool stays_whole(const Vec3f* start, const Vec3f* end, int knots) const;
+    /// levels() of a straight piece that lies in the frame, before the near plane, at every knot
+    /// (in_frame()), by its length alone and in single precision; kUnsure where rounding could
+    /// change the answer.  A third of the time.
+    int sure_levels(const Vec3f* start, const Vec3f* end, int knots) const;
+    static constexpr int kUnsure = -2;
+    /// Whether what lies in these boxes, [knots] in camera space, does so.
+    bool in_frame(std::span<const Bounds3f> boxes) const;
     /// The dicing rate, pixels; never 0.
     double rate() const { return m_rate; }
     /// Distance of shaded points, pixels: the dicing rate, or coarser.
@@ -76,6 +85,12 @@ class EdgeRate {
     Blur blur(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots) const;
     /// Adds the piece's raster box and returns it as seen in the raster at one knot.
     Vec2d add(Swept& swept, const Vec3f& a, const Vec3f& b) const;
+    /// As seen in the raster, before the near plane.
+    Vec2f piece(const Vec3f& a, const Vec3f& b) const {
+        const float u = m_projection.perspective ? 1.0f / a.z : 1.0f;
+        const float v = m_projection.perspective ? 1.0f / b.z : 1.0f;
+        return Vec2f(m_projection.scale) * (Vec2f(b) * v - Vec2f(a) * u);
+    }
     /// Pixels from the frame to the box.
     double outside(const Swept& swept) const;
     /// Length over distance from the eye, the largest over the knots.
@@ -85,6 +100,7 @@ class EdgeRate {
     double m_rate, m_shading_rate, m_width, m_height;
     double m_motion_factor, m_focus_factor;
     double m_near;
+    float m_rounding;  ///< of a length in single precision, pixels
     SeenTimes m_seen;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "dice/finish_motion.h"
 #include "dice/raster_bound.h"
 
 namespace granita {
@@ -31,8 +32,9 @@ void ElementBatch::own(std::shared_ptr<const OpenedElements> elements) {
     measure();
 }
 
-std::function<void(Grid&)> ElementBatch::shading_state() const {
-    return [batch = copy()](Grid& grid) { batch->fill_shading_state(grid); };
+void ElementBatch::finish(Grid& grid) const {
+    finish_motion(grid, m_elements->view().projection);
+    grid.shading_state = [batch = copy()](Grid& of) { batch->fill_shading_state(of); };
 }
 
 std::vector<std::unique_ptr<Primitive>> ElementBatch::split() const {

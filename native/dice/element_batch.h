@@ -15,11 +15,11 @@ class ElementBatch : public Primitive {
     GridKey key() const override;
     bool diceable() const override { return m_diceable; }
     std::vector<std::unique_ptr<Primitive>> split() const override;
-    /// A million hairs are diced for their positions; shading state, three times the bytes, is made
-    /// of those that are seen.
-    std::function<void(Grid&)> shading_state() const override;
 
   protected:
+    /// Bounds, and what makes the shading state, of a grid whose positions are set: a million hairs
+    /// are diced for those; shading state, three times the bytes, is made of hairs that are seen.
+    void finish(Grid& grid) const;
     /// Whole batch.
     ElementBatch(const OpenedElements& elements, std::size_t batch)
         : m_elements(&elements), m_batch(batch), m_count(elements.shared().batch(batch).size()) {}

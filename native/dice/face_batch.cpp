@@ -9,6 +9,7 @@
 #include "dice/grid_attributes.h"
 #include "dice/raster_bound.h"
 #include "dice/seen_area.h"
+#include "math/unit_or.h"
 
 namespace granita {
 namespace {
@@ -91,20 +92,23 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
                     m_mesh->data().corner_verts[patch(i).corner[c]])];
     }
     finish_motion(*grid, m_mesh->view().projection);
-    set_frame_positions(*grid, m_mesh->knots());
+    grid->shading_state = [batch = *this](Grid& of) { batch.fill_shading_state(of); };
+    return grid;
+}
 
+void FaceBatch::fill_shading_state(Grid& grid) const {
+    set_frame_positions(grid, m_mesh->knots());
     std::vector<Face> faces;
-    faces.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) faces.push_back(face(*grid, i));
-    const std::vector<Cluster> points = clusters(*grid, faces);
-    const std::vector<Vec3f> vertices = grid->shading_p();
-    grid->p.clear();
-    for (const Cluster& cluster : points) add_point(*grid, faces, cluster, vertices);
+    faces.reserve(face_count());
+    for (std::size_t i = 0; i < face_count(); ++i) faces.push_back(face(grid, i));
+    const std::vector<Cluster> points = clusters(grid, faces);
+    const std::vector<Vec3f> vertices = grid.shading_p();
+    grid.p.clear();
+    for (const Cluster& cluster : points) add_point(grid, faces, cluster, vertices);
     double area = 0.0;
     for (const Cluster& cluster : points) area += cluster.area;
-    set_point_share(*grid, area, m_mesh->rate().rate());
-    dice_attributes(*grid, faces, points);
-    return grid;
+    set_point_share(grid, area, m_mesh->rate().rate());
+    fill_attributes(grid, faces, points);
 }
 
 void FaceBatch::add_point(Grid& grid, const std::vector<Face>& faces, const Cluster& cluster,
@@ -150,16 +154,13 @@ FaceBatch::Face FaceBatch::face(const Grid& grid, std::size_t i) const {
     Face face;
     face.middle =
         triangle ? (corner[0] + corner[1] + corner[2]) / 3.0f : 0.5f * (corner[0] + corner[2]);
-    const auto blend = [&](const std::array<double, 4>& w) {
-        return Vec3d(corner[0]) * w[0] + Vec3d(corner[1]) * w[1] + Vec3d(corner[2]) * w[2] +
-               Vec3d(corner[3]) * w[3];
-    };
-    face.su = Vec3f(blend(weights.du));
-    face.sv = Vec3f(blend(weights.dv));
-    Vec3d normal, geometric_normal;
-    m_mesh->frame_normals(patch(i), corner, weights, normal, geometric_normal);
-    face.normal = Vec3f(normal);
-    face.geometric_normal = Vec3f(geometric_normal);
+    const FrameFace at = m_mesh->frame_face(patch(i));
+    const Vec3d su = at.by_u(weights), sv = at.by_v(weights);
+    const Vec3d flat = at.geometric_normal(su, sv);
+    face.su = Vec3f(su);
+    face.sv = Vec3f(sv);
+    face.geometric_normal = Vec3f(flat);
+    face.normal = Vec3f(at.shading_normal(weights, flat));
     const Projection& projection = m_mesh->view().projection;
     const auto place = [&](const Vec3f& at) {
         return Vec2f(projection.scale) * Vec2f(at) / (projection.perspective ? at.z : 1.0f);
@@ -220,7 +221,7 @@ void FaceBatch::find_center(Cluster& cluster, const std::vector<Face>& faces) {
         if (distance(i) < distance(cluster.center)) cluster.center = i;
 }
 
-void FaceBatch::dice_attributes(Grid& grid, const std::vector<Face>& faces,
+void FaceBatch::fill_attributes(Grid& grid, const std::vector<Face>& faces,
                                 const std::vector<Cluster>& clusters) const {
     const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
         const auto width = static_cast<std::size_t>(out.width);

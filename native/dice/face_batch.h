@@ -31,6 +31,7 @@ class FaceBatch : public Primitive {
 
   protected:
     std::size_t face_count() const { return m_faces.size(); }
+    std::span<const Bounds3f> boxes() const { return m_boxes; }
     const BasePatch& patch(std::size_t i) const { return m_mesh->shared().patches()[m_faces[i]]; }
     /// Room for `micropolygons` at every knot; what all of them have in common.
     std::unique_ptr<Grid> make_grid(std::size_t micropolygons) const;
@@ -40,13 +41,14 @@ class FaceBatch : public Primitive {
   private:
     struct Face;
     struct Cluster;
+    void fill_shading_state(Grid& grid) const;
     Face face(const Grid& grid, std::size_t i) const;
     std::vector<Cluster> clusters(Grid& grid, const std::vector<Face>& faces) const;
     static void find_center(Cluster& cluster, const std::vector<Face>& faces);
     /// `vertices`: the grid's, at the frame time.
     void add_point(Grid& grid, const std::vector<Face>& faces, const Cluster& cluster,
                    const std::vector<Vec3f>& vertices) const;
-    void dice_attributes(Grid& grid, const std::vector<Face>& faces,
+    void fill_attributes(Grid& grid, const std::vector<Face>& faces,
                          const std::vector<Cluster>& clusters) const;
 
     std::span<const std::uint32_t> m_faces;

@@ -6,6 +6,19 @@
 #include "dice/raster_bound.h"
 
 namespace granita {
+namespace {
+
+/// Of a vertex of what moves.
+Vec3f frame_position(const Grid& grid, const Knots& knots, std::size_t vertex) {
+    const auto count = static_cast<std::size_t>(grid.vertex_count());
+    const std::size_t at = static_cast<std::size_t>(knots.frame_knot) * count + vertex;
+    const double fraction = knots.frame_fraction;
+    if (fraction == 0.0) return grid.positions[at];
+    return Vec3f(Vec3d(grid.positions[at]) * (1.0 - fraction) +
+                 Vec3d(grid.positions[at + count]) * fraction);
+}
+
+}  // namespace
 
 void find_motion(Grid& grid) {
     grid.motion = false;
@@ -33,14 +46,15 @@ void finish_motion(Grid& grid, const Projection& projection) {
 
 void set_frame_positions(Grid& grid, const Knots& knots) {
     if (!grid.motion) return;
-    const std::size_t count = static_cast<std::size_t>(grid.vertex_count());
-    const std::size_t first = static_cast<std::size_t>(knots.frame_knot) * count;
-    const double fraction = knots.frame_fraction;
-    grid.p.resize(count);
-    for (std::size_t i = 0; i < count; ++i)
-        grid.p[i] = fraction == 0.0 ? grid.positions[first + i]
-                                    : Vec3f(Vec3d(grid.positions[first + i]) * (1.0 - fraction) +
-                                            Vec3d(grid.positions[first + count + i]) * fraction);
+    grid.p.resize(static_cast<std::size_t>(grid.vertex_count()));
+    for (std::size_t i = 0; i < grid.p.size(); ++i) grid.p[i] = frame_position(grid, knots, i);
+}
+
+void set_point_positions(Grid& grid, const Knots& knots) {
+    grid.p.clear();
+    for (const std::uint32_t anchor : grid.places.anchors)
+        grid.p.push_back(grid.motion ? frame_position(grid, knots, anchor)
+                                     : grid.positions[anchor]);
 }
 
 }  // namespace granita

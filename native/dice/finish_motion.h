@@ -15,5 +15,7 @@ void find_motion(Grid& grid);
 void finish_motion(Grid& grid, const Projection& projection);
 /// Then, where it moves: `p` of the vertices, their positions at the frame time.
 void set_frame_positions(Grid& grid, const Knots& knots);
+/// Or `p` of the points that lie on vertices, ShadingPlaces::anchors.
+void set_point_positions(Grid& grid, const Knots& knots);
 
 }  // namespace granita

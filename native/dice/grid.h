@@ -23,6 +23,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "math/bounds.h"
@@ -70,6 +71,9 @@ struct Grid {
     int knots = 1;               ///< equidistant in shutter time
 
     std::vector<Vec3f> positions;  ///< [knots][vertices] camera space at each knot
+    /// Fills in the shading state and the attributes of a grid of dice() before its first shading:
+    /// many grids are hidden and never shaded.  Outlives the primitive.  Empty: nothing is missing.
+    std::function<void(Grid&)> shading_state;
     /// Shading state at the frame time, camera space of the frame time.
     ShadingPlaces places;
     std::vector<Vec3f> p;  ///< [points]; empty when knots == 1 and vertices are points: positions

@@ -5,16 +5,10 @@
 
 #include "dice/finish_motion.h"
 #include "dice/grid_attributes.h"
+#include "dice/lattice_places.h"
 
 namespace granita {
 namespace {
-
-/// Corners of a side in the patch's direction: bottom, right, top, left.
-constexpr int kStart[4] = {0, 1, 3, 0}, kEnd[4] = {1, 2, 2, 3};
-
-Vec2d bilinear(const Vec2d* c, double s, double t) {
-    return (c[0] * (1.0 - s) + c[1] * s) * (1.0 - t) + (c[3] * (1.0 - s) + c[2] * s) * t;
-}
 
 class LatticeDicer {
   public:
@@ -25,7 +19,7 @@ class LatticeDicer {
         m_count =
             static_cast<std::size_t>(lattice.n_u + 1) * static_cast<std::size_t>(lattice.n_v + 1);
         find_places();
-        mesh.sample(patch, m_uv, m_samples);
+        mesh.sample(patch, m_places.uv, m_samples);
         place_border();
         grid.n_u = lattice.n_u;
         grid.n_v = lattice.n_v;
@@ -38,60 +32,21 @@ class LatticeDicer {
         std::swap(grid.normal, m_samples.normal);
         std::swap(grid.geometric_normal, m_samples.geometric_normal);
         count_spared(grid);
-        find_steps();
         find_derivatives(grid);
         find_attributes(grid);
     }
 
   private:
-    int side_steps(int side) const { return side % 2 == 0 ? m_lattice.n_u : m_lattice.n_v; }
-    /// Lattice vertex at step i of a side.
-    int vertex(int side, int i) const {
-        const int row = m_lattice.n_u + 1;
-        switch (side) {
-            case 0:
-                return i;
-            case 1:
-                return i * row + m_lattice.n_u;
-            case 2:
-                return m_lattice.n_v * row + i;
-            default:
-                return i * row;
-        }
-    }
-
     void find_places() {
-        const Vec2d* const corner = m_lattice.corner_uv;
-        m_uv.clear();
-        for (int j = 0; j <= m_lattice.n_v; ++j)
-            for (int i = 0; i <= m_lattice.n_u; ++i)
-                m_uv.push_back(bilinear(corner, static_cast<double>(i) / m_lattice.n_u,
-                                        static_cast<double>(j) / m_lattice.n_v));
+        const SideWalker walk(*m_mesh, *m_patch);
         for (int side = 0; side < 4; ++side) {
+            m_ends[side].clear();
             if (m_lattice.sides[side].collapsed) continue;
-            const int steps = side_steps(side);
-            snap(side, steps);
-            for (int i = 0; i <= steps; ++i) {
-                const double s =
-                    static_cast<double>(m_snapped[side][static_cast<std::size_t>(i)]) / steps;
-                m_uv[static_cast<std::size_t>(vertex(side, i))] =
-                    corner[kStart[side]] * (1.0 - s) + corner[kEnd[side]] * s;
-            }
+            m_ends[side].push_back(0);
+            walk.leaf_ends(m_lattice.sides[side], 0, side % 2 == 0 ? m_lattice.n_u : m_lattice.n_v,
+                           m_ends[side]);
         }
-    }
-
-    /// For each step of a side the vertex of the edge that it lies on: the nearest, so that order
-    /// is kept and each is met.
-    void snap(int side, int steps) {
-        m_ends.assign(1, 0);
-        SideWalker(*m_mesh, *m_patch).leaf_ends(m_lattice.sides[side], 0, steps, m_ends);
-        m_snapped[side].clear();
-        std::size_t leaf = 1;
-        for (int i = 0; i <= steps; ++i) {
-            while (leaf + 1 < m_ends.size() && i >= m_ends[leaf]) ++leaf;
-            m_snapped[side].push_back(2 * i < m_ends[leaf - 1] + m_ends[leaf] ? m_ends[leaf - 1]
-                                                                              : m_ends[leaf]);
-        }
+        m_places.find(m_lattice.corner_uv, m_lattice.n_u, m_lattice.n_v, m_ends);
     }
 
     /// Every point from the edge that owns it.
@@ -100,22 +55,23 @@ class LatticeDicer {
         EdgePoint point;
         for (int side = 0; side < 4; ++side) {
             if (m_lattice.sides[side].collapsed) continue;
-            const int steps = side_steps(side);
+            const int steps = m_places.side_steps(side);
             int evaluated = -1;  // step whose point the last vertex got
             for (int i = 0; i <= steps; ++i) {
-                const int at = m_snapped[side][static_cast<std::size_t>(i)];
+                const int at = m_places.snapped[side][static_cast<std::size_t>(i)];
                 if (at == evaluated) {
-                    copy(vertex(side, i - 1), vertex(side, i));
+                    copy(m_places.vertex(side, i - 1), m_places.vertex(side, i));
                     continue;
                 }
                 evaluated = at;
                 walk.point(m_lattice.sides[side], static_cast<double>(at) / steps, point);
-                place(point, vertex(side, i));
+                place(point, m_places.vertex(side, i));
             }
         }
         for (int side = 0; side < 4; ++side)
             if (m_lattice.sides[side].collapsed)
-                for (int i = 1; i < side_steps(side); ++i) copy(vertex(side, 0), vertex(side, i));
+                for (int i = 1; i < m_places.side_steps(side); ++i)
+                    copy(m_places.vertex(side, 0), m_places.vertex(side, i));
     }
 
     void place(const EdgePoint& point, int vertex) {
@@ -161,37 +117,19 @@ class LatticeDicer {
                         static_cast<std::uint64_t>(spared * static_cast<double>(m_count)));
     }
 
-    /// Change of (u, v) over one step.  At a corner where a side is a point, the step in the middle
-    /// of the lattice stands in: a texture look-up there needs a footprint too.
-    void find_steps() {
-        const Vec2d* const c = m_lattice.corner_uv;
-        const Side* const sides = m_lattice.sides;
-        const bool middle_u = sides[0].collapsed || sides[2].collapsed;
-        const bool middle_v = sides[1].collapsed || sides[3].collapsed;
-        const double n_u = m_lattice.n_u, n_v = m_lattice.n_v;
-        m_step_u.clear();
-        m_step_v.clear();
-        for (int j = 0; j <= m_lattice.n_v; ++j)
-            for (int i = 0; i <= m_lattice.n_u; ++i) {
-                const double s = middle_v ? 0.5 : i / n_u, t = middle_u ? 0.5 : j / n_v;
-                m_step_u.push_back(((c[1] - c[0]) * (1.0 - t) + (c[2] - c[3]) * t) / n_u);
-                m_step_v.push_back(((c[3] - c[0]) * (1.0 - s) + (c[2] - c[1]) * s) / n_v);
-            }
-    }
-
     void find_derivatives(Grid& grid) const {
         grid.dp_du.resize(m_count);
         grid.dp_dv.resize(m_count);
         for (std::size_t i = 0; i < m_count; ++i) {
             const Vec3d su(m_samples.su[i]), sv(m_samples.sv[i]);
-            grid.dp_du[i] = Vec3f(su * m_step_u[i].x + sv * m_step_u[i].y);
-            grid.dp_dv[i] = Vec3f(su * m_step_v[i].x + sv * m_step_v[i].y);
+            grid.dp_du[i] = Vec3f(su * m_places.step_u[i].x + sv * m_places.step_u[i].y);
+            grid.dp_dv[i] = Vec3f(su * m_places.step_v[i].x + sv * m_places.step_v[i].y);
         }
     }
 
     void find_attributes(Grid& grid) {
         const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
-            m_mesh->attribute(*m_patch, request, m_uv, out.values, m_by_u, m_by_v);
+            m_mesh->attribute(*m_patch, request, m_places.uv, out.values, m_by_u, m_by_v);
             if (!request.derivatives) {
                 out.du.clear();
                 out.dv.clear();
@@ -201,7 +139,7 @@ class LatticeDicer {
             out.du.resize(out.values.size());
             out.dv.resize(out.values.size());
             for (std::size_t i = 0; i < out.values.size(); ++i) {
-                const Vec2d &u = m_step_u[i / width], &v = m_step_v[i / width];
+                const Vec2d &u = m_places.step_u[i / width], &v = m_places.step_v[i / width];
                 out.du[i] = static_cast<float>(m_by_u[i] * u.x + m_by_v[i] * u.y);
                 out.dv[i] = static_cast<float>(m_by_u[i] * v.x + m_by_v[i] * v.y);
             }
@@ -213,9 +151,8 @@ class LatticeDicer {
     const BasePatch* m_patch = nullptr;
     Lattice m_lattice{};
     std::size_t m_count = 0;  ///< vertices
-    std::vector<Vec2d> m_uv;  ///< [m_count]
-    std::vector<Vec2d> m_step_u, m_step_v;
-    std::vector<int> m_ends, m_snapped[4];
+    LatticePlaces m_places;
+    std::vector<int> m_ends[4];
     std::vector<float> m_by_u, m_by_v;
     std::vector<Vec3f> m_path;
     SurfaceSamples m_samples;

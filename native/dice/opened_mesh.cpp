@@ -17,11 +17,6 @@ double orientation_of(const Mat4d& m) {
 
 }  // namespace
 
-Vec3d unit_or(const Vec3d& v, const Vec3d& otherwise) {
-    const double length = glm::length(v);
-    return length > 0.0 && std::isfinite(length) ? v / length : otherwise;
-}
-
 OpenedMesh::OpenedMesh(const View& view, std::size_t instance,
                        std::shared_ptr<const SharedGeometry> shared, Knots knots, Report& report)
     : m_view(&view),

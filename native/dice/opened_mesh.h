@@ -117,7 +117,4 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     std::vector<float> m_vertex_displacement;
 };
 
-/// Unit, or `otherwise` where there is no direction.
-Vec3d unit_or(const Vec3d& v, const Vec3d& otherwise);
-
 }  // namespace granita

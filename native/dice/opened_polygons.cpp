@@ -5,18 +5,17 @@
 
 #include "dice/corner_values.h"
 #include "dice/face_batch.h"
+#include "dice/lattice_stencil.h"
 #include "dice/patch_batch.h"
 #include "geometry/vertex_normals.h"
+#include "math/unit_or.h"
 
 namespace granita {
 namespace {
 
 Vec3d blend(const Vec3d* p, const std::array<double, 4>& w) {
-    return p[0] * w[0] + p[1] * w[1] + p[2] * w[2] + p[3] * w[3];
+    return FrameFace::blend(p, w);
 }
-
-/// Any direction will do for a face without area: it covers nothing.
-const Vec3d kTowardsCamera(0.0, 0.0, -1.0);
 
 }  // namespace
 
@@ -52,15 +51,11 @@ OpenedMesh::Start OpenedPolygons::start(const BasePatch& patch, int budget) cons
         std::copy_n(corner_uv, 4, start.corner_uv);
         std::copy_n(around, 4, start.sides);
     } else {
-        // The coarsest edge becomes the bottom: opposite to it the patch narrows to a point.
-        static const Vec2d corner_uv[3] = {{0, 0}, {1, 0}, {0, 1}};
-        const auto levels = [&](int i) {
-            return around[i].levels < 0 ? budget + 1 : static_cast<int>(around[i].levels);
-        };
-        int base = 0;
-        for (int i = 1; i < 3; ++i)
-            if (levels(i) < levels(base)) base = i;
-        for (int i = 0; i < 4; ++i) start.corner_uv[i] = corner_uv[(base + std::min(i, 2)) % 3];
+        int levels[3];
+        for (int i = 0; i < 3; ++i)
+            levels[i] = around[i].levels < 0 ? budget + 1 : static_cast<int>(around[i].levels);
+        const int base = triangle_base(levels);
+        triangle_corners(base, start.corner_uv);
         start.sides[0] = around[base];
         start.sides[1] = around[(base + 1) % 3];
         start.sides[2].collapsed = true;
@@ -106,7 +101,7 @@ void OpenedPolygons::edge_point(const EdgeRef& edge, double t, EdgePoint& out) c
     for (int k = 0; k < knot_count(); ++k) {
         const Vec3f* directions = &m_directions[static_cast<std::size_t>(k) * n];
         const Vec3d along = Vec3d(directions[edge.a]) * (1.0 - t) + Vec3d(directions[edge.b]) * t;
-        out.offset[k] = Vec3f(amount * unit_or(along, kTowardsCamera));
+        out.offset[k] = Vec3f(amount * unit_or(along, Vec3d(0.0, 0.0, -1.0)));
     }
 }
 
@@ -114,16 +109,10 @@ bool OpenedPolygons::smooth(std::uint32_t face) const {
     return !data().smooth.empty() && data().smooth[face];
 }
 
-Vec3d OpenedPolygons::face_direction(const Corners& at, const CornerWeights& weights) const {
-    const Vec3d cross = glm::cross(blend(at.p, weights.du), blend(at.p, weights.dv));
-    // At a corner where two vertices coincide the quad's own normal stands in.
-    const Vec3d across = glm::cross(at.p[2] - at.p[0], at.p[3] - at.p[1]);
-    return unit_or(cross, unit_or(across, kTowardsCamera));
-}
-
 Vec3d OpenedPolygons::direction(const BasePatch& patch, int knot, const CornerWeights& weights,
                                 const Corners& at) const {
-    const Vec3d flat = orientation(knot) * face_direction(at, weights);
+    const Vec3d flat =
+        orientation(knot) * face_direction(at.p, blend(at.p, weights.du), blend(at.p, weights.dv));
     if (!smooth(patch.face)) return flat;
     const Vec3f* normals = &m_directions[static_cast<std::size_t>(knot) * data().vertex_count()];
     Vec3d corner[4];
@@ -131,27 +120,25 @@ Vec3d OpenedPolygons::direction(const BasePatch& patch, int knot, const CornerWe
     return unit_or(blend(corner, weights.w), flat);
 }
 
-bool OpenedPolygons::corner_normals(const BasePatch& patch, Vec3d* normals) const {
+FrameFace OpenedPolygons::frame_face(const BasePatch& patch) const {
+    FrameFace face;
+    const Corners at = corners(patch, knots().frame_knot);
+    std::copy_n(at.p, 4, face.p);
+    if (knots().frame_fraction > 0.0) {
+        const Corners next = corners(patch, knots().frame_knot + 1);
+        for (int i = 0; i < 4; ++i) face.p[i] = at_frame(at.p[i], next.p[i]);
+    }
+    face.orientation = frame_orientation();
     const bool custom = !data().corner_normals.empty();
-    if (!custom && (!smooth(patch.face) || shared().vertex_normals().empty())) return false;
-    for (int i = 0; i < 4; ++i) {
+    face.is_smooth = custom || (smooth(patch.face) && !shared().vertex_normals().empty());
+    for (int i = 0; i < 4 && face.is_smooth; ++i) {
         const std::uint32_t corner = patch.corner[i];
         const Vec3f& normal =
             custom ? data().corner_normals[corner]
                    : shared().vertex_normals()[static_cast<std::size_t>(vertex_of(corner))];
-        normals[i] = unit_or(camera_normal(normal), Vec3d(0.0));
+        face.normal[i] = unit_or(camera_normal(normal), Vec3d(0.0));
     }
-    return true;
-}
-
-void OpenedPolygons::frame_normals(const BasePatch& patch, const Vec3f* p,
-                                   const CornerWeights& weights, Vec3d& normal,
-                                   Vec3d& geometric_normal) const {
-    const Corners at{{Vec3d(p[0]), Vec3d(p[1]), Vec3d(p[2]), Vec3d(p[3])}};
-    geometric_normal = frame_orientation() * face_direction(at, weights);
-    Vec3d normals[4];
-    normal = corner_normals(patch, normals) ? unit_or(blend(normals, weights.w), geometric_normal)
-                                            : geometric_normal;
+    return face;
 }
 
 std::vector<Bounds3f> OpenedPolygons::primitive_boxes(std::size_t primitive) const {
@@ -194,12 +181,8 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
     out.positions.resize(n * static_cast<std::size_t>(knot_count()));
     if (displaced()) out.offset.resize(out.positions.size());
     const double amount = displacement(material(patch.face)).constant;
-    Corners frame;
     for (int k = 0; k < knot_count(); ++k) {
         const Corners at = corners(patch, k);
-        if (k == knots().frame_knot) frame = at;
-        if (k == knots().frame_knot + 1 && knots().frame_fraction > 0.0)
-            for (int i = 0; i < 4; ++i) frame.p[i] = at_frame(frame.p[i], at.p[i]);
         const std::size_t base = static_cast<std::size_t>(k) * n;
         for (std::size_t i = 0; i < n; ++i) {
             out.positions[base + i] = Vec3f(blend(at.p, weights[i].w));
@@ -208,21 +191,18 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
         }
     }
 
-    Vec3d normals[4];
-    const bool interpolated = corner_normals(patch, normals);
+    const FrameFace face = frame_face(patch);
     out.su.resize(n);
     out.sv.resize(n);
     out.normal.resize(n);
     out.geometric_normal.resize(n);
-    Vec3d flat(0.0);
     for (std::size_t i = 0; i < n; ++i) {
-        out.su[i] = Vec3f(blend(frame.p, weights[i].du));
-        out.sv[i] = Vec3f(blend(frame.p, weights[i].dv));
-        if (i == 0 || patch.kind != PatchKind::Triangle)  // a triangle has one for all
-            flat = frame_orientation() * face_direction(frame, weights[i]);
+        const Vec3d su = face.by_u(weights[i]), sv = face.by_v(weights[i]);
+        const Vec3d flat = face.geometric_normal(su, sv);
+        out.su[i] = Vec3f(su);
+        out.sv[i] = Vec3f(sv);
         out.geometric_normal[i] = Vec3f(flat);
-        out.normal[i] =
-            interpolated ? Vec3f(unit_or(blend(normals, weights[i].w), flat)) : Vec3f(flat);
+        out.normal[i] = Vec3f(face.shading_normal(weights[i], flat));
     }
 }
 

@@ -2,6 +2,7 @@
 // Polygons: triangles are flat, convex quads bilinear patches, everything else triangulated.
 #pragma once
 
+#include "dice/frame_face.h"
 #include "dice/opened_mesh.h"
 #include "dice/small_faces.h"
 
@@ -29,27 +30,21 @@ class OpenedPolygons final : public OpenedMesh {
                    std::span<const Vec2d> uv, std::vector<float>& values, std::vector<float>& du,
                    std::vector<float>& dv) const override;
 
-    /// Unit normals at the frame time, where the corners are at `p`: the shading normal, and that
-    /// of the face itself.
-    void frame_normals(const BasePatch& patch, const Vec3f* p, const struct CornerWeights& weights,
-                       Vec3d& normal, Vec3d& geometric_normal) const;
+    FrameFace frame_face(const BasePatch& patch) const;
+    /// [4] of a patch at a knot.
+    struct Corners {
+        Vec3d p[4];
+    };
+    Corners corners(const BasePatch& patch, int knot) const;
 
   protected:
     std::vector<Bounds3f> primitive_boxes(std::size_t primitive) const override;
 
   private:
-    struct Corners {
-        Vec3d p[4];
-    };
-    Corners corners(const BasePatch& patch, int knot) const;
-    Vec3d face_direction(const Corners& corners, const struct CornerWeights& weights) const;
     /// Unit direction of displacement at a knot.
     Vec3d direction(const BasePatch& patch, int knot, const CornerWeights& weights,
                     const Corners& at) const;
     bool smooth(std::uint32_t face) const;
-
-    /// False: the face is flat.  In camera space.
-    bool corner_normals(const BasePatch& patch, Vec3d* normals) const;
 
     SmallFaces m_small;               ///< none where displaced
     std::vector<Vec3f> m_directions;  ///< [knots][V] vertex normals; empty when not displaced

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "dice/corner_values.h"
+#include "math/unit_or.h"
 
 namespace granita {
 namespace {

@@ -4,106 +4,104 @@
 #include <algorithm>
 
 #include "dice/finish_motion.h"
-#include "dice/lattice.h"
+#include "dice/grid_attributes.h"
+#include "dice/lattice_stencil.h"
 #include "dice/patch.h"
 
 namespace granita {
 namespace {
 
-/// Puts lattices one after the other into a grid of separate micropolygons.
-class Joiner {
+/// Where a lattice lies in the grid of separate micropolygons.
+class Slot {
   public:
-    /// `points`: of all lattices.
-    Joiner(Grid& grid, std::size_t points) : m_grid(grid) {
-        grid.places.point_of.resize(static_cast<std::size_t>(grid.vertex_count()));
-        grid.places.anchors.reserve(points);
-        for (auto* values :
-             {&grid.p, &grid.normal, &grid.geometric_normal, &grid.dp_du, &grid.dp_dv})
-            values->reserve(points);
-    }
+    Slot(const Grid& grid, int n_u, int n_v, std::size_t first_micropolygon)
+        : m_all(static_cast<std::size_t>(grid.n_u)),
+          m_n_u(static_cast<std::size_t>(n_u)),
+          m_n_v(static_cast<std::size_t>(n_v)),
+          m_first(first_micropolygon) {}
 
-    void add(const Grid& part, std::uint32_t face) {
-        const std::size_t n_u = size(part.n_u), n_v = size(part.n_v);
-        for (std::size_t plane = 0; plane < 4; ++plane)
-            for (std::size_t j = 0; j < n_v; ++j) put_row(part, plane, j);
-        for (std::size_t j = 0; j <= n_v; ++j)
-            for (std::size_t i = 0; i <= n_u; ++i) {
-                const std::size_t m = std::min(j, n_v - 1) * n_u + std::min(i, n_u - 1);
-                const std::size_t plane = (i == n_u ? 1 : 0) + (j == n_v ? 2 : 0);
-                m_grid.places.anchors.push_back(
-                    static_cast<std::uint32_t>(plane * size(m_grid.n_u) + m_micropolygons + m));
+    /// to[vertex of the grid] = value(vertex of the lattice), corner by corner.
+    template <class To, class Value>
+    void spread(To* to, Value value) const {
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            for (std::size_t j = 0; j < m_n_v; ++j) {
+                const std::size_t from = (j + corner / 2) * (m_n_u + 1) + corner % 2;
+                To* const row = to + corner * m_all + m_first + j * m_n_u;
+                for (std::size_t i = 0; i < m_n_u; ++i) row[i] = value(from + i);
             }
-        const std::vector<Vec3f>& p = part.shading_p();
-        m_grid.p.insert(m_grid.p.end(), p.begin(), p.begin() + part.vertex_count());
-        append(part.normal, m_grid.normal);
-        append(part.geometric_normal, m_grid.geometric_normal);
-        append(part.dp_du, m_grid.dp_du);
-        append(part.dp_dv, m_grid.dp_dv);
-        m_grid.attributes.resize(part.attributes.size());
-        for (std::size_t a = 0; a < part.attributes.size(); ++a) {
-            const GridAttribute& from = part.attributes[a];
-            GridAttribute& to = m_grid.attributes[a];
-            to.attribute = from.attribute;
-            to.width = from.width;
-            append(from.values, to.values);
-            append(from.du, to.du);
-            append(from.dv, to.dv);
-        }
-        m_grid.places.faces.resize(m_grid.p.size(), face);
-        m_micropolygons += n_u * n_v;
-        m_points += size(part.vertex_count());
+    }
+    /// A vertex of the grid for each of the lattice.
+    void add_anchors(std::vector<std::uint32_t>& anchors) const {
+        for (std::size_t j = 0; j <= m_n_v; ++j)
+            for (std::size_t i = 0; i <= m_n_u; ++i) {
+                const std::size_t m = std::min(j, m_n_v - 1) * m_n_u + std::min(i, m_n_u - 1);
+                const std::size_t corner = (i == m_n_u ? 1 : 0) + (j == m_n_v ? 2 : 0);
+                anchors.push_back(static_cast<std::uint32_t>(corner * m_all + m_first + m));
+            }
     }
 
   private:
-    /// One corner of the micropolygons of a row.  A part that stands still has one knot.
-    void put_row(const Grid& part, std::size_t plane, std::size_t j) {
-        const std::size_t count = size(part.n_u), all = size(m_grid.vertex_count());
-        const std::size_t from = (j + plane / 2) * (count + 1) + plane % 2;
-        const std::size_t to = plane * size(m_grid.n_u) + m_micropolygons + j * count;
-        const std::size_t step = part.motion ? size(part.vertex_count()) : 0;
-        for (std::size_t k = 0; k < size(m_grid.knots); ++k)
-            std::copy_n(&part.positions[k * step + from], count, &m_grid.positions[k * all + to]);
-        for (std::size_t i = 0; i < count; ++i)
-            m_grid.places.point_of[to + i] = static_cast<std::uint32_t>(m_points + from + i);
-    }
-
-    static std::size_t size(int count) { return static_cast<std::size_t>(count); }
-
-    template <class T>
-    static void append(const std::vector<T>& from, std::vector<T>& to) {
-        to.insert(to.end(), from.begin(), from.end());
-    }
-
-    Grid& m_grid;
-    std::size_t m_micropolygons = 0, m_points = 0;  ///< so far
+    std::size_t m_all, m_n_u, m_n_v, m_first;
 };
+
+/// of_lattice(lattice, slot) and of_piece(piece, slot) for all of them.
+template <class Parts, class OfLattice, class OfPiece>
+void for_each_part(const Grid& grid, const Parts& parts, OfLattice of_lattice, OfPiece of_piece) {
+    std::size_t first = 0;
+    for (const auto& lattice : parts.lattices) {
+        const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
+        of_lattice(lattice, Slot(grid, stencil.n_u, stencil.n_v, first));
+        first += static_cast<std::size_t>(stencil.micropolygon_count());
+    }
+    for (const auto& piece : parts.pieces) {
+        of_piece(piece, Slot(grid, piece.grid->n_u, piece.grid->n_v, first));
+        first += static_cast<std::size_t>(piece.grid->micropolygon_count());
+    }
+}
+
+template <class T>
+void append(const std::vector<T>& from, std::vector<T>& to) {
+    to.insert(to.end(), from.begin(), from.end());
+}
 
 }  // namespace
 
-/// A face as a lattice, by its sides alone, or a piece of it as Patch diced it.
-struct PatchBatch::Part {
-    std::size_t face = 0;
-    OpenedMesh::Start start;
-    int n_u = 0, n_v = 0;
-    std::unique_ptr<Grid> diced;
-    int points() const { return diced ? diced->vertex_count() : (n_u + 1) * (n_v + 1); }
-    int micropolygons() const { return diced ? diced->micropolygon_count() : n_u * n_v; }
-};
+int PatchBatch::levels(std::uint32_t a, std::uint32_t b, const BasePatch& face) const {
+    Vec3f start[kMaxKnots], end[kMaxKnots];
+    const int knots = m_mesh->knot_count();
+    for (int k = 0; k < knots; ++k) {
+        const std::span<const Vec3f> points = m_mesh->points(k);
+        start[k] = points[a];
+        end[k] = points[b];
+    }
+    const int sure = m_mesh->rate().sure_levels(start, end, knots);
+    if (sure != EdgeRate::kUnsure) return sure;
+    Side side;
+    side.edge = {std::min(a, b), std::max(a, b)};
+    side.budget = kMostEdgeLevels;
+    SideWalker(*m_mesh, face).classify(side);
+    return side.levels;
+}
 
-/// Where this is all that Patch would find.  `inside`: in the frame, at every knot.
-bool PatchBatch::is_lattice(Part& part, bool inside) const {
-    const BasePatch& face = patch(part.face);
-    if (!inside || !face.whole_face) return false;
-    part.start = m_mesh->start(face, kMostEdgeLevels);
-    const Side* const sides = part.start.sides;
-    if (std::any_of(sides, sides + 4, [](const Side& s) { return s.levels < 0; })) return false;
-    part.n_u = 1 << std::max(sides[0].levels, sides[2].levels);
-    part.n_v = 1 << std::max(sides[1].levels, sides[3].levels);
-    return part.n_u * part.n_v <= m_mesh->view().scene->options.grid_size;
+/// False: the sides ask for more.
+bool PatchBatch::find_stencil(std::uint32_t face, std::uint32_t& stencil) const {
+    const BasePatch& at = patch(face);
+    const int sides = at.kind == PatchKind::Triangle ? 3 : 4;
+    const auto vertex = [&](int i) {
+        return static_cast<std::uint32_t>(m_mesh->data().corner_verts[at.corner[i % sides]]);
+    };
+    int around[4];
+    for (int i = 0; i < sides; ++i) {
+        around[i] = levels(vertex(i), vertex(i + 1), at);
+        if (around[i] < 0 || around[i] > LatticeStencil::kMostLevels) return false;
+    }
+    stencil = LatticeStencil::number(at.kind, around);
+    return LatticeStencil::of(stencil).micropolygon_count() <=
+           m_mesh->view().scene->options.grid_size;
 }
 
 /// Where a face should not dice in one piece after all, its pieces do.
-void PatchBatch::dice_face(std::size_t face, std::vector<Part>& parts) const {
+void PatchBatch::dice_face(std::uint32_t face, std::vector<Piece>& pieces) const {
     std::vector<std::unique_ptr<Primitive>> left;
     left.push_back(Patch::open(m_mesh, patch(face)));
     while (!left.empty()) {
@@ -112,44 +110,156 @@ void PatchBatch::dice_face(std::size_t face, std::vector<Part>& parts) const {
         if (!primitive->diceable()) {
             for (auto& child : primitive->split()) left.push_back(std::move(child));
         } else if (auto diced = primitive->dice()) {
-            parts.emplace_back().face = face;
-            parts.back().diced = std::move(diced);
+            pieces.push_back({face, std::move(diced)});
         }
     }
 }
 
+PatchBatch::Parts PatchBatch::find_parts() const {
+    // Elsewhere Patch may find more than its sides do.
+    const bool in_frame = m_mesh->rate().in_frame(boxes());
+    Parts parts;
+    parts.lattices.reserve(face_count());
+    for (std::uint32_t face = 0; face < face_count(); ++face) {
+        std::uint32_t stencil = 0;
+        if (in_frame && find_stencil(face, stencil))
+            parts.lattices.push_back({face, stencil});
+        else
+            dice_face(face, parts.pieces);
+    }
+    return parts;
+}
+
 std::unique_ptr<Grid> PatchBatch::dice() const {
-    const bool inside = m_mesh->rate().inside(bounds());
-    std::vector<Part> parts;
-    parts.reserve(face_count());
-    std::size_t micropolygons = 0, points = 0;
-    for (std::size_t i = 0; i < face_count(); ++i) {
-        parts.emplace_back().face = i;
-        if (is_lattice(parts.back(), inside)) continue;
-        parts.pop_back();
-        dice_face(i, parts);
-    }
-    for (const Part& part : parts) {
-        micropolygons += static_cast<std::size_t>(part.micropolygons());
-        points += static_cast<std::size_t>(part.points());
-    }
+    Parts parts = find_parts();
+    int micropolygons = 0;
+    for (const Lattice& lattice : parts.lattices)
+        micropolygons += LatticeStencil::of(lattice.stencil).micropolygon_count();
+    for (const Piece& piece : parts.pieces) micropolygons += piece.grid->micropolygon_count();
     if (micropolygons == 0) return nullptr;
-    auto grid = make_grid(micropolygons);
-    Joiner joiner(*grid, points);
-    static thread_local Grid lattice;  // kept for its memory
-    for (const Part& part : parts) {
-        if (!part.diced) {
-            lattice.material = grid->material;
-            lattice.lifespan = grid->lifespan;
-            dice_lattice(*m_mesh, patch(part.face),
-                         {part.start.corner_uv, part.start.sides, part.n_u, part.n_v}, lattice);
-        }
-        joiner.add(part.diced ? *part.diced : lattice, patch(part.face).face);
-    }
+    auto grid = make_grid(static_cast<std::size_t>(micropolygons));
+    place(*grid, parts);
     // All have the light samples of a whole pixel: by the area of a batch, those of its larger
     // faces were too few, and what light grazes had specks.
     finish_motion(*grid, m_mesh->view().projection);
+    count_spared(*grid, parts);
+    grid->shading_state = [batch = *this, parts = std::move(parts)](Grid& of) {
+        batch.fill_shading_state(of, parts);
+    };
     return grid;
+}
+
+void PatchBatch::place(Grid& grid, const Parts& parts) const {
+    const auto count = static_cast<std::size_t>(grid.vertex_count());
+    for (int k = 0; k < grid.knots; ++k) {
+        Vec3f* const to = &grid.positions[static_cast<std::size_t>(k) * count];
+        const auto place_lattice = [&](const Lattice& lattice, const Slot& slot) {
+            const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
+            const OpenedPolygons::Corners corners = m_mesh->corners(patch(lattice.face), k);
+            Vec3f at[LatticeStencil::kMostVertices];
+            for (std::size_t v = 0; v < stencil.vertex_count(); ++v)
+                at[v] = Vec3f(FrameFace::blend(corners.p, stencil.weights[v].w));
+            slot.spread(to, [&](std::size_t v) { return at[v]; });
+        };
+        const auto place_piece = [&](const Piece& piece, const Slot& slot) {
+            // What stands still has one knot.
+            const auto step = static_cast<std::size_t>(piece.grid->motion ? k : 0);
+            const Vec3f* const at =
+                &piece.grid->positions[step * static_cast<std::size_t>(piece.grid->vertex_count())];
+            slot.spread(to, [&](std::size_t v) { return at[v]; });
+        };
+        for_each_part(grid, parts, place_lattice, place_piece);
+    }
+}
+
+/// Of the lattices; pieces have counted themselves.
+void PatchBatch::count_spared(const Grid& grid, const Parts& parts) const {
+    Statistics* const statistics = m_mesh->view().statistics;
+    if (!statistics || parts.lattices.empty()) return;
+    std::size_t points = 0;
+    for (const Lattice& lattice : parts.lattices)
+        points += LatticeStencil::of(lattice.stencil).vertex_count();
+    std::vector<Vec3f> path;
+    for (int k = 0; k < grid.knots; ++k)
+        path.push_back(grid.positions[static_cast<std::size_t>(k * grid.vertex_count())]);
+    const double spared = m_mesh->rate().spared(path.data(), grid.knots) - 1.0;
+    statistics->add(Counter::PointsSpared,
+                    static_cast<std::uint64_t>(spared * static_cast<double>(points)));
+}
+
+void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
+    std::size_t points = 0;
+    for (const Lattice& lattice : parts.lattices)
+        points += LatticeStencil::of(lattice.stencil).vertex_count();
+    for (const Piece& piece : parts.pieces)
+        points += static_cast<std::size_t>(piece.grid->vertex_count());
+    for (auto* values : {&grid.p, &grid.normal, &grid.geometric_normal, &grid.dp_du, &grid.dp_dv})
+        values->reserve(points);
+    ShadingPlaces& places = grid.places;
+    places.point_of.resize(static_cast<std::size_t>(grid.vertex_count()));
+    for (auto* values : {&places.anchors, &places.faces}) values->reserve(points);
+
+    const auto begin = [&](std::uint32_t face, const Slot& slot) {
+        const auto first = static_cast<std::uint32_t>(places.anchors.size());
+        slot.spread(places.point_of.data(),
+                    [&](std::size_t v) { return first + static_cast<std::uint32_t>(v); });
+        slot.add_anchors(places.anchors);
+        places.faces.resize(places.anchors.size(), patch(face).face);
+    };
+    const auto shade_piece = [&](const Piece& piece, const Slot& slot) {
+        begin(piece.face, slot);
+        append(piece.grid->normal, grid.normal);
+        append(piece.grid->geometric_normal, grid.geometric_normal);
+        append(piece.grid->dp_du, grid.dp_du);
+        append(piece.grid->dp_dv, grid.dp_dv);
+    };
+    const auto shade_lattice = [&](const Lattice& lattice, const Slot& slot) {
+        begin(lattice.face, slot);
+        add_points(lattice, grid);
+    };
+    for_each_part(grid, parts, shade_lattice, shade_piece);
+    set_point_positions(grid, m_mesh->knots());
+    fill_attributes(grid, parts);
+}
+
+void PatchBatch::add_points(const Lattice& lattice, Grid& grid) const {
+    const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
+    const FrameFace face = m_mesh->frame_face(patch(lattice.face));
+    for (std::size_t v = 0; v < stencil.vertex_count(); ++v) {
+        const CornerWeights& weights = stencil.weights[v];
+        const Vec3d su = face.by_u(weights), sv = face.by_v(weights);
+        const Vec3d flat = face.geometric_normal(su, sv);
+        grid.geometric_normal.emplace_back(flat);
+        grid.normal.emplace_back(face.shading_normal(weights, flat));
+        const Vec2d &by_u = stencil.step_u[v], &by_v = stencil.step_v[v];
+        grid.dp_du.emplace_back(su * by_u.x + sv * by_u.y);
+        grid.dp_dv.emplace_back(su * by_v.x + sv * by_v.y);
+    }
+}
+
+void PatchBatch::fill_attributes(Grid& grid, const Parts& parts) const {
+    std::vector<float> values, du, dv;
+    const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
+        for (const Lattice& lattice : parts.lattices) {
+            const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
+            m_mesh->attribute(patch(lattice.face), request, stencil.uv, values, du, dv);
+            append(values, out.values);
+            for (std::size_t i = 0; request.derivatives && i < values.size(); ++i) {
+                const std::size_t v = i / static_cast<std::size_t>(out.width);
+                const Vec2d &by_u = stencil.step_u[v], &by_v = stencil.step_v[v];
+                out.du.push_back(static_cast<float>(du[i] * by_u.x + dv[i] * by_u.y));
+                out.dv.push_back(static_cast<float>(du[i] * by_v.x + dv[i] * by_v.y));
+            }
+        }
+        for (const Piece& piece : parts.pieces) {
+            const GridAttribute& from =
+                piece.grid->attributes[static_cast<std::size_t>(out.attribute)];
+            append(from.values, out.values);
+            append(from.du, out.du);
+            append(from.dv, out.dv);
+        }
+    };
+    make_attributes(grid, m_mesh->view().requests_of(grid.material), fill);
 }
 
 }  // namespace granita

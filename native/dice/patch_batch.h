@@ -15,9 +15,29 @@ class PatchBatch final : public FaceBatch {
     std::unique_ptr<Grid> dice() const override;
 
   private:
-    struct Part;
-    bool is_lattice(Part& part, bool inside) const;
-    void dice_face(std::size_t face, std::vector<Part>& parts) const;
+    /// A face that is a lattice by its sides alone.
+    struct Lattice {
+        std::uint32_t face, stencil;
+    };
+    /// A part of another one, as its patch diced it.
+    struct Piece {
+        std::uint32_t face;
+        std::shared_ptr<const Grid> grid;
+    };
+    /// All of the batch, in the order in which the grid has it: lattices, then pieces.
+    struct Parts {
+        std::vector<Lattice> lattices;
+        std::vector<Piece> pieces;
+    };
+    Parts find_parts() const;
+    bool find_stencil(std::uint32_t face, std::uint32_t& stencil) const;
+    int levels(std::uint32_t a, std::uint32_t b, const BasePatch& face) const;
+    void dice_face(std::uint32_t face, std::vector<Piece>& pieces) const;
+    void place(Grid& grid, const Parts& parts) const;
+    void count_spared(const Grid& grid, const Parts& parts) const;
+    void fill_shading_state(Grid& grid, const Parts& parts) const;
+    void add_points(const Lattice& lattice, Grid& grid) const;
+    void fill_attributes(Grid& grid, const Parts& parts) const;
 };
 
 }  // namespace granita

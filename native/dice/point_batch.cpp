@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dice/finish_motion.h"
 #include "dice/opened_mesh.h"
+#include "math/unit_or.h"
 
 namespace granita {
 namespace {
@@ -164,7 +164,7 @@ std::unique_ptr<Grid> PointBatch::dice() const {
     auto grid = m_elements->make_grid(m_batch, m_path, static_cast<int>(all.size()) - 1,
                                       part().u1 - part().u0);
     for (std::size_t j = 0; j < all.size(); ++j) place_row(*grid, static_cast<int>(j), all[j]);
-    finish_motion(*grid, m_elements->view().projection);
+    finish(*grid);
     return grid;
 }
 

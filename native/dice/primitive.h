@@ -16,7 +16,6 @@
 // outlive both.  Counting what is opened, split and diced is the caller's.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -40,12 +39,9 @@ class Primitive {
     virtual bool diceable() const = 0;
     /// At least two children, in a fixed order, that tile this one exactly.
     virtual std::vector<std::unique_ptr<Primitive>> split() const = 0;
-    /// Positions, shading state and the material's attributes; never shaded.  nullptr when every
-    /// vertex is non-finite.
+    /// Positions and bounds; shading state and the material's attributes too, or else what makes
+    /// them (Grid::shading_state).  Never shaded.  nullptr when every vertex is non-finite.
     virtual std::unique_ptr<Grid> dice() const = 0;
-    /// Fills in the shading state and the attributes of a grid of dice() before its first shading,
-    /// where dice() has left them out; outlives the primitive.  Empty: nothing is missing.
-    virtual std::function<void(Grid&)> shading_state() const { return {}; }
 };
 
 /// An instance's geometry in camera space at its knots, ready to hand out primitives.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "dice/lattice_stencil.h"
 #include "dice/opened_polygons.h"
 #include "math/morton.h"
 
@@ -75,9 +76,6 @@ Corners corners_of(const OpenedPolygons& mesh, const BasePatch& patch) {
     return corners;
 }
 
-/// The most levels of the trees of a small face's edges: sides of four micropolygons.
-constexpr int kMostLevels = 2;
-
 /// log2 of the micropolygons along u and v, by the sides' lengths.
 struct Levels {
     std::uint8_t u = 0, v = 0;
@@ -89,7 +87,7 @@ constexpr Levels kLarge{255, 255};
 int most_levels(const OpenedPolygons& mesh) {
     // Points of a coarser shading rate lie on lattices.
     if (mesh.rate().shading_rate() > mesh.rate().rate()) return 0;
-    int most = kMostLevels;
+    int most = LatticeStencil::kMostLevels;
     while (1 << 2 * most > mesh.view().scene->options.grid_size && most > 0) --most;
     return most;
 }

@@ -15,9 +15,8 @@ void drop_shading_state(Grid& grid) {
 
 }  // namespace
 
-SharedGrid::SharedGrid(std::unique_ptr<Grid> grid, std::function<void(Grid&)> shading_state,
-                       Statistics& statistics)
-    : m_grid(std::move(grid)), m_shading_state(std::move(shading_state)), m_statistics(statistics) {
+SharedGrid::SharedGrid(std::unique_ptr<Grid> grid, Statistics& statistics)
+    : m_grid(std::move(grid)), m_statistics(statistics) {
     count_bytes();
 }
 
@@ -33,10 +32,10 @@ void SharedGrid::count_bytes() {
 
 void SharedGrid::ensure_shading_state() {
     std::call_once(m_has_state, [&] {
-        if (!m_shading_state) return;
+        if (!m_grid->shading_state) return;
         const StageTimer timer(m_statistics, Stage::Dice);
-        m_shading_state(*m_grid);
-        m_shading_state = {};
+        m_grid->shading_state(*m_grid);
+        m_grid->shading_state = {};
         count_bytes();
     });
 }
@@ -65,7 +64,7 @@ std::shared_ptr<SharedGrid> dice_counted(const Primitive& primitive, Statistics&
     if (!grid) return nullptr;
     statistics.add(Counter::GridsDiced);
     statistics.add(Counter::PointsDiced, static_cast<std::uint64_t>(grid->vertex_count()));
-    return std::make_shared<SharedGrid>(std::move(grid), primitive.shading_state(), statistics);
+    return std::make_shared<SharedGrid>(std::move(grid), statistics);
 }
 
 std::vector<std::unique_ptr<Primitive>> split_counted(const Primitive& primitive,

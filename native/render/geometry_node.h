@@ -5,7 +5,6 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -20,9 +19,7 @@ namespace granita {
 /// A diced grid and its slots, each filled once whoever asks first.
 class SharedGrid {
   public:
-    /// `shading_state`: Primitive::shading_state().
-    SharedGrid(std::unique_ptr<Grid> grid, std::function<void(Grid&)> shading_state,
-               Statistics& statistics);
+    SharedGrid(std::unique_ptr<Grid> grid, Statistics& statistics);
     ~SharedGrid();
     const Grid& grid() const { return *m_grid; }
     void ensure_opacity(const ShadingSystem& shading);
@@ -33,7 +30,6 @@ class SharedGrid {
     void count_bytes();
 
     std::unique_ptr<Grid> m_grid;
-    std::function<void(Grid&)> m_shading_state;
     Statistics& m_statistics;
     std::uint64_t m_bytes = 0;
     std::once_flag m_has_state, m_opacity, m_radiance;

@@ -12,6 +12,7 @@
 
 #include "dice/knots.h"
 #include "dice/opened_mesh.h"
+#include "math/unit_or.h"
 #include "shade/ray_elements.h"
 #include "shade/ray_mesh.h"
 #include "shade/shading_points.h"

@@ -68,7 +68,8 @@ struct DiceScene {
         if (!primitive.bounds().visible) return;
         if (primitive.diceable()) {
             grids.push_back(primitive.dice());
-            if (const auto fill = primitive.shading_state()) fill(*grids.back());
+            Grid* const grid = grids.back().get();
+            if (grid && grid->shading_state) grid->shading_state(*grid);
             return;
         }
         for (const auto& child : primitive.split()) dice_all(*child, grids);

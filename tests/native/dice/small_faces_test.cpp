@@ -223,5 +223,23 @@ TEST(SmallFaces, averages_what_lies_within_a_point_and_looks_textures_up_at_one_
     EXPECT_LT(error / static_cast<double>(count), 0.05);
 }
 
+TEST(SmallFaces, hold_positions_alone_until_they_are_shaded) {
+    for (const float size : {24.0f, 96.0f}) {
+        DiceScene s(flat_sheet(32, size));
+        const auto opened = open_instance(s.view, 0, s.report);
+        for (std::size_t i = 0; i < opened->primitive_count(); ++i) {
+            const auto grid = opened->primitive(i)->dice();
+            ASSERT_TRUE(grid->apart);
+            EXPECT_TRUE(grid->bounds.visible);
+            EXPECT_EQ(grid->bytes(), sizeof(Grid) + sizeof(Vec3f) * grid->positions.size());
+            ASSERT_TRUE(grid->shading_state);
+            grid->shading_state(*grid);
+            EXPECT_EQ(grid->p.size(), grid->point_count());
+            EXPECT_EQ(grid->normal.size(), grid->point_count());
+            EXPECT_EQ(grid->places.point_of.size(), static_cast<std::size_t>(grid->vertex_count()));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace granita::testing

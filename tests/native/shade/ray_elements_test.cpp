@@ -159,7 +159,7 @@ float passing(Scene scene) {
             return;
         }
         const auto grid = primitive.dice();
-        primitive.shading_state()(*grid);
+        grid->shading_state(*grid);
         for (std::size_t i = 0; i < grid->point_count(); ++i) {
             const Vec3f start = rays.lift(grid->key)(grid->shading_p()[i] + grid->ray_offset[i],
                                                      grid->geometric_normal[i]);
