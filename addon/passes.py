@@ -118,10 +118,8 @@ def _put(render_pass, pixels, count, channels):
     It must be contiguous float32: other types leave the fast path, which on 3.4 does not check
     its size.
     """
-    flat = np.ascontiguousarray(pixels, dtype=np.float32).reshape(-1)
-    if flat.size != count * channels:
-        raise ValueError(f"pass {render_pass.name}: {flat.size} values for {count} pixels")
-    try:
-        render_pass.rect.foreach_set(flat)
-    except TypeError:
-        render_pass.rect.foreach_set(flat.reshape(count, channels))
+    values = np.ascontiguousarray(pixels, dtype=np.float32)
+    if values.size != count * channels:
+        raise ValueError(f"pass {render_pass.name}: {values.size} values for {count} pixels")
+    shape = (-1,) if bpy.app.version >= (4, 1, 0) else (count, channels)
+    render_pass.rect.foreach_set(values.reshape(shape))

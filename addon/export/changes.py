@@ -20,7 +20,8 @@ _NEVER_SEEN = {"ARMATURE", "CAMERA", "EMPTY", "LATTICE", "LIGHT_PROBE", "SPEAKER
 class Changes:
     """Objects of a visit that were touched since the last time; all stand for themselves."""
 
-    places: dict = field(default_factory=dict)  # thing -> float64 [4, 4], world from object
+    moved: list = field(default_factory=list)  # things
+    matrices: list = field(default_factory=list)  # float64 [4, 4] of these, world from object
     objects: dict = field(default_factory=dict)  # thing -> evaluated Object with other geometry
 
 
@@ -59,21 +60,23 @@ class Plain:
             (name, "was unlinked") for name in sorted(unlinked)
         ]
 
-    def changes(self, depsgraph):
-        """Changes of the last step, or None where only a walk can tell."""
-        import bpy
+    def changes(self, updates):
+        """Changes of the last step, or None where only a walk can tell.
+
+        Args:
+            updates: of `last_updates`.
+        """
+        from bpy.types import Collection, Object
 
         if object_names() != self.names:
             return None
         found = Changes()
-        for update in depsgraph.updates:
-            moved, formed = update.is_updated_transform, update.is_updated_geometry
+        for thing, moved, formed in updates:
             if not (moved or formed):
                 continue
-            thing = update.id
-            if isinstance(thing, bpy.types.Collection):
+            if isinstance(thing, Collection):
                 return None
-            if not isinstance(thing, bpy.types.Object):
+            if not isinstance(thing, Object):
                 continue  # an object that uses it is named as well
             index = self.index_of(thing)
             if index is None:
@@ -81,7 +84,8 @@ class Plain:
             if index < 0:
                 continue
             if moved:
-                found.places[index] = from_matrix(thing.matrix_world)
+                found.moved.append(index)
+                found.matrices.append(from_matrix(thing.matrix_world))
             if formed:
                 found.objects[index] = thing
         return found
@@ -137,25 +141,19 @@ def object_names():
     return bpy.data.objects.keys()
 
 
-def moved(depsgraph):
-    """Whether the last step touched any place or geometry."""
-    return any(
-        update.is_updated_transform or update.is_updated_geometry for update in depsgraph.updates
-    )
+def last_updates(depsgraph):
+    """[(evaluated ID, whether it moved, whether its geometry changed)] of the last evaluation, read once: each look
+    at them costs a microsecond a thing."""
+    return [(u.id, u.is_updated_transform, u.is_updated_geometry) for u in depsgraph.updates]
 
 
-def lights_changed(depsgraph):
+def lights_changed(updates):
     """Whether the last step touched any light or nodes."""
-    import bpy
+    from bpy.types import Light, NodeTree
 
-    kinds = (bpy.types.Light, bpy.types.NodeTree)
-    return any(isinstance(update.id, kinds) for update in depsgraph.updates)
+    return any(isinstance(thing, (Light, NodeTree)) for thing, _, _ in updates)
 
 
-def changed_geometry(depsgraph):
+def changed_geometry(updates):
     """Addresses of the original datablocks whose geometry the last step touched."""
-    return {
-        update.id.original.as_pointer()
-        for update in depsgraph.updates
-        if update.is_updated_geometry
-    }
+    return {thing.original.as_pointer() for thing, _, formed in updates if formed}

@@ -4,7 +4,7 @@
 import numpy as np
 
 from .camera import camera_knot, follows_object, lens_knot
-from .changes import changed_geometry, lights_changed, moved, originals
+from .changes import changed_geometry, last_updates, lights_changed, originals
 from .depsgraph import visit
 from .flights import Flights
 from .lamps import energies
@@ -79,12 +79,13 @@ class Steps:
         self._report_gone()
         self.ticks.append(tick)
         self._read_camera(tick)  # what its lens does is no change of place or geometry
-        self._read_energies(tick, knows_updates)
+        updates = last_updates(self._scene.depsgraph) if knows_updates else None
+        self._read_energies(tick, updates)
         self._flights.note(tick, self._scene.depsgraph)
-        if not knows_updates or moved(self._scene.depsgraph):
-            changes = self._plain.changes(self._scene.depsgraph) if knows_updates else None
+        if updates is None or any(moved or formed for _, moved, formed in updates):
+            changes = self._plain.changes(updates) if knows_updates else None
             if knows_updates:
-                self._changed |= changed_geometry(self._scene.depsgraph)
+                self._changed |= changed_geometry(updates)
             if changes is None or self._may_make_instances(changes):
                 self._walk(knows_updates)
             else:
@@ -139,20 +140,21 @@ class Steps:
         if self.lenses:
             self.lenses[tick] = self.lenses[last] if lens is None else lens
 
-    def _read_energies(self, tick, knows_updates):
+    def _read_energies(self, tick, updates):
         now = before = self._energies[self.ticks[-2]]
-        if before and (not knows_updates or lights_changed(self._scene.depsgraph)):
+        if before and (updates is None or lights_changed(updates)):
             # What a handler has deleted stays as it was.
             now = {**before, **energies(self._scene.depsgraph)}
         self._energies[tick] = now
 
     def _take(self, changes):
-        for thing, matrix in changes.places.items():
-            if not np.isfinite(matrix).all():
-                self._lose_place(np.array([thing]))
-            elif self._can_blur[thing]:
-                self._now[thing] = matrix
-                self._touched[thing] = True
+        things = np.array(changes.moved, dtype=int)
+        matrices = np.reshape(changes.matrices, (-1, 4, 4))
+        finite = is_finite(matrices)
+        self._lose_place(things[~finite])
+        finite &= self._can_blur[things]
+        self._now[things[finite]] = matrices[finite]
+        self._touched[things[finite]] = True
         for index, source in enumerate(self._scene.sources):
             thing = changes.objects.get(source.example)
             if thing is not None and self._deforms(index, source):
