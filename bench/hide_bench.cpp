@@ -110,20 +110,23 @@ BENCHMARK_CAPTURE(hide, lens_opens, 0.0f, std::vector<Vec2d>{{2, 10}, {8, 10}});
 BENCHMARK_CAPTURE(hide, lens_refocuses, 0.0f, std::vector<Vec2d>{{5, 7.7}, {5, 14.3}});
 BENCHMARK_CAPTURE(hide, lens_refocuses_motion_20px, 20.0f, std::vector<Vec2d>{{5, 7.7}, {5, 14.3}});
 
-void fill_table(benchmark::State& state, SampleNeeds needs, double last_focus) {
+void fill_table(benchmark::State& state, SampleNeeds needs, double last_focus, int count = 64) {
     Camera camera = pixel_camera();
     camera.lens = LensKnots({{1, 10}, {1, last_focus}}, camera.projection);
-    const SampleTable table(bench_options(), camera);
+    Options options = bench_options();
+    options.samples = count;
+    const SampleTable table(options, camera);
     TileSamples samples;
     for (auto _ : state) {
         table.fill_tile({1, 2}, needs, samples);
         benchmark::DoNotOptimize(samples.x.data());
     }
     state.counters["samples"] = benchmark::Counter(
-        static_cast<double>(state.iterations()) * 256 * 64, benchmark::Counter::kIsRate);
+        static_cast<double>(state.iterations()) * 256 * count, benchmark::Counter::kIsRate);
 }
 BENCHMARK_CAPTURE(fill_table, xy, SampleNeeds{false, false}, 10);
 BENCHMARK_CAPTURE(fill_table, xyt, SampleNeeds{true, false}, 10);
+BENCHMARK_CAPTURE(fill_table, xyt_8_samples, SampleNeeds{true, false}, 10, 8);
 BENCHMARK_CAPTURE(fill_table, xytuv, SampleNeeds{true, true}, 10);
 BENCHMARK_CAPTURE(fill_table, refocuses, SampleNeeds{true, true}, 20);
 
@@ -149,16 +152,19 @@ void composite(benchmark::State& state) {
 BENCHMARK(composite);
 
 void filter(benchmark::State& state) {
-    const Film film(bench_options());
-    const SampleTable table(bench_options(), pixel_camera());
+    Options options = bench_options();
+    options.samples = static_cast<int>(state.range(0));
+    const Film film(options);
+    const SampleTable table(options, pixel_camera());
     TileSamples samples;
     table.fill_tile({1, 1}, {}, samples);
     const SampleColors colors(samples.x.size());
     for (auto _ : state) benchmark::DoNotOptimize(film.filter_tile({1, 1}, samples, colors));
-    state.counters["samples"] = benchmark::Counter(
-        static_cast<double>(state.iterations()) * 256 * 64, benchmark::Counter::kIsRate);
+    state.counters["samples"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * 256 * options.samples,
+                           benchmark::Counter::kIsRate);
 }
-BENCHMARK(filter);
+BENCHMARK(filter)->Arg(4)->Arg(8)->Arg(16)->Arg(64);
 
 }  // namespace
 }  // namespace granita

@@ -35,10 +35,10 @@ FilterPieces::FilterPieces(const PixelFilter& filter)
     if (is_box) return;
     std::array<double, kNodes> nodes, values;
     for (int i = 0; i < kNodes; ++i)  // of Chebyshev
-        nodes[i] = 0.5 - 0.5 * std::cos(std::numbers::pi * (i + 0.5) / kNodes);
+        nodes[i] = -0.5 * std::cos(std::numbers::pi * (i + 0.5) / kNodes);
     for (int piece = 0; piece < kPieces; ++piece) {
         for (int i = 0; i < kNodes; ++i)
-            values[i] = filter.value(filter.radius() * (piece + nodes[i]) / kPieces);
+            values[i] = filter.value(filter.radius() * (piece + 0.5 + nodes[i]) / kPieces);
         const std::array<double, kNodes> c = interpolate(nodes, values);
         for (int k = 0; k < kNodes; ++k) coefficient[k][piece] = static_cast<float>(c[k]);
     }

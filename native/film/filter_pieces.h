@@ -14,7 +14,7 @@ struct FilterPieces {
 
     explicit FilterPieces(const PixelFilter& filter);
 
-    /// Of power k of the place inside the piece, [0, 1); pieces from kPieces on are 0.
+    /// Of power k of the place from the piece's middle, in pieces; those from kPieces on are 0.
     float coefficient[kDegree + 1][kTable] = {};
     float pieces_a_pixel;
     bool is_box;

@@ -66,10 +66,15 @@ HWY_INLINE V factor(const FilterPieces& f, V d) {
         const auto inside = hn::And(hn::Ge(d, hn::Neg(radius)), hn::Lt(d, radius));
         return hn::IfThenElseZero(inside, hn::Set(kTag, f.height));
     }
+    // Rounded to whole pieces by what leaves no digits behind the point: converting to integers and
+    // back costs three operations more.
+    const V whole = hn::Set(kTag, 0x1.8p23f);
     const V end = hn::Set(kTag, static_cast<float>(FilterPieces::kPieces));
-    const V at = hn::Min(hn::Abs(d) * hn::Set(kTag, f.pieces_a_pixel), end);
-    const IntV piece = hn::ConvertTo(kIntTag, at);
-    const V part = at - hn::ConvertTo(kTag, piece);
+    const V at = hn::Min(hn::Abs(d) * hn::Set(kTag, f.pieces_a_pixel) - hn::Set(kTag, 0.5f), end);
+    const V rounded = at + whole;
+    const IntV piece =
+        hn::And(hn::BitCast(kIntTag, rounded), hn::Set(kIntTag, FilterPieces::kTable - 1));
+    const V part = at - (rounded - whole);
     V value = look_up(f.coefficient[FilterPieces::kDegree], piece);
     for (int k = FilterPieces::kDegree - 1; k >= 0; --k)
         value = value * part + look_up(f.coefficient[k], piece);
@@ -80,24 +85,26 @@ HWY_INLINE V factor(const FilterPieces& f, V d) {
 HWY_INLINE void turn(const float* from, int stride, int samples, float (*out)[kTileSize]) {
     constexpr hn::FixedTag<float, 4> d;
     constexpr hn::Repartition<double, decltype(d)> pairs;
-    int s = 0;
-    for (; s + 4 <= samples; s += 4)
-        for (int p = 0; p < kTileSize; p += 4) {
-            const float* const at = from + p * stride + s;
+    const int fours = samples & ~3;
+    for (int p = 0; p < kTileSize; p += 4) {
+        const float* at = from + p * stride;
+        float* to = out[0] + p;
+        for (int s = 0; s < fours; s += 4, at += 4, to += 4 * kTileSize) {
             const auto a = hn::LoadU(d, at), b = hn::LoadU(d, at + stride);
             const auto c = hn::LoadU(d, at + 2 * stride), e = hn::LoadU(d, at + 3 * stride);
             const auto ab = hn::BitCast(pairs, hn::InterleaveLower(d, a, b));
             const auto ce = hn::BitCast(pairs, hn::InterleaveLower(d, c, e));
             const auto upper_ab = hn::BitCast(pairs, hn::InterleaveUpper(d, a, b));
             const auto upper_ce = hn::BitCast(pairs, hn::InterleaveUpper(d, c, e));
-            hn::Store(hn::BitCast(d, hn::InterleaveLower(pairs, ab, ce)), d, out[s] + p);
-            hn::Store(hn::BitCast(d, hn::InterleaveUpper(pairs, ab, ce)), d, out[s + 1] + p);
+            hn::Store(hn::BitCast(d, hn::InterleaveLower(pairs, ab, ce)), d, to);
+            hn::Store(hn::BitCast(d, hn::InterleaveUpper(pairs, ab, ce)), d, to + kTileSize);
             hn::Store(hn::BitCast(d, hn::InterleaveLower(pairs, upper_ab, upper_ce)), d,
-                      out[s + 2] + p);
+                      to + 2 * kTileSize);
             hn::Store(hn::BitCast(d, hn::InterleaveUpper(pairs, upper_ab, upper_ce)), d,
-                      out[s + 3] + p);
+                      to + 3 * kTileSize);
         }
-    for (; s < samples; ++s)
+    }
+    for (int s = fours; s < samples; ++s)
         for (int p = 0; p < kTileSize; ++p) out[s][p] = from[p * stride + s];
 }
 

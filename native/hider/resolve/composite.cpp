@@ -2,6 +2,7 @@
 #include "hider/resolve/composite.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
 #include <optional>
@@ -62,6 +63,7 @@ class TileComposite {
                   std::span<const Vec3f> background, const CompositeSettings& settings,
                   ChannelLayers* channels, SampleColors& colors)
         : m_store(store),
+          m_samples(samples),
           m_table(table),
           m_background(background),
           m_settings(settings),
@@ -96,12 +98,24 @@ class TileComposite {
         const bool rest = !grids.any() || grids.color(m_table.pool(), m_store.id, m_colors, m_done);
         if (!rest || !m_blurred) return;
         SurfaceGroups groups = Spares<SurfaceGroups>::take();
-        if (groups.sort(m_store.id, m_done)) m_surface.color_groups(groups, m_colors, m_done);
+        if (groups.sort(m_store.id, m_done)) {
+            groups.take_samples(m_samples);
+            m_surface.color_groups(groups, m_colors, m_done);
+        }
         Spares<SurfaceGroups>::give(std::move(groups));
     }
 
     /// False where a sample of the run still wants its colour.
     bool finish_run(std::uint32_t first) {
+        static constexpr std::array<std::uint8_t, kRun> kDone = [] {
+            std::array<std::uint8_t, kRun> all;
+            all.fill(1);
+            return all;
+        }();
+        if (std::equal(kDone.begin(), kDone.end(), m_done.data() + first)) {
+            set_depth(m_store, m_settings, first, m_colors);
+            return true;
+        }
         std::uint32_t done = 0, seen = 0;
         for (std::uint32_t i = 0; i < kRun; ++i) {
             done |= std::uint32_t{m_done[first + i]} << i;
@@ -236,6 +250,7 @@ class TileComposite {
     };
 
     const TileStore& m_store;
+    const TileSamples& m_samples;
     LayerTable& m_table;
     std::span<const Vec3f> m_background;
     const CompositeSettings& m_settings;

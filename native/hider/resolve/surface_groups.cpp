@@ -36,4 +36,17 @@ bool SurfaceGroups::sort(std::span<const SurfaceId> ids, std::span<const std::ui
     return true;
 }
 
+void SurfaceGroups::take_samples(const TileSamples& samples) {
+    for (std::vector<float> TileSamples::*values :
+         {&TileSamples::x, &TileSamples::y, &TileSamples::t, &TileSamples::u, &TileSamples::v,
+          &TileSamples::inverse_focus}) {
+        const std::vector<float>& from = samples.*values;
+        std::vector<float>& to = m_sorted.*values;
+        to.resize(from.empty() ? 0 : m_samples.size() + kPadding);
+        if (from.empty()) continue;
+        for (std::size_t i = 0; i < m_samples.size(); ++i)
+            to[i] = from[static_cast<std::size_t>(m_samples[i])];
+    }
+}
+
 }  // namespace granita

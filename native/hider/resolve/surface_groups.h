@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hider/micropolygon.h"
+#include "hider/samples/sample_table.h"
 
 namespace granita {
 
@@ -19,8 +20,16 @@ class SurfaceGroups {
     /// @param ids [samples]; kNoSurface belongs to no group.
     /// @param done [samples] 1 = belongs to none either.
     bool sort(std::span<const SurfaceId> ids, std::span<const std::uint8_t> done);
+    /// Lays the samples out as they are sorted, for all groups at once: gathered group by group,
+    /// vectors would be as empty as groups are small.
+    void take_samples(const TileSamples& samples);
     std::size_t size() const { return m_ids.size(); }
     SurfaceId id(std::size_t group) const { return m_ids[group]; }
+    /// Where the group's samples begin in sorted().
+    std::size_t begin(std::size_t group) const { return m_begin[group]; }
+    /// [samples of all groups], and kPadding of any.
+    const TileSamples& sorted() const { return m_sorted; }
+    static constexpr std::size_t kPadding = 16;
     /// In ascending order.
     std::span<const std::int32_t> samples(std::size_t group) const {
         return std::span(m_samples).subspan(m_begin[group], m_begin[group + 1] - m_begin[group]);
@@ -34,6 +43,7 @@ class SurfaceGroups {
     std::vector<SurfaceId> m_ids;        ///< [groups]
     std::vector<std::uint32_t> m_begin;  ///< [groups + 1] in m_samples
     std::vector<std::int32_t> m_samples;
+    TileSamples m_sorted;
 };
 
 }  // namespace granita

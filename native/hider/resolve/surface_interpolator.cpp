@@ -111,7 +111,11 @@ void SurfaceInterpolator::open_cache() {
 SurfaceRecord& SurfaceInterpolator::load_colors(SurfaceId id) {
     if (m_cache.empty()) open_cache();
     SurfaceRecord& record = m_cache[id % kCached];
-    if (record.id == id) return record;
+    if (record.id != id) fill_colors(id, record);
+    return record;
+}
+
+void SurfaceInterpolator::fill_colors(SurfaceId id, SurfaceRecord& record) const {
     const GridPool::Place place = m_pool.locate(id);
     const Grid& grid = *place.grid;
     const Grid::Corners c = grid.corners(place.micropolygon);
@@ -120,12 +124,11 @@ SurfaceRecord& SurfaceInterpolator::load_colors(SurfaceId id) {
     record.segments = grid.motion ? grid.knots - 1 : 0;
     record.corners = {&grid, {c.v0, c.v1, c.v2, c.v3}};
     record.colored = record.constant = !grid.holdout && !grid.radiance.empty();
-    if (!record.colored) return record;
+    if (!record.colored) return;
     for (int i = 0; i < 4; ++i) {
         record.radiance[i] = grid.radiance[record.corners.vertex[i]];
         record.constant = record.constant && record.radiance[i] == record.radiance[0];
     }
-    return record;
 }
 
 const SurfaceRecord& SurfaceInterpolator::load(SurfaceId id, float time) {
@@ -149,14 +152,12 @@ void SurfaceInterpolator::load_corners(SurfaceRecord& record, int segment) const
     }
 }
 
-void SurfaceInterpolator::load_knots(const SurfaceRecord& record,
-                                     std::span<const std::int32_t> samples) {
+void SurfaceInterpolator::load_knots(const SurfaceRecord& record, std::span<const float> times) {
     m_knots.first = m_knots.last = 0;
     if (record.segments > 1) {
-        const auto time = [&](std::int32_t s) { return m_samples.t[static_cast<std::size_t>(s)]; };
-        const auto [least, most] = std::ranges::minmax(samples, {}, time);
-        m_knots.first = segment_of(time(least), record.segments);
-        m_knots.last = segment_of(time(most), record.segments);
+        const auto [least, most] = std::ranges::minmax(times);
+        m_knots.first = segment_of(least, record.segments);
+        m_knots.last = segment_of(most, record.segments);
     }
     const Grid& grid = *record.corners.grid;
     const int count = m_knots.last - m_knots.first + (record.segments > 0 ? 2 : 1);
@@ -178,13 +179,17 @@ void SurfaceInterpolator::load_knots(const SurfaceRecord& record,
 
 void SurfaceInterpolator::color_groups(const SurfaceGroups& groups, SampleColors& colors,
                                        std::span<std::uint8_t> done) {
+    const TileSamples& sorted = groups.sorted();
+    SurfaceRecord surface;  // not of the cache: each is asked for once
     for (std::size_t g = 0; g < groups.size(); ++g) {
-        const SurfaceRecord& surface = load_colors(groups.id(g));
+        fill_colors(groups.id(g), surface);
         if (!surface.colored) continue;
         const std::span<const std::int32_t> samples = groups.samples(g);
         if (!surface.constant) {
-            load_knots(surface, samples);
-            color_group(*this, m_samples, surface, m_knots, samples, colors, done);
+            load_knots(surface, sorted.t.empty()
+                                    ? std::span<const float>()
+                                    : std::span(sorted.t).subspan(groups.begin(g), samples.size()));
+            color_group(*this, sorted, groups.begin(g), surface, m_knots, samples, colors, done);
             continue;
         }
         for (const std::int32_t sample : samples) {

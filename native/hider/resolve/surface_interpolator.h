@@ -112,7 +112,8 @@ class SurfaceInterpolator {
     };
     void open_cache();
     void load_corners(SurfaceRecord& record, int segment) const;
-    void load_knots(const SurfaceRecord& record, std::span<const std::int32_t> samples);
+    void fill_colors(SurfaceId id, SurfaceRecord& record) const;
+    void load_knots(const SurfaceRecord& record, std::span<const float> times);
     Seen see(std::uint32_t sample, SurfaceId id);
     void weigh(const Seen& seen, bool& second, float weight[3]) const;
 

@@ -133,8 +133,9 @@ struct KnotLanes {
         : knots(surface_knots), moves(surface.segments > 0), local(set(0.0f)) {
         if (!moves) return;
         const V scaled = time * set(static_cast<float>(surface.segments));
-        const auto segment =
-            hn::Min(hn::ConvertTo(kIntTag, scaled), hn::Set(kIntTag, surface.segments - 1));
+        // Lanes of another group must not read beyond the knots.
+        const auto segment = hn::Clamp(hn::ConvertTo(kIntTag, scaled),
+                                       hn::Set(kIntTag, knots.first), hn::Set(kIntTag, knots.last));
         local = scaled - hn::ConvertTo(kTag, segment);
         place = hn::ShiftLeft<2>(hn::Sub(segment, hn::Set(kIntTag, knots.first)));
     }
@@ -175,7 +176,7 @@ struct KnotLanes {
 };
 
 template <bool kLens>
-void color(const SurfaceInterpolator& surfaces, const TileSamples& samples,
+void color(const SurfaceInterpolator& surfaces, const TileSamples& sorted, std::size_t begin,
            const SurfaceRecord& surface, const SurfaceKnots& knots,
            std::span<const std::int32_t> group, SampleColors& colors,
            std::span<std::uint8_t> done) {
@@ -183,18 +184,16 @@ void color(const SurfaceInterpolator& surfaces, const TileSamples& samples,
     const auto width = static_cast<std::size_t>(lane_count());
     for (std::size_t first = 0; first < group.size(); first += width) {
         const std::size_t count = std::min(width, group.size() - first);
-        alignas(64) std::int32_t index[kPacket];
-        for (std::size_t i = 0; i < width; ++i) index[i] = group[first + std::min(i, count - 1)];
-        const auto at = hn::Load(kIntTag, index);
-        const auto gather = [&](const std::vector<float>& values)
-                                HWY_ATTR { return hn::GatherIndex(kTag, values.data(), at); };
-        Samples sample{gather(samples.x), gather(samples.y), zero, zero, zero, zero};
-        if (surface.segments > 0) sample.t = gather(samples.t);
+        const std::size_t at = begin + first;
+        const auto load = [&](const std::vector<float>& values)
+                              HWY_ATTR { return hn::LoadU(kTag, values.data() + at); };
+        Samples sample{load(sorted.x), load(sorted.y), zero, zero, zero, zero};
+        if (surface.segments > 0) sample.t = load(sorted.t);
         if constexpr (kLens) {
-            sample.u = gather(samples.u) * set(surfaces.lens().x);
-            sample.v = gather(samples.v) * set(surfaces.lens().y);
-            sample.inverse_focus = samples.inverse_focus.empty() ? set(surfaces.inverse_focus())
-                                                                 : gather(samples.inverse_focus);
+            sample.u = load(sorted.u) * set(surfaces.lens().x);
+            sample.v = load(sorted.v) * set(surfaces.lens().y);
+            sample.inverse_focus = sorted.inverse_focus.empty() ? set(surfaces.inverse_focus())
+                                                                : load(sorted.inverse_focus);
         }
         const KnotLanes lanes(surface, knots, sample.t);
         const PairEdges e = edges_of(offset_from<kLens>(lanes.corner<kLens>(0), sample),
@@ -207,7 +206,7 @@ void color(const SurfaceInterpolator& surfaces, const TileSamples& samples,
         for (int channel = 0; channel < 3; ++channel)
             hn::Store(color_of(surface, channel, w, a.strict) + zero, kTag, out[channel]);
         for_each_bit(bits_of(is_clean(a, b)) & ((1u << count) - 1u), [&](int lane) {
-            const auto s = static_cast<std::size_t>(index[lane]);
+            const auto s = static_cast<std::size_t>(group[first + static_cast<std::size_t>(lane)]);
             colors.red[s] = out[0][lane];
             colors.green[s] = out[1][lane];
             colors.blue[s] = out[2][lane];
@@ -217,12 +216,12 @@ void color(const SurfaceInterpolator& surfaces, const TileSamples& samples,
     }
 }
 
-void color_any(const SurfaceInterpolator& surfaces, const TileSamples& samples,
+void color_any(const SurfaceInterpolator& surfaces, const TileSamples& sorted, std::size_t begin,
                const SurfaceRecord& surface, const SurfaceKnots& knots,
                std::span<const std::int32_t> group, SampleColors& colors,
                std::span<std::uint8_t> done) {
-    samples.u.empty() ? color<false>(surfaces, samples, surface, knots, group, colors, done)
-                      : color<true>(surfaces, samples, surface, knots, group, colors, done);
+    sorted.u.empty() ? color<false>(surfaces, sorted, begin, surface, knots, group, colors, done)
+                     : color<true>(surfaces, sorted, begin, surface, knots, group, colors, done);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -240,11 +239,11 @@ void locate_lanes(SurfaceInterpolator& surfaces, const TileSamples& samples, std
     HWY_DYNAMIC_DISPATCH(locate_any)(surfaces, samples, first, ids, out);
 }
 
-void color_group(const SurfaceInterpolator& surfaces, const TileSamples& samples,
+void color_group(const SurfaceInterpolator& surfaces, const TileSamples& sorted, std::size_t begin,
                  const SurfaceRecord& surface, const SurfaceKnots& knots,
                  std::span<const std::int32_t> group, SampleColors& colors,
                  std::span<std::uint8_t> done) {
-    HWY_DYNAMIC_DISPATCH(color_any)(surfaces, samples, surface, knots, group, colors, done);
+    HWY_DYNAMIC_DISPATCH(color_any)(surfaces, sorted, begin, surface, knots, group, colors, done);
 }
 
 }  // namespace granita

@@ -18,11 +18,12 @@ void locate_lanes(SurfaceInterpolator& surfaces, const TileSamples& samples, std
 
 /// The same samples of all that see one coloured micropolygon, wherever in the tile they lie; each
 /// lane has its own segment of the motion (SurfaceInterpolator::color_groups).
-/// @param samples with t where the surface moves.
+/// @param sorted SurfaceGroups::sorted(), with t where the surface moves; the group's from `begin`
+/// on.
 /// @param knots of all segments that the group's times lie in.
-/// @param group indices in `samples`, ascending.
+/// @param group their indices in the tile.
 /// @param colors,done [samples of the tile].
-void color_group(const SurfaceInterpolator& surfaces, const TileSamples& samples,
+void color_group(const SurfaceInterpolator& surfaces, const TileSamples& sorted, std::size_t begin,
                  const SurfaceRecord& surface, const SurfaceKnots& knots,
                  std::span<const std::int32_t> group, SampleColors& colors,
                  std::span<std::uint8_t> done);

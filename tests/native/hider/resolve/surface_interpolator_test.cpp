@@ -79,6 +79,7 @@ void expect_runs_equal_singles(const Camera& camera, const Grid& grid, bool on_l
     SampleColors colors(ids.size());
     std::vector<std::uint8_t> done(ids.size(), 0);
     ASSERT_TRUE(groups.sort(ids, done));
+    groups.take_samples(samples);
     many.color_groups(groups, colors, done);
     for (std::uint32_t first = 0; first < ids.size(); first += SurfaceRun::kCount) {
         SurfaceRun run;
