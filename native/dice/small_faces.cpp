@@ -96,45 +96,49 @@ int most_levels(const OpenedPolygons& mesh) {
 /// meet the frame.
 std::vector<Levels> find_levels(const OpenedPolygons& mesh, ScreenPoints& screen) {
     const auto& patches = mesh.shared().patches();
-    std::vector<Levels> levels(patches.size());
     // A thousandth less than EdgeRate's own limit: this is single precision.
     const float longest = static_cast<float>(0.999 * M_SQRT2 * mesh.rate().rate());
     const int most = most_levels(mesh);
+    float limit2[LatticeStencil::kMostLevels + 1];  // of each level
+    for (int i = 0; i <= most; ++i) limit2[i] = std::ldexp(longest * longest, 2 * i);
+    std::vector<Vec2f> length2(patches.size(), Vec2f(0.0f));  // of the longer side along u, along v
+    const auto is_small = [&](const Vec2f& l) { return std::max(l.x, l.y) <= limit2[most]; };
     std::size_t left = patches.size();
     for (int k = 0; k < mesh.knot_count() && left > 0; ++k) {
         screen.project(mesh.points(k));
         for (std::size_t p = 0; p < patches.size(); ++p) {
-            if (levels[p].u > most) continue;
+            if (!is_small(length2[p])) continue;
             const Corners c = corners_of(mesh, patches[p]);
+            float side2[4] = {};
             for (int i = 0; i < c.count; ++i) {
-                const Vec2f side = screen[c.v[(i + 1) % c.count]] - screen[c.v[i]];
-                const float length2 = glm::dot(side, side);
-                std::uint8_t& along = i % 2 == 0 ? levels[p].u : levels[p].v;
-                const auto fits = [&] {
-                    const float limit = longest * static_cast<float>(1 << along);
-                    return length2 <= limit * limit;
-                };
-                // Written so that what is not a number is not small.
-                while (along <= most && !fits()) ++along;
-                if (along <= most) continue;
-                levels[p] = kLarge;
-                --left;
-                break;
+                const Vec2f side = screen[c.v[i + 1 < c.count ? i + 1 : 0]] - screen[c.v[i]];
+                side2[i] = glm::dot(side, side);
             }
+            length2[p] = glm::max(
+                length2[p], Vec2f(std::max(side2[0], side2[2]), std::max(side2[1], side2[3])));
+            // What is not a number is not small.
+            if (!(side2[0] + side2[1] + side2[2] + side2[3] < INFINITY))
+                length2[p] = Vec2f(INFINITY);
+            left -= is_small(length2[p]) ? 0 : 1;
         }
     }
-    for (std::size_t p = 0; p < patches.size(); ++p) {
+    std::vector<Levels> levels(patches.size(), kLarge);
+    for (std::size_t p = 0; p < patches.size() && left > 0; ++p) {
+        if (!is_small(length2[p])) continue;
         const Corners c = corners_of(mesh, patches[p]);
-        for (int i = 0; i < c.count && levels[p].u <= most; ++i)
-            if (!screen.met_frame(c.v[i]) && !screen.met_frame(c.v[(i + 1) % c.count]))
-                levels[p] = kLarge;
+        bool met = true;
+        for (int i = 0; i < c.count; ++i)
+            met &= screen.met_frame(c.v[i]) || screen.met_frame(c.v[i + 1 < c.count ? i + 1 : 0]);
+        if (!met) continue;
+        levels[p] = {};
+        while (length2[p].x > limit2[levels[p].u]) ++levels[p].u;
+        while (length2[p].y > limit2[levels[p].v]) ++levels[p].v;
     }
     return levels;
 }
 
 /// A small face among its neighbours.
 struct Member {
-    std::uint64_t code;  ///< by material, side seen, size and place
     std::uint32_t patch;
     Vec3f place;  ///< x, y, depth in pixels
     std::int32_t material;
@@ -186,25 +190,30 @@ SmallFaces::SmallFaces(const OpenedPolygons& mesh) {
         lowest = glm::min(lowest, members.back().place);
     }
     if (members.empty()) return;
-    for (Member& m : members) {
+    // By material, side seen, size and place; numbers of members are a third of what would be moved
+    // with them.
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+    order.reserve(members.size());
+    for (const Member& m : members) {
         const auto group = (static_cast<std::uint64_t>(m.material + 1) << 2 | (m.back ? 2 : 0) |
                             (m.levels.whole() ? 0 : 1)) &
                            0x3ff;
-        m.code = group << 54 | morton_code((m.place - lowest) * kStepsAPixel, 18);
+        order.emplace_back(group << 54 | morton_code((m.place - lowest) * kStepsAPixel, 18),
+                           order.size());
     }
-    std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
-        return std::pair(a.code, a.patch) < std::pair(b.code, b.patch);
-    });
+    std::sort(order.begin(), order.end());
     const int most = std::max(mesh.view().scene->options.grid_size, 1);
     m_order.reserve(members.size());
     Bounds3f region;
     int micropolygons = 0;  // of the last batch
-    for (const Member& m : members) {
+    const Member* last = nullptr;
+    for (const auto& [code, number] : order) {
+        const Member& m = members[number];
         Bounds3f wider = region;
         wider.add(m.place);
         const Vec3f size = wider.hi - wider.lo;
         micropolygons += m.levels.micropolygons();
-        if (m_order.empty() || micropolygons > most || !m.goes_with(*(&m - 1)) ||
+        if (!last || micropolygons > most || !m.goes_with(*last) ||
             std::max({size.x, size.y, size.z}) > kRegion) {
             m_batches.push_back(static_cast<std::uint32_t>(m_order.size()));
             m_whole.push_back(m.levels.whole());
@@ -213,6 +222,7 @@ SmallFaces::SmallFaces(const OpenedPolygons& mesh) {
             wider.add(m.place);
         }
         region = wider;
+        last = &m;
         m_order.push_back(m.patch);
     }
     m_batches.push_back(static_cast<std::uint32_t>(m_order.size()));

@@ -116,19 +116,21 @@ void SharedGeometry::add_polygon(std::uint32_t face, std::size_t& crossed) {
     const std::uint32_t n = static_cast<std::uint32_t>(m_data->face_sizes[face]);
     BasePatch patch;
     patch.face = face;
-    std::vector<Vec3f> polygon;
-    if (n > 3) {
-        polygon.reserve(n);
-        for (std::uint32_t i = 0; i < n; ++i)
-            polygon.push_back(
-                m_frame_points[static_cast<std::size_t>(m_data->corner_verts[first + i])]);
-    }
-    if (n == 3 || (n == 4 && is_convex_quad(polygon))) {
+    const auto point = [&](std::uint32_t i) {
+        return m_frame_points[static_cast<std::size_t>(m_data->corner_verts[first + i])];
+    };
+    const auto is_convex = [&] {
+        const Vec3f quad[4] = {point(0), point(1), point(2), point(3)};
+        return is_convex_quad(quad);
+    };
+    if (n == 3 || (n == 4 && is_convex())) {
         patch.kind = n == 3 ? PatchKind::Triangle : PatchKind::Quad;
         for (std::uint32_t i = 0; i < 4; ++i) patch.corner[i] = first + std::min(i, n - 1);
         m_patches.push_back(patch);
         return;
     }
+    std::vector<Vec3f> polygon;
+    for (std::uint32_t i = 0; i < n; ++i) polygon.push_back(point(i));
     const Triangulation triangulation = triangulate(polygon);
     if (!triangulation.simple) ++crossed;
     patch.kind = PatchKind::Triangle;
