@@ -26,7 +26,7 @@ class Changes:
 
 
 class Plain:
-    """Which objects of a visit stand for themselves, and nothing else stands for them."""
+    """Which objects of a visit stand for themselves, with their hair, and nothing else stands for them."""
 
     def __init__(self, scan, view_layer):
         self.names = object_names()
@@ -40,13 +40,15 @@ class Plain:
         first = np.full(len(scan.kinds), -1)
         first[scan.kind[::-1]] = np.arange(len(scan.kind))[::-1]
         many = np.bincount(scan.kind, minlength=len(scan.kinds)) != 1
-        self.thing, self.entangled = {}, set()
+        self._things, self.entangled = {}, set()
         for index, kind in enumerate(scan.kinds):
             if kind.parent_address:
                 self.entangled.add(kind.parent_address)
-            if many[index] or scan.is_instance[first[index]] or kind.address in self.thing:
+            things = self._things.setdefault(kind.address, [])
+            another = len(things) > 0 and kind.type != "HAIR"
+            if many[index] or scan.is_instance[first[index]] or another:
                 self.entangled.add(kind.address)
-            self.thing[kind.address] = int(first[index])
+            things.append(int(first[index]))
 
     def gone(self, view_layer):
         """[(name, what was done to it)] of what is not there any more, each once: handlers of other add-ons
@@ -78,28 +80,26 @@ class Plain:
                 return None
             if not isinstance(thing, Object):
                 continue  # an object that uses it is named as well
-            index = self.index_of(thing)
-            if index is None:
+            things = self.things_of(thing)
+            if things is None:
                 return None
-            if index < 0:
-                continue
-            if moved:
-                found.moved.append(index)
-                found.matrices.append(from_matrix(thing.matrix_world))
+            if moved and things:
+                found.moved += things
+                found.matrices += [from_matrix(thing.matrix_world)] * len(things)
             if formed:
-                found.objects[index] = thing
+                found.objects |= dict.fromkeys(things, thing)
         return found
 
-    def index_of(self, thing):
-        """Where an evaluated Object is in the visit; -1 where it is nothing to see, None where only a walk
-        can tell."""
+    def things_of(self, thing):
+        """Where an evaluated Object and its hair are in the visit, indices; none where there is nothing to see,
+        None where only a walk can tell."""
         pointer = thing.original.as_pointer()
         if pointer in self.entangled or thing.is_instancer:
             return None
-        index = self.thing.get(pointer)
-        if index is None:
-            return -1 if thing.type in _NEVER_SEEN else None
-        return None if thing.hide_render else index
+        things = self._things.get(pointer)
+        if things is None:
+            return [] if thing.type in _NEVER_SEEN else None
+        return None if thing.hide_render else things
 
 
 class Touched:

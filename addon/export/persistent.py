@@ -114,11 +114,12 @@ def _renew(placed, touched, depsgraph, report, check_cancel):
         if not (formed or address in touched.moved or address in touched.otherwise):
             continue
         thing = original.evaluated_get(depsgraph)
-        index = placed.plain.index_of(thing)
-        if index == -1:
+        things = placed.plain.things_of(thing)
+        if things == []:
             continue
-        if index is None or address in touched.otherwise:
+        if things is None or len(things) > 1 or address in touched.otherwise:
             return False
+        (index,) = things
         kind = _renew_kind(placed, index, thing, depsgraph)
         if kind is None:
             return False

@@ -51,17 +51,16 @@ class Strands(Elements):
         steps = step_count(system.settings, self.mode)
         if (self.sizes != steps).any() or last - first != len(self.sizes):
             return False
-        hairs, keys, at_frame = self._asked
-        asked = zip((first + hairs).tolist(), keys.tolist(), strict=True)
-        now = _world(system, thing, asked, len(hairs))
+        pairs, at_frame = self._asked
+        now = _world(system, thing, first, pairs, len(pairs))
         place = from_matrix(thing.matrix_world)
         here = at_frame @ place[:3, :3].T
         off = np.linalg.norm(now - place[:3, 3] - here, axis=1)
         off[~now.any(axis=1)] = 0.0  # what ends early
         off = off.reshape(-1, 2).max(axis=1)
-        size = np.abs(here).max()
         # Blender's own coordinates are of the world, in single precision.
         rounding = 2.0**-20 * np.abs(now).max()
+        size = np.abs(here).max()
         # Written so that what is not a number does not go along.
         return (
             np.count_nonzero(~(off <= _NOISE * size + rounding)) <= _NOISY * len(off)
@@ -70,13 +69,14 @@ class Strands(Elements):
 
     @cached_property
     def _asked(self):
-        """What is asked: (int [2 n] hairs, int [2 n] their points, float32 [2 n, 3] where these are at the frame)."""
+        """What is asked: ([(hair, its point)], float32 [2 n, 3] where these are at the frame)."""
         count, steps = len(self.sizes), int(self.sizes[0])
         hairs = np.arange(0, count, max(1, count // _ASKED))
         others = np.arange(len(hairs)) % (steps - 1)
         points = np.stack([np.full(len(hairs), steps - 1), others], axis=1).ravel()
         hairs = np.repeat(hairs, 2)
-        return hairs, points, self.points.reshape(-1, steps, 3)[hairs, points]
+        at_frame = self.points.reshape(-1, steps, 3)[hairs, points]
+        return list(zip(hairs.tolist(), points.tolist())), at_frame
 
 
 def particle_range(system, mode):
@@ -102,8 +102,8 @@ def read_strands(thing, _data, name, mode):
         return np.zeros((0, 3), dtype=np.float32), np.zeros(0, dtype=np.int32)
     first, last = particle_range(system, mode)
     steps = step_count(system.settings, mode)
-    every = product(range(first, last), range(steps))
-    strands = _world(system, thing, every, (last - first) * steps).reshape(-1, steps, 3)
+    every = product(range(last - first), range(steps))
+    strands = _world(system, thing, first, every, (last - first) * steps).reshape(-1, steps, 3)
     # What ends early goes on in the world's origin: it stays where it was.
     for step in range(1, steps):
         ended = (strands[:, step] == 0.0).all(axis=1)
@@ -112,10 +112,10 @@ def read_strands(thing, _data, name, mode):
     return points, np.full(last - first, steps, dtype=np.int32)
 
 
-def _world(system, thing, points, count):
-    """float64 [count, 3] of pairs (particle, step)."""
+def _world(system, thing, first, points, count):
+    """float64 [count, 3] of pairs (hair, step), the first hair being that particle."""
     co_hair = system.co_hair
-    found = (co_hair(thing, particle_no=particle, step=step) for particle, step in points)
+    found = (co_hair(thing, particle_no=first + hair, step=step) for hair, step in points)
     return flat_floats(found, 3 * count).reshape(-1, 3)
 
 

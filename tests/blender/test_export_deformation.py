@@ -289,6 +289,16 @@ def test_hair_goes_along_with_its_emitter(moving, children):
     assert len(np.unique(export_probe.knots_of(snapshot, thing.name), axis=0)) > 2
 
 
+def test_hair_that_is_rendered_at_some_times_alone_keeps_its_shape(moving):
+    """A visibility belongs to the frame."""
+    thing = furry(moving)
+    drive(thing, "rotation_euler", "frame", 1)
+    drive(thing.modifiers["Hair"], "show_render", "frame < 10.1")
+    snapshot, _, _ = export_probe.through_engine(moving)
+    (points,) = hair_points(snapshot)
+    assert len(points) == 60 * 9
+
+
 def test_hair_that_shrinks_deforms(moving):
     thing = furry(moving, child_type="SIMPLE", rendered_child_count=5)
     drive(thing, "rotation_euler", "frame / 10", 1)

@@ -45,12 +45,15 @@ def test_straight_movers_take_four_steps_of_time_and_the_way_back(scene):
     assert times == [9.75, 9.875, 10.125, 10.25, 10.0]
 
 
-def test_hair_that_goes_along_is_asked_for_two_points_a_hair(scene, monkeypatch):
+def test_hair_that_goes_along_is_asked_for_two_points_a_hair_and_nothing_is_walked(
+    scene, monkeypatch
+):
+    read = count_calls(monkeypatch, walks=(steps, "visit"))
     asked = []
 
-    def note(system, thing, points, count):
-        asked.append(count)
-        return in_world(system, thing, points, count)
+    def note(*arguments):
+        asked.append(arguments[-1])
+        return in_world(*arguments)
 
     in_world = strands._world
     monkeypatch.setattr(strands, "_world", note)
@@ -58,3 +61,4 @@ def test_hair_that_goes_along_is_asked_for_two_points_a_hair(scene, monkeypatch)
     drive(furry(scene, count=60), "location", "frame", 0)
     export_probe.through_engine(scene, motion_steps=17)
     assert asked == [60 * 9, *[60 * 2] * 4]
+    assert read == {"walks": 0}
