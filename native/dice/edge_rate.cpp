@@ -2,6 +2,7 @@
 #include "dice/edge_rate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -87,31 +88,36 @@ Vec2d EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b) const {
     return {x[1] - x[0], y[1] - y[0]};
 }
 
+bool EdgeRate::add_motion(Blur& blur, const Vec3f& first, const Vec3f& last) const {
+    if (!(m_motion_factor > 0.0)) return true;
+    Vec2d place[2];
+    for (int i = 0; i < 2; ++i) {
+        const Vec3d p(i == 0 ? first : last);
+        if (m_projection.perspective && !(p.z >= m_near)) return false;
+        place[i] = Vec2d(m_projection.scale) * Vec2d(p) / (m_projection.perspective ? p.z : 1.0);
+    }
+    const double way = glm::distance(place[0], place[1]);
+    if (way * m_motion_factor > kBlurSteps) {
+        blur.direction = (place[1] - place[0]) / way;
+        blur.along = way * m_motion_factor / kBlurSteps;
+    }
+    return true;
+}
+
+template <class Depths>
+void EdgeRate::add_lens(Blur& blur, int knots, Depths depths) const {
+    if (!m_projection.has_lens() || !(m_focus_factor > 0.0)) return;
+    LeastCircle circle(m_projection);
+    for (int k = 0; k < knots; ++k)
+        for (const float z : depths(k)) circle.add(z);
+    blur.all = std::max(1.0, circle.diameter() * m_focus_factor / kBlurSteps);
+}
+
 EdgeRate::Blur EdgeRate::blur(const Vec3f* start, const Vec3f* middle, const Vec3f* end,
                               int knots) const {
     Blur blur;
-    const bool moves = knots > 1 && m_motion_factor > 0.0;
-    const bool defocused = m_projection.has_lens() && m_focus_factor > 0.0;
-    if (!moves && !defocused) return blur;
-    const Vec2d scale = m_projection.scale;
-    if (moves) {
-        Vec2d place[2];
-        for (int i = 0; i < 2; ++i) {
-            const Vec3d p(middle[i == 0 ? 0 : knots - 1]);
-            if (m_projection.perspective && !(p.z >= m_near)) return blur;
-            place[i] = scale * Vec2d(p) / (m_projection.perspective ? p.z : 1.0);
-        }
-        const double way = glm::distance(place[0], place[1]);
-        if (way * m_motion_factor > kBlurSteps) {
-            blur.direction = (place[1] - place[0]) / way;
-            blur.along = way * m_motion_factor / kBlurSteps;
-        }
-    }
-    if (!defocused) return blur;
-    LeastCircle circle(m_projection);
-    for (int k = 0; k < knots; ++k)
-        for (const Vec3f& p : {start[k], middle[k], end[k]}) circle.add(p.z);
-    blur.all = std::max(1.0, circle.diameter() * m_focus_factor / kBlurSteps);
+    if (knots > 1 && !add_motion(blur, middle[0], middle[knots - 1])) return blur;
+    add_lens(blur, knots, [&](int k) { return std::array{start[k].z, middle[k].z, end[k].z}; });
     return blur;
 }
 
@@ -179,9 +185,11 @@ int EdgeRate::sure_levels(const Vec3f* start, const Vec3f* end, int knots) const
     }
     if (exceeds(std::sqrt(longest2), M_SQRT2 * m_rate) == 0) return 0;
     if (!equal) return kUnsure;
-    Vec3f middle[kMaxKnots] = {0.5f * (start[0] + end[0])};
-    for (int k = 1; k < knots; ++k) middle[k] = 0.5f * (start[k] + end[k]);
-    const Blur blurred = blur(start, middle, end, knots);
+    Blur blurred;
+    const int last = knots - 1;
+    if (last > 0) add_motion(blurred, 0.5f * (start[0] + end[0]), 0.5f * (start[last] + end[last]));
+    // A circle is smallest at an end, or both ends lie on either side of the sharp plane.
+    add_lens(blurred, knots, [&](int k) { return std::array{start[k].z, end[k].z}; });
     double counted = 0.0;
     for (int k = 0; k < knots; ++k)
         counted = std::max(counted, blurred.length(Vec2d(piece(start[k], end[k]))));

@@ -83,6 +83,11 @@ class EdgeRate {
         }
     };
     Blur blur(const Vec3f* start, const Vec3f* middle, const Vec3f* end, int knots) const;
+    /// What moves from one place to another; false where it comes through the near plane.
+    bool add_motion(Blur& blur, const Vec3f& first, const Vec3f& last) const;
+    /// `depths(knot)`: camera-space z of its places.
+    template <class Depths>
+    void add_lens(Blur& blur, int knots, Depths depths) const;
     /// Adds the piece's raster box and returns it as seen in the raster at one knot.
     Vec2d add(Swept& swept, const Vec3f& a, const Vec3f& b) const;
     /// As seen in the raster, before the near plane.

@@ -7,6 +7,7 @@
 #include "dice/grid_attributes.h"
 #include "dice/lattice_stencil.h"
 #include "dice/patch.h"
+#include "dice/raster_bound.h"
 
 namespace granita {
 namespace {
@@ -141,7 +142,8 @@ std::unique_ptr<Grid> PatchBatch::dice() const {
     place(*grid, parts);
     // All have the light samples of a whole pixel: by the area of a batch, those of its larger
     // faces were too few, and what light grazes had specks.
-    finish_motion(*grid, m_mesh->view().projection);
+    find_motion(*grid);
+    grid->bounds = corner_bounds();
     count_spared(*grid, parts);
     grid->shading_state = [batch = *this, parts = std::move(parts)](Grid& of) {
         batch.fill_shading_state(of, parts);
@@ -170,6 +172,20 @@ void PatchBatch::place(Grid& grid, const Parts& parts) const {
         };
         for_each_part(grid, parts, place_lattice, place_piece);
     }
+}
+
+/// All vertices of a face lie between its corners, in the raster too, from each point of the lens.
+RasterBounds PatchBatch::corner_bounds() const {
+    std::vector<Vec3f> corners;
+    corners.reserve(4 * face_count() * static_cast<std::size_t>(m_mesh->knot_count()));
+    for (int k = 0; k < m_mesh->knot_count(); ++k) {
+        const std::span<const Vec3f> points = m_mesh->points(k);
+        for (std::size_t i = 0; i < face_count(); ++i)
+            for (const std::uint32_t corner : patch(i).corner)
+                corners.push_back(
+                    points[static_cast<std::size_t>(m_mesh->data().corner_verts[corner])]);
+    }
+    return raster_bound(m_mesh->view().projection, corners);
 }
 
 /// Of the lattices; pieces have counted themselves.

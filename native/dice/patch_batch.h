@@ -34,6 +34,7 @@ class PatchBatch final : public FaceBatch {
     int levels(std::uint32_t a, std::uint32_t b, const BasePatch& face) const;
     void dice_face(std::uint32_t face, std::vector<Piece>& pieces) const;
     void place(Grid& grid, const Parts& parts) const;
+    RasterBounds corner_bounds() const;
     void count_spared(const Grid& grid, const Parts& parts) const;
     void fill_shading_state(Grid& grid, const Parts& parts) const;
     void add_points(const Lattice& lattice, Grid& grid) const;
