@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whole frames, seconds against error: three kinds of sampling and Cycles, on the scenes of scenes.py.
+"""Whole frames, seconds against error: three kinds of sampling, with few samples at coarser dicing too, and Cycles, on
+the scenes of scenes.py.
 
     ./dev bench speed_against_error [--runs 1] [--scenes spheres lens lit feathers grass] [--most SAMPLES] [--clock wall]
 
@@ -25,33 +26,40 @@ SCENES = ("spheres", "lens", "lit", "feathers", "grass")
 TARGETS = (0.01, 0.003)
 STILLS = "grass, stills"  # the same pictures against another reference
 REFERENCE = {"spheres": 2048, "lens": 2048, "lit": 1536, "feathers": 2048, "grass": 2048}
+# Samples of each kind by dicing rate.
 SAMPLES = {
-    "INDEPENDENT": (4, 8, 16, 64, 256),
-    "INTERLEAVED": (16, 64, 256),
-    "REGULAR": (1, 4),  # times the passes that motion and lens ask for
-    "CYCLES": (16, 64, 256),
+    "INDEPENDENT": {1: (4, 8, 16, 64, 256), 2: (4, 8, 16), 4: (8, 16, 32)},
+    "INTERLEAVED": {1: (16, 64, 256)},
+    "REGULAR": {1: (1, 4)},  # times the passes that motion and lens ask for
+    "CYCLES": {1: (16, 64, 256)},
 }
+ALL_CURVES = [(kind, rate) for kind, rates in SAMPLES.items() for rate in rates]
 # Where light is sampled its samples grow with the others.
-LIGHT_SAMPLES = {1: 4, 4: 4, 8: 4, 16: 4, 64: 8, 256: 16}
+LIGHT_SAMPLES = {1: 4, 4: 4, 8: 4, 16: 4, 32: 4, 64: 8, 256: 16}
 
 
 def settings(most):
-    result = []
-    for kind, counts in SAMPLES.items():
-        for samples in (n for n in counts if n <= most):
-            if kind == "CYCLES":
-                result.append({"engine": "CYCLES", "samples": samples})
-            else:
-                light = LIGHT_SAMPLES[samples]
-                result.append(
-                    {
-                        "engine": "GRANITA",
-                        "samples": samples,
-                        "sampling": kind,
-                        "light_samples": light,
-                    }
-                )
-    return result
+    """Jobs of render_frames.py, each with its (kind, dicing rate, samples)."""
+    frames_of = [
+        (kind, rate, samples)
+        for kind, rates in SAMPLES.items()
+        for rate, counts in rates.items()
+        for samples in counts
+        if samples <= most
+    ]
+    return [(frame, setting(*frame)) for frame in frames_of]
+
+
+def setting(kind, rate, samples):
+    if kind == "CYCLES":
+        return {"engine": "CYCLES", "samples": samples}
+    return {
+        "engine": "GRANITA",
+        "samples": samples,
+        "sampling": kind,
+        "dicing_rate": rate,
+        "light_samples": LIGHT_SAMPLES[samples],
+    }
 
 
 def seconds_to(target, points):
@@ -80,8 +88,26 @@ def nanoseconds(rows):
     return (last["seconds"] - first["seconds"]) / samples * 1e9
 
 
+def soonest(target, rows):
+    """(seconds until an error, mark, dicing rate) at the dicing rate that gets there first."""
+    found = []
+    for rate, of in by_rate(rows).items():
+        seconds, mark = seconds_to(target, [(r["seconds"], r["rmse"]) for r in of])
+        # What is extended from few samples at a coarse rate was not seen.
+        if seconds is not None and (rate == 1 or mark != "~"):
+            found.append((seconds, mark, rate))
+    return min(found, default=(None, "", 1))
+
+
+def by_rate(rows):
+    rates = {}
+    for row in rows:
+        rates.setdefault(row["rate"], []).append(row)
+    return rates
+
+
 def identity(row):
-    return row["scene"], row["kind"], row["samples"]
+    return row["scene"], row["kind"], row["rate"], row["samples"]
 
 
 def measure(scene, options):
@@ -90,17 +116,16 @@ def measure(scene, options):
     if STILLS.startswith(scene):
         references[STILLS] = frames.still_reference(scene, REFERENCE[scene], SCENES)
     job = {"module": "scenes", "scene": scene, "runs": options.runs}
-    job["settings"] = settings(options.most)
-    rendered = list(zip(job["settings"], frames.render(job, options.clock), strict=True))
+    kinds, job["settings"] = zip(*settings(options.most), strict=True)
+    rendered = list(zip(kinds, frames.render(job, options.clock), strict=True))
     measured = []
     for name, (truth, own_error) in references.items():
         height, width = truth.shape[:2]
         print(f"\n### {name}, {width} x {height}\n\nThe reference's own error: {own_error:.5f}.\n")
         rows = []
-        for setting, (image, seconds) in rendered:
-            kind = setting.get("sampling", "CYCLES")
-            row = {"scene": name, "kind": kind, "samples": setting["samples"], "seconds": seconds}
-            row["pixels"] = width * height
+        for (kind, rate, samples), (image, seconds) in rendered:
+            row = {"scene": name, "kind": kind, "rate": rate, "samples": samples}
+            row |= {"seconds": seconds, "pixels": width * height}
             rows.append({**row, **frames.errors(image, truth)})
         print_tables(rows)
         measured += rows
@@ -108,24 +133,24 @@ def measure(scene, options):
 
 
 def print_tables(rows):
-    print("| sampling | samples | seconds | RMSE | 99.9 % | FLIP |")
-    print("|---|---|---|---|---|---|")
+    print("| sampling | dicing rate | samples | seconds | RMSE | 99.9 % | FLIP |")
+    print("|---|---|---|---|---|---|---|")
     for r in rows:
         print(
-            f"| {r['kind']} | {r['samples']} | {r['seconds']:.2f} | {r['rmse']:.5f} "
+            f"| {r['kind']} | {r['rate']} | {r['samples']} | {r['seconds']:.2f} | {r['rmse']:.5f} "
             f"| {r['percentile']:.4f} | {r['flip']:.4f} |"
         )
     kinds = {kind: [r for r in rows if r["kind"] == kind] for kind in SAMPLES}
     print(f"\n| | {' | '.join(kinds)} | Cycles over INDEPENDENT |")
     print("|---|" + "---|" * (len(kinds) + 1))
     for target in TARGETS:
-        found = {
-            kind: seconds_to(target, [(r["seconds"], r["rmse"]) for r in of])
-            for kind, of in kinds.items()
-        }
-        cells = ["never" if s is None else f"{mark}{s:.2f}" for s, mark in found.values()]
-        print_ratio(f"seconds to RMSE {target}", cells, {k: s for k, (s, _) in found.items()})
-    costs = {kind: nanoseconds(of) for kind, of in kinds.items()}
+        found = {kind: soonest(target, of) for kind, of in kinds.items()}
+        cells = [
+            "never" if s is None else f"{mark}{s:.2f}" + (f" (dicing {rate})" if rate != 1 else "")
+            for s, mark, rate in found.values()
+        ]
+        print_ratio(f"seconds to RMSE {target}", cells, {k: s for k, (s, *_) in found.items()})
+    costs = {kind: nanoseconds(by_rate(of)[1]) for kind, of in kinds.items()}
     print_ratio("one more sample a pixel, ns", [f"{c:.0f}" for c in costs.values()], costs)
 
 
@@ -135,18 +160,20 @@ def print_ratio(what, cells, values):
     print(f"| {what} | {' | '.join(cells)} | {ratio} |", flush=True)
 
 
+def name(kind, rate):
+    return kind if rate == 1 else f"{kind}, dicing rate {rate}"
+
+
 def draw(rows):
     """All scenes that were ever measured here."""
     panels = []
     for scene in (*SCENES, STILLS):
-        of_kind = {
-            kind: [
-                (r["seconds"], r["rmse"]) for r in rows if (r["scene"], r["kind"]) == (scene, kind)
-            ]
-            for kind in SAMPLES
-        }
-        if any(of_kind.values()):
-            panels.append(plot.Panel(scene, of_kind, TARGETS))
+        curves = {}
+        for row in (r for r in rows if r["scene"] == scene):
+            curves.setdefault((row["kind"], row["rate"]), []).append((row["seconds"], row["rmse"]))
+        if curves:
+            named = {name(*curve): curves[curve] for curve in ALL_CURVES if curve in curves}
+            panels.append(plot.Panel(scene, named, TARGETS))
     plot.save(ROOT / "docs" / "speed_against_error.svg", panels, "seconds", "RMSE")
 
 
