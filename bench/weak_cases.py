@@ -82,11 +82,15 @@ def feathers(table, runs):
 
 def tiny(table, runs):
     """A million grids of one micropolygon against one face of as many."""
-    cases = {whole: scenes.tiles(1000, whole, samples=16) for whole in (True, False)}
-    for what, seconds, limit in (
-        ("hiding", measure.hide_seconds, 1.5),
-        ("frame", measure.frame_seconds, 4.0),
+    raster = {"executor": "RASTER", "sampling": "REGULAR"}
+    for what, seconds, limit, executor in (
+        ("hiding", measure.hide_seconds, 1.5, {}),
+        ("frame", measure.frame_seconds, 4.0, {}),
+        ("frame, RASTER", measure.frame_seconds, 4.0, raster),
     ):
+        cases = {
+            whole: scenes.tiles(1000, whole, samples=16, **executor) for whole in (True, False)
+        }
         taken = measure.interleaved(cases, seconds, max(1, runs // 4))
         table.row(f"a million tiny grids over one face, {what}", taken[False] / taken[True], limit)
 
