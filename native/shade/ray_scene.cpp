@@ -4,17 +4,17 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <exception>
 #include <unordered_map>
 
-#include "dice/knots.h"
 #include "dice/opened_mesh.h"
 #include "math/unit_or.h"
 #include "shade/ray_elements.h"
 #include "shade/ray_mesh.h"
+#include "shade/ray_transforms.h"
+#include "shade/ray_ways.h"
 #include "shade/shading_points.h"
 
 namespace granita {
@@ -36,56 +36,19 @@ bool goes_on(void* user, double) {
     return !static_cast<const Progress*>(user)->cancelled();
 }
 
-/// Embree's RTC_MAX_TIME_STEP_COUNT, and more than Blender can ask for (dice/knots.h).
-constexpr std::size_t kMostKnots = RTC_MAX_TIME_STEP_COUNT;
-
-/// Boxes of moving casters that a ray is tested against one by one; more are merged.
-constexpr std::size_t kMostWays = 16;
-
 /// Rays traced at once.
 constexpr std::size_t kPacket = 16;
-
-/// Slabs (Kay and Kajiya 1986); a ray inside a slab's plane, where 0 times infinity is no number,
-/// counts as meeting it.
-bool meets_box(const Bounds3f& box, const Vec3f& start, const Vec3f& direction, float distance) {
-    float nearest = 0.0f, farthest = distance;
-    for (int c = 0; c < 3; ++c) {
-        const float a = (box.lo[c] - start[c]) / direction[c];
-        const float b = (box.hi[c] - start[c]) / direction[c];
-        if (std::isnan(a) || std::isnan(b)) continue;
-        nearest = std::max(nearest, std::min(a, b));
-        farthest = std::min(farthest, std::max(a, b));
-    }
-    return nearest <= farthest;
-}
-
-/// Embree inverts transforms in single precision, and may abort at rays that come out infinite.
-/// Below these it meets nothing.
-constexpr double kLeastRelativeVolume = 1e-9, kLeastScale = 1e-12;
-
-/// What passes through a transform without volume, or stays in it for a while, gets this much of
-/// its size in all directions: below a ray's lift, and enough to invert it.
-constexpr double kThickness = 0x1p-22;
-/// Of no symmetry, so that no mirrored thing loses its volume at a round time.
-const Mat3d kThickening(1.0, 0.37, -0.21, -0.43, 0.83, 0.29, 0.19, -0.31, 0.71);
-
-double longest_edge(const Mat4d& m) {
-    const auto length = [&](int c) { return glm::length(Vec3d(m[c])); };
-    return std::max({length(0), length(1), length(2)});
-}
-
-/// Volume of a transform's unit cube, signed, over that of a cube of its longest edge; 0 where it
-/// is too small to tell.
-double relative_volume(const Mat4d& m) {
-    const double longest = longest_edge(m);
-    if (longest < kLeastScale) return 0.0;
-    return glm::determinant(Mat3d(m)) / (longest * longest * longest);
-}
 
 std::int32_t material_of(const Instance& instance, std::int32_t slot) {
     if (instance.materials.empty()) return -1;
     const auto last = static_cast<std::int32_t>(instance.materials.size()) - 1;
     return instance.materials[static_cast<std::size_t>(std::clamp(slot, 0, last))];
+}
+
+Bounds3f box_of(RTCScene geometry) {
+    RTCBounds box;
+    rtcGetSceneBounds(geometry, &box);
+    return {{box.lower_x, box.lower_y, box.lower_z}, {box.upper_x, box.upper_y, box.upper_z}};
 }
 
 /// How instances use a geometry; for all but the first, hits are looked at one by one.
@@ -117,7 +80,6 @@ struct RayScene::Impl {
     void check(const std::string& what, const Progress& progress) const;
     void build_geometry(int geometry, std::uint8_t use, const Progress& progress);
     void add_instance(std::uint32_t index, const Vec3d& origin);
-    void add_way(RTCScene geometry, const std::vector<Mat4d>& knots);
     static bool casts_shadow(const Instance& instance) {
         return instance.casts_shadow && !instance.lifespan.is_empty();
     }
@@ -133,9 +95,9 @@ struct RayScene::Impl {
     std::vector<std::unique_ptr<RayShape>> shapes;  ///< [geometries] nullptr = casts no shadow
     std::vector<Handle<RTCScene>> geometries;       ///< [geometries]
     Handle<RTCScene> top;
-    bool all_opaque = true;              ///< and there throughout: no hit is looked at
-    std::vector<Bounds3f> ways;          ///< what moving casters sweep, a few boxes
-    std::vector<RayInstance> instances;  ///< by Embree's id in `top`
+    bool all_opaque = true;  ///< and there throughout: no hit is looked at
+    RayWays ways;
+    std::vector<RayInstance> instances;                       ///< by Embree's id in `top`
     std::unordered_map<std::uint32_t, std::uint32_t> by_key;  ///< Instance::key to that id
 };
 
@@ -183,76 +145,22 @@ void RayScene::Impl::build_geometry(int index, std::uint8_t use, const Progress&
 void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     const Instance& instance = scene.instances[index];
     const auto geometry = static_cast<std::size_t>(instance.geometry);
-    // One knot where it stands still: Embree then needs no motion hierarchy for it.
-    std::vector<Mat4d> knots = instance.world_from_object;
-    if (is_static(instance.world_from_object)) knots.resize(1);
-    if (knots.size() > kMostKnots) {
-        knots.resize(kMostKnots);
-        for (std::size_t k = 0; k < kMostKnots; ++k)
-            knots[k] =
-                matrix_at(instance.world_from_object, static_cast<double>(k) / (kMostKnots - 1));
-    }
-    RayInstance added;
-    added.index = index;
-    added.lets_light_through = lets_light_through(instance);
-    double least = 1.0, most = -1.0;  // of volumes
-    const auto note = [&](const Mat4d& m) {
-        const double volume = relative_volume(m);
-        least = std::min(least, volume);
-        most = std::max(most, volume);
-    };
-    for (std::size_t k = 0; k < knots.size(); ++k) {
-        note(knots[k]);
-        if (k > 0) note(0.5 * (knots[k - 1] + knots[k]));  // of half a turn nothing is left there
-        added.scale = std::max(added.scale, static_cast<float>(longest_edge(knots[k])));
-    }
-    // A transform without volume casts no shadow that rays could find.
-    if (most < kLeastRelativeVolume && least > -kLeastRelativeVolume) return;
-    const bool passes_through = least < kLeastRelativeVolume && most > -kLeastRelativeVolume;
-    std::vector<std::array<float, 12>> columns;
-    for (Mat4d& m : knots) {
-        m[3] -= glm::dvec4(origin, 0.0);
-        if (passes_through)
-            for (int c = 0; c < 3; ++c)
-                m[c] += glm::dvec4(kThickness * added.scale * kThickening[c], 0.0);
-        added.distance = std::max(added.distance, static_cast<float>(glm::length(Vec3d(m[3]))));
-        columns.emplace_back();
-        for (std::size_t c = 0, k = 0; c < 4; ++c)
-            for (std::size_t r = 0; r < 3; ++r, ++k) {
-                columns.back()[k] = static_cast<float>(m[c][r]);
-                if (!std::isfinite(columns.back()[k])) return;
-            }
-    }
+    const auto transforms = ray_transforms(instance.world_from_object, origin);
+    if (!transforms) return;
+    const auto& columns = transforms->columns;
     RTCGeometry node = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(node, geometries[geometry].get());
     rtcSetGeometryTimeStepCount(node, static_cast<unsigned>(columns.size()));
     for (unsigned k = 0; k < columns.size(); ++k)
         rtcSetGeometryTransform(node, k, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns[k].data());
     rtcCommitGeometry(node);
-    if (knots.size() > 1 || shapes[geometry]->knots() > 1 || !instance.lifespan.is_whole())
-        add_way(geometries[geometry].get(), knots);
+    if (columns.size() > 1 || shapes[geometry]->knots() > 1 || !instance.lifespan.is_whole())
+        ways.add(box_of(geometries[geometry].get()), transforms->knots);
     rtcAttachGeometryByID(top.get(), node, static_cast<unsigned>(instances.size()));
     rtcReleaseGeometry(node);
     by_key[instance.key] = static_cast<std::uint32_t>(instances.size());
-    instances.push_back(added);
-}
-
-/// Points move in straight lines between knots: the boxes at the knots hold all of their way.
-void RayScene::Impl::add_way(RTCScene geometry, const std::vector<Mat4d>& knots) {
-    RTCBounds box;
-    rtcGetSceneBounds(geometry, &box);
-    Bounds3f way;
-    for (const Mat4d& m : knots)
-        for (int corner = 0; corner < 8; ++corner)
-            way.add(Vec3f(m * glm::dvec4(corner & 1 ? box.upper_x : box.lower_x,
-                                         corner & 2 ? box.upper_y : box.lower_y,
-                                         corner & 4 ? box.upper_z : box.lower_z, 1.0)));
-    if (way.empty()) return;
-    way.grow(RayLift::kRounding * std::max(glm::length(way.lo), glm::length(way.hi)));
-    if (ways.size() < kMostWays)
-        ways.push_back(way);
-    else
-        ways.back().add(way);
+    instances.push_back(
+        {index, transforms->scale, transforms->distance, lets_light_through(instance)});
 }
 
 Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& ray,
@@ -368,9 +276,7 @@ bool RayScene::moves() const {
 }
 
 bool RayScene::varies(const Vec3f& start, const Vec3f& direction, float distance) const {
-    return std::ranges::any_of(m_impl->ways, [&](const Bounds3f& way) {
-        return meets_box(way, start, direction, distance);
-    });
+    return m_impl->ways.meet(start, direction, distance);
 }
 
 namespace {
