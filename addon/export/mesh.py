@@ -43,17 +43,17 @@ def read_topology(mesh):
         corner_verts = np.empty(len(mesh.loops), dtype=np.int32)
         attribute.data.foreach_get("value", corner_verts)
         # Faces lie in order here, and how many corners each has is found out one by one.
-        starts = np.append(_unsigned(mesh.polygons, "loop_start"), np.int32(len(corner_verts)))
+        starts = np.append(unsigned(mesh.polygons, "loop_start"), np.int32(len(corner_verts)))
         face_sizes = np.diff(starts)
     else:
-        corner_verts = _unsigned(mesh.loops, "vertex_index")
-        face_sizes = _unsigned(mesh.polygons, "loop_total")
+        corner_verts = unsigned(mesh.loops, "vertex_index")
+        face_sizes = unsigned(mesh.polygons, "loop_total")
     return Topology(len(mesh.vertices), corner_verts, face_sizes)
 
 
-def _unsigned(collection, member):
-    """int32 [n]."""
-    values = np.empty(len(collection), dtype=np.uint32)
+def unsigned(collection, member, width=1):
+    """int32 [n * width]."""
+    values = np.empty(len(collection) * width, dtype=np.uint32)
     collection.foreach_get(member, values)
     return values.view(np.int32)
 
@@ -121,8 +121,16 @@ def _material_index(mesh):
 
 
 def _smooth(mesh):
-    values = np.empty(len(mesh.polygons), dtype=np.bool_)
-    mesh.polygons.foreach_get("use_smooth", values)
+    """uint8 [F], or None where all are flat."""
+    values = np.zeros(len(mesh.polygons), dtype=np.bool_)
+    if hasattr(mesh, "normals_domain"):
+        # Since Blender 4.1 an attribute, which faces are asked for one by one: 30 ns each.
+        attribute = mesh.attributes.get("sharp_face")
+        if attribute is not None:
+            attribute.data.foreach_get("value", values)
+        np.logical_not(values, out=values)
+    else:
+        mesh.polygons.foreach_get("use_smooth", values)
     return values.view(np.uint8) if values.any() else None
 
 

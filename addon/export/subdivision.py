@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .changes import originals
+from .mesh import unsigned
 
 # Blender's creases run from 0 to 1; OpenSubdiv's sharpness is 10 times their square, and 10 is
 # infinitely sharp.
@@ -191,9 +192,8 @@ def subdivision_record(cage, mesh):
     edges = _creases(mesh, "crease_edge", "edge_creases", len(mesh.edges))
     if edges is not None and edges.any():
         creased = np.flatnonzero(edges > 0.0)
-        verts = np.empty(len(mesh.edges) * 2, dtype=np.int32)
-        mesh.edges.foreach_get("vertices", verts)
-        record["crease_verts"] = np.ascontiguousarray(verts.reshape(-1, 2)[creased])
+        verts = unsigned(mesh.edges, "vertices", 2).reshape(-1, 2)
+        record["crease_verts"] = verts[creased]
         record["crease_values"] = sharpness(edges[creased], quality)
     points = _creases(mesh, "crease_vert", "vertex_creases", len(mesh.vertices))
     if points is not None and points.any():
