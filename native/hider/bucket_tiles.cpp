@@ -82,7 +82,7 @@ Rect BucketTiles::local_pixels(std::size_t i) const {
 void BucketTiles::need_time(std::size_t i) {
     if (m_needs[i].time) return;
     m_needs[i].time = true;
-    m_frame.table->fill_tile(m_stores[i].tile, m_needs[i], m_samples[i]);
+    m_frame.table->fill_times(m_stores[i].tile, m_samples[i]);
 }
 
 bool BucketTiles::limit_lists() {

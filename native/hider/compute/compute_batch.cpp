@@ -27,10 +27,11 @@ Rect touched(const SimdGrid& grid, const int vertex[4], int segment, const Rect&
         y1 = std::max(y1, grid.y_hi[v]);
     }
     // Clamped before the conversion, which overflows otherwise.
-    const auto pixel = [](float x) {
-        return static_cast<int>(std::floor(std::min(std::max(x, -1.0f), 32.0f)));
+    const auto pixel = [](float x, float origin) {
+        return static_cast<int>(std::floor(std::min(std::max(x - origin, -1.0f), 32.0f)));
     };
-    return pixels.intersect({pixel(x0), pixel(y0), pixel(x1) + 1, pixel(y1) + 1});
+    return pixels.intersect({pixel(x0, grid.origin_x), pixel(y0, grid.origin_y),
+                             pixel(x1, grid.origin_x) + 1, pixel(y1, grid.origin_y) + 1});
 }
 
 /// When the grid exists, ends included: what lies just before a half-open interval's end belongs to

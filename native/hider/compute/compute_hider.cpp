@@ -65,8 +65,7 @@ class ComputeHider : public Hider {
             for (int x = touched.x0; x < touched.x1; ++x) {
                 const std::size_t i = m_tiles.index(x, y);
                 if (tile_hides(i, grid.bounds)) continue;
-                SimdGrid in_tile;
-                m_tile_grid.project(m_tiles.origin(i), in_tile);
+                SimdGrid in_tile = m_tile_grid.project(m_tiles.origin(i));
                 in_tile.classes = classes.classes.data();
                 in_tile.base = base;
                 TileGroup& group = m_groups[i / m_group_size];

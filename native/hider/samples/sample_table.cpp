@@ -72,7 +72,7 @@ void SampleTable::fill_tile(Vec2i tile, SampleNeeds needs, TileSamples& out) con
     const std::size_t count = static_cast<std::size_t>(kPixels) * m_samples;
     out.x.resize(count);
     out.y.resize(count);
-    out.t.resize(needs.time ? count : 0);
+    out.t.clear();
     out.u.resize(needs.lens ? count : 0);
     out.v.resize(needs.lens ? count : 0);
     out.inverse_focus.resize(moves_lens && m_lens_knots.refocuses() ? count : 0);
@@ -81,18 +81,34 @@ void SampleTable::fill_tile(Vec2i tile, SampleNeeds needs, TileSamples& out) con
     } else {
         fill_dimension(tile, kX, out.x);
         fill_dimension(tile, kY, out.y);
-        if (needs.time) fill_dimension(tile, kT, out.t);
         if (needs.lens) {
             fill_dimension(tile, kU, out.u);
             fill_dimension(tile, kV, out.v);
         }
     }
-    if (needs.time && !m_shutter.is_box())
-        for (float& t : out.t) t = m_shutter.time(t);
-    if (needs.time && m_rolling >= 0.0f) roll(tile, out.t);
+    if (needs.time) fill_times(tile, out);
     if (needs.lens) m_lens.map(out.u.data(), out.v.data(), count);
     if (moves_lens) move_lens(out);
     if (!wants_time) out.t.clear();
+}
+
+void SampleTable::fill_times(Vec2i tile, TileSamples& out) const {
+    out.t.resize(out.x.size());
+    if (m_sampling == Sampling::Regular) {
+        const int cells = m_lattice.cells();
+        const auto passes = static_cast<std::uint32_t>(m_samples / cells);
+        for (int s = 0; s < m_samples; ++s) {
+            const auto pass = static_cast<std::uint32_t>(s / cells);
+            out.t[s] = static_cast<float>(bits::cell_center(pass, passes)) * 0x1p-20f;
+        }
+        for (int p = 1; p < kPixels; ++p)
+            std::copy_n(out.t.begin(), m_samples, out.t.begin() + std::ptrdiff_t{p} * m_samples);
+    } else {
+        fill_dimension(tile, kT, out.t);
+    }
+    if (!m_shutter.is_box())
+        for (float& t : out.t) t = m_shutter.time(t);
+    if (m_rolling >= 0.0f) roll(tile, out.t);
 }
 
 void SampleTable::move_lens(TileSamples& samples) const {
@@ -159,7 +175,6 @@ void SampleTable::fill_regular(SampleNeeds needs, TileSamples& out) const {
     std::vector<Vec2f> places;
     places.reserve(static_cast<std::size_t>(cells));
     for (int cell = 0; cell < cells; ++cell) places.push_back(m_lattice.place(cell));
-    const auto passes = static_cast<std::uint32_t>(m_samples / cells);
     for (int p = 0; p < kPixels; ++p) {
         const int row = p / kTileSize, column = p % kTileSize;
         for (int s = 0; s < m_samples; ++s) {
@@ -168,8 +183,6 @@ void SampleTable::fill_regular(SampleNeeds needs, TileSamples& out) const {
             const Vec2f place = places[static_cast<std::size_t>(s % cells)];
             out.x[i] = static_cast<float>(column) + place.x;
             out.y[i] = static_cast<float>(row) + place.y;
-            if (needs.time)
-                out.t[i] = static_cast<float>(bits::cell_center(pass, passes)) * 0x1p-20f;
             if (needs.lens) {
                 // With t a Hammersley set: the lens points of any stretch of the shutter are
                 // spread.

@@ -58,6 +58,8 @@ class SampleTable {
     std::uint32_t seed() const { return m_seed; }
     /// Makes x and y, and of t, u, v what is needed; the same bits whatever else is asked for.
     void fill_tile(Vec2i tile, SampleNeeds needs, TileSamples& out) const;
+    /// Makes t of a tile that fill_tile() has filled; what else there is stays.
+    void fill_times(Vec2i tile, TileSamples& out) const;
     const LensShape& lens() const { return m_lens; }
 
   private:

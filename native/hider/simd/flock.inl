@@ -9,8 +9,9 @@
 /// 1998; bits of slices: Lakshman and Stiliadis 1998).
 class FlockSlices {
   public:
-    static constexpr int kDirections = 4;  ///< x, y, x + y, x - y
-    static constexpr int kMost = 64;       ///< micropolygons
+    static constexpr int kDirections = 4;                ///< x, y, x + y, x - y
+    static constexpr int kMost = GridPart::kMostInRows;  ///< micropolygons
+    using Bits = hn::Vec<IdTag>;
 
     /// Extents of the micropolygons along the directions.
     struct Extents {
@@ -19,59 +20,123 @@ class FlockSlices {
 
     /// Of the micropolygons of these bits, of which there are some.
     void build(const Extents& extents, std::uint64_t bits) {
+        m_first = std::countr_zero(bits);
+        m_wide = (bits >> m_first) >> 32 != 0;
         for (int d = 0; d < kDirections; ++d) {
             const float *lo = extents.lo[d], *hi = extents.hi[d];
-            float least = INFINITY, most = -INFINITY;
-            for_each_bit(bits, [&](int bin) HWY_ATTR {
-                least = std::min(least, lo[bin]);
-                most = std::max(most, hi[bin]);
-            });
-            m_origin[d] = least;
-            // The last slice holds `most` too, however it rounds.
-            m_scale[d] = (kSlices - 0x1p-8f) / std::max(most - least, 1e-6f);
+            V least = set(INFINITY), most = set(-INFINITY);
+            for (int bin = 0; bin < kMost; bin += lane_count()) {
+                const M some = lanes_of(static_cast<std::uint32_t>(bits >> bin));
+                least = hn::Min(least, hn::IfThenElse(some, hn::LoadU(kTag, lo + bin), least));
+                most = hn::Max(most, hn::IfThenElse(some, hn::LoadU(kTag, hi + bin), most));
+            }
+            const float begin = hn::GetLane(hn::MinOfLanes(kTag, least));
+            const float length = hn::GetLane(hn::MaxOfLanes(kTag, most)) - begin;
+            m_origin[d] = begin;
+            // The last slice holds the end too, however it rounds.
+            m_scale[d] = (kSlices - 0x1p-8f) / std::max(length, 1e-6f);
+            int from[kMost], to[kMost];
+            for (int bin = 0; bin < kMost; bin += lane_count()) {
+                hn::StoreU(slice(hn::LoadU(kTag, lo + bin), d), kIntTag, from + bin);
+                hn::StoreU(slice(hn::LoadU(kTag, hi + bin), d), kIntTag, to + bin);
+            }
             // Bits of a slice, by what begins and what has ended.
-            std::uint64_t* const slices = m_slices[d];
-            std::fill_n(slices, kSlices + 1, 0);
-            const auto slice = [&](float at) {
-                return static_cast<int>((at - m_origin[d]) * m_scale[d]);
-            };
+            std::uint64_t slices[kSlices + 1] = {}, now = 0;
             for_each_bit(bits, [&](int bin) HWY_ATTR {
-                slices[slice(lo[bin])] ^= std::uint64_t{1} << bin;
-                slices[slice(hi[bin]) + 1] ^= std::uint64_t{1} << bin;
+                const std::uint64_t bit = std::uint64_t{1} << (bin - m_first);
+                slices[from[bin]] ^= bit;
+                slices[to[bin] + 1] ^= bit;
             });
-            for (int s = 1; s < kSlices; ++s) slices[s] ^= slices[s - 1];
+            for (int s = 0; s < kSlices; ++s) {
+                now ^= slices[s];
+                m_words[d][0][s] = static_cast<std::uint32_t>(now);
+                m_words[d][1][s] = static_cast<std::uint32_t>(now >> 32);
+            }
         }
     }
 
+    /// Where samples are along the directions.
     struct Cells {
-        M inside;                ///< of all four directions' slices
-        hn::Vec<IntTag> packed;  ///< a byte a direction
+        V slice[kDirections];
+        M inside;  ///< of all four directions' slices
     };
     HWY_INLINE Cells cells_of(V x, V y) const {
-        const V slice[kDirections] = {place(x, 0), place(y, 1), place(x + y, 2), place(x - y, 3)};
+        Cells cells{{place(x, 0), place(y, 1), place(x + y, 2), place(x - y, 3)}, {}};
+        const V(&at)[kDirections] = cells.slice;
         // A slot without sample has no number anywhere.
-        const V least = hn::Min(hn::Min(slice[0], slice[1]), hn::Min(slice[2], slice[3]));
-        const V most = hn::Max(hn::Max(slice[0], slice[1]), hn::Max(slice[2], slice[3]));
-        Cells cells{hn::And(hn::Ge(least, set(0.0f)), hn::Lt(most, set(kSlices))),
-                    hn::ConvertTo(kIntTag, slice[0])};
-        for (int d = 1; d < kDirections; ++d)
-            cells.packed = hn::Or(hn::ShiftLeft<8>(cells.packed), hn::ConvertTo(kIntTag, slice[d]));
+        const V least = hn::Min(hn::Min(at[0], at[1]), hn::Min(at[2], at[3]));
+        const V most = hn::Max(hn::Max(at[0], at[1]), hn::Max(at[2], at[3]));
+        cells.inside = hn::And(hn::Ge(least, set(0.0f)), hn::Lt(most, set(kSlices)));
         return cells;
     }
-    HWY_INLINE std::uint64_t bins(int packed) const {
-        return m_slices[0][packed >> 24] & m_slices[1][packed >> 16 & 0xff] &
-               m_slices[2][packed >> 8 & 0xff] & m_slices[3][packed & 0xff];
+
+    /// Calls visit(samples, the bit of a micropolygon for each) until those in the lanes of the
+    /// mask have been told all that they may see.
+    template <class Visit>
+    HWY_INLINE void for_each_bin(const Cells& cells, M inside, Visit visit) const {
+        const Bits none = hn::Zero(kIdTag), one = hn::Set(kIdTag, 1);
+        const auto in = hn::RebindMask(kIdTag, inside);
+        Bits low = hn::IfThenElseZero(in, look_up(cells, 0)), high = none;
+        if (m_wide) high = hn::IfThenElseZero(in, look_up(cells, 1));
+        const auto first = hn::Set(kIntTag, m_first), later = hn::Set(kIntTag, m_first + 32);
+        for (;;) {
+            const auto in_low = hn::Ne(low, none);
+            const Bits word = hn::IfThenElse(in_low, low, high);
+            const M some = hn::RebindMask(kTag, hn::Ne(word, none));
+            if (hn::AllFalse(kTag, some)) return;
+            const Bits rest = hn::And(word, word - one);
+            visit(some, lowest(hn::Xor(word, rest)) +
+                            hn::IfThenElse(hn::RebindMask(kIntTag, in_low), first, later));
+            low = hn::IfThenElseZero(in_low, rest);
+            high = hn::IfThenElse(in_low, high, rest);
+        }
     }
 
   private:
-    static constexpr int kSlices = 64;
+    static constexpr int kSlices = 32;
 
     HWY_INLINE V place(V at, int direction) const {
         return (at - set(m_origin[direction])) * set(m_scale[direction]);
     }
+    HWY_INLINE hn::Vec<IntTag> slice(V at, int direction) const {
+        return hn::ConvertTo(kIntTag, place(at, direction));
+    }
 
+    /// Which of several bits this one is.
+    static HWY_INLINE hn::Vec<IntTag> lowest(Bits bit) {
+        // By the exponent; the uppermost bit is a negative number.
+        const V value = hn::ConvertTo(kTag, hn::BitCast(kIntTag, bit));
+        const auto exponent = hn::ShiftRight<23>(hn::BitCast(kIntTag, hn::Abs(value)));
+        return exponent - hn::Set(kIntTag, 127);
+    }
+
+    /// Bits that samples inside share, 32 of them.
+    HWY_INLINE Bits look_up(const Cells& cells, int word) const {
+        Bits shared = hn::Set(kIdTag, ~0u);
+        for (int d = 0; d < kDirections; ++d)
+            shared = hn::And(shared, read(m_words[d][word], cells.slice[d]));
+        return shared;
+    }
+    /// From registers, all lanes at once: one by one, every other sample was a branch foretold
+    /// wrongly.
+    static HWY_INLINE Bits read(const std::uint32_t* words, V slice) {
+        constexpr int kLanes = hn::MaxLanes(kTag);
+        const auto at = hn::ConvertTo(kIntTag, slice);
+        const auto within = hn::IndicesFromVec(kIdTag, hn::And(at, hn::Set(kIntTag, kLanes - 1)));
+        Bits out = hn::TableLookupLanes(hn::LoadU(kIdTag, words), within);
+        for (int first = kLanes; first < kSlices; first += kLanes) {
+            const M later = hn::Ge(slice, set(static_cast<float>(first)));
+            out =
+                hn::IfThenElse(hn::RebindMask(kIdTag, later),
+                               hn::TableLookupLanes(hn::LoadU(kIdTag, words + first), within), out);
+        }
+        return out;
+    }
+
+    int m_first = 0;      ///< micropolygon that has the lowest bit
+    bool m_wide = false;  ///< some have bits of the second word
     float m_origin[kDirections], m_scale[kDirections];
-    std::uint64_t m_slices[kDirections][kSlices + 1];
+    alignas(64) std::uint32_t m_words[kDirections][2][kSlices];
 };
 
 class FlockFinder {
@@ -94,13 +159,14 @@ class FlockFinder {
     /// Micropolygon (i, j) of the flock has bit j * n_u + i.  Nowhere: not over the tile.  Loose:
     /// they part, or are few; `path` and `slices` are undefined.
     template <bool kMoving, Lens kLens>
-    PatchFinder::Found find(const Patch& flock, int segment, PatchPath& path, FlockSlices& slices) {
+    PatchFinder::Found find(const Patch& flock, Segments segments, PatchPath& path,
+                            FlockSlices& slices) {
         using Found = PatchFinder::Found;
-        if (!find_touched<kMoving, kLens>(flock, segment, path.times)) return Found::Nowhere;
+        if (!find_touched<kMoving, kLens>(flock, segments, path.times)) return Found::Nowhere;
         if (std::popcount(m_bits) < kLeast) return Found::Loose;
-        const SegmentPart<kMoving> part(m_grid, segment, path.times);
+        const SegmentPart<kMoving> part(m_grid, segments, path.times);
         PathExtents<kMoving, kLens> all(hn::FirstN(kTag, kPacket));
-        for (int v = 0; v < m_vectors; ++v) add<kMoving, kLens>(m_vector[v], segment, part, all);
+        for (int v = 0; v < m_vectors; ++v) add<kMoving, kLens>(m_vector[v], segments, part, all);
         all.reduce();
         m_paths.store_paths(all, part, path.paths);
         if (!(path.paths.straight & 1u)) return Found::Loose;
@@ -108,7 +174,7 @@ class FlockFinder {
             m_grid.range.perspective ? 1.0f / path.paths.z_lo[0] : -path.paths.z_lo[0];
         // The key of a sample may round a few ulp past the nearest corner's.
         path.nearest = key + std::fabs(key) * 0x1p-18f;
-        if (!find_extents<kMoving, kLens>(all, part, path.paths)) return Found::Loose;
+        if (!find_extents<kMoving, kLens>(all, segments, part, path.paths)) return Found::Loose;
         slices.build(m_in_frame, m_bits);
         return Found::Framed;
     }
@@ -120,6 +186,8 @@ class FlockFinder {
     /// Tests that it is worth to spare a micropolygon a search of its own, and as a part of those
     /// that it needs anyway: as many may be lost because it does not quite go with the others.
     static constexpr float kSpared = 8.0f, kSparedPart = 1.0f / 3;
+    /// Several segments lose less by falling apart.
+    static constexpr float kSparedSegments = 1.0f;
     static constexpr int kMostVectors = kMost / 4;
 
     /// Some micropolygons side by side.
@@ -131,17 +199,21 @@ class FlockFinder {
 
     /// Those over the tile, and when any is.
     template <bool kMoving, Lens kLens>
-    bool find_touched(const Patch& flock, int segment, BlockRanges& times) {
+    bool find_touched(const Patch& flock, Segments segments, BlockRanges& times) {
         V t0 = set(INFINITY), t1 = set(-INFINITY);
         m_vectors = 0;
         m_bits = 0;
         for (int j = 0; j < flock.n_v; ++j)
             for (int i = 0; i < flock.n_u; i += lane_count()) {
                 const int vertex = (flock.j + j) * m_grid.up + flock.i + i;
-                M touched = m_where.find_touched(segment, vertex, flock.n_u - i, times);
+                M touched = m_where.find_touched(segments.first, vertex, flock.n_u - i, times);
+                for (int k = 1; k < segments.count; ++k)
+                    touched = hn::Or(touched, m_where.find_touched(segments.first + k, vertex,
+                                                                   flock.n_u - i, times));
                 if (hn::AllFalse(kTag, touched)) continue;
-                if constexpr (kMoving) {
-                    touched = hn::And(touched, m_where.find_times<kLens>(segment, vertex, times));
+                if (kMoving && segments.count == 1) {
+                    touched =
+                        hn::And(touched, m_where.find_times<kLens>(segments.first, vertex, times));
                     if (hn::AllFalse(kTag, touched)) continue;
                     const V open = hn::LoadU(kTag, times.t0), close = hn::LoadU(kTag, times.t1);
                     t0 = hn::Min(t0, hn::IfThenElse(touched, open, t0));
@@ -151,26 +223,35 @@ class FlockFinder {
                 m_vector[m_vectors++] = {vertex, bin, bits_of(touched)};
                 m_bits |= std::uint64_t{bits_of(touched)} << bin;
             }
-        hn::StoreU(hn::MinOfLanes(kTag, t0), kTag, times.t0);
-        hn::StoreU(hn::MaxOfLanes(kTag, t1), kTag, times.t1);
+        if (segments.count > 1) {
+            store_times(m_grid, segments, times);
+        } else {
+            hn::StoreU(hn::MinOfLanes(kTag, t0), kTag, times.t0);
+            hn::StoreU(hn::MaxOfLanes(kTag, t1), kTag, times.t1);
+        }
         return m_bits != 0;
     }
 
     template <bool kMoving, Lens kLens>
-    HWY_INLINE void add(const RowVector& row, int segment, const SegmentPart<kMoving>& part,
+    HWY_INLINE void add(const RowVector& row, Segments segments, const SegmentPart<kMoving>& part,
                         PathExtents<kMoving, kLens>& all) {
-        const std::size_t knot = static_cast<std::size_t>(segment) * m_grid.vertices;
+        const auto vertices = static_cast<std::size_t>(m_grid.vertices);
+        const std::size_t knot = static_cast<std::size_t>(segments.first) * vertices;
         PathExtents<kMoving, kLens> own(hn::FirstN(kTag, kPacket));
         Extent sum, difference;
         for (const int corner : {row.vertex, row.vertex + m_grid.right, row.vertex + m_grid.up,
                                  row.vertex + m_grid.up + m_grid.right}) {
             const std::size_t a = knot + static_cast<std::size_t>(corner);
-            const Corner<V> begin = load_corner(m_grid, a);
-            Corner<V> delta = begin;
-            if constexpr (kMoving)
-                delta = from_to(begin,
-                                load_corner(m_grid, a + static_cast<std::size_t>(m_grid.vertices)));
-            own.add(m_grid, begin, delta, part.ends);
+            if (segments.count > 1) {
+                own.add_knots(m_grid, segments.count, [&](int k) HWY_ATTR {
+                    return load_corner(m_grid, a + static_cast<std::size_t>(k) * vertices);
+                });
+            } else {
+                const Corner<V> begin = load_corner(m_grid, a);
+                Corner<V> delta = begin;
+                if constexpr (kMoving) delta = from_to(begin, load_corner(m_grid, a + vertices));
+                own.add(m_grid, begin, delta, part.ends);
+            }
             for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
                 sum.add(own.last_x[e] + own.last_y[e], e);
                 difference.add(own.last_x[e] - own.last_y[e], e);
@@ -187,8 +268,8 @@ class FlockFinder {
 
     /// Extents in the frame that moves along the path, over all of `part`.  False: too large.
     template <bool kMoving, Lens kLens>
-    bool find_extents(const PathExtents<kMoving, kLens>& all, const SegmentPart<kMoving>& part,
-                      const TilePaths& paths) {
+    bool find_extents(const PathExtents<kMoving, kLens>& all, Segments segments,
+                      const SegmentPart<kMoving>& part, const TilePaths& paths) {
         const auto lens = RankPathFinder::shear_of<kLens>(all.lens, set(m_grid.inverse_farthest),
                                                           set(m_grid.inverse_focus));
         const V slack_x = path_slack(all.margin, all.bend_x, lens.rest, paths.x, m_grid.lens_x);
@@ -225,9 +306,12 @@ class FlockFinder {
             const V least = size[0] * size[1] * set(1.0f + kSparedPart);
             lost = lost + hn::IfThenElseZero(m_vector[v].lanes(), grown[0] * grown[1] - least);
         }
+        const float spared = segments.count > 1 ? kSparedSegments : kSpared;
+        const float samples = m_samples * static_cast<float>(segments.count) /
+                              static_cast<float>(std::max(1, m_grid.segments));
         // False where it is not a number.
-        return hn::GetLane(hn::SumOfLanes(kTag, lost)) * m_samples <
-               kSpared * static_cast<float>(std::popcount(m_bits));
+        return hn::GetLane(hn::SumOfLanes(kTag, lost)) * samples <
+               spared * static_cast<float>(std::popcount(m_bits));
     }
 
     const SimdGrid& m_grid;

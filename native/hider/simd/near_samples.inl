@@ -13,12 +13,12 @@ class NearSamples {
     /// the vertex at the segment's begin.  full() must not hold.
     template <bool kMoving, Lens kLens>
     HWY_INLINE void add(M mask, const Samples& at, V slots, hn::Vec<IntTag> index,
-                        hn::Vec<IntTag> corner, float segment) {
+                        hn::Vec<IntTag> corner, V segment) {
         const Squeeze squeeze(mask);
         m_list.add<kMoving, kLens>(squeeze, at, slots, m_count);
         hn::StoreU(squeeze(hn::BitCast(kTag, index)), kTag, m_index + m_count);
         hn::StoreU(squeeze(hn::BitCast(kTag, corner)), kTag, m_corner + m_count);
-        hn::StoreU(set(segment), kTag, m_segment + m_count);
+        if constexpr (kMoving) hn::StoreU(squeeze(segment), kTag, m_segment + m_count);
         m_count += squeeze.count();
     }
     bool full() const { return m_count > kQueued; }

@@ -2,12 +2,6 @@
 // Parts of grids that stay together while they are over a tile: included once a SIMD target inside
 // its namespace, after tile_paths.inl.
 
-/// A rectangle of micropolygons of a grid.
-struct Patch {
-    static constexpr int kSide = 8;
-    int i, j, n_u, n_v;  ///< the first, and how many; of a patch at most kSide
-};
-
 /// Parameters over a patch in the frame that moves with it: micropolygon (i, j) of the patch stays
 /// within [i - u.reach, i + 1 + u.reach] x [j - v.reach, j + 1 + v.reach] of them.
 struct PatchFrame {
@@ -42,34 +36,46 @@ class PatchFinder {
     PatchFinder(const SimdGrid& grid, const RankPathFinder& paths) : m_grid(grid), m_paths(paths) {}
 
     /// Nowhere: not over the tile.  Loose: it bends, turns, grows or is curved too much to have a
-    /// frame; `out` is undefined.
+    /// frame; `out` is undefined but for `nearest`, which the caller knows.
     template <bool kMoving, Lens kLens>
-    Found find(const Patch& patch, int segment, PatchPath& out) {
-        if (!touches(patch, segment, out.nearest)) return Found::Nowhere;
-        load<kMoving>(patch, segment);
+    Found find(const Patch& patch, Segments segments, PatchPath& out) {
+        load<kMoving>(patch, segments);
+        const bool several = kMoving && segments.count > 1;
         if constexpr (kMoving) {
-            TimesOverTile over;
-            for (int k = 0; k < m_count; k += lane_count())
-                over.add<kLens>(m_grid, corner(0, k), corner(1, k));
-            over.reduce();
-            if (hn::AllFalse(kTag, over.store(m_grid, segment, out.times))) return Found::Nowhere;
+            if (several) {
+                store_times(m_grid, segments, out.times);
+            } else {
+                TimesOverTile over;
+                for_each_vector(
+                    [&](int k) HWY_ATTR { over.add<kLens>(m_grid, corner(0, k), corner(1, k)); });
+                over.reduce();
+                if (hn::AllFalse(kTag, over.store(m_grid, segments.first, out.times)))
+                    return Found::Nowhere;
+            }
         }
-        const SegmentPart<kMoving> part(m_grid, segment, out.times);
+        const SegmentPart<kMoving> part(m_grid, segments, out.times);
         PathExtents<kMoving, kLens> extents(hn::FirstN(kTag, kPacket));
-        for (int k = 0; k < m_count; k += lane_count()) {
-            const Corner<V> begin = corner(0, k);
-            Corner<V> delta = begin;
-            if constexpr (kMoving) delta = from_to(begin, corner(1, k));
-            extents.add(m_grid, begin, delta, part.ends);
+        for_each_vector([&](int k) HWY_ATTR {
+            if (several) {
+                extents.add_knots(m_grid, segments.count,
+                                  [&](int knot) HWY_ATTR { return corner(knot, k); });
+            } else {
+                const Corner<V> begin = corner(0, k);
+                Corner<V> delta = begin;
+                if constexpr (kMoving) delta = from_to(begin, corner(1, k));
+                extents.add(m_grid, begin, delta, part.ends);
+            }
             for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
                 hn::StoreU(extents.last_x[e], kTag, m_at_x[e] + k);
                 hn::StoreU(extents.last_y[e], kTag, m_at_y[e] + k);
             }
-        }
+        });
         extents.reduce();
         m_paths.store_paths(extents, part, out.paths);
         if (!(out.paths.straight & 1u)) return Found::Loose;
-        return find_frame<kMoving, kLens>(patch, extents, part, out) ? Found::Framed : Found::Loose;
+        const float most_tests = several ? kMostTestsOfSeveral : kMostTests;
+        return find_frame<kMoving, kLens>(patch, extents, part, most_tests, out) ? Found::Framed
+                                                                                 : Found::Loose;
     }
 
   private:
@@ -77,66 +83,63 @@ class PatchFinder {
     static constexpr float kMostReach = 1.0f;
     /// Of the samples that each micropolygon is tested against, by those that it covers.
     static constexpr float kMostTests = 4.0f;
-    static constexpr int kMost = (Patch::kSide + 1) * (Patch::kSide + 1) + 2 * kPacket;
+    /// Several segments may fall apart into fewer.
+    static constexpr float kMostTestsOfSeveral = 2.0f;
+    static constexpr int kMost = (GridPart::kSwept + 1) * (GridPart::kSwept + 1) + 2 * kPacket;
 
-    /// By the bounds over the whole segment and lens.
-    bool touches(const Patch& patch, int segment, float& nearest) const {
-        V x_lo = set(INFINITY), y_lo = x_lo, x_hi = set(-INFINITY), y_hi = x_hi, key = x_hi;
-        for (int j = 0; j <= patch.n_v; ++j)
-            for (int i = 0; i <= patch.n_u; i += lane_count()) {
-                const std::size_t at = static_cast<std::size_t>(segment) * m_grid.vertices +
-                                       (patch.j + j) * m_grid.up + patch.i + i;
-                const M in = hn::FirstN(kTag, static_cast<std::size_t>(patch.n_u + 1 - i));
-                const auto least = [&](V so_far, const float* a) HWY_ATTR {
-                    return hn::Min(so_far, hn::IfThenElse(in, hn::LoadU(kTag, a + at), so_far));
-                };
-                const auto most = [&](V so_far, const float* a) HWY_ATTR {
-                    return hn::Max(so_far, hn::IfThenElse(in, hn::LoadU(kTag, a + at), so_far));
-                };
-                x_lo = least(x_lo, m_grid.x_lo);
-                x_hi = most(x_hi, m_grid.x_hi);
-                y_lo = least(y_lo, m_grid.y_lo);
-                y_hi = most(y_hi, m_grid.y_hi);
-                key = most(key, m_grid.nearest);
-            }
-        const V zero = set(0.0f), side = set(static_cast<float>(kTileSize));
-        nearest = hn::GetLane(hn::MaxOfLanes(kTag, key));
-        const V least = hn::Max(hn::MinOfLanes(kTag, x_lo), hn::MinOfLanes(kTag, y_lo));
-        const V most = hn::Min(hn::MaxOfLanes(kTag, x_hi), hn::MaxOfLanes(kTag, y_hi));
-        return !hn::AllFalse(kTag, hn::And(hn::Lt(least, side), hn::Ge(most, zero)));
-    }
-
-    /// The vertices one after another; the last one fills up the last vector.
+    /// The vertices one after another: where they lie, or copied.  Where a vector holds them all
+    /// the last one fills it up.
     template <bool kMoving>
-    void load(const Patch& patch, int segment) {
+    void load(const Patch& patch, Segments segments) {
         const int wide = patch.n_u + 1;
-        m_count = wide * (patch.n_v + 1);
-        const auto copy = [&](const float* from, float* to) HWY_ATTR {
+        number(patch);
+        const bool in_place = patch.n_u == m_grid.n_u && m_count >= lane_count();
+        const auto place = [&](const float* from, int knot, int coordinate) HWY_ATTR {
+            from += static_cast<std::size_t>(segments.first + knot) * m_grid.vertices +
+                    static_cast<std::size_t>(patch.j) * m_grid.up + patch.i;
+            m_at[coordinate][knot] = from;
+            if (in_place) return;
+            float* const to = m_copies[coordinate][knot];
             for (int j = 0; j <= patch.n_v; ++j)
                 for (int i = 0; i < wide; i += lane_count())
-                    hn::StoreU(hn::LoadU(kTag, from + (patch.j + j) * m_grid.up + patch.i + i),
-                               kTag, to + j * wide + i);
+                    hn::StoreU(hn::LoadU(kTag, from + j * m_grid.up + i), kTag, to + j * wide + i);
             hn::StoreU(set(to[m_count - 1]), kTag, to + m_count);
+            m_at[coordinate][knot] = to;
         };
-        for (int knot = 0; knot < (kMoving ? 2 : 1); ++knot) {
-            const std::size_t first = static_cast<std::size_t>(segment + knot) * m_grid.vertices;
-            copy(m_grid.x + first, m_x[knot]);
-            copy(m_grid.y + first, m_y[knot]);
-            copy(m_grid.w + first, m_w[knot]);
-            copy(m_grid.z + first, m_z[knot]);
+        for (int knot = 0; knot <= (kMoving ? segments.count : 0); ++knot) {
+            place(m_grid.x, knot, 0);
+            place(m_grid.y, knot, 1);
+            place(m_grid.w, knot, 2);
+            place(m_grid.z, knot, 3);
         }
-        for (int j = 0; j <= patch.n_v; ++j)
+    }
+
+    /// The parameters of the vertices; most patches are alike.
+    void number(const Patch& patch) {
+        if (patch.n_u == m_n_u && patch.n_v == m_n_v) return;
+        m_n_u = patch.n_u;
+        m_n_v = patch.n_v;
+        const int wide = m_n_u + 1;
+        m_count = wide * (m_n_v + 1);
+        for (int j = 0; j <= m_n_v; ++j)
             for (int i = 0; i < wide; i += lane_count()) {
                 hn::StoreU(hn::Iota(kTag, static_cast<float>(i)), kTag, m_i + j * wide + i);
                 hn::StoreU(set(static_cast<float>(j)), kTag, m_j + j * wide + i);
             }
-        hn::StoreU(set(static_cast<float>(patch.n_u)), kTag, m_i + m_count);
-        hn::StoreU(set(static_cast<float>(patch.n_v)), kTag, m_j + m_count);
+        hn::StoreU(set(static_cast<float>(m_n_u)), kTag, m_i + m_count);
+        hn::StoreU(set(static_cast<float>(m_n_v)), kTag, m_j + m_count);
+    }
+
+    /// Calls visit(first vertex) for vectors that hold all vertices, some twice.
+    template <class Visit>
+    HWY_INLINE void for_each_vector(Visit visit) const {
+        const int last = std::max(0, m_count - lane_count());
+        for (int k = 0; k < m_count; k += lane_count()) visit(std::min(k, last));
     }
 
     HWY_INLINE Corner<V> corner(int knot, int k) const {
-        return {hn::LoadU(kTag, m_x[knot] + k), hn::LoadU(kTag, m_y[knot] + k),
-                hn::LoadU(kTag, m_w[knot] + k), hn::LoadU(kTag, m_z[knot] + k)};
+        return {hn::LoadU(kTag, m_at[0][knot] + k), hn::LoadU(kTag, m_at[1][knot] + k),
+                hn::LoadU(kTag, m_at[2][knot] + k), hn::LoadU(kTag, m_at[3][knot] + k)};
     }
 
     /// The affine map that takes the corners of the patch, halfway, nearest to their parameters;
@@ -144,7 +147,7 @@ class PatchFinder {
     /// farther: the map and the chords are linear.
     template <bool kMoving, Lens kLens>
     bool find_frame(const Patch& patch, const PathExtents<kMoving, kLens>& extents,
-                    const SegmentPart<kMoving>& part, PatchPath& out) const {
+                    const SegmentPart<kMoving>& part, float most_tests, PatchPath& out) const {
         const int right = patch.n_u, above = patch.n_v * (patch.n_u + 1);
         float right_x = 0, right_y = 0, up_x = 0, up_y = 0;
         constexpr int kEnds = kMoving ? 2 : 1;
@@ -168,7 +171,7 @@ class PatchFinder {
         for (int e = 0; e < kEnds; ++e) {
             const V x0 = set(path_x.place[0] + path_x.speed[0] * end[e]);
             const V y0 = set(path_y.place[0] + path_y.speed[0] * end[e]);
-            for (int k = 0; k < m_count; k += lane_count()) {
+            for_each_vector([&](int k) HWY_ATTR {
                 const V x = hn::LoadU(kTag, m_at_x[e] + k) - x0;
                 const V y = hn::LoadU(kTag, m_at_y[e] + k) - y0;
                 const V off_u = hn::LoadU(kTag, m_i + k) - (set(u.x) * x + set(u.y) * y);
@@ -177,7 +180,7 @@ class PatchFinder {
                 u_hi = hn::Max(u_hi, off_u);
                 v_lo = hn::Min(v_lo, off_v);
                 v_hi = hn::Max(v_hi, off_v);
-            }
+            });
         }
         const auto lens = RankPathFinder::shear_of<kLens>(
             extents.lens, set(m_grid.inverse_farthest), set(m_grid.inverse_focus));
@@ -196,13 +199,15 @@ class PatchFinder {
         bound(v_lo, v_hi, v);
         // False where one is not a number.
         return u.reach < kMostReach && v.reach < kMostReach &&
-               (1.0f + 2.0f * u.reach) * (1.0f + 2.0f * v.reach) < kMostTests;
+               (1.0f + 2.0f * u.reach) * (1.0f + 2.0f * v.reach) < most_tests;
     }
 
     const SimdGrid& m_grid;
     const RankPathFinder& m_paths;
-    int m_count = 0;                                                   ///< vertices
-    float m_x[2][kMost], m_y[2][kMost], m_w[2][kMost], m_z[2][kMost];  ///< at the knots
-    float m_at_x[2][kMost], m_at_y[2][kMost];                          ///< at the ends, raster
-    float m_i[kMost], m_j[kMost];                                      ///< parameters
+    int m_n_u = 0, m_n_v = 0, m_count = 0;  ///< of the patch, and vertices
+    static constexpr int kKnots = Segments::kMost + 1;
+    const float* m_at[4][kKnots];              ///< x, y, w, z of the vertices at each knot
+    float m_copies[4][kKnots][kMost];          ///< of what is not in one run
+    float m_at_x[2][kMost], m_at_y[2][kMost];  ///< at the ends, raster
+    float m_i[kMost], m_j[kMost];              ///< parameters
 };

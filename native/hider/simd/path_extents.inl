@@ -62,37 +62,48 @@ struct PathExtents {
     /// The corners at the two `ends` of the intervals, in parts of the segment.
     HWY_INLINE void add(const SimdGrid& grid, const Corner<V>& c, const Corner<V>& d,
                         const V ends[2]) {
-        const V zero = set(0.0f), one = set(1.0f);
         const V rounding = rounding_of(grid, c, d);
-        V was_x = zero, was_y = zero, was_w = zero, most = zero;
+        Step was;
         for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
-            const Corner<V> at = kMoving ? at_time(c, d, ends[e]) : c;
-            const V inverse = one / at.w;
-            const V at_x = at.x * inverse, at_y = at.y * inverse;
-            last_x[e] = at_x;
-            last_y[e] = at_y;
-            x.add(at_x, e);
-            y.add(at_y, e);
-            if constexpr (kLens == Lens::Still)
-                lens.shear.add((at.z * set(grid.inverse_focus) - one) * inverse, 0);
-            if constexpr (kLens == Lens::Refocused) {
-                lens.depth.add(at.z * inverse, 0);
-                lens.reciprocal.add(inverse, 0);
-            }
-            z_lo = hn::Min(z_lo, at.z);
-            margin = hn::Max(margin, rounding * inverse);
-            sane = hn::And(sane, hn::Gt(at.w, set(1e-15f)));
-            most = hn::Max(most, inverse);
+            const Step now = step(grid, kMoving ? at_time(c, d, ends[e]) : c, rounding);
             if (e == 1) {
-                // A path in perspective leaves its chord by at most |chord| |dw| / (4 w).
-                const V curved = hn::Abs(at.w - was_w) * most * set(0.25f);
-                bend_x = hn::Max(bend_x, hn::Abs(at_x - was_x) * curved);
-                bend_y = hn::Max(bend_y, hn::Abs(at_y - was_y) * curved);
+                bend_x = hn::Max(bend_x, bend(was.x, now.x, was, now));
+                bend_y = hn::Max(bend_y, bend(was.y, now.y, was, now));
             }
-            was_x = at_x;
-            was_y = at_y;
-            was_w = at.w;
+            add_end(now, e);
+            was = now;
         }
+    }
+
+    /// The corners at knots 0 to `count`, which begin and end the interval.  What they leave their
+    /// way from the first to the last by counts as a bend.
+    template <class CornerAt>
+    HWY_INLINE void add_knots(const SimdGrid& grid, int count, CornerAt corner_at) {
+        Step steps[Segments::kMost + 1];
+        V between_x = set(0.0f), between_y = between_x;
+        Corner<V> last = corner_at(0);
+        steps[0] = step(grid, last, rounding_between(grid, last, last));
+        for (int k = 1; k <= count; ++k) {
+            const Corner<V> at = corner_at(k);
+            steps[k] = step(grid, at, rounding_between(grid, last, at));
+            last = at;
+            const Step &a = steps[k - 1], &b = steps[k];
+            // The rounding of a segment, over the nearer of its ends.
+            margin = hn::Max(margin, b.rounding * a.inverse);
+            between_x = hn::Max(between_x, bend(a.x, b.x, a, b));
+            between_y = hn::Max(between_y, bend(a.y, b.y, a, b));
+        }
+        V off_x = set(0.0f), off_y = off_x;
+        const Step &begin = steps[0], &end = steps[count];
+        for (int k = 1; k < count; ++k) {
+            const V part = set(static_cast<float>(k) / static_cast<float>(count));
+            off_x = hn::Max(off_x, hn::Abs(steps[k].x - begin.x - part * (end.x - begin.x)));
+            off_y = hn::Max(off_y, hn::Abs(steps[k].y - begin.y - part * (end.y - begin.y)));
+        }
+        bend_x = hn::Max(bend_x, between_x + off_x);
+        bend_y = hn::Max(bend_y, between_y + off_y);
+        add_end(begin, 0);
+        add_end(end, 1);
     }
 
     /// Also what others have in the lanes of the mask.
@@ -140,16 +151,60 @@ struct PathExtents {
     }
 
   private:
+    /// Where a corner is, on the raster.
+    struct Step {
+        V x, y, w, inverse, rounding;
+        HWY_INLINE Step() {}  // the implicit one is of no target
+    };
+
+    /// Adds all but where it is.
+    HWY_INLINE Step step(const SimdGrid& grid, const Corner<V>& at, V rounding) {
+        const V one = set(1.0f);
+        Step now;
+        now.w = at.w;
+        now.rounding = rounding;
+        now.inverse = one / at.w;
+        now.x = at.x * now.inverse;
+        now.y = at.y * now.inverse;
+        if constexpr (kLens == Lens::Still)
+            lens.shear.add((at.z * set(grid.inverse_focus) - one) * now.inverse, 0);
+        if constexpr (kLens == Lens::Refocused) {
+            lens.depth.add(at.z * now.inverse, 0);
+            lens.reciprocal.add(now.inverse, 0);
+        }
+        z_lo = hn::Min(z_lo, at.z);
+        margin = hn::Max(margin, rounding * now.inverse);
+        sane = hn::And(sane, hn::Gt(at.w, set(1e-15f)));
+        return now;
+    }
+
+    HWY_INLINE void add_end(const Step& at, int end) {
+        last_x[end] = at.x;
+        last_y[end] = at.y;
+        x.add(at.x, end);
+        y.add(at.y, end);
+    }
+
+    /// A path in perspective leaves its chord, from p to q, by at most |chord| |dw| / (4 w).
+    static HWY_INLINE V bend(V p, V q, const Step& a, const Step& b) {
+        const V curved = hn::Abs(b.w - a.w) * hn::Max(a.inverse, b.inverse) * set(0.25f);
+        return hn::Abs(q - p) * curved;
+    }
+
     /// More than a corner's offset from a sample of the tile can round by, times w.
     static HWY_INLINE V rounding_of(const SimdGrid& grid, const Corner<V>& c, const Corner<V>& d) {
-        const auto largest = [](V begin, V delta) HWY_ATTR {
-            if constexpr (kMoving) return hn::Max(hn::Abs(begin), hn::Abs(begin + delta));
-            return hn::Abs(begin);
-        };
-        const V place = hn::Max(largest(c.x, d.x), largest(c.y, d.y));
-        V rounding = largest(c.w, d.w) * set(1.0f / 256) + place * set(0x1p-20f);
+        if constexpr (kMoving)
+            return rounding_between(grid, c, {c.x + d.x, c.y + d.y, c.w + d.w, c.z + d.z});
+        return rounding_between(grid, c, c);
+    }
+    static HWY_INLINE V rounding_between(const SimdGrid& grid, const Corner<V>& c,
+                                         const Corner<V>& e) {
+        const auto largest = [](V begin, V end)
+                                 HWY_ATTR { return hn::Max(hn::Abs(begin), hn::Abs(end)); };
+        const V place = hn::Max(largest(c.x, e.x), largest(c.y, e.y));
+        V rounding = largest(c.w, e.w) * set(1.0f / 256) + place * set(0x1p-20f);
         if constexpr (kLens != Lens::None) {
-            const V depth = largest(c.z, d.z) * set(grid.inverse_focus) + set(1.0f);
+            const V depth = largest(c.z, e.z) * set(grid.inverse_focus) + set(1.0f);
             rounding = rounding + set(std::max(grid.lens_x, grid.lens_y) * 0x1p-20f) * depth;
         }
         return rounding;

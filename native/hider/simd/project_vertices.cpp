@@ -73,12 +73,39 @@ void bound(const SimdGrid& grid, int segment, bool perspective, const VertexBoun
     }
 }
 
-void interleave(const SimdGrid& grid, std::size_t count, float* to) {
+PartBounds bound_part_of(const SimdGrid& grid, const Patch& part, int segment) {
     const hn::CappedTag<float, kLanePadding> tag;
-    for (std::size_t i = 0; i < count; i += hn::Lanes(tag))
+    auto x_lo = hn::Set(tag, INFINITY), x_hi = hn::Neg(x_lo), y_lo = x_lo, y_hi = x_hi;
+    auto nearest = x_hi;
+    const auto knot = static_cast<std::size_t>(segment) * grid.vertices;
+    grid.for_each_run(part, [&](int first, int count) HWY_ATTR {
+        for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(tag))) {
+            const std::size_t at = knot + static_cast<std::size_t>(first + i);
+            const auto in = hn::FirstN(tag, static_cast<std::size_t>(count - i));
+            const auto least = [&](auto so_far, const float* a) HWY_ATTR {
+                return hn::Min(so_far, hn::IfThenElse(in, hn::LoadU(tag, a + at), so_far));
+            };
+            const auto most = [&](auto so_far, const float* a) HWY_ATTR {
+                return hn::Max(so_far, hn::IfThenElse(in, hn::LoadU(tag, a + at), so_far));
+            };
+            x_lo = least(x_lo, grid.x_lo);
+            x_hi = most(x_hi, grid.x_hi);
+            y_lo = least(y_lo, grid.y_lo);
+            y_hi = most(y_hi, grid.y_hi);
+            nearest = most(nearest, grid.nearest);
+        }
+    });
+    return {hn::GetLane(hn::MinOfLanes(tag, x_lo)), hn::GetLane(hn::MaxOfLanes(tag, x_hi)),
+            hn::GetLane(hn::MinOfLanes(tag, y_lo)), hn::GetLane(hn::MaxOfLanes(tag, y_hi)),
+            hn::GetLane(hn::MaxOfLanes(tag, nearest))};
+}
+
+void interleave(const SimdGrid& grid, std::size_t first, std::size_t count, float* corners) {
+    const hn::CappedTag<float, kLanePadding> tag;
+    for (std::size_t i = first; i < first + count; i += hn::Lanes(tag))
         hn::StoreInterleaved4(hn::LoadU(tag, grid.x + i), hn::LoadU(tag, grid.y + i),
                               hn::LoadU(tag, grid.w + i), hn::LoadU(tag, grid.z + i), tag,
-                              to + 4 * i);
+                              corners + 4 * i);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -90,6 +117,7 @@ namespace granita {
 
 HWY_EXPORT(project);
 HWY_EXPORT(bound);
+HWY_EXPORT(bound_part_of);
 HWY_EXPORT(interleave);
 
 void project_vertices(const Projection& projection, const Vec2d& origin, std::size_t count,
@@ -101,8 +129,13 @@ void bound_vertices(const SimdGrid& grid, int segment, bool perspective, const V
     HWY_DYNAMIC_DISPATCH(bound)(grid, segment, perspective, to);
 }
 
-void interleave_corners(const SimdGrid& grid, std::size_t count, float* to) {
-    HWY_DYNAMIC_DISPATCH(interleave)(grid, count, to);
+PartBounds bound_part(const SimdGrid& grid, const Patch& part, int segment) {
+    return HWY_DYNAMIC_DISPATCH(bound_part_of)(grid, part, segment);
+}
+
+void interleave_corners(const SimdGrid& grid, std::size_t first, std::size_t count,
+                        float* corners) {
+    HWY_DYNAMIC_DISPATCH(interleave)(grid, first, count, corners);
 }
 
 }  // namespace granita

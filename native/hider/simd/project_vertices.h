@@ -28,7 +28,13 @@ void project_vertices(const Projection& projection, const Vec2d& origin, std::si
 /// at or behind the eye plane may be anywhere.
 void bound_vertices(const SimdGrid& grid, int segment, bool perspective, const VertexBounds& to);
 
-/// The corners as SimdGrid::corners.  `count`: of vertices at all knots.
-void interleave_corners(const SimdGrid& grid, std::size_t count, float* to);
+/// Of a part of the grid during a segment, by the bounds of its vertices.
+struct PartBounds {
+    float x_lo, x_hi, y_lo, y_hi, nearest;
+};
+PartBounds bound_part(const SimdGrid& grid, const Patch& part, int segment);
+
+/// The corners as SimdGrid::corners, `count` of them from `first` on.
+void interleave_corners(const SimdGrid& grid, std::size_t first, std::size_t count, float* corners);
 
 }  // namespace granita

@@ -148,8 +148,8 @@ class SimdHider : public Hider {
     void hide_in_tile(const GridClasses& classes, SurfaceId base, std::size_t i,
                       SimdCounts& counts) {
         WorkingTile& working = *m_working[i].tile;
-        SimdGrid simd_grid;
-        m_tile_grid.project(m_tiles.origin(i), simd_grid);
+        SimdGrid simd_grid = m_tile_grid.project(m_tiles.origin(i));
+        if (simd_grid.parts.empty()) return;
         simd_grid.common = classes.common;
         simd_grid.occurring = classes.occurring;
         simd_grid.finite = classes.dropped == 0;

@@ -56,7 +56,13 @@ class Kernel {
           m_patches(grid, m_paths),
           m_flocks(grid, tile, m_where, m_paths),
           m_together(grid.finite && grid.n_u * grid.n_v >= kLeastPatch),
-          m_in_flocks(grid.n_v <= kNarrow) {}
+          m_in_flocks(grid.n_v <= GridPart::kNarrow) {
+        const double blocks = static_cast<double>(tile.blocks_wide) / kTileSize;
+        const double samples = GridPart::kSwept * GridPart::kSwept * blocks * blocks * tile.ranks;
+        while (m_most_segments < *grid.together &&
+               samples * m_most_segments < kFewSamples * grid.segments)
+            m_most_segments *= 2;
+    }
 
     template <Lens kLens>
     void run() {
@@ -66,56 +72,74 @@ class Kernel {
   private:
     template <bool kMoving, Lens kLens>
     void run() {
-        int& segment = m_target.segment;
-        for (segment = 0; segment < std::max(1, m_grid.segments); ++segment) {
+        for (const GridPart& part : m_grid.parts) {
+            m_patch.nearest = part.nearest;
             if constexpr (kMoving || kLens != Lens::None) {
-                if (m_together && m_in_flocks && m_flocks.pay<kLens>()) {
-                    visit_flocks<kMoving, kLens>();
+                if (m_together && (!m_in_flocks || m_flocks.pay<kLens>())) {
+                    look_together<kMoving, kLens>(part.patch, part.segments);
                     continue;
                 }
             }
-            for (int j0 = 0; j0 < m_grid.n_v; j0 += Patch::kSide)
-                for (int i = 0; i < m_grid.n_u; i += kStep) {
-                    std::uint32_t loose = ~0u;
-                    if constexpr (kMoving || kLens != Lens::None)
-                        loose = visit_patches<kMoving, kLens>(i, j0);
-                    if (loose == 0) continue;
-                    for (int j = j0; j < std::min(j0 + Patch::kSide, m_grid.n_v); ++j)
-                        for (int k = 0; k < std::min(kStep, m_grid.n_u - i); k += lane_count())
-                            visit_row<kMoving, kLens>(i + k, j, loose >> k);
-                }
+            look_apart<kMoving, kLens>(part.patch, part.segments);
         }
         if constexpr (kMoving || kLens != Lens::None) test_near<kMoving, kLens>();
     }
 
-    /// The whole grid; what parts is looked at one by one.
+    /// As many segments at a time as the part's way is straight enough for; one by one where it is
+    /// not even during one.
     template <bool kMoving, Lens kLens>
-    void visit_flocks() {
-        const int wide = FlockSlices::kMost / m_grid.n_v;
-        for (int i = 0; i < m_grid.n_u; i += wide) {
-            const Patch flock{i, 0, std::min(wide, m_grid.n_u - i), m_grid.n_v};
-            using Found = PatchFinder::Found;
-            const Found found =
-                m_flocks.find<kMoving, kLens>(flock, m_target.segment, m_patch, m_slices);
-            if (found == Found::Framed) visit_flock<kMoving, kLens>(flock);
+    void look_together(const Patch& part, Segments segments) {
+        const int end = segments.first + segments.count;
+        for (Segments now{segments.first, 0}; now.first < end; now.first += now.count) {
+            now.count = std::min(m_most_segments, end - now.first);
+            const Found found = find_together<kMoving, kLens>(part, now);
             if (found != Found::Loose) continue;
-            for (int j = 0; j < flock.n_v; ++j)
-                for (int k = 0; k < flock.n_u; k += lane_count())
-                    visit_row<kMoving, kLens>(i + k, j, ~0u >> std::max(0, 32 - flock.n_u + k));
+            if (now.count == 1) {
+                look_apart<kMoving, kLens>(part, now);
+            } else {
+                m_most_segments = now.count / 2;
+                // Patches of a grid turn alike in all tiles, flocks are of unlike sizes.
+                if (!m_in_flocks) *m_grid.together = m_most_segments;
+                now.count = 0;
+            }
         }
     }
 
-    /// A vector of micropolygons from (i, j) on, of which bits of `which` tell whether to look.
+    using Found = PatchFinder::Found;
     template <bool kMoving, Lens kLens>
-    HWY_INLINE void visit_row(int i, int j, std::uint32_t which) {
+    Found find_together(const Patch& part, Segments segments) {
+        Found found;
+        if (m_in_flocks) {
+            found = m_flocks.find<kMoving, kLens>(part, segments, m_patch, m_slices);
+            if (found == Found::Framed) visit_flock<kMoving, kLens>(part, segments);
+        } else {
+            found = m_patches.find<kMoving, kLens>(part, segments, m_patch);
+            if (found == Found::Framed) visit_patch<kMoving, kLens>(part, segments);
+        }
+        return found;
+    }
+
+    template <bool kMoving, Lens kLens>
+    void look_apart(const Patch& part, Segments segments) {
+        for (int k = 0; k < segments.count; ++k) {
+            m_target.segment = segments.first + k;
+            for (int j = 0; j < part.n_v; ++j)
+                for (int i = 0; i < part.n_u; i += lane_count())
+                    visit_row<kMoving, kLens>(part.i + i, part.j + j, part.n_u - i);
+        }
+    }
+
+    /// A vector of `count` micropolygons at most from (i, j) on.
+    template <bool kMoving, Lens kLens>
+    HWY_INLINE void visit_row(int i, int j, int count) {
         BlockRanges ranges;
         const int segment = m_target.segment, first = j * m_grid.up + i;
-        M touching = m_where.find_touched(segment, first, m_grid.n_u - i, ranges);
+        M touching = m_where.find_touched(segment, first, count, ranges);
         if (kMoving && !hn::AllFalse(kTag, touching))
             touching = hn::And(touching, m_where.find_times<kLens>(segment, first, ranges));
         if ((kMoving || kLens != Lens::None) && !hn::AllFalse(kTag, touching))
             m_paths.find_paths<kMoving, kLens>(segment, first, ranges, m_tile_paths);
-        for_each_bit(bits_of(touching) & which, [&](int lane) HWY_ATTR {
+        for_each_lane(touching, [&](int lane) HWY_ATTR {
             if (!aim_at(i + lane, j)) return;
             const Shape shape = m_where.load_shape(segment, first + lane, m_target.kind);
             if (kMoving || kLens != Lens::None || m_tile.ranked)
@@ -131,22 +155,6 @@ class Kernel {
         m_target.kind = m_grid.classes[m];
         m_target.id = m_grid.base + static_cast<SurfaceId>(m);
         return m_target.kind != 0;
-    }
-
-    /// The patches of a vector of micropolygons from (i, j) on; which micropolygons are of none.
-    template <bool kMoving, Lens kLens>
-    HWY_INLINE std::uint32_t visit_patches(int i, int j) {
-        if (!m_together || m_in_flocks) return ~0u;
-        std::uint32_t loose = 0;
-        for (int k = 0; k < kStep && i + k < m_grid.n_u; k += Patch::kSide) {
-            const Patch patch{i + k, j, std::min(Patch::kSide, m_grid.n_u - i - k),
-                              std::min(Patch::kSide, m_grid.n_v - j)};
-            using Found = PatchFinder::Found;
-            const Found found = m_patches.find<kMoving, kLens>(patch, m_target.segment, m_patch);
-            if (found == Found::Framed) visit_patch<kMoving, kLens>(patch);
-            if (found == Found::Loose) loose |= ((1u << Patch::kSide) - 1) << k;
-        }
-        return loose;
     }
 
     /// Calls visit(paths, k, samples, their slots, how far they are on x and y from the path) for
@@ -172,109 +180,110 @@ class Kernel {
     /// Calls visit(samples, slots, x, y) for the samples of a patch's windows; x, y: from where the
     /// patch is then.
     template <bool kMoving, Lens kLens, class Visit>
-    HWY_INLINE void visit_together(Visit visit) {
+    HWY_INLINE void visit_together(Segments segments, Visit visit) {
         const bool cull = m_patch.nearest < m_tile.nearest_of_ranks;
         visit_windows<kMoving, kLens>(
             m_patch.times, 0,
             [&](int first, RankPaths& paths) HWY_ATTR {
                 return m_paths.follow<kMoving, kLens, RankPathFinder::kAllSquares>(
-                    m_patch.paths, 0, m_target.segment, first, cull, paths);
+                    m_patch.paths, 0, segments, first, cull, paths);
             },
             [&](const RankPaths&, int, const Samples& at, V slots, V x, V y) HWY_ATTR
             __attribute__((always_inline)) { visit(at, slots, x, y); });
     }
 
-    /// Samples of the segment at hand, with its ends: ranks may be longer than it.
+    /// Which of the samples look during the segments, and the segment of each: ranks may be longer.
     template <bool kMoving>
-    HWY_INLINE M in_segment(const Samples& at, M samples) const {
+    HWY_INLINE M in_segments(const Samples& at, M samples, Segments segments, V& segment) const {
+        segment = set(static_cast<float>(segments.first));
         if (!kMoving || m_grid.segments == 1) return samples;
-        const V local = at.t * set(static_cast<float>(m_grid.segments)) -
-                        set(static_cast<float>(m_target.segment));
-        return hn::And(samples, hn::And(hn::Ge(local, set(0.0f)), hn::Le(local, set(1.0f))));
+        const V all = set(static_cast<float>(m_grid.segments));
+        const V end = segment + set(static_cast<float>(segments.count));
+        const V own = hn::Min(hn::Floor(at.t * all), all - set(1.0f));
+        const M in = hn::And(hn::Ge(own, segment), hn::Lt(own, end));
+        segment = own;
+        return hn::And(samples, in);
     }
 
-    /// The samples of the mask wait for the micropolygon in their lane (NearSamples::add).
+    /// The samples of the mask wait for the micropolygon in their lane (NearSamples::add): `corner`
+    /// is its vertex at the first knot.
     template <bool kMoving, Lens kLens>
     HWY_INLINE void queue(M mask, const Samples& at, V slots, hn::Vec<IntTag> index,
-                          hn::Vec<IntTag> corner) {
-        m_near.add<kMoving, kLens>(mask, at, slots, index, corner,
-                                   static_cast<float>(m_target.segment));
+                          hn::Vec<IntTag> corner, V segment) {
+        if constexpr (kMoving)
+            corner = corner + hn::ConvertTo(kIntTag, segment) * hn::Set(kIntTag, m_grid.vertices);
+        m_near.add<kMoving, kLens>(mask, at, slots, index, corner, segment);
         if (HWY_UNLIKELY(m_near.full())) test_near<kMoving, kLens>();
     }
 
     template <bool kMoving, Lens kLens>
-    void visit_patch(const Patch& patch) {
+    void visit_patch(const Patch& patch, Segments segments) {
         const PatchFrame& frame = m_patch.frame;
         const V n_u = set(static_cast<float>(patch.n_u)), n_v = set(static_cast<float>(patch.n_v));
         const V row = set(static_cast<float>(m_grid.n_u));
         const V rise = set(static_cast<float>(m_grid.up));
         const auto index = hn::Set(kIntTag, patch.j * m_grid.n_u + patch.i);
-        const auto corner =
-            hn::Set(kIntTag, m_target.segment * m_grid.vertices + patch.j * m_grid.up + patch.i);
+        const auto corner = hn::Set(kIntTag, patch.j * m_grid.up + patch.i);
         const int most_u = frame.u.most_near(), most_v = frame.v.most_near();
-        visit_together<kMoving, kLens>([&](const Samples& at, V slots, V x,
-                                           V y) HWY_ATTR __attribute__((always_inline)) {
-            const V zero = set(0.0f);
-            const V u = set(frame.u.x) * x + set(frame.u.y) * y + set(frame.u.origin);
-            const V v = set(frame.v.x) * x + set(frame.v.y) * y + set(frame.v.origin);
-            const V u_lo = u - set(frame.u.reach), u_hi = u + set(frame.u.reach);
-            const V v_lo = v - set(frame.v.reach), v_hi = v + set(frame.v.reach);
-            // Most samples of a window are beside the patch.
-            const M near =
-                in_segment<kMoving>(at, hn::And(hn::And(hn::Lt(u_lo, n_u), hn::Ge(u_hi, zero)),
-                                                hn::And(hn::Lt(v_lo, n_v), hn::Ge(v_hi, zero))));
-            if (hn::AllFalse(kTag, near)) return;
-            const V i0 = hn::Floor(u_lo), i1 = hn::Floor(u_hi);
-            const V j0 = hn::Floor(v_lo), j1 = hn::Floor(v_hi);
-            for (int dj = 0; dj < most_v; ++dj) {
-                const V j = j0 + set(static_cast<float>(dj));
-                const M in_j =
-                    hn::And(hn::And(near, hn::Le(j, j1)), hn::And(hn::Ge(j, zero), hn::Lt(j, n_v)));
-                if (hn::AllFalse(kTag, in_j)) continue;
-                for (int di = 0; di < most_u; ++di) {
-                    const V i = i0 + set(static_cast<float>(di));
-                    const M in = hn::And(hn::And(in_j, hn::Le(i, i1)),
-                                         hn::And(hn::Ge(i, zero), hn::Lt(i, n_u)));
-                    if (!hn::AllFalse(kTag, in))
-                        queue<kMoving, kLens>(in, at, slots,
-                                              hn::ConvertTo(kIntTag, j * row + i) + index,
-                                              hn::ConvertTo(kIntTag, j * rise + i) + corner);
+        visit_together<kMoving, kLens>(
+            segments, [&](const Samples& at, V slots, V x, V y) HWY_ATTR
+            __attribute__((always_inline)) {
+                const V zero = set(0.0f);
+                const V u = set(frame.u.x) * x + set(frame.u.y) * y + set(frame.u.origin);
+                const V v = set(frame.v.x) * x + set(frame.v.y) * y + set(frame.v.origin);
+                const V u_lo = u - set(frame.u.reach), u_hi = u + set(frame.u.reach);
+                const V v_lo = v - set(frame.v.reach), v_hi = v + set(frame.v.reach);
+                // Most samples of a window are beside the patch.
+                V segment;
+                const M near =
+                    in_segments<kMoving>(at,
+                                         hn::And(hn::And(hn::Lt(u_lo, n_u), hn::Ge(u_hi, zero)),
+                                                 hn::And(hn::Lt(v_lo, n_v), hn::Ge(v_hi, zero))),
+                                         segments, segment);
+                if (hn::AllFalse(kTag, near)) return;
+                const V i0 = hn::Floor(u_lo), i1 = hn::Floor(u_hi);
+                const V j0 = hn::Floor(v_lo), j1 = hn::Floor(v_hi);
+                for (int dj = 0; dj < most_v; ++dj) {
+                    const V j = j0 + set(static_cast<float>(dj));
+                    const M in_j = hn::And(hn::And(near, hn::Le(j, j1)),
+                                           hn::And(hn::Ge(j, zero), hn::Lt(j, n_v)));
+                    if (hn::AllFalse(kTag, in_j)) continue;
+                    for (int di = 0; di < most_u; ++di) {
+                        const V i = i0 + set(static_cast<float>(di));
+                        const M in = hn::And(hn::And(in_j, hn::Le(i, i1)),
+                                             hn::And(hn::Ge(i, zero), hn::Lt(i, n_u)));
+                        if (!hn::AllFalse(kTag, in))
+                            queue<kMoving, kLens>(
+                                in, at, slots, hn::ConvertTo(kIntTag, j * row + i) + index,
+                                hn::ConvertTo(kIntTag, j * rise + i) + corner, segment);
+                    }
                 }
-            }
-        });
+            });
     }
 
     template <bool kMoving, Lens kLens>
-    void visit_flock(const Patch& flock) {
-        const int knot = m_target.segment * m_grid.vertices;
-        visit_together<kMoving, kLens>([&](const Samples& at, V slots, V x,
-                                           V y) HWY_ATTR __attribute__((always_inline)) {
-            const FlockSlices::Cells cells = m_slices.cells_of(x, y);
-            const M inside = in_segment<kMoving>(at, cells.inside);
-            if (hn::AllFalse(kTag, inside)) return;
-            alignas(64) int packed[kPacket], index[kPacket] = {}, corner[kPacket] = {};
-            std::uint64_t bins[kPacket];
-            hn::Store(cells.packed, kIntTag, packed);
-            std::uint32_t lanes = 0;
-            for_each_lane(inside, [&](int lane) HWY_ATTR {
-                bins[lane] = m_slices.bins(packed[lane]);
-                lanes |= static_cast<std::uint32_t>(bins[lane] != 0) << lane;
+    void visit_flock(const Patch& flock, Segments segments) {
+        static_assert(GridPart::kNarrow == 2);
+        const auto begin = hn::Set(kIntTag, flock.i);
+        const auto last = hn::Set(kIntTag, flock.n_u - 1);
+        const auto next_row = hn::Set(kIntTag, m_grid.n_u - flock.n_u);
+        const auto rise = hn::Set(kIntTag, m_grid.up - flock.n_u);
+        visit_together<kMoving, kLens>(
+            segments, [&](const Samples& at, V slots, V x, V y) HWY_ATTR
+            __attribute__((always_inline)) {
+                const FlockSlices::Cells cells = m_slices.cells_of(x, y);
+                V segment;
+                const M inside = in_segments<kMoving>(at, cells.inside, segments, segment);
+                if (hn::AllFalse(kTag, inside)) return;
+                m_slices.for_each_bin(
+                    cells, inside,
+                    [&](M some, hn::Vec<IntTag> bin) HWY_ATTR __attribute__((always_inline)) {
+                        const auto above = hn::Gt(bin, last);
+                        queue<kMoving, kLens>(
+                            some, at, slots, bin + begin + hn::IfThenElseZero(above, next_row),
+                            bin + begin + hn::IfThenElseZero(above, rise), segment);
+                    });
             });
-            // Each sample's next micropolygon, until no sample has any.
-            while (lanes != 0) {
-                const std::uint32_t now = lanes;
-                for_each_bit(now, [&](int lane) HWY_ATTR {
-                    const int bin = std::countr_zero(bins[lane]);
-                    const int j = bin / flock.n_u, i = flock.i + bin - j * flock.n_u;
-                    index[lane] = j * m_grid.n_u + i;
-                    corner[lane] = knot + j * m_grid.up + i;
-                    bins[lane] &= bins[lane] - 1;
-                    lanes &= ~(static_cast<std::uint32_t>(bins[lane] == 0) << lane);
-                });
-                queue<kMoving, kLens>(lanes_of(now), at, slots, hn::Load(kIntTag, index),
-                                      hn::Load(kIntTag, corner));
-            }
-        });
     }
 
     /// The samples that wait.
@@ -335,7 +344,7 @@ class Kernel {
             swept, lane,
             [&](int first, RankPaths& paths) HWY_ATTR {
                 return straight ? m_paths.follow<kMoving, kLens>(
-                                      m_tile_paths, lane, m_target.segment, first, cull, paths)
+                                      m_tile_paths, lane, {m_target.segment, 1}, first, cull, paths)
                                 : m_paths.find<kMoving, kLens>(shape, m_target.segment, first, cull,
                                                                paths);
             },
@@ -383,9 +392,10 @@ class Kernel {
         return squeeze.count();
     }
 
-    /// Whole vectors and whole patches.
-    static constexpr int kStep = std::max(static_cast<int>(hn::MaxLanes(kTag)), Patch::kSide);
-    static constexpr int kLeastPatch = 4, kNarrow = 2;
+    static constexpr int kLeastPatch = 4;
+    /// A frame is worth as many samples of a patch of pixels: 16 segments at 8 samples a pixel
+    /// leave 32 for each.
+    static constexpr double kFewSamples = 128.0;
     static constexpr std::size_t kMostListed = 256;
     static constexpr std::size_t kListed = kMostListed + 2 * kPacket;
 
@@ -404,6 +414,7 @@ class Kernel {
     PatchPath m_patch;
     FlockSlices m_slices;
     NearSamples m_near;            ///< to be tested, of patches and flocks
+    int m_most_segments = 1;       ///< that patches and flocks are looked at together during
     const bool m_together;         ///< patches or flocks are looked for
     const bool m_in_flocks;        ///< micropolygons share no vertices, or lie in few rows
     SampleList<kListed> m_listed;  ///< to be tested

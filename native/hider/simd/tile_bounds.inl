@@ -137,8 +137,9 @@ class TileBounds {
                            hn::Max(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + right)));
         };
         hn::StoreU(most(m_grid.nearest), kTag, out.nearest);
-        const M some = store_blocks(m_tile, least(m_grid.x_lo), most(m_grid.x_hi),
-                                    least(m_grid.y_lo), most(m_grid.y_hi), out);
+        const V left = set(m_grid.origin_x), bottom = set(m_grid.origin_y);
+        const M some = store_blocks(m_tile, least(m_grid.x_lo) - left, most(m_grid.x_hi) - left,
+                                    least(m_grid.y_lo) - bottom, most(m_grid.y_hi) - bottom, out);
         return hn::And(some, hn::FirstN(kTag, static_cast<std::size_t>(count)));
     }
 

@@ -26,16 +26,16 @@ struct TilePaths {
     std::uint32_t straight = 0;  ///< bit i: micropolygon i stays that near to one line
 };
 
-/// The part of a segment of motion in which something is over a tile.
+/// When something is over a tile: a part of a segment of motion, or several segments.
 template <bool kMoving>
 struct SegmentPart {
     V ends[2];       ///< in parts of the segment
     V time0, time1;  ///< of the shutter
 
-    HWY_INLINE SegmentPart(const SimdGrid& grid, int segment, const BlockRanges& times) {
+    HWY_INLINE SegmentPart(const SimdGrid& grid, Segments segments, const BlockRanges& times) {
         const V zero = set(0.0f), one = set(1.0f);
         const V knots = set(static_cast<float>(std::max(1, grid.segments)));
-        const V start = set(static_cast<float>(segment));
+        const V start = set(static_cast<float>(segments.first));
         ends[0] = ends[1] = zero;
         if constexpr (kMoving) {
             const auto end = [&](const float* time) HWY_ATTR {
@@ -44,10 +44,23 @@ struct SegmentPart {
             ends[0] = end(times.t0);
             ends[1] = hn::Max(ends[0], end(times.t1));
         }
+        if (segments.count > 1) {
+            ends[0] = zero;
+            ends[1] = set(static_cast<float>(segments.count));
+        }
         time0 = (ends[0] + start) / knots;
         time1 = (ends[1] + start) / knots;
     }
 };
+
+/// All of several segments, or as much as the grid exists for.
+HWY_INLINE void store_times(const SimdGrid& grid, Segments segments, BlockRanges& out) {
+    const V knots = set(static_cast<float>(grid.segments));
+    const V begin = set(static_cast<float>(segments.first));
+    const V end = set(static_cast<float>(segments.first + segments.count));
+    hn::StoreU(hn::Max(begin / knots, set(grid.lifespan.open)), kTag, out.t0);
+    hn::StoreU(hn::Min(end / knots, set(grid.lifespan.close)), kTag, out.t1);
+}
 
 /// A grid over the ranks of a tile.
 class RankPathFinder {
@@ -63,7 +76,7 @@ class RankPathFinder {
     template <bool kMoving, Lens kLens>
     HWY_INLINE void find_paths(int segment, int vertex, const BlockRanges& times,
                                TilePaths& out) const {
-        const SegmentPart<kMoving> part(m_grid, segment, times);
+        const SegmentPart<kMoving> part(m_grid, {segment, 1}, times);
         const std::size_t knot = static_cast<std::size_t>(segment) * m_grid.vertices;
         PathExtents<kMoving, kLens> extents(hn::FirstN(kTag, kPacket));
         for (const int corner : {vertex, vertex + m_grid.right, vertex + m_grid.up,
@@ -112,12 +125,12 @@ class RankPathFinder {
     /// The part of a straight path, `lane` of find_paths(), that the samples of each of these ranks
     /// can see, and which of the ranks have any that do not see something nearer.
     template <bool kMoving, Lens kLens, int kSquares = kFewSquares>
-    HWY_INLINE M follow(const TilePaths& paths, int lane, int segment, int first, bool cull,
+    HWY_INLINE M follow(const TilePaths& paths, int lane, Segments segments, int first, bool cull,
                         RankPaths& out) const {
         const RankBounds& bounds = *m_tile.bounds;
         const V t_lo = rank(bounds.t_lo, first), t_hi = rank(bounds.t_hi, first);
         M present = hn::Le(t_lo, t_hi);
-        if constexpr (kMoving) present = hn::And(present, in_segment(t_lo, t_hi, segment));
+        if constexpr (kMoving) present = hn::And(present, in_segments(t_lo, t_hi, segments));
         LensExtents lens;
         if constexpr (kLens == Lens::Still) {
             lens.shear.lo[0] = set(paths.shear_lo[lane]);
@@ -165,7 +178,7 @@ class RankPathFinder {
         const V start = set(static_cast<float>(segment));
         V ends[2] = {zero, zero};
         if constexpr (kMoving) {
-            present = hn::And(present, in_segment(t_lo, t_hi, segment));
+            present = hn::And(present, in_segments(t_lo, t_hi, {segment, 1}));
             ends[0] = hn::Max(t_lo * knots - start, zero);
             ends[1] = hn::Min(t_hi * knots - start, one);
         }
@@ -251,12 +264,12 @@ class RankPathFinder {
     static HWY_INLINE V rank(const std::vector<float>& values, int first) {
         return hn::LoadU(kTag, values.data() + first);
     }
-    /// Which of these intervals of time touch the segment.
-    HWY_INLINE M in_segment(V t_lo, V t_hi, int segment) const {
+    /// Which of these intervals of time touch the segments.
+    HWY_INLINE M in_segments(V t_lo, V t_hi, Segments segments) const {
         const V knots = set(static_cast<float>(m_grid.segments));
-        const V start = set(static_cast<float>(segment));
+        const V start = set(static_cast<float>(segments.first));
         return hn::And(hn::Ge(t_hi * knots - start, set(0.0f)),
-                       hn::Le(t_lo * knots - start, set(1.0f)));
+                       hn::Le(t_lo * knots - start, set(static_cast<float>(segments.count))));
     }
 
     /// At the times of ranks.

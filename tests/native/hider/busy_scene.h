@@ -22,9 +22,10 @@ inline bool has_lens(Blur blur) {
     return blur != kStatic && blur != kMoving;
 }
 
-/// Eight bent, overlapping, partly transparent grids in front of a perspective camera; with
-/// three knots where they move.
-inline void make_busy(Shot& shot, Blur blur, unsigned seed = 3) {
+/// Eight bent, overlapping, partly transparent grids in front of a perspective camera; where they
+/// move they turn by `swing` radians in so many segments.
+inline void make_busy(Shot& shot, Blur blur, unsigned seed = 3, int segments = 2,
+                      float swing = 1.0f) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> uniform(0, 1);
     shot.options.samples = 16;
@@ -40,10 +41,10 @@ inline void make_busy(Shot& shot, Blur blur, unsigned seed = 3) {
         const float x = -2 + 3 * uniform(random), y = -2 + 3 * uniform(random);
         const float z = 8 + 6 * uniform(random), turn = 6 * uniform(random);
         const float dx = uniform(random) - .5f, dz = 2 * uniform(random) - 1;
-        const int knots = moves(blur) ? 3 : 1;
+        const int knots = moves(blur) ? segments + 1 : 1;
         shot.grids.push_back(make_grid(17, 13, knots, [=](float u, float v, int k) {
-            const auto t = static_cast<float>(k) / 2;
-            const float a = 3 * (u - .5f), b = 2.4f * (v - .5f), angle = turn + t;
+            const float t = static_cast<float>(k) / static_cast<float>(segments);
+            const float a = 3 * (u - .5f), b = 2.4f * (v - .5f), angle = turn + swing * t;
             return Vec3f(x + a * std::cos(angle) - b * std::sin(angle) + 1.5f * dx * t,
                          y + a * std::sin(angle) + b * std::cos(angle) + dx * t * t,
                          z + a * .6f + std::sin(4 * u + 3 * v) * .4f + dz * t);

@@ -142,6 +142,43 @@ TEST_P(ExecutorsAgree, FlocksAndOneByOne) {
     }
 }
 
+/// Flat, on an arc: .1 pixel within four of 16 segments.
+void bend_way(Grid& grid) {
+    const auto vertices = static_cast<std::size_t>(grid.vertex_count());
+    for (std::size_t i = 0; i < grid.positions.size(); ++i) {
+        const float t = static_cast<float>(i / vertices) / static_cast<float>(grid.knots - 1);
+        grid.positions[i].y += .6f * t * (1 - t);
+        grid.positions[i].z = grid.positions[0].z;
+    }
+}
+
+TEST_P(ExecutorsAgree, SegmentsTogetherAndOneByOne) {
+    if (!moves(GetParam())) GTEST_SKIP() << "nothing moves";
+    // Few samples see each of 16 segments; slow turns let several of them share a frame.
+    for (const float swing : {0.0f, 0.25f, 1.0f}) {
+        Shot patches, flocks, all_but_one, alone;
+        for (Shot* shot : {&patches, &flocks, &all_but_one, &alone}) {
+            make_busy(*shot, GetParam(), 5, 16, swing);
+            shot->options.samples = 4;
+            for (Grid& grid : shot->grids) {
+                bend_way(grid);
+                if (shot == &patches) continue;
+                grid = take_apart(grid);
+                if (shot != &flocks) remove_last(grid, shot == &all_but_one);
+            }
+        }
+        for (const auto& [one, other] : {std::pair{&patches, &flocks}, {&all_but_one, &alone}}) {
+            const Seen a = look(make_simd_hider, *one, one->tiles);
+            const Seen b = look(make_simd_hider, *other, other->tiles);
+            for (std::size_t i = 0; i < a.stores.size(); ++i)
+                expect_equal(a.stores[i], b.stores[i]);
+            EXPECT_NE(one->statistics.get(Counter::SampleTestsMoving),
+                      other->statistics.get(Counter::SampleTestsMoving))
+                << "they were to be found in two ways";
+        }
+    }
+}
+
 TEST_P(ExecutorsAgree, AllSimdTargetsMakeTheSameBits) {
     Shot shot;
     make_busy(shot, GetParam(), 8);
