@@ -13,7 +13,7 @@ from granita.ui.render_panels import GRANITA_RENDER_PT_sampling
 from granita.ui.sampling_presets import GRANITA_OT_sampling_preset_add as Add
 from granita.ui.sampling_presets import GRANITA_RENDER_PT_sampling_presets as Menu
 
-PREVIEW = {"samples": 8, "light_samples": 4, "dicing_rate": 4.0}
+PREVIEW = {"samples": 8, "light_samples": 4, "dicing_rate": 2.0}
 NAMES = [value.removeprefix("settings.") for value in Add.preset_values]
 
 
