@@ -44,32 +44,21 @@ HWY_INLINE V owen(V x, std::uint32_t seed) {
     return reverse(x);
 }
 
-void fill(const SobolDimension& dimension, std::uint32_t first, std::size_t count, float* out) {
+void fill(const SobolDimension& dimension, std::uint32_t seed, std::uint32_t first,
+          std::size_t count, float* out) {
     const int digits = dimension.digits;
-    const auto point = [&](std::uint32_t i) {
-        return bits::sobol_reversed(bits::sequence_place(i, dimension.square_digits),
-                                    static_cast<std::uint32_t>(dimension.dimension));
-    };
-    // The lowest digits of the index choose within a run; from run to run all direction numbers up
-    // to the lowest zero bit of the rest toggle.
-    alignas(64) std::uint32_t within[kSobolRun];
-    for (std::uint32_t i = 0; i < kSobolRun; ++i) within[i] = point(i);
-    std::uint32_t toggle[32], sum = 0;
-    constexpr int kLog = std::countr_zero(kSobolRun);
-    for (int i = 0; i + kLog < 32; ++i) toggle[i] = sum ^= point(1u << (i + kLog));
-
     const hn::RebindToSigned<Tag> as_int;
     const hn::RebindToFloat<Tag> as_float;
     const auto scale = hn::Set(as_float, std::ldexp(1.0f, -digits));
-    std::uint32_t run = first / kSobolRun, base = point(first);
+    std::uint32_t run = first / kSobolRun, base = dimension.point(first);
     for (std::size_t i = 0; i < count; i += kSobolRun) {
         for (std::size_t k = 0; k < kSobolRun; k += hn::Lanes(kTag)) {
-            const V x = hn::Xor(hn::Load(kTag, within + k), hn::Set(kTag, base));
-            const V upper = hn::ShiftRightSame(owen(x, dimension.seed), 32 - digits);
+            const V x = hn::Xor(hn::LoadU(kTag, dimension.within + k), hn::Set(kTag, base));
+            const V upper = hn::ShiftRightSame(owen(x, seed), 32 - digits);
             const auto value = hn::ConvertTo(as_float, hn::BitCast(as_int, upper)) * scale;
             hn::StoreU(value, as_float, out + i + k);
         }
-        base ^= toggle[std::countr_one(run++)];
+        base ^= dimension.toggle[std::countr_one(run++)];
     }
 }
 
@@ -82,9 +71,23 @@ namespace granita {
 
 HWY_EXPORT(fill);
 
-void fill_sobol(const SobolDimension& dimension, std::uint32_t first, std::size_t count,
-                float* out) {
-    HWY_DYNAMIC_DISPATCH(fill)(dimension, first, count, out);
+SobolDimension::SobolDimension(int dimension, std::uint32_t digits_of_squares, int kept)
+    : number(static_cast<std::uint32_t>(dimension)),
+      square_digits(digits_of_squares),
+      digits(kept) {
+    for (std::uint32_t i = 0; i < kSobolRun; ++i) within[i] = point(i);
+    constexpr int kLog = std::countr_zero(kSobolRun);
+    std::uint32_t sum = 0;
+    for (int i = 0; i + kLog < 32; ++i) toggle[i] = sum ^= point(1u << (i + kLog));
+}
+
+std::uint32_t SobolDimension::point(std::uint32_t i) const {
+    return bits::sobol_reversed(bits::sequence_place(i, square_digits), number);
+}
+
+void fill_sobol(const SobolDimension& dimension, std::uint32_t seed, std::uint32_t first,
+                std::size_t count, float* out) {
+    HWY_DYNAMIC_DISPATCH(fill)(dimension, seed, first, count, out);
 }
 
 }  // namespace granita

@@ -2,12 +2,13 @@
 #include "hider/samples/sample_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
 #include "base/error.h"
+#include "base/spares.h"
 #include "hider/samples/sample_bits.h"
-#include "hider/samples/sample_kernel.h"
 
 namespace granita {
 namespace {
@@ -16,6 +17,17 @@ constexpr int kPixels = kTileSize * kTileSize;
 constexpr int kBlockBits = 7;      ///< blocks of 128 pixels (decision 15)
 constexpr int kMaxClasses = 1024;  ///< of INTERLEAVED
 enum Dimension { kX, kY, kT, kU, kV };
+
+/// [y][x] of a tile's pixels: their places in the Z-order.
+constexpr std::array<std::uint8_t, kPixels> kMorton = [] {
+    std::array<std::uint8_t, kPixels> places{};
+    for (std::uint32_t p = 0; p < kPixels; ++p)
+        for (std::uint32_t bit = 0; bit < 4; ++bit) {
+            places[p] |= static_cast<std::uint8_t>((p >> bit & 1u) << 2 * bit);
+            places[p] |= static_cast<std::uint8_t>((p >> (4 + bit) & 1u) << (2 * bit + 1));
+        }
+    return places;
+}();
 
 int nearest_square_side(int samples) {
     int side = static_cast<int>(std::sqrt(static_cast<double>(samples)));
@@ -50,8 +62,11 @@ SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNee
     if (options.time_samples < 0 || options.time_samples > 2048)
         throw SceneError("render settings", "time_samples must be 0 to 2048, not " +
                                                 std::to_string(options.time_samples));
-    if (m_sampling != Sampling::Regular)
+    if (m_sampling != Sampling::Regular) {
         m_square_digits = bits::square_digits(static_cast<std::uint32_t>(m_samples));
+        for (int d = kX; d <= kV; ++d)
+            m_dimensions.emplace_back(d, m_square_digits, d <= kY ? 20 : 24);
+    }
     if (m_sampling == Sampling::Interleaved) m_class_pixels = class_pixels(m_samples);
     if (m_sampling == Sampling::Regular) {
         const bool blur = frame.time || (frame.lens && camera.projection.has_lens());
@@ -154,20 +169,22 @@ void SampleTable::fill_dimension(Vec2i tile, int dimension, std::vector<float>& 
                                                           static_cast<std::uint32_t>(y0) & mask);
     const std::size_t pixels = in_classes ? (mask + 1) * (mask + 1) : kPixels;
     const std::size_t count = (pixels * samples + kSobolRun - 1) / kSobolRun * kSobolRun;
-    std::vector<float> run(count);
-    fill_sobol({dimension, seed, m_square_digits, dimension <= kY ? 20 : 24},
+    auto run = Spares<std::vector<float>>::take();
+    run.resize(count);
+    fill_sobol(m_dimensions[static_cast<std::size_t>(dimension)], seed,
                first * static_cast<std::uint32_t>(m_samples), count, run.data());
     for (int p = 0; p < kPixels; ++p) {
         const int x = p % kTileSize, y = p / kTileSize;
-        const std::uint32_t place = bits::morton(static_cast<std::uint32_t>(x) & mask,
-                                                 static_cast<std::uint32_t>(y) & mask);
+        const std::size_t place = kMorton[(static_cast<std::uint32_t>(y) & mask) * kTileSize +
+                                          (static_cast<std::uint32_t>(x) & mask)];
         const float corner = dimension == kX   ? static_cast<float>(x)
                              : dimension == kY ? static_cast<float>(y)
                                                : 0.0f;
-        const float* const from = run.data() + place * samples;
-        float* const values = out.data() + static_cast<std::size_t>(p) * samples;
+        const float* const __restrict from = run.data() + place * samples;
+        float* const __restrict values = out.data() + static_cast<std::size_t>(p) * samples;
         for (std::size_t s = 0; s < samples; ++s) values[s] = corner + from[s];
     }
+    Spares<std::vector<float>>::give(std::move(run));
 }
 
 void SampleTable::fill_regular(SampleNeeds needs, TileSamples& out) const {

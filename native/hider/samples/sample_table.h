@@ -7,6 +7,7 @@
 
 #include "hider/samples/lens_shape.h"
 #include "hider/samples/regular_lattice.h"
+#include "hider/samples/sample_kernel.h"
 #include "math/bounds.h"
 #include "scene/scene.h"
 #include "scene/shutter_warp.h"
@@ -72,7 +73,8 @@ class SampleTable {
     RegularLattice m_lattice;
     Sampling m_sampling;
     std::uint32_t m_seed;
-    std::uint32_t m_square_digits = 0;  ///< bits::square_digits
+    std::uint32_t m_square_digits = 0;         ///< bits::square_digits
+    std::vector<SobolDimension> m_dimensions;  ///< x, y, t, u, v; unless REGULAR
     int m_class_pixels = 1;  ///< INTERLEAVED: side of the square of pixels that holds every class
     ShutterWarp m_shutter;
     int m_height;     ///< rows of the frame
