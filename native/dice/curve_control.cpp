@@ -20,7 +20,7 @@ constexpr double kBend = 0.03;
 
 /// Whether a difference of two places, seen from `from`, is more than their rounding.
 bool apart(const Vec3d& difference, const Vec3d& from) {
-    return glm::length(difference) > 1e-12 * (glm::length(from) + 1e-30);
+    return glm::dot(difference, difference) > 1e-24 * (glm::dot(from, from) + 1e-60);
 }
 
 Vec3d any_perpendicular(const Vec3d& v) {
@@ -122,7 +122,8 @@ RibbonRow CurveControl::row(int knot, double t, bool with_facing) const {
     const Vec3d view = m_elements->view_direction(here.p);
     const Vec3d across = glm::cross(view, along);
     // A curve that runs straight to the eye has no side of its own.
-    const bool seen_along = !(glm::length(across) > 1e-9 * glm::length(view) * glm::length(along));
+    const bool seen_along =
+        !(glm::dot(across, across) > 1e-18 * glm::dot(view, view) * glm::dot(along, along));
     row.side =
         seen_along ? any_perpendicular(glm::length(view) > 0.0 ? view : along) : unit(across);
     row.across = row.side * here.radius;

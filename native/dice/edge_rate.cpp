@@ -72,20 +72,21 @@ Vec2d EdgeRate::add(Swept& swept, const Vec3f& a, const Vec3f& b) const {
         if (p.z < m_near && q.z < m_near) return Vec2d(0.0);
         (p.z < m_near ? p : q) = p + (q - p) * ((m_near - p.z) / (q.z - p.z));
     }
-    double x[2], y[2];
-    const Vec3d* ends[2] = {&p, &q};
-    for (int i = 0; i < 2; ++i) {
-        const double z = ends[i]->z, w = m_projection.perspective ? 1.0 / z : 1.0;
-        x[i] = m_projection.center.x + m_projection.scale.x * ends[i]->x * w;
-        y[i] = m_projection.center.y + m_projection.scale.y * ends[i]->y * w;
-        const double reach = m_projection.lens_reach(z) * w;
-        swept.x0 = std::min(swept.x0, x[i] - m_projection.scale.x * reach);
-        swept.x1 = std::max(swept.x1, x[i] + m_projection.scale.x * reach);
-        swept.y0 = std::min(swept.y0, y[i] - m_projection.scale.y * reach);
-        swept.y1 = std::max(swept.y1, y[i] + m_projection.scale.y * reach);
-    }
+    const Vec2d from = add_place(swept, p), to = add_place(swept, q);
+    return to - from;
+}
+
+Vec2d EdgeRate::add_place(Swept& swept, const Vec3d& p) const {
+    const double w = m_projection.perspective ? 1.0 / p.z : 1.0;
+    const double x = m_projection.center.x + m_projection.scale.x * p.x * w;
+    const double y = m_projection.center.y + m_projection.scale.y * p.y * w;
+    const double reach = m_projection.lens_reach(p.z) * w;
+    swept.x0 = std::min(swept.x0, x - m_projection.scale.x * reach);
+    swept.x1 = std::max(swept.x1, x + m_projection.scale.x * reach);
+    swept.y0 = std::min(swept.y0, y - m_projection.scale.y * reach);
+    swept.y1 = std::max(swept.y1, y + m_projection.scale.y * reach);
     swept.seen = true;
-    return {x[1] - x[0], y[1] - y[0]};
+    return {x, y};
 }
 
 bool EdgeRate::add_motion(Blur& blur, const Vec3f& first, const Vec3f& last) const {
@@ -207,9 +208,17 @@ int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, 
     double longest = 0.0, counted = 0.0, sag = 0.0;
     bool equal = true;
     const auto measure = [&](const Vec3f& a, const Vec3f& m, const Vec3f& b) {
-        const Vec2d pieces[2] = {add(swept, a, m), add(swept, m, b)};
+        Vec2d pieces[2], whole;
+        if (!m_projection.perspective || std::min({a.z, m.z, b.z}) >= m_near) {
+            // As below, each place once.
+            const Vec2d from = add_place(swept, Vec3d(a)), by = add_place(swept, Vec3d(m)),
+                        to = add_place(swept, Vec3d(b));
+            pieces[0] = by - from, pieces[1] = to - by, whole = to - from;
+        } else {
+            pieces[0] = add(swept, a, m), pieces[1] = add(swept, m, b), whole = add(swept, a, b);
+        }
         const double first = glm::length(pieces[0]), second = glm::length(pieces[1]);
-        const double chord = glm::length(add(swept, a, b));
+        const double chord = glm::length(whole);
         const double length = first + second;
         longest = std::max(longest, length);
         counted = std::max(counted, blurred.length(pieces[0]) + blurred.length(pieces[1]));

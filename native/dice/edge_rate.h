@@ -90,6 +90,8 @@ class EdgeRate {
     void add_lens(Blur& blur, int knots, Depths depths) const;
     /// Adds the piece's raster box and returns it as seen in the raster at one knot.
     Vec2d add(Swept& swept, const Vec3f& a, const Vec3f& b) const;
+    /// Adds a place, not behind the near plane; returns it.
+    Vec2d add_place(Swept& swept, const Vec3d& p) const;
     /// As seen in the raster, before the near plane.
     Vec2f piece(const Vec3f& a, const Vec3f& b) const {
         const float u = m_projection.perspective ? 1.0f / a.z : 1.0f;
