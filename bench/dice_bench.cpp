@@ -60,6 +60,7 @@ void dice_all(const Primitive& primitive, long& micropolygons, long& grids) {
     if (!primitive.bounds().visible) return;
     if (primitive.diceable()) {
         const auto grid = primitive.dice();
+        if (grid->shading_state) grid->shading_state(*grid);
         micropolygons += grid->micropolygon_count();
         ++grids;
         return;
