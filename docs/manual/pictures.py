@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the pictures of the manual's chapter on motion blur, and prints what each one costs.
+"""Makes the manual's pictures of motion blur, all or those named, and prints what each one costs.
 
-    blender -b --factory-startup --addons granita --python docs/manual/pictures.py
+    blender -b --factory-startup --addons granita --python docs/manual/pictures.py [-- NAME ...]
 
 A pinwheel that turns and a ball that flies through, seen with one setting after another; each strip shows
 three values from left to right.
@@ -9,12 +9,14 @@ three values from left to right.
 
 import math
 import os
+import sys
 from pathlib import Path
 
 import bpy
 import numpy as np
 
 FOLDER = Path(__file__).parent / "images"
+PRESETS = Path(__file__).parents[2] / "addon" / "presets"
 WIDTH, HEIGHT = 240, 160
 FRAME = 10
 COLORS = ((0.9, 0.12, 0.05), (0.95, 0.6, 0.05), (0.05, 0.5, 0.15), (0.03, 0.25, 0.8))
@@ -180,6 +182,11 @@ def sails(blur):
     return change
 
 
+def preset(name):
+    file = PRESETS / f"{name}.py"
+    return lambda _scene: exec(compile(file.read_text(), file, "exec"), {})
+
+
 # Name of the strip -> [(caption, change of the scene)].
 STRIPS = {
     "shutter": [("off", shutter(0.0)), ("0.5", shutter(0.5)), ("1.5", shutter(1.5))],
@@ -191,6 +198,7 @@ STRIPS = {
     ],
     "steps": [(str(number), steps(number)) for number in (3, 5, 17)],
     "rolling": [("off", rolling(0.0)), ("0.5", rolling(0.5)), ("0.05", rolling(0.05))],
+    "preset": [(name, preset(name)) for name in ("Preview", "Final")],
     "object": [("all", sails(True)), ("not the sails", sails(False))],
 }
 
@@ -220,9 +228,10 @@ def save(name, parts):
 
 def main():
     FOLDER.mkdir(exist_ok=True)
-    for name, values in STRIPS.items():
+    after = sys.argv.index("--") + 1 if "--" in sys.argv else len(sys.argv)
+    for name in sys.argv[after:] or STRIPS:
         parts = []
-        for caption, change in values:
+        for caption, change in STRIPS[name]:
             scene = set_stage()
             change(scene)
             pixels, seconds = rendered(scene)
