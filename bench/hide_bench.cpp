@@ -141,7 +141,7 @@ void composite(benchmark::State& state) {
     auto& store = hider->finish()[0];
     const CompositeSettings settings{camera.projection, 1, true};
     SampleColors colors;
-    LayerTable layers(hider->pool());
+    LayerTable layers(hider->pool(), hider->seen_grids());
     for (auto _ : state) {
         composite_tile(store, hider->tile_samples(0), layers, {&black, 1}, settings, colors);
         benchmark::DoNotOptimize(colors.red.data());

@@ -71,12 +71,12 @@ def sample_motion(clock, shutter, fps, scene, report, check_cancel):
             level = _first_level(ticks)
             read(range(0, ticks + 1, ticks // level))
             finer = finer_level(level, ticks)
-            while finer and (level < wanted or _bends(scene, steps, ticks // level)):
+            while finer and (level < wanted or _bends(scene, steps, ticks // level, check_cancel)):
                 read(range(0, ticks + 1, ticks // finer))
                 level, finer = finer, finer_level(finer, ticks)
         finally:
             clock.go(0.0)
-    motion = _result(scene, steps, ticks, level)
+    motion = _result(scene, steps, ticks, level, check_cancel)
     motion.lifespans = steps.lifespans(clock.start)
     scene.come_again(steps.come_again())
     return motion
@@ -146,18 +146,19 @@ def _share_of(path):
     return lambda difference: np.abs(difference) / largest * 256.0 * MAX_BEND_PIXELS
 
 
-def _bends(scene, steps, stride):
-    return any(
-        bends_still(path, stride, measure)
-        for _, _, checks in _paths(scene, steps)
-        for path, measure in checks
-    )
+def _bends(scene, steps, stride, check_cancel):
+    for _, _, checks in _paths(scene, steps):
+        poll(check_cancel)
+        if any(bends_still(path, stride, measure) for path, measure in checks):
+            return True
+    return False
 
 
-def _result(scene, steps, ticks, level):
+def _result(scene, steps, ticks, level, check_cancel):
     motion = Motion(scene.camera_record["world_from_camera"])
     stride = ticks // level
     for key, path, checks in _paths(scene, steps):
+        poll(check_cancel)
         segments = np.lcm.reduce([keep_fewest(p, ticks, level, measure) for p, measure in checks])
         if isinstance(key, np.ndarray):
             knots = np.stack([path[tick] for tick in range(0, ticks + 1, stride)])

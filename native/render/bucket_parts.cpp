@@ -32,10 +32,9 @@ class TileParts {
             stores = &hider->finish();
         }
         if (hider->overflowed()) return add_halves(pixels);
-        shade_seen(m_frame, *hider, hidden);
+        LayerTable table(hider->pool(), shade_seen(m_frame, *hider, hidden));
         m_samples = hider->tile_samples(0);
         TileColors part(m_frame);
-        LayerTable table(hider->pool());
         part.composite(stores->front(), m_samples, table);
         const Vec2i corner = m_tile * kTileSize;
         m_colors.take(part,

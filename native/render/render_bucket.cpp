@@ -53,11 +53,10 @@ std::vector<TileContribution> resolve(Frame& frame, Hider& hider, const HiddenGr
         stores = &hider.finish();
     }
     if (hider.overflowed()) return {};
-    shade_seen(frame, hider, grids);
+    LayerTable table(hider.pool(), shade_seen(frame, hider, grids));
     std::vector<TileContribution> contributions;
     contributions.reserve(stores->size());
     TileColors colors(frame);
-    LayerTable table(hider.pool());
     for (std::size_t i = 0; i < stores->size(); ++i) {
         const TileSamples& samples = hider.tile_samples(i);
         colors.composite((*stores)[i], samples, table);

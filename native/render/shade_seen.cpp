@@ -3,7 +3,7 @@
 
 namespace granita {
 
-void shade_seen(Frame& frame, const Hider& hider, const HiddenGrids& grids) {
+std::vector<bool> shade_seen(Frame& frame, const Hider& hider, const HiddenGrids& grids) {
     std::vector<bool> seen;
     {
         const StageTimer timer(frame.statistics, Stage::Hide);
@@ -13,6 +13,7 @@ void shade_seen(Frame& frame, const Hider& hider, const HiddenGrids& grids) {
         frame.progress.check();
         if (seen[slot]) grids[slot]->ensure_radiance(frame.shading);
     }
+    return seen;
 }
 
 }  // namespace granita

@@ -12,6 +12,8 @@ namespace granita {
 using HiddenGrids = std::vector<std::shared_ptr<SharedGrid>>;  ///< in a hider's arrival order
 
 /// Shades the grids that some sample sees, once the hider has finished; `grids` are its pool's.
-void shade_seen(Frame& frame, const Hider& hider, const HiddenGrids& grids);
+/// Returns which they are, by slot: others belong to the buckets that see them, whose threads may
+/// be shading them now.
+std::vector<bool> shade_seen(Frame& frame, const Hider& hider, const HiddenGrids& grids);
 
 }  // namespace granita

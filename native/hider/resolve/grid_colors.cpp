@@ -13,9 +13,10 @@ bool all_equal(const std::vector<Vec3f>& colors) {
 
 }  // namespace
 
-void GridColors::fill(const GridPool& pool) {
+void GridColors::fill(const GridPool& pool, const std::vector<bool>& seen) {
     m_looks.resize(pool.size());
     for (std::uint32_t slot = 0; slot < pool.size(); ++slot) {
+        if (!seen[slot]) continue;
         const Grid& grid = pool.grid(slot);
         const std::vector<Vec3f>& radiance = grid.radiance;
         if (grid.holdout || grid.opacity_varies || radiance.empty()) continue;

@@ -13,8 +13,8 @@ namespace granita {
 /// takes it, wherever and whenever it meets them, and nothing is projected.
 class GridColors {
   public:
-    /// Of the pool's grids; once, when they are shaded.
-    void fill(const GridPool& pool);
+    /// Of the pool's grids that are seen [slots]; once, when those are shaded.
+    void fill(const GridPool& pool, const std::vector<bool>& seen);
     /// Whether there is any such grid.
     bool any() const { return m_any; }
     /// Colours the samples that see one and sets done[sample] to 1; leaves the depth.  Returns

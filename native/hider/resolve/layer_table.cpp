@@ -18,17 +18,17 @@ void LayerTable::fill() {
     m_rows = Spares<std::vector<LayerRow>>::take();
     m_looks.clear();
     m_rows.clear();
-    m_looks.reserve(m_pool.id_end());
+    m_looks.resize(m_pool.id_end());
     SurfaceId base = 0;
     for (std::uint32_t slot = 0; slot < m_pool.size(); ++slot) {
         const Grid& grid = m_pool.grid(slot);
-        if (!grid.opacity.empty()) add(grid, base);
+        if (m_seen[slot] && !grid.opacity.empty()) add(grid, base);
         base += static_cast<SurfaceId>(grid.micropolygon_count());
     }
 }
 
 const GridColors& LayerTable::grid_colors() {
-    if (!m_has_colors) m_colors.fill(m_pool);
+    if (!m_has_colors) m_colors.fill(m_pool, m_seen);
     m_has_colors = true;
     return m_colors;
 }
@@ -42,7 +42,6 @@ void LayerTable::add(const Grid& grid, SurfaceId base) {
         const Vec3f r = shaded ? grid.radiance[v] : Vec3f(0.0f);
         m_rows.push_back({o.x, o.y, o.z, r.x, r.y, r.z, 0.0f, 0.0f});
     }
-    m_looks.resize(base + static_cast<std::size_t>(grid.micropolygon_count()));
     for (int m = 0; m < grid.micropolygon_count(); ++m) {
         const Grid::Corners c = grid.corners(m);
         const int corners[4] = {c.v0, c.v1, c.v2, c.v3};

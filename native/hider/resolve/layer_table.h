@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "hider/resolve/grid_colors.h"
@@ -33,7 +34,10 @@ struct alignas(32) LayerLook {
 class LayerTable {
   public:
     /// Of the grids that the pool holds when the table is first filled.
-    explicit LayerTable(const GridPool& pool) : m_pool(pool) {}
+    /// @param seen by slot: whether a sample sees the grid, and it is shaded.  Nothing of the
+    /// others is read, which another bucket's thread may be shading.
+    LayerTable(const GridPool& pool, std::vector<bool> seen)
+        : m_pool(pool), m_seen(std::move(seen)) {}
     ~LayerTable();
     LayerTable(const LayerTable&) = delete;
     LayerTable& operator=(const LayerTable&) = delete;
@@ -50,6 +54,7 @@ class LayerTable {
     void add(const Grid& grid, SurfaceId base);
 
     const GridPool& m_pool;
+    const std::vector<bool> m_seen;
     bool m_filled = false, m_has_colors = false;
     GridColors m_colors;
     std::vector<LayerLook> m_looks;  ///< by id

@@ -149,7 +149,7 @@ inline Picture render(HiderMaker make, Shot& shot) {
     for (std::size_t i = 0; i < stores.size(); ++i) {
         const int n = hider->tile_samples(i).samples;
         SampleColors colors;
-        LayerTable table(hider->pool());
+        LayerTable table(hider->pool(), hider->seen_grids());
         composite_tile(stores[i], hider->tile_samples(i), table, std::span(&shot.background, 1),
                        shot.composite, colors);
         for (int p = 0; p < 256; ++p) {

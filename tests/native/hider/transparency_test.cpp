@@ -75,7 +75,7 @@ TEST(Composite, MillionLayersOfAMillionth) {
     SlabMemory memory;
     store.lists.prepare(256, memory);
     for (int i = 0; i < 1000000; ++i) store.lists.add(77, {-5, 4, 0.25f, 0.25f, false});
-    LayerTable table(pool);
+    LayerTable table(pool, std::vector<bool>(pool.size(), true));
     CompositeSettings settings;
     settings.projection = pixel_camera().projection;
     const Vec3f background(1);
@@ -283,7 +283,7 @@ TEST_P(StoredDepth, IsThatOfTheNearestSurface) {
     shot.composite.projection = shot.camera.projection;
     const TileStore& store = hider->finish()[0];
     SampleColors colors;
-    LayerTable layers(hider->pool());
+    LayerTable layers(hider->pool(), hider->seen_grids());
     composite_tile(store, hider->tile_samples(0), layers, {}, shot.composite, colors);
     for (const float depth : colors.depth) EXPECT_EQ(depth, 4.0f);
 }

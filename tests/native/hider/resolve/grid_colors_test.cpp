@@ -30,11 +30,13 @@ class GridColorsTest : public testing::Test {
         ids.push_back(kNoSurface);
         colors = SampleColors(ids.size());
         done.assign(ids.size(), 0);
-        table.fill(pool);
+        seen.resize(grids.size(), true);
+        table.fill(pool, seen);
         return table.color(pool, ids, colors, done);
     }
 
     std::vector<Grid> grids;
+    std::vector<bool> seen;  ///< [grids]; true where it is not set
     GridColors table;
     std::vector<SurfaceId> ids;
     SampleColors colors;
@@ -69,6 +71,14 @@ TEST_F(GridColorsTest, leave_what_has_several_colours_or_is_seen_otherwise) {
     EXPECT_TRUE(color());
     EXPECT_TRUE(table.any());
     for (std::size_t s = 0; s < 18; ++s) EXPECT_EQ(done[s], s < 3 || s >= 15 ? 1 : 0) << s;
+}
+
+/// Another bucket's thread may be shading them.
+TEST_F(GridColorsTest, grids_that_no_sample_sees_are_not_read) {
+    for (int i = 0; i < 3; ++i) grids.push_back(grid(2));
+    seen = {true, false, true};
+    EXPECT_TRUE(color());
+    for (std::size_t s = 0; s < 6; ++s) EXPECT_EQ(done[s], s / 2 == 1 ? 0 : 1) << s;
 }
 
 TEST_F(GridColorsTest, are_not_asked_where_there_are_none) {

@@ -51,7 +51,7 @@ struct Stack {
         ASSERT_EQ(channels.vertex_width(), 7);
         settings.channels = &channels;
         SampleColors colors;
-        LayerTable table(pool);
+        LayerTable table(pool, std::vector<bool>(pool.size(), true));
         composite_tile(store, samples, table, {}, settings, colors, &values);
     }
     const float* row(int sample) const { return &values.filtered[sample * 6]; }
