@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 import snapshots as s
 
+WIDTHS = {"BOX": 1.0, "MITCHELL": 4.0}
+
 
 @pytest.mark.parametrize(
     "change", [{"bucket_size": 16}, {"bucket_size": 128}, {"threads": 1}, {"threads": 3}], ids=str
@@ -93,3 +95,50 @@ def test_area_and_centroid_of_anything_translating(executor):
     ys, xs = np.mgrid[0:64, 0:64] + 0.5
     found = np.array([(image * xs).sum(), (image * ys).sum()]) / image.sum()
     assert np.abs(found - center - (6, 10)).max() <= 0.02
+
+
+def test_spread_of_anything_translating(executor):
+    """I2: covariances of object, filter (a box of a pixel: 1/12) and way (length^2 / 12 along it) add up."""
+    snapshot = s.orthographic((64, 64), samples=256, executor=executor)
+    way = np.array([12.0, 20.0])
+    transforms = [s.translation(0, 0), s.translation(*way)]
+    s.quad(snapshot, s.rectangle(9, 7, 27, 19), s.emission(snapshot), transforms=transforms)
+    image = s.alpha(snapshot)
+    places = np.mgrid[0:64, 0:64][::-1].reshape(2, -1) + 0.5  # x, y
+    found = np.cov(places, aweights=image.ravel(), ddof=0)
+    expected = np.diag([18.0**2, 12.0**2]) / 12 + np.eye(2) / 12 + np.outer(way, way) / 12
+    # 256 samples of 216 pixels' area, each 10 pixels from the middle: 10^2 / sqrt(256 * 216) = .43 if they were
+    # random; those of the table come within .04.
+    assert np.abs(found - expected).max() <= 0.07
+
+
+@pytest.mark.parametrize("moving", [False, True], ids=["still", "moving"])
+@pytest.mark.parametrize("executor", ["REFERENCE", "SIMD", "COMPUTE", "RASTER"])
+def test_whole_pixels_of_translation_shift_the_image(executor, moving):
+    """M7, for REGULAR, whose lattice is the same in every pixel.
+
+    With a filter of one pixel; a wider one sums over tiles of 16 pixels in their order, which rounds otherwise elsewhere
+    (to 4e-7), except by whole tiles.
+    """
+    lattice = {"sampling": "REGULAR", "samples": 16, "time_samples": 8}
+    corners = [(20.3125, 22.125), (45.75, 19.4375), (50.25, 48.9375), (28.625, 42.1875)]
+
+    def picture(dx, dy, pixel_filter):
+        snapshot = s.orthographic(
+            (96, 80),
+            executor=executor,
+            **lattice,
+            pixel_filter=pixel_filter,
+            filter_width=WIDTHS[pixel_filter],
+        )
+        points = [(x + dx, y + dy, 1) for x, y in corners]
+        way = [s.translation(0, 0), s.translation(7.25, 3.125)] if moving else None
+        s.mesh(snapshot, points, [(0, 1, 2, 3)], s.emission(snapshot), transforms=way)
+        return s.render(snapshot)["combined"]
+
+    for pixel_filter, shifts in (("BOX", [(5, 3), (17, 9)]), ("MITCHELL", [(16, 16)])):
+        still = picture(0, 0, pixel_filter)[8:60, 8:70]
+        assert np.ptp(still[..., 3]) > 0.9
+        for dx, dy in shifts:
+            shifted = picture(dx, dy, pixel_filter)[8 + dy : 60 + dy, 8 + dx : 70 + dx]
+            assert np.array_equal(still, shifted), (pixel_filter, dx, dy)
