@@ -13,6 +13,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// The hider works in float relative to a tile; its rounding and ours stay inside this, in pixels.
 constexpr double kMargin = 1.0 / 256.0;
 
+/// Of a place found in single precision, of its distance from the centre: a few roundings of 2^-24.
+constexpr double kRounding = 0x1p-21;
+
 /// Depths, metres, at which single precision does not reach what is seen.
 constexpr float kEye = 1e-20f;
 
@@ -84,8 +87,8 @@ RasterBounds raster_bound(const Projection& projection, std::span<const Vec3f> p
     // As tight where planes of one depth are seen alike.
     const bool by_box = projection.perspective ? box.lo.z < kEye : !projection.has_lens();
     if (by_box) return raster_bound(projection, box);
-    // In single precision: off by a thousandth of a pixel in 16,000 of them.  What a lens shifts is
-    // its radius times |1 / focus - 1 / z|, and in an orthographic view times |z / focus - 1|.
+    // In single precision.  What a lens shifts is its radius times |1 / focus - 1 / z|, and in an
+    // orthographic view times |z / focus - 1|.
     const auto radius = static_cast<float>(projection.lens_radius);
     const bool lens = projection.has_lens();
     const auto near_focus = lens ? static_cast<float>(1.0 / projection.focus) : 0.0f;
@@ -100,9 +103,13 @@ RasterBounds raster_bound(const Projection& projection, std::span<const Vec3f> p
         hi = glm::max(hi, at + reach);
     }
     Interval x, y;
+    const auto add = [&](Interval& interval, int i, float at) {
+        const double off_center = projection.scale[i] * at;
+        interval.add(projection.center[i] + off_center, std::abs(off_center) * kRounding);
+    };
     for (const Vec2f& at : {lo, hi}) {
-        x.add(projection.center.x + projection.scale.x * at.x, 0.0);
-        y.add(projection.center.y + projection.scale.y * at.y, 0.0);
+        add(x, 0, at.x);
+        add(y, 1, at.y);
     }
     return finish(projection, x, y, box.lo.z);
 }
