@@ -11,7 +11,7 @@ import sys
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from .export.report import Cancelled
+from .export.base.report import Cancelled
 
 MODULE = "granita_core"
 

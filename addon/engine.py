@@ -6,13 +6,15 @@ crash while saving a float file.  `report({'ERROR'})` alone makes `blender -b` s
 and exit with 1; `error_set` adds the banner in the window.
 """
 
+import sys
 import traceback
 
 import bpy
 
 from . import bridge, command_line, final_render, frame_statistics, passes
-from .export import Kept
-from .export.report import Cancelled, ExportError
+from .export import PersistentState
+from .export.base.report import Cancelled, ExportError, escaped
+from .export.shading.image import forget_images
 
 ENGINE_ID = "GRANITA"
 
@@ -40,16 +42,24 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **kwargs)
         self.frame_statistics = frame_statistics.FrameStatistics()
-        self.kept = Kept()
+        self.persistent_state = PersistentState()
 
     def update_render_passes(self, scene=None, renderlayer=None):
-        passes.register(self, scene, renderlayer)
+        """Blender calls it at any change of the view layer, without a net: what goes wrong is told, and
+        the passes that were registered before it stand."""
+        try:
+            passes.register(self, scene, renderlayer)
+        except Exception as error:
+            _print_traceback()
+            self.report({"ERROR"}, escaped(f"passes: {type(error).__name__}: {error}"))
 
     def render(self, depsgraph):
         try:
             options = command_line.parse()
             self.frame_statistics.open(options.stats)
-            final_render.FinalRender(self, depsgraph, options, self.kept).run(self.frame_statistics)
+            final_render.FinalRender(self, depsgraph, options, self.persistent_state).run(
+                self.frame_statistics
+            )
         except Cancelled:
             self.frame_statistics.discard()
             if not self.test_break():
@@ -59,7 +69,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
         except KeyboardInterrupt:
             self._fail("interrupted")
         except Exception as error:
-            traceback.print_exc()
+            _print_traceback()
             self._fail(f"{type(error).__name__}: {error}")
 
     def render_frame_finish(self):
@@ -70,13 +80,23 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
 
     def _fail(self, text):
         self.frame_statistics.discard()
-        self.report({"ERROR"}, text)
-        self.error_set(text)
+        self.report({"ERROR"}, escaped(text))
+        self.error_set(escaped(text))
+
+
+def _print_traceback():
+    print("\n".join(escaped(line) for line in traceback.format_exc().splitlines()), file=sys.stderr)
+
+
+# Handlers are forgotten where a file is loaded unless they are persistent.
+_forget_images = bpy.app.handlers.persistent(forget_images)
 
 
 def register():
     bpy.utils.register_class(GranitaRenderEngine)
+    bpy.app.handlers.render_init.append(_forget_images)
 
 
 def unregister():
+    bpy.app.handlers.render_init.remove(_forget_images)
     bpy.utils.unregister_class(GranitaRenderEngine)

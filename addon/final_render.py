@@ -9,7 +9,7 @@ from time import perf_counter
 
 from . import bridge, passes
 from .export import export_frame
-from .export.report import Cancelled, Report, lines
+from .export.base.report import Cancelled, Report, lines
 from .properties import TILE_PIXELS
 from .status_line import StatusLine
 
@@ -28,15 +28,16 @@ class FinalRender:
     then been told to the artist.
     """
 
-    def __init__(self, engine, depsgraph, options, kept):
-        """`options`: of the command line; they win over the file.  `kept`: export.Kept of the engine."""
+    def __init__(self, engine, depsgraph, options, persistent_state):
+        """`options`: of the command line; they win over the file.  `persistent_state`: of the engine."""
         self.engine = engine
         self.depsgraph = depsgraph
         self.options = options
-        self.kept = kept
+        self.persistent_state = persistent_state
         self.scene = depsgraph.scene.name
         self.layer = depsgraph.view_layer.name
         self.passes = passes.wanted(depsgraph.view_layer)
+        self.exposure = passes.exposure_owner(depsgraph.scene_eval).film_exposure
         self.status = StatusLine(engine)
         self.report = Report()
         self.seconds = {}
@@ -61,10 +62,12 @@ class FinalRender:
         if render.use_multiview:
             raise SettingsError(f"scene '{self.scene}': stereoscopy is not supported")
 
+        for name in passes.missing(self.depsgraph.view_layer):
+            self.report(f"view layer '{self.layer}'", f"its pass {name} is not rendered")
         settings = self.depsgraph.scene_eval.granita
-        kept = self.kept if render.use_persistent_data else None
+        persistent_state = self.persistent_state if render.use_persistent_data else None
         snapshot = export_frame(
-            self.engine, self.depsgraph, settings, self.report, self._exporting, kept
+            self.engine, self.depsgraph, settings, self.report, self._exporting, persistent_state
         )
         options = snapshot["options"]
         options.update(passes.requested(self.depsgraph.scene_eval, self.depsgraph.view_layer))
@@ -109,7 +112,7 @@ class FinalRender:
 
     def _deliver(self, tiles, origin):
         for tile in tiles:
-            passes.deliver(self.engine, tile, self.passes, self.layer, origin)
+            passes.deliver(self.engine, tile, self.passes, self.layer, origin, self.exposure)
 
     def _tell(self, warnings):
         for line in lines(warnings):

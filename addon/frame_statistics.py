@@ -7,7 +7,8 @@ width, height       pixels of the full frame
 samples             visibility samples a pixel
 device              the executor and device that rendered, in words
 seconds             wall time: export, scene (checks and copies), render, total
-statistics          the native counters by name; "seconds_<stage>" are summed over threads
+statistics          the native counters by name; "seconds_<stage>" are processor
+                    seconds, summed over threads: together the frame's, but for a tenth
 peak_resident_bytes of the whole process, Blender's own memory included
 warnings            [{datablock, message, count}]
 """

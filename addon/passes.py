@@ -6,6 +6,8 @@ from collections import namedtuple
 import bpy
 import numpy as np
 
+from .export.shading.world import world_of
+
 # `native`: the name in the snapshot and in the native tile; Blender's own since version 5.
 # `short`: Blender's name before.  `wanted`: the view layer's property that asks for the pass (None:
 # always there).
@@ -29,6 +31,12 @@ PASSES = (
     Pass("Environment", "Env", 3, "RGB", "COLOR", "use_pass_environment"),
     Pass("Shadow", "Shadow", 3, "RGB", "COLOR", "use_pass_shadow"),
 )
+
+# The view layer's properties that ask for them.
+SERVED = frozenset(p.wanted for p in PASSES)
+
+# Passes of light, which the film's exposure multiplies.
+_EXPOSED = {"Combined", "Diffuse Direct", "Glossy Direct", "Emission", "Environment"}
 
 # Blender's depth where there is no surface.
 NO_SURFACE_DEPTH = 1e10
@@ -57,12 +65,34 @@ def custom(view_layer):
 
 
 def wanted(view_layer):
+    """All passes that are made for a view layer."""
     return standard(view_layer) + custom(view_layer)
+
+
+# Not passes of their own: the beauty, and how exact Cryptomatte is.
+_NO_PASSES = {"use_pass_combined", "use_pass_cryptomatte_accurate"}
+# Passes of Cycles' add-on that are not named so.
+_OF_CYCLES = {"pass_debug_sample_count", "pass_render_time", "denoising_store_passes"}
+
+
+def missing(view_layer):
+    """Names of what a view layer asks for beside the table: it is not made."""
+    served = SERVED | _NO_PASSES
+    cycles = getattr(view_layer, "cycles", None)
+    found = []
+    for owner, others in ((view_layer, set()), (cycles, _OF_CYCLES)):
+        for rna in owner.bl_rna.properties if owner is not None else ():
+            name = rna.identifier
+            asked = name.startswith("use_pass_") and name not in served or name in others
+            if asked and getattr(owner, name):
+                found.append(f"'{rna.name}'")
+    groups = [f"of light group '{group.name}'" for group in getattr(view_layer, "lightgroups", ())]
+    return found + groups
 
 
 def requested(scene, view_layer):
     """The snapshot's options of passes."""
-    world = scene.world
+    world = world_of(scene, view_layer)
     falloff = {"QUADRATIC": 2.0, "LINEAR": 1.0, "INVERSE_QUADRATIC": 0.5}
     options = {
         "passes": [p.native for p in standard(view_layer)],
@@ -85,9 +115,17 @@ def register(engine, scene, view_layer):
         engine.register_pass(scene, view_layer, display_name(p), p.channels, p.channel_ids, p.kind)
 
 
-def deliver(engine, tile, passes, layer, origin):
+def exposure_owner(scene):
+    """Whose `film_exposure` counts: Cycles' settings where its add-on is enabled, so that a file looks the
+    same in both, else Granita's own."""
+    cycles = getattr(scene, "cycles", None)
+    return cycles if hasattr(cycles, "film_exposure") else scene.granita
+
+
+def deliver(engine, tile, passes, layer, origin, exposure=1.0):
     """Copies one native tile into Blender's render result.
 
+    `exposure`: light in the file for light on the film.
     `origin`: the crop's lower-left pixel in the frame, which is (0, 0) of the result.  The result
     is closed on every path (an open one crashes the saving of float files).
     """
@@ -106,7 +144,11 @@ def deliver(engine, tile, passes, layer, origin):
             arrays["Depth"] = np.where(np.isfinite(tile.depth), tile.depth, NO_SURFACE_DEPTH)
         render_passes = result.layers[0].passes
         for p in passes:
-            _put(render_passes[display_name(p)], arrays[p.native], width * height, p.channels)
+            values = arrays[p.native]
+            if exposure != 1.0 and p.native in _EXPOSED:
+                values = np.array(values, dtype=np.float32)
+                values[..., :3] *= np.float32(exposure)
+            _put(render_passes[display_name(p)], values, width * height, p.channels)
         complete = True
     finally:
         engine.end_result(result, cancel=not complete)

@@ -95,6 +95,13 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
         (0.01, 32.0),
         usual=(0.01, 10.0),
     )
+    film_exposure: _real(
+        "Exposure",
+        "Brightness of the picture and of its passes of light, before the compositor: 2 is twice as "
+        "bright. Cycles' Film Exposure counts where its add-on is enabled",
+        1.0,
+        (0.0, 10.0),
+    )
     light_samples: _whole(
         "Light Samples",
         "Shadow rays from each shaded point to each light that has a size and to the world",

@@ -11,8 +11,9 @@
 namespace granita {
 namespace {
 
-/// A wavy sheet of n x n quads (or twice as many triangles) that fills the frame.
-GeometryData sheet(int n, bool triangles, int knots) {
+/// A wavy sheet of n x n quads (or twice as many triangles) that fills the frame; `height` of its
+/// waves over its width.
+GeometryData sheet(int n, bool triangles, int knots, float height = 0.01f) {
     GeometryData data;
     data.name = "mesh 'Sheet'";
     data.knots = knots;
@@ -21,7 +22,7 @@ GeometryData sheet(int n, bool triangles, int knots) {
             for (int i = 0; i <= n; ++i)
                 data.points.emplace_back(
                     2.0f * i / n - 1.0f, 2.0f * j / n - 1.0f,
-                    0.02f * std::sin(9.0f * i / n + k) * std::cos(7.0f * j / n));
+                    2.0f * height * std::sin(9.0f * i / n + k) * std::cos(7.0f * j / n));
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
             const int v = j * (n + 1) + i;
@@ -87,6 +88,11 @@ void run(benchmark::State& state, GeometryData data) {
 void polygons(benchmark::State& state) {
     run(state, sheet(static_cast<int>(state.range(0)), false, static_cast<int>(state.range(1))));
 }
+/// Quads bent by more than a pair of triangles may be.
+void bent_polygons(benchmark::State& state) {
+    run(state,
+        sheet(static_cast<int>(state.range(0)), false, static_cast<int>(state.range(1)), 0.1f));
+}
 void pixel_triangles(benchmark::State& state) {
     run(state, sheet(static_cast<int>(state.range(0)), true, static_cast<int>(state.range(1))));
 }
@@ -103,7 +109,14 @@ void irregular_subdivision(benchmark::State& state) {
     run(state, std::move(data));
 }
 
-BENCHMARK(polygons)->Args({8, 1})->Args({8, 3})->Unit(benchmark::kMillisecond);
+BENCHMARK(polygons)
+    ->Args({8, 1})
+    ->Args({8, 3})
+    ->Args({256, 1})
+    ->Args({256, 3})
+    ->Args({1024, 1})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(bent_polygons)->Args({8, 1})->Args({64, 1})->Unit(benchmark::kMillisecond);
 BENCHMARK(pixel_triangles)->Args({512, 1})->Args({512, 3})->Unit(benchmark::kMillisecond);
 BENCHMARK(subdivision)->Args({16, 1})->Args({16, 3})->Args({128, 1})->Unit(benchmark::kMillisecond);
 BENCHMARK(irregular_subdivision)->Args({16, 1})->Args({16, 3})->Unit(benchmark::kMillisecond);

@@ -50,7 +50,7 @@ def animate(item, path, index, change):
 
 
 def add_camera(scene, location, focal=None, tilt=0.0):
-    """Looks down -z, tilted about x by radians; orthographic without a focal length (mm)."""
+    """Lookups down -z, tilted about x by radians; orthographic without a focal length (mm)."""
     data = bpy.data.cameras.new("Camera")
     if focal is None:
         data.type, data.ortho_scale = "ORTHO", SCALE

@@ -16,8 +16,10 @@ target_include_directories(granita_flags INTERFACE ${CMAKE_SOURCE_DIR}/native)
 target_compile_options(granita_flags INTERFACE -Wall -Wextra -Werror -march=x86-64-v2
   -ffp-contract=off -fvisibility=hidden -fvisibility-inlines-hidden)
 if(GRANITA_SANITIZE)
-  target_compile_options(granita_flags INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)
-  target_link_options(granita_flags INTERFACE -fsanitize=address,undefined)
+  # Calls of the sanitizer hide from the compiler what sets a variable.
+  target_compile_options(granita_flags INTERFACE -fsanitize=${GRANITA_SANITIZE} -fno-omit-frame-pointer -g1
+    -Wno-maybe-uninitialized)
+  target_link_options(granita_flags INTERFACE -fsanitize=${GRANITA_SANITIZE})
 endif()
 
 # granita_target(NAME SOURCES file... LINKS target...)

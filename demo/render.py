@@ -13,7 +13,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "addon"))
-from export.report import lines  # noqa: E402  the add-on's part that needs no Blender
+from export.base.report import lines  # noqa: E402  the add-on's part that needs no Blender
 
 STATUS = re.compile(r"\bSample (\d+)/(\d+)")
 

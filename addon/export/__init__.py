@@ -1,32 +1,38 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's evaluated scene -> one frame of plain arrays (docs/scene_snapshot.md).
 
-    settings -> camera -> one walk over what is placed -> materials -> meshes -> lights, world
+    settings -> camera -> one walk over the scene's objects -> materials -> meshes -> lights, world
              -> the same again, as little as possible, at the other knots of the shutter
 
 All of it is copied: no reference to anything of Blender's is kept after `export_frame` returns.
 """
 
-from .blur_settings import blurs
-from .camera import camera_record
-from .frame_scene import FrameScene
-from .instance import place
-from .lamps import energies, place_lamps, read_lamps
-from .motion import Motion, sample_motion
-from .neighbours import read_neighbours
-from .newcomers import with_newcomers
-from .options import options_record, scene_frame
-from .persistent import Kept
-from .placed import read_placed
-from .report import Cancelled, ExportError, Report
-from .shutter import Clock, scene_shutter
-from .snapshot import Snapshot
-from .velocity import flying_points
+from dataclasses import replace
 
-__all__ = ["Cancelled", "ExportError", "Kept", "Report", "export_frame"]
+from .base.blur_settings import blurs
+from .base.report import Cancelled, ExportError, Report
+from .base.snapshot import Snapshot
+from .geometry.velocity import points_by_velocity
+from .motion.adjacent_frames import read_adjacent_frames
+from .motion.appearing_instances import with_appearing_instances
+from .motion.sample_motion import Motion, sample_motion
+from .scene.camera import camera_record
+from .scene.frame_scene import FrameScene
+from .scene.instance import linked, place
+from .scene.lamp_emitters import add_emitters
+from .scene.lamps import energies, place_lamps, read_lamps
+from .scene.light_linking import link_lights
+from .scene.options import options_record, scene_frame
+from .scene.persistent_state import PersistentState
+from .scene.scene_objects import read_scene_objects
+from .scene.shutter import Clock, scene_shutter
+
+__all__ = ["Cancelled", "ExportError", "PersistentState", "Report", "export_frame"]
 
 
-def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False, kept=None):
+def export_frame(
+    engine, depsgraph, settings, report, check_cancel=lambda: False, persistent_state=None
+):
     """Copies the frame at which the depsgraph stands.
 
     Args:
@@ -36,8 +42,8 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
         settings: `scene.granita`, anything with some of its properties, or None for the defaults.
         report: Report, or a function of (datablock, message), for what the frame survives.
         check_cancel: called often; raises, or returns true, to end the export.
-        kept: persistent.Kept of the engine where Blender keeps its evaluated scene from frame to frame:
-            only what changed is read then.
+        persistent_state: PersistentState of the engine where Blender keeps its evaluated scene from
+            frame to frame: only what changed is read then.
 
     Returns:
         dict for `granita_core.Scene`.
@@ -48,68 +54,80 @@ def export_frame(engine, depsgraph, settings, report, check_cancel=lambda: False
     """
     scene, view_layer = depsgraph.scene, depsgraph.view_layer
     clock = Clock(engine, scene)
-    if kept is not None:
-        clock.after = lambda: kept.note(depsgraph)
+    if persistent_state is not None:
+        clock.after = lambda: persistent_state.note(depsgraph)
     frame = scene_frame(scene.render)
-    shutter = scene_shutter(scene, settings)
+    shutter = scene_shutter(scene, view_layer, settings)
     options = options_record(scene, view_layer, settings, frame, shutter.frame_time)
     # Taken once: past a camera marker within the shutter Blender changes it.
     camera = _render_camera(engine, scene)
     camera_at_frame = camera_record(camera, frame, depsgraph, report)
 
-    if kept is not None:
-        placed = kept.placed(depsgraph, report, check_cancel)
+    if persistent_state is not None:
+        scene_objects = persistent_state.scene_objects(depsgraph, report, check_cancel)
     else:
-        placed = read_placed(depsgraph, None, report, check_cancel)
+        scene_objects = read_scene_objects(depsgraph, None, report, check_cancel)
     world, world_images = _world(depsgraph, report)
-    lamps = read_lamps(depsgraph, placed.scan, placed.lights(), report)
-    placed.choose(report)
+    lamps = read_lamps(depsgraph, scene_objects.scan, scene_objects.lights(), report)
+    scene_objects.choose(report)
     at_frame = FrameScene(
         depsgraph=depsgraph,
         camera=camera,
         camera_blurs=blurs(camera),
         camera_record=camera_at_frame,
         frame=frame,
-        visit=placed.scan,
-        plain=placed.plain,
-        sources=placed.sources,
-        geometry_of_kind=placed.table.geometry,
-        is_light=placed.is_light,
+        visit=scene_objects.scan,
+        plain=scene_objects.plain,
+        sources=scene_objects.sources,
+        geometry_of_prototype=scene_objects.table.geometry,
+        is_light=scene_objects.is_light,
         energies=energies(depsgraph) if shutter.segments else {},
     )
     fps = scene.render.fps / scene.render.fps_base
-    motion, points, neighbours, seen = Motion(camera_at_frame["world_from_camera"]), {}, {}, placed
+    motion, points, adjacent, seen = (
+        Motion(camera_at_frame["world_from_camera"]),
+        {},
+        {},
+        scene_objects,
+    )
     if shutter.segments:
         motion = sample_motion(clock, shutter, fps, at_frame, report, check_cancel)
         camera_at_frame["world_from_camera"] = motion.camera
         if motion.lens is not None:
             camera_at_frame["lens_knots"] = motion.lens
-        seen = with_newcomers(placed, at_frame.visit, depsgraph, report, check_cancel)
-        later = seen.lights()[len(placed.lights()) :]
+        seen = with_appearing_instances(
+            scene_objects, at_frame.visit, depsgraph, report, check_cancel
+        )
+        later = seen.lights()[len(scene_objects.lights()) :]
         lamps += read_lamps(depsgraph, seen.scan, later, report)
-        points = {**motion.points, **flying_points(seen.sources, shutter, fps)}
+        points = {**motion.points, **points_by_velocity(seen.sources, shutter, fps)}
     scan = seen.scan
     instances = place(seen.instances, scan, seen.chosen, motion.tracks, motion.lifespans, report)
+    masks = link_lights(lamps, scan, report)
+    instances = linked(instances, scan, seen.chosen, *masks)
     if view_layer.use_pass_vector:
-        found = read_neighbours(clock, at_frame, fps, report, check_cancel)
+        found = read_adjacent_frames(clock, at_frame, fps, report, check_cancel)
         camera_at_frame["neighbours"] = found.camera
         instances = found.instances(instances, scan, seen.chosen)
-        neighbours = found.points
-    if kept is not None:
-        kept.keep(placed)
-    return Snapshot(
+        adjacent = found.points
+    if persistent_state is not None:
+        persistent_state.keep(scene_objects)
+    placed = place_lamps(lamps, scan, motion, report)
+    snapshot = Snapshot(
         options=options,
         camera=camera_at_frame,
         geometries=[
-            source.exported(points.get(index), neighbours.get(index))
+            source.exported(points.get(index), adjacent.get(index))
             for index, source in enumerate(seen.sources)
         ],
-        instances=instances,
-        materials=seen.materials,
+        instances=replace(instances),
+        materials=list(seen.materials),
         images=_each_once(seen.images + world_images),
-        lights=place_lamps(lamps, scan, motion, report),
+        lights=[record for _, record in placed],
         world=world,
-    ).as_dict()
+    )
+    add_emitters(snapshot, placed, scan, report)
+    return snapshot.as_dict()
 
 
 def _each_once(images):
@@ -126,8 +144,11 @@ def _render_camera(engine, scene):
 
 def _world(depsgraph, report):
     """(record of the world, those of its images)."""
-    from .world import export_world
+    from .shading.layer_values import set_layer_values
+    from .shading.world import export_world
 
     images = []
-    world = export_world(depsgraph.scene_eval, depsgraph.view_layer_eval, report, images)
+    scene, view_layer = depsgraph.scene_eval, depsgraph.view_layer_eval
+    world = export_world(scene, view_layer, report, images)
+    set_layer_values([world], scene, view_layer)
     return world, images

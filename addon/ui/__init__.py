@@ -2,7 +2,11 @@
 """Panels: Granita's own, and Blender's that serve it as they are."""
 
 from . import (
+    light_panels,
+    linking_panels,
+    material_panels,
     motion_panels,
+    pass_panels,
     ray_panels,
     render_panels,
     sampling_presets,
@@ -15,7 +19,11 @@ _PARTS = (
     render_panels,
     motion_panels,
     ray_panels,
+    light_panels,
+    linking_panels,
+    material_panels,
     view_layer_panels,
+    pass_panels,
     stock_panels,
 )
 

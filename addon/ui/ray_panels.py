@@ -3,7 +3,6 @@
 
 import bpy
 
-from ..export.light import shadow_switch
 from .engine_panel import EnginePanel
 
 
@@ -15,28 +14,16 @@ class _Panel(EnginePanel):
         return super().poll(context) and cls.concerns(context)
 
 
-class GRANITA_LIGHT_PT_rays(_Panel, bpy.types.Panel):
-    bl_label = "Shadow and Beam"
-    bl_context = "data"
-
-    @staticmethod
-    def concerns(context):
-        return context.light is not None
-
-    def draw(self, context):
-        column = self.layout.column()
-        column.use_property_split = True
-        column.prop(*shadow_switch(context.light), text="Cast Shadow")
-        if context.light.type == "AREA":
-            column.prop(context.light, "spread", text="Spread")
-
-
 class GRANITA_OBJECT_PT_rays(_Panel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
     bl_parent_id = "OBJECT_PT_visibility"
 
-    _LIGHT = (("visible_diffuse", "Diffuse"), ("visible_glossy", "Glossy"))
+    _LIGHT = (
+        ("visible_camera", "Camera"),
+        ("visible_diffuse", "Diffuse"),
+        ("visible_glossy", "Glossy"),
+    )
     _SURFACE = (("visible_camera", "Camera"), ("visible_shadow", "Shadow"))
     _TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "EMPTY", "LIGHT"}
 
@@ -51,6 +38,6 @@ class GRANITA_OBJECT_PT_rays(_Panel, bpy.types.Panel):
             column.prop(context.object, name, text=text)
 
 
-_CLASSES = (GRANITA_LIGHT_PT_rays, GRANITA_OBJECT_PT_rays)
+_CLASSES = (GRANITA_OBJECT_PT_rays,)
 
 register, unregister = bpy.utils.register_classes_factory(_CLASSES)

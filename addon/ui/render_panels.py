@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import bridge
+from .. import bridge, passes
 from .engine_panel import EnginePanel
 from .problem import draw_problem
 from .sampling_presets import GRANITA_RENDER_PT_sampling_presets
@@ -36,6 +36,7 @@ class GRANITA_RENDER_PT_device(RenderPanel, bpy.types.Panel):
         if problem:
             draw_problem(column, problem)
         column.prop(context.scene.granita, "device")
+        column.label(text="Rendered view and previews are EEVEE's", icon="INFO")
 
 
 class GRANITA_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
@@ -117,6 +118,7 @@ class GRANITA_RENDER_PT_film(RenderPanel, bpy.types.Panel):
     def draw(self, context):
         settings = context.scene.granita
         column = self.column()
+        column.prop(passes.exposure_owner(context.scene), "film_exposure")
         column.prop(settings, "pixel_filter")
         column.prop(settings, "filter_width")
         column.prop(context.scene.render, "film_transparent", text="Transparent")

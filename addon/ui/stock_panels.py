@@ -3,16 +3,15 @@
 
 A panel lists the engines it serves in COMPAT_ENGINES.  Those that Blender marks as generic and
 gives to EEVEE too show what an engine that reads Blender's data understands; those that are
-generic alone are remains of the engine that Blender once had.  The panels of EEVEE named here
-show nothing but common data.
+generic alone are remains of the engine that Blender once had.  The panels named here
+show nothing but common data, too.
 """
 
 import bpy
 
 ENGINE_ID = "GRANITA"
 
-_EEVEE_PANELS = {
-    "DATA_PT_EEVEE_light",
+_BY_NAME = {
     "DATA_PT_camera_dof",
     "DATA_PT_camera_dof_aperture",
     "EEVEE_MATERIAL_PT_context_material",
@@ -21,12 +20,14 @@ _EEVEE_PANELS = {
     "EEVEE_WORLD_PT_mist",
     "EEVEE_WORLD_PT_surface",
     "MATERIAL_PT_preview",
-    "NODE_DATA_PT_EEVEE_light",
+    "OBJECT_PT_custom_props",
+    "RENDER_PT_freestyle",
 }
 
 # Generic, but about what Granita does not have.
 _NOT_SERVED = {
-    "RENDER_PT_freestyle",
+    "DATA_PT_spot",  # its parent is a panel of other engines; Granita has its own
+    "RENDER_PT_output_views",
     "RENDER_PT_stereoscopy",
     "DATA_PT_camera_stereoscopy",
 }
@@ -43,7 +44,7 @@ def _panels():
         if not engines or panel.__name__ in _NOT_SERVED:
             continue
         eevee = any(engine.startswith("BLENDER_EEVEE") for engine in engines)
-        if panel.__name__ in _EEVEE_PANELS or (eevee and "BLENDER_RENDER" in engines):
+        if panel.__name__ in _BY_NAME or (eevee and "BLENDER_RENDER" in engines):
             yield panel
 
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counters and stage timers of one frame.  One table names them all (statistics.cpp); the JSON of
+// Counters and seconds by stage of one frame (stage_timer.h takes them).  One table names them all
+// (statistics.cpp); the JSON of
 // `--granita-stats` uses the same names.  Hot loops count locally and add once a grid or bucket.
 #pragma once
 
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -28,12 +28,12 @@ enum class Counter {
     PointsShaded,
     Micropolygons,         ///< at the hider, counted once a bucket that tests them
     MicropolygonsDropped,  ///< non-finite, counted and reported
-    SamplesTotal,
-    SampleTestsStatic,  ///< point-in-micropolygon tests without motion or lens
-    SampleTestsMoving,  ///< with motion, lens or both
-    SampleHits,         ///< tests that covered the sample (before the depth comparison)
-    FragmentsStored,    ///< transparent list entries
-    BucketsMoving,      ///< buckets that met any motion or lens blur
+    SamplesTotal,          ///< of the picture's own pixels, without those around that filters reach
+    SampleTestsStatic,     ///< point-in-micropolygon tests without motion or lens
+    SampleTestsMoving,     ///< with motion, lens or both
+    SampleHits,            ///< tests that covered the sample (before the depth comparison)
+    FragmentsStored,       ///< transparent list entries
+    BucketsMoving,         ///< buckets that met any motion or lens blur
     BucketsTransparent,
     GlPrimitives,  ///< triangles drawn by the raster executor
     GlPasses,
@@ -59,7 +59,7 @@ class Statistics {
         return m_counters[static_cast<int>(counter)].load(std::memory_order_relaxed);
     }
     void add_seconds(Stage stage, double seconds);
-    /// Summed over threads.
+    /// Of processors, summed over threads.
     double seconds(Stage stage) const;
     /// Bytes of grids that came into being; the most that lived at a time are peak_grid_bytes().
     void add_grid_bytes(std::uint64_t bytes);
@@ -79,25 +79,6 @@ class Statistics {
     std::array<std::atomic<std::uint64_t>, static_cast<int>(Stage::kCount)> m_nanoseconds{};
     std::atomic<std::uint64_t> m_grid_bytes{0}, m_peak_grid_bytes{0};
     std::atomic<std::uint64_t> m_peak_ray_bytes{0}, m_peak_list_bytes{0};
-};
-
-/// Adds the life time of the object to a stage.
-class StageTimer {
-  public:
-    StageTimer(Statistics& statistics, Stage stage)
-        : m_statistics(statistics), m_stage(stage), m_start(std::chrono::steady_clock::now()) {}
-    ~StageTimer() {
-        m_statistics.add_seconds(
-            m_stage,
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count());
-    }
-    StageTimer(const StageTimer&) = delete;
-    StageTimer& operator=(const StageTimer&) = delete;
-
-  private:
-    Statistics& m_statistics;
-    Stage m_stage;
-    std::chrono::steady_clock::time_point m_start;
 };
 
 }  // namespace granita

@@ -43,7 +43,7 @@ void coarsen_shading(Grid& grid, const Projection& projection, double rate) {
     const int u = points_step(grid, projection, grid.n_v / 2 * row, 1, grid.n_u, rate);
     const int v = points_step(grid, projection, grid.n_u / 2, row, grid.n_v, rate);
     if (u * v == 1) return;
-    ShadingPlaces& places = grid.places;
+    ShadingPositions& places = grid.shading_positions;
     places.step_u = u;
     places.step_v = v;
     for (int j = 0; j <= grid.n_v; j += v)

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "dice/opened_mesh.h"
-#include "math/unit_or.h"
+#include "math/normalize_or.h"
 
 namespace granita {
 namespace {
@@ -167,13 +167,13 @@ std::shared_ptr<const ElementBatch> CurveBatch::copy() const {
 
 void CurveBatch::fill_shading_state(Grid& grid) const {
     m_elements->begin_shading(grid);
-    std::vector<ElementPlace> places;
-    places.reserve(m_rows.size());
+    std::vector<ElementPlace> shading_positions;
+    shading_positions.reserve(m_rows.size());
     for_each_row([&](int j, const Row& row, const CurveControl& control) {
         shade_row(grid, j, row, control);
-        places.push_back(control.place(row.t));
+        shading_positions.push_back(control.place(row.t));
     });
-    m_elements->finish_shading(grid, places);
+    m_elements->finish_shading(grid, shading_positions);
 }
 
 void CurveBatch::place_row(Grid& grid, int j, const Row& row, const CurveControl& control) const {
@@ -199,12 +199,12 @@ void CurveBatch::shade_row(Grid& grid, int j, const Row& row, const CurveControl
         half += ribbon.across * weight;
     }
     const double drawn = drawn_in(m_across);
-    const Vec3d front = unit_or(facing, Vec3d(0.0, 0.0, -1.0));
+    const Vec3d front = normalize_or(facing, Vec3d(0.0, 0.0, -1.0));
     for (int i = 0; i <= m_across; ++i) {
         const double u = 2.0 * i / m_across - 1.0;
         const double sine = m_thin ? place_across(i == 0, (j + row.curve) % 2 == 1) : u * drawn;
         const Vec3d normal =
-            unit_or(side * sine + front * std::sqrt(std::max(1.0 - sine * sine, 0.0)), front);
+            normalize_or(side * sine + front * std::sqrt(std::max(1.0 - sine * sine, 0.0)), front);
         const std::size_t v = vertex(grid, i, j);
         grid.normal[v] = Vec3f(normal);
         grid.geometric_normal[v] = Vec3f(front);

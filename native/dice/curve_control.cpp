@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "dice/opened_mesh.h"
-#include "math/unit_or.h"
+#include "math/normalize_or.h"
 
 namespace granita {
 namespace {
@@ -28,11 +28,11 @@ Vec3d any_perpendicular(const Vec3d& v) {
     const Vec3d axis = a.x <= a.y && a.x <= a.z ? Vec3d(1, 0, 0)
                        : a.y <= a.z             ? Vec3d(0, 1, 0)
                                                 : Vec3d(0, 0, 1);
-    return unit_or(glm::cross(v, axis), Vec3d(1, 0, 0));
+    return normalize_or(glm::cross(v, axis), Vec3d(1, 0, 0));
 }
 
 Vec3d unit(const Vec3d& v) {
-    return unit_or(v, Vec3d(0.0));
+    return normalize_or(v, Vec3d(0.0));
 }
 
 }  // namespace
@@ -127,6 +127,13 @@ RibbonRow CurveControl::row(int knot, double t, bool with_facing) const {
     row.side =
         seen_along ? any_perpendicular(glm::length(view) > 0.0 ? view : along) : unit(across);
     row.across = row.side * here.radius;
+    if (const UnevenScale& scale = m_elements->uneven_scale(knot); scale.is_uneven && !seen_along) {
+        // A ribbon of object space that faces the eye there, taken to the camera's as a whole.
+        const Vec3d flat =
+            unit(glm::cross(scale.object_from_camera * view, scale.object_from_camera * along));
+        row.across = scale.camera_from_object * flat * (here.radius / scale.largest);
+        row.side = unit(row.across);
+    }
     if (!with_facing) return row;
     row.facing = unit(glm::cross(along, row.side));
     if (seen_along || glm::length(row.facing) == 0.0) row.facing = unit(-view);

@@ -7,9 +7,9 @@
 //   (target / sqrt(2), sqrt(2) * target], or
 //   its middle lies more than kSag pixels, or kBend of its length, off its chord and it is longer
 //   than kShortest pixels.
-// Lengths are the largest over all knots at which the piece may be seen (seen_times.h).  target is
-// the dicing rate inside the frame and grows by an eighth of a pixel for each pixel that the
-// piece's swept bound lies outside of it.
+// Lengths are the largest over all knots at which the piece may be seen (visible_interval.h).
+// target is the dicing rate inside the frame and grows by an eighth of a pixel for each pixel that
+// the piece's swept bound lies outside of it.
 //
 // What is blurred needs less (the motion and focus factors of RenderMan).  Motion blurs along its
 // way alone: of a piece that goes L pixels, that part of its length which lies along counts max(1,
@@ -31,8 +31,8 @@
 #include <span>
 
 #include "dice/knots.h"
-#include "dice/seen_times.h"
 #include "dice/view.h"
+#include "dice/visible_interval.h"
 
 namespace granita {
 
@@ -108,7 +108,7 @@ class EdgeRate {
     double m_motion_factor, m_focus_factor;
     double m_near;
     float m_rounding;  ///< of a length in single precision, pixels
-    SeenTimes m_seen;
+    VisibleInterval m_seen;
 };
 
 }  // namespace granita

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "dice/finish_motion.h"
+#include "dice/motion_bounds.h"
 #include "dice/raster_bound.h"
 
 namespace granita {
@@ -33,7 +33,7 @@ void ElementBatch::own(std::shared_ptr<const OpenedElements> elements) {
 }
 
 void ElementBatch::finish(Grid& grid) const {
-    finish_motion(grid, m_elements->view().projection);
+    motion_bounds(grid, m_elements->view().projection);
     grid.shading_state = [batch = copy()](Grid& of) { batch->fill_shading_state(of); };
 }
 

@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dice/corner_values.h"
-#include "dice/finish_motion.h"
 #include "dice/grid_attributes.h"
+#include "dice/motion_bounds.h"
 #include "dice/raster_bound.h"
-#include "dice/seen_area.h"
-#include "math/unit_or.h"
+#include "dice/visible_area.h"
+#include "geometry/corner_values.h"
+#include "geometry/limit_vertices.h"
+#include "math/normalize_or.h"
 
 namespace granita {
 namespace {
@@ -19,8 +20,10 @@ constexpr float kLeastCosine = 0.99f;
 /// Of the shading rate: the longest side of a cluster's box.
 constexpr float kLongest = 1.5f;
 
-/// Where in a face its point is: on both triangles of a quad, so that no ray's own surface lies
-/// above it.
+/// What a face's point has of its corners: a quad's are worth the same, be it cut as it may.
+PatchKind mean_kind(PatchKind kind) {
+    return kind == PatchKind::Triangle ? kind : PatchKind::Quad;
+}
 Vec2d middle_of(PatchKind kind) {
     return kind == PatchKind::Triangle ? Vec2d(1.0 / 3.0) : Vec2d(0.5);
 }
@@ -29,6 +32,9 @@ Vec2d middle_of(PatchKind kind) {
 
 /// At the frame time, in camera space.
 struct FaceBatch::Face {
+    std::size_t micropolygon = 0;
+    BasePatch patch;
+    int vertices[4] = {};  ///< of the grid; a triangle repeats its last
     Vec3f middle{0.0f}, normal{0.0f}, geometric_normal{0.0f}, su{0.0f}, sv{0.0f};
     Vec2f place{0.0f};  ///< of the middle, pixels
     float area = 0.0f;  ///< as seen, square pixels
@@ -46,8 +52,8 @@ struct FaceBatch::Cluster {
     }
 };
 
-FaceBatch::FaceBatch(std::shared_ptr<const OpenedPolygons> mesh,
-                     std::span<const std::uint32_t> faces, std::span<const Bounds3f> boxes)
+FaceBatch::FaceBatch(std::shared_ptr<const OpenedMesh> mesh, std::span<const std::uint32_t> faces,
+                     std::span<const Bounds3f> boxes)
     : m_mesh(std::move(mesh)), m_faces(faces), m_boxes(boxes) {}
 
 RasterBounds FaceBatch::bounds() const {
@@ -91,7 +97,7 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
                 to[kPlane[c] * count + i] = points[static_cast<std::size_t>(
                     m_mesh->data().corner_verts[patch(i).corner[c]])];
     }
-    finish_motion(*grid, m_mesh->view().projection);
+    motion_bounds(*grid, m_mesh->view().projection);
     grid->shading_state = [batch = *this](Grid& of) { batch.fill_shading_state(of); };
     return grid;
 }
@@ -100,7 +106,14 @@ void FaceBatch::fill_shading_state(Grid& grid) const {
     set_frame_positions(grid, m_mesh->knots());
     std::vector<Face> faces;
     faces.reserve(face_count());
-    for (std::size_t i = 0; i < face_count(); ++i) faces.push_back(face(grid, i));
+    for (std::size_t i = 0; i < face_count(); ++i) {
+        if (patch(i).bent) {
+            faces.push_back(face(grid, i, patch(i).half(0)));
+            faces.push_back(face(grid, i, patch(i).half(1)));
+        } else {
+            faces.push_back(face(grid, i, patch(i)));
+        }
+    }
     const std::vector<Cluster> points = clusters(grid, faces);
     const std::vector<Vec3f> vertices = grid.shading_p();
     grid.p.clear();
@@ -125,10 +138,10 @@ void FaceBatch::add_point(Grid& grid, const std::vector<Face>& faces, const Clus
     }
     // The mean, or light would be taken from where the larger faces are: those that face the eye.
     p = total > 0.0f ? p / total : center.middle;
-    const Vec3f outward(unit_or(Vec3d(geometric_normal), Vec3d(center.geometric_normal)));
-    grid.places.anchors.push_back(static_cast<std::uint32_t>(cluster.center));
+    const Vec3f outward(normalize_or(Vec3d(geometric_normal), Vec3d(center.geometric_normal)));
+    grid.shading_positions.anchors.push_back(static_cast<std::uint32_t>(center.micropolygon));
     grid.p.push_back(p);
-    grid.normal.push_back(Vec3f(unit_or(Vec3d(normal), Vec3d(center.normal))));
+    grid.normal.push_back(Vec3f(normalize_or(Vec3d(normal), Vec3d(center.normal))));
     grid.geometric_normal.push_back(outward);
     grid.dp_du.push_back(center.su * cluster.stretch(faces));
     grid.dp_dv.push_back(center.sv * cluster.stretch(faces));
@@ -136,25 +149,43 @@ void FaceBatch::add_point(Grid& grid, const std::vector<Face>& faces, const Clus
     const Vec3f view = m_mesh->view().projection.perspective ? p : Vec3f(0.0f, 0.0f, 1.0f);
     const Vec3f up = glm::dot(outward, view) > 0.0f ? -outward : outward;
     float height = 0.0f;
-    for (std::size_t i = cluster.first; i < cluster.end; ++i) {
-        const Grid::Corners c = grid.corners(static_cast<int>(i));
-        for (const int v : {c.v0, c.v1, c.v2, c.v3})
-            height = std::max(height, glm::dot(vertices[v] - p, up));
-    }
+    for (std::size_t i = cluster.first; i < cluster.end; ++i)
+        for (const int v : faces[i].vertices)
+            height = std::max(height, glm::dot(vertices[static_cast<std::size_t>(v)] - p, up));
+    if (m_mesh->shared().subdivision()) height += bulge(faces, cluster);
     grid.ray_offset.push_back(up * height);
 }
 
-FaceBatch::Face FaceBatch::face(const Grid& grid, std::size_t i) const {
+/// How far the limit surface may stand above the corners of a cluster's faces, camera space.
+float FaceBatch::bulge(const std::vector<Face>& faces, const Cluster& cluster) const {
+    const std::vector<float>& heights = m_mesh->shared().limit()->heights;
+    float most = 0.0f;
+    for (std::size_t i = cluster.first; i < cluster.end; ++i)
+        most = std::max(most, heights[faces[i].patch.face]);
+    return most * m_mesh->frame_scale();
+}
+
+FaceBatch::Face FaceBatch::face(const Grid& grid, std::size_t i, const BasePatch& part) const {
     const Grid::Corners c = grid.corners(static_cast<int>(i));
     // Of the vertices yet.
     const std::vector<Vec3f>& p = grid.shading_p();
-    const Vec3f corner[4] = {p[c.v0], p[c.v1], p[c.v2], p[c.v3]};
-    const bool triangle = patch(i).kind == PatchKind::Triangle;
-    const CornerWeights weights(patch(i).kind, middle_of(patch(i).kind));
+    const bool triangle = part.kind == PatchKind::Triangle;
+    const CornerWeights weights(mean_kind(part.kind), middle_of(part.kind));
     Face face;
+    face.micropolygon = i;
+    face.patch = part;
+    // The second half of a quad leaves its second corner out, the first half its last.
+    const bool second = patch(i).bent && part.sub == 1;
+    face.vertices[0] = c.v0;
+    face.vertices[1] = second ? c.v2 : c.v1;
+    face.vertices[2] = second ? c.v3 : c.v2;
+    face.vertices[3] = triangle ? face.vertices[2] : c.v3;
+    Vec3f corner[4];
+    for (int k = 0; k < 4; ++k) corner[k] = p[static_cast<std::size_t>(face.vertices[k])];
+    // On both triangles of a quad, so that no ray's own surface lies above it.
     face.middle =
         triangle ? (corner[0] + corner[1] + corner[2]) / 3.0f : 0.5f * (corner[0] + corner[2]);
-    const FrameFace at = m_mesh->frame_face(patch(i));
+    const FrameFace at = m_mesh->frame_face(part);
     const Vec3d su = at.by_u(weights), sv = at.by_v(weights);
     const Vec3d flat = at.geometric_normal(su, sv);
     face.su = Vec3f(su);
@@ -202,8 +233,15 @@ std::vector<FaceBatch::Cluster> FaceBatch::clusters(Grid& grid,
         lo = hi = face.place;
     }
     for (Cluster& cluster : clusters) find_center(cluster, faces);
-    for (int corner = 0; corner < 4; ++corner)
-        grid.places.point_of.insert(grid.places.point_of.end(), point_of.begin(), point_of.end());
+    // A bent quad is of two colours: its second half follows the first.  Corners 0, 1, 3 and 2.
+    std::vector<std::uint32_t>& of_vertex = grid.shading_positions.point_of;
+    const std::size_t count = face_count();
+    of_vertex.resize(4 * count);
+    for (std::size_t i = faces.size(); i-- > 0;)
+        of_vertex[faces[i].micropolygon] = of_vertex[count + faces[i].micropolygon] = point_of[i];
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        of_vertex[2 * count + faces[i].micropolygon] =
+            of_vertex[3 * count + faces[i].micropolygon] = point_of[i];
     return clusters;
 }
 
@@ -227,9 +265,14 @@ void FaceBatch::fill_attributes(Grid& grid, const std::vector<Face>& faces,
         const auto width = static_cast<std::size_t>(out.width);
         const auto values_at = [&](std::size_t i, std::vector<float>& values,
                                    std::vector<float>& du, std::vector<float>& dv) {
-            const Vec2d uv = middle_of(patch(i).kind);
-            interpolate(corner_values(m_mesh->shared(), patch(i), request), patch(i).kind, {&uv, 1},
-                        out.width, values, du, dv);
+            const BasePatch& part = faces[i].patch;
+            const Vec2d uv = middle_of(part.kind);
+            if (m_mesh->shared().subdivision()) {
+                m_mesh->attribute(part, request, {&uv, 1}, values, du, dv);
+                return;
+            }
+            interpolate(corner_values(m_mesh->shared(), part, request), mean_kind(part.kind),
+                        {&uv, 1}, out.width, values, du, dv);
         };
         std::vector<float> values, du, dv, mean;
         for (const Cluster& cluster : clusters) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Small faces of one material as one grid of separate micropolygons (Grid::apart), each the
-// micropolygon that its patch would be.
+// micropolygon that its patch would be.  The two triangles of a bent quad are shaded as two faces.
 //
 // Shading: neighbours are gathered into clusters of about the shading rate's area, each shaded once
 // and of one colour all over.  A cluster's point is the mean of its faces by the area that is seen
@@ -12,14 +12,14 @@
 #include <memory>
 #include <span>
 
-#include "dice/opened_polygons.h"
+#include "dice/opened_mesh.h"
 
 namespace granita {
 
 class FaceBatch : public Primitive {
   public:
     /// `faces`: patches of the mesh, which keeps them; `boxes` [knots]: theirs, likewise.
-    FaceBatch(std::shared_ptr<const OpenedPolygons> mesh, std::span<const std::uint32_t> faces,
+    FaceBatch(std::shared_ptr<const OpenedMesh> mesh, std::span<const std::uint32_t> faces,
               std::span<const Bounds3f> boxes);
 
     RasterBounds bounds() const override;
@@ -36,18 +36,19 @@ class FaceBatch : public Primitive {
     /// Room for `micropolygons` at every knot; what all of them have in common.
     std::unique_ptr<Grid> make_grid(std::size_t micropolygons) const;
 
-    std::shared_ptr<const OpenedPolygons> m_mesh;
+    std::shared_ptr<const OpenedMesh> m_mesh;
 
   private:
     struct Face;
     struct Cluster;
     void fill_shading_state(Grid& grid) const;
-    Face face(const Grid& grid, std::size_t i) const;
+    Face face(const Grid& grid, std::size_t i, const BasePatch& part) const;
     std::vector<Cluster> clusters(Grid& grid, const std::vector<Face>& faces) const;
     static void find_center(Cluster& cluster, const std::vector<Face>& faces);
     /// `vertices`: the grid's, at the frame time.
     void add_point(Grid& grid, const std::vector<Face>& faces, const Cluster& cluster,
                    const std::vector<Vec3f>& vertices) const;
+    float bulge(const std::vector<Face>& faces, const Cluster& cluster) const;
     void fill_attributes(Grid& grid, const std::vector<Face>& faces,
                          const std::vector<Cluster>& clusters) const;
 

@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "dice/corner_values.h"
-#include "math/unit_or.h"
+#include "geometry/corner_values.h"
+#include "math/normalize_or.h"
 #include "math/vec.h"
 
 namespace granita {
@@ -17,7 +17,7 @@ inline Vec3d face_direction(const Vec3d* corners, const Vec3d& su, const Vec3d& 
     // At a corner where two vertices coincide the quad's own normal stands in.  Any direction will
     // do for a face without area: it covers nothing.
     const Vec3d across = glm::cross(corners[2] - corners[0], corners[3] - corners[1]);
-    return unit_or(across, Vec3d(0.0, 0.0, -1.0));
+    return normalize_or(across, Vec3d(0.0, 0.0, -1.0));
 }
 
 /// A polygon's patch at the frame time, camera space: what it is shaded by.
@@ -35,7 +35,8 @@ struct FrameFace {
     }
     /// Unit, of shading, where the face has this normal itself.
     Vec3d shading_normal(const CornerWeights& weights, const Vec3d& geometric_normal) const {
-        return is_smooth ? unit_or(blend(normal, weights.w), geometric_normal) : geometric_normal;
+        return is_smooth ? normalize_or(blend(normal, weights.w), geometric_normal)
+                         : geometric_normal;
     }
 
     static Vec3d blend(const Vec3d* values, const std::array<double, 4>& w) {

@@ -9,8 +9,8 @@ std::uint64_t Grid::bytes() const {
     const std::uint64_t vectors = positions.size() + p.size() + normal.size() +
                                   geometric_normal.size() + dp_du.size() + dp_dv.size() +
                                   opacity.size() + radiance.size() + ray_offset.size();
-    floats +=
-        channels.size() + places.anchors.size() + places.point_of.size() + places.faces.size();
+    floats += channels.size() + shading_positions.anchors.size() +
+              shading_positions.point_of.size() + shading_positions.faces.size();
     return sizeof(Grid) + 4 * floats + sizeof(Vec3f) * vectors;
 }
 

@@ -15,7 +15,7 @@
 // neighbouring border vertices of the grid coincide bit for bit: micropolygons there are triangles
 // or empty.
 //
-// Shading points are the vertices, or fewer: see ShadingPlaces.
+// Shading points are the vertices, or fewer: see ShadingPositions.
 //
 // A grid is immutable after dicing (decision 4) except for the slots `opacity` and `radiance`, each
 // filled once.
@@ -50,7 +50,7 @@ struct GridAttribute {
 };
 
 /// Where a grid is shaded, if not at every vertex.
-struct ShadingPlaces {
+struct ShadingPositions {
     /// [points] a vertex of each point: it moves along with it.  Empty: the vertices are the
     /// points.
     std::vector<std::uint32_t> anchors;
@@ -75,7 +75,7 @@ struct Grid {
     /// many grids are hidden and never shaded.  Outlives the primitive.  Empty: nothing is missing.
     std::function<void(Grid&)> shading_state;
     /// Shading state at the frame time, camera space of the frame time.
-    ShadingPlaces places;
+    ShadingPositions shading_positions;
     std::vector<Vec3f> p;  ///< [points]; empty when knots == 1 and vertices are points: positions
     std::vector<Vec3f>
         normal;  ///< [points] unit shading normal, outward as modelled (not yet faced forward)
@@ -108,8 +108,8 @@ struct Grid {
     int vertex_count() const { return apart ? 4 * n_u : (n_u + 1) * (n_v + 1); }
     int micropolygon_count() const { return n_u * n_v; }
     std::size_t point_count() const {
-        return places.anchors.empty() ? static_cast<std::size_t>(vertex_count())
-                                      : places.anchors.size();
+        return shading_positions.anchors.empty() ? static_cast<std::size_t>(vertex_count())
+                                                 : shading_positions.anchors.size();
     }
     /// From corner 0 of a micropolygon to corners 1 and 3; corner 2 is both steps away.
     int right() const { return apart ? n_u : 1; }

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dice/knots.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 namespace granita {
 namespace {
-
-/// Element by element, as Blender's knots are meant: straight paths between them.
-Mat4d at_time(const std::vector<Mat4d>& matrices, const KnotTime& t) {
-    if (t.fraction == 0.0) return matrices[t.knot];
-    return matrices[t.knot] * (1.0 - t.fraction) + matrices[t.knot + 1] * t.fraction;
-}
 
 bool is_finite(const Mat4d& m) {
     for (int c = 0; c < 4; ++c)
@@ -22,23 +15,6 @@ bool is_finite(const Mat4d& m) {
 }
 
 }  // namespace
-
-bool is_static(const std::vector<Mat4d>& matrices) {
-    return std::all_of(matrices.begin(), matrices.end(),
-                       [&](const Mat4d& m) { return m == matrices.front(); });
-}
-
-KnotTime knot_time(int step, int steps, int knots) {
-    if (knots == 1 || steps == 0) return {};
-    const int at = step * (knots - 1);
-    return {static_cast<std::size_t>(at / steps), static_cast<double>(at % steps) / steps};
-}
-
-KnotTime knot_time(double time, int knots) {
-    const double at = std::clamp(time, 0.0, 1.0) * (knots - 1);
-    const double knot = std::floor(at);
-    return {static_cast<std::size_t>(knot), at - knot};
-}
 
 Knots combine_knots(const Scene& scene, const Instance& instance, const GeometryData& geometry,
                     bool geometry_static) {
@@ -62,8 +38,8 @@ Knots combine_knots(const Scene& scene, const Instance& instance, const Geometry
     knots.count = static_cast<int>(steps) + 1;
 
     const auto compose = [&](const KnotTime& object, const KnotTime& camera) {
-        const Mat4d composed =
-            glm::inverse(at_time(world_from_camera, camera)) * at_time(world_from_object, object);
+        const Mat4d composed = glm::inverse(matrix_at(world_from_camera, camera)) *
+                               matrix_at(world_from_object, object);
         knots.finite = knots.finite && is_finite(composed);
         return composed;
     };

@@ -3,10 +3,10 @@
 // the camera's knots brought to one equidistant set (decision 8).
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "math/vec.h"
+#include "scene/knot_time.h"
 #include "scene/scene.h"
 
 namespace granita {
@@ -29,20 +29,8 @@ struct Knots {
     bool finite = true;  ///< every matrix is
 };
 
-/// All knots are the same.
-bool is_static(const std::vector<Mat4d>& matrices);
-
 /// `geometry_static`: all knots of the geometry hold the same points.
 Knots combine_knots(const Scene& scene, const Instance& instance, const GeometryData& geometry,
                     bool geometry_static);
-
-/// Where a time in [0, 1] falls among equidistant knots.
-struct KnotTime {
-    std::size_t knot = 0;
-    double fraction = 0.0;  ///< of the segment from `knot` on; 0 exactly at a knot
-};
-/// Time step / steps: exact at knots.
-KnotTime knot_time(int step, int steps, int knots);
-KnotTime knot_time(double time, int knots);
 
 }  // namespace granita

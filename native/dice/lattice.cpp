@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "dice/finish_motion.h"
 #include "dice/grid_attributes.h"
-#include "dice/lattice_places.h"
+#include "dice/motion_bounds.h"
+#include "dice/parametric_positions.h"
 
 namespace granita {
 namespace {
@@ -151,7 +151,7 @@ class LatticeDicer {
     const BasePatch* m_patch = nullptr;
     Lattice m_lattice{};
     std::size_t m_count = 0;  ///< vertices
-    LatticePlaces m_places;
+    ParametricPositions m_places;
     std::vector<int> m_ends[4];
     std::vector<float> m_by_u, m_by_v;
     std::vector<Vec3f> m_path;

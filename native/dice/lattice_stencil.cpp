@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "dice/lattice_places.h"
+#include "dice/parametric_positions.h"
 
 namespace granita {
 namespace {
@@ -23,12 +23,12 @@ LatticeStencil make(PatchKind kind, const Vec2d* corner_uv, const int* levels) {
         for (int leaf = 0; levels[side] >= 0 && leaf <= 1 << levels[side]; ++leaf)
             ends[side].push_back(leaf * steps >> levels[side]);
     }
-    LatticePlaces places;
-    places.find(corner_uv, stencil.n_u, stencil.n_v, ends);
-    for (const Vec2d& uv : places.uv) stencil.weights.emplace_back(kind, uv);
-    stencil.uv = std::move(places.uv);
-    stencil.step_u = std::move(places.step_u);
-    stencil.step_v = std::move(places.step_v);
+    ParametricPositions positions;
+    positions.find(corner_uv, stencil.n_u, stencil.n_v, ends);
+    for (const Vec2d& uv : positions.uv) stencil.weights.emplace_back(kind, uv);
+    stencil.uv = std::move(positions.uv);
+    stencil.step_u = std::move(positions.step_u);
+    stencil.step_v = std::move(positions.step_v);
     return stencil;
 }
 
@@ -41,7 +41,7 @@ LatticeStencil make_numbered(std::uint32_t number) {
     }
     if (quad) {
         static const Vec2d corner_uv[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-        return make(PatchKind::Quad, corner_uv, levels);
+        return make(PatchKind::TrianglePair, corner_uv, levels);
     }
     const int base = triangle_base(levels);
     Vec2d corner_uv[4];

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dice/corner_values.h"
+#include "geometry/corner_values.h"
 
 namespace granita {
 
@@ -20,7 +20,7 @@ struct LatticeStencil {
     int n_u = 1, n_v = 1;
     std::vector<CornerWeights> weights;  ///< [vertices]
     std::vector<Vec2d> uv;               ///< [vertices]
-    std::vector<Vec2d> step_u, step_v;   ///< as LatticePlaces has them
+    std::vector<Vec2d> step_u, step_v;   ///< as ParametricPositions has them
 
     std::size_t vertex_count() const { return uv.size(); }
     int micropolygon_count() const { return n_u * n_v; }

@@ -9,16 +9,25 @@
 #include <vector>
 
 #include "dice/edge_rate.h"
-#include "dice/element_values.h"
 #include "dice/knots.h"
 #include "dice/primitive.h"
 #include "dice/view.h"
+#include "geometry/element_values.h"
 #include "geometry/shared_elements.h"
 
 namespace granita {
 
 /// Metres that a radius of 1 takes after a transform: a sphere's of the same volume.
 double uniform_scale(const Mat4d& m);
+
+/// A transform that makes circles ellipses.
+struct UnevenScale {
+    bool is_uneven = false;
+    double largest = 1.0;  ///< no length grows more than so
+    Mat3d camera_from_object{1.0}, object_from_camera{1.0};
+
+    explicit UnevenScale(const Mat4d& m);
+};
 
 /// Camera space, metres.
 struct ElementPoint {
@@ -56,6 +65,10 @@ class OpenedElements final : public OpenedInstance,
     const EdgeRate& rate_along(double width) const;
     Report& report() const { return *m_report; }
     int grid_size() const;
+    /// Of curves alone: their radii are those of the largest scale where it is uneven.
+    const UnevenScale& uneven_scale(int knot) const {
+        return m_uneven[static_cast<std::size_t>(knot)];
+    }
 
     /// A grid of this instance for a batch: its identity, material and size; every vertex at every
     /// knot at the origin.  u runs along the elements, one after the other, so that the hider finds
@@ -86,9 +99,10 @@ class OpenedElements final : public OpenedInstance,
     Knots m_knots;
     Report* m_report;
     EdgeRate m_rate;
-    EdgeRate m_long_rates[2];       ///< twice, four times
-    std::vector<KnotTime> m_times;  ///< [knots] among the geometry's own
-    std::vector<double> m_scales;   ///< [knots] metres of camera space in one of object space
+    EdgeRate m_long_rates[2];           ///< twice, four times
+    std::vector<KnotTime> m_times;      ///< [knots] among the geometry's own
+    std::vector<double> m_scales;       ///< [knots] metres of camera space in one of object space
+    std::vector<UnevenScale> m_uneven;  ///< [knots]
 };
 
 }  // namespace granita

@@ -5,11 +5,18 @@
 #include <cmath>
 #include <limits>
 
+#include "base/parallel.h"
+#include "dice/face_batch.h"
 #include "dice/patch.h"
+#include "dice/patch_batch.h"
 #include "dice/raster_bound.h"
+#include "geometry/surface_evaluator.h"
 
 namespace granita {
 namespace {
+
+/// Vertices that are transformed in a piece of a loop.
+constexpr std::size_t kGrain = 1 << 13;
 
 double orientation_of(const Mat4d& m) {
     return glm::determinant(Mat3d(m)) < 0.0 ? -1.0 : 1.0;
@@ -40,21 +47,23 @@ OpenedMesh::OpenedMesh(const View& view, std::size_t instance,
 }
 
 void OpenedMesh::transform_points() {
-    const GeometryData& d = data();
-    const bool deforms = !m_shared->is_static();
+    const int geometry_knots = m_shared->is_static() ? 1 : data().knots;
     m_points.resize(static_cast<std::size_t>(m_knots.count) * m_vertex_count);
     for (int k = 0; k < m_knots.count; ++k) {
         const Mat4d& m = m_knots.camera_from_object[static_cast<std::size_t>(k)];
-        const KnotTime t = knot_time(k, m_knots.count - 1, deforms ? d.knots : 1);
-        const Vec3f* from = &d.points[t.knot * m_vertex_count];
-        const Vec3f* next = t.fraction > 0.0 ? from + m_vertex_count : from;
+        const KnotTime t = knot_time(k, m_knots.count - 1, geometry_knots);
+        const Vec3f* from = m_shared->surface_points(static_cast<int>(t.knot)).data();
+        const Vec3f* next =
+            t.fraction > 0.0 ? m_shared->surface_points(static_cast<int>(t.knot) + 1).data() : from;
         Vec3f* to = &m_points[static_cast<std::size_t>(k) * m_vertex_count];
-        for (std::size_t v = 0; v < m_vertex_count; ++v) {
-            const Vec3d p = t.fraction > 0.0
-                                ? Vec3d(from[v]) * (1.0 - t.fraction) + Vec3d(next[v]) * t.fraction
-                                : Vec3d(from[v]);
-            to[v] = Vec3f(transform_point(m, p));
-        }
+        parallel_for(m_vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t v = begin; v < end; ++v) {
+                const Vec3d p = t.fraction > 0.0 ? Vec3d(from[v]) * (1.0 - t.fraction) +
+                                                       Vec3d(next[v]) * t.fraction
+                                                 : Vec3d(from[v]);
+                to[v] = Vec3f(transform_point(m, p));
+            }
+        });
     }
     // Knots that all came out equal, such as a thing parented to the moving camera, cost nothing.
     for (int k = 1; k < m_knots.count; ++k)
@@ -93,6 +102,13 @@ void OpenedMesh::find_displacement() {
     }
 }
 
+float OpenedMesh::frame_scale() const {
+    double most = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+        most = std::max(most, glm::length(Vec3d(m_knots.frame_camera_from_object[axis])));
+    return static_cast<float>(most);
+}
+
 int OpenedMesh::material(std::uint32_t face) const {
     const std::vector<std::int32_t>& slots = m_instance->materials;
     if (slots.empty()) return -1;
@@ -108,6 +124,12 @@ DisplacementHook OpenedMesh::displacement(int material) const {
                         : m_view->displacement[static_cast<std::size_t>(material)];
 }
 
+void OpenedMesh::attribute(const BasePatch& patch, const AttributeRequest& request,
+                           std::span<const Vec2d> uv, std::vector<float>& values,
+                           std::vector<float>& du, std::vector<float>& dv) const {
+    m_shared->surface().attribute(patch, request, uv, values, du, dv);
+}
+
 Vec3d OpenedMesh::camera_normal(const Vec3f& normal_object) const {
     return m_camera_from_object_normal * Vec3d(normal_object);
 }
@@ -116,20 +138,56 @@ RasterBounds OpenedMesh::bounds(std::size_t primitive) const {
     return raster_bound_of(view().projection, primitive_boxes(primitive));
 }
 
+void OpenedMesh::find_small_faces() {
+    m_small = SmallFaces(*this);
+}
+
+OpenedMesh::Corners OpenedMesh::corners(const BasePatch& patch, int knot) const {
+    Corners corners;
+    for (int i = 0; i < 4; ++i)
+        corners.p[i] = point(knot, static_cast<std::size_t>(vertex_of(patch.corner[i])));
+    return corners;
+}
+
+FrameFace OpenedMesh::frame_corners(const BasePatch& patch) const {
+    FrameFace face;
+    const Corners at = corners(patch, m_knots.frame_knot);
+    std::copy_n(at.p, 4, face.p);
+    if (m_knots.frame_fraction > 0.0) {
+        const Corners next = corners(patch, m_knots.frame_knot + 1);
+        for (int i = 0; i < 4; ++i) face.p[i] = at_frame(at.p[i], next.p[i]);
+    }
+    face.orientation = frame_orientation();
+    return face;
+}
+
 std::vector<Bounds3f> OpenedMesh::primitive_boxes(std::size_t primitive) const {
-    const BasePatch& patch = m_shared->patches()[primitive];
+    const std::size_t others = m_small.others().size();
+    if (primitive >= others) {
+        const std::span<const Bounds3f> boxes = m_small.boxes(primitive - others);
+        return {boxes.begin(), boxes.end()};
+    }
+    const BasePatch& patch = m_shared->patches()[m_small.others()[primitive]];
     static const Vec2d triangle[4] = {{0, 0}, {1, 0}, {0, 1}, {0, 1}};
     static const Vec2d quad[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     return patch_boxes(*this, patch, patch.kind == PatchKind::Triangle ? triangle : quad);
 }
 
 std::unique_ptr<Primitive> OpenedMesh::primitive(std::size_t primitive) const {
-    return Patch::open(shared_from_this(), m_shared->patches()[primitive]);
+    const std::size_t others = m_small.others().size();
+    if (primitive < others)
+        return Patch::open(shared_from_this(), m_shared->patches()[m_small.others()[primitive]]);
+    const std::size_t batch = primitive - others;
+    if (m_small.is_whole(batch))
+        return std::make_unique<FaceBatch>(shared_from_this(), m_small.batch(batch),
+                                           m_small.boxes(batch));
+    return std::make_unique<PatchBatch>(shared_from_this(), m_small.batch(batch),
+                                        m_small.boxes(batch));
 }
 
 std::uint64_t OpenedMesh::bytes() const {
     return sizeof(*this) + sizeof(Vec3f) * m_points.size() +
-           sizeof(float) * m_vertex_displacement.size();
+           sizeof(float) * m_vertex_displacement.size() + m_small.bytes();
 }
 
 }  // namespace granita

@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "dice/edge_rate.h"
+#include "dice/frame_face.h"
 #include "dice/knots.h"
 #include "dice/primitive.h"
 #include "dice/side.h"
+#include "dice/small_faces.h"
 #include "dice/view.h"
 #include "geometry/shared_geometry.h"
 
@@ -35,12 +37,14 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     OpenedMesh(const View& view, std::size_t instance, std::shared_ptr<const SharedGeometry> shared,
                Knots knots, Report& report);
 
-    std::size_t primitive_count() const override { return m_shared->patches().size(); }
+    std::size_t primitive_count() const override {
+        return m_small.others().size() + m_small.batch_count();
+    }
     RasterBounds bounds(std::size_t primitive) const final;
     std::vector<Bounds3f> knot_boxes(std::size_t primitive) const final {
         return knot_count() > 1 ? primitive_boxes(primitive) : std::vector<Bounds3f>{};
     }
-    std::unique_ptr<Primitive> primitive(std::size_t primitive) const override;
+    std::unique_ptr<Primitive> primitive(std::size_t primitive) const final;
     std::uint64_t bytes() const override;
 
     virtual Start start(const BasePatch& patch, int budget) const = 0;
@@ -53,9 +57,19 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     virtual void sample(const BasePatch& patch, std::span<const Vec2d> uv,
                         SurfaceSamples& out) const = 0;
     /// `values`, `du`, `dv` [n][request.width]; derivatives by u and v.
-    virtual void attribute(const BasePatch& patch, const AttributeRequest& request,
-                           std::span<const Vec2d> uv, std::vector<float>& values,
-                           std::vector<float>& du, std::vector<float>& dv) const = 0;
+    void attribute(const BasePatch& patch, const AttributeRequest& request,
+                   std::span<const Vec2d> uv, std::vector<float>& values, std::vector<float>& du,
+                   std::vector<float>& dv) const;
+
+    /// Of a patch whose corners are vertices.
+    virtual FrameFace frame_face(const BasePatch& patch) const = 0;
+    /// Whether a patch whose sides are short may share a grid with others.
+    virtual bool may_be_small(const BasePatch& patch) const = 0;
+    /// [4] of a patch at a knot.
+    struct Corners {
+        Vec3d p[4];
+    };
+    Corners corners(const BasePatch& patch, int knot) const;
 
     const View& view() const { return *m_view; }
     const Instance& instance() const { return *m_instance; }
@@ -64,22 +78,29 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     const GeometryData& data() const { return m_shared->data(); }
     const Knots& knots() const { return m_knots; }
     int knot_count() const { return m_knots.count; }
-    /// [V] camera space.
+    /// [V] camera space, where vertices lie on the surface.
     std::span<const Vec3f> points(int knot) const {
         return {&m_points[static_cast<std::size_t>(knot) * m_vertex_count], m_vertex_count};
     }
     const EdgeRate& rate() const { return m_rate; }
     Report& report() const { return *m_report; }
 
+    /// The largest stretch from object to camera space at the frame time.
+    float frame_scale() const;
     /// Index in Scene::materials, -1 = none.
     int material(std::uint32_t face) const;
     /// Any material of the instance displaces.
     bool displaced() const { return m_displaced; }
     DisplacementHook displacement(int material) const;
 
+    /// Object-space normals to camera space at the frame time, of any length.
+    Vec3d camera_normal(const Vec3f& normal_object) const;
+
   protected:
-    /// [knots]
-    virtual std::vector<Bounds3f> primitive_boxes(std::size_t primitive) const;
+    /// Once an instance can answer for its patches: at the end of its constructor.
+    void find_small_faces();
+    /// Places and orientation of a patch's corners at the frame time, without normals.
+    FrameFace frame_corners(const BasePatch& patch) const;
     const Vec3f& point(int knot, std::size_t vertex) const {
         return m_points[static_cast<std::size_t>(knot) * m_vertex_count + vertex];
     }
@@ -94,10 +115,10 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     /// outward.
     double orientation(int knot) const { return m_orientation[static_cast<std::size_t>(knot)]; }
     double frame_orientation() const { return m_frame_orientation; }
-    /// Object-space normals to camera space at the frame time.
-    Vec3d camera_normal(const Vec3f& normal_object) const;
 
   private:
+    /// [knots]
+    std::vector<Bounds3f> primitive_boxes(std::size_t primitive) const;
     void transform_points();
     void find_displacement();
 
@@ -115,6 +136,7 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     Mat3d m_camera_from_object_normal{1.0};
     bool m_displaced = false;
     std::vector<float> m_vertex_displacement;
+    SmallFaces m_small;  ///< none where displaced
 };
 
 }  // namespace granita

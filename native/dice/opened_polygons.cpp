@@ -3,12 +3,9 @@
 
 #include <algorithm>
 
-#include "dice/corner_values.h"
-#include "dice/face_batch.h"
 #include "dice/lattice_stencil.h"
-#include "dice/patch_batch.h"
 #include "geometry/vertex_normals.h"
-#include "math/unit_or.h"
+#include "math/normalize_or.h"
 
 namespace granita {
 namespace {
@@ -22,7 +19,8 @@ Vec3d blend(const Vec3d* p, const std::array<double, 4>& w) {
 OpenedPolygons::OpenedPolygons(const View& view, std::size_t instance,
                                std::shared_ptr<const SharedGeometry> shared, Knots knots,
                                Report& report)
-    : OpenedMesh(view, instance, std::move(shared), std::move(knots), report), m_small(*this) {
+    : OpenedMesh(view, instance, std::move(shared), std::move(knots), report) {
+    find_small_faces();
     if (!displaced()) return;
     const std::size_t n = data().vertex_count();
     for (int k = 0; k < knot_count(); ++k) {
@@ -66,21 +64,15 @@ OpenedMesh::Start OpenedPolygons::start(const BasePatch& patch, int budget) cons
     return start;
 }
 
-OpenedPolygons::Corners OpenedPolygons::corners(const BasePatch& patch, int knot) const {
-    Corners corners;
-    for (int i = 0; i < 4; ++i)
-        corners.p[i] = point(knot, static_cast<std::size_t>(vertex_of(patch.corner[i])));
-    return corners;
-}
-
 std::vector<Bounds3f> OpenedPolygons::boxes(const BasePatch& patch, const Vec2d* corner_uv) const {
-    Vec2d uv[4];
-    std::copy_n(corner_uv, 4, uv);
-    if (patch.kind != PatchKind::Triangle) {
-        // A bilinear patch lies in the hull of the corners of any (u, v) rectangle around it.
+    std::vector<Vec2d> uv(corner_uv, corner_uv + 4);
+    if (patch.kind == PatchKind::TrianglePair) {
+        // In the hull of a (u, v) rectangle's corners and of where the crease enters and leaves it.
         Vec2d lo = uv[0], hi = uv[0];
         for (const Vec2d& c : uv) lo = glm::min(lo, c), hi = glm::max(hi, c);
-        uv[0] = lo, uv[1] = {hi.x, lo.y}, uv[2] = hi, uv[3] = {lo.x, hi.y};
+        const double from = std::max(lo.x, lo.y), to = std::min(hi.x, hi.y);
+        uv = {lo, {hi.x, lo.y}, hi, {lo.x, hi.y}};
+        if (from < to) uv.insert(uv.end(), {Vec2d(from), Vec2d(to)});
     }
     std::vector<Bounds3f> boxes(static_cast<std::size_t>(knot_count()));
     for (int k = 0; k < knot_count(); ++k) {
@@ -101,7 +93,7 @@ void OpenedPolygons::edge_point(const EdgeRef& edge, double t, EdgePoint& out) c
     for (int k = 0; k < knot_count(); ++k) {
         const Vec3f* directions = &m_directions[static_cast<std::size_t>(k) * n];
         const Vec3d along = Vec3d(directions[edge.a]) * (1.0 - t) + Vec3d(directions[edge.b]) * t;
-        out.offset[k] = Vec3f(amount * unit_or(along, Vec3d(0.0, 0.0, -1.0)));
+        out.offset[k] = Vec3f(amount * normalize_or(along, Vec3d(0.0, 0.0, -1.0)));
     }
 }
 
@@ -117,18 +109,11 @@ Vec3d OpenedPolygons::direction(const BasePatch& patch, int knot, const CornerWe
     const Vec3f* normals = &m_directions[static_cast<std::size_t>(knot) * data().vertex_count()];
     Vec3d corner[4];
     for (int i = 0; i < 4; ++i) corner[i] = normals[vertex_of(patch.corner[i])];
-    return unit_or(blend(corner, weights.w), flat);
+    return normalize_or(blend(corner, weights.w), flat);
 }
 
 FrameFace OpenedPolygons::frame_face(const BasePatch& patch) const {
-    FrameFace face;
-    const Corners at = corners(patch, knots().frame_knot);
-    std::copy_n(at.p, 4, face.p);
-    if (knots().frame_fraction > 0.0) {
-        const Corners next = corners(patch, knots().frame_knot + 1);
-        for (int i = 0; i < 4; ++i) face.p[i] = at_frame(at.p[i], next.p[i]);
-    }
-    face.orientation = frame_orientation();
+    FrameFace face = frame_corners(patch);
     const bool custom = !data().corner_normals.empty();
     face.is_smooth = custom || (smooth(patch.face) && !shared().vertex_normals().empty());
     for (int i = 0; i < 4 && face.is_smooth; ++i) {
@@ -136,28 +121,9 @@ FrameFace OpenedPolygons::frame_face(const BasePatch& patch) const {
         const Vec3f& normal =
             custom ? data().corner_normals[corner]
                    : shared().vertex_normals()[static_cast<std::size_t>(vertex_of(corner))];
-        face.normal[i] = unit_or(camera_normal(normal), Vec3d(0.0));
+        face.normal[i] = normalize_or(camera_normal(normal), Vec3d(0.0));
     }
     return face;
-}
-
-std::vector<Bounds3f> OpenedPolygons::primitive_boxes(std::size_t primitive) const {
-    const std::size_t others = m_small.others().size();
-    if (primitive < others) return OpenedMesh::primitive_boxes(m_small.others()[primitive]);
-    const std::span<const Bounds3f> boxes = m_small.boxes(primitive - others);
-    return {boxes.begin(), boxes.end()};
-}
-
-std::unique_ptr<Primitive> OpenedPolygons::primitive(std::size_t primitive) const {
-    const std::size_t others = m_small.others().size();
-    if (primitive < others) return OpenedMesh::primitive(m_small.others()[primitive]);
-    const std::size_t batch = primitive - others;
-    auto self = std::static_pointer_cast<const OpenedPolygons>(shared_from_this());
-    if (m_small.is_whole(batch))
-        return std::make_unique<FaceBatch>(std::move(self), m_small.batch(batch),
-                                           m_small.boxes(batch));
-    return std::make_unique<PatchBatch>(std::move(self), m_small.batch(batch),
-                                        m_small.boxes(batch));
 }
 
 void OpenedPolygons::surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const {
@@ -204,13 +170,6 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
         out.geometric_normal[i] = Vec3f(flat);
         out.normal[i] = Vec3f(face.shading_normal(weights[i], flat));
     }
-}
-
-void OpenedPolygons::attribute(const BasePatch& patch, const AttributeRequest& request,
-                               std::span<const Vec2d> uv, std::vector<float>& values,
-                               std::vector<float>& du, std::vector<float>& dv) const {
-    interpolate(corner_values(shared(), patch, request), patch.kind, uv, request.width, values, du,
-                dv);
 }
 
 }  // namespace granita

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Polygons: triangles are flat, convex quads bilinear patches, everything else triangulated.
+// Polygons: Blender's triangles (polygon_patches.h).
 #pragma once
 
-#include "dice/frame_face.h"
 #include "dice/opened_mesh.h"
-#include "dice/small_faces.h"
 
 namespace granita {
 
@@ -13,12 +11,6 @@ class OpenedPolygons final : public OpenedMesh {
     OpenedPolygons(const View& view, std::size_t instance,
                    std::shared_ptr<const SharedGeometry> shared, Knots knots, Report& report);
 
-    std::size_t primitive_count() const override {
-        return m_small.others().size() + m_small.batch_count();
-    }
-    std::unique_ptr<Primitive> primitive(std::size_t primitive) const override;
-    std::uint64_t bytes() const override { return OpenedMesh::bytes() + m_small.bytes(); }
-
     Start start(const BasePatch& patch, int budget) const override;
     bool straight_edges() const override { return true; }
     std::vector<Bounds3f> boxes(const BasePatch& patch, const Vec2d* corner_uv) const override;
@@ -26,19 +18,9 @@ class OpenedPolygons final : public OpenedMesh {
     void surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const override;
     void sample(const BasePatch& patch, std::span<const Vec2d> uv,
                 SurfaceSamples& out) const override;
-    void attribute(const BasePatch& patch, const AttributeRequest& request,
-                   std::span<const Vec2d> uv, std::vector<float>& values, std::vector<float>& du,
-                   std::vector<float>& dv) const override;
 
-    FrameFace frame_face(const BasePatch& patch) const;
-    /// [4] of a patch at a knot.
-    struct Corners {
-        Vec3d p[4];
-    };
-    Corners corners(const BasePatch& patch, int knot) const;
-
-  protected:
-    std::vector<Bounds3f> primitive_boxes(std::size_t primitive) const override;
+    FrameFace frame_face(const BasePatch& patch) const override;
+    bool may_be_small(const BasePatch&) const override { return true; }
 
   private:
     /// Unit direction of displacement at a knot.
@@ -46,7 +28,6 @@ class OpenedPolygons final : public OpenedMesh {
                     const Corners& at) const;
     bool smooth(std::uint32_t face) const;
 
-    SmallFaces m_small;               ///< none where displaced
     std::vector<Vec3f> m_directions;  ///< [knots][V] vertex normals; empty when not displaced
 };
 

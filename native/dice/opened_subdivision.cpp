@@ -2,95 +2,48 @@
 #include "dice/opened_subdivision.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
-#include "base/error.h"
-#include "dice/corner_values.h"
-#include "math/unit_or.h"
+#include "dice/whole_edges.h"
+#include "geometry/limit_vertices.h"
+#include "math/normalize_or.h"
 
 namespace granita {
 namespace {
 
 const Vec3d kTowardsCamera(0.0, 0.0, -1.0);
 
-/// Faces that a thread keeps ready.  Borders are their owner's business, so a patch asks for its
-/// neighbours over and over; 128 hold the neighbours of all that is split at a time, in about a
-/// megabyte.
-constexpr std::size_t kSlots = 128;
-
-std::uint64_t next_id() {
-    static std::atomic<std::uint64_t> id{0};
-    return ++id;
-}
-
-/// Generated coordinates are made of the object's own.
-AttributeSource set_of(AttributeSource source) {
-    return source == AttributeSource::Generated ? AttributeSource::ObjectPosition : source;
-}
-
-bool wants_positions(const View& view, AttributeSource set) {
-    for (const auto& requests : view.requests)
-        for (const AttributeRequest& request : requests)
-            if (is_position(request.source) && set_of(request.source) == set) return true;
-    return false;
-}
-
-Vec3d at(const std::vector<double>& columns, int set) {
-    const double* p = &columns[3 * static_cast<std::size_t>(set)];
-    return {p[0], p[1], p[2]};
-}
-
 }  // namespace
-
-struct OpenedSubdivision::FaceSlot {
-    std::uint64_t id = 0;  ///< of the opened instance
-    int face = -1;
-    LimitFace limit;
-    std::vector<std::pair<int, LimitFace>> uv_maps;
-};
 
 OpenedSubdivision::OpenedSubdivision(const View& view, std::size_t instance,
                                      std::shared_ptr<const SharedGeometry> shared, Knots knots,
                                      Report& report)
-    : OpenedMesh(view, instance, std::move(shared), std::move(knots), report), m_id(next_id()) {
-    for (int k = 0; k < knot_count(); ++k) m_sets.push_back(&point(k, 0));
-    for (const AttributeSource set :
-         {AttributeSource::ObjectPosition, AttributeSource::PreviousPosition,
-          AttributeSource::NextPosition}) {
-        if (!wants_positions(view, set)) continue;
-        m_position_column[set] = 3 * m_sets.size();
-        m_sets.push_back(this->shared().points(set).data());
-    }
+    : OpenedMesh(view, instance, std::move(shared), std::move(knots), report) {
+    for (int k = 0; k < knot_count(); ++k)
+        m_times.push_back(knot_time(k, knot_count() - 1, this->shared().surface().knots()));
+    if (!displaced()) m_whole = whole_edges(*this);
+    find_small_faces();
 }
 
-OpenedSubdivision::FaceSlot& OpenedSubdivision::slot(int face) const {
-    thread_local std::vector<FaceSlot> slots(kSlots);
-    FaceSlot& slot = slots[(static_cast<std::size_t>(face) + m_id * 31) % kSlots];
-    if (slot.id != m_id || slot.face != face) {
-        slot.face = -1;
-        slot.uv_maps.clear();
-        if (!slot.limit.gather(topology(), face, m_sets))
-            throw InternalError(data().name + ": face " + std::to_string(face) +
-                                " has no limit surface");
-        slot.id = m_id;
-        slot.face = face;
-    }
-    return slot;
+Vec3d OpenedSubdivision::direction(const double* columns, int knot) const {
+    const KnotTime& t = m_times[static_cast<std::size_t>(knot)];
+    const double* const p = columns + 3 * t.knot;
+    Vec3d object(p[0], p[1], p[2]);
+    if (t.fraction > 0.0)
+        object = object * (1.0 - t.fraction) + Vec3d(p[3], p[4], p[5]) * t.fraction;
+    const Mat4d& m = knots().camera_from_object[static_cast<std::size_t>(knot)];
+    return Vec3d(m[0]) * object.x + Vec3d(m[1]) * object.y + Vec3d(m[2]) * object.z;
 }
 
-const LimitFace& OpenedSubdivision::face(int index) const {
-    return slot(index).limit;
+Vec3d OpenedSubdivision::normal(const double* du, const double* dv, int knot,
+                                const Vec3d& otherwise) const {
+    return normalize_or(orientation(knot) * glm::cross(direction(du, knot), direction(dv, knot)),
+                        otherwise);
 }
 
-const LimitFace& OpenedSubdivision::uv_map(int face, int channel) const {
-    FaceSlot& at = slot(face);
-    for (const auto& [known, map] : at.uv_maps)
-        if (known == channel) return map;
-    LimitFace map;
-    if (!map.gather_uv(topology(), face, channel))
-        throw InternalError(data().name + ": face " + std::to_string(face) + " has no UV surface");
-    return at.uv_maps.emplace_back(channel, std::move(map)).second;
+Vec3d OpenedSubdivision::place(const double* columns, int knot) const {
+    return direction(columns, knot) +
+           Vec3d(knots().camera_from_object[static_cast<std::size_t>(knot)][3]);
 }
 
 Side OpenedSubdivision::base_side(std::uint32_t face, int local, std::int32_t from, int budget,
@@ -101,9 +54,26 @@ Side OpenedSubdivision::base_side(std::uint32_t face, int local, std::int32_t fr
     side.edge = {static_cast<std::uint32_t>(index), kWhole};
     side.reversed = from != edge.lo;
     side.budget = static_cast<std::uint8_t>(budget);
-    walk.classify(side);
+    if (m_whole.empty() || !m_whole[index]) walk.classify(side);
     if (edge.halved && side.levels == 0) side.levels = 1;
     return side;
+}
+
+bool OpenedSubdivision::may_be_small(const BasePatch& patch) const {
+    if (patch.kind != PatchKind::Quad || m_whole.empty()) return false;
+    for (int i = 0; i < 4; ++i)
+        if (!m_whole[topology().face_edge(patch.face, i)]) return false;
+    return true;
+}
+
+FrameFace OpenedSubdivision::frame_face(const BasePatch& patch) const {
+    FrameFace face = frame_corners(patch);
+    face.is_smooth = true;
+    for (int i = 0; i < 4; ++i) {
+        const auto vertex = static_cast<std::size_t>(vertex_of(patch.corner[i]));
+        face.normal[i] = normalize_or(camera_normal(shared().limit()->normals[vertex]), Vec3d(0.0));
+    }
+    return face;
 }
 
 OpenedMesh::Start OpenedSubdivision::start(const BasePatch& patch, int budget) const {
@@ -164,8 +134,7 @@ std::vector<Bounds3f> OpenedSubdivision::boxes(const BasePatch& patch,
         Bounds3f& box = boxes[set];
         Vec3d b[16], slack(0.0);
         for (std::size_t i = 0; i < 16; ++i) {
-            const double* from = &p[i * columns + 3 * set];
-            b[i] = {from[0], from[1], from[2]};
+            b[i] = place(&p[i * columns], static_cast<int>(set));
         }
         const auto line = [&](int first, int step) {
             Vec3d& f0 = b[first];
@@ -188,8 +157,8 @@ std::vector<Bounds3f> OpenedSubdivision::boxes(const BasePatch& patch,
         }
         if (limit.is_regular()) continue;
         Bounds3f hull;
-        for (std::size_t i = 3 * set; i < control.size(); i += columns)
-            hull.add(Vec3f(control[i], control[i + 1], control[i + 2]));
+        for (std::size_t i = 0; i < control.size(); i += columns)
+            hull.add(Vec3f(place(&control[i], static_cast<int>(set))));
         box.lo = glm::max(box.lo, hull.lo);
         box.hi = glm::min(box.hi, hull.hi);
     }
@@ -204,17 +173,20 @@ void OpenedSubdivision::limit_point(int index, const Vec2d& uv, double amount,
     p.resize(columns);
     if (!displaced()) {
         limit.evaluate(uv, p.data());
-        for (int k = 0; k < knot_count(); ++k) out.p[k] = Vec3f(at(p, k));
+        for (int k = 0; k < knot_count(); ++k) out.p[k] = Vec3f(place(p.data(), k));
         return;
     }
     du.resize(columns);
     dv.resize(columns);
     limit.evaluate(uv, p.data(), du.data(), dv.data());
     for (int k = 0; k < knot_count(); ++k) {
-        out.p[k] = Vec3f(at(p, k));
-        out.offset[k] = Vec3f(
-            amount * unit_or(orientation(k) * glm::cross(at(du, k), at(dv, k)), kTowardsCamera));
+        out.p[k] = Vec3f(place(p.data(), k));
+        out.offset[k] = Vec3f(amount * normal(du.data(), dv.data(), k, kTowardsCamera));
     }
+}
+
+void OpenedSubdivision::copy_vertex(std::size_t vertex, EdgePoint& out) const {
+    for (int k = 0; k < knot_count(); ++k) out.p[k] = point(k, vertex);
 }
 
 void OpenedSubdivision::edge_point(const EdgeRef& ref, double t, EdgePoint& out) const {
@@ -238,6 +210,10 @@ void OpenedSubdivision::edge_point(const EdgeRef& ref, double t, EdgePoint& out)
                       hi = static_cast<std::size_t>(edge.hi);
     const SubdivisionTopology::Owner& owner =
         at_vertex ? topology().vertex_owner(t == 0.0 ? lo : hi) : edge.owner;
+    if (at_vertex && !displaced()) {
+        copy_vertex(t == 0.0 ? lo : hi, out);
+        return;
+    }
     const double amount =
         displaced() ? vertex_displacement(lo) * (1.0 - t) + vertex_displacement(hi) * t : 0.0;
     const FaceCoordinates coordinates(topology(), owner.face);
@@ -250,6 +226,7 @@ void OpenedSubdivision::edge_point(const EdgeRef& ref, double t, EdgePoint& out)
         uv = coordinates.edge(owner.local, vertex_of(corner) == edge.lo ? t : 1.0 - t);
     }
     limit_point(owner.face, uv, amount, out);
+    if (at_vertex) copy_vertex(t == 0.0 ? lo : hi, out);
 }
 
 void OpenedSubdivision::surface_point(const BasePatch& patch, const Vec2d& uv,
@@ -271,13 +248,15 @@ void OpenedSubdivision::sample(const BasePatch& patch, std::span<const Vec2d> uv
     std::vector<double> p(columns), du(columns), dv(columns);
     const auto frame = [&](const std::vector<double>& from) {
         const int k = knots().frame_knot;
-        return knots().frame_fraction > 0.0 ? at_frame(at(from, k), at(from, k + 1)) : at(from, k);
+        const Vec3d there = direction(from.data(), k);
+        return knots().frame_fraction > 0.0 ? at_frame(there, direction(from.data(), k + 1))
+                                            : there;
     };
     // Where the parameters stall (a cage edge of no length) the middle of the face stands in.
     limit.evaluate(coordinates.sub_face(static_cast<int>(patch.sub), {0.5, 0.5}), p.data(),
                    du.data(), dv.data());
     const Vec3d middle =
-        unit_or(frame_orientation() * glm::cross(frame(du), frame(dv)), kTowardsCamera);
+        normalize_or(frame_orientation() * glm::cross(frame(du), frame(dv)), kTowardsCamera);
 
     out.positions.resize(n * static_cast<std::size_t>(knot_count()));
     if (displaced()) out.offset.resize(out.positions.size());
@@ -289,60 +268,17 @@ void OpenedSubdivision::sample(const BasePatch& patch, std::span<const Vec2d> uv
                        du.data(), dv.data());
         for (int k = 0; k < knot_count(); ++k) {
             const std::size_t to = static_cast<std::size_t>(k) * n + i;
-            out.positions[to] = Vec3f(at(p, k));
+            out.positions[to] = Vec3f(place(p.data(), k));
             if (displaced())
-                out.offset[to] = Vec3f(
-                    amount * unit_or(orientation(k) * glm::cross(at(du, k), at(dv, k)), middle));
+                out.offset[to] = Vec3f(amount * normal(du.data(), dv.data(), k, middle));
         }
         const Vec3d su = frame(du), sv = frame(dv);
         out.su[i] = Vec3f(scale * su);
         out.sv[i] = Vec3f(scale * sv);
-        out.geometric_normal[i] = Vec3f(unit_or(frame_orientation() * glm::cross(su, sv), middle));
+        out.geometric_normal[i] =
+            Vec3f(normalize_or(frame_orientation() * glm::cross(su, sv), middle));
     }
     out.normal = out.geometric_normal;
-}
-
-void OpenedSubdivision::attribute(const BasePatch& patch, const AttributeRequest& request,
-                                  std::span<const Vec2d> uv, std::vector<float>& values,
-                                  std::vector<float>& du, std::vector<float>& dv) const {
-    const Attribute* found = find_attribute(data(), request);
-    const int channel =
-        found ? topology().uv_channel(static_cast<std::size_t>(found - data().attributes.data()))
-              : -1;
-    const bool position = is_position(request.source);
-    if (channel < 0 && !position) {
-        interpolate(corner_values(shared(), patch, request), patch.kind, uv, request.width, values,
-                    du, dv);
-        return;
-    }
-    const int index = static_cast<int>(patch.face);
-    const LimitFace& limit = channel >= 0 ? uv_map(index, channel) : face(index);
-    const FaceCoordinates coordinates(topology(), index);
-    const std::size_t columns = static_cast<std::size_t>(limit.columns());
-    const std::size_t width = static_cast<std::size_t>(request.width);
-    const std::size_t first = position ? m_position_column.at(set_of(request.source)) : 0;
-    const std::size_t given = std::min(width, position ? 3 : columns);
-    std::vector<double> p(columns), by_u(columns), by_v(columns);
-    for (std::vector<float>* out : {&values, &du, &dv}) out->assign(uv.size() * width, 0.0f);
-    const Vec3d box = Vec3d(shared().frame_box().hi) - Vec3d(shared().frame_box().lo);
-    for (std::size_t i = 0; i < uv.size(); ++i) {
-        limit.evaluate(coordinates.sub_face(static_cast<int>(patch.sub), uv[i]), p.data(),
-                       by_u.data(), by_v.data());
-        if (request.source == AttributeSource::Generated) {
-            const Vec3d g = generated(shared().frame_box(), {p[first], p[first + 1], p[first + 2]});
-            for (int c = 0; c < 3; ++c) {
-                const std::size_t column = first + static_cast<std::size_t>(c);
-                p[column] = g[c];
-                by_u[column] = box[c] > 0.0 ? by_u[column] / box[c] : 0.0;
-                by_v[column] = box[c] > 0.0 ? by_v[column] / box[c] : 0.0;
-            }
-        }
-        for (std::size_t c = 0; c < given; ++c) {
-            values[i * width + c] = static_cast<float>(p[first + c]);
-            du[i * width + c] = static_cast<float>(coordinates.sub_face_scale() * by_u[first + c]);
-            dv[i * width + c] = static_cast<float>(coordinates.sub_face_scale() * by_v[first + c]);
-        }
-    }
 }
 
 }  // namespace granita

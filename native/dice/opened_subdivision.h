@@ -6,10 +6,8 @@
 // the edge that leaves this corner to the face's centre, between two sub-faces.
 #pragma once
 
-#include <map>
-
 #include "dice/opened_mesh.h"
-#include "geometry/limit_face.h"
+#include "geometry/surface_evaluator.h"
 
 namespace granita {
 
@@ -25,26 +23,30 @@ class OpenedSubdivision final : public OpenedMesh {
     void surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const override;
     void sample(const BasePatch& patch, std::span<const Vec2d> uv,
                 SurfaceSamples& out) const override;
-    void attribute(const BasePatch& patch, const AttributeRequest& request,
-                   std::span<const Vec2d> uv, std::vector<float>& values, std::vector<float>& du,
-                   std::vector<float>& dv) const override;
+    FrameFace frame_face(const BasePatch& patch) const override;
+    bool may_be_small(const BasePatch& patch) const override;
 
   private:
     static constexpr std::uint32_t kWhole = 0xffffffffu;
 
     const SubdivisionTopology& topology() const { return *shared().subdivision(); }
-    struct FaceSlot;
-    FaceSlot& slot(int face) const;
-    const LimitFace& face(int index) const;
-    const LimitFace& uv_map(int face, int channel) const;
+    const LimitFace& face(int index) const { return shared().surface().limit_face(index); }
+    /// A place at a knot from a limit point's columns, one a knot of the geometry.
+    Vec3d place(const double* columns, int knot) const;
+    /// A derivative likewise.
+    Vec3d direction(const double* columns, int knot) const;
+    /// Unit, outward, of derivatives by u and v.
+    Vec3d normal(const double* du, const double* dv, int knot, const Vec3d& otherwise) const;
+    /// Vertices lie where all faces have them (LimitVertices).
+    void copy_vertex(std::size_t vertex, EdgePoint& out) const;
     Side base_side(std::uint32_t face, int local, std::int32_t from, int budget,
                    const SideWalker& walk) const;
     /// `amount`: displacement along the normal, metres.
     void limit_point(int face, const Vec2d& uv, double amount, EdgePoint& out) const;
 
-    std::uint64_t m_id;                ///< of this opened instance, in each thread's face cache
-    std::vector<const Vec3f*> m_sets;  ///< points at the knots, then in object space if asked for
-    std::map<AttributeSource, std::size_t> m_position_column;  ///< of the latter, in a limit point
+    /// [edges] that stay whole, looked at as their ends are, without the surface between.
+    std::vector<bool> m_whole;
+    std::vector<KnotTime> m_times;  ///< [knots] among the geometry's
 };
 
 }  // namespace granita

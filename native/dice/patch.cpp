@@ -29,7 +29,7 @@ std::vector<Bounds3f> patch_boxes(const OpenedMesh& mesh, const BasePatch& patch
 }
 
 Patch::Patch(std::shared_ptr<const OpenedMesh> mesh, const BasePatch& patch)
-    : m_mesh(std::move(mesh)), m_patch(&patch) {}
+    : m_mesh(std::move(mesh)), m_patch(patch) {}
 
 std::unique_ptr<Patch> Patch::open(std::shared_ptr<const OpenedMesh> mesh, const BasePatch& patch) {
     std::unique_ptr<Patch> opened(new Patch(std::move(mesh), patch));
@@ -42,7 +42,7 @@ std::unique_ptr<Patch> Patch::open(std::shared_ptr<const OpenedMesh> mesh, const
     OpenedMesh::Start start = opened->m_mesh->start(patch, budget);
     std::copy_n(start.corner_uv, 4, opened->m_corner_uv);
     std::move(start.sides, start.sides + 4, opened->m_sides);
-    opened->measure();
+    if (!patch.bent) opened->measure();
     return opened;
 }
 
@@ -58,7 +58,7 @@ int Patch::splittable(bool along_u) const {
 void Patch::measure() {
     const int grid_size = std::max(m_mesh->view().scene->options.grid_size, 1);
     const int most = static_cast<int>(std::bit_width(static_cast<unsigned>(grid_size))) - 1;
-    const SideWalker walk(*m_mesh, *m_patch);
+    const SideWalker walk(*m_mesh, m_patch);
     m_border.u = std::max(walk.depth(m_sides[kBottom], most), walk.depth(m_sides[kTop], most));
     m_border.v = std::max(walk.depth(m_sides[kLeft], most), walk.depth(m_sides[kRight], most));
     m_rates = m_border;
@@ -99,8 +99,8 @@ void Patch::measure_inside(const SideWalker& walk, int most) {
         const Vec2d* c = m_corner_uv;
         const Vec2d start = 0.5 * (c[0] + (along_u ? c[3] : c[1]));
         const Vec2d end = 0.5 * (c[2] + (along_u ? c[1] : c[3]));
-        m_mesh->surface_point(*m_patch, start, a);
-        m_mesh->surface_point(*m_patch, end, b);
+        m_mesh->surface_point(m_patch, start, a);
+        m_mesh->surface_point(m_patch, end, b);
         const Side middle = walk.draw(start, end, a, b, along_u ? m_budget_u : m_budget_v, outside);
         int& levels = along_u ? m_rates.u : m_rates.v;
         levels = std::max(levels, walk.depth(middle, most));
@@ -112,20 +112,20 @@ bool Patch::diceable() const {
 }
 
 GridKey Patch::key() const {
-    return {m_mesh->instance().key, m_patch->face, m_path};
+    return {m_mesh->instance().key, m_patch.face, m_path};
 }
 
 RasterBounds Patch::bounds() const {
-    return raster_bound_of(m_mesh->view().projection, patch_boxes(*m_mesh, *m_patch, m_corner_uv));
+    return raster_bound_of(m_mesh->view().projection, patch_boxes(*m_mesh, m_patch, m_corner_uv));
 }
 
 std::vector<Bounds3f> Patch::knot_boxes() const {
     if (m_mesh->knot_count() == 1) return {};
-    return patch_boxes(*m_mesh, *m_patch, m_corner_uv);
+    return patch_boxes(*m_mesh, m_patch, m_corner_uv);
 }
 
 Patch::Cut Patch::cut(int side, bool collapsed_before, int before, int after) const {
-    const SideWalker walk(*m_mesh, *m_patch);
+    const SideWalker walk(*m_mesh, m_patch);
     const Side& s = m_sides[side];
     Cut cut;
     if (s.refined()) {
@@ -155,18 +155,23 @@ Patch::Cut Patch::cut(int side, bool collapsed_before, int before, int after) co
 }
 
 std::vector<std::unique_ptr<Primitive>> Patch::split() const {
+    if (m_patch.bent) {
+        std::vector<std::unique_ptr<Primitive>> triangles;
+        for (const int number : {0, 1}) triangles.push_back(open(m_mesh, m_patch.half(number)));
+        return triangles;
+    }
     const bool u = m_split_u;
     // Named for a split along u; along v, left and bottom, right and top change places.
     const bool point_before = m_sides[u ? kLeft : kBottom].collapsed;
     const Cut low = cut(u ? kBottom : kLeft, point_before, 0, u ? 1 : 3);
     const Cut high = cut(u ? kTop : kRight, point_before, u ? 3 : 1, 2);
-    const SideWalker walk(*m_mesh, *m_patch);
+    const SideWalker walk(*m_mesh, m_patch);
     const Side line =
         walk.draw(low.uv, high.uv, low.point, high.point, u ? m_budget_v : m_budget_u);
 
     std::vector<std::unique_ptr<Primitive>> children;
     for (int number = 0; number < 2; ++number) {
-        std::unique_ptr<Patch> child(new Patch(m_mesh, *m_patch));
+        std::unique_ptr<Patch> child(new Patch(m_mesh, m_patch));
         child->m_path = 2 * m_path + static_cast<unsigned>(number);
         child->m_budget_u = m_budget_u - (u ? 1 : 0);
         child->m_budget_v = m_budget_v - (u ? 0 : 1);
@@ -193,10 +198,10 @@ std::unique_ptr<Grid> Patch::dice() const {
     auto grid = std::make_unique<Grid>();
     grid->key = key();
     grid->instance = static_cast<std::uint32_t>(m_mesh->instance_index());
-    grid->material = m_mesh->material(m_patch->face);
+    grid->material = m_mesh->material(m_patch.face);
     grid->holdout = m_mesh->instance().holdout;
     grid->lifespan = m_mesh->instance().lifespan;
-    dice_lattice(*m_mesh, *m_patch, {m_corner_uv, m_sides, 1 << m_rates.u, 1 << m_rates.v}, *grid);
+    dice_lattice(*m_mesh, m_patch, {m_corner_uv, m_sides, 1 << m_rates.u, 1 << m_rates.v}, *grid);
     const Projection& projection = m_mesh->view().projection;
     grid->bounds = raster_bound(projection, grid->positions);
     if (!grid->bounds.visible &&

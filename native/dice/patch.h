@@ -25,6 +25,7 @@ std::vector<Bounds3f> patch_boxes(const OpenedMesh& mesh, const BasePatch& patch
 
 class Patch final : public Primitive {
   public:
+    /// A bent pair splits into its triangles at once.
     static std::unique_ptr<Patch> open(std::shared_ptr<const OpenedMesh> mesh,
                                        const BasePatch& patch);
 
@@ -56,7 +57,7 @@ class Patch final : public Primitive {
     Cut cut(int side, bool collapsed_before, int before, int after) const;
 
     std::shared_ptr<const OpenedMesh> m_mesh;
-    const BasePatch* m_patch;
+    BasePatch m_patch;
     std::uint64_t m_path = 1;
     Vec2d m_corner_uv[4];
     Side m_sides[4];

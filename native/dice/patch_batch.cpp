@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "dice/finish_motion.h"
 #include "dice/grid_attributes.h"
 #include "dice/lattice_stencil.h"
+#include "dice/motion_bounds.h"
 #include "dice/patch.h"
 #include "dice/raster_bound.h"
 
@@ -85,8 +85,7 @@ int PatchBatch::levels(std::uint32_t a, std::uint32_t b, const BasePatch& face) 
 }
 
 /// False: the sides ask for more.
-bool PatchBatch::find_stencil(std::uint32_t face, std::uint32_t& stencil) const {
-    const BasePatch& at = patch(face);
+bool PatchBatch::find_stencil(const BasePatch& at, std::uint32_t& stencil) const {
     const int sides = at.kind == PatchKind::Triangle ? 3 : 4;
     const auto vertex = [&](int i) {
         return static_cast<std::uint32_t>(m_mesh->data().corner_verts[at.corner[i % sides]]);
@@ -102,16 +101,16 @@ bool PatchBatch::find_stencil(std::uint32_t face, std::uint32_t& stencil) const 
 }
 
 /// Where a face should not dice in one piece after all, its pieces do.
-void PatchBatch::dice_face(std::uint32_t face, std::vector<Piece>& pieces) const {
+void PatchBatch::dice_face(const BasePatch& patch, std::vector<Piece>& pieces) const {
     std::vector<std::unique_ptr<Primitive>> left;
-    left.push_back(Patch::open(m_mesh, patch(face)));
+    left.push_back(Patch::open(m_mesh, patch));
     while (!left.empty()) {
         const auto primitive = std::move(left.back());
         left.pop_back();
         if (!primitive->diceable()) {
             for (auto& child : primitive->split()) left.push_back(std::move(child));
         } else if (auto diced = primitive->dice()) {
-            pieces.push_back({face, std::move(diced)});
+            pieces.push_back({patch.face, std::move(diced)});
         }
     }
 }
@@ -121,12 +120,20 @@ PatchBatch::Parts PatchBatch::find_parts() const {
     const bool in_frame = m_mesh->rate().in_frame(boxes());
     Parts parts;
     parts.lattices.reserve(face_count());
-    for (std::uint32_t face = 0; face < face_count(); ++face) {
+    const auto add = [&](const BasePatch& part) {
         std::uint32_t stencil = 0;
-        if (in_frame && find_stencil(face, stencil))
-            parts.lattices.push_back({face, stencil});
+        if (in_frame && find_stencil(part, stencil))
+            parts.lattices.push_back({part, stencil});
         else
-            dice_face(face, parts.pieces);
+            dice_face(part, parts.pieces);
+    };
+    for (std::size_t i = 0; i < face_count(); ++i) {
+        if (patch(i).bent) {
+            add(patch(i).half(0));
+            add(patch(i).half(1));
+        } else {
+            add(patch(i));
+        }
     }
     return parts;
 }
@@ -157,7 +164,7 @@ void PatchBatch::place(Grid& grid, const Parts& parts) const {
         Vec3f* const to = &grid.positions[static_cast<std::size_t>(k) * count];
         const auto place_lattice = [&](const Lattice& lattice, const Slot& slot) {
             const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
-            const OpenedPolygons::Corners corners = m_mesh->corners(patch(lattice.face), k);
+            const OpenedMesh::Corners corners = m_mesh->corners(lattice.patch, k);
             Vec3f at[LatticeStencil::kMostVertices];
             for (std::size_t v = 0; v < stencil.vertex_count(); ++v)
                 at[v] = Vec3f(FrameFace::blend(corners.p, stencil.weights[v].w));
@@ -211,7 +218,7 @@ void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
         points += static_cast<std::size_t>(piece.grid->vertex_count());
     for (auto* values : {&grid.p, &grid.normal, &grid.geometric_normal, &grid.dp_du, &grid.dp_dv})
         values->reserve(points);
-    ShadingPlaces& places = grid.places;
+    ShadingPositions& places = grid.shading_positions;
     places.point_of.resize(static_cast<std::size_t>(grid.vertex_count()));
     for (auto* values : {&places.anchors, &places.faces}) values->reserve(points);
 
@@ -220,7 +227,7 @@ void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
         slot.spread(places.point_of.data(),
                     [&](std::size_t v) { return first + static_cast<std::uint32_t>(v); });
         slot.add_anchors(places.anchors);
-        places.faces.resize(places.anchors.size(), patch(face).face);
+        places.faces.resize(places.anchors.size(), face);
     };
     const auto shade_piece = [&](const Piece& piece, const Slot& slot) {
         begin(piece.face, slot);
@@ -230,7 +237,7 @@ void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
         append(piece.grid->dp_dv, grid.dp_dv);
     };
     const auto shade_lattice = [&](const Lattice& lattice, const Slot& slot) {
-        begin(lattice.face, slot);
+        begin(lattice.patch.face, slot);
         add_points(lattice, grid);
     };
     for_each_part(grid, parts, shade_lattice, shade_piece);
@@ -240,7 +247,7 @@ void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
 
 void PatchBatch::add_points(const Lattice& lattice, Grid& grid) const {
     const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
-    const FrameFace face = m_mesh->frame_face(patch(lattice.face));
+    const FrameFace face = m_mesh->frame_face(lattice.patch);
     for (std::size_t v = 0; v < stencil.vertex_count(); ++v) {
         const CornerWeights& weights = stencil.weights[v];
         const Vec3d su = face.by_u(weights), sv = face.by_v(weights);
@@ -258,7 +265,7 @@ void PatchBatch::fill_attributes(Grid& grid, const Parts& parts) const {
     const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
         for (const Lattice& lattice : parts.lattices) {
             const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
-            m_mesh->attribute(patch(lattice.face), request, stencil.uv, values, du, dv);
+            m_mesh->attribute(lattice.patch, request, stencil.uv, values, du, dv);
             append(values, out.values);
             for (std::size_t i = 0; request.derivatives && i < values.size(); ++i) {
                 const std::size_t v = i / static_cast<std::size_t>(out.width);

@@ -17,7 +17,8 @@ class PatchBatch final : public FaceBatch {
   private:
     /// A face that is a lattice by its sides alone.
     struct Lattice {
-        std::uint32_t face, stencil;
+        BasePatch patch;
+        std::uint32_t stencil;
     };
     /// A part of another one, as its patch diced it.
     struct Piece {
@@ -30,9 +31,9 @@ class PatchBatch final : public FaceBatch {
         std::vector<Piece> pieces;
     };
     Parts find_parts() const;
-    bool find_stencil(std::uint32_t face, std::uint32_t& stencil) const;
+    bool find_stencil(const BasePatch& patch, std::uint32_t& stencil) const;
     int levels(std::uint32_t a, std::uint32_t b, const BasePatch& face) const;
-    void dice_face(std::uint32_t face, std::vector<Piece>& pieces) const;
+    void dice_face(const BasePatch& patch, std::vector<Piece>& pieces) const;
     void place(Grid& grid, const Parts& parts) const;
     RasterBounds corner_bounds() const;
     void count_spared(const Grid& grid, const Parts& parts) const;

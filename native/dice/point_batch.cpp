@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "dice/opened_mesh.h"
-#include "math/unit_or.h"
+#include "math/normalize_or.h"
 
 namespace granita {
 namespace {
@@ -32,8 +32,8 @@ int steps_for(double steps, int least) {
 struct PointBatch::Vertex {
     Vertex(const OpenedElements& elements, const ElementPoint& sphere) : center(sphere.p) {
         const Vec3d view = elements.view_direction(sphere.p);
-        to_eye = unit_or(-view, Vec3d(0.0, 0.0, -1.0));
-        right = unit_or(glm::cross(Vec3d(0.0, 1.0, 0.0), -to_eye), Vec3d(1.0, 0.0, 0.0));
+        to_eye = normalize_or(-view, Vec3d(0.0, 0.0, -1.0));
+        right = normalize_or(glm::cross(Vec3d(0.0, 1.0, 0.0), -to_eye), Vec3d(1.0, 0.0, 0.0));
         up = glm::cross(-to_eye, right);
         radius = sphere.radius;
         outline = radius;
@@ -175,13 +175,13 @@ std::shared_ptr<const ElementBatch> PointBatch::copy() const {
 void PointBatch::fill_shading_state(Grid& grid) const {
     m_elements->begin_shading(grid);
     const std::vector<Row> all = rows();
-    std::vector<ElementPlace> places;
-    places.reserve(all.size());
+    std::vector<ElementPlace> shading_positions;
+    shading_positions.reserve(all.size());
     for (std::size_t j = 0; j < all.size(); ++j) {
         shade_row(grid, static_cast<int>(j), all[j]);
-        places.push_back({all[j].point, all[j].point, all[j].point, 0.0});
+        shading_positions.push_back({all[j].point, all[j].point, all[j].point, 0.0});
     }
-    m_elements->finish_shading(grid, places);
+    m_elements->finish_shading(grid, shading_positions);
 }
 
 Vec2d PointBatch::lateral(const Row& row, int i, double out) const {
@@ -231,11 +231,11 @@ void PointBatch::shade_row(Grid& grid, int j, const Row& row) const {
             // turns away from them.
             offset += (here * sphere.radius - sphere.offset(drawn.x, drawn.y)) * weight;
             const Vec3d surface = flat ? sphere.to_eye : sphere.offset(on_sphere.x, on_sphere.y);
-            geometric_normal += unit_or(surface, sphere.to_eye) * weight;
+            geometric_normal += normalize_or(surface, sphere.to_eye) * weight;
         }
         const std::size_t at = vertex(grid, i, j);
-        grid.normal[at] = Vec3f(unit_or(normal, towards));
-        grid.geometric_normal[at] = Vec3f(unit_or(geometric_normal, towards));
+        grid.normal[at] = Vec3f(normalize_or(normal, towards));
+        grid.geometric_normal[at] = Vec3f(normalize_or(geometric_normal, towards));
         grid.ray_offset[at] = Vec3f(offset);
     }
 }

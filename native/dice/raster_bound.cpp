@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "dice/point_bounds.h"
+#include "math/point_span.h"
+
 namespace granita {
 namespace {
 
@@ -80,38 +83,58 @@ RasterBounds raster_bound_of(const Projection& projection, std::span<const Bound
     return raster_bound(projection, all);
 }
 
-RasterBounds raster_bound(const Projection& projection, std::span<const Vec3f> points) {
-    Bounds3f box;
-    for (const Vec3f& p : points) box.add(p);
-    if (box.empty() || !in_clip_range(projection, box.lo.z, box.hi.z)) return {};
-    // As tight where planes of one depth are seen alike.
-    const bool by_box = projection.perspective ? box.lo.z < kEye : !projection.has_lens();
-    if (by_box) return raster_bound(projection, box);
+PointBounds::PointBounds(const Projection& projection)
+    : m_projection(&projection),
+      m_perspective(projection.perspective),
+      m_radius(static_cast<float>(projection.lens_radius)),
+      m_near_focus(projection.has_lens() ? static_cast<float>(1.0 / projection.focus) : 0.0f),
+      m_far_focus(projection.has_lens() ? static_cast<float>(1.0 / projection.farthest_focus())
+                                        : 0.0f) {}
+
+void PointBounds::add(std::span<const Vec3f> points) {
+    m_box.add(bounds_of(points));
+    // Planes of one depth are bounded by their box.
+    if (!m_perspective && !m_projection->has_lens()) return;
     // In single precision.  What a lens shifts is its radius times |1 / focus - 1 / z|, and in an
     // orthographic view times |z / focus - 1|.
-    const auto radius = static_cast<float>(projection.lens_radius);
-    const bool lens = projection.has_lens();
-    const auto near_focus = lens ? static_cast<float>(1.0 / projection.focus) : 0.0f;
-    const auto far_focus = lens ? static_cast<float>(1.0 / projection.farthest_focus()) : 0.0f;
-    Vec2f lo(INFINITY), hi(-INFINITY);
     for (const Vec3f& p : points) {
-        const float w = projection.perspective ? 1.0f / p.z : 1.0f;
-        const float u = projection.perspective ? 1.0f : p.z;
-        const float shear = std::max(std::abs(u * near_focus - w), std::abs(u * far_focus - w));
-        const Vec2f at = Vec2f(p) * w, reach(radius * shear);
-        lo = glm::min(lo, at - reach);
-        hi = glm::max(hi, at + reach);
+        const float w = m_perspective ? 1.0f / p.z : 1.0f;
+        const float u = m_perspective ? 1.0f : p.z;
+        const float shear = std::max(std::abs(u * m_near_focus - w), std::abs(u * m_far_focus - w));
+        const Vec2f at = Vec2f(p) * w, reach(m_radius * shear);
+        m_lo = glm::min(m_lo, at - reach);
+        m_hi = glm::max(m_hi, at + reach);
     }
+}
+
+void PointBounds::add(const PointBounds& other) {
+    m_box.add(other.m_box);
+    m_lo = glm::min(m_lo, other.m_lo);
+    m_hi = glm::max(m_hi, other.m_hi);
+}
+
+RasterBounds PointBounds::bounds() const {
+    const Projection& projection = *m_projection;
+    if (m_box.empty() || !in_clip_range(projection, m_box.lo.z, m_box.hi.z)) return {};
+    // As tight where planes of one depth are seen alike.
+    const bool by_box = m_perspective ? m_box.lo.z < kEye : !projection.has_lens();
+    if (by_box) return raster_bound(projection, m_box);
     Interval x, y;
     const auto add = [&](Interval& interval, int i, float at) {
         const double off_center = projection.scale[i] * at;
         interval.add(projection.center[i] + off_center, std::abs(off_center) * kRounding);
     };
-    for (const Vec2f& at : {lo, hi}) {
+    for (const Vec2f& at : {m_lo, m_hi}) {
         add(x, 0, at.x);
         add(y, 1, at.y);
     }
-    return finish(projection, x, y, box.lo.z);
+    return finish(projection, x, y, m_box.lo.z);
+}
+
+RasterBounds raster_bound(const Projection& projection, std::span<const Vec3f> points) {
+    PointBounds bounds(projection);
+    bounds.add(points);
+    return bounds.bounds();
 }
 
 }  // namespace granita

@@ -2,12 +2,15 @@
 #include "dice/small_faces.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "base/parallel_sort.h"
 #include "dice/lattice_stencil.h"
-#include "dice/opened_polygons.h"
+#include "dice/opened_mesh.h"
+#include "dice/screen_points.h"
 #include "math/morton.h"
 
 namespace granita {
@@ -18,57 +21,15 @@ constexpr float kRegion = 32.0f;
 /// Places on screen and in depth are told apart to this part of a pixel.
 constexpr float kStepsAPixel = 4.0f;
 
-/// Vertices as the camera sees them; not a number where it does not.
-class ScreenPoints {
-  public:
-    explicit ScreenPoints(const OpenedPolygons& mesh)
-        : m_projection(mesh.view().projection),
-          m_width(static_cast<float>(mesh.view().scene->options.width)),
-          m_height(static_cast<float>(mesh.view().scene->options.height)),
-          m_swept(mesh.data().vertex_count()) {}
-
-    void project(std::span<const Vec3f> points) {
-        const float near = static_cast<float>(m_projection.near_clip);
-        const Vec2f scale(m_projection.scale), center(m_projection.center);
-        m_points.resize(points.size());
-        for (std::size_t v = 0; v < points.size(); ++v) {
-            const Vec3f& p = points[v];
-            const bool ahead = !m_projection.perspective || p.z > near;
-            const float w = m_projection.perspective ? 1.0f / p.z : 1.0f;
-            m_points[v] = ahead ? center + scale * Vec2f(p) * w
-                                : Vec2f(std::numeric_limits<float>::quiet_NaN());
-            m_swept[v].lo = glm::min(m_swept[v].lo, m_points[v]);
-            m_swept[v].hi = glm::max(m_swept[v].hi, m_points[v]);
-        }
-    }
-    const Vec2f& operator[](std::size_t v) const { return m_points[v]; }
-    /// Whether the vertex may have been in the frame, over all knots so far.
-    bool met_frame(std::size_t v) const {
-        const Swept& s = m_swept[v];
-        return s.lo.x <= m_width && s.hi.x >= 0.0f && s.lo.y <= m_height && s.hi.y >= 0.0f;
-    }
-    /// Pixels from the eye, so that a step in depth is as long as one across.
-    float depth(float z) const {
-        const float scale = static_cast<float>(m_projection.scale.x);
-        return scale * (m_projection.perspective ? std::log(z) : z);
-    }
-
-  private:
-    struct Swept {
-        Vec2f lo{INFINITY}, hi{-INFINITY};
-    };
-    const Projection m_projection;
-    const float m_width, m_height;
-    std::vector<Vec2f> m_points;
-    std::vector<Swept> m_swept;
-};
+/// Faces that are looked at in a piece of a loop.
+constexpr std::size_t kGrain = 1 << 12;
 
 struct Corners {
     std::uint32_t v[4];
     int count;
 };
 
-Corners corners_of(const OpenedPolygons& mesh, const BasePatch& patch) {
+Corners corners_of(const OpenedMesh& mesh, const BasePatch& patch) {
     Corners corners{};
     for (int i = 0; i < 4; ++i)
         corners.v[i] = static_cast<std::uint32_t>(mesh.data().corner_verts[patch.corner[i]]);
@@ -84,7 +45,9 @@ struct Levels {
 };
 constexpr Levels kLarge{255, 255};
 
-int most_levels(const OpenedPolygons& mesh) {
+int most_levels(const OpenedMesh& mesh) {
+    // Only straight edges have their points from tables.
+    if (!mesh.straight_edges()) return 0;
     // Points of a coarser shading rate lie on lattices.
     if (mesh.rate().shading_rate() > mesh.rate().rate()) return 0;
     int most = LatticeStencil::kMostLevels;
@@ -94,7 +57,7 @@ int most_levels(const OpenedPolygons& mesh) {
 
 /// [patches] what the sides need at any knot; kLarge: more than a small face may, or some do not
 /// meet the frame.
-std::vector<Levels> find_levels(const OpenedPolygons& mesh, ScreenPoints& screen) {
+std::vector<Levels> find_levels(const OpenedMesh& mesh, ScreenPoints& screen) {
     const auto& patches = mesh.shared().patches();
     // A thousandth less than EdgeRate's own limit: this is single precision.
     const float longest = static_cast<float>(0.999 * M_SQRT2 * mesh.rate().rate());
@@ -103,11 +66,11 @@ std::vector<Levels> find_levels(const OpenedPolygons& mesh, ScreenPoints& screen
     for (int i = 0; i <= most; ++i) limit2[i] = std::ldexp(longest * longest, 2 * i);
     std::vector<Vec2f> length2(patches.size(), Vec2f(0.0f));  // of the longer side along u, along v
     const auto is_small = [&](const Vec2f& l) { return std::max(l.x, l.y) <= limit2[most]; };
-    std::size_t left = patches.size();
+    std::atomic<std::size_t> left = patches.size();
     for (int k = 0; k < mesh.knot_count() && left > 0; ++k) {
         screen.project(mesh.points(k));
-        for (std::size_t p = 0; p < patches.size(); ++p) {
-            if (!is_small(length2[p])) continue;
+        const auto measure = [&](std::size_t p) {
+            if (!is_small(length2[p])) return std::size_t{0};
             const Corners c = corners_of(mesh, patches[p]);
             float side2[4] = {};
             for (int i = 0; i < c.count; ++i) {
@@ -119,21 +82,29 @@ std::vector<Levels> find_levels(const OpenedPolygons& mesh, ScreenPoints& screen
             // What is not a number is not small.
             if (!(side2[0] + side2[1] + side2[2] + side2[3] < INFINITY))
                 length2[p] = Vec2f(INFINITY);
-            left -= is_small(length2[p]) ? 0 : 1;
-        }
+            return is_small(length2[p]) ? std::size_t{0} : std::size_t{1};
+        };
+        parallel_for(patches.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+            std::size_t large = 0;
+            for (std::size_t p = begin; p < end; ++p) large += measure(p);
+            left -= large;
+        });
     }
     std::vector<Levels> levels(patches.size(), kLarge);
-    for (std::size_t p = 0; p < patches.size() && left > 0; ++p) {
-        if (!is_small(length2[p])) continue;
+    const auto find = [&](std::size_t p) {
+        if (!is_small(length2[p])) return;
         const Corners c = corners_of(mesh, patches[p]);
         bool met = true;
         for (int i = 0; i < c.count; ++i)
             met &= screen.met_frame(c.v[i]) || screen.met_frame(c.v[i + 1 < c.count ? i + 1 : 0]);
-        if (!met) continue;
+        if (!met || !mesh.may_be_small(patches[p])) return;
         levels[p] = {};
         while (length2[p].x > limit2[levels[p].u]) ++levels[p].u;
         while (length2[p].y > limit2[levels[p].v]) ++levels[p].v;
-    }
+    };
+    parallel_for(left > 0 ? patches.size() : 0, kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) find(p);
+    });
     return levels;
 }
 
@@ -144,13 +115,16 @@ struct Member {
     std::int32_t material;
     Levels levels;
     bool back;
+    bool bent;
+    /// Both triangles of a bent quad are lattices of as many as it would be.
+    int micropolygons() const { return levels.micropolygons() * (bent && !levels.whole() ? 2 : 1); }
     bool goes_with(const Member& other) const {
         return material == other.material && back == other.back &&
                levels.whole() == other.levels.whole();
     }
 };
 
-Member member_of(const OpenedPolygons& mesh, std::uint32_t index, const ScreenPoints& screen,
+Member member_of(const OpenedMesh& mesh, std::uint32_t index, const ScreenPoints& screen,
                  std::span<const Vec3f> points) {
     const BasePatch& patch = mesh.shared().patches()[index];
     const Corners c = corners_of(mesh, patch);
@@ -162,13 +136,14 @@ Member member_of(const OpenedPolygons& mesh, std::uint32_t index, const ScreenPo
     member.patch = index;
     member.place = Vec3f(at, screen.depth(middle.z));
     member.material = mesh.material(patch.face);
+    member.bent = patch.bent;
     member.back = glm::dot(glm::cross(a, b), view) > 0.0f;
     return member;
 }
 
 }  // namespace
 
-SmallFaces::SmallFaces(const OpenedPolygons& mesh) {
+SmallFaces::SmallFaces(const OpenedMesh& mesh) {
     ScreenPoints screen(mesh);
     const std::vector<Levels> levels =
         mesh.displaced() ? std::vector<Levels>(mesh.shared().patches().size(), kLarge)
@@ -177,31 +152,37 @@ SmallFaces::SmallFaces(const OpenedPolygons& mesh) {
         levels.begin(), levels.end(), [](const Levels& l) { return l.u != kLarge.u; }));
     if (count > 0) screen.project(mesh.points(mesh.knots().frame_knot));
     m_others.reserve(levels.size() - count);
-    std::vector<Member> members;
-    members.reserve(count);
-    Vec3f lowest(INFINITY);
-    for (std::uint32_t p = 0; p < levels.size(); ++p) {
-        if (levels[p].u == kLarge.u) {
+    std::vector<Member> members(count);
+    std::size_t member = 0;
+    for (std::uint32_t p = 0; p < levels.size(); ++p)
+        if (levels[p].u == kLarge.u)
             m_others.push_back(p);
-            continue;
-        }
-        members.push_back(member_of(mesh, p, screen, mesh.points(mesh.knots().frame_knot)));
-        members.back().levels = levels[p];
-        lowest = glm::min(lowest, members.back().place);
-    }
+        else
+            members[member++].patch = p;
     if (members.empty()) return;
+    parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t p = members[i].patch;
+            members[i] = member_of(mesh, p, screen, mesh.points(mesh.knots().frame_knot));
+            members[i].levels = levels[p];
+        }
+    });
+    Vec3f lowest(INFINITY);
+    for (const Member& m : members) lowest = glm::min(lowest, m.place);
     // By material, side seen, size and place; numbers of members are a third of what would be moved
     // with them.
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
-    order.reserve(members.size());
-    for (const Member& m : members) {
-        const auto group = (static_cast<std::uint64_t>(m.material + 1) << 2 | (m.back ? 2 : 0) |
-                            (m.levels.whole() ? 0 : 1)) &
-                           0x3ff;
-        order.emplace_back(group << 54 | morton_code((m.place - lowest) * kStepsAPixel, 18),
-                           order.size());
-    }
-    std::sort(order.begin(), order.end());
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(count);
+    parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Member& m = members[i];
+            const auto group = (static_cast<std::uint64_t>(m.material + 1) << 2 | (m.back ? 2 : 0) |
+                                (m.levels.whole() ? 0 : 1)) &
+                               0x3ff;
+            order[i] = {group << 54 | morton_code((m.place - lowest) * kStepsAPixel, 18),
+                        static_cast<std::uint32_t>(i)};
+        }
+    });
+    parallel_sort(order);
     const int most = std::max(mesh.view().scene->options.grid_size, 1);
     m_order.reserve(members.size());
     Bounds3f region;
@@ -212,12 +193,12 @@ SmallFaces::SmallFaces(const OpenedPolygons& mesh) {
         Bounds3f wider = region;
         wider.add(m.place);
         const Vec3f size = wider.hi - wider.lo;
-        micropolygons += m.levels.micropolygons();
+        micropolygons += m.micropolygons();
         if (!last || micropolygons > most || !m.goes_with(*last) ||
             std::max({size.x, size.y, size.z}) > kRegion) {
             m_batches.push_back(static_cast<std::uint32_t>(m_order.size()));
             m_whole.push_back(m.levels.whole());
-            micropolygons = m.levels.micropolygons();
+            micropolygons = m.micropolygons();
             wider = {};
             wider.add(m.place);
         }
@@ -226,15 +207,18 @@ SmallFaces::SmallFaces(const OpenedPolygons& mesh) {
         m_order.push_back(m.patch);
     }
     m_batches.push_back(static_cast<std::uint32_t>(m_order.size()));
-    for (std::size_t b = 0; b < batch_count(); ++b)
-        for (int k = 0; k < mesh.knot_count(); ++k) {
-            const std::span<const Vec3f> points = mesh.points(k);
-            Bounds3f& box = m_boxes.emplace_back();
-            for (const std::uint32_t face : batch(b))
+    const auto knots = static_cast<std::size_t>(mesh.knot_count());
+    m_boxes.resize(batch_count() * knots);
+    parallel_for(m_boxes.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::span<const Vec3f> points = mesh.points(static_cast<int>(i % knots));
+            Bounds3f& box = m_boxes[i];
+            for (const std::uint32_t face : batch(i / knots))
                 for (const std::uint32_t corner : mesh.shared().patches()[face].corner)
                     box.add(points[static_cast<std::size_t>(mesh.data().corner_verts[corner])]);
             box.grow_relative(1e-6f);  // of what lies between the corners
         }
+    });
 }
 
 }  // namespace granita

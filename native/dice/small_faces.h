@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces of a polygon mesh that dice into few micropolygons each, and their batches: a million of
+// Faces of a mesh that dice into few micropolygons each, and their batches: a million of
 // them must not be a million grids (the paper names the cost of tiny grids in 9.4).
 //
 // Batches are made when an instance is opened, for the camera and from all of its faces: neighbours
@@ -16,13 +16,14 @@
 
 namespace granita {
 
-class OpenedPolygons;
+class OpenedMesh;
 
 class SmallFaces {
   public:
     /// Every face of a batch of whole ones has four sides (or three) that EdgeRate leaves whole;
     /// not every such face is in one.
-    explicit SmallFaces(const OpenedPolygons& mesh);
+    SmallFaces() = default;
+    explicit SmallFaces(const OpenedMesh& mesh);
 
     std::size_t batch_count() const { return m_batches.empty() ? 0 : m_batches.size() - 1; }
     /// Patches of a batch, in all probability of at most Options::grid_size micropolygons;

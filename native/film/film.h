@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From composited samples to pixels: filter, merge the aprons of tiles in a fixed order, normalise
+// From composited samples to pixels: filter, merge the margins of tiles in a fixed order, normalise
 // by the weight. The sum of a pixel is grouped by source tile and added in raster order of tiles,
 // so no bit depends on bucket size, order, threads or crop.
 #pragma once

@@ -5,7 +5,7 @@
 
 #include "base/check.h"
 #include "film/cell_sums.h"
-#include "film/weigh_tile.h"
+#include "film/filter_samples.h"
 
 namespace granita {
 
@@ -61,8 +61,8 @@ TileContribution Film::filter_tile(Vec2i tile, const TileSamples& samples,
     out.own = tile_pixels.intersect(m_options.crop);
     out.sums = TileSums(m_each_side, width);
     const float* const rows = width > 0 ? channels->filtered.data() : nullptr;
-    weigh_tile(m_pieces, samples, colors, rows, source.y0 - corner.y, source.y1 - corner.y,
-               out.sums);
+    filter_samples(m_pieces, samples, colors, rows, source.y0 - corner.y, source.y1 - corner.y,
+                   out.sums);
     if (m_each_side == 0)
         for (int pixel = 0; pixel < kTileSize * kTileSize; ++pixel)
             if (!(out.sums.plane(TileSums::kWeight)[pixel] > kLeastWeight))

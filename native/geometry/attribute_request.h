@@ -13,10 +13,14 @@ enum class AttributeSource {
     Named,      ///< GeometryData attribute `name`; missing = zeros
     DefaultUv,  ///< the UV map that is active for render
     DefaultColor,
-    Generated,  ///< Blender's Generated: position in the object's undeformed bounding box, [0,1]^3
+    Generated,         ///< Blender's Generated: undeformed position in the texture space, [0,1]^3
     ObjectPosition,    ///< object space, at the frame time
     PreviousPosition,  ///< object space, one frame before
     NextPosition,      ///< object space, one frame after
+    CornerNormal,      ///< object space, at the frame time: linear between the unit normals of a
+                       ///< polygon's corners; zeros elsewhere
+    Tangent,  ///< likewise, of the UV map `name` (empty: active for render), and whether it
+              ///< is mirrored (tangents.h); zeros on subdivision surfaces
 };
 
 /// Whether the value is a place on the surface itself.

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <string>
 
+#include "geometry/limit_vertices.h"
+#include "geometry/polygon_patches.h"
 #include "geometry/subdivision_topology.h"
-#include "geometry/triangulate.h"
+#include "geometry/surface_evaluator.h"
 #include "geometry/vertex_normals.h"
 
 namespace granita {
@@ -35,24 +37,27 @@ SharedGeometry::SharedGeometry(const GeometryData& data, float frame_time, Repor
             report.warn(data.name, "cannot be subdivided, its cage is rendered: " + why);
     }
     const std::vector<std::uint8_t> usable = usable_faces();
-    std::size_t unusable = 0, crossed = 0;
+    std::size_t unusable = 0;
+    PolygonPatches polygons(data, m_first_corner, m_frame_points);
     m_patches.reserve(data.face_count());
     for (std::uint32_t face = 0; face < data.face_count(); ++face) {
-        if (!usable[face])
+        m_first_patch.push_back(static_cast<std::uint32_t>(m_patches.size()));
+        if (!usable[face]) {
             ++unusable;
-        else if (m_subdivision)
+            polygons.skip(face);
+        } else if (m_subdivision) {
             add_subdivided(face);
-        else
-            add_polygon(face, crossed);
+        } else {
+            polygons.add(face, m_patches);
+        }
     }
     if (m_subdivision) m_subdivision->find_owners(usable);
     if (unusable) report.warn(data.name, counted(unusable, "with non-finite vertices left out"));
-    if (crossed) report.warn(data.name, counted(crossed, "crossing themselves, filled as a fan"));
+    if (polygons.crossed())
+        report.warn(data.name, counted(polygons.crossed(), "crossing themselves, filled as a fan"));
 
-    const bool smooth =
-        std::any_of(data.smooth.begin(), data.smooth.end(), [](std::uint8_t s) { return s != 0; });
-    if (!m_subdivision && smooth && data.corner_normals.empty())
-        m_vertex_normals = granita::vertex_normals(data, m_frame_points);
+    find_normals();
+    m_surface = std::make_unique<SurfaceEvaluator>(*this);
 }
 
 SharedGeometry::~SharedGeometry() = default;
@@ -63,9 +68,8 @@ void SharedGeometry::find_frame_points(float frame_time) {
     for (int k = 1; k < m_data->knots && m_static; ++k)
         m_static = std::equal(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n),
                               points.begin() + static_cast<std::ptrdiff_t>(n) * k);
-    const double at = m_static ? 0.0 : static_cast<double>(frame_time) * (m_data->knots - 1);
-    const std::size_t knot = static_cast<std::size_t>(at);
-    const double fraction = at - static_cast<double>(knot);
+    if (!m_static) m_frame = knot_time(static_cast<double>(frame_time), m_data->knots);
+    const auto [knot, fraction] = m_frame;
     if (fraction == 0.0) {
         m_frame_points = points.subspan(knot * n, n);
     } else {
@@ -79,7 +83,30 @@ void SharedGeometry::find_frame_points(float frame_time) {
         if (is_finite(p)) m_frame_box.add(p);
 }
 
+void SharedGeometry::find_normals() {
+    if (m_subdivision) {
+        m_limit = std::make_unique<LimitVertices>(limit_vertices(*this));
+        return;
+    }
+    const bool smooth = std::ranges::any_of(m_data->smooth, [](std::uint8_t s) { return s != 0; });
+    if (smooth && m_data->corner_normals.empty())
+        m_vertex_normals = granita::vertex_normals(*m_data, m_frame_points);
+}
+
+std::span<const Vec3f> SharedGeometry::knot_points(int knot) const {
+    const std::size_t n = m_data->vertex_count();
+    return std::span(m_data->points).subspan(static_cast<std::size_t>(knot) * n, n);
+}
+
+std::span<const Vec3f> SharedGeometry::surface_points(int knot) const {
+    if (!m_limit) return knot_points(knot);
+    const std::size_t n = m_data->vertex_count();
+    return std::span(m_limit->points).subspan(m_static ? 0 : static_cast<std::size_t>(knot) * n, n);
+}
+
 std::span<const Vec3f> SharedGeometry::points(AttributeSource source) const {
+    if (source == AttributeSource::Generated && !m_data->generated.empty())
+        return m_data->generated;
     const std::span<const Vec3f> other = neighbour_points(*m_data, source);
     return other.empty() ? m_frame_points : other;
 }
@@ -111,39 +138,6 @@ std::vector<std::uint8_t> SharedGeometry::usable_faces() const {
     return usable;
 }
 
-void SharedGeometry::add_polygon(std::uint32_t face, std::size_t& crossed) {
-    const std::uint32_t first = m_first_corner[face];
-    const std::uint32_t n = static_cast<std::uint32_t>(m_data->face_sizes[face]);
-    BasePatch patch;
-    patch.face = face;
-    const auto point = [&](std::uint32_t i) {
-        return m_frame_points[static_cast<std::size_t>(m_data->corner_verts[first + i])];
-    };
-    const auto is_convex = [&] {
-        const Vec3f quad[4] = {point(0), point(1), point(2), point(3)};
-        return is_convex_quad(quad);
-    };
-    if (n == 3 || (n == 4 && is_convex())) {
-        patch.kind = n == 3 ? PatchKind::Triangle : PatchKind::Quad;
-        for (std::uint32_t i = 0; i < 4; ++i) patch.corner[i] = first + std::min(i, n - 1);
-        m_patches.push_back(patch);
-        return;
-    }
-    std::vector<Vec3f> polygon;
-    for (std::uint32_t i = 0; i < n; ++i) polygon.push_back(point(i));
-    const Triangulation triangulation = triangulate(polygon);
-    if (!triangulation.simple) ++crossed;
-    patch.kind = PatchKind::Triangle;
-    patch.whole_face = false;
-    for (const std::array<int, 3>& triangle : triangulation.triangles) {
-        for (std::size_t i = 0; i < 4; ++i)
-            patch.corner[i] =
-                first + static_cast<std::uint32_t>(triangle[std::min<std::size_t>(i, 2)]);
-        m_patches.push_back(patch);
-        ++patch.sub;
-    }
-}
-
 void SharedGeometry::add_subdivided(std::uint32_t face) {
     const std::uint32_t first = m_first_corner[face];
     const std::uint32_t n = static_cast<std::uint32_t>(m_data->face_sizes[face]);
@@ -163,8 +157,13 @@ void SharedGeometry::add_subdivided(std::uint32_t face) {
 }
 
 std::uint64_t SharedGeometry::bytes() const {
-    return sizeof(*this) + 4 * m_first_corner.size() + sizeof(BasePatch) * m_patches.size() +
-           sizeof(Vec3f) * (m_interpolated.size() + m_vertex_normals.size()) +
+    std::uint64_t limit = 0;
+    if (m_limit)
+        limit = sizeof(Vec3f) * (m_limit->points.size() + m_limit->normals.size()) +
+                4 * m_limit->heights.size();
+    return sizeof(*this) + 4 * (m_first_corner.size() + m_first_patch.size()) +
+           sizeof(BasePatch) * m_patches.size() +
+           sizeof(Vec3f) * (m_interpolated.size() + m_vertex_normals.size()) + limit +
            (m_subdivision ? m_subdivision->bytes() : 0);
 }
 

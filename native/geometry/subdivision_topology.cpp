@@ -51,31 +51,61 @@ Sdc::Options scheme_options(const Subdivision& subdivision) {
     return options;
 }
 
-/// Corners of one vertex that hold the same UV share a value: that is where the map is continuous.
-std::vector<int> weld_uvs(const GeometryData& data, const Attribute& uv,
+/// Blender's STD_UV_CONNECT_LIMIT: UVs of one vertex that are nearer than this along u and v are
+/// one.
+constexpr float kUvConnectLimit = 1e-4f;
+
+/// [C] -1 or 1: how a face turns in a UV map; what is mirrored is no neighbour of what is not.
+std::vector<std::int8_t> uv_windings(const GeometryData& data, const std::vector<Vec2f>& uv) {
+    std::vector<std::int8_t> windings;
+    windings.reserve(uv.size());
+    std::size_t first = 0;
+    for (const std::int32_t size : data.face_sizes) {
+        const auto n = static_cast<std::size_t>(size);
+        float area = 0.0f;
+        for (std::size_t i = 0; i < n; ++i) {
+            const Vec2f &a = uv[first + i], &b = uv[first + (i + 1) % n];
+            area += a.x * b.y - a.y * b.x;
+        }
+        windings.insert(windings.end(), n, area > 0.0f ? 1 : -1);
+        first += n;
+    }
+    return windings;
+}
+
+/// [C] values of a UV map; each corner's among them.  Corners of one vertex whose UVs are within
+/// the limit of the first of them share its value: that is where the map is continuous.
+std::vector<int> weld_uvs(const GeometryData& data, const Attribute& attribute,
                           std::vector<float>& values) {
+    const std::size_t width = static_cast<std::size_t>(attribute.width);
+    std::vector<Vec2f> uv(data.corner_verts.size());
+    for (std::size_t c = 0; c < uv.size(); ++c)
+        uv[c] = {attribute.values[c * width], width > 1 ? attribute.values[c * width + 1] : 0.0f};
+    const std::vector<std::int8_t> windings = uv_windings(data, uv);
     struct Link {
-        int value, next;
+        std::size_t corner;  ///< that the others are compared with
+        int value, older;
     };
     std::vector<int> head(data.vertex_count(), -1);
     std::vector<Link> links;
-    std::vector<int> index(data.corner_verts.size());
-    const std::size_t width = static_cast<std::size_t>(uv.width);
-    for (std::size_t c = 0; c < data.corner_verts.size(); ++c) {
-        const std::size_t vertex = static_cast<std::size_t>(data.corner_verts[c]);
-        const float u = uv.values[c * width], v = width > 1 ? uv.values[c * width + 1] : 0.0f;
-        int link = head[vertex];
-        while (link >= 0) {
-            const std::size_t at = 2 * static_cast<std::size_t>(links[link].value);
-            if (values[at] == u && values[at + 1] == v) break;
-            link = links[link].next;
+    std::vector<int> index(uv.size());
+    // From the last to the first, as Blender goes: which is compared with which decides.
+    for (std::size_t c = uv.size(); c-- > 0;) {
+        int& newest = head[static_cast<std::size_t>(data.corner_verts[c])];
+        int found = -1;  // the oldest that is near enough
+        for (int link = newest; link >= 0; link = links[static_cast<std::size_t>(link)].older) {
+            const std::size_t other = links[static_cast<std::size_t>(link)].corner;
+            const Vec2f apart = glm::abs(uv[other] - uv[c]);
+            if (apart.x < kUvConnectLimit && apart.y < kUvConnectLimit &&
+                windings[other] == windings[c])
+                found = link;
         }
-        if (link < 0) {
-            links.push_back({static_cast<int>(values.size() / 2), head[vertex]});
-            link = head[vertex] = static_cast<int>(links.size()) - 1;
-            values.insert(values.end(), {u, v});
+        if (found < 0) {
+            links.push_back({c, static_cast<int>(values.size() / 2), newest});
+            found = newest = static_cast<int>(links.size()) - 1;
+            values.insert(values.end(), {uv[c].x, uv[c].y});
         }
-        index[c] = links[link].value;
+        index[c] = links[static_cast<std::size_t>(found)].value;
     }
     return index;
 }

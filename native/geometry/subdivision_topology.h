@@ -44,6 +44,7 @@ class SubdivisionTopology {
 
     /// Thread-safe.
     const Factory& factory() const { return *m_factory; }
+    std::size_t edge_count() const { return m_edges.size(); }
     const Edge& edge(std::size_t index) const { return m_edges[index]; }
     const Owner& vertex_owner(std::size_t vertex) const { return m_vertex_owners[vertex]; }
     /// The edge that leaves corner `local` of a face.
@@ -52,7 +53,8 @@ class SubdivisionTopology {
     /// Face-varying channel of a UV attribute (index in GeometryData::attributes), -1 if it is
     /// none.
     int uv_channel(std::size_t attribute) const { return m_uv_channels[attribute]; }
-    /// [values][2] of a channel: equal values at one vertex are one value, as in Blender.
+    /// [values][2] of a channel: UVs of one vertex within 1e-4 of each other are one, as in
+    /// Blender.
     const std::vector<float>& uv_values(int channel) const {
         return m_uv_values[static_cast<std::size_t>(channel)];
     }

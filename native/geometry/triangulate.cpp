@@ -93,13 +93,23 @@ Vec3d newell_normal(std::span<const Vec3f> polygon) {
     return sum;
 }
 
-bool is_convex_quad(std::span<const Vec3f> quad) {
-    const Vec3d normal = newell_normal(quad);
-    for (int i = 0; i < 4; ++i) {
-        const Vec3d a(quad[(i + 3) % 4]), b(quad[i]), c(quad[(i + 1) % 4]);
-        if (glm::dot(glm::cross(b - a, c - b), normal) < 0.0) return false;
+QuadTriangles triangulate_quad(std::span<const Vec3f, 4> quad) {
+    QuadTriangles triangles;
+    for (; triangles.start < 2; ++triangles.start) {
+        const auto corner = [&](std::size_t i) {
+            return Vec3d(quad[(static_cast<std::size_t>(triangles.start) + i) % 4]);
+        };
+        const Vec3d origin = corner(0), diagonal = corner(2) - origin;
+        const Vec3d first = glm::cross(corner(1) - origin, diagonal);
+        const Vec3d second = glm::cross(diagonal, corner(3) - origin);
+        const double dot = glm::dot(first, second);
+        // The second cut is taken as it comes.
+        if (dot < 0.0 && triangles.start == 0) continue;
+        const double lengths = std::sqrt(glm::dot(first, first) * glm::dot(second, second));
+        triangles.cosine = lengths > 0.0 ? dot / lengths : 1.0;
+        break;
     }
-    return true;
+    return triangles;
 }
 
 Triangulation triangulate(std::span<const Vec3f> polygon) {

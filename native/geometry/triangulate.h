@@ -21,8 +21,13 @@ struct Triangulation {
 /// Twice the area times the unit normal of a closed polygon, planar or not (Newell's sum).
 Vec3d newell_normal(std::span<const Vec3f> polygon);
 
-/// Four corners in convex position as seen along their own normal: a bilinear patch does not fold.
-bool is_convex_quad(std::span<const Vec3f> quad);
+/// Blender's two triangles of a quad: (start, start + 1, start + 2) and (start, start + 2,
+/// start + 3), modulo 4.
+struct QuadTriangles {
+    int start = 0;        ///< 1 where a cut from corner 0 to 2 would turn one of them over
+    double cosine = 1.0;  ///< between their normals; 1 where one has no area
+};
+QuadTriangles triangulate_quad(std::span<const Vec3f, 4> quad);
 
 /// `polygon` has n >= 3 finite corners.
 Triangulation triangulate(std::span<const Vec3f> polygon);

@@ -2,13 +2,20 @@
 #include "gl/gl_thread.h"
 
 #include <optional>
+#include <system_error>
+
+#include "base/error.h"
 
 namespace granita::gl {
 
 GlThread::GlThread(const ContextOptions& options) {
     std::promise<ContextInfo> started;
     std::future<ContextInfo> info = started.get_future();
-    m_thread = std::thread([this, &options, &started] { work(options, started); });
+    try {
+        m_thread = std::thread([this, &options, &started] { work(options, started); });
+    } catch (const std::system_error& error) {
+        throw GlError(std::string("no thread for OpenGL: ") + error.what());
+    }
     try {
         m_info = info.get();
     } catch (...) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/spares.h"
+#include "base/object_pool.h"
 #include "hider/micropolygon.h"
 
 namespace granita {
@@ -26,14 +26,14 @@ DepthRange depth_range(const Projection& p) {
 }
 
 BucketTiles::BucketTiles(const HiderFrame& frame, const Rect& tiles, const Rect& pixels)
-    : m_frame(frame), m_tiles(tiles), m_pixels(pixels), m_list_memory(Spares<SlabMemory>::take()) {
+    : m_frame(frame), m_tiles(tiles), m_pixels(pixels), m_list_memory(ObjectPool<Arena>::take()) {
     const SampleNeeds needs{false, frame.projection.has_lens()};
     for (int y = tiles.y0; y < tiles.y1; ++y)
         for (int x = tiles.x0; x < tiles.x1; ++x) {
             check_cancelled();
-            TileStore& store = m_stores.emplace_back(Spares<TileStore>::take());
+            TileStore& store = m_stores.emplace_back(ObjectPool<TileStore>::take());
             store.tile = {x, y};
-            m_samples.push_back(Spares<TileSamples>::take());
+            m_samples.push_back(ObjectPool<TileSamples>::take());
             frame.table->fill_tile(store.tile, needs, m_samples.back());
             store.key.assign(m_samples.back().x.size(), -std::numeric_limits<float>::infinity());
             store.id.assign(m_samples.back().x.size(), kNoSurface);
@@ -51,10 +51,10 @@ SurfaceId BucketTiles::add(const Grid& grid, const GridClasses& classes) {
 }
 
 BucketTiles::~BucketTiles() {
-    for (TileStore& store : m_stores) Spares<TileStore>::give(std::move(store));
+    for (TileStore& store : m_stores) ObjectPool<TileStore>::give(std::move(store));
     m_list_memory.clear();
-    Spares<SlabMemory>::give(std::move(m_list_memory));
-    for (TileSamples& samples : m_samples) Spares<TileSamples>::give(std::move(samples));
+    ObjectPool<Arena>::give(std::move(m_list_memory));
+    for (TileSamples& samples : m_samples) ObjectPool<TileSamples>::give(std::move(samples));
 }
 
 void BucketTiles::check_cancelled() const {

@@ -51,7 +51,7 @@ class BucketTiles {
                (key == stored_key && stored_id != kNoSurface && m_pool.before(id, stored_id));
     }
     /// Of all lists of the bucket.
-    SlabMemory& list_memory() { return m_list_memory; }
+    Arena& list_memory() { return m_list_memory; }
     /// Notes how much the lists take.  True past the limit: then and from then on all lists of the
     /// bucket are to be emptied.
     bool limit_lists();
@@ -77,7 +77,7 @@ class BucketTiles {
     Rect m_tiles, m_pixels;
     GridPool m_pool;
     std::vector<TileStore> m_stores;
-    SlabMemory m_list_memory;
+    Arena m_list_memory;
     std::vector<std::uint64_t> m_left;  ///< fragments of a tile when its lists were last cut
     std::vector<char> m_listed;         ///< 1 for ids that are in some list
     std::vector<TileSamples> m_samples;

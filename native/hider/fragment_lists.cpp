@@ -20,7 +20,7 @@ void FragmentLists::reset() {
     order.clear();
 }
 
-void FragmentLists::begin(std::size_t slots, SlabMemory& memory) {
+void FragmentLists::begin(std::size_t slots, Arena& memory) {
     GRANITA_DCHECK(slots % kLanes == 0);
     m_memory = &memory;
     m_stride = 4;

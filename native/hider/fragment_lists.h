@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/slab_memory.h"
+#include "base/arena.h"
 #include "hider/micropolygon.h"
 
 namespace granita {
@@ -74,11 +74,11 @@ class FragmentLists {
     FragmentLists(FragmentLists&&) = default;
     FragmentLists& operator=(FragmentLists&&) = default;
 
-    /// No lists.  What they had of SlabMemory is not given back: it may be gone.
+    /// No lists.  What they had of Arena is not given back: it may be gone.
     void reset();
     /// Before add(): empty lists, unless there are some.  `slots`: a multiple of kLanes.  The
     /// memory must outlive the lists.
-    void prepare(std::size_t slots, SlabMemory& memory) {
+    void prepare(std::size_t slots, Arena& memory) {
         if (m_counts.empty()) begin(slots, memory);
     }
     /// Empties the lists, gives their memory back.
@@ -125,11 +125,11 @@ class FragmentLists {
         return static_cast<std::uint32_t>(std::bit_width(k / kFirst));
     }
     static std::uint32_t first_of(std::uint32_t chunk) { return (kFirst << chunk >> 1) & -kFirst; }
-    void begin(std::size_t slots, SlabMemory& memory);
+    void begin(std::size_t slots, Arena& memory);
     static int block_log2(std::uint32_t chunk);
     void grow(std::size_t packet, std::uint32_t chunk);
 
-    SlabMemory* m_memory = nullptr;
+    Arena* m_memory = nullptr;
     bool m_any = false;
     std::uint32_t m_stride = 0;            ///< chunks that each packet has a place for
     std::vector<FragmentLayer*> m_chunks;  ///< [packets][m_stride]

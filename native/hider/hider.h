@@ -2,7 +2,7 @@
 // Visibility of one bucket: one interface, several executors (design, section 5).
 //
 //   auto hider = make_hider(executor, frame, tiles);
-//   for primitives from front to back:  if (!hider->occluded(bounds)) ... hider->hide(grid)
+//   for primitives from front to back:  if (!hider->occluded(bounds)) ... hider->hide(sweep)
 //   for (TileStore& tile : hider->finish()) ...        // the samples, for compositing
 //
 // `hide` reads positions, and opacity where Grid::opacity_varies; never radiance: shading comes
@@ -16,6 +16,7 @@
 #include "base/report.h"
 #include "base/statistics.h"
 #include "dice/grid.h"
+#include "hider/grid_sweep.h"
 #include "hider/sample_lists.h"
 #include "hider/sample_store.h"
 #include "hider/samples/sample_table.h"
@@ -39,13 +40,18 @@ struct HiderFrame {
 
 class Hider {
   public:
+    explicit Hider(const HiderFrame& frame)
+        : m_projection(frame.projection), m_lens(frame.table->lens()) {}
     virtual ~Hider() = default;
     /// True only if nothing inside the bounds can be seen by any sample of the bucket, given what
     /// was hidden so far.
     bool occluded(const RasterBounds& bounds) const { return occluded(TimeSlab{0, 1, bounds}); }
     /// The same for what is there during a part of the shutter.
     virtual bool occluded(const TimeSlab& slab) const = 0;
-    virtual void hide(const Grid& grid) = 0;
+    /// The sweep's grid must outlive the hider.
+    virtual void hide(const GridSweep& sweep) = 0;
+    /// One that no other hider asks for.
+    void hide(const Grid& grid) { hide(GridSweep(grid, m_projection, m_lens)); }
     /// The lists were given up because they took more than HiderFrame::list_bytes.  Opaque surfaces
     /// and occlusion hold; hiders of fewer pixels are to hide the same grids.
     virtual bool overflowed() const = 0;
@@ -57,10 +63,14 @@ class Hider {
     /// The samples of a tile of finish(), by index: made with exactly the needs that the bucket
     /// met.
     virtual const TileSamples& tile_samples(std::size_t tile_index) const = 0;
+
+  protected:
+    const Projection m_projection;
+    const LensShape& m_lens;
 };
 
 /// `tiles`: rectangle in tile coordinates; `pixels`: only samples of these pixels count (the crop
-/// and its apron).
+/// and its margin).
 std::unique_ptr<Hider> make_reference_hider(const HiderFrame& frame, const Rect& tiles,
                                             const Rect& pixels);
 std::unique_ptr<Hider> make_simd_hider(const HiderFrame& frame, const Rect& tiles,

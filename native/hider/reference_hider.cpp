@@ -14,8 +14,7 @@ namespace {
 class ReferenceHider : public Hider {
   public:
     ReferenceHider(const HiderFrame& frame, const Rect& tiles, const Rect& pixels)
-        : m_projection(frame.projection),
-          m_lens(frame.table->lens()),
+        : Hider(frame),
           m_statistics(frame.statistics),
           m_tiles(frame, tiles, pixels),
           m_range(depth_range(frame.projection)) {}
@@ -23,8 +22,9 @@ class ReferenceHider : public Hider {
     /// Never culls: what it says cannot be wrong.
     bool occluded(const TimeSlab&) const override { return false; }
 
-    void hide(const Grid& grid) override {
-        const GridClasses classes = classify(grid);
+    void hide(const GridSweep& sweep) override {
+        const Grid& grid = sweep.grid();
+        const GridClasses& classes = sweep.classes();
         const SurfaceId base = m_tiles.add(grid, classes);
         if (m_statistics)
             m_statistics->add(Counter::Micropolygons,
@@ -155,8 +155,6 @@ class ReferenceHider : public Hider {
         }
     }
 
-    Projection m_projection;
-    LensShape m_lens;
     Statistics* m_statistics;
     BucketTiles m_tiles;
     DepthRange m_range;

@@ -4,23 +4,11 @@
 #include <algorithm>
 
 #include "dice/raster_bound.h"
-#include "math/point_span.h"
 
 namespace granita {
 namespace {
 
 constexpr int kLeastSlabs = 8;
-
-Bounds3f box_at(const Grid& grid, int knot) {
-    const auto count = static_cast<std::size_t>(grid.vertex_count());
-    const std::span<const Vec3f> points(
-        grid.positions.data() + static_cast<std::size_t>(knot) * count, count);
-    if (are_finite(points)) return bounds_of(points);
-    Bounds3f box;
-    for (const Vec3f& p : points)
-        if (is_finite(p)) box.add(p);
-    return box;
-}
 
 /// Positions move linearly between knots, so the box between their boxes holds them.
 Bounds3f mix(const Bounds3f& a, const Bounds3f& b, float part) {
@@ -53,15 +41,6 @@ TimeSlab time_slab(std::span<const Bounds3f> boxes, int index, const Projection&
     box.grow_relative(4e-6f);  // more than single precision moves anything
     slab.bounds = raster_bound(projection, box);
     return slab;
-}
-
-std::vector<TimeSlab> time_slabs(const Grid& grid, const Projection& projection) {
-    std::vector<Bounds3f> boxes;
-    for (int k = 0; k < grid.knots; ++k) boxes.push_back(box_at(grid, k));
-    std::vector<TimeSlab> slabs;
-    for (int i = 0; i < slab_count(boxes.size()); ++i)
-        slabs.push_back(time_slab(boxes, i, projection));
-    return slabs;
 }
 
 }  // namespace granita

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <span>
-#include <vector>
 
-#include "dice/grid.h"
+#include "math/bounds.h"
 #include "math/projection.h"
 
 namespace granita {
@@ -21,8 +21,5 @@ struct TimeSlab {
 int slab_count(std::size_t knots);
 /// One of them.  `boxes` [knots] camera space, between which everything moves linearly.
 TimeSlab time_slab(std::span<const Bounds3f> boxes, int index, const Projection& projection);
-
-/// All slabs of a moving grid.
-std::vector<TimeSlab> time_slabs(const Grid& grid, const Projection& projection);
 
 }  // namespace granita

@@ -61,8 +61,8 @@ HWY_INLINE void add_fragments(const FragmentVectors& added, M mask, std::size_t 
         const auto lanes = hn::Set(kIdTag, these);
         for (int part = 0; part < 2; ++part) {
             const int at = part * lane_count();
-            const M stored = hn::RebindMask(
-                kTag, hn::TestBit(lanes, hn::Load(kIdTag, kPairBits.data() + at)));
+            const M stored =
+                hn::RebindMask(kTag, hn::TestBit(lanes, hn::Load(kIdTag, kPairBits.data() + at)));
             hn::BlendedStore(hn::Load(kTag, &from.head[0].key + at), stored, kTag,
                              &to.head[lane].key + at);
             hn::BlendedStore(hn::Load(kTag, &from.weights[0].signed_b1 + at), stored, kTag,

@@ -34,7 +34,7 @@ struct Bounds3f {
 };
 
 /// Half-open rectangle of whole pixels (or tiles, or buckets) in the frame; lower-left origin, may
-/// be negative (the filter's apron reaches outside the frame).
+/// be negative (the filter's margin reaches outside the frame).
 struct Rect {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 

@@ -5,9 +5,12 @@
 #include <numeric>
 
 #include "python/snapshot.h"
+#include "shade/random_per_island.h"
 
 namespace granita::python {
 namespace {
+
+using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
 std::vector<Vec3f> vectors(const Record& r, const char* key, py::ssize_t count) {
     if (!r.has(key)) return {};
@@ -59,6 +62,20 @@ void read_subdivision(const Record& r, GeometryData& g) {
         if (v < 0 || v >= n) r.fail("'crease_verts' names a vertex that does not exist");
 }
 
+void check_ngon_triangles(const Record& r, const GeometryData& g) {
+    std::size_t i = 0;
+    for (const std::int32_t size : g.face_sizes) {
+        if (size <= 4) continue;
+        const std::size_t end = i + 3 * static_cast<std::size_t>(size - 2);
+        if (end > g.ngon_triangles.size()) r.fail("'ngon_triangles' are too few for 'face_sizes'");
+        for (; i < end; ++i)
+            if (g.ngon_triangles[i] < 0 || g.ngon_triangles[i] >= size)
+                r.fail("'ngon_triangles' names corner " + std::to_string(g.ngon_triangles[i]) +
+                       " of a face of " + std::to_string(size));
+    }
+    if (i != g.ngon_triangles.size()) r.fail("'ngon_triangles' are too many for 'face_sizes'");
+}
+
 void read_faces(const Record& r, GeometryData& g) {
     g.face_sizes = r.values<std::int32_t>("face_sizes", {-1});
     g.corner_verts = r.values<std::int32_t>("corner_verts", {-1});
@@ -78,6 +95,9 @@ void read_faces(const Record& r, GeometryData& g) {
     g.smooth = r.values<std::uint8_t>("smooth", {static_cast<py::ssize_t>(g.face_count())});
     g.corner_normals =
         vectors(r, "corner_normals", static_cast<py::ssize_t>(g.corner_verts.size()));
+    g.generated = vectors(r, "generated", static_cast<py::ssize_t>(g.vertex_count()));
+    g.ngon_triangles = r.values<std::int32_t>("ngon_triangles", {-1, 3});
+    if (!g.ngon_triangles.empty()) check_ngon_triangles(r, g);
     if (r.has("subdivision")) read_subdivision(r.record("subdivision"), g);
 }
 
@@ -134,6 +154,13 @@ void read_geometry(const Record& r, GeometryData& g) {
         g.attributes.push_back(
             read_attribute(Record(py::reinterpret_borrow<py::dict>(item), r.datablock()), g));
     }
+    if (r.has("edges") && g.kind == GeometryKind::Mesh) {
+        const auto edges = r.values<std::int32_t>("edges", {-1, 2});
+        for (const std::int32_t v : edges)
+            if (v < 0 || static_cast<std::size_t>(v) >= g.vertex_count())
+                r.fail("'edges' names a vertex that does not exist");
+        g.attributes.push_back(random_per_island(g, edges));
+    }
 }
 
 void read_instances(const Record& r, Scene& scene) {
@@ -153,6 +180,8 @@ void read_instances(const Record& r, Scene& scene) {
     const auto random = r.values<float>("random", {n});
     const auto key = r.values<std::uint32_t>("key", {n});
     const auto lifespans = r.values<float>("lifespan", {n, 2});
+    const auto receives = r.values<std::uint64_t>("receives", {n});
+    const auto blocks = r.values<std::uint64_t>("blocks", {n});
     if (n > 0 && (geometry.empty() || knots.empty() || slots.empty()))
         r.fail("'geometry', 'knots' and 'slots' are needed for every instance");
 
@@ -189,9 +218,20 @@ void read_instances(const Record& r, Scene& scene) {
         instance.object_index = object_index.empty() ? 0 : object_index[i];
         instance.random = random.empty() ? 0.0f : random[i];
         instance.key = key.empty() ? static_cast<std::uint32_t>(i) : key[i];
+        if (!receives.empty()) instance.receives = receives[i];
+        if (!blocks.empty()) instance.blocks = blocks[i];
         if (!lifespans.empty())
             instance.lifespan = lifespan(datablock, lifespans[2 * i], lifespans[2 * i + 1]);
     }
+    if (r.has("values"))
+        for (const auto& [key, item] : py::cast<py::dict>(r.get("values"))) {
+            const auto a = FloatArray::ensure(item);
+            if (!a || a.ndim() != 2 || a.shape(0) != n || a.shape(1) != 4)
+                r.fail("'values' must hold arrays of four numbers an instance");
+            std::vector<Vec4f>& values = scene.instance_values[py::cast<std::string>(key)];
+            values.resize(static_cast<std::size_t>(n));
+            if (n > 0) std::memcpy(values.data(), a.data(), values.size() * sizeof(Vec4f));
+        }
     if (knot != transforms.size())
         r.fail("'world_from_object' holds more matrices than 'knots' ask for");
 }

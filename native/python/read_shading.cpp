@@ -79,6 +79,17 @@ void read_image(const Record& r, Image& image) {
     image.pixels.assign(pixels.data(), pixels.data() + pixels.size());
 }
 
+namespace {
+
+/// A bit of the masks of instances, or -1.
+int light_set(const Record& r, const char* name) {
+    const double set = r.number(name, -1.0);
+    if (!(set >= -1.0 && set < 64.0)) r.fail(std::string("'") + name + "' must be from -1 to 63");
+    return static_cast<int>(set);
+}
+
+}  // namespace
+
 void read_light(const Record& r, Light& light) {
     light.kind =
         static_cast<LightKind>(choice(r, "kind", r.text("kind"), {"POINT", "SUN", "SPOT", "AREA"}));
@@ -105,6 +116,8 @@ void read_light(const Record& r, Light& light) {
     light.visible_glossy = r.boolean("visible_glossy", true);
     light.diffuse_factor = static_cast<float>(r.number("diffuse_factor", 1.0));
     light.specular_factor = static_cast<float>(r.number("specular_factor", 1.0));
+    light.receiver_set = light_set(r, "receiver_set");
+    light.blocker_set = light_set(r, "blocker_set");
 }
 
 }  // namespace granita::python

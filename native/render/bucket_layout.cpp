@@ -25,22 +25,21 @@ int clamped_cell(float x, int size, int lo, int hi) {
 
 }  // namespace
 
-BucketLayout::BucketLayout(const Rect& pixels, int bucket_size, int apron)
-    : m_pixels(pixels), m_size(bucket_size), m_apron(apron) {
+BucketLayout::BucketLayout(const Rect& pixels, int bucket_size, int margin)
+    : m_pixels(pixels), m_size(bucket_size), m_margin(margin) {
     GRANITA_CHECK_EQ(bucket_size % kTileSize, 0);
     m_buckets = {floor_div(m_pixels.x0, m_size), floor_div(m_pixels.y0, m_size),
                  ceil_div(m_pixels.x1, m_size), ceil_div(m_pixels.y1, m_size)};
 }
 
 Rect BucketLayout::pixels(int index) const {
-    const int x = m_buckets.x0 + index % m_buckets.width();
-    const int y = m_buckets.y0 + index / m_buckets.width();
-    return Rect{x * m_size, y * m_size, (x + 1) * m_size, (y + 1) * m_size}.intersect(m_pixels);
+    const Vec2i at = place(index) * m_size;
+    return Rect{at.x, at.y, at.x + m_size, at.y + m_size}.intersect(m_pixels);
 }
 
 Rect BucketLayout::reach(int index) const {
     const Rect p = pixels(index);
-    return {p.x0 - m_apron, p.y0 - m_apron, p.x1 + m_apron, p.y1 + m_apron};
+    return {p.x0 - m_margin, p.y0 - m_margin, p.x1 + m_margin, p.y1 + m_margin};
 }
 
 Rect BucketLayout::tiles(int index) const {
@@ -50,9 +49,9 @@ Rect BucketLayout::tiles(int index) const {
 }
 
 Rect BucketLayout::range(const RasterBounds& bounds) const {
-    const auto apron = static_cast<float>(m_apron);
-    const float x0 = bounds.x0 - apron, y0 = bounds.y0 - apron, x1 = bounds.x1 + apron,
-                y1 = bounds.y1 + apron;
+    const auto margin = static_cast<float>(m_margin);
+    const float x0 = bounds.x0 - margin, y0 = bounds.y0 - margin, x1 = bounds.x1 + margin,
+                y1 = bounds.y1 + margin;
     // Written so that NaN is outside.
     const bool inside =
         x1 >= static_cast<float>(m_pixels.x0) && y1 >= static_cast<float>(m_pixels.y0) &&

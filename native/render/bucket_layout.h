@@ -12,10 +12,10 @@ namespace granita {
 class BucketLayout {
   public:
     /// `pixels`: what the buckets tile; `bucket_size`: pixels, a multiple of the tile size;
-    /// `apron`: pixels around its own whose geometry a bucket wants too.  The CPU executors tile
-    /// the crop with its filter apron and need no other apron (film merges); the raster executor
+    /// `margin`: pixels around its own whose geometry a bucket wants too.  The CPU executors tile
+    /// the crop with its filter margin and need no other margin (film merges); the raster executor
     /// tiles the crop and filters by itself.
-    BucketLayout(const Rect& pixels, int bucket_size, int apron = 0);
+    BucketLayout(const Rect& pixels, int bucket_size, int margin = 0);
 
     int count() const { return m_buckets.width() * m_buckets.height(); }
     /// The whole layout in bucket coordinates.
@@ -23,9 +23,13 @@ class BucketLayout {
     int index(int x, int y) const {
         return (y - m_buckets.y0) * m_buckets.width() + x - m_buckets.x0;
     }
+    /// Bucket coordinates of an index.
+    Vec2i place(int index) const {
+        return {m_buckets.x0 + index % m_buckets.width(), m_buckets.y0 + index / m_buckets.width()};
+    }
     /// Pixels of a bucket that are needed.
     Rect pixels(int index) const;
-    /// pixels(index) with the apron.
+    /// pixels(index) with the margin.
     Rect reach(int index) const;
     /// Tiles that cover pixels(index), in tile coordinates.
     Rect tiles(int index) const;
@@ -36,7 +40,7 @@ class BucketLayout {
 
   private:
     Rect m_pixels;
-    int m_size, m_apron;
+    int m_size, m_margin;
     Rect m_buckets;
 };
 

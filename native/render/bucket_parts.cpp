@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/bucket_parts.h"
 
+#include "base/stage_timer.h"
 #include "hider/compute/compute_hider.h"
 #include "render/tile_colors.h"
 
@@ -51,7 +52,7 @@ class TileParts {
         for (const auto& grid : m_grids) {
             if (hider->overflowed()) break;
             if (hider->occluded(grid->grid().bounds)) continue;
-            hider->hide(grid->grid());
+            hider->hide(grid->sweep(m_frame.view.projection, m_frame.table.lens()));
             hidden.push_back(grid);
         }
         return hider;

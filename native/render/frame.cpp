@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "base/stage_timer.h"
 #include "render/frame_blur.h"
 #include "render/raster_bucket.h"
 
@@ -18,14 +19,16 @@ View make_view(const Scene& scene, Statistics& statistics, const ShadingSystem& 
     view.projection = scene.camera.projection;
     view.requests = shading.requests();
     view.displacement = shading.displacement();
-    const float apron = filter.radius();
-    view.raster_x0 = view.raster_y0 = -apron;
-    view.raster_x1 = static_cast<float>(scene.options.width) + apron;
-    view.raster_y1 = static_cast<float>(scene.options.height) + apron;
+    view.geometries = shading.geometries();
+    const float margin = filter.radius();
+    view.raster_x0 = view.raster_y0 = -margin;
+    view.raster_x1 = static_cast<float>(scene.options.width) + margin;
+    view.raster_y1 = static_cast<float>(scene.options.height) + margin;
     return view;
 }
 
 SampleTable make_table(const Scene& scene, const View& view, Report& report) {
+    const StageTimer timer(*view.statistics, Stage::Hide);
     const SampleNeeds needs{scene.moves(), scene.camera.projection.has_lens()};
     const Options& options = scene.options;
     if (options.sampling != Sampling::Regular || options.time_samples != 0)

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <string>
 #include <vector>
 
+#include "base/parallel.h"
 #include "dice/knots.h"
 #include "dice/open_instance.h"
 
@@ -14,6 +16,8 @@ namespace {
 
 /// What appears or vanishes is off by at most half a pass: .02, as the ripple of longest_step().
 constexpr int kLifespanPasses = 25;
+/// Instances that are looked at in a piece of a loop.
+constexpr std::size_t kGrain = 256;
 
 /// What an instance's motion is measured at: the corners of its box where all of it moves as one,
 /// which bound the motion of what is inside, else all points.
@@ -69,17 +73,24 @@ void add_instance(const View& view, const Instance& instance, FrameBlur& blur) {
 }  // namespace
 
 FrameBlur frame_blur(const View& view) {
-    FrameBlur blur;
-    for (std::size_t i = 0; i < view.scene->instances.size(); ++i) {
-        const Instance& instance = view.scene->instances[i];
-        if (!instance.visible_camera) continue;
-        const RasterBounds bounds = instance_bounds(view, i);
-        if (!bounds.visible || bounds.x1 < view.raster_x0 || bounds.y1 < view.raster_y0 ||
-            bounds.x0 > view.raster_x1 || bounds.y0 > view.raster_y1)
-            continue;
-        add_instance(view, instance, blur);
-    }
-    return blur;
+    FrameBlur largest;
+    std::mutex mutex;
+    parallel_for(view.scene->instances.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        FrameBlur blur;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Instance& instance = view.scene->instances[i];
+            if (!instance.visible_camera) continue;
+            const RasterBounds bounds = instance_bounds(view, i);
+            if (!bounds.visible || bounds.x1 < view.raster_x0 || bounds.y1 < view.raster_y0 ||
+                bounds.x0 > view.raster_x1 || bounds.y0 > view.raster_y1)
+                continue;
+            add_instance(view, instance, blur);
+        }
+        const std::lock_guard lock(mutex);
+        largest.motion = std::fmax(largest.motion, blur.motion);
+        largest.lens = std::fmax(largest.lens, blur.lens);
+    });
+    return largest;
 }
 
 int automatic_passes(const View& view, const PixelFilter& filter, Report& report) {

@@ -10,9 +10,11 @@
 #include <span>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/report.h"
 #include "dice/open_instance.h"
 #include "render/geometry_node.h"
+#include "render/hierarchical_grid.h"
 
 namespace granita {
 
@@ -20,8 +22,14 @@ class FrameGeometry {
   public:
     FrameGeometry(const View& view, const BucketLayout& layout, Report& report);
 
-    /// Instances whose bound touches the bucket.
-    const std::vector<std::uint32_t>& instances(int bucket) const { return m_buckets[bucket]; }
+    /// visit(instance) for those whose bound touches the bucket.
+    template <class Visit>
+    void for_each_instance(int bucket, Visit visit) const {
+        const Vec2i at = m_layout.place(bucket);
+        m_instances.for_each(at.x, at.y, [&](std::uint32_t i) {
+            if (holds(m_states[i].buckets, at)) visit(i);
+        });
+    }
     const RasterBounds& bounds(std::uint32_t instance) const { return m_states[instance].bounds; }
     /// [knots] in camera space; empty where it stands still.
     std::span<const Bounds3f> knot_boxes(std::uint32_t instance) const {
@@ -32,39 +40,52 @@ class FrameGeometry {
     struct Opened {
         std::shared_ptr<const OpenedInstance> geometry;
         std::vector<RasterBounds> bounds;  ///< [primitives]
-        Rect buckets;                      ///< bucket coordinates
-        std::vector<std::uint32_t> first;  ///< [buckets + 1] into `faces`
-        std::vector<std::uint32_t> faces;  ///< primitives by bucket, ascending in each
+        HierarchicalGrid faces;            ///< primitives
         std::mutex mutex;                  ///< of `nodes`
         std::vector<std::shared_ptr<GeometryNode>>
             nodes;  ///< [primitives], of those in several buckets
     };
+    /// For a bucket that the instance touches, until its release().  Buckets that ask while it is
+    /// being opened take a share of that.
     std::shared_ptr<Opened> open(std::uint32_t instance);
-    /// The primitives of an opened instance that touch the bucket.
-    std::span<const std::uint32_t> faces(const Opened& opened, int bucket) const;
+    /// visit(primitive) for those of an opened instance that touch the bucket.
+    template <class Visit>
+    void for_each_face(const Opened& opened, int bucket, Visit visit) const {
+        const Vec2i at = m_layout.place(bucket);
+        opened.faces.for_each(at.x, at.y, [&](std::uint32_t face) {
+            if (holds(m_layout.range(opened.bounds[face]), at)) visit(face);
+        });
+    }
     /// The node of a primitive that several buckets want; nullptr if only one does.
     std::shared_ptr<GeometryNode> node(Opened& opened, std::uint32_t primitive);
     /// The bucket is done: releases everything that only it was still waiting for.
     void release(int bucket);
 
     const BucketLayout& layout() const { return m_layout; }
+    /// As HierarchicalGrid::entries(), of instances.
+    std::size_t list_entries() const { return m_instances.entries(); }
 
   private:
     struct State {
         RasterBounds bounds;
+        Rect buckets;  ///< that it touches, bucket coordinates
         std::vector<Bounds3f> boxes;
-        std::mutex mutex;
-        std::shared_ptr<Opened> opened;
+        SharedOnce once;
+        std::atomic<bool> is_open{false};
         std::atomic<int> buckets_left{0};
+        std::shared_ptr<Opened> opened;
     };
-    std::shared_ptr<Opened> make_opened(std::uint32_t instance);
+    static bool holds(const Rect& range, Vec2i at) {
+        return at.x >= range.x0 && at.x < range.x1 && at.y >= range.y0 && at.y < range.y1;
+    }
+    std::shared_ptr<Opened> make_opened(std::uint32_t instance) const;
 
     const View& m_view;
     const BucketLayout& m_layout;
     Report& m_report;
     std::vector<State> m_states;
-    std::vector<std::vector<std::uint32_t>> m_buckets;  ///< instances by bucket
-    std::vector<std::atomic<bool>> m_finished;          ///< [buckets]
+    HierarchicalGrid m_instances;
+    std::vector<std::atomic<bool>> m_finished;  ///< [buckets]
 };
 
 }  // namespace granita

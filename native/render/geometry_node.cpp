@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/geometry_node.h"
 
+#include "base/stage_timer.h"
+
 namespace granita {
 namespace {
 
@@ -10,7 +12,7 @@ void drop_shading_state(Grid& grid) {
                                        &grid.dp_dv, &grid.ray_offset})
         std::vector<Vec3f>().swap(*values);
     std::vector<GridAttribute>().swap(grid.attributes);
-    std::vector<std::uint32_t>().swap(grid.places.faces);
+    std::vector<std::uint32_t>().swap(grid.shading_positions.faces);
 }
 
 }  // namespace
@@ -21,7 +23,7 @@ SharedGrid::SharedGrid(std::unique_ptr<Grid> grid, Statistics& statistics)
 }
 
 SharedGrid::~SharedGrid() {
-    m_statistics.remove_grid_bytes(m_bytes);
+    m_statistics.remove_grid_bytes(m_bytes + (m_sweep ? m_sweep->bytes() : 0));
 }
 
 void SharedGrid::count_bytes() {
@@ -38,6 +40,14 @@ void SharedGrid::ensure_shading_state() {
         m_grid->shading_state = {};
         count_bytes();
     });
+}
+
+const GridSweep& SharedGrid::sweep(const Projection& projection, const LensShape& lens) {
+    std::call_once(m_has_sweep, [&] {
+        m_sweep.emplace(*m_grid, projection, lens);
+        m_statistics.add_grid_bytes(m_sweep->bytes());
+    });
+    return *m_sweep;
 }
 
 void SharedGrid::ensure_opacity(const ShadingSystem& shading) {

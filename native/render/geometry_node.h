@@ -7,10 +7,12 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "base/statistics.h"
 #include "dice/primitive.h"
+#include "hider/grid_sweep.h"
 #include "render/bucket_layout.h"
 #include "shade/shading_system.h"
 
@@ -24,6 +26,8 @@ class SharedGrid {
     const Grid& grid() const { return *m_grid; }
     void ensure_opacity(const ShadingSystem& shading);
     void ensure_radiance(const ShadingSystem& shading);
+    /// What hiding must know of it, once its opacity is there where that varies.
+    const GridSweep& sweep(const Projection& projection, const LensShape& lens);
 
   private:
     void ensure_shading_state();
@@ -32,7 +36,8 @@ class SharedGrid {
     std::unique_ptr<Grid> m_grid;
     Statistics& m_statistics;
     std::uint64_t m_bytes = 0;
-    std::once_flag m_has_state, m_opacity, m_radiance;
+    std::optional<GridSweep> m_sweep;
+    std::once_flag m_has_state, m_opacity, m_radiance, m_has_sweep;
 };
 
 /// Splits until diceable and dices, with the counters.  nullptr when nothing is left of it.

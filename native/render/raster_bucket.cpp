@@ -3,9 +3,11 @@
 
 #include <cmath>
 
+#include "base/stage_timer.h"
 #include "film/filter.h"
 #include "hider/raster/raster_samples.h"
 #include "render/background.h"
+#include "render/shade_seen.h"
 #include "render/visit_geometry.h"
 
 namespace granita {
@@ -32,11 +34,11 @@ RasterBackground background(const Frame& frame, const Rect& pixels) {
 }
 
 /// What the bucket met, for the statistics.
-void count_needs(Frame& frame, const std::vector<const Grid*>& grids) {
-    bool moving = frame.view.projection.has_lens() && !grids.empty(), transparent = false;
-    for (const Grid* grid : grids) {
-        moving |= grid->motion;
-        transparent |= grid->opacity_varies;
+void count_needs(Frame& frame, const std::vector<const GridSweep*>& sweeps) {
+    bool moving = frame.view.projection.has_lens() && !sweeps.empty(), transparent = false;
+    for (const GridSweep* sweep : sweeps) {
+        moving |= sweep->grid().motion;
+        transparent |= sweep->grid().opacity_varies;
     }
     frame.statistics.add(Counter::BucketsMoving, moving);
     frame.statistics.add(Counter::BucketsTransparent, transparent);
@@ -83,22 +85,20 @@ Tile raster_bucket(Frame& frame, int bucket) {
                 grid->ensure_opacity(frame.shading);
             grids.push_back(std::move(grid));
         });
-    std::vector<const Grid*> plain;
-    plain.reserve(grids.size());
-    for (const auto& grid : grids) plain.push_back(&grid->grid());
-    count_needs(frame, plain);
+    std::vector<const GridSweep*> sweeps;
+    sweeps.reserve(grids.size());
+    for (const auto& grid : grids)
+        sweeps.push_back(&grid->sweep(frame.view.projection, frame.table.lens()));
+    count_needs(frame, sweeps);
 
     std::unique_ptr<RasterBucket> device_bucket;
     std::vector<bool> seen;
     {
         const StageTimer timer(frame.statistics, Stage::Hide);
-        device_bucket = frame.raster->open(pixels, plain);
+        device_bucket = frame.raster->open(pixels, std::span<const GridSweep* const>(sweeps));
         seen = device_bucket->find_seen();
     }
-    for (std::size_t i = 0; i < grids.size(); ++i) {
-        frame.progress.check();
-        if (seen[i]) grids[i]->ensure_radiance(frame.shading);
-    }
+    shade_grids(frame, grids, seen);
     RasterBackground behind;
     {
         const StageTimer timer(frame.statistics, Stage::Shade);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/render_bucket.h"
 
+#include "base/stage_timer.h"
 #include "render/bucket_parts.h"
 #include "render/raster_bucket.h"
 #include "render/shade_seen.h"
@@ -35,12 +36,12 @@ void count_needs(Frame& frame, const HiddenGrids& grids) {
 }
 
 void hide_geometry(Frame& frame, int bucket, Hider& hider, HiddenGrids& grids) {
+    const StageTimer timer(frame.statistics, Stage::Hide);  // but for what is opened or diced
     const auto occluded = [&](const TimeSlab& slab) { return hider.occluded(slab); };
     visit_geometry(frame, bucket, occluded, [&](std::shared_ptr<SharedGrid> grid) {
         if (frame.shading.opacity_varies(grid->grid().material))
             grid->ensure_opacity(frame.shading);
-        const StageTimer timer(frame.statistics, Stage::Hide);
-        hider.hide(grid->grid());
+        hider.hide(grid->sweep(frame.view.projection, frame.table.lens()));
         grids.push_back(std::move(grid));
     });
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/render_job.h"
 
-#include <tbb/global_control.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -11,10 +9,13 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/stage_timer.h"
+#include "base/thread_pool.h"
 #include "render/frame.h"
 #include "render/render_bucket.h"
 
@@ -55,9 +56,22 @@ struct RenderJob::Impl {
         return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     }
 
-    /// One task a bucket, taken in spiral order (decision 14).  Where OpenGL fails, no further
-    /// bucket is begun, and the first GlError comes back.
+    /// On threads of its own.  Where OpenGL fails, no further bucket is begun, and the first
+    /// GlError comes back.
     void render(ExecutorChoice choice) {
+        // While one waits for the device, another dices and shades the next bucket.
+        const int wanted = thread_count() + (choice.gl ? 1 : 0);
+        ThreadPool pool(wanted);
+        if (pool.size() < wanted)
+            reports[attempt].warn("render settings", "the system allowed " +
+                                                         std::to_string(pool.size()) + " of " +
+                                                         std::to_string(wanted) + " threads");
+        pool.run([&] { render(pool, std::move(choice)); });
+    }
+
+    /// One task a bucket, taken in spiral order (decision 14).
+    void render(ThreadPool& pool, ExecutorChoice choice) {
+        const StageLedger ledger(statistics);
         Frame frame(*scene, statistics, reports[attempt], progress, std::move(choice));
         {
             const std::lock_guard lock(mutex);
@@ -69,7 +83,8 @@ struct RenderJob::Impl {
         std::atomic<std::size_t> next{0};
         std::optional<GlError> lost;
         gl::GlThread* const gl = frame.choice.gl.get();
-        const auto work = [&] {
+        pool.run_on_all([&] {
+            const StageLedger own(statistics);
             if (gl != nullptr) gl->clock().add_worker(1);
             try {
                 for (std::size_t i = next++; i < order.size(); i = next++) {
@@ -84,13 +99,7 @@ struct RenderJob::Impl {
                 fail(std::current_exception());
             }
             if (gl != nullptr) gl->clock().add_worker(-1);
-        };
-        // While one waits for the device, another dices and shades the next bucket.
-        const int count = thread_count() + (gl != nullptr ? 1 : 0);
-        std::vector<std::thread> workers;
-        for (int i = 1; i < count; ++i) workers.emplace_back(work);
-        work();
-        for (std::thread& worker : workers) worker.join();
+        });
         if (gl != nullptr) {
             const std::lock_guard lock(mutex);
             device_use = gl->clock().use();
@@ -101,9 +110,6 @@ struct RenderJob::Impl {
 
     void run() {
         try {
-            // Embree and OpenImageIO use TBB: the artist's thread limit holds for them too.
-            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                            static_cast<std::size_t>(thread_count()));
             std::optional<GlError> lost;
             try {
                 render(choose_executor(*scene, reports[0], gpu));
@@ -127,7 +133,12 @@ RenderJob::RenderJob(std::shared_ptr<const Scene> scene, const gl::ContextOption
     : m_impl(std::make_unique<Impl>()) {
     m_impl->scene = std::move(scene);
     m_impl->gpu = gpu;
-    m_impl->driver = std::thread([impl = m_impl.get()] { impl->run(); });
+    const auto run = [impl = m_impl.get()] { impl->run(); };
+    try {
+        m_impl->driver = std::thread(run);
+    } catch (const std::system_error&) {
+        run();  // not one thread more can be made: the frame is done when this returns
+    }
 }
 
 RenderJob::~RenderJob() {
@@ -181,6 +192,7 @@ gl::DeviceUse RenderJob::device_use() const {
     return m_impl->device_use;
 }
 std::string RenderJob::device() const {
+    const std::lock_guard lock(m_impl->mutex);
     return m_impl->device;
 }
 

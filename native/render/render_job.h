@@ -17,7 +17,8 @@ namespace granita {
 
 class RenderJob {
   public:
-    /// Starts at once.  The scene is shared and immutable.  `gpu`: as in choose_executor.h.
+    /// Starts at once; returns before the frame is done, unless not one more thread can be made.
+    /// The scene is shared and immutable.  `gpu`: as in choose_executor.h.
     ///
     /// A GPU that fails in mid-frame costs the time spent: the CPU begins the frame anew, with one
     /// warning, and its tiles follow those that the GPU has finished and replace them.

@@ -11,6 +11,9 @@ namespace granita {
 
 using HiddenGrids = std::vector<std::shared_ptr<SharedGrid>>;  ///< in a hider's arrival order
 
+/// Shades those of the grids that are seen [grids], on all threads that have nothing else to do.
+void shade_grids(const Frame& frame, const HiddenGrids& grids, const std::vector<bool>& seen);
+
 /// Shades the grids that some sample sees, once the hider has finished; `grids` are its pool's.
 /// Returns which they are, by slot: others belong to the buckets that see them, whose threads may
 /// be shading them now.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/stage_timer.h"
 #include "hider/resolve/composite.h"
 #include "render/background.h"
 
@@ -48,9 +49,15 @@ void TileColors::take(const TileColors& part, const Rect& pixels, int samples) {
 }
 
 TileContribution TileColors::filter(Vec2i tile, const TileSamples& samples) const {
-    m_frame.statistics.add(Counter::SamplesTotal, samples.x.size());
     const StageTimer timer(m_frame.statistics, Stage::Resolve);
-    return m_frame.film.filter_tile(tile, samples, m_colors, &m_channels);
+    TileContribution contribution = m_frame.film.filter_tile(tile, samples, m_colors, &m_channels);
+    const Rect& own = contribution.own;
+    if (!own.empty())
+        m_frame.statistics.add(Counter::SamplesTotal,
+                               static_cast<std::uint64_t>(own.width()) *
+                                   static_cast<std::uint64_t>(own.height()) *
+                                   static_cast<std::uint64_t>(samples.samples));
+    return contribution;
 }
 
 }  // namespace granita

@@ -2,7 +2,8 @@
 #include "render/visit_geometry.h"
 
 #include <algorithm>
-#include <queue>
+
+#include "base/parallel.h"
 
 namespace granita {
 namespace {
@@ -26,6 +27,19 @@ struct Entry {
     }
 };
 
+/// What has become of a face, a node or a primitive of the bucket's own: pieces or a grid.
+struct Expansion {
+    std::vector<Entry> pieces;  ///< with their bounds
+    std::shared_ptr<SharedGrid> grid;
+};
+
+/// Entries are split and diced in waves, so that several threads can: those that follow the nearest
+/// one, as many as this part of what the bucket has hidden so far.  A wave is diced before its own
+/// grids hide anything, so this part is the most that is diced in vain; and a wave's size depends
+/// on nothing but the bucket, so that every run dices the same.
+constexpr std::size_t kHiddenAWaveEntry = 32;
+constexpr std::size_t kLargestWave = 32;
+
 class Visit {
   public:
     Visit(Frame& frame, int bucket, const Occlusion& occlusion,
@@ -37,29 +51,58 @@ class Visit {
           m_hide(hide) {}
 
     void run() {
-        for (const std::uint32_t instance : m_frame.geometry.instances(m_bucket)) {
+        m_frame.geometry.for_each_instance(m_bucket, [&](std::uint32_t instance) {
             Entry entry;
             entry.kind = Kind::Instance;
             entry.index = instance;
-            push(std::move(entry), m_frame.geometry.bounds(instance));
-        }
+            entry.bounds = m_frame.geometry.bounds(instance);
+            push(std::move(entry));
+        });
         while (!m_heap.empty()) {
             m_frame.progress.check();
-            std::pop_heap(m_heap.begin(), m_heap.end());
-            const Entry entry = std::move(m_heap.back());
-            m_heap.pop_back();
-            if (!is_hidden(entry)) visit(entry);
+            if (m_heap.front().kind == Kind::Instance) {
+                const Entry entry = pop();
+                if (!is_hidden(entry)) visit_instance(entry.index);
+            } else {
+                visit_wave();
+            }
         }
     }
 
   private:
-    void push(Entry entry, const RasterBounds& bounds) {
-        if (!touches(bounds)) return;
-        entry.bounds = bounds;
-        entry.nearest_key = bounds.nearest_key;
+    void push(Entry entry) {
+        if (!touches(entry.bounds)) return;
+        entry.nearest_key = entry.bounds.nearest_key;
         entry.order = m_order++;
         m_heap.push_back(std::move(entry));
         std::push_heap(m_heap.begin(), m_heap.end());
+    }
+
+    Entry pop() {
+        std::pop_heap(m_heap.begin(), m_heap.end());
+        Entry entry = std::move(m_heap.back());
+        m_heap.pop_back();
+        return entry;
+    }
+
+    void visit_wave() {
+        const std::size_t size = std::min(1 + m_hidden / kHiddenAWaveEntry, kLargestWave);
+        std::vector<Entry> wave;
+        while (wave.size() < size && !m_heap.empty() && m_heap.front().kind != Kind::Instance) {
+            Entry entry = pop();
+            if (!is_hidden(entry)) wave.push_back(std::move(entry));
+        }
+        std::vector<Expansion> expanded(wave.size());
+        parallel_for(wave.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                m_frame.progress.check();
+                expanded[i] = expand(wave[i]);
+            }
+        });
+        for (Expansion& expansion : expanded) {
+            for (Entry& piece : expansion.pieces) push(std::move(piece));
+            if (expansion.grid) hide(std::move(expansion.grid));
+        }
     }
 
     bool touches(const RasterBounds& b) const {
@@ -70,18 +113,34 @@ class Visit {
 
     /// By its bounds over the shutter or, where it moves, by those of each part of it.
     bool is_hidden(const Entry& entry) {
-        if (occluded(entry.bounds)) {
-            m_frame.statistics.add(Counter::PrimitivesCulled);
-            return true;
+        if (!occluded(entry.bounds)) {
+            if (!is_hidden_in_time(entry)) return false;
+            m_frame.statistics.add(Counter::PrimitivesCulledInTime);
         }
-        const std::vector<Bounds3f> boxes = knot_boxes(entry);
+        m_frame.statistics.add(Counter::PrimitivesCulled);
+        return true;
+    }
+
+    bool is_hidden_in_time(const Entry& entry) const {
+        switch (entry.kind) {
+            case Kind::Instance:
+                return is_hidden_in_time(m_frame.geometry.knot_boxes(entry.index));
+            case Kind::Face:
+                return is_hidden_in_time(entry.opened->geometry->knot_boxes(entry.index));
+            case Kind::Node:
+                return is_hidden_in_time(entry.node->knot_boxes());
+            case Kind::Local:
+                return is_hidden_in_time(entry.primitive->knot_boxes());
+        }
+        return false;
+    }
+
+    bool is_hidden_in_time(std::span<const Bounds3f> boxes) const {
         if (boxes.empty()) return false;
         for (int i = 0; i < slab_count(boxes.size()); ++i) {
             const TimeSlab slab = time_slab(boxes, i, m_frame.view.projection);
             if (slab.bounds.visible && !m_occlusion(slab)) return false;
         }
-        m_frame.statistics.add(Counter::PrimitivesCulled);
-        m_frame.statistics.add(Counter::PrimitivesCulledInTime);
         return true;
     }
 
@@ -89,76 +148,62 @@ class Visit {
         return m_occlusion(TimeSlab{0.0f, 1.0f, bounds});
     }
 
-    std::vector<Bounds3f> knot_boxes(const Entry& entry) const {
-        switch (entry.kind) {
-            case Kind::Instance: {
-                const auto boxes = m_frame.geometry.knot_boxes(entry.index);
-                return {boxes.begin(), boxes.end()};
-            }
-            case Kind::Face:
-                return entry.opened->geometry->knot_boxes(entry.index);
-            case Kind::Node:
-                return entry.node->knot_boxes();
-            case Kind::Local:
-                return entry.primitive->knot_boxes();
-        }
-        return {};
-    }
-
-    void visit(const Entry& entry) {
-        switch (entry.kind) {
-            case Kind::Instance:
-                return visit_instance(entry.index);
-            case Kind::Face:
-                return visit_face(entry);
-            case Kind::Node:
-                return visit_node(*entry.node);
-            case Kind::Local:
-                return visit_primitive(*entry.primitive);
-        }
-    }
-
     void visit_instance(std::uint32_t instance) {
         const auto opened = m_frame.geometry.open(instance);
-        for (const std::uint32_t face : m_frame.geometry.faces(*opened, m_bucket)) {
+        m_frame.geometry.for_each_face(*opened, m_bucket, [&](std::uint32_t face) {
             Entry entry;
             entry.kind = Kind::Face;
             entry.index = face;
             entry.opened = opened;
-            push(std::move(entry), opened->bounds[face]);
-        }
+            entry.bounds = opened->bounds[face];
+            push(std::move(entry));
+        });
     }
 
-    void visit_face(const Entry& entry) {
-        if (auto node = m_frame.geometry.node(*entry.opened, entry.index)) return visit_node(*node);
+    /// Thread-safe for different entries.
+    Expansion expand(const Entry& entry) const {
+        switch (entry.kind) {
+            case Kind::Instance:
+                break;
+            case Kind::Face:
+                return expand_face(entry);
+            case Kind::Node:
+                return expand_node(*entry.node);
+            case Kind::Local:
+                return expand_primitive(*entry.primitive);
+        }
+        return {};
+    }
+
+    Expansion expand_face(const Entry& entry) const {
+        if (auto node = m_frame.geometry.node(*entry.opened, entry.index))
+            return expand_node(*node);
         m_frame.statistics.add(Counter::PrimitivesOpened);
-        visit_primitive(*entry.opened->geometry->primitive(entry.index));
+        return expand_primitive(*entry.opened->geometry->primitive(entry.index));
     }
 
-    void visit_node(GeometryNode& node) {
+    Expansion expand_node(GeometryNode& node) const {
         auto content = node.expand(m_frame.layout, m_frame.statistics);
+        Expansion out{{}, std::move(content.grid)};
         for (auto& child : content.children) {
-            const RasterBounds bounds = child->bounds();
-            Entry entry;
-            entry.kind = Kind::Node;
-            entry.node = std::move(child);
-            push(std::move(entry), bounds);
+            Entry& piece = out.pieces.emplace_back();
+            piece.kind = Kind::Node;
+            piece.bounds = child->bounds();
+            piece.node = std::move(child);
         }
-        if (content.grid) hide(std::move(content.grid));
+        return out;
     }
 
-    void visit_primitive(const Primitive& primitive) {
-        if (primitive.diceable()) {
-            if (auto grid = dice_counted(primitive, m_frame.statistics)) hide(std::move(grid));
-            return;
-        }
+    Expansion expand_primitive(const Primitive& primitive) const {
+        if (primitive.diceable()) return {{}, dice_counted(primitive, m_frame.statistics)};
+        Expansion out;
         for (auto& child : split_counted(primitive, m_frame.statistics)) {
-            const RasterBounds bounds = child->bounds();
-            Entry entry;
-            entry.kind = Kind::Local;
-            entry.primitive = std::move(child);
-            push(std::move(entry), bounds);
+            Entry& piece = out.pieces.emplace_back();
+            piece.kind = Kind::Local;
+            piece.bounds = child->bounds();
+            piece.primitive = std::move(child);
         }
+        return out;
     }
 
     void hide(std::shared_ptr<SharedGrid> grid) {
@@ -167,6 +212,7 @@ class Visit {
             m_frame.statistics.add(Counter::GridsCulled);
             return;
         }
+        ++m_hidden;
         m_hide(std::move(grid));
     }
 
@@ -177,6 +223,7 @@ class Visit {
     const std::function<void(std::shared_ptr<SharedGrid>)>& m_hide;
     std::vector<Entry> m_heap;
     std::uint64_t m_order = 0;
+    std::size_t m_hidden = 0;  ///< grids
 };
 
 }  // namespace

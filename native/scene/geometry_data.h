@@ -56,9 +56,14 @@ struct GeometryData {
     int knots = 1;
     std::vector<Vec3f> points;      ///< [knots][V] object space, metres
     std::vector<Vec3f> neighbours;  ///< [2][V] of the frame before and the one after, or empty
+    /// [V] Blender's Generated coordinates of a mesh.  Empty: the box of its points stands in.
+    std::vector<Vec3f> generated;
     std::size_t vertex_count() const { return points.size() / static_cast<std::size_t>(knots); }
-    std::vector<std::int32_t> face_sizes;      ///< [F] corners a face, >= 3
-    std::vector<std::int32_t> corner_verts;    ///< [C]
+    std::vector<std::int32_t> face_sizes;    ///< [F] corners a face, >= 3
+    std::vector<std::int32_t> corner_verts;  ///< [C]
+    /// [T][3] Blender's triangles of the faces of more than four corners, n - 2 a face, face by
+    /// face: corner numbers within the face.  Empty: triangulated here.
+    std::vector<std::int32_t> ngon_triangles;
     std::vector<std::int32_t> curve_sizes;     ///< [C] points a curve; they follow each other
     std::vector<float> radius;                 ///< [1 or knots][V] metres, of curves and points
     std::vector<std::int32_t> material_index;  ///< [elements] slot of the instance; empty = all 0

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,15 @@ struct Light {
     bool casts_shadow = true;
     bool visible_diffuse = true, visible_glossy = true;
     float diffuse_factor = 1.0f, specular_factor = 1.0f;
+    /// Light and shadow linking: which bit of Instance::receives and ::blocks counts; -1 = it
+    /// lights, and is shadowed by, everything.
+    int receiver_set = -1, blocker_set = -1;
 };
+
+/// Whether an instance with this mask is in a set.
+constexpr bool in_light_set(std::uint64_t mask, int set) {
+    return set < 0 || ((mask >> set) & 1u) != 0;
+}
 
 struct World {
     std::string name;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ struct Instance {
     bool holdout = false;
     int object_index = 0;  ///< pass_index
     float random = 0.0f;
+    /// By sets of lights that are linked: those that light it, and those of which it casts shadows.
+    std::uint64_t receives = ~0ULL, blocks = ~0ULL;
     std::uint32_t key = 0;  ///< rank of the persistent identity: orders micropolygons (decision 3)
 };
 
@@ -37,6 +40,8 @@ struct Scene {
     Camera camera;
     std::vector<GeometryData> geometries;
     std::vector<Instance> instances;
+    /// Four numbers an instance that shaders ask for: the object's colour, attributes of objects.
+    std::map<std::string, std::vector<Vec4f>> instance_values;
     std::vector<Material> materials;
     std::vector<Image> images;
     std::vector<Light> lights;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shade/interpolated_points.h"
 #include "shade/speed.h"
-#include "shade/spread_points.h"
 
 namespace granita {
 namespace {
@@ -91,8 +91,9 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                 break;
             case Quantity::Clarity:
                 fill([&](std::size_t i) {
-                    const std::size_t vertex =
-                        grid.places.anchors.empty() ? i : grid.places.anchors[i];
+                    const std::size_t vertex = grid.shading_positions.anchors.empty()
+                                                   ? i
+                                                   : grid.shading_positions.anchors[i];
                     const float opacity = grid.opacity_varies ? mean(grid.opacity[vertex]) : 1.0f;
                     return clarity(scene.options.mist, grid.shading_p()[i], camera.perspective,
                                    opacity);
@@ -146,7 +147,9 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                 break;
         }
     }
-    spread_points(grid, channels.vertex_width(), grid.channels);
+    for (float& value : grid.channels)
+        if (!std::isfinite(value)) value = 0.0f;  // its material is named by who shades the grid
+    interpolate_points(grid, channels.vertex_width(), grid.channels);
 }
 
 }  // namespace granita

@@ -4,9 +4,9 @@
 
 #include "scene/channels.h"
 #include "scene/scene.h"
-#include "shade/lobe.h"
-#include "shade/node_compiler.h"
-#include "shade/reflection.h"
+#include "shade/bsdf/lobe.h"
+#include "shade/bsdf/reflection.h"
+#include "shade/nodes/node_compiler.h"
 #include "shade/shading_points.h"
 
 namespace granita {

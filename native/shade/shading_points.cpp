@@ -1,20 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/shading_points.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace granita {
-
-Mat4d matrix_at(const std::vector<Mat4d>& knots, double time) {
-    if (knots.empty()) return Mat4d(1.0);
-    const double place = std::clamp(time, 0.0, 1.0) * static_cast<double>(knots.size() - 1);
-    const auto before = std::min(static_cast<std::size_t>(place), knots.size() - 1);
-    const auto after = std::min(before + 1, knots.size() - 1);
-    const double t = place - static_cast<double>(before);
-    if (t == 0.0) return knots[before];
-    return knots[before] * (1.0 - t) + knots[after] * t;
-}
 
 ShadingCamera::ShadingCamera(const Scene& scene)
     : world_from_camera(matrix_at(scene.camera.world_from_camera, scene.options.frame_time)),
@@ -26,7 +15,7 @@ ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
     ShadingPoints points;
     points.count = n;
     points.share = grid.point_share;
-    points.faces = grid.places.faces;
+    points.faces = grid.shading_positions.faces;
     if (!grid.apart) points.columns = static_cast<std::size_t>(grid.n_u) + 1;
     points.p.resize(n);
     points.normal.resize(n);

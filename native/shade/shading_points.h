@@ -2,13 +2,11 @@
 #pragma once
 
 #include "dice/grid.h"
+#include "scene/knot_time.h"
 #include "scene/scene.h"
-#include "shade/lobe.h"
+#include "shade/bsdf/lobe.h"
 
 namespace granita {
-
-/// world_from_object (or any knots) at a shutter time, linear between knots.
-Mat4d matrix_at(const std::vector<Mat4d>& knots, double time);
 
 /// The camera of the frame time as shading needs it.
 struct ShadingCamera {

@@ -3,13 +3,15 @@
 
 #include <algorithm>
 
-#include "shade/direct_light.h"
+#include "base/stage_timer.h"
 #include "shade/grid_channels.h"
-#include "shade/light_share.h"
-#include "shade/node_compiler.h"
+#include "shade/interpolated_points.h"
+#include "shade/lights/direct_light.h"
+#include "shade/lights/light_sample_count.h"
+#include "shade/nodes/node_compiler.h"
 #include "shade/shading_points.h"
 #include "shade/shadow_transparency.h"
-#include "shade/spread_points.h"
+#include "shade/world_shader.h"
 
 namespace granita {
 
@@ -36,7 +38,19 @@ std::vector<T> values_of(const Run& run, const Source<T>& source) {
     return values;
 }
 
-SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources) {
+/// Values that are no numbers become 0; returns how many did.
+std::size_t make_finite(std::vector<Vec3f>& values) {
+    std::size_t broken = 0;
+    for (Vec3f& value : values)
+        if (!is_finite(value)) {
+            value = Vec3f(0.0f);
+            ++broken;
+        }
+    return broken;
+}
+
+/// `broken` counts weights of lobes that are no numbers: as in Cycles such a lobe is not there.
+SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::size_t& broken) {
     SurfaceClosure closure;
     for (const LobeSource& from : sources.lobes) {
         Lobe lobe;
@@ -46,7 +60,9 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources) {
         lobe.multiscatter = from.multiscatter;
         lobe.separable_masking = from.separable_masking;
         lobe.burley = from.burley;
+        lobe.cosine_bumps = from.cosine_bumps;
         lobe.weight = values_of(run, from.weight);
+        broken += make_finite(lobe.weight);
         lobe.normal = values_of(run, from.normal);
         lobe.roughness = values_of(run, from.roughness);
         if (from.fresnel != FresnelKind::None || from.has_color) lobe.f0 = values_of(run, from.f0);
@@ -65,6 +81,7 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources) {
 struct ShadingSystem::Impl {
     const Scene& scene;
     Statistics& statistics;
+    Report& report;
     TextureStore textures;
     ShadingCamera camera;
     ShutterWarp shutter;
@@ -72,16 +89,20 @@ struct ShadingSystem::Impl {
     std::vector<CompiledSurface> materials;  ///< [materials + 1]
     std::vector<std::vector<AttributeRequest>> requests;
     std::vector<DisplacementHook> displacement;
-    CompiledSurface world;
+    WorldShader world;
+    std::shared_ptr<GeometryCache> geometries = std::make_shared<GeometryCache>();
     std::unique_ptr<DirectLight> light;  ///< nullptr where nothing that is seen reflects any
 
-    Impl(const Scene& s, Statistics& stats, Report& report, const Progress& progress)
+    Impl(const Scene& s, Statistics& stats, Report& warnings, const Progress& progress)
         : scene(s),
           statistics(stats),
+          report(warnings),
           textures(s, stats, report),
           camera(s),
           shutter(s.options.shutter_curve),
-          channels(s.options) {
+          channels(s.options),
+          world(s, textures, report) {
+        const StageTimer timer(stats, Stage::Shade);
         const ChannelSet* passes = channels.empty() ? nullptr : &channels;
         for (const Material& material : scene.materials) {
             progress.check();
@@ -95,21 +116,15 @@ struct ShadingSystem::Impl {
             compile_surface(default_material(), scene, textures, report, {"no material"}, passes));
         for (const CompiledSurface& material : materials) requests.push_back(material.requests);
         displacement.resize(materials.size());
-        warn_of_emission(report);
-        world = compile_surface(scene.world.graph, scene, textures, report,
-                                {"world '" + scene.world.name + "'", true});
+        warn_of_emission();
         const bool any_reflects = std::ranges::any_of(scene.instances, [this](const Instance& i) {
             if (!i.visible_camera) return false;
             const auto shows = [this](int index) { return reflects(index); };
             return i.materials.empty() ? shows(-1) : std::ranges::any_of(i.materials, shows);
         });
         if (!any_reflects) return;
-        light = std::make_unique<DirectLight>(
-            scene,
-            [this](const std::vector<Vec3f>& directions, float spread, std::vector<Vec3f>& out) {
-                background(directions, spread, out);
-            },
-            statistics, report, progress, shadow_opacity());
+        light = std::make_unique<DirectLight>(scene, world.evaluator(), statistics, report,
+                                              progress, shadow_opacity(), geometries);
     }
 
     bool reflects(std::int32_t index) const {
@@ -117,7 +132,7 @@ struct ShadingSystem::Impl {
     }
 
     /// Only lamps and the world are sampled: a surface that shines is seen, but sheds no light.
-    void warn_of_emission(Report& report) const {
+    void warn_of_emission() const {
         const auto count = static_cast<std::int32_t>(scene.materials.size());
         bool any = false;
         for (std::int32_t i = 0; i < count && !any; ++i) any = reflects(i);
@@ -130,12 +145,23 @@ struct ShadingSystem::Impl {
         }
     }
 
+    void warn_of_broken(std::int32_t index, std::size_t count) const {
+        if (count == 0) return;
+        const std::string owner =
+            index < 0 ? "no material"
+                      : "material '" + scene.materials[static_cast<std::size_t>(index)].name + "'";
+        report.warn(owner, "is not finite at some points, where it is left out", count);
+    }
+
     ShadowOpacity shadow_opacity() const {
         return {
-            [this](std::int32_t index) { return !material(index).transparency.is(Vec3f(0.0f)); },
+            [this](std::int32_t index) {
+                return !material(index).shadow.transparency.is(Vec3f(0.0f));
+            },
             [this](const ShadowHit& hit) {
-                return shadow_transparency(material(hit.material), scene, hit);
-            }};
+                return shadow_transparency(material(hit.material).shadow, scene, hit);
+            },
+            [this](std::int32_t index) { return constant_transparency(material(index).shadow); }};
     }
 
     const CompiledSurface& material(int index) const {
@@ -157,23 +183,6 @@ struct ShadingSystem::Impl {
     PointPaths paths(const Grid& grid, const ShadingPoints& points) const {
         return light && light->varies() ? PointPaths(grid, scene, points) : PointPaths();
     }
-
-    void background(const std::vector<Vec3f>& directions, float spread,
-                    std::vector<Vec3f>& out) const {
-        if (world.radiance.sources.emission.is_constant()) {
-            out.assign(directions.size(), world.radiance.sources.emission.constant);
-            return;
-        }
-        ShadingPoints points;
-        points.count = directions.size();
-        points.p = directions;
-        ShadingInput in;
-        in.points = &points;
-        in.spread = spread;
-        Run run = world.radiance.program.prepare(in, points.count);
-        world.radiance.program.execute(run);
-        out = values_of(run, world.radiance.sources.emission);
-    }
 };
 
 ShadingSystem::ShadingSystem(const Scene& scene, Statistics& statistics, Report& report,
@@ -190,6 +199,10 @@ const std::vector<DisplacementHook>& ShadingSystem::displacement() const {
     return m_impl->displacement;
 }
 
+std::shared_ptr<GeometryCache> ShadingSystem::geometries() const {
+    return m_impl->geometries;
+}
+
 bool ShadingSystem::opacity_varies(int material) const {
     return !m_impl->material(material).transparency.is(Vec3f(0.0f));
 }
@@ -202,9 +215,10 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
     Run run = material.opacity_program.prepare(input, points.count);
     material.opacity_program.execute(run);
     grid.opacity = values_of(run, material.transparency);
+    m_impl->warn_of_broken(grid.material, make_finite(grid.opacity));
     for (Vec3f& opacity : grid.opacity)
         opacity = glm::clamp(Vec3f(1.0f) - opacity, Vec3f(0.0f), Vec3f(1.0f));
-    spread_points(grid, 1, grid.opacity);
+    interpolate_points(grid, 1, grid.opacity);
     grid.opacity_varies = std::any_of(grid.opacity.begin(), grid.opacity.end(),
                                       [](const Vec3f& opacity) { return opacity != Vec3f(1.0f); });
     grid.additive = material.radiance.sources.additive;
@@ -216,11 +230,12 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     ShadingPoints points = shading_points(grid, m_impl->camera);
     const SurfaceProgram& surface = material.radiance;
     if (!surface.sources.lobes.empty())
-        points.share *= light_share(grid, m_impl->scene, m_impl->shutter);
+        points.share *= light_sample_count(grid, m_impl->scene, m_impl->shutter);
     const ShadingInput input = m_impl->input(grid, points);
     Run run = surface.program.prepare(input, points.count);
     surface.program.execute(run);
-    const SurfaceClosure closure = closure_of(run, surface.sources);
+    std::size_t broken = 0;
+    const SurfaceClosure closure = closure_of(run, surface.sources, broken);
     const bool has_passes = !m_impl->channels.empty();
     ReflectionParts parts;
     std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
@@ -230,7 +245,8 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     else
         parts.resize(has_passes ? points.count : 0);
     for (std::size_t i = 0; i < closure.emission.size(); ++i) radiance[i] += closure.emission[i];
-    spread_points(grid, 1, radiance);
+    m_impl->warn_of_broken(grid.material, broken + make_finite(radiance));
+    interpolate_points(grid, 1, radiance);
     grid.radiance = std::move(radiance);
     if (has_passes)
         fill_channels(grid, m_impl->channels, m_impl->scene, m_impl->camera,
@@ -241,11 +257,11 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
 
 void ShadingSystem::background(const std::vector<Vec3f>& directions, float spread,
                                std::vector<Vec3f>& out) const {
-    m_impl->background(directions, spread, out);
+    m_impl->world.radiance(directions, spread, RayType::Camera, out);
 }
 
 bool ShadingSystem::background_is_constant() const {
-    return m_impl->world.radiance.sources.emission.is_constant();
+    return m_impl->world.is_constant(RayType::Camera);
 }
 
 }  // namespace granita

@@ -27,6 +27,9 @@ class ShadingSystem {
     const std::vector<std::vector<AttributeRequest>>& requests() const;
     const std::vector<DisplacementHook>& displacement() const;
 
+    /// For View: what rays and dicing know of the same geometries.
+    std::shared_ptr<GeometryCache> geometries() const;
+
     /// Whether opacity must run before visibility (it is not the constant 1).  -1 = no material.
     bool opacity_varies(int material) const;
     /// Fills Grid::opacity and opacity_varies.  Thread-safe for different grids.

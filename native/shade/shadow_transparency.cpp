@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/shadow_transparency.h"
 
-#include "dice/corner_values.h"
-#include "shade/shading_points.h"
+#include "geometry/surface_evaluator.h"
+#include "scene/knot_time.h"
 
 namespace granita {
 namespace {
-
-void mesh_value(const ShadowHit& hit, const AttributeRequest& request, std::vector<float>& out) {
-    const CornerWeights weights(hit.patch->kind, hit.uv);
-    const CornerValues corners = corner_values(*hit.geometry, *hit.patch, request);
-    for (std::size_t c = 0; c < out.size(); ++c) {
-        double value = 0.0;
-        for (std::size_t i = 0; i < 4; ++i) value += weights.w[i] * corners.at[i][c];
-        out[c] = static_cast<float>(value);
-    }
-}
 
 /// The attributes that the material asks for, as a grid of one vertex holds them.
 std::vector<GridAttribute> attributes_at(const ShadowHit& hit,
@@ -28,8 +18,12 @@ std::vector<GridAttribute> attributes_at(const ShadowHit& hit,
         if (hit.elements)
             element_value(*hit.elements, requests[k], hit.place, attribute.values.data());
         else
-            mesh_value(hit, requests[k], attribute.values);
-        if (requests[k].derivatives) attribute.du = attribute.dv = std::vector<float>(width, 0.0f);
+            hit.geometry->surface().attribute(*hit.patch, requests[k], {&hit.uv, 1},
+                                              attribute.values, attribute.du, attribute.dv);
+        if (requests[k].derivatives)
+            attribute.du = attribute.dv = std::vector<float>(width, 0.0f);
+        else
+            attribute.du = attribute.dv = {};
         attributes.push_back(std::move(attribute));
     }
     return attributes;
@@ -49,12 +43,21 @@ ShadingPoints point_at(const ShadowHit& hit) {
     return points;
 }
 
+/// What is no number lets nothing through, as where it is seen.
+Vec3f clamped(const Vec3f& c) {
+    return is_finite(c) ? glm::clamp(c, Vec3f(0.0f), Vec3f(1.0f)) : Vec3f(0.0f);
+}
+
 }  // namespace
 
-Vec3f shadow_transparency(const CompiledSurface& material, const Scene& scene,
+std::optional<Vec3f> constant_transparency(const OpacityProgram& material) {
+    if (!material.transparency.is_constant()) return std::nullopt;
+    return clamped(material.transparency.constant);
+}
+
+Vec3f shadow_transparency(const OpacityProgram& material, const Scene& scene,
                           const ShadowHit& hit) {
-    const auto clamped = [](const Vec3f& c) { return glm::clamp(c, Vec3f(0.0f), Vec3f(1.0f)); };
-    if (material.transparency.is_constant()) return clamped(material.transparency.constant);
+    if (const auto constant = constant_transparency(material)) return *constant;
     const ShadingPoints points = point_at(hit);
     const std::vector<GridAttribute> attributes = attributes_at(hit, material.requests);
     ShadingInput input;
@@ -64,8 +67,9 @@ Vec3f shadow_transparency(const CompiledSurface& material, const Scene& scene,
     const Mat3d world_from_object(matrix_at(input.instance->world_from_object, hit.time));
     input.world_from_object = Mat3f(world_from_object);
     input.object_from_world = Mat3f(glm::inverse(world_from_object));
-    Run run = material.opacity_program.prepare(input, 1);
-    material.opacity_program.execute(run);
+    input.ray_length = hit.distance;
+    Run run = material.program.prepare(input, 1);
+    material.program.execute(run);
     return clamped(run.read(material.transparency)[0]);
 }
 

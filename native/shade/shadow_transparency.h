@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "shade/node_compiler.h"
-#include "shade/shadow_opacity.h"
+#include "shade/nodes/node_compiler.h"
+#include "shade/rays/shadow_opacity.h"
 
 namespace granita {
 
 /// Runs a material's opacity program where a shadow ray meets it, seen along the ray: what passes,
 /// per channel in [0, 1].  Textures are read at full resolution.
-Vec3f shadow_transparency(const CompiledSurface& material, const Scene& scene,
-                          const ShadowHit& hit);
+Vec3f shadow_transparency(const OpacityProgram& material, const Scene& scene, const ShadowHit& hit);
+
+/// The same where it is one everywhere.
+std::optional<Vec3f> constant_transparency(const OpacityProgram& material);
 
 }  // namespace granita

@@ -35,7 +35,7 @@ vec4 background(ivec2 texel, int pass) {
     ivec2 corner = cell_pixel + pixel_of(texel, f);
 #if AT_SAMPLE
     f = place_in_pixel(texel);
-#elif TURNED
+#elif ROTATED
     corner = clamp(corner, ivec2(0), size.xy - 2);  // around the turned cell nobody asks
 #endif
     const int i = ((size.z > 1 ? pass : 0) * size.y + corner.y) * size.x + corner.x;
@@ -46,7 +46,11 @@ vec4 background(ivec2 texel, int pass) {
 vec4 sample_color(ivec3 at, int pass) {
     vec4 under = texelFetch(opaque, at, 0);
     if (flags.x == 0) return under.w < 0.0 ? background(at.xy, pass) : under;
-    if (under.w < 0.0 || texelFetch(peeled_depth, at, 0).r < 0.0) under = background(at.xy, pass);
+    // Behind the end of a list is nothing: what is there may have been left out.
+    if (texelFetch(peeled_depth, at, 0).r < 0.0)
+        under = vec4(vec3(0.0), flags.y != 0 ? 0.0 : 1.0);
+    else if (under.w < 0.0)
+        under = background(at.xy, pass);
     const vec4 through = texelFetch(transmission, at, 0), over = texelFetch(color, at, 0);
     const float left = mean_of(through.rgb);
     const float alpha =

@@ -3,7 +3,7 @@
 // does it on the CPU (Film).  One pass: weights depend on both coordinates' own samples.
 //
 // Defines: FACTOR, a list of FACTOR_COUNT + 1 floats, f at equal steps from 0 to RADIUS; IS_BOX 0 or
-// 1; APRON, pixels.
+// 1; MARGIN, pixels.
 #include "raster/samples.glsl"
 
 layout(binding = FILTER_SOURCE) uniform sampler2D source;
@@ -27,8 +27,8 @@ void main() {
     const ivec2 own = origin + ivec2(gl_FragCoord.xy);
     vec4 sum = vec4(0.0);
     float weight = 0.0;
-    for (int y = -APRON; y <= APRON; ++y)
-        for (int x = -APRON; x <= APRON; ++x)
+    for (int y = -MARGIN; y <= MARGIN; ++y)
+        for (int x = -MARGIN; x <= MARGIN; ++x)
             for (int s = 0; s < count.y; ++s) {
                 const ivec2 texel =
                     (own + ivec2(x, y)) * count.x + ivec2(s % count.x, s / count.x);
@@ -38,7 +38,7 @@ void main() {
                 weight += w;
             }
     filtered = weight != 0.0 ? sum / weight : vec4(0.0);
-#if APRON == 0
+#if MARGIN == 0
     // Next to no sample within a narrow filter: what is seen nearest to the pixel's centre, as in film/
     // (kLeastWeight; samples' weights sum to about their number).
     if (weight > float(count.y) / 16.0) return;

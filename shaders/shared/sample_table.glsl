@@ -29,7 +29,7 @@ uint regular_cells(uint side, bool turned) { return side * side + (turned ? 1u :
 vec2 regular_place(uint s, uint side, bool turned) {
     const uint cell = s % regular_cells(side, turned), points = turned ? side * side + 1u : side;
     const uint column = turned ? cell : cell % side;
-    const uint row = turned ? turned_row(cell, side) : cell / side;
+    const uint row = turned ? rotated_row(cell, side) : cell / side;
     return vec2(uvec2(cell_center(column, points), cell_center(row, points))) * (1.0 / 1048576.0);
 }
 

@@ -3,8 +3,8 @@
 
 import numpy as np
 import pytest
-from export.camera import Frame, lens_radius, other_projection, projection, sensor_size
-from export.transforms import has_area, inverse, world_from_camera
+from export.base.transforms import has_area, inverse, world_from_camera
+from export.scene.camera import Frame, lens_radius, other_projection, projection, sensor_size
 
 HD = Frame(1920, 1080)
 

@@ -2,7 +2,7 @@
 """Keys: unique, and unmoved by what else is in the scene."""
 
 import numpy as np
-from export.identity import combine, random_of_name, short_keys
+from export.base.identity import combine, random_of_name, short_keys
 
 
 def names(count, start=0):

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from export.lifespan import complete, lifespans, runs
+from export.motion.lifespan import complete, lifespans, runs
 
 
 def columns(*patterns):

@@ -3,9 +3,9 @@
 
 import numpy as np
 import pytest
-from export.path import Tracks, bends_still, finer_level, keep_fewest, no_tracks
-from export.shutter import shutter, split_time
-from export.steps import hold_order, match
+from export.motion.motion_path import Tracks, bends_still, finer_level, keep_fewest, no_tracks
+from export.motion.shutter_steps import hold_order, match
+from export.scene.shutter import shutter, split_time
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shutter times, borders and seeds worked out by hand."""
 
-from export.camera import Frame
-from export.options import border, mixed_seed
-from export.report import ExportError, Report
+from export.base.report import ExportError, Report
+from export.scene.camera import Frame
+from export.scene.options import border, mixed_seed
 
 
 def test_border_truncates():

@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import bpy
 
-from granita.export import Kept, Report, export_frame
+from granita.export import PersistentState, Report, export_frame
 
 
 class ExportProbe(bpy.types.RenderEngine):
@@ -29,7 +29,7 @@ class ExportProbe(bpy.types.RenderEngine):
             job.before(depsgraph)
             started = time.thread_time()
             job.snapshot = export_frame(
-                self, depsgraph, job.settings, job.report, job.cancelled, job.kept
+                self, depsgraph, job.settings, job.report, job.cancelled, job.persistent_state
             )
             job.seconds = time.thread_time() - started
         except Exception as error:
@@ -56,7 +56,12 @@ def _probing(scene):
 
 
 def _render(
-    scene, motion_steps, cancelled=lambda: False, before=_nothing, after=_nothing, kept=None
+    scene,
+    motion_steps,
+    cancelled=lambda: False,
+    before=_nothing,
+    after=_nothing,
+    persistent_state=None,
 ):
     job = SimpleNamespace(
         settings=SimpleNamespace(motion_steps=motion_steps),
@@ -68,7 +73,7 @@ def _render(
         time_after=None,
         before=before,
         after=after,
-        kept=kept,
+        persistent_state=persistent_state,
     )
     ExportProbe.job = job
     bpy.ops.render.render(scene=scene.name)
@@ -97,12 +102,12 @@ def frame_by_frame(scene, frames, *, persistent, keeps=True, motion_steps=3, edi
         edit: called with the number of each frame before it is rendered.
     """
     scene.render.use_persistent_data = persistent
-    kept = Kept() if persistent and keeps else None
+    persistent_state = PersistentState() if persistent and keeps else None
     with _probing(scene):
         for frame in frames:
             scene.frame_set(frame)
             edit(frame)
-            yield _render(scene, motion_steps, kept=kept)
+            yield _render(scene, motion_steps, persistent_state=persistent_state)
 
 
 def through_script(*, motion_steps=3):

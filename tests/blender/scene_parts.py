@@ -66,6 +66,16 @@ def add_square(scene, name="Square", size=2.0, location=(0.0, 0.0, 0.0), materia
     return add_mesh(scene, name, corners, [(0, 1, 2, 3)], location, material)
 
 
+def add_subsurf(thing, levels=2):
+    """A Subdivision modifier on smooth faces: of flat ones Blender's own facets are drawn."""
+    mesh = thing.data
+    mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+    mesh.update()
+    modifier = thing.modifiers.new("Subsurf", "SUBSURF")
+    modifier.levels = modifier.render_levels = levels
+    return modifier
+
+
 def emission(name, color, strength=1.0):
     """A material whose pixels are `color` (linear RGB) times `strength`."""
     material = bpy.data.materials.new(name)

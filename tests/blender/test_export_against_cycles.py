@@ -10,19 +10,13 @@ from cycles_coverage import blurred, expect_coverage_of_cycles
 from motion_parts import drive, shape_key
 
 
-def monkey(size):
-    """In triangles: a quad that is not flat is a curved patch here, two triangles in Cycles."""
-    bpy.ops.mesh.primitive_monkey_add(size=size)
-    bpy.context.object.modifiers.new("Triangulate", "TRIANGULATE")
-
-
 def shifted_narrow_pixels(scene):
     camera = scene_parts.add_camera(scene, (1, -6, 2))
     camera.rotation_euler = (1.3, 0.2, 0.1)
     camera.data.shift_x, camera.data.shift_y = 0.1, -0.05
     camera.data.sensor_fit = "VERTICAL"
     scene.render.pixel_aspect_y = 1.5
-    monkey(2)
+    bpy.ops.mesh.primitive_monkey_add(size=2)
 
 
 def orthographic(scene):
@@ -47,8 +41,7 @@ def creased_cage(scene):
     scene_parts.add_camera(scene, (4, -4, 3)).rotation_euler = (1.0, 0, math.pi / 4)
     bpy.ops.mesh.primitive_cube_add(size=2.5)
     cube = bpy.context.object
-    modifier = cube.modifiers.new("Subsurf", "SUBSURF")
-    modifier.render_levels = 5
+    modifier = scene_parts.add_subsurf(cube, 5)
     modifier.quality = 7  # at 3, Blender rounds creases off that are still sharp after three levels
     if "crease" in bpy.types.MeshEdge.bl_rna.properties:
         cube.data.edges.foreach_set("crease", [0.75] * 4 + [0.0] * 8)
@@ -70,7 +63,7 @@ def moving_camera(scene):
     camera = scene_parts.add_camera(scene, (0, 0, 8))
     drive(camera, "location", "frame - 10", 0)
     drive(camera, "rotation_euler", "(frame - 10) / 4", 2)
-    monkey(3)
+    bpy.ops.mesh.primitive_monkey_add(size=3)
 
 
 def deforming_cage(scene):
@@ -78,7 +71,7 @@ def deforming_cage(scene):
     bpy.ops.mesh.primitive_cube_add(size=2)
     cube = bpy.context.object
     drive(shape_key(cube, lift=2.0), "value", "(frame - 9) / 2")
-    cube.modifiers.new("Subsurf", "SUBSURF").render_levels = 4
+    scene_parts.add_subsurf(cube, 4)
 
 
 def moving_instances(scene):

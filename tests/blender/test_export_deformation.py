@@ -32,8 +32,7 @@ def test_shape_keys(moving):
 def test_a_deformed_cage(moving):
     square = scene_parts.add_square(moving)
     drive(shape_key(square), "value", "frame / 20")
-    modifier = square.modifiers.new("Subsurf", "SUBSURF")
-    modifier.render_levels = 3
+    scene_parts.add_subsurf(square, 3)
     snapshot, _, _ = export_probe.through_engine(moving)
     geometry = geometry_of(snapshot, "Square")
     assert "subdivision" in geometry and geometry["points"].shape == (2, 4, 3)
@@ -42,7 +41,7 @@ def test_a_deformed_cage(moving):
 
 def test_a_moving_subsurf_stays_a_static_cage(moving):
     square = scene_parts.add_square(moving)
-    square.modifiers.new("Subsurf", "SUBSURF").render_levels = 2
+    scene_parts.add_subsurf(square, 2)
     drive(square, "location", "frame", 0)
     snapshot, _, _ = export_probe.through_engine(moving)
     assert geometry_of(snapshot, "Square")["points"].shape == (1, 4, 3)
@@ -116,7 +115,7 @@ def test_deforming_cages_are_not_subdivided_at_every_knot(moving):
     """A million faces would come of it: what a step costs is seen in the mesh that Blender holds."""
     thing = sphere(moving)
     drive(shape_key(thing), "value", "frame / 20")
-    thing.modifiers.new("Subsurf", "SUBSURF").render_levels = 2
+    scene_parts.add_subsurf(thing, 2)
     vertices = []
 
     def count(scene, depsgraph):
@@ -136,7 +135,7 @@ def test_a_mesh_that_others_read_stays_subdivided(moving, through_collection):
     """A boolean with a deforming subsurf must see its round form at every knot."""
     thing = sphere(moving)
     drive(shape_key(thing), "value", "frame / 20")
-    thing.modifiers.new("Subsurf", "SUBSURF").render_levels = 1
+    scene_parts.add_subsurf(thing, 1)
     reader = scene_parts.add_square(moving, "Reader", 9.0)
     modifier = reader.modifiers.new("Boolean", "BOOLEAN")
     if through_collection:

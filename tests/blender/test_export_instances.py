@@ -85,8 +85,7 @@ def test_instances_share_one_geometry(scene, cube, make):
 
 @pytest.mark.parametrize("make", [collection_instances, by_nodes])
 def test_instances_of_a_subsurf_share_one_cage(scene, cube, make):
-    modifier = cube.modifiers.new("Subsurf", "SUBSURF")
-    modifier.render_levels = 2
+    scene_parts.add_subsurf(cube, 2)
     count = make(scene, cube)
     snapshot, _, _ = export_probe.through_engine(scene)
     assert len(snapshot["instances"]["name"]) == count

@@ -24,6 +24,10 @@ def test_polygons_of_any_size(scene):
     assert geometry["corner_verts"].tolist() == [0, 1, 2, 3, 4, 2, 5, 6, 2, 3, 5, 6]
     assert geometry["material_index"].tolist() == [0, 0, 1]
     assert geometry["smooth"].tolist() == [0, 1, 0]
+    # Of faces of more than four corners, Blender's own triangles, as corners within the face.
+    thing.data.calc_loop_triangles()
+    expected = [list(t.loops) for t in thing.data.loop_triangles if t.polygon_index == 0]
+    assert geometry["ngon_triangles"].tolist() == expected and len(expected) == 3
 
 
 def test_every_uv_map_the_active_one_first(scene, cube):

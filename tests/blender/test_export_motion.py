@@ -9,7 +9,7 @@ import scene_parts
 from export_probe import geometry_of
 from motion_parts import drive, on_every_step, set_position, shape_key, with_shutter, xs
 
-from granita.export import steps
+from granita.export.motion import shutter_steps
 
 
 @pytest.fixture
@@ -71,8 +71,8 @@ def test_the_scene_is_walked_again_only_for_instances(moving, moves, walks, monk
     if moves != "NOTHING":
         drive(square if moves == "OBJECT" else empty, "location", "frame", 0)
     walked = []
-    walk = steps.visit
-    monkeypatch.setattr(steps, "visit", lambda *all_: walked.append(1) or walk(*all_))
+    walk = shutter_steps.visit
+    monkeypatch.setattr(shutter_steps, "visit", lambda *all_: walked.append(1) or walk(*all_))
     export_probe.through_engine(moving)
     assert len(walked) == walks
 
@@ -175,12 +175,66 @@ def test_particles_fly(moving):
         assert np.diff(z) == pytest.approx([0.5 * 2 * 0.04], rel=1e-3)
 
 
-def test_hidden_within_the_shutter_is_held(moving):
+def hide_by_keys(thing, hidden):
+    """Args: hidden, {frame: bool}; from each on it is so."""
+    for frame, value in hidden.items():
+        thing.hide_render = value
+        thing.keyframe_insert("hide_render", frame=frame)
+
+
+def hide_by_strip(thing, hidden):
+    hide_by_keys(thing, hidden)
+    data = thing.animation_data
+    strip = data.nla_tracks.new().strips.new("Strip", 0, data.action)
+    if hasattr(strip, "action_slot"):
+        strip.action_slot = data.action_slot
+    data.action = None
+
+
+def hide_by_driver(thing, hidden):
+    frames = sorted(hidden)
+    expression = f"frame < {frames[1]}" if hidden[frames[0]] else f"frame >= {frames[1]}"
+    drive(thing, "hide_render", expression)
+
+
+@pytest.mark.parametrize("hide", [hide_by_keys, hide_by_strip, hide_by_driver])
+@pytest.mark.parametrize("hidden", [{0: True, 10: False}, {0: False, 10.1: True}], ids=str)
+def test_what_is_shown_at_the_frame_is_shown_for_the_whole_shutter_moving(moving, hide, hidden):
+    """Blender does not evaluate what it hides: what appears at the frame, or goes just after it, moves and
+    bends as if it had always been there."""
     square = scene_parts.add_square(moving)
     drive(square, "location", "frame", 0)
-    drive(square, "hide_render", "frame > 10.1")
-    snapshot, _, _ = export_probe.through_engine(moving)
-    assert xs(snapshot, "Square") == pytest.approx([9.75, 10, 10])
+    drive(shape_key(square), "value", "frame / 20")
+    hide(square, hidden)
+    moving.frame_set(9)
+    moving.frame_set(10)
+    snapshot, report, _ = export_probe.through_engine(moving)
+    assert xs(snapshot, "Square") == pytest.approx([9.75, 10.25])
+    heights = export_probe.geometry_of(snapshot, "Square")["points"][:, 0, 2]
+    assert heights == pytest.approx([9.75 / 20, 10.25 / 20])
+    assert "lifespan" not in snapshot["instances"]
+    assert report.entries() == []
+
+
+@pytest.mark.parametrize("persistent", [False, True])
+def test_its_animation_goes_on_afterwards(moving, persistent):
+    square = scene_parts.add_square(moving)
+    drive(square, "location", "frame", 0)
+    hide_by_keys(square, {0: True, 10: False, 11: True, 12: False})
+    seen = export_probe.frame_by_frame(moving, (9, 10, 11, 12), persistent=persistent)
+    assert [job.snapshot["instances"]["name"] for job in seen] == [[], ["Square"], [], ["Square"]]
+    for data in (
+        square.animation_data,
+        square.evaluated_get(bpy.context.evaluated_depsgraph_get()).animation_data,
+    ):
+        assert not any(curve.mute for curve in data.drivers)
+    action = square.animation_data.action
+    curves = (
+        action.fcurves
+        if hasattr(action, "fcurves")
+        else action.layers[0].strips[0].channelbags[0].fcurves
+    )
+    assert len(curves) == 1 and not curves[0].mute
 
 
 def test_what_is_hidden_at_the_frame_is_not_there(moving):

@@ -44,7 +44,7 @@ def test_the_frame_is_restored_after_cancel(moving):
 
 def test_original_data_is_untouched(moving):
     square = scene_parts.add_square(moving)
-    modifier = square.modifiers.new("Subsurf", "SUBSURF")
+    modifier = scene_parts.add_subsurf(square)
     drive(square, "location", "frame", 0)
     export_probe.through_engine(moving)
     assert modifier.show_render and modifier.show_viewport

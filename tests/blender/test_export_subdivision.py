@@ -10,12 +10,6 @@ from export_probe import attribute_of, geometry_of
 from mesh_parts import cube_in_view  # noqa: F401
 
 
-def add_subsurf(thing, levels=2, name="Subsurf"):
-    modifier = thing.modifiers.new(name, "SUBSURF")
-    modifier.levels = modifier.render_levels = levels
-    return modifier
-
-
 def set_crease(mesh, edges=None, verts=None):
     """Creases 0..1, where this Blender keeps them."""
     for values, attribute, domain in (
@@ -42,7 +36,7 @@ def set_crease(mesh, edges=None, verts=None):
 
 @pytest.mark.smoke
 def test_cage(scene, cube):
-    modifier = add_subsurf(cube, 3)
+    modifier = scene_parts.add_subsurf(cube, 3)
     modifier.boundary_smooth = "PRESERVE_CORNERS"
     modifier.uv_smooth = "SMOOTH_ALL"
     cube.data.uv_layers.new(name="UV")
@@ -62,15 +56,23 @@ def test_cage_is_deformed_by_what_comes_before(scene, cube):
     mirror = cube.modifiers.new("Array", "ARRAY")
     mirror.count = 3
     mirror.relative_offset_displace = (2, 0, 0)
-    add_subsurf(cube)
+    scene_parts.add_subsurf(cube)
     geometry = geometry_of(export_probe.through_engine(scene)[0], "Cube")
     assert geometry["points"].shape == (1, 24, 3)
     assert geometry["points"][0, :, 0].max() == pytest.approx(9)
 
 
+def test_flat_faces_are_blenders_own_facets(scene, cube):
+    scene_parts.add_subsurf(cube, 2)
+    cube.data.polygons[2].use_smooth = False
+    geometry = geometry_of(export_probe.through_engine(scene)[0], "Cube")
+    assert geometry.get("subdivision") is None
+    assert len(geometry["face_sizes"]) == 6 * 16 and geometry["smooth"].sum() == 5 * 16
+
+
 def test_simple_subdivision_is_blenders_own_mesh(scene, cube):
     cube.data.polygons.foreach_set("use_smooth", [True] * 6)
-    add_subsurf(cube, 2).subdivision_type = "SIMPLE"
+    scene_parts.add_subsurf(cube, 2).subdivision_type = "SIMPLE"
     geometry = geometry_of(export_probe.through_engine(scene)[0], "Cube")
     assert geometry.get("subdivision") is None
     assert len(geometry["face_sizes"]) == 6 * 16 and geometry["smooth"].all()
@@ -82,7 +84,7 @@ def test_creases_become_sharpness(scene, cube):
     verts = np.zeros(8, dtype=np.float32)
     verts[3] = 0.7
     set_crease(cube.data, edges, verts)
-    modifier = add_subsurf(cube)
+    modifier = scene_parts.add_subsurf(cube)
     subdivision = geometry_of(export_probe.through_engine(scene)[0], "Cube")["subdivision"]
     expected = [tuple(cube.data.edges[i].vertices) for i in (2, 7)]
     assert [tuple(pair) for pair in subdivision["crease_verts"]] == expected
@@ -108,7 +110,7 @@ def greatest_sum(cube):
 def test_creases_are_as_round_as_blenders(scene, cube, quality):
     # A cube's corner at which three edges of sharpness n meet: n levels leave it in place and halve
     # the edges; the smooth limit of what is left reaches to 3/2 of a half cube's 3.
-    modifier = add_subsurf(cube, 4)
+    modifier = scene_parts.add_subsurf(cube, 4)
     modifier.levels = 4
     modifier.quality = quality
     set_crease(cube.data, np.full(12, 0.6**0.5, dtype=np.float32), None)
@@ -134,23 +136,23 @@ def simplified_away(_modifier, _cube, scene):
 
 @pytest.mark.parametrize("switch", [off, no_levels, simplified_away])
 def test_subsurf_that_does_not_render_is_a_plain_mesh(scene, cube, switch):
-    switch(add_subsurf(cube), cube, scene)
+    switch(scene_parts.add_subsurf(cube), cube, scene)
     geometry = geometry_of(export_probe.through_engine(scene)[0], "Cube")
     assert "subdivision" not in geometry and geometry["points"].shape == (1, 8, 3)
 
 
 def before_another(cube):
-    add_subsurf(cube)
+    scene_parts.add_subsurf(cube)
     cube.modifiers.new("Weld", "WELD").merge_threshold = 1e-6
 
 
 def with_particles(cube):
     cube.modifiers.new("Particles", "PARTICLE_SYSTEM")
-    add_subsurf(cube)
+    scene_parts.add_subsurf(cube)
 
 
 def instancing_on_faces(cube):
-    add_subsurf(cube)
+    scene_parts.add_subsurf(cube)
     cube.instance_type = "FACES"
 
 
@@ -166,7 +168,7 @@ def test_objects_of_one_mesh_share_the_cage(scene, cube):
     other = scene_parts.add_object(scene, "Other", cube.data, (3, 0, 0))
     third = scene_parts.add_object(scene, "Third", cube.data, (6, 0, 0))
     for thing in (cube, other, third):
-        add_subsurf(thing)
+        scene_parts.add_subsurf(thing)
     third.modifiers[0].uv_smooth = "NONE"
     snapshot, _, _ = export_probe.through_engine(scene)
     assert snapshot["instances"]["geometry"].tolist() == [0, 0, 1]

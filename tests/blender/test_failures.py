@@ -47,6 +47,40 @@ output = next(n for n in tree.nodes if n.type == "OUTPUT_MATERIAL")
 tree.links.new(node.outputs[0], output.inputs["Surface"])
 """
 
+# As a file has it whose add-on is gone: its link counts as none, as in Cycles.
+UNDEFINED_NODE = """
+import bpy
+class Lost(getattr(bpy.types, "ShaderNode", bpy.types.Node)):
+    bl_idname, bl_label = "LostNode", "Lost"
+    def init(self, context):
+        self.outputs.new("NodeSocketColor", "Color")
+bpy.utils.register_class(Lost)
+lamp = bpy.data.lights.new("Sun", "SUN")
+bpy.context.collection.objects.link(bpy.data.objects.new("Sun", lamp))
+lamp.use_nodes = True
+for tree in (bpy.data.materials["Glow"].node_tree, lamp.node_tree):
+    node = tree.nodes.new("LostNode")
+    node.name = "Whisker"
+    emission = next(n for n in tree.nodes if n.type == "EMISSION")
+    tree.links.new(node.outputs[0], emission.inputs["Color"])
+bpy.utils.unregister_class(Lost)
+"""
+
+BROKEN_LAMP = """
+import bpy
+lamp = bpy.data.lights.new("Lamp", "POINT")
+lamp.energy = float("{}")
+bpy.context.collection.objects.link(bpy.data.objects.new("Faulty", lamp))
+"""
+
+# Objects with names that would colour a terminal, end a line and turn it round.
+RED_NAMES = """
+import bpy
+lamp = bpy.data.lights.new("Lamp", "POINT")
+lamp.energy = float("nan")
+bpy.context.collection.objects.link(bpy.data.objects.new("\\x1b[31mRed\\n\\u202eturned", lamp))
+"""
+
 HANDLER = """
 import bpy
 def broken(*_):
@@ -122,6 +156,17 @@ CASES = {
         0, "Torn", IMAGE.format(path="{folder}/torn.png", exists=True, name="Torn")
     ),
     "unknown node": Case(0, "Glow", UNKNOWN_NODE),
+    "undefined node": Case(0, "material 'Glow', light 'Sun': node 'Whisker' is of", UNDEFINED_NODE),
+    "energy not a number": Case(0, "light 'Faulty': is left out", BROKEN_LAMP.format("nan")),
+    "energy infinite": Case(0, "light 'Faulty': is left out", BROKEN_LAMP.format("inf")),
+    "control characters in a name": Case(
+        0, r"light '\x1b[31mRed\n\u202eturned': is left out", RED_NAMES
+    ),
+    "control characters in a failure": Case(
+        1,
+        r"camera '\x1b[31m'",
+        SETTING.format("s.camera.name = '\\x1b[31m'; s.camera.data.type = 'PANO'"),
+    ),
     "one pixel": Case(
         0,
         "Saved",
@@ -167,8 +212,18 @@ def test_exit_code_and_message(name, blend, folder):
     assert case.says in outcome.output
     assert len(outcome.files) == (case.code == 0), outcome.output
     assert ("Error: " in outcome.output) == (case.code == 1 or "handler" in name), outcome.output
+    assert "\x1b" not in outcome.output and "\u202e" not in outcome.output
     for path in outcome.files:
         exr.read(path)
+
+
+@pytest.mark.parametrize("prepare", [UNDEFINED_NODE, BROKEN_LAMP.format("nan")])
+def test_what_is_left_out_leaves_the_rest(prepare, blend, tmp_path):
+    """The square's own colour, and no light from the lamp: as if neither were there."""
+    outcome = render_host.run(blend, tmp_path / "out", prepare)
+    expected = render_host.run(blend, tmp_path / "expected")
+    for name, plane in exr.read(expected.files[0]).items():
+        np.testing.assert_array_equal(exr.read(outcome.files[0])[name], plane)
 
 
 @pytest.mark.parametrize("border", [(0.5, 0.5), (7, 9), (0.8, 0.2)], ids=str)

@@ -23,6 +23,24 @@ def curves_default_radius(scene):
     spiral_curves(scene, radius=None)
 
 
+def flattened_curves(scene):
+    curves(scene)
+    scene.objects["Curves"].scale = (1.0, 1.0, 0.2)
+
+
+def narrowed_curves(scene):
+    curves(scene)
+    scene.objects["Curves"].scale = (0.2, 1.0, 1.0)
+
+
+def sheared_moving_curves(scene):
+    """Turned under a parent that is scaled along one axis."""
+    moving_curves(scene)
+    parent = scene_parts.add_object(scene, "Parent", None)
+    parent.scale = (1.0, 0.3, 1.0)
+    scene.objects["Curves"].parent = parent
+
+
 def moving_curves(scene):
     scene_parts.add_camera(scene, (0, -5, 2.5)).rotation_euler.x = 1.15
     curves = spiral_curves(scene)
@@ -66,6 +84,9 @@ def moving_points(scene):
     [
         curves,
         curves_default_radius,
+        flattened_curves,
+        narrowed_curves,
+        sheared_moving_curves,
         moving_curves,
         hair,
         hair_of_children,
@@ -152,3 +173,13 @@ def test_shadows_are_those_of_cycles(scene, render, build):
     )
     assert abs(ours.mean() / theirs.mean() - 1.0) < 0.01
     assert np.sqrt(((ours - theirs) ** 2).mean()) < 0.02 * lit
+
+
+def test_points_that_stay_spheres_under_uneven_scale_are_named(scene, render, capfd):
+    points(scene)
+    cloud = next(thing for thing in scene.objects if thing.type == "MESH")
+    render(scene)
+    assert "stay spheres" not in capfd.readouterr().out
+    cloud.scale = (1.0, 0.4, 1.0)
+    render(scene)
+    assert f"object '{cloud.name}': is scaled unevenly" in capfd.readouterr().out

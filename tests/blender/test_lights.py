@@ -243,7 +243,7 @@ def test_glass_panes_let_light_through(scene, render):
 
 
 def test_a_linked_strength_that_varies_is_named(scene):
-    from granita.export.light import light_record
+    from granita.export.shading.light import light_record
 
     light = add_light(scene, "POINT", 10.0)
     light.data.use_nodes = True

@@ -17,7 +17,7 @@ def moving(scene):
     drive(scene.camera, "location", "frame", 1)
     drive(scene_parts.add_square(scene, "Mover"), "location", "frame", 0)
     cage = scene_parts.add_square(scene, "Cage")
-    cage.modifiers.new("Subsurf", "SUBSURF").render_levels = 2
+    scene_parts.add_subsurf(cage, 2)
     drive(shape_key(cage), "value", "frame / 20")
     part = bpy.data.collections.new("Part")
     part.objects.link(scene_parts.add_square(scene, "Inside"))

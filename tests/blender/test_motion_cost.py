@@ -11,7 +11,9 @@ from call_counts import count_calls
 from hair_parts import furry
 from motion_parts import drive, on_every_step, with_shutter
 
-from granita.export import changes, steps, strands
+from granita.export.geometry import hair_points
+from granita.export.motion import shutter_steps
+from granita.export.scene import plain_objects
 
 
 def crowd(scene, count):
@@ -26,7 +28,9 @@ def crowd(scene, count):
 @pytest.mark.parametrize("count", [10, 1000])
 def test_static_objects_are_read_at_no_step(scene, monkeypatch, count):
     """Of however many: a step reads the place of the one that turns, and walks over nothing."""
-    read = count_calls(monkeypatch, places=(changes, "from_matrix"), walks=(steps, "visit"))
+    read = count_calls(
+        monkeypatch, places=(plain_objects, "from_matrix"), walks=(shutter_steps, "visit")
+    )
     crowd(with_shutter(scene), count)
     snapshot, _, _ = export_probe.through_engine(scene, motion_steps=17)
     assert sorted(set(snapshot["instances"]["knots"].tolist())) == [1, 17]
@@ -48,15 +52,15 @@ def test_straight_movers_take_four_steps_of_time_and_the_way_back(scene):
 def test_hair_that_goes_along_is_asked_for_two_points_a_hair_and_nothing_is_walked(
     scene, monkeypatch
 ):
-    read = count_calls(monkeypatch, walks=(steps, "visit"))
+    read = count_calls(monkeypatch, walks=(shutter_steps, "visit"))
     asked = []
 
     def note(*arguments):
         asked.append(arguments[-1])
         return in_world(*arguments)
 
-    in_world = strands._world
-    monkeypatch.setattr(strands, "_world", note)
+    in_world = hair_points._world
+    monkeypatch.setattr(hair_points, "_world", note)
     with_shutter(scene)
     drive(furry(scene, count=60), "location", "frame", 0)
     export_probe.through_engine(scene, motion_steps=17)

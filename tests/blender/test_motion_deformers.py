@@ -165,7 +165,7 @@ def test_the_shape_at_the_knots_is_blenders(moving, build, as_cage):
     assert np.abs(expected[1] - expected[0]).max() > 1e-3
     moving.frame_set(10)
     if as_cage:
-        thing.modifiers.new("Subsurf", "SUBSURF").render_levels = 2
+        scene_parts.add_subsurf(thing, 2)
     snapshot, report, _ = export_probe.through_engine(moving, motion_steps=3)
     geometry = geometry_of(snapshot, "Sheet")
     assert ("subdivision" in geometry) == as_cage

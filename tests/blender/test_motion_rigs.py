@@ -57,7 +57,7 @@ def an_arm_with_inverse_kinematics(scene):
         for vertex in skin.data.vertices:
             group.add([vertex.index], min(max(0.5 + side * vertex.co.x, 0.0), 1.0), "ADD")
     skin.modifiers.new("Armature", "ARMATURE").object = armature
-    skin.modifiers.new("Subsurf", "SUBSURF").render_levels = 2
+    scene_parts.add_subsurf(skin, 2)
 
 
 def a_thing_that_is_handed_over(scene):

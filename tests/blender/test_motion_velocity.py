@@ -15,7 +15,7 @@ from hair_parts import curve_through, mesh_points
 from motion_parts import drive, set_position, shape_key
 from node_parts import hidden_collection, instances_on_line, store_attribute
 
-from granita.export.velocity import read_velocity
+from granita.export.geometry.velocity import read_velocity
 
 PIXELS = np.arange(WIDTH)
 

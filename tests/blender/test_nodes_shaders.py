@@ -107,6 +107,24 @@ def test_principled(scene, render, values, distribution):
     _lit(scene, render, "ShaderNodeBsdfPrincipled", values, distribution=distribution)
 
 
+@pytest.mark.parametrize("roughness", [{}, {"Clearcoat Roughness": "B"}], ids=["even", "varying"])
+def test_coat(scene, render, roughness):
+    """On black, of strength and roughness that vary."""
+    thing = _lit_scene(scene, 0.3)
+    tree = Tree(thing)
+    node = tree.add("ShaderNodeBsdfPrincipled")
+    _input(node, "Base Color").default_value = (0.0, 0.0, 0.0, 1.0)
+    _input(node, "Specular").default_value = 0.0
+    if bpy.app.version >= (4, 0, 0):
+        node.inputs["IOR"].default_value = 1.0
+    _input(node, "Clearcoat Roughness").default_value = 0.3
+    for name, attribute in {"Clearcoat": "A", **roughness}.items():
+        tree.link(tree.attribute(attribute, "Fac"), _input(node, name))
+    shown(tree, node)
+    bpy.data.lights["Sun"].energy = 300.0
+    check(scene, render, limit=0.005 * 3)
+
+
 def _skip_random_walks(distribution):
     if distribution == "MULTI_GGX" and bpy.app.version < (4, 0, 0):
         pytest.skip("before Blender 4 Cycles walks at random between facets, since then as we do")
@@ -124,15 +142,28 @@ def test_principled_alpha_and_emission(scene, render):
     check(scene, render)
 
 
-_RENAMED = {"Specular": "Specular IOR Level"}
+_RENAMED = {
+    "Specular": "Specular IOR Level",
+    "Clearcoat": "Coat Weight",
+    "Clearcoat Roughness": "Coat Roughness",
+}
+
+
+def _input(node, name):
+    """By its name before Blender 4."""
+    return node.inputs.get(name) or node.inputs[_RENAMED[name]]
+
+
+def _lit_scene(scene, tilt):
+    sun(scene)
+    return board(scene, 0.15, 1, tilt=tilt)
 
 
 def _lit(scene, render, kind, values, **properties):
-    sun(scene)
-    tree = Tree(board(scene, 0.15, 1, tilt=0.3))
+    tree = Tree(_lit_scene(scene, 0.3))
     node = tree.add(kind, **properties)
     for name, attribute in values.items():
-        target = node.inputs.get(name) or node.inputs[_RENAMED[name]]
+        target = _input(node, name)
         output = "Color" if target.type == "RGBA" else "Fac"
         tree.link(tree.attribute(attribute, output), target)
     shown(tree, node)
@@ -180,7 +211,7 @@ def test_groups(scene, render, linked):
 
 
 def test_1600_nested_groups_do_not_exhaust_the_stack(scene):
-    from granita.export.material import material_record
+    from granita.export.shading.material import material_record
 
     tree = Tree(board(scene))
     group = nested(tree, 1600)
@@ -232,7 +263,7 @@ def test_unknown_node_is_told_once(scene, render):
 
     granita_core = pytest.importorskip("granita_core")
     tree = Tree(board(scene))
-    tree.emit(tree.add("ShaderNodeWavelength", name="Swirl").outputs["Color"])
+    tree.emit(tree.add("ShaderNodeHairInfo", name="Swirl").outputs["Intercept"])
     snapshot = export_frame(None, bpy.context.evaluated_depsgraph_get(), scene.granita, print)
     warnings = granita_core.render(snapshot)["warnings"]
     about = [w for w in warnings if "Swirl" in w[1]]

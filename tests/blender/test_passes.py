@@ -6,6 +6,7 @@ compared over 4 by 4 pixels; passes of one sample, and those with jumps, in all 
 """
 
 import math
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -199,6 +200,20 @@ def test_light_by_colour_is_the_picture(scene, render):
         [v for c in "RGB" for k, v in channels.items() if k.endswith(f".Combined.{c}")], axis=-1
     )
     assert np.abs(light - combined).max() < 1e-5 * combined.max()
+
+
+def test_a_failure_to_list_passes_is_told(scene, monkeypatch):
+    """Blender lists them at each change of a view layer and would print the traceback alone."""
+    from granita import engine, passes
+
+    def broken(_):
+        raise ValueError("\x1b[31m")
+
+    monkeypatch.setattr(passes, "wanted", broken)
+    told = []
+    listing = SimpleNamespace(report=lambda kind, text: told.append((kind, text)))
+    engine.GranitaRenderEngine.update_render_passes(listing, scene, scene.view_layers[0])
+    assert told == [({"ERROR"}, r"passes: ValueError: \x1b[31m")]
 
 
 def test_each_layer_has_its_own_passes(scene, render):

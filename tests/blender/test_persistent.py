@@ -11,7 +11,8 @@ from call_counts import count_calls
 from export_probe import frame_by_frame
 from motion_parts import drive, on_every_step, shape_key, with_shutter
 
-from granita.export import geometry, persistent, placed
+from granita.export.geometry import geometry_source
+from granita.export.scene import persistent_state, scene_objects
 
 FRAMES = (10, 11, 12)
 
@@ -51,7 +52,7 @@ def a_shape_that_changes(scene, square):
 
 def a_cage_that_changes(scene, square):
     drive(shape_key(square), "value", "frame / 20")
-    square.modifiers.new("Subsurf", "SUBSURF").render_levels = 2
+    scene_parts.add_subsurf(square, 2)
 
 
 def a_topology_that_changes(scene, square):
@@ -205,8 +206,7 @@ def a_collection_held_out(scene, square):
 
 
 def a_modifier_switched_off(scene, square):
-    modifier = square.modifiers.new("Subsurf", "SUBSURF")
-    modifier.render_levels = 2
+    modifier = scene_parts.add_subsurf(square, 2)
 
     def change():
         modifier.render_levels = 0
@@ -215,7 +215,7 @@ def a_modifier_switched_off(scene, square):
 
 
 def simplify(scene, square):
-    square.modifiers.new("Subsurf", "SUBSURF").render_levels = 2
+    scene_parts.add_subsurf(square, 2)
     scene.render.simplify_subdivision_render = 0
 
     def change():
@@ -321,8 +321,10 @@ def test_what_a_handler_left_elsewhere_is_found_there(anew):
 @pytest.mark.parametrize("change", [a_thing_that_moves, a_shape_that_changes, a_child, lamps])
 def test_what_stands_alone_needs_no_walk(anew, change, monkeypatch):
     walks = []
-    walk = persistent.read_placed
-    monkeypatch.setattr(persistent, "read_placed", lambda *all_: walks.append(1) or walk(*all_))
+    walk = persistent_state.read_scene_objects
+    monkeypatch.setattr(
+        persistent_state, "read_scene_objects", lambda *all_: walks.append(1) or walk(*all_)
+    )
     frames_of(anew, change, persistent=True)
     assert len(walks) == 1
 
@@ -330,13 +332,13 @@ def test_what_stands_alone_needs_no_walk(anew, change, monkeypatch):
 def test_what_nothing_touched_is_not_read_again(anew, monkeypatch):
     """Where the scene is walked anew: of three geometries, the one that deforms."""
     read = []
-    mesh = geometry.read_geometry
+    mesh = geometry_source.read_geometry
 
     def counted(data, label, *rest):
         read.append(label)
         return mesh(data, label, *rest)
 
-    monkeypatch.setattr(geometry, "read_geometry", counted)
+    monkeypatch.setattr(geometry_source, "read_geometry", counted)
 
     def change(scene, square):
         instances_that_move(scene, scene_parts.add_square(scene, "Leaf"))
@@ -348,7 +350,9 @@ def test_what_nothing_touched_is_not_read_again(anew, monkeypatch):
 
 def test_a_static_crowd_is_walked_once(anew, monkeypatch):
     """Of later frames the one thing that moves is read, however many stand still (bench/export_cost.py)."""
-    count = count_calls(monkeypatch, walks=(placed, "visit"), places=(persistent, "from_matrix"))
+    count = count_calls(
+        monkeypatch, walks=(scene_objects, "visit"), places=(persistent_state, "from_matrix")
+    )
 
     def change(scene, square):
         drive(square, "location", "frame", 0)

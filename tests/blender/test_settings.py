@@ -28,6 +28,7 @@ DEFAULTS = {
     "seed": 0,
     "animate_seed": False,
     "light_samples": 16,
+    "film_exposure": 1.0,
 }
 
 NUMBERS = {
@@ -80,13 +81,13 @@ SERVED = [
     "DATA_PT_camera",
     "DATA_PT_camera_dof",
     "DATA_PT_camera_dof_aperture",
-    "DATA_PT_EEVEE_light",
-    "DATA_PT_spot",
     "EEVEE_MATERIAL_PT_surface",
     "EEVEE_WORLD_PT_mist",
     "EEVEE_WORLD_PT_surface",
     "MATERIAL_PT_preview",
+    "OBJECT_PT_custom_props",
     "OBJECT_PT_visibility",
+    "RENDER_PT_freestyle",
     "VIEWLAYER_PT_layer",
 ]
 
@@ -134,7 +135,8 @@ class Drawn:
 def drawn(**context):
     """Names of all properties that Granita's own panels show."""
     scene, layer = bpy.context.scene, bpy.context.view_layer
-    context = {"light": None, "object": None, **context}
+    nothing = dict.fromkeys(("light", "material", "object", "world"))
+    context = {**nothing, **context}
     context = SimpleNamespace(engine="GRANITA", scene=scene, view_layer=layer, **context)
     names = set()
     for panel in below(bpy.types.Panel):
@@ -153,11 +155,71 @@ def test_all_that_is_read_is_shown():
     scene.granita.sampling = "INDEPENDENT"
     assert "z_batch_size" in drawn()
 
-    lamp = bpy.data.lights.new("lamp", "AREA")
-    assert drawn(light=lamp) & {"cast_shadow", "use_shadow"} and "spread" in drawn(light=lamp)
     cube, light = bpy.data.objects["Cube"], bpy.data.objects["Light"]
     assert drawn(object=cube) >= {"visible_camera", "visible_shadow"}
-    assert drawn(object=light) >= {"visible_diffuse", "visible_glossy"}
+    assert drawn(object=light) >= {"visible_camera", "visible_diffuse", "visible_glossy"}
+    assert "pass_index" in drawn(material=cube.active_material)
+
+
+@pytest.mark.skipif(
+    "light_linking" not in bpy.types.Object.bl_rna.properties,
+    reason="lights of this Blender cannot be linked",
+)
+def test_linking_of_lights_is_shown_once():
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    stock = hasattr(bpy.types, "OBJECT_PT_light_linking")
+    assert not stock or "OBJECT_PT_shading" in served()  # their parent; they serve all engines
+    light = SimpleNamespace(engine="GRANITA", object=bpy.data.objects["Light"])
+    for name in ("GRANITA_OBJECT_PT_light_linking", "GRANITA_OBJECT_PT_shadow_linking"):
+        assert getattr(bpy.types, name).poll(light) is not stock
+
+
+def test_a_view_layer_shows_its_filters_and_overrides():
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    shown = {
+        "use_sky",
+        "use_solid",
+        "use_strand",
+        "use_motion_blur",
+        "material_override",
+        "samples",
+    }
+    shown |= {"world_override"} & set(bpy.types.ViewLayer.bl_rna.properties.keys())
+    assert drawn() >= shown
+
+
+def test_all_passes_are_shown_and_those_not_made_are_greyed():
+    from granita import passes
+    from granita.ui import pass_panels
+
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    names = drawn()
+    assert names >= passes.SERVED - {None}
+    assert names >= {"use_pass_ambient_occlusion", "use_pass_glossy_indirect"}
+    assert "use_pass_cryptomatte_object" in names
+    row = SimpleNamespace(prop=lambda *_, **__: None)
+    column = SimpleNamespace(row=lambda: row)
+    layer = bpy.context.view_layer
+    for name, made in (("use_pass_emit", True), ("use_pass_diffuse_indirect", False)):
+        pass_panels._PassPanel().show(column, layer, name, "")
+        assert row.active is made
+
+
+@pytest.mark.parametrize("kind", ["POINT", "SUN", "SPOT", "AREA"])
+def test_a_light_shows_what_is_read_of_it(kind):
+    lamp = bpy.data.lights.new("lamp", kind)
+    own = {
+        "POINT": {"shadow_soft_size"},
+        "SUN": {"angle"},
+        "SPOT": {"shadow_soft_size", "spot_size", "spot_blend"},
+        "AREA": {"shape", "size", "spread"},
+    }
+    since = {"exposure", "normalize", "use_temperature"} & set(lamp.bl_rna.properties.keys())
+    shown = drawn(light=lamp)
+    assert shown >= own[kind] | since | {"type", "color", "energy", "use_nodes"}
+    assert shown & {"cast_shadow", "use_shadow"}
+    # EEVEE's alone: refused at the render.
+    assert not shown & {"diffuse_factor", "specular_factor", "volume_factor"}
 
 
 def test_stock_panels_come_and_go():
@@ -166,6 +228,7 @@ def test_stock_panels_come_and_go():
     assert names >= set(SERVED)
     # EEVEE's own knobs mean nothing here.
     assert not {name for name in names if name.startswith("RENDER_PT_eevee")}
+    assert not names & {"DATA_PT_EEVEE_light", "RENDER_PT_output_views"}
     granita.unregister()
     try:
         stock = {name for name in served() if not name.startswith("GRANITA")}

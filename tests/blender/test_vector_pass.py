@@ -55,7 +55,7 @@ def a_cage(scene):
     bpy.ops.mesh.primitive_cube_add(size=2)
     cube = bpy.context.object
     drive(shape_key(cube), "value", "frame - 9")
-    cube.modifiers.new("Subsurf", "SUBSURF").render_levels = 3
+    scene_parts.add_subsurf(cube, 3)
 
 
 def a_camera(scene):

@@ -132,6 +132,18 @@ def disc(radius, center=(0, 0), z=1.0, sides=512):
     return np.stack([x, y, np.full_like(x, z)], 1), [tuple(range(sides))]
 
 
+def constant_world(snapshot, strength):
+    """A white world that the film shows and that lights nothing."""
+    snapshot["options"]["film_transparent"] = False
+    inputs = {"Color": (1.0, 1.0, 1.0, 1.0), "Strength": float(strength)}
+    snapshot["world"] = {
+        "name": "World",
+        "nodes": [{"type": "ShaderNodeBackground", "inputs": inputs}],
+        "surface": (0, "Background"),
+        "lights_scene": False,
+    }
+
+
 def half_world(snapshot):
     """A world that is 1 where x > 0 and 0 elsewhere, which the film shows."""
     snapshot["options"]["film_transparent"] = False
@@ -176,8 +188,13 @@ def render(snapshot):
         "materials": np.array(table["materials"], np.int32),
         "lifespan": np.array(table["lifespan"], np.float32).reshape(-1, 2),
     }
+    if "key" in table:
+        packed["key"] = np.array(table["key"], np.uint32)
     if "flags" in table:
         packed["flags"] = np.array(table["flags"], np.uint32)
+    for name in ("receives", "blocks"):
+        if name in table:
+            packed[name] = np.array([mask % 2**64 for mask in table[name]], np.uint64)
     if "neighbours" in table:
         packed["neighbours"] = table["neighbours"]
     return granita_core.render({**snapshot, "instances": packed})

@@ -165,3 +165,14 @@ def test_more_passes_than_there_are_is_said():
     made = regular((0, 1e5))
     assert made["statistics"]["samples_total"] == 128 * 256
     assert [m for _, m, _ in made["warnings"] if "stops at 128 time samples" in m]
+
+
+@pytest.mark.parametrize("executor", ["REFERENCE", "SIMD", "COMPUTE", "RASTER"])
+@pytest.mark.parametrize("crop", [(20, 9, 21, 10), (3, 5, 40, 33)])
+def test_samples_are_those_of_the_crops_pixels(executor, crop):
+    """Whatever tiles or cells the executor works in, and however far the filter reaches."""
+    options = {"crop": np.array(crop, np.int32), "pixel_filter": "MITCHELL", "filter_width": 4.0}
+    snapshot = s.orthographic((48, 48), samples=16, executor=executor, **options)
+    s.quad(snapshot, s.rectangle(5, 5, 30, 30), s.emission(snapshot))
+    pixels = (crop[2] - crop[0]) * (crop[3] - crop[1])
+    assert statistics(snapshot)["samples_total"] == 16 * pixels

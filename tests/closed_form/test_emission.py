@@ -31,3 +31,29 @@ def test_nobody_misses_light_that_is_faint_or_that_nothing_would_reflect(strengt
 
 def test_an_emitting_material_that_lights_nothing_is_named_once():
     assert warnings_of(5.0, True) == [("material 'Emission 0'", 1)]
+
+
+def test_what_is_no_number_is_left_out_and_named():
+    """exp(500) beside a plain square, with a filter that reaches over."""
+    snapshot = s.orthographic(
+        (16, 16),
+        samples=1,
+        executor="SIMD",
+        pixel_filter="GAUSSIAN",
+        passes=["Combined", "Emission"],
+    )
+    broken = s.emission(snapshot)
+    power = {"type": "ShaderNodeMath", "inputs": {"Value": 500.0}}
+    power["properties"] = {"operation": "EXPONENT"}
+    nodes = snapshot["materials"][broken]["nodes"]
+    nodes.insert(0, power)
+    nodes[1]["inputs"]["Strength"] = ("LINK", 0, "Value")
+    snapshot["materials"][broken]["surface"] = (1, "Emission")
+    s.quad(snapshot, s.rectangle(0, 0, 8, 16), broken)
+    s.quad(snapshot, s.rectangle(8, 0, 16, 16), s.emission(snapshot))
+    done = s.render(snapshot)
+    shown = done["combined"][2:-2, :, :3]  # the frame's own edge is see-through
+    assert np.allclose(shown[:, 12:-2], 1.0) and (shown[:, :5] == 0).all()
+    assert np.isfinite(done["combined"]).all() and np.isfinite(done["passes"]["Emission"]).all()
+    ((datablock, message, count),) = done["warnings"]
+    assert datablock == "material 'Emission 0'" and "not finite" in message and count > 0

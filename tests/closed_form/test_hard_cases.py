@@ -228,6 +228,30 @@ def test_a_thousand_grids_of_one_micropolygon_are_one_large_one(executor):
     assert (pictures[0][4:33, 4:33, 3] == 0.5).all()
 
 
+@pytest.mark.parametrize("executor", ["SIMD", "RASTER"])
+def test_grids_of_one_micropolygon_by_the_ten_thousands(executor):
+    """Case 59 at its own size: 65,536 grids, each of one micropolygon of an eighth of a pixel, are one large one."""
+    pieces = 256
+    pictures = []
+    for side in (1, pieces):
+        snapshot = s.orthographic(
+            (40, 40), **options(executor, 16), grid_size=1 if side > 1 else 256
+        )
+        edges = (2.25 + 32.0 * np.arange(side + 1) / side).astype(np.float32)
+        x0, y0 = (v.ravel() for v in np.meshgrid(edges[:-1], edges[:-1]))
+        x1, y1 = (v.ravel() for v in np.meshgrid(edges[1:], edges[1:]))
+        corners = np.stack([np.stack(c, -1) for c in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))], 1)
+        points = np.concatenate([corners, 1 + corners[..., :1] / 64], -1).reshape(-1, 3)
+        faces = np.arange(len(points)).reshape(-1, 4)
+        s.mesh(snapshot, points, faces, s.emission(snapshot, (1, 1, 1), 0.5))
+        result = s.render(snapshot)
+        if side > 1:
+            assert result["statistics"]["grids_diced"] >= pieces**2
+        pictures.append(result["combined"])
+    assert np.array_equal(*pictures)
+    assert (pictures[0][4:33, 4:33, 3] == 0.5).all()
+
+
 def test_hair_and_points_of_no_width_are_not_there(executor):
     """Case 57, at rest and in motion."""
     snapshot = s.orthographic((64, 32), **options(executor, 16, 4))

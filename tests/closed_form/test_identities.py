@@ -60,6 +60,34 @@ def test_order_of_objects_changes_no_bit(executor):
     assert np.array_equal(scene(False), scene(True))
 
 
+@pytest.mark.parametrize("alpha", [None, 0.6], ids=["opaque", "transparent"])
+@pytest.mark.parametrize("executor", ["REFERENCE", "SIMD", "COMPUTE", "RASTER"])
+def test_ties_in_depth_fall_to_the_smaller_key_whichever_comes_first(executor, alpha):
+    """M8 where depths are the same: six sheets in one plane, some of them moving, each with its own key."""
+    keys = [40, 7, 23, 61, 5, 18]
+    colors = np.random.default_rng(1).uniform(0.1, 1, (6, 3)).astype(np.float32)
+
+    def scene(order):
+        sampling = "REGULAR" if executor == "RASTER" else "INDEPENDENT"
+        snapshot = s.orthographic(
+            (24, 24), samples=16, executor=executor, sampling=sampling, opacity_threshold=1.0
+        )
+        for i in order:
+            moves = [s.translation(0, 0), s.translation(0, 0)] if i % 2 else None
+            material = s.emission(snapshot, colors[i], alpha)
+            s.quad(snapshot, s.rectangle(2, 3, 20, 18, 5), material, transforms=moves)
+        snapshot["instances"]["key"] = [keys[i] for i in order]
+        return s.render(snapshot)["combined"]
+
+    pictures = [scene(order) for order in (range(6), range(5, -1, -1), (3, 0, 5, 1, 4, 2))]
+    assert np.array_equal(pictures[0], pictures[1])
+    assert np.array_equal(pictures[0], pictures[2])
+    # By rising key, the nearer first: what is left for the i-th sheet is .4^i of its .6.
+    front_to_back = colors[np.argsort(keys)]
+    part = np.array([1.0] + [0.0] * 5) if alpha is None else 0.6 * 0.4 ** np.arange(6)
+    assert np.abs(pictures[0][6:15, 6:17, :3] - part @ front_to_back).max() <= 1e-6
+
+
 def test_far_from_the_origin_nothing_changes(executor):
     """Case 48: camera and scene shifted by 1e8 m together; differences are composed in double, relative to the camera."""
 

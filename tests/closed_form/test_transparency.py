@@ -8,12 +8,18 @@ import pytest
 import snapshots as s
 
 
-def stack(executor, layers, **options):
-    """layers: (z, alpha, colour); each covers the frame."""
+def stack_of(executor, layers, world=None, **options):
+    """layers: (z, alpha, colour); each covers the frame, before a white world of that strength."""
     snapshot = s.orthographic((16, 16), samples=16, executor=executor, **options)
     for z, a, color in layers:
         s.quad(snapshot, s.rectangle(-40, -40, 60, 60, z), s.emission(snapshot, color, a))
-    return s.render(snapshot)["combined"]
+    if world is not None:
+        s.constant_world(snapshot, world)
+    return snapshot
+
+
+def stack(executor, layers, **options):
+    return s.render(stack_of(executor, layers, **options))["combined"]
 
 
 @pytest.mark.parametrize(
@@ -218,12 +224,51 @@ def test_random_scenes_through_opengl_are_the_references(
 
 
 def test_threshold_costs_at_most_its_share_of_the_brightest(executor):
-    """bias <= (1 - threshold) times the brightest colour."""
+    """bias <= (1 - threshold) times the brightest colour, be it of the world."""
     for threshold in (0.5, 0.9, 0.996):
         layers = [(1 + i, 0.15, (1, 0.2, 3)) for i in range(60)]
-        exact = stack(executor, layers, opacity_threshold=1.0)
-        bias = np.abs(stack(executor, layers, opacity_threshold=threshold) - exact)
-        assert bias.max() <= (1 - threshold) * 3 + 1e-6
+        for world, brightest in ((None, 3), (10.0, 10)):
+            exact = stack(executor, layers, world=world, opacity_threshold=1.0)
+            picture = stack(executor, layers, world=world, opacity_threshold=threshold)
+            assert np.abs(picture - exact).max() <= (1 - threshold) * brightest + 1e-6
+
+
+ALL_EXECUTORS = [
+    ("REFERENCE", "INDEPENDENT"),
+    ("SIMD", "INDEPENDENT"),
+    ("COMPUTE", "INDEPENDENT"),
+    ("RASTER", "INDEPENDENT"),
+    ("RASTER", "REGULAR"),
+]
+
+
+@pytest.mark.parametrize("executor, sampling", ALL_EXECUTORS)
+def test_the_world_never_shines_through_the_end_of_a_list(executor, sampling):
+    """Two black sheets of .98 reach the threshold .996; what .0004 of is left is not that of a world of 1000."""
+    sheets = [(1, 0.98, (0, 0, 0)), (2, 0.98, (0, 0, 0))]
+    wall = [(3, None, (0, 0, 0))]
+    common = {"world": 1000.0, "opacity_threshold": 0.996, "sampling": sampling}
+    image = stack(executor, sheets + wall, **common)
+    assert not image[..., :3].any()
+    assert (image[..., 3] == 1).all()
+    # Before the world itself too: as much may be missing as the threshold says, and no more.
+    assert not stack(executor, sheets, **common)[..., :3].any()
+    # A list that did not end shows what is behind it, world or wall.
+    image = stack(executor, sheets[:1], **common)
+    assert np.abs(image[..., :3] - 20).max() <= 20 * 2.0**-20
+    assert not stack(executor, sheets[:1] + wall, **common)[..., :3].any()
+
+
+def test_passes_see_no_world_behind_the_end_of_a_list(executor):
+    """Combined is the sum of its passes, with a wall behind the sheets and without."""
+    layers = [(1, 0.98, (1, 2, 3)), (2, 0.98, (3, 2, 1)), (3, None, (5, 5, 5))]
+    passes = ["Emission", "Environment"]
+    for count in (2, 3):
+        common = {"world": 1000.0, "opacity_threshold": 0.996, "passes": passes}
+        result = s.render(stack_of(executor, layers[:count], **common))
+        assert not result["passes"]["Environment"].any()
+        emission = result["passes"]["Emission"][..., :3]
+        assert np.abs(result["combined"][..., :3] - emission).max() <= 1e-6
 
 
 def test_opaque_pictures_keep_no_lists():

@@ -40,6 +40,12 @@ def test_another_system_gets_one_message_with_what_is_needed(command, tmp_path):
         assert package in done.stderr
 
 
+def test_a_sanitizer_that_does_not_exist_is_named():
+    done = dev("test", "--sanitize", "memory")
+    assert done.returncode != 0
+    assert "memory" in done.stderr and "thread" in done.stderr
+
+
 def test_a_second_build_installs_and_compiles_nothing():
     assert dev("build").returncode == 0
     done = dev("build")
@@ -61,6 +67,18 @@ def test_blender_leaves_the_users_configuration_untouched(tmp_path):
     done = dev("blender", "-b", "--python-expr", script, **home)
     assert done.returncode == 0, done.stdout + done.stderr
     assert not (tmp_path / ".config" / "blender").exists()
+
+
+@pytest.mark.parametrize("cache", [True, False])
+def test_no_home_is_no_obstacle(cache):
+    """As systemd and some farms start a process."""
+    given = {k: v for k, v in os.environ.items() if k not in ("HOME", "XDG_CACHE_HOME")}
+    if cache:
+        given["XDG_CACHE_HOME"] = os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache"))
+    done = subprocess.run(
+        [str(ROOT / "dev"), "help"], env=given, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
 
 
 def test_a_failing_part_makes_the_test_run_fail(tmp_path):

@@ -15,30 +15,20 @@ namespace {
 constexpr int kBlockSide = 4, kBlocks = kTileSize / kBlockSide;
 constexpr std::size_t kBlocksOfTile = kBlocks * kBlocks;
 
-/// Pixels that the micropolygon may touch.
-Rect touched(const SimdGrid& grid, const int vertex[4], int segment, const Rect& pixels) {
-    const std::size_t row = static_cast<std::size_t>(segment) * grid.vertices;
-    float x0 = INFINITY, y0 = INFINITY, x1 = -INFINITY, y1 = -INFINITY;
-    for (int k = 0; k < 4; ++k) {
-        const std::size_t v = row + vertex[k];
-        x0 = std::min(x0, grid.x_lo[v]);
-        x1 = std::max(x1, grid.x_hi[v]);
-        y0 = std::min(y0, grid.y_lo[v]);
-        y1 = std::max(y1, grid.y_hi[v]);
-    }
-    // Clamped before the conversion, which overflows otherwise.
-    const auto pixel = [](float x, float origin) {
-        return static_cast<int>(std::floor(std::min(std::max(x - origin, -1.0f), 32.0f)));
-    };
-    return pixels.intersect({pixel(x0, grid.origin_x), pixel(y0, grid.origin_y),
-                             pixel(x1, grid.origin_x) + 1, pixel(y1, grid.origin_y) + 1});
-}
-
 /// When the grid exists, ends included: what lies just before a half-open interval's end belongs to
 /// it.  Anything for what is always there, whose entries may mean a lens coordinate.
 Interval life_of(const SimdGrid& grid) {
     if (grid.lifespan.is_whole()) return {};
     return {grid.lifespan.open, std::nextafter(grid.lifespan.close, -INFINITY)};
+}
+
+/// Those of a segment after each other: they share vertices.
+std::vector<PartSegment> parts_by_segment(const SimdGrid& grid) {
+    std::vector<PartSegment> parts(grid.parts.begin(), grid.parts.end());
+    std::stable_sort(parts.begin(), parts.end(), [](const PartSegment& a, const PartSegment& b) {
+        return a.segment < b.segment;
+    });
+    return parts;
 }
 
 }  // namespace
@@ -51,13 +41,19 @@ void ComputeBatch::add(const SimdGrid& grid, std::uint32_t tile, const Rect& pix
         throw GlError("a grid of " + std::to_string(grid.vertices) +
                       " vertices is too big for the compute executor");
     const Interval life = life_of(grid);
-    for (int segment = 0; segment < std::max(1, grid.segments); ++segment) {
-        std::uint32_t first_vertex = kNotYet;
-        for (int m = 0; m < grid.n_u * grid.n_v; ++m) {
+    int segment = 0;
+    std::uint32_t first_vertex = kNotYet;  // of the segment
+    for (const PartSegment& at : parts_by_segment(grid)) {
+        if (at.segment != segment) first_vertex = kNotYet;
+        segment = at.segment;
+        const GridPart& part = at.part;
+        for (int k = 0; k < part.n_u * part.n_v; ++k) {
+            const int i = part.i + k % part.n_u, j = part.j + k / part.n_u;
+            const int m = j * grid.n_u + i, v0 = j * grid.up + i;
             if (grid.classes[m] == 0) continue;
-            const int v0 = m / grid.n_u * grid.up + m % grid.n_u;
             const int vertex[4] = {v0, v0 + grid.right, v0 + grid.right + grid.up, v0 + grid.up};
-            const Rect range = touched(grid, vertex, segment, pixels);
+            const MicropolygonSweep sweep(grid, vertex, segment);
+            const Rect range = sweep.pixels(pixels);
             if (range.empty()) continue;
             const bool full =
                 m_entries.size() + kBlocksOfTile > m_limits.entries ||
@@ -82,7 +78,7 @@ void ComputeBatch::add(const SimdGrid& grid, std::uint32_t tile, const Rect& pix
                 grid.classes[m],
                 0.0f,
                 0.0f};
-            add_to_blocks(entry, tile, range, MicropolygonSweep(grid, vertex, segment), life);
+            add_to_blocks(entry, tile, range, sweep, life);
         }
     }
 }

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "hider/compute/compute_tiles.h"
-#include "hider/micropolygon_class.h"
 #include "hider/resolve/surface_interpolator.h"
 #include "hider/simd/tile_grid.h"
 
@@ -27,7 +26,8 @@ class ComputeHider : public Hider {
   public:
     ComputeHider(ComputeDevice& device, const HiderFrame& frame, const Rect& tiles,
                  const Rect& pixels)
-        : m_device(device),
+        : Hider(frame),
+          m_device(device),
           m_frame(frame),
           m_tiles(m_frame, tiles, pixels),
           m_tile_grid(frame.projection, frame.table->lens()),
@@ -53,20 +53,19 @@ class ComputeHider : public Hider {
         return true;
     }
 
-    void hide(const Grid& grid) override {
-        const GridClasses classes = classify(grid);
-        const SurfaceId base = m_tiles.add(grid, classes);
+    void hide(const GridSweep& sweep) override {
+        const Grid& grid = sweep.grid();
+        const SurfaceId base = m_tiles.add(grid, sweep.classes());
         if (m_frame.statistics)
             m_frame.statistics->add(Counter::Micropolygons,
                                     static_cast<std::uint64_t>(grid.micropolygon_count()));
-        m_tile_grid.load(grid);
+        m_tile_grid.load(sweep);
         const Rect touched = m_tiles.touched(grid.bounds);
         for (int y = touched.y0; y < touched.y1; ++y)
             for (int x = touched.x0; x < touched.x1; ++x) {
                 const std::size_t i = m_tiles.index(x, y);
                 if (tile_hides(i, grid.bounds)) continue;
                 SimdGrid in_tile = m_tile_grid.project(m_tiles.origin(i));
-                in_tile.classes = classes.classes.data();
                 in_tile.base = base;
                 TileGroup& group = m_groups[i / m_group_size];
                 group.batch.add(in_tile, static_cast<std::uint32_t>(i - group.first),

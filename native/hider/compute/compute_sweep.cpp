@@ -69,6 +69,26 @@ Interval MicropolygonSweep::over(const Path paths[4], float low, float high) con
     return {std::max(above.from, below.from), std::min(above.to, below.to)};
 }
 
+Rect MicropolygonSweep::pixels(const Rect& within) const {
+    float x0 = INFINITY, y0 = INFINITY, x1 = -INFINITY, y1 = -INFINITY;
+    const auto add = [](const Path& path, float p, float w, float& lo, float& hi) {
+        lo = std::min(lo, (p - path.margin) / w);
+        hi = std::max(hi, (p + path.margin) / w);
+    };
+    for (int k = 0; k < 4; ++k) {
+        if (!(m_x[k].w0 > 0.0f && m_x[k].w1 > 0.0f)) return within;
+        add(m_x[k], m_x[k].p0, m_x[k].w0, x0, x1);
+        add(m_x[k], m_x[k].p1, m_x[k].w1, x0, x1);
+        add(m_y[k], m_y[k].p0, m_y[k].w0, y0, y1);
+        add(m_y[k], m_y[k].p1, m_y[k].w1, y0, y1);
+    }
+    // Clamped before the conversion, which overflows otherwise.
+    const auto pixel = [](float x) {
+        return static_cast<int>(std::floor(std::min(std::max(x, -1.0f), 32.0f)));
+    };
+    return within.intersect({pixel(x0), pixel(y0), pixel(x1) + 1, pixel(y1) + 1});
+}
+
 Interval MicropolygonSweep::over(const Rect& pixels) const {
     if (m_scale == 0.0f) return {};
     const auto edge = [](int pixel) { return static_cast<float>(pixel); };

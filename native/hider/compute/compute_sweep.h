@@ -17,6 +17,8 @@ class MicropolygonSweep {
     /// When a sample in the pixels (relative to the tile) may be inside: shutter time where the
     /// grid moves; else the lens coordinate u, pixels per unit shear; else always.
     Interval over(const Rect& pixels) const;
+    /// Those of `within` that samples may be inside of it in, at any time and lens coordinate.
+    Rect pixels(const Rect& within) const;
 
   private:
     /// One raster coordinate and w of a corner at both ends of the parameter.

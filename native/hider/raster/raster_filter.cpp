@@ -10,7 +10,7 @@
 
 namespace granita {
 
-int RasterFilter::apron() const {
+int RasterFilter::margin() const {
     if (!factor.empty()) return static_cast<int>(std::ceil(radius - 0.5));
     if (!taps.empty()) return tap_pixels;
     const int side = lattice.side;

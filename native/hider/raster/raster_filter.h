@@ -35,7 +35,7 @@ struct RasterFilter {
     bool is_box = false;
 
     /// Whole pixels that the filter reaches beyond its own.
-    int apron() const;
+    int margin() const;
 };
 
 /// `factor`: the filter's 1-D factor at a distance from the pixel's centre, pixels; 0 beyond

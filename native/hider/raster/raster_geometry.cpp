@@ -17,10 +17,6 @@ namespace {
 /// device and not the command is the cost, small enough that culling still works.
 constexpr std::uint32_t kCombinedIndices = 6 * 256;
 
-int knots_of(const Grid& grid) {
-    return grid.motion ? grid.knots : 1;
-}
-
 RasterBounds united(const RasterBounds& a, const RasterBounds& b) {
     if (!a.visible || !b.visible) return a.visible ? a : b;
     return {std::min(a.x0, b.x0),
@@ -33,15 +29,16 @@ RasterBounds united(const RasterBounds& a, const RasterBounds& b) {
 
 }  // namespace
 
-RasterGeometry::RasterGeometry(const std::vector<const Grid*>& grids) : m_inputs(grids.size()) {
+RasterGeometry::RasterGeometry(std::span<const GridSweep* const> sweeps) : m_inputs(sweeps.size()) {
     std::iota(m_inputs.begin(), m_inputs.end(), 0u);
     std::stable_sort(m_inputs.begin(), m_inputs.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return grids[a]->key < grids[b]->key;
+        return sweeps[a]->grid().key < sweeps[b]->grid().key;
     });
     std::size_t positions = 0, micropolygons = 0;
-    for (const Grid* grid : grids) {
-        positions += static_cast<std::size_t>(grid->vertex_count()) * knots_of(*grid);
-        micropolygons += static_cast<std::size_t>(grid->micropolygon_count());
+    for (const GridSweep* sweep : sweeps) {
+        const Grid& grid = sweep->grid();
+        positions += static_cast<std::size_t>(grid.vertex_count()) * sweep->boxes().size();
+        micropolygons += static_cast<std::size_t>(grid.micropolygon_count());
     }
     // Names, index offsets and the shader's 3 i are 32 bits; 0 stands for no surface.
     const std::size_t largest = std::max(3 * positions, 6 * micropolygons);
@@ -49,8 +46,8 @@ RasterGeometry::RasterGeometry(const std::vector<const Grid*>& grids) : m_inputs
     m_positions.reserve(positions);
     Triangles triangles;
     for (const std::uint32_t input : m_inputs) {
-        m_grids.push_back(grids[input]);
-        append(*grids[input], triangles);
+        m_grids.push_back(&sweeps[input]->grid());
+        append(*sweeps[input], triangles);
     }
     m_indices = std::move(triangles.opaque);
     const auto opaque = static_cast<std::uint32_t>(m_indices.size());
@@ -58,11 +55,12 @@ RasterGeometry::RasterGeometry(const std::vector<const Grid*>& grids) : m_inputs
     for (Range& range : m_transparent) range.first_index += opaque;
 }
 
-void RasterGeometry::append(const Grid& grid, Triangles& triangles) {
+void RasterGeometry::append(const GridSweep& sweep, Triangles& triangles) {
+    const Grid& grid = sweep.grid();
     const auto index = static_cast<std::uint32_t>(m_places.size());
     const auto base = static_cast<std::uint32_t>(m_vertex_grids.size());
     const auto vertices = static_cast<std::uint32_t>(grid.vertex_count());
-    const auto knots = static_cast<std::uint32_t>(knots_of(grid));
+    const auto knots = static_cast<std::uint32_t>(sweep.boxes().size());
     m_places.push_back(
         {base, static_cast<std::uint32_t>(m_positions.size()), vertices, knots, grid.lifespan});
     m_vertex_grids.insert(m_vertex_grids.end(), vertices, index);
@@ -70,7 +68,7 @@ void RasterGeometry::append(const Grid& grid, Triangles& triangles) {
     m_positions.insert(m_positions.end(), grid.positions.begin(),
                        grid.positions.begin() + static_cast<std::ptrdiff_t>(vertices) * knots);
 
-    const GridClasses classes = classify(grid);
+    const GridClasses& classes = sweep.classes();
     if (classes.dropped > 0) m_dropped.push_back({&grid, classes.dropped});
     const std::size_t first_opaque = triangles.opaque.size();
     const std::size_t first_transparent = triangles.transparent.size();
@@ -86,17 +84,18 @@ void RasterGeometry::append(const Grid& grid, Triangles& triangles) {
         if (kind & kTriangleA) add(c.v1, c.v2);
         if (kind & kTriangleB) add(c.v2, c.v3);
     }
-    append_range(m_opaque, grid, static_cast<std::uint32_t>(first_opaque), triangles.opaque.size(),
+    append_range(m_opaque, sweep, static_cast<std::uint32_t>(first_opaque), triangles.opaque.size(),
                  true);
-    append_range(m_transparent, grid, static_cast<std::uint32_t>(first_transparent),
+    append_range(m_transparent, sweep, static_cast<std::uint32_t>(first_transparent),
                  triangles.transparent.size(), false);
 }
 
-void RasterGeometry::append_range(std::vector<Range>& ranges, const Grid& grid, std::uint32_t first,
-                                  std::size_t end, bool combine) {
+void RasterGeometry::append_range(std::vector<Range>& ranges, const GridSweep& sweep,
+                                  std::uint32_t first, std::size_t end, bool combine) {
     const auto count = static_cast<std::uint32_t>(end) - first;
     if (count == 0) return;
-    const int knots = knots_of(grid), vertices = grid.vertex_count();
+    const Grid& grid = sweep.grid();
+    const auto knots = static_cast<int>(sweep.boxes().size());
     const bool join = combine && !ranges.empty() && ranges.back().knots == knots &&
                       ranges.back().lifespan == grid.lifespan &&
                       ranges.back().index_count + count <= kCombinedIndices;
@@ -109,11 +108,7 @@ void RasterGeometry::append_range(std::vector<Range>& ranges, const Grid& grid, 
     range.index_count += count;
     range.end_grid = static_cast<std::uint32_t>(m_places.size());
     range.swept = united(range.swept, grid.bounds);
-    for (int k = 0; k < knots; ++k)
-        for (int v = 0; v < vertices; ++v) {
-            const Vec3f& p = grid.positions[k * vertices + v];
-            if (is_finite(p)) m_boxes[range.first_box + k].add(p);
-        }
+    for (int k = 0; k < knots; ++k) m_boxes[range.first_box + k].add(sweep.boxes()[k]);
 }
 
 RasterBounds RasterGeometry::bounds_at(const Range& range, const Projection& projection,

@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dice/grid.h"
+#include "hider/grid_sweep.h"
 #include "math/bounds.h"
 #include "math/projection.h"
 
@@ -40,7 +42,8 @@ class RasterGeometry {
         int micropolygon;
     };
 
-    explicit RasterGeometry(const std::vector<const Grid*>& grids);
+    /// The grids must outlive the object, the sweeps need not.
+    explicit RasterGeometry(std::span<const GridSweep* const> sweeps);
 
     const std::vector<Range>& opaque() const { return m_opaque; }
     /// One grid each.
@@ -79,8 +82,8 @@ class RasterGeometry {
     struct Triangles {
         std::vector<std::uint32_t> opaque, transparent;
     };
-    void append(const Grid& grid, Triangles& triangles);
-    void append_range(std::vector<Range>& ranges, const Grid& grid, std::uint32_t first,
+    void append(const GridSweep& sweep, Triangles& triangles);
+    void append_range(std::vector<Range>& ranges, const GridSweep& sweep, std::uint32_t first,
                       std::size_t end, bool combine);
 
     std::vector<const Grid*> m_grids;  ///< by key

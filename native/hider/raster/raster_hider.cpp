@@ -16,12 +16,12 @@ namespace granita {
 
 class RasterHider::Bucket : public RasterBucket {
   public:
-    Bucket(RasterHider& hider, const Rect& pixels, const std::vector<const Grid*>& grids)
+    Bucket(RasterHider& hider, const Rect& pixels, std::span<const GridSweep* const> sweeps)
         : m_thread(hider.m_thread),
           m_frame(hider.m_frame),
           m_device(*hider.m_device),
           m_pixels(pixels),
-          m_geometry(grids),
+          m_geometry(sweeps),
           m_opaque(all(m_geometry.opaque())),
           m_transparent(all(m_geometry.transparent())) {
         add(Counter::Micropolygons, m_geometry.micropolygons());
@@ -215,8 +215,8 @@ class RasterHider::Bucket : public RasterBucket {
             copy(m_device.target().resolve(cell, m_device.samples()), cell.pixels, 1,
                  image.combined);
             add(Counter::SamplesTotal,
-                static_cast<std::uint64_t>(cell.samples.width()) *
-                    static_cast<std::uint64_t>(cell.samples.height()) *
+                static_cast<std::uint64_t>(cell.pixels.width()) *
+                    static_cast<std::uint64_t>(cell.pixels.height()) *
                     static_cast<std::uint64_t>(m_frame.table ? m_frame.table->samples()
                                                              : lattice().cells() * count));
             add(Counter::GlPrimitives, m_device.take_primitives());
@@ -331,16 +331,24 @@ RasterHider::~RasterHider() {
 }
 
 Rect RasterHider::sample_pixels(const Rect& pixels) const {
-    const int apron = m_frame.filter.apron();
-    return {pixels.x0 - apron, pixels.y0 - apron, pixels.x1 + apron, pixels.y1 + apron};
+    const int margin = m_frame.filter.margin();
+    return {pixels.x0 - margin, pixels.y0 - margin, pixels.x1 + margin, pixels.y1 + margin};
+}
+
+std::unique_ptr<RasterBucket> RasterHider::open(const Rect& pixels,
+                                                std::span<const GridSweep* const> sweeps) {
+    return std::make_unique<Bucket>(*this, pixels, sweeps);
 }
 
 std::unique_ptr<RasterBucket> RasterHider::open(const Rect& pixels,
                                                 const std::vector<const Grid*>& grids) {
+    const LensShape lens(0, 0.0f, 1.0f);
+    std::vector<GridSweep> sweeps;
+    sweeps.reserve(grids.size());
+    std::vector<const GridSweep*> pointers;
     for (const Grid* grid : grids)
-        if (grid->opacity_varies)
-            GRANITA_CHECK_EQ(grid->opacity.size(), static_cast<std::size_t>(grid->vertex_count()));
-    return std::make_unique<Bucket>(*this, pixels, grids);
+        pointers.push_back(&sweeps.emplace_back(*grid, m_frame.projection, lens));
+    return open(pixels, std::span<const GridSweep* const>(pointers));
 }
 
 }  // namespace granita

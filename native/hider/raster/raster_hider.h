@@ -27,12 +27,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/report.h"
 #include "base/statistics.h"
 #include "dice/grid.h"
 #include "gl/gl_thread.h"
+#include "hider/grid_sweep.h"
 #include "hider/raster/raster_filter.h"
 #include "hider/raster/raster_target.h"
 #include "hider/samples/sample_table.h"
@@ -90,11 +92,12 @@ struct RasterSurfaces {
     std::vector<float> key;  ///< Projection::depth_key of the surface; -inf = nothing
 };
 
-/// One bucket's grids on the device.  The grids must outlive it; must not outlive its hider.
+/// One bucket's grids on the device.  The grids must outlive it, their sweeps need not; must not
+/// outlive its hider.
 class RasterBucket {
   public:
     virtual ~RasterBucket() = default;
-    /// For each grid of open() whether a sample, the filter's apron included, sees it in any pass.
+    /// For each grid of open() whether a sample, the filter's margin included, sees it in any pass.
     /// Transparent ones count as seen where they lie before the opaque.
     virtual std::vector<bool> find_seen() = 0;
     /// Every grid must be shaded, but for those that find_seen() found unseen.
@@ -119,6 +122,9 @@ class RasterHider {
     Rect sample_pixels(const Rect& pixels) const;
     /// Opacity must be there where it varies.  Non-finite micropolygons are left out, counted
     /// (Counter::MicropolygonsDropped) and reported.
+    std::unique_ptr<RasterBucket> open(const Rect& pixels,
+                                       std::span<const GridSweep* const> sweeps);
+    /// Grids that no other bucket asks for.
     std::unique_ptr<RasterBucket> open(const Rect& pixels, const std::vector<const Grid*>& grids);
 
   private:

@@ -13,7 +13,7 @@
 namespace granita {
 namespace {
 
-constexpr int kLargestCell = 64;  ///< pixels; the apron's share falls with it, memory grows
+constexpr int kLargestCell = 64;  ///< pixels; the margin's share falls with it, memory grows
 constexpr int kSmallestCell = 16;
 constexpr int kWantedTexels = 2048;  ///< side: 64 MiB of colour and 16 of depth
 /// Of all layers together: a texel takes 24 bytes, and 80 more where things are transparent.
@@ -21,7 +21,7 @@ constexpr int kLayeredTexels = 1 << 21;
 
 int choose_cell(const RasterFilter& filter, int max_texture_size) {
     const auto side = [&](int cell) {
-        const int pixels = cell + 2 * filter.apron();
+        const int pixels = cell + 2 * filter.margin();
         return filter.lattice.texels_of({0, 0, pixels, pixels}).width();
     };
     int cell = kLargestCell;
@@ -53,7 +53,7 @@ gl::Program gather_program(const RasterFilter& filter) {
                               {"FACTOR_COUNT", std::to_string(filter.factor.size() - 1)},
                               {"RADIUS", list_source({filter.radius})},
                               {"IS_BOX", filter.is_box ? "1" : "0"},
-                              {"APRON", std::to_string(filter.apron())}};
+                              {"MARGIN", std::to_string(filter.margin())}};
     return screen_program("pixel filter", "resolve/gather.frag", defines);
 }
 
@@ -69,7 +69,7 @@ int floor_to(int value, int step) {
 
 RasterTarget::RasterTarget(const RasterFilter& filter, int most_layers, int max_texture_size)
     : m_lattice(filter.lattice),
-      m_apron(filter.apron()),
+      m_margin(filter.margin()),
       m_cell(choose_cell(filter, max_texture_size)) {
     const Rect whole = m_lattice.texels_of({0, 0, pixel_size(), pixel_size()});
     m_origin = {-whole.x0, -whole.y0};
@@ -101,7 +101,7 @@ RasterTarget::RasterTarget(const RasterFilter& filter, int most_layers, int max_
 
 gl::Defines RasterTarget::lattice_defines() const {
     return {{"LATTICE", std::to_string(m_lattice.side)},
-            {"TURNED", m_lattice.turned ? "1" : "0"},
+            {"ROTATED", m_lattice.turned ? "1" : "0"},
             {"ORIGIN", vector_source(m_origin)}};
 }
 
@@ -110,10 +110,10 @@ std::vector<RasterCell> RasterTarget::cells(const Rect& pixels) const {
     for (int y = floor_to(pixels.y0, m_cell); y < pixels.y1; y += m_cell)
         for (int x = floor_to(pixels.x0, m_cell); x < pixels.x1; x += m_cell) {
             RasterCell cell;
-            cell.corner = {x - m_apron, y - m_apron};
+            cell.corner = {x - m_margin, y - m_margin};
             cell.pixels = pixels.intersect({x, y, x + m_cell, y + m_cell});
-            cell.samples = {cell.pixels.x0 - m_apron, cell.pixels.y0 - m_apron,
-                            cell.pixels.x1 + m_apron, cell.pixels.y1 + m_apron};
+            cell.samples = {cell.pixels.x0 - m_margin, cell.pixels.y0 - m_margin,
+                            cell.pixels.x1 + m_margin, cell.pixels.y1 + m_margin};
             cell.texels = texels_of(cell, cell.samples);
             if (!cell.pixels.empty()) cells.push_back(cell);
         }
@@ -178,7 +178,7 @@ void RasterTarget::fill(const gl::Framebuffer& target, const gl::Texture& textur
 std::vector<Vec4f> RasterTarget::resolve(const RasterCell& cell,
                                          const RasterSamples* samples) const {
     const gl::TexelRect own = own_pixels(cell);
-    const int apron_texels = m_apron * m_lattice.side;
+    const int margin_texels = m_margin * m_lattice.side;
     m_mean.bind(FILTER_SOURCE);
     if (samples != nullptr || m_lattice.turned) {
         m_gather.use();
@@ -186,14 +186,14 @@ std::vector<Vec4f> RasterTarget::resolve(const RasterCell& cell,
             samples->bind();
         else
             m_taps.bind_storage(FILTER_TAPS);
-        fill(m_pixels_target, m_pixels, own, {m_apron, m_apron});
+        fill(m_pixels_target, m_pixels, own, {m_margin, m_margin});
     } else {
         m_filter_x.use();
         fill(m_rows_target, m_rows, {own.x, cell.texels.y, own.width, cell.texels.height},
-             {apron_texels, 0});
+             {margin_texels, 0});
         m_filter_y.use();
         m_rows.bind(FILTER_SOURCE);
-        fill(m_pixels_target, m_pixels, own, {0, apron_texels});
+        fill(m_pixels_target, m_pixels, own, {0, margin_texels});
     }
     gl::check("filtering a cell");
 
@@ -222,13 +222,13 @@ std::vector<float> RasterTarget::center_depths(const RasterCell& cell,
     if (samples != nullptr) samples->bind();
     m_surfaces.bind(0);
     m_depth.bind(1);
-    fill(m_center_depths_target, m_center_depths, own, {m_apron, m_apron});
+    fill(m_center_depths_target, m_center_depths, own, {m_margin, m_margin});
     gl::check("depth of a cell");
     return m_center_depths.read<float>(own, GL_RED, 1);
 }
 
 gl::TexelRect RasterTarget::own_pixels(const RasterCell& cell) const {
-    return {cell.pixels.x0 - cell.corner.x - m_apron, cell.pixels.y0 - cell.corner.y - m_apron,
+    return {cell.pixels.x0 - cell.corner.x - m_margin, cell.pixels.y0 - cell.corner.y - m_margin,
             cell.pixels.width(), cell.pixels.height()};
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The supersampled target of the raster executor and its resolve (paper, 9.3.3 and 9.3.6).
 //
-// A picture is drawn in cells: squares aligned to the frame, each with the filter's apron around
+// A picture is drawn in cells: squares aligned to the frame, each with the filter's margin around
 // it. A pixel is always computed from the target of its own cell, with the same coordinates,
 // whatever bucket or crop asks for it, so its bits do not depend on them.
 //
@@ -46,13 +46,13 @@ struct RasterBackground {
 /// Used on the thread that owns OpenGL.
 class RasterTarget {
   public:
-    /// Throws GlError where the filter's apron at this lattice does not fit the device.
+    /// Throws GlError where the filter's margin at this lattice does not fit the device.
     /// `most_layers`: wanted at once; fewer where they are large.
     RasterTarget(const RasterFilter& filter, int most_layers, int max_texture_size);
 
     std::vector<RasterCell> cells(const Rect& pixels) const;
-    /// Side of the target in frame pixels: one cell and its apron.
-    int pixel_size() const { return m_cell + 2 * m_apron; }
+    /// Side of the target in frame pixels: one cell and its margin.
+    int pixel_size() const { return m_cell + 2 * m_margin; }
     int texel_size() const { return m_texel_size; }
     int layers() const { return m_layers; }
     const RegularLattice& lattice() const { return m_lattice; }
@@ -102,7 +102,7 @@ class RasterTarget {
               Vec2i origin) const;
 
     RegularLattice m_lattice;
-    int m_apron, m_cell, m_texel_size, m_layers;
+    int m_margin, m_cell, m_texel_size, m_layers;
     Vec2i m_origin;
     gl::Texture m_radiance, m_depth, m_mean, m_rows, m_pixels;
     gl::Framebuffer m_radiance_target, m_rows_target, m_pixels_target;

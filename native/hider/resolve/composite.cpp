@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "base/check.h"
-#include "base/spares.h"
+#include "base/object_pool.h"
 #include "hider/resolve/channel_layers.h"
 #include "hider/resolve/layer_kernel.h"
 #include "hider/resolve/surface_interpolator.h"
@@ -97,12 +97,12 @@ class TileComposite {
         m_done.assign(m_store.id.size(), 0);
         const bool rest = !grids.any() || grids.color(m_table.pool(), m_store.id, m_colors, m_done);
         if (!rest || !m_blurred) return;
-        SurfaceGroups groups = Spares<SurfaceGroups>::take();
+        SurfaceGroups groups = ObjectPool<SurfaceGroups>::take();
         if (groups.sort(m_store.id, m_done)) {
             groups.take_samples(m_samples);
             m_surface.color_groups(groups, m_colors, m_done);
         }
-        Spares<SurfaceGroups>::give(std::move(groups));
+        ObjectPool<SurfaceGroups>::give(std::move(groups));
     }
 
     /// False where a sample of the run still wants its colour.
@@ -158,7 +158,14 @@ class TileComposite {
         }
     }
 
-    /// A sample that sees no surface, or one whose list ended before it.
+    /// Behind a list that reached the threshold: black where the film shows a background.
+    SampleColor end_of_list() const {
+        SampleColor color;
+        color.alpha = m_settings.film_transparent ? 0.0f : 1.0f;
+        return color;
+    }
+
+    /// A sample that sees no surface.
     SampleColor nothing(std::uint32_t sample) const {
         SampleColor color;
         color.depth = std::numeric_limits<float>::infinity();
@@ -203,8 +210,9 @@ class TileComposite {
     void put_over(std::uint32_t sample, const PacketLayers& layers, int i) {
         const bool ended = (layers.ended >> i & 1u) != 0;
         const SampleColor surface = m_colors[sample];
-        // What is behind the end of a list does not count, and may have been culled.
-        const SampleColor behind = ended ? nothing(sample) : surface;
+        // What is behind the end of a list may have been culled, so that nothing is left of it: and
+        // least of all the background, which shone through two sheets and a wall behind them.
+        const SampleColor behind = ended ? end_of_list() : surface;
         const Vec3d transmission(layers.transmission[0][i], layers.transmission[1][i],
                                  layers.transmission[2][i]);
         const Vec3d color(layers.color[0][i], layers.color[1][i], layers.color[2][i]);
@@ -223,10 +231,13 @@ class TileComposite {
     void put_channels_over(std::uint32_t sample, const Vec3d& transmission, bool found,
                            bool ended) {
         const SurfaceId id = m_store.id[sample];
-        if (id == kNoSurface || (ended && found)) return add_environment(sample, transmission);
+        if (id == kNoSurface || (ended && found)) {
+            if (!ended) add_environment(sample, transmission);
+            return;
+        }
         const SurfacePoint point = m_surface.locate(sample, id);
         if (!found) m_channels->set_first(sample, point);
-        if (ended) return add_environment(sample, transmission);
+        if (ended) return;
         if (!point.grid->holdout) m_channels->add(sample, point, transmission);
     }
 

@@ -28,6 +28,7 @@ struct CompositeSettings {
 /// the environment.  `table`: of the hider's pool.
 ///
 /// Layers from front to back, each channel by itself: C += T c, O += a T, T -= a T, in double.
+/// What is behind the layer with which a list ends adds nothing, neither surfaces nor background.
 /// Interpolated opacity is clamped to [0, 1] here and nowhere earlier; radiance is not clamped.
 /// Alpha is the mean of the three opacities without those of holdout surfaces; with a background it
 /// is 1 less what holdouts cut out.  Depth is that of the first layer, or

@@ -14,14 +14,14 @@ bool all_equal(const std::vector<Vec3f>& colors) {
 }  // namespace
 
 void GridColors::fill(const GridPool& pool, const std::vector<bool>& seen) {
-    m_looks.resize(pool.size());
+    m_lookups.resize(pool.size());
     for (std::uint32_t slot = 0; slot < pool.size(); ++slot) {
         if (!seen[slot]) continue;
         const Grid& grid = pool.grid(slot);
         const std::vector<Vec3f>& radiance = grid.radiance;
         if (grid.holdout || grid.opacity_varies || radiance.empty()) continue;
         if (!all_equal(radiance)) continue;
-        m_looks[slot] = {radiance.front() + 0.0f, 1};  // no negative zeros
+        m_lookups[slot] = {radiance.front() + 0.0f, 1};  // no negative zeros
         m_any = true;
     }
 }
@@ -32,7 +32,7 @@ bool GridColors::color(const GridPool& pool, std::span<const SurfaceId> ids, Sam
     for (std::size_t s = 0; s < ids.size(); ++s) {
         if (ids[s] == kNoSurface) continue;
         // Also where it is not known, which is then done again: no branch that is hard to foretell.
-        const Look& look = m_looks[pool.slot(ids[s])];
+        const Look& look = m_lookups[pool.slot(ids[s])];
         colors.red[s] = look.color.x;
         colors.green[s] = look.color.y;
         colors.blue[s] = look.color.z;

@@ -29,7 +29,7 @@ class GridColors {
         std::uint32_t known = 0;
     };
     bool m_any = false;
-    std::vector<Look> m_looks;  ///< by the grid's slot in the pool
+    std::vector<Look> m_lookups;  ///< by the grid's slot in the pool
 };
 
 }  // namespace granita

@@ -60,7 +60,7 @@ class PacketCompositor {
                 const M valid = hn::RebindMask(kTag, hn::Gt(count, hn::Set(kIdTag, k)));
                 following &= bits_of(valid);
                 if (following == 0) break;
-                fetch_looks(k);
+                fetch_lookups(k);
                 fetch_rows(k + 1);
                 following &= ~add_layer(k, following);
             }
@@ -79,10 +79,10 @@ class PacketCompositor {
         m_out.ended = 0;
     }
 
-    /// What layer k of the next packet looks like, whose lists have come by now.  Looks and rows
+    /// What layer k of the next packet looks like, whose lists have come by now.  Lookups and rows
     /// lie all over a bucket's table, beyond the caches near the core: four fifths of the time here
     /// went by waiting for them.  (Always inline: see fetch_ahead.)
-    HWY_INLINE void fetch_looks(std::uint32_t k) const {
+    HWY_INLINE void fetch_lookups(std::uint32_t k) const {
         if (m_packet + 1 >= m_lists.packets()) return;
         const std::uint32_t* const counts = m_lists.counts() + m_slot + kPacket + m_part;
         for (int i = 0; i < lane_count(); ++i)

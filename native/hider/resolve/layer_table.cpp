@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hider/resolve/layer_table.h"
 
-#include "base/spares.h"
+#include "base/object_pool.h"
 
 namespace granita {
 
 LayerTable::~LayerTable() {
     if (!m_filled) return;
-    Spares<std::vector<LayerLook>>::give(std::move(m_looks));
-    Spares<std::vector<LayerRow>>::give(std::move(m_rows));
+    ObjectPool<std::vector<LayerLook>>::give(std::move(m_lookups));
+    ObjectPool<std::vector<LayerRow>>::give(std::move(m_rows));
 }
 
 void LayerTable::fill() {
     if (m_filled) return;
     m_filled = true;
-    m_looks = Spares<std::vector<LayerLook>>::take();
-    m_rows = Spares<std::vector<LayerRow>>::take();
-    m_looks.clear();
+    m_lookups = ObjectPool<std::vector<LayerLook>>::take();
+    m_rows = ObjectPool<std::vector<LayerRow>>::take();
+    m_lookups.clear();
     m_rows.clear();
-    m_looks.resize(m_pool.id_end());
+    m_lookups.resize(m_pool.id_end());
     SurfaceId base = 0;
     for (std::uint32_t slot = 0; slot < m_pool.size(); ++slot) {
         const Grid& grid = m_pool.grid(slot);
@@ -45,7 +45,7 @@ void LayerTable::add(const Grid& grid, SurfaceId base) {
     for (int m = 0; m < grid.micropolygon_count(); ++m) {
         const Grid::Corners c = grid.corners(m);
         const int corners[4] = {c.v0, c.v1, c.v2, c.v3};
-        LayerLook& look = m_looks[base + static_cast<SurfaceId>(m)];
+        LayerLook& look = m_lookups[base + static_cast<SurfaceId>(m)];
         const LayerRow& at = m_rows[first + static_cast<std::uint32_t>(c.v0)];
         if (grid.holdout) look.flags |= LayerLook::kHoldout;
         for (const int v : corners) {

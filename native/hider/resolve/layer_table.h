@@ -47,7 +47,7 @@ class LayerTable {
     const GridColors& grid_colors();
 
     const GridPool& pool() const { return m_pool; }
-    const LayerLook& look(SurfaceId id) const { return m_looks[id]; }
+    const LayerLook& look(SurfaceId id) const { return m_lookups[id]; }
     const float* row(std::uint32_t index) const { return m_rows[index].data(); }
 
   private:
@@ -57,7 +57,7 @@ class LayerTable {
     const std::vector<bool> m_seen;
     bool m_filled = false, m_has_colors = false;
     GridColors m_colors;
-    std::vector<LayerLook> m_looks;  ///< by id
+    std::vector<LayerLook> m_lookups;  ///< by id
     std::vector<LayerRow> m_rows;
 };
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/spares.h"
+#include "base/object_pool.h"
 #include "hider/resolve/surface_kernel.h"
 
 namespace granita {
@@ -99,11 +99,11 @@ SurfaceInterpolator::SurfaceInterpolator(const Projection& projection, Vec2i til
              static_cast<float>(projection.lens_radius * projection.scale.y)) {}
 
 SurfaceInterpolator::~SurfaceInterpolator() {
-    if (!m_cache.empty()) Spares<std::vector<SurfaceRecord>>::give(std::move(m_cache));
+    if (!m_cache.empty()) ObjectPool<std::vector<SurfaceRecord>>::give(std::move(m_cache));
 }
 
 void SurfaceInterpolator::open_cache() {
-    m_cache = Spares<std::vector<SurfaceRecord>>::take();
+    m_cache = ObjectPool<std::vector<SurfaceRecord>>::take();
     m_cache.resize(kCached);
     for (SurfaceRecord& record : m_cache) record.id = kNoSurface;
 }

@@ -12,7 +12,7 @@ Vec2f RegularLattice::place(int cell) const {
     const auto i = static_cast<std::uint32_t>(cell), n = static_cast<std::uint32_t>(side);
     const std::uint32_t points = turned ? n * n + 1 : n;
     const std::uint32_t column = turned ? i : i % n;
-    const std::uint32_t row = turned ? bits::turned_row(i, n) : i / n;
+    const std::uint32_t row = turned ? bits::rotated_row(i, n) : i / n;
     return {static_cast<float>(bits::cell_center(column, points)) * 0x1p-20f,
             static_cast<float>(bits::cell_center(row, points)) * 0x1p-20f};
 }
@@ -21,7 +21,7 @@ Vec2i RegularLattice::texel(int cell) const {
     if (!turned) return {cell % side, cell / side};
     // Twice the texel coordinates of ((2 i + 1) / 2 n, (2 j + 1) / 2 n): whole numbers.
     const auto row = static_cast<int>(
-        bits::turned_row(static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(side)));
+        bits::rotated_row(static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(side)));
     const std::int64_t x = 2 * cell + 1, y = 2 * row + 1;
     const std::int64_t u = side * x + y, v = side * y - x, n = cells();
     GRANITA_CHECK_EQ(u % n, 0);

@@ -19,8 +19,8 @@ struct RegularLattice {
     int side = 1;
     bool turned = false;
 
-    constexpr RegularLattice(int cells_a_side = 1, bool is_turned = false)
-        : side(cells_a_side), turned(is_turned) {}
+    constexpr RegularLattice(int cells_a_side = 1, bool is_rotated = false)
+        : side(cells_a_side), turned(is_rotated) {}
 
     int cells() const { return side * side + (turned ? 1 : 0); }
     /// Of sample `cell` of a pixel, relative to the pixel; as SampleTable has it.

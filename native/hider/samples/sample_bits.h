@@ -148,7 +148,7 @@ GRANITA_BITS_FN uint cell_center(uint i, uint n) {
 
 /// REGULAR, turned: the row of the sample in column i of side^2 + 1, a Korobov lattice that is its
 /// own mirror image about the pixel's centre; side <= 256.
-GRANITA_BITS_FN uint turned_row(uint i, uint side) {
+GRANITA_BITS_FN uint rotated_row(uint i, uint side) {
     uint points = side * side + 1u;
     return (side * (side - 1u) / 2u + (points - side) % points * i) % points;
 }

@@ -14,8 +14,8 @@ constexpr double kExtent = 1.3;
 /// Strata of the lens are sorted; where something moves, those of time would do, which are not.
 /// Sorting costs as much more as looking for what is seen with so many samples a pixel.
 constexpr double kSorted = 16.0;
-/// The hierarchical depth is by rank: fewer hide little of what moves.
-constexpr int kLeastRanks = 4;
+/// The hierarchical depth is by stratum: fewer hide little of what moves.
+constexpr int kLeastStrata = 4;
 /// A tile is at least a window of blocks wide.
 constexpr int kLeastSideLog2 = -2, kMostSideLog2 = 2;
 
@@ -85,8 +85,8 @@ double order_cost(const OrderShape& shape, int samples, const Sweep& sweep) {
         return std::min((reach + kExtent) / side + 1, kTileSize / side);
     };
     const double x = blocks(0, shape.us), y = blocks(1, shape.vs);
-    if (!shape.ranked) return std::ceil(static_cast<double>(count) / kPacket) * x * y;
-    // Windows of four by four blocks, and what a rank costs by itself.
+    if (!shape.stratified) return std::ceil(static_cast<double>(count) / kPacket) * x * y;
+    // Windows of four by four blocks, and what a stratum costs by itself.
     const auto windows = [](double n) { return std::max(1.0, (n + 2.5) / 4); };
     const bool sorted = shape.us * shape.vs > 1 && sweep.motion != Vec2f(0.0f);
     return count * (0.5 + windows(x) * windows(y)) * (sorted ? 1.0 + kSorted / samples : 1.0);
@@ -101,7 +101,7 @@ OrderShape best_order(int samples, const Sweep& sweep) {
         // Parts of a pixel hold equally many samples only if these divide.
         if (side < 0 && samples % (1 << (-2 * side)) != 0) continue;
         const int count = samples_of_block(side, samples);
-        if (!sweep.still() && count < kLeastRanks) continue;
+        if (!sweep.still() && count < kLeastStrata) continue;
         for (int times = 1; times <= (moves ? count : 1); times *= 2)
             for (int us = 1; us * times <= (lens ? count : times); us *= 2)
                 for (int vs = us; vs <= 2 * us && vs * us * times <= count; vs *= 2) {
@@ -124,7 +124,7 @@ void SampleOrder::arrange(const TileSamples& samples, const Rect& pixels, const 
     distribute(samples, pixels);
     // Samples that are not a net may crowd in a part of a pixel; then blocks are whole pixels.
     const int expected = samples_of_block(m_shape.side_log2, samples.samples);
-    if (m_shape.side_log2 < 0 && m_ranks >= expected + kPacket) {
+    if (m_shape.side_log2 < 0 && m_strata >= expected + kPacket) {
         m_shape.side_log2 = 0;
         distribute(samples, pixels);
     }
@@ -134,15 +134,15 @@ void SampleOrder::arrange(const TileSamples& samples, const Rect& pixels, const 
 
 bool SampleOrder::take_table(const TileSamples& samples, const Rect& pixels) {
     const bool whole = pixels.width() == kTileSize && pixels.height() == kTileSize;
-    if (m_shape.ranked || !whole || samples.samples % kPacket != 0 || m_shape.side_log2 > 0 ||
+    if (m_shape.stratified || !whole || samples.samples % kPacket != 0 || m_shape.side_log2 > 0 ||
         -m_shape.side_log2 > samples.square_digits)
         return false;
     m_blocks_wide = kTileSize << -m_shape.side_log2;
-    m_ranks = samples.samples >> (-2 * m_shape.side_log2);
+    m_strata = samples.samples >> (-2 * m_shape.side_log2);
     m_slots = samples.x.size();
     m_table_index.clear();
     const Blocks blocks{samples, m_blocks_wide};
-    const std::size_t packets = static_cast<std::size_t>(m_ranks) / kPacket;
+    const std::size_t packets = static_cast<std::size_t>(m_strata) / kPacket;
     m_packets.resize(blocks.count() * packets);
     m_scratch.assign(blocks.count(), 0);
     for (std::uint32_t p = 0; p < m_packets.size(); ++p) {
@@ -153,7 +153,7 @@ bool SampleOrder::take_table(const TileSamples& samples, const Rect& pixels) {
 }
 
 void SampleOrder::number_packets() {
-    m_packets.resize(m_shape.ranked ? 0 : m_slots / kPacket);
+    m_packets.resize(m_shape.stratified ? 0 : m_slots / kPacket);
     std::iota(m_packets.begin(), m_packets.end(), 0u);
 }
 
@@ -164,40 +164,40 @@ void SampleOrder::distribute(const TileSamples& samples, const Rect& pixels) {
     std::vector<std::uint32_t> count(blocks.count(), 0);
     for_each_sample(samples, pixels, [&](std::uint32_t i) { ++count[blocks.of(i)]; });
     const std::uint32_t most = *std::max_element(count.begin(), count.end());
-    m_ranks = static_cast<int>(std::max(most, 1u));
-    if (!m_shape.ranked) m_ranks = (m_ranks + kPacket - 1) / kPacket * kPacket;
-    const auto stride = static_cast<std::size_t>(m_ranks);
+    m_strata = static_cast<int>(std::max(most, 1u));
+    if (!m_shape.stratified) m_strata = (m_strata + kPacket - 1) / kPacket * kPacket;
+    const auto stride = static_cast<std::size_t>(m_strata);
     m_table_index.assign(blocks.count() * stride, kNone);
     std::vector<std::uint32_t> filled(blocks.count(), 0);
     for_each_sample(samples, pixels, [&](std::uint32_t i) {
         const std::uint32_t block = blocks.of(i);
         m_table_index[block * stride + filled[block]++] = i;
     });
-    if (!m_shape.ranked) return;
+    if (!m_shape.stratified) return;
     for (std::size_t block = 0; block < blocks.count(); ++block)
         sort_block(samples, m_table_index.data() + block * stride, count[block]);
-    m_scratch.assign(stride * rank_stride(), kNone);
+    m_scratch.assign(stride * stratum_stride(), kNone);
     for (std::size_t block = 0; block < blocks.count(); ++block)
-        for (std::size_t rank = 0; rank < stride; ++rank)
-            m_scratch[rank * rank_stride() + block] = m_table_index[block * stride + rank];
+        for (std::size_t stratum = 0; stratum < stride; ++stratum)
+            m_scratch[stratum * stratum_stride() + block] = m_table_index[block * stride + stratum];
     std::swap(m_table_index, m_scratch);
 }
 
 bool SampleOrder::place_net(const TileSamples& samples, const Rect& pixels) {
     const int expected = samples_of_block(m_shape.side_log2, samples.samples);
     const bool by_time = !samples.t.empty() && m_shape.times == expected;
-    if (m_shape.ranked ? !by_time : expected % kPacket != 0) return false;
-    m_ranks = expected;
+    if (m_shape.stratified ? !by_time : expected % kPacket != 0) return false;
+    m_strata = expected;
     const Blocks blocks{samples, m_blocks_wide};
-    const std::size_t count = blocks.count(), stride = rank_stride();
-    m_table_index.assign((m_shape.ranked ? rank_stride() : count) * expected, kNone);
-    m_scratch.assign(m_shape.ranked ? 0 : count, 0);
+    const std::size_t count = blocks.count(), stride = stratum_stride();
+    m_table_index.assign((m_shape.stratified ? stratum_stride() : count) * expected, kNone);
+    m_scratch.assign(m_shape.stratified ? 0 : count, 0);
     bool fits = true;
     for_each_sample(samples, pixels, [&](std::uint32_t i) {
         const std::size_t block = blocks.of(i);
-        if (m_shape.ranked) {
-            const int rank = static_cast<int>(samples.t[i] * static_cast<float>(expected));
-            std::uint32_t& slot = m_table_index[std::min(rank, expected - 1) * stride + block];
+        if (m_shape.stratified) {
+            const int stratum = static_cast<int>(samples.t[i] * static_cast<float>(expected));
+            std::uint32_t& slot = m_table_index[std::min(stratum, expected - 1) * stride + block];
             fits = fits && slot == kNone;
             slot = i;
         } else {

@@ -13,9 +13,10 @@ namespace granita {
 inline constexpr int kPacket = 16;
 
 /// Square blocks of the raster.  Where something is swept by motion or lens, the samples of a block
-/// are ranked by strata of time, those by strata of the lens coordinate u, those by strata of v.
+/// are stratified by strata of time, those by strata of the lens coordinate u, those by strata of
+/// v.
 struct OrderShape {
-    bool ranked = false;
+    bool stratified = false;
     int side_log2 = 0;  ///< the side of a block is 2^side_log2 pixels; negative: part of a pixel
     int times = 1, us = 1, vs = 1;
 
@@ -43,9 +44,9 @@ OrderShape best_order(int samples, const Sweep& sweep);
 /// in place, seen or missed together.  Where the table is made of such packets it is the order
 /// itself, and nothing is moved: then only packets() tells the blocks.
 ///
-/// Ranked, [rank][block]: a rank stands for a stratum of time and lens and has one sample in every
-/// block, so that the samples which look where and when a micropolygon is lie in a small window of
-/// the rank's blocks.  The (0, m, s) nets of the table make strata exact.
+/// Stratified, [stratum][block]: a stratum stands for a stratum of time and lens and has one sample
+/// in every block, so that the samples which look where and when a micropolygon is lie in a small
+/// window of the stratum's blocks.  The (0, m, s) nets of the table make strata exact.
 class SampleOrder {
   public:
     static constexpr std::uint32_t kNone = ~0u;  ///< a slot without sample
@@ -55,13 +56,13 @@ class SampleOrder {
 
     const OrderShape& shape() const { return m_shape; }
     int blocks_wide() const { return m_blocks_wide; }  ///< a tile has as many rows of blocks
-    /// Slots from one rank to the next: its blocks, and a packet of empty slots, since a block's
+    /// Slots from one stratum to the next: its blocks, and a packet of empty slots, since a block's
     /// slots would else lie a power of two apart and share few sets of the cache.
-    std::size_t rank_stride() const {
+    std::size_t stratum_stride() const {
         return static_cast<std::size_t>(m_blocks_wide) * m_blocks_wide + kPacket;
     }
-    /// Slots of a block; a multiple of kPacket unless ranked.
-    int ranks() const { return m_ranks; }
+    /// Slots of a block; a multiple of kPacket unless stratified.
+    int strata() const { return m_strata; }
     std::size_t slots() const { return m_slots; }
     bool is_table() const { return m_is_table; }
     /// Index in the table of each slot; empty where they are the same.
@@ -69,7 +70,7 @@ class SampleOrder {
     std::uint32_t index(std::size_t slot) const {
         return m_is_table ? static_cast<std::uint32_t>(slot) : m_table_index[slot];
     }
-    /// [block][packet of the block]: first slot / kPacket; unless ranked.
+    /// [block][packet of the block]: first slot / kPacket; unless stratified.
     const std::vector<std::uint32_t>& packets() const { return m_packets; }
 
   private:
@@ -82,7 +83,7 @@ class SampleOrder {
     void sort_block(const TileSamples& samples, std::uint32_t* slots, std::size_t count);
 
     OrderShape m_shape;
-    int m_blocks_wide = 0, m_ranks = 0;
+    int m_blocks_wide = 0, m_strata = 0;
     std::size_t m_slots = 0;
     bool m_is_table = false;
     std::vector<std::uint32_t> m_table_index, m_packets, m_scratch;

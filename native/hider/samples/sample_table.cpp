@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/spares.h"
+#include "base/object_pool.h"
 #include "hider/samples/sample_bits.h"
 
 namespace granita {
@@ -169,7 +169,7 @@ void SampleTable::fill_dimension(Vec2i tile, int dimension, std::vector<float>& 
                                                           static_cast<std::uint32_t>(y0) & mask);
     const std::size_t pixels = in_classes ? (mask + 1) * (mask + 1) : kPixels;
     const std::size_t count = (pixels * samples + kSobolRun - 1) / kSobolRun * kSobolRun;
-    auto run = Spares<std::vector<float>>::take();
+    auto run = ObjectPool<std::vector<float>>::take();
     run.resize(count);
     fill_sobol(m_dimensions[static_cast<std::size_t>(dimension)], seed,
                first * static_cast<std::uint32_t>(m_samples), count, run.data());
@@ -184,7 +184,7 @@ void SampleTable::fill_dimension(Vec2i tile, int dimension, std::vector<float>& 
         float* const __restrict values = out.data() + static_cast<std::size_t>(p) * samples;
         for (std::size_t s = 0; s < samples; ++s) values[s] = corner + from[s];
     }
-    Spares<std::vector<float>>::give(std::move(run));
+    ObjectPool<std::vector<float>>::give(std::move(run));
 }
 
 void SampleTable::fill_regular(SampleNeeds needs, TileSamples& out) const {

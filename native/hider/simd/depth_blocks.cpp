@@ -7,7 +7,7 @@
 namespace granita {
 namespace {
 
-/// Squares of ranks are this wide, pixels, unless blocks are wider.
+/// Squares of strata are this wide, pixels, unless blocks are wider.
 constexpr int kSquare = 4;
 
 /// Least of a packet's keys; lanes, because the order of minima does not matter but vectors do.
@@ -24,35 +24,35 @@ static_assert(kPacket == 16);
 
 }  // namespace
 
-void DepthBlocks::reset(const SampleOrder& order, const RankBounds& bounds) {
+void DepthBlocks::reset(const SampleOrder& order, const StratumBounds& bounds) {
     m_bounds = &bounds;
     m_packets = &order.packets();
     m_blocks_wide = order.blocks_wide();
-    m_ranks = order.ranks();
-    m_rank_stride = order.rank_stride();
-    m_ranked = order.shape().ranked;
+    m_strata = order.strata();
+    m_stratum_stride = order.stratum_stride();
+    m_stratified = order.shape().stratified;
     m_writes = 0;
     m_square_shift = 0;
     while ((m_blocks_wide >> m_square_shift) > kTileSize / kSquare) ++m_square_shift;
     const std::size_t blocks = static_cast<std::size_t>(m_blocks_wide) * m_blocks_wide;
     const std::size_t squares = static_cast<std::size_t>(squares_wide()) * squares_wide();
-    m_packet.assign(m_ranked ? 0 : blocks * (m_ranks / kPacket), -INFINITY);
-    // Ranks are read in whole vectors.
-    m_rank.assign(m_ranked ? squares * m_ranks + kPacket : 0, -INFINITY);
+    m_packet.assign(m_stratified ? 0 : blocks * (m_strata / kPacket), -INFINITY);
+    // Strata are read in whole vectors.
+    m_stratum.assign(m_stratified ? squares * m_strata + kPacket : 0, -INFINITY);
     m_block.assign(blocks, -INFINITY);
-    m_tile = m_nearest_rank = -INFINITY;
+    m_tile = m_nearest_stratum = -INFINITY;
     m_filled = false;
 }
 
 void DepthBlocks::update(const float* keys) {
     // An eighth of the samples: a scan costs about as much as hiding that many.
-    if (m_writes >= m_block.size() * m_ranks / 8) rebuild(keys);
+    if (m_writes >= m_block.size() * m_strata / 8) rebuild(keys);
 }
 
 void DepthBlocks::rebuild(const float* keys) {
     m_writes = 0;
     m_filled = true;
-    m_ranked ? rebuild_ranks(keys) : rebuild_packets(keys);
+    m_stratified ? rebuild_strata(keys) : rebuild_packets(keys);
     m_tile = *std::min_element(m_block.begin(), m_block.end());
 }
 
@@ -62,20 +62,20 @@ void DepthBlocks::rebuild_packets(const float* keys) {
     const std::uint32_t* packet = m_packets->data();
     for (float& block : m_block) {
         block = INFINITY;
-        for (int i = 0; i < m_ranks; i += kPacket) block = std::min(block, m_packet[*packet++]);
+        for (int i = 0; i < m_strata; i += kPacket) block = std::min(block, m_packet[*packet++]);
     }
 }
 
-void DepthBlocks::rebuild_ranks(const float* keys) {
+void DepthBlocks::rebuild_strata(const float* keys) {
     std::fill(m_block.begin(), m_block.end(), INFINITY);
     const int wide = m_blocks_wide, square = 1 << m_square_shift;
     // Rows of blocks one by one, in vectors; only then the columns of each square.
     std::vector<float> least(static_cast<std::size_t>(wide));
-    for (int r = 0; r < m_ranks; ++r)
+    for (int r = 0; r < m_strata; ++r)
         for (int square_y = 0; square_y < squares_wide(); ++square_y) {
             std::fill(least.begin(), least.end(), INFINITY);
             float* block = &m_block[static_cast<std::size_t>(square_y) * square * wide];
-            const float* row = &keys[r * m_rank_stride + (block - m_block.data())];
+            const float* row = &keys[r * m_stratum_stride + (block - m_block.data())];
             for (int y = 0; y < square; ++y, block += wide, row += wide)
                 for (int x = 0; x < wide; ++x) {
                     block[x] = std::min(block[x], row[x]);
@@ -86,16 +86,16 @@ void DepthBlocks::rebuild_ranks(const float* keys) {
                 for (int x = square_x * square; x < (square_x + 1) * square; ++x)
                     farthest = std::min(farthest, least[x]);
                 const auto at = static_cast<std::size_t>(square_y) * squares_wide() + square_x;
-                m_rank[at * m_ranks + r] = farthest;
+                m_stratum[at * m_strata + r] = farthest;
             }
         }
-    m_nearest_rank = *std::max_element(m_rank.begin(), m_rank.end() - kPacket);
+    m_nearest_stratum = *std::max_element(m_stratum.begin(), m_stratum.end() - kPacket);
 }
 
 bool DepthBlocks::hide_in_square(std::size_t square, float time0, float time1, float limit) const {
-    for (int r = 0; r < m_ranks; ++r)
+    for (int r = 0; r < m_strata; ++r)
         if (m_bounds->t_lo[r] <= time1 && m_bounds->t_hi[r] >= time0 &&
-            !(limit < m_rank[square * m_ranks + r]))
+            !(limit < m_stratum[square * m_strata + r]))
             return false;
     return true;
 }
@@ -105,7 +105,7 @@ bool DepthBlocks::hide(const Rect& pixels, float time0, float time1, float neare
     // A key at a sample may round a few ulp past the nearest corner's.
     const float limit = nearest_key + std::fabs(nearest_key) * 0x1p-20f;
     if (limit < m_tile) return true;
-    const bool always = !m_ranked || (time0 <= 0.0f && time1 >= 1.0f);
+    const bool always = !m_stratified || (time0 <= 0.0f && time1 >= 1.0f);
     const int wide = always ? m_blocks_wide : squares_wide();
     const double per_pixel = static_cast<double>(wide) / kTileSize;
     const auto first = [&](int pixel) { return static_cast<int>(pixel * per_pixel); };

@@ -22,6 +22,26 @@ struct Shape {
     }
 };
 
+/// `vertex`: corner 0.
+inline Shape load_shape(const SimdGrid& grid, int segment, int vertex, int kind) {
+    const auto load = [&](int v, int knot) {
+        const std::size_t i = static_cast<std::size_t>(knot) * grid.vertices + v;
+        return Corner<float>{grid.x[i], grid.y[i], grid.w[i], grid.z[i]};
+    };
+    const int corner[4] = {vertex, vertex + grid.right, vertex + grid.right + grid.up,
+                           vertex + grid.up};
+    Shape shape;
+    shape.kind = kind;
+    shape.number = segment;
+    for (int k = 0; k < 4; ++k) {
+        const Corner<float> a = shape.begin[k] = load(corner[k], segment);
+        if (grid.segments == 0) continue;
+        const Corner<float> b = load(corner[k], segment + 1);
+        shape.delta[k] = {b.x - a.x, b.y - a.y, b.w - a.w, b.z - a.z};
+    }
+    return shape;
+}
+
 /// Four floats for each fourth of a vector's places, from the first on.
 template <class D>
 HWY_INLINE hn::Vec<D> load_fours(D d, const float* corners, const int* places) {

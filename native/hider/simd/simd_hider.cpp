@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/spares.h"
+#include "base/object_pool.h"
 #include "hider/bucket_tiles.h"
 #include "hider/hider.h"
-#include "hider/micropolygon_class.h"
 #include "hider/simd/simd_kernel.h"
 #include "hider/simd/tile_grid.h"
 #include "hider/simd/working_tile.h"
-#include "hider/time_slabs.h"
 
 namespace granita {
 namespace {
@@ -19,7 +17,7 @@ namespace {
 class SimdHider : public Hider {
   public:
     SimdHider(const HiderFrame& frame, const Rect& tiles, const Rect& pixels)
-        : m_projection(frame.projection),
+        : Hider(frame),
           m_statistics(frame.statistics),
           m_list_end(frame.list_end),
           m_z_batch_size(frame.z_batch_size),
@@ -27,7 +25,7 @@ class SimdHider : public Hider {
           m_working(m_tiles.count()),
           m_tile_grid(frame.projection, frame.table->lens()),
           m_range(depth_range(frame.projection)),
-          m_lens(frame.projection.lens_radius * frame.projection.scale) {}
+          m_lens_scale(frame.projection.lens_radius * frame.projection.scale) {}
 
     bool occluded(const TimeSlab& slab) const override {
         const Rect touched = m_tiles.touched(slab.bounds);
@@ -37,23 +35,22 @@ class SimdHider : public Hider {
         return true;
     }
 
-    void hide(const Grid& grid) override {
-        const GridClasses classes = classify(grid);
-        const SurfaceId base = m_tiles.add(grid, classes);
-        m_tile_grid.load(grid);
-        const Sweep sweep = m_tile_grid.sweep();
+    void hide(const GridSweep& sweep) override {
+        const Grid& grid = sweep.grid();
+        const SurfaceId base = m_tiles.add(grid, sweep.classes());
+        m_tile_grid.load(sweep);
+        const bool transparent = !sweep.classes().opacity.empty();
         SimdCounts counts;
         bool hidden = true;
-        std::vector<TimeSlab> slabs;  // made when a tile asks
         const Rect touched = m_tiles.touched(grid.bounds);
         for (int y = touched.y0; y < touched.y1; ++y)
             for (int x = touched.x0; x < touched.x1; ++x) {
                 const std::size_t i = m_tiles.index(x, y);
-                if (tile_hides(i, grid, slabs)) continue;
+                if (tile_hides(i, sweep)) continue;
                 hidden = false;
                 m_tiles.check_cancelled();
-                arrange(i, grid.motion, sweep);
-                hide_in_tile(classes, base, i, counts);
+                arrange(i, grid.motion, sweep.reach());
+                hide_in_tile(transparent, base, i, counts);
             }
         if (counts.fragments > 0) limit_lists();
         if (!m_statistics) return;
@@ -76,7 +73,7 @@ class SimdHider : public Hider {
             working.store_lists(m_tiles.store(i));
             m_tiles.finish_lists(i, working.surfaces(), m_list_end);
             working.store_surfaces(m_tiles.store(i));
-            Spares<std::unique_ptr<WorkingTile>>::give(std::move(m_working[i].tile));
+            ObjectPool<std::unique_ptr<WorkingTile>>::give(std::move(m_working[i].tile));
         }
         return m_tiles.stores();
     }
@@ -93,14 +90,14 @@ class SimdHider : public Hider {
 
     /// By the grid's bounds while it exists or, where it moves, by those of each part of the
     /// shutter.
-    bool tile_hides(std::size_t i, const Grid& grid, std::vector<TimeSlab>& slabs) const {
+    bool tile_hides(std::size_t i, const GridSweep& sweep) const {
+        const Grid& grid = sweep.grid();
         const Lifespan& life = grid.lifespan;
         const TimeSlab whole{std::max(0.0f, life.open), std::min(life.close, 1.0f), grid.bounds};
         if (tile_hides(i, whole)) return true;
         if (!grid.motion || !m_working[i].tile || !m_working[i].tile->hides_something())
             return false;
-        if (slabs.empty()) slabs = time_slabs(grid, m_projection);
-        return std::all_of(slabs.begin(), slabs.end(), [&](const TimeSlab& slab) {
+        return std::all_of(sweep.slabs().begin(), sweep.slabs().end(), [&](const TimeSlab& slab) {
             return !slab.bounds.visible || !life.meets(slab.t0, slab.t1) || tile_hides(i, slab);
         });
     }
@@ -135,33 +132,29 @@ class SimdHider : public Hider {
         const OrderShape shape = best_order(samples.samples, working.sweep);
         if (!working.tile)
             (working.tile = take_tile())
-                ->begin(samples, m_tiles.local_pixels(i), m_lens, shape, m_tiles.list_memory());
+                ->begin(samples, m_tiles.local_pixels(i), m_lens_scale, shape,
+                        m_tiles.list_memory());
         else if (needs_time || shape != working.tile->shape())
             working.tile->reorder(samples, shape);
     }
 
     static std::unique_ptr<WorkingTile> take_tile() {
-        auto tile = Spares<std::unique_ptr<WorkingTile>>::take();
+        auto tile = ObjectPool<std::unique_ptr<WorkingTile>>::take();
         return tile ? std::move(tile) : std::make_unique<WorkingTile>();
     }
 
-    void hide_in_tile(const GridClasses& classes, SurfaceId base, std::size_t i,
-                      SimdCounts& counts) {
+    void hide_in_tile(bool transparent, SurfaceId base, std::size_t i, SimdCounts& counts) {
         WorkingTile& working = *m_working[i].tile;
         SimdGrid simd_grid = m_tile_grid.project(m_tiles.origin(i));
         if (simd_grid.parts.empty()) return;
-        simd_grid.common = classes.common;
-        simd_grid.occurring = classes.occurring;
-        simd_grid.finite = classes.dropped == 0;
-        simd_grid.classes = classes.classes.data();
         simd_grid.base = base;
         simd_grid.pool = &m_tiles.pool();
         simd_grid.range = m_range;
-        if (!classes.opacity.empty()) working.prepare_lists();
+        if (transparent) working.prepare_lists();
         const SimdCounts before = counts;
         hide_grid_in_tile(simd_grid, working.view(), working.lists, counts);
         working.note_writes(counts.writes - before.writes);
-        if (!classes.opacity.empty() && m_list_end.opacity_threshold < 1.0f)
+        if (transparent && m_list_end.opacity_threshold < 1.0f)
             working.end_lists(counts.fragments - before.fragments, m_tiles.pool(), m_list_end,
                               m_z_batch_size);
         working.update_depth();
@@ -179,7 +172,6 @@ class SimdHider : public Hider {
         }
     };
 
-    Projection m_projection;
     Statistics* m_statistics;
     ListEnd m_list_end;
     int m_z_batch_size;
@@ -187,7 +179,7 @@ class SimdHider : public Hider {
     std::vector<Working> m_working;
     TileGrid m_tile_grid;
     DepthRange m_range;
-    Vec2f m_lens;  ///< lens radius times scale
+    Vec2f m_lens_scale;  ///< lens radius times scale
 };
 
 }  // namespace

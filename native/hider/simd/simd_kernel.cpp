@@ -8,7 +8,7 @@
 
 #include "hider/micropolygon_class.h"
 #include "hider/samples/sample_order.h"
-#include "hider/simd/rank_bounds.h"
+#include "hider/simd/stratum_bounds.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "hider/simd/simd_kernel.cpp"
@@ -24,23 +24,24 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Vectors.
 #include "hider/corner_arithmetic.inl"
 #include "hider/packet_vectors.inl"
+#include "hider/simd/compact.inl"
 #include "hider/simd/sample_packet.inl"
-#include "hider/simd/squeeze.inl"
 // Where micropolygons are, and what of them is seen.
-#include "hider/simd/path_extents.inl"
 #include "hider/simd/shapes.inl"
 #include "hider/simd/tile_bounds.inl"
+// Those that need it.
+#include "hider/simd/swept_bounds.inl"
 #include "hider/simd/tile_paths.inl"
 #include "hider/simd/triangle_pair.inl"
 #include "hider/vector_fragments.inl"
 // Parts of the kernel.
-#include "hider/simd/patch_frame.inl"
-#include "hider/simd/rank_windows.inl"
+#include "hider/simd/comoving_frame.inl"
 #include "hider/simd/sample_test.inl"
+#include "hider/simd/stratum_windows.inl"
 // Those that need them.
-#include "hider/simd/flock.inl"
+#include "hider/simd/candidate_samples.inl"
+#include "hider/simd/cluster.inl"
 #include "hider/simd/hit_recorder.inl"
-#include "hider/simd/near_samples.inl"
 
 class Kernel {
   public:
@@ -48,21 +49,14 @@ class Kernel {
         : m_grid(grid),
           m_tile(tile),
           m_counts(counts),
-          m_where(grid, tile),
           m_paths(grid, tile),
           m_windows(tile),
           m_test(grid, m_target),
           m_recorder(grid, tile, m_target, lists, counts),
-          m_patches(grid, m_paths),
-          m_flocks(grid, tile, m_where, m_paths),
-          m_together(grid.finite && grid.n_u * grid.n_v >= kLeastPatch),
-          m_in_flocks(grid.n_v <= GridPart::kNarrow) {
-        const double blocks = static_cast<double>(tile.blocks_wide) / kTileSize;
-        const double samples = GridPart::kSwept * GridPart::kSwept * blocks * blocks * tile.ranks;
-        while (m_most_segments < *grid.together &&
-               samples * m_most_segments < kFewSamples * grid.segments)
-            m_most_segments *= 2;
-    }
+          m_parts(grid, m_paths),
+          m_clusters(grid, tile, m_paths),
+          m_together(grid.finite && grid.n_u * grid.n_v >= kLeastPart),
+          m_in_clusters(grid.n_v <= GridPart::kNarrow) {}
 
     template <Lens kLens>
     void run() {
@@ -72,80 +66,53 @@ class Kernel {
   private:
     template <bool kMoving, Lens kLens>
     void run() {
-        for (const GridPart& part : m_grid.parts) {
-            m_patch.nearest = part.nearest;
+        for (const PartSegment& at : m_grid.parts) {
             if constexpr (kMoving || kLens != Lens::None) {
-                if (m_together && (!m_in_flocks || m_flocks.pay<kLens>())) {
-                    look_together<kMoving, kLens>(part.patch, part.segments);
+                if (m_together && (!m_in_clusters || m_clusters.pay<kLens>()) &&
+                    look_together<kMoving, kLens>(at.part, at.segment))
                     continue;
-                }
             }
-            look_apart<kMoving, kLens>(part.patch, part.segments);
+            look_apart<kMoving, kLens>(at.part, at.segment);
         }
-        if constexpr (kMoving || kLens != Lens::None) test_near<kMoving, kLens>();
+        if constexpr (kMoving || kLens != Lens::None) test_candidates<kMoving, kLens>();
     }
 
-    /// As many segments at a time as the part's way is straight enough for; one by one where it is
-    /// not even during one.
+    /// False: what is in the part goes too differently.
     template <bool kMoving, Lens kLens>
-    void look_together(const Patch& part, Segments segments) {
-        const int end = segments.first + segments.count;
-        for (Segments now{segments.first, 0}; now.first < end; now.first += now.count) {
-            now.count = std::min(m_most_segments, end - now.first);
-            const Found found = find_together<kMoving, kLens>(part, now);
-            if (found != Found::Loose) continue;
-            if (now.count == 1) {
-                look_apart<kMoving, kLens>(part, now);
-            } else {
-                m_most_segments = now.count / 2;
-                // Patches of a grid turn alike in all tiles, flocks are of unlike sizes.
-                if (!m_in_flocks) *m_grid.together = m_most_segments;
-                now.count = 0;
-            }
-        }
-    }
-
-    using Found = PatchFinder::Found;
-    template <bool kMoving, Lens kLens>
-    Found find_together(const Patch& part, Segments segments) {
+    bool look_together(const GridPart& part, int segment) {
+        using Found = PartFinder::Found;
         Found found;
-        if (m_in_flocks) {
-            found = m_flocks.find<kMoving, kLens>(part, segments, m_patch, m_slices);
-            if (found == Found::Framed) visit_flock<kMoving, kLens>(part, segments);
+        if (m_in_clusters) {
+            found = m_clusters.find<kMoving, kLens>(part, segment, m_part, m_slices);
+            if (found == Found::Framed) visit_cluster<kMoving, kLens>(part, segment);
         } else {
-            found = m_patches.find<kMoving, kLens>(part, segments, m_patch);
-            if (found == Found::Framed) visit_patch<kMoving, kLens>(part, segments);
+            found = m_parts.find<kMoving, kLens>(part, segment, m_part);
+            if (found == Found::Framed) visit_part<kMoving, kLens>(part, segment);
         }
-        return found;
+        return found != Found::Loose;
     }
 
     template <bool kMoving, Lens kLens>
-    void look_apart(const Patch& part, Segments segments) {
-        for (int k = 0; k < segments.count; ++k) {
-            m_target.segment = segments.first + k;
-            for (int j = 0; j < part.n_v; ++j)
-                for (int i = 0; i < part.n_u; i += lane_count())
-                    visit_row<kMoving, kLens>(part.i + i, part.j + j, part.n_u - i);
-        }
+    void look_apart(const GridPart& part, int segment) {
+        m_target.segment = segment;
+        for (int j = 0; j < part.n_v; ++j)
+            for (int i = 0; i < part.n_u; i += lane_count())
+                visit_row<kMoving, kLens>(part.i + i, part.j + j, part.n_u - i);
     }
 
     /// A vector of `count` micropolygons at most from (i, j) on.
     template <bool kMoving, Lens kLens>
     HWY_INLINE void visit_row(int i, int j, int count) {
-        BlockRanges ranges;
         const int segment = m_target.segment, first = j * m_grid.up + i;
-        M touching = m_where.find_touched(segment, first, count, ranges);
-        if (kMoving && !hn::AllFalse(kTag, touching))
-            touching = hn::And(touching, m_where.find_times<kLens>(segment, first, ranges));
-        if ((kMoving || kLens != Lens::None) && !hn::AllFalse(kTag, touching))
-            m_paths.find_paths<kMoving, kLens>(segment, first, ranges, m_tile_paths);
-        for_each_lane(touching, [&](int lane) HWY_ATTR {
+        const M over = m_paths.find_paths<kMoving, kLens>(
+            segment, first, hn::FirstN(kTag, static_cast<std::size_t>(count)), m_tile_paths);
+        for_each_lane(over, [&](int lane) HWY_ATTR {
             if (!aim_at(i + lane, j)) return;
-            const Shape shape = m_where.load_shape(segment, first + lane, m_target.kind);
-            if (kMoving || kLens != Lens::None || m_tile.ranked)
-                visit_ranks<kMoving, kLens>(shape, ranges, lane);
+            const Shape shape = load_shape(m_grid, segment, first + lane, m_target.kind);
+            if (kMoving || kLens != Lens::None || m_tile.stratified)
+                visit_strata<kMoving, kLens>(shape, lane);
             else
-                visit_packets(shape, ranges, lane);
+                visit_packets(shape, lane);
         });
     }
 
@@ -158,13 +125,14 @@ class Kernel {
     }
 
     /// Calls visit(paths, k, samples, their slots, how far they are on x and y from the path) for
-    /// the samples of the windows of all ranks that `times`, of `lane`, and find(first rank, paths)
-    /// leave; the path is lane k of `paths`.  Ranks are bounded a vector at a time.
+    /// the samples of the windows of all strata that the times of what is over the tile, `lane` of
+    /// `over`, and find(first stratum, paths) leave; the path is lane k of `paths`.  Strata are
+    /// bounded a vector at a time.
     template <bool kMoving, Lens kLens, class Find, class Visit>
-    HWY_INLINE void visit_windows(const BlockRanges& times, int lane, Find find, Visit visit) {
-        int first = 0, end = m_tile.ranks;
-        if constexpr (kMoving) m_where.find_ranks(times, lane, first, end);
-        RankPaths paths;
+    HWY_INLINE void visit_windows(const TilePaths& over, int lane, Find find, Visit visit) {
+        int first = 0, end = m_tile.strata;
+        if constexpr (kMoving) m_paths.find_strata(over, lane, first, end);
+        StratumPaths paths;
         for (; first < end; first += lane_count()) {
             const M touching = hn::And(find(first, paths),
                                        hn::FirstN(kTag, static_cast<std::size_t>(end - first)));
@@ -177,69 +145,65 @@ class Kernel {
         }
     }
 
-    /// Calls visit(samples, slots, x, y) for the samples of a patch's windows; x, y: from where the
-    /// patch is then.
+    /// Calls visit(samples, slots, x, y) for the samples of a part's windows; x, y: from where the
+    /// part is then.
     template <bool kMoving, Lens kLens, class Visit>
-    HWY_INLINE void visit_together(Segments segments, Visit visit) {
-        const bool cull = m_patch.nearest < m_tile.nearest_of_ranks;
+    HWY_INLINE void visit_together(int segment, Visit visit) {
+        const TilePaths& over = m_part.paths;
+        const bool cull = over.nearest[0] < m_tile.nearest_of_strata;
         visit_windows<kMoving, kLens>(
-            m_patch.times, 0,
-            [&](int first, RankPaths& paths) HWY_ATTR {
-                return m_paths.follow<kMoving, kLens, RankPathFinder::kAllSquares>(
-                    m_patch.paths, 0, segments, first, cull, paths);
+            over, 0,
+            [&](int first, StratumPaths& paths) HWY_ATTR {
+                return m_paths.follow<kMoving, kLens, StratumPathFinder::kAllSquares>(
+                    over, 0, segment, first, cull, paths);
             },
-            [&](const RankPaths&, int, const Samples& at, V slots, V x, V y) HWY_ATTR
+            [&](const StratumPaths&, int, const Samples& at, V slots, V x, V y) HWY_ATTR
             __attribute__((always_inline)) { visit(at, slots, x, y); });
     }
 
-    /// Which of the samples look during the segments, and the segment of each: ranks may be longer.
+    /// Which of the samples look during the segment: strata may be longer.
     template <bool kMoving>
-    HWY_INLINE M in_segments(const Samples& at, M samples, Segments segments, V& segment) const {
-        segment = set(static_cast<float>(segments.first));
+    HWY_INLINE M in_segment(const Samples& at, M samples, int segment) const {
         if (!kMoving || m_grid.segments == 1) return samples;
         const V all = set(static_cast<float>(m_grid.segments));
-        const V end = segment + set(static_cast<float>(segments.count));
         const V own = hn::Min(hn::Floor(at.t * all), all - set(1.0f));
-        const M in = hn::And(hn::Ge(own, segment), hn::Lt(own, end));
-        segment = own;
-        return hn::And(samples, in);
+        return hn::And(samples, hn::Eq(own, set(static_cast<float>(segment))));
     }
 
-    /// The samples of the mask wait for the micropolygon in their lane (NearSamples::add): `corner`
-    /// is its vertex at the first knot.
+    /// The samples of the mask wait for the micropolygon in their lane (CandidateSamples::add):
+    /// `corner` is its vertex at the segment's begin.
     template <bool kMoving, Lens kLens>
     HWY_INLINE void queue(M mask, const Samples& at, V slots, hn::Vec<IntTag> index,
-                          hn::Vec<IntTag> corner, V segment) {
-        if constexpr (kMoving)
-            corner = corner + hn::ConvertTo(kIntTag, segment) * hn::Set(kIntTag, m_grid.vertices);
-        m_near.add<kMoving, kLens>(mask, at, slots, index, corner, segment);
-        if (HWY_UNLIKELY(m_near.full())) test_near<kMoving, kLens>();
+                          hn::Vec<IntTag> corner, int segment) {
+        m_candidates.add<kMoving, kLens>(mask, at, slots, index, corner,
+                                         set(static_cast<float>(segment)));
+        if (HWY_UNLIKELY(m_candidates.full())) test_candidates<kMoving, kLens>();
     }
 
     template <bool kMoving, Lens kLens>
-    void visit_patch(const Patch& patch, Segments segments) {
-        const PatchFrame& frame = m_patch.frame;
-        const V n_u = set(static_cast<float>(patch.n_u)), n_v = set(static_cast<float>(patch.n_v));
+    void visit_part(const GridPart& part, int segment) {
+        const ComovingFrame& frame = m_part.frame;
+        const V n_u = set(static_cast<float>(part.n_u)), n_v = set(static_cast<float>(part.n_v));
         const V row = set(static_cast<float>(m_grid.n_u));
         const V rise = set(static_cast<float>(m_grid.up));
-        const auto index = hn::Set(kIntTag, patch.j * m_grid.n_u + patch.i);
-        const auto corner = hn::Set(kIntTag, patch.j * m_grid.up + patch.i);
+        const auto index = hn::Set(kIntTag, part.j * m_grid.n_u + part.i);
+        const auto corner =
+            hn::Set(kIntTag, segment * m_grid.vertices + part.j * m_grid.up + part.i);
         const int most_u = frame.u.most_near(), most_v = frame.v.most_near();
         visit_together<kMoving, kLens>(
-            segments, [&](const Samples& at, V slots, V x, V y) HWY_ATTR
+            segment, [&](const Samples& at, V slots, V x, V y) HWY_ATTR
             __attribute__((always_inline)) {
                 const V zero = set(0.0f);
                 const V u = set(frame.u.x) * x + set(frame.u.y) * y + set(frame.u.origin);
                 const V v = set(frame.v.x) * x + set(frame.v.y) * y + set(frame.v.origin);
                 const V u_lo = u - set(frame.u.reach), u_hi = u + set(frame.u.reach);
                 const V v_lo = v - set(frame.v.reach), v_hi = v + set(frame.v.reach);
-                // Most samples of a window are beside the patch.
-                V segment;
+                // Most samples of a window are beside the part.
                 const M near =
-                    in_segments<kMoving>(at,
-                                         hn::And(hn::And(hn::Lt(u_lo, n_u), hn::Ge(u_hi, zero)),
-                                                 hn::And(hn::Lt(v_lo, n_v), hn::Ge(v_hi, zero))),
-                                         segments, segment);
+                    in_segment<kMoving>(at,
+                                        hn::And(hn::And(hn::Lt(u_lo, n_u), hn::Ge(u_hi, zero)),
+                                                hn::And(hn::Lt(v_lo, n_v), hn::Ge(v_hi, zero))),
+                                        segment);
                 if (hn::AllFalse(kTag, near)) return;
                 const V i0 = hn::Floor(u_lo), i1 = hn::Floor(u_hi);
                 const V j0 = hn::Floor(v_lo), j1 = hn::Floor(v_hi);
@@ -262,18 +226,18 @@ class Kernel {
     }
 
     template <bool kMoving, Lens kLens>
-    void visit_flock(const Patch& flock, Segments segments) {
+    void visit_cluster(const GridPart& cluster, int segment) {
         static_assert(GridPart::kNarrow == 2);
-        const auto begin = hn::Set(kIntTag, flock.i);
-        const auto last = hn::Set(kIntTag, flock.n_u - 1);
-        const auto next_row = hn::Set(kIntTag, m_grid.n_u - flock.n_u);
-        const auto rise = hn::Set(kIntTag, m_grid.up - flock.n_u);
+        const auto begin = hn::Set(kIntTag, cluster.i);
+        const auto corner = hn::Set(kIntTag, segment * m_grid.vertices + cluster.i);
+        const auto last = hn::Set(kIntTag, cluster.n_u - 1);
+        const auto next_row = hn::Set(kIntTag, m_grid.n_u - cluster.n_u);
+        const auto rise = hn::Set(kIntTag, m_grid.up - cluster.n_u);
         visit_together<kMoving, kLens>(
-            segments, [&](const Samples& at, V slots, V x, V y) HWY_ATTR
+            segment, [&](const Samples& at, V slots, V x, V y) HWY_ATTR
             __attribute__((always_inline)) {
-                const FlockSlices::Cells cells = m_slices.cells_of(x, y);
-                V segment;
-                const M inside = in_segments<kMoving>(at, cells.inside, segments, segment);
+                const ClusterSlices::Cells cells = m_slices.cells_of(x, y);
+                const M inside = in_segment<kMoving>(at, cells.inside, segment);
                 if (hn::AllFalse(kTag, inside)) return;
                 m_slices.for_each_bin(
                     cells, inside,
@@ -281,35 +245,36 @@ class Kernel {
                         const auto above = hn::Gt(bin, last);
                         queue<kMoving, kLens>(
                             some, at, slots, bin + begin + hn::IfThenElseZero(above, next_row),
-                            bin + begin + hn::IfThenElseZero(above, rise), segment);
+                            bin + corner + hn::IfThenElseZero(above, rise), segment);
                     });
             });
     }
 
     /// The samples that wait.
     template <bool kMoving, Lens kLens>
-    HWY_NOINLINE void test_near() {
+    HWY_NOINLINE void test_candidates() {
         ShapeVector shapes;
-        const std::size_t count = m_near.count();
+        const std::size_t count = m_candidates.count();
         m_target.kind = m_grid.occurring;
         std::size_t covered = 0;
         for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lane_count())) {
             const M valid = hn::FirstN(kTag, count - i);
-            const auto index = m_near.load_shapes<kMoving>(m_grid, i, valid, shapes);
+            const auto index = m_candidates.load_shapes<kMoving>(m_grid, i, valid, shapes);
             const auto ids = hn::BitCast(kIdTag, index) + hn::Set(kIdTag, m_grid.base);
-            covered += cover<kMoving, kLens>(shapes, m_near.list(), i, valid, ids, covered);
+            covered += cover<kMoving, kLens>(shapes, m_candidates.list(), i, valid, ids, covered);
         }
         m_counts.tests += count;
-        m_near.clear();
+        m_candidates.clear();
         m_recorder.record(m_hit, covered);
     }
 
-    /// What is still is tested against all packets of the blocks of ranges[lane].
-    HWY_INLINE void visit_packets(const Shape& shape, const BlockRanges& ranges, int lane) {
-        const float nearest = ranges.nearest[lane];
-        const int packets = m_tile.ranks / kPacket;
-        const int x0 = ranges.x0[lane], x1 = ranges.x1[lane], y1 = ranges.y1[lane];
-        for (int by = ranges.y0[lane]; by <= y1; ++by)
+    /// What is still is tested against all packets of its blocks.
+    HWY_INLINE void visit_packets(const Shape& shape, int lane) {
+        const TilePaths& over = m_tile_paths;
+        const float nearest = over.nearest[lane];
+        const int packets = m_tile.strata / kPacket;
+        const int x0 = over.x0[lane], x1 = over.x1[lane], y1 = over.y1[lane];
+        for (int by = over.y0[lane]; by <= y1; ++by)
             for (int bx = x0; bx <= x1; ++bx) {
                 const std::size_t block = static_cast<std::size_t>(by) * m_tile.blocks_wide + bx;
                 for (std::size_t i = block * packets; i < (block + 1) * packets; ++i) {
@@ -331,26 +296,25 @@ class Kernel {
         if (!hn::AllFalse(kTag, hit)) m_recorder.record(hits, hit, first);
     }
 
-    /// What is swept, and what is still in a tile where other things are swept: ranks are bounded a
-    /// vector at a time, the samples in each rank's windows of blocks are compared with the
+    /// What is swept, and what is still in a tile where other things are swept: strata are bounded
+    /// a vector at a time, the samples in each stratum's windows of blocks are compared with the
     /// micropolygon's path, and what remains, about twice what is hit, is tested in whole vectors.
     template <bool kMoving, Lens kLens>
-    HWY_INLINE void visit_ranks(const Shape& shape, const BlockRanges& swept, int lane) {
-        const bool cull = swept.nearest[lane] < m_tile.nearest_of_ranks;
-        const bool straight =
-            (kMoving || kLens != Lens::None) && (m_tile_paths.straight >> lane & 1u);
+    HWY_INLINE void visit_strata(const Shape& shape, int lane) {
+        const bool cull = m_tile_paths.nearest[lane] < m_tile.nearest_of_strata;
+        const bool straight = m_tile_paths.straight >> lane & 1u;
         std::size_t found = 0;
         visit_windows<kMoving, kLens>(
-            swept, lane,
-            [&](int first, RankPaths& paths) HWY_ATTR {
+            m_tile_paths, lane,
+            [&](int first, StratumPaths& paths) HWY_ATTR {
                 return straight ? m_paths.follow<kMoving, kLens>(
-                                      m_tile_paths, lane, {m_target.segment, 1}, first, cull, paths)
+                                      m_tile_paths, lane, m_target.segment, first, cull, paths)
                                 : m_paths.find<kMoving, kLens>(shape, m_target.segment, first, cull,
                                                                paths);
             },
-            [&](const RankPaths& paths, int k, const Samples& at, V slots, V x, V y) HWY_ATTR
+            [&](const StratumPaths& paths, int k, const Samples& at, V slots, V x, V y) HWY_ATTR
             __attribute__((always_inline)) {
-                const Squeeze near(hn::And(hn::Le(hn::Abs(x), set(paths.x.reach[k])),
+                const Compact near(hn::And(hn::Le(hn::Abs(x), set(paths.x.reach[k])),
                                            hn::Le(hn::Abs(y), set(paths.y.reach[k]))));
                 m_listed.add<kMoving, kLens>(near, at, slots, found);
                 found += near.count();
@@ -381,21 +345,18 @@ class Kernel {
         const M hit = m_test.covers<kMoving, kLens>(shape, list.template load<kMoving, kLens>(i),
                                                     valid, hits);
         if (hn::AllFalse(kTag, hit)) return 0;
-        const Squeeze squeeze(hit);
-        hn::StoreU(squeeze(hits.key), kTag, m_hit.key + covered);
-        hn::StoreU(squeeze(hn::LoadU(kTag, list.slot + i)), kTag, m_hit.slot + covered);
-        hn::StoreU(squeeze(hn::BitCast(kTag, ids)), kTag, m_hit.id + covered);
+        const Compact compact(hit);
+        hn::StoreU(compact(hits.key), kTag, m_hit.key + covered);
+        hn::StoreU(compact(hn::LoadU(kTag, list.slot + i)), kTag, m_hit.slot + covered);
+        hn::StoreU(compact(hn::BitCast(kTag, ids)), kTag, m_hit.id + covered);
         if (m_target.kind & kTransparent) {
-            hn::StoreU(squeeze(hits.signed_b1), kTag, m_hit.signed_b1 + covered);
-            hn::StoreU(squeeze(hits.b2), kTag, m_hit.b2 + covered);
+            hn::StoreU(compact(hits.signed_b1), kTag, m_hit.signed_b1 + covered);
+            hn::StoreU(compact(hits.b2), kTag, m_hit.b2 + covered);
         }
-        return squeeze.count();
+        return compact.count();
     }
 
-    static constexpr int kLeastPatch = 4;
-    /// A frame is worth as many samples of a patch of pixels: 16 segments at 8 samples a pixel
-    /// leave 32 for each.
-    static constexpr double kFewSamples = 128.0;
+    static constexpr int kLeastPart = 4;
     static constexpr std::size_t kMostListed = 256;
     static constexpr std::size_t kListed = kMostListed + 2 * kPacket;
 
@@ -403,22 +364,20 @@ class Kernel {
     const SimdTile& m_tile;
     SimdCounts& m_counts;
     Target m_target;
-    TileBounds m_where;
-    RankPathFinder m_paths;
-    RankWindows m_windows;
+    StratumPathFinder m_paths;
+    StratumWindows m_windows;
     SampleTest m_test;
     HitRecorder m_recorder;
     TilePaths m_tile_paths;
-    PatchFinder m_patches;
-    FlockFinder m_flocks;
-    PatchPath m_patch;
-    FlockSlices m_slices;
-    NearSamples m_near;            ///< to be tested, of patches and flocks
-    int m_most_segments = 1;       ///< that patches and flocks are looked at together during
-    const bool m_together;         ///< patches or flocks are looked for
-    const bool m_in_flocks;        ///< micropolygons share no vertices, or lie in few rows
-    SampleList<kListed> m_listed;  ///< to be tested
-    HitList<std::max(kListed, NearSamples::kMost)> m_hit;  ///< that were
+    PartFinder m_parts;
+    ClusterFinder m_clusters;
+    PartPath m_part;
+    ClusterSlices m_slices;
+    CandidateSamples m_candidates;  ///< to be tested, of parts and clusters
+    const bool m_together;          ///< parts or clusters are looked for
+    const bool m_in_clusters;       ///< micropolygons share no vertices, or lie in few rows
+    SampleList<kListed> m_listed;   ///< to be tested
+    HitList<std::max(kListed, CandidateSamples::kMost)> m_hit;  ///< that were
 };
 
 void hide_grid(const SimdGrid& grid, const SimdTile& tile, FragmentLists& lists,

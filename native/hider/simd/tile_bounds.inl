@@ -1,25 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where micropolygons can be in a tile: included once a SIMD target inside its namespace, like
-// corner_arithmetic.inl, after the kernel's vector types.
+// Where and when micropolygons can be in a tile: included once a SIMD target inside its namespace,
+// like corner_arithmetic.inl, after the kernel's vector types.
 
-/// Rectangles of blocks, inclusive, and nearest keys, a vector of them.
-struct BlockRanges {
-    alignas(64) int x0[kPacket], x1[kPacket], y0[kPacket], y1[kPacket];
-    alignas(64) float nearest[kPacket];
-    alignas(64) float t0[kPacket], t1[kPacket];  ///< shutter times over the tile; moving only
+/// Raster bounds, relative to the tile.
+struct Box {
+    V x_lo, x_hi, y_lo, y_hi;
 };
 
-/// Raster bounds -> blocks; which of them are in the tile.
+/// Boxes that are not `sane` or too large for a number become all of the raster; which are neither.
+HWY_INLINE M widen_unknown(M sane, Box& box) {
+    const V never = set(INFINITY);
+    const V reach = hn::Abs(box.x_lo) + hn::Abs(box.x_hi) + hn::Abs(box.y_lo) + hn::Abs(box.y_hi);
+    const M known = hn::And(sane, hn::Lt(reach, set(1e15f)));
+    box.x_lo = hn::IfThenElse(known, box.x_lo, hn::Neg(never));
+    box.x_hi = hn::IfThenElse(known, box.x_hi, never);
+    box.y_lo = hn::IfThenElse(known, box.y_lo, hn::Neg(never));
+    box.y_hi = hn::IfThenElse(known, box.y_hi, never);
+    return known;
+}
+
+/// The blocks of the tile that boxes touch, inclusive; which touch any.
 template <class Out>
-HWY_INLINE M store_blocks(const SimdTile& tile, V x_lo, V x_hi, V y_lo, V y_hi, Out& out) {
+HWY_INLINE M store_blocks(const SimdTile& tile, const Box& box, Out& out) {
     const V scale = set(static_cast<float>(tile.blocks_wide) / kTileSize), zero = set(0.0f);
     const V last = set(static_cast<float>(tile.blocks_wide - 1));
     const V end = set(static_cast<float>(tile.blocks_wide));
     // Clamped before the conversion, which overflows otherwise.
-    const V x0 = hn::Min(hn::Max(hn::Floor(x_lo * scale), zero), end);
-    const V y0 = hn::Min(hn::Max(hn::Floor(y_lo * scale), zero), end);
-    const V x1 = hn::Max(hn::Min(hn::Floor(x_hi * scale), last), set(-1.0f));
-    const V y1 = hn::Max(hn::Min(hn::Floor(y_hi * scale), last), set(-1.0f));
+    const V x0 = hn::Min(hn::Max(hn::Floor(box.x_lo * scale), zero), end);
+    const V y0 = hn::Min(hn::Max(hn::Floor(box.y_lo * scale), zero), end);
+    const V x1 = hn::Max(hn::Min(hn::Floor(box.x_hi * scale), last), set(-1.0f));
+    const V y1 = hn::Max(hn::Min(hn::Floor(box.y_hi * scale), last), set(-1.0f));
     hn::StoreU(hn::ConvertTo(kIntTag, x0), kIntTag, out.x0);
     hn::StoreU(hn::ConvertTo(kIntTag, x1), kIntTag, out.x1);
     hn::StoreU(hn::ConvertTo(kIntTag, y0), kIntTag, out.y0);
@@ -31,6 +41,15 @@ HWY_INLINE M store_blocks(const SimdTile& tile, V x_lo, V x_hi, V y_lo, V y_hi, 
 HWY_INLINE Corner<V> load_corner(const SimdGrid& grid, std::size_t i) {
     return {hn::LoadU(kTag, grid.x + i), hn::LoadU(kTag, grid.y + i), hn::LoadU(kTag, grid.w + i),
             hn::LoadU(kTag, grid.z + i)};
+}
+
+/// Calls visit(i) for the vertices, at the begin of a segment, that are the corners of
+/// micropolygons whose corner 0 is at `vertex`.
+template <class Visit>
+HWY_INLINE void for_each_corner(const SimdGrid& grid, int segment, int vertex, Visit visit) {
+    const std::size_t first = static_cast<std::size_t>(segment) * grid.vertices + vertex;
+    for (const int step : {0, grid.right, grid.up, grid.up + grid.right})
+        visit(first + static_cast<std::size_t>(step));
 }
 
 /// When what has these corners is over a tile during a segment: some corner right of its left side,
@@ -76,15 +95,13 @@ class TimesOverTile {
     }
 
     /// Times of the shutter; which there are.
-    HWY_INLINE M store(const SimdGrid& grid, int segment, BlockRanges& out) const {
+    HWY_INLINE M find(const SimdGrid& grid, int segment, V& first, V& last) const {
         const V t0 = hn::Max(hn::Max(m_from[0], m_from[1]), hn::Max(m_from[2], m_from[3]));
         const V t1 = hn::Min(hn::Min(m_to[0], m_to[1]), hn::Min(m_to[2], m_to[3]));
         const V widen = set(0x1p-18f), start = set(static_cast<float>(segment));
         const V scale = set(1.0f / static_cast<float>(grid.segments));
-        const V first = hn::Max((start + t0 - widen) * scale - widen, set(grid.lifespan.open));
-        const V last = hn::Min((start + t1 + widen) * scale + widen, set(grid.lifespan.close));
-        hn::StoreU(first, kTag, out.t0);
-        hn::StoreU(last, kTag, out.t1);
+        first = hn::Max((start + t0 - widen) * scale - widen, set(grid.lifespan.open));
+        last = hn::Min((start + t1 + widen) * scale + widen, set(grid.lifespan.close));
         return hn::And(hn::Le(t0, t1 + widen), hn::Le(first, last));
     }
 
@@ -102,79 +119,13 @@ class TimesOverTile {
     V m_from[4], m_to[4];
 };
 
-/// The micropolygons of a grid during one segment of its motion, over the blocks of a tile.
-class TileBounds {
-  public:
-    TileBounds(const SimdGrid& grid, const SimdTile& tile) : m_grid(grid), m_tile(tile) {}
-
-    Shape load_shape(int segment, int vertex, int kind) const {
-        const int corner[4] = {vertex, vertex + m_grid.right, vertex + m_grid.right + m_grid.up,
-                               vertex + m_grid.up};
-        Shape shape;
-        shape.kind = kind;
-        shape.number = segment;
-        for (int k = 0; k < 4; ++k) {
-            shape.begin[k] = load(corner[k], segment);
-            if (m_grid.segments == 0) continue;
-            const Corner<float> a = shape.begin[k], b = load(corner[k], segment + 1);
-            shape.delta[k] = {b.x - a.x, b.y - a.y, b.w - a.w, b.z - a.z};
-        }
-        return shape;
-    }
-
-    /// Of the micropolygons from this vertex on, which touch the tile, and where over the whole
-    /// segment and lens.
-    HWY_INLINE M find_touched(int segment, int vertex, int count, BlockRanges& out) const {
-        const std::size_t at = static_cast<std::size_t>(segment) * m_grid.vertices + vertex;
-        const std::size_t right = static_cast<std::size_t>(m_grid.right);
-        const std::size_t above = at + static_cast<std::size_t>(m_grid.up);
-        const auto least = [&](const float* a) HWY_ATTR {
-            return hn::Min(hn::Min(hn::LoadU(kTag, a + at), hn::LoadU(kTag, a + at + right)),
-                           hn::Min(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + right)));
-        };
-        const auto most = [&](const float* a) HWY_ATTR {
-            return hn::Max(hn::Max(hn::LoadU(kTag, a + at), hn::LoadU(kTag, a + at + right)),
-                           hn::Max(hn::LoadU(kTag, a + above), hn::LoadU(kTag, a + above + right)));
-        };
-        hn::StoreU(most(m_grid.nearest), kTag, out.nearest);
-        const V left = set(m_grid.origin_x), bottom = set(m_grid.origin_y);
-        const M some = store_blocks(m_tile, least(m_grid.x_lo) - left, most(m_grid.x_hi) - left,
-                                    least(m_grid.y_lo) - bottom, most(m_grid.y_hi) - bottom, out);
-        return hn::And(some, hn::FirstN(kTag, static_cast<std::size_t>(count)));
-    }
-
-    /// When they are over the tile, and which are at all.
-    template <Lens kLens>
-    HWY_INLINE M find_times(int segment, int vertex, BlockRanges& out) const {
-        const std::size_t knot = static_cast<std::size_t>(segment) * m_grid.vertices;
-        TimesOverTile times;
-        for (const int corner : {vertex, vertex + m_grid.right, vertex + m_grid.up,
-                                 vertex + m_grid.up + m_grid.right}) {
-            const std::size_t a = knot + static_cast<std::size_t>(corner);
-            times.add<kLens>(m_grid, load_corner(m_grid, a),
-                             load_corner(m_grid, a + static_cast<std::size_t>(m_grid.vertices)));
-        }
-        return times.store(m_grid, segment, out);
-    }
-
-    /// Ranks [first, end) may look while the micropolygon is over the tile; `lane` of the last
-    /// find_times().
-    void find_ranks(const BlockRanges& times, int lane, int& first, int& end) const {
-        const auto slab = [](float t) {
-            constexpr int kSlabs = RankBounds::kSlabs;
-            return static_cast<int>(
-                std::min(std::max(t * static_cast<float>(kSlabs), 0.0f), kSlabs - 1.0f));
-        };
-        first = m_tile.bounds->first[slab(times.t0[lane])];
-        end = m_tile.bounds->end[slab(times.t1[lane])];
-    }
-
-  private:
-    Corner<float> load(int vertex, int knot) const {
-        const std::size_t i = static_cast<std::size_t>(knot) * m_grid.vertices + vertex;
-        return {m_grid.x[i], m_grid.y[i], m_grid.w[i], m_grid.z[i]};
-    }
-
-    const SimdGrid& m_grid;
-    const SimdTile& m_tile;
-};
+/// When the micropolygons whose corner 0 is at `vertex` are over the tile, and which are at all.
+template <Lens kLens>
+HWY_INLINE M find_times(const SimdGrid& grid, int segment, int vertex, V& first, V& last) {
+    TimesOverTile times;
+    for_each_corner(grid, segment, vertex, [&](std::size_t i) HWY_ATTR {
+        times.add<kLens>(grid, load_corner(grid, i),
+                         load_corner(grid, i + static_cast<std::size_t>(grid.vertices)));
+    });
+    return times.find(grid, segment, first, last);
+}

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a micropolygon is while the samples of ranks look: included once a SIMD target inside its
-// namespace, after path_extents.inl and tile_bounds.inl.
+// Where a micropolygon is while the samples of strata look: included once a SIMD target inside its
+// namespace, after swept_bounds.inl and tile_bounds.inl.
 
-/// Where a micropolygon is while the samples of a rank look, a vector of ranks.
-struct RankPaths {
+/// Where a micropolygon is while the samples of a stratum look, a vector of strata.
+struct StratumPaths {
     alignas(64) int x0[kPacket], x1[kPacket], y0[kPacket], y1[kPacket];  ///< blocks, inclusive
     /// On an axis: it stays within `reach` of place + speed t + shear u for a sample's t and u;
     /// where samples have a focus each, of place + speed t + (shear + depth / focus) u.
@@ -13,8 +13,8 @@ struct RankPaths {
     alignas(64) float shear[kPacket], depth[kPacket];
 };
 
-/// Where micropolygons go while they are over a tile, a vector of them: a rank's samples see a part
-/// of that path.
+/// Where micropolygons go while they are over a tile, a vector of them: a stratum's samples see a
+/// part of that path.
 struct TilePaths {
     struct Axis {
         alignas(64) float place[kPacket], speed[kPacket], reach[kPacket];  ///< StraightPath
@@ -22,79 +22,95 @@ struct TilePaths {
     /// LensExtents, as far as the lens has them.
     alignas(64) float shear_lo[kPacket], shear_hi[kPacket], depth_lo[kPacket], depth_hi[kPacket],
         reciprocal_lo[kPacket], reciprocal_hi[kPacket];
-    alignas(64) float z_lo[kPacket];
+    alignas(64) float nearest[kPacket];          ///< no sample sees a nearer key
+    alignas(64) float t0[kPacket], t1[kPacket];  ///< shutter times over the tile; moving only
+    /// Blocks, inclusive; of what does not move.
+    alignas(64) int x0[kPacket], x1[kPacket], y0[kPacket], y1[kPacket];
     std::uint32_t straight = 0;  ///< bit i: micropolygon i stays that near to one line
 };
 
-/// When something is over a tile: a part of a segment of motion, or several segments.
+/// When something is over a tile, during a segment.
 template <bool kMoving>
 struct SegmentPart {
     V ends[2];       ///< in parts of the segment
     V time0, time1;  ///< of the shutter
 
-    HWY_INLINE SegmentPart(const SimdGrid& grid, Segments segments, const BlockRanges& times) {
+    HWY_INLINE SegmentPart(const SimdGrid& grid, int segment, V first, V last) {
         const V zero = set(0.0f), one = set(1.0f);
         const V knots = set(static_cast<float>(std::max(1, grid.segments)));
-        const V start = set(static_cast<float>(segments.first));
+        const V start = set(static_cast<float>(segment));
         ends[0] = ends[1] = zero;
         if constexpr (kMoving) {
-            const auto end = [&](const float* time) HWY_ATTR {
-                return hn::Min(hn::Max(hn::LoadU(kTag, time) * knots - start, zero), one);
-            };
-            ends[0] = end(times.t0);
-            ends[1] = hn::Max(ends[0], end(times.t1));
-        }
-        if (segments.count > 1) {
-            ends[0] = zero;
-            ends[1] = set(static_cast<float>(segments.count));
+            ends[0] = hn::Min(hn::Max(first * knots - start, zero), one);
+            ends[1] = hn::Max(ends[0], hn::Min(hn::Max(last * knots - start, zero), one));
         }
         time0 = (ends[0] + start) / knots;
         time1 = (ends[1] + start) / knots;
     }
 };
 
-/// All of several segments, or as much as the grid exists for.
-HWY_INLINE void store_times(const SimdGrid& grid, Segments segments, BlockRanges& out) {
-    const V knots = set(static_cast<float>(grid.segments));
-    const V begin = set(static_cast<float>(segments.first));
-    const V end = set(static_cast<float>(segments.first + segments.count));
-    hn::StoreU(hn::Max(begin / knots, set(grid.lifespan.open)), kTag, out.t0);
-    hn::StoreU(hn::Min(end / knots, set(grid.lifespan.close)), kTag, out.t1);
-}
-
-/// A grid over the ranks of a tile.
-class RankPathFinder {
+/// A grid over the strata of a tile.
+class StratumPathFinder {
   public:
     /// Squares of the hierarchical depth in a row that are looked at: what a micropolygon needs,
     /// and all that a tile has.
     static constexpr int kFewSquares = 2, kAllSquares = 4;
 
-    RankPathFinder(const SimdGrid& grid, const SimdTile& tile) : m_grid(grid), m_tile(tile) {}
+    StratumPathFinder(const SimdGrid& grid, const SimdTile& tile) : m_grid(grid), m_tile(tile) {}
 
-    /// The paths of the micropolygons from `vertex` on between the times at which they are over the
-    /// tile (TileBounds::find_times).
+    /// The micropolygons whose corner 0 is at `vertex`, all of which are over the tile when `part`
+    /// says: their corners.
     template <bool kMoving, Lens kLens>
-    HWY_INLINE void find_paths(int segment, int vertex, const BlockRanges& times,
-                               TilePaths& out) const {
-        const SegmentPart<kMoving> part(m_grid, {segment, 1}, times);
-        const std::size_t knot = static_cast<std::size_t>(segment) * m_grid.vertices;
-        PathExtents<kMoving, kLens> extents(hn::FirstN(kTag, kPacket));
-        for (const int corner : {vertex, vertex + m_grid.right, vertex + m_grid.up,
-                                 vertex + m_grid.up + m_grid.right}) {
-            const std::size_t a = knot + static_cast<std::size_t>(corner);
-            const Corner<V> begin = load_corner(m_grid, a);
+    HWY_INLINE void add_corners(int segment, int vertex, const SegmentPart<kMoving>& part,
+                                SweptBounds<kMoving, kLens>& to) const {
+        for_each_corner(m_grid, segment, vertex, [&](std::size_t i) HWY_ATTR {
+            const Corner<V> begin = load_corner(m_grid, i);
             Corner<V> delta = begin;
             if constexpr (kMoving)
                 delta = from_to(begin,
-                                load_corner(m_grid, a + static_cast<std::size_t>(m_grid.vertices)));
-            extents.add(m_grid, begin, delta, part.ends);
+                                load_corner(m_grid, i + static_cast<std::size_t>(m_grid.vertices)));
+            to.add(m_grid, begin, delta, part.ends);
+        });
+    }
+
+    /// The paths of micropolygons, and which of `present` are over the tile.
+    template <bool kMoving, Lens kLens>
+    HWY_INLINE M find_paths(int segment, int vertex, M present, TilePaths& out) const {
+        V first = set(0.0f), last = first;
+        if constexpr (kMoving) {
+            present = hn::And(present, find_times<kLens>(m_grid, segment, vertex, first, last));
+            if (hn::AllFalse(kTag, present)) return present;
         }
+        const SegmentPart<kMoving> part(m_grid, segment, first, last);
+        SweptBounds<kMoving, kLens> extents(hn::FirstN(kTag, kPacket));
+        add_corners(segment, vertex, part, extents);
         store_paths(extents, part, out);
+        if constexpr (kMoving) {
+            hn::StoreU(first, kTag, out.t0);
+            hn::StoreU(last, kTag, out.t1);
+            return present;
+        }
+        return hn::And(present, find_touching(extents, out));
+    }
+
+    /// Which of those that do not move touch the tile, and which blocks.
+    template <bool kMoving, Lens kLens, class Out>
+    HWY_INLINE M find_touching(const SweptBounds<kMoving, kLens>& extents, Out& out) const {
+        Box box = extents.box();
+        if constexpr (kLens != Lens::None) {
+            const Shear shear = shear_of<kLens>(extents.lens, set(m_grid.inverse_farthest),
+                                                set(m_grid.inverse_focus));
+            const V u = set(m_grid.lens_x), v = set(m_grid.lens_y);
+            add_lens(shear, hn::Neg(u), u, box.x_lo, box.x_hi);
+            add_lens(shear, hn::Neg(v), v, box.y_lo, box.y_hi);
+        }
+        widen_unknown(extents.sane, box);
+        return store_blocks(m_tile, box, out);
     }
 
     /// Of what has these extents, a vector of things.
     template <bool kMoving, Lens kLens>
-    HWY_INLINE void store_paths(const PathExtents<kMoving, kLens>& extents,
+    HWY_INLINE void store_paths(const SweptBounds<kMoving, kLens>& extents,
                                 const SegmentPart<kMoving>& part, TilePaths& out) const {
         M straight = extents.sane;
         const auto axis = [&](const Extent& at, V bend, TilePaths::Axis& to) HWY_ATTR {
@@ -118,19 +134,19 @@ class RankPathFinder {
             hn::StoreU(extents.lens.reciprocal.lo[0], kTag, out.reciprocal_lo);
             hn::StoreU(extents.lens.reciprocal.hi[0], kTag, out.reciprocal_hi);
         }
-        hn::StoreU(extents.z_lo, kTag, out.z_lo);
+        hn::StoreU(extents.nearest_key(m_grid.range.perspective), kTag, out.nearest);
         out.straight = bits_of(straight);
     }
 
-    /// The part of a straight path, `lane` of find_paths(), that the samples of each of these ranks
-    /// can see, and which of the ranks have any that do not see something nearer.
+    /// The part of a straight path, `lane` of find_paths(), that the samples of each of these
+    /// strata can see, and which of the strata have any that do not see something nearer.
     template <bool kMoving, Lens kLens, int kSquares = kFewSquares>
-    HWY_INLINE M follow(const TilePaths& paths, int lane, Segments segments, int first, bool cull,
-                        RankPaths& out) const {
-        const RankBounds& bounds = *m_tile.bounds;
-        const V t_lo = rank(bounds.t_lo, first), t_hi = rank(bounds.t_hi, first);
+    HWY_INLINE M follow(const TilePaths& paths, int lane, int segment, int first, bool cull,
+                        StratumPaths& out) const {
+        const StratumBounds& bounds = *m_tile.bounds;
+        const V t_lo = stratum(bounds.t_lo, first), t_hi = stratum(bounds.t_hi, first);
         M present = hn::Le(t_lo, t_hi);
-        if constexpr (kMoving) present = hn::And(present, in_segments(t_lo, t_hi, segments));
+        if constexpr (kMoving) present = hn::And(present, in_segment(t_lo, t_hi, segment));
         LensExtents lens;
         if constexpr (kLens == Lens::Still) {
             lens.shear.lo[0] = set(paths.shear_lo[lane]);
@@ -145,7 +161,7 @@ class RankPathFinder {
         const Shear shear = shear_of<kLens>(lens, first);
         Box box;
         const auto axis = [&](const TilePaths::Axis& path, const std::vector<float>& lens_lo,
-                              const std::vector<float>& lens_hi, RankPaths::Axis& to, V& lo,
+                              const std::vector<float>& lens_hi, StratumPaths::Axis& to, V& lo,
                               V& hi) HWY_ATTR {
             const V place = set(path.place[lane]), speed = set(path.speed[lane]);
             V reach = set(path.reach[lane]), a = place, b = place;
@@ -156,76 +172,76 @@ class RankPathFinder {
             }
             lo = hn::Min(a, b) - reach;
             hi = hn::Max(a, b) + reach;
-            if constexpr (kLens != Lens::None)
-                add_lens(shear, rank(lens_lo, first), rank(lens_hi, first), reach, lo, hi);
+            if constexpr (kLens != Lens::None) {
+                const V u_lo = stratum(lens_lo, first), u_hi = stratum(lens_hi, first);
+                add_lens(shear, u_lo, u_hi, lo, hi);
+                reach = reach + lens_rest(shear, u_lo, u_hi);
+            }
             hn::StoreU(place, kTag, to.place);
             hn::StoreU(reach, kTag, to.reach);
         };
         axis(paths.x, bounds.u_lo, bounds.u_hi, out.x, box.x_lo, box.x_hi);
         axis(paths.y, bounds.v_lo, bounds.v_hi, out.y, box.y_lo, box.y_hi);
         store_shear<kLens>(shear, present, out);
-        return find_blocks<kSquares>(present, box, set(paths.z_lo[lane]), first, cull, out);
+        return find_blocks<kSquares>(present, box, set(paths.nearest[lane]), first, cull, out);
     }
 
-    /// The same by where the micropolygon is during each of the ranks: for paths that are bent.
+    /// The same by where the micropolygon is during each of the strata: for paths that are bent.
     template <bool kMoving, Lens kLens>
-    HWY_INLINE M find(const Shape& shape, int segment, int first, bool cull, RankPaths& out) const {
-        const RankBounds& bounds = *m_tile.bounds;
+    HWY_INLINE M find(const Shape& shape, int segment, int first, bool cull,
+                      StratumPaths& out) const {
+        const StratumBounds& bounds = *m_tile.bounds;
         const V zero = set(0.0f), one = set(1.0f);
-        const V t_lo = rank(bounds.t_lo, first), t_hi = rank(bounds.t_hi, first);
+        const V t_lo = stratum(bounds.t_lo, first), t_hi = stratum(bounds.t_hi, first);
         M present = hn::Le(t_lo, t_hi);
         const V knots = set(static_cast<float>(std::max(1, m_grid.segments)));
         const V start = set(static_cast<float>(segment));
         V ends[2] = {zero, zero};
         if constexpr (kMoving) {
-            present = hn::And(present, in_segments(t_lo, t_hi, {segment, 1}));
+            present = hn::And(present, in_segment(t_lo, t_hi, segment));
             ends[0] = hn::Max(t_lo * knots - start, zero);
             ends[1] = hn::Min(t_hi * knots - start, one);
         }
-        PathExtents<kMoving, kLens> extents(present);
-        for (int k = 0; k < 4; ++k)
-            extents.add(m_grid, shape.begin_of(k), shape.delta_of(k), ends);
+        SweptBounds<kMoving, kLens> extents(present);
+        for (int k = 0; k < 4; ++k) extents.add(m_grid, shape.begin_of(k), shape.delta_of(k), ends);
         const V time0 = (ends[0] + start) / knots, time1 = (ends[1] + start) / knots;
         const Shear shear = shear_of<kLens>(extents.lens, first);
-        M sane = extents.sane;
-        Box box;
+        Box box = extents.box();
+        if constexpr (kLens != Lens::None) {
+            add_lens(shear, stratum(bounds.u_lo, first), stratum(bounds.u_hi, first), box.x_lo,
+                     box.x_hi);
+            add_lens(shear, stratum(bounds.v_lo, first), stratum(bounds.v_hi, first), box.y_lo,
+                     box.y_hi);
+        }
+        // At or behind the eye plane: anywhere.
+        const M known = widen_unknown(extents.sane, box);
         const auto axis = [&](const Extent& at, V bend, const std::vector<float>& lens_lo,
-                              const std::vector<float>& lens_hi, RankPaths::Axis& to, V& lo,
-                              V& hi) HWY_ATTR {
+                              const std::vector<float>& lens_hi, StratumPaths::Axis& to) HWY_ATTR {
             const StraightPath path = extents.straight(at, bend, time0, time1);
             V reach = path.reach + extents.margin;
-            lo = at.lo[0];
-            hi = at.hi[0];
-            if constexpr (kMoving) {
-                lo = hn::Min(lo, at.lo[1]);
-                hi = hn::Max(hi, at.hi[1]);
-                hn::StoreU(hn::IfThenElseZero(sane, path.speed), kTag, to.speed);
-            }
-            lo = lo - extents.margin;
-            hi = hi + extents.margin;
             if constexpr (kLens != Lens::None)
-                add_lens(shear, rank(lens_lo, first), rank(lens_hi, first), reach, lo, hi);
-            sane = hn::And(sane, hn::Lt(reach + hn::Abs(lo) + hn::Abs(hi), set(1e15f)));
-            hn::StoreU(path.place, kTag, to.place);
-            hn::StoreU(reach, kTag, to.reach);
+                reach = reach + lens_rest(shear, stratum(lens_lo, first), stratum(lens_hi, first));
+            if constexpr (kMoving)
+                hn::StoreU(hn::IfThenElseZero(known, path.speed), kTag, to.speed);
+            hn::StoreU(hn::IfThenElseZero(known, path.place), kTag, to.place);
+            hn::StoreU(hn::IfThenElse(known, reach, set(INFINITY)), kTag, to.reach);
         };
-        axis(extents.x, extents.bend_x, bounds.u_lo, bounds.u_hi, out.x, box.x_lo, box.x_hi);
-        axis(extents.y, extents.bend_y, bounds.v_lo, bounds.v_hi, out.y, box.y_lo, box.y_hi);
-        store_shear<kLens>(shear, sane, out);
-        if (HWY_UNLIKELY(!hn::AllTrue(kTag, hn::Or(sane, hn::Not(present))))) {
-            // At or behind the eye plane: anywhere.
-            const V never = set(INFINITY);
-            for (RankPaths::Axis* to : {&out.x, &out.y}) {
-                hn::StoreU(hn::IfThenElseZero(sane, hn::LoadU(kTag, to->place)), kTag, to->place);
-                hn::StoreU(hn::IfThenElse(sane, hn::LoadU(kTag, to->reach), never), kTag,
-                           to->reach);
-            }
-            box.x_lo = hn::IfThenElse(sane, box.x_lo, hn::Neg(never));
-            box.y_lo = hn::IfThenElse(sane, box.y_lo, hn::Neg(never));
-            box.x_hi = hn::IfThenElse(sane, box.x_hi, never);
-            box.y_hi = hn::IfThenElse(sane, box.y_hi, never);
-        }
-        return find_blocks<kFewSquares>(present, box, extents.z_lo, first, cull, out);
+        axis(extents.x, extents.bend_x, bounds.u_lo, bounds.u_hi, out.x);
+        axis(extents.y, extents.bend_y, bounds.v_lo, bounds.v_hi, out.y);
+        store_shear<kLens>(shear, known, out);
+        return find_blocks<kFewSquares>(present, box, extents.nearest_key(m_grid.range.perspective),
+                                        first, cull, out);
+    }
+
+    /// Strata [first, end) may look while the micropolygon of this lane is over the tile.
+    void find_strata(const TilePaths& paths, int lane, int& first, int& end) const {
+        const auto slab = [](float t) {
+            constexpr int kSlabs = StratumBounds::kSlabs;
+            return static_cast<int>(
+                std::min(std::max(t * static_cast<float>(kSlabs), 0.0f), kSlabs - 1.0f));
+        };
+        first = m_tile.bounds->first[slab(paths.t0[lane])];
+        end = m_tile.bounds->end[slab(paths.t1[lane])];
     }
 
     /// What a lens coordinate of 1 shifts by: from lo to hi, and within `rest` of middle + depth /
@@ -254,47 +270,46 @@ class RankPathFinder {
     }
 
   private:
-    /// Paths that bend more are looked at rank by rank, pixels.
+    /// Paths that bend more are looked at stratum by stratum, pixels.
     static constexpr float kMostBend = 0.125f;
 
-    struct Box {
-        V x_lo, x_hi, y_lo, y_hi;
-    };
-
-    static HWY_INLINE V rank(const std::vector<float>& values, int first) {
+    static HWY_INLINE V stratum(const std::vector<float>& values, int first) {
         return hn::LoadU(kTag, values.data() + first);
     }
-    /// Which of these intervals of time touch the segments.
-    HWY_INLINE M in_segments(V t_lo, V t_hi, Segments segments) const {
+    /// Which of these intervals of time touch the segment.
+    HWY_INLINE M in_segment(V t_lo, V t_hi, int segment) const {
         const V knots = set(static_cast<float>(m_grid.segments));
-        const V start = set(static_cast<float>(segments.first));
+        const V start = set(static_cast<float>(segment));
         return hn::And(hn::Ge(t_hi * knots - start, set(0.0f)),
-                       hn::Le(t_lo * knots - start, set(static_cast<float>(segments.count))));
+                       hn::Le(t_lo * knots - start, set(1.0f)));
     }
 
-    /// At the times of ranks.
+    /// At the times of strata.
     template <Lens kLens>
     HWY_INLINE Shear shear_of(const LensExtents& lens, int first) const {
         V far = set(0.0f), near = far;
         if constexpr (kLens == Lens::Refocused) {
-            far = rank(m_tile.bounds->focus_lo, first);
-            near = rank(m_tile.bounds->focus_hi, first);
+            far = stratum(m_tile.bounds->focus_lo, first);
+            near = stratum(m_tile.bounds->focus_hi, first);
         }
         return shear_of<kLens>(lens, far, near);
     }
 
     /// Shears what is bounded by lens coordinates from u_lo to u_hi.
-    static HWY_INLINE void add_lens(const Shear& shear, V u_lo, V u_hi, V& reach, V& lo, V& hi) {
-        reach = reach + hn::Max(hn::Abs(u_lo), hn::Abs(u_hi)) * shear.rest;
+    static HWY_INLINE void add_lens(const Shear& shear, V u_lo, V u_hi, V& lo, V& hi) {
         const V a = shear.lo * u_lo, b = shear.lo * u_hi;
         const V c = shear.hi * u_lo, d = shear.hi * u_hi;
         lo = lo + hn::Min(hn::Min(a, b), hn::Min(c, d));
         hi = hi + hn::Max(hn::Max(a, b), hn::Max(c, d));
     }
+    /// How far that may be from what a sample's own shear says.
+    static HWY_INLINE V lens_rest(const Shear& shear, V u_lo, V u_hi) {
+        return hn::Max(hn::Abs(u_lo), hn::Abs(u_hi)) * shear.rest;
+    }
 
     /// 0 where not `known`.
     template <Lens kLens>
-    static HWY_INLINE void store_shear(const Shear& shear, M known, RankPaths& out) {
+    static HWY_INLINE void store_shear(const Shear& shear, M known, StratumPaths& out) {
         if constexpr (kLens != Lens::None)
             hn::StoreU(hn::IfThenElseZero(known, shear.middle), kTag, out.shear);
         if constexpr (kLens == Lens::Refocused)
@@ -302,23 +317,17 @@ class RankPathFinder {
     }
 
     template <int kSquares>
-    HWY_INLINE M find_blocks(M present, const Box& box, V z_lo, int first, bool cull,
-                             RankPaths& out) const {
-        present =
-            hn::And(present, store_blocks(m_tile, box.x_lo, box.x_hi, box.y_lo, box.y_hi, out));
+    HWY_INLINE M find_blocks(M present, const Box& box, V nearest, int first, bool cull,
+                             StratumPaths& out) const {
+        present = hn::And(present, store_blocks(m_tile, box, out));
         if (!cull || hn::AllFalse(kTag, present)) return present;
-        // The key of a sample may round a few ulp past the nearest corner's.
-        V nearest = hn::Neg(z_lo);
-        if (m_grid.range.perspective)
-            nearest = hn::IfThenElse(hn::Gt(z_lo, set(0.0f)), set(1.0f) / z_lo, set(INFINITY));
-        return hn::AndNot(hidden<kSquares>(nearest + hn::Abs(nearest) * set(0x1p-18f), first, out),
-                          present);
+        return hn::AndNot(hidden<kSquares>(nearest, first, out), present);
     }
 
     /// Whether all samples of the blocks see something nearer, by the hierarchical depth of the
-    /// ranks; only where the blocks lie in at most kSquares by kSquares of its squares.
+    /// strata; only where the blocks lie in at most kSquares by kSquares of its squares.
     template <int kSquares>
-    HWY_INLINE M hidden(V nearest, int first, const RankPaths& blocks) const {
+    HWY_INLINE M hidden(V nearest, int first, const StratumPaths& blocks) const {
         const auto square = [&](const int* block) HWY_ATTR {
             return hn::ShiftRightSame(hn::LoadU(kIntTag, block), m_tile.square_shift);
         };
@@ -327,7 +336,7 @@ class RankPathFinder {
         const auto most = hn::Set(kIntTag, kSquares);
         const auto few = hn::And(hn::Lt(x1 - x0, most), hn::Lt(y1 - y0, most));
         const auto wide = hn::Set(kIntTag, m_tile.squares_wide);
-        const auto ranks = hn::Set(kIntTag, m_tile.ranks);
+        const auto strata = hn::Set(kIntTag, m_tile.strata);
         // Lanes without blocks may lie outside.
         const auto safe = hn::Set(kIntTag, 0), last = wide - hn::Set(kIntTag, 1);
         V least = set(INFINITY);
@@ -338,8 +347,8 @@ class RankPathFinder {
                 x = hn::Min(hn::Max(x, safe), last);
                 y = hn::Min(hn::Max(y, safe), last);
                 least =
-                    hn::Min(least, hn::GatherIndex(kTag, m_tile.farthest_of_ranks + first,
-                                                   (y * wide + x) * ranks + hn::Iota(kIntTag, 0)));
+                    hn::Min(least, hn::GatherIndex(kTag, m_tile.farthest_of_strata + first,
+                                                   (y * wide + x) * strata + hn::Iota(kIntTag, 0)));
             }
         return hn::And(hn::RebindMask(kTag, few), hn::Lt(nearest, least));
     }

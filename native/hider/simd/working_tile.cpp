@@ -8,7 +8,7 @@
 namespace granita {
 
 void WorkingTile::begin(const TileSamples& samples, const Rect& pixels, Vec2f lens,
-                        const OrderShape& shape, SlabMemory& memory) {
+                        const OrderShape& shape, Arena& memory) {
     m_pixels = pixels;
     m_lens = lens;
     m_memory = &memory;
@@ -44,7 +44,8 @@ void WorkingTile::arrange(const TileSamples& samples, const OrderShape& shape) {
     copy(samples.u, m_lens.x, kNowhere, m_u);
     copy(samples.v, m_lens.y, kNowhere, m_v);
     copy(samples.inverse_focus, 1.0f, kNowhere, m_inverse_focus);
-    if (m_order.shape().ranked) m_bounds = bound_ranks(m_order, m_t, m_u, m_v, m_inverse_focus);
+    if (m_order.shape().stratified)
+        m_bounds = bound_strata(m_order, m_t, m_u, m_v, m_inverse_focus);
 }
 
 void WorkingTile::reorder(const TileSamples& samples, const OrderShape& shape) {
@@ -85,15 +86,15 @@ SimdTile WorkingTile::view() {
     tile.inverse_focus = m_inverse_focus.data();
     tile.key = m_key.data();
     tile.id = m_id.data();
-    tile.ranked = m_order.shape().ranked;
+    tile.stratified = m_order.shape().stratified;
     tile.blocks_wide = m_order.blocks_wide();
-    tile.ranks = m_order.ranks();
-    tile.rank_stride = static_cast<int>(m_order.rank_stride());
+    tile.strata = m_order.strata();
+    tile.stratum_stride = static_cast<int>(m_order.stratum_stride());
     tile.packets = m_order.packets().data();
     tile.bounds = &m_bounds;
     tile.farthest_of_packets = m_depth.farthest_of_packets();
-    tile.farthest_of_ranks = m_depth.farthest_of_ranks();
-    tile.nearest_of_ranks = m_depth.nearest_of_ranks();
+    tile.farthest_of_strata = m_depth.farthest_of_strata();
+    tile.nearest_of_strata = m_depth.nearest_of_strata();
     tile.square_shift = m_depth.square_shift();
     tile.squares_wide = m_depth.squares_wide();
     return tile;

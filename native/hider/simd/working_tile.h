@@ -23,7 +23,7 @@ class WorkingTile {
     /// The samples stay where they are, and may get times, until store_surfaces(); `memory`, of the
     /// lists, longer than these.
     void begin(const TileSamples& samples, const Rect& pixels, Vec2f lens, const OrderShape& shape,
-               SlabMemory& memory);
+               Arena& memory);
 
     const OrderShape& shape() const { return m_order.shape(); }
     /// Another order of the samples; what was seen moves along.
@@ -80,8 +80,8 @@ class WorkingTile {
     std::vector<float> m_x, m_y, m_t, m_u, m_v;  ///< unless the order is the table's
     std::vector<float> m_inverse_focus, m_key;
     std::vector<SurfaceId> m_id;
-    RankBounds m_bounds;
-    SlabMemory* m_memory = nullptr;
+    StratumBounds m_bounds;
+    Arena* m_memory = nullptr;
     int m_misses = 0;                                     ///< since a sample saw something
     int m_grids_since = 0;                                ///< end_lists() looked at the lists
     std::uint64_t m_fragments = 0, m_fragments_then = 0;  ///< now, at most; and that were left

@@ -4,14 +4,13 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "math/sampling.h"
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {
 
 namespace {
-
-constexpr float kPi = 3.14159265358979f;
 
 VectorSource coordinate(NodeBuilder& b) {
     return b.linked("Vector") ? b.vector("Vector") : generated_at(b, b.shift());

@@ -63,26 +63,41 @@ void build_color_ramp(NodeBuilder& b) {
                                    factor));
 }
 
-void build_rgb_curves(NodeBuilder& b) {
+namespace {
+
+/// Three curves, over the components of the input `name`.
+VectorSource three_curves(NodeBuilder& b, const VectorSource& input) {
     const Table table = std::make_shared<const std::vector<float>>(b.table("curves"));
-    const VectorSource color = b.color("Color");
     if (table->size() < 6) {
         b.warn("has no curves; rendered unchanged");
-        b.output_color("Color", color);
-        return;
+        return input;
     }
     const auto low = static_cast<float>(b.value("low", 0.0));
     const auto range = static_cast<float>(b.value("high", 1.0)) - low;
-    b.output_color("Color", b.map<Vec3f>(
-                                [=](float factor, const Vec3f& c) {
-                                    Vec3f out;
-                                    for (int i = 0; i < 3; ++i) {
-                                        const float place = (c[i] - low) / range;
-                                        out[i] = look_up_extended(*table, 3, i, place);
-                                    }
-                                    return c * (1.0f - factor) + out * factor;
-                                },
-                                b.number("Fac", 1.0f), color));
+    return b.map<Vec3f>(
+        [=](float factor, const Vec3f& c) {
+            Vec3f out;
+            for (int i = 0; i < 3; ++i)
+                out[i] = look_up_extended(*table, 3, i, (c[i] - low) / range);
+            return c * (1.0f - factor) + out * factor;
+        },
+        b.number("Fac", 1.0f), input);
+}
+
+}  // namespace
+
+void build_rgb_curves(NodeBuilder& b) {
+    b.output_color("Color", three_curves(b, b.color("Color")));
+}
+
+void build_vector_curves(NodeBuilder& b) {
+    b.output_vector("Vector", three_curves(b, b.vector("Vector")));
+}
+
+void build_float_curve(NodeBuilder& b) {
+    const VectorSource curve =
+        three_curves(b, b.map<Vec3f>([](float x) { return Vec3f(x); }, b.number("Value", 1.0f)));
+    b.output("Value", b.map<float>([](const Vec3f& v) { return v.x; }, curve));
 }
 
 }  // namespace granita

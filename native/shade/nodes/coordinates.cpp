@@ -2,7 +2,10 @@
 // Where a point is: UV Map, Texture Coordinate, Geometry and Camera Data.
 #include "shade/nodes/coordinates.h"
 
+#include "shade/nodes/instance_value.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/tangent.h"
+#include "shade/random_per_island.h"
 #include "shade/shading_points.h"
 
 namespace granita {
@@ -67,14 +70,18 @@ VectorSource uv_at(NodeBuilder& b, const std::string& name, Shift shift) {
 }
 
 void build_uv_map(NodeBuilder& b) {
-    b.output_vector("UV", uv_at(b, b.text("uv_map"), b.shift()));
+    b.output_vector("UV", b.flag("from_instancer") ? instance_value(b, "INSTANCER UV").color
+                                                   : uv_at(b, b.text("uv_map"), b.shift()));
 }
 
 void build_texture_coordinate(NodeBuilder& b) {
     const FrameCamera camera(b.scene());
     const VectorSource position = position_at(b, b.shift());
-    b.output_vector("Generated", generated_at(b, b.shift()));
-    b.output_vector("UV", uv_at(b, "", b.shift()));
+    const bool on_instancer = b.flag("from_instancer") && !b.is_world();
+    b.output_vector("Generated", on_instancer ? instance_value(b, "INSTANCER GENERATED").color
+                                              : generated_at(b, b.shift()));
+    b.output_vector(
+        "UV", on_instancer ? instance_value(b, "INSTANCER UV").color : uv_at(b, "", b.shift()));
     b.output_vector("Normal", object_normal(b));
     b.output_vector("Object", b.is_world()
                                   ? position
@@ -126,13 +133,12 @@ void build_geometry(NodeBuilder& b) {
     b.output("Backfacing", b.geometry<float>([](const ShadingInput& in, std::size_t i) {
         return in.points->backfacing[i] ? 1.0f : 0.0f;
     }));
-    b.output_vector("Tangent", b.geometry<Vec3f>([](const ShadingInput& in, std::size_t i) {
-        return unit(in.points->dp_du[i]);
-    }));
+    b.output_vector("Tangent", radial_tangent(b, RadialAxis::Z));
+    // The exporter says so where a link asks for these two.
     b.output_vector("Parametric", {-1, Vec3f(0.0f)});
-    // What Cycles gives for meshes without these attributes.
     b.output("Pointiness", FloatSource{-1, 0.5f});
-    b.output("Random Per Island", FloatSource{-1, 0.0f});
+    b.output("Random Per Island",
+             b.attribute_component({AttributeSource::Named, kIslandAttribute, 1}, 0));
 }
 
 void build_camera_data(NodeBuilder& b) {

@@ -2,7 +2,7 @@
 // Coordinates that textures use when nothing is linked.
 #pragma once
 
-#include "shade/node_builder.h"
+#include "shade/programs/node_builder.h"
 
 namespace granita {
 
@@ -11,6 +11,9 @@ VectorSource position_at(NodeBuilder& b, Shift shift);
 VectorSource generated_at(NodeBuilder& b, Shift shift);
 /// An empty name: the UV map that is active for render.
 VectorSource uv_at(NodeBuilder& b, const std::string& name, Shift shift);
+/// Unit, along growing u of a map on the surface as modelled; its first derivative where it has
+/// none.
+VectorSource uv_tangent(NodeBuilder& b, const std::string& name);
 /// The shading normal in object space, unit.
 VectorSource object_normal(NodeBuilder& b);
 

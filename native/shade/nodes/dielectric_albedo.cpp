@@ -5,8 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "math/sampling.h"
 #include "math/vec.h"
-#include "shade/fresnel.h"
+#include "shade/bsdf/fresnel.h"
 
 namespace granita {
 
@@ -14,7 +15,6 @@ namespace {
 
 constexpr int kSize = 16;  // entries along each axis
 constexpr int kSide = 16;  // kSide^2 quadrature points an entry
-constexpr float kPi = 3.14159265358979f;
 
 /// The table's third axis: sqrt(|f0|) up to ior 7 and down to 1/7.
 float ior_axis(float ior) {
@@ -100,11 +100,6 @@ struct Table {
 };
 
 }  // namespace
-
-float f0_from_ior(float ior) {
-    const float ratio = (ior - 1.0f) / (ior + 1.0f);
-    return ratio * ratio;
-}
 
 float ior_from_f0(float f0) {
     const float root = std::sqrt(std::clamp(f0, 0.0f, 0.99f));

@@ -6,7 +6,6 @@
 
 namespace granita {
 
-float f0_from_ior(float ior);
 float ior_from_f0(float f0);
 
 /// The mean over GGX's visible normals (Heitz 2018), weighted by their masking.  From a table made

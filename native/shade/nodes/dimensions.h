@@ -5,7 +5,7 @@
 #include <string>
 #include <type_traits>
 
-#include "shade/node_builder.h"
+#include "shade/programs/node_builder.h"
 
 namespace granita {
 

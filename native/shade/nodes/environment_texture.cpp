@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/sampling.h"
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {
 
 namespace {
-
-constexpr float kPi = 3.14159265358979f;
 
 Vec2f project_equirectangular(const Vec3f& d) {
     return {-std::atan2(d.y, d.x) / (2.0f * kPi) + 0.5f,

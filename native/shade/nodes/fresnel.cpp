@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fresnel and Layer Weight: how much a surface turns its edge to the viewer.
-#include "shade/fresnel.h"
+#include "shade/bsdf/fresnel.h"
 
 #include <algorithm>
 #include <cmath>

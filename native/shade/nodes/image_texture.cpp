@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/sampling.h"
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {
 
 namespace {
-
-constexpr float kPi = 3.14159265358979f;
 
 /// A place on the unit sphere around the middle of the unit cube, as longitude and latitude.
 Vec2f project_sphere(const Vec3f& coordinate) {
@@ -85,15 +84,18 @@ TextureMode texture_mode(NodeBuilder& b) {
     return mode;
 }
 
+/// Where the texture is read, and the point with its neighbours, whose differences are the edges of
+/// the area that one read stands for: the same at each shift, or a bump would take differences of
+/// filters for slopes.
 struct Footprint {
-    VectorSource center, along_u, along_v;
+    VectorSource center, point, next_u, next_v;
 };
 
 Footprint footprint(NodeBuilder& b) {
     const auto at = [&](Shift shift) {
         return b.linked("Vector") ? b.vector_at("Vector", shift) : uv_at(b, "", shift);
     };
-    return {at(b.shift()), at(Shift::U), at(Shift::V)};
+    return {at(b.shift()), at(Shift::None), at(Shift::U), at(Shift::V)};
 }
 
 }  // namespace
@@ -112,23 +114,27 @@ void build_image_texture(NodeBuilder& b) {
     const Footprint print = footprint(b);
     const VectorSource color = b.new_source<Vec3f>();
     const FloatSource alpha = b.new_source<float>();
-    const std::vector<int> reads = {print.center.slot, print.along_u.slot, print.along_v.slot};
+    std::vector<int> reads = {print.center.slot, print.point.slot, print.next_u.slot,
+                              print.next_v.slot};
 
     if (projection == "BOX") {
         const auto blend = static_cast<float>(b.value("projection_blend"));
         const VectorSource normal = object_normal(b);
+        reads.push_back(normal.slot);
         b.add_step(
             [=](Run& run) {
                 const std::size_t n = run.count();
-                const auto p = run.read(print.center), u = run.read(print.along_u),
-                           v = run.read(print.along_v), normals = run.read(normal);
+                const auto at = run.read(print.center), p = run.read(print.point),
+                           u = run.read(print.next_u), v = run.read(print.next_v),
+                           normals = run.read(normal);
                 std::vector<Vec4f> sum(n, Vec4f(0.0f)), texels;
                 std::vector<TexturePlace> places(n);
                 for (int axis = 0; axis < 3; ++axis) {
                     for (std::size_t i = 0; i < n; ++i) {
-                        const Vec2f center = box_plane(axis, p[i], normals[i]);
-                        places[i] = {center, box_plane(axis, u[i], normals[i]) - center,
-                                     box_plane(axis, v[i], normals[i]) - center};
+                        const Vec2f point = box_plane(axis, p[i], normals[i]);
+                        places[i] = {box_plane(axis, at[i], normals[i]),
+                                     box_plane(axis, u[i], normals[i]) - point,
+                                     box_plane(axis, v[i], normals[i]) - point};
                     }
                     texture->look_up(mode, places, texels);
                     for (std::size_t i = 0; i < n; ++i)
@@ -141,7 +147,7 @@ void build_image_texture(NodeBuilder& b) {
                     out_alpha[i] = sum[i].w;
                 }
             },
-            {reads[0], reads[1], reads[2], normal.slot}, {color.slot, alpha.slot});
+            reads, {color.slot, alpha.slot});
     } else {
         using Project = Vec2f (*)(const Vec3f&);
         const Project project = projection == "SPHERE" ? project_sphere
@@ -151,13 +157,13 @@ void build_image_texture(NodeBuilder& b) {
         b.add_step(
             [=](Run& run) {
                 const std::size_t n = run.count();
-                const auto p = run.read(print.center), u = run.read(print.along_u),
-                           v = run.read(print.along_v);
+                const auto at = run.read(print.center), p = run.read(print.point),
+                           u = run.read(print.next_u), v = run.read(print.next_v);
                 std::vector<TexturePlace> places(n);
                 for (std::size_t i = 0; i < n; ++i) {
-                    const Vec2f center = project(p[i]);
-                    places[i] = {center, edge(center, project(u[i]), seam),
-                                 edge(center, project(v[i]), seam)};
+                    const Vec2f point = project(p[i]);
+                    places[i] = {project(at[i]), edge(point, project(u[i]), seam),
+                                 edge(point, project(v[i]), seam)};
                 }
                 std::vector<Vec4f> texels;
                 texture->look_up(mode, places, texels);

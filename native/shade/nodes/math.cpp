@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "math/sampling.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/scalar_math.h"
 
@@ -14,8 +15,6 @@ namespace granita {
 namespace {
 
 using Operation = float (*)(float, float, float);
-
-constexpr float kPi = 3.14159265358979f;
 
 float compare(float a, float b, float c) {
     const float tolerance = std::max(c, std::numeric_limits<float>::epsilon());

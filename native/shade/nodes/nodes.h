@@ -2,7 +2,7 @@
 // The build functions of all nodes, one file a node or a family; node_registry.cpp names them.
 #pragma once
 
-#include "shade/surface_builder.h"
+#include "shade/programs/surface_builder.h"
 
 namespace granita {
 
@@ -61,5 +61,16 @@ void build_wave_texture(NodeBuilder&);
 void build_magic_texture(NodeBuilder&);
 void build_brick_texture(NodeBuilder&);
 void build_flat_texture(NodeBuilder&);
+void build_vector_curves(NodeBuilder&);
+void build_float_curve(NodeBuilder&);
+void build_vector_rotate(NodeBuilder&);
+void build_vector_transform(NodeBuilder&);
+void build_normal(NodeBuilder&);
+void build_tangent(NodeBuilder&);
+void build_blackbody(NodeBuilder&);
+void build_wavelength(NodeBuilder&);
+void build_unoccluded(NodeBuilder&);
+void build_unbevelled(NodeBuilder&);
+void build_plain_falloff(NodeBuilder&);
 
 }  // namespace granita

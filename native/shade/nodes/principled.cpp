@@ -12,17 +12,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shade/bsdf_albedo.h"
+#include "shade/bsdf/bsdf_albedo.h"
+#include "shade/bsdf/fresnel.h"
 #include "shade/nodes/dielectric_albedo.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/scalar_math.h"
 
 namespace granita {
 
 namespace {
 
-float saturate(float x) {
-    return std::clamp(x, 0.0f, 1.0f);
-}
 const Vec3f kOne(1.0f);
 
 /// A socket under its name of Blender 4; the exporter renames older ones.
@@ -41,6 +40,7 @@ void warn_about_left_out(NodeBuilder& b) {
 struct Common {
     FloatSource weight;  ///< alpha applied
     VectorSource base_color, normal;
+    VectorSource specular_normal;  ///< of glossy lobes
     FloatSource metallic, roughness, transmission, specular, ior;
     bool multiscatter = false;
 };
@@ -55,24 +55,26 @@ LobeSource glossy_lobe(const Common& c) {
     LobeSource lobe;
     lobe.kind = LobeKind::Glossy;
     lobe.multiscatter = c.multiscatter;
-    lobe.normal = c.normal;
+    lobe.normal = c.specular_normal;
     lobe.roughness = c.roughness;
     return lobe;
 }
 
-void add_coat(NodeBuilder& b, SurfaceBuilder& surface, const Common& c, float strength,
-              bool separable) {
+/// Before Blender 4 a quarter as strong and with Burley's long tails.
+void add_coat(NodeBuilder& b, SurfaceBuilder& surface, const Common& c, bool first_generation) {
     const FloatSource coat = b.number("Coat Weight");
     if (coat.is(0.0f)) return;
     LobeSource lobe = glossy_lobe(c);
     lobe.multiscatter = false;
-    lobe.separable_masking = separable;
+    lobe.separable_masking = first_generation;
+    if (first_generation) lobe.distribution = Distribution::Gtr1;
     lobe.fresnel = FresnelKind::Dielectric;
-    lobe.normal = b.normal_input("Coat Normal");
+    lobe.normal = b.specular_normal("Coat Normal");
     lobe.roughness = b.map<float>(saturate, b.number("Coat Roughness", 0.03f));
     lobe.ior = b.number("Coat IOR", 1.5f);
     lobe.f0 = b.map<Vec3f>([](float ior) { return Vec3f(f0_from_ior(ior)); }, lobe.ior);
     lobe.f90 = {-1, kOne};
+    const float strength = first_generation ? 0.25f : 1.0f;
     const FloatSource amount =
         b.map<float>([strength](float x) { return strength * std::max(x, 0.0f); }, coat);
     lobe.weight = scaled(b, {-1, kOne}, product(b, c.weight, amount));
@@ -83,6 +85,7 @@ void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common&
     LobeSource diffuse;
     diffuse.kind = LobeKind::Diffuse;
     diffuse.burley = true;
+    diffuse.cosine_bumps = true;
     diffuse.normal = c.normal;
     diffuse.roughness = c.roughness;
     diffuse.weight =
@@ -110,7 +113,7 @@ void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common&
     specular.f90 = {-1, kOne};
     specular.weight = scaled(b, {-1, kOne}, c.weight);
     if (!(c.specular.is(0.0f) && c.metallic.is(0.0f))) surface.add_lobe(specular);
-    add_coat(b, surface, c, 0.25f, true);
+    add_coat(b, surface, c, true);
 }
 
 /// Light that is reflected between microfacets meets Fresnel at each bounce (Kulla and Conty 2017):
@@ -168,7 +171,7 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common
             }
             return saturate(1.0f - std::max({albedo.x, albedo.y, albedo.z}));
         },
-        specular.f0, specular.ior, c.roughness, c.normal, b.view());
+        specular.f0, specular.ior, c.roughness, c.specular_normal, b.view());
     LobeSource diffuse;
     diffuse.kind = LobeKind::Diffuse;
     diffuse.normal = c.normal;
@@ -178,7 +181,7 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common
     const FloatSource opaque = b.map<float>([](float t) { return 1.0f - t; }, c.transmission);
     diffuse.weight = scaled(b, c.base_color, product(b, product(b, rest, opaque), below));
     surface.add_lobe(diffuse);
-    add_coat(b, surface, c, 1.0f, false);
+    add_coat(b, surface, c, false);
 }
 
 }  // namespace
@@ -196,7 +199,8 @@ void build_principled(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource
     const bool first = b.value("generation", 2) < 2;
     c.base_color = b.map<Vec3f>([](const Vec3f& v) { return glm::max(v, Vec3f(0.0f)); },
                                 b.color("Base Color", Vec3f(0.8f)));
-    c.normal = b.normal_input();
+    c.normal = b.diffuse_normal();
+    c.specular_normal = b.specular_normal();
     c.metallic = b.map<float>(saturate, b.number("Metallic"));
     c.roughness = b.map<float>(saturate, b.number("Roughness", 0.5f));
     c.transmission = b.map<float>(saturate, b.number("Transmission Weight"));

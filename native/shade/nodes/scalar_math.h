@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guarded operations shared by the Math and Vector Math nodes: undefined results are zero, as in
+// Guarded operations that nodes share: undefined results are zero, as in
 // Cycles.
 #pragma once
 
@@ -7,6 +7,11 @@
 #include <cmath>
 
 namespace granita {
+
+/// Into [0, 1]; what is no number becomes 0.
+inline float saturate(float x) {
+    return x > 0.0f ? std::min(x, 1.0f) : 0.0f;
+}
 
 inline float safe_divide(float a, float b) {
     return b != 0.0f ? a / b : 0.0f;

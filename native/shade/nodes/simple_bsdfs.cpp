@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Diffuse, Glossy and Transparent: one closure each.  They also stand for their unsupported kin
 // (node_registry.cpp).
-#include <algorithm>
-
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/scalar_math.h"
 
 namespace granita {
 
 namespace {
 
 FloatSource clamped_roughness(NodeBuilder& b, float fallback) {
-    return b.map<float>([](float x) { return std::clamp(x, 0.0f, 1.0f); },
-                        b.number("Roughness", fallback));
+    return b.map<float>(saturate, b.number("Roughness", fallback));
 }
 
 }  // namespace
@@ -21,7 +19,8 @@ void build_diffuse(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& w
     lobe.kind = LobeKind::Diffuse;
     lobe.f0 = b.color("Color", Vec3f(0.8f));
     lobe.weight = scaled(b, lobe.f0, weight);
-    lobe.normal = b.normal_input();
+    lobe.normal = b.diffuse_normal();
+    lobe.cosine_bumps = b.value("generation", 2) < 2;
     // Of the kin only Diffuse itself has a roughness that means Oren-Nayar's sigma.
     lobe.roughness = b.node().type == "ShaderNodeBsdfDiffuse" ? clamped_roughness(b, 0.0f)
                                                               : FloatSource{-1, 0.0f};
@@ -44,7 +43,7 @@ void build_glossy(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& we
     lobe.has_color = lobe.multiscatter;
     lobe.f0 = b.color("Color", Vec3f(0.8f));
     lobe.weight = scaled(b, lobe.f0, weight);
-    lobe.normal = b.normal_input();
+    lobe.normal = b.specular_normal();
     lobe.roughness = clamped_roughness(b, 0.5f);
     surface.add_lobe(lobe);
 }

@@ -140,30 +140,97 @@ TEST(Polygons, a_crossing_polygon_is_reported) {
     EXPECT_EQ(s.report.warnings()[0].datablock, "mesh 'Test'");
 }
 
-TEST(Polygons, a_quad_that_is_not_flat_is_bilinear) {
-    // z = k u v over the unit square, hard case 49: silhouette the square, z(.5, .5) = k / 4.
-    const float k = 32.0f, w = 64.0f;
-    DiceScene s(mesh({{0, 0, 0}, {w, 0, 0}, {w, w, k}, {0, w, 0}}, {4}, {0, 1, 2, 3}));
-    double silhouette = 0.0;
-    int seen = 0;
-    for (const auto& grid : s.grids()) {
-        for (const Vec3f& p : grid->positions) {
-            EXPECT_NEAR(p.z, k * (p.x / w) * (p.y / w), 1e-4);
-            if (p.x != 0.5f * w || p.y != 0.5f * w) continue;
-            EXPECT_NEAR(p.z, k / 4, 1e-5);
-            ++seen;
+/// A square of w pixels whose third corner is lifted by k: Blender cuts it to that corner, so that
+/// z = k min(x, y) / w.
+GeometryData bent_square(float w, float k) {
+    return mesh({{0, 0, 0}, {w, 0, 0}, {w, w, k}, {0, w, 0}}, {4}, {0, 1, 2, 3});
+}
+
+TEST(Polygons, a_quad_that_is_not_flat_is_two_triangles) {
+    // Bent by 4 and by 38 degrees; of several grids, of one, and of a few pixels.
+    for (const float w : {64.0f, 12.0f, 3.0f, 1.0f})
+        for (const float k : {w / 16, w / 2}) {
+            DiceScene s(bent_square(w, k));
+            const auto grids = s.grids();
+            EXPECT_NEAR(area(grids), w * std::sqrt(w * w + k * k), 1e-4 * w * w);
+            const Vec3f lower = glm::normalize(Vec3f(0, -k, w));
+            const Vec3f upper = glm::normalize(Vec3f(-k, 0, w));
+            const Vec3f crease = glm::normalize(lower + upper);
+            for (const auto& grid : grids) {
+                for (const Vec3f& p : grid->positions)
+                    EXPECT_NEAR(p.z, k * std::min(p.x, p.y) / w, 1e-5 * w);
+                const std::vector<Vec3f>& points = grid->shading_p();
+                for (std::size_t i = 0; i < grid->normal.size(); ++i) {
+                    const Vec3f& p = points[i];
+                    const Vec3f& n = grid->normal[i];
+                    if (std::abs(p.x - p.y) > 1e-3f)
+                        EXPECT_NEAR(glm::distance(n, p.x > p.y ? lower : upper), 0.0f, 1e-5f);
+                    else  // of one of them, or of both by area
+                        EXPECT_LT(std::min({glm::distance(n, lower), glm::distance(n, upper),
+                                            glm::distance(n, crease)}),
+                                  1e-5f);
+                }
+            }
         }
-        for (int m = 0; m < grid->micropolygon_count(); ++m) {
-            const Grid::Corners c = grid->corners(m);
-            const auto triangle = [&](int a, int b, int d) {
-                const Vec3d p(grid->positions[a]), q(grid->positions[b]), r(grid->positions[d]);
-                return 0.5 * glm::cross(q - p, r - p).z;
-            };
-            silhouette += triangle(c.v0, c.v1, c.v2) + triangle(c.v0, c.v2, c.v3);
+}
+
+TEST(Polygons, normals_and_maps_are_linear_in_each_triangle) {
+    // A trapezoid, flat: as one bilinear patch its map would bend.
+    for (const float w : {64.0f, 12.0f}) {
+        DiceScene s(mesh({{0, 0, 0}, {w, 0, 0}, {w / 2, w, 0}, {0, w, 0}}, {4}, {0, 1, 2, 3}));
+        Attribute uv;
+        uv.name = "UVMap";
+        uv.kind = AttributeKind::Uv;
+        uv.domain = Domain::Corner;
+        uv.width = 2;
+        uv.values = {0, 0, 1, 0, 1, 1, 0, 1};
+        s.scene.geometries[0].attributes.push_back(uv);
+        const std::vector<Vec3f> corner = {
+            {0, 0, 1}, {0.6f, 0, 0.8f}, {0, 0.6f, 0.8f}, {-0.8f, 0, 0.6f}};
+        s.scene.geometries[0].corner_normals = corner;
+        s.view.requests = {{{AttributeSource::DefaultUv, "", 2, true}}};
+        std::size_t points = 0;
+        for (const auto& grid : s.grids()) {
+            const std::vector<Vec3f>& at = grid->shading_p();
+            for (std::size_t i = 0; i < at.size(); ++i, ++points) {
+                const float x = at[i].x / w, y = at[i].y / w;  // the crease: x = y / 2
+                const bool lower = x > 0.5f * y;
+                // Weights of the second and third corner below it, of the third and fourth above.
+                const float b = lower ? x - 0.5f * y : 2 * x, c = lower ? y : y - 2 * x;
+                const Vec2f map = lower ? Vec2f(b + c, c) : Vec2f(b, b + c);
+                EXPECT_NEAR(grid->attributes[0].values[2 * i], map.x, 1e-5f);
+                EXPECT_NEAR(grid->attributes[0].values[2 * i + 1], map.y, 1e-5f);
+                const Vec3f n =
+                    (1 - b - c) * corner[0] + b * corner[lower ? 1 : 2] + c * corner[lower ? 2 : 3];
+                EXPECT_NEAR(glm::distance(grid->normal[i], glm::normalize(n)), 0.0f, 1e-5f);
+            }
         }
+        EXPECT_GT(points, 100u);
     }
-    EXPECT_NEAR(silhouette, w * w, 1e-3);
-    EXPECT_GT(seen, 0);
+}
+
+TEST(Polygons, blenders_own_triangles_of_a_face_of_many_corners_are_taken) {
+    // An L, not flat: whichever way it is cut decides where its middle lies.
+    GeometryData data =
+        mesh({{0, 0, 0}, {40, 0, 0}, {40, 20, 9}, {20, 20, 0}, {20, 40, 5}, {0, 40, 0}}, {6},
+             {0, 1, 2, 3, 4, 5});
+    const std::vector<std::array<int, 3>> cut = {{0, 1, 3}, {1, 2, 3}, {0, 3, 5}, {3, 4, 5}};
+    for (const auto& t : cut)
+        data.ngon_triangles.insert(data.ngon_triangles.end(), t.begin(), t.end());
+    double expected = 0.0;
+    for (const auto& [a, b, c] : cut)
+        expected += 0.5 * glm::length(glm::cross(Vec3d(data.points[static_cast<std::size_t>(b)] -
+                                                       data.points[static_cast<std::size_t>(a)]),
+                                                 Vec3d(data.points[static_cast<std::size_t>(c)] -
+                                                       data.points[static_cast<std::size_t>(a)])));
+    DiceScene s(data);
+    const auto grids = s.grids();
+    EXPECT_NEAR(area(grids), expected, 1e-3);
+    for (const auto& grid : grids)
+        for (const Vec3f& p : grid->positions) {
+            if (!(p.x < 20 && p.y < 20)) continue;
+            EXPECT_NEAR(p.z, 0.0f, 1e-5f);  // (0, 1, 3) and (0, 3, 5)
+        }
 }
 
 TEST(Polygons, slivers_and_repeated_vertices_give_no_nan) {
@@ -247,7 +314,7 @@ TEST(Polygons, normals_follow_the_faces_the_smooth_flag_and_the_custom_normals) 
 }
 
 TEST(Polygons, derivatives_are_the_parametric_ones_times_the_step) {
-    DiceScene s(mesh({{0, 0, 0}, {40, 0, 0}, {40, 30, 7}, {0, 20, 0}, {60, 3, 1}}, {4, 3},
+    DiceScene s(mesh({{0, 0, 0}, {40, 0, 0}, {40, 30, 7}, {0, 30, 7}, {60, 3, 1}}, {4, 3},
                      {0, 1, 2, 3, 1, 4, 2}));
     Attribute uv;
     uv.name = "UVMap";
@@ -298,6 +365,30 @@ TEST(Polygons, derivatives_are_the_parametric_ones_times_the_step) {
             EXPECT_GT(glm::length(grid->dp_dv[i]), 0.0f);
         }
     }
+}
+
+TEST(Polygons, generated_coordinates_are_the_geometrys_own_or_those_of_its_box) {
+    for (const bool subdivided : {false, true})
+        for (const bool own : {false, true}) {
+            GeometryData data =
+                mesh({{0, 0, 0}, {40, 0, 0}, {40, 20, 0}, {0, 20, 0}}, {4}, {0, 1, 2, 3});
+            data.is_subdivision = subdivided;
+            data.subdivision.boundary = SubdivisionBoundary::EdgeAndCorner;
+            if (own) data.generated = {{2, 3, 4}, {6, 3, 4}, {6, 5, 4}, {2, 5, 4}};
+            DiceScene s(data);
+            s.view.requests = {{{AttributeSource::Generated, "", 3, true}}};
+            for (const auto& grid : s.grids())
+                for (std::size_t i = 0; i < grid->positions.size(); ++i) {
+                    const Vec3f& p = grid->positions[i];
+                    const Vec3f expected = own ? Vec3f(2 + p.x / 10, 3 + p.y / 10, 4)
+                                               : Vec3f(p.x / 40, p.y / 20, 0.5f);
+                    for (int c = 0; c < 3; ++c)
+                        EXPECT_NEAR(grid->attributes[0].values[3 * i + static_cast<std::size_t>(c)],
+                                    expected[c], 1e-5f);
+                    EXPECT_NEAR(grid->attributes[0].du[3 * i],
+                                grid->dp_du[i].x / (own ? 10.0f : 40.0f), 1e-5f);
+                }
+        }
 }
 
 TEST(Polygons, what_the_frame_shows_of_a_large_face_is_diced_finely) {

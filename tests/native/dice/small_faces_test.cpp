@@ -106,7 +106,7 @@ std::vector<std::array<Corner, 4>> shaded_corners(const std::vector<std::unique_
             found.emplace_back();
             for (std::size_t i = 0; const int vertex : {c.v0, c.v1, c.v2, c.v3}) {
                 const auto v = static_cast<std::size_t>(vertex);
-                const std::size_t point = grid->apart ? grid->places.point_of[v] : v;
+                const std::size_t point = grid->apart ? grid->shading_positions.point_of[v] : v;
                 EXPECT_EQ(grid->shading_p()[point], grid->positions[v]);
                 const Vec3f &p = grid->positions[v], &n = grid->normal[point];
                 found.back()[i++] = {p.x, p.y, p.z, n.x, n.y, n.z};
@@ -150,11 +150,12 @@ TEST(SmallFaces, a_point_lies_on_a_face_of_its_colour) {
     DiceScene s(flat_sheet(100, 32.0f));
     for (const auto& grid : s.grids()) {
         ASSERT_EQ(grid->p.size(), grid->point_count());
-        ASSERT_EQ(grid->places.point_of.size(), static_cast<std::size_t>(grid->vertex_count()));
+        ASSERT_EQ(grid->shading_positions.point_of.size(),
+                  static_cast<std::size_t>(grid->vertex_count()));
         for (std::size_t i = 0; i < grid->point_count(); ++i) {
-            const std::uint32_t anchor = grid->places.anchors[i];
+            const std::uint32_t anchor = grid->shading_positions.anchors[i];
             const auto face = anchor % static_cast<std::uint32_t>(grid->n_u);
-            EXPECT_EQ(grid->places.point_of[face], i);
+            EXPECT_EQ(grid->shading_positions.point_of[face], i);
             const Grid::Corners c = grid->corners(static_cast<int>(face));
             const auto at = [&](int v) { return grid->positions[static_cast<std::size_t>(v)]; };
             EXPECT_FLOAT_EQ(grid->p[i].z, 5.0f);
@@ -164,7 +165,8 @@ TEST(SmallFaces, a_point_lies_on_a_face_of_its_colour) {
         }
         // Colours go no further than the shading rate and a face.
         for (int m = 0; m < grid->micropolygon_count(); ++m) {
-            const Vec3f& point = grid->p[grid->places.point_of[static_cast<std::size_t>(m)]];
+            const Vec3f& point =
+                grid->p[grid->shading_positions.point_of[static_cast<std::size_t>(m)]];
             const Vec3f& corner = grid->positions[static_cast<std::size_t>(m)];
             EXPECT_LT(std::max(std::abs(point.x - corner.x), std::abs(point.y - corner.y)), 2.0f);
         }
@@ -236,7 +238,8 @@ TEST(SmallFaces, hold_positions_alone_until_they_are_shaded) {
             grid->shading_state(*grid);
             EXPECT_EQ(grid->p.size(), grid->point_count());
             EXPECT_EQ(grid->normal.size(), grid->point_count());
-            EXPECT_EQ(grid->places.point_of.size(), static_cast<std::size_t>(grid->vertex_count()));
+            EXPECT_EQ(grid->shading_positions.point_of.size(),
+                      static_cast<std::size_t>(grid->vertex_count()));
         }
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <functional>
 #include <limits>
+#include <random>
 
 #include "dice/dice_scene.h"
 
@@ -158,6 +159,57 @@ TEST(Subdivision, uvs_follow_the_face_varying_rule) {
             EXPECT_NEAR(p.values[3 * i], grid->positions[i].x, 2e-4);
             EXPECT_NEAR(p.dv[3 * i + 1], grid->dp_dv[i].y, 2e-4);
         }
+}
+
+/// A square of 3 x 3 quads whose UVs bend, each corner's own moved by up to `noise`.
+GeometryData mapped_cage(float noise) {
+    std::vector<Vec3f> p;
+    std::vector<std::int32_t> corners;
+    for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i) p.emplace_back(20.0f * i, 20.0f * j, 0.0f);
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i)
+            for (const int v : {4 * j + i, 4 * j + i + 1, 4 * j + i + 5, 4 * j + i + 4})
+                corners.push_back(v);
+    GeometryData data = mesh(p, std::vector<std::int32_t>(9, 4), corners);
+    data.is_subdivision = true;
+    Attribute uv;
+    uv.name = "UVMap";
+    uv.kind = AttributeKind::Uv;
+    uv.domain = Domain::Corner;
+    uv.width = 2;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> jitter(-noise, noise);
+    for (const std::int32_t v : corners) {
+        const int i = v % 4, j = v / 4;
+        uv.values.push_back(0.3f * i + (j == 1 ? 0.1f : 0.0f) + jitter(random));
+        uv.values.push_back(0.3f * j + (i == 2 ? 0.1f : 0.0f) + jitter(random));
+    }
+    data.attributes = {uv};
+    return data;
+}
+
+TEST(Subdivision, uvs_that_nearly_agree_are_smoothed_as_one) {
+    // Blender joins what is nearer than 1e-4; a seam instead moves this map by .02.
+    const auto map = [](float noise) {
+        DiceScene s(mapped_cage(noise));
+        s.view.requests = {{{AttributeSource::DefaultUv, "", 2, false}}};
+        std::vector<float> values;
+        for (const auto& grid : s.grids())
+            values.insert(values.end(), grid->attributes[0].values.begin(),
+                          grid->attributes[0].values.end());
+        return values;
+    };
+    const auto largest = [](const std::vector<float>& a, const std::vector<float>& b) {
+        float most = 0.0f;
+        for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+        return most;
+    };
+    const std::vector<float> clean = map(0.0f), near = map(4e-5f), apart = map(4e-4f);
+    ASSERT_EQ(clean.size(), near.size());
+    EXPECT_LT(largest(clean, near),
+              5e-5f);  // weights of a smooth map are positive, and add up to 1
+    EXPECT_GT(largest(clean, apart), 0.01f);
 }
 
 /// A closed ring of n x n quads: every vertex has four, all faces are regular.

@@ -206,7 +206,11 @@ TEST(Film, SeamBetweenSampleCountsDoesNotMoveAnEdge) {
 
 TEST(Film, FilterWiderThanTheBuckets) {
     // 32 pixels wide over buckets of 16 and tiles of 16: same bits as with buckets of 64, and the
-    // sum of alpha is the area (a B-spline is a partition of unity; ratio bias below sampling).
+    // sum of alpha is the area, since a B-spline is a partition of unity and all samples of the
+    // square's 80 pixels are inside of it.  What is left is how far each pixel's weights sum to
+    // other than 1: sixteen samples of a net have means within 1 / (16 sqrt(12 * 16)) = .0045
+    // pixel, the filter's slope is at most 9e-4 a pixel, and 1024 pixels under it add up by their
+    // root, of which half lies where the slope is small: 9e-5 of the sum.
     const Shade square = [](double x, double y) {
         return white(x >= 60 && x < 70 && y >= 58 && y < 66 ? 1 : 0);
     };
@@ -220,7 +224,7 @@ TEST(Film, FilterWiderThanTheBuckets) {
         EXPECT_EQ(small.combined[i], large.combined[i]);
         sum += small.combined[i].w;
     }
-    EXPECT_WITHIN(sum, 80, 80 * 4 / std::sqrt(80.0 * 16));
+    EXPECT_WITHIN(sum, 80, 80 * 4 * 9e-5);
 }
 
 TEST(Film, SpillReachesEmptyBuckets) {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "film/weigh_tile.h"
+#include "film/filter_samples.h"
 #include "measured.h"
 
 namespace granita {
@@ -69,7 +69,7 @@ TEST(PixelFilter, PiecesAreTheFilter) {
                 samples.x[sample] = static_cast<float>(pixel) + static_cast<float>(step) / 1000;
                 samples.y[sample] = kRow + static_cast<float>(step * 7 % 1000) / 1000;
                 TileSums sums(each_side, 0);
-                weigh_tile(pieces, samples, colors, nullptr, kRow, kRow + 1, sums);
+                filter_samples(pieces, samples, colors, nullptr, kRow, kRow + 1, sums);
                 for (int tap = -each_side; tap <= each_side; ++tap) {
                     const float dx = samples.x[sample] - (static_cast<float>(pixel + tap) + .5f);
                     const double expected = static_cast<double>(filter.evaluate(dx)) *

@@ -59,10 +59,22 @@ TEST(Triangulate, what_crosses_itself_or_has_no_area_becomes_a_fan) {
     EXPECT_EQ(triangulate(line).triangles.size(), 2u);
 }
 
-TEST(Triangulate, convex_quads_are_told_from_folding_ones) {
-    EXPECT_TRUE(is_convex_quad(std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, .3f}, {0, 1, 0}}));
-    EXPECT_FALSE(is_convex_quad(std::vector<Vec3f>{{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}}));
-    EXPECT_FALSE(is_convex_quad(std::vector<Vec3f>{{0, 0, 0}, {4, 0, 0}, {1, 2, 0}, {3, 3, 0}}));
+TEST(Triangulate, quads_are_cut_from_their_first_corner_unless_that_turns_a_triangle_over) {
+    const auto cut = [](std::vector<Vec3f> quad) {
+        return triangulate_quad(std::span<const Vec3f, 4>(quad));
+    };
+    const QuadTriangles bent = cut({{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0}});
+    EXPECT_EQ(bent.start, 0);
+    EXPECT_NEAR(bent.cosine, 0.5, 1e-12);  // of (0, -1, 1) and (-1, 0, 1)
+    const QuadTriangles dart = cut({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}});
+    EXPECT_EQ(dart.start, 0);
+    EXPECT_NEAR(dart.cosine, 1.0, 1e-12);
+    const QuadTriangles turned = cut({{0, 4, 0}, {0, 0, 0}, {4, 0, 0}, {1, 1, 0}});
+    EXPECT_EQ(turned.start, 1);
+    EXPECT_NEAR(turned.cosine, 1.0, 1e-12);
+    // A bow tie has no good cut; a corner on an edge leaves one triangle.
+    EXPECT_LT(cut({{0, 0, 0}, {4, 0, 0}, {1, 2, 0}, {3, 3, 0}}).cosine, 0.0);
+    EXPECT_EQ(cut({{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {0, 4, 0}}).cosine, 1.0);
 }
 
 }  // namespace

@@ -44,10 +44,14 @@ RTCScene make_scene(RTCDevice device, const std::vector<Grid>& grids) {
     return scene;
 }
 
-/// z of the nearest surface in the direction; infinity = none.
-float cast(RTCScene scene, const Vec3f& direction, float time, int& micropolygon, unsigned& grid) {
+/// z of the nearest surface that is seen from a point of the lens, where z is 0; `direction` has
+/// z = 1.  Infinity = none.
+float cast(RTCScene scene, const Vec2f& lens, const Vec3f& direction, float time, int& micropolygon,
+           unsigned& grid) {
     RTCRayHit ray{};
     ray.ray.time = time;
+    ray.ray.org_x = lens.x;
+    ray.ray.org_y = lens.y;
     ray.ray.dir_x = direction.x;
     ray.ray.dir_y = direction.y;
     ray.ray.dir_z = direction.z;
@@ -64,13 +68,15 @@ float cast(RTCScene scene, const Vec3f& direction, float time, int& micropolygon
     return ray.ray.tfar;
 }
 
-/// Bent grids that overlap; with three knots they turn and come nearer by up to 60 pixels.
-void expect_embrees_surfaces(HiderMaker make, int knots) {
+/// Bent grids that overlap; with three knots they turn and come nearer by up to 60 pixels.  `lens`:
+/// knots of (radius, focus distance), through which they are out of focus by a few pixels.
+void expect_embrees_surfaces(HiderMaker make, int knots, const std::vector<Vec2d>& lens = {}) {
     std::mt19937 random(12);
     std::uniform_real_distribution<float> uniform(-1, 1);
     Shot shot;
     shot.options.samples = 64;
     shot.camera = pinhole_camera(100);
+    if (!lens.empty()) shot.camera.lens = LensKnots(lens, shot.camera.projection);
     shot.tiles = {-1, -1, 1, 1};
     for (int g = 0; g < 5; ++g) {
         const Vec3f at(uniform(random), uniform(random), 9 + 2 * uniform(random));
@@ -101,7 +107,17 @@ void expect_embrees_surfaces(HiderMaker make, int knots) {
                 const auto x = static_cast<float>(stores[tile].tile.x * 16) + samples.x[i] + dx;
                 const auto y = static_cast<float>(stores[tile].tile.y * 16) + samples.y[i] + dy;
                 const float time = samples.t.empty() ? 0.f : samples.t[i];
-                return cast(scene, Vec3f(x / 100, y / 100, 1), time, m, g);
+                // A thin lens: all rays of a place on the raster meet in the plane of focus.
+                const Projection& projection = shot.camera.projection;
+                Vec2f at(0.0f), bend(0.0f);
+                if (projection.has_lens()) {
+                    at = Vec2f(samples.u[i], samples.v[i]) *
+                         static_cast<float>(projection.lens_radius);
+                    bend = at * (samples.inverse_focus.empty()
+                                     ? static_cast<float>(1 / projection.focus)
+                                     : samples.inverse_focus[i]);
+                }
+                return cast(scene, at, Vec3f(x / 100 - bend.x, y / 100 - bend.y, 1), time, m, g);
             };
             const auto agrees = [&](float z, int m, unsigned g) {
                 if (std::isinf(z)) return stores[tile].id[i] == kNoSurface;
@@ -151,6 +167,14 @@ TEST_P(EmbreeOracle, SeesTheSameSurfaces) {
 
 TEST_P(EmbreeOracle, SeesTheSameMovingSurfaces) {
     expect_embrees_surfaces(GetParam(), 3);
+}
+
+TEST_P(EmbreeOracle, SeesTheSameSurfacesThroughALens) {
+    expect_embrees_surfaces(GetParam(), 1, {{.8, 9}});
+}
+
+TEST_P(EmbreeOracle, SeesTheSameMovingSurfacesThroughALensThatOpensAndRefocuses) {
+    expect_embrees_surfaces(GetParam(), 3, {{.2, 12}, {.8, 9}, {.5, 7}});
 }
 
 }  // namespace

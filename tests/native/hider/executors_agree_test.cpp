@@ -120,29 +120,29 @@ void remove_last(Grid& grid, bool has_place) {
                 has_place ? grid.positions[knot * vertices] : Vec3f(NAN);
 }
 
-TEST_P(ExecutorsAgree, FlocksAndOneByOne) {
+TEST_P(ExecutorsAgree, ClustersAndOneByOne) {
     for (const float spread : {1.0f, 0.3f, 4.0f}) {
-        Shot flocks, alone;
-        for (Shot* shot : {&flocks, &alone}) {
+        Shot clusters, alone;
+        for (Shot* shot : {&clusters, &alone}) {
             make_busy(*shot, GetParam(), 5);
-            shot->options.samples = 8;  // few: without a lens more do not pay for flocks
+            shot->options.samples = 8;  // few: without a lens more do not pay for clusters
             for (Grid& grid : shot->grids) {
                 for (Vec3f& p : grid.positions) p *= Vec3f(spread, spread, 1);
                 grid = take_apart(grid);
-                remove_last(grid, shot == &flocks);
+                remove_last(grid, shot == &clusters);
             }
         }
-        const Seen a = look(make_simd_hider, flocks, flocks.tiles);
+        const Seen a = look(make_simd_hider, clusters, clusters.tiles);
         const Seen b = look(make_simd_hider, alone, alone.tiles);
         for (std::size_t i = 0; i < a.stores.size(); ++i) expect_equal(a.stores[i], b.stores[i]);
         if (GetParam() == kStatic) continue;
-        EXPECT_NE(flocks.statistics.get(Counter::SampleTestsMoving),
+        EXPECT_NE(clusters.statistics.get(Counter::SampleTestsMoving),
                   alone.statistics.get(Counter::SampleTestsMoving))
             << "they were to be found in two ways, spread " << spread;
     }
 }
 
-/// Flat, on an arc: .1 pixel within four of 16 segments.
+/// Flat, on an arc.
 void bend_way(Grid& grid) {
     const auto vertices = static_cast<std::size_t>(grid.vertex_count());
     for (std::size_t i = 0; i < grid.positions.size(); ++i) {
@@ -152,22 +152,22 @@ void bend_way(Grid& grid) {
     }
 }
 
-TEST_P(ExecutorsAgree, SegmentsTogetherAndOneByOne) {
+TEST_P(ExecutorsAgree, TurnsOfManySegmentsTogetherAndOneByOne) {
     if (!moves(GetParam())) GTEST_SKIP() << "nothing moves";
-    // Few samples see each of 16 segments; slow turns let several of them share a frame.
+    // Few samples see each of 16 segments.
     for (const float swing : {0.0f, 0.25f, 1.0f}) {
-        Shot patches, flocks, all_but_one, alone;
-        for (Shot* shot : {&patches, &flocks, &all_but_one, &alone}) {
+        Shot patches, clusters, all_but_one, alone;
+        for (Shot* shot : {&patches, &clusters, &all_but_one, &alone}) {
             make_busy(*shot, GetParam(), 5, 16, swing);
             shot->options.samples = 4;
             for (Grid& grid : shot->grids) {
                 bend_way(grid);
                 if (shot == &patches) continue;
                 grid = take_apart(grid);
-                if (shot != &flocks) remove_last(grid, shot == &all_but_one);
+                if (shot != &clusters) remove_last(grid, shot == &all_but_one);
             }
         }
-        for (const auto& [one, other] : {std::pair{&patches, &flocks}, {&all_but_one, &alone}}) {
+        for (const auto& [one, other] : {std::pair{&patches, &clusters}, {&all_but_one, &alone}}) {
             const Seen a = look(make_simd_hider, *one, one->tiles);
             const Seen b = look(make_simd_hider, *other, other->tiles);
             for (std::size_t i = 0; i < a.stores.size(); ++i)

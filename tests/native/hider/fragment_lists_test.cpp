@@ -25,7 +25,7 @@ bool nearer(float key_a, SurfaceId a, float key_b, SurfaceId b) {
 struct Lists {
     Grid grid = rectangle(0, 0, 200, 1, 1, 200, 1);
     GridPool pool;
-    SlabMemory memory;
+    Arena memory;
     FragmentLists lists;
     std::vector<std::vector<Fragment>> alone = std::vector<std::vector<Fragment>>(kSlots);
     std::vector<float> key = std::vector<float>(kSlots, -INFINITY);

@@ -59,7 +59,7 @@ TEST_P(Lifespans, MovingEdgeIsSeenWhileItExists) {
     TimedShot shot;
     shot.grids.push_back(living(moving_rectangle(-100, -2, 0, 18, 5, 16, 0, 50, 10), {.2f, .7f}));
     const auto fraction = [](double x, double) { return std::max(0., .7 - std::max(.2, x / 16)); };
-    EXPECT_LE(worst_excess(render(GetParam(), shot), fraction, 64), 0);
+    EXPECT_LE(worst_excess(render(GetParam(), shot), fraction, {.0112, .0158}), 0);
 }
 
 TEST_P(Lifespans, OutAndBackFromTheMiddleOn) {
@@ -72,7 +72,7 @@ TEST_P(Lifespans, OutAndBackFromTheMiddleOn) {
     const auto fraction = [](double x, double) {
         return std::clamp(1 - (x + 10) / 40, 0.0, 1.0) / 2;
     };
-    EXPECT_LE(worst_excess(render(GetParam(), shot), fraction, 64), 0);
+    EXPECT_LE(worst_excess(render(GetParam(), shot), fraction, {.0072, .0102}), 0);
 }
 
 /// Two grids of which one replaces the other against one that is always there, in front of
@@ -169,7 +169,7 @@ TEST_P(LifespansAgree, SampleBySampleWithTheReference) {
 }
 
 TEST(Lifespan, SamplesOutsideOfItAreHardlyLookedAt) {
-    // Ranks of the SIMD executor are sorted by time where things move.
+    // Strata of the SIMD executor are sorted by time where things move.
     const auto tests = [](const Lifespan& life) {
         TimedShot shot;
         shot.grids.push_back(living(moving_rectangle(-40, 2, 8, 14, 5, 32, 0, 48, 12), life));

@@ -47,7 +47,8 @@ TEST(TimeSlabs, WhatShowsForAMomentIsSeen) {
 
 TEST(TimeSlabs, CoverTheShutterAndTheirGrid) {
     const Grid grid = moving_rectangle(0, 0, 4, 2, 5, 40, 8);
-    const auto slabs = time_slabs(grid, pixel_camera().projection);
+    const GridSweep sweep(grid, pixel_camera().projection, LensShape(0, 0.0f, 1.0f));
+    const auto& slabs = sweep.slabs();
     ASSERT_GE(slabs.size(), 8u);
     float time = 0;
     for (const TimeSlab& slab : slabs) {

@@ -72,7 +72,7 @@ TEST(Composite, MillionLayersOfAMillionth) {
     TileStore store;
     store.key.assign(256, -INFINITY);
     store.id.assign(256, kNoSurface);
-    SlabMemory memory;
+    Arena memory;
     store.lists.prepare(256, memory);
     for (int i = 0; i < 1000000; ++i) store.lists.add(77, {-5, 4, 0.25f, 0.25f, false});
     LayerTable table(pool, std::vector<bool>(pool.size(), true));

@@ -57,7 +57,7 @@ TEST(BucketLayout, spiral_visits_every_bucket_once_from_the_centre_outwards) {
 }
 
 TEST(BucketLayout, the_aprons_of_all_neighbours_are_in_range) {
-    // A box within one bucket, 2 pixels from a border that an apron of 3 reaches over.
+    // A box within one bucket, 2 pixels from a border that an margin of 3 reaches over.
     const BucketLayout layout({0, 0, 96, 96}, 32, 3);
     EXPECT_EQ(layout.range(box(40, 40, 50, 50)), (Rect{1, 1, 2, 2}));
     EXPECT_EQ(layout.range(box(34, 40, 50, 50)), (Rect{0, 1, 2, 2}));

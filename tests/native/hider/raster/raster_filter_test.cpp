@@ -13,7 +13,7 @@ TEST(RasterFilter, box_is_the_mean_of_the_pixels_own_sub_samples) {
     for (const int lattice : {1, 2, 3, 8}) {
         const RasterFilter box = raster_test::box_filter(lattice);
         EXPECT_EQ(box.first, 0);
-        EXPECT_EQ(box.apron(), 0);
+        EXPECT_EQ(box.margin(), 0);
         ASSERT_EQ(box.weights.size(), static_cast<std::size_t>(lattice));
         for (const double weight : box.weights) EXPECT_DOUBLE_EQ(weight, 1.0 / lattice);
     }
@@ -29,9 +29,9 @@ TEST(RasterFilter, weights_are_symmetric_with_sum_one_and_the_apron_holds_them) 
         }
         EXPECT_NEAR(sum, 1.0, 1e-12);
         // Support -2 .. 2 about the pixel's centre: -1.5 .. 2.5 about its corner.
-        EXPECT_EQ(f.apron(), lattice == 1 ? 1 : 2);
-        EXPECT_GE(f.first, -f.apron() * lattice);
-        EXPECT_LE(f.first + static_cast<int>(f.weights.size()), (1 + f.apron()) * lattice);
+        EXPECT_EQ(f.margin(), lattice == 1 ? 1 : 2);
+        EXPECT_GE(f.first, -f.margin() * lattice);
+        EXPECT_LE(f.first + static_cast<int>(f.weights.size()), (1 + f.margin()) * lattice);
     }
 }
 

@@ -187,13 +187,13 @@ TEST(RasterHider, finds_what_is_seen_before_shading) {
     Grid front = make_rectangle(3, 0, 0, 8, 8, 2, 4, 4);
     Grid hidden = make_rectangle(2, 1, 1, 7, 7, 3, 4, 4);
     Grid peeping = make_rectangle(1, 4, 4, 8.5f, 8, 4, 4, 4);
-    Grid in_the_apron = make_rectangle(4, 20.5f, 0, 23, 1, 2);
+    Grid in_the_margin = make_rectangle(4, 20.5f, 0, 23, 1, 2);
     Grid beyond_it = make_rectangle(5, 22, 0, 25, 1, 2);
-    for (Grid* grid : {&front, &hidden, &peeping, &in_the_apron, &beyond_it})
+    for (Grid* grid : {&front, &hidden, &peeping, &in_the_margin, &beyond_it})
         grid->radiance.clear();
     auto bucket =
-        hider.open({0, 0, 20, 20}, {&front, &hidden, &peeping, &in_the_apron, &beyond_it});
-    // The apron is two pixels.
+        hider.open({0, 0, 20, 20}, {&front, &hidden, &peeping, &in_the_margin, &beyond_it});
+    // The margin is two pixels.
     EXPECT_EQ(bucket->find_seen(), (std::vector<bool>{true, false, true, true, false}));
     EXPECT_GT(statistics.get(Counter::GlPrimitives), 0u);
     EXPECT_EQ(statistics.get(Counter::SampleTestsStatic), 0u);
@@ -202,7 +202,7 @@ TEST(RasterHider, finds_what_is_seen_before_shading) {
     front.radiance.assign(25, Vec3f(1.0f));
     EXPECT_THROW(bucket->render(), InternalError);
     peeping.radiance.assign(25, Vec3f(1.0f));
-    in_the_apron.radiance.assign(4, Vec3f(1.0f));
+    in_the_margin.radiance.assign(4, Vec3f(1.0f));
     EXPECT_EQ(bucket->render().combined.size(), 400u);
 }
 

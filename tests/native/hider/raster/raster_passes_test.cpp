@@ -281,7 +281,12 @@ TEST(RasterGeometry, small_grids_are_drawn_together) {
         grids.push_back(make_rectangle(k, static_cast<float>(k % 50), static_cast<float>(k / 50),
                                        static_cast<float>(k % 50 + 1),
                                        static_cast<float>(k / 50 + 1), 2));
-    const RasterGeometry geometry(pointers(grids));
+    std::vector<GridSweep> sweeps;
+    std::vector<const GridSweep*> of;
+    sweeps.reserve(grids.size());
+    for (const Grid& grid : grids)
+        of.push_back(&sweeps.emplace_back(grid, pixel_projection(), LensShape(0, 0.0f, 1.0f)));
+    const RasterGeometry geometry(of);
     EXPECT_EQ(geometry.opaque().size(), 4u);
     EXPECT_EQ(geometry.indices().size(), 6000u);
     RasterHider hider(gl_thread(), pixel_frame(2, 1));

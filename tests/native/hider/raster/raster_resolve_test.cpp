@@ -137,7 +137,8 @@ TEST(RasterResolve, background_fills_what_nothing_covers) {
     RasterBackground background;
     background.constant = {0.5f, 0.25f, 0.125f, 1.0f};
     RasterHider hider(gl_thread(), frame_of(kFilters[5]));
-    const RasterImage image = hider.open({0, 0, 5, 3}, {})->render(background);
+    const RasterImage image =
+        hider.open({0, 0, 5, 3}, std::vector<const Grid*>{})->render(background);
     ASSERT_EQ(image.combined.size(), 15u);
     for (const Vec4f& pixel : image.combined)
         for (int c = 0; c < 4; ++c) EXPECT_WITHIN(pixel[c], background.constant[c], 4e-6);

@@ -16,7 +16,7 @@ struct Stack {
     GridPool pool;
     std::vector<Grid> grids;
     TileSamples samples;
-    SlabMemory memory;
+    Arena memory;
     TileStore store;
     CompositeSettings settings;
     SampleChannels values;

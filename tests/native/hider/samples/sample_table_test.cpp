@@ -259,7 +259,7 @@ TEST(SampleTable, RegularWithOnePassIsSquare) {
         }
 }
 
-TEST(SampleTable, TurnedLatticesShareNoColumnAndNoRow) {
+TEST(SampleTable, RotatedLatticesShareNoColumnAndNoRow) {
     for (const int side : {2, 3, 4, 5, 8, 15, 32, 256}) {
         const RegularLattice lattice(side, true);
         const int n = side * side + 1;
@@ -287,7 +287,7 @@ TEST(SampleTable, TurnedLatticesShareNoColumnAndNoRow) {
     }
 }
 
-TEST(SampleTable, TurnedTexelsAreAlignedWithWholePixels) {
+TEST(SampleTable, RotatedTexelsAreAlignedWithWholePixels) {
     const RegularLattice lattice(3, true);
     EXPECT_EQ(lattice.first_texel({2, 5}), Vec2i(3 * 2 + 5, 3 * 5 - 2));
     const Rect texels = lattice.texels_of({2, 5, 4, 9});

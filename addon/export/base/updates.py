@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the last evaluations of a depsgraph touched, and what the file holds.
+
+Only what `updates` itself holds is asked, so a handler that deleted an object meanwhile leaves no
+dangling reference.
+"""
+
+
+class Touched:
+    """Everything that updates of the depsgraph named since it was made; by address of the original."""
+
+    def __init__(self):
+        self.moved, self.formed = set(), set()
+        self.otherwise = set()  # objects of which something else changed
+        self.collections = False
+
+    def add(self, depsgraph):
+        """What the last evaluation touched."""
+        import bpy
+
+        for update in depsgraph.updates:
+            moved, formed = update.is_updated_transform, update.is_updated_geometry
+            pointer = update.id.original.as_pointer()
+            if moved:
+                self.moved.add(pointer)
+            if formed:
+                self.formed.add(pointer)
+            if isinstance(update.id, bpy.types.Collection):
+                self.collections = True
+            if not (moved or formed) and isinstance(update.id, bpy.types.Object):
+                self.otherwise.add(pointer)
+
+
+def originals():
+    """{address: original Object}, of the whole file."""
+    import bpy
+
+    return {thing.as_pointer(): thing for thing in bpy.data.objects}
+
+
+def object_names():
+    """All objects of the file: another list means that something was made, deleted or renamed."""
+    import bpy
+
+    return bpy.data.objects.keys()
+
+
+def last_updates(depsgraph):
+    """[(evaluated ID, whether it moved, whether its geometry changed)] of the last evaluation, read once: each look
+    at them costs a microsecond a thing."""
+    return [(u.id, u.is_updated_transform, u.is_updated_geometry) for u in depsgraph.updates]
+
+
+def lights_changed(updates):
+    """Whether the last step touched any light or nodes."""
+    from bpy.types import Light, NodeTree
+
+    return any(isinstance(thing, (Light, NodeTree)) for thing, _, _ in updates)
+
+
+def changed_geometry(updates):
+    """Addresses of the original datablocks whose geometry the last step touched."""
+    return {thing.original.as_pointer() for thing, _, formed in updates if formed}

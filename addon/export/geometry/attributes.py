@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Values that a mesh carries on its points, faces and corners: UV maps, colours, named attributes."""
+
+import numpy as np
+
+from ..base.snapshot import Attribute
+
+# Blender's data type -> (member of an element, components, dtype that `foreach_get` copies fastest)
+_LAYOUT = {
+    "FLOAT": ("value", 1, np.float32),
+    "INT": ("value", 1, np.int32),
+    "INT8": ("value", 1, np.int32),
+    "BOOLEAN": ("value", 1, np.bool_),
+    "FLOAT2": ("vector", 2, np.float32),
+    "FLOAT_VECTOR": ("vector", 3, np.float32),
+    "FLOAT_COLOR": ("color", 4, np.float32),
+    "BYTE_COLOR": ("color", 4, np.float32),
+    "INT16_2D": ("value", 2, np.int32),
+    "INT32_2D": ("value", 2, np.int32),
+    "QUATERNION": ("value", 4, np.float32),
+}
+# Of the nodes Attribute, Color Attribute and UV Map.
+_NAMING_PROPERTIES = {"attribute_name", "layer_name", "uv_map"}
+_DOMAINS = ("POINT", "FACE", "CORNER")
+# In place of a name: Geometry > Random Per Island, which the native side makes of edges.
+ISLANDS = ".random_per_island"
+# Stands among the names for Blender's Generated coordinates, which are no attribute.
+GENERATED = "\0generated"
+# Nodes that take Generated where nothing is linked to their Vector, or at all times.
+_BY_DEFAULT = {
+    "ShaderNodeTexBrick",
+    "ShaderNodeTexChecker",
+    "ShaderNodeTexGradient",
+    "ShaderNodeTexMagic",
+    "ShaderNodeTexMusgrave",
+    "ShaderNodeTexNoise",
+    "ShaderNodeTexVoronoi",
+    "ShaderNodeTexWave",
+    "ShaderNodeTangent",
+}
+
+
+def requested_names(materials):
+    """Names that exported materials look up on the mesh, GENERATED among them: a set of str.
+
+    Args:
+        materials: the snapshot's material records.
+    """
+    nodes = [node for material in materials for node in material.get("nodes", ())]
+    names = {
+        name
+        for node in nodes
+        for key, name in node.get("properties", {}).items()
+        if key in _NAMING_PROPERTIES and name
+    }
+    if any(map(_asks_for_islands, nodes)):
+        names.add(ISLANDS)
+    if any(map(_asks_for_generated, nodes)):
+        names.add(GENERATED)
+    return names
+
+
+def _linked(node):
+    """{input: output that it is linked to} of a node's record."""
+    return {
+        name: value[2]
+        for name, value in node.get("inputs", {}).items()
+        if isinstance(value, tuple) and value[0] == "LINK"
+    }
+
+
+def _asks_for_islands(node):
+    return "Random Per Island" in _linked(node).values()
+
+
+def _asks_for_generated(node):
+    linked = _linked(node)
+    return "Generated" in linked.values() or (
+        node["type"] in _BY_DEFAULT and "Vector" not in linked
+    )
+
+
+def mesh_attributes(mesh, label, requested, report):
+    """Every UV map and colour attribute, and the generic attributes asked for.
+
+    Args:
+        mesh: evaluated Mesh.
+        label: the mesh's name for messages.
+        requested: names of generic attributes.
+        report: called with (datablock, message).
+
+    Returns:
+        list of Attribute, the UV map and the colour that are active for render first among theirs.
+    """
+    found = _uv_maps(mesh) + _colors(mesh)
+    taken = {attribute.name for attribute in found}
+    for name in sorted(requested - taken):
+        attribute = mesh.attributes.get(name)
+        if attribute is None:
+            continue
+        values = attribute_values(attribute)
+        if values is None or attribute.domain not in _DOMAINS:
+            report(
+                label,
+                f"attribute '{name}' ({attribute.data_type} on {attribute.domain}) cannot be shaded",
+            )
+            continue
+        found.append(Attribute(name, attribute.domain, "GENERIC", values))
+    finite_attributes(found, label, report)
+    return found
+
+
+def finite_attributes(attributes, label, report):
+    """Takes values that are not finite as 0, and says so."""
+    for attribute in attributes:
+        broken = ~np.isfinite(attribute.values)
+        if broken.any():
+            report(label, f"'{attribute.name}' holds values that are not finite: taken as 0")
+            attribute.values[broken] = 0.0
+
+
+def _uv_maps(mesh):
+    layers = sorted(mesh.uv_layers, key=lambda layer: not layer.active_render)
+    maps = []
+    for layer in layers:
+        values = np.empty((len(mesh.loops), 2), dtype=np.float32)
+        # Blender 3.5 made UV maps plain vectors, which are copied in one go.
+        if hasattr(layer, "uv"):
+            layer.uv.foreach_get("vector", values.reshape(-1))
+        else:
+            layer.data.foreach_get("uv", values.reshape(-1))
+        maps.append(Attribute(layer.name, "CORNER", "UV", values))
+    return maps
+
+
+def _colors(mesh):
+    layers = list(mesh.color_attributes)
+    active = mesh.color_attributes.render_color_index
+    if 0 <= active < len(layers):
+        layers.insert(0, layers.pop(active))
+    return [
+        Attribute(layer.name, layer.domain, "COLOR", attribute_values(layer)) for layer in layers
+    ]
+
+
+def attribute_values(attribute):
+    """float32 [elements, components], colours linear; None for types that hold no numbers."""
+    if attribute.data_type not in _LAYOUT:
+        return None
+    member, width, dtype = _LAYOUT[attribute.data_type]
+    values = np.empty(len(attribute.data) * width, dtype=dtype)
+    attribute.data.foreach_get(member, values)
+    return values.reshape(-1, width).astype(np.float32, copy=False)

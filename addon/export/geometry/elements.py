@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What curves, hair and point clouds share: what must stay for their deformation to be motion, and
+their attributes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.snapshot import Attribute
+from .attributes import attribute_values, finite_attributes
+
+
+@dataclass(frozen=True)
+class Elements:
+    """How many points each element has; `read(thing, data)` gives its points at another time: their
+    places, and their radii too where these may change."""
+
+    sizes: np.ndarray  # int32 [elements]
+    read: object  # function of (evaluated Object, its data) -> (float32 [V, 3 or 4], int32 sizes)
+
+    def points_again(self, thing, data):
+        """float32 [V, 3 or 4], or None where the elements are not the frame's any more."""
+        points, sizes = self.read(thing, data)
+        return points if np.array_equal(sizes, self.sizes) else None
+
+
+def vector_attribute(collection, member="vector"):
+    """float32 [n, 3]."""
+    values = np.empty((len(collection), 3), dtype=np.float32)
+    collection.foreach_get(member, values.reshape(-1))
+    return values
+
+
+def with_radii(points, data, default):
+    """float32 [V, 4]: places and radii, metres, object space.
+
+    Args:
+        points: float32 [V, 3].
+        data: evaluated Curves or PointCloud.
+        default: where it has no attribute `radius`.
+    """
+    attribute = data.attributes.get("radius")
+    radii = np.full((len(points), 1), default, dtype=np.float32)
+    if attribute is not None and attribute.domain == "POINT" and attribute.data_type == "FLOAT":
+        attribute.data.foreach_get("value", radii.reshape(-1))
+    return np.hstack([points, radii])
+
+
+def split_radii(knots):
+    """(places float32 [K, V, 3], radii float32 [K, V]) of float32 [K, V, 4]."""
+    return np.ascontiguousarray(knots[..., :3]), np.ascontiguousarray(knots[..., 3])
+
+
+def element_attributes(data, label, requested, report):
+    """The generic attributes asked for, on points or elements.
+
+    Args:
+        data: evaluated Curves or PointCloud.
+        label: its name for messages.
+        requested: names.
+        report: called with (datablock, message).
+    """
+    found = []
+    for name in sorted(requested):
+        attribute = data.attributes.get(name)
+        if attribute is None:
+            continue
+        values = attribute_values(attribute)
+        domain = {"POINT": "POINT", "CURVE": "FACE"}.get(attribute.domain)
+        if values is None or domain is None:
+            report(
+                label,
+                f"attribute '{name}' ({attribute.data_type} on {attribute.domain}) cannot be shaded",
+            )
+            continue
+        color = attribute.data_type in {"FLOAT_COLOR", "BYTE_COLOR"}
+        found.append(Attribute(name, domain, "COLOR" if color else "GENERIC", values))
+    finite_attributes(found, label, report)
+    return found

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scene's objects at the frame, and what it is made of."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.snapshot import Instances
+from ..geometry.attributes import requested_names
+from ..geometry.geometry_source import read_geometries
+from .depsgraph import Visit, visit
+from .instance import PrototypeTable, collect_materials, prototype_table, unplaced_instances, usable
+from .instance_values import requested_values
+from .plain_objects import PlainObjects
+
+
+@dataclass
+class SceneObjects:
+    """Read at the frame; holds addresses and arrays, nothing of Blender's."""
+
+    scan: Visit
+    plain: PlainObjects
+    table: PrototypeTable
+    sources: list  # of geometry.GeometrySource
+    attribute_names: set  # of the generic attributes that were read
+    used_materials: list  # addresses of original Materials, in the snapshot's order
+    materials: list  # records of the snapshot
+    images: list  # likewise
+    said: list  # [(datablock, message)], what the walk had to report
+    # What of the snapshot's instances a place does not change, once it is made, and of which things.
+    chosen: np.ndarray = None  # int [n]
+    instances: Instances = None
+
+    def choose(self, report):
+        """Finds what can be rendered of it."""
+        chosen = usable(self.scan, self.table, report)
+        if self.instances is None or not np.array_equal(chosen, self.chosen):
+            self.instances = unplaced_instances(self.scan, chosen, self.table)
+        self.chosen = chosen
+
+    @property
+    def is_light(self):
+        """bool [prototypes]."""
+        return np.array(
+            [prototype.type == "LIGHT" for prototype in self.scan.prototypes], dtype=bool
+        )
+
+    def lights(self):
+        """int [lights], things of the scan."""
+        return np.flatnonzero(self.is_light[self.scan.prototype])
+
+
+def read_scene_objects(depsgraph, known, report, check_cancel):
+    """Walks over everything.
+
+    Args:
+        depsgraph: evaluated, at the frame.
+        known: GeometrySources that need not be read again, for materials that ask for the same
+            attributes: (sources, names); or None.
+        report: called with (datablock, message).
+        check_cancel: true when the user has cancelled.
+    """
+    said = []
+
+    def note(datablock, message):
+        said.append((datablock, message))
+        report(datablock, message)
+
+    scan = visit(depsgraph, note, check_cancel)
+    override = depsgraph.view_layer_eval.material_override
+    used, slots = collect_materials(scan.prototypes, override)
+    materials, images = shade(used, depsgraph, report)
+    known_sources, known_names = known or ((), set())
+    names = requested_names(materials)
+    sources, geometry_of_prototype = read_geometries(
+        scan, names, depsgraph, report, check_cancel, known_sources if names == known_names else ()
+    )
+    table = prototype_table(
+        scan.prototypes,
+        depsgraph.view_layer,
+        geometry_of_prototype,
+        slots,
+        requested_values(materials),
+        note,
+    )
+    for prototype in scan.prototypes:
+        prototype.forget()
+    addresses = [material.original.as_pointer() for material in used]
+    plain = PlainObjects(scan, depsgraph.view_layer)
+    return SceneObjects(scan, plain, table, sources, names, addresses, materials, images, said)
+
+
+def shade(used, depsgraph, report):
+    """(records of evaluated Materials, records of the images that they show)."""
+    from ..shading.layer_values import set_layer_values
+    from ..shading.material import export_materials
+
+    aovs = {aov.name for aov in depsgraph.view_layer.aovs if aov.is_valid}
+    records, images = export_materials(used, report, aovs)
+    set_layer_values(records, depsgraph.scene_eval, depsgraph.view_layer_eval)
+    return records, images

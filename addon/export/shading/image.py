@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images that nodes show, as records of docs/scene_snapshot.md: a file wherever there is one (the native
+texture cache reads it in tiles), pixels for what exists in memory alone."""
+
+import hashlib
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+# What files begin with that Blender reads and Granita's readers do not: DPX, Cineon, SGI, Photoshop, DDS.
+_BLENDERS_OWN = (
+    b"SDPX",
+    b"XPDS",
+    b"\x80\x2a\x5f\xd7",
+    b"\xd7\x5f\x2a\x80",
+    b"\x01\xda",
+    b"8BPS",
+    b"DDS ",
+)
+# Byte images in these are handed over as they are, in others decoded from sRGB.
+_LINEAR_SPACES = {"Non-Color", "Raw", "Linear", "Linear Rec.709", "Linear BT.709"}
+
+# Files with the bytes of packed images, and pixels of generated ones, of the render job that is under way:
+# {what an image shows: path or pixels}.
+_of_this_job = {}
+
+
+def forget_images(*_):
+    """A new render job begins: images may be other ones by now.  Within one, a packed image is another one when
+    its packed file is, a generated one when its settings are."""
+    _of_this_job.clear()
+
+
+def image_name(image, image_user, images, report):
+    """Adds an image to the records, once.
+
+    Args:
+        image: bpy Image.
+        image_user: ImageUser of the node: which frame of a sequence.
+        images: {name: record} to add to.
+        report: called with (datablock, message).
+
+    Returns:
+        the record's name.
+    """
+    path = _sequence_path(image, image_user)
+    name = image.name_full if path is None else f"{image.name_full} {Path(path).name}"
+    if name not in images:
+        images[name] = _record(image, name, path, report)
+    return name
+
+
+def _sequence_path(image, image_user):
+    """The file of the current frame; None where the image is no sequence."""
+    if image.source != "SEQUENCE":
+        return None
+    return image.filepath_from_user(image_user=image_user)
+
+
+def _record(image, name, path, report):
+    label = f"image '{image.name_full}'"
+    space = image.colorspace_settings.name
+    record = {"name": name, "path": "", "colorspace": space, "alpha_mode": image.alpha_mode}
+    if image.source == "MOVIE":
+        report(label, "is a movie, of which one frame is shown throughout: use an image sequence")
+    if path is not None:
+        record["path"] = path
+    elif _is_in_a_file(image):
+        record["path"] = _packed_file(image) or _file_path(image, label, report)
+        if _is_for_blender(record["path"]) and (pixels := _pixels(image)) is not None:
+            record["path"] = ""
+            _hand_over(record, pixels, image, label, report)
+    else:
+        pixels = _generated_pixels(image)
+        if pixels is None:
+            report(label, f"its source {image.source} has no pixels: shown magenta")
+            record["path"] = image.filepath or image.name_full
+        else:
+            _hand_over(record, pixels, image, label, report)
+    return record
+
+
+def _hand_over(record, pixels, image, label, report):
+    space = record["colorspace"]
+    if image.is_float:
+        record["colorspace"] = "scene_linear"
+    elif space != "sRGB" and space not in _LINEAR_SPACES:
+        report(label, f"its colour space '{space}' is read as sRGB")
+    record["pixels"] = pixels
+
+
+def _is_in_a_file(image):
+    """Tiled images that were never saved have neither file nor bytes, and are not dirty."""
+    if image.source not in ("FILE", "TILED") or image.is_dirty or _is_packed_hdr(image):
+        return False
+    return bool(image.filepath or image.packed_file)
+
+
+def _file_path(image, label, report):
+    path = bpy.path.abspath(image.filepath, library=image.library)
+    if image.source == "TILED":
+        tile = image.tiles[0].number if len(image.tiles) else 1001
+        report(label, f"only its tile {tile} is shown")
+        u, v = (tile - 1001) % 10 + 1, (tile - 1001) // 10 + 1
+        path = path.replace("<UDIM>", str(tile)).replace("<UVTILE>", f"u{u}_v{v}")
+    return path
+
+
+def _is_packed_hdr(image):
+    """Of packed images Cycles takes what Blender decoded, and of Radiance's format Blender makes
+    .3 % more light than OpenImageIO does from a file: it adds half a step to each mantissa."""
+    return image.packed_file is not None and image.file_format == "HDR"
+
+
+def _packed_file(image):
+    """Writes packed bytes where a file reader can open them; None where nothing is packed.
+
+    Blender deletes its own temporary folder when it ends.  The name follows from the content: frames
+    of an animation share the file.
+    """
+    packed = image.packed_file
+    if packed is None:
+        return None
+    # The bytes are copied by looking at them: once a job.
+    key = (image.as_pointer(), packed.as_pointer(), packed.size, image.filepath)
+    path = _of_this_job.get(key)
+    if path is None:
+        data = packed.data
+        if not data:
+            return None
+        suffix = Path(image.filepath).suffix or f".{image.file_format.lower()}"
+        digest = hashlib.sha1(data).hexdigest()
+        path = Path(bpy.app.tempdir or "/tmp") / f"granita-{digest}{suffix}"
+        if not path.exists():
+            path.write_bytes(data)
+        _of_this_job[key] = path
+    return str(path)
+
+
+def _is_for_blender(path):
+    try:
+        with open(path, "rb") as file:
+            return file.read(4).startswith(_BLENDERS_OWN)
+    except OSError:
+        return False
+
+
+def _generated_pixels(image):
+    """What was painted or set by a script is read each time: nothing tells of its changes."""
+    if image.source != "GENERATED" or image.is_dirty:
+        return _pixels(image)
+    settings = image.generated_type, *image.generated_color, *image.size, image.is_float
+    key = (image.as_pointer(), image.colorspace_settings.name, *settings)
+    if key not in _of_this_job:
+        _of_this_job[key] = _pixels(image)
+    return _of_this_job[key]
+
+
+def _pixels(image):
+    """float32 [h, w, 4], lower left first, scene-linear, alpha associated; None where Blender has none."""
+    width, height = image.size
+    if width == 0 or height == 0:
+        return None
+    values = np.empty(width * height * image.channels, dtype=np.float32)
+    image.pixels.foreach_get(values)
+    values = values.reshape(height, width, image.channels)
+    pixels = np.ones((height, width, 4), dtype=np.float32)
+    count = image.channels
+    pixels[..., :3] = values[..., :3] if count >= 3 else values[..., :1]
+    if count in (2, 4):
+        pixels[..., 3] = values[..., count - 1]
+    if not image.is_float:
+        _from_bytes(pixels, image.colorspace_settings.name, image.alpha_mode)
+    return pixels
+
+
+def _from_bytes(pixels, space, alpha_mode):
+    """Blender gives the pixels of 8-bit images in their own space, alpha straight; of others as we want them."""
+    color, alpha = pixels[..., :3], pixels[..., 3:]
+    if space not in ("Non-Color", "Raw") and alpha_mode not in ("CHANNEL_PACKED", "NONE"):
+        # In whole bytes, cut off, as in Cycles.
+        np.floor(color * 255 * alpha + 1e-3, out=color)
+        color /= 255
+    if space not in _LINEAR_SPACES:
+        color[...] = _linear_from_srgb(color)
+
+
+def _linear_from_srgb(x):
+    return np.where(x < 0.04045, np.maximum(x, 0) / 12.92, ((np.abs(x) + 0.055) / 1.055) ** 2.4)

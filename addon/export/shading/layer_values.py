@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Attribute nodes of type View Layer: one value a frame, of the view layer, the scene or the world."""
+
+import numpy as np
+
+from ..base.find_value import find_value
+
+
+def set_layer_values(records, scene, view_layer):
+    """Writes the property `layer_value` (four floats) into those nodes.
+
+    Args:
+        records: material or world records of the snapshot.
+        scene, view_layer: evaluated.
+    """
+    for record in records:
+        for node in record["nodes"]:
+            properties = node["properties"]
+            if properties.get("attribute_type") == "VIEW_LAYER":
+                value = _lookup(properties["attribute_name"], scene, view_layer)
+                properties["layer_value"] = np.array(value, dtype=np.float32)
+
+
+def _lookup(name, scene, view_layer):
+    """In Blender's order; zeros where nothing has it."""
+    for owner in (view_layer, scene, scene.world):
+        value = find_value(owner, name) if owner is not None else None
+        if value is not None:
+            return value
+    return (0.0,) * 4

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A light of Blender as the plain record of docs/scene_snapshot.md, read as Cycles reads it.
+
+Where Cycles changed its mind between Blenders, a light means what the host's own Cycles means by it;
+nothing but the version tells these changes.
+"""
+
+import math
+
+import bpy
+
+from .constant_nodes import as_number, constant
+
+_AREA_SHAPES = {"SQUARE", "RECTANGLE", "DISK", "ELLIPSE"}
+
+
+def light_record(light_object, matrices, report):
+    """One entry of the snapshot's `lights`.
+
+    Args:
+        light_object: evaluated Object of type LIGHT.
+        matrices: float64 [K, 4, 4], world from light; None: not yet known.
+        report: called with (datablock, message) for what cannot be taken over.
+
+    Returns:
+        dict of plain values; a light that Cycles would not let shine has energy 0.
+    """
+    light = light_object.data
+    label = f"light '{light_object.name}'"
+    color, factor = _emission(light, label, report)
+    energy = light.energy * factor * 2.0 ** getattr(light, "exposure", 0.0)
+    if light.type == "AREA" and bpy.app.version < (4, 0, 0):
+        energy *= math.pi / 4.0  # radiance was P / (4 A) until 4.0 made it P / (pi A)
+    if getattr(light, "use_temperature", False):
+        color = [c * t for c, t in zip(color, light.temperature_color)]
+    if not getattr(light, "normalize", True):
+        energy *= _area(light, light_object.matrix_world)
+    if light.type == "AREA" and _cycles(light, "is_portal", False):
+        energy = 0.0  # it guides samples to the world, which needs no guide here
+    for name in ("diffuse_factor", "specular_factor"):
+        if getattr(light, name, 1.0) != 1.0:
+            report(label, f"{name} is EEVEE's alone and is not used")
+    shape = getattr(light, "shape", "SQUARE")
+    size = getattr(light, "size", 0.0)
+    return {
+        "name": light_object.name,
+        "kind": light.type,
+        "world_from_light": matrices,
+        "color": [c * x for c, x in zip(light.color, color)],
+        "energy": energy,
+        "radius": getattr(light, "shadow_soft_size", 0.0) if light.type in ("POINT", "SPOT") else 0,
+        "soft_falloff": bool(getattr(light, "use_soft_falloff", True)),
+        "sun_angle": getattr(light, "angle", 0.0),
+        "spot_size": getattr(light, "spot_size", 0.0),
+        "spot_blend": getattr(light, "spot_blend", 0.0),
+        # Until 3.4 a spot was dimmed by the cosine to its axis and its cone ignored the scale.
+        "spot_cosine": bpy.app.version < (3, 5, 0),
+        "shape": shape if shape in _AREA_SHAPES else "SQUARE",
+        "size": [size, getattr(light, "size_y", size) if _has_two_sizes(shape) else size],
+        "spread": getattr(light, "spread", math.pi),
+        "casts_shadow": bool(getattr(*shadow_switch(light))),
+        "visible_camera": bool(light_object.visible_camera),
+        "visible_diffuse": bool(light_object.visible_diffuse),
+        "visible_glossy": bool(light_object.visible_glossy),
+        "diffuse_factor": 1.0,
+        "specular_factor": 1.0,
+    }
+
+
+def shadow_switch(light):
+    """(owner, property) that says whether a light casts shadows: Cycles' own, where it has one."""
+    cycles = getattr(light, "cycles", None)
+    return (cycles, "cast_shadow") if hasattr(cycles, "cast_shadow") else (light, "use_shadow")
+
+
+def _has_two_sizes(shape):
+    return shape in ("RECTANGLE", "ELLIPSE")
+
+
+def _cycles(light, name, default):
+    """A property of Cycles' add-on, where it is enabled and has it."""
+    return getattr(getattr(light, "cycles", None), name, default)
+
+
+def _area(light, matrix):
+    """What Cycles divides a normalised light's power by, in its own units (Light::area)."""
+    if light.type in ("POINT", "SPOT"):
+        radius = light.shadow_soft_size
+        return 4.0 * math.pi * radius * radius if radius > 0.0 else 4.0
+    if light.type == "SUN":
+        half = 0.5 * light.angle
+        return math.pi * math.sin(half) ** 2 if half > 0.0 else 1.0
+    size_y = light.size_y if _has_two_sizes(light.shape) else light.size
+    area = light.size * matrix.col[0].length * size_y * matrix.col[1].length
+    return area * (math.pi / 4.0 if light.shape in ("DISK", "ELLIPSE") else 1.0)
+
+
+def _emission(light, label, report):
+    """Colour and strength of the light's Emission node; white and 1 without nodes."""
+    if not light.use_nodes or light.node_tree is None:
+        return [1.0] * 3, 1.0
+    outputs = [node for node in light.node_tree.nodes if node.type == "OUTPUT_LIGHT"]
+    output = next((node for node in outputs if node.is_active_output), None)
+    surface = output.inputs["Surface"] if output else None
+    if surface is None or not surface.is_linked:
+        return [1.0] * 3, 0.0
+    link = surface.links[0]
+    node = link.from_node
+    while node.type == "REROUTE" and node.inputs[0].is_linked:
+        node = node.inputs[0].links[0].from_node
+    if node.type != "EMISSION" or node.mute:
+        report(label, f"its node '{node.name}' is not understood: it shines white, strength 1")
+        return [1.0] * 3, 1.0
+    found = []
+    for name in ("Color", "Strength"):
+        value, undefined = constant(light.node_tree, node.inputs[name])
+        for lost in undefined:
+            report(label, f"node '{lost}' is of a type that Blender does not know: it is left out")
+        if value is None:
+            report(label, f"what is linked to {name} of '{node.name}' varies and is not used")
+            value = node.inputs[name].default_value
+        found.append(value)
+    return _color(found[0]), as_number(found[1])
+
+
+def _color(value):
+    return list(value[:3]) if hasattr(value, "__len__") else [value] * 3

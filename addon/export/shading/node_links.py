@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What really feeds a socket: through groups, reroutes and muted nodes, without recursion (files with
+1,600 nested groups exist, and Python's stack ends before that)."""
+
+
+class Scope:
+    """A node tree in use: the material's own, or a group's as seen from one group node.
+
+    Attributes:
+        undefined: names of the nodes of unknown type that `trace` met, in this tree or any group's.
+    """
+
+    def __init__(self, tree, group_node=None, parent=None):
+        self.tree = tree
+        self.undefined = {} if parent is None else parent.undefined
+        self.group_node = group_node
+        self.parent = parent
+        self._children = {}
+
+    def inside(self, group_node):
+        """The scope of a group node's tree; the same object every time."""
+        if group_node.name not in self._children:
+            self._children[group_node.name] = Scope(group_node.node_tree, group_node, self)
+        return self._children[group_node.name]
+
+
+class Source:
+    """Where a value comes from: a node's output, or a socket's own constant (`node` None).
+
+    `through` holds the types of the sockets passed between, nearest to the source first: a colour
+    that enters a group by a number socket is a number from there on.
+    """
+
+    def __init__(self, scope, node, socket, through=()):
+        self.scope = scope
+        self.node = node
+        self.socket = socket
+        self.through = through
+
+    @property
+    def key(self):
+        return id(self.scope), self.node.name
+
+
+def trace(scope, socket):
+    """Follows an input socket to its source.
+
+    Args:
+        scope: Scope of the socket's node.
+        socket: input NodeSocket.
+
+    Returns:
+        Source.  A link that leads nowhere counts as none: the source is the socket's own constant.  So
+        does one from a node whose type Blender does not know (its add-on is gone), as in Cycles.
+    """
+    own = Source(scope, None, socket)
+    passed = []
+    while True:
+        link = next((link for link in socket.links if _is_live(link)), None)
+        if link is not None and _is_undefined(link.from_node):
+            scope.undefined[link.from_node.name] = None
+            link = None
+        if link is None:
+            # Boundaries of groups, and muted nodes, hand on their own constants.
+            return Source(scope, None, socket, _types(passed)) if _has_constant(socket) else own
+        node, output = link.from_node, link.from_socket
+        if node.type == "REROUTE":
+            socket = node.inputs[0]
+        elif node.mute:
+            inner = next((x for x in node.internal_links if x.to_socket == output), None)
+            if inner is None:
+                return own
+            socket = inner.from_socket
+        elif node.type == "GROUP":
+            result = _group_result(node, output)
+            if result is None:
+                return own
+            scope, socket = scope.inside(node), result
+        elif node.type == "GROUP_INPUT":
+            if scope.parent is None:
+                return own
+            outer = _by_identifier(scope.group_node.inputs, output.identifier)
+            if outer is None:
+                return own
+            scope, socket = scope.parent, outer
+        else:
+            return Source(scope, node, output, _types(passed))
+        passed.append(socket)
+
+
+def _is_live(link):
+    return link.is_valid and not link.is_muted
+
+
+def _is_undefined(node):
+    # Blender knows of it what is true of all nodes.
+    return node.bl_rna.base is None
+
+
+def _types(passed):
+    return tuple(socket.type for socket in reversed(passed))
+
+
+def _has_constant(socket):
+    return hasattr(socket, "default_value") and not socket.hide_value
+
+
+def _group_result(group_node, output):
+    """The Group Output's input that feeds an output of the group node, or None."""
+    tree = group_node.node_tree
+    if tree is None:
+        return None
+    outputs = [node for node in tree.nodes if node.type == "GROUP_OUTPUT"]
+    active = next((node for node in outputs if node.is_active_output), None)
+    return None if active is None else _by_identifier(active.inputs, output.identifier)
+
+
+def _by_identifier(sockets, identifier):
+    return next((socket for socket in sockets if socket.identifier == identifier), None)

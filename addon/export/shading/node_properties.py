@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is set on a node beside its sockets: enums, numbers, ramps, curves, images."""
+
+import numpy as np
+
+from .image import image_name
+from .spectrum import TEMPERATURES, WAVELENGTHS, blackbody, monochromatic
+
+# Cycles tabulates ramps and curves with as many entries; steps then fall on the same places.
+TABLE_SIZE = 256
+
+
+def node_properties(node, owner, images, report):
+    """The snapshot's `properties` of a node.
+
+    Args:
+        node: shader node.
+        owner: datablock for messages.
+        images: {name: record}; images that the node shows are added.
+        report: called with (datablock, message).
+
+    Returns:
+        dict of float, str and float32 arrays.
+    """
+    found = _plain_properties(node)
+    if _is_mapped(node):
+        report(
+            owner, f"node '{node.name}': its own texture mapping is not read; use a Mapping node"
+        )
+    special = _SPECIAL.get(node.bl_idname)
+    if special is not None:
+        found.update(special(node, owner, images, report))
+    return found
+
+
+def _is_mapped(node):
+    """Whether a texture node moves its coordinates by itself, as files and scripts from before Blender 2.8 ask for."""
+    mapping = getattr(node, "texture_mapping", None)
+    if mapping is None:
+        return False
+    moved = any(mapping.translation) or any(mapping.rotation) or tuple(mapping.scale) != (1, 1, 1)
+    axes = mapping.mapping_x, mapping.mapping_y, mapping.mapping_z
+    return (
+        moved
+        or mapping.use_min
+        or mapping.use_max
+        or axes != ("X", "Y", "Z")
+        or mapping.mapping != "FLAT"
+    )
+
+
+def _plain_properties(node):
+    """Every number and enum that the node's type adds to those of all nodes."""
+    common = set(node.bl_rna.base.properties.keys())
+    found = {}
+    for rna in node.bl_rna.properties:
+        if rna.identifier in common:
+            continue
+        if rna.type in ("BOOLEAN", "INT", "FLOAT"):
+            value = getattr(node, rna.identifier)
+            if getattr(rna, "is_array", False):
+                found[rna.identifier] = np.array(value, dtype=np.float32).ravel()
+            else:
+                found[rna.identifier] = float(value)
+        elif rna.type == "STRING" or (rna.type == "ENUM" and not rna.is_enum_flag):
+            found[rna.identifier] = getattr(node, rna.identifier)
+    return found
+
+
+def _value(node, *_):
+    return {"value": float(node.outputs[0].default_value)}
+
+
+def _color(node, *_):
+    return {"color": np.array(node.outputs[0].default_value, dtype=np.float32)}
+
+
+def _ramp(node, *_):
+    ramp = node.color_ramp
+    places = np.arange(TABLE_SIZE) / (TABLE_SIZE - 1)
+    table = np.array([ramp.evaluate(x) for x in places], dtype=np.float32)
+    steps = ramp.interpolation == "CONSTANT"
+    return {"ramp": table.ravel(), "interpolation": "CONSTANT" if steps else "LINEAR"}
+
+
+def _free_curves(node, *_):
+    """Curves without one over all of them; a single one three times."""
+    mapping = node.mapping
+    mapping.initialize()
+    curves = list(mapping.curves)[:3]
+    low = min(curve.points[0].location[0] for curve in curves)
+    high = max(curve.points[-1].location[0] for curve in curves)
+    table = np.array(
+        [
+            [mapping.evaluate(curve, x) for curve in curves] * (3 // len(curves))
+            for x in np.linspace(low, high, TABLE_SIZE)
+        ],
+        dtype=np.float32,
+    )
+    return {"curves": table.ravel(), "low": float(low), "high": float(high)}
+
+
+def _direction(node, *_):
+    return {"direction": np.array(node.outputs[0].default_value, dtype=np.float32)}
+
+
+def _blackbody(_node, *_):
+    low, high = TEMPERATURES
+    table = np.array([blackbody(x) for x in np.linspace(low, high, 512)], dtype=np.float32)
+    return {"spectrum": table.ravel(), "low": low, "high": high}
+
+
+def _wavelength(_node, *_):
+    low, high = WAVELENGTHS
+    table = np.array([monochromatic(x) for x in np.linspace(low, high, 401)], dtype=np.float32)
+    return {"spectrum": table.ravel(), "low": low, "high": high}
+
+
+def _curves(node, *_):
+    mapping = node.mapping
+    mapping.initialize()
+    curves = list(mapping.curves)
+    low = min(curve.points[0].location[0] for curve in curves)
+    high = max(curve.points[-1].location[0] for curve in curves)
+    table = np.empty((TABLE_SIZE, 3), dtype=np.float32)
+    for i, x in enumerate(np.linspace(low, high, TABLE_SIZE)):
+        together = mapping.evaluate(curves[3], x)
+        table[i] = [mapping.evaluate(curve, together) for curve in curves[:3]]
+    return {"curves": table.ravel(), "low": float(low), "high": float(high)}
+
+
+def _image_texture(node, owner, images, report):
+    if node.image is None:
+        return {}
+    found = {"image": image_name(node.image, node.image_user, images, report)}
+    # Cycles divides the colour by alpha only where the node's alpha is used as well.
+    record = images[found["image"]]
+    alpha = next((socket for socket in node.outputs if socket.identifier == "Alpha"), None)
+    packed = record["alpha_mode"] in ("CHANNEL_PACKED", "NONE")
+    data = record["colorspace"] in ("Non-Color", "Raw")
+    found["unassociate_alpha"] = float(bool(alpha and alpha.is_linked and not packed and not data))
+    return found
+
+
+def _texture_coordinate(node, owner, images, report):
+    if node.object is None:
+        return {}
+    matrix = np.array(node.object.matrix_world.inverted_safe(), dtype=np.float32)
+    return {"object_from_world": matrix.ravel()}
+
+
+_SPECIAL = {
+    "ShaderNodeValue": _value,
+    "ShaderNodeRGB": _color,
+    "ShaderNodeValToRGB": _ramp,
+    "ShaderNodeRGBCurve": _curves,
+    "ShaderNodeVectorCurve": _free_curves,
+    "ShaderNodeFloatCurve": _free_curves,
+    "ShaderNodeNormal": _direction,
+    "ShaderNodeBlackbody": _blackbody,
+    "ShaderNodeWavelength": _wavelength,
+    "ShaderNodeTexImage": _image_texture,
+    "ShaderNodeTexEnvironment": _image_texture,
+    "ShaderNodeTexCoord": _texture_coordinate,
+}

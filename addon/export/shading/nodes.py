@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A shader node tree as the flat graph of docs/scene_snapshot.md: nodes in evaluation order, under the
+socket names of Blender 4, with groups, reroutes and mutes gone."""
+
+import bpy
+
+from .node_links import Scope, trace
+from .node_properties import node_properties
+from .unread_outputs import report_unread
+
+# Sockets that Blender 4 renamed: {bl_idname: {old identifier: new}}.
+_PRINCIPLED = {
+    "Subsurface": "Subsurface Weight",
+    "Specular": "Specular IOR Level",
+    "Sheen": "Sheen Weight",
+    "Clearcoat": "Coat Weight",
+    "Clearcoat Roughness": "Coat Roughness",
+    "Clearcoat Normal": "Coat Normal",
+    "Transmission": "Transmission Weight",
+    "Emission": "Emission Color",
+}
+_RENAMED = {"ShaderNodeBsdfPrincipled": _PRINCIPLED}
+# Blender 5 spells some sockets out.
+_SHORT = {"Factor": "Fac"}
+
+
+class FlatGraph:
+    """Nodes so far, each once a scope."""
+
+    def __init__(self, tree, owner, images, report):
+        self._root = Scope(tree)
+        self._owner = owner
+        self._images = images
+        self._report = report
+        self._index = {}
+        self.nodes = []
+
+    def add(self, socket):
+        """Adds all that feeds an input socket of the tree itself.
+
+        Args:
+            socket: input of an output node.
+
+        Returns:
+            (node index, output identifier), or None where nothing is linked.
+        """
+        source = trace(self._root, socket)
+        if source.node is not None:
+            self._add_nodes(source)
+        self._report_undefined()
+        if source.node is None:
+            return None
+        return self._index[source.key], output_identifier(source.socket)
+
+    def add_aov_outputs(self, names):
+        """Adds the AOV Output nodes of those names, groups' too, with all that feeds them."""
+        scopes = [self._root] if names else []
+        while scopes:
+            scope = scopes.pop()
+            for node in scope.tree.nodes:
+                if node.mute:
+                    continue
+                if node.type == "GROUP" and node.node_tree is not None:
+                    scopes.append(scope.inside(node))
+                elif node.bl_idname == "ShaderNodeOutputAOV" and aov_name(node) in names:
+                    self._add_aov_output(scope, node)
+        self._report_undefined()
+
+    def _report_undefined(self):
+        for name in self._root.undefined:
+            self._report(
+                self._owner,
+                f"node '{name}' is of a type that Blender does not know: it is left out",
+            )
+        self._root.undefined.clear()
+
+    def _add_aov_output(self, scope, node):
+        inputs = {}
+        for socket in node.inputs:
+            origin = trace(scope, socket)
+            if origin.node is not None:
+                self._add_nodes(origin)
+            self._add_input(inputs, socket.identifier, origin, node)
+        properties = {"aov_name": aov_name(node), "generation": generation()}
+        self.nodes.append(
+            {
+                "type": node.bl_idname,
+                "name": f"AOV Output {aov_name(node)}",
+                "inputs": inputs,
+                "properties": properties,
+            }
+        )
+
+    def _add_nodes(self, root):
+        pending, entered = [(root, None)], set()
+        while pending:
+            source, inputs = pending.pop()
+            if source.key in self._index:
+                continue
+            if inputs is not None:
+                self._emit(source, inputs)
+            elif source.key not in entered:
+                entered.add(source.key)
+                inputs = _traced_inputs(source)
+                pending.append((source, inputs))
+                pending.extend((s, None) for s in inputs.values() if s.node is not None)
+
+    def _emit(self, source, sources):
+        node = source.node
+        inputs = {}
+        for name, origin in sources.items():
+            self._add_input(inputs, name, origin, node)
+        properties = node_properties(node, self._owner, self._images, self._report)
+        self._index[source.key] = len(self.nodes)
+        self.nodes.append(
+            {
+                "type": node.bl_idname,
+                "name": node.name,
+                "inputs": inputs,
+                "properties": {**properties, "generation": generation()},
+            }
+        )
+
+    def _add_input(self, inputs, name, origin, node):
+        if origin.node is None:
+            value = _constant(origin.socket)
+        elif origin.key in self._index:
+            value = self._converted_link(origin)
+        else:
+            self._report(self._owner, f"node '{node.name}': its links run in a circle")
+            return
+        if value is not None:
+            inputs[name] = value
+
+    def _converted_link(self, origin):
+        """The link, behind a conversion node where the socket types in between ask for one."""
+        report_unread(origin.node, origin.socket, self._owner, self._report)
+        link = ("LINK", self._index[origin.key], output_identifier(origin.socket))
+        if "VALUE" not in origin.through or origin.socket.type not in ("RGBA", "VECTOR"):
+            return link
+        if origin.socket.type == "RGBA":
+            kind, inputs, output, properties = "ShaderNodeRGBToBW", {"Color": link}, "Val", {}
+        else:
+            third = (1 / 3, 1 / 3, 1 / 3)
+            kind, inputs = "ShaderNodeVectorMath", {"Vector": link, "Vector_001": third}
+            output, properties = "Value", {"operation": "DOT_PRODUCT"}
+        self.nodes.append(
+            {"type": kind, "name": "conversion", "inputs": inputs, "properties": properties}
+        )
+        return ("LINK", len(self.nodes) - 1, output)
+
+
+def generation():
+    """1: shaders mean what they meant before Blender 4; 2: since then."""
+    return 1 if bpy.app.version < (4, 0, 0) else 2
+
+
+def aov_name(node):
+    """Blender 4.1 renamed the property, which had hidden the node's own name."""
+    return node.aov_name if hasattr(node, "aov_name") else node.name
+
+
+def output_identifier(socket):
+    return _SHORT.get(socket.identifier, socket.identifier)
+
+
+def _traced_inputs(source):
+    """{identifier: Source} of the inputs in use."""
+    renamed = _RENAMED.get(source.node.bl_idname, {})
+    found = {}
+    for socket in source.node.inputs:
+        if socket.enabled:
+            name = renamed.get(socket.identifier, _SHORT.get(socket.identifier, socket.identifier))
+            found[name] = trace(source.scope, socket)
+    return found
+
+
+def _constant(socket):
+    """A float, a tuple of floats, or None for sockets whose default is not a constant."""
+    if socket.hide_value or not hasattr(socket, "default_value"):
+        return None
+    value = socket.default_value
+    if isinstance(value, (int, float)):
+        return float(value)
+    if isinstance(value, str) or not hasattr(value, "__len__"):
+        return None
+    return tuple(float(x) for x in value)

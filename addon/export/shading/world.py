@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The world as a node graph (docs/scene_snapshot.md)."""
+
+from .nodes import FlatGraph
+
+
+def world_of(scene, view_layer):
+    """The World of a view layer, or None.  From Blender 4.2 on it may have its own."""
+    return getattr(view_layer, "world_override", None) or scene.world
+
+
+def hidden_from(world):
+    """Kinds of rays that Cycles does not show a World to: of "camera", "diffuse" and "glossy"."""
+    visibility = getattr(world, "cycles_visibility", None)
+    return [name for name in ("camera", "diffuse", "glossy") if not getattr(visibility, name, True)]
+
+
+def export_world(scene, view_layer, report, images=None):
+    """The snapshot's `world`.
+
+    Args:
+        scene: evaluated Scene.
+        view_layer: evaluated ViewLayer; with its sky off, Cycles drops the world's light as well.
+        report: called with (datablock, message).
+        images: list of image records to which those of the world are added.
+
+    Returns:
+        dict; black where the scene has no world.
+    """
+    world = world_of(scene, view_layer)
+    record = {"nodes": [], "surface": None, "displacement": None}
+    record["lights_scene"] = bool(view_layer.use_sky)
+    if world is None:
+        return {**record, "name": ""}
+    record["name"] = world.name_full
+    owner = f"world '{world.name_full}'"
+    for name in hidden_from(world):
+        report(owner, f"is seen by {name} rays, though its Ray Visibility says otherwise")
+    if not world.use_nodes or world.node_tree is None:
+        node = {
+            "type": "ShaderNodeBackground",
+            "name": "Color",
+            "inputs": {"Color": (*world.color, 1.0), "Strength": 1.0},
+            "properties": {},
+        }
+        return {**record, "nodes": [node], "surface": (0, "Background")}
+    shown = {}
+    graph = FlatGraph(world.node_tree, owner, shown, report)
+    output = world.node_tree.get_output_node("CYCLES")
+    if output is not None:
+        record["surface"] = graph.add(output.inputs["Surface"])
+        if output.inputs["Volume"].is_linked:
+            report(owner, "its volume is not rendered")
+    if images is not None:
+        known = {image["name"] for image in images}
+        images.extend(image for image in shown.values() if image["name"] not in known)
+    return {**record, "nodes": graph.nodes}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/stage_timer.h"
+
+#include <time.h>
+
+#include <algorithm>
+
+namespace granita {
+namespace {
+
+thread_local StageLedger* t_ledger = nullptr;
+thread_local StageTimer* t_timer = nullptr;
+/// Its address names the thread.
+thread_local char t_here = 0;
+
+double seconds(clockid_t clock) {
+    timespec t{};
+    clock_gettime(clock, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+double wall() {
+    return seconds(CLOCK_MONOTONIC);
+}
+double processor() {
+    return seconds(CLOCK_THREAD_CPUTIME_ID);
+}
+double beside() {
+    return seconds(CLOCK_PROCESS_CPUTIME_ID) - processor();
+}
+
+}  // namespace
+
+StageLedger::StageLedger(Statistics& statistics)
+    : m_statistics(statistics), m_outermost(t_ledger == nullptr) {
+    if (!m_outermost) return;
+    t_ledger = this;
+    m_wall = wall();
+    m_processor = processor();
+}
+
+StageLedger::~StageLedger() {
+    if (!m_outermost) return;
+    t_ledger = nullptr;
+    const double passed = wall() - m_wall;
+    const double part = passed > 0.0 ? std::min(1.0, (processor() - m_processor) / passed) : 0.0;
+    for (std::size_t stage = 0; stage < m_seconds.size(); ++stage)
+        if (m_seconds[stage] > 0.0)
+            m_statistics.add_seconds(static_cast<Stage>(stage), part * m_seconds[stage]);
+}
+
+StageTimer::StageTimer(Statistics& statistics, Stage stage)
+    : m_statistics(statistics),
+      m_stage(stage),
+      m_outer(t_timer),
+      m_start(t_ledger ? wall() : processor()) {
+    if (m_outer) m_outer->stop(m_start);
+    t_timer = this;
+}
+
+StageTimer::~StageTimer() {
+    const double now = t_ledger ? wall() : processor();
+    stop(now);
+    t_timer = m_outer;
+    if (m_outer) m_outer->m_start = now;
+}
+
+void StageTimer::stop(double now) {
+    if (t_ledger)
+        t_ledger->m_seconds[static_cast<std::size_t>(m_stage)] += now - m_start;
+    else
+        m_statistics.add_seconds(m_stage, now - m_start);
+}
+
+StageTimer::Current StageTimer::current() {
+    if (!t_timer) return {nullptr, Stage::Open, &t_here};
+    return {&t_timer->m_statistics, t_timer->m_stage, &t_here};
+}
+
+StageShare::StageShare(const StageTimer::Current& of) : m_of(of) {
+    if (m_of.thread == &t_here || t_timer || t_ledger) m_of.statistics = nullptr;
+    if (m_of.statistics) m_start = processor();
+}
+
+StageShare::~StageShare() {
+    if (m_of.statistics) m_of.statistics->add_seconds(m_of.stage, processor() - m_start);
+}
+
+ForeignThreads::ForeignThreads() : m_start(beside()) {}
+
+ForeignThreads::~ForeignThreads() {
+    const StageTimer::Current of = StageTimer::current();
+    if (of.statistics) of.statistics->add_seconds(of.stage, std::max(0.0, beside() - m_start));
+}
+
+}  // namespace granita

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the corners of micropolygons are over intervals of time: included once a SIMD target inside
+// its namespace, after tile_bounds.inl.  Lanes are intervals of one micropolygon, or
+// micropolygons with an interval each.
+
+/// Least and most at the begin and the end of the intervals.
+struct Extent {
+    V lo[2], hi[2];
+
+    HWY_INLINE Extent() {
+        lo[0] = lo[1] = set(INFINITY);
+        hi[0] = hi[1] = set(-INFINITY);
+    }
+    HWY_INLINE void add(V value, int end) {
+        lo[end] = hn::Min(lo[end], value);
+        hi[end] = hn::Max(hi[end], value);
+    }
+    /// Also what another has in the lanes of the mask.
+    HWY_INLINE void merge(const Extent& other, M mask) {
+        for (int end = 0; end < 2; ++end) {
+            lo[end] = hn::Min(lo[end], hn::IfThenElse(mask, other.lo[end], lo[end]));
+            hi[end] = hn::Max(hi[end], hn::IfThenElse(mask, other.hi[end], hi[end]));
+        }
+    }
+    /// All lanes are of one thing.
+    HWY_INLINE void reduce() {
+        for (V& value : lo) value = hn::MinOfLanes(kTag, value);
+        for (V& value : hi) value = hn::MaxOfLanes(kTag, value);
+    }
+};
+
+/// Along one axis something stays within `reach` of place + speed t.
+struct StraightPath {
+    V place, speed, reach;
+};
+
+/// Of (z / focus - 1) / w at both ends together: a still lens has `shear`; where samples have a
+/// focus each it is `depth` / focus - `reciprocal`, of which perspective leaves depth = 1.
+struct LensExtents {
+    Extent shear, depth, reciprocal;
+    HWY_INLINE LensExtents() {}  // the implicit one is of no target
+};
+
+/// For a fixed lens point a corner moves monotonically between the ends of its interval of time,
+/// whatever the perspective, and for a fixed time linearly in the lens point (compare Laine et al.
+/// 2011): its extremes are at the ends.
+template <bool kMoving, Lens kLens>
+struct SweptBounds {
+    Extent x, y;
+    LensExtents lens;
+    V z_lo;
+    V margin;                ///< more than rounding and the exact test need
+    V bend_x, bend_y;        ///< how far paths leave their chords
+    M sane;                  ///< before the eye plane
+    V last_x[2], last_y[2];  ///< where the corner that was added last is at the ends
+
+    HWY_INLINE explicit SweptBounds(M present) : sane(present) {
+        z_lo = set(INFINITY);
+        margin = bend_x = bend_y = set(0.0f);
+    }
+
+    /// The corners at the two `ends` of the intervals, in parts of the segment.
+    HWY_INLINE void add(const SimdGrid& grid, const Corner<V>& c, const Corner<V>& d,
+                        const V ends[2]) {
+        const V rounding = rounding_of(grid, c, d);
+        Step was;
+        for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
+            const Step now = step(grid, kMoving ? at_time(c, d, ends[e]) : c, rounding);
+            if (e == 1) {
+                bend_x = hn::Max(bend_x, bend(was.x, now.x, was, now));
+                bend_y = hn::Max(bend_y, bend(was.y, now.y, was, now));
+            }
+            add_end(now, e);
+            was = now;
+        }
+    }
+
+    /// Also what others have in the lanes of the mask.
+    HWY_INLINE void merge(const SweptBounds& other, M mask) {
+        x.merge(other.x, mask);
+        y.merge(other.y, mask);
+        lens.shear.merge(other.lens.shear, mask);
+        lens.depth.merge(other.lens.depth, mask);
+        lens.reciprocal.merge(other.lens.reciprocal, mask);
+        z_lo = hn::Min(z_lo, hn::IfThenElse(mask, other.z_lo, z_lo));
+        margin = hn::Max(margin, hn::IfThenElse(mask, other.margin, margin));
+        bend_x = hn::Max(bend_x, hn::IfThenElse(mask, other.bend_x, bend_x));
+        bend_y = hn::Max(bend_y, hn::IfThenElse(mask, other.bend_y, bend_y));
+        sane = hn::And(sane, hn::Or(other.sane, hn::Not(mask)));
+    }
+
+    /// All lanes are of one thing.
+    HWY_INLINE void reduce() {
+        x.reduce();
+        y.reduce();
+        lens.shear.reduce();
+        lens.depth.reduce();
+        lens.reciprocal.reduce();
+        z_lo = hn::MinOfLanes(kTag, z_lo);
+        margin = hn::MaxOfLanes(kTag, margin);
+        bend_x = hn::MaxOfLanes(kTag, bend_x);
+        bend_y = hn::MaxOfLanes(kTag, bend_y);
+        sane = hn::AllTrue(kTag, sane) ? sane : hn::MaskFromVec(set(0.0f));
+    }
+
+    /// No sample sees a nearer key: it may round a few ulp past the nearest corner's.
+    HWY_INLINE V nearest_key(bool perspective) const {
+        V key = hn::Neg(z_lo);
+        if (perspective)
+            key = hn::IfThenElse(hn::Gt(z_lo, set(0.0f)), set(1.0f) / z_lo, set(INFINITY));
+        return key + hn::Abs(key) * set(0x1p-18f);
+    }
+
+    /// Where it is at the ends, without lens.
+    HWY_INLINE Box box() const {
+        Box box{x.lo[0], x.hi[0], y.lo[0], y.hi[0]};
+        if constexpr (kMoving)
+            box = {hn::Min(box.x_lo, x.lo[1]), hn::Max(box.x_hi, x.hi[1]),
+                   hn::Min(box.y_lo, y.lo[1]), hn::Max(box.y_hi, y.hi[1])};
+        return {box.x_lo - margin, box.x_hi + margin, box.y_lo - margin, box.y_hi + margin};
+    }
+
+    /// `time0`, `time1`: the ends, times of the shutter.  Without lens and margin.
+    HWY_INLINE static StraightPath straight(const Extent& at, V bend, V time0, V time1) {
+        const V half = set(0.5f), begin = (at.lo[0] + at.hi[0]) * half;
+        StraightPath path{begin, set(0.0f), (at.hi[0] - at.lo[0]) * half};
+        if constexpr (kMoving) {
+            const V end = (at.lo[1] + at.hi[1]) * half, span = time1 - time0;
+            const V reach = hn::Max(path.reach, (at.hi[1] - at.lo[1]) * half) + bend;
+            const M long_enough = hn::Gt(span, set(1e-6f));
+            path.speed = hn::IfThenElseZero(long_enough, (end - begin) / span);
+            path.reach = hn::IfThenElse(long_enough, reach, reach + hn::Abs(end - begin));
+            path.place = begin - path.speed * time0;
+            path.reach = path.reach + (hn::Abs(path.place) + hn::Abs(path.speed)) * set(0x1p-20f);
+        }
+        return path;
+    }
+
+  private:
+    /// Where a corner is, on the raster.
+    struct Step {
+        V x, y, w, inverse, rounding;
+        HWY_INLINE Step() {}  // the implicit one is of no target
+    };
+
+    /// Adds all but where it is.
+    HWY_INLINE Step step(const SimdGrid& grid, const Corner<V>& at, V rounding) {
+        const V one = set(1.0f);
+        Step now;
+        now.w = at.w;
+        now.rounding = rounding;
+        now.inverse = one / at.w;
+        now.x = at.x * now.inverse;
+        now.y = at.y * now.inverse;
+        if constexpr (kLens == Lens::Still)
+            lens.shear.add((at.z * set(grid.inverse_focus) - one) * now.inverse, 0);
+        if constexpr (kLens == Lens::Refocused) {
+            lens.depth.add(at.z * now.inverse, 0);
+            lens.reciprocal.add(now.inverse, 0);
+        }
+        z_lo = hn::Min(z_lo, at.z);
+        margin = hn::Max(margin, rounding * now.inverse);
+        sane = hn::And(sane, hn::Gt(at.w, set(1e-15f)));
+        return now;
+    }
+
+    HWY_INLINE void add_end(const Step& at, int end) {
+        last_x[end] = at.x;
+        last_y[end] = at.y;
+        x.add(at.x, end);
+        y.add(at.y, end);
+    }
+
+    /// A path in perspective leaves its chord, from p to q, by at most |chord| |dw| / (4 w).
+    static HWY_INLINE V bend(V p, V q, const Step& a, const Step& b) {
+        const V curved = hn::Abs(b.w - a.w) * hn::Max(a.inverse, b.inverse) * set(0.25f);
+        return hn::Abs(q - p) * curved;
+    }
+
+    /// More than a corner's offset from a sample of the tile can round by, times w.
+    static HWY_INLINE V rounding_of(const SimdGrid& grid, const Corner<V>& c, const Corner<V>& d) {
+        const auto largest = [](V begin, V delta) HWY_ATTR {
+            if constexpr (!kMoving) return hn::Abs(begin);
+            return hn::Max(hn::Abs(begin), hn::Abs(begin + delta));
+        };
+        const V place = hn::Max(largest(c.x, d.x), largest(c.y, d.y));
+        V rounding = largest(c.w, d.w) * set(1.0f / 256) + place * set(0x1p-20f);
+        if constexpr (kLens != Lens::None) {
+            const V depth = largest(c.z, d.z) * set(grid.inverse_focus) + set(1.0f);
+            rounding = rounding + set(std::max(grid.lens_x, grid.lens_y) * 0x1p-20f) * depth;
+        }
+        return rounding;
+    }
+};

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a surface program leaves at the points of a grid: scattering lobes, emission and
+// transparency.  Node programs write it, lighting (direct_light.h) reads it.  Everything is per
+// point, [n]; weights already hold every mix factor, so reflected light is premultiplied by
+// opacity.  Directions and normals: world axes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace granita {
+
+enum class LobeKind { Diffuse, Glossy };
+enum class Distribution {
+    Sharp,
+    Beckmann,
+    Ggx,
+    Gtr1,  ///< Burley's (2012) coat: longer tails, masked as a GGX of roughness 1/2
+};
+enum class FresnelKind {
+    None,        ///< weight alone
+    Schlick,     ///< f0 + (f90 - f0) (1 - cos)^5 at the half vector
+    Dielectric,  ///< exact, of ior, remapped so that normal incidence gives f0 and grazing f90
+                 ///< (Cycles' principled)
+};
+
+struct Lobe {
+    LobeKind kind = LobeKind::Diffuse;
+    Distribution distribution = Distribution::Ggx;
+    FresnelKind fresnel = FresnelKind::None;
+    bool multiscatter = false;       ///< glossy: energy compensation as Cycles' MULTI_GGX
+    bool separable_masking = false;  ///< glossy: Smith's masking of view and light multiplied, as
+                                     ///< Cycles before Blender 4; else height-correlated
+    bool burley = false;        ///< diffuse: Burley's (2012) retro-reflection with `roughness`, as
+                                ///< Principled before Blender 4
+    bool cosine_bumps = false;  ///< diffuse: bent normals fade light as before Blender 4
+    std::vector<Vec3f> weight;  ///< [n]
+    std::vector<Vec3f> normal;  ///< [n] unit, facing the viewer as Cycles ensures
+    std::vector<float> roughness;  ///< [n] diffuse: Oren-Nayar sigma socket; glossy: the socket's
+                                   ///< value (alpha = roughness^2)
+    std::vector<Vec3f> f0, f90;    ///< [n] FresnelKind::None and diffuse lobes: f90 empty, f0 empty
+                                   ///< or the lobe's colour, which energy compensation saturates
+    std::vector<float> ior;        ///< [n] Dielectric only
+};
+
+struct SurfaceClosure {
+    std::vector<Lobe> lobes;
+    std::vector<Vec3f> emission;      ///< [n] radiance, empty = none
+    std::vector<Vec3f> transparency;  ///< [n] weight of Transparent closures, empty = none; opacity
+                                      ///< = 1 - transparency
+};
+
+/// The points of a grid in shading space: world axes, origin at the camera (scenes far from the
+/// world's origin keep their bits), at the frame time.
+struct ShadingPoints {
+    std::size_t count = 0;
+    std::size_t columns = 0;              ///< points in a row of the grid; 0: all are one row
+    std::vector<Vec3f> p;                 ///< [n] camera-relative world
+    std::vector<Vec3f> normal;            ///< [n] unit shading normal, faced to the viewer
+    std::vector<Vec3f> geometric_normal;  ///< [n] unit, faced to the viewer
+    std::vector<Vec3f>
+        view;  ///< [n] unit, from the point to the eye (orthographic: the constant direction)
+    std::vector<Vec3f> dp_du, dp_dv;       ///< [n] change over one grid step
+    std::vector<Vec3f> ray_offset;         ///< [n] as Grid::ray_offset; may be empty
+    std::vector<std::uint32_t> faces;      ///< [n] as ShadingPositions::faces; may be empty
+    float share = 1.0f;                    ///< as Grid::point_share
+    std::vector<std::uint8_t> backfacing;  ///< [n]
+};
+
+}  // namespace granita

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Microfacet distributions with Smith's height-correlated masking, isotropic, in the frame of the
+// lobe's normal (Walter et al. 2007; Heitz 2014).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/sampling.h"
+#include "math/vec.h"
+
+namespace granita {
+
+/// Smith's Lambda of GGX; cos in (0, 1].
+inline float ggx_lambda(float alpha, float cos_v) {
+    const float tan2 = std::max(0.0f, 1.0f / (cos_v * cos_v) - 1.0f);
+    return 0.5f * (std::sqrt(1.0f + alpha * alpha * tan2) - 1.0f);
+}
+
+/// Smith's Lambda of Beckmann, rational fit of Walter et al. 2007.
+inline float beckmann_lambda(float alpha, float cos_v) {
+    const float tan2 = std::max(0.0f, 1.0f / (cos_v * cos_v) - 1.0f);
+    const float squared = alpha * alpha * tan2;
+    if (squared < 0.39f) return 0.0f;  // 1 / 1.6^2: the fit's own limit
+    const float a = 1.0f / std::sqrt(squared);
+    return ((0.396f * a - 1.259f) * a + 1.0f) / ((2.181f * a + 3.535f) * a);
+}
+
+/// `sin2` is the squared sine between half vector and normal: given apart because 1 - cos^2 loses
+/// all bits on nearly sharp lobes.
+inline float ggx_density(float alpha, float sin2) {
+    const float alpha2 = alpha * alpha;
+    const float t = sin2 + alpha2 * std::max(0.0f, 1.0f - sin2);
+    return alpha2 / (kPi * t * t);
+}
+
+inline float beckmann_density(float alpha, float sin2) {
+    const float alpha2 = alpha * alpha;
+    const float cos2 = std::max(1e-12f, 1.0f - sin2);
+    return std::exp(-sin2 / (cos2 * alpha2)) / (kPi * alpha2 * cos2 * cos2);
+}
+
+/// Burley 2012, appendix B.2; a lobe of alpha 1 is even.
+inline float gtr1_density(float alpha, float sin2) {
+    if (alpha >= 1.0f) return kInversePi;
+    const float alpha2 = alpha * alpha;
+    const float t = sin2 + alpha2 * std::max(0.0f, 1.0f - sin2);
+    return (alpha2 - 1.0f) / (kPi * std::log(alpha2) * t);
+}
+
+/// Half vector with the density of visible normals, D G1 cos(h, wi) / cos(wi) (Heitz 2018).
+inline Vec3f sample_ggx_visible(const Vec3f& wi, float alpha, const Vec2f& u) {
+    const Vec3f stretched = glm::normalize(Vec3f(alpha * wi.x, alpha * wi.y, wi.z));
+    const Frame frame(stretched);
+    // Frame's x axis need not lie in the horizontal plane; the cut of the projected disc does.
+    const float length2 = stretched.x * stretched.x + stretched.y * stretched.y;
+    const Vec3f t1 =
+        length2 > 1e-14f ? Vec3f(-stretched.y, stretched.x, 0.0f) / std::sqrt(length2) : frame.x;
+    const Vec3f t2 = glm::cross(stretched, t1);
+    Vec2f d = sample_disc(u);
+    const float s = 0.5f * (1.0f + stretched.z);
+    d.y = (1.0f - s) * std::sqrt(std::max(0.0f, 1.0f - d.x * d.x)) + s * d.y;
+    const float z = std::sqrt(std::max(0.0f, 1.0f - d.x * d.x - d.y * d.y));
+    const Vec3f h = d.x * t1 + d.y * t2 + z * stretched;
+    return glm::normalize(Vec3f(alpha * h.x, alpha * h.y, std::max(0.0f, h.z)));
+}
+
+/// Half vector with the density D cos(h).
+inline Vec3f sample_gtr1(float alpha, const Vec2f& u) {
+    const float alpha2 = alpha * alpha;
+    const float sin2 =
+        alpha < 1.0f ? (std::pow(alpha2, 1.0f - u.x) - alpha2) / (1.0f - alpha2) : u.x;
+    const float sin_h = std::sqrt(std::clamp(sin2, 0.0f, 1.0f));
+    const float phi = 2.0f * kPi * u.y;
+    return {sin_h * std::cos(phi), sin_h * std::sin(phi), std::sqrt(1.0f - sin_h * sin_h)};
+}
+
+/// Half vector with the density D cos(h).
+inline Vec3f sample_beckmann(float alpha, const Vec2f& u) {
+    const float tan2 = -alpha * alpha * std::log(1.0f - u.x);
+    const float cos_h = 1.0f / std::sqrt(1.0f + tan2);
+    const float sin_h = std::sqrt(std::max(0.0f, 1.0f - cos_h * cos_h));
+    const float phi = 2.0f * kPi * u.y;
+    return {sin_h * std::cos(phi), sin_h * std::sin(phi), cos_h};
+}
+
+}  // namespace granita

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light that arrives straight from lamps and the world and leaves along the view: the lighting of
+// a grid (design, section 6).
+//
+//   DirectLight light(scene, world, statistics, report, progress);   // once a frame
+//   radiance = light.reflect(points, closure, grid.key);             // any thread, any grid
+//
+// Soft lights and lobes are both sampled and combined by the balance heuristic over all samples of
+// a point (Veach 1997, 9.2.2), so that mirrors see lamps and rough surfaces see small suns without
+// fireflies.  `Options::light_samples` is the number of samples a soft light, a world image and all
+// lobes together take at a point; hard lights take one.
+//
+// Where casters or lights move, samples are spread over the shutter and the point goes along.  A
+// sample whose light the moved surface has turned away from, while at the frame time it has not, is
+// traced at the frame time: or a spinning ball would shade its own lit side.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/report.h"
+#include "base/statistics.h"
+#include "dice/grid.h"
+#include "geometry/geometry_cache.h"
+#include "scene/scene.h"
+#include "shade/bsdf/lobe.h"
+#include "shade/bsdf/reflection.h"
+#include "shade/lights/environment.h"
+#include "shade/lights/light_motion.h"
+#include "shade/rays/shadow_opacity.h"
+
+namespace granita {
+
+class DirectLight {
+  public:
+    /// Bakes the world and, if any light or the world shines, builds the ray scene.  `world` is
+    /// kept and called from any thread; scene, statistics and progress must outlive this.  Without
+    /// `opacity` every surface casts a full shadow.  `geometries`: shared with dicing, if it is
+    /// given.  Throws Cancelled.
+    DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics, Report& report,
+                const Progress& progress, ShadowOpacity opacity = {},
+                std::shared_ptr<GeometryCache> geometries = nullptr);
+    ~DirectLight();
+
+    /// Whether anything that sheds light or casts shadows changes within the shutter: then
+    /// reflect() wants to know where the points are.
+    bool varies() const;
+
+    /// Radiance reflected by the closure's lobes towards the view, [points.count]: the mean over
+    /// the shutter, as far as the points are there, of what arrives, on the surface as it is at the
+    /// frame time.  Fills `parts` where given.
+    std::vector<Vec3f> reflect(const ShadingPoints& points, const SurfaceClosure& closure,
+                               const GridKey& seed, ReflectionParts* parts = nullptr,
+                               const PointPaths& paths = {}) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace granita

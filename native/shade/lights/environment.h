@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The world as a light: its radiance baked over all directions, for importance sampling
+// (pbrt 12.5). Directions are world axes; the map is equirectangular, z up, rows of equal polar
+// angle.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "base/progress.h"
+#include "math/vec.h"
+#include "shade/rays/ray_type.h"
+
+namespace granita {
+
+/// The world as a light.
+struct WorldEvaluator {
+    /// Along `directions` (unit, world axes), each standing for a cone of `spread` radians (texture
+    /// filtering), as rays of a type see it.  Any thread.
+    std::function<void(const std::vector<Vec3f>& directions, float spread, RayType ray,
+                       std::vector<Vec3f>& out)>
+        radiance;
+    bool is_constant = false;  ///< one radiance for all directions, as each type of ray sees it
+    bool by_lobe = false;      ///< diffuse, glossy and singular rays may see different worlds
+    bool is_filtered = false;  ///< nothing narrower than `spread` is missed, as in images
+};
+
+class Environment {
+  public:
+    /// A world that is not constant is evaluated in parallel over `height` x 2 `height` texels:
+    /// once in each where it is filtered; else at 4 x 4 places, so that what is at least 0.35 of a
+    /// texel wide (of the default an eighth of a degree, a quarter of the sun) is found.  Radiance
+    /// that is not finite counts as black.  Throws Cancelled.
+    Environment(const WorldEvaluator& world, const Progress& progress, int height = 512);
+
+    /// Directions whose radiance was not finite.
+    std::size_t broken() const { return m_broken; }
+    /// Constant and black.  A world that varies is none, however dark its texels: lobes may find
+    /// what is between them.
+    bool is_black() const { return m_black; }
+    bool is_constant() const { return m_constant; }
+    /// Of a constant world, as a type of ray sees it.
+    const Vec3f& constant_radiance(RayType ray) const {
+        return m_constant_radiance[static_cast<std::size_t>(ray)];
+    }
+    /// Whether sample() has anything to go by: not where the world is constant or all texels are
+    /// black.
+    bool has_density() const { return !m_rows.empty(); }
+
+    /// Direction with a density near proportional to luminance; u in [0, 1)^2.
+    Vec3f sample(const Vec2f& u, float& pdf) const;
+    /// Density of sample(), per solid angle; 0 without one.
+    float pdf(const Vec3f& direction) const;
+
+    /// Angle between neighbouring directions of the table: what sample() stands for.
+    float texel_angle() const;
+    std::size_t bytes() const;
+
+  private:
+    /// [height][width] luminance
+    std::vector<float> bake(const WorldEvaluator& world, const Progress& progress);
+    void build_distribution(const std::vector<float>& luminance);
+
+    int m_width = 0, m_height = 0;
+    std::size_t m_broken = 0;
+    bool m_black = false, m_constant = false;
+    std::array<Vec3f, 5> m_constant_radiance{};  ///< [types of rays]
+    std::vector<float> m_rows;                   ///< [height + 1] distribution over rows
+    std::vector<float> m_columns;  ///< [height][width + 1] distribution inside each row
+};
+
+}  // namespace granita

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/lights/light_lamp.h"
+
+#include <algorithm>
+
+namespace granita {
+namespace {
+
+/// Places of a lamp that moves.  A step between two of them is a 256th of its way: a path across a
+/// frame of 4096 pixels moves a shadow by 16 of them, far below its penumbra's own blur.
+constexpr int kPlaces = 256;
+
+bool varies_over_time(const Light& light) {
+    const auto& m = light.world_from_light;
+    const auto& e = light.energy_knots;
+    return std::any_of(m.begin(), m.end(), [&](const Mat4d& knot) { return knot != m[0]; }) ||
+           std::any_of(e.begin(), e.end(), [&](float knot) { return knot != e[0]; });
+}
+
+}  // namespace
+
+Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin)
+    : m_lifespan(light.lifespan),
+      m_casts_shadow(light.casts_shadow),
+      m_diffuse(light.visible_diffuse ? light.diffuse_factor : 0.0f),
+      m_glossy(light.visible_glossy ? light.specular_factor : 0.0f),
+      m_receiver_set(light.receiver_set),
+      m_blocker_set(light.blocker_set) {
+    const int places = varies_over_time(light) ? kPlaces : 1;
+    for (int k = 0; k < places; ++k) {
+        const float time = places > 1 ? (static_cast<float>(k) + 0.5f) / kPlaces : frame_time;
+        m_sources.push_back(make_light_source(light, time, origin));
+        m_hard = m_hard && m_sources.back()->is_hard();
+    }
+}
+
+}  // namespace granita

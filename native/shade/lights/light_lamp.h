@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "scene/light.h"
+#include "shade/bsdf/bsdf.h"
+#include "shade/lights/light_source.h"
+
+namespace granita {
+
+/// A light of the scene over the shutter, with what it may do to whom.
+class Lamp {
+  public:
+    /// `origin`: the camera's world position at the frame time.
+    Lamp(const Light& light, float frame_time, const Vec3d& origin);
+
+    /// Whether its place or its strength changes within the shutter.
+    bool varies() const { return m_sources.size() > 1 || !m_lifespan.is_whole(); }
+    /// Whether it is there.
+    bool exists(float time) const { return m_lifespan.contains(time); }
+    /// Without a size at all times.
+    bool is_hard() const { return m_hard; }
+    bool casts_shadow() const { return m_casts_shadow; }
+    /// Whether it lights an instance of that mask (Instance::receives).
+    bool lights(std::uint64_t receives) const { return in_light_set(receives, m_receiver_set); }
+    int blocker_set() const { return m_blocker_set; }
+    bool reaches_glossy() const { return m_glossy > 0.0f; }
+    float glossy() const { return m_glossy; }
+    const LightSource& at(float time) const {
+        const auto count = m_sources.size();
+        const auto place = static_cast<std::size_t>(time * static_cast<float>(count));
+        return *m_sources[place < count ? place : count - 1];
+    }
+    /// What a ray of that time meets of it: LightSource::intersect.
+    bool meets(float time, const Vec3f& p, const Vec3f& direction, LightSample& sample) const {
+        return exists(time) && at(time).intersect(p, direction, sample);
+    }
+    /// Reflected light, by the lobes that see this lamp.
+    BsdfValue apply(const BsdfValue& value) const {
+        return {value.diffuse * m_diffuse, value.glossy * m_glossy};
+    }
+
+  private:
+    std::vector<std::unique_ptr<LightSource>> m_sources;  ///< one, or at equal parts of the shutter
+    Lifespan m_lifespan;
+    bool m_hard = true, m_casts_shadow;
+    float m_diffuse, m_glossy;
+    int m_receiver_set, m_blocker_set;
+};
+
+}  // namespace granita

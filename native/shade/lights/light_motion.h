@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "dice/grid.h"
+#include "scene/scene.h"
+#include "shade/bsdf/lobe.h"
+
+namespace granita {
+
+/// Where the points of a grid are over the shutter, for light that changes within it: world axes,
+/// origin at the camera of the frame time, linear between equidistant knots.  The camera's own
+/// motion moves nothing in the world.
+class PointPaths {
+  public:
+    /// Points that stand still.
+    PointPaths() = default;
+    /// `points`: shading_points() of the grid.
+    PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints& points);
+
+    bool moves() const { return m_knots > 1; }
+    const Lifespan& lifespan() const { return m_lifespan; }
+    struct Place {
+        Vec3f p;
+        Vec3f start;   ///< where rays may, as far as the grid knows (Grid::ray_offset)
+        Vec3f normal;  ///< unit, geometric, on the side that the viewer sees at the frame time
+    };
+    Place at(std::size_t point, float time) const;
+
+  private:
+    void rise(const Grid& grid, const std::vector<Vec3f>& places, std::size_t first);
+
+    Lifespan m_lifespan;
+    int m_knots = 1;
+    std::size_t m_count = 0;
+    std::vector<Place> m_places;  ///< [knots][points]
+};
+
+}  // namespace granita

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "dice/grid.h"
+#include "scene/scene.h"
+#include "scene/shutter_warp.h"
+
+namespace granita {
+
+/// How much of a sharp point's light samples a point of a blurred grid needs, at most 1.
+///
+/// Blur shows the mean of the points that pass a pixel: with as many samples each it would have
+/// less noise than what is sharp, for more work.  But noise that is blurred is drawn out into
+/// streaks, which the eye sees better than grain, so what is kept is the noise of the mean over a
+/// square of four pixels.  Its variance is that of a point times the square pixels that a point
+/// stands for times the integral of the square of the weights: boxes of 4 and of the blur's L
+/// pixels, convolved (a circle of confusion counts as a square of its area).  Each of the samples
+/// of a pixel sees one point alone, which adds the variance of a point over their number.  That of
+/// a point falls with the square of its light samples, which are stratified (measured in a
+/// penumbra: error as n to the power -.95).  The least blurred point of the grid decides.
+/// `shutter`: of the scene's curve.  A row exposed for less counts what it sees.
+/// @param grid positions at all its knots, camera space.
+/// @return in (0, 1].
+float light_sample_count(const Grid& grid, const Scene& scene, const ShutterWarp& shutter);
+
+}  // namespace granita

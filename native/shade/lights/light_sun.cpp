@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <limits>
+
+#include "math/sampling.h"
+#include "shade/lights/light_source.h"
+
+namespace granita {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// A disc in the sky, sampled uniformly by solid angle.
+class SunLight : public LightSource {
+  public:
+    SunLight(const Light& light, const LightFrame& frame)
+        : m_frame(-frame.direction), m_radiance(frame.power) {
+        const float half = 0.5f * std::clamp(light.sun_angle, 0.0f, kPi);
+        const float s = std::sin(0.5f * half);
+        m_one_minus_cos = 2.0f * s * s;
+        if (is_hard()) return;
+        // The integral of the cosine over the disc is pi sin^2: it makes the irradiance `power`.
+        m_radiance /= kPi * std::sin(half) * std::sin(half);
+        m_pdf = 1.0f / (2.0f * kPi * m_one_minus_cos);
+    }
+
+    bool is_hard() const override { return m_one_minus_cos < 1e-12f; }
+
+    void sample_all(const Vec3f&, std::span<const Vec2f> u,
+                    std::span<LightSample> samples) const override {
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const Vec3f direction =
+                is_hard() ? m_frame.n : m_frame.to_world(sample_cone(u[i], m_one_minus_cos));
+            samples[i] = {direction, kInfinity, m_radiance, m_pdf};
+        }
+    }
+
+    bool intersect(const Vec3f&, const Vec3f& direction, LightSample& sample) const override {
+        // |a - b|^2 / 2 = 1 - cos, without its cancellation: the sun is half a degree wide.
+        const Vec3f chord = direction - m_frame.n;
+        if (is_hard() || 0.5f * glm::dot(chord, chord) > m_one_minus_cos) return false;
+        sample = {direction, kInfinity, m_radiance, m_pdf};
+        return true;
+    }
+
+    bool bound(Vec3f&, float&) const override { return false; }
+
+  private:
+    Frame m_frame;
+    Vec3f m_radiance;
+    float m_one_minus_cos = 0.0f, m_pdf = 1.0f;
+};
+
+}  // namespace
+
+std::unique_ptr<LightSource> make_sun_light(const Light& light, const LightFrame& frame) {
+    return std::make_unique<SunLight>(light, frame);
+}
+
+}  // namespace granita

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "shade/bsdf/reflection.h"
+#include "shade/lights/environment_samples.h"
+#include "shade/lights/light_source.h"
+#include "shade/lights/lit_point.h"
+
+namespace granita {
+
+/// What a grid's points share while they are lit.
+struct LitGrid {
+    std::vector<Vec3f>& radiance;
+    ReflectionParts* parts;  ///< nullptr = not asked for
+    EnvironmentSamples blurred, sharp;
+    std::vector<Vec2f> lamp_points;         ///< of the lamp and point at hand
+    std::vector<LightSample> lamp_samples;  ///< there
+    std::uint64_t seed = 0;
+    bool by_lobe = false;                     ///< as WorldEvaluator::by_lobe
+    std::vector<SobolPoints> sequences = {};  ///< [dimensions] as far as they were asked for
+    std::uint64_t receives = ~0ULL;           ///< Instance::receives
+    std::uint64_t shadow_rays = 0, occlusion_rays = 0;
+
+    /// A sequence that the grid shares, from its sample `first` on.
+    SobolPoints sequence(std::size_t dimension, std::uint32_t first) {
+        while (sequences.size() <= dimension)
+            sequences.emplace_back(seed + 0x9e3779b97f4a7c15ULL * (sequences.size() + 1));
+        return sequences[dimension].from(first);
+    }
+    /// A point's `count` samples of it.  Each point takes as many as it uses: if all left out the
+    /// ends of equal runs, all would miss the same strata.
+    SobolPoints sequence(const LitPoint& point, std::size_t dimension, int count) {
+        return sequence(dimension, point.place * static_cast<std::uint32_t>(count));
+    }
+    /// Light of a lamp: `value` reflected without shadow.
+    void add_lamp(std::size_t point, const BsdfValue& value, const Vec3f& shadow) {
+        if (!parts) return;
+        parts->diffuse[point] += value.diffuse * shadow;
+        parts->glossy[point] += value.glossy * shadow;
+        parts->arriving[point] += total(value) * shadow;
+        parts->unblocked[point] += total(value);
+    }
+    /// Asks the world later; `weight` is 0 where nothing can be seen of it.
+    void look(EnvironmentSamples& samples, std::size_t point, const Vec3f& direction,
+              const BsdfValue& weight) {
+        if (total(weight) == Vec3f(0.0f)) return;
+        samples.add(point, direction, total(weight));
+        if (parts || by_lobe) samples.parts.push_back(weight);
+    }
+    void add_world(std::size_t point, const BsdfValue& value) {
+        if (!parts) return;
+        parts->diffuse[point] += value.diffuse;
+        parts->glossy[point] += value.glossy;
+    }
+};
+
+}  // namespace granita

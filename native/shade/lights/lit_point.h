@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "math/sampling.h"
+#include "shade/bsdf/bsdf.h"
+#include "shade/lights/light_motion.h"
+#include "shade/rays/ray_scene.h"
+
+namespace granita {
+
+/// A shaded point at one time of the shutter.
+struct LitPlace {
+    float time = 0.0f;
+    Vec3f p{0.0f}, normal{0.0f};  ///< geometric normal
+    Vec3f start{0.0f};            ///< of rays
+};
+
+/// A shaded point while it is lit.
+struct LitPoint {
+    std::size_t index;
+    PointBsdf bsdf;
+    const PointPaths& paths;
+    RayOffset ray_offset;
+    LitPlace at_frame;
+    int sample_count = 1;       ///< of a soft light, of the world's image, of all lobes together
+    std::uint32_t place;        ///< in the grid, along Morton's curve
+    Vec2f exposed{0.0f, 1.0f};  ///< the part of the shutter's light that it is there for
+    struct LobeSamples {
+        int count = 0;            ///< 0 of sharp lobes
+        std::uint32_t first = 0;  ///< in the sequence of the lobe
+    };
+    std::vector<LobeSamples> samples;  ///< [lobes]
+
+    void share_samples() {
+        samples.resize(bsdf.lobe_count());
+        for (std::size_t k = 0; k < samples.size(); ++k) {
+            if (bsdf.is_sharp(k)) continue;
+            const float share = bsdf.importance(k) * static_cast<float>(sample_count);
+            samples[k].count = std::max(1, static_cast<int>(std::lround(share)));
+        }
+    }
+    /// Expected samples a solid angle around `wo` over the lobes that `which` accepts.
+    template <class Which>
+    float lobe_density(const Vec3f& wo, Which which) const {
+        float sum = 0.0f;
+        for (std::size_t k = 0; k < samples.size(); ++k)
+            if (samples[k].count > 0 && which(k))
+                sum += static_cast<float>(samples[k].count) * bsdf.pdf(k, wo);
+        return sum;
+    }
+    /// Lamps are met by samples of glossy lobes alone: over a diffuse lobe, sampling the lamp is
+    /// never much worse.
+    float glossy_density(const Vec3f& wo) const {
+        return lobe_density(wo, [&](std::size_t k) { return bsdf.kind(k) == LobeKind::Glossy; });
+    }
+    float all_density(const Vec3f& wo) const {
+        return lobe_density(wo, [](std::size_t) { return true; });
+    }
+};
+
+}  // namespace granita

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "shade/bsdf/bsdf.h"
+#include "shade/lights/lit_grid.h"
+#include "shade/rays/ray_scene.h"
+
+namespace granita {
+
+/// Light on its way from one lamp to the points of a grid: it arrives in the order in which it was
+/// sent, but its rays are traced many at a time, as neighbouring points' rays to one lamp go the
+/// same way.
+class ShadowQueue {
+  public:
+    /// `rays` nullptr: nothing casts shadows.
+    ShadowQueue(const RayScene* rays, LitGrid& grid) : m_rays(rays), m_grid(grid) {}
+
+    /// `light`: reflected by the point where nothing is in between; `parts`: the same, diffuse and
+    /// glossy apart.
+    void send(std::size_t point, const Vec3f& light, const BsdfValue& parts, const ShadowRay& ray) {
+        if (m_waiting.size() == kMost) deliver();
+        m_waiting.push_back({point, light, parts});
+        m_instance_motion.push_back(ray);
+    }
+    /// The same where no ray is needed.
+    void send(std::size_t point, const Vec3f& light, const BsdfValue& parts) {
+        deliver();
+        arrive({point, light, parts}, Vec3f(1.0f));
+    }
+    /// All that is on its way.
+    void deliver() {
+        if (m_waiting.empty()) return;
+        m_grid.shadow_rays += m_instance_motion.size();
+        m_seen.resize(m_instance_motion.size());
+        m_rays->transmittances(m_instance_motion, m_seen);
+        for (std::size_t i = 0; i < m_waiting.size(); ++i) arrive(m_waiting[i], m_seen[i]);
+        m_waiting.clear();
+        m_instance_motion.clear();
+    }
+
+  private:
+    struct Light {
+        std::size_t point;
+        Vec3f light;
+        BsdfValue parts;
+    };
+    /// A few packets: what waits stays in the first level of the cache.
+    static constexpr std::size_t kMost = 128;
+
+    void arrive(const Light& light, const Vec3f& seen) {
+        m_grid.radiance[light.point] += light.light * seen;
+        m_grid.add_lamp(light.point, light.parts, seen);
+    }
+
+    const RayScene* m_rays;
+    LitGrid& m_grid;
+    std::vector<Light> m_waiting;
+    std::vector<ShadowRay> m_instance_motion;
+    std::vector<Vec3f> m_seen;
+};
+
+}  // namespace granita

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "shade/rays/ray_type.h"
+
+namespace granita {
+
+/// What an output of Light Path is for all rays of a type; Ray Length, which differs from ray to
+/// ray, is 0.  Surfaces that reflect are seen by the camera itself, so depths end at 1.
+float light_path_value(const std::string& output, RayType ray);
+
+/// Whether any of these outputs of Light Path differs between two types of ray.
+bool told_apart(const std::set<std::string>& outputs, RayType a, RayType b);
+
+}  // namespace granita

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Values are built from the first node to the last, once a shift; closures from the last to the
+// first, so that a node shared by several mixes has all its weight when its turn comes.  No
+// recursion: graphs come thousands of nodes deep.  What no result needs is dropped at the end by
+// Program, so a slice is nothing but another set of roots.
+#include "shade/nodes/node_compiler.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "shade/nodes/light_path.h"
+#include "shade/nodes/node_registry.h"
+
+namespace granita {
+
+namespace {
+
+constexpr const char* kAovOutput = "ShaderNodeOutputAOV";
+constexpr const char* kLightPath = "ShaderNodeLightPath";
+
+/// The AOV Output node of that name: of several the last wins, as in Cycles; -1 = none.
+int find_aov_output(const NodeGraph& graph, const std::string& name) {
+    for (std::size_t i = graph.nodes.size(); i-- > 0;) {
+        const Node& node = graph.nodes[i];
+        if (node.type != kAovOutput) continue;
+        const auto found = node.properties.find("aov_name");
+        if (found == node.properties.end()) continue;
+        const auto* text = std::get_if<std::string>(&found->second);
+        if (text && *text == name) return static_cast<int>(i);
+    }
+    return -1;
+}
+
+/// [nodes] the outputs that something reads, of the root the one that is shown; AOV Outputs, which
+/// have none, read themselves.
+using ReadOutputs = std::vector<std::set<std::string>>;
+
+ReadOutputs read_outputs(const NodeGraph& graph, const std::string& owner,
+                         const std::vector<int>& aov_outputs) {
+    ReadOutputs read(graph.nodes.size());
+    const auto check = [&](const NodeLink& link, std::size_t limit) {
+        if (link.node < 0 || static_cast<std::size_t>(link.node) >= limit)
+            throw SceneError(owner, "a node link does not point to an earlier node");
+        read[link.node].insert(link.output);
+    };
+    if (graph.surface.node >= 0) check(graph.surface, graph.nodes.size());
+    for (const int node : aov_outputs)
+        if (node >= 0) read[node].insert("");
+    for (std::size_t i = graph.nodes.size(); i-- > 0;) {
+        if (read[i].empty()) continue;
+        for (const auto& [name, input] : graph.nodes[i].inputs) {
+            if (const auto* link = std::get_if<NodeLink>(&input)) check(*link, i);
+        }
+    }
+    return read;
+}
+
+/// Magenta is what Cycles shows where something is missing; unknown values are neutral instead, so
+/// that one exotic node does not spoil a material.
+void warn_about_kin(NodeBuilder& b, const NodeKind* kind) {
+    const std::string& type = b.node().type;
+    if (!kind) {
+        b.warn(type + " is not supported; its outputs are zero");
+    } else if (kind->kin) {
+        b.warn(type + " is not supported; rendered as " + kind->kin);
+    }
+}
+
+void push_root(std::vector<int>& roots, int slot) {
+    if (slot >= 0) roots.push_back(slot);
+}
+
+std::vector<int> roots_of(const SurfaceSources& sources, const PassSources& passes) {
+    std::vector<int> roots;
+    for (const int slot : {passes.uv.slot, passes.now.slot, passes.previous.slot, passes.next.slot})
+        push_root(roots, slot);
+    for (const VectorSource& color : passes.aov_colors) push_root(roots, color.slot);
+    for (const FloatSource& value : passes.aov_values) push_root(roots, value.slot);
+    push_root(roots, sources.emission.slot);
+    push_root(roots, sources.transparency.slot);
+    for (const LobeSource& lobe : sources.lobes) {
+        for (const int slot : {lobe.weight.slot, lobe.normal.slot, lobe.roughness.slot,
+                               lobe.f0.slot, lobe.f90.slot, lobe.ior.slot})
+            push_root(roots, slot);
+    }
+    return roots;
+}
+
+PassSources pass_sources(ProgramBuilder& builder, const NodeGraph& graph,
+                         const std::vector<int>& aov_outputs, const ChannelSet& passes) {
+    PassSources sources;
+    const Node none;
+    if (passes.find(Quantity::Uv)) {
+        NodeBuilder b(builder, none, 0, Shift::None);
+        sources.uv = b.attribute({AttributeSource::DefaultUv, "", 2});
+    }
+    if (passes.find(Quantity::Speed)) {
+        NodeBuilder b(builder, none, 0, Shift::None);
+        sources.now = b.attribute({AttributeSource::ObjectPosition, "", 3});
+        sources.previous = b.attribute({AttributeSource::PreviousPosition, "", 3});
+        sources.next = b.attribute({AttributeSource::NextPosition, "", 3});
+    }
+    for (const int index : aov_outputs) {
+        const Node& node = index < 0 ? none : graph.nodes[index];
+        NodeBuilder b(builder, node, static_cast<std::size_t>(std::max(index, 0)), Shift::None);
+        sources.writes_aov.push_back(index >= 0);
+        sources.aov_colors.push_back(b.color("Color"));
+        sources.aov_values.push_back(b.number("Value"));
+    }
+    return sources;
+}
+
+/// Keeps the requests that some live load reads; a shifted load asks for derivatives.
+std::vector<AttributeRequest> used_requests(std::vector<AttributeRequest> all,
+                                            std::vector<Program*> programs) {
+    std::vector<bool> used(all.size());
+    for (const Program* program : programs) {
+        for (const Load& load : program->loads()) {
+            used[load.request] = true;
+            if (load.shift != Shift::None) all[load.request].derivatives = true;
+        }
+    }
+    std::vector<AttributeRequest> kept;
+    std::vector<int> number(all.size(), -1);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!used[i]) continue;
+        number[i] = static_cast<int>(kept.size());
+        kept.push_back(all[i]);
+    }
+    for (Program* program : programs) program->renumber_requests(number);
+    return kept;
+}
+
+/// Values and closures of all nodes that are read.
+SurfaceSources build_graph(ProgramBuilder& builder, const NodeGraph& graph) {
+    builder.outputs.resize(graph.nodes.size());
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+        if (builder.read[i].empty() || graph.nodes[i].type == kAovOutput) continue;
+        const NodeKind* kind = find_node_kind(graph.nodes[i].type);
+        // The shifted values first: the value at the point may need their differences.
+        for (const Shift shift : {Shift::U, Shift::V, Shift::None}) {
+            NodeBuilder b(builder, graph.nodes[i], i, shift);
+            if (shift == Shift::None) warn_about_kin(b, kind);
+            if (kind && kind->build) kind->build(b);
+        }
+    }
+
+    SurfaceBuilder surface(graph.nodes.size());
+    if (graph.surface.node >= 0) {
+        const auto root = static_cast<std::size_t>(graph.surface.node);
+        NodeBuilder b(builder, graph.nodes[root], root, Shift::None);
+        surface.add_weight(b, graph.surface, {-1, 1.0f});
+    }
+    for (std::size_t i = graph.nodes.size(); i-- > 0;) {
+        if (surface.weight(i).is(0.0f)) continue;
+        NodeBuilder b(builder, graph.nodes[i], i, Shift::None);
+        const NodeKind* kind = find_node_kind(graph.nodes[i].type);
+        if (kind && kind->build_closure) {
+            kind->build_closure(b, surface, surface.weight(i));
+        } else if (kind && kind->build) {
+            // A colour in a shader socket emits, as in Blender.
+            const NodeOutputs& outputs = builder.outputs[i][0];
+            const auto found = outputs.find(surface.output(i));
+            if (found == outputs.end()) continue;
+            const NodeOutput& from = found->second;
+            const VectorSource color =
+                from.kind == SocketKind::Number
+                    ? b.map<Vec3f>([](float x) { return Vec3f(x); }, from.number)
+                    : from.vector;
+            surface.add_emission(b, scaled(b, color, surface.weight(i)));
+        }
+    }
+    return surface.sources();
+}
+
+Program opacity_program(const ProgramBuilder& builder, const VectorSource& transparency) {
+    std::vector<int> roots;
+    push_root(roots, transparency.slot);
+    return Program(builder.loads, builder.steps, builder.floats_a_point, roots);
+}
+
+OpacityProgram shadow_program(const ProgramBuilder& builder, const VectorSource& transparency) {
+    OpacityProgram shadow{{}, opacity_program(builder, transparency), transparency};
+    shadow.requests = used_requests(builder.requests, {&shadow.program});
+    return shadow;
+}
+
+bool told_apart(const NodeGraph& graph, const ReadOutputs& read, RayType a, RayType b) {
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+        if (graph.nodes[i].type == kLightPath && told_apart(read[i], a, b)) return true;
+    return false;
+}
+
+}  // namespace
+
+bool told_apart(const NodeGraph& graph, RayType a, RayType b) {
+    return told_apart(graph, read_outputs(graph, "", {}), a, b);
+}
+
+CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, TextureStore& textures,
+                                Report& report, const GraphOwner& owner, const ChannelSet* passes,
+                                RayType ray) {
+    std::vector<int> aov_outputs;
+    if (passes)
+        for (const Aov& aov : scene.options.aovs)
+            aov_outputs.push_back(find_aov_output(graph, aov.name));
+    const auto builder_for = [&](RayType type, Report& warnings) {
+        return ProgramBuilder{.scene = scene,
+                              .textures = textures,
+                              .report = warnings,
+                              .owner = owner.name,
+                              .is_world = owner.is_world,
+                              .material_index = owner.material_index,
+                              .ray_type = type,
+                              .read = read_outputs(graph, owner.name, aov_outputs)};
+    };
+    ProgramBuilder builder = builder_for(ray, report);
+
+    CompiledSurface compiled;
+    compiled.radiance.sources = build_graph(builder, graph);
+    if (passes) compiled.radiance.passes = pass_sources(builder, graph, aov_outputs, *passes);
+    compiled.radiance.program =
+        Program(builder.loads, builder.steps, builder.floats_a_point,
+                roots_of(compiled.radiance.sources, compiled.radiance.passes));
+    compiled.transparency = compiled.radiance.sources.transparency;
+    compiled.opacity_program = opacity_program(builder, compiled.transparency);
+    if (told_apart(graph, builder.read, ray, RayType::Shadow)) {
+        Report said_already;
+        ProgramBuilder shadow = builder_for(RayType::Shadow, said_already);
+        const VectorSource transparency = build_graph(shadow, graph).transparency;
+        compiled.shadow = shadow_program(shadow, transparency);
+    } else {
+        compiled.shadow = shadow_program(builder, compiled.transparency);
+    }
+    compiled.requests =
+        used_requests(builder.requests, {&compiled.radiance.program, &compiled.opacity_program});
+    return compiled;
+}
+
+}  // namespace granita

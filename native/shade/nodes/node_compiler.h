@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a node graph to programs: opacity (only what feeds transparency) and radiance (design,
+// decision 6).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/channels.h"
+#include "shade/programs/program.h"
+#include "shade/programs/surface_builder.h"
+#include "shade/rays/ray_type.h"
+
+namespace granita {
+
+/// Values for passes alone, beside what the surface sends out.
+struct PassSources {
+    VectorSource uv;                       ///< the constant 0 where it is not asked for
+    VectorSource now, previous, next;      ///< places in object space, of Speed; likewise
+    std::vector<bool> writes_aov;          ///< [Options::aovs] whether some node does
+    std::vector<VectorSource> aov_colors;  ///< [Options::aovs]; 0 where no node writes it
+    std::vector<FloatSource> aov_values;   ///< likewise
+};
+
+struct SurfaceProgram {
+    Program program;
+    SurfaceSources sources;
+    PassSources passes;
+};
+
+/// What transparency needs alone.
+struct OpacityProgram {
+    std::vector<AttributeRequest> requests;
+    Program program;
+    VectorSource transparency;
+};
+
+struct CompiledSurface {
+    std::vector<AttributeRequest> requests;  ///< of opacity and radiance, which grids are shaded by
+    Program opacity_program;
+    VectorSource transparency;  ///< of opacity_program
+    SurfaceProgram radiance;
+    OpacityProgram shadow;  ///< as shadow rays meet it
+};
+
+/// Whose graph it is.
+struct GraphOwner {
+    std::string name;  ///< for messages: "material 'Wood'"
+    bool is_world = false;
+    int material_index = 0;  ///< pass_index
+};
+
+/// Whether the graph's Light Path makes a difference between two types of ray.
+bool told_apart(const NodeGraph& graph, RayType a, RayType b);
+
+/// Compiles `graph.surface` for rays of a type, and what `passes` need beside it.  The scene,
+/// textures and report must outlive the programs.
+CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, TextureStore& textures,
+                                Report& report, const GraphOwner& owner,
+                                const ChannelSet* passes = nullptr, RayType ray = RayType::Camera);
+
+}  // namespace granita

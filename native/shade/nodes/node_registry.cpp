@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/nodes/node_registry.h"
+
+#include <map>
+
+#include "shade/nodes/nodes.h"
+
+namespace granita {
+
+namespace {
+
+std::map<std::string, NodeKind> all_kinds() {
+    const auto value = [](void (*build)(NodeBuilder&)) {
+        return NodeKind{build, nullptr, nullptr};
+    };
+    const auto closure = [](auto* build) { return NodeKind{nullptr, build, nullptr}; };
+    const auto like_glossy = NodeKind{nullptr, build_glossy, "Glossy BSDF"};
+    const auto flat = NodeKind{build_flat_texture, nullptr, "a flat grey, its mean"};
+    const auto like_diffuse = NodeKind{nullptr, build_diffuse, "Diffuse BSDF"};
+    return {
+        {"ShaderNodeEmission", closure(build_emission)},
+        {"ShaderNodeBackground", closure(build_background)},
+        {"ShaderNodeBsdfPrincipled", closure(build_principled)},
+        {"ShaderNodeBsdfDiffuse", closure(build_diffuse)},
+        {"ShaderNodeBsdfGlossy", closure(build_glossy)},
+        {"ShaderNodeBsdfTransparent", closure(build_transparent)},
+        {"ShaderNodeMixShader", closure(build_mix_shader)},
+        {"ShaderNodeAddShader", closure(build_add_shader)},
+
+        {"ShaderNodeValue", value(build_value)},
+        {"ShaderNodeRGB", value(build_rgb)},
+        {"ShaderNodeTexImage", value(build_image_texture)},
+        {"ShaderNodeTexEnvironment", value(build_environment_texture)},
+        {"ShaderNodeUVMap", value(build_uv_map)},
+        {"ShaderNodeTexCoord", value(build_texture_coordinate)},
+        {"ShaderNodeNewGeometry", value(build_geometry)},
+        {"ShaderNodeMapping", value(build_mapping)},
+        {"ShaderNodeMixRGB", value(build_mix_rgb)},
+        {"ShaderNodeMix", value(build_mix)},
+        {"ShaderNodeMath", value(build_math)},
+        {"ShaderNodeVectorMath", value(build_vector_math)},
+        {"ShaderNodeMapRange", value(build_map_range)},
+        {"ShaderNodeClamp", value(build_clamp)},
+        {"ShaderNodeValToRGB", value(build_color_ramp)},
+        {"ShaderNodeRGBCurve", value(build_rgb_curves)},
+        {"ShaderNodeNormalMap", value(build_normal_map)},
+        {"ShaderNodeBump", value(build_bump)},
+        {"ShaderNodeAttribute", value(build_attribute)},
+        {"ShaderNodeVertexColor", value(build_color_attribute)},
+        {"ShaderNodeSeparateColor", value(build_separate_color)},
+        {"ShaderNodeCombineColor", value(build_combine_color)},
+        {"ShaderNodeSeparateRGB", value(build_separate_color)},
+        {"ShaderNodeCombineRGB", value(build_combine_color)},
+        {"ShaderNodeSeparateHSV", value(build_separate_color)},
+        {"ShaderNodeCombineHSV", value(build_combine_color)},
+        {"ShaderNodeSeparateXYZ", value(build_separate_xyz)},
+        {"ShaderNodeCombineXYZ", value(build_combine_xyz)},
+        {"ShaderNodeGamma", value(build_gamma)},
+        {"ShaderNodeInvert", value(build_invert)},
+        {"ShaderNodeBrightContrast", value(build_bright_contrast)},
+        {"ShaderNodeHueSaturation", value(build_hue_saturation)},
+        {"ShaderNodeRGBToBW", value(build_rgb_to_bw)},
+        {"ShaderNodeFresnel", value(build_fresnel)},
+        {"ShaderNodeLayerWeight", value(build_layer_weight)},
+        {"ShaderNodeLightPath", value(build_light_path)},
+        {"ShaderNodeObjectInfo", value(build_object_info)},
+        {"ShaderNodeCameraData", value(build_camera_data)},
+        {"ShaderNodeTexChecker", value(build_checker)},
+        {"ShaderNodeTexGradient", value(build_gradient)},
+        {"ShaderNodeTexNoise", value(build_noise_texture)},
+        {"ShaderNodeTexVoronoi", value(build_voronoi_texture)},
+        {"ShaderNodeTexWave", value(build_wave_texture)},
+        {"ShaderNodeTexMagic", value(build_magic_texture)},
+        {"ShaderNodeTexBrick", value(build_brick_texture)},
+        {"ShaderNodeTexWhiteNoise", value(build_white_noise_texture)},
+        {"ShaderNodeTexSky", value(build_sky_texture)},
+        {"ShaderNodeVectorCurve", value(build_vector_curves)},
+        {"ShaderNodeFloatCurve", value(build_float_curve)},
+        {"ShaderNodeVectorRotate", value(build_vector_rotate)},
+        {"ShaderNodeVectorTransform", value(build_vector_transform)},
+        {"ShaderNodeNormal", value(build_normal)},
+        {"ShaderNodeTangent", value(build_tangent)},
+        {"ShaderNodeBlackbody", value(build_blackbody)},
+        {"ShaderNodeWavelength", value(build_wavelength)},
+
+        {"ShaderNodeAmbientOcclusion",
+         NodeKind{build_unoccluded, nullptr, "its colour, unoccluded"}},
+        {"ShaderNodeBevel", NodeKind{build_unbevelled, nullptr, "its normal, unbevelled"}},
+        {"ShaderNodeLightFalloff", NodeKind{build_plain_falloff, nullptr, "its strength"}},
+
+        {"ShaderNodeTexMusgrave", flat},
+        {"ShaderNodeTexGabor", flat},
+        {"ShaderNodeTexPointDensity", flat},
+        {"ShaderNodeTexIES", flat},
+
+        {"ShaderNodeBsdfGlass", like_glossy},
+        {"ShaderNodeBsdfRefraction", like_glossy},
+        {"ShaderNodeBsdfAnisotropic", like_glossy},
+        {"ShaderNodeBsdfMetallic", like_glossy},
+        {"ShaderNodeSubsurfaceScattering", like_diffuse},
+        {"ShaderNodeBsdfHair", like_diffuse},
+        {"ShaderNodeBsdfHairPrincipled", like_diffuse},
+        {"ShaderNodeBsdfSheen", like_diffuse},
+        {"ShaderNodeBsdfVelvet", like_diffuse},
+        {"ShaderNodeBsdfToon", like_diffuse},
+        {"ShaderNodeBsdfTranslucent", like_diffuse},
+        {"ShaderNodeEeveeSpecular", like_diffuse},
+    };
+}
+
+}  // namespace
+
+const NodeKind* find_node_kind(const std::string& type) {
+    static const std::map<std::string, NodeKind> kKinds = all_kinds();
+    const auto found = kKinds.find(type);
+    return found == kKinds.end() ? nullptr : &found->second;
+}
+
+}  // namespace granita

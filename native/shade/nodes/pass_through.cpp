@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nodes that are not evaluated hand on what comes nearest to their result: the value that they
+// would change.
+#include "shade/nodes/nodes.h"
+
+namespace granita {
+
+/// Nothing stands near: the colour as it is.
+void build_unoccluded(NodeBuilder& b) {
+    b.output_color("Color", b.color("Color", Vec3f(1.0f)));
+    b.output("AO", FloatSource{-1, 1.0f});
+}
+
+/// Edges are sharp.
+void build_unbevelled(NodeBuilder& b) {
+    b.output_vector("Normal", b.normal_input());
+}
+
+void build_plain_falloff(NodeBuilder& b) {
+    const FloatSource strength = b.number("Strength", 1.0f);
+    for (const char* name : {"Quadratic", "Linear", "Constant"}) b.output(name, strength);
+}
+
+}  // namespace granita

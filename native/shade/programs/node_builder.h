@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the build function of a node sees: its inputs converted to the type it asks for (as Cycles
+// converts between sockets), its properties, and map(), which turns a function of single values
+// into a step over all points and folds it when its arguments are constant.
+//
+//   void build_gamma(NodeBuilder& b) {
+//       b.output("Color", b.map<Vec3f>(gamma, b.color("Color"), b.number("Gamma")));
+//   }
+#pragma once
+
+#include <array>
+#include <set>
+#include <string>
+#include <tuple>
+#include <variant>
+#include <vector>
+
+#include "base/report.h"
+#include "scene/scene.h"
+#include "shade/programs/node_output.h"
+#include "shade/programs/program.h"
+#include "shade/rays/ray_type.h"
+#include "shade/textures/texture.h"
+
+namespace granita {
+
+/// The growing program and everything nodes may ask about the frame.
+struct ProgramBuilder {
+    const Scene& scene;
+    TextureStore& textures;
+    Report& report;
+    std::string owner;  ///< for messages: "material 'Wood'"
+    bool is_world = false;
+    int material_index = 0;
+    RayType ray_type = RayType::Camera;
+    std::vector<std::set<std::string>> read{};  ///< [nodes] outputs that something reads
+    std::vector<Load> loads{};
+    std::vector<Step> steps{};
+    std::vector<AttributeRequest> requests{};
+    int floats_a_point = 0;
+    /// [node][shift]
+    std::vector<std::array<NodeOutputs, 3>> outputs{};
+
+    int new_slot(int floats) {
+        const int slot = floats_a_point;
+        floats_a_point += floats;
+        return slot;
+    }
+};
+
+class NodeBuilder {
+  public:
+    NodeBuilder(ProgramBuilder& program, const Node& node, std::size_t index, Shift shift)
+        : m_program(program), m_node(node), m_index(index), m_shift(shift) {}
+
+    const Node& node() const { return m_node; }
+    Shift shift() const { return m_shift; }
+    bool is_world() const { return m_program.is_world; }
+    const Scene& scene() const { return m_program.scene; }
+    int material_index() const { return m_program.material_index; }
+    RayType ray_type() const { return m_program.ray_type; }
+    bool is_read(const std::string& output) const {
+        return m_program.read[m_index].count(output) != 0;
+    }
+    TextureStore& textures() { return m_program.textures; }
+    Report& report() { return m_program.report; }
+
+    // Inputs.  A missing socket gives the fallback.
+    bool linked(const std::string& input) const;
+    bool has(const std::string& input) const { return m_node.inputs.count(input) != 0; }
+    FloatSource number(const std::string& input, float fallback = 0.0f) const;
+    FloatSource number_at(const std::string& input, Shift shift, float fallback = 0.0f) const;
+    VectorSource vector(const std::string& input, const Vec3f& fallback = Vec3f(0.0f)) const;
+    VectorSource vector_at(const std::string& input, Shift shift,
+                           const Vec3f& fallback = Vec3f(0.0f)) const;
+    VectorSource color(const std::string& input, const Vec3f& fallback = Vec3f(0.0f)) const {
+        return vector(input, fallback);
+    }
+
+    // Properties.
+    std::string text(const std::string& property, const std::string& fallback = "") const;
+    double value(const std::string& property, double fallback = 0.0) const;
+    bool flag(const std::string& property) const { return value(property) != 0.0; }
+    std::vector<float> table(const std::string& property) const;
+
+    // Outputs.
+    void output(const std::string& name, const FloatSource& source);
+    void output_color(const std::string& name, const VectorSource& source);
+    void output_vector(const std::string& name, const VectorSource& source);
+
+    /// The artist is told once that this node is not rendered as asked.
+    void warn(const std::string& message);
+
+    /// An attribute of the grid's vertices at this builder's shift.
+    VectorSource attribute(const AttributeRequest& request) {
+        return attribute_at(request, m_shift);
+    }
+    VectorSource attribute_at(const AttributeRequest& request, Shift shift);
+    FloatSource attribute_component(const AttributeRequest& request, int component) {
+        return attribute_component(request, component, m_shift);
+    }
+    FloatSource attribute_component(const AttributeRequest& request, int component, Shift shift);
+
+    template <class Out, class F, class... In>
+    Source<Out> map(F function, const Source<In>&... inputs) {
+        if ((inputs.is_constant() && ...)) return {-1, function(inputs.constant...)};
+        const Source<Out> out{m_program.new_slot(sizeof(Out) / sizeof(float)), Out{}};
+        add_step(
+            [=](Run& run) {
+                const auto columns = std::make_tuple(run.read(inputs)...);
+                Out* result = run.write(out);
+                for (std::size_t i = 0; i < run.count(); ++i) {
+                    result[i] = std::apply(
+                        [&](const auto&... column) { return function(column[i]...); }, columns);
+                }
+            },
+            {inputs.slot...}, {out.slot});
+        return out;
+    }
+
+    /// A value that the points give: function(input, i).
+    template <class Out, class F>
+    Source<Out> geometry(F function) {
+        const Source<Out> out{m_program.new_slot(sizeof(Out) / sizeof(float)), Out{}};
+        add_step(
+            [=](Run& run) {
+                Out* result = run.write(out);
+                for (std::size_t i = 0; i < run.count(); ++i) result[i] = function(run.input(), i);
+            },
+            {}, {out.slot});
+        return out;
+    }
+
+    template <class Out>
+    Source<Out> new_source() {
+        return {m_program.new_slot(sizeof(Out) / sizeof(float)), Out{}};
+    }
+    void add_step(std::function<void(Run&)> run, std::vector<int> reads, std::vector<int> writes) {
+        m_program.steps.push_back({std::move(run), std::move(reads), std::move(writes)});
+    }
+
+    /// The shading normal, faced to the viewer.
+    VectorSource shading_normal();
+    /// The input "Normal", or the shading normal where it is not linked.
+    VectorSource normal_input(const std::string& input = "Normal");
+    // Normals of shaders, about which nothing is mirrored through the surface (valid_reflection.h),
+    // but for curves: before Blender 4 all are made so, since then those of specular lobes that
+    // nodes bend.
+    VectorSource diffuse_normal(const std::string& input = "Normal");
+    VectorSource specular_normal(const std::string& input = "Normal");
+    /// Unit, from the point to the eye.
+    VectorSource view();
+
+  private:
+    const NodeOutput* link_source(const std::string& input, Shift shift) const;
+    /// `bent_alone`: the surface's own normal stays.
+    VectorSource with_valid_reflection(const VectorSource& normal, bool bent_alone);
+    bool is_first_generation() const { return value("generation", 2) < 2; }
+    /// The slot of `width` components of an attribute from `first` on; equal loads share one.
+    int load(const AttributeRequest& request, Shift shift, int width, int first);
+
+    ProgramBuilder& m_program;
+    const Node& m_node;
+    std::size_t m_index;
+    Shift m_shift;
+};
+
+/// The colour of linear Rec.709 as one number, as Cycles converts colour sockets to values.
+inline float luminance(const Vec3f& c) {
+    return 0.2126729f * c.x + 0.7151522f * c.y + 0.0721750f * c.z;
+}
+
+}  // namespace granita

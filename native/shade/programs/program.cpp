@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/programs/program.h"
+
+#include <algorithm>
+#include <unordered_set>
+
+namespace granita {
+
+namespace {
+
+void run_load(const Load& load, Run& run) {
+    const std::size_t n = run.count();
+    float* out = run.write(FloatSource{load.slot, 0.0f});
+    const auto* attributes = run.input().attributes;
+    const GridAttribute* attribute = nullptr;
+    if (attributes) {
+        for (const GridAttribute& candidate : *attributes) {
+            if (candidate.attribute == load.request) attribute = &candidate;
+        }
+    }
+    if (!attribute || attribute->values.empty()) {
+        std::fill(out, out + n * load.width, 0.0f);
+        return;
+    }
+    const std::vector<float>* step = nullptr;
+    if (load.shift == Shift::U && !attribute->du.empty()) step = &attribute->du;
+    if (load.shift == Shift::V && !attribute->dv.empty()) step = &attribute->dv;
+    const int width = attribute->width;
+    for (std::size_t i = 0; i < n; ++i) {
+        for (int c = 0; c < load.width; ++c) {
+            // A scalar attribute read as a colour is grey, as in Cycles; other missing components
+            // are zero.
+            const int from = width == 1 ? 0 : load.first + c;
+            const std::size_t index = i * width + from;
+            float value = from < width ? attribute->values[index] : 0.0f;
+            if (step && from < width) value += (*step)[index];
+            out[i * load.width + c] = value;
+        }
+    }
+}
+
+}  // namespace
+
+Program::Program(const std::vector<Load>& loads, const std::vector<Step>& steps, int floats_a_point,
+                 const std::vector<int>& roots)
+    : m_floats_a_point(floats_a_point) {
+    std::unordered_set<int> live(roots.begin(), roots.end());
+    std::vector<bool> kept(steps.size());
+    for (std::size_t i = steps.size(); i-- > 0;) {
+        for (const int slot : steps[i].writes) kept[i] = kept[i] || live.count(slot);
+        if (kept[i]) live.insert(steps[i].reads.begin(), steps[i].reads.end());
+    }
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        if (kept[i]) m_steps.push_back(steps[i]);
+    }
+    for (const Load& load : loads) {
+        if (live.count(load.slot)) m_loads.push_back(load);
+    }
+}
+
+void Program::execute(Run& run) const {
+    for (const Load& load : m_loads) run_load(load, run);
+    for (const Step& step : m_steps) step.run(run);
+}
+
+void Program::renumber_requests(const std::vector<int>& request) {
+    for (Load& load : m_loads) load.request = request[load.request];
+}
+
+}  // namespace granita

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A compiled node program: array operations over all points of a grid at once (Cook, Carpenter and
+// Catmull 1987; Wexler et al. 2005, section 9.3.2).
+//
+//   slot      an array of one float or one Vec3f a point
+//   source    a slot, or a constant when the value is the same everywhere
+//   load      copies a grid attribute into a slot, at the point or one grid step along u or v
+//   step      one operation: reads sources, writes slots
+//
+// A program is immutable; any number of threads run it, each with a Run of its own.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "dice/grid.h"
+#include "geometry/attribute_request.h"
+#include "scene/scene.h"
+#include "shade/bsdf/lobe.h"
+
+namespace granita {
+
+/// Where a value is taken: at the point, or one grid step further along u or v.  The differences
+/// are the derivatives that textures and bumps need; they follow any node between (the chain rule
+/// by differences).
+enum class Shift { None, U, V };
+
+/// What a program runs over.
+struct ShadingInput {
+    const ShadingPoints* points = nullptr;
+    const std::vector<GridAttribute>* attributes = nullptr;  ///< nullptr = none
+    const Instance* instance = nullptr;                      ///< nullptr: the world
+    Mat3f world_from_object{1.0f};                           ///< for normals and directions
+    Mat3f object_from_world{1.0f};
+    float spread = 0.0f;      ///< world: radians a direction stands for
+    float ray_length = 0.0f;  ///< of shadow rays, from where they started
+};
+
+template <class T>
+struct Source {
+    int slot = -1;  ///< -1: constant
+    T constant{};
+    bool is_constant() const { return slot < 0; }
+    bool is(const T& value) const { return slot < 0 && constant == value; }
+};
+using FloatSource = Source<float>;
+using VectorSource = Source<Vec3f>;
+
+/// Read access to a source over all points: a constant has stride 0.
+template <class T>
+struct Column {
+    const T* data;
+    std::size_t stride;
+    const T& operator[](std::size_t i) const { return data[i * stride]; }
+};
+
+/// One execution: memory for the slots.
+class Run {
+  public:
+    Run(const ShadingInput& input, std::size_t count, int floats_a_point)
+        : m_input(input), m_count(count), m_memory(count * floats_a_point) {}
+
+    std::size_t count() const { return m_count; }
+    const ShadingInput& input() const { return m_input; }
+    template <class T>
+    Column<T> read(const Source<T>& source) const {
+        if (source.is_constant()) return {&source.constant, 0};
+        return {reinterpret_cast<const T*>(m_memory.data() + m_count * source.slot), 1};
+    }
+    template <class T>
+    T* write(const Source<T>& source) {
+        return reinterpret_cast<T*>(m_memory.data() + m_count * source.slot);
+    }
+
+  private:
+    const ShadingInput& m_input;
+    std::size_t m_count;
+    std::vector<float> m_memory;
+};
+
+struct Load {
+    int request = 0;
+    Shift shift = Shift::None;
+    int slot = 0;
+    int width = 3;  ///< 1 or 3
+    int first = 0;  ///< first component of the attribute
+    bool operator==(const Load&) const = default;
+};
+
+struct Step {
+    std::function<void(Run&)> run;
+    std::vector<int> reads, writes;  ///< slots
+};
+
+class Program {
+  public:
+    /// Keeps what the slots `roots` need of `steps` and `loads`, in their order.
+    Program(const std::vector<Load>& loads, const std::vector<Step>& steps, int floats_a_point,
+            const std::vector<int>& roots);
+    Program() = default;
+
+    /// Runs everything; results are read from the Run.
+    void execute(Run& run) const;
+    Run prepare(const ShadingInput& input, std::size_t count) const {
+        return Run(input, count, m_floats_a_point);
+    }
+    const std::vector<Load>& loads() const { return m_loads; }
+    /// request[old] -> new index, once the material's request list is final.
+    void renumber_requests(const std::vector<int>& request);
+    std::size_t step_count() const { return m_steps.size(); }
+
+  private:
+    std::vector<Load> m_loads;
+    std::vector<Step> m_steps;
+    int m_floats_a_point = 0;
+};
+
+}  // namespace granita

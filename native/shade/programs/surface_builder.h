@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Collects what the closure nodes of a graph contribute.  Weights run from the root to the leaves
+// (as Cycles' svm does): each closure node receives the product of the mix factors above it.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "shade/programs/node_builder.h"
+
+namespace granita {
+
+struct LobeSource {
+    LobeKind kind = LobeKind::Diffuse;
+    Distribution distribution = Distribution::Ggx;
+    FresnelKind fresnel = FresnelKind::None;
+    bool multiscatter = false, separable_masking = false, burley = false, cosine_bumps = false;
+    VectorSource weight, normal;
+    FloatSource roughness;
+    bool has_color = false;  ///< f0 is the lobe's colour though it has no Fresnel
+    VectorSource f0, f90;
+    FloatSource ior;
+};
+
+struct SurfaceSources {
+    std::vector<LobeSource> lobes;
+    VectorSource emission, transparency;  ///< the constant 0 = none
+    bool additive = false;                ///< may reflect or emit where it is fully transparent
+};
+
+class SurfaceBuilder {
+  public:
+    explicit SurfaceBuilder(std::size_t node_count)
+        : m_weights(node_count, FloatSource{-1, 0.0f}), m_outputs(node_count) {}
+
+    /// The weight that has reached a node; the constant 0 = none.
+    const FloatSource& weight(std::size_t node) const { return m_weights[node]; }
+    /// The output through which it was reached.
+    const std::string& output(std::size_t node) const { return m_outputs[node]; }
+    void add_weight(NodeBuilder& b, const NodeLink& link, const FloatSource& weight);
+    /// Passes weight on to the closure linked to an input, if there is one.
+    void pass_weight(NodeBuilder& b, const std::string& input, const FloatSource& weight);
+
+    // Contributions of a closure node; zero ones are left out.
+    void add_emission(NodeBuilder& b, const VectorSource& radiance);
+    void add_transparency(NodeBuilder& b, const VectorSource& weight);
+    void add_lobe(const LobeSource& lobe);
+    void set_additive() { m_sources.additive = true; }
+
+    const SurfaceSources& sources() const { return m_sources; }
+
+  private:
+    std::vector<FloatSource> m_weights;
+    std::vector<std::string> m_outputs;
+    SurfaceSources m_sources;
+};
+
+/// weight times colour.
+VectorSource scaled(NodeBuilder& b, const VectorSource& color, const FloatSource& weight);
+FloatSource product(NodeBuilder& b, const FloatSource& x, const FloatSource& y);
+
+}  // namespace granita

@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/rays/ray_scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <optional>
+#include <unordered_map>
+
+#include "base/stage_timer.h"
+#include "dice/opened_mesh.h"
+#include "math/normalize_or.h"
+#include "scene/knot_time.h"
+#include "shade/rays/instance_motion.h"
+#include "shade/rays/ray_detail.h"
+#include "shade/rays/ray_elements.h"
+#include "shade/rays/ray_mesh.h"
+#include "shade/rays/ray_subdivision.h"
+#include "shade/rays/ray_transforms.h"
+
+namespace granita {
+namespace {
+
+struct Releaser {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+template <class T>
+using Handle = std::unique_ptr<std::remove_pointer_t<T>, Releaser>;
+
+bool add_bytes(void* user, ssize_t bytes, bool) {
+    static_cast<std::atomic<long long>*>(user)->fetch_add(bytes, std::memory_order_relaxed);
+    return true;
+}
+
+bool goes_on(void* user, double) {
+    return !static_cast<const Progress*>(user)->cancelled();
+}
+
+/// Rays traced at once.
+constexpr std::size_t kPacket = 16;
+
+std::int32_t material_of(const Instance& instance, std::int32_t slot) {
+    if (instance.materials.empty()) return -1;
+    const auto last = static_cast<std::int32_t>(instance.materials.size()) - 1;
+    return instance.materials[static_cast<std::size_t>(std::clamp(slot, 0, last))];
+}
+
+Bounds3f box_of(RTCScene geometry) {
+    RTCBounds box;
+    rtcGetSceneBounds(geometry, &box);
+    return {{box.lower_x, box.lower_y, box.lower_z}, {box.upper_x, box.upper_y, box.upper_z}};
+}
+
+/// How instances use a geometry; for all but the first, hits are looked at one by one.
+enum Use : std::uint8_t { kCasts = 1, kLetsLightThrough = 2, kAppears = 4, kIsLinked = 8 };
+
+/// What an instance tells a ray.
+struct RayInstance {
+    std::uint32_t index = 0;  ///< in Scene::instances
+    float scale = 1.0f;       ///< largest stretch of the transform at any knot
+    float distance = 0.0f;    ///< of its origin at any knot from that of shading space, metres
+    bool lets_light_through = false;
+    /// What passes, where it is the same all over.
+    std::optional<Vec3f> constant = {};
+};
+
+/// A ray and what is left of its light.
+struct ShadowContext {
+    RTCIntersectContext embree;  // first: Embree hands a pointer to it back
+    /// Of rays traced together, [their numbers], those that meet something that may let light
+    /// through: it stops them, and they are traced again by themselves.  nullptr: one ray.
+    bool* looked_at = nullptr;
+    const void* scene = nullptr;
+    Vec3f start, direction;  ///< shading space: what Embree hands back is in the object's
+    Vec3f left{1.0f};
+    int blocker_set = -1;
+    std::exception_ptr failure;
+};
+
+}  // namespace
+
+struct RayScene::Impl {
+    Impl(const Scene& frame_scene, ShadowOpacity shadow_opacity,
+         std::shared_ptr<GeometryCache> shared)
+        : scene(frame_scene),
+          opacity(std::move(shadow_opacity)),
+          cache(shared ? std::move(shared) : std::make_shared<GeometryCache>()) {}
+
+    void check(const std::string& what, const Progress& progress) const;
+    std::unique_ptr<RayShape> mesh_shape(int geometry, Report& report,
+                                         const Progress& progress) const;
+    void build_geometry(int geometry, std::uint8_t use, Report& report, const Progress& progress);
+    void add_instance(std::uint32_t index, const Vec3d& origin);
+    static bool casts_shadow(const Instance& instance) {
+        return instance.casts_shadow && !instance.lifespan.is_empty();
+    }
+    bool lets_light_through(const Instance& instance) const;
+    std::optional<Vec3f> constant_of(const Instance& instance) const;
+    Vec3f transparency(const ShadowContext& context, const RTCRay& ray, const RTCHit& hit,
+                       const RayInstance& instance) const;
+    static void pass_through(const RTCFilterFunctionNArguments* arguments);
+
+    const Scene& scene;
+    ShadowOpacity opacity;
+    std::shared_ptr<GeometryCache> cache;
+    std::atomic<long long> embree_bytes{0};
+    Handle<RTCDevice> device;
+    std::vector<std::unique_ptr<RayShape>> shapes;  ///< [geometries] nullptr = casts no shadow
+    std::vector<Handle<RTCScene>> geometries;       ///< [geometries]
+    Handle<RTCScene> top;
+    InstanceMotion motion;
+    std::vector<RayInstance> instances;                       ///< by Embree's id in `top`
+    std::unordered_map<std::uint32_t, std::uint32_t> by_key;  ///< Instance::key to that id
+};
+
+void RayScene::Impl::check(const std::string& what, const Progress& progress) const {
+    progress.check();
+    const RTCError error = rtcGetDeviceError(device.get());
+    if (error == RTC_ERROR_NONE) return;
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+        throw SceneError(what, "not enough memory for its shadow rays");
+    throw SceneError(what, "Embree failed with error " + std::to_string(error));
+}
+
+bool RayScene::Impl::lets_light_through(const Instance& instance) const {
+    if (!opacity.is_transparent) return false;
+    if (instance.materials.empty()) return opacity.is_transparent(-1);
+    return std::any_of(instance.materials.begin(), instance.materials.end(),
+                       [&](std::int32_t material) { return opacity.is_transparent(material); });
+}
+
+std::unique_ptr<RayShape> RayScene::Impl::mesh_shape(int index, Report& report,
+                                                     const Progress& progress) const {
+    auto shared = cache->shared(scene, static_cast<std::size_t>(index), report);
+    if (!shared->subdivision()) return std::make_unique<RayMesh>(std::move(shared));
+    Bounds3f box;
+    for (const Vec3f& p : shared->surface_points(static_cast<int>(shared->frame().knot)))
+        if (is_finite(p)) box.add(p);
+    const RayDetail detail(scene, index, box);
+    return std::make_unique<RaySubdivision>(std::move(shared), detail, progress);
+}
+
+std::optional<Vec3f> RayScene::Impl::constant_of(const Instance& instance) const {
+    if (!opacity.constant) return std::nullopt;
+    if (instance.materials.empty()) return opacity.constant(-1);
+    const std::optional<Vec3f> first = opacity.constant(instance.materials.front());
+    for (const std::int32_t material : instance.materials)
+        if (opacity.constant(material) != first) return std::nullopt;
+    return first;
+}
+
+void RayScene::Impl::build_geometry(int index, std::uint8_t use, Report& report,
+                                    const Progress& progress) {
+    const GeometryData& data = scene.geometries[static_cast<std::size_t>(index)];
+    const float time = scene.options.frame_time;
+    std::unique_ptr<RayShape> shape;
+    if (data.kind == GeometryKind::Mesh)
+        shape = mesh_shape(index, report, progress);
+    else
+        shape = std::make_unique<RayElements>(data, time, (use & kLetsLightThrough) != 0);
+    const std::string what = data.name + " of " + shape->size();
+    Handle<RTCScene> built(rtcNewScene(device.get()));
+    rtcSetSceneFlags(built.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(built.get(), RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneProgressMonitorFunction(built.get(), goes_on, const_cast<Progress*>(&progress));
+    for (RTCGeometry handed : shape->hand_over(device.get())) {
+        if (use & ~kCasts) rtcSetGeometryOccludedFilterFunction(handed, pass_through);
+        rtcCommitGeometry(handed);
+        rtcAttachGeometry(built.get(), handed);
+        rtcReleaseGeometry(handed);
+    }
+    {
+        const ForeignThreads embree;
+        rtcCommitScene(built.get());
+    }
+    check(what, progress);
+    shapes[static_cast<std::size_t>(index)] = std::move(shape);
+    geometries[static_cast<std::size_t>(index)] = std::move(built);
+}
+
+void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
+    const Instance& instance = scene.instances[index];
+    const auto geometry = static_cast<std::size_t>(instance.geometry);
+    const auto transforms = ray_transforms(instance.world_from_object, origin);
+    if (!transforms) return;
+    const auto& columns = transforms->columns;
+    RTCGeometry node = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(node, geometries[geometry].get());
+    rtcSetGeometryTimeStepCount(node, static_cast<unsigned>(columns.size()));
+    for (unsigned k = 0; k < columns.size(); ++k)
+        rtcSetGeometryTransform(node, k, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns[k].data());
+    rtcCommitGeometry(node);
+    if (columns.size() > 1 || shapes[geometry]->knots() > 1 || !instance.lifespan.is_whole())
+        motion.add(box_of(geometries[geometry].get()), transforms->knots);
+    rtcAttachGeometryByID(top.get(), node, static_cast<unsigned>(instances.size()));
+    rtcReleaseGeometry(node);
+    by_key[instance.key] = static_cast<std::uint32_t>(instances.size());
+    instances.push_back({index, transforms->scale, transforms->distance,
+                         lets_light_through(instance), constant_of(instance)});
+}
+
+Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& ray,
+                                   const RTCHit& hit, const RayInstance& instance) const {
+    const Instance& source = scene.instances[instance.index];
+    ShadowHit shadow;
+    shadow.instance = instance.index;
+    shapes[static_cast<std::size_t>(source.geometry)]->locate(hit.geomID, hit.primID, hit.u, hit.v,
+                                                              shadow);
+    shadow.material = material_of(source, shadow.slot);
+    if (!opacity.is_transparent(shadow.material)) return Vec3f(0.0f);
+    shadow.direction = context.direction;
+    shadow.p = context.start + context.direction * ray.tfar;
+    shadow.distance = ray.tfar;
+    shadow.time = ray.time;
+    if (shadow.elements) {  // they face the ray
+        shadow.normal = -shadow.direction;
+        return opacity.transparency(shadow);
+    }
+    // By cofactors: there may be no inverse.
+    const Mat3d m(matrix_at(source.world_from_object, ray.time));
+    const Mat3d cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+    const double side = glm::dot(m[0], cofactors[0]) < 0.0 ? -1.0 : 1.0;
+    shadow.normal = Vec3f(normalize_or(cofactors * Vec3d(hit.Ng_x, hit.Ng_y, hit.Ng_z) * side,
+                                       -Vec3d(shadow.direction)));
+    return opacity.transparency(shadow);
+}
+
+/// Called for hits on geometry that may let light through, not exist or not be in the light's set:
+/// goes on while light is left. Without spatial splits (medium quality) Embree meets a triangle
+/// once.
+void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) {
+    auto* context = reinterpret_cast<ShadowContext*>(arguments->context);
+    if (context->looked_at) {
+        for (unsigned i = 0; i < arguments->N; ++i)
+            if (arguments->valid[i] == -1)
+                context->looked_at[RTCRayN_id(arguments->ray, arguments->N, i)] = true;
+        return;
+    }
+    if (arguments->valid[0] != -1) return;
+    const auto* scene = static_cast<const Impl*>(context->scene);
+    const RayInstance& instance = scene->instances[arguments->context->instID[0]];
+    const float time = reinterpret_cast<const RTCRay*>(arguments->ray)->time;
+    const Instance& met = scene->scene.instances[instance.index];
+    if (!met.lifespan.contains(time) || !in_light_set(met.blocks, context->blocker_set)) {
+        arguments->valid[0] = 0;
+        return;
+    }
+    if (!instance.lets_light_through) return;
+    try {
+        context->left *=
+            instance.constant
+                ? *instance.constant
+                : scene->transparency(*context, *reinterpret_cast<const RTCRay*>(arguments->ray),
+                                      *reinterpret_cast<const RTCHit*>(arguments->hit), instance);
+    } catch (...) {
+        context->failure = std::current_exception();  // thrown on after Embree's frames are left
+        return;
+    }
+    if (context->left != Vec3f(0.0f)) arguments->valid[0] = 0;
+}
+
+RayScene::RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacity,
+                   const Progress& progress, std::shared_ptr<GeometryCache> geometries,
+                   Report* report)
+    : m_impl(std::make_unique<Impl>(scene, std::move(opacity), std::move(geometries))) {
+    Report unread;
+    Report& warnings = report ? *report : unread;
+    Impl& impl = *m_impl;
+    std::vector<std::uint8_t> uses(scene.geometries.size(), 0);
+    for (const Instance& instance : scene.instances) {
+        if (!impl.casts_shadow(instance)) continue;
+        std::uint8_t& use = uses[static_cast<std::size_t>(instance.geometry)];
+        use |= kCasts;
+        if (impl.lets_light_through(instance)) use |= kLetsLightThrough;
+        if (!instance.lifespan.is_whole()) use |= kAppears;
+        if (instance.blocks != ~0ULL) use |= kIsLinked;
+    }
+    if (std::all_of(uses.begin(), uses.end(), [](std::uint8_t use) { return use == 0; })) return;
+    impl.device.reset(rtcNewDevice(nullptr));
+    if (!impl.device)
+        throw Error("Embree cannot start: error " + std::to_string(rtcGetDeviceError(nullptr)));
+    rtcSetDeviceMemoryMonitorFunction(impl.device.get(), add_bytes, &impl.embree_bytes);
+    impl.shapes.resize(scene.geometries.size());
+    impl.geometries.resize(scene.geometries.size());
+    for (std::size_t g = 0; g < uses.size(); ++g) {
+        progress.check();
+        if (uses[g]) impl.build_geometry(static_cast<int>(g), uses[g], warnings, progress);
+    }
+    impl.top.reset(rtcNewScene(impl.device.get()));
+    rtcSetSceneFlags(impl.top.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneProgressMonitorFunction(impl.top.get(), goes_on, const_cast<Progress*>(&progress));
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
+        if (impl.casts_shadow(scene.instances[i])) impl.add_instance(i, origin);
+    {
+        const ForeignThreads embree;
+        rtcCommitScene(impl.top.get());
+    }
+    impl.check("scene of " + std::to_string(impl.instances.size()) + " instances", progress);
+    // Embree keeps the pointer; the frame's progress may die before the scene does.
+    rtcSetSceneProgressMonitorFunction(impl.top.get(), nullptr, nullptr);
+}
+
+RayScene::~RayScene() = default;
+
+bool RayScene::empty() const {
+    return m_impl->instances.empty();
+}
+
+std::size_t RayScene::bytes() const {
+    std::size_t sum = static_cast<std::size_t>(std::max(0LL, m_impl->embree_bytes.load()));
+    for (const auto& shape : m_impl->shapes)
+        if (shape) sum += shape->bytes();
+    return sum;
+}
+
+RayOffset RayScene::ray_offset(const GridKey& key) const {
+    const auto found = m_impl->by_key.find(key.instance);
+    if (found == m_impl->by_key.end()) return {};
+    const RayInstance& instance = m_impl->instances[found->second];
+    const auto geometry =
+        static_cast<std::size_t>(m_impl->scene.instances[instance.index].geometry);
+    const RayShape& shape = *m_impl->shapes[geometry];
+    return {instance.distance, instance.scale * shape.extent(key.face),
+            instance.scale * shape.error(key.face), true};
+}
+
+bool RayScene::moves() const {
+    return !m_impl->motion.empty();
+}
+
+bool RayScene::varies(const Vec3f& start, const Vec3f& direction, float distance) const {
+    return m_impl->motion.meet(start, direction, distance);
+}
+
+namespace {
+
+/// Embree leaves other rays undefined, and as Debian builds it ends the process at them.
+bool is_traceable(const ShadowRay& ray) {
+    constexpr float kFarthest = 1e18f;
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(ray.start[axis]) < kFarthest && std::abs(ray.direction[axis]) < kFarthest))
+            return false;
+    return ray.distance >= 0.0f && ray.time >= 0.0f && ray.time <= 1.0f;
+}
+
+}  // namespace
+
+Vec3f RayScene::transmittance(const ShadowRay& shadow) const {
+    if (!is_traceable(shadow)) return Vec3f(1.0f);
+    ShadowContext context{};
+    rtcInitIntersectContext(&context.embree);
+    context.scene = m_impl.get();
+    context.start = shadow.start;
+    context.direction = shadow.direction;
+    context.blocker_set = shadow.blocker_set;
+    RTCRay ray{};
+    ray.org_x = shadow.start.x, ray.org_y = shadow.start.y, ray.org_z = shadow.start.z;
+    ray.dir_x = shadow.direction.x, ray.dir_y = shadow.direction.y, ray.dir_z = shadow.direction.z;
+    ray.tnear = 0.0f;
+    ray.tfar = shadow.distance;
+    ray.time = shadow.time;
+    ray.mask = ~0u;
+    rtcOccluded1(m_impl->top.get(), &context.embree, &ray);
+    if (context.failure) std::rethrow_exception(context.failure);
+    return ray.tfar < 0.0f ? Vec3f(0.0f) : context.left;
+}
+
+void RayScene::transmittances(std::span<const ShadowRay> rays, std::span<Vec3f> left) const {
+    bool looked_at[kPacket];
+    ShadowContext context{};
+    rtcInitIntersectContext(&context.embree);
+    context.looked_at = looked_at;
+    for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+        const std::size_t count = std::min(kPacket, rays.size() - first);
+        std::fill_n(looked_at, kPacket, false);
+        alignas(64) RTCRay16 packet{};
+        alignas(64) int valid[kPacket]{};
+        for (std::size_t i = 0; i < count; ++i) {
+            const ShadowRay& ray = rays[first + i];
+            if (!is_traceable(ray)) continue;
+            packet.org_x[i] = ray.start.x;
+            packet.org_y[i] = ray.start.y;
+            packet.org_z[i] = ray.start.z;
+            packet.dir_x[i] = ray.direction.x;
+            packet.dir_y[i] = ray.direction.y;
+            packet.dir_z[i] = ray.direction.z;
+            packet.tfar[i] = ray.distance;
+            packet.time[i] = ray.time;
+            packet.mask[i] = ~0u;
+            packet.id[i] = static_cast<unsigned>(i);
+            valid[i] = -1;
+        }
+        rtcOccluded16(valid, m_impl->top.get(), &context.embree, &packet);
+        for (std::size_t i = 0; i < count; ++i)
+            left[first + i] = looked_at[i] ? transmittance(rays[first + i])
+                                           : Vec3f(packet.tfar[i] < 0.0f ? 0.0f : 1.0f);
+    }
+}
+
+}  // namespace granita

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scene as shadow rays see it: view-independent shapes, one Embree scene a geometry,
+// instanced, in shading space (world axes, origin at the camera of the frame time; decision 12).
+// What moves in the world has its motion knots in Embree; the camera's motion moves nothing.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "base/progress.h"
+#include "base/report.h"
+#include "dice/grid.h"
+#include "geometry/geometry_cache.h"
+#include "scene/scene.h"
+#include "shade/rays/ray_offset.h"
+#include "shade/rays/shadow_opacity.h"
+
+namespace granita {
+
+/// A way of light, in shading space.  What is no number, or 1e18 metres away, meets nothing.
+struct ShadowRay {
+    Vec3f start, direction;  ///< direction is unit
+    float distance;          ///< metres; may be infinite
+    float time = 0.5f;       ///< of the shutter, [0, 1]
+    int blocker_set = -1;    ///< of the light: others than Instance::blocks names let it pass
+};
+
+class RayScene {
+  public:
+    /// `origin`: the camera's world position.  Only instances that cast shadows are in it.
+    /// `geometries`: shared with dicing, where given; `report`: what geometries are reported to.
+    /// Throws Cancelled, or SceneError naming the geometry that Embree could not take.
+    RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacity,
+             const Progress& progress, std::shared_ptr<GeometryCache> geometries = nullptr,
+             Report* report = nullptr);
+    ~RayScene();
+
+    bool empty() const;
+    /// Whether any caster moves or deforms within the shutter.
+    bool moves() const;
+    /// Whether what passes along the segment may depend on time: false where no caster's way comes
+    /// near it.
+    bool varies(const Vec3f& start, const Vec3f& direction, float distance) const;
+    std::size_t bytes() const;
+
+    /// Of the points of a grid, or of those that lie on one face of several
+    /// (ShadingPositions::faces).
+    RayOffset ray_offset(const GridKey& key) const;
+
+    /// Share of light that passes, per channel.
+    Vec3f transmittance(const ShadowRay& ray) const;
+    /// The same of many, bit by bit; fastest where neighbours in the list go the same way.
+    void transmittances(std::span<const ShadowRay> rays, std::span<Vec3f> left) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace granita

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/textures/texture_file.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "shade/textures/image_format.h"
+
+namespace granita {
+
+namespace {
+
+/// Images beyond these are refused: no header can ask for more memory or time than that.
+constexpr int kMostTexelsAside = 1 << 16;
+constexpr std::int64_t kMostTexels = std::int64_t{1} << 30;
+constexpr int kMostChannels = 64;
+/// A tile of a file is read whole.
+constexpr int kLargestTile = 4096, kLargestServedTile = 512;
+/// A file's own levels are used where they end in so few texels.
+constexpr int kLastLevel = 64;
+
+float finite(float x) {
+    return std::isfinite(x) ? std::clamp(x, -kLargestNumber, kLargestNumber) : 0.0f;
+}
+
+/// Grey, grey and alpha, rgb, rgba and more: to rgba.
+template <class T>
+void expand(const T* from, int channels, T one, T* to) {
+    for (int k = 0; k < 3; ++k) to[k] = channels >= 3 ? from[k] : from[0];
+    to[3] = channels >= 4 ? from[3] : channels == 2 ? from[1] : one;
+}
+
+}  // namespace
+
+TextureFile::TextureFile(const Image& image) {
+    try {
+        if (!open(image) && m_header.error.empty()) m_header.error = "it cannot be opened";
+    } catch (const std::exception& failure) {
+        m_header.error = failure.what();
+    }
+    if (!error().empty()) m_input.reset();
+}
+
+bool TextureFile::open(const Image& image) {
+    const ImageFormat format = image_format(image.path);
+    m_header.error = format.error;
+    if (!format.reader) return false;
+    m_space = find_color_space(image.colorspace).value_or(*find_color_space("sRGB"));
+    m_opaque = image.alpha_mode == "NONE";
+    m_input = OIIO::ImageInput::create(format.reader);
+    if (!m_input) {
+        m_header.error = OIIO::geterror();
+        return false;
+    }
+    // Cycles: colour channels of data, packed channels and ignored alpha are left untouched; others
+    // arrive associated.
+    OIIO::ImageSpec config;
+    if (m_space.is_data || m_opaque || image.alpha_mode == "CHANNEL_PACKED")
+        config.attribute("oiio:UnassociatedAlpha", 1);
+    if (!m_input->open(image.path, m_spec, config)) {
+        m_header.error = m_input->geterror();
+        return false;
+    }
+    if (!check(m_spec)) return false;
+    m_channels = std::min(m_spec.nchannels, 4);
+    m_raw_type = m_spec.format == OIIO::TypeUInt8  ? TexelType::Byte
+                 : m_spec.format == OIIO::TypeHalf ? TexelType::Half
+                                                   : TexelType::Float;
+    m_header.width = m_spec.width;
+    m_header.height = m_spec.height;
+    m_header.has_alpha = !m_opaque && (m_channels == 2 || m_channels == 4);
+    m_header.encoded = m_space.is_plain() && m_space.curve == ColorSpace::Curve::Srgb;
+    // Other spaces than sRGB's are made linear, which bytes have not room for.
+    m_as_it_is =
+        m_header.encoded || (m_space.is_plain() && m_space.curve == ColorSpace::Curve::Linear);
+    m_header.type = m_raw_type == TexelType::Byte && !m_as_it_is ? TexelType::Half : m_raw_type;
+    if (m_spec.tile_width > 0) m_strip = m_spec.tile_height;
+    find_levels();
+    return true;
+}
+
+/// Before anything is made as large as the header says.
+bool TextureFile::check(const OIIO::ImageSpec& spec) {
+    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) {
+        m_header.error = "it has no pixels";
+    } else if (spec.width > kMostTexelsAside || spec.height > kMostTexelsAside ||
+               std::int64_t{spec.width} * spec.height > kMostTexels) {
+        m_header.error = "its header says " + std::to_string(spec.width) + " x " +
+                         std::to_string(spec.height) + " pixels, which is too many";
+    } else if (spec.depth > 1 || spec.deep || spec.nchannels > kMostChannels) {
+        m_header.error = "it is no flat picture";
+    } else if (spec.tile_width < 0 || spec.tile_height < 0 || spec.tile_width > kLargestTile ||
+               spec.tile_height > kLargestTile || (spec.tile_width > 0) != (spec.tile_height > 0)) {
+        m_header.error = "its tiles have no possible size";
+    }
+    return m_header.error.empty();
+}
+
+void TextureFile::find_levels() {
+    const auto serves = [](const OIIO::ImageSpec& spec) {
+        const auto fits = [](int size) {
+            return size >= 16 && size <= kLargestServedTile &&
+                   std::has_single_bit(static_cast<unsigned>(size));
+        };
+        return fits(spec.tile_width) && fits(spec.tile_height);
+    };
+    std::vector<FileLevel> levels;
+    OIIO::ImageSpec spec = m_spec;
+    while (serves(spec) && spec.nchannels == m_spec.nchannels && spec.format == m_spec.format &&
+           spec.depth <= 1) {
+        // Levels are about half the one before: a file that says otherwise is served as one image.
+        if (!levels.empty()) {
+            const auto halves = [](int fine, int coarse) {
+                return coarse == std::max(1, fine / 2) || coarse == (fine + 1) / 2;
+            };
+            if (!halves(levels.back().width, spec.width) ||
+                !halves(levels.back().height, spec.height))
+                break;
+        }
+        levels.push_back({spec.width, spec.height,
+                          std::countr_zero(static_cast<unsigned>(spec.tile_width)),
+                          std::countr_zero(static_cast<unsigned>(spec.tile_height))});
+        if (spec.width == 1 && spec.height == 1) break;
+        spec = m_input->spec(0, static_cast<int>(levels.size()));
+        if (spec.format == OIIO::TypeUnknown || spec.width < 1 || spec.height < 1) break;
+    }
+    (void)m_input->geterror();
+    if (levels.size() > 1 && levels.back().width <= kLastLevel &&
+        levels.back().height <= kLastLevel)
+        m_levels = std::move(levels);
+}
+
+OIIO::TypeDesc TextureFile::raw_type() const {
+    return m_raw_type == TexelType::Byte   ? OIIO::TypeUInt8
+           : m_raw_type == TexelType::Half ? OIIO::TypeHalf
+                                           : OIIO::TypeFloat;
+}
+
+void* TextureFile::raw_memory(std::size_t texels) {
+    m_raw.resize(texels * m_channels * byte_size(m_raw_type) / 4);
+    return m_raw.data();
+}
+
+bool TextureFile::read_rows(int begin, int count, std::byte* out) {
+    const std::size_t texels = static_cast<std::size_t>(m_spec.width) * count;
+    void* raw = raw_memory(texels);
+    const int top = m_spec.y + begin, left = m_spec.x;
+    const bool complete =
+        m_spec.tile_width > 0
+            ? m_input->read_tiles(0, 0, left, left + m_spec.width, top, top + count, m_spec.z,
+                                  m_spec.z + 1, 0, m_channels, raw_type(), raw)
+            : m_input->read_scanlines(0, 0, top, top + count, m_spec.z, 0, m_channels, raw_type(),
+                                      raw);
+    if (complete) {
+        convert(raw, texels, out);
+    } else {
+        m_header.error = m_input->geterror();
+        if (m_header.error.empty()) m_header.error = "it is incomplete";
+    }
+    return complete;
+}
+
+bool TextureFile::read_tile(int level, int across, int down, std::byte* out) {
+    const FileLevel& size = m_levels[static_cast<std::size_t>(level)];
+    const OIIO::ImageSpec spec = m_input->spec_dimensions(0, level);
+    const int x0 = across << size.tile_columns, y0 = down << size.tile_rows;
+    const int x1 = std::min(x0 + (1 << size.tile_columns), size.width);
+    const int y1 = std::min(y0 + (1 << size.tile_rows), size.height);
+    const std::size_t texels = static_cast<std::size_t>(x1 - x0) * (y1 - y0);
+    void* raw = raw_memory(texels);
+    if (!m_input->read_tiles(0, level, spec.x + x0, spec.x + x1, spec.y + y0, spec.y + y1, spec.z,
+                             spec.z + 1, 0, m_channels, raw_type(), raw)) {
+        m_header.error = m_input->geterror();
+        return false;
+    }
+    convert(raw, texels, out);
+    return true;
+}
+
+/// From the file's channels and colour space to texels.
+void TextureFile::convert(const void* raw, std::size_t count, std::byte* out) const {
+    if (m_raw_type == TexelType::Byte && m_as_it_is) {
+        const auto* from = static_cast<const std::uint8_t*>(raw);
+        auto* to = reinterpret_cast<std::uint8_t*>(out);
+        for (std::size_t i = 0; i < count; ++i, from += m_channels, to += 4) {
+            expand<std::uint8_t>(from, m_channels, 255, to);
+            if (m_opaque) to[3] = 255;
+        }
+        return;
+    }
+    const std::size_t texel = byte_size(m_header.type);
+    for (std::size_t i = 0; i < count; ++i, out += texel) {
+        Vec4f color;
+        if (m_raw_type == TexelType::Byte) {
+            std::uint8_t c[4];
+            expand<std::uint8_t>(static_cast<const std::uint8_t*>(raw) + i * m_channels, m_channels,
+                                 255, c);
+            color = Vec4f(c[0], c[1], c[2], c[3]) / 255.0f;
+        } else if (m_raw_type == TexelType::Half) {
+            std::uint16_t c[4];
+            expand<std::uint16_t>(static_cast<const std::uint16_t*>(raw) + i * m_channels,
+                                  m_channels, half_from_float(1.0f), c);
+            // Beyond the exponent of the largest number are infinities and what is none.
+            const auto number = [](std::uint16_t h) {
+                return (h & 0x7c00u) == 0x7c00u ? 0.0f : float_from_half(h);
+            };
+            color = Vec4f(number(c[0]), number(c[1]), number(c[2]), number(c[3]));
+        } else {
+            expand(static_cast<const float*>(raw) + i * m_channels, m_channels, 1.0f, &color.x);
+        }
+        if (!m_as_it_is) color = Vec4f(m_space.linear(Vec3f(color)), color.w);
+        for (int k = 0; k < 4; ++k) color[k] = finite(color[k]);
+        if (m_opaque) color.w = 1.0f;
+        store_texel(color, out, m_header.type);
+    }
+}
+
+}  // namespace granita

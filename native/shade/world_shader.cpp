@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/world_shader.h"
+
+#include <algorithm>
+
+namespace granita {
+namespace {
+
+/// Shadow rays are never asked what the world sends.
+constexpr RayType kTypes[] = {RayType::Camera, RayType::Diffuse, RayType::Glossy,
+                              RayType::Singular};
+constexpr RayType kLightTypes[] = {RayType::Diffuse, RayType::Glossy, RayType::Singular};
+
+}  // namespace
+
+WorldShader::WorldShader(const Scene& scene, TextureStore& textures, Report& report) {
+    const NodeGraph& graph = scene.world.graph;
+    const GraphOwner owner{"world '" + scene.world.name + "'", true};
+    std::vector<RayType> compiled_for;
+    Report said_already;
+    for (const RayType ray : kTypes) {
+        const auto same =
+            std::find_if(compiled_for.begin(), compiled_for.end(),
+                         [&](RayType other) { return !told_apart(graph, other, ray); });
+        m_program_of[static_cast<std::size_t>(ray)] =
+            static_cast<std::size_t>(same - compiled_for.begin());
+        if (same != compiled_for.end()) continue;
+        Report& warnings = compiled_for.empty() ? report : said_already;
+        m_programs.push_back(
+            compile_surface(graph, scene, textures, warnings, owner, nullptr, ray).radiance);
+        compiled_for.push_back(ray);
+    }
+    m_reads_images = std::any_of(graph.nodes.begin(), graph.nodes.end(), [](const Node& node) {
+        return node.type == "ShaderNodeTexEnvironment" || node.type == "ShaderNodeTexImage";
+    });
+}
+
+const SurfaceProgram& WorldShader::program(RayType ray) const {
+    return m_programs[m_program_of[static_cast<std::size_t>(ray)]];
+}
+
+void WorldShader::radiance(const std::vector<Vec3f>& directions, float spread, RayType ray,
+                           std::vector<Vec3f>& out) const {
+    const VectorSource& source = emission(ray);
+    if (source.is_constant()) {
+        out.assign(directions.size(), source.constant);
+        return;
+    }
+    ShadingPoints points;
+    points.count = directions.size();
+    points.p = directions;
+    ShadingInput input;
+    input.points = &points;
+    input.spread = spread;
+    const Program& nodes = program(ray).program;
+    Run run = nodes.prepare(input, points.count);
+    nodes.execute(run);
+    const Column<Vec3f> values = run.read(source);
+    out.resize(points.count);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = values[i];
+}
+
+WorldEvaluator WorldShader::evaluator() const {
+    WorldEvaluator world;
+    world.radiance = [this](const std::vector<Vec3f>& directions, float spread, RayType ray,
+                            std::vector<Vec3f>& out) { radiance(directions, spread, ray, out); };
+    world.is_constant = std::all_of(std::begin(kLightTypes), std::end(kLightTypes),
+                                    [this](RayType ray) { return is_constant(ray); });
+    world.by_lobe =
+        std::any_of(std::begin(kLightTypes), std::end(kLightTypes),
+                    [this](RayType ray) { return &program(ray) != &program(RayType::Diffuse); });
+    world.is_filtered = m_reads_images;
+    return world;
+}
+
+}  // namespace granita

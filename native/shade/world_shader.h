@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "shade/lights/environment.h"
+#include "shade/nodes/node_compiler.h"
+
+namespace granita {
+
+/// The world's programs: one for each type of ray that its graph tells apart.
+class WorldShader {
+  public:
+    /// Scene, textures and report must outlive it.
+    WorldShader(const Scene& scene, TextureStore& textures, Report& report);
+
+    bool is_constant(RayType ray) const { return emission(ray).is_constant(); }
+    /// Radiance along `directions` [n] unit, world axes, each standing for `spread` radians; fills
+    /// `out` [n].  Any thread.
+    void radiance(const std::vector<Vec3f>& directions, float spread, RayType ray,
+                  std::vector<Vec3f>& out) const;
+    /// As a light; calls this.
+    WorldEvaluator evaluator() const;
+
+  private:
+    const SurfaceProgram& program(RayType ray) const;
+    const VectorSource& emission(RayType ray) const { return program(ray).sources.emission; }
+
+    std::vector<SurfaceProgram> m_programs;
+    std::array<std::size_t, 5> m_program_of{};  ///< [types of rays]
+    bool m_reads_images = false;
+};
+
+}  // namespace granita

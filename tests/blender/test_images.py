@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images as they come from Blender: colour spaces against Cycles, what is copied, and what is said of movies."""
+
+import bpy
+import numpy as np
+import pytest
+from node_comparison import check
+from test_nodes_textures import saved_image, smooth_image, textured
+
+SAMPLES = 64
+
+
+def exported(scene):
+    from granita.export import export_frame
+
+    warnings = []
+    snapshot = export_frame(
+        None,
+        bpy.context.evaluated_depsgraph_get(),
+        scene.granita,
+        lambda *said: warnings.append(said),
+    )
+    return snapshot["images"], warnings
+
+
+def spaces(image):
+    names = image.colorspace_settings.bl_rna.properties["name"].enum_items
+    return {item.identifier for item in names}
+
+
+@pytest.mark.parametrize("suffix", ["png", "exr"])
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("sRGB",),
+        ("ACEScg", "Linear ACEScg"),
+        ("ACES2065-1", "Linear ACES"),
+        ("Linear Rec.2020",),
+        ("Linear CIE-XYZ D65", "XYZ"),
+        ("Linear FilmLight E-Gamut",),
+        ("Display P3",),
+        ("Rec.1886",),
+    ],
+    ids=lambda names: names[0],
+)
+def test_colour_spaces_of_files(scene, render, tmp_path, suffix, names):
+    if suffix == "png":
+        image = saved_image(tmp_path, "Image")
+    else:
+        made = smooth_image("Made", float_buffer=True)
+        made.file_format, made.filepath_raw = "OPEN_EXR", str(tmp_path / "Image.exr")
+        made.save()
+        image = bpy.data.images.load(str(tmp_path / "Image.exr"))
+    known = [name for name in names if name in spaces(image)]
+    if not known:
+        pytest.skip("this Blender has no such space")
+    image.colorspace_settings.name = known[0]
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    check(scene, render, SAMPLES)
+
+
+def test_film_logarithms_become_scene_linear(scene, render, tmp_path):
+    image = saved_image(tmp_path, "Image")
+    image.colorspace_settings.name = "Filmic Log"
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    # Up to 12 times white: .3 % of how much the picture varies, as Cycles' own half floats are off.
+    check(scene, render, SAMPLES, limit=0.006)
+
+
+def test_a_space_that_is_not_known_is_named(scene, tmp_path):
+    granita_core = pytest.importorskip("granita_core")
+    from granita.export import export_frame
+
+    image = saved_image(tmp_path, "Image")
+    image.colorspace_settings.name = "Filmic sRGB"
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    snapshot = export_frame(None, bpy.context.evaluated_depsgraph_get(), scene.granita, print)
+    said = granita_core.render(snapshot)["warnings"]
+    assert [name for name, text, *_ in said if "Filmic sRGB" in text] == [f"image '{image.name}'"]
+
+
+def test_straight_alpha_of_painted_bytes(scene, render):
+    tree, node = textured(scene, smooth_image("Image", alpha=True))
+    tree.emit(node.outputs["Color"])
+    check(scene, render, SAMPLES)
+
+
+def test_formats_that_blender_reads_come_as_pixels(scene, tmp_path):
+    made = smooth_image("Made")
+    path = str(tmp_path / "Image.dpx")
+    scene.render.image_settings.file_format = "DPX"
+    made.save_render(path, scene=scene)
+    image = bpy.data.images.load(path)
+    image.colorspace_settings.name = "Non-Color"
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    records, warnings = exported(scene)
+    assert "pixels" in records[0] and not warnings
+    before = np.float32(image.pixels[:]).reshape(*image.size, 4)
+    assert records[0]["pixels"] == pytest.approx(before, abs=1e-6)
+
+
+def test_a_movie_is_reported(scene, tmp_path):
+    image = smooth_image("Image")
+    tree, node = textured(scene, image)
+    image.source = "MOVIE"
+    tree.emit(node.outputs["Color"])
+    _, warnings = exported(scene)
+    assert any(name == f"image '{image.name}'" and "movie" in text for name, text in warnings)
+
+
+def test_packed_bytes_are_looked_at_once_a_job(scene, tmp_path, monkeypatch):
+    from granita.export.shading import image as images
+
+    image = saved_image(tmp_path, "Image")
+    image.pack()
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    hashed = []
+    sha1 = images.hashlib.sha1
+    monkeypatch.setattr(images.hashlib, "sha1", lambda data: hashed.append(len(data)) or sha1(data))
+    images.forget_images()
+    first, _ = exported(scene)
+    again, _ = exported(scene)
+    assert first[0]["path"] == again[0]["path"] and len(hashed) == 1
+    images.forget_images()
+    exported(scene)
+    assert len(hashed) == 2
+
+
+def test_another_packed_file_is_seen(scene, tmp_path):
+    image = saved_image(tmp_path, "Image")
+    image.pack()
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    before, _ = exported(scene)
+    saved_image(tmp_path, "Other", size=32)
+    data = (tmp_path / "Other.png").read_bytes()
+    image.pack(data=data, data_len=len(data))
+    after, _ = exported(scene)
+    assert before[0]["path"] != after[0]["path"]
+
+
+def test_generated_pixels_are_read_once_and_painted_ones_each_time(scene):
+    from granita.export.shading import image as images
+
+    images.forget_images()
+    image = bpy.data.images.new("Image", 8, 8)
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    first, _ = exported(scene)
+    again, _ = exported(scene)
+    assert first[0]["pixels"] is again[0]["pixels"]
+    image.generated_color = (1, 0, 0, 1)
+    assert exported(scene)[0][0]["pixels"][0, 0].tolist() == [1, 0, 0, 1]
+    image.pixels.foreach_set(np.ones(8 * 8 * 4, dtype=np.float32))
+    assert exported(scene)[0][0]["pixels"][0, 0].tolist() == [1, 1, 1, 1]
+    image.pixels.foreach_set(np.zeros(8 * 8 * 4, dtype=np.float32))
+    assert exported(scene)[0][0]["pixels"][0, 0].tolist() == [0, 0, 0, 0]

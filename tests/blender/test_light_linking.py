@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light and shadow linking beside Cycles in the same Blender."""
+
+import bpy
+import numpy as np
+import pytest
+import scene_parts as parts
+
+pytestmark = pytest.mark.skipif(
+    "light_linking" not in bpy.types.Object.bl_rna.properties,
+    reason="lights of this Blender cannot be linked",
+)
+
+
+def matte(transparent=0.0):
+    material = bpy.data.materials.new("Matte")
+    if material.node_tree is None:
+        material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.clear()
+    diffuse, clear = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeBsdfTransparent")
+    clear.inputs["Color"].default_value = (0.9, 0.6, 0.3, 1.0)
+    mix, output = nodes.new("ShaderNodeMixShader"), nodes.new("ShaderNodeOutputMaterial")
+    mix.inputs[0].default_value = transparent
+    links.new(diffuse.outputs[0], mix.inputs[1])
+    links.new(clear.outputs[0], mix.inputs[2])
+    links.new(mix.outputs[0], output.inputs["Surface"])
+    return material
+
+
+@pytest.fixture
+def stage(scene):
+    """Two squares, A and B, side by side; before each a smaller sheet that the camera does not see, half
+    transparent; a small lamp above.  A's collection is instanced by "Place"."""
+    scene.render.resolution_x, scene.render.resolution_y = 64, 32
+    parts.add_camera(scene, ortho_scale=4.0)
+    a = parts.add_square(scene, "A", 1.8, (-1.0, 0.0, 0.0), matte())
+    parts.add_square(scene, "B", 1.8, (1.0, 0.0, 0.0), matte())
+    for name, x in (("BeforeA", -1.0), ("BeforeB", 1.0)):
+        parts.add_square(scene, name, 0.6, (x, 0.0, 1.0), matte(0.5)).visible_camera = False
+    collection = bpy.data.collections.new("Group")
+    collection.objects.link(a)
+    scene.collection.objects.unlink(a)
+    place = parts.add_object(scene, "Place", None)
+    place.instance_type, place.instance_collection = "COLLECTION", collection
+    for name in ("Key", "Fill"):
+        light = bpy.data.lights.new(name, "AREA")
+        light.energy, light.size = 40.0, 0.5
+        parts.add_object(scene, name, light, (0.0, 0.5, 3.0)).visible_camera = False
+    bpy.data.lights["Fill"].energy = 5.0
+    return scene
+
+
+def linked(owner, what, **states):
+    """Gives a light a collection of these objects, in their order."""
+    collection = bpy.data.collections.new("Linked")
+    for name in states:
+        collection.objects.link(bpy.data.objects[name])
+    for entry, state in zip(collection.collection_objects, states.values()):
+        entry.light_linking.link_state = state
+    setattr(bpy.data.objects[owner].light_linking, f"{what}_collection", collection)
+    return collection
+
+
+def key_on_a(_):
+    linked("Key", "receiver", A="INCLUDE")
+
+
+def key_on_the_instancer(_):
+    linked("Key", "receiver", Place="INCLUDE")
+
+
+def key_not_on_a(_):
+    linked("Key", "receiver", A="EXCLUDE")
+
+
+def the_instancer_counts_first(_):
+    linked("Key", "receiver", A="INCLUDE", Place="EXCLUDE")
+
+
+def both_lights(_):
+    linked("Key", "receiver", A="INCLUDE")
+    linked("Fill", "receiver", B="INCLUDE")
+
+
+def child_collection(_):
+    collection = linked("Key", "receiver")
+    child = bpy.data.collections.new("Child")
+    child.objects.link(bpy.data.objects["A"])
+    collection.children.link(child)
+    collection.collection_children[0].light_linking.link_state = "EXCLUDE"
+
+
+def nothing(_):
+    linked("Key", "receiver")
+    linked("Key", "blocker")
+
+
+def one_blocker(_):
+    linked("Key", "blocker", BeforeA="INCLUDE")
+
+
+def all_but_one_blocker(_):
+    linked("Key", "blocker", BeforeA="EXCLUDE")
+
+
+def receivers_and_blockers(_):
+    linked("Key", "receiver", B="EXCLUDE")
+    linked("Fill", "blocker", BeforeA="EXCLUDE")
+
+
+@pytest.mark.parametrize(
+    "link",
+    [
+        key_on_a,
+        key_on_the_instancer,
+        key_not_on_a,
+        the_instancer_counts_first,
+        both_lights,
+        child_collection,
+        nothing,
+        one_blocker,
+        all_but_one_blocker,
+        receivers_and_blockers,
+    ],
+)
+def test_links_are_those_of_cycles(stage, render, link):
+    link(stage)
+    ours, theirs = (
+        np.stack([channels[f"ViewLayer.Combined.{c}"] for c in "RGB"])
+        for channels in parts.direct_light_of_both(stage, render, 64)
+    )
+    # Blocks of 4 pixels: 1024 samples of theirs, whose noise in a penumbra is 1 %, and half a pixel of edges.
+    error = np.abs(blocks(ours) - blocks(theirs))
+    assert theirs.max() > 0.02
+    assert error.mean() < 0.01 * theirs.mean() + 0.001
+    assert error.max() < 0.08 * theirs.max()
+
+
+def blocks(picture):
+    return picture.reshape(3, 8, 4, 16, 4).mean(axis=(2, 4))
+
+
+def test_more_sets_than_a_mask_has_bits_are_named(scene):
+    import export_probe
+
+    parts.add_camera(scene)
+    for i in range(66):
+        parts.add_square(scene, f"Square{i}")
+        parts.add_object(scene, f"Sun{i}", bpy.data.lights.new("Sun", "SUN"))
+        linked(f"Sun{i}", "receiver", **{f"Square{i}": "INCLUDE"})
+    snapshot, report = export_probe.through_script()
+    sets = [light.get("receiver_set") for light in snapshot["lights"]]
+    assert sorted(s for s in sets if s is not None) == list(range(64))
+    masks = snapshot["instances"]["receives"]
+    assert sum(bin(int(mask)).count("1") for mask in masks) == 64
+    named = [datablock for datablock, message, _ in report.entries() if "more than 64" in message]
+    assert len(named) == 2

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Materials whose values are no numbers at some points spoil no other, and are named."""
+
+import bpy
+import numpy as np
+import pytest
+import scene_parts
+from node_comparison import Tree, render_both
+
+
+def not_a_number(tree, infinite=False):
+    """exp(500), or what that is less itself; of the position, so that it is not folded away."""
+    length = tree.add("ShaderNodeVectorMath", operation="LENGTH")
+    tree.link(tree.add("ShaderNodeNewGeometry").outputs["Position"], length.inputs[0])
+    large = tree.add("ShaderNodeMath", operation="ADD")
+    large.inputs[1].default_value = 500.0
+    tree.link(length.outputs["Value"], large.inputs[0])
+    huge = tree.add("ShaderNodeMath", operation="EXPONENT")
+    tree.link(large.outputs[0], huge.inputs[0])
+    if infinite:
+        return huge.outputs[0]
+    rest = tree.add("ShaderNodeMath", operation="SUBTRACT")
+    for target in rest.inputs[:2]:
+        tree.link(huge.outputs[0], target)
+    return rest.outputs[0]
+
+
+def infinite_emission(tree, glow):
+    tree.link(not_a_number(tree, infinite=True), glow.inputs["Strength"])
+    return glow
+
+
+def broken_factor(tree, glow):
+    mix = tree.add("ShaderNodeMixShader")
+    tree.link(not_a_number(tree), mix.inputs[0])
+    tree.link(glow.outputs[0], mix.inputs[1])
+    tree.link(tree.add("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[2])
+    return mix
+
+
+def broken_lobe(tree, glow):
+    diffuse, add = tree.add("ShaderNodeBsdfDiffuse"), tree.add("ShaderNodeAddShader")
+    tree.link(not_a_number(tree), diffuse.inputs["Color"])
+    tree.link(diffuse.outputs[0], add.inputs[0])
+    tree.link(glow.outputs[0], add.inputs[1])
+    return add
+
+
+def broken_transparency(tree, glow):
+    clear, mix = tree.add("ShaderNodeBsdfTransparent"), tree.add("ShaderNodeMixShader")
+    tree.link(not_a_number(tree), clear.inputs["Color"])
+    tree.link(glow.outputs[0], mix.inputs[1])
+    tree.link(clear.outputs[0], mix.inputs[2])
+    return mix
+
+
+@pytest.mark.parametrize(
+    "build", [infinite_emission, broken_factor, broken_lobe, broken_transparency]
+)
+def test_values_that_are_no_numbers(scene, render, build):
+    wall = scene_parts.emission("Wall", (0.5, 0.5, 0.5))
+    scene_parts.add_square(scene, "Wall", 2.0, (0.0, 0.0, -1.0), wall)
+    tree = Tree(scene_parts.add_square(scene, "Bad", 1.0), "Bad")
+    glow = tree.add("ShaderNodeEmission")
+    glow.inputs["Color"].default_value = (0.25, 0.25, 0.25, 1.0)
+    tree.link(build(tree, glow).outputs[0], tree.output.inputs["Surface"])
+    scene_parts.add_object(scene, "Sun", bpy.data.lights.new("Sun", "SUN"))
+    scene_parts.add_camera(scene, ortho_scale=2.0)
+    scene.render.resolution_x = scene.render.resolution_y = 20
+    theirs, ours = render_both(scene, render)
+    assert np.isfinite(ours).all()
+    assert np.abs(theirs - ours).max() < 1e-5

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lobes: energy, reciprocity, and sampling against quadrature.
+#include "shade/bsdf/bsdf.h"
+
+#include <gtest/gtest.h>
+
+#include "math/sampling.h"
+#include "shade/bsdf/bsdf_albedo.h"
+#include "shade/bsdf/fresnel.h"
+#include "shade/bsdf/microfacet.h"
+#include "shade/lights/light_scene.h"
+
+namespace granita {
+namespace {
+
+ShadingPoints one_point(float cos_view) {
+    ShadingPoints points = points_facing_up({Vec3f(0)});
+    points.view[0] = {std::sqrt(1 - cos_view * cos_view), 0, cos_view};
+    return points;
+}
+
+PointBsdf prepare(const Lobe& lobe, const ShadingPoints& points) {
+    return PointBsdf(closure_of(lobe), points, 0, GgxAlbedo::shared());
+}
+
+/// Integral of the value over the hemisphere by mid-points in (cos, phi): no sampling involved.
+template <class Value>
+double hemisphere_integral(Value value, int steps = 600) {
+    double sum = 0.0;
+    for (int i = 0; i < steps; ++i)
+        for (int j = 0; j < steps; ++j) {
+            const float z = (static_cast<float>(i) + 0.5f) / static_cast<float>(steps);
+            const float phi = 2 * kPi * (static_cast<float>(j) + 0.5f) / static_cast<float>(steps);
+            const float s = std::sqrt(1 - z * z);
+            sum += value(Vec3f(s * std::cos(phi), s * std::sin(phi), z));
+        }
+    return sum * 2 * kPi / (static_cast<double>(steps) * steps);
+}
+
+double albedo_of(const PointBsdf& bsdf) {
+    return hemisphere_integral([&](const Vec3f& wo) {
+        const BsdfValue value = bsdf.evaluate(wo);
+        return value.diffuse.x + value.glossy.x;
+    });
+}
+
+TEST(Diffuse, lambert_reflects_its_weight) {
+    const ShadingPoints points = one_point(0.6f);
+    EXPECT_NEAR(albedo_of(prepare(lambert(points, 0.5f), points)), 0.5, 1e-4);
+}
+
+TEST(Diffuse, white_oren_nayar_with_its_colour_loses_nothing) {
+    for (const float cos_view : {0.2f, 0.6f, 1.0f})
+        for (const float sigma : {0.3f, 1.0f}) {
+            const ShadingPoints points = one_point(cos_view);
+            Lobe lobe = lambert(points, 1.0f);
+            lobe.roughness.assign(1, sigma);
+            lobe.f0.assign(1, Vec3f(1.0f));
+            EXPECT_NEAR(albedo_of(prepare(lobe, points)), 1.0, 0.01) << cos_view << " " << sigma;
+        }
+}
+
+TEST(Diffuse, burley_at_normal_incidence) {
+    // View and light along the normal: both Schlick terms vanish, Lambert is left.
+    const ShadingPoints points = one_point(1.0f);
+    Lobe lobe = lambert(points, 1.0f);
+    lobe.burley = true;
+    lobe.roughness.assign(1, 0.7f);
+    EXPECT_NEAR(prepare(lobe, points).evaluate(Vec3f(0, 0, 1)).diffuse.x, kInversePi, 1e-6);
+    // Light at 60 degrees: f = (1 - F/2) + RR F with F = (1/2)^5, RR = 2 r cos^2(30 degrees).
+    const double f = 1.0 / 32.0, rr = 0.7 * 1.5;
+    EXPECT_NEAR(prepare(lobe, points).evaluate(Vec3f(std::sqrt(0.75f), 0, 0.5f)).diffuse.x,
+                0.5 * kInversePi * (1 - f / 2 + rr * f), 1e-6);
+}
+
+TEST(Glossy, multiscatter_ggx_passes_the_white_furnace) {
+    for (const float cos_view : {0.3f, 0.7f, 1.0f})
+        for (const float roughness : {0.4f, 0.7f, 1.0f}) {
+            const ShadingPoints points = one_point(cos_view);
+            Lobe lobe = glossy(points, roughness);
+            const double single = albedo_of(prepare(lobe, points));
+            EXPECT_NEAR(single, GgxAlbedo::shared().directional(roughness, cos_view), 0.006);
+            lobe.multiscatter = true;
+            EXPECT_NEAR(albedo_of(prepare(lobe, points)), 1.0, 0.01);
+            if (roughness == 1.0f) {
+                EXPECT_LT(single, 0.9);  // there was something to make up for
+            }
+        }
+}
+
+TEST(Glossy, coloured_multiscatter_darkens_less_than_linearly) {
+    // Kulla and Conty: the energy beyond the first bounce carries the colour more than once.
+    const ShadingPoints points = one_point(0.7f);
+    Lobe lobe = glossy(points, 1.0f);
+    lobe.weight[0] = Vec3f(0.5f);
+    lobe.f0.assign(1, Vec3f(0.5f));
+    const double single = albedo_of(prepare(lobe, points));
+    lobe.multiscatter = true;
+    const double multi = albedo_of(prepare(lobe, points));
+    EXPECT_GT(multi, single);
+    EXPECT_LT(multi, 0.5);
+}
+
+TEST(Glossy, is_reciprocal) {
+    for (const Distribution distribution :
+         {Distribution::Ggx, Distribution::Beckmann, Distribution::Gtr1})
+        for (const bool separable : {false, true}) {
+            const Vec3f a = glm::normalize(Vec3f(0.5f, 0.1f, 0.6f));
+            const Vec3f b = glm::normalize(Vec3f(-0.3f, 0.4f, 0.9f));
+            ShadingPoints points = one_point(1.0f);
+            Lobe lobe = glossy(points, 0.6f);
+            lobe.distribution = distribution;
+            lobe.separable_masking = separable;
+            points.view[0] = a;
+            const float from_a = prepare(lobe, points).evaluate(b).glossy.x / b.z;
+            points.view[0] = b;
+            const float from_b = prepare(lobe, points).evaluate(a).glossy.x / a.z;
+            EXPECT_GT(from_a, 0.01f);
+            EXPECT_NEAR(from_a, from_b, 1e-5f * from_a + 1e-7f);
+        }
+}
+
+// Burley 2012, appendix B: D integrates to 1 over the projected hemisphere, and falls off as the
+// square of the sine, half as steeply as GGX.
+TEST(Gtr1, its_density_is_normalised_and_long_tailed) {
+    for (const float alpha : {0.1f, 0.5f, 0.999f, 1.0f}) {
+        const double integral = hemisphere_integral(
+            [&](const Vec3f& h) { return gtr1_density(alpha, 1.0f - h.z * h.z) * h.z; }, 2000);
+        EXPECT_NEAR(integral, 1.0, 2e-3) << alpha;
+    }
+    EXPECT_NEAR(gtr1_density(0.01f, 0.2f) / gtr1_density(0.01f, 0.4f), 2.0f, 1e-3f);
+    EXPECT_NEAR(ggx_density(0.01f, 0.2f) / ggx_density(0.01f, 0.4f), 4.0f, 4e-3f);
+}
+
+class EveryLobe : public testing::TestWithParam<int> {
+  protected:
+    static Lobe make(const ShadingPoints& points, int which) {
+        if (which == 0) return lambert(points, 1.0f);
+        Lobe lobe = glossy(points, which == 1 ? 0.8f : 0.5f);
+        if (which == 3) lobe.distribution = Distribution::Beckmann;
+        if (which == 4) lobe.distribution = Distribution::Gtr1;
+        return lobe;
+    }
+};
+
+TEST_P(EveryLobe, its_density_integrates_to_the_share_of_samples_that_leave_upwards) {
+    const ShadingPoints points = one_point(0.4f);
+    const PointBsdf bsdf = prepare(make(points, GetParam()), points);
+    const double integral = hemisphere_integral([&](const Vec3f& wo) { return bsdf.pdf(0, wo); });
+    const SobolPoints sequence(5);
+    const int count = 1 << 14;
+    int valid = 0;
+    for (int i = 0; i < count; ++i) {
+        Vec3f wo;
+        valid += bsdf.sample(0, sequence(static_cast<std::uint32_t>(i)), wo);
+    }
+    EXPECT_NEAR(integral, static_cast<double>(valid) / count, 0.005);
+}
+
+TEST_P(EveryLobe, sampling_estimates_what_quadrature_integrates) {
+    // An integrand that is not symmetric, so that a rotated frame would show.
+    const auto radiance = [](const Vec3f& wo) { return 1.0f + wo.x + 0.5f * wo.y * wo.y; };
+    const ShadingPoints points = one_point(0.4f);
+    const PointBsdf bsdf = prepare(make(points, GetParam()), points);
+    const auto value = [&](const Vec3f& wo) {
+        const BsdfValue f = bsdf.evaluate(wo);
+        return (f.diffuse.x + f.glossy.x) * radiance(wo);
+    };
+    const double expected = hemisphere_integral(value);
+    const SobolPoints sequence(9);
+    const int count = 1 << 14;
+    double sum = 0.0;
+    for (int i = 0; i < count; ++i) {
+        Vec3f wo;
+        if (bsdf.sample(0, sequence(static_cast<std::uint32_t>(i)), wo))
+            sum += value(wo) / bsdf.pdf(0, wo);
+    }
+    EXPECT_NEAR(sum / count, expected, 0.006 * expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lobes, EveryLobe, testing::Range(0, 5));
+
+TEST(Fresnel, dielectric_at_normal_grazing_and_brewsters_angle) {
+    EXPECT_NEAR(fresnel_dielectric(1.0f, 1.5f), 0.04f, 1e-6f);
+    EXPECT_NEAR(fresnel_dielectric(0.0f, 1.5f), 1.0f, 1e-6f);
+    // At Brewster's angle only s-polarised light returns: ((n^2 - 1) / (n^2 + 1))^2 / 2.
+    const float brewster = 1.0f / std::sqrt(1.0f + 1.5f * 1.5f);
+    EXPECT_NEAR(fresnel_dielectric(brewster, 1.5f), 0.5f * 0.147929f, 1e-5f);
+    EXPECT_EQ(fresnel_dielectric(0.1f, 1.0f / 1.5f), 1.0f);  // total internal reflection
+}
+
+TEST(Fresnel, sharp_lobes_mirror_with_their_reflectance) {
+    const ShadingPoints points = one_point(0.5f);
+    Lobe lobe = glossy(points, 0.0f);
+    lobe.fresnel = FresnelKind::Dielectric;
+    lobe.ior.assign(1, 1.5f);
+    lobe.f0.assign(1, Vec3f(0.04f));
+    lobe.f90.assign(1, Vec3f(1.0f));
+    const PointBsdf bsdf = prepare(lobe, points);
+    ASSERT_TRUE(bsdf.is_sharp(0));
+    Vec3f wo, reflectance;
+    ASSERT_TRUE(bsdf.reflect(0, wo, reflectance));
+    EXPECT_NEAR(wo.x, -points.view[0].x, 1e-6f);
+    EXPECT_NEAR(wo.z, 0.5f, 1e-6f);
+    // With the natural f0 and f90 the remapping is the identity; 60 degrees on glass: 0.0892.
+    EXPECT_NEAR(reflectance.x, 0.089187f, 1e-5f);
+}
+
+TEST(PointBsdf, what_lies_below_the_horizon_is_not_seen_and_reflects_nothing) {
+    const ShadingPoints points = points_facing_up({{0, 0, 0}});
+    const PointBsdf diffuse(closure_of(lambert(points, 1.0f)), points, 0, GgxAlbedo::shared());
+    const PointBsdf shiny(closure_of(glossy(points, 0.5f)), points, 0, GgxAlbedo::shared());
+    const SobolPoints sequence(3);
+    int hidden = 0;
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        const Vec3f center = 3.0f * (2.0f * Vec3f(sequence(i), sequence.third(i)) - Vec3f(1.0f));
+        const float radius = 0.5f + sequence(i).x;
+        EXPECT_EQ(diffuse.can_see(center, radius), shiny.can_see(center, radius));
+        if (diffuse.can_see(center, radius)) {
+            EXPECT_GT(center.z + radius, -1e-3f);
+            continue;
+        }
+        ++hidden;
+        const Vec3f highest = glm::normalize(center + Vec3f(0, 0, radius));
+        EXPECT_EQ(diffuse.evaluate(highest).diffuse, Vec3f(0.0f));
+        EXPECT_EQ(shiny.evaluate(highest).glossy, Vec3f(0.0f));
+    }
+    EXPECT_GT(hidden, 200);
+}
+
+}  // namespace
+}  // namespace granita

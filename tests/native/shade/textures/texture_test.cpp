@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Look-ups return what the image holds, and means of its light however small it is seen.
+#include "shade/textures/texture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "shade/textures/texel.h"
+#include "shade/textures/texture_scene.h"
+
+namespace granita {
+namespace {
+
+double mean_of(const std::vector<Vec4f>& colors) {
+    double sum = 0.0;
+    for (const Vec4f& c : colors) sum += c.x;
+    return sum / static_cast<double>(colors.size());
+}
+
+double mean_light(const std::vector<std::uint8_t>& grey) {
+    double sum = 0.0;
+    for (const std::uint8_t g : grey) sum += linear_from_srgb(g / 255.0f);
+    return sum / static_cast<double>(grey.size());
+}
+
+TEST(Texture, first_row_is_below) {
+    const Image image = image_of(1, 2, {{1, 0, 0}, {0, 1, 0}}, "Non-Color");
+    TextureMode closest;
+    closest.filter = TextureFilter::Closest;
+    EXPECT_EQ(Look(image).at({0.5f, 0.25f}, 0, closest), Vec4f(1, 0, 0, 1));
+    EXPECT_EQ(Look(image).at({0.5f, 0.75f}, 0, closest), Vec4f(0, 1, 0, 1));
+}
+
+// Random blocks: the mean of light is that of the texels, whatever their size and the footprint's.
+// Blocks of 1 are the hardest for filters of encoded numbers near one texel a pixel, of 4 from
+// there to eight.
+TEST(Texture, the_mean_of_light_is_kept_at_every_minification) {
+    constexpr int kSize = 64;
+    for (const int block : {1, 4}) {
+        const auto grey = random_blocks(kSize, block, 7);
+        const Image image = image_of_bytes(kSize, kSize, grey);
+        const double truth = mean_light(grey);
+        Look look(image);
+        for (const float texels :
+             {1.0f, 1.3f, 2.0f, 2.9f, 4.0f, 8.0f, 11.0f, 16.0f, 50.0f, 300.0f}) {
+            const auto places = places_all_over(kSize, kSize, texels, texels, 0.0f);
+            // Half floats are right to 5e-4; places are one a texel.
+            EXPECT_NEAR(mean_of(look.at(places)) / truth, 1.0, 0.002)
+                << "blocks of " << block << ", " << texels << " texels a pixel";
+        }
+    }
+}
+
+TEST(Texture, the_mean_of_light_is_kept_where_the_surface_is_tilted) {
+    constexpr int kSize = 64;
+    const auto grey = random_blocks(kSize, 4, 3);
+    Look look(image_of_bytes(kSize, kSize, grey));
+    for (const float shorter : {0.25f, 1.0f, 3.0f})
+        for (const float ratio : {2.0f, 5.0f, 16.0f, 40.0f})
+            for (const float angle : {0.0f, 0.6f, 1.5708f, 2.2f}) {
+                if (shorter * ratio < 1.0f) continue;
+                const auto places = places_all_over(kSize, kSize, shorter * ratio, shorter, angle);
+                EXPECT_NEAR(mean_of(look.at(places)) / mean_light(grey), 1.0, 0.002)
+                    << shorter << " x " << shorter * ratio << " turned " << angle;
+            }
+}
+
+TEST(Texture, nothing_jumps_as_a_texture_shrinks) {
+    constexpr int kSize = 64;
+    const Image image = image_of_bytes(kSize, kSize, random_blocks(kSize, 1, 11));
+    for (const TextureFilter filter :
+         {TextureFilter::Linear, TextureFilter::Cubic, TextureFilter::Closest}) {
+        Look look(image);
+        TextureMode mode;
+        mode.filter = filter;
+        for (const float ratio : {1.0f, 3.7f, 30.0f}) {
+            std::vector<Vec4f> before;
+            for (float texels = 0.3f; texels < 40.0f; texels *= 1.01f) {
+                const auto now =
+                    look.at(places_all_over(6, kSize, texels * ratio, texels, 0.4f), mode);
+                for (std::size_t i = 0; i < before.size(); ++i)
+                    // No part of a footprint moves by more than its share, 1 %, of what differs
+                    // by 1.
+                    ASSERT_NEAR(before[i].x, now[i].x, 0.05) << texels << " x " << texels * ratio;
+                before = now;
+            }
+        }
+    }
+}
+
+// Cycles interpolates the bytes and decodes what comes out.
+TEST(Texture, magnified_texels_are_interpolated_as_they_are_stored) {
+    const Image image = image_of_bytes(2, 1, {0, 255});
+    TextureMode mode;
+    mode.extension = TextureExtension::Extend;
+    for (const float texels : {0.0f, 0.1f, 0.5f})
+        EXPECT_NEAR(Look(image).at({0.5f, 0.5f}, texels / 2, mode).x, linear_from_srgb(0.5f), 1e-6)
+            << texels;
+    EXPECT_NEAR(Look(image).at({0.5f, 0.5f}, 0.5f, mode).x, 0.5f, 1e-6);
+}
+
+TEST(Texture, a_footprint_over_everything_sees_the_mean) {
+    std::vector<Vec3f> colors;
+    for (int i = 0; i < 64 * 64; ++i) colors.push_back(Vec3f((i / 64 + i) % 2 ? 1.0f : 0.0f));
+    const Image image = image_of(64, 64, colors, "sRGB");
+    EXPECT_NEAR(Look(image).at({0.3f, 0.7f}, 1.0f).x, 0.5f, 1e-6);
+}
+
+TEST(Texture, a_footprint_across_stripes_sees_the_mean_of_their_light) {
+    std::vector<std::uint8_t> grey;
+    for (int i = 0; i < 64 * 64; ++i) grey.push_back(i % 2 ? 255 : 0);
+    const TexturePlace across{{0.5f, 0.5f}, {8.0f / 64, 0}, {0, 1.0f / 64}};
+    EXPECT_NEAR(Look(image_of_bytes(64, 64, grey)).at({across})[0].x, 0.5f, 1e-6);
+}
+
+// A leaf's mask: half of it is there, and where it is it is white.  Dividing after decoding
+// gave 2.4.
+TEST(Texture, divided_by_alpha_a_half_covered_texel_keeps_its_colour) {
+    Image image;
+    image.name = "Image";
+    image.width = image.height = 8;
+    for (int i = 0; i < 64; ++i) {
+        const float a = i % 2 ? 1.0f : 0.0f, c = a * linear_from_srgb(200 / 255.0f);
+        image.pixels.insert(image.pixels.end(), {c, c, c, a});
+    }
+    TextureMode mode;
+    mode.unassociate = true;
+    const Vec4f far = Look(image).at({0.5f, 0.5f}, 1.0f, mode);
+    EXPECT_NEAR(far.x, linear_from_srgb(200 / 255.0f), 1e-3);  // a half float's 5e-4, and alpha's
+    EXPECT_NEAR(far.w, 0.5f, 1e-6);
+}
+
+TEST(Texture, the_rim_is_wrapped_as_asked) {
+    const Image image = image_of(4, 1, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, "Non-Color");
+    const auto at = [&](TextureExtension extension, float x) {
+        TextureMode mode;
+        mode.extension = extension;
+        return Look(image).at({x, 0.5f}, 0.0f, mode);
+    };
+    EXPECT_FLOAT_EQ(at(TextureExtension::Repeat, 1.0f).x, 1.5f);  // between 3 and 0
+    EXPECT_FLOAT_EQ(at(TextureExtension::Repeat, -7.625f).x, 1.0f);
+    EXPECT_FLOAT_EQ(at(TextureExtension::Extend, 1.0f).x, 3.0f);
+    EXPECT_FLOAT_EQ(at(TextureExtension::Extend, -90.0f).x, 0.0f);
+    EXPECT_FLOAT_EQ(at(TextureExtension::Mirror, 1.125f).x, 3.0f);
+    EXPECT_FLOAT_EQ(at(TextureExtension::Mirror, 1.875f).x, 0.0f);
+    EXPECT_EQ(at(TextureExtension::Clip, 1.2f), Vec4f(0.0f));
+    EXPECT_FLOAT_EQ(at(TextureExtension::Clip, 1.0f).w, 0.5f);
+}
+
+TEST(Texture, places_that_are_no_numbers_are_black_and_footprints_that_are_none_see_everything) {
+    const Image image = image_of(4, 1, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, "Non-Color");
+    const float none = std::nanf(""), endless = INFINITY;
+    for (const float x : {none, endless, -endless, 1e30f})
+        EXPECT_EQ(Look(image).at({x, 0.5f}, 0.1f), Vec4f(0.0f)) << x;
+    for (const float size : {none, endless, 1e30f, 1e9f})
+        EXPECT_NEAR(Look(image).at({0.2f, 0.5f}, size).x, 1.5f, 1e-5) << size;
+}
+
+TEST(Texture, missing_file_is_magenta_and_named) {
+    Image image;
+    image.name = "Image";
+    image.path = "/nowhere/at/all.png";
+    Look look(image);
+    EXPECT_EQ(look.at({0.5f, 0.5f}, 0), Vec4f(1, 0, 1, 1));
+    ASSERT_EQ(look.warnings().size(), 1u);
+    EXPECT_EQ(look.warnings()[0].datablock, "image 'Image'");
+}
+
+}  // namespace
+}  // namespace granita
