@@ -61,16 +61,29 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
     )
     sampling: _choice(
         "Sampling",
-        "How time and lens points are shared between samples",
+        "How samples are spread over pixels, the shutter and the lens",
         "INDEPENDENT",
-        ("INDEPENDENT", "Independent", "Every sample has its own time and lens point"),
-        ("INTERLEAVED", "Interleaved", "A few hundred times and lens points, shared"),
-        ("REGULAR", "Regular", "The same lattice of places at every time sample"),
+        (
+            "INDEPENDENT",
+            "Independent",
+            "Every sample has its own shutter time and lens point: fine grain",
+        ),
+        (
+            "INTERLEAVED",
+            "Interleaved",
+            "Neighbouring pixels share a few hundred times and lens points",
+        ),
+        (
+            "REGULAR",
+            "Regular",
+            "The same sample pattern in every pixel, repeated for a number of shutter times (the classic "
+            "multipass method). Fast on a GPU; may show strobing",
+        ),
     )
     time_samples: _whole(
         "Time Samples",
-        "Regular sampling: moments (and lens points) at which the lattice is repeated; "
-        "0 = chosen from the filter and the motion",
+        "Regular sampling: shutter times and lens points for which the sample pattern is repeated; "
+        "more cost more and strobe less. 0 = as many as the filter and the motion ask for",
         0,
         (0, 4096),
     )
@@ -130,18 +143,18 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
     )
     motion_factor: _real(
         "Motion Factor",
-        "How much more coarsely what moves is diced and shaded along its way: "
-        "with 1 its micropolygons are no shorter than a sixteenth of the way; 0 = as if it "
-        "stood still",
+        "How much coarser geometry and shading are where motion blurs them: faster, and softer if more. "
+        "1 = micropolygons no shorter than a sixteenth of the motion, which does not show; 0 = as fine as "
+        "if it stood still",
         1.0,
         (0.0, 16.0),
         usual=(0.0, 4.0),
     )
     focus_factor: _real(
         "Focus Factor",
-        "How much more coarsely what is out of focus is diced and shaded: with 1 its "
-        "micropolygons are no smaller than a sixteenth of its circle of confusion; 0 = as if it "
-        "were sharp",
+        "How much coarser geometry and shading are where they are out of focus: faster, and softer if "
+        "more. 1 = micropolygons no smaller than a sixteenth of the circle of confusion, which does not "
+        "show; 0 = as fine as if it were sharp",
         1.0,
         (0.0, 16.0),
         usual=(0.0, 4.0),
