@@ -151,8 +151,10 @@ class FlatGraph:
 
 
 def generation():
-    """1: shaders mean what they meant before Blender 4; 2: since then."""
-    return 1 if bpy.app.version < (4, 0, 0) else 2
+    """1: shaders mean what they meant before Blender 4; 2: since then; 3: and coats keep their energy."""
+    if bpy.app.version < (4, 0, 0):
+        return 1
+    return 2 if bpy.app.version < (4, 5, 0) else 3
 
 
 def aov_name(node):

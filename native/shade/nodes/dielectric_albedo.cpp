@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "math/sampling.h"
-#include "math/vec.h"
+#include "shade/bsdf/bsdf_albedo.h"
 #include "shade/bsdf/fresnel.h"
 
 namespace granita {
@@ -99,6 +99,18 @@ struct Table {
     }
 };
 
+/// Light that is reflected between microfacets meets Fresnel at each bounce (Kulla and Conty 2017):
+/// what is left, relative to a lobe that loses nothing.
+Vec3f multiscatter_darkening(const Vec3f& fresnel, float roughness, float cosine) {
+    const GgxAlbedo& albedo = GgxAlbedo::shared();
+    const float directional = albedo.directional(roughness, std::clamp(cosine, 0.0f, 1.0f));
+    const float average = albedo.average(roughness);
+    const float missing = (1.0f - directional) / directional;
+    const Vec3f one(1.0f);
+    const Vec3f bounced = fresnel * average / (one - fresnel * (1.0f - average));
+    return (one + bounced * missing) / (1.0f + missing);
+}
+
 }  // namespace
 
 float ior_from_f0(float f0) {
@@ -121,6 +133,13 @@ float dielectric_mean_albedo(float ior) {
 float dielectric_albedo(float roughness, float cosine, float ior) {
     static const Table kTable;
     return kTable.look_up(roughness, cosine, ior_axis(ior));
+}
+
+Vec3f layer_albedo(const Vec3f& f0, float ior, float roughness, float cosine, bool multiscatter) {
+    const auto mixed = [&](float grazing) { return f0 * (1.0f - grazing) + Vec3f(grazing); };
+    const Vec3f albedo = mixed(dielectric_albedo(roughness, cosine, ior));
+    if (!multiscatter) return albedo;
+    return albedo * multiscatter_darkening(mixed(dielectric_mean_albedo(ior)), roughness, cosine);
 }
 
 }  // namespace granita

@@ -4,6 +4,8 @@
 // with a table of the same quantity.
 #pragma once
 
+#include "math/vec.h"
+
 namespace granita {
 
 float ior_from_f0(float f0);
@@ -13,5 +15,9 @@ float ior_from_f0(float f0);
 float dielectric_albedo(float roughness, float cosine, float ior);
 /// The cosine-weighted mean of the smooth surface's over all directions.
 float dielectric_mean_albedo(float ior);
+
+/// What a layer of Principled BSDF reflects and takes from those below it: `f0` at normal
+/// incidence, 1 where it grazes.  With `multiscatter` what is reflected between microfacets too.
+Vec3f layer_albedo(const Vec3f& f0, float ior, float roughness, float cosine, bool multiscatter);
 
 }  // namespace granita

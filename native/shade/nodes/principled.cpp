@@ -4,18 +4,18 @@
 //   generation 1 (before Blender 4): Burley's diffuse, a specular lobe that fades from dielectric
 //   to
 //       metallic by its colour at normal incidence, side by side
-//   generation 2: a metallic lobe and a dielectric one, which takes its albedo from the diffuse
-//       layer below
+//   generation 2: a coat over a metallic lobe and a dielectric one, which takes its albedo from the
+//       diffuse layer below
 //
 // Subsurface is rendered as diffuse, transmission as its reflection alone; sheen, and what else is
 // set and left out, is told to the artist.
 #include <algorithm>
 #include <cmath>
 
-#include "shade/bsdf/bsdf_albedo.h"
 #include "shade/bsdf/fresnel.h"
 #include "shade/nodes/dielectric_albedo.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/principled_coat.h"
 #include "shade/nodes/scalar_math.h"
 
 namespace granita {
@@ -38,7 +38,8 @@ void warn_about_left_out(NodeBuilder& b) {
 }
 
 struct Common {
-    FloatSource weight;  ///< alpha applied
+    FloatSource weight;     ///< alpha applied
+    VectorSource emission;  ///< weighted
     VectorSource base_color, normal;
     VectorSource specular_normal;  ///< of glossy lobes
     FloatSource metallic, roughness, transmission, specular, ior;
@@ -51,6 +52,12 @@ void add_alpha(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weigh
     surface.add_transparency(b, scaled(b, {-1, kOne}, product(b, weight, clear)));
 }
 
+VectorSource multiplied(NodeBuilder& b, const VectorSource& x, const VectorSource& y) {
+    if (x.is(kOne) || y.is(Vec3f(0.0f))) return y;
+    if (y.is(kOne) || x.is(Vec3f(0.0f))) return x;
+    return b.map<Vec3f>([](const Vec3f& u, const Vec3f& v) { return u * v; }, x, y);
+}
+
 LobeSource glossy_lobe(const Common& c) {
     LobeSource lobe;
     lobe.kind = LobeKind::Glossy;
@@ -60,28 +67,8 @@ LobeSource glossy_lobe(const Common& c) {
     return lobe;
 }
 
-/// Before Blender 4 a quarter as strong and with Burley's long tails.
-void add_coat(NodeBuilder& b, SurfaceBuilder& surface, const Common& c, bool first_generation) {
-    const FloatSource coat = b.number("Coat Weight");
-    if (coat.is(0.0f)) return;
-    LobeSource lobe = glossy_lobe(c);
-    lobe.multiscatter = false;
-    lobe.separable_masking = first_generation;
-    if (first_generation) lobe.distribution = Distribution::Gtr1;
-    lobe.fresnel = FresnelKind::Dielectric;
-    lobe.normal = b.specular_normal("Coat Normal");
-    lobe.roughness = b.map<float>(saturate, b.number("Coat Roughness", 0.03f));
-    lobe.ior = b.number("Coat IOR", 1.5f);
-    lobe.f0 = b.map<Vec3f>([](float ior) { return Vec3f(f0_from_ior(ior)); }, lobe.ior);
-    lobe.f90 = {-1, kOne};
-    const float strength = first_generation ? 0.25f : 1.0f;
-    const FloatSource amount =
-        b.map<float>([strength](float x) { return strength * std::max(x, 0.0f); }, coat);
-    lobe.weight = scaled(b, {-1, kOne}, product(b, c.weight, amount));
-    surface.add_lobe(lobe);
-}
-
 void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
+    surface.add_emission(b, c.emission);
     LobeSource diffuse;
     diffuse.kind = LobeKind::Diffuse;
     diffuse.burley = true;
@@ -113,28 +100,20 @@ void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common&
     specular.f90 = {-1, kOne};
     specular.weight = scaled(b, {-1, kOne}, c.weight);
     if (!(c.specular.is(0.0f) && c.metallic.is(0.0f))) surface.add_lobe(specular);
-    add_coat(b, surface, c, true);
-}
-
-/// Light that is reflected between microfacets meets Fresnel at each bounce (Kulla and Conty 2017):
-/// what is left, relative to a lobe that loses nothing.
-Vec3f multiscatter_darkening(const Vec3f& fresnel, float roughness, float cosine) {
-    const GgxAlbedo& albedo = GgxAlbedo::shared();
-    const float directional = albedo.directional(roughness, std::clamp(cosine, 0.0f, 1.0f));
-    const float average = albedo.average(roughness);
-    const float missing = (1.0f - directional) / directional;
-    const Vec3f bounced = fresnel * average / (kOne - fresnel * (1.0f - average));
-    return (kOne + bounced * missing) / (1.0f + missing);
+    add_coat(b, surface, c.weight);
 }
 
 void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
+    const VectorSource coated = add_coat(b, surface, c.weight);
+    surface.add_emission(b, multiplied(b, c.emission, coated));
+
     const VectorSource tint = b.color("Specular Tint", kOne);
     LobeSource metal = glossy_lobe(c);
     // The edge tint is white unless the artist sets it: then F82 is Schlick's.
     metal.fresnel = FresnelKind::Schlick;
     metal.f0 = c.base_color;
     metal.f90 = {-1, kOne};
-    metal.weight = scaled(b, {-1, kOne}, product(b, c.weight, c.metallic));
+    metal.weight = scaled(b, coated, product(b, c.weight, c.metallic));
     surface.add_lobe(metal);
 
     const FloatSource rest =
@@ -152,7 +131,7 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common
         [](float ior, const Vec3f& t) { return f0_from_ior(ior) * glm::max(t, Vec3f(0.0f)); },
         specular.ior, tint);
     specular.f90 = {-1, kOne};
-    specular.weight = scaled(b, {-1, kOne}, rest);
+    specular.weight = scaled(b, coated, rest);
     if (!specular.ior.is(1.0f)) surface.add_lobe(specular);
 
     // Light that the specular layer reflects does not reach the diffuse one.
@@ -161,14 +140,7 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common
         [multiscatter](const Vec3f& f0, float ior, float roughness, const Vec3f& n,
                        const Vec3f& view) {
             if (ior == 1.0f) return 1.0f;
-            const float cosine = glm::dot(n, view);
-            const float s = dielectric_albedo(roughness, cosine, ior);
-            Vec3f albedo = f0 * (1.0f - s) + kOne * s;
-            if (multiscatter) {
-                const float mean = dielectric_mean_albedo(ior);
-                albedo *=
-                    multiscatter_darkening(f0 * (1.0f - mean) + kOne * mean, roughness, cosine);
-            }
+            const Vec3f albedo = layer_albedo(f0, ior, roughness, glm::dot(n, view), multiscatter);
             return saturate(1.0f - std::max({albedo.x, albedo.y, albedo.z}));
         },
         specular.f0, specular.ior, c.roughness, c.specular_normal, b.view());
@@ -179,9 +151,9 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common
     diffuse.has_color = !diffuse.roughness.is(0.0f);
     diffuse.f0 = c.base_color;
     const FloatSource opaque = b.map<float>([](float t) { return 1.0f - t; }, c.transmission);
-    diffuse.weight = scaled(b, c.base_color, product(b, product(b, rest, opaque), below));
+    diffuse.weight =
+        scaled(b, multiplied(b, c.base_color, coated), product(b, product(b, rest, opaque), below));
     surface.add_lobe(diffuse);
-    add_coat(b, surface, c, false);
 }
 
 }  // namespace
@@ -193,7 +165,7 @@ void build_principled(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource
     c.weight = product(b, weight, alpha);
     const VectorSource emission = b.color("Emission Color", Vec3f(0.0f));
     const FloatSource strength = b.number("Emission Strength", 1.0f);
-    surface.add_emission(b, scaled(b, emission, product(b, c.weight, strength)));
+    c.emission = scaled(b, emission, product(b, c.weight, strength));
 
     warn_about_left_out(b);
     const bool first = b.value("generation", 2) < 2;

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/nodes/principled_coat.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shade/bsdf/fresnel.h"
+#include "shade/nodes/dielectric_albedo.h"
+#include "shade/nodes/scalar_math.h"
+
+namespace granita {
+
+namespace {
+
+const Vec3f kOne(1.0f);
+
+/// Light straight through the coat is as the tint says; slanted, it goes a longer way (Beer's law).
+Vec3f absorbed(const Vec3f& tint, float cosine, float ior) {
+    const float inside = std::sqrt(1.0f - (1.0f - cosine * cosine) / (ior * ior));
+    const float way = 1.0f / std::max(inside, 1e-6f);
+    return {std::pow(tint.x, way), std::pow(tint.y, way), std::pow(tint.z, way)};
+}
+
+VectorSource let_through(NodeBuilder& b, const LobeSource& coat, const FloatSource& amount) {
+    const bool multiscatter = coat.multiscatter;
+    const VectorSource passed = b.map<Vec3f>(
+        [multiscatter](float weight, float ior, float roughness, const Vec3f& n,
+                       const Vec3f& view) {
+            const Vec3f albedo = layer_albedo(Vec3f(f0_from_ior(ior)), ior, roughness,
+                                              glm::dot(n, view), multiscatter);
+            return Vec3f(saturate(1.0f - weight * albedo.x));
+        },
+        amount, coat.ior, coat.roughness, coat.normal, b.view());
+    const VectorSource tint = b.map<Vec3f>([](const Vec3f& c) { return glm::max(c, Vec3f(0.0f)); },
+                                           b.color("Coat Tint", kOne));
+    if (tint.is(kOne)) return passed;
+    return b.map<Vec3f>(
+        [](const Vec3f& light, const Vec3f& c, float weight, float ior, const Vec3f& n,
+           const Vec3f& view) {
+            return light * (kOne + (absorbed(c, glm::dot(n, view), ior) - kOne) * weight);
+        },
+        passed, tint, amount, coat.ior, coat.normal, b.view());
+}
+
+}  // namespace
+
+VectorSource add_coat(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight) {
+    const FloatSource coat = b.number("Coat Weight");
+    if (coat.is(0.0f)) return {-1, kOne};
+    const double generation = b.value("generation", 2);
+    const bool first_generation = generation < 2;
+    LobeSource lobe;
+    lobe.kind = LobeKind::Glossy;
+    lobe.multiscatter = generation >= 3;  // whatever the node's distribution
+    lobe.separable_masking = first_generation;
+    if (first_generation) lobe.distribution = Distribution::Gtr1;
+    lobe.fresnel = FresnelKind::Dielectric;
+    lobe.normal = b.specular_normal("Coat Normal");
+    lobe.roughness = b.map<float>(saturate, b.number("Coat Roughness", 0.03f));
+    lobe.ior =
+        b.map<float>([](float ior) { return std::max(ior, 1.0f); }, b.number("Coat IOR", 1.5f));
+    lobe.f0 = b.map<Vec3f>([](float ior) { return Vec3f(f0_from_ior(ior)); }, lobe.ior);
+    lobe.f90 = {-1, kOne};
+    const float strength = first_generation ? 0.25f : 1.0f;
+    const FloatSource amount =
+        b.map<float>([strength](float x) { return strength * std::max(x, 0.0f); }, coat);
+    lobe.weight = scaled(b, {-1, kOne}, product(b, weight, amount));
+    surface.add_lobe(lobe);
+    if (first_generation) return {-1, kOne};
+    return let_through(b, lobe, amount);
+}
+
+}  // namespace granita
