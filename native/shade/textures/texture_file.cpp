@@ -17,13 +17,22 @@ namespace {
 constexpr int kMostTexelsAside = 1 << 16;
 constexpr std::int64_t kMostTexels = std::int64_t{1} << 30;
 constexpr int kMostChannels = 64;
-/// A tile of a file is read whole.
+/// A tile of a file is read whole, and tiles that are not served a row of them at a time.
 constexpr int kLargestTile = 4096, kLargestServedTile = 512;
+constexpr std::uint64_t kMostBytesAtOnce = std::uint64_t{512} << 20;
 /// A file's own levels are used where they end in so few texels.
 constexpr int kLastLevel = 64;
 
 float finite(float x) {
     return std::isfinite(x) ? std::clamp(x, -kLargestNumber, kLargestNumber) : 0.0f;
+}
+
+/// Of a row of tiles as texels, and of a tile as it is stored.
+std::uint64_t bytes_at_once(const OIIO::ImageSpec& spec) {
+    if (spec.tile_width == 0) return 0;
+    const auto row =
+        static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.tile_height);
+    return std::max<std::uint64_t>(row * sizeof(Vec4f), spec.tile_bytes(true));
 }
 
 /// Grey, grey and alpha, rgb, rgba and more: to rgba.
@@ -95,6 +104,8 @@ bool TextureFile::check(const OIIO::ImageSpec& spec) {
     } else if (spec.tile_width < 0 || spec.tile_height < 0 || spec.tile_width > kLargestTile ||
                spec.tile_height > kLargestTile || (spec.tile_width > 0) != (spec.tile_height > 0)) {
         m_header.error = "its tiles have no possible size";
+    } else if (bytes_at_once(spec) > kMostBytesAtOnce) {
+        m_header.error = "its tiles are too large";
     }
     return m_header.error.empty();
 }

@@ -4,6 +4,7 @@
 #include "shade/textures/texture_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "shade/textures/image_mutations.h"
 #include "shade/textures/texture_filter.h"
@@ -37,8 +38,8 @@ TEST(TextureFile, a_tiled_file_without_levels_is_given_some) {
     EXPECT_FLOAT_EQ(look.at({0.3f, 0.3f}, 2.0f / 100).x, 2.0f);
 }
 
-// Values: Blender's own conversion, image.pixels of a float file in that space (4.5), of .2, .5,
-// .8.
+// White is white whatever the primaries; the curves are as they are defined: Rec.1886 is a power of
+// 2.4, Filmic Log has middle grey 10 of its 16.5 stops above black.
 TEST(TextureFile, colour_spaces_become_scene_linear) {
     EXPECT_FALSE(find_color_space("AgX Base sRGB"));
     EXPECT_FALSE(find_color_space("nonsense"));
@@ -100,6 +101,70 @@ TEST(TextureFile, headers_of_impossible_sizes_end_in_a_warning) {
         EXPECT_EQ(look.at({0.5f, 0.5f}, 0.1f), kMagenta);
         ASSERT_EQ(look.warnings().size(), 1u);
         EXPECT_EQ(look.warnings()[0].datablock, "image 'Image'");
+    }
+}
+
+/// Of 32-bit floats, whose tiles are all at the same place: their data are not there.
+Bytes tiff_of(std::uint32_t width, std::uint32_t height, std::uint32_t tile,
+              std::uint16_t channels) {
+    Bytes tiff;
+    const auto put = [&tiff](std::uint32_t value, int bytes) {
+        for (int k = 0; k < bytes; ++k) tiff.push_back(static_cast<std::uint8_t>(value >> (8 * k)));
+    };
+    const std::uint32_t tiles = (width / tile) * (height / tile);
+    struct Tag {
+        std::uint32_t number, bytes, count, value;
+    };
+    const Tag tags[] = {{256, 4, 1, width},
+                        {257, 4, 1, height},
+                        {258, 2, channels, 32},
+                        {259, 2, 1, 1},
+                        {262, 2, 1, 2},
+                        {277, 2, 1, channels},
+                        {284, 2, 1, 1},
+                        {322, 4, 1, tile},
+                        {323, 4, 1, tile},
+                        {324, 4, tiles, 8},
+                        {325, 4, tiles, tile * 4},
+                        {339, 2, channels, 3}};
+    put(0x002a4949, 4);
+    put(8, 4);
+    put(std::size(tags), 2);
+    std::uint32_t apart = 8 + 2 + 12 * std::size(tags) + 4;
+    for (const Tag& tag : tags) {
+        put(tag.number, 2);
+        put(tag.bytes == 2 ? 3 : 4, 2);
+        put(tag.count, 4);
+        const bool fits = tag.bytes * tag.count <= 4;
+        put(fits ? tag.value : apart, 4);
+        if (!fits) apart += tag.bytes * tag.count;
+    }
+    put(0, 4);
+    for (const Tag& tag : tags)
+        for (std::uint32_t k = 0; tag.bytes * tag.count > 4 && k < tag.count; ++k)
+            put(tag.value, static_cast<int>(tag.bytes));
+    return tiff;
+}
+
+/// Of this process until now.
+std::uint64_t peak_of_memory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) << 10;
+}
+
+TEST(TextureFile, headers_of_large_tiles_take_no_memory) {
+    // A row of tiles as texels: 2 GiB; a tile of many channels: 4 GiB.
+    for (const Bytes& bytes : {tiff_of(65536, 16384, 2048, 4), tiff_of(4096, 4096, 4096, 64)}) {
+        ImageFile file(".tif");
+        file.write(bytes);
+        const std::uint64_t before = peak_of_memory();
+        Look look(file.image());
+        EXPECT_EQ(look.at({0.5f, 0.5f}, 0.1f), kMagenta);
+        ASSERT_EQ(look.warnings().size(), 1u);
+        EXPECT_NE(look.warnings()[0].message.find("too large"), std::string::npos)
+            << look.warnings()[0].message;
+        EXPECT_LT(peak_of_memory() - before, std::uint64_t{256} << 20);
     }
 }
 
