@@ -13,7 +13,8 @@ int points_step(const Grid& grid, const Projection& projection, int first, int s
                 double rate) {
     const std::vector<Vec3f>& p = grid.shading_p();
     const auto place = [&](int i) {
-        const Vec3d at(p[static_cast<std::size_t>(first + i * stride)]);
+        const int vertex = first + i * stride;
+        const Vec3d at(p[static_cast<std::size_t>(vertex)]);
         return projection.scale * Vec2d(at) / (projection.perspective ? at.z : 1.0);
     };
     double length = 0.0;

@@ -202,9 +202,9 @@ void PatchBatch::count_spared(const Grid& grid, const Parts& parts) const {
     std::size_t points = 0;
     for (const Lattice& lattice : parts.lattices)
         points += LatticeStencil::of(lattice.stencil).vertex_count();
-    std::vector<Vec3f> path;
-    for (int k = 0; k < grid.knots; ++k)
-        path.push_back(grid.positions[static_cast<std::size_t>(k * grid.vertex_count())]);
+    std::vector<Vec3f> path(static_cast<std::size_t>(grid.knots));
+    const auto stride = static_cast<std::size_t>(grid.vertex_count());
+    for (std::size_t k = 0; k < path.size(); ++k) path[k] = grid.positions[k * stride];
     const double spared = m_mesh->rate().spared(path.data(), grid.knots) - 1.0;
     statistics->add(Counter::PointsSpared,
                     static_cast<std::uint64_t>(spared * static_cast<double>(points)));

@@ -113,8 +113,9 @@ HWY_INLINE void fill_factors(const FilterPieces& filter, float share, const RowR
                              float row_center, float* factors_x, float* factors_y) {
     const int lanes = static_cast<int>(hn::Lanes(kTag));
     const V scale = hn::Set(kTag, share);
+    const int middle = taps / 2;
     for (int tap = 0; tap < taps; ++tap) {
-        const auto step = static_cast<float>(tap - taps / 2);
+        const auto step = static_cast<float>(tap - middle);
         const V center_y = hn::Set(kTag, row_center + step);
         for (int p = 0; p < kTileSize; p += lanes) {
             const V center_x = hn::Iota(kTag, static_cast<float>(p) + 0.5f + step);

@@ -16,8 +16,8 @@ namespace {
 /// @param pixel of the tile.  @param rows channels of the tile's samples.
 void take_nearest(const TileSamples& samples, const SampleColors& colors, const float* rows,
                   int pixel, TileSums& sums) {
-    const Vec2f center(static_cast<float>(pixel % kTileSize) + 0.5f,
-                       static_cast<float>(pixel / kTileSize) + 0.5f);
+    const int column = pixel % kTileSize, row = pixel / kTileSize;
+    const Vec2f center(static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
     const auto distance2 = [&](std::size_t i) {
         const Vec2f d = Vec2f(samples.x[i], samples.y[i]) - center;
         return glm::dot(d, d);

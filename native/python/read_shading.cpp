@@ -8,7 +8,7 @@ namespace {
 NodeLink read_link(const Record& r, const py::handle& value, std::size_t node, std::size_t limit) {
     const auto sequence = py::reinterpret_borrow<py::sequence>(value);
     const std::size_t first = sequence.size() - 2;  // ("LINK", node, output) or (node, output)
-    const NodeLink link{py::cast<int>(sequence[first]), py::cast<std::string>(sequence[first + 1])};
+    NodeLink link{py::cast<int>(sequence[first]), py::cast<std::string>(sequence[first + 1])};
     if (link.node < 0 || static_cast<std::size_t>(link.node) >= limit)
         r.fail("node " + std::to_string(node) + " is linked to node " + std::to_string(link.node) +
                ", which does not come before it");
@@ -21,7 +21,7 @@ NodeInput read_input(const Record& r, const py::handle& value, std::size_t node)
         if (sequence.size() == 3 && py::isinstance<py::str>(sequence[0]))
             return read_link(r, value, node, node);
         Vec4f v(0.0f, 0.0f, 0.0f, 1.0f);
-        if (sequence.size() < 1 || sequence.size() > 4)
+        if (sequence.empty() || sequence.size() > 4)
             r.fail("a socket of node " + std::to_string(node) + " must have 1 to 4 values");
         for (std::size_t i = 0; i < sequence.size(); ++i)
             v[static_cast<int>(i)] = py::cast<float>(sequence[i]);

@@ -166,7 +166,7 @@ void RasterDevice::draw(RasterOutput output, const RasterBuffers& buffers,
     m_primitives.emplace_back(GL_PRIMITIVES_GENERATED);
     m_primitives.back().begin();
     if (m_samples)
-        draw_instance_motion(buffers, commands);
+        draw_samples(buffers, commands);
     else
         draw_passes(buffers, commands, passes);
     m_primitives.back().end();
@@ -186,8 +186,8 @@ void RasterDevice::draw_passes(const RasterBuffers& buffers, const std::vector<C
                                 static_cast<GLsizei>(commands.size()), 0);
 }
 
-void RasterDevice::draw_instance_motion(const RasterBuffers& buffers,
-                                        const std::vector<Command>& commands) const {
+void RasterDevice::draw_samples(const RasterBuffers& buffers,
+                                const std::vector<Command>& commands) const {
     const Projection& p = m_frame.projection;
     const DepthRange range = depth_range(p);
     const LensShape& lens = m_frame.table->lens();

@@ -84,8 +84,7 @@ class RasterDevice {
     void draw_passes(const RasterBuffers& buffers, const std::vector<Command>& commands,
                      const RasterPasses& passes) const;
     /// A quadrilateral around each triangle's way: raster/sample.*.
-    void draw_instance_motion(const RasterBuffers& buffers,
-                              const std::vector<Command>& commands) const;
+    void draw_samples(const RasterBuffers& buffers, const std::vector<Command>& commands) const;
 
     const RasterFrame& m_frame;
     RasterTarget m_target;

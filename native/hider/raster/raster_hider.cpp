@@ -346,6 +346,7 @@ std::unique_ptr<RasterBucket> RasterHider::open(const Rect& pixels,
     std::vector<GridSweep> sweeps;
     sweeps.reserve(grids.size());
     std::vector<const GridSweep*> pointers;
+    pointers.reserve(grids.size());
     for (const Grid* grid : grids)
         pointers.push_back(&sweeps.emplace_back(*grid, m_frame.projection, lens));
     return open(pixels, std::span<const GridSweep* const>(pointers));

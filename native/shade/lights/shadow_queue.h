@@ -23,7 +23,7 @@ class ShadowQueue {
     void send(std::size_t point, const Vec3f& light, const BsdfValue& parts, const ShadowRay& ray) {
         if (m_waiting.size() == kMost) deliver();
         m_waiting.push_back({point, light, parts});
-        m_instance_motion.push_back(ray);
+        m_rays_waiting.push_back(ray);
     }
     /// The same where no ray is needed.
     void send(std::size_t point, const Vec3f& light, const BsdfValue& parts) {
@@ -33,12 +33,12 @@ class ShadowQueue {
     /// All that is on its way.
     void deliver() {
         if (m_waiting.empty()) return;
-        m_grid.shadow_rays += m_instance_motion.size();
-        m_seen.resize(m_instance_motion.size());
-        m_rays->transmittances(m_instance_motion, m_seen);
+        m_grid.shadow_rays += m_rays_waiting.size();
+        m_seen.resize(m_rays_waiting.size());
+        m_rays->transmittances(m_rays_waiting, m_seen);
         for (std::size_t i = 0; i < m_waiting.size(); ++i) arrive(m_waiting[i], m_seen[i]);
         m_waiting.clear();
-        m_instance_motion.clear();
+        m_rays_waiting.clear();
     }
 
   private:
@@ -58,7 +58,7 @@ class ShadowQueue {
     const RayScene* m_rays;
     LitGrid& m_grid;
     std::vector<Light> m_waiting;
-    std::vector<ShadowRay> m_instance_motion;
+    std::vector<ShadowRay> m_rays_waiting;
     std::vector<Vec3f> m_seen;
 };
 

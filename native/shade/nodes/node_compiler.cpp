@@ -112,7 +112,7 @@ PassSources pass_sources(ProgramBuilder& builder, const NodeGraph& graph,
 
 /// Keeps the requests that some live load reads; a shifted load asks for derivatives.
 std::vector<AttributeRequest> used_requests(std::vector<AttributeRequest> all,
-                                            std::vector<Program*> programs) {
+                                            const std::vector<Program*>& programs) {
     std::vector<bool> used(all.size());
     for (const Program* program : programs) {
         for (const Load& load : program->loads()) {

@@ -24,7 +24,8 @@ void build_spectrum(NodeBuilder& b, const char* input) {
     b.output_color(
         "Color", b.map<Vec3f>(
                      [=](float x) {
-                         const auto last = static_cast<float>(table->size() / 3 - 1);
+                         const std::size_t segments = table->size() / 3 - 1;
+                         const auto last = static_cast<float>(segments);
                          const float part = (x - low) / (high - low);
                          const float place = (part > 0.0f ? std::min(part, 1.0f) : 0.0f) * last;
                          const auto i = static_cast<std::size_t>(std::min(place, last - 1.0f));

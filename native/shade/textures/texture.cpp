@@ -32,8 +32,9 @@ class MissingTexture final : public Texture {
 
 class ImageTexture final : public Texture {
   public:
-    ImageTexture(const Image& image, const TextureHeader& header, std::shared_ptr<TileCache> cache,
-                 std::shared_ptr<OpenFiles> files, Statistics& statistics, Report& report)
+    ImageTexture(const Image& image, const TextureHeader& header,
+                 const std::shared_ptr<TileCache>& cache, const std::shared_ptr<OpenFiles>& files,
+                 Statistics& statistics, Report& report)
         : m_image(image),
           m_has_alpha(header.has_alpha),
           m_plain(image, header, false, cache, files),
