@@ -101,7 +101,7 @@ class ComputeHider : public Hider {
         TileStore& store = m_tiles.store(i);
         if (store.lists.empty()) return;
         SurfaceInterpolator surface(m_frame.projection, store.tile, m_tiles.samples(i),
-                                    m_tiles.pool());
+                                    m_tiles.pool(), false);
         for (std::uint32_t s = 0; s < store.key.size(); ++s)
             for (std::uint32_t k = 0; k < store.lists.counts()[s]; ++k) {
                 const Fragment fragment = store.lists.at(s, k);

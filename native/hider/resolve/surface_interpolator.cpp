@@ -89,11 +89,13 @@ SurfacePoint SurfaceRun::point(int lane) const {
 }
 
 SurfaceInterpolator::SurfaceInterpolator(const Projection& projection, Vec2i tile,
-                                         const TileSamples& samples, const GridPool& pool)
+                                         const TileSamples& samples, const GridPool& pool,
+                                         bool shaded)
     : m_projection(projection),
       m_origin(tile * kTileSize),
       m_samples(samples),
       m_pool(pool),
+      m_shaded(shaded),
       m_inverse_focus(static_cast<float>(1.0 / projection.focus)),
       m_lens(static_cast<float>(projection.lens_radius * projection.scale.x),
              static_cast<float>(projection.lens_radius * projection.scale.y)) {}
@@ -123,7 +125,7 @@ void SurfaceInterpolator::fill_colors(SurfaceId id, SurfaceRecord& record) const
     record.segment = -1;
     record.segments = grid.motion ? grid.knots - 1 : 0;
     record.corners = {&grid, {c.v0, c.v1, c.v2, c.v3}};
-    record.colored = record.constant = !grid.holdout && !grid.radiance.empty();
+    record.colored = record.constant = m_shaded && !grid.holdout && !grid.radiance.empty();
     if (!record.colored) return;
     for (int i = 0; i < 4; ++i) {
         record.radiance[i] = grid.radiance[record.corners.vertex[i]];

@@ -78,8 +78,10 @@ struct SurfaceRun {
 /// hider's own arithmetic.  A sample that rounding puts outside takes the nearest point inside.
 class SurfaceInterpolator {
   public:
+    /// `shaded`: grids may be asked for their colours. Before shading, another bucket may be
+    /// writing them.
     SurfaceInterpolator(const Projection& projection, Vec2i tile, const TileSamples& samples,
-                        const GridPool& pool);
+                        const GridPool& pool, bool shaded = true);
     ~SurfaceInterpolator();
     SurfaceInterpolator(const SurfaceInterpolator&) = delete;
     SurfaceInterpolator& operator=(const SurfaceInterpolator&) = delete;
@@ -121,6 +123,7 @@ class SurfaceInterpolator {
     Vec2d m_origin;
     const TileSamples& m_samples;
     const GridPool& m_pool;
+    bool m_shaded;
     float m_inverse_focus;
     Vec2f m_lens;
     static constexpr std::size_t kCached = 256;
