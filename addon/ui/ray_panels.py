@@ -3,6 +3,7 @@
 
 import bpy
 
+from ..export.shading.world import RAY_TYPES
 from .engine_panel import EnginePanel
 
 
@@ -38,6 +39,22 @@ class GRANITA_OBJECT_PT_rays(_Panel, bpy.types.Panel):
             column.prop(context.object, name, text=text)
 
 
-_CLASSES = (GRANITA_OBJECT_PT_rays,)
+class GRANITA_WORLD_PT_rays(_Panel, bpy.types.Panel):
+    bl_label = "Ray Visibility"
+    bl_context = "world"
+
+    @classmethod
+    def concerns(cls, context):
+        # Cycles' add-on, which brings the switches, can be switched off.
+        return hasattr(context.world, "cycles_visibility")
+
+    def draw(self, context):
+        column = self.layout.column()
+        column.use_property_split = True
+        for name in RAY_TYPES:
+            column.prop(context.world.cycles_visibility, name)
+
+
+_CLASSES = (GRANITA_OBJECT_PT_rays, GRANITA_WORLD_PT_rays)
 
 register, unregister = bpy.utils.register_classes_factory(_CLASSES)

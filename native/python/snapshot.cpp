@@ -213,6 +213,9 @@ std::shared_ptr<const Scene> read_scene(const py::dict& snapshot) {
         const Record world = root.record("world");
         scene->world.name = world.text("name", "World");
         scene->world.lights_scene = world.boolean("lights_scene", true);
+        scene->world.visible_camera = world.boolean("visible_camera", true);
+        scene->world.visible_diffuse = world.boolean("visible_diffuse", true);
+        scene->world.visible_glossy = world.boolean("visible_glossy", true);
         read_graph(world, scene->world.graph);
     }
     if (root.has("instances")) read_instances(root.record("instances"), *scene);

@@ -9,9 +9,10 @@
 namespace granita {
 namespace {
 
-/// A world of one colour, to go by its nodes.
-bool is_plain(const NodeGraph& world) {
-    return std::all_of(world.nodes.begin(), world.nodes.end(),
+/// A world that the camera sees in one colour, to go by its nodes.
+bool is_plain(const World& world) {
+    return !world.visible_camera ||
+           std::all_of(world.graph.nodes.begin(), world.graph.nodes.end(),
                        [](const Node& node) { return node.type == "ShaderNodeBackground"; });
 }
 
@@ -23,7 +24,7 @@ std::string raster_obstacle(const Scene& scene) {
         if (scene.options.rolling_shutter >= 0.0f) return "the shutter rolls";
     } else if (!scene.options.film_transparent &&
                (camera.world_from_camera.size() > 1 || camera.projection.has_lens()) &&
-               !is_plain(scene.world.graph)) {
+               !is_plain(scene.world)) {
         // The world is evaluated at the corners of pixels, for whole passes.
         return "the world would differ from sample to sample";
     }

@@ -50,6 +50,8 @@ struct World {
     std::string name;
     NodeGraph graph;           ///< surface: a Background; node -1 = black
     bool lights_scene = true;  ///< false where the view layer drops the world (use_sky off)
+    /// Whether rays of a type see it; to the others it is black.
+    bool visible_camera = true, visible_diffuse = true, visible_glossy = true;
 };
 
 }  // namespace granita

@@ -11,6 +11,17 @@ constexpr RayType kTypes[] = {RayType::Camera, RayType::Diffuse, RayType::Glossy
                               RayType::Singular};
 constexpr RayType kLightTypes[] = {RayType::Diffuse, RayType::Glossy, RayType::Singular};
 
+bool is_visible(const World& world, RayType ray) {
+    switch (ray) {
+        case RayType::Camera:
+            return world.visible_camera;
+        case RayType::Diffuse:
+            return world.visible_diffuse;
+        default:
+            return world.visible_glossy;
+    }
+}
+
 }  // namespace
 
 WorldShader::WorldShader(const Scene& scene, TextureStore& textures, Report& report) {
@@ -18,12 +29,14 @@ WorldShader::WorldShader(const Scene& scene, TextureStore& textures, Report& rep
     const GraphOwner owner{"world '" + scene.world.name + "'", true};
     std::vector<RayType> compiled_for;
     Report said_already;
+    m_programs.emplace_back();  // of rays that do not see the world: it sends nothing
     for (const RayType ray : kTypes) {
+        if (!is_visible(scene.world, ray)) continue;
         const auto same =
             std::find_if(compiled_for.begin(), compiled_for.end(),
                          [&](RayType other) { return !told_apart(graph, other, ray); });
         m_program_of[static_cast<std::size_t>(ray)] =
-            static_cast<std::size_t>(same - compiled_for.begin());
+            1 + static_cast<std::size_t>(same - compiled_for.begin());
         if (same != compiled_for.end()) continue;
         Report& warnings = compiled_for.empty() ? report : said_already;
         m_programs.push_back(

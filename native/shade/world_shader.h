@@ -9,7 +9,8 @@
 
 namespace granita {
 
-/// The world's programs: one for each type of ray that its graph tells apart.
+/// The world's programs: one for each type of ray that its graph tells apart, and a black one for
+/// those that do not see it.
 class WorldShader {
   public:
     /// Scene, textures and report must outlive it.

@@ -81,8 +81,8 @@ def socket(sockets, identifier):
     return next(s for s in sockets if s.identifier == identifier)
 
 
-def render_both(scene, render, samples=1):
-    """(Cycles, Granita): float32 [h, w, 3]."""
+def render_both(scene, render, samples=1, channels="RGB"):
+    """(Cycles, Granita): float32 [h, w, channels]."""
     scene.view_settings.view_transform = "Raw"
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
@@ -91,19 +91,19 @@ def render_both(scene, render, samples=1):
     cycles.use_adaptive_sampling = False
     cycles.pixel_filter_type = "BOX"
     cycles.max_bounces = 0
-    theirs = _rgb(render(scene, "cycles"))
+    theirs = _combined(render(scene, "cycles"), channels)
     scene.render.engine = "GRANITA"
     scene.granita.samples = samples
     scene.granita.dicing_rate = 0.5  # the node is compared, not the interpolation between vertices
     scene.granita.pixel_filter = "BOX"
     scene.granita.filter_width = 1.0
-    ours = _rgb(render(scene, "granita"))
+    ours = _combined(render(scene, "granita"), channels)
     return theirs, ours
 
 
-def _rgb(passes):
+def _combined(passes, channels):
     layer = [name for name in passes if name.endswith("Combined.R")][0][:-1]
-    return np.stack([passes[layer + c] for c in "RGB"], axis=-1)
+    return np.stack([passes[layer + c] for c in channels], axis=-1)
 
 
 def rmse(a, b):

@@ -158,6 +158,7 @@ def test_all_that_is_read_is_shown():
     cube, light = bpy.data.objects["Cube"], bpy.data.objects["Light"]
     assert drawn(object=cube) >= {"visible_camera", "visible_shadow"}
     assert drawn(object=light) >= {"visible_camera", "visible_diffuse", "visible_glossy"}
+    assert drawn(world=scene.world) >= {"camera", "diffuse", "glossy"}
     assert "pass_index" in drawn(material=cube.active_material)
 
 

@@ -9,10 +9,14 @@ def world_of(scene, view_layer):
     return getattr(view_layer, "world_override", None) or scene.world
 
 
-def hidden_from(world):
-    """Kinds of rays that Cycles does not show a World to: of "camera", "diffuse" and "glossy"."""
+# The types of rays that a World can be hidden from.  Transmitted and scattered ones are not traced.
+RAY_TYPES = ("camera", "diffuse", "glossy")
+
+
+def ray_visibility(world):
+    """{"visible_camera": bool, ...}: to which rays a World shows itself.  Cycles' add-on brings the switches."""
     visibility = getattr(world, "cycles_visibility", None)
-    return [name for name in ("camera", "diffuse", "glossy") if not getattr(visibility, name, True)]
+    return {f"visible_{name}": bool(getattr(visibility, name, True)) for name in RAY_TYPES}
 
 
 def export_world(scene, view_layer, report, images=None):
@@ -34,8 +38,7 @@ def export_world(scene, view_layer, report, images=None):
         return {**record, "name": ""}
     record["name"] = world.name_full
     owner = f"world '{world.name_full}'"
-    for name in hidden_from(world):
-        report(owner, f"is seen by {name} rays, though its Ray Visibility says otherwise")
+    record.update(ray_visibility(world))
     if not world.use_nodes or world.node_tree is None:
         node = {
             "type": "ShaderNodeBackground",
