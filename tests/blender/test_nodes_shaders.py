@@ -246,6 +246,22 @@ def test_1600_nested_groups_do_not_exhaust_the_stack(scene):
     assert kinds == ["ShaderNodeAttribute", "ShaderNodeInvert", "ShaderNodeEmission"]
 
 
+@pytest.mark.parametrize(
+    "kind", ["ShaderNodeNormalMap", "ShaderNodeGamma", "ShaderNodeMapping", "ShaderNodeCombineXYZ"]
+)
+def test_a_muted_node_hands_on_no_constant(scene, render, kind):
+    tree = Tree(board(scene))
+    muted = tree.add(kind, mute=True)
+    muted.inputs[0].default_value = (
+        0.3
+        if isinstance(muted.inputs[0].default_value, float)
+        else [0.3] * len(muted.inputs[0].default_value)
+    )
+    tree.emit(muted.outputs[0])
+    theirs, ours = render_both(scene, render)
+    assert not theirs.any() and not ours.any()
+
+
 def test_mutes_and_reroutes(scene, render):
     tree = Tree(board(scene))
     reroute, muted = tree.add("NodeReroute"), tree.add("ShaderNodeMixRGB", blend_type="MULTIPLY")

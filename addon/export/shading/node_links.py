@@ -2,6 +2,11 @@
 """What really feeds a socket: through groups, reroutes and muted nodes, without recursion (files with
 1,600 nested groups exist, and Python's stack ends before that)."""
 
+from types import SimpleNamespace
+
+# Stands for a socket.
+NOTHING = SimpleNamespace(default_value=0.0, hide_value=False, type="VALUE")
+
 
 class Scope:
     """A node tree in use: the material's own, or a group's as seen from one group node.
@@ -54,19 +59,22 @@ def trace(scope, socket):
         does one from a node whose type Blender does not know (its add-on is gone), as in Cycles.
     """
     own = Source(scope, None, socket)
-    passed = []
+    passed, muted = [], False
     while True:
         link = next((link for link in socket.links if _is_live(link)), None)
         if link is not None and _is_undefined(link.from_node):
             scope.undefined[link.from_node.name] = None
             link = None
         if link is None:
-            # Boundaries of groups, and muted nodes, hand on their own constants.
+            # Boundaries of groups hand on their own constants, muted nodes nothing: 0, as in Cycles.
+            if muted and _has_constant(own.socket):
+                return Source(scope, None, NOTHING)
             return Source(scope, None, socket, _types(passed)) if _has_constant(socket) else own
         node, output = link.from_node, link.from_socket
+        muted = node.mute and node.type != "REROUTE"
         if node.type == "REROUTE":
             socket = node.inputs[0]
-        elif node.mute:
+        elif muted:
             inner = next((x for x in node.internal_links if x.to_socket == output), None)
             if inner is None:
                 return own
