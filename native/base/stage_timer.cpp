@@ -78,7 +78,9 @@ StageTimer::Current StageTimer::current() {
 
 StageShare::StageShare(const StageTimer::Current& of) : m_of(of) {
     if (m_of.thread == &t_here || t_timer || t_ledger) m_of.statistics = nullptr;
-    if (m_of.statistics) m_start = processor();
+    if (!m_of.statistics) return;
+    m_of.statistics->add(Counter::LoopPiecesShared);
+    m_start = processor();
 }
 
 StageShare::~StageShare() {

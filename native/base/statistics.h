@@ -21,6 +21,7 @@ enum class Counter {
     PrimitivesCulledInTime,  ///< of these, what only its bounds in parts of the shutter ruled out
     GridsDiced,
     GridsCulled,         ///< diced grids that the hierarchical depth rejected, counted a bucket
+    GridsSwept,          ///< sweeps made (hider/grid_sweep.h): one of each grid that was hidden
     GridsShaded,         ///< radiance run
     GridsOpacityShaded,  ///< opacity run before visibility
     PointsDiced,
@@ -41,6 +42,7 @@ enum class Counter {
     RaysShadow,
     RaysOcclusion,
     TextureLookups,
+    LoopPiecesShared,  ///< pieces of a stage's loops that another thread than the loop's own ran
     kCount
 };
 

@@ -45,6 +45,7 @@ void SharedGrid::ensure_shading_state() {
 const GridSweep& SharedGrid::sweep(const Projection& projection, const LensShape& lens) {
     std::call_once(m_has_sweep, [&] {
         m_sweep.emplace(*m_grid, projection, lens);
+        m_statistics.add(Counter::GridsSwept);
         m_statistics.add_grid_bytes(m_sweep->bytes());
     });
     return *m_sweep;

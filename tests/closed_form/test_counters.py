@@ -117,6 +117,14 @@ def test_far_objects_are_not_finely_diced(executor, distance, bound):
     assert result["points_diced"] <= 6 * 4 * bound
 
 
+def test_a_grid_is_swept_once_however_many_buckets_hide_it(executor):
+    snapshot = s.orthographic((96, 96), samples=4, executor=executor, bucket_size=16)
+    # Grids of 16 pixels, off the borders of buckets by half of them.
+    s.quad(snapshot, s.rectangle(8, 8, 88, 88, 5), s.emission(snapshot))
+    result = statistics(snapshot)
+    assert result["grids_swept"] == result["grids_diced"] > 1
+
+
 def test_off_screen_geometry_is_never_opened(executor):
     snapshot = s.orthographic((32, 32), samples=4, executor=executor)
     material = s.emission(snapshot)

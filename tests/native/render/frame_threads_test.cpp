@@ -141,6 +141,7 @@ std::shared_ptr<Scene> make_scene(int threads) {
 struct Picture {
     std::vector<Vec4f> combined = std::vector<Vec4f>(kSize * kSize);
     std::vector<Warning> warnings;
+    std::uint64_t pieces_shared = 0;
 };
 
 Picture render(const std::shared_ptr<Scene>& scene) {
@@ -157,6 +158,7 @@ Picture render(const std::shared_ptr<Scene>& scene) {
         }
     job.finish();
     picture.warnings = job.report().warnings();
+    picture.pieces_shared = job.statistics().get(Counter::LoopPiecesShared);
     return picture;
 }
 
@@ -177,7 +179,16 @@ TEST(FrameThreads, one_bucket_is_shared_by_all) {
         made->options.bucket_size = 128;
         return made;
     };
-    EXPECT_TRUE(equal(render(scene(1)), render(scene(6))));
+    const Picture alone = render(scene(1));
+    EXPECT_EQ(alone.pieces_shared, 0u);
+    // Who takes a piece is the system's to say: a busy machine may need more than one frame.
+    std::uint64_t shared = 0;
+    for (int round = 0; round < 100 && shared == 0; ++round) {
+        const Picture picture = render(scene(6));
+        EXPECT_TRUE(equal(alone, picture));
+        shared = picture.pieces_shared;
+    }
+    EXPECT_GT(shared, 0u);
 }
 
 TEST(FrameThreads, a_frame_goes_on_with_the_threads_that_can_be_made) {
