@@ -164,12 +164,6 @@ inline Picture render(HiderMaker make, Shot& shot) {
     return out;
 }
 
-/// Four standard errors of the mean of n independent samples that cover with probability p: an
-/// upper bound of the error of stratified ones.
-inline double four_sigma(double p, double n) {
-    return 4.0 * std::sqrt(std::fmax(p * (1.0 - p), 1e-6) / n);
-}
-
 /// Mean of a closed form of points over the pixel, by the midpoint rule.
 inline double pixel_mean(const std::function<double(double, double)>& f, int x, int y) {
     constexpr int kSide = 24;
