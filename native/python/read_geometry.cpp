@@ -4,8 +4,8 @@
 #include <cstring>
 #include <numeric>
 
+#include "geometry/random_per_island.h"
 #include "python/snapshot.h"
-#include "shade/random_per_island.h"
 
 namespace granita::python {
 namespace {

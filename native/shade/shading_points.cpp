@@ -5,10 +5,6 @@
 
 namespace granita {
 
-ShadingCamera::ShadingCamera(const Scene& scene)
-    : world_from_camera(matrix_at(scene.camera.world_from_camera, scene.options.frame_time)),
-      perspective(scene.camera.projection.perspective) {}
-
 ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
     const std::size_t n = grid.point_count();
     const Mat3f rotation(camera.world_from_camera);

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "dice/knots.h"
-#include "shade/shading_points.h"
+#include "scene/knot_time.h"
 
 namespace granita {
 namespace {

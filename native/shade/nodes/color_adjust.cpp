@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shade/nodes/color_space.h"
+#include "shade/nodes/hsv.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {

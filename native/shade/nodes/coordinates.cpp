@@ -2,11 +2,11 @@
 // Where a point is: UV Map, Texture Coordinate, Geometry and Camera Data.
 #include "shade/nodes/coordinates.h"
 
+#include "geometry/random_per_island.h"
 #include "shade/nodes/instance_value.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/tangent.h"
-#include "shade/random_per_island.h"
-#include "shade/shading_points.h"
+#include "shade/programs/shading_camera.h"
 
 namespace granita {
 
@@ -52,7 +52,9 @@ VectorSource position_at(NodeBuilder& b, Shift shift) {
 }
 
 VectorSource object_normal(NodeBuilder& b) {
-    if (b.is_world()) return b.view();
+    // A world faces who looks at it.
+    if (b.is_world())
+        return b.map<Vec3f>([](const Vec3f& d) { return -d; }, position_at(b, Shift::None));
     return b.geometry<Vec3f>([](const ShadingInput& in, std::size_t i) {
         return unit(glm::transpose(in.world_from_object) * in.points->normal[i]);
     });
@@ -105,7 +107,7 @@ void build_texture_coordinate(NodeBuilder& b) {
     b.output_vector("Camera", p_camera);
     b.output_vector("Window",
                     b.map<Vec3f>([camera](const Vec3f& p) { return camera.window(p); }, p_camera));
-    b.output_vector("Reflection", b.is_world() ? position
+    b.output_vector("Reflection", b.is_world() ? object_normal(b)
                                                : b.map<Vec3f>(
                                                      [](const Vec3f& n, const Vec3f& view) {
                                                          return 2.0f * glm::dot(n, view) * n - view;

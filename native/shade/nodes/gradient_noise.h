@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "shade/nodes/hash.h"
+#include "math/hash.h"
 
 namespace granita {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "shade/nodes/color_space.h"
+#include "shade/nodes/hsv.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Separate and Combine: colours (RGB, HSV, HSL) and vectors.  The older one-mode nodes are the same
 // with other socket names.
-#include "shade/nodes/color_space.h"
+#include "shade/nodes/hsv.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {

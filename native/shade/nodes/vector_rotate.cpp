@@ -5,7 +5,7 @@
 
 #include "scene/knot_time.h"
 #include "shade/nodes/nodes.h"
-#include "shade/shading_points.h"
+#include "shade/programs/shading_camera.h"
 
 namespace granita {
 

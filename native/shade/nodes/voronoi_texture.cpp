@@ -3,9 +3,9 @@
 // cell.
 #include <limits>
 
+#include "math/hash.h"
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/dimensions.h"
-#include "shade/nodes/hash.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {

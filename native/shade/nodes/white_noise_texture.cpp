@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "math/hash.h"
 #include "shade/nodes/dimensions.h"
-#include "shade/nodes/hash.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "shade/random_per_island.h"
+#include "geometry/random_per_island.h"
 
 #include <numeric>
 
-#include "shade/nodes/hash.h"
+#include "math/hash.h"
 
 namespace granita {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "shade/nodes/color_space.h"
+#include "shade/nodes/hsv.h"
 
 #include <algorithm>
 #include <cmath>

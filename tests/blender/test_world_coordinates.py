@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What Texture Coordinate and Geometry hold in a world, beside Cycles in the same Blender."""
+
+import bpy
+import node_comparison
+import numpy as np
+import pytest
+import scene_parts
+
+OUTPUTS = [
+    ("ShaderNodeTexCoord", "Generated"),
+    ("ShaderNodeTexCoord", "Normal"),
+    ("ShaderNodeTexCoord", "Object"),
+    ("ShaderNodeTexCoord", "Reflection"),
+    ("ShaderNodeNewGeometry", "Position"),
+    ("ShaderNodeNewGeometry", "Normal"),
+    ("ShaderNodeNewGeometry", "Incoming"),
+]
+
+
+@pytest.mark.parametrize("node, output", OUTPUTS)
+def test_places_and_directions(scene, render, node, output):
+    camera = scene_parts.add_camera(scene)
+    camera.data.type, camera.data.lens = "PERSP", 18.0
+    camera.rotation_euler = (0.7, 0.2, 0.4)
+    scene.render.resolution_x = scene.render.resolution_y = 16
+    world = scene.world = bpy.data.worlds.new("World")
+    if world.node_tree is None:
+        world.use_nodes = True
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    shown = nodes.new("ShaderNodeVectorMath")
+    shown.operation = "MULTIPLY_ADD"
+    shown.inputs[1].default_value = shown.inputs[2].default_value = (0.5, 0.5, 0.5)
+    links.new(nodes.new(node).outputs[output], shown.inputs[0])
+    background = next(n for n in nodes if n.type == "BACKGROUND")
+    links.new(shown.outputs[0], background.inputs["Color"])
+    theirs, ours = node_comparison.render_both(scene, render, samples=64)
+    # A pixel spans up to .06 of a unit of these; its mean of 64 samples is 1/64 of that off.
+    assert np.abs(theirs - ours).max() < 0.004
