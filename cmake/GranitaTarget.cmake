@@ -11,7 +11,7 @@ endif()
 add_library(granita_flags INTERFACE)
 target_compile_features(granita_flags INTERFACE cxx_std_20)
 target_include_directories(granita_flags INTERFACE ${CMAKE_SOURCE_DIR}/native)
-# -ffp-contract=off: a fused edge function is not antisymmetric, and tilings would leak (hider-research 1.4).
+# -ffp-contract=off: a fused edge function is not antisymmetric, and tilings would leak (docs/decisions/hiding.md).
 # x86-64-v2: what Blender 4 asks for too; wider units are taken at run time by Highway.
 target_compile_options(granita_flags INTERFACE -Wall -Wextra -Werror -march=x86-64-v2
   -ffp-contract=off -fvisibility=hidden -fvisibility-inlines-hidden)

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What could not be rendered as asked, collected for the artist: nothing is dropped silently
-// (design, section 1).
+// What could not be rendered as asked, collected for the artist: nothing is dropped silently.
 #pragma once
 
 #include <cstdint>

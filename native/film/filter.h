@@ -10,7 +10,7 @@ namespace granita {
 ///
 /// BOX, GAUSSIAN and BLACKMAN_HARRIS mean with the same width what they mean in Cycles: BOX is as
 /// wide; GAUSSIAN is exp(-8 x^2 / w^2) cut at 1.5 w; BLACKMAN_HARRIS reaches w to either side.  Of
-/// the others `width` is the whole support in pixels (design, section 3), and the natural widths 2
+/// the others `width` is the whole support in pixels, and the natural widths 2
 /// (TENT), 4 (MITCHELL with B = C = 1/3, CATMULL_ROM, BSPLINE) and 6 (LANCZOS, three lobes) give
 /// the classical filters.
 class PixelFilter {

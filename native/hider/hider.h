@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Visibility of one bucket: one interface, several executors (design, section 5).
+// Visibility of one bucket: one interface, several executors (docs/decisions/hiding.md).
 //
 //   auto hider = make_hider(executor, frame, tiles);
 //   for primitives from front to back:  if (!hider->occluded(bounds)) ... hider->hide(sweep)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The settings of a frame (design, section 3: names are API).
+// The settings of a frame (docs/scene_snapshot.md, `options`: names are API).
 #pragma once
 
 #include <cstdint>

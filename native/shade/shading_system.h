@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Materials, lights and world of a frame, compiled once, run over grids (design, section 6).
+// Materials, lights and world of a frame, compiled once, run over grids.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The picture is a function of the scene and the sample table: metamorphic identities, bit for bit (design, section 1)."""
+"""The picture is a function of the scene and the sample table: metamorphic identities, bit for bit."""
 
 import numpy as np
 import pytest

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The integer arithmetic of the sample table, compiled as C++ and as GLSL: plain functions of uint,
-// so that every device makes the same bits (design, section 5 and decision 15).
+// so that every device makes the same bits (docs/architecture.md, decision 15).
 //
 //   seed  = block_seed(table_seed, pixel_x >> 7, pixel_y >> 7)       blocks of 128 pixels
 //   place = morton(pixel_x & 127, pixel_y & 127) * samples + s

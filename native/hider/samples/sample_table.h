@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SampleTable(pixel, s) -> x, y, t, u, v: the same bits on every device (design, section 5).
+// SampleTable(pixel, s) -> x, y, t, u, v: the same bits on every device (sample_bits.h).
 #pragma once
 
 #include <cstdint>

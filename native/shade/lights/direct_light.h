@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Light that arrives straight from lamps and the world and leaves along the view: the lighting of
-// a grid (design, section 6).
+// a grid (docs/decisions/lighting.md).
 //
 //   DirectLight light(scene, world, statistics, report, progress);   // once a frame
 //   radiance = light.reflect(points, closure, grid.key);             // any thread, any grid

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a node graph to programs: opacity (only what feeds transparency) and radiance (design,
+// From a node graph to programs: opacity (only what feeds transparency) and radiance (docs/architecture.md,
 // decision 6).
 #pragma once
 
