@@ -112,7 +112,7 @@ def export_frame(
         adjacent = found.points
     if persistent_state is not None:
         persistent_state.keep(scene_objects)
-    placed = place_lamps(lamps, scan, motion, report)
+    lights = place_lamps(lamps, scan, motion, report)
     snapshot = Snapshot(
         options=options,
         camera=camera_at_frame,
@@ -123,10 +123,10 @@ def export_frame(
         instances=replace(instances),
         materials=list(seen.materials),
         images=_each_once(seen.images + world_images),
-        lights=[record for _, record in placed],
+        lights=[record for _, record in lights],
         world=world,
     )
-    add_emitters(snapshot, placed, scan, report)
+    add_emitters(snapshot, lights, scan, report)
     return snapshot.as_dict()
 
 

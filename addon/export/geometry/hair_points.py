@@ -103,12 +103,12 @@ def read_hair_points(thing, _data, name, mode):
     first, last = particle_range(system, mode)
     steps = step_count(system.settings, mode)
     every = product(range(last - first), range(steps))
-    strands = _world(system, thing, first, every, (last - first) * steps).reshape(-1, steps, 3)
+    hairs = _world(system, thing, first, every, (last - first) * steps).reshape(-1, steps, 3)
     # What ends early goes on in the world's origin: it stays where it was.
     for step in range(1, steps):
-        ended = (strands[:, step] == 0.0).all(axis=1)
-        strands[ended, step] = strands[ended, step - 1]
-    points = _from_world(strands.reshape(-1, 3), thing).astype(np.float32)
+        ended = (hairs[:, step] == 0.0).all(axis=1)
+        hairs[ended, step] = hairs[ended, step - 1]
+    points = _from_world(hairs.reshape(-1, 3), thing).astype(np.float32)
     return points, np.full(last - first, steps, dtype=np.int32)
 
 
