@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples that micropolygons of patches and clusters are to be tested against: included once a SIMD
-// target inside its namespace, after stratum_windows.inl and shapes.inl.
+// *Candidate samples*: those that micropolygons of grid parts and clusters are to be tested
+// against. Included once a SIMD target inside its namespace, after stratum_windows.inl and
+// shapes.inl.
 
 /// Each sample with its own micropolygon and segment, so that vectors are full however few samples
 /// a micropolygon has during a segment.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Micropolygons that go together over a tile but have no common lattice, or too narrow a one:
-// included once a SIMD target inside its namespace, after comoving_frame.inl.
+// A *cluster*: up to 64 micropolygons that are tested against one list of candidate samples,
+// because they go together over a tile but have no common lattice, or too narrow a one.  Included
+// once a SIMD target inside its namespace, after comoving_frame.inl.
 
 /// Which micropolygons a sample may see, by where it is in the frame that moves with them.  Along
 /// each of four directions the frame is cut into slices, and a slice has a bit for every

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of grids that stay together while they are over a tile: included once a SIMD target inside
-// its namespace, after tile_paths.inl.
+// The *co-moving frame* of a grid part: parametric positions over a part whose micropolygons stay
+// together while they are over a tile.  Included once a SIMD
+// target inside its namespace, after tile_paths.inl.
 
 /// Parameters over a part in the frame that moves with it: micropolygon (i, j) of the part stays
 /// within [i - u.reach, i + 1 + u.reach] x [j - v.reach, j + 1 + v.reach] of them.

@@ -8,9 +8,9 @@ namespace granita {
 
 class SampleOrder;
 
-/// When and from which lens points the samples of a stratum look, over all blocks of a tile: the
-/// table stratifies all blocks alike, so one set of bounds is nearly as tight as one a block, and a
-/// micropolygon is bounded once for all blocks.  Of a stratified order.
+/// *Bounds of a time stratum*: when and from which lens points the samples of a stratum look, over
+/// all blocks of a tile: the table stratifies all blocks alike, so one set of bounds is nearly as
+/// tight as one a block, and a micropolygon is bounded once for all blocks.  Of a stratified order.
 struct StratumBounds {
     /// [strata], and spare elements for whole vectors; lo > hi where there is no sample.
     std::vector<float> t_lo, t_hi, u_lo, u_hi, v_lo, v_hi;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the corners of micropolygons are over intervals of time: included once a SIMD target inside
-// its namespace, after tile_bounds.inl.  Lanes are intervals of one micropolygon, or
-// micropolygons with an interval each.
+// *Swept bounds*: boxes of what the corners of micropolygons sweep over intervals of time. Included
+// once a SIMD target inside its namespace, after tile_bounds.inl.  Lanes are intervals of one
+// micropolygon, or micropolygons with an interval each.
 
 /// Least and most at the begin and the end of the intervals.
 struct Extent {

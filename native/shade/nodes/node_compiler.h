@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a node graph to programs: opacity (only what feeds transparency) and radiance (docs/architecture.md,
-// decision 6).
+// From a node graph to programs: opacity (only what feeds transparency) and radiance
+// (docs/architecture.md, decision 6).
 #pragma once
 
 #include <string>
