@@ -22,8 +22,8 @@ NODES = 6
 # Cycles prepares an environment for seconds; hair with children takes as long.
 SLOW = {"image, environment", "hair with children"}
 
-# Where the bench still finds what is not settled: a muted Normal Map, normals and particles in Blender 4.5.
-UNSETTLED = {"ShaderNodeNormalMap", "modifier WEIGHTED_NORMAL", "particles as objects"}
+# Where the bench still finds what is not settled: custom normals and particles in Blender 4.5.
+UNSETTLED = {"modifier WEIGHTED_NORMAL", "particles as objects"}
 
 
 def _order(text):

@@ -6,6 +6,7 @@ title = "Heading of the manual"
 [[part.entry]]
 what = "what the artist knows it by"
 keys = ["CyclesLightSettings.is_*"]   # patterns of Flip.key; of Flip.identifier where they hold a colon
+but = ["CyclesLightSettings.is_portal"]  # patterns of Flip.key that `keys` take in but that are read
 reason = "why, and what happens instead"
 verdicts = ["silent"]                 # what is allowed; these are left out: all but `fails`
 manual = false                        # an entry for the test alone; left out: it is in the manual
@@ -37,7 +38,9 @@ def listed(record, table):
         table: of `entries`.
     """
     for entry in table:
-        if record["verdict"] in entry.get("verdicts", _ALLOWED) and _matches(record, entry["keys"]):
+        if record["verdict"] not in entry.get("verdicts", _ALLOWED):
+            continue
+        if _matches(record, entry["keys"]) and not _matches(record, entry.get("but", ())):
             return entry
     return None
 
