@@ -1,18 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/shadow_transparency.h"
 
+#include <memory>
+#include <utility>
+
+#include "base/object_pool.h"
 #include "geometry/surface_evaluator.h"
-#include "scene/knot_time.h"
 
 namespace granita {
 namespace {
 
-/// The attributes that the material asks for, as a grid of one vertex holds them.
-std::vector<GridAttribute> attributes_at(const ShadowHit& hit,
-                                         const std::vector<AttributeRequest>& requests) {
+/// What one hit needs; a frame has tens of millions of them.
+struct Scratch {
+    ShadingPoints points;
     std::vector<GridAttribute> attributes;
+    std::vector<float> memory;  ///< of the run
+};
+
+/// The attributes that the material asks for, as a grid of one vertex holds them.
+void fill_attributes(const ShadowHit& hit, const std::vector<AttributeRequest>& requests,
+                     std::vector<GridAttribute>& attributes) {
+    attributes.resize(requests.size());
     for (std::size_t k = 0; k < requests.size(); ++k) {
-        GridAttribute attribute{static_cast<int>(k), requests[k].width, {}, {}, {}};
+        GridAttribute& attribute = attributes[k];
+        attribute.attribute = static_cast<int>(k);
+        attribute.width = requests[k].width;
         const auto width = static_cast<std::size_t>(requests[k].width);
         attribute.values.resize(width);
         if (hit.elements)
@@ -20,27 +32,24 @@ std::vector<GridAttribute> attributes_at(const ShadowHit& hit,
         else
             hit.geometry->surface().attribute(*hit.patch, requests[k], {&hit.uv, 1},
                                               attribute.values, attribute.du, attribute.dv);
-        if (requests[k].derivatives)
-            attribute.du = attribute.dv = std::vector<float>(width, 0.0f);
-        else
-            attribute.du = attribute.dv = {};
-        attributes.push_back(std::move(attribute));
+        const std::size_t derivatives = requests[k].derivatives ? width : 0;
+        attribute.du.assign(derivatives, 0.0f);
+        attribute.dv.assign(derivatives, 0.0f);
     }
-    return attributes;
 }
 
 /// The hit as a point that is seen from where the ray started.
-ShadingPoints point_at(const ShadowHit& hit) {
+void fill_point(const ShadowHit& hit, ShadingPoints& points) {
     const bool back = glm::dot(hit.normal, hit.direction) > 0.0f;
     const Vec3f normal = back ? -hit.normal : hit.normal;
-    ShadingPoints points;
     points.count = 1;
-    points.p = {hit.p};
-    points.normal = points.geometric_normal = {normal};
-    points.view = {-hit.direction};
-    points.dp_du = points.dp_dv = {Vec3f(0.0f)};
-    points.backfacing = {static_cast<std::uint8_t>(back)};
-    return points;
+    points.p.assign(1, hit.p);
+    points.normal.assign(1, normal);
+    points.geometric_normal.assign(1, normal);
+    points.view.assign(1, -hit.direction);
+    points.dp_du.assign(1, Vec3f(0.0f));
+    points.dp_dv.assign(1, Vec3f(0.0f));
+    points.backfacing.assign(1, back);
 }
 
 /// What is no number lets nothing through, as where it is seen.
@@ -58,19 +67,23 @@ std::optional<Vec3f> constant_transparency(const OpacityProgram& material) {
 Vec3f shadow_transparency(const OpacityProgram& material, const Scene& scene,
                           const ShadowHit& hit) {
     if (const auto constant = constant_transparency(material)) return *constant;
-    const ShadingPoints points = point_at(hit);
-    const std::vector<GridAttribute> attributes = attributes_at(hit, material.requests);
+    auto scratch = ObjectPool<std::unique_ptr<Scratch>>::take();
+    if (!scratch) scratch = std::make_unique<Scratch>();
+    fill_point(hit, scratch->points);
+    fill_attributes(hit, material.requests, scratch->attributes);
     ShadingInput input;
-    input.points = &points;
-    input.attributes = &attributes;
+    input.points = &scratch->points;
+    input.attributes = &scratch->attributes;
     input.instance = &scene.instances[hit.instance];
-    const Mat3d world_from_object(matrix_at(input.instance->world_from_object, hit.time));
-    input.world_from_object = Mat3f(world_from_object);
-    input.object_from_world = Mat3f(glm::inverse(world_from_object));
+    input.world_from_object = hit.frame->world_from_object;
+    input.object_from_world = hit.frame->object_from_world;
     input.ray_length = hit.distance;
-    Run run = material.program.prepare(input, 1);
+    Run run = material.program.prepare(input, 1, std::move(scratch->memory));
     material.program.execute(run);
-    return clamped(run.read(material.transparency)[0]);
+    const Vec3f passed = clamped(run.read(material.transparency)[0]);
+    scratch->memory = run.take_memory();
+    ObjectPool<std::unique_ptr<Scratch>>::give(std::move(scratch));
+    return passed;
 }
 
 }  // namespace granita

@@ -2,7 +2,9 @@
 // Image Texture: projections flat, box, sphere and tube; footprints from the shifted vectors.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "base/object_pool.h"
 #include "math/sampling.h"
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
@@ -98,6 +100,12 @@ Footprint footprint(NodeBuilder& b) {
     return {at(b.shift()), at(Shift::None), at(Shift::U), at(Shift::V)};
 }
 
+/// Shadow rays look up one place at a time.
+void give_back(std::vector<TexturePlace>& places, std::vector<Vec4f>& texels) {
+    ObjectPool<std::vector<TexturePlace>>::give(std::move(places));
+    ObjectPool<std::vector<Vec4f>>::give(std::move(texels));
+}
+
 }  // namespace
 
 void build_image_texture(NodeBuilder& b) {
@@ -127,8 +135,10 @@ void build_image_texture(NodeBuilder& b) {
                 const auto at = run.read(print.center), p = run.read(print.point),
                            u = run.read(print.next_u), v = run.read(print.next_v),
                            normals = run.read(normal);
-                std::vector<Vec4f> sum(n, Vec4f(0.0f)), texels;
-                std::vector<TexturePlace> places(n);
+                std::vector<Vec4f> sum(n, Vec4f(0.0f));
+                auto texels = ObjectPool<std::vector<Vec4f>>::take();
+                auto places = ObjectPool<std::vector<TexturePlace>>::take();
+                places.resize(n);
                 for (int axis = 0; axis < 3; ++axis) {
                     for (std::size_t i = 0; i < n; ++i) {
                         const Vec2f point = box_plane(axis, p[i], normals[i]);
@@ -146,6 +156,7 @@ void build_image_texture(NodeBuilder& b) {
                     out_color[i] = Vec3f(sum[i]);
                     out_alpha[i] = sum[i].w;
                 }
+                give_back(places, texels);
             },
             reads, {color.slot, alpha.slot});
     } else {
@@ -159,13 +170,14 @@ void build_image_texture(NodeBuilder& b) {
                 const std::size_t n = run.count();
                 const auto at = run.read(print.center), p = run.read(print.point),
                            u = run.read(print.next_u), v = run.read(print.next_v);
-                std::vector<TexturePlace> places(n);
+                auto places = ObjectPool<std::vector<TexturePlace>>::take();
+                places.resize(n);
                 for (std::size_t i = 0; i < n; ++i) {
                     const Vec2f point = project(p[i]);
                     places[i] = {project(at[i]), edge(point, project(u[i]), seam),
                                  edge(point, project(v[i]), seam)};
                 }
-                std::vector<Vec4f> texels;
+                auto texels = ObjectPool<std::vector<Vec4f>>::take();
                 texture->look_up(mode, places, texels);
                 Vec3f* out_color = run.write(color);
                 float* out_alpha = run.write(alpha);
@@ -173,6 +185,7 @@ void build_image_texture(NodeBuilder& b) {
                     out_color[i] = Vec3f(texels[i]);
                     out_alpha[i] = texels[i].w;
                 }
+                give_back(places, texels);
             },
             reads, {color.slot, alpha.slot});
     }

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "dice/grid.h"
@@ -57,8 +58,11 @@ struct Column {
 /// One execution: memory for the slots.
 class Run {
   public:
-    Run(const ShadingInput& input, std::size_t count, int floats_a_point)
-        : m_input(input), m_count(count), m_memory(count * floats_a_point) {}
+    /// `memory`: of an earlier run, to be used again.
+    Run(const ShadingInput& input, std::size_t count, int floats_a_point, std::vector<float> memory)
+        : m_input(input), m_count(count), m_memory(std::move(memory)) {
+        m_memory.assign(count * static_cast<std::size_t>(floats_a_point), 0.0f);
+    }
 
     std::size_t count() const { return m_count; }
     const ShadingInput& input() const { return m_input; }
@@ -71,6 +75,9 @@ class Run {
     T* write(const Source<T>& source) {
         return reinterpret_cast<T*>(m_memory.data() + m_count * source.slot);
     }
+
+    /// Once results have been read.
+    std::vector<float> take_memory() { return std::move(m_memory); }
 
   private:
     const ShadingInput& m_input;
@@ -101,8 +108,9 @@ class Program {
 
     /// Runs everything; results are read from the Run.
     void execute(Run& run) const;
-    Run prepare(const ShadingInput& input, std::size_t count) const {
-        return Run(input, count, m_floats_a_point);
+    Run prepare(const ShadingInput& input, std::size_t count,
+                std::vector<float> memory = {}) const {
+        return Run(input, count, m_floats_a_point, std::move(memory));
     }
     const std::vector<Load>& loads() const { return m_loads; }
     /// request[old] -> new index, once the material's request list is final.

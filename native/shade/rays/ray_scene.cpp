@@ -11,7 +11,6 @@
 #include <unordered_map>
 
 #include "base/stage_timer.h"
-#include "dice/opened_mesh.h"
 #include "math/normalize_or.h"
 #include "scene/knot_time.h"
 #include "shade/rays/instance_motion.h"
@@ -66,6 +65,8 @@ struct RayInstance {
     bool lets_light_through = false;
     /// What passes, where it is the same all over.
     std::optional<Vec3f> constant = {};
+    /// Of what lets light through and stands still.
+    std::optional<ShadowFrame> still = {};
 };
 
 /// A ray and what is left of its light.
@@ -141,7 +142,11 @@ std::unique_ptr<RayShape> RayScene::Impl::mesh_shape(int index, Report& report,
     for (const Vec3f& p : shared->surface_points(static_cast<int>(shared->frame().knot)))
         if (is_finite(p)) box.add(p);
     const RayDetail detail(scene, index, box);
-    return std::make_unique<RaySubdivision>(std::move(shared), detail, progress);
+    auto shape = std::make_unique<RaySubdivision>(std::move(shared), detail, progress);
+    if (shape->is_coarsened())
+        report.warn(scene.geometries[static_cast<std::size_t>(index)].name,
+                    "has so many faces near the camera that its shadows are coarser than a pixel");
+    return shape;
 }
 
 std::optional<Vec3f> RayScene::Impl::constant_of(const Instance& instance) const {
@@ -199,8 +204,11 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     rtcAttachGeometryByID(top.get(), node, static_cast<unsigned>(instances.size()));
     rtcReleaseGeometry(node);
     by_key[instance.key] = static_cast<std::uint32_t>(instances.size());
-    instances.push_back({index, transforms->scale, transforms->distance,
-                         lets_light_through(instance), constant_of(instance)});
+    RayInstance& added =
+        instances.emplace_back(RayInstance{index, transforms->scale, transforms->distance,
+                                           lets_light_through(instance), constant_of(instance)});
+    if (added.lets_light_through && instance.world_from_object.size() <= 1)
+        added.still.emplace(matrix_at(instance.world_from_object, 0.0));
 }
 
 Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& ray,
@@ -215,17 +223,16 @@ Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& r
     shadow.direction = context.direction;
     shadow.p = context.start + context.direction * ray.tfar;
     shadow.distance = ray.tfar;
-    shadow.time = ray.time;
+    std::optional<ShadowFrame> moved;
+    if (!instance.still) moved.emplace(matrix_at(source.world_from_object, ray.time));
+    shadow.frame = instance.still ? &*instance.still : &*moved;
     if (shadow.elements) {  // they face the ray
         shadow.normal = -shadow.direction;
         return opacity.transparency(shadow);
     }
-    // By cofactors: there may be no inverse.
-    const Mat3d m(matrix_at(source.world_from_object, ray.time));
-    const Mat3d cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-    const double side = glm::dot(m[0], cofactors[0]) < 0.0 ? -1.0 : 1.0;
-    shadow.normal = Vec3f(normalize_or(cofactors * Vec3d(hit.Ng_x, hit.Ng_y, hit.Ng_z) * side,
-                                       -Vec3d(shadow.direction)));
+    shadow.normal =
+        Vec3f(normalize_or(shadow.frame->world_from_normal * Vec3d(hit.Ng_x, hit.Ng_y, hit.Ng_z),
+                           -Vec3d(shadow.direction)));
     return opacity.transparency(shadow);
 }
 

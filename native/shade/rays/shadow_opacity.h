@@ -12,6 +12,13 @@
 
 namespace granita {
 
+/// Of an instance at a time.
+struct ShadowFrame {
+    explicit ShadowFrame(const Mat4d& matrix);
+    Mat3f world_from_object, object_from_world;  ///< of directions
+    Mat3d world_from_normal;                     ///< as modelled, of any length
+};
+
 /// A point that a shadow ray meets.
 struct ShadowHit {
     std::uint32_t instance = 0;                ///< index in Scene::instances
@@ -26,7 +33,7 @@ struct ShadowHit {
     Vec3f normal{0.0f};                        ///< unit, of what was met, world axes, as modelled
     Vec3f direction{0.0f};                     ///< unit, of the ray, from shaded point to light
     float distance = 0.0f;                     ///< along the ray, from where it started
-    float time = 0.5f;                         ///< of the ray, in the shutter
+    const ShadowFrame* frame = nullptr;        ///< of the instance at the ray's time
 };
 
 /// Both or neither are given; called from any thread.
