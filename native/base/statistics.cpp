@@ -48,13 +48,6 @@ void raise(std::atomic<std::uint64_t>& peak, std::uint64_t value) {
 
 }  // namespace
 
-const char* counter_name(Counter counter) {
-    return kCounterNames[static_cast<int>(counter)];
-}
-const char* stage_name(Stage stage) {
-    return kStageNames[static_cast<int>(stage)];
-}
-
 void Statistics::add_seconds(Stage stage, double seconds) {
     m_nanoseconds[static_cast<int>(stage)].fetch_add(static_cast<std::uint64_t>(seconds * 1e9),
                                                      std::memory_order_relaxed);
@@ -74,6 +67,7 @@ void Statistics::note_list_bytes(std::uint64_t bytes) {
 
 std::vector<std::pair<std::string, double>> Statistics::list() const {
     std::vector<std::pair<std::string, double>> list;
+    list.reserve(kCounterNames.size() + kStageNames.size() + 3);
     for (int i = 0; i < static_cast<int>(Counter::kCount); ++i)
         list.emplace_back(kCounterNames[i], static_cast<double>(m_counters[i].load()));
     for (int i = 0; i < static_cast<int>(Stage::kCount); ++i)

@@ -48,9 +48,6 @@ enum class Counter {
 
 enum class Stage { Open, Split, Dice, Hide, Shade, Resolve, Film, RayBuild, kCount };
 
-const char* counter_name(Counter counter);
-const char* stage_name(Stage stage);
-
 /// Thread-safe, relaxed: totals are read after the frame.
 class Statistics {
   public:

@@ -206,8 +206,6 @@ _DATA_UNREAD = frozenset(
     select_x select_y loop_start loop_total update_method body body_format edit_format follow_curve""".split()
 )
 
-_BUILT = frozenset({"bevel_mode"})
-
 
 def probes():
     found = [

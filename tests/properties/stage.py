@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the probes' scenes are made of, so that things show: curved, coloured, lit, casting shadows."""
 
-import math
-
 import bpy
 import numpy as np
 import scene_parts
@@ -134,6 +132,3 @@ def collection(scene, name, things=()):
         made.objects.link(thing)
         scene.collection.objects.unlink(thing)
     return made
-
-
-UP = math.pi / 2

@@ -9,6 +9,7 @@
 #include "geometry/limit_face.h"
 #include "geometry/limit_vertices.h"
 #include "geometry/subdivision_topology.h"
+#include "geometry/surface_evaluator.h"
 #include "shade/rays/patch_cells.h"
 
 namespace granita {
@@ -114,8 +115,10 @@ void RaySubdivision::find_edge_levels() {
             points += std::size_t{1} << 2 * patch_level(patch);
         return points * static_cast<std::size_t>(m_quads.knots);
     };
-    while (count() > kMostPoints && std::ranges::any_of(m_levels, [](int l) { return l > 1; }))
+    while (count() > kMostPoints && std::ranges::any_of(m_levels, [](int l) { return l > 1; })) {
+        m_coarsened = true;
         for (std::uint8_t& level : m_levels) level -= level > 1 ? 1 : 0;
+    }
     if (std::ranges::all_of(m_levels, [](int level) { return level == 0; })) return;
     m_edge_levels.assign(topology.edge_count(), kMostLevels + 1);
     for (std::size_t face = 0; face < m_levels.size(); ++face)
@@ -296,22 +299,16 @@ float RaySubdivision::connect(std::size_t k) {
 void RaySubdivision::evaluate(const BasePatch& patch, int cells, std::vector<Vec3f>& out) const {
     const int face = static_cast<int>(patch.face);
     const auto knots = static_cast<std::size_t>(m_quads.knots);
-    static thread_local std::vector<const Vec3f*> sets;
-    sets.clear();
-    for (int knot = 0; knot < m_quads.knots; ++knot)
-        sets.push_back(m_shared->knot_points(knot).data());
-    static thread_local LimitFace limit;
-    const bool there = limit.gather(*m_shared->subdivision(), face, sets);
+    const LimitFace& limit = m_shared->surface().limit_face(face);
     const FaceCoordinates coordinates(*m_shared->subdivision(), face);
     static thread_local std::vector<double> p;
-    p.assign(3 * knots, std::nan(""));  // a hole: Embree skips it
+    p.resize(3 * knots);
     const auto count = static_cast<std::size_t>(cells + 1) * static_cast<std::size_t>(cells + 1);
     out.resize(knots * count);
     for (int j = 0, to = 0; j <= cells; ++j)
         for (int i = 0; i <= cells; ++i, ++to) {
             const Vec2d uv = Vec2d(i, j) / static_cast<double>(cells);
-            if (there)
-                limit.evaluate(coordinates.sub_face(static_cast<int>(patch.sub), uv), p.data());
+            limit.evaluate(coordinates.sub_face(static_cast<int>(patch.sub), uv), p.data());
             for (std::size_t knot = 0; knot < knots; ++knot)
                 out[knot * count + static_cast<std::size_t>(to)] =
                     Vec3f(p[3 * knot], p[3 * knot + 1], p[3 * knot + 2]);

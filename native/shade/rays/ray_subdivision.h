@@ -33,6 +33,8 @@ class RaySubdivision final : public RayShape {
     void locate(std::uint32_t geometry, std::uint32_t quad, float u, float v,
                 ShadowHit& hit) const override;
     std::size_t bytes() const override;
+    /// It had no room for as many cells as `detail` asks for.
+    bool is_coarsened() const { return m_coarsened; }
     std::size_t quad_count() const { return m_quads.indices.size(); }
 
   private:
@@ -68,6 +70,7 @@ class RaySubdivision final : public RayShape {
     std::vector<std::uint32_t> m_first_edge_point;  ///< [edges] of those inside them
     std::vector<std::uint32_t> m_first_point;       ///< [patches] of their own
     std::vector<std::uint32_t> m_first_quad;        ///< [patches + 1]; empty = one quad a patch
+    bool m_coarsened = false;
     RayPrimitives<4> m_quads;
     std::vector<float> m_errors, m_extents;  ///< [F]
 };

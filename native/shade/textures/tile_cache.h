@@ -101,7 +101,6 @@ class TileCache {
 
     /// Of all tiles in memory, those included that wait for their last readers.
     std::uint64_t byte_count() const;
-    std::uint64_t limit() const { return m_limit; }
 
   private:
     /// More threads at once than this wait for each other.
