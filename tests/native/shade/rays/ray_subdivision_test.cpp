@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -109,6 +110,27 @@ TEST(RaySubdivision, what_is_flat_is_one_quad_a_face) {
     const auto shared = std::make_shared<SharedGeometry>(scene.geometries[0], 0.0f, report);
     const RayDetail detail(scene, 0, shared->frame_box());
     EXPECT_EQ(RaySubdivision(shared, detail, progress).quad_count(), 100u);
+}
+
+TEST(RaySubdivision, a_face_of_a_simple_cage_reaches_as_far_as_its_corners) {
+    Report report;
+    const Progress progress;
+    Scene scene = hills();
+    scene.geometries[0] =
+        cage(10, 100.0f, [](float x, float y) { return 20.0f * std::sin(0.2f * x) * std::cos(y); });
+    GeometryData& data = scene.geometries[0];
+    data.subdivision.scheme = SubdivisionScheme::Simple;
+    const auto shared = std::make_shared<SharedGeometry>(data, 0.0f, report);
+    const RaySubdivision shape(shared, RayDetail(scene, 0, shared->frame_box()), progress);
+    EXPECT_GT(shape.quad_count(), data.face_count());
+    for (std::size_t face = 0; face < data.face_count(); ++face) {
+        float reach = 0.0f;
+        for (std::size_t i = 4 * face; i < 4 * face + 4; ++i) {
+            const Vec3f p = glm::abs(data.points[static_cast<std::size_t>(data.corner_verts[i])]);
+            reach = std::max({reach, p.x, p.y, p.z});
+        }
+        EXPECT_FLOAT_EQ(shape.extent(static_cast<std::uint32_t>(face)), reach) << face;
+    }
 }
 
 }  // namespace
