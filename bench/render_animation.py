@@ -24,8 +24,40 @@ def resident_bytes():
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
-def moving_scene():
-    """Things of each kind in motion: a turning and deforming one, instances, a subdivided one, hair, the camera."""
+def pictured(folder, frames):
+    """A material of three images: a file, a sequence of files that changes with the frame, pixels of Blender's own."""
+    material = bpy.data.materials.new("Pictured")
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    shader, before = nodes["Principled BSDF"], None
+    for name in ("Still", "Sequence0001", "Generated"):
+        node, image = nodes.new("ShaderNodeTexImage"), bpy.data.images.new(name, 512, 512)
+        image.generated_type = "COLOR_GRID"
+        if name != "Generated":
+            image.filepath_raw, image.file_format = str(folder / f"{name}.png"), "PNG"
+            image.save()
+            image.source = "FILE"
+        if name == "Sequence0001":
+            written = (folder / f"{name}.png").read_bytes()
+            for number in range(2, frames + 1):
+                (folder / f"Sequence{number:04}.png").write_bytes(written)
+            image.source = "SEQUENCE"
+            node.image_user.frame_duration, node.image_user.use_auto_refresh = frames, True
+        node.image = image
+        if before is None:
+            before = node.outputs["Color"]
+            continue
+        mix = nodes.new("ShaderNodeMixRGB")
+        links.new(before, mix.inputs[1])
+        links.new(node.outputs["Color"], mix.inputs[2])
+        before = mix.outputs[0]
+    links.new(before, shader.inputs["Base Color"])
+    return material
+
+
+def moving_scene(folder, frames):
+    """Things of each kind in motion: a turning and deforming one, instances, a subdivided one with hair and images, the
+    camera."""
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     scene = with_shutter(bpy.context.scene)
     scene.render.engine = "GRANITA"
@@ -40,6 +72,8 @@ def moving_scene():
     place.instance_type, place.instance_collection = "COLLECTION", part
     drive(place, "location", "sin(frame)", 0)
     round_one = scene_parts.add_square(scene, "Round", 3.0, (0.0, 0.0, -1.0))
+    round_one.data.uv_layers.new()
+    round_one.data.materials.append(pictured(folder, frames))
     round_one.modifiers.new("Subdivision", "SUBSURF").render_levels = 2
     round_one.modifiers.new("Hair", "PARTICLE_SYSTEM")
     settings = round_one.particle_systems[0].settings
@@ -53,7 +87,7 @@ def moving_scene():
 
 def main():
     job = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
-    scene = moving_scene()
+    scene = moving_scene(Path(job["file"]).parent, job["frames"])
     scene.render.use_persistent_data = job["persistent"]
     scene.frame_start, scene.frame_end = 1, job["frames"]
     scene.render.filepath = str(Path(job["file"]).with_name("frame_"))
