@@ -122,6 +122,15 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
         (1, 4096),
         usual=(1, 64),
     )
+    shading_threshold: _real(
+        "Shading Threshold",
+        "Bend of displayed colour between neighbouring shading points from which on samples are shaded by "
+        "themselves, for 64 Samples; it shrinks as these grow. Smaller: edges of shadows and textures, "
+        "highlights and light that changes within the shutter are finer, and take longer. 1000: never",
+        0.06,
+        (0.0, 1000.0),
+        usual=(0.0, 1.0),
+    )
     seed: _whole("Seed", "Another number gives another pattern of noise", 0, (0, 2**31 - 1))
     animate_seed: _switch(
         "Animate Seed", "Another pattern of noise in every frame", False, **_NOT_ANIMATED

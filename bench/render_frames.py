@@ -28,6 +28,11 @@ def build(job):
         import scenes
 
         return scenes.SCENES[job["scene"]](), 1, scenes.SHUTTER
+    if job["module"] == "lit_scenes":
+        import lit_scenes
+        import scenes
+
+        return lit_scenes.SCENES[job["scene"]](), 1, scenes.SHUTTER
     if job["module"] == "hero_scene":
         import hero_scene
         import scenes

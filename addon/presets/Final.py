@@ -7,6 +7,7 @@ settings.samples = 64
 settings.sampling = "INDEPENDENT"
 settings.time_samples = 0
 settings.light_samples = 16
+settings.shading_threshold = 0.06
 settings.opacity_threshold = 0.996
 settings.dicing_rate = 1.0
 settings.shading_rate = 0.0

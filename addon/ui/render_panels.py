@@ -53,6 +53,7 @@ class GRANITA_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         if settings.sampling == "REGULAR":
             column.prop(settings, "time_samples")
         column.prop(settings, "light_samples")
+        column.prop(settings, "shading_threshold")
         column.prop(settings, "opacity_threshold")
         row = column.row(align=True)
         row.prop(settings, "seed")

@@ -30,6 +30,7 @@ class GRANITA_OT_sampling_preset_add(AddPresetBase, bpy.types.Operator):
         "settings.sampling",
         "settings.time_samples",
         "settings.light_samples",
+        "settings.shading_threshold",
         "settings.opacity_threshold",
         "settings.dicing_rate",
         "settings.shading_rate",

@@ -27,6 +27,7 @@ enum class Counter {
     PointsDiced,
     PointsSpared,  ///< about as many more without motion_factor and focus_factor
     PointsShaded,
+    PointsRefined,         ///< of these, samples shaded by themselves
     Micropolygons,         ///< at the hider, counted once a bucket that tests them
     MicropolygonsDropped,  ///< non-finite, counted and reported
     SamplesTotal,          ///< of the picture's own pixels, without those around that filters reach

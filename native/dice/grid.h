@@ -103,6 +103,10 @@ struct Grid {
     std::vector<Vec3f>
         radiance;  ///< [vertices] premultiplied by opacity, plus emission; linear, unclamped
 
+    /// [micropolygons] 1 where the corners' radiance differs so much that samples are to be shaded
+    /// by themselves, for which the shading state is kept; empty = nowhere.
+    std::vector<std::uint8_t> unsettled;
+
     std::vector<float> channels;  ///< [vertices][ChannelSet::vertex_width()]; empty = none asked
 
     int vertex_count() const { return apart ? 4 * n_u : (n_u + 1) * (n_v + 1); }
@@ -114,6 +118,12 @@ struct Grid {
     /// From corner 0 of a micropolygon to corners 1 and 3; corner 2 is both steps away.
     int right() const { return apart ? n_u : 1; }
     int up() const { return apart ? 2 * n_u : n_u + 1; }
+    /// Whether shading points stand for whole small faces, whose vertices have one colour.
+    bool shades_faces() const { return apart && shading_positions.faces.empty(); }
+    /// The shading point of a vertex, of what is no lattice.
+    std::size_t point_at(std::size_t vertex) const {
+        return shading_positions.point_of.empty() ? vertex : shading_positions.point_of[vertex];
+    }
     const std::vector<Vec3f>& shading_p() const { return p.empty() ? positions : p; }
     /// The four vertex indices of a micropolygon.
     struct Corners {

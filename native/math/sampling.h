@@ -123,9 +123,9 @@ class SobolPoints {
 };
 
 /// Axes x, y that make (x, y, n) a right-handed orthonormal frame (Duff et al. 2017).
-struct Frame {
+struct Basis {
     Vec3f x, y, n;
-    explicit Frame(const Vec3f& normal) : n(normal) {
+    explicit Basis(const Vec3f& normal) : n(normal) {
         const float sign = std::copysign(1.0f, n.z);
         const float a = -1.0f / (sign + n.z);
         const float b = n.x * n.y * a;

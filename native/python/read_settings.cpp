@@ -94,6 +94,8 @@ void read_options(const Record& r, Options& o) {
     o.seed = static_cast<std::uint32_t>(r.integer("seed", 0));
     o.light_samples =
         in_range(r, "light_samples", r.integer("light_samples", o.light_samples), 1, 65536);
+    o.shading_threshold =
+        at_least(r, "shading_threshold", r.number("shading_threshold", o.shading_threshold), 0.0);
     o.device =
         static_cast<Device>(choice(r, "device", r.text("device", "AUTO"), {"AUTO", "CPU", "GPU"}));
     o.executor = static_cast<Executor>(choice(r, "executor", r.text("executor", "AUTO"),

@@ -3,6 +3,7 @@
 
 #include "base/stage_timer.h"
 #include "hider/compute/compute_hider.h"
+#include "render/refine_samples.h"
 #include "render/tile_colors.h"
 
 namespace granita {
@@ -33,10 +34,12 @@ class TileParts {
             stores = &hider->finish();
         }
         if (hider->overflowed()) return add_halves(pixels);
-        LayerTable table(hider->pool(), shade_seen(m_frame, *hider, hidden));
+        const std::vector<bool> seen = shade_seen(m_frame, *hider, hidden);
+        const BucketRefinement refinement(m_frame, *hider, *stores, seen);
+        LayerTable table(hider->pool(), seen);
         m_samples = hider->tile_samples(0);
         TileColors part(m_frame);
-        part.composite(stores->front(), m_samples, table);
+        part.composite(stores->front(), m_samples, table, refinement.tile(0));
         const Vec2i corner = m_tile * kTileSize;
         m_colors.take(part,
                       {pixels.x0 - corner.x, pixels.y0 - corner.y, pixels.x1 - corner.x,

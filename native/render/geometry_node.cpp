@@ -6,7 +6,7 @@
 namespace granita {
 namespace {
 
-/// What nobody reads once radiance is there.
+/// What nobody reads once radiance is there and settled.
 void drop_shading_state(Grid& grid) {
     for (std::vector<Vec3f>* values : {&grid.p, &grid.normal, &grid.geometric_normal, &grid.dp_du,
                                        &grid.dp_dv, &grid.ray_offset})
@@ -64,7 +64,7 @@ void SharedGrid::ensure_radiance(const ShadingSystem& shading) {
         ensure_shading_state();
         const StageTimer timer(m_statistics, Stage::Shade);
         shading.shade_radiance(*m_grid);
-        drop_shading_state(*m_grid);
+        if (m_grid->unsettled.empty()) drop_shading_state(*m_grid);
         count_bytes();
     });
 }

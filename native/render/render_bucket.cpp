@@ -4,7 +4,7 @@
 #include "base/stage_timer.h"
 #include "render/bucket_parts.h"
 #include "render/raster_bucket.h"
-#include "render/shade_seen.h"
+#include "render/refine_samples.h"
 #include "render/tile_colors.h"
 #include "render/visit_geometry.h"
 
@@ -54,13 +54,15 @@ std::vector<TileContribution> resolve(Frame& frame, Hider& hider, const HiddenGr
         stores = &hider.finish();
     }
     if (hider.overflowed()) return {};
-    LayerTable table(hider.pool(), shade_seen(frame, hider, grids));
+    const std::vector<bool> seen = shade_seen(frame, hider, grids);
+    const BucketRefinement refinement(frame, hider, *stores, seen);
+    LayerTable table(hider.pool(), seen);
     std::vector<TileContribution> contributions;
     contributions.reserve(stores->size());
     TileColors colors(frame);
     for (std::size_t i = 0; i < stores->size(); ++i) {
         const TileSamples& samples = hider.tile_samples(i);
-        colors.composite((*stores)[i], samples, table);
+        colors.composite((*stores)[i], samples, table, refinement.tile(i));
         contributions.push_back(colors.filter((*stores)[i].tile, samples));
     }
     return contributions;

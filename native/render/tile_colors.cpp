@@ -9,7 +9,8 @@
 
 namespace granita {
 
-void TileColors::composite(const TileStore& store, const TileSamples& samples, LayerTable& table) {
+void TileColors::composite(const TileStore& store, const TileSamples& samples, LayerTable& table,
+                           const RefinedSamples& refined) {
     m_frame.progress.check();
     const Options& options = m_frame.scene.options;
     const ChannelSet& channels = m_frame.film.channels();
@@ -22,7 +23,7 @@ void TileColors::composite(const TileStore& store, const TileSamples& samples, L
     const StageTimer timer(m_frame.statistics, Stage::Resolve);
     const CompositeSettings settings{m_frame.view.projection, m_frame.hider.list_end,
                                      options.film_transparent, &channels, options.depth_pass};
-    composite_tile(store, samples, table, background, settings, m_colors, &m_channels);
+    composite_tile(store, samples, table, background, settings, m_colors, &m_channels, refined);
 }
 
 void TileColors::take(const TileColors& part, const Rect& pixels, int samples) {

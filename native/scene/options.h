@@ -61,6 +61,9 @@ struct Options {
     std::uint32_t seed =
         0;  ///< of the sample table, the frame already mixed in where animate_seed is on
     int light_samples = 16;  ///< shadow rays a light and shading point, for lights with a size
+    /// Bend of displayed colour between neighbouring shading points (shade/unsettled.h) from which
+    /// on samples are shaded by themselves, for 64 samples a pixel; in proportion to samples^-1/2.
+    float shading_threshold = 0.06f;
     Device device = Device::Auto;
     Executor executor = Executor::Auto;  ///< overrides device; tests and benches
     int threads = 0;                     ///< 0 = all

@@ -2,6 +2,8 @@
 #include "shade/shading_system.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "base/stage_timer.h"
 #include "shade/grid_channels.h"
@@ -11,6 +13,7 @@
 #include "shade/nodes/node_compiler.h"
 #include "shade/shading_points.h"
 #include "shade/shadow_transparency.h"
+#include "shade/unsettled.h"
 #include "shade/world_shader.h"
 
 namespace granita {
@@ -26,6 +29,9 @@ NodeGraph default_material() {
     graph.surface = {0, "BSDF"};
     return graph;
 }
+
+/// Micropolygons for each one at which it is asked whether time matters.
+constexpr int kProbeStep = 19;
 
 /// Radiance of a surface that nobody misses as a light: an 8-bit step of white.
 constexpr float kDimmestEmission = 0.004f;
@@ -76,6 +82,14 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::si
     return closure;
 }
 
+constexpr float kNoThreshold = std::numeric_limits<float>::infinity();
+
+/// Refined samples have one light sample each, or a few; corners have Options::light_samples, and
+/// those of their neighbours.  What moves is in doubt about its time, which only samples know.
+bool refining_spares_noise(const Options& options, bool moves) {
+    return moves || options.samples >= 3 * options.light_samples;
+}
+
 }  // namespace
 
 struct ShadingSystem::Impl {
@@ -90,6 +104,9 @@ struct ShadingSystem::Impl {
     std::vector<std::vector<AttributeRequest>> requests;
     std::vector<DisplacementHook> displacement;
     WorldShader world;
+    bool moves;                        ///< anything of the frame
+    float threshold, noise_threshold;  ///< of unsettled_micropolygons()
+    float footprint;                   ///< of a sample, in steps of a grid
     std::shared_ptr<GeometryCache> geometries = std::make_shared<GeometryCache>();
     std::unique_ptr<DirectLight> light;  ///< nullptr where nothing that is seen reflects any
 
@@ -101,7 +118,12 @@ struct ShadingSystem::Impl {
           camera(s),
           shutter(s.options.shutter_curve),
           channels(s.options),
-          world(s, textures, report) {
+          world(s, textures, report),
+          moves(s.moves()),
+          threshold(s.options.shading_threshold * 8.0f /
+                    std::sqrt(static_cast<float>(s.options.samples))),
+          noise_threshold(refining_spares_noise(s.options, s.moves()) ? threshold : kNoThreshold),
+          footprint(1.0f / std::sqrt(static_cast<float>(s.options.samples))) {
         const StageTimer timer(stats, Stage::Shade);
         const ChannelSet* passes = channels.empty() ? nullptr : &channels;
         for (const Material& material : scene.materials) {
@@ -173,11 +195,82 @@ struct ShadingSystem::Impl {
         in.points = &points;
         in.attributes = &grid.attributes;
         in.instance = &scene.instances[grid.instance];
-        const Mat3d world_from_object(
-            matrix_at(in.instance->world_from_object, scene.options.frame_time));
-        in.world_from_object = Mat3f(world_from_object);
-        in.object_from_world = Mat3f(glm::inverse(world_from_object));
+        in.axes = ObjectAxes(matrix_at(in.instance->world_from_object, scene.options.frame_time));
         return in;
+    }
+
+    /// Fills radiance and channels of `grid`, whose points are `in.points`; `noise` as
+    /// DirectLight::reflect().
+    void shade(Grid& grid, const ShadingInput& in, const PointPaths& at,
+               std::vector<float>* noise = nullptr) const {
+        const ShadingPoints& points = *in.points;
+        const SurfaceProgram& surface = material(grid.material).radiance;
+        Run run = surface.program.prepare(in, points.count);
+        surface.program.execute(run);
+        std::size_t broken = 0;
+        const SurfaceClosure closure = closure_of(run, surface.sources, broken);
+        const bool has_passes = !channels.empty();
+        ReflectionParts parts;
+        std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
+        if (light)
+            radiance =
+                light->reflect(points, closure, grid.key, has_passes ? &parts : nullptr, at, noise);
+        else
+            parts.resize(has_passes ? points.count : 0);
+        for (std::size_t i = 0; i < closure.emission.size(); ++i)
+            radiance[i] += closure.emission[i];
+        warn_of_broken(grid.material, broken + make_finite(radiance));
+        interpolate_points(grid, 1, radiance);
+        grid.radiance = std::move(radiance);
+        if (has_passes)
+            fill_channels(grid, channels, scene, camera,
+                          {points, closure, parts, run, surface.passes});
+        statistics.add(Counter::PointsShaded, points.count);
+    }
+
+    Grid refine(const Grid& grid, std::span<const RefinedPoint> wanted, float point_size) const {
+        const RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
+        Grid out;
+        out.key = grid.key;
+        out.instance = grid.instance;
+        out.material = grid.material;
+        out.n_u = static_cast<int>(wanted.size()) - 1;
+        const Mat3f camera_from_world = glm::transpose(Mat3f(camera.world_from_camera));
+        for (const Vec3f& p : refined.points.p) out.p.push_back(camera_from_world * p);
+        ShadingInput in;
+        in.points = &refined.points;
+        in.attributes = &refined.attributes;
+        in.instance = &scene.instances[grid.instance];
+        in.axes = refined.axes;
+        in.axes_at_times = refined.axes_at_times;
+        shade(out, in, {});
+        return out;
+    }
+
+    /// Strands and spheres are drawn as something flat, whose places say little of their shadows.
+    bool is_mesh(const Grid& grid) const {
+        const std::int32_t index = scene.instances[grid.instance].geometry;
+        return scene.geometries[static_cast<std::size_t>(index)].kind == GeometryKind::Mesh;
+    }
+
+    /// Whether some of the grid's micropolygons look otherwise when the shutter opens than when it
+    /// closes: all else being equal, light samples too.
+    bool changes_in_time(const Grid& grid) const {
+        if (!moves || !light) return false;
+        std::vector<RefinedPoint> probes;
+        const float times[] = {std::max(grid.lifespan.open, 0.0f),
+                               std::min(grid.lifespan.close, 1.0f)};
+        const int count = grid.micropolygon_count();
+        for (int m = kProbeStep / 2 % count; m < count; m += kProbeStep) {
+            const Grid::Corners c = grid.corners(m);
+            const auto at = [](int v) { return static_cast<std::uint32_t>(v); };
+            for (const float time : times)
+                probes.push_back({{at(c.v0), at(c.v1), at(c.v2)}, {0.5f, 0.0f, 0.5f}, time, at(m)});
+        }
+        const std::vector<Vec3f> shown = refine(grid, probes, 1.0f).radiance;
+        for (std::size_t i = 0; i < shown.size(); i += 2)
+            if (displayed_difference(shown[i], shown[i + 1]) > threshold) return true;
+        return false;
     }
 
     PointPaths paths(const Grid& grid, const ShadingPoints& points) const {
@@ -228,31 +321,21 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 void ShadingSystem::shade_radiance(Grid& grid) const {
     const CompiledSurface& material = m_impl->material(grid.material);
     ShadingPoints points = shading_points(grid, m_impl->camera);
-    const SurfaceProgram& surface = material.radiance;
-    if (!surface.sources.lobes.empty())
+    if (!material.radiance.sources.lobes.empty())
         points.share *= light_sample_count(grid, m_impl->scene, m_impl->shutter);
-    const ShadingInput input = m_impl->input(grid, points);
-    Run run = surface.program.prepare(input, points.count);
-    surface.program.execute(run);
-    std::size_t broken = 0;
-    const SurfaceClosure closure = closure_of(run, surface.sources, broken);
-    const bool has_passes = !m_impl->channels.empty();
-    ReflectionParts parts;
-    std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
-    if (m_impl->light)
-        radiance = m_impl->light->reflect(points, closure, grid.key, has_passes ? &parts : nullptr,
-                                          m_impl->paths(grid, points));
-    else
-        parts.resize(has_passes ? points.count : 0);
-    for (std::size_t i = 0; i < closure.emission.size(); ++i) radiance[i] += closure.emission[i];
-    m_impl->warn_of_broken(grid.material, broken + make_finite(radiance));
-    interpolate_points(grid, 1, radiance);
-    grid.radiance = std::move(radiance);
-    if (has_passes)
-        fill_channels(grid, m_impl->channels, m_impl->scene, m_impl->camera,
-                      {points, closure, parts, run, surface.passes});
+    std::vector<float> noise(points.count, 0.0f);
+    m_impl->shade(grid, m_impl->input(grid, points), m_impl->paths(grid, points), &noise);
     m_impl->statistics.add(Counter::GridsShaded);
-    m_impl->statistics.add(Counter::PointsShaded, points.count);
+    if (grid.shades_faces() || grid.holdout || !m_impl->is_mesh(grid)) return;
+    grid.unsettled =
+        m_impl->changes_in_time(grid)
+            ? std::vector<std::uint8_t>(static_cast<std::size_t>(grid.micropolygon_count()), 1)
+            : unsettled_micropolygons(grid, noise, m_impl->threshold, m_impl->noise_threshold);
+}
+
+Grid ShadingSystem::refine(const Grid& grid, std::span<const RefinedPoint> wanted) const {
+    m_impl->statistics.add(Counter::PointsRefined, wanted.size());
+    return m_impl->refine(grid, wanted, m_impl->footprint);
 }
 
 void ShadingSystem::background(const std::vector<Vec3f>& directions, float spread,

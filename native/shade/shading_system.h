@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/progress.h"
@@ -11,6 +12,7 @@
 #include "dice/grid.h"
 #include "dice/view.h"
 #include "scene/scene.h"
+#include "shade/refined_points.h"
 
 namespace granita {
 
@@ -34,9 +36,13 @@ class ShadingSystem {
     bool opacity_varies(int material) const;
     /// Fills Grid::opacity and opacity_varies.  Thread-safe for different grids.
     void shade_opacity(Grid& grid) const;
-    /// Fills Grid::radiance (premultiplied by opacity, plus emission).  Thread-safe for different
-    /// grids.
+    /// Fills Grid::radiance (premultiplied by opacity, plus emission) and what depends on it.
+    /// Thread-safe for different grids.
     void shade_radiance(Grid& grid) const;
+
+    /// Shades points between the vertices of a shaded grid, each at its time.
+    /// @return as many vertices, point by point: place, radiance and channels alone are there.
+    Grid refine(const Grid& grid, std::span<const RefinedPoint> points) const;
 
     /// The world as the camera sees it.  `directions` [n] unit, world space; `spread` radians a
     /// direction stands for (texture filtering).  Fills `out` [n].

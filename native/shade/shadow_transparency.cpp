@@ -75,8 +75,8 @@ Vec3f shadow_transparency(const OpacityProgram& material, const Scene& scene,
     input.points = &scratch->points;
     input.attributes = &scratch->attributes;
     input.instance = &scene.instances[hit.instance];
-    input.world_from_object = hit.frame->world_from_object;
-    input.object_from_world = hit.frame->object_from_world;
+    input.axes.world_from_object = hit.frame->world_from_object;
+    input.axes.object_from_world = hit.frame->object_from_world;
     input.ray_length = hit.distance;
     Run run = material.program.prepare(input, 1, std::move(scratch->memory));
     material.program.execute(run);

@@ -123,7 +123,9 @@ def test_what_stands_still_in_focus_is_diced_as_ever():
 
 def test_shading_rate_shades_fewer_points_of_the_same_shapes(executor):
     def render(**options):
-        snapshot = s.orthographic((64, 48), executor=executor, samples=16, **options)
+        snapshot = s.orthographic(
+            (64, 48), executor=executor, samples=16, shading_threshold=1000, **options
+        )
         nodes = [
             {"type": "ShaderNodeTexCoord", "inputs": {}},
             {
@@ -172,7 +174,9 @@ def test_what_leaves_the_frame_is_diced_for_what_is_seen_of_it(way):
     """Walls on both sides and posts all around go through the eye plane within the shutter."""
 
     def render(rate, times):
-        snapshot = s.perspective((96, 72), 90.0, executor="SIMD", samples=64, dicing_rate=rate)
+        snapshot = s.perspective(
+            (96, 72), 90.0, executor="SIMD", samples=64, dicing_rate=rate, shading_threshold=1000
+        )
         material = stripes(snapshot, 0.5)
         for x in (-1.5, 1.5):
             s.quad(snapshot, [(x, -1, -5), (x, 1, -5), (x, 1, 20), (x, -1, 20)], material)
@@ -201,6 +205,7 @@ def test_blur_spares_light_samples_that_it_averages(blurred):
         snapshot = s.perspective(
             (64, 64), 100.0, executor="SIMD", samples=256, light_samples=light_samples
         )
+        snapshot["options"]["shading_threshold"] = 1000  # what the corners of micropolygons have
         snapshot["camera"].update(camera)
         lamp = {"name": "Lamp", "kind": "AREA", "energy": 500.0, "size": (2.0, 2.0)}
         lamp["world_from_light"] = np.diag([1.0, -1.0, -1.0, 1.0])[None]

@@ -274,7 +274,8 @@ def test_passes_change_neither_picture_nor_visibility(executor):
     plain, all_passes = render([]), render(ALL)
     assert np.array_equal(plain["combined"], all_passes["combined"])
     for name, count in plain["statistics"].items():
-        if not name.startswith(("seconds_", "peak_", "memory_")):
+        # Which thread takes a piece of a loop is chance.
+        if not name.startswith(("seconds_", "peak_", "memory_", "loop_pieces_")):
             assert all_passes["statistics"][name] == count, name
 
 

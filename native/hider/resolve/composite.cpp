@@ -61,13 +61,14 @@ class TileComposite {
   public:
     TileComposite(const TileStore& store, const TileSamples& samples, LayerTable& table,
                   std::span<const Vec3f> background, const CompositeSettings& settings,
-                  ChannelLayers* channels, SampleColors& colors)
+                  ChannelLayers* channels, const RefinedSamples& refined, SampleColors& colors)
         : m_store(store),
           m_samples(samples),
           m_table(table),
           m_background(background),
           m_settings(settings),
           m_channels(channels),
+          m_refined(refined),
           m_colors(colors),
           m_blurred(!samples.t.empty() || !samples.u.empty()),
           m_surface(settings.projection, store.tile, samples, table.pool()) {}
@@ -77,6 +78,7 @@ class TileComposite {
         if (!m_channels) color_surfaces();
         for (std::uint32_t first = 0; first < m_store.key.size(); first += kRun)
             if (m_done.empty() || !finish_run(first)) set_behind(first);
+        set_refined();
         if (m_store.lists.empty()) return;
         m_table.fill();
         for (std::size_t p = 0; p < m_store.lists.packets(); ++p) add_lists(p);
@@ -103,6 +105,21 @@ class TileComposite {
             m_surface.color_groups(groups, m_colors, m_done);
         }
         ObjectPool<SurfaceGroups>::give(std::move(groups));
+    }
+
+    /// Where channels are asked for, set_behind() has met them already.
+    void set_refined() {
+        if (m_channels) return;
+        for (std::size_t i = 0; i < m_refined.samples().size(); ++i) {
+            const std::uint32_t sample = m_refined.samples()[i];
+            m_colors.set(sample, opaque(sample, m_refined.point(i)));
+        }
+    }
+
+    /// Where a sample meets the surface behind its list.
+    SurfacePoint meet(std::uint32_t sample) {
+        const SurfacePoint* const refined = m_refined.find(sample);
+        return refined ? *refined : m_surface.locate(sample, m_store.id[sample]);
     }
 
     /// False where a sample of the run still wants its colour.
@@ -148,9 +165,8 @@ class TileComposite {
                 if (m_channels && !listed) add_environment(sample, Vec3d(1.0));
                 continue;
             }
-            const SurfacePoint point = m_channels && (m_run.plain >> i & 1u)
-                                           ? m_run.point(i)
-                                           : m_surface.locate(sample, m_store.id[sample]);
+            const bool known = m_channels && (m_run.plain >> i & 1u) && !m_refined.find(sample);
+            const SurfacePoint point = known ? m_run.point(i) : meet(sample);
             m_colors.set(sample, opaque(sample, point));
             if (!m_channels || listed) continue;
             m_channels->set_first(sample, point);
@@ -235,7 +251,7 @@ class TileComposite {
             if (!ended) add_environment(sample, transmission);
             return;
         }
-        const SurfacePoint point = m_surface.locate(sample, id);
+        const SurfacePoint point = meet(sample);
         if (!found) m_channels->set_first(sample, point);
         if (ended) return;
         if (!point.grid->holdout) m_channels->add(sample, point, transmission);
@@ -266,6 +282,7 @@ class TileComposite {
     std::span<const Vec3f> m_background;
     const CompositeSettings& m_settings;
     ChannelLayers* m_channels;
+    const RefinedSamples& m_refined;
     SampleColors& m_colors;
     bool m_blurred;
     std::vector<std::uint8_t> m_done;  ///< [samples] 1 = has its colour; empty: none has
@@ -278,7 +295,7 @@ class TileComposite {
 
 void composite_tile(const TileStore& store, const TileSamples& samples, LayerTable& table,
                     std::span<const Vec3f> background, const CompositeSettings& settings,
-                    SampleColors& colors, SampleChannels* channels) {
+                    SampleColors& colors, SampleChannels* channels, const RefinedSamples& refined) {
     const std::size_t count = store.key.size();
     const bool has_channels = settings.channels && !settings.channels->empty();
     GRANITA_CHECK(!has_channels || channels);
@@ -287,7 +304,8 @@ void composite_tile(const TileStore& store, const TileSamples& samples, LayerTab
     std::optional<ChannelLayers> layers;
     if (has_channels) layers.emplace(*settings.channels, samples, *channels);
     colors.resize(count);
-    TileComposite(store, samples, table, background, settings, layers ? &*layers : nullptr, colors)
+    TileComposite(store, samples, table, background, settings, layers ? &*layers : nullptr, refined,
+                  colors)
         .run();
 }
 

@@ -8,6 +8,7 @@
 
 #include "hider/hider.h"
 #include "hider/resolve/layer_table.h"
+#include "hider/resolve/refined_samples.h"
 #include "hider/resolve/sample_channels.h"
 #include "hider/sample_store.h"
 #include "hider/samples/sample_table.h"
@@ -36,6 +37,7 @@ struct CompositeSettings {
 /// settings.channels asks for some; holdouts take part in Merge::First and Center alone.
 void composite_tile(const TileStore& store, const TileSamples& samples, LayerTable& table,
                     std::span<const Vec3f> background, const CompositeSettings& settings,
-                    SampleColors& colors, SampleChannels* channels = nullptr);
+                    SampleColors& colors, SampleChannels* channels = nullptr,
+                    const RefinedSamples& refined = {});
 
 }  // namespace granita

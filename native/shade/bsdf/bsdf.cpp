@@ -272,7 +272,7 @@ float PointBsdf::pdf(std::size_t index, const Vec3f& wo) const {
 
 bool PointBsdf::sample(std::size_t index, const Vec2f& u, Vec3f& wo) const {
     const Prepared& lobe = m_lobes[index];
-    const Frame frame(lobe.normal);
+    const Basis frame(lobe.normal);
     if (lobe.kind == LobeKind::Diffuse) {
         wo = frame.to_world(sample_cosine_hemisphere(u));
         return glm::dot(lobe.normal, wo) > 0.0f;

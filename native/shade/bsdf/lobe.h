@@ -67,6 +67,11 @@ struct ShadingPoints {
     std::vector<std::uint32_t> faces;      ///< [n] as ShadingPositions::faces; may be empty
     float share = 1.0f;                    ///< as Grid::point_share
     std::vector<std::uint8_t> backfacing;  ///< [n]
+    /// [n] shutter time at which each is lit, where it then is; negative, or empty: over the whole
+    /// shutter.
+    std::vector<float> times;
+    /// [n] in the sample sequences of the frame; empty: in those of the grid, by row and column.
+    std::vector<std::uint32_t> places;
 };
 
 }  // namespace granita

@@ -51,8 +51,8 @@ inline float gtr1_density(float alpha, float sin2) {
 /// Half vector with the density of visible normals, D G1 cos(h, wi) / cos(wi) (Heitz 2018).
 inline Vec3f sample_ggx_visible(const Vec3f& wi, float alpha, const Vec2f& u) {
     const Vec3f stretched = glm::normalize(Vec3f(alpha * wi.x, alpha * wi.y, wi.z));
-    const Frame frame(stretched);
-    // Frame's x axis need not lie in the horizontal plane; the cut of the projected disc does.
+    const Basis frame(stretched);
+    // Basis's x axis need not lie in the horizontal plane; the cut of the projected disc does.
     const float length2 = stretched.x * stretched.x + stretched.y * stretched.y;
     const Vec3f t1 =
         length2 > 1e-14f ? Vec3f(-stretched.y, stretched.x, 0.0f) / std::sqrt(length2) : frame.x;

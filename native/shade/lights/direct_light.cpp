@@ -184,7 +184,7 @@ void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const 
     const bool timed = changes(lamp) && (count > 1 || point.sample_count == 1);
     const SobolPoints sequence = grid.sequence(point, dimension, count);
     const auto add = [&](const LitPlace& place, const LightSource& source,
-                         const LightSample& sample) {
+                         const LightSample& sample, int s) {
         if (!(sample.pdf > 0.0f)) return;
         const BsdfValue bsdf = lamp.apply(point.bsdf.evaluate(sample.direction));
         const Vec3f value = total(bsdf) * sample.radiance;
@@ -194,10 +194,10 @@ void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const 
             density += point.glossy_density(sample.direction);
         const BsdfValue parts = bsdf * (sample.radiance / density);
         if (rays && lamp.casts_shadow())
-            shadows.send(point.index, value / density, parts,
+            shadows.send(point.index, value / density, parts, LitGrid::sign(s, count),
                          ray(point, place, sample.direction, sample.distance, lamp.blocker_set()));
         else
-            shadows.send(point.index, value / density, parts);
+            shadows.send(point.index, value / density, parts, LitGrid::sign(s, count));
     };
     grid.lamp_points.clear();
     for (int s = 0; s < count; ++s)
@@ -208,7 +208,8 @@ void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const 
         if (!lamp.exists(place.time)) return;
         const LightSource& source = lamp.at(place.time);
         source.sample_all(place.p, grid.lamp_points, grid.lamp_samples);
-        for (const LightSample& sample : grid.lamp_samples) add(place, source, sample);
+        for (int s = 0; s < count; ++s)
+            add(place, source, grid.lamp_samples[static_cast<std::size_t>(s)], s);
         return;
     }
     for (std::size_t s = 0; s < grid.lamp_points.size(); ++s) {
@@ -216,7 +217,7 @@ void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const 
         if (!lamp.exists(place.time)) continue;
         const LightSource& source = lamp.at(place.time);
         source.sample(place.p, grid.lamp_points[s], grid.lamp_samples[s]);
-        add(place, source, grid.lamp_samples[s]);
+        add(place, source, grid.lamp_samples[s], static_cast<int>(s));
     }
 }
 
@@ -232,7 +233,8 @@ void DirectLight::Impl::sample_world(LitGrid& grid, const LitPoint& point) const
         if (total(value) == Vec3f(0.0f) || !(pdf > 0.0f)) continue;
         const float density = static_cast<float>(point.sample_count) * pdf + point.all_density(wo);
         const Vec3f seen = occlusion(grid, point, place_at(point, sequence.third(index)), wo);
-        grid.look(grid.blurred, point.index, wo, value * (seen / density));
+        grid.look(grid.blurred, point.index, wo, value * (seen / density),
+                  LitGrid::sign(s, point.sample_count));
     }
 }
 
@@ -248,6 +250,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         const BsdfValue value = point.bsdf.evaluate(wo);
         if (total(value) == Vec3f(0.0f)) continue;
         const LitPlace place = place_at(point, sequence.third(index));
+        const float sign = LitGrid::sign(s, samples.count);
         if (environment) {
             float density = point.all_density(wo);
             if (environment->has_density())
@@ -257,10 +260,10 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
                 const BsdfValue reflected{
                     weight.diffuse * environment->constant_radiance(RayType::Diffuse),
                     weight.glossy * environment->constant_radiance(RayType::Glossy)};
-                grid.radiance[point.index] += total(reflected);
+                grid.add(point.index, total(reflected), sign);
                 grid.add_world(point.index, reflected);
             } else {
-                grid.look(grid.blurred, point.index, wo, weight);
+                grid.look(grid.blurred, point.index, wo, weight, sign);
             }
         }
         if (!glossy) continue;
@@ -273,7 +276,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
                 static_cast<float>(point.sample_count) * sample.pdf + point.glossy_density(wo);
             const BsdfValue bsdf = lamp.apply(value);
             const Vec3f seen = shadow(grid, point, place, lamp, sample);
-            grid.radiance[point.index] += total(bsdf) * sample.radiance / density * seen;
+            grid.add(point.index, total(bsdf) * sample.radiance / density * seen, sign);
             grid.add_lamp(point.index, bsdf * (sample.radiance / density), seen);
         }
     }
@@ -295,12 +298,12 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
                 continue;
             const Vec3f value = reflectance * lamp.glossy() * sample.radiance;
             const Vec3f seen = shadow(grid, point, place, lamp, sample);
-            grid.radiance[point.index] += value * seen;
+            grid.add(point.index, value * seen, LitGrid::sign(s, count));
             grid.add_lamp(point.index, {Vec3f(0.0f), value}, seen);
         }
         if (environment) open += reflectance * occlusion(grid, point, place, wo);
     }
-    grid.look(grid.sharp, point.index, wo, {Vec3f(0.0f), open});
+    grid.look(grid.sharp, point.index, wo, {Vec3f(0.0f), open}, 0.0f);
 }
 
 /// Lamp by lamp, so that their rays keep together, then what only lobes find.  Dimensions are
@@ -342,10 +345,10 @@ void DirectLight::Impl::look(LitGrid& grid, const EnvironmentSamples& samples, f
             const BsdfValue value{samples.parts[k].diffuse * seen[k],
                                   samples.parts[k].glossy * seen_glossy[k]};
             if (!is_finite(total(value))) continue;
-            grid.radiance[point] += total(value);
+            grid.add(point, total(value), samples.signs[k]);
             grid.add_world(point, value);
         } else if (is_finite(seen[k])) {
-            grid.radiance[point] += samples.weights[k] * seen[k];
+            grid.add(point, samples.weights[k] * seen[k], samples.signs[k]);
             if (grid.parts) grid.add_world(point, samples.parts[k] * seen[k]);
         }
     }
@@ -365,25 +368,29 @@ bool DirectLight::varies() const {
 
 std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const SurfaceClosure& closure,
                                         const GridKey& key, ReflectionParts* parts,
-                                        const PointPaths& paths) const {
+                                        const PointPaths& paths, std::vector<float>* noise) const {
     std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
+    if (noise) noise->assign(points.count, 0.0f);
     if (parts) parts->resize(points.count);
     const bool dark = m_impl->lamps.empty() && !m_impl->environment;
     if (closure.lobes.empty() || (dark && !parts)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
+    // Points with places of their own share the sequences of the frame.
+    const bool placed = !points.places.empty();
     LitGrid grid{radiance,
                  parts,
                  {},
                  {},
                  {},
                  {},
-                 grid_seed(key, m_impl->scene.options.seed),
+                 grid_seed(placed ? GridKey{} : key, m_impl->scene.options.seed),
                  m_impl->world.by_lobe};
     grid.receives = m_impl->receives(key);
+    grid.balance = noise;
     RayOffset ray_offset = m_impl->rays ? m_impl->rays->ray_offset(key) : RayOffset{};
     const Lifespan& life = paths.lifespan();
-    const Vec2f exposed(m_impl->shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),
-                        m_impl->shutter.uniform(std::clamp(life.close, 0.0f, 1.0f)));
+    const Vec2f life_exposed(m_impl->shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),
+                             m_impl->shutter.uniform(std::clamp(life.close, 0.0f, 1.0f)));
     // Points that lie closer share the light that a pixel's worth of them is due.
     const int sample_count = std::max(
         1, static_cast<int>(std::lround(points.share * static_cast<float>(m_impl->sample_count))));
@@ -403,23 +410,28 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         if (m_impl->rays && !points.faces.empty())
             ray_offset = m_impl->rays->ray_offset({key.instance, points.faces[i]});
         const Vec3f start = ray_offset(p + offset, normal);
-        const LitPlace at_frame{m_impl->scene.options.frame_time, p, normal, start};
+        const bool timed = !points.times.empty() && points.times[i] >= 0.0f;
+        const float time = timed ? points.times[i] : m_impl->scene.options.frame_time;
+        const LitPlace at_frame{time, p, normal, start};
+        const Vec2f exposed = timed ? Vec2f(m_impl->shutter.uniform(time)) : life_exposed;
         // Neighbours share a sequence: aligned squares of points, and so the pixels that average
         // them, are stratified as one (Ahmed and Wonka 2020, without their shuffling of squares).
         // Faces of a batch are in Morton order already.
         const auto place = static_cast<std::uint32_t>(
-            points.columns == 0 ? i
-                                : morton_index(static_cast<std::uint32_t>(i % points.columns),
-                                               static_cast<std::uint32_t>(i / points.columns)));
+            placed                ? points.places[i]
+            : points.columns == 0 ? i
+                                  : morton_index(static_cast<std::uint32_t>(i % points.columns),
+                                                 static_cast<std::uint32_t>(i / points.columns)));
         lit.push_back(
             {i, std::move(bsdf), paths, ray_offset, at_frame, sample_count, place, exposed, {}});
         lit.back().share_samples();
     }
-    place_lobe_samples(lit, closure.lobes.size());
+    place_lobe_samples(lit, closure.lobes.size(), placed);
     m_impl->light_points(grid, lit, closure.lobes.size());
     if (m_impl->environment)
         m_impl->look(grid, grid.blurred, m_impl->environment->texel_angle(), RayType::Glossy);
-    m_impl->look(grid, grid.sharp, grid.sharp.spread(), RayType::Singular);
+    // A point of its own stands for no neighbours: the mean of many does.
+    m_impl->look(grid, grid.sharp, placed ? 0.0f : grid.sharp.spread(), RayType::Singular);
     m_impl->statistics.add(Counter::RaysShadow, grid.shadow_rays);
     m_impl->statistics.add(Counter::RaysOcclusion, grid.occlusion_rays);
     return radiance;

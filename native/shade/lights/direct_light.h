@@ -49,10 +49,12 @@ class DirectLight {
 
     /// Radiance reflected by the closure's lobes towards the view, [points.count]: the mean over
     /// the shutter, as far as the points are there, of what arrives, on the surface as it is at the
-    /// frame time.  Fills `parts` where given.
+    /// frame time.  Fills `parts` where given, and `noise` [points.count] with how
+    /// far, either way, each point's luminance is in doubt.
     std::vector<Vec3f> reflect(const ShadingPoints& points, const SurfaceClosure& closure,
                                const GridKey& seed, ReflectionParts* parts = nullptr,
-                               const PointPaths& paths = {}) const;
+                               const PointPaths& paths = {},
+                               std::vector<float>* noise = nullptr) const;
 
   private:
     struct Impl;

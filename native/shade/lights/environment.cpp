@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "math/luminance.h"
 #include "math/sampling.h"
 
 namespace granita {
@@ -27,10 +28,6 @@ Vec2f equirectangular_point(const Vec3f& d) {
     // atan2 keeps its bits near the poles, where acos has none.
     const float v = std::atan2(std::sqrt(d.x * d.x + d.y * d.y), d.z) * kInversePi;
     return {std::clamp(u, 0.0f, 1.0f), std::clamp(v, 0.0f, 1.0f)};
-}
-
-float luminance(const Vec3f& c) {
-    return std::max(0.0f, 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z);
 }
 
 /// Running sums of `values` scaled to end at exactly 1; false when all are 0.
@@ -86,7 +83,7 @@ class TexelRow {
             const auto texel = static_cast<std::size_t>(m_texels[k]);
             ++count[texel];
             if (is_finite(m_seen[k]))
-                sum[texel] += luminance(m_seen[k]);
+                sum[texel] += std::max(0.0f, luminance(m_seen[k]));
             else
                 ++broken;
         }

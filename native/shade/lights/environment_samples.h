@@ -16,8 +16,10 @@ struct EnvironmentSamples {
     std::vector<BsdfValue>
         parts;  ///< of the weights, where these are asked for or see different worlds
     std::vector<std::size_t> points;
+    std::vector<float> signs;  ///< as LitGrid::sign
 
-    void add(std::size_t point, const Vec3f& direction, const Vec3f& weight) {
+    void add(std::size_t point, const Vec3f& direction, const Vec3f& weight, float sign) {
+        signs.push_back(sign);
         directions.push_back(direction);
         weights.push_back(weight);
         points.push_back(point);

@@ -83,7 +83,7 @@ class PointLight : public LightSource {
             sample = {axis, std::sqrt(d2), m_intensity / d2, 1.0f};
             return shade_cone(sample);
         }
-        const Frame frame(axis);
+        const Basis frame(axis);
         const float r2 = m_radius * m_radius;
         if (m_sphere) {
             const Vec3f local = d2 > r2 ? sample_cone(u, one_minus_cos(d2)) : sample_sphere(u);

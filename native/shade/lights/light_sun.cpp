@@ -45,7 +45,7 @@ class SunLight : public LightSource {
     bool bound(Vec3f&, float&) const override { return false; }
 
   private:
-    Frame m_frame;
+    Basis m_frame;
     Vec3f m_radiance;
     float m_one_minus_cos = 0.0f, m_pdf = 1.0f;
 };

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "math/luminance.h"
 #include "shade/bsdf/reflection.h"
 #include "shade/lights/environment_samples.h"
 #include "shade/lights/light_source.h"
@@ -23,6 +24,16 @@ struct LitGrid {
     std::vector<SobolPoints> sequences = {};  ///< [dimensions] as far as they were asked for
     std::uint64_t receives = ~0ULL;           ///< Instance::receives
     std::uint64_t shadow_rays = 0, occlusion_rays = 0;
+    /// [points] the luminance of a point's even samples less that of its odd ones: as much as its
+    /// sum is in doubt.  nullptr: not asked for.
+    std::vector<float>* balance = nullptr;
+
+    /// Of sample `s` of `count` which the point takes alike; one alone is in no doubt.
+    static float sign(int s, int count) { return count < 2 ? 0.0f : s % 2 == 0 ? 1.0f : -1.0f; }
+    void add(std::size_t point, const Vec3f& light, float sign) {
+        radiance[point] += light;
+        if (balance) (*balance)[point] += sign * luminance(light);
+    }
 
     /// A sequence that the grid shares, from its sample `first` on.
     SobolPoints sequence(std::size_t dimension, std::uint32_t first) {
@@ -45,9 +56,9 @@ struct LitGrid {
     }
     /// Asks the world later; `weight` is 0 where nothing can be seen of it.
     void look(EnvironmentSamples& samples, std::size_t point, const Vec3f& direction,
-              const BsdfValue& weight) {
+              const BsdfValue& weight, float sign) {
         if (total(weight) == Vec3f(0.0f)) return;
-        samples.add(point, direction, total(weight));
+        samples.add(point, direction, total(weight), sign);
         if (parts || by_lobe) samples.parts.push_back(weight);
     }
     void add_world(std::size_t point, const BsdfValue& value) {

@@ -19,16 +19,17 @@ class ShadowQueue {
     ShadowQueue(const RayScene* rays, LitGrid& grid) : m_rays(rays), m_grid(grid) {}
 
     /// `light`: reflected by the point where nothing is in between; `parts`: the same, diffuse and
-    /// glossy apart.
-    void send(std::size_t point, const Vec3f& light, const BsdfValue& parts, const ShadowRay& ray) {
+    /// glossy apart; `sign`: as LitGrid::sign.
+    void send(std::size_t point, const Vec3f& light, const BsdfValue& parts, float sign,
+              const ShadowRay& ray) {
         if (m_waiting.size() == kMost) deliver();
-        m_waiting.push_back({point, light, parts});
+        m_waiting.push_back({point, light, parts, sign});
         m_rays_waiting.push_back(ray);
     }
     /// The same where no ray is needed.
-    void send(std::size_t point, const Vec3f& light, const BsdfValue& parts) {
+    void send(std::size_t point, const Vec3f& light, const BsdfValue& parts, float sign) {
         deliver();
-        arrive({point, light, parts}, Vec3f(1.0f));
+        arrive({point, light, parts, sign}, Vec3f(1.0f));
     }
     /// All that is on its way.
     void deliver() {
@@ -46,12 +47,13 @@ class ShadowQueue {
         std::size_t point;
         Vec3f light;
         BsdfValue parts;
+        float sign;
     };
     /// A few packets: what waits stays in the first level of the cache.
     static constexpr std::size_t kMost = 128;
 
     void arrive(const Light& light, const Vec3f& seen) {
-        m_grid.radiance[light.point] += light.light * seen;
+        m_grid.add(light.point, light.light * seen, light.sign);
         m_grid.add_lamp(light.point, light.parts, seen);
     }
 

@@ -56,7 +56,7 @@ VectorSource object_normal(NodeBuilder& b) {
     if (b.is_world())
         return b.map<Vec3f>([](const Vec3f& d) { return -d; }, position_at(b, Shift::None));
     return b.geometry<Vec3f>([](const ShadingInput& in, std::size_t i) {
-        return unit(glm::transpose(in.world_from_object) * in.points->normal[i]);
+        return unit(glm::transpose(in.axes_at(i).world_from_object) * in.points->normal[i]);
     });
 }
 

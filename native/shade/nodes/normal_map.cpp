@@ -62,7 +62,6 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
                        corner_normals = run.read(corner_normal);
             const auto strengths = run.read(strength), signs = run.read(sign);
             const ShadingPoints& points = *run.input().points;
-            const Mat3f world_normal_from_object = glm::transpose(run.input().object_from_world);
             Vec3f* result = run.write(out);
             for (std::size_t i = 0; i < run.count(); ++i) {
                 const float side = points.backfacing[i] ? -1.0f : 1.0f;
@@ -85,7 +84,7 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
                     c = {c.x * s, c.y * s, 1.0f + (c.z - 1.0f) * std::min(s, 1.0f)};
                 }
                 Vec3f n = frame.tangent * c.x + frame.bitangent * c.y + frame.normal * c.z;
-                if (has_tangent) n = world_normal_from_object * n;
+                if (has_tangent) n = run.input().axes_at(i).world_normal_from_object() * n;
                 n = normalize_or(n, normal);
                 result[i] =
                     strengthened(points.normal[i], side * n, scales_slopes ? 1.0f : strengths[i]);
@@ -139,13 +138,12 @@ void build_normal_map(NodeBuilder& b) {
             const auto colors = run.read(color);
             const auto strengths = run.read(strength);
             const ShadingPoints& points = *run.input().points;
-            const Mat3f world_normal_from_object = glm::transpose(run.input().object_from_world);
             Vec3f* result = run.write(out);
             for (std::size_t i = 0; i < run.count(); ++i) {
                 Vec3f n = 2.0f * (colors[i] - 0.5f);
                 // Blender's own bakes have y and z turned.
                 if (flipped) n = {n.x, -n.y, -n.z};
-                if (object) n = world_normal_from_object * n;
+                if (object) n = run.input().axes_at(i).world_normal_from_object() * n;
                 n = normalize_or(n, points.normal[i]);
                 if (points.backfacing[i]) n = -n;
                 result[i] = strengthened(points.normal[i], n, strengths[i]);

@@ -29,11 +29,11 @@ VectorSource radial_tangent(NodeBuilder& b, RadialAxis axis) {
         [=](Run& run) {
             const auto places = run.read(generated);
             // As Cycles does, though it is a direction: by the matrix of normals.
-            const Mat3f world_normal_from_object = glm::transpose(run.input().object_from_world);
             Vec3f* result = run.write(out);
             for (std::size_t i = 0; i < run.count(); ++i) {
                 const Vec3f& n = run.input().points->normal[i];
-                const Vec3f way = unit(world_normal_from_object * around(axis, places[i]));
+                const Vec3f way = unit(run.input().axes_at(i).world_normal_from_object() *
+                                       around(axis, places[i]));
                 result[i] = glm::cross(n, unit(glm::cross(way, n)));
             }
         },

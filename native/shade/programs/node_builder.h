@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/report.h"
+#include "math/luminance.h"
 #include "scene/scene.h"
 #include "shade/programs/node_output.h"
 #include "shade/programs/program.h"
@@ -164,10 +165,5 @@ class NodeBuilder {
     std::size_t m_index;
     Shift m_shift;
 };
-
-/// The colour of linear Rec.709 as one number, as Cycles converts colour sockets to values.
-inline float luminance(const Vec3f& c) {
-    return 0.2126729f * c.x + 0.7151522f * c.y + 0.0721750f * c.z;
-}
 
 }  // namespace granita

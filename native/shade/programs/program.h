@@ -26,15 +26,30 @@ namespace granita {
 /// by differences).
 enum class Shift { None, U, V };
 
+/// For normals and directions.
+struct ObjectAxes {
+    Mat3f world_from_object{1.0f}, object_from_world{1.0f};
+
+    ObjectAxes() = default;
+    explicit ObjectAxes(const Mat4d& from_object)
+        : world_from_object(Mat3d(from_object)),
+          object_from_world(glm::inverse(Mat3d(from_object))) {}
+    Mat3f world_normal_from_object() const { return glm::transpose(object_from_world); }
+};
+
 /// What a program runs over.
 struct ShadingInput {
     const ShadingPoints* points = nullptr;
     const std::vector<GridAttribute>* attributes = nullptr;  ///< nullptr = none
     const Instance* instance = nullptr;                      ///< nullptr: the world
-    Mat3f world_from_object{1.0f};                           ///< for normals and directions
-    Mat3f object_from_world{1.0f};
-    float spread = 0.0f;      ///< world: radians a direction stands for
-    float ray_length = 0.0f;  ///< of shadow rays, from where they started
+    ObjectAxes axes;
+    std::vector<ObjectAxes> axes_at_times;  ///< [points] where these have times of their own
+    float spread = 0.0f;                    ///< world: radians a direction stands for
+    float ray_length = 0.0f;                ///< of shadow rays, from where they started
+
+    const ObjectAxes& axes_at(std::size_t point) const {
+        return axes_at_times.empty() ? axes : axes_at_times[point];
+    }
 };
 
 template <class T>

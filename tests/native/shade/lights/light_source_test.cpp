@@ -213,7 +213,7 @@ TEST_P(EveryLight, its_density_integrates_to_one_over_the_directions_that_meet_i
     double sum = 0.0;
     const std::uint32_t count = 1u << 18;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const Vec3f direction = Frame(Vec3f(0, 0, 1)).to_world(sample_cone(points(i), 2.0f));
+        const Vec3f direction = Basis(Vec3f(0, 0, 1)).to_world(sample_cone(points(i), 2.0f));
         LightSample sample;
         if (source->intersect(p, direction, sample)) sum += sample.pdf * 4 * kPi;
     }

@@ -172,7 +172,7 @@ TEST(RayScene, lifted_points_of_a_limit_surface_do_not_shade_themselves) {
             const Vec3f start = rays.ray_offset(key)(p, n);
             EXPECT_LT(glm::length(start - p), 0.02f);  // the offset stays small
             const Vec3f local = sample_cone(points(i + 1000), 0.98f);
-            EXPECT_EQ(rays.transmittance({start, Frame(n).to_world(local), kInfinity}),
+            EXPECT_EQ(rays.transmittance({start, Basis(n).to_world(local), kInfinity}),
                       Vec3f(1.0f));
             // And it is solid: looking inwards is dark.
             EXPECT_EQ(rays.transmittance({start, -n, kInfinity}), Vec3f(0.0f));

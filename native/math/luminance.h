@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "math/vec.h"
+
+namespace granita {
+
+/// Of a linear colour of Rec. 709, as Cycles turns colours into numbers.
+inline float luminance(const Vec3f& c) {
+    return 0.2126729f * c.x + 0.7151522f * c.y + 0.0721750f * c.z;
+}
+
+}  // namespace granita

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/refined_points.h"
+
+#include <algorithm>
+
+#include "scene/knot_time.h"
+#include "shade/lights/anchor.h"
+#include "shade/lights/vertex_paths.h"
+
+namespace granita {
+namespace {
+
+/// The shading points around a place, and their weights.
+struct Blend {
+    std::size_t point[4];
+    float weight[4];
+
+    template <class T, class Of>
+    T mean(const Of& of) const {
+        T sum = of(point[0]) * weight[0];
+        for (int k = 1; k < 4; ++k)
+            if (weight[k] != 0.0f) sum += of(point[k]) * weight[k];
+        return sum;
+    }
+};
+
+/// A lattice's corners around the micropolygon, which lies in one of its cells.
+Blend in_lattice(const Grid& grid, const RefinedPoint& at) {
+    const int step_u = grid.shading_positions.step_u, step_v = grid.shading_positions.step_v;
+    const auto row = static_cast<std::size_t>(grid.n_u / step_u) + 1;
+    int low_u = grid.n_u, low_v = grid.n_v;
+    float u = 0.0f, v = 0.0f;
+    for (int k = 0; k < 3; ++k) {
+        const int i = static_cast<int>(at.vertex[k]) % grid.up();
+        const int j = static_cast<int>(at.vertex[k]) / grid.up();
+        low_u = std::min(low_u, i);
+        low_v = std::min(low_v, j);
+        u += at.weight[k] * static_cast<float>(i);
+        v += at.weight[k] * static_cast<float>(j);
+    }
+    const int cell_u = low_u / step_u, cell_v = low_v / step_v;
+    const float x = u / static_cast<float>(step_u) - static_cast<float>(cell_u);
+    const float y = v / static_cast<float>(step_v) - static_cast<float>(cell_v);
+    const std::size_t first =
+        static_cast<std::size_t>(cell_v) * row + static_cast<std::size_t>(cell_u);
+    return {{first, first + 1, first + row, first + row + 1},
+            {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y}};
+}
+
+Blend blend_at(const Grid& grid, const RefinedPoint& at) {
+    const bool lattice = !grid.shading_positions.anchors.empty() && !grid.apart;
+    if (lattice) return in_lattice(grid, at);
+    Blend blend{{0, 0, 0, grid.point_at(at.vertex[0])}, {0, 0, 0, 0.0f}};
+    for (int k = 0; k < 3; ++k) {
+        blend.point[k] = grid.point_at(at.vertex[k]);
+        blend.weight[k] = at.weight[k];
+    }
+    return blend;
+}
+
+Vec3f unit_or(const Vec3f& v, const Vec3f& otherwise) {
+    const float length = glm::length(v);
+    return length > 0.0f ? v / length : otherwise;
+}
+
+/// Of the micropolygon's triangle, whose corners are at `place(vertex)`.
+template <class Place>
+Anchor triangle_of(const RefinedPoint& at, const Place& place) {
+    const Vec3f a = place(at.vertex[0]), b = place(at.vertex[1]), c = place(at.vertex[2]);
+    return {at.weight[0] * a + at.weight[1] * b + at.weight[2] * c, b - a, c - a};
+}
+
+/// How far the surface that rays meet may rise, on one side, above the micropolygon at `p`: as far
+/// as the planes in which it goes on from the corners do, be it curved or creased.
+float height_above(const Vec3f& p, const Blend& blend, const ShadingPoints& around, float side) {
+    float height = 0.0f;
+    for (const std::size_t k : blend.point) {
+        const float seen = around.backfacing[k] ? -side : side;
+        height = std::max(height, seen * glm::dot(around.p[k] - p, around.geometric_normal[k]));
+    }
+    return height;
+}
+
+GridAttribute blended(const GridAttribute& from, const std::vector<Blend>& blends,
+                      float point_size) {
+    GridAttribute out{from.attribute, from.width, {}, {}, {}};
+    const auto width = static_cast<std::size_t>(from.width);
+    const auto blend_all = [&](const std::vector<float>& values, std::vector<float>& to, float by) {
+        if (values.empty()) return;
+        to.reserve(blends.size() * width);
+        for (const Blend& blend : blends)
+            for (std::size_t c = 0; c < width; ++c)
+                to.push_back(
+                    by * blend.mean<float>([&](std::size_t i) { return values[i * width + c]; }));
+    };
+    blend_all(from.values, out.values, 1.0f);
+    blend_all(from.du, out.du, point_size);
+    blend_all(from.dv, out.dv, point_size);
+    return out;
+}
+
+/// The eye over the shutter, in shading space.
+class Eye {
+  public:
+    Eye(const Scene& scene, const ShadingCamera& camera)
+        : m_knots(scene.camera.world_from_camera),
+          m_perspective(camera.perspective),
+          m_origin(camera.world_from_camera[3]),
+          m_ahead(Mat3f(camera.world_from_camera) * Vec3f(0, 0, -1)) {}
+
+    /// Unit, towards it.
+    Vec3f view(const Vec3f& p, float time) const {
+        if (is_static(m_knots)) return m_perspective ? unit_or(-p, m_ahead) : m_ahead;
+        const Mat4d at = matrix_at(m_knots, time);
+        const Vec3f ahead = Mat3f(Mat3d(at)) * Vec3f(0, 0, -1);
+        if (!m_perspective) return ahead;
+        return unit_or(Vec3f(Vec3d(at[3]) - m_origin) - p, ahead);
+    }
+
+  private:
+    const std::vector<Mat4d>& m_knots;
+    bool m_perspective;
+    Vec3d m_origin;
+    Vec3f m_ahead;
+};
+
+}  // namespace
+
+RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const ShadingCamera& camera,
+                             std::span<const RefinedPoint> wanted, bool timed, float point_size) {
+    const ShadingPoints around = shading_points(grid, camera);
+    const VertexPaths paths(grid, scene);
+    const Eye eye(scene, camera);
+    points.count = wanted.size();
+    // Corners have the light samples of their neighbours too, which interpolation averages.
+    points.share = around.share * std::min(1.0f, 2.0f * point_size * point_size);
+    for (auto* values : {&points.p, &points.normal, &points.geometric_normal, &points.view,
+                         &points.dp_du, &points.dp_dv})
+        values->reserve(wanted.size());
+    const auto time_of = [&](const RefinedPoint& at) {
+        return at.time == kAnyTime ? scene.options.frame_time : at.time;
+    };
+    std::vector<Blend> blends;
+    blends.reserve(wanted.size());
+    for (const RefinedPoint& at : wanted) blends.push_back(blend_at(grid, at));
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const RefinedPoint& at = wanted[i];
+        const float time = time_of(at);
+        const Blend& blend = blends[i];
+        const auto mean = [&](const std::vector<Vec3f>& values) {
+            return blend.mean<Vec3f>([&](std::size_t k) { return values[k]; });
+        };
+        // As modelled: which side the eye sees may change with time.
+        const auto as_modelled = [&](const std::vector<Vec3f>& values) {
+            return blend.mean<Vec3f>(
+                [&](std::size_t k) { return around.backfacing[k] ? -values[k] : values[k]; });
+        };
+        const Anchor at_frame = triangle_of(at, [&](std::uint32_t v) { return paths.at_frame(v); });
+        Vec3f p = at_frame.place;
+        Mat3f turn(1.0f), turn_normal(1.0f);
+        if (paths.moves()) {
+            const Anchor then = triangle_of(at, [&](std::uint32_t v) { return paths.at(v, time); });
+            p = then.place;
+            turn = carried(at_frame, then);
+            turn_normal = glm::transpose(glm::inverse(turn));
+        }
+        const Vec3f view = eye.view(p, time);
+        const Vec3f outward = unit_or(turn_normal * as_modelled(around.geometric_normal), view);
+        const float side = glm::dot(outward, view) < 0.0f ? -1.0f : 1.0f;
+        points.p.push_back(p);
+        points.normal.push_back(unit_or(turn_normal * as_modelled(around.normal), outward) * side);
+        points.geometric_normal.push_back(outward * side);
+        points.view.push_back(view);
+        points.dp_du.push_back(turn * mean(around.dp_du) * point_size);
+        points.dp_dv.push_back(turn * mean(around.dp_dv) * point_size);
+        points.backfacing.push_back(side < 0.0f);
+        points.places.push_back(at.place);
+        const float lift = height_above(at_frame.place, blend, around, side);
+        Vec3f offset = points.geometric_normal.back() * lift;
+        if (!around.ray_offset.empty()) offset += turn * mean(around.ray_offset);
+        points.ray_offset.push_back(offset);
+        if (!around.faces.empty()) points.faces.push_back(around.faces[blend.point[0]]);
+        if (timed) points.times.push_back(at.time);
+    }
+    for (const GridAttribute& attribute : grid.attributes)
+        attributes.push_back(blended(attribute, blends, point_size));
+    const std::vector<Mat4d>& from_object = scene.instances[grid.instance].world_from_object;
+    axes = ObjectAxes(matrix_at(from_object, scene.options.frame_time));
+    if (!timed || is_static(from_object)) return;
+    for (const RefinedPoint& at : wanted)
+        axes_at_times.emplace_back(matrix_at(from_object, time_of(at)));
+}
+
+}  // namespace granita

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shading points between the vertices of a grid, each at a time of the shutter: what a sample sees
+// is shaded there and then, where the mean over the shutter at the corners does not tell it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dice/grid.h"
+#include "scene/scene.h"
+#include "shade/programs/program.h"
+#include "shade/shading_points.h"
+
+namespace granita {
+
+/// What is seen alike throughout the shutter is lit best by the mean over it.
+inline constexpr float kAnyTime = -1.0f;
+
+/// A place in a micropolygon.
+struct RefinedPoint {
+    std::uint32_t vertex[3];
+    float weight[3];
+    float time;           ///< of the shutter; kAnyTime: lit over all of it
+    std::uint32_t place;  ///< in the sample sequences of the frame
+};
+
+struct RefinedPoints {
+    ShadingPoints points;  ///< their times are set only where `timed`
+    std::vector<GridAttribute> attributes;
+    ObjectAxes axes;                        ///< as those of ShadingInput
+    std::vector<ObjectAxes> axes_at_times;  ///< likewise
+
+    /// @param grid with its shading state, whose points do not stand for faces.
+    /// @param timed whether anything of the frame moves.
+    /// @param point_size side of the square that a point stands for, in steps of the grid.
+    RefinedPoints(const Grid& grid, const Scene& scene, const ShadingCamera& camera,
+                  std::span<const RefinedPoint> wanted, bool timed, float point_size);
+};
+
+}  // namespace granita

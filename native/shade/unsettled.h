@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dice/grid.h"
+
+namespace granita {
+
+/// The most that two colours differ by in any channel as eye and displays take it: in square roots
+/// up to white, and half of one for each factor e beyond.
+float displayed_difference(const Vec3f& a, const Vec3f& b);
+
+/// Marks the micropolygons that interpolating their corners would draw wrong: where displayed
+/// colour along a row of corners bends by more than `threshold`, be it an edge or a highlight, and,
+/// as an edge ends anywhere, those that share a point with one.  Slopes are drawn right.
+/// @param noise [points] how far each corner's luminance is in doubt: what may be that alone is no
+/// edge, but is refined itself where it is larger than `noise_threshold`.
+std::vector<std::uint8_t> unsettled_micropolygons(const Grid& grid, std::span<const float> noise,
+                                                  float threshold, float noise_threshold);
+
+}  // namespace granita
