@@ -90,6 +90,9 @@ float displayed_difference(const Vec3f& a, const Vec3f& b) {
 
 std::vector<std::uint8_t> unsettled_micropolygons(const Grid& grid, std::span<const float> noise,
                                                   float threshold, float noise_threshold) {
+    const bool even = std::ranges::all_of(
+        grid.radiance, [&](const Vec3f& radiance) { return radiance == grid.radiance[0]; });
+    if (even) return {};
     const auto count = static_cast<std::size_t>(grid.micropolygon_count());
     std::vector<std::array<Corner, 4>> corners;
     corners.reserve(count);
