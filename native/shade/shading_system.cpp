@@ -321,16 +321,18 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 void ShadingSystem::shade_radiance(Grid& grid) const {
     const CompiledSurface& material = m_impl->material(grid.material);
     ShadingPoints points = shading_points(grid, m_impl->camera);
-    if (!material.radiance.sources.lobes.empty())
-        points.share *= light_sample_count(grid, m_impl->scene, m_impl->shutter);
+    const float sharpness = light_sample_count(grid, m_impl->scene, m_impl->shutter);
+    if (!material.radiance.sources.lobes.empty()) points.share *= sharpness;
     std::vector<float> noise(points.count, 0.0f);
     m_impl->shade(grid, m_impl->input(grid, points), m_impl->paths(grid, points), &noise);
     m_impl->statistics.add(Counter::GridsShaded);
     if (grid.shades_faces() || grid.holdout || !m_impl->is_mesh(grid)) return;
+    // What interpolation misses is averaged by blur, as the noise of light samples is.
     grid.unsettled =
         m_impl->changes_in_time(grid)
             ? std::vector<std::uint8_t>(static_cast<std::size_t>(grid.micropolygon_count()), 1)
-            : unsettled_micropolygons(grid, noise, m_impl->threshold, m_impl->noise_threshold);
+            : unsettled_micropolygons(grid, noise, m_impl->threshold / (sharpness * sharpness),
+                                      m_impl->noise_threshold / (sharpness * sharpness));
 }
 
 Grid ShadingSystem::refine(const Grid& grid, std::span<const RefinedPoint> wanted) const {
