@@ -107,7 +107,7 @@ def export_frame(
     instances = linked(instances, scan, seen.chosen, *masks)
     if view_layer.use_pass_vector:
         found = read_adjacent_frames(clock, at_frame, fps, report, check_cancel)
-        camera_at_frame["neighbours"] = found.camera
+        camera_at_frame["adjacent"] = found.camera
         instances = found.instances(instances, scan, seen.chosen)
         adjacent = found.points
     if persistent_state is not None:

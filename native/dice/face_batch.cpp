@@ -77,7 +77,7 @@ std::unique_ptr<Grid> FaceBatch::make_grid(std::size_t micropolygons) const {
     grid->material = m_mesh->material(patch(0).face);
     grid->holdout = m_mesh->instance().holdout;
     grid->lifespan = m_mesh->instance().lifespan;
-    grid->apart = true;
+    grid->disjoint = true;
     grid->n_u = static_cast<int>(micropolygons);
     grid->n_v = 1;
     grid->knots = m_mesh->knot_count();

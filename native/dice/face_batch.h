@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small faces of one material as one grid of separate micropolygons (Grid::apart), each the
+// Small faces of one material as one grid of separate micropolygons (Grid::disjoint), each the
 // micropolygon that its patch would be.  The two triangles of a bent quad are shaded as two faces.
 //
 // Shading: neighbours are gathered into clusters of about the shading rate's area, each shaded once

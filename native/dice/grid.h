@@ -8,7 +8,7 @@
 //   |  0---1   it is the two triangles (0, 1, 2) and (0, 2, 3): the diagonal is fixed
 //   +-----> u
 //
-// Small faces of a mesh share a grid, though its micropolygons then share no vertices (`apart`):
+// Small faces of a mesh share a grid, though its micropolygons then share no vertices (`disjoint`):
 // micropolygon m has its corners 0, 1, 3 and 2 at m, m + n_u, m + 2 n_u and m + 3 n_u, in one row.
 //
 // Where a border of the patch carries fewer vertices than the interior (crack-free dicing),
@@ -67,7 +67,7 @@ struct Grid {
     std::uint32_t instance = 0;  ///< index in Scene::instances
     std::int32_t material = -1;  ///< index in Scene::materials, slot already resolved
     int n_u = 0, n_v = 0;        ///< micropolygons along u and v, each >= 1
-    bool apart = false;          ///< micropolygons share no vertices; n_v is 1
+    bool disjoint = false;       ///< micropolygons share no vertices; n_v is 1
     int knots = 1;               ///< equidistant in shutter time
 
     std::vector<Vec3f> positions;  ///< [knots][vertices] camera space at each knot
@@ -109,17 +109,19 @@ struct Grid {
 
     std::vector<float> channels;  ///< [vertices][ChannelSet::vertex_width()]; empty = none asked
 
-    int vertex_count() const { return apart ? 4 * n_u : (n_u + 1) * (n_v + 1); }
+    int vertex_count() const { return disjoint ? 4 * n_u : (n_u + 1) * (n_v + 1); }
     int micropolygon_count() const { return n_u * n_v; }
     std::size_t point_count() const {
         return shading_positions.anchors.empty() ? static_cast<std::size_t>(vertex_count())
                                                  : shading_positions.anchors.size();
     }
     /// From corner 0 of a micropolygon to corners 1 and 3; corner 2 is both steps away.
-    int right() const { return apart ? n_u : 1; }
-    int up() const { return apart ? 2 * n_u : n_u + 1; }
+    int right() const { return disjoint ? n_u : 1; }
+    int up() const { return disjoint ? 2 * n_u : n_u + 1; }
     /// Whether shading points stand for whole small faces, whose vertices have one colour.
-    bool shades_faces() const { return apart && shading_positions.faces.empty(); }
+    bool shades_faces() const { return disjoint && shading_positions.faces.empty(); }
+    /// Whether shading points are fewer than vertices, each of a cell of several micropolygons.
+    bool shades_lattice() const { return !disjoint && !shading_positions.anchors.empty(); }
     /// The shading point of a vertex, of what is no lattice.
     std::size_t point_at(std::size_t vertex) const {
         return shading_positions.point_of.empty() ? vertex : shading_positions.point_of[vertex];

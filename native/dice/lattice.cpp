@@ -38,7 +38,7 @@ class LatticeDicer {
 
   private:
     void find_places() {
-        const SideWalker walk(*m_mesh, *m_patch);
+        const EdgeWalker walk(*m_mesh, *m_patch);
         for (int side = 0; side < 4; ++side) {
             m_ends[side].clear();
             if (m_lattice.sides[side].collapsed) continue;
@@ -51,7 +51,7 @@ class LatticeDicer {
 
     /// Every point from the edge that owns it.
     void place_border() {
-        const SideWalker walk(*m_mesh, *m_patch);
+        const EdgeWalker walk(*m_mesh, *m_patch);
         EdgePoint point;
         for (int side = 0; side < 4; ++side) {
             if (m_lattice.sides[side].collapsed) continue;

@@ -11,7 +11,7 @@ namespace granita {
 
 struct Lattice {
     const Vec2d* corner_uv;  ///< [4]
-    const Side* sides;       ///< [4] bottom, right, top, left
+    const PatchEdge* sides;  ///< [4] bottom, right, top, left
     int n_u, n_v;            ///< powers of two, at least what the sides need
 };
 

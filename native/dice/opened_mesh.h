@@ -9,8 +9,8 @@
 #include "dice/edge_rate.h"
 #include "dice/frame_face.h"
 #include "dice/knots.h"
+#include "dice/patch_edge.h"
 #include "dice/primitive.h"
-#include "dice/side.h"
 #include "dice/small_faces.h"
 #include "dice/view.h"
 #include "geometry/shared_geometry.h"
@@ -31,7 +31,7 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     /// Faces' corner places in (u, v) and their four sides, classified, ready to split and dice.
     struct Start {
         Vec2d corner_uv[4];
-        Side sides[4];  ///< bottom (0 to 1), right (1 to 2), top (3 to 2), left (0 to 3)
+        PatchEdge sides[4];  ///< bottom (0 to 1), right (1 to 2), top (3 to 2), left (0 to 3)
     };
 
     OpenedMesh(const View& view, std::size_t instance, std::shared_ptr<const SharedGeometry> shared,

@@ -31,11 +31,11 @@ OpenedPolygons::OpenedPolygons(const View& view, std::size_t instance,
 }
 
 OpenedMesh::Start OpenedPolygons::start(const BasePatch& patch, int budget) const {
-    const SideWalker walk(*this, patch);
+    const EdgeWalker walk(*this, patch);
     const int n = patch.kind == PatchKind::Triangle ? 3 : 4;
     std::uint32_t vertex[4];
     for (int i = 0; i < n; ++i) vertex[i] = static_cast<std::uint32_t>(vertex_of(patch.corner[i]));
-    Side around[4];  // side i leaves corner i
+    PatchEdge around[4];  // side i leaves corner i
     for (int i = 0; i < n; ++i) {
         const std::uint32_t a = vertex[i], b = vertex[(i + 1) % n];
         around[i].edge = {std::min(a, b), std::max(a, b)};

@@ -46,11 +46,11 @@ Vec3d OpenedSubdivision::place(const double* columns, int knot) const {
            Vec3d(knots().camera_from_object[static_cast<std::size_t>(knot)][3]);
 }
 
-Side OpenedSubdivision::base_side(std::uint32_t face, int local, std::int32_t from, int budget,
-                                  const SideWalker& walk) const {
+PatchEdge OpenedSubdivision::base_side(std::uint32_t face, int local, std::int32_t from, int budget,
+                                       const EdgeWalker& walk) const {
     const std::size_t index = topology().face_edge(face, local);
     const SubdivisionTopology::Edge& edge = topology().edge(index);
-    Side side;
+    PatchEdge side;
     side.edge = {static_cast<std::uint32_t>(index), kWhole};
     side.reversed = from != edge.lo;
     side.budget = static_cast<std::uint8_t>(budget);
@@ -78,7 +78,7 @@ FrameFace OpenedSubdivision::frame_face(const BasePatch& patch) const {
 
 OpenedMesh::Start OpenedSubdivision::start(const BasePatch& patch, int budget) const {
     static const Vec2d corner_uv[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    const SideWalker walk(*this, patch);
+    const EdgeWalker walk(*this, patch);
     Start start;
     std::copy_n(corner_uv, 4, start.corner_uv);
     const std::uint32_t first = shared().first_corner(patch.face);
@@ -93,7 +93,7 @@ OpenedMesh::Start OpenedSubdivision::start(const BasePatch& patch, int budget) c
     const std::uint32_t last = (patch.sub + n - 1) % n;
     const std::int32_t here = vertex_of(first + patch.sub);
     const auto spoke = [&](std::uint32_t corner) {
-        Side side;
+        PatchEdge side;
         side.edge = {patch.face, corner};
         side.budget = static_cast<std::uint8_t>(budget);
         walk.classify(side);

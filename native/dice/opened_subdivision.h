@@ -39,8 +39,8 @@ class OpenedSubdivision final : public OpenedMesh {
     Vec3d normal(const double* du, const double* dv, int knot, const Vec3d& otherwise) const;
     /// Vertices lie where all faces have them (LimitVertices).
     void copy_vertex(std::size_t vertex, EdgePoint& out) const;
-    Side base_side(std::uint32_t face, int local, std::int32_t from, int budget,
-                   const SideWalker& walk) const;
+    PatchEdge base_side(std::uint32_t face, int local, std::int32_t from, int budget,
+                        const EdgeWalker& walk) const;
     /// `amount`: displacement along the normal, metres.
     void limit_point(int face, const Vec2d& uv, double amount, EdgePoint& out) const;
 

@@ -48,8 +48,8 @@ std::unique_ptr<Patch> Patch::open(std::shared_ptr<const OpenedMesh> mesh, const
 
 int Patch::splittable(bool along_u) const {
     if ((along_u ? m_budget_u : m_budget_v) <= 0) return 0;
-    const Side& low = m_sides[along_u ? kBottom : kLeft];
-    const Side& high = m_sides[along_u ? kTop : kRight];
+    const PatchEdge& low = m_sides[along_u ? kBottom : kLeft];
+    const PatchEdge& high = m_sides[along_u ? kTop : kRight];
     if (low.refined() && (high.refined() || high.collapsed)) return 2;
     if (high.refined() && low.collapsed) return 2;
     return low.refined() || high.refined() ? 1 : 0;
@@ -58,7 +58,7 @@ int Patch::splittable(bool along_u) const {
 void Patch::measure() {
     const int grid_size = std::max(m_mesh->view().scene->options.grid_size, 1);
     const int most = static_cast<int>(std::bit_width(static_cast<unsigned>(grid_size))) - 1;
-    const SideWalker walk(*m_mesh, m_patch);
+    const EdgeWalker walk(*m_mesh, m_patch);
     m_border.u = std::max(walk.depth(m_sides[kBottom], most), walk.depth(m_sides[kTop], most));
     m_border.v = std::max(walk.depth(m_sides[kLeft], most), walk.depth(m_sides[kRight], most));
     m_rates = m_border;
@@ -87,7 +87,7 @@ void Patch::measure() {
 /// Between the sides a surface may need more than they do: where it is curved, and where they lie
 /// outside the frame, and coarse for that, around or beside what the frame shows.  Its middle lines
 /// stand for it, as near to the frame as the patch is.
-void Patch::measure_inside(const SideWalker& walk, int most) {
+void Patch::measure_inside(const EdgeWalker& walk, int most) {
     const bool curved = !m_mesh->straight_edges();
     if (!curved && m_border.u + m_border.v == 0) return;  // a pixel or two
     const RasterBounds around = bounds();
@@ -101,7 +101,8 @@ void Patch::measure_inside(const SideWalker& walk, int most) {
         const Vec2d end = 0.5 * (c[2] + (along_u ? c[1] : c[3]));
         m_mesh->surface_point(m_patch, start, a);
         m_mesh->surface_point(m_patch, end, b);
-        const Side middle = walk.draw(start, end, a, b, along_u ? m_budget_u : m_budget_v, outside);
+        const PatchEdge middle =
+            walk.draw(start, end, a, b, along_u ? m_budget_u : m_budget_v, outside);
         int& levels = along_u ? m_rates.u : m_rates.v;
         levels = std::max(levels, walk.depth(middle, most));
     }
@@ -125,8 +126,8 @@ std::vector<Bounds3f> Patch::knot_boxes() const {
 }
 
 Patch::Cut Patch::cut(int side, bool collapsed_before, int before, int after) const {
-    const SideWalker walk(*m_mesh, m_patch);
-    const Side& s = m_sides[side];
+    const EdgeWalker walk(*m_mesh, m_patch);
+    const PatchEdge& s = m_sides[side];
     Cut cut;
     if (s.refined()) {
         cut.uv = 0.5 * (m_corner_uv[before] + m_corner_uv[after]);
@@ -139,8 +140,8 @@ Patch::Cut Patch::cut(int side, bool collapsed_before, int before, int after) co
     const bool at_end = collapsed_before;
     cut.uv = m_corner_uv[at_end ? after : before];
     cut.halves[0] = cut.halves[1] = s;
-    Side& point = cut.halves[at_end ? 1 : 0];
-    point = Side{};
+    PatchEdge& point = cut.halves[at_end ? 1 : 0];
+    point = PatchEdge{};
     point.collapsed = true;
     if (!s.collapsed) {
         walk.point(s, at_end ? 1.0 : 0.0, cut.point);
@@ -165,8 +166,8 @@ std::vector<std::unique_ptr<Primitive>> Patch::split() const {
     const bool point_before = m_sides[u ? kLeft : kBottom].collapsed;
     const Cut low = cut(u ? kBottom : kLeft, point_before, 0, u ? 1 : 3);
     const Cut high = cut(u ? kTop : kRight, point_before, u ? 3 : 1, 2);
-    const SideWalker walk(*m_mesh, m_patch);
-    const Side line =
+    const EdgeWalker walk(*m_mesh, m_patch);
+    const PatchEdge line =
         walk.draw(low.uv, high.uv, low.point, high.point, u ? m_budget_v : m_budget_u);
 
     std::vector<std::unique_ptr<Primitive>> children;

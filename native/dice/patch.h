@@ -45,14 +45,14 @@ class Patch final : public Primitive {
 
     Patch(std::shared_ptr<const OpenedMesh> mesh, const BasePatch& patch);
     void measure();
-    void measure_inside(const SideWalker& walk, int most);
+    void measure_inside(const EdgeWalker& walk, int most);
     /// 0 not at all, 1 into a triangle and a rest, 2 in the middle.
     int splittable(bool along_u) const;
     /// Where a split line ends on a side: its middle, or the corner that stands in for it.
     struct Cut {
         Vec2d uv{0.0};
         EdgePoint point;
-        Side halves[2];
+        PatchEdge halves[2];
     };
     Cut cut(int side, bool collapsed_before, int before, int after) const;
 
@@ -60,7 +60,7 @@ class Patch final : public Primitive {
     BasePatch m_patch;
     std::uint64_t m_path = 1;
     Vec2d m_corner_uv[4];
-    Side m_sides[4];
+    PatchEdge m_sides[4];
     int m_budget_u = 0, m_budget_v = 0;
     Rates m_border;  ///< what the sides need
     Rates m_rates;   ///< what is diced: the sides, and the surface between them

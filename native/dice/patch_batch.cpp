@@ -77,10 +77,10 @@ int PatchBatch::levels(std::uint32_t a, std::uint32_t b, const BasePatch& face) 
     }
     const int sure = m_mesh->rate().sure_levels(start, end, knots);
     if (sure != EdgeRate::kUnsure) return sure;
-    Side side;
+    PatchEdge side;
     side.edge = {std::min(a, b), std::max(a, b)};
     side.budget = kMostEdgeLevels;
-    SideWalker(*m_mesh, face).classify(side);
+    EdgeWalker(*m_mesh, face).classify(side);
     return side.levels;
 }
 

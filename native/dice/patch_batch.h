@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces of a few pixels as one grid of separate micropolygons (Grid::apart): the micropolygons that
-// their patches dice into, with the same vertices, shaded at the same points.  A sphere whose faces
-// are 3 pixels wide so takes a tenth of the grids, and what a grid costs by itself (a node, bounds
-// in time, projection and sorting in each tile) is paid a tenth as often.
+// Faces of a few pixels as one grid of separate micropolygons (Grid::disjoint): the micropolygons
+// that their patches dice into, with the same vertices, shaded at the same points.  A sphere whose
+// faces are 3 pixels wide so takes a tenth of the grids, and what a grid costs by itself (a node,
+// bounds in time, projection and sorting in each tile) is paid a tenth as often.
 #pragma once
 
 #include "dice/face_batch.h"

@@ -32,8 +32,8 @@ constexpr bool is_position(AttributeSource source) {
 /// The points of another frame that a source asks for; empty for any other, and where they are
 /// those of the frame.
 inline std::span<const Vec3f> neighbour_points(const GeometryData& data, AttributeSource source) {
-    if (data.neighbours.empty()) return {};
-    const std::span<const Vec3f> both(data.neighbours);
+    if (data.adjacent.empty()) return {};
+    const std::span<const Vec3f> both(data.adjacent);
     if (source == AttributeSource::PreviousPosition) return both.first(both.size() / 2);
     if (source == AttributeSource::NextPosition) return both.last(both.size() / 2);
     return {};

@@ -31,7 +31,7 @@ struct GridPart {
     /// Calls visit(first, count) for the runs of vertices that the corners of the part are.
     template <class Visit>
     void for_each_run(const Grid& grid, Visit visit) const {
-        if (grid.apart) {  // separate micropolygons: four runs of corners
+        if (grid.disjoint) {  // separate micropolygons: four runs of corners
             for (int corner = 0; corner < 4; ++corner) visit(corner * grid.right() + i, n_u);
         } else if (n_u == grid.n_u) {
             visit(j * grid.up(), (n_v + 1) * grid.up());

@@ -133,12 +133,12 @@ void read_geometry(const Record& r, GeometryData& g) {
     if (!g.points.empty())
         std::memcpy(g.points.data(), points.data(), g.points.size() * sizeof(Vec3f));
 
-    if (r.has("neighbours")) {
+    if (r.has("adjacent")) {
         const auto others =
-            r.array<float>("neighbours", {2, static_cast<py::ssize_t>(g.vertex_count()), 3});
-        g.neighbours.resize(2 * g.vertex_count());
-        if (!g.neighbours.empty())
-            std::memcpy(g.neighbours.data(), others.data(), g.neighbours.size() * sizeof(Vec3f));
+            r.array<float>("adjacent", {2, static_cast<py::ssize_t>(g.vertex_count()), 3});
+        g.adjacent.resize(2 * g.vertex_count());
+        if (!g.adjacent.empty())
+            std::memcpy(g.adjacent.data(), others.data(), g.adjacent.size() * sizeof(Vec3f));
     }
 
     if (g.kind == GeometryKind::Mesh)
@@ -169,10 +169,10 @@ void read_instances(const Record& r, Scene& scene) {
     const auto geometry = r.values<std::int32_t>("geometry", {n});
     const auto knots = r.values<std::int32_t>("knots", {n});
     const auto transforms = n > 0 ? matrices(r, "world_from_object") : std::vector<Mat4d>{};
-    const auto neighbours =
-        n > 0 && r.has("neighbours") ? matrices(r, "neighbours") : std::vector<Mat4d>{};
-    if (!neighbours.empty() && neighbours.size() != 2 * static_cast<std::size_t>(n))
-        r.fail("'neighbours' must hold two matrices an instance");
+    const auto adjacent =
+        n > 0 && r.has("adjacent") ? matrices(r, "adjacent") : std::vector<Mat4d>{};
+    if (!adjacent.empty() && adjacent.size() != 2 * static_cast<std::size_t>(n))
+        r.fail("'adjacent' must hold two matrices an instance");
     const auto slots = r.values<std::int32_t>("slots", {n});
     const auto materials = r.values<std::int32_t>("materials", {-1});
     const auto flags = r.values<std::uint32_t>("flags", {n});
@@ -202,7 +202,7 @@ void read_instances(const Record& r, Scene& scene) {
             transforms.begin() + static_cast<std::ptrdiff_t>(knot),
             transforms.begin() + static_cast<std::ptrdiff_t>(knot) + knots[i]);
         knot += static_cast<std::size_t>(knots[i]);
-        if (!neighbours.empty()) instance.neighbours = {neighbours[2 * i], neighbours[2 * i + 1]};
+        if (!adjacent.empty()) instance.adjacent = {adjacent[2 * i], adjacent[2 * i + 1]};
         if (slots[i] < 0 || slot + static_cast<std::size_t>(slots[i]) > materials.size())
             fail("'slots' do not match 'materials'");
         for (int s = 0; s < slots[i]; ++s) {

@@ -116,9 +116,9 @@ void read_camera(const Record& r, Camera& camera) {
     camera.name = r.text("name", "Camera");
     camera.world_from_camera = matrices(r, "world_from_camera");
     if (camera.world_from_camera.empty()) r.fail("'world_from_camera' must hold at least one knot");
-    if (r.has("neighbours")) camera.neighbours = matrices(r, "neighbours");
-    if (!camera.neighbours.empty() && camera.neighbours.size() != 2)
-        r.fail("'neighbours' must hold two matrices");
+    if (r.has("adjacent")) camera.adjacent = matrices(r, "adjacent");
+    if (!camera.adjacent.empty() && camera.adjacent.size() != 2)
+        r.fail("'adjacent' must hold two matrices");
     Projection& p = camera.projection;
     p.perspective =
         choice(r, "kind", r.text("kind", "PERSPECTIVE"), {"PERSPECTIVE", "ORTHOGRAPHIC"}) == 0;

@@ -84,7 +84,7 @@ Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& fra
       statistics(frame_statistics),
       report(frame_report),
       progress(frame_progress),
-      shading(scene, statistics, report, progress),
+      shading(scene, statistics, report, progress, frame_choice.executor != Executor::Raster),
       view(make_view(scene, statistics, shading,
                      PixelFilter(scene.options.pixel_filter, scene.options.filter_width))),
       table(make_table(scene, view, report)),

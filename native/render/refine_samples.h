@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shading where samples are, once the corners of micropolygons are shaded (render/shade_seen.h) and
-// have told where that is not enough: edges of shadows and textures, highlights.  It takes Reyes'
-// shading as the control: what is smooth costs nothing here, and what is not converges with the
-// samples, in space, in time and over lamps.
+// have told where that is not enough: edges of shadows and textures, highlights.  What is
+// smooth costs nothing here, and what is not converges with the samples, in space, in time and over
+// lamps.
 #pragma once
 
 #include <span>

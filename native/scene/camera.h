@@ -15,7 +15,7 @@ struct Camera {
     std::vector<Mat4d>
         world_from_camera;  ///< [K], camera space as in projection.h (z forward), no scale
     /// The frame before and the one after, for the pass Vector; empty = as at the frame.
-    std::vector<Mat4d> neighbours;
+    std::vector<Mat4d> adjacent;
     Projection projection;
     LensKnots lens;               ///< where the projection's lens moves
     int blades = 0;               ///< 0..2 = round

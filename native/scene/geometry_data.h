@@ -54,8 +54,8 @@ struct GeometryData {
     std::string name;  ///< Blender's, for messages: "mesh 'Cube'"
     GeometryKind kind = GeometryKind::Mesh;
     int knots = 1;
-    std::vector<Vec3f> points;      ///< [knots][V] object space, metres
-    std::vector<Vec3f> neighbours;  ///< [2][V] of the frame before and the one after, or empty
+    std::vector<Vec3f> points;    ///< [knots][V] object space, metres
+    std::vector<Vec3f> adjacent;  ///< [2][V] of the frame before and the one after, or empty
     /// [V] Blender's Generated coordinates of a mesh.  Empty: the box of its points stands in.
     std::vector<Vec3f> generated;
     std::size_t vertex_count() const { return points.size() / static_cast<std::size_t>(knots); }

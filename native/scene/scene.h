@@ -21,7 +21,7 @@ struct Instance {
     std::string name;
     int geometry = 0;
     std::vector<Mat4d> world_from_object;  ///< [K] equidistant knots; one = static
-    std::vector<Mat4d> neighbours;         ///< as Camera::neighbours
+    std::vector<Mat4d> adjacent;           ///< as Camera::adjacent
     Lifespan lifespan;                     ///< when it exists; places are given throughout
     std::vector<std::int32_t>
         materials;  ///< [slots] index in Scene::materials, -1 = none (Blender's default grey)

@@ -18,7 +18,7 @@ void interpolate_points(const Grid& grid, std::size_t width, std::vector<T>& val
     if (grid.shading_positions.anchors.empty() || values.empty()) return;
     std::vector<T> spread;
     spread.reserve(static_cast<std::size_t>(grid.vertex_count()) * width);
-    if (grid.apart) {
+    if (grid.disjoint) {
         for (const std::uint32_t point : grid.shading_positions.point_of) {
             const T* from = &values[point * width];
             spread.insert(spread.end(), from, from + width);

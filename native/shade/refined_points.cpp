@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "math/normalize_or.h"
 #include "scene/knot_time.h"
 #include "shade/lights/anchor.h"
 #include "shade/lights/vertex_paths.h"
@@ -48,19 +49,13 @@ Blend in_lattice(const Grid& grid, const RefinedPoint& at) {
 }
 
 Blend blend_at(const Grid& grid, const RefinedPoint& at) {
-    const bool lattice = !grid.shading_positions.anchors.empty() && !grid.apart;
-    if (lattice) return in_lattice(grid, at);
+    if (grid.shades_lattice()) return in_lattice(grid, at);
     Blend blend{{0, 0, 0, grid.point_at(at.vertex[0])}, {0, 0, 0, 0.0f}};
     for (int k = 0; k < 3; ++k) {
         blend.point[k] = grid.point_at(at.vertex[k]);
         blend.weight[k] = at.weight[k];
     }
     return blend;
-}
-
-Vec3f unit_or(const Vec3f& v, const Vec3f& otherwise) {
-    const float length = glm::length(v);
-    return length > 0.0f ? v / length : otherwise;
 }
 
 /// Of the micropolygon's triangle, whose corners are at `place(vertex)`.
@@ -110,11 +105,11 @@ class Eye {
 
     /// Unit, towards it.
     Vec3f view(const Vec3f& p, float time) const {
-        if (is_static(m_knots)) return m_perspective ? unit_or(-p, m_ahead) : m_ahead;
+        if (is_static(m_knots)) return m_perspective ? normalize_or(-p, m_ahead) : m_ahead;
         const Mat4d at = matrix_at(m_knots, time);
         const Vec3f ahead = Mat3f(Mat3d(at)) * Vec3f(0, 0, -1);
         if (!m_perspective) return ahead;
-        return unit_or(Vec3f(Vec3d(at[3]) - m_origin) - p, ahead);
+        return normalize_or(Vec3f(Vec3d(at[3]) - m_origin) - p, ahead);
     }
 
   private:
@@ -165,10 +160,12 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
             turn_normal = glm::transpose(glm::inverse(turn));
         }
         const Vec3f view = eye.view(p, time);
-        const Vec3f outward = unit_or(turn_normal * as_modelled(around.geometric_normal), view);
+        const Vec3f outward =
+            normalize_or(turn_normal * as_modelled(around.geometric_normal), view);
         const float side = glm::dot(outward, view) < 0.0f ? -1.0f : 1.0f;
         points.p.push_back(p);
-        points.normal.push_back(unit_or(turn_normal * as_modelled(around.normal), outward) * side);
+        points.normal.push_back(normalize_or(turn_normal * as_modelled(around.normal), outward) *
+                                side);
         points.geometric_normal.push_back(outward * side);
         points.view.push_back(view);
         points.dp_du.push_back(turn * mean(around.dp_du) * point_size);
@@ -185,7 +182,6 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
     for (const GridAttribute& attribute : grid.attributes)
         attributes.push_back(blended(attribute, blends, point_size));
     const std::vector<Mat4d>& from_object = scene.instances[grid.instance].world_from_object;
-    axes = ObjectAxes(matrix_at(from_object, scene.options.frame_time));
     if (!timed || is_static(from_object)) return;
     for (const RefinedPoint& at : wanted)
         axes_at_times.emplace_back(matrix_at(from_object, time_of(at)));

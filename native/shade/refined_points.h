@@ -28,8 +28,7 @@ struct RefinedPoint {
 struct RefinedPoints {
     ShadingPoints points;  ///< their times are set only where `timed`
     std::vector<GridAttribute> attributes;
-    ObjectAxes axes;                        ///< as those of ShadingInput
-    std::vector<ObjectAxes> axes_at_times;  ///< likewise
+    std::vector<ObjectAxes> axes_at_times;  ///< as those of ShadingInput
 
     /// @param grid with its shading state, whose points do not stand for faces.
     /// @param timed whether anything of the frame moves.

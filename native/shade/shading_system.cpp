@@ -104,13 +104,15 @@ struct ShadingSystem::Impl {
     std::vector<std::vector<AttributeRequest>> requests;
     std::vector<DisplacementHook> displacement;
     WorldShader world;
+    bool refines;
     bool moves;                        ///< anything of the frame
     float threshold, noise_threshold;  ///< of unsettled_micropolygons()
     float footprint;                   ///< of a sample, in steps of a grid
     std::shared_ptr<GeometryCache> geometries = std::make_shared<GeometryCache>();
     std::unique_ptr<DirectLight> light;  ///< nullptr where nothing that is seen reflects any
 
-    Impl(const Scene& s, Statistics& stats, Report& warnings, const Progress& progress)
+    Impl(const Scene& s, Statistics& stats, Report& warnings, const Progress& progress,
+         bool refines_samples)
         : scene(s),
           statistics(stats),
           report(warnings),
@@ -119,6 +121,7 @@ struct ShadingSystem::Impl {
           shutter(s.options.shutter_curve),
           channels(s.options),
           world(s, textures, report),
+          refines(refines_samples),
           moves(s.moves()),
           threshold(s.options.shading_threshold * 8.0f /
                     std::sqrt(static_cast<float>(s.options.samples))),
@@ -199,6 +202,13 @@ struct ShadingSystem::Impl {
         return in;
     }
 
+    ShadingInput input(const Grid& grid, const RefinedPoints& refined) const {
+        ShadingInput in = input(grid, refined.points);
+        in.attributes = &refined.attributes;
+        in.axes_at_times = refined.axes_at_times;
+        return in;
+    }
+
     /// Fills radiance and channels of `grid`, whose points are `in.points`; `noise` as
     /// DirectLight::reflect().
     void shade(Grid& grid, const ShadingInput& in, const PointPaths& at,
@@ -237,18 +247,14 @@ struct ShadingSystem::Impl {
         out.n_u = static_cast<int>(wanted.size()) - 1;
         const Mat3f camera_from_world = glm::transpose(Mat3f(camera.world_from_camera));
         for (const Vec3f& p : refined.points.p) out.p.push_back(camera_from_world * p);
-        ShadingInput in;
-        in.points = &refined.points;
-        in.attributes = &refined.attributes;
-        in.instance = &scene.instances[grid.instance];
-        in.axes = refined.axes;
-        in.axes_at_times = refined.axes_at_times;
-        shade(out, in, {});
+        shade(out, input(grid, refined), {});
         return out;
     }
 
-    /// Strands and spheres are drawn as something flat, whose places say little of their shadows.
-    bool is_mesh(const Grid& grid) const {
+    /// Whether samples of the grid can be shaded by themselves.  Strands and spheres are drawn as
+    /// something flat, whose places say little of their shadows.
+    bool can_refine(const Grid& grid) const {
+        if (!refines || grid.shades_faces() || grid.holdout) return false;
         const std::int32_t index = scene.instances[grid.instance].geometry;
         return scene.geometries[static_cast<std::size_t>(index)].kind == GeometryKind::Mesh;
     }
@@ -279,8 +285,8 @@ struct ShadingSystem::Impl {
 };
 
 ShadingSystem::ShadingSystem(const Scene& scene, Statistics& statistics, Report& report,
-                             const Progress& progress)
-    : m_impl(std::make_unique<Impl>(scene, statistics, report, progress)) {}
+                             const Progress& progress, bool refines)
+    : m_impl(std::make_unique<Impl>(scene, statistics, report, progress, refines)) {}
 
 ShadingSystem::~ShadingSystem() = default;
 
@@ -321,12 +327,16 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 void ShadingSystem::shade_radiance(Grid& grid) const {
     const CompiledSurface& material = m_impl->material(grid.material);
     ShadingPoints points = shading_points(grid, m_impl->camera);
-    const float sharpness = light_sample_count(grid, m_impl->scene, m_impl->shutter);
-    if (!material.radiance.sources.lobes.empty()) points.share *= sharpness;
+    const bool refines = m_impl->can_refine(grid);
+    const bool lit = !material.radiance.sources.lobes.empty();
+    const float sharpness =
+        lit || refines ? light_sample_count(grid, m_impl->scene, m_impl->shutter) : 1.0f;
+    points.share *= sharpness;
     std::vector<float> noise(points.count, 0.0f);
-    m_impl->shade(grid, m_impl->input(grid, points), m_impl->paths(grid, points), &noise);
+    m_impl->shade(grid, m_impl->input(grid, points), m_impl->paths(grid, points),
+                  refines ? &noise : nullptr);
     m_impl->statistics.add(Counter::GridsShaded);
-    if (grid.shades_faces() || grid.holdout || !m_impl->is_mesh(grid)) return;
+    if (!refines) return;
     // What interpolation misses is averaged by blur, as the noise of light samples is.
     grid.unsettled =
         m_impl->changes_in_time(grid)

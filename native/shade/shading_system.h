@@ -21,8 +21,9 @@ class ShadingSystem {
     /// Compiles every material's programs (displacement, opacity, radiance: decision 6); unknown
     /// nodes are reported once by material and node and replaced by their nearest kin.  Builds the
     /// ray scene only if something needs rays.
+    /// @param refines whether refine() will be called where grids ask for it (Grid::unsettled).
     ShadingSystem(const Scene& scene, Statistics& statistics, Report& report,
-                  const Progress& progress);
+                  const Progress& progress, bool refines = true);
     ~ShadingSystem();
 
     /// For View: [materials + 1], the last for "no material".

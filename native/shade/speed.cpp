@@ -6,14 +6,14 @@
 namespace granita {
 namespace {
 
-/// At one of the neighbours, or at the frame.
-Mat4d camera_from_object(const Scene& scene, const Instance& instance, int neighbour) {
-    const auto at = [&](const std::vector<Mat4d>& neighbours, const std::vector<Mat4d>& knots) {
-        return neighbour < 0 || neighbours.empty() ? matrix_at(knots, scene.options.frame_time)
-                                                   : neighbours[neighbour];
+/// At one of the adjacent frames, or at the frame.
+Mat4d camera_from_object(const Scene& scene, const Instance& instance, int which) {
+    const auto at = [&](const std::vector<Mat4d>& adjacent, const std::vector<Mat4d>& knots) {
+        return which < 0 || adjacent.empty() ? matrix_at(knots, scene.options.frame_time)
+                                             : adjacent[which];
     };
-    return glm::inverse(at(scene.camera.neighbours, scene.camera.world_from_camera)) *
-           at(instance.neighbours, instance.world_from_object);
+    return glm::inverse(at(scene.camera.adjacent, scene.camera.world_from_camera)) *
+           at(instance.adjacent, instance.world_from_object);
 }
 
 /// False where it is not before the camera.

@@ -54,7 +54,7 @@ struct Corner {
 /// Its own corners, or those of the lattice's cell around it.
 std::array<Corner, 4> shaded_corners(const Grid& grid, int micropolygon) {
     const ShadingPositions& at = grid.shading_positions;
-    if (at.anchors.empty() || grid.apart) {
+    if (!grid.shades_lattice()) {
         const Grid::Corners c = grid.corners(micropolygon);
         const auto corner = [&](int v) {
             const auto vertex = static_cast<std::size_t>(v);

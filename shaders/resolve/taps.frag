@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pixel filter over a turned lattice, with its downsampling: every pixel has the same list of
+// The pixel filter over a rotated lattice, with its downsampling: every pixel has the same list of
 // texels and weights.  Not separable: no two samples of a pixel share a row.
 //
 // Defines: those of raster/lattice.glsl.

@@ -73,8 +73,8 @@ def test_each_time_has_the_vector_of_its_thing(moving):
     line(moving, "0 if 9.8 < frame < 9.9 or 10.05 < frame < 10.2 else 1")
     drive(moving.objects["Host"], "location", "4 * frame", 1)
     snapshot, _, _ = export_probe.through_engine(moving, motion_steps=17)
-    neighbours = snapshot["instances"]["neighbours"].reshape(3, 2, 4, 4)
-    assert neighbours[:, :, 1, 3] == pytest.approx(np.tile([36.0, 44.0], (3, 1)))
+    adjacent = snapshot["instances"]["adjacent"].reshape(3, 2, 4, 4)
+    assert adjacent[:, :, 1, 3] == pytest.approx(np.tile([36.0, 44.0], (3, 1)))
 
 
 def test_what_comes_again_goes_on_along_each_way_that_it_was_seen_to_go(moving):

@@ -118,7 +118,7 @@ def test_they_move_with_the_light(stage):
     knots = export_probe.knots_of(snapshot, "Lamp")
     np.testing.assert_array_equal(knots, light["world_from_light"])
     assert len(knots) > 1
-    assert len(snapshot["instances"]["neighbours"]) == 2 * len(snapshot["instances"]["name"])
+    assert len(snapshot["instances"]["adjacent"]) == 2 * len(snapshot["instances"]["name"])
 
 
 @pytest.mark.parametrize("kind", ["SUN", "SPOT", "NARROW"])

@@ -134,8 +134,8 @@ def test_a_changed_topology_is_named(film, render):
     drive(square, "location", "frame - 10", 0)
     snapshot, report, _ = export_probe.through_engine(film)
     assert [name for name, _, _ in report.entries()] == ["mesh 'Square'"]
-    assert "neighbours" not in snapshot["geometries"][0]
-    x = snapshot["instances"]["neighbours"][:, 0, 3]
+    assert "adjacent" not in snapshot["geometries"][0]
+    x = snapshot["instances"]["adjacent"][:, 0, 3]
     assert x == pytest.approx([-1.0, 1.0])
 
 

@@ -195,8 +195,8 @@ def render(snapshot):
     for name in ("receives", "blocks"):
         if name in table:
             packed[name] = np.array([mask % 2**64 for mask in table[name]], np.uint64)
-    if "neighbours" in table:
-        packed["neighbours"] = table["neighbours"]
+    if "adjacent" in table:
+        packed["adjacent"] = table["adjacent"]
     return granita_core.render({**snapshot, "instances": packed})
 
 

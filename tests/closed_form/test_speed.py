@@ -32,7 +32,7 @@ def test_a_place(executor):
     """It comes from 3 pixels to the left and goes 5 up: (before - now, now - after)."""
     snapshot = snapshots.orthographic((8, 8), executor=executor)
     wall(snapshot)
-    snapshot["instances"]["neighbours"] = pair(
+    snapshot["instances"]["adjacent"] = pair(
         snapshots.translation(-3, 0), snapshots.translation(0, 5)
     )
     assert np.abs(speed(snapshot) - (-3, 0, 0, -5)).max() < ROUNDING
@@ -42,7 +42,7 @@ def test_edges_are_no_mixture_with_nothing(executor):
     """Half a pixel of coverage: still the surface's own."""
     snapshot = snapshots.orthographic((8, 8), executor=executor)
     snapshots.quad(snapshot, snapshots.rectangle(0, 0, 4.5, 8))
-    snapshot["instances"]["neighbours"] = pair(
+    snapshot["instances"]["adjacent"] = pair(
         snapshots.translation(-3, 0), snapshots.translation(0, 5)
     )
     made = speed(snapshot)
@@ -55,7 +55,7 @@ def test_a_shape(executor):
     snapshot = snapshots.orthographic((16, 8), executor=executor, samples=64)
     now = np.float32(snapshots.rectangle(0, 0, 16, 8, 4.0))
     wider = now * np.float32([1.5, 1, 1])
-    snapshots.quad(snapshot, now, neighbours=np.stack([now, wider]))
+    snapshots.quad(snapshot, now, adjacent=np.stack([now, wider]))
     made = speed(snapshot)
     assert np.all(made[..., [0, 1, 3]] == 0.0)
     # A pixel's 64 stratified samples lie within .2 pixels about its centre in the mean.
@@ -71,7 +71,7 @@ def test_a_subdivided_shape_is_that_of_its_limit(executor):
     snapshots.mesh(
         snapshot, cube, faces, transforms=[place],
         subdivision={"scheme": "CATMULL_CLARK", "boundary": "ALL"},
-        neighbours=np.stack([2 * cube, cube]),
+        adjacent=np.stack([2 * cube, cube]),
     )  # fmt: skip
     snapshot["options"]["passes"] = ["Vector", "Position"]
     passes = snapshots.render(snapshot)["passes"]
@@ -99,14 +99,14 @@ def test_a_camera(executor):
     """It moves 1 m to the right a frame and one back: f X / z moves by f / z."""
     snapshot = snapshots.perspective((16, 16), 20.0, executor=executor)
     wall(snapshot, 5.0)
-    snapshot["camera"]["neighbours"] = pair(snapshots.translation(-1), snapshots.translation(1))
+    snapshot["camera"]["adjacent"] = pair(snapshots.translation(-1), snapshots.translation(1))
     assert np.abs(speed(snapshot) - (4, 0, 4, 0)).max() < ROUNDING
 
 
 def test_what_was_behind_the_camera_has_none(executor):
     snapshot = snapshots.perspective((8, 8), 20.0, executor=executor)
     wall(snapshot, 5.0)
-    snapshot["instances"]["neighbours"] = pair(
+    snapshot["instances"]["adjacent"] = pair(
         snapshots.translation(0, 0, -6), snapshots.translation(1, 0, 0)
     )
     assert np.abs(speed(snapshot) - (0, 0, -4, 0)).max() < ROUNDING
@@ -115,7 +115,7 @@ def test_what_was_behind_the_camera_has_none(executor):
 def test_it_is_of_whole_frames_in_a_blurred_picture_too(executor):
     snapshot = snapshots.orthographic((8, 8), executor=executor)
     wall(snapshot, transforms=[snapshots.translation(-1), snapshots.translation(1)])
-    snapshot["instances"]["neighbours"] = pair(snapshots.translation(-4), snapshots.translation(4))
+    snapshot["instances"]["adjacent"] = pair(snapshots.translation(-4), snapshots.translation(4))
     assert np.abs(speed(snapshot) - (-4, 0, -4, 0)).max() < ROUNDING
 
 
@@ -127,7 +127,7 @@ def test_hair_and_points(executor):
         {
             "name": "curves", "kind": "CURVES", "points": points[None],
             "curve_sizes": np.full(9, 4, np.int32), "radius": np.ones((1, 36), np.float32),
-            "neighbours": np.stack([points, points + np.float32([2, 0, 0])]),
+            "adjacent": np.stack([points, points + np.float32([2, 0, 0])]),
         }
     )  # fmt: skip
     snapshots.instance(snapshot, 0)
@@ -141,6 +141,6 @@ def test_wrong_sizes_are_refused_by_name(key):
     snapshot = snapshots.orthographic((8, 8))
     wall(snapshot)
     owner = snapshot["geometries"][0] if key == "geometry" else snapshot[key]
-    owner["neighbours"] = np.zeros((1, 4, 3), np.float32) if key == "geometry" else np.eye(4)[None]
-    with pytest.raises(granita_core.SceneError, match="neighbours"):
+    owner["adjacent"] = np.zeros((1, 4, 3), np.float32) if key == "geometry" else np.eye(4)[None]
+    with pytest.raises(granita_core.SceneError, match="adjacent"):
         speed(snapshot)

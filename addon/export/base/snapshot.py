@@ -33,7 +33,7 @@ class Geometry:
 
     name: str  # "mesh 'Cube'"
     points: np.ndarray  # float32 [K, V, 3], object space, metres
-    neighbours: Optional[np.ndarray] = (
+    adjacent: Optional[np.ndarray] = (
         None  # float32 [2, V, 3], of the frame before and the one after
     )
     generated: Optional[np.ndarray] = None  # float32 [V, 3], of a mesh, within its texture space
@@ -70,7 +70,7 @@ class Instances:
     object_index: np.ndarray  # int32 [n], the pass index
     random: np.ndarray  # float32 [n], 0 to 1
     key: np.ndarray  # uint32 [n], unique; from the persistent identity
-    neighbours: Optional[np.ndarray] = None  # float64 [2 n, 4, 4], as of geometries
+    adjacent: Optional[np.ndarray] = None  # float64 [2 n, 4, 4], as of geometries
     # uint64 [n], a bit a set of linked lights; None = all:
     receives: Optional[np.ndarray] = None  # those that light it
     blocks: Optional[np.ndarray] = None  # those that it shadows

@@ -57,7 +57,7 @@ class GeometrySource:
         geometry = self.geometry if knots is None else self._moved(knots)
         if adjacent is None:
             return geometry
-        return replace(geometry, neighbours=np.ascontiguousarray(adjacent[..., :3]))
+        return replace(geometry, adjacent=np.ascontiguousarray(adjacent[..., :3]))
 
     def _moved(self, knots):
         if knots.shape[2] == 3:

@@ -32,7 +32,7 @@ class AdjacentFrames:
         both[:, self.things] = self.matrices
         both[:, len(scan.prototype) - len(self.again) :] = both[:, self.again]
         both = both[:, chosen].swapaxes(0, 1)
-        return replace(instances, neighbours=np.ascontiguousarray(both).reshape(-1, 4, 4))
+        return replace(instances, adjacent=np.ascontiguousarray(both).reshape(-1, 4, 4))
 
 
 def _silent(_datablock, _message):

@@ -52,7 +52,7 @@ def add_emitters(snapshot, lamps, scan, report):
             object_index=[0],
             random=[0.0],
             key=[key],
-            neighbours=matrices[[len(matrices) // 2] * 2],
+            adjacent=matrices[[len(matrices) // 2] * 2],
             receives=[2**64 - 1],
             blocks=[2**64 - 1],
             lifespan=[lamp.get("lifespan", (0.0, 1.0))],

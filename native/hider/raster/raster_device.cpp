@@ -135,7 +135,7 @@ std::vector<RasterDevice::Command> RasterDevice::commands(
 
 double RasterDevice::lattice_turn() const {
     const RegularLattice& lattice = m_target.lattice();
-    return lattice.turned ? 1.0 / lattice.side : 0.0;
+    return lattice.rotated ? 1.0 / lattice.side : 0.0;
 }
 
 void RasterDevice::set_cell(const RasterCell& cell) const {
@@ -145,7 +145,7 @@ void RasterDevice::set_cell(const RasterCell& cell) const {
     const double per_pixel = 2.0 * lattice.side / m_target.texel_size();
     // Where the corner's place, turned, must be; half a texel as regular_lattice.h says.
     Vec2d corner = texel * Vec2d(m_target.origin()) - Vec2d(1.0);
-    if (lattice.turned && lattice.side % 2 == 1) corner.y += 0.5 * texel;
+    if (lattice.rotated && lattice.side % 2 == 1) corner.y += 0.5 * texel;
     corner = (corner - turn * Vec2d(corner.y, -corner.x)) / (1.0 + turn * turn);
     const Vec2d scale = p.scale * per_pixel;
     const Vec2d center = (p.center - Vec2d(cell.corner)) * per_pixel + corner;

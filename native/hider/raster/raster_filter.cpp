@@ -55,7 +55,7 @@ RasterFilter make_raster_filter(RegularLattice lattice, double radius,
                                 const std::function<double(double)>& factor) {
     GRANITA_CHECK_GE(lattice.side, 1);
     GRANITA_CHECK(std::isfinite(radius) && radius > 0.0);
-    if (lattice.turned) return make_taps(lattice, radius, factor);
+    if (lattice.rotated) return make_taps(lattice, radius, factor);
     RasterFilter filter;
     filter.lattice = lattice;
     const int side = lattice.side;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pixel filter as the raster executor uses it, in a generated shader (paper, 9.3.6): on a
 // regular lattice every pixel has the same weights, which are its constants; samples that lie
-// anywhere weigh by the filter's factor, a table of constants.  Along a turned lattice the filter
+// anywhere weigh by the filter's factor, a table of constants.  Along a rotated lattice the filter
 // is not separable: its weights are a list of texels.
 #pragma once
 
@@ -20,7 +20,7 @@ struct RasterFilter {
     int first = 0;                ///< sub-sample of weights[0]; 0 is the pixel's own lowest
     std::vector<double> weights;  ///< consecutive sub-samples; sum 1
 
-    /// On a turned lattice.
+    /// On a rotated lattice.
     struct Tap {
         Vec2i texel{0, 0};  ///< from RegularLattice::first_texel of the pixel
         float weight = 0.0f;

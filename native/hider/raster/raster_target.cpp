@@ -101,7 +101,7 @@ RasterTarget::RasterTarget(const RasterFilter& filter, int most_layers, int max_
 
 gl::Defines RasterTarget::lattice_defines() const {
     return {{"LATTICE", std::to_string(m_lattice.side)},
-            {"ROTATED", m_lattice.turned ? "1" : "0"},
+            {"ROTATED", m_lattice.rotated ? "1" : "0"},
             {"ORIGIN", vector_source(m_origin)}};
 }
 
@@ -180,7 +180,7 @@ std::vector<Vec4f> RasterTarget::resolve(const RasterCell& cell,
     const gl::TexelRect own = own_pixels(cell);
     const int margin_texels = m_margin * m_lattice.side;
     m_mean.bind(FILTER_SOURCE);
-    if (samples != nullptr || m_lattice.turned) {
+    if (samples != nullptr || m_lattice.rotated) {
         m_gather.use();
         if (samples != nullptr)
             samples->bind();
@@ -208,8 +208,8 @@ std::vector<float> RasterTarget::center_depths(const RasterCell& cell,
                                                const RasterSamples* samples) {
     if (m_center.name() == 0) {
         // Of four on a square lattice, the first.
-        const Vec2i center = m_lattice.turned ? m_lattice.texel(m_lattice.center_cell())
-                                              : Vec2i((m_lattice.side - 1) / 2);
+        const Vec2i center = m_lattice.rotated ? m_lattice.texel(m_lattice.center_cell())
+                                               : Vec2i((m_lattice.side - 1) / 2);
         gl::Defines defines = lattice_defines();
         defines.emplace_back("AT_SAMPLE", samples != nullptr ? "1" : "0");
         defines.emplace_back("CENTER", vector_source(center));

@@ -109,8 +109,8 @@ class RasterTarget {
     gl::Texture m_surfaces;  ///< made at the first begin_surfaces()
     gl::Framebuffer m_surfaces_target;
     gl::Program m_filter_x, m_filter_y;  ///< of a lattice
-    gl::Program m_gather;                ///< of a turned lattice or of samples anywhere
-    gl::Buffer m_taps;                   ///< of a turned lattice
+    gl::Program m_gather;                ///< of a rotated lattice or of samples anywhere
+    gl::Buffer m_taps;                   ///< of a rotated lattice
     gl::Texture m_center_depths;         ///< made at the first center_depths()
     gl::Framebuffer m_center_depths_target;
     gl::Program m_center;

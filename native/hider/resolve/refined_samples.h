@@ -12,7 +12,6 @@ namespace granita {
 /// (ShadingSystem::refine).
 class RefinedSamples {
   public:
-    bool empty() const { return m_points.empty(); }
     /// `count`: of the tile's samples.  The grid outlives this.
     void add(std::uint32_t sample, std::size_t count, const Grid& grid, int vertex) {
         m_index.resize(count, kNone);

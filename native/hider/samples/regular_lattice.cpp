@@ -10,15 +10,15 @@ namespace granita {
 
 Vec2f RegularLattice::place(int cell) const {
     const auto i = static_cast<std::uint32_t>(cell), n = static_cast<std::uint32_t>(side);
-    const std::uint32_t points = turned ? n * n + 1 : n;
-    const std::uint32_t column = turned ? i : i % n;
-    const std::uint32_t row = turned ? bits::rotated_row(i, n) : i / n;
+    const std::uint32_t points = rotated ? n * n + 1 : n;
+    const std::uint32_t column = rotated ? i : i % n;
+    const std::uint32_t row = rotated ? bits::rotated_row(i, n) : i / n;
     return {static_cast<float>(bits::cell_center(column, points)) * 0x1p-20f,
             static_cast<float>(bits::cell_center(row, points)) * 0x1p-20f};
 }
 
 Vec2i RegularLattice::texel(int cell) const {
-    if (!turned) return {cell % side, cell / side};
+    if (!rotated) return {cell % side, cell / side};
     // Twice the texel coordinates of ((2 i + 1) / 2 n, (2 j + 1) / 2 n): whole numbers.
     const auto row = static_cast<int>(
         bits::rotated_row(static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(side)));
@@ -32,12 +32,12 @@ Vec2i RegularLattice::texel(int cell) const {
 
 Vec2i RegularLattice::first_texel(Vec2i pixel) const {
     const Vec2i square = side * pixel;
-    return turned ? square + Vec2i(pixel.y, -pixel.x) : square;
+    return rotated ? square + Vec2i(pixel.y, -pixel.x) : square;
 }
 
 Rect RegularLattice::texels_of(const Rect& pixels) const {
-    const int lean_x0 = turned ? pixels.y0 : 0, lean_x1 = turned ? pixels.y1 : 0;
-    const int lean_y0 = turned ? pixels.x1 : 0, lean_y1 = turned ? pixels.x0 : 0;
+    const int lean_x0 = rotated ? pixels.y0 : 0, lean_x1 = rotated ? pixels.y1 : 0;
+    const int lean_y0 = rotated ? pixels.x1 : 0, lean_y1 = rotated ? pixels.x0 : 0;
     return {side * pixels.x0 + lean_x0, side * pixels.y0 - lean_y0, side * pixels.x1 + lean_x1,
             side * pixels.y1 - lean_y1};
 }

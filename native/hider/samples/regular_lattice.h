@@ -8,7 +8,7 @@
 namespace granita {
 
 /// `side` x `side` cells along the pixel's sides (the paper, 9.3.3); or, with one sample more, that
-/// lattice turned by atan(1 / side), so that no two samples of a pixel share a row or a column.
+/// lattice rotated by atan(1 / side), so that no two samples of a pixel share a row or a column.
 /// Edges along the axes, which the former places to 1 / side of a pixel, are then placed to one
 /// in side^2 + 1: what passes add does not ripple with the lattice (docs/decisions/hiding.md).
 ///
@@ -17,12 +17,12 @@ namespace granita {
 /// sample lies at its texel's centre.  Whole pixels are whole texels in both.
 struct RegularLattice {
     int side = 1;
-    bool turned = false;
+    bool rotated = false;
 
     constexpr RegularLattice(int cells_a_side = 1, bool is_rotated = false)
-        : side(cells_a_side), turned(is_rotated) {}
+        : side(cells_a_side), rotated(is_rotated) {}
 
-    int cells() const { return side * side + (turned ? 1 : 0); }
+    int cells() const { return side * side + (rotated ? 1 : 0); }
     /// Of sample `cell` of a pixel, relative to the pixel; as SampleTable has it.
     Vec2f place(int cell) const;
     /// Relative to the pixel's first_texel().

@@ -27,7 +27,7 @@ Vec3f normal_at(const Grid& grid, const std::vector<Vec3f>& places, std::size_t 
                 const ShadingPoints& points, std::size_t point) {
     const int v = static_cast<int>(vertex);
     Vec3f across;
-    if (grid.apart) {
+    if (grid.disjoint) {
         const Grid::Corners c = grid.corners(v % grid.n_u);
         across = glm::cross(places[c.v2] - places[c.v0], places[c.v3] - places[c.v1]);
     } else {
@@ -71,7 +71,7 @@ PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints
                 place.p += carried(at_frame[i], at) * beside;
             }
             place.start = place.p;
-            if (!points.ray_offset.empty() && !grid.apart) place.start += points.ray_offset[i];
+            if (!points.ray_offset.empty() && !grid.disjoint) place.start += points.ray_offset[i];
             place.normal = normal_at(grid, places, anchors.empty() ? i : anchors[i], points, i);
             m_places.push_back(place);
         }

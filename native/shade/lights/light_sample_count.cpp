@@ -46,7 +46,7 @@ class GridBlur {
     }
     /// Square pixels that a point stands for, at least 1.
     double area() const {
-        if (m_grid.apart) return 1.0;
+        if (m_grid.disjoint) return 1.0;
         const KnotTime first;
         double sum = 0.0;
         for (int m = 0; m < m_grid.micropolygon_count(); ++m) {

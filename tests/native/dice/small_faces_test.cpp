@@ -87,8 +87,8 @@ TEST(SmallFaces, their_borders_to_larger_faces_have_no_cracks) {
     for (const double focal : {250.0, 800.0}) {
         s.perspective(focal);
         const auto grids = s.grids();
-        const auto apart =
-            std::count_if(grids.begin(), grids.end(), [](const auto& grid) { return grid->apart; });
+        const auto apart = std::count_if(grids.begin(), grids.end(),
+                                         [](const auto& grid) { return grid->disjoint; });
         EXPECT_GT(apart, 5);
         EXPECT_EQ(apart == static_cast<long>(grids.size()), focal == 250.0);
         EXPECT_TRUE(open_edges(grids).empty());
@@ -106,7 +106,7 @@ std::vector<std::array<Corner, 4>> shaded_corners(const std::vector<std::unique_
             found.emplace_back();
             for (std::size_t i = 0; const int vertex : {c.v0, c.v1, c.v2, c.v3}) {
                 const auto v = static_cast<std::size_t>(vertex);
-                const std::size_t point = grid->apart ? grid->shading_positions.point_of[v] : v;
+                const std::size_t point = grid->disjoint ? grid->shading_positions.point_of[v] : v;
                 EXPECT_EQ(grid->shading_p()[point], grid->positions[v]);
                 const Vec3f &p = grid->positions[v], &n = grid->normal[point];
                 found.back()[i++] = {p.x, p.y, p.z, n.x, n.y, n.z};
@@ -231,7 +231,7 @@ TEST(SmallFaces, hold_positions_alone_until_they_are_shaded) {
         const auto opened = open_instance(s.view, 0, s.report);
         for (std::size_t i = 0; i < opened->primitive_count(); ++i) {
             const auto grid = opened->primitive(i)->dice();
-            ASSERT_TRUE(grid->apart);
+            ASSERT_TRUE(grid->disjoint);
             EXPECT_TRUE(grid->bounds.visible);
             EXPECT_EQ(grid->bytes(), sizeof(Grid) + sizeof(Vec3f) * grid->positions.size());
             ASSERT_TRUE(grid->shading_state);

@@ -75,7 +75,7 @@ Grid take_apart(const Grid& grid) {
     Grid apart = grid;
     apart.n_u = grid.micropolygon_count();
     apart.n_v = 1;
-    apart.apart = true;
+    apart.disjoint = true;
     apart.positions.clear();
     apart.opacity.clear();
     for (int knot = 0; knot < grid.knots; ++knot)

@@ -108,10 +108,10 @@ TEST(GridSweep, HoldsFacesOfTheirOwnAndNarrowGrids) {
         };
         for (const int rows : {1, 2})
             expect_holds_brute_force(shot, make_grid(90, rows, knots, ribbon));
-        // 100 squares that share no vertices (Grid::apart).
+        // 100 squares that share no vertices (Grid::disjoint).
         Grid apart = make_grid(1, 1, 1, ribbon);
         apart.n_u = 100;
-        apart.apart = true;
+        apart.disjoint = true;
         apart.knots = knots;
         apart.motion = knots > 1;
         apart.positions.clear();

@@ -22,7 +22,7 @@ layout(location = 0) uniform ivec2 tile;
 layout(location = 1) uniform uint samples;
 layout(location = 2) uniform uint seed;
 layout(location = 3) uniform uint lattice;  // side; 0 = INDEPENDENT
-layout(location = 4) uniform bool turned;
+layout(location = 4) uniform bool rotated;
 
 void main() {
     const uint i = gl_GlobalInvocationID.x;
@@ -34,8 +34,8 @@ void main() {
     if (lattice == 0u) {
         for (uint d = 0u; d < 5u; ++d) values[d] = independent_sample(pixel, s, samples, seed, d);
     } else {
-        const uint cells = regular_cells(lattice, turned);
-        const vec2 place = regular_place(s, lattice, turned);
+        const uint cells = regular_cells(lattice, rotated);
+        const vec2 place = regular_place(s, lattice, rotated);
         const vec3 pass = regular_pass(s, cells, samples / cells);
         values = float[5](place.x, place.y, pass.x, pass.y, pass.z);
     }
@@ -60,7 +60,7 @@ std::vector<std::uint32_t> table_on_device(const SampleTable& table, Vec2i tile)
         glUniform1ui(2, table.seed());
         const bool regular = table.sampling() == Sampling::Regular;
         glUniform1ui(3, regular ? static_cast<GLuint>(table.lattice().side) : 0);
-        glUniform1i(4, table.lattice().turned);
+        glUniform1i(4, table.lattice().rotated);
         glDispatchCompute((256 * samples + 63) / 64, 1, 1);
         gl::check("filling a sample table");
         return buffer.read<std::uint32_t>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "dice/side.h"
+#include "dice/patch_edge.h"
 
 #include <algorithm>
 
@@ -10,13 +10,13 @@ namespace granita {
 namespace {
 
 /// Parameter on the whole edge of a place in a node's own direction; exact.
-double on_edge(const Side& side, double place) {
+double on_edge(const PatchEdge& side, double place) {
     return (side.index + place) / static_cast<double>(std::uint32_t{1} << side.depth);
 }
 
 }  // namespace
 
-void SideWalker::edge_point(const Side& side, double t, EdgePoint& out) const {
+void EdgeWalker::edge_point(const PatchEdge& side, double t, EdgePoint& out) const {
     if (!side.line) {
         m_mesh.edge_point(side.edge, t, out);
         return;
@@ -32,11 +32,11 @@ void SideWalker::edge_point(const Side& side, double t, EdgePoint& out) const {
         std::copy_n(line.offset.begin() + first, m_mesh.knot_count(), out.offset);
 }
 
-void SideWalker::point(const Side& side, double at, EdgePoint& out) const {
+void EdgeWalker::point(const PatchEdge& side, double at, EdgePoint& out) const {
     edge_point(side, on_edge(side, side.reversed ? 1.0 - at : at), out);
 }
 
-void SideWalker::classify(Side& side) const {
+void EdgeWalker::classify(PatchEdge& side) const {
     EdgePoint start, middle, end;
     edge_point(side, on_edge(side, 0.0), start);
     edge_point(side, on_edge(side, 1.0), end);
@@ -51,8 +51,8 @@ void SideWalker::classify(Side& side) const {
         rate.levels(start.p, middle.p, end.p, m_mesh.knot_count(), side.budget, side.most_outside));
 }
 
-Side SideWalker::half(const Side& side, int half) const {
-    Side child = side;
+PatchEdge EdgeWalker::half(const PatchEdge& side, int half) const {
+    PatchEdge child = side;
     child.index = 2 * side.index + static_cast<unsigned>(side.reversed ? 1 - half : half);
     child.depth = static_cast<std::uint8_t>(side.depth + 1);
     child.budget = static_cast<std::uint8_t>(side.budget > 0 ? side.budget - 1 : 0);
@@ -63,7 +63,7 @@ Side SideWalker::half(const Side& side, int half) const {
     return child;
 }
 
-int SideWalker::depth(const Side& side, int cap) const {
+int EdgeWalker::depth(const PatchEdge& side, int cap) const {
     if (side.levels >= 0) return std::min<int>(side.levels, cap + 1);
     if (cap <= 0) return 1;
     const int first = depth(half(side, 0), cap - 1);
@@ -71,7 +71,8 @@ int SideWalker::depth(const Side& side, int cap) const {
     return 1 + std::max(first, depth(half(side, 1), cap - 1));
 }
 
-void SideWalker::leaf_ends(const Side& side, int first, int steps, std::vector<int>& ends) const {
+void EdgeWalker::leaf_ends(const PatchEdge& side, int first, int steps,
+                           std::vector<int>& ends) const {
     if (!side.refined()) {
         ends.push_back(first + steps);
         return;
@@ -80,8 +81,8 @@ void SideWalker::leaf_ends(const Side& side, int first, int steps, std::vector<i
     leaf_ends(half(side, 1), first + steps / 2, steps / 2, ends);
 }
 
-Side SideWalker::draw(const Vec2d& uv0, const Vec2d& uv1, const EdgePoint& start,
-                      const EdgePoint& end, int budget, float most_outside) const {
+PatchEdge EdgeWalker::draw(const Vec2d& uv0, const Vec2d& uv1, const EdgePoint& start,
+                           const EdgePoint& end, int budget, float most_outside) const {
     auto line = std::make_shared<Line>();
     line->uv0 = uv0;
     line->uv1 = uv1;
@@ -92,7 +93,7 @@ Side SideWalker::draw(const Vec2d& uv0, const Vec2d& uv1, const EdgePoint& start
         line->offset.assign(start.offset, start.offset + knots);
         line->offset.insert(line->offset.end(), end.offset, end.offset + knots);
     }
-    Side side;
+    PatchEdge side;
     side.line = std::move(line);
     side.most_outside = most_outside;
     side.budget = static_cast<std::uint8_t>(budget);

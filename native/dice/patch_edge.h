@@ -37,7 +37,7 @@ struct Line {
     std::vector<Vec3f> p, offset;
 };
 
-struct Side {
+struct PatchEdge {
     EdgeRef edge;                      ///< where `line` is null
     std::shared_ptr<const Line> line;  ///< or else this
     std::uint32_t index = 0;           ///< node: covers [index, index + 1] / 2^depth of the edge
@@ -53,26 +53,26 @@ struct Side {
 };
 
 /// Sides seen from a patch; `at` runs in the patch's direction.
-class SideWalker {
+class EdgeWalker {
   public:
-    SideWalker(const OpenedMesh& mesh, const BasePatch& patch) : m_mesh(mesh), m_patch(patch) {}
+    EdgeWalker(const OpenedMesh& mesh, const BasePatch& patch) : m_mesh(mesh), m_patch(patch) {}
 
-    void point(const Side& side, double at, EdgePoint& out) const;
+    void point(const PatchEdge& side, double at, EdgePoint& out) const;
     /// Fills `levels` from the edge's data.
-    void classify(Side& side) const;
+    void classify(PatchEdge& side) const;
     /// `half` 0 or 1 of a refined side.
-    Side half(const Side& side, int half) const;
+    PatchEdge half(const PatchEdge& side, int half) const;
     /// Levels of the tree; anything above `cap` is cap + 1.
-    int depth(const Side& side, int cap) const;
+    int depth(const PatchEdge& side, int cap) const;
     /// Appends where the leaves end, in units of 1 / steps of the side (steps = 2^n, n at least the
     /// depth): `first` < ... <= first + steps.
-    void leaf_ends(const Side& side, int first, int steps, std::vector<int>& ends) const;
+    void leaf_ends(const PatchEdge& side, int first, int steps, std::vector<int>& ends) const;
     /// The line between two points, classified.
-    Side draw(const Vec2d& uv0, const Vec2d& uv1, const EdgePoint& start, const EdgePoint& end,
-              int budget, float most_outside = std::numeric_limits<float>::infinity()) const;
+    PatchEdge draw(const Vec2d& uv0, const Vec2d& uv1, const EdgePoint& start, const EdgePoint& end,
+                   int budget, float most_outside = std::numeric_limits<float>::infinity()) const;
 
   private:
-    void edge_point(const Side& side, double t, EdgePoint& out) const;
+    void edge_point(const PatchEdge& side, double t, EdgePoint& out) const;
 
     const OpenedMesh& m_mesh;
     const BasePatch& m_patch;
