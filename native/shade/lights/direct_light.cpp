@@ -41,6 +41,8 @@ struct DirectLight::Impl {
     void sample_lamp(LitGrid& grid, const LitPoint& point, const Lamp& lamp, std::size_t dimension,
                      ShadowQueue& shadows) const;
     void sample_world(LitGrid& grid, const LitPoint& point) const;
+    void add_texel(LitGrid& grid, const LitPoint& point, const Environment::Sample& from,
+                   const BsdfValue& weight, float sign) const;
     void sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe) const;
     void mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const;
     void look(LitGrid& grid, const EnvironmentSamples& samples, float spread, RayType glossy) const;
@@ -227,15 +229,31 @@ void DirectLight::Impl::sample_world(LitGrid& grid, const LitPoint& point) const
     const SobolPoints sequence = grid.sequence(point, 0, point.sample_count);
     for (int s = 0; s < point.sample_count; ++s) {
         const auto index = static_cast<std::uint32_t>(s);
-        float pdf = 0.0f;
-        const Vec3f wo = environment->sample(sequence(index), pdf);
+        const Environment::Sample from = environment->sample(sequence(index));
+        const Vec3f& wo = from.direction;
         const BsdfValue value = point.bsdf.evaluate(wo);
-        if (total(value) == Vec3f(0.0f) || !(pdf > 0.0f)) continue;
-        const float density = static_cast<float>(point.sample_count) * pdf + point.all_density(wo);
+        if (total(value) == Vec3f(0.0f) || !(from.pdf > 0.0f)) continue;
+        const float density =
+            static_cast<float>(point.sample_count) * from.pdf + point.all_density(wo);
         const Vec3f seen = occlusion(grid, point, place_at(point, sequence.third(index)), wo);
-        grid.look(grid.blurred, point.index, wo, value * (seen / density),
-                  LitGrid::sign(s, point.sample_count));
+        const BsdfValue weight = value * (seen / density);
+        const float sign = LitGrid::sign(s, point.sample_count);
+        if (environment->has_radiance())
+            add_texel(grid, point, from, weight, sign);
+        else
+            grid.look(grid.blurred, point.index, wo, weight, sign);
     }
+}
+
+/// What a texel of the world's table sends, reflected by `weight`.
+void DirectLight::Impl::add_texel(LitGrid& grid, const LitPoint& point,
+                                  const Environment::Sample& from, const BsdfValue& weight,
+                                  float sign) const {
+    const BsdfValue reflected{
+        weight.diffuse * environment->texel_radiance(from.texel, RayType::Diffuse),
+        weight.glossy * environment->texel_radiance(from.texel, RayType::Glossy)};
+    grid.add(point.index, total(reflected), sign);
+    grid.add_world(point.index, reflected);
 }
 
 void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe) const {
@@ -252,9 +270,9 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         const LitPlace place = place_at(point, sequence.third(index));
         const float sign = LitGrid::sign(s, samples.count);
         if (environment) {
-            float density = point.all_density(wo);
-            if (environment->has_density())
-                density += static_cast<float>(point.sample_count) * environment->pdf(wo);
+            const Environment::Sample at = environment->at(wo);
+            const float density =
+                point.all_density(wo) + static_cast<float>(point.sample_count) * at.pdf;
             const BsdfValue weight = value * (occlusion(grid, point, place, wo) / density);
             if (environment->is_constant()) {
                 const BsdfValue reflected{
@@ -262,7 +280,10 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
                     weight.glossy * environment->constant_radiance(RayType::Glossy)};
                 grid.add(point.index, total(reflected), sign);
                 grid.add_world(point.index, reflected);
+            } else if (environment->has_radiance() && !glossy) {
+                add_texel(grid, point, at, weight, sign);
             } else {
+                // Some lobes are narrower than the table's texels.
                 grid.look(grid.blurred, point.index, wo, weight, sign);
             }
         }

@@ -13,6 +13,9 @@
 namespace granita {
 namespace {
 
+/// Steps of a row's distribution that are looked up.
+constexpr int kGuides = 128;
+
 /// Along a texel's side; the farthest direction from all places is 0.18 of a texel away.
 constexpr int kPlaces = 4;
 
@@ -48,8 +51,9 @@ struct Located {
     float fraction, width;
 };
 
-Located locate(const float* distribution, int count, float x) {
-    const float* above = std::upper_bound(distribution, distribution + count + 1, x);
+/// `first`, `last`: between which columns it lies.
+Located locate(const float* distribution, int count, float x, int first, int last) {
+    const float* above = std::upper_bound(distribution + first, distribution + last + 1, x);
     const int index = std::clamp(static_cast<int>(above - distribution) - 1, 0, count - 1);
     const float width = distribution[index + 1] - distribution[index];
     const float fraction = width > 0.0f ? (x - distribution[index]) / width : 0.5f;
@@ -72,23 +76,29 @@ class TexelRow {
             }
         }
     }
-    /// Adds the means of the row's texels to `luminance_of` [width]; returns how many directions
-    /// are not finite.
-    std::size_t add(const WorldEvaluator& world, float spread, RayType ray, float* luminance_of) {
+    /// Adds the means of the row's texels to `luminance_of` [width] and, unless it is nullptr,
+    /// fills `radiance` [width]; returns how many directions are not finite.
+    std::size_t add(const WorldEvaluator& world, float spread, RayType ray, float* luminance_of,
+                    Vec3f* radiance) {
         world.radiance(m_directions, spread, ray, m_seen);
         std::vector<double> sum(m_width);
+        std::vector<Vec3f> seen(m_width, Vec3f(0.0f));
         std::vector<int> count(m_width);
         std::size_t broken = 0;
         for (std::size_t k = 0; k < m_seen.size(); ++k) {
             const auto texel = static_cast<std::size_t>(m_texels[k]);
             ++count[texel];
-            if (is_finite(m_seen[k]))
+            if (is_finite(m_seen[k])) {
                 sum[texel] += std::max(0.0f, luminance(m_seen[k]));
-            else
+                seen[texel] += m_seen[k];
+            } else {
                 ++broken;
+            }
         }
-        for (std::size_t x = 0; x < sum.size(); ++x)
+        for (std::size_t x = 0; x < sum.size(); ++x) {
             luminance_of[x] += static_cast<float>(sum[x] / count[x]);
+            if (radiance) radiance[x] = seen[x] / static_cast<float>(count[x]);
+        }
         return broken;
     }
 
@@ -105,15 +115,20 @@ std::vector<float> Environment::bake(const WorldEvaluator& world, const Progress
     const int side = world.is_filtered ? 1 : kPlaces;
     const float spread = texel_angle() / static_cast<float>(side);
     std::vector<float> found(width * static_cast<std::size_t>(m_height));
+    if (world.by_lobe) m_glossy_texels = found.size();
+    if (world.is_filtered) m_radiance.resize(found.size() + m_glossy_texels);
     std::atomic<std::size_t> broken = 0;
     parallel_for(static_cast<std::size_t>(m_height), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y != end; ++y) {
             progress.check();
             TexelRow row(static_cast<int>(y), m_width, m_height, side);
             float* texels = found.data() + width * y;
-            broken += row.add(world, spread, RayType::Diffuse, texels);
+            Vec3f* const seen = m_radiance.empty() ? nullptr : m_radiance.data() + width * y;
+            broken += row.add(world, spread, RayType::Diffuse, texels, seen);
             // One density for both: it is large where either is.
-            if (world.by_lobe) broken += row.add(world, spread, RayType::Glossy, texels);
+            if (world.by_lobe)
+                broken += row.add(world, spread, RayType::Glossy, texels,
+                                  seen ? seen + m_glossy_texels : nullptr);
         }
     });
     m_broken = broken;
@@ -161,12 +176,21 @@ void Environment::build_distribution(const std::vector<float>& luminance_of) {
         }
         rows[row] = std::accumulate(columns.begin(), columns.end(), 0.0) *
                     std::sin((row + 0.5) * std::numbers::pi / m_height);
-        accumulate(columns.data(), m_width,
-                   m_columns.data() + static_cast<std::size_t>(row) * (m_width + 1));
+        float* const distribution =
+            m_columns.data() + static_cast<std::size_t>(row) * (m_width + 1);
+        accumulate(columns.data(), m_width, distribution);
+        for (int guide = 0; guide < kGuides; ++guide) {
+            const float x = static_cast<float>(guide) / kGuides;
+            const float* above = std::upper_bound(distribution, distribution + m_width + 1, x);
+            m_guides.push_back(static_cast<std::uint16_t>(
+                std::clamp<std::ptrdiff_t>(above - distribution - 1, 0, m_width - 1)));
+        }
     }
     if (accumulate(rows.data(), m_height, m_rows.data())) return;
     m_rows.clear();
     m_columns.clear();
+    m_guides.clear();
+    m_radiance.clear();
 }
 
 float Environment::texel_angle() const {
@@ -174,31 +198,38 @@ float Environment::texel_angle() const {
 }
 
 std::size_t Environment::bytes() const {
-    return (m_rows.size() + m_columns.size()) * sizeof(float);
+    return (m_rows.size() + m_columns.size()) * sizeof(float) +
+           m_guides.size() * sizeof(std::uint16_t) + m_radiance.size() * sizeof(Vec3f);
 }
 
-Vec3f Environment::sample(const Vec2f& u, float& pdf) const {
-    const Located row = locate(m_rows.data(), m_height, u.y);
-    const float* line = m_columns.data() + static_cast<std::size_t>(row.index) * (m_width + 1);
-    const Located column = locate(line, m_width, u.x);
+float Environment::density(int row, int column, float sine) const {
+    const float* line = m_columns.data() + static_cast<std::size_t>(row) * (m_width + 1);
+    const float part = (m_rows[row + 1] - m_rows[row]) * (line[column + 1] - line[column]) *
+                       static_cast<float>(m_width) * m_height;
+    return sine > 0.0f ? part / (2.0f * kPi * kPi * sine) : 0.0f;
+}
+
+Environment::Sample Environment::sample(const Vec2f& u) const {
+    const Located row = locate(m_rows.data(), m_height, u.y, 0, m_height);
+    const auto line = static_cast<std::size_t>(row.index);
+    const int guide = std::clamp(static_cast<int>(u.x * kGuides), 0, kGuides - 1);
+    const std::uint16_t* const guides = m_guides.data() + line * kGuides + guide;
+    const Located column = locate(m_columns.data() + line * (m_width + 1), m_width, u.x, guides[0],
+                                  guide + 1 < kGuides ? guides[1] + 1 : m_width);
     const float x = (static_cast<float>(column.index) + column.fraction) / m_width;
     const float y = (static_cast<float>(row.index) + row.fraction) / m_height;
-    const float sine = std::sin(y * kPi);
-    const float density = row.width * column.width * static_cast<float>(m_width) * m_height;
-    pdf = sine > 0.0f ? density / (2.0f * kPi * kPi * sine) : 0.0f;
-    return equirectangular_direction(x, y);
+    return {equirectangular_direction(x, y), density(row.index, column.index, std::sin(y * kPi)),
+            line * m_width + static_cast<std::size_t>(column.index)};
 }
 
-float Environment::pdf(const Vec3f& direction) const {
-    if (!has_density()) return 0.0f;
+Environment::Sample Environment::at(const Vec3f& direction) const {
+    if (!has_density()) return {direction, 0.0f, 0};
     const Vec2f p = equirectangular_point(direction);
     const int row = std::min(static_cast<int>(p.y * m_height), m_height - 1);
     const int column = std::min(static_cast<int>(p.x * m_width), m_width - 1);
-    const float* line = m_columns.data() + static_cast<std::size_t>(row) * (m_width + 1);
     const float sine = std::sqrt(direction.x * direction.x + direction.y * direction.y);
-    const float density = (m_rows[row + 1] - m_rows[row]) * (line[column + 1] - line[column]) *
-                          static_cast<float>(m_width) * m_height;
-    return sine > 0.0f ? density / (2.0f * kPi * kPi * sine) : 0.0f;
+    return {direction, density(row, column, sine),
+            static_cast<std::size_t>(row) * m_width + static_cast<std::size_t>(column)};
 }
 
 }  // namespace granita

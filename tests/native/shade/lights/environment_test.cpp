@@ -36,7 +36,7 @@ TEST(Environment, tells_constant_black_and_varying_worlds_apart) {
     EXPECT_FALSE(dark.is_constant());
     EXPECT_FALSE(dark.is_black());
     EXPECT_FALSE(dark.has_density());
-    EXPECT_EQ(dark.pdf(kSun), 0.0f);
+    EXPECT_EQ(dark.at(kSun).pdf, 0.0f);
 }
 
 // A disc is found wherever it stands, if it is as wide as the places of a texel are apart.
@@ -53,8 +53,7 @@ TEST(Environment, a_disc_of_an_eighth_of_a_degree_is_sampled_in_a_black_world) {
                                 kProgress);
         ASSERT_TRUE(world.has_density());
         // All samples fall on texels that the disc touches: at most three of .35 degrees wide.
-        float pdf = 0.0f;
-        EXPECT_LT(glm::distance(world.sample(places(k + 100), pdf), sun), 0.02f);
+        EXPECT_LT(glm::distance(world.sample(places(k + 100)).direction, sun), 0.02f);
     }
 }
 
@@ -67,8 +66,8 @@ TEST(Environment, its_density_covers_what_either_kind_of_lobe_sees) {
         }};
     world.by_lobe = true;
     const Environment environment(world, kProgress, 32);
-    EXPECT_NEAR(environment.pdf(Vec3f(0.6f, 0.0f, 0.8f)), 1.0f / (4.0f * kPi), 1e-3f);
-    EXPECT_NEAR(environment.pdf(Vec3f(0.6f, 0.0f, -0.8f)), 1.0f / (4.0f * kPi), 1e-3f);
+    EXPECT_NEAR(environment.at(Vec3f(0.6f, 0.0f, 0.8f)).pdf, 1.0f / (4.0f * kPi), 1e-3f);
+    EXPECT_NEAR(environment.at(Vec3f(0.6f, 0.0f, -0.8f)).pdf, 1.0f / (4.0f * kPi), 1e-3f);
 }
 
 TEST(Environment, density_integrates_to_one_and_matches_its_samples) {
@@ -81,16 +80,16 @@ TEST(Environment, density_integrates_to_one_and_matches_its_samples) {
             const float z = -1.0f + 2.0f * (static_cast<float>(j) + 0.5f) / h;
             const float phi = 2 * kPi * (static_cast<float>(i) + 0.5f) / w;
             const float s = std::sqrt(1 - z * z);
-            integral += world.pdf({s * std::cos(phi), s * std::sin(phi), z});
+            integral += world.at({s * std::cos(phi), s * std::sin(phi), z}).pdf;
         }
     EXPECT_NEAR(integral * 4 * kPi / (static_cast<double>(w) * h), 1.0, 0.01);
     const SobolPoints points(1);
     int equal = 0;
     for (std::uint32_t i = 0; i < 1024; ++i) {
-        float pdf = 0.0f;
-        const Vec3f direction = world.sample(points(i), pdf);
-        EXPECT_NEAR(glm::length(direction), 1.0f, 1e-5f);
-        equal += std::abs(world.pdf(direction) / pdf - 1.0f) < 1e-2f;
+        const Environment::Sample sample = world.sample(points(i));
+        const Environment::Sample found = world.at(sample.direction);
+        EXPECT_NEAR(glm::length(sample.direction), 1.0f, 1e-5f);
+        equal += found.texel == sample.texel && std::abs(found.pdf / sample.pdf - 1.0f) < 1e-2f;
     }
     EXPECT_GE(equal, 1020);  // a sample on a texel's border may be rounded into the next
 }
@@ -101,15 +100,43 @@ TEST(Environment, samples_estimate_the_irradiance_of_a_small_sun) {
     const std::uint32_t count = 1 << 14;
     double sum = 0.0;
     for (std::uint32_t i = 0; i < count; ++i) {
-        float pdf = 0.0f;
-        const Vec3f direction = world.sample(points(i), pdf);
-        if (pdf > 0.0f) sum += std::max(0.0f, direction.z) * sky(direction).x / pdf;
+        const Environment::Sample sample = world.sample(points(i));
+        if (sample.pdf > 0.0f)
+            sum += std::max(0.0f, sample.direction.z) * sky(sample.direction).x / sample.pdf;
     }
     // Cap: L pi sin^2(a) cos(tilt), less the sky it hides; sky: pi (0.2 + 0.1 * 2/3).
     const double s2 = 1.0 - static_cast<double>(kSunCos) * kSunCos;
     const double hidden = 0.2 + 0.1 * kSun.z;
     const double expected = kPi * (0.2 + 0.1 * 2.0 / 3.0) + (500.0 - hidden) * kPi * s2 * kSun.z;
     EXPECT_NEAR(sum / count, expected, 0.01 * expected);
+}
+
+// What is known of texels is the world's own mean over them, for each kind of lobe.
+TEST(Environment, texels_of_a_filtered_world_have_its_irradiance) {
+    WorldEvaluator world{
+        [](const std::vector<Vec3f>& directions, float, RayType ray, std::vector<Vec3f>& out) {
+            out.clear();
+            for (const Vec3f& d : directions)
+                out.push_back(ray == RayType::Diffuse ? Vec3f(1.0f + d.z, 2.0f, 0.0f)
+                                                      : Vec3f(0.0f, 0.0f, 3.0f + d.x));
+        }};
+    EXPECT_FALSE(Environment(world, kProgress, 64).has_radiance());
+    world.is_filtered = world.by_lobe = true;
+    const Environment environment(world, kProgress, 64);
+    ASSERT_TRUE(environment.has_radiance());
+    const SobolPoints points(3);
+    const std::uint32_t count = 1 << 14;
+    Vec3d diffuse(0.0), glossy(0.0);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Environment::Sample from = environment.sample(points(i));
+        const double weight = std::max(0.0f, from.direction.z) / from.pdf / count;
+        diffuse += weight * Vec3d(environment.texel_radiance(from.texel, RayType::Diffuse));
+        glossy += weight * Vec3d(environment.texel_radiance(from.texel, RayType::Glossy));
+    }
+    EXPECT_NEAR(diffuse.x, kPi * (1.0 + 2.0 / 3.0), 0.01 * diffuse.x);
+    EXPECT_NEAR(diffuse.y, kPi * 2.0, 0.01 * diffuse.y);
+    EXPECT_NEAR(glossy.z, kPi * 3.0, 0.01 * glossy.z);
+    EXPECT_EQ(diffuse.z + glossy.x + glossy.y, 0.0);
 }
 
 TEST(Environment, directions_that_are_not_finite_count_as_black) {
@@ -121,9 +148,9 @@ TEST(Environment, directions_that_are_not_finite_count_as_black) {
     EXPECT_EQ(world.broken(), 32u * 32u);
     const SobolPoints points(4);
     for (std::uint32_t i = 0; i < 256; ++i) {
-        float pdf = 0.0f;
-        EXPECT_LT(world.sample(points(i), pdf).z, 0.15f);  // one texel blurs across the horizon
-        EXPECT_TRUE(std::isfinite(pdf));
+        const Environment::Sample sample = world.sample(points(i));
+        EXPECT_LT(sample.direction.z, 0.15f);  // one texel blurs across the horizon
+        EXPECT_TRUE(std::isfinite(sample.pdf));
     }
 }
 
