@@ -6,8 +6,6 @@
 
 #include "base/error.h"
 #include "geometry/corner_values.h"
-#include "math/normalize_or.h"
-#include "scene/knot_time.h"
 
 namespace granita {
 namespace {
@@ -20,11 +18,6 @@ constexpr std::size_t kSlots = 128;
 std::uint64_t next_id() {
     static std::atomic<std::uint64_t> id{0};
     return ++id;
-}
-
-Vec3d column(const double* columns, int set) {
-    const double* p = columns + 3 * static_cast<std::ptrdiff_t>(set);
-    return {p[0], p[1], p[2]};
 }
 
 [[noreturn]] void fail(const SharedGeometry& geometry, int face, const char* what) {
@@ -48,13 +41,6 @@ class LimitPlace {
 };
 
 }  // namespace
-
-SurfacePoint SurfacePoint::mixed(const SurfacePoint& next, double fraction) const {
-    const auto mix = [fraction](const Vec3d& a, const Vec3d& b) {
-        return a * (1.0 - fraction) + b * fraction;
-    };
-    return {mix(p, next.p), mix(du, next.du), mix(dv, next.dv)};
-}
 
 struct SurfaceEvaluator::FaceSlot {
     std::uint64_t id = 0;  ///< of the evaluator
@@ -109,46 +95,6 @@ const LimitFace& SurfaceEvaluator::positions_of(int face, AttributeSource source
     if (!positions.gather(*m_geometry->subdivision(), face, {&points, 1}))
         fail(*m_geometry, face, "limit surface");
     return at.positions.emplace_back(source, std::move(positions)).second;
-}
-
-void SurfaceEvaluator::points(const BasePatch& patch, const Vec2d& uv, SurfacePoint* out) const {
-    if (m_geometry->subdivision()) {
-        const LimitPlace place(*m_geometry, patch);
-        const LimitFace& limit = limit_face(static_cast<int>(patch.face));
-        thread_local std::vector<double> p, du, dv;
-        for (std::vector<double>* to : {&p, &du, &dv})
-            to->resize(static_cast<std::size_t>(limit.columns()));
-        limit.evaluate(place(uv), p.data(), du.data(), dv.data());
-        for (int k = 0; k < m_knots; ++k)
-            out[k] = {column(p.data(), k), place.scale() * column(du.data(), k),
-                      place.scale() * column(dv.data(), k)};
-        return;
-    }
-    const CornerWeights weights(patch.kind, uv);
-    const GeometryData& data = m_geometry->data();
-    for (int k = 0; k < m_knots; ++k) {
-        out[k] = {};
-        for (std::size_t i = 0; i < 4; ++i) {
-            const Vec3d corner(
-                m_sets[static_cast<std::size_t>(k)][data.corner_verts[patch.corner[i]]]);
-            out[k].p += weights.w[i] * corner;
-            out[k].du += weights.du[i] * corner;
-            out[k].dv += weights.dv[i] * corner;
-        }
-    }
-}
-
-SurfacePoint SurfaceEvaluator::point(const BasePatch& patch, const Vec2d& uv, double time) const {
-    thread_local std::vector<SurfacePoint> at;
-    at.resize(static_cast<std::size_t>(m_knots));
-    points(patch, uv, at.data());
-    const KnotTime t = knot_time(time, m_knots);
-    return t.fraction > 0.0 ? at[t.knot].mixed(at[t.knot + 1], t.fraction) : at[t.knot];
-}
-
-Vec3d SurfaceEvaluator::normal(const BasePatch& patch, const Vec2d& uv, double time) const {
-    const SurfacePoint at = point(patch, uv, time);
-    return normalize_or(glm::cross(at.du, at.dv), Vec3d(0.0));
 }
 
 void SurfaceEvaluator::attribute(const BasePatch& patch, const AttributeRequest& request,

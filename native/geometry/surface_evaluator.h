@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surface of a mesh in object space: (patch, uv, time) to position, derivatives, normal and
+// The surface of a mesh in object space: limits of subdivision faces, and (patch, uv) to
 // attributes.  Dicing, the ray scene and shadows all read it here.
 //
-// Polygons are linear in each of their triangles, and a subdivision surface is the limit of its
-// cage, UV maps and texture coordinates too.
+// Attributes are linear in each triangle of a polygon; on a subdivision surface UV maps and texture
+// coordinates are the limits of the cage's.
 #pragma once
 
 #include <cstdint>
@@ -16,29 +16,13 @@
 
 namespace granita {
 
-/// One point of a surface, object space.
-struct SurfacePoint {
-    Vec3d p{0.0};
-    Vec3d du{0.0}, dv{0.0};  ///< by u and v of the patch
-
-    SurfacePoint mixed(const SurfacePoint& next, double fraction) const;
-};
-
 /// Thread-safe; each thread keeps the limit faces it used last.  The geometry must outlive it.
 class SurfaceEvaluator {
   public:
     explicit SurfaceEvaluator(const SharedGeometry& geometry);
 
-    const SharedGeometry& geometry() const { return *m_geometry; }
     /// 1 where the geometry stands still.
     int knots() const { return m_knots; }
-
-    /// `out` [knots], at (u, v) of a patch.
-    void points(const BasePatch& patch, const Vec2d& uv, SurfacePoint* out) const;
-    /// At a time of the shutter, [0, 1].
-    SurfacePoint point(const BasePatch& patch, const Vec2d& uv, double time) const;
-    /// Unit, of the surface itself, at a time; zero where it has none.
-    Vec3d normal(const BasePatch& patch, const Vec2d& uv, double time) const;
 
     /// Of a subdivision surface: the limit of a face, columns 3 k .. 3 k + 2 are knot k.  Valid
     /// until the thread asks for a hundred others.

@@ -6,22 +6,10 @@
 #include <cmath>
 
 #include "base/report.h"
-#include "geometry/shared_geometry.h"
+#include "geometry/cages.h"
 
 namespace granita {
 namespace {
-
-/// Corners at +-1, six outward quads.
-GeometryData cube() {
-    GeometryData data;
-    data.name = "mesh 'Cube'";
-    for (int i = 0; i < 8; ++i)
-        data.points.emplace_back(i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f);
-    data.face_sizes.assign(6, 4);
-    data.corner_verts = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
-    data.is_subdivision = true;
-    return data;
-}
 
 struct Opened {
     explicit Opened(const GeometryData& data) : shared(data, 0.5f, report) {}
@@ -37,7 +25,7 @@ struct Opened {
 
 TEST(LimitFace, cube_corner_and_face_centre) {
     // Hard case 54: the face centre of the +-1 cube's limit is 68/81, its corner (.5, .5, .5).
-    const GeometryData data = cube();
+    const GeometryData data = cube_cage();
     Opened opened(data);
     for (int f = 0; f < 6; ++f) {
         const LimitFace face = opened.face(f);
@@ -88,7 +76,7 @@ TEST(LimitFace, sub_faces_of_an_n_gon_are_laid_out_as_stated) {
 }
 
 TEST(LimitFace, infinitely_sharp_edges_keep_the_polyhedron) {
-    GeometryData data = cube();
+    GeometryData data = cube_cage();
     for (int a = 0; a < 8; ++a)
         for (int bit : {1, 2, 4})
             if (!(a & bit)) {

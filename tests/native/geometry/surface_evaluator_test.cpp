@@ -6,42 +6,20 @@
 #include <cmath>
 
 #include "base/report.h"
+#include "geometry/cages.h"
 #include "geometry/limit_vertices.h"
 
 namespace granita {
 namespace {
 
-/// Corners at +-1, six outward quads.
-GeometryData cube() {
-    GeometryData data;
-    data.name = "mesh 'Cube'";
-    for (int i = 0; i < 8; ++i)
-        data.points.emplace_back(i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f);
-    data.face_sizes.assign(6, 4);
-    data.corner_verts = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
-    data.is_subdivision = true;
-    return data;
-}
-
 /// n x n quads, a metre each, z from `height(x, y)`.
 template <class Height>
 GeometryData sheet(int n, Height height) {
-    GeometryData data;
-    data.name = "mesh 'Sheet'";
-    data.is_subdivision = true;
-    for (int j = 0; j <= n; ++j)
-        for (int i = 0; i <= n; ++i) data.points.emplace_back(i, j, height(i, j));
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i) {
-            const int v = j * (n + 1) + i;
-            for (const int c : {v, v + 1, v + n + 2, v + n + 1}) data.corner_verts.push_back(c);
-            data.face_sizes.push_back(4);
-        }
-    return data;
+    return sheet_cage(n, [&](int i, int j) { return Vec3f(i, j, height(i, j)); });
 }
 
 TEST(SurfaceEvaluator, a_subdivision_surface_and_its_attributes_are_the_limits) {
-    const GeometryData data = cube();
+    const GeometryData data = cube_cage();
     Report report;
     const SharedGeometry shared(data, 0.0f, report);
     const SurfaceEvaluator& surface = shared.surface();
@@ -49,9 +27,9 @@ TEST(SurfaceEvaluator, a_subdivision_surface_and_its_attributes_are_the_limits) 
     std::vector<float> values, du, dv;
     for (const BasePatch& patch : shared.patches()) {
         // Of the +-1 cube's limit: 68/81 from the centre, inside of the cage's box of size 2.
-        const SurfacePoint at = surface.point(patch, middle, 0.5);
+        const LimitPoint at = limit_point(shared, patch, middle);
         EXPECT_NEAR(glm::length(at.p), 68.0 / 81.0, 1e-6);
-        EXPECT_NEAR(glm::dot(surface.normal(patch, middle, 0.5), glm::normalize(at.p)), 1.0, 1e-9);
+        EXPECT_NEAR(glm::dot(at.normal, glm::normalize(at.p)), 1.0, 1e-9);
         surface.attribute(patch, {AttributeSource::ObjectPosition, "", 3, true}, {&middle, 1},
                           values, du, dv);
         surface.attribute(patch, {AttributeSource::Generated, "", 3, false}, {&middle, 1}, du, dv,
@@ -60,22 +38,6 @@ TEST(SurfaceEvaluator, a_subdivision_surface_and_its_attributes_are_the_limits) 
             EXPECT_NEAR(values[static_cast<std::size_t>(c)], at.p[c], 1e-6);
             EXPECT_NEAR(du[static_cast<std::size_t>(c)], 0.5 + 0.5 * at.p[c], 1e-6);
         }
-    }
-}
-
-TEST(SurfaceEvaluator, a_polygon_is_what_its_corners_are_and_moves_straight_between_knots) {
-    GeometryData data = sheet(1, [](int i, int j) { return static_cast<float>(i * j); });
-    data.is_subdivision = false;
-    const std::vector<Vec3f> first = data.points;
-    for (const Vec3f& p : first) data.points.push_back(p + Vec3f(0, 0, 4));
-    data.knots = 2;
-    Report report;
-    const SharedGeometry shared(data, 0.5f, report);
-    ASSERT_FALSE(shared.patches().empty());
-    for (const BasePatch& patch : shared.patches()) {
-        const SurfacePoint at = shared.surface().point(patch, {0.0, 0.0}, 0.25);
-        const Vec3f corner = first[static_cast<std::size_t>(data.corner_verts[patch.corner[0]])];
-        EXPECT_EQ(at.p, Vec3d(corner) + Vec3d(0, 0, 1));
     }
 }
 
@@ -120,7 +82,7 @@ TEST(LimitVertices, heights_hold_what_lies_between_the_corners_and_nothing_more_
         for (int j = 0; j <= 16; ++j)
             for (int i = 0; i <= 16; ++i) {
                 const Vec2d uv = Vec2d(i, j) / 16.0;
-                const Vec3d at = shared.surface().point(patch, uv, 0.0).p;
+                const Vec3d at = limit_point(shared, patch, uv).p;
                 // x and y are the sheet's own inside of it: the triangles' height there.
                 const double s = at.x - corner[0].x, t = at.y - corner[0].y;
                 const double z = s > t ? corner[0].z + s * (corner[1].z - corner[0].z) +

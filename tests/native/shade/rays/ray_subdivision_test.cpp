@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/surface_evaluator.h"
+#include "geometry/cages.h"
 #include "shade/lights/light_scene.h"
 #include "shade/rays/ray_scene.h"
 
@@ -19,22 +19,10 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// n x n cage quads over `size` metres around the origin, z from `height(x, y)`.
 template <class Height>
 GeometryData cage(int n, float size, Height height) {
-    GeometryData data;
-    data.name = "mesh 'Hills'";
-    data.is_subdivision = true;
-    for (int j = 0; j <= n; ++j)
-        for (int i = 0; i <= n; ++i) {
-            const float x = size * (static_cast<float>(i) / n - 0.5f);
-            const float y = size * (static_cast<float>(j) / n - 0.5f);
-            data.points.emplace_back(x, y, height(x, y));
-        }
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i) {
-            const int v = j * (n + 1) + i;
-            for (const int c : {v, v + 1, v + n + 2, v + n + 1}) data.corner_verts.push_back(c);
-            data.face_sizes.push_back(4);
-        }
-    return data;
+    return sheet_cage(n, [&](int i, int j) {
+        const Vec2f p = size * (Vec2f(i, j) / static_cast<float>(n) - Vec2f(0.5f));
+        return Vec3f(p, height(p.x, p.y));
+    });
 }
 
 /// Hills of 100 m by 100 m in faces of 10 m, seen from 1.5 m above them where x = y = 0.
@@ -65,13 +53,12 @@ TEST(RaySubdivision, rays_start_less_than_a_pixel_above_the_surface_and_meet_it_
         for (int i = 0; i <= 8; ++i)
             for (int j = 0; j <= 8; ++j)
                 nearest = std::min(
-                    nearest,
-                    glm::distance(shared.surface().point(patch, Vec2d(i, j) / 8.0, 0.0).p, eye));
+                    nearest, glm::distance(limit_point(shared, patch, Vec2d(i, j) / 8.0).p, eye));
         // A pixel is a thousandth of the distance.
         EXPECT_LE(offset.error, 1e-3 * nearest + 1e-4) << patch.face;
         for (const Vec2d uv : {Vec2d(0.5), Vec2d(0.13, 0.71), Vec2d(0.92, 0.38)}) {
-            const Vec3f p(shared.surface().point(patch, uv, 0.0).p - eye);
-            const Vec3f normal(shared.surface().normal(patch, uv, 0.0));
+            const LimitPoint at = limit_point(shared, patch, uv);
+            const Vec3f p(at.p - eye), normal(at.normal);
             EXPECT_EQ(rays.transmittance({offset(p, normal), normal, 1.0f}), Vec3f(1.0f));
             const Vec3f below = p - normal * (2.0f * offset.error + 1e-3f);
             EXPECT_EQ(rays.transmittance({below, normal, 1.0f}), Vec3f(0.0f));
@@ -94,7 +81,7 @@ TEST(RaySubdivision, faces_of_different_numbers_of_cells_meet_without_gaps) {
             for (const bool along_u : {true, false}) {
                 const double t = (i + M_1_PI) / 500.0;  // through no vertex
                 const Vec2d uv = along_u ? Vec2d(t, 0.0) : Vec2d(0.0, t);
-                const Vec3f p(shared.surface().point(patch, uv, 0.0).p - eye);
+                const Vec3f p(limit_point(shared, patch, uv).p - eye);
                 const Vec3f down = glm::normalize(Vec3f(0.2f, -0.3f, -1.0f));
                 if (rays.transmittance({p - 20.0f * down, down, 40.0f}) != Vec3f(0.0f)) ++passed;
             }
