@@ -6,7 +6,7 @@ Linear motion through frames 0 to 2, seen by a shutter of half a frame from fram
 
 import bpy
 import numpy as np
-from scenes import add, add_camera, add_spheres, animate, empty, material, pixel
+from scenes import add, add_camera, add_open_lens, add_spheres, animate, empty, material, pixel
 
 WIDTH = 480
 
@@ -207,11 +207,7 @@ def bokeh():
     for x in (-8, 8):
         lamp(scene, "AREA", 1500, (x, 6, 14), (-0.4, 0.03 * x, 0), size=1.0)
     world(scene, 0.1)
-    camera = add_camera(scene, (0, 0, 24), focal=50)
-    dof = camera.data.dof
-    dof.use_dof, dof.focus_distance = True, 24.0
-    radius = 8 / (abs(1 / 16 - 1 / 24) * scene.render.resolution_x * 50 / 36)
-    dof.aperture_fstop = 0.05 / (2 * radius)
+    add_open_lens(scene)
     scene.frame_set(1)
     return scene
 

@@ -107,18 +107,22 @@ def spheres(pixels=20):
     return scene
 
 
+def add_open_lens(scene):
+    """A camera at 24 m, focused on the origin, whose circles of confusion reach a radius of 8 pixels 8 m before it."""
+    dof = add_camera(scene, (0, 0, 24), focal=50).data.dof
+    dof.use_dof, dof.focus_distance = True, 24.0
+    # At depth z the radius is (focal / fstop / 2) |1 / z - 1 / 24| width focal / sensor.
+    radius = 8 / (abs(1 / 16 - 1 / 24) * scene.render.resolution_x * 50 / 36)
+    dof.aperture_fstop = 0.05 / (2 * radius)
+
+
 def lens():
     """The same through a lens whose circles of confusion reach a radius of 8 pixels."""
     scene = empty(960)
     mover = add(scene, "Mover", None)
     add_spheres(scene, "ShaderNodeEmission", mover, (-7, -4, -8), (7, 4, 8))
     animate(mover, "location", 0, 20 * pixel(scene))
-    camera = add_camera(scene, (0, 0, 24), focal=50)
-    dof = camera.data.dof
-    dof.use_dof, dof.focus_distance = True, 24.0
-    # At depth z the radius is (focal / fstop / 2) |1 / z - 1 / 24| width focal / sensor; z = 16: 8 pixels.
-    radius = 8 / (abs(1 / 16 - 1 / 24) * scene.render.resolution_x * 50 / 36)
-    dof.aperture_fstop = 0.05 / (2 * radius)
+    add_open_lens(scene)
     scene.frame_set(1)
     return scene
 

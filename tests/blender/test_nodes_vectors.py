@@ -87,27 +87,16 @@ def test_curves_of_vectors_and_numbers(scene, render, kind):
     check(scene, render)
 
 
-def test_blackbody(scene, render):
+@pytest.mark.parametrize(
+    "kind, span, lowest", [("Blackbody", 9000.0, 1500.0), ("Wavelength", 400.0, 360.0)]
+)
+def test_spectra(scene, render, kind, span, lowest):
+    """Of kelvins and nanometres."""
     tree = Tree(board(scene, 0.0, 1.0))
-    node, scaled = (
-        tree.add("ShaderNodeBlackbody"),
-        tree.add("ShaderNodeMath", operation="MULTIPLY_ADD"),
-    )
+    node = tree.add(f"ShaderNode{kind}")
+    scaled = tree.add("ShaderNodeMath", operation="MULTIPLY_ADD")
     tree.link(tree.attribute("A", "Fac"), scaled.inputs[0])
-    scaled.inputs[1].default_value, scaled.inputs[2].default_value = 9000.0, 1500.0
-    tree.link(scaled.outputs[0], node.inputs[0])
-    tree.emit(node.outputs[0])
-    check(scene, render, limit=SPECTRUM)
-
-
-def test_wavelength(scene, render):
-    tree = Tree(board(scene, 0.0, 1.0))
-    node, scaled = (
-        tree.add("ShaderNodeWavelength"),
-        tree.add("ShaderNodeMath", operation="MULTIPLY_ADD"),
-    )
-    tree.link(tree.attribute("A", "Fac"), scaled.inputs[0])
-    scaled.inputs[1].default_value, scaled.inputs[2].default_value = 360.0, 400.0
+    scaled.inputs[1].default_value, scaled.inputs[2].default_value = span, lowest
     tree.link(scaled.outputs[0], node.inputs[0])
     tree.emit(node.outputs[0])
     check(scene, render, limit=SPECTRUM)

@@ -31,27 +31,28 @@ def infinite_emission(tree, glow):
 
 
 def broken_factor(tree, glow):
-    mix = tree.add("ShaderNodeMixShader")
+    mix = beside(tree, glow, "ShaderNodeMixShader", "ShaderNodeBsdfTransparent")
     tree.link(not_a_number(tree), mix.inputs[0])
-    tree.link(glow.outputs[0], mix.inputs[1])
-    tree.link(tree.add("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[2])
     return mix
 
 
 def broken_lobe(tree, glow):
-    diffuse, add = tree.add("ShaderNodeBsdfDiffuse"), tree.add("ShaderNodeAddShader")
-    tree.link(not_a_number(tree), diffuse.inputs["Color"])
-    tree.link(diffuse.outputs[0], add.inputs[0])
-    tree.link(glow.outputs[0], add.inputs[1])
-    return add
+    return beside(tree, glow, "ShaderNodeAddShader", "ShaderNodeBsdfDiffuse", broken=True)
 
 
 def broken_transparency(tree, glow):
-    clear, mix = tree.add("ShaderNodeBsdfTransparent"), tree.add("ShaderNodeMixShader")
-    tree.link(not_a_number(tree), clear.inputs["Color"])
-    tree.link(glow.outputs[0], mix.inputs[1])
-    tree.link(clear.outputs[0], mix.inputs[2])
-    return mix
+    return beside(tree, glow, "ShaderNodeMixShader", "ShaderNodeBsdfTransparent", broken=True)
+
+
+def beside(tree, glow, sum_of_both, other, broken=False):
+    """The node that joins what glows to another shader; broken: of a colour that is no number."""
+    joined, shader = tree.add(sum_of_both), tree.add(other)
+    if broken:
+        tree.link(not_a_number(tree), shader.inputs["Color"])
+    first, second = (target for target in joined.inputs if target.type == "SHADER")
+    tree.link(glow.outputs[0], first)
+    tree.link(shader.outputs[0], second)
+    return joined
 
 
 @pytest.mark.parametrize(

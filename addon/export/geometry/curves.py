@@ -3,8 +3,14 @@
 
 import numpy as np
 
-from ..base.snapshot import Attribute, Geometry
-from .elements import Elements, element_attributes, split_radii, vector_attribute, with_radii
+from ..base.snapshot import Attribute
+from .elements import (
+    Elements,
+    element_attributes,
+    element_geometry,
+    vector_attribute,
+    with_radii,
+)
 
 # What Cycles takes where there is no attribute.
 _RADIUS = 0.005
@@ -30,15 +36,8 @@ def read_curves(data, label, requested, report):
         report(label, "its cyclic curves are left open")
     if _any_set(data, "curve_type", np.int32):
         report(label, "all its curves are taken for Catmull-Rom, as Cycles does")
-    places, radii = split_radii(points[None])
-    geometry = Geometry(
-        name=label,
-        kind="CURVES",
-        points=places,
-        curve_sizes=sizes,
-        radius=radii,
-        attributes=_surface_uv(data) + element_attributes(data, label, requested - {_UV}, report),
-    )
+    attributes = _surface_uv(data) + element_attributes(data, label, requested - {_UV}, report)
+    geometry = element_geometry("CURVES", label, points, attributes, curve_sizes=sizes)
     return geometry, Elements(sizes, _read)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.snapshot import Attribute
+from ..base.snapshot import Attribute, Geometry
 from .attributes import attribute_values, finite_attributes
 
 
@@ -49,6 +49,22 @@ def with_radii(points, data, default):
 def split_radii(knots):
     """(places float32 [K, V, 3], radii float32 [K, V]) of float32 [K, V, 4]."""
     return np.ascontiguousarray(knots[..., :3]), np.ascontiguousarray(knots[..., 3])
+
+
+def element_geometry(kind, label, points, attributes, **columns):
+    """A Geometry of one knot.
+
+    Args:
+        kind: "CURVES" or "POINTS".
+        label: its name for messages.
+        points: float32 [V, 4], of `with_radii`.
+        attributes: of `element_attributes`.
+        columns: what else it has.
+    """
+    places, radii = split_radii(points[None])
+    return Geometry(
+        name=label, kind=kind, points=places, radius=radii, attributes=attributes, **columns
+    )
 
 
 def element_attributes(data, label, requested, report):
