@@ -76,6 +76,13 @@ def add_subsurf(thing, levels=2):
     return modifier
 
 
+def cast_no_shadow(light):
+    """In both engines: Cycles has a switch of its own before Blender 5."""
+    light.use_shadow = False
+    if hasattr(light.cycles, "cast_shadow"):
+        light.cycles.cast_shadow = False
+
+
 def emission(name, color, strength=1.0):
     """A material whose pixels are `color` (linear RGB) times `strength`."""
     material = bpy.data.materials.new(name)

@@ -112,7 +112,7 @@ def test_diffuse_shaders_with_normals_that_turn_away(scene, render):
     tree.link(diffuse.outputs[0], tree.output.inputs["Surface"])
     light = bpy.data.lights.new("Sun", "SUN")
     light.energy, light.angle = 3.0, 0.0
-    light.use_shadow = light.cycles.cast_shadow = False
+    scene_parts.cast_no_shadow(light)
     scene_parts.add_object(scene, "Sun", light).rotation_euler = (0.4, 0.2, 0.0)
     check(scene, render)
 

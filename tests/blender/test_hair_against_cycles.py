@@ -119,8 +119,8 @@ def test_shading_is_that_of_cycles(scene, render):
     thing = spiral_curves(scene, radius=0.08)
     thing.data.materials.append(matte())
     sun = bpy.data.lights.new("Sun", "SUN")
-    sun.energy, sun.use_shadow = 2.0, False
-    sun.cycles.cast_shadow = False
+    sun.energy = 2.0
+    scene_parts.cast_no_shadow(sun)
     scene_parts.add_object(scene, "Sun", sun).rotation_euler = (0.6, 0.9, 0.0)
     scene.render.film_transparent = True
     scene.granita.samples = scene.cycles.samples = SAMPLES

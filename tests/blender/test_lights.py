@@ -145,10 +145,7 @@ def test_a_sphere_of_light(scene, render):
 def test_a_light_without_shadow(scene, render):
     set_stage(scene, lambert())
     light = add_light(scene, "POINT", 500.0, shadow_soft_size=0.0).data
-    if hasattr(light.cycles, "cast_shadow"):
-        light.cycles.cast_shadow = False
-    else:
-        light.use_shadow = False
+    scene_parts.cast_no_shadow(light)
     expect_alike(scene, render, DIFFUSE)
 
 
@@ -160,6 +157,16 @@ def test_the_emission_node_of_a_light(scene, render):
     emission.inputs["Color"].default_value = (1.0, 0.5, 0.2, 1.0)
     emission.inputs["Strength"].default_value = 0.5
     expect_alike(scene, render, DIFFUSE)
+
+
+def test_a_muted_emission_node_gives_no_light(scene, render):
+    set_stage(scene, lambert())
+    light = add_light(scene, "POINT", 500.0).data
+    light.use_nodes = True
+    light.node_tree.nodes["Emission"].mute = True
+    pictures = scene_parts.direct_light_of_both(scene, render, 4)
+    for channels in pictures:
+        assert not any(values.any() for name, values in channels.items() if name[-1] in "RGB")
 
 
 def test_constants_linked_to_the_emission_node_of_a_light(scene, render):

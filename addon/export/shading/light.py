@@ -108,7 +108,9 @@ def _emission(light, label, report):
     node = link.from_node
     while node.type == "REROUTE" and node.inputs[0].is_linked:
         node = node.inputs[0].links[0].from_node
-    if node.type != "EMISSION" or node.mute:
+    if node.type == "EMISSION" and node.mute:
+        return [1.0] * 3, 0.0
+    if node.type != "EMISSION":
         report(label, f"its node '{node.name}' is not understood: it shines white, strength 1")
         return [1.0] * 3, 1.0
     found = []

@@ -4,6 +4,8 @@
 
 from types import SimpleNamespace
 
+import bpy
+
 # Stands for a socket.
 NOTHING = SimpleNamespace(default_value=0.0, hide_value=False, type="VALUE")
 
@@ -66,9 +68,10 @@ def trace(scope, socket):
             scope.undefined[link.from_node.name] = None
             link = None
         if link is None:
-            # Boundaries of groups hand on their own constants, muted nodes nothing: 0, as in Cycles.
+            # Boundaries of groups hand on their own constants, muted nodes nothing: 0, as in Cycles, and
+            # from Blender 5 on as if there were no link.
             if muted and _has_constant(own.socket):
-                return Source(scope, None, NOTHING)
+                return own if bpy.app.version >= (5, 0, 0) else Source(scope, None, NOTHING)
             return Source(scope, None, socket, _types(passed)) if _has_constant(socket) else own
         node, output = link.from_node, link.from_socket
         muted = node.mute and node.type != "REROUTE"

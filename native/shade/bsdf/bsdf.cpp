@@ -25,11 +25,6 @@ float fraction_between(float a, float b, float x) {
     return b == a ? 0.0f : std::clamp((x - a) / (b - a), 0.0f, 1.0f);
 }
 
-float schlick_weight(float cos_half) {
-    const float m = std::clamp(1.0f - cos_half, 0.0f, 1.0f);
-    return m * m * m * m * m;
-}
-
 /// Cosine-weighted mean of fresnel_dielectric, fit of Kulla and Conty 2017.
 float dielectric_mean(float ior) {
     if (ior < 1.0f) return 0.997118f + ior * (0.1014f - ior * (0.965241f + ior * 0.130607f));
@@ -164,6 +159,7 @@ void PointBsdf::prepare_glossy(Prepared& lobe, float roughness, bool multiscatte
     lobe.alpha = clamped * clamped;
     lobe.sharp = lobe.distribution == Distribution::Sharp || lobe.alpha <= kSharpAlpha;
     lobe.f0_real = f0_from_ior(lobe.ior);
+    if (lobe.fresnel == FresnelKind::F82Tint) lobe.dip = f82_dip(lobe.f0, lobe.f90);
     if (!multiscatter || lobe.sharp) return;
     // Kulla and Conty 2017: scale by 1 / E, then darken by what Fresnel takes at each extra bounce.
     const float e = albedo.directional(clamped, lobe.cos_wi);
@@ -172,6 +168,7 @@ void PointBsdf::prepare_glossy(Prepared& lobe, float roughness, bool multiscatte
     lobe.directional_albedo = e;
     Vec3f fss = lobe.f0;
     if (lobe.fresnel == FresnelKind::Schlick) fss = mix(lobe.f0, lobe.f90, 1.0f / 21.0f);
+    if (lobe.fresnel == FresnelKind::F82Tint) fss = f82_mean(lobe.f0, lobe.dip);
     if (lobe.fresnel == FresnelKind::Dielectric)
         fss =
             mix(lobe.f0, lobe.f90, fraction_between(lobe.f0_real, 1.0f, dielectric_mean(lobe.ior)));
@@ -183,6 +180,8 @@ Vec3f PointBsdf::fresnel(const Prepared& lobe, float cos_half) const {
     switch (lobe.fresnel) {
         case FresnelKind::Schlick:
             return mix(lobe.f0, lobe.f90, schlick_weight(cos_half));
+        case FresnelKind::F82Tint:
+            return fresnel_f82(lobe.f0, lobe.dip, cos_half);
         case FresnelKind::Dielectric:
             return mix(
                 lobe.f0, lobe.f90,

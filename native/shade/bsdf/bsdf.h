@@ -67,7 +67,7 @@ class PointBsdf {
         FresnelKind fresnel;
         bool sharp = false, separable_masking = false, cosine_bumps = false;
         Vec3f weight, normal;
-        Vec3f f0{1.0f}, f90{1.0f};
+        Vec3f f0{1.0f}, f90{1.0f}, dip{0.0f};
         float ior = 1.0f, f0_real = 0.0f;
         float alpha = 0.0f;
         float cos_wi = 0.0f;

@@ -22,6 +22,7 @@ enum class Distribution {
 enum class FresnelKind {
     None,        ///< weight alone
     Schlick,     ///< f0 + (f90 - f0) (1 - cos)^5 at the half vector
+    F82Tint,     ///< Schlick's with f90 = 1, tinted at 82 degrees by f90 (Kutz et al. 2021): metals
     Dielectric,  ///< exact, of ior, remapped so that normal incidence gives f0 and grazing f90
                  ///< (Cycles' principled)
 };

@@ -103,18 +103,24 @@ void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common&
     add_coat(b, surface, c.weight);
 }
 
+void add_metal(NodeBuilder& b, SurfaceBuilder& surface, const Common& c, const VectorSource& coated,
+               const VectorSource& tint) {
+    const auto reflectance = [](const Vec3f& v) { return glm::clamp(v, Vec3f(0.0f), kOne); };
+    LobeSource metal = glossy_lobe(c);
+    // With a white tint F82 is Schlick's.
+    metal.fresnel = tint.is(kOne) ? FresnelKind::Schlick : FresnelKind::F82Tint;
+    metal.f0 = b.map<Vec3f>(reflectance, c.base_color);
+    metal.f90 = b.map<Vec3f>(reflectance, tint);
+    metal.weight = scaled(b, coated, product(b, c.weight, c.metallic));
+    surface.add_lobe(metal);
+}
+
 void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
     const VectorSource coated = add_coat(b, surface, c.weight);
     surface.add_emission(b, multiplied(b, c.emission, coated));
 
     const VectorSource tint = b.color("Specular Tint", kOne);
-    LobeSource metal = glossy_lobe(c);
-    // The edge tint is white unless the artist sets it: then F82 is Schlick's.
-    metal.fresnel = FresnelKind::Schlick;
-    metal.f0 = c.base_color;
-    metal.f90 = {-1, kOne};
-    metal.weight = scaled(b, coated, product(b, c.weight, c.metallic));
-    surface.add_lobe(metal);
+    if (!c.metallic.is(0.0f)) add_metal(b, surface, c, coated, tint);
 
     const FloatSource rest =
         product(b, c.weight, b.map<float>([](float m) { return 1.0f - m; }, c.metallic));

@@ -206,6 +206,38 @@ TEST(Fresnel, sharp_lobes_mirror_with_their_reflectance) {
     EXPECT_NEAR(reflectance.x, 0.089187f, 1e-5f);
 }
 
+// Kutz, Hasan and Edmondson 2021: f0 straight on, white at grazing angles, and at cos = 1/7 the
+// tint times Schlick's f0 + (1 - f0) (6/7)^5.
+TEST(Fresnel, f82_has_its_tint_at_82_degrees) {
+    const Vec3f f0(0.9f, 0.5f, 0.1f), tint(0.2f, 0.7f, 1.0f);
+    const auto reflectance = [&](float cosine) {
+        const ShadingPoints points = one_point(cosine);
+        Lobe lobe = glossy(points, 0.0f);
+        lobe.fresnel = FresnelKind::F82Tint;
+        lobe.f0.assign(1, f0);
+        lobe.f90.assign(1, tint);
+        Vec3f wo, reflected;
+        EXPECT_TRUE(prepare(lobe, points).reflect(0, wo, reflected));
+        return reflected;
+    };
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(reflectance(1.0f)[c], f0[c], 1e-6f);
+        EXPECT_NEAR(reflectance(1e-4f)[c], 1.0f, 2e-3f);
+        EXPECT_NEAR(reflectance(1.0f / 7.0f)[c], tint[c] * (f0[c] + (1.0f - f0[c]) * 0.462664f),
+                    1e-5f);
+    }
+}
+
+TEST(Fresnel, f82s_mean_is_that_of_quadrature) {
+    const Vec3f f0(0.9f, 0.5f, 0.3f), dip = f82_dip(f0, Vec3f(0.4f, 0.7f, 1.0f));
+    for (int c = 0; c < 3; ++c) {
+        const double mean = hemisphere_integral(
+            [&](const Vec3f& wo) { return fresnel_f82(f0, dip, wo.z)[c] * wo.z * kInversePi; },
+            300);
+        EXPECT_NEAR(f82_mean(f0, dip)[c], mean, 1e-4);
+    }
+}
+
 TEST(PointBsdf, what_lies_below_the_horizon_is_not_seen_and_reflects_nothing) {
     const ShadingPoints points = points_facing_up({{0, 0, 0}});
     const PointBsdf diffuse(closure_of(lambert(points, 1.0f)), points, 0, GgxAlbedo::shared());
