@@ -22,11 +22,11 @@ Vec3f average_normal(const ShadingPoints& points, const SurfaceClosure& closure,
     return length > 0.0f ? sum / length : points.normal[i];
 }
 
-/// How little of a point is lost in the mist, times its opacity.
+/// How little of a point is lost in the mist, times its opacity.  A mist of no depth takes nothing,
+/// as in Cycles.
 float clarity(const Mist& mist, const Vec3f& p_camera, bool perspective, float opacity) {
     const float distance = perspective ? glm::length(p_camera) : std::abs(p_camera.z);
-    const float place = mist.depth > 0.0f ? (distance - mist.start) / mist.depth
-                                          : (distance >= mist.start ? 1.0f : 0.0f);
+    const float place = mist.depth > 0.0f ? (distance - mist.start) / mist.depth : 0.0f;
     return (1.0f - std::pow(std::clamp(place, 0.0f, 1.0f), mist.exponent)) * opacity;
 }
 
@@ -104,7 +104,9 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                 break;
             case Quantity::Uv: {
                 const auto uv = shaded.run.read(shaded.sources.uv);
-                fill([&](std::size_t i) { return Vec3f(uv[i].x, uv[i].y, 1.0f); });
+                const int geometry = scene.instances[grid.instance].geometry;
+                const float mapped = scene.geometries[geometry].default_uv() ? 1.0f : 0.0f;
+                fill([&](std::size_t i) { return Vec3f(uv[i].x, uv[i].y, mapped); });
                 break;
             }
             case Quantity::AovColor: {

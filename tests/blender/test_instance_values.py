@@ -49,6 +49,23 @@ def test_object_info_has_the_objects_color(scene, render, output):
     _agree(scene, render)
 
 
+@pytest.mark.parametrize("nested", [False, True])
+def test_instances_have_the_colour_of_their_instancer(scene, render, nested):
+    _view(scene)
+    inside = scene_parts.add_square(scene, "Inside", 1.0)
+    inside.color = (0.1, 0.2, 0.9, 1.0)
+    place = inside
+    for level in range(2 if nested else 1):
+        part = bpy.data.collections.new(f"Part{level}")
+        part.objects.link(place)
+        scene.collection.objects.unlink(place)
+        place = scene_parts.add_object(scene, f"Place{level}", None, (0.5 * level, 0.0, 0.0))
+        place.instance_type, place.instance_collection = "COLLECTION", part
+        place.color = (0.9, 0.3 + 0.3 * level, 0.1, 1.0)
+    _shown([inside], "ShaderNodeObjectInfo", "Color")
+    _agree(scene, render)
+
+
 @pytest.mark.parametrize("output", ["Color", "Vector", "Fac", "Alpha"])
 @pytest.mark.parametrize("name", ["shade", "number", "location", "color", "nothing"])
 def test_attributes_of_objects(scene, render, name, output):

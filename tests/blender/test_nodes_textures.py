@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 from mathutils import Matrix
-from node_comparison import Tree, board, check, enum_values
+from node_comparison import LIMIT, Tree, board, check, enum_values, render_both, rmse
 
 SAMPLES = 64  # what varies inside a pixel is averaged by both
 
@@ -47,6 +47,40 @@ def test_image(scene, render, tmp_path, interpolation, source):
     tree, node = textured(scene, image, interpolation=interpolation)
     tree.emit(node.outputs["Color"])
     check(scene, render, SAMPLES)
+
+
+def test_a_node_without_an_image(scene, render):
+    """Glaring, as a file that is missing, and opaque."""
+    tree, node = textured(scene, None)
+    seen = tree.add("ShaderNodeVectorMath", operation="MULTIPLY")
+    for output, target in zip(node.outputs, seen.inputs):
+        tree.link(output, target)
+    tree.emit(seen.outputs[0])
+    check(scene, render)
+
+
+@pytest.mark.parametrize("extension", ["REPEAT", "EXTEND"])
+@pytest.mark.parametrize("mapped", [False, True], ids=["without a map", "along borders of texels"])
+def test_closest_texel_on_a_border_is_the_one_above(scene, render, extension, mapped):
+    """Where v is not negative: below 0 Cycles rounds away from it."""
+    tree = Tree(board(scene, 0.0, 1.5))
+    node = tree.add("ShaderNodeTexImage", image=smooth_image("Image"))
+    node.interpolation, node.extension = "Closest", extension
+    # Without a map all is at (0, 0).
+    mesh = bpy.data.objects["Board"].data
+    mesh.uv_layers.remove(mesh.uv_layers[0])
+    place = tree.add("ShaderNodeCombineXYZ")
+    if mapped:
+        rounded = tree.add("ShaderNodeMath", operation="SNAP")
+        tree.link(tree.attribute("A", "Fac"), rounded.inputs[0])
+        rounded.inputs[1].default_value = 1 / 16
+        place.inputs[0].default_value = 0.4
+        tree.link(rounded.outputs[0], place.inputs[1])
+        tree.link(place.outputs[0], node.inputs[0])
+    tree.emit(node.outputs["Color"])
+    theirs, ours = render_both(scene, render)
+    assert theirs.max() > 0.2
+    assert rmse(theirs, ours) < LIMIT
 
 
 def test_tiles_that_were_never_saved(scene, render):

@@ -187,6 +187,44 @@ def test_passes_of_one_sample_agree_with_cycles(pair, prop):
     assert len(np.unique(theirs)) > 3
 
 
+@pytest.mark.parametrize("prop", sorted(NAMES))
+def test_a_pass_that_is_asked_for_alone(scene, render, prop):
+    """The same numbers as among all."""
+    set_stage(scene)
+    layer = scene.view_layers[0]
+    for other in NAMES:
+        setattr(layer, other, other == prop)
+    alone = arrays(render(scene), prop)
+    ask_for_all(layer)
+    np.testing.assert_array_equal(alone, arrays(render(scene), prop))
+
+
+def test_uv_is_marked_where_there_is_a_map(scene, render):
+    set_stage(scene)
+    lamp = bpy.data.objects["Lamp"].data
+    lamp.uv_layers.remove(lamp.uv_layers[0])
+    ask_for_all(scene.view_layers[0])
+    ours, theirs = (
+        blocks(arrays(channels, "use_pass_uv"))
+        for channels in scene_parts.direct_light_of_both(scene, render, 100)
+    )
+    assert 0.1 < theirs[..., 2].mean() < 0.9
+    # As in FILTERED.
+    assert rms(ours - theirs) < 0.04 * rms(theirs)
+
+
+def test_a_mist_without_depth_covers_nothing_that_is_seen(scene, render):
+    set_stage(scene)
+    scene.world.mist_settings.depth = 0.0
+    ask_for_all(scene.view_layers[0])
+    ours, theirs = (
+        blocks(arrays(channels, "use_pass_mist"))
+        for channels in scene_parts.direct_light_of_both(scene, render, 100)
+    )
+    assert theirs.max() > 0.9
+    assert rms(ours - theirs) < 0.02 * rms(theirs)
+
+
 def test_light_by_colour_is_the_picture(scene, render):
     set_stage(scene)
     ask_for_all(scene.view_layers[0])

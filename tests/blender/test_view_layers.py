@@ -150,3 +150,19 @@ def test_passes_that_are_not_made_are_named(scene):
     assert len(names) == 5
     for word in ("Ambient Occlusion", "Cryptomatte Object", "Diffuse Indirect", "Key", "enois"):
         assert any(word in name for name in names), (word, names)
+
+
+def test_a_layer_without_a_sky_has_no_world(glowing, render):
+    """Neither seen nor shining."""
+    glowing.render.film_transparent = False
+    glowing.world = world("Red", (0.9, 0.0, 0.0))
+    matte = bpy.data.materials.new("Matte")
+    if matte.node_tree is None:
+        matte.use_nodes = True
+    parts.add_square(glowing, "Matte", 0.5, (1.5, 1.0, 0.0), matte)
+    shown, _ = both(glowing, render)
+    glowing.view_layers[0].use_sky = False
+    ours, theirs = both(glowing, render)
+    assert np.abs(ours - theirs).max() < 1e-6
+    # Left is what glows.
+    assert shown[0].mean() > ours[0].mean() + 0.3

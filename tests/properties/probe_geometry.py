@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 import scene_parts
 import stage
+from mathutils import Matrix
 from probe import Probe
 
 
@@ -17,20 +18,14 @@ def _shown(scene, lit=True):
 
 def _painted():
     """Diffuse by UV, the vertex colour and Generated together."""
-    made, nodes, links, output = stage.material("Painted")
-    coordinate, color, add, bsdf = (
-        nodes.new(f"ShaderNode{kind}")
-        for kind in ("TexCoord", "VertexColor", "VectorMath", "BsdfDiffuse")
+    made, nodes, links, _output = tree = stage.material("Painted")
+    coordinate, color, places = (
+        nodes.new(f"ShaderNode{kind}") for kind in ("TexCoord", "VertexColor", "VectorMath")
     )
-    sum_of_places = nodes.new("ShaderNodeVectorMath")
-    links.new(coordinate.outputs["Generated"], sum_of_places.inputs[0])
-    links.new(coordinate.outputs["UV"], sum_of_places.inputs[1])
-    add.operation = "MULTIPLY_ADD"
-    links.new(sum_of_places.outputs[0], add.inputs[0])
-    add.inputs[1].default_value = (0.3, 0.3, 0.3)
-    links.new(color.outputs["Color"], add.inputs[2])
-    links.new(add.outputs[0], bsdf.inputs["Color"])
-    links.new(bsdf.outputs[0], output.inputs["Surface"])
+    links.new(coordinate.outputs["Generated"], places.inputs[0])
+    links.new(coordinate.outputs["UV"], places.inputs[1])
+    shown = places.outputs[0], color.outputs["Color"]
+    stage.show_sum(tree, *shown, part=0.3)
     return made
 
 
@@ -146,6 +141,8 @@ def _modified(kind):
         _shown(scene)
         thing = stage.add_cube(scene, size=1.3, location=(0, 0, 0), material=_painted())
         mesh = thing.data
+        if kind == "MIRROR":  # beside the planes: mirrored, it must not meet itself
+            mesh.transform(Matrix.Translation((0.4, 0.35, 0.3)) @ Matrix.Scale(0.5, 4))
         stage.finish_mesh(mesh)
         mesh.polygons.foreach_set("use_smooth", [False] * 6)
         mesh.materials.append(stage.diffuse("Second", (0.9, 0.1, 0.1)))

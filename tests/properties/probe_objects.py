@@ -31,18 +31,9 @@ def _surroundings(scene, world=(0.2, 0.15, 0.3)):
 
 def _info(name="Info"):
     """Diffuse, its colour from Object Info: colour, indices, random."""
-    made, nodes, links, output = stage.material(name)
-    info, add, bsdf = (
-        nodes.new("ShaderNodeObjectInfo"),
-        nodes.new("ShaderNodeVectorMath"),
-        nodes.new("ShaderNodeBsdfDiffuse"),
-    )
-    add.operation = "MULTIPLY_ADD"
-    links.new(info.outputs["Color"], add.inputs[0])
-    add.inputs[1].default_value = (0.5, 0.5, 0.5)
-    links.new(info.outputs["Object Index"], add.inputs[2])
-    links.new(add.outputs[0], bsdf.inputs["Color"])
-    links.new(bsdf.outputs[0], output.inputs["Surface"])
+    made, nodes, _links, _output = tree = stage.material(name)
+    info = nodes.new("ShaderNodeObjectInfo").outputs
+    stage.show_sum(tree, info["Color"], info["Object Index"])
     return made
 
 
@@ -104,18 +95,11 @@ def _instancer(kind):
 
 
 def _instanced():
-    """Glows by Texture Coordinate > From Instancer."""
-    made, nodes, links, output = stage.material("Instanced")
-    coordinate, info, add, emit = (
-        nodes.new(f"ShaderNode{kind}")
-        for kind in ("TexCoord", "ObjectInfo", "VectorMath", "Emission")
-    )
-    coordinate.name, add.operation = "Coordinate", "MULTIPLY_ADD"
-    links.new(coordinate.outputs["UV"], add.inputs[0])
-    add.inputs[1].default_value = (0.5, 0.5, 0.5)
-    links.new(info.outputs["Color"], add.inputs[2])
-    links.new(add.outputs[0], emit.inputs["Color"])
-    links.new(emit.outputs[0], output.inputs["Surface"])
+    """Diffuse by Texture Coordinate > From Instancer."""
+    made, nodes, _links, _output = tree = stage.material("Instanced")
+    coordinate, info = nodes.new("ShaderNodeTexCoord"), nodes.new("ShaderNodeObjectInfo")
+    coordinate.name = "Coordinate"
+    stage.show_sum(tree, coordinate.outputs["UV"], info.outputs["Color"])
     return made
 
 

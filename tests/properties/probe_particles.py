@@ -40,7 +40,10 @@ def _hair(children):
         settings.root_radius, settings.tip_radius = 4.0, 1.0
         if children:
             settings.child_type = "INTERPOLATED"
-            settings.rendered_child_count = settings.child_nbr = 4
+            settings.rendered_child_count = 4
+            # Shown in the viewport; Blender 4 renamed it.
+            shown = "child_percent" if hasattr(settings, "child_percent") else "child_nbr"
+            setattr(settings, shown, 4)
         return {"settings": settings, "system": system, "object": thing, "scene": scene}
 
     return build
@@ -52,6 +55,8 @@ def _objects(render_type):
         settings.frame_start = settings.frame_end = 1.0
         settings.physics_type = "NO"
         settings.lifetime = 10
+        # In order and by jitter Blender puts several at one place.
+        settings.use_emit_random = False
         cube = stage.add_cube(
             scene, size=0.8, location=(0, 0, 0), material=stage.diffuse("Cube", (0.9, 0.4, 0.2))
         )
@@ -74,7 +79,14 @@ def _objects(render_type):
 
 
 _SYSTEM_UNREAD = frozenset(
-    {"seed", "child_seed", "settings", "reactor_target_object", "use_hair_dynamics"}
+    {
+        "seed",
+        "child_seed",
+        "use_emit_random",
+        "settings",
+        "reactor_target_object",
+        "use_hair_dynamics",
+    }
 )
 _WALKED = ("settings", "system")
 

@@ -14,6 +14,7 @@ import scene_parts
 SIZE = 32
 SAMPLES = 16
 ENGINES = ("CYCLES", "GRANITA")
+_TERMINATOR = "shadow_terminator_geometry_offset"
 
 
 @dataclass
@@ -53,7 +54,12 @@ class Session:
         bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         scene = bpy.context.scene
         set_up(scene)
-        return scene, probe.build(scene)
+        roots = probe.build(scene)
+        for thing in bpy.data.objects:
+            # What Granita has no counterpart to, and Cycles does by itself.
+            settings = thing if hasattr(thing, _TERMINATOR) else thing.cycles
+            setattr(settings, _TERMINATOR, 0.0)
+        return scene, roots
 
     def render(self, scene, engine, seed=0):
         """The Outcome of one engine."""

@@ -52,6 +52,18 @@ def material(name="Material"):
     return made, tree.nodes, tree.links, tree.nodes.new("ShaderNodeOutputMaterial")
 
 
+def show_sum(tree, first, second, part=0.5):
+    """A tree of `material` shows `part` of one output and all of another, diffuse."""
+    _made, nodes, links, output = tree
+    add, shader = nodes.new("ShaderNodeVectorMath"), nodes.new("ShaderNodeBsdfDiffuse")
+    add.operation = "MULTIPLY_ADD"
+    links.new(first, add.inputs[0])
+    add.inputs[1].default_value = (part,) * 3
+    links.new(second, add.inputs[2])
+    links.new(add.outputs[0], shader.inputs["Color"])
+    links.new(shader.outputs[0], output.inputs["Surface"])
+
+
 def diffuse(name, color):
     made, nodes, links, output = material(name)
     bsdf = nodes.new("ShaderNodeBsdfDiffuse")

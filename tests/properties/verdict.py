@@ -4,11 +4,12 @@
 from dataclasses import asdict, dataclass
 
 import compare
+from subject import names_of_flip, names_of_roots, tells
 
 # In this order from harmless to bad.
 ALIKE = "alike"  # both pictures change, and alike
 STAY = "stay"  # neither changes
-WARNED = "warned"  # Cycles' picture changes, and Granita says that it does not follow
+WARNED = "warned"  # Cycles' picture changes, and Granita says that it does not follow, and of what
 UNSET = "unset"  # Blender does not take the value
 CYCLES_FAILS = "cycles fails"
 DIFFERS = "differs"  # both change, each its own way, without a word
@@ -41,8 +42,9 @@ class Judge:
     def __init__(self, session, probe):
         self.session, self.probe = session, probe
         self.base = session.seeds(lambda: session.build(probe)[0])
-        scene, _roots = session.build(probe)
+        scene, roots = session.build(probe)
         self.standing = session.render(scene, "GRANITA").warnings
+        self._names = names_of_roots(roots)
 
     def baseline(self):
         """A Verdict on the unchanged picture: how far the engines are apart."""
@@ -55,7 +57,8 @@ class Judge:
         apart = compare.distance(theirs, ours)
         size = max(compare.distance(theirs, {k: 0 * v for k, v in theirs.items()}), 1e-6)
         same = apart <= compare.ALIKE * size + compare.MARGIN * (noise_c + noise_g)
-        said = " | ".join(sorted(f"{d}: {m}" for d, m in self.standing))
+        about = [text for text in map(_text, self.standing) if tells(text, self._names)]
+        said = " | ".join(sorted(about))
         what = ALIKE if same else WARNED if said else DIFFERS
         return Verdict(name, self.probe.name, what, noise_c, noise_g, apart / size, said)
 
@@ -65,16 +68,17 @@ class Judge:
             return Verdict(flip.identifier, flip.key, UNSET)
         theirs = self.session.render(scene, "CYCLES")
         ours = self.session.render(scene, "GRANITA")
-        return self._sort(flip, theirs, ours)
+        return self._sort(flip, theirs, ours, names_of_flip(flip, roots))
 
-    def _sort(self, flip, theirs, ours):
+    def _sort(self, flip, theirs, ours, names):
         (before_c, noise_c), (before_g, noise_g) = (
             (pictures[0], noise)
             for pictures, noise in (self.base[e] for e in ("CYCLES", "GRANITA"))
         )
         new = ours.warnings - self.standing
         about_node = {w for w in ours.warnings if self.probe.node and _not_supported(w)}
-        said = " | ".join(sorted(f"{d}: {m}" for d, m in new | about_node)) or ours.error
+        about = [text for text in map(_text, new | about_node) if tells(text, names)]
+        said = " | ".join(sorted(about)) or ours.error
 
         def verdict(what, cycles=0.0, granita=0.0, mismatch=0.0):
             return Verdict(flip.identifier, flip.key, what, cycles, granita, mismatch, said)
@@ -82,7 +86,7 @@ class Judge:
         if theirs.picture is None:
             return verdict(STAY if ours.picture is None else CYCLES_FAILS)
         if ours.picture is None:
-            return verdict(WARNED if ours.error and "Traceback" not in ours.error else FAILS)
+            return verdict(WARNED if _explains(ours.error, names) else FAILS)
         if before_c is None or before_g is None:
             return verdict(ALIKE)
         cycles = compare.distance(before_c, theirs.picture)
@@ -94,7 +98,7 @@ class Judge:
             return verdict(STAY, cycles, granita)
         if changed_c and changed_g and mismatch <= compare.ALIKE:
             return verdict(ALIKE, cycles, granita, mismatch)
-        if new or about_node:
+        if about:
             return verdict(WARNED, cycles, granita, mismatch)
         # Before it is a fault: what of the two changes may be noise of the changed picture?
         after = self.session.seeds(lambda: self._changed(flip))
@@ -114,6 +118,15 @@ class Judge:
         scene, roots = self.session.build(self.probe)
         flip.apply(self.probe, roots)
         return scene
+
+
+def _explains(error, names):
+    """Whether a failure is told to the artist, and not to a programmer."""
+    return "Traceback" not in error and "internal error" not in error and tells(error, names)
+
+
+def _text(warning):
+    return "{}: {}".format(*warning)
 
 
 def _not_supported(warning):

@@ -72,7 +72,9 @@ def place_on_instancer(instance):
 def prototype_value(prototype, key):
     """Four floats of a living InstancePrototype, or None where nothing of it has such a value."""
     if key == COLOR:
-        return tuple(prototype.source.color)
+        # Blender gives what is instanced its instancer's colour.
+        owner = prototype.source if prototype.parent is None else prototype.parent
+        return tuple(owner.color)
     if key in _PLACES:
         return None
     kind, name = key.split(":", 1)

@@ -24,17 +24,17 @@ def export_world(scene, view_layer, report, images=None):
 
     Args:
         scene: evaluated Scene.
-        view_layer: evaluated ViewLayer; with its sky off, Cycles drops the world's light as well.
+        view_layer: evaluated ViewLayer.
         report: called with (datablock, message).
         images: list of image records to which those of the world are added.
 
     Returns:
-        dict; black where the scene has no world.
+        dict; black where the scene has no world, or the view layer no sky.
     """
     world = world_of(scene, view_layer)
     record = {"nodes": [], "surface": None, "displacement": None}
-    record["lights_scene"] = bool(view_layer.use_sky)
-    if world is None:
+    record["lights_scene"] = world is not None and bool(view_layer.use_sky)
+    if not record["lights_scene"]:
         return {**record, "name": ""}
     record["name"] = world.name_full
     owner = f"world '{world.name_full}'"

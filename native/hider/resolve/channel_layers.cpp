@@ -62,6 +62,7 @@ void ChannelLayers::add(std::uint32_t sample, const SurfacePoint& at, const Vec3
 }
 
 void ChannelLayers::set_first(std::uint32_t sample, const SurfacePoint& at) {
+    if (m_channels.vertex_width() == 0) return;  // the environment alone is asked for
     GRANITA_CHECK(!at.grid->channels.empty());
     const RowMix mix(at, m_channels.vertex_width());
     const int surface = m_channels.surface_width();

@@ -111,9 +111,8 @@ void give_back(std::vector<TexturePlace>& places, std::vector<Vec4f>& texels) {
 void build_image_texture(NodeBuilder& b) {
     const std::string image = b.text("image");
     if (image.empty()) {
-        // Cycles shows a node without an image black... with full alpha.
-        b.output_color("Color", {-1, Vec3f(0.0f)});
-        b.output("Alpha", FloatSource{-1, 0.0f});
+        b.output_color("Color", {-1, Vec3f(1.0f, 0.0f, 1.0f)});
+        b.output("Alpha", FloatSource{-1, 1.0f});
         return;
     }
     const auto texture = b.textures().find(image, "node '" + b.node().name + "'");

@@ -50,7 +50,9 @@ class LevelReader {
 
     template <class Read>
     Vec4f closest(Vec2f at, const Read& read) {
-        return texel(static_cast<int>(std::floor(at.x)), static_cast<int>(std::floor(at.y)), read);
+        // v counts from below: of two texels that meet at a place, the upper one, as in Cycles.
+        return texel(static_cast<int>(std::floor(at.x)), static_cast<int>(std::ceil(at.y)) - 1,
+                     read);
     }
 
   private:
