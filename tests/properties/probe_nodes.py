@@ -67,6 +67,7 @@ def _build(name, rich=False):
             return {}
         if hasattr(node, "image"):
             node.image = picture()
+        _fill_vectors(node)
         for identifier, value in _RICH.get(name, {}).items() if rich else ():
             socket = next((s for s in node.inputs if s.identifier == identifier), None)
             if socket is not None and not (
@@ -90,6 +91,13 @@ def _build(name, rich=False):
         return {"node": node, "nodes": nodes, "links": links, "output": output, "scene": scene}
 
     return build
+
+
+def _fill_vectors(node):
+    """Vectors of no length are the same to most operations, and of no direction to the others."""
+    for place, socket in enumerate(node.inputs):
+        if socket.type == "VECTOR" and not socket.hide_value and not any(socket.default_value):
+            socket.default_value = (0.3 / (1 + place), 0.5, 0.2 + 0.3 * place)
 
 
 def _takes_shaders(node):

@@ -55,8 +55,8 @@ def _objects(render_type):
         settings.frame_start = settings.frame_end = 1.0
         settings.physics_type = "NO"
         settings.lifetime = 10
-        # In order and by jitter Blender puts several at one place.
-        settings.use_emit_random = False
+        # At random, or as many as vertices, Blender puts several at one place.
+        settings.use_emit_random, settings.count = False, 20
         cube = stage.add_cube(
             scene, size=0.8, location=(0, 0, 0), material=stage.diffuse("Cube", (0.9, 0.4, 0.2))
         )

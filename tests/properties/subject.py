@@ -9,21 +9,31 @@ _SHORTEST_WORD = 4
 
 
 def names_of_flip(flip, roots):
-    """Names that a warning may tell of a flip by: its datablocks and nodes, and the property's own.
+    """Names that a new warning may tell of a flip by: of its datablocks and nodes.
 
     Args:
         flip: walk.Flip that has been applied.
         roots: of its probe.
     """
     if not flip.path:
-        return names_of_roots(roots) | _words(flip.name)
+        return names_of_roots(roots)
     found = set()
     for steps in range(1, len(flip.path) + 1):
         found |= _names_of(find(roots, flip.path[:steps]))
     if isinstance(flip.value, tuple) and flip.value[:1] == ("DATABLOCK",):
         found.add(_quoted(flip.value[1]))
-    rna = find(roots, flip.path).bl_rna.properties[flip.name]
-    return found | _words(flip.name) | _words(rna.name)
+    return found
+
+
+def words_of_flip(flip, roots):
+    """Words that any warning may tell of a flip by: of the property itself."""
+    if not flip.path:
+        return _words(flip.name.removeprefix("output "))
+    struct = find(roots, flip.path)
+    words = _words(flip.name) | _words(struct.bl_rna.properties[flip.name].name)
+    if isinstance(struct, bpy.types.NodeSocket):
+        words = _words(struct.name) | _words(struct.identifier)
+    return words
 
 
 def names_of_roots(roots):

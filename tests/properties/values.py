@@ -51,6 +51,8 @@ def _other_numbers(rna, now):
     reach = _REACH_OF_ANGLES if rna.subtype == "ANGLE" else max(1.0, abs(now))
     reach = _REACHES.get(rna.identifier, reach)
     ends = max(rna.soft_min, now - reach), min(rna.soft_max, now + reach)
+    if rna.subtype == "FACTOR" and 0.0 <= now <= 1.0:
+        ends = max(ends[0], 0.0), min(ends[1], 1.0)
     if rna.type == "INT":
         ends = [int(end) for end in ends]
     return [end for end in ends if not math.isclose(end, now, rel_tol=1e-6, abs_tol=1e-9)]

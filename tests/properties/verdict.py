@@ -4,7 +4,7 @@
 from dataclasses import asdict, dataclass
 
 import compare
-from subject import names_of_flip, names_of_roots, tells
+from subject import names_of_flip, names_of_roots, tells, words_of_flip
 
 # In this order from harmless to bad.
 ALIKE = "alike"  # both pictures change, and alike
@@ -68,16 +68,19 @@ class Judge:
             return Verdict(flip.identifier, flip.key, UNSET)
         theirs = self.session.render(scene, "CYCLES")
         ours = self.session.render(scene, "GRANITA")
-        return self._sort(flip, theirs, ours, names_of_flip(flip, roots))
+        words = words_of_flip(flip, roots)
+        return self._sort(flip, theirs, ours, names_of_flip(flip, roots) | words, words)
 
-    def _sort(self, flip, theirs, ours, names):
+    def _sort(self, flip, theirs, ours, names, words):
         (before_c, noise_c), (before_g, noise_g) = (
             (pictures[0], noise)
             for pictures, noise in (self.base[e] for e in ("CYCLES", "GRANITA"))
         )
-        new = ours.warnings - self.standing
-        about_node = {w for w in ours.warnings if self.probe.node and _not_supported(w)}
-        about = [text for text in map(_text, new | about_node) if tells(text, names)]
+        # Of what was said before the flip, too, what tells of this property or of all of the node.
+        about = [text for text in map(_text, ours.warnings - self.standing) if tells(text, names)]
+        for text in map(_text, ours.warnings & self.standing):
+            if tells(text, words) or self.probe.node and _not_supported(text):
+                about.append(text)
         said = " | ".join(sorted(about)) or ours.error
 
         def verdict(what, cycles=0.0, granita=0.0, mismatch=0.0):
@@ -129,5 +132,5 @@ def _text(warning):
     return "{}: {}".format(*warning)
 
 
-def _not_supported(warning):
-    return "is not supported" in warning[1]
+def _not_supported(text):
+    return "is not supported" in text

@@ -86,6 +86,7 @@ def _ramp(node, *_):
 def _free_curves(node, *_):
     """Curves without one over all of them; a single one three times."""
     mapping = node.mapping
+    mapping.update()  # clips its points, as Cycles does first
     mapping.initialize()
     curves = list(mapping.curves)[:3]
     low = min(curve.points[0].location[0] for curve in curves)
@@ -118,6 +119,7 @@ def _wavelength(_node, *_):
 
 def _curves(node, *_):
     mapping = node.mapping
+    mapping.update()  # clips its points, as Cycles does first
     mapping.initialize()
     curves = list(mapping.curves)
     low = min(curve.points[0].location[0] for curve in curves)

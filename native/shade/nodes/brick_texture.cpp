@@ -51,8 +51,7 @@ float mortar_at(const Brick& brick, float size, float smooth) {
     if (nearest >= size) return 0.0f;
     if (smooth == 0.0f) return 1.0f;
     const float depth = 1.0f - nearest / size;
-    if (depth >= smooth) return 1.0f;
-    const float t = depth / smooth;
+    const float t = std::clamp(depth / smooth, 0.0f, 1.0f);
     return t * t * (3.0f - 2.0f * t);
 }
 
