@@ -19,10 +19,8 @@ from walk import flips  # noqa: E402
 # Of each subject (a type of node, of light, of settings, ...), in the order of a hash of their names: the same
 # ones in every run, and of what a new Blender brings its share.
 A_SUBJECT = 1
-# Cycles prepares an environment for seconds; hair with children takes as long.
-SLOW = {"image, environment", "hair with children"}
 
-PROBES = [probe for probe in all_probes() if probe.name not in SLOW]
+PROBES = all_probes()
 
 
 def _order(flip):
