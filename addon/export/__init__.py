@@ -26,6 +26,7 @@ from .scene.options import options_record, scene_frame
 from .scene.persistent_state import PersistentState
 from .scene.scene_objects import read_scene_objects
 from .scene.shutter import Clock, scene_shutter
+from .shading.default_material import fill_empty_slots
 
 __all__ = ["Cancelled", "ExportError", "PersistentState", "Report", "export_frame"]
 
@@ -113,6 +114,7 @@ def export_frame(
     if persistent_state is not None:
         persistent_state.keep(scene_objects)
     lights = place_lamps(lamps, scan, motion, report)
+    instances, materials = fill_empty_slots(instances, list(seen.materials))
     snapshot = Snapshot(
         options=options,
         camera=camera_at_frame,
@@ -121,7 +123,7 @@ def export_frame(
             for index, source in enumerate(seen.sources)
         ],
         instances=replace(instances),
-        materials=list(seen.materials),
+        materials=materials,
         images=_each_once(seen.images + world_images),
         lights=[record for _, record in lights],
         world=world,

@@ -2,6 +2,7 @@
 """Shaders against Cycles' own output, and trees that have to be flattened."""
 
 import bpy
+import numpy as np
 import pytest
 import scene_parts
 from node_comparison import LIMIT, Tree, board, check, render_both, rmse, socket
@@ -348,6 +349,24 @@ def test_material_without_nodes_and_no_material(scene, render):
     if not material.use_nodes:  # Blender 5 has nodes always
         thing.data.materials.append(material)
     check(scene, render)
+
+
+def test_empty_slots_among_others(scene, render):
+    """A slot without a material, and things without a slot, beside one that has its own."""
+    sun(scene)
+    thing = board(scene, 0, 1)
+    Tree(thing)
+    glow = Tree(thing, "Glow")
+    shown(glow, emission(glow, "A"))
+    thing.data.materials[0] = None
+    thing.data.polygons.foreach_set("material_index", [i % 2 for i in range(256)])
+    bare = scene_parts.add_square(scene, "Bare", 0.5, (0.0, 0.0, 2.0))
+    bare.rotation_euler = (0.0, 0.2, 0.0)
+    theirs, ours = render_both(scene, render, samples=16)
+    assert theirs.std() > 0.1
+    # The edges of the bare square, of which each engine has its own samples.
+    assert np.median(np.abs(theirs - ours)) < 1e-4
+    assert rmse(theirs, ours) < 0.02
 
 
 def test_unknown_node_is_told_once(scene, render):
