@@ -256,10 +256,12 @@ def test_generated_is_what_textures_use_when_nothing_is_linked(scene, render):
     check(scene, render, SAMPLES)
 
 
+@pytest.mark.parametrize("interpolation", ["Linear", "Cubic", "Smart"])
 @pytest.mark.parametrize("projection", enum_values("ShaderNodeTexEnvironment", "projection"))
-def test_environment_texture(scene, render, projection):
+def test_environment_texture(scene, render, projection, interpolation):
     tree = Tree(board(scene))
-    node = tree.add("ShaderNodeTexEnvironment", image=smooth_image("Image"), projection=projection)
+    node = tree.add("ShaderNodeTexEnvironment", image=smooth_image("Image", size=8))
+    node.projection, node.interpolation = projection, interpolation
     direction = tree.add("ShaderNodeVectorMath", operation="NORMALIZE")
     tree.link(tree.attribute("A"), direction.inputs[0])
     tree.link(direction.outputs[0], node.inputs[0])

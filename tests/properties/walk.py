@@ -82,6 +82,8 @@ UNREAD_PROPERTIES = {
     "width",
     "width_hidden",
 }
+# The same for nodes alone: where they stand in the editor, and their own colour there.
+UNREAD_OF_NODES = {"location", "color"}
 _DEPTH = 3
 
 
@@ -157,6 +159,8 @@ def _unread(struct, probe):
             if isinstance(struct, bpy.types.Object)
             else UNREAD_PROPERTIES
         )
+        if isinstance(struct, bpy.types.Node):
+            names = names | UNREAD_OF_NODES
         return names | probe.left_out
     return {"rna_type", "name"} | probe.left_out
 

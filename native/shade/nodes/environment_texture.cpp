@@ -6,6 +6,7 @@
 #include "math/sampling.h"
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/texture_mode.h"
 
 namespace granita {
 
@@ -35,8 +36,7 @@ void build_environment_texture(NodeBuilder& b) {
     const auto texture = b.textures().find(image, "node '" + b.node().name + "'");
     const bool ball = b.text("projection", "EQUIRECTANGULAR") == "MIRROR_BALL";
     TextureMode mode;
-    mode.filter = b.text("interpolation", "Linear") == "Closest" ? TextureFilter::Closest
-                                                                 : TextureFilter::Linear;
+    mode.filter = texture_filter(b);
     const VectorSource direction =
         b.linked("Vector") ? b.vector("Vector") : position_at(b, Shift::None);
     const VectorSource color = b.new_source<Vec3f>();

@@ -8,6 +8,7 @@
 #include "math/sampling.h"
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/texture_mode.h"
 
 namespace granita {
 
@@ -72,12 +73,9 @@ Vec2f box_plane(int axis, const Vec3f& p, const Vec3f& normal) {
 }
 
 TextureMode texture_mode(NodeBuilder& b) {
-    const std::string filter = b.text("interpolation", "Linear");
     const std::string extension = b.text("extension", "REPEAT");
     TextureMode mode;
-    mode.filter = filter == "Closest"  ? TextureFilter::Closest
-                  : filter == "Linear" ? TextureFilter::Linear
-                                       : TextureFilter::Cubic;
+    mode.filter = texture_filter(b);
     mode.extension = extension == "EXTEND"   ? TextureExtension::Extend
                      : extension == "CLIP"   ? TextureExtension::Clip
                      : extension == "MIRROR" ? TextureExtension::Mirror
