@@ -269,6 +269,17 @@ def test_environment_texture(scene, render, projection, interpolation):
     check(scene, render)
 
 
+@pytest.mark.parametrize("projection", enum_values("ShaderNodeTexEnvironment", "projection"))
+def test_environment_texture_by_place(scene, render, projection):
+    """Without a vector it is read in the direction of the point from the world's origin."""
+    thing = board(scene)
+    thing.location = (0.3, -0.2, 0.4)
+    tree = Tree(thing)
+    node = tree.add("ShaderNodeTexEnvironment", image=smooth_image("Image"), projection=projection)
+    tree.emit(node.outputs["Color"])
+    check(scene, render, SAMPLES)
+
+
 @pytest.mark.parametrize("damage", ["missing", "truncated", "empty"])
 def test_broken_image_is_magenta_and_named(scene, render, tmp_path, damage):
     from granita.export import export_frame

@@ -32,7 +32,8 @@ def words_of_flip(flip, roots):
     struct = find(roots, flip.path)
     words = _words(flip.name) | _words(struct.bl_rna.properties[flip.name].name)
     if isinstance(struct, bpy.types.NodeSocket):
-        words = _words(struct.name) | _words(struct.identifier)
+        # "Sheen Weight" is one of sheen's.
+        words = _words(struct.identifier) | _words(struct.name.split(" ")[0])
     return words
 
 

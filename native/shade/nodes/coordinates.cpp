@@ -51,6 +51,13 @@ VectorSource position_at(NodeBuilder& b, Shift shift) {
     });
 }
 
+VectorSource world_position_at(NodeBuilder& b, Shift shift) {
+    const VectorSource p = position_at(b, shift);
+    if (b.is_world()) return p;
+    return b.map<Vec3f>([eye = FrameCamera(b.scene()).position](const Vec3f& q) { return q + eye; },
+                        p);
+}
+
 VectorSource object_normal(NodeBuilder& b) {
     // A world faces who looks at it.
     if (b.is_world())
@@ -116,17 +123,14 @@ void build_texture_coordinate(NodeBuilder& b) {
 }
 
 void build_geometry(NodeBuilder& b) {
-    const FrameCamera camera(b.scene());
-    const VectorSource p = position_at(b, b.shift());
+    const VectorSource p = world_position_at(b, b.shift());
+    b.output_vector("Position", p);
     if (b.is_world()) {
-        b.output_vector("Position", p);
         b.output_vector("Incoming", b.map<Vec3f>([](const Vec3f& d) { return -d; }, p));
         b.output_vector("Normal", b.map<Vec3f>([](const Vec3f& d) { return -d; }, p));
         b.output("Backfacing", FloatSource{-1, 0.0f});
         return;
     }
-    b.output_vector("Position",
-                    b.map<Vec3f>([camera](const Vec3f& q) { return q + camera.position; }, p));
     b.output_vector("Normal", b.shading_normal());
     b.output_vector("True Normal", b.geometry<Vec3f>([](const ShadingInput& in, std::size_t i) {
         return in.points->geometric_normal[i];

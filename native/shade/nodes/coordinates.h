@@ -8,6 +8,8 @@ namespace granita {
 
 /// Camera-relative world; the direction in the world's programs.
 VectorSource position_at(NodeBuilder& b, Shift shift);
+/// In the world; of a world shader the direction, too.
+VectorSource world_position_at(NodeBuilder& b, Shift shift);
 VectorSource generated_at(NodeBuilder& b, Shift shift);
 /// An empty name: the UV map that is active for render.
 VectorSource uv_at(NodeBuilder& b, const std::string& name, Shift shift);

@@ -38,7 +38,7 @@ void build_environment_texture(NodeBuilder& b) {
     TextureMode mode;
     mode.filter = texture_filter(b);
     const VectorSource direction =
-        b.linked("Vector") ? b.vector("Vector") : position_at(b, Shift::None);
+        b.linked("Vector") ? b.vector("Vector") : world_position_at(b, Shift::None);
     const VectorSource color = b.new_source<Vec3f>();
     b.add_step(
         [=](Run& run) {
