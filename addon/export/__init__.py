@@ -26,7 +26,6 @@ from .scene.options import options_record, scene_frame
 from .scene.persistent_state import PersistentState
 from .scene.scene_objects import read_scene_objects
 from .scene.shutter import Clock, scene_shutter
-from .shading.default_material import fill_empty_slots
 
 __all__ = ["Cancelled", "ExportError", "PersistentState", "Report", "export_frame"]
 
@@ -114,7 +113,7 @@ def export_frame(
     if persistent_state is not None:
         persistent_state.keep(scene_objects)
     lights = place_lamps(lamps, scan, motion, report)
-    instances, materials = fill_empty_slots(instances, list(seen.materials))
+    instances, materials = _fill_empty_slots(instances, list(seen.materials))
     snapshot = Snapshot(
         options=options,
         camera=camera_at_frame,
@@ -142,6 +141,12 @@ def _render_camera(engine, scene):
     if camera is None:
         raise ExportError(f"scene '{scene.name}'", "has no camera")
     return camera.original
+
+
+def _fill_empty_slots(instances, materials):
+    from .shading.default_material import fill_empty_slots
+
+    return fill_empty_slots(instances, materials)
 
 
 def _world(depsgraph, report):
