@@ -11,7 +11,8 @@ std::uint64_t Grid::bytes() const {
                                   opacity.size() + radiance.size() + ray_offset.size();
     floats += channels.size() + shading_positions.anchors.size() +
               shading_positions.point_of.size() + shading_positions.faces.size();
-    return sizeof(Grid) + unsettled.size() + 4 * floats + sizeof(Vec3f) * vectors;
+    return sizeof(Grid) + unsettled.size() + unsettled_opacity.size() + 4 * floats +
+           sizeof(Vec3f) * vectors;
 }
 
 }  // namespace granita

@@ -103,9 +103,11 @@ struct Grid {
     std::vector<Vec3f>
         radiance;  ///< [vertices] premultiplied by opacity, plus emission; linear, unclamped
 
-    /// [micropolygons] 1 where the corners' radiance differs so much that samples are to be shaded
-    /// by themselves, for which the shading state is kept; empty = nowhere.
+    /// [micropolygons] 1 where the corners' radiance or opacity differs so much that samples are to
+    /// be shaded by themselves, for which the shading state is kept; empty = nowhere.
     std::vector<std::uint8_t> unsettled;
+    /// The same of opacity alone: hiding knows nothing of it there.
+    std::vector<std::uint8_t> unsettled_opacity;
 
     std::vector<float> channels;  ///< [vertices][ChannelSet::vertex_width()]; empty = none asked
 

@@ -68,8 +68,13 @@ GridClasses classify(const Grid& grid) {
                 out.common = 0;
                 continue;
             }
-            std::uint8_t kind = grid.opacity_varies ? opacity_class(grid, c)
-                                                    : std::uint8_t{kTriangleA | kTriangleB};
+            const bool unsettled =
+                !grid.unsettled_opacity.empty() && grid.unsettled_opacity[m] != 0;
+            std::uint8_t kind = kTriangleA | kTriangleB;
+            if (unsettled)
+                kind |= kTransparent;
+            else if (grid.opacity_varies)
+                kind = opacity_class(grid, c);
             const bool diagonal = coincide(c.v0, c.v2);
             if (diagonal || coincide(c.v0, c.v1) || coincide(c.v1, c.v2)) kind &= ~kTriangleA;
             if (diagonal || coincide(c.v2, c.v3) || coincide(c.v3, c.v0)) kind &= ~kTriangleB;
@@ -79,7 +84,7 @@ GridClasses classify(const Grid& grid) {
             out.occurring |= kind;
             if (!(kind & kTransparent)) continue;
             if (out.opacity.empty()) out.opacity.resize(out.classes.size());
-            out.opacity[m] = opacity_bounds(grid, c);
+            out.opacity[m] = unsettled ? OpacityBounds{} : opacity_bounds(grid, c);
         }
     return out;
 }

@@ -21,7 +21,8 @@ struct GridClasses {
 
 /// Triangles whose corners coincide at every knot have no area and are left out; so are
 /// micropolygons with opacity 0 at all corners, unless the grid is additive.  Opacity of at least 1
-/// in all channels of all corners is opaque.
+/// in all channels of all corners is opaque.  Where samples will find their own opacity
+/// (Grid::unsettled_opacity), it may be any.
 GridClasses classify(const Grid& grid);
 
 }  // namespace granita

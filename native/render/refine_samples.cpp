@@ -30,7 +30,7 @@ std::uint32_t place_of(Vec2i tile, std::uint32_t sample, int samples) {
 BucketRefinement::BucketRefinement(Frame& frame, const Hider& hider,
                                    const std::vector<TileStore>& stores,
                                    const std::vector<bool>& seen)
-    : m_frame(frame), m_pool(hider.pool()), m_tiles(stores.size()) {
+    : m_frame(frame), m_pool(hider.pool()), m_stores(stores), m_tiles(stores.size()) {
     const StageTimer timer(frame.statistics, Stage::Shade);
     m_unsettled.resize(m_pool.size(), 0);
     bool any = false;
@@ -62,10 +62,26 @@ bool BucketRefinement::any_moves(const FragmentLists& lists) const {
     return false;
 }
 
+bool BucketRefinement::is_unsettled(SurfaceId id) const {
+    if (!m_unsettled[m_pool.slot(id)]) return false;
+    const GridPool::Place place = m_pool.locate(id);
+    return place.grid->unsettled[static_cast<std::size_t>(place.micropolygon)] != 0;
+}
+
 void BucketRefinement::find(const TileStore& store, const TileSamples& samples,
                             std::uint32_t tile) {
-    const auto count = static_cast<std::uint32_t>(samples.samples);
-    std::vector<std::uint32_t> wanted;
+    const std::size_t first = m_wanted.size();
+    const auto want = [&](SurfaceId id, std::uint32_t sample, std::uint32_t list,
+                          std::uint32_t layer, const SurfacePoint& at) {
+        Wanted one{m_pool.slot(id), tile, sample, list, layer, {}};
+        for (int k = 0; k < 3; ++k) {
+            one.point.vertex[k] = static_cast<std::uint32_t>(at.vertex[k]);
+            one.point.weight[k] = at.weight[k];
+        }
+        one.point.place = place_of(store.tile, sample, samples.samples);
+        m_wanted.push_back(one);
+    };
+    SurfaceInterpolator surfaces(m_frame.view.projection, store.tile, samples, m_pool);
     SurfaceId last = kNoSurface;
     bool last_unsettled = false;
     for (std::uint32_t s = 0; s < store.id.size(); ++s) {
@@ -73,19 +89,25 @@ void BucketRefinement::find(const TileStore& store, const TileSamples& samples,
         if (id == kNoSurface) continue;
         if (id != last) {
             last = id;
-            last_unsettled = false;
-            if (m_unsettled[m_pool.slot(id)]) {
-                const GridPool::Place place = m_pool.locate(id);
-                last_unsettled =
-                    place.grid->unsettled[static_cast<std::size_t>(place.micropolygon)] != 0;
-            }
+            last_unsettled = is_unsettled(id);
         }
-        if (last_unsettled) wanted.push_back(s);
+        if (last_unsettled) want(id, s, 0, kBehind, surfaces.locate(s, id));
     }
-    if (wanted.empty()) return;
-    SurfaceInterpolator surfaces(m_frame.view.projection, store.tile, samples, m_pool);
-    // Where nothing that is seen moves, times do not matter: nor does whether they were made.  What
-    // goes along with the camera moves too, though the bucket that sees it has made none.
+    const FragmentLists& lists = store.lists;
+    for (std::uint32_t slot = 0; slot < lists.slots() && !lists.empty(); ++slot)
+        for (std::uint32_t k = 0; k < lists.counts()[slot]; ++k) {
+            const Fragment fragment = lists.at(slot, k);
+            if (is_unsettled(fragment.id))
+                want(fragment.id, lists.sample(slot), slot, k, point_of(fragment, m_pool));
+        }
+    if (m_wanted.size() > first) set_times(store, samples, first);
+}
+
+/// Where nothing that is seen moves, times do not matter: nor does whether they were made.  What
+/// goes along with the camera moves too, though the bucket that sees it has made none.
+void BucketRefinement::set_times(const TileStore& store, const TileSamples& samples,
+                                 std::size_t first) {
+    const auto count = static_cast<std::uint32_t>(samples.samples);
     const bool camera_moves = m_frame.scene.camera.world_from_camera.size() > 1;
     TileSamples frame_samples;
     if (camera_moves && samples.t.empty()) {
@@ -97,22 +119,15 @@ void BucketRefinement::find(const TileStore& store, const TileSamples& samples,
     const bool all_move = camera_moves || (!times.empty() && any_moves(store.lists));
     std::uint32_t pixel = ~0u;
     bool pixel_moves = false;
-    for (const std::uint32_t s : wanted) {
+    for (std::size_t i = first; i < m_wanted.size(); ++i) {
+        const std::uint32_t s = m_wanted[i].sample;
         if (s / count != pixel) {
             pixel = s / count;
             pixel_moves =
                 all_move ||
                 (!times.empty() && any_moves(std::span(store.id).subspan(pixel * count, count)));
         }
-        const SurfacePoint at = surfaces.locate(s, store.id[s]);
-        Wanted one{m_pool.slot(store.id[s]), tile, s, {}};
-        for (int k = 0; k < 3; ++k) {
-            one.point.vertex[k] = static_cast<std::uint32_t>(at.vertex[k]);
-            one.point.weight[k] = at.weight[k];
-        }
-        one.point.time = pixel_moves ? times[s] : kAnyTime;
-        one.point.place = place_of(store.tile, s, samples.samples);
-        m_wanted.push_back(one);
+        m_wanted[i].point.time = pixel_moves ? times[s] : kAnyTime;
     }
 }
 
@@ -141,12 +156,18 @@ void BucketRefinement::shade() {
                 m_frame.shading.refine(m_pool.grid(m_wanted[batches[b].begin].slot), points);
         }
     });
-    const auto count = static_cast<std::size_t>(kTileSize) * kTileSize *
-                       static_cast<std::size_t>(m_frame.table.samples());
     for (std::size_t b = 0; b < batches.size(); ++b)
         for (std::size_t i = batches[b].begin; i < batches[b].end; ++i)
-            m_tiles[m_wanted[i].tile].add(m_wanted[i].sample, count, m_shaded[b],
-                                          static_cast<int>(i - batches[b].begin));
+            keep(m_wanted[i], m_shaded[b], static_cast<int>(i - batches[b].begin));
+}
+
+void BucketRefinement::keep(const Wanted& wanted, const Grid& shaded, int vertex) {
+    RefinedSamples& tile = m_tiles[wanted.tile];
+    const TileStore& store = m_stores[wanted.tile];
+    if (wanted.layer == kBehind)
+        tile.add(wanted.sample, store.id.size(), shaded, vertex);
+    else
+        tile.add_layer(store.lists, wanted.list, wanted.layer, shaded, vertex);
 }
 
 }  // namespace granita

@@ -238,6 +238,21 @@ struct ShadingSystem::Impl {
         statistics.add(Counter::PointsShaded, points.count);
     }
 
+    /// Fills opacity of `grid`, whose points are `in.points`.
+    void shade_opacity(Grid& grid, const ShadingInput& in) const {
+        const CompiledSurface& surface = material(grid.material);
+        Run run = surface.opacity_program.prepare(in, in.points->count);
+        surface.opacity_program.execute(run);
+        grid.opacity = values_of(run, surface.transparency);
+        warn_of_broken(grid.material, make_finite(grid.opacity));
+        for (Vec3f& opacity : grid.opacity)
+            opacity = glm::clamp(Vec3f(1.0f) - opacity, Vec3f(0.0f), Vec3f(1.0f));
+        interpolate_points(grid, 1, grid.opacity);
+    }
+
+    /// What interpolation misses is averaged by blur, as the noise of light samples is.
+    float sharpness(const Grid& grid) const { return light_sample_count(grid, scene, shutter); }
+
     Grid refine(const Grid& grid, std::span<const RefinedPoint> wanted, float point_size) const {
         const RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
         Grid out;
@@ -247,6 +262,7 @@ struct ShadingSystem::Impl {
         out.n_u = static_cast<int>(wanted.size()) - 1;
         const Mat3f camera_from_world = glm::transpose(Mat3f(camera.world_from_camera));
         for (const Vec3f& p : refined.points.p) out.p.push_back(camera_from_world * p);
+        if (!grid.opacity.empty()) shade_opacity(out, input(grid, refined));
         shade(out, input(grid, refined), {});
         return out;
     }
@@ -308,19 +324,16 @@ bool ShadingSystem::opacity_varies(int material) const {
 
 void ShadingSystem::shade_opacity(Grid& grid) const {
     if (!opacity_varies(grid.material)) return;
-    const CompiledSurface& material = m_impl->material(grid.material);
     const ShadingPoints points = shading_points(grid, m_impl->camera);
-    const ShadingInput input = m_impl->input(grid, points);
-    Run run = material.opacity_program.prepare(input, points.count);
-    material.opacity_program.execute(run);
-    grid.opacity = values_of(run, material.transparency);
-    m_impl->warn_of_broken(grid.material, make_finite(grid.opacity));
-    for (Vec3f& opacity : grid.opacity)
-        opacity = glm::clamp(Vec3f(1.0f) - opacity, Vec3f(0.0f), Vec3f(1.0f));
-    interpolate_points(grid, 1, grid.opacity);
+    m_impl->shade_opacity(grid, m_impl->input(grid, points));
     grid.opacity_varies = std::any_of(grid.opacity.begin(), grid.opacity.end(),
                                       [](const Vec3f& opacity) { return opacity != Vec3f(1.0f); });
-    grid.additive = material.radiance.sources.additive;
+    grid.additive = m_impl->material(grid.material).radiance.sources.additive;
+    if (grid.opacity_varies && m_impl->can_refine(grid)) {
+        const float sharpness = m_impl->sharpness(grid);
+        grid.unsettled_opacity =
+            unsettled_opacity(grid, m_impl->threshold / (sharpness * sharpness));
+    }
     m_impl->statistics.add(Counter::GridsOpacityShaded);
 }
 
@@ -329,20 +342,21 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     ShadingPoints points = shading_points(grid, m_impl->camera);
     const bool refines = m_impl->can_refine(grid);
     const bool lit = !material.radiance.sources.lobes.empty();
-    const float sharpness =
-        lit || refines ? light_sample_count(grid, m_impl->scene, m_impl->shutter) : 1.0f;
+    const float sharpness = lit || refines ? m_impl->sharpness(grid) : 1.0f;
     points.share *= sharpness;
     std::vector<float> noise(points.count, 0.0f);
     m_impl->shade(grid, m_impl->input(grid, points), m_impl->paths(grid, points),
                   refines ? &noise : nullptr);
     m_impl->statistics.add(Counter::GridsShaded);
     if (!refines) return;
-    // What interpolation misses is averaged by blur, as the noise of light samples is.
     grid.unsettled =
         m_impl->changes_in_time(grid)
             ? std::vector<std::uint8_t>(static_cast<std::size_t>(grid.micropolygon_count()), 1)
             : unsettled_micropolygons(grid, noise, m_impl->threshold / (sharpness * sharpness),
                                       m_impl->noise_threshold / (sharpness * sharpness));
+    if (grid.unsettled.empty()) grid.unsettled = grid.unsettled_opacity;
+    for (std::size_t m = 0; m < grid.unsettled_opacity.size(); ++m)
+        grid.unsettled[m] |= grid.unsettled_opacity[m];
 }
 
 Grid ShadingSystem::refine(const Grid& grid, std::span<const RefinedPoint> wanted) const {

@@ -42,7 +42,8 @@ class ShadingSystem {
     void shade_radiance(Grid& grid) const;
 
     /// Shades points between the vertices of a shaded grid, each at its time.
-    /// @return as many vertices, point by point: place, radiance and channels alone are there.
+    /// @return as many vertices, point by point: place, radiance, channels and, where the grid's
+    /// varies, opacity alone are there.
     Grid refine(const Grid& grid, std::span<const RefinedPoint> points) const;
 
     /// The world as the camera sees it.  `directions` [n] unit, world space; `spread` radians a

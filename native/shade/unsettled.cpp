@@ -39,47 +39,113 @@ struct Steps {
     float bend() const { return known() ? most(after - before) : 0.0f; }
 };
 
-void add_step(const std::vector<Shown>& shown, std::size_t from, std::size_t to,
-              std::vector<Steps>& steps) {
-    const Shown step = shown[to] - shown[from];
-    steps[from].after = steps[to].before = step;
-    steps[from].has_after = steps[to].has_before = true;
-}
-
 /// Where what a micropolygon shows was shaded.
 struct Corner {
     std::size_t vertex, point;
 };
 
-/// Its own corners, or those of the lattice's cell around it.
-std::array<Corner, 4> shaded_corners(const Grid& grid, int micropolygon) {
-    const ShadingPositions& at = grid.shading_positions;
-    if (!grid.shades_lattice()) {
-        const Grid::Corners c = grid.corners(micropolygon);
-        const auto corner = [&](int v) {
-            const auto vertex = static_cast<std::size_t>(v);
-            return Corner{vertex, grid.point_at(vertex)};
-        };
-        return {corner(c.v0), corner(c.v1), corner(c.v2), corner(c.v3)};
+/// The corners by which a grid's micropolygons are judged.
+class MicropolygonCorners {
+  public:
+    explicit MicropolygonCorners(const Grid& grid) : m_points(grid.point_count()) {
+        const auto count = static_cast<std::size_t>(grid.micropolygon_count());
+        m_corners.reserve(count);
+        for (std::size_t m = 0; m < count; ++m)
+            m_corners.push_back(corners_of(grid, static_cast<int>(m)));
     }
-    const int cell_u = micropolygon % grid.n_u / at.step_u;
-    const int cell_v = micropolygon / grid.n_u / at.step_v;
-    const auto corner = [&](int u, int v) {
-        return Corner{static_cast<std::size_t>(v * at.step_v * grid.up() + u * at.step_u),
-                      static_cast<std::size_t>(v * (grid.n_u / at.step_u + 1) + u)};
-    };
-    return {corner(cell_u, cell_v), corner(cell_u + 1, cell_v), corner(cell_u + 1, cell_v + 1),
-            corner(cell_u, cell_v + 1)};
-}
 
-float step_along_u(const std::vector<Shown>& shown, const std::array<Corner, 4>& c) {
-    return std::max(most(shown[c[1].point] - shown[c[0].point]),
-                    most(shown[c[2].point] - shown[c[3].point]));
-}
+    /// [points] `show(value)` of [vertices] values.
+    template <class Show>
+    std::vector<Shown> shown(const std::vector<Vec3f>& values, const Show& show) const {
+        std::vector<Shown> shown(m_points);
+        for (const auto& of : m_corners)
+            for (const Corner& c : of) shown[c.point] = show(values[c.vertex]);
+        return shown;
+    }
 
-float step_along_v(const std::vector<Shown>& shown, const std::array<Corner, 4>& c) {
-    return std::max(most(shown[c[3].point] - shown[c[0].point]),
-                    most(shown[c[2].point] - shown[c[1].point]));
+    /// 1 for the micropolygons that `unsettled(corners, bend)` and those that share a point with
+    /// one; `bend`: the most that what is shown bends at a corner.
+    template <class Unsettled>
+    std::vector<std::uint8_t> marked(const std::vector<Shown>& shown,
+                                     const Unsettled& unsettled) const {
+        std::vector<Steps> along_u(m_points), along_v(m_points);
+        for (const auto& [a, b, c, d] : m_corners) {
+            add_step(shown, a.point, b.point, along_u);
+            add_step(shown, d.point, c.point, along_u);
+            add_step(shown, a.point, d.point, along_v);
+            add_step(shown, b.point, c.point, along_v);
+        }
+        std::vector<std::uint8_t> touched(m_points, 0);
+        bool any = false;
+        for (const auto& of : m_corners) {
+            float bend = 0.0f;
+            bool bends_u = false, bends_v = false;
+            for (const Corner& c : of) {
+                bend = std::max({bend, along_u[c.point].bend(), along_v[c.point].bend()});
+                bends_u |= along_u[c.point].known();
+                bends_v |= along_v[c.point].known();
+            }
+            // Where a micropolygon is alone in a row, a slope cannot be told from an edge.
+            if (!bends_u) bend = std::max(bend, step_along_u(shown, of));
+            if (!bends_v) bend = std::max(bend, step_along_v(shown, of));
+            if (!unsettled(of, bend)) continue;
+            any = true;
+            for (const Corner& c : of) touched[c.point] = 1;
+        }
+        std::vector<std::uint8_t> marked;
+        if (!any) return marked;
+        marked.reserve(m_corners.size());
+        for (const auto& of : m_corners)
+            marked.push_back(
+                std::ranges::any_of(of, [&](const Corner& c) { return touched[c.point] != 0; }));
+        return marked;
+    }
+
+  private:
+    /// Its own corners, or those of the lattice's cell around it.
+    static std::array<Corner, 4> corners_of(const Grid& grid, int micropolygon) {
+        const ShadingPositions& at = grid.shading_positions;
+        if (!grid.shades_lattice()) {
+            const Grid::Corners c = grid.corners(micropolygon);
+            const auto corner = [&](int v) {
+                const auto vertex = static_cast<std::size_t>(v);
+                return Corner{vertex, grid.point_at(vertex)};
+            };
+            return {corner(c.v0), corner(c.v1), corner(c.v2), corner(c.v3)};
+        }
+        const int cell_u = micropolygon % grid.n_u / at.step_u;
+        const int cell_v = micropolygon / grid.n_u / at.step_v;
+        const auto corner = [&](int u, int v) {
+            return Corner{static_cast<std::size_t>(v * at.step_v * grid.up() + u * at.step_u),
+                          static_cast<std::size_t>(v * (grid.n_u / at.step_u + 1) + u)};
+        };
+        return {corner(cell_u, cell_v), corner(cell_u + 1, cell_v), corner(cell_u + 1, cell_v + 1),
+                corner(cell_u, cell_v + 1)};
+    }
+
+    static void add_step(const std::vector<Shown>& shown, std::size_t from, std::size_t to,
+                         std::vector<Steps>& steps) {
+        const Shown step = shown[to] - shown[from];
+        steps[from].after = steps[to].before = step;
+        steps[from].has_after = steps[to].has_before = true;
+    }
+
+    static float step_along_u(const std::vector<Shown>& shown, const std::array<Corner, 4>& c) {
+        return std::max(most(shown[c[1].point] - shown[c[0].point]),
+                        most(shown[c[2].point] - shown[c[3].point]));
+    }
+
+    static float step_along_v(const std::vector<Shown>& shown, const std::array<Corner, 4>& c) {
+        return std::max(most(shown[c[3].point] - shown[c[0].point]),
+                        most(shown[c[2].point] - shown[c[1].point]));
+    }
+
+    std::size_t m_points;
+    std::vector<std::array<Corner, 4>> m_corners;
+};
+
+bool are_equal(const std::vector<Vec3f>& values) {
+    return std::ranges::all_of(values, [&](const Vec3f& v) { return v == values[0]; });
 }
 
 }  // namespace
@@ -90,52 +156,26 @@ float displayed_difference(const Vec3f& a, const Vec3f& b) {
 
 std::vector<std::uint8_t> unsettled_micropolygons(const Grid& grid, std::span<const float> noise,
                                                   float threshold, float noise_threshold) {
-    const bool even = std::ranges::all_of(
-        grid.radiance, [&](const Vec3f& radiance) { return radiance == grid.radiance[0]; });
-    if (even) return {};
-    const auto count = static_cast<std::size_t>(grid.micropolygon_count());
-    std::vector<std::array<Corner, 4>> corners;
-    corners.reserve(count);
-    std::vector<Shown> shown(grid.point_count());
-    for (std::size_t m = 0; m < count; ++m) {
-        corners.push_back(shaded_corners(grid, static_cast<int>(m)));
-        for (const Corner& c : corners.back())
-            shown[c.point] = shown_color(grid.radiance[c.vertex]);
-    }
-    std::vector<Steps> along_u(shown.size()), along_v(shown.size());
-    for (const auto& [a, b, c, d] : corners) {
-        add_step(shown, a.point, b.point, along_u);
-        add_step(shown, d.point, c.point, along_u);
-        add_step(shown, a.point, d.point, along_v);
-        add_step(shown, b.point, c.point, along_v);
-    }
-    std::vector<std::uint8_t> touched(shown.size(), 0);
-    bool any = false;
-    for (const auto& of : corners) {
-        float change = 0.0f, doubt = 0.0f, level = 0.0f;
-        bool bends_u = false, bends_v = false;
+    if (are_equal(grid.radiance)) return {};
+    const MicropolygonCorners corners(grid);
+    const std::vector<Shown> shown = corners.shown(grid.radiance, shown_color);
+    return corners.marked(shown, [&](const std::array<Corner, 4>& of, float bend) {
+        float doubt = 0.0f, level = 0.0f;
         for (const Corner& c : of) {
-            change = std::max({change, along_u[c.point].bend(), along_v[c.point].bend()});
-            bends_u |= along_u[c.point].known();
-            bends_v |= along_v[c.point].known();
             doubt += 0.25f * noise[c.point] * noise[c.point];
             level += 0.25f * luminance(grid.radiance[c.vertex]);
         }
-        // Where a micropolygon is alone in a row, a slope cannot be told from an edge.
-        if (!bends_u) change = std::max(change, step_along_u(shown, of));
-        if (!bends_v) change = std::max(change, step_along_v(shown, of));
         const float shown_doubt = displayed(level + std::sqrt(doubt)) - displayed(level);
-        if (change <= threshold + kSpread * shown_doubt && shown_doubt <= noise_threshold) continue;
-        any = true;
-        for (const Corner& c : of) touched[c.point] = 1;
-    }
-    if (!any) return {};
-    std::vector<std::uint8_t> marked;
-    marked.reserve(count);
-    for (const auto& of : corners)
-        marked.push_back(
-            std::ranges::any_of(of, [&](const Corner& c) { return touched[c.point] != 0; }));
-    return marked;
+        return bend > threshold + kSpread * shown_doubt || shown_doubt > noise_threshold;
+    });
+}
+
+std::vector<std::uint8_t> unsettled_opacity(const Grid& grid, float threshold) {
+    if (are_equal(grid.opacity)) return {};
+    const MicropolygonCorners corners(grid);
+    const std::vector<Shown> shown = corners.shown(grid.opacity, [](const Vec3f& o) { return o; });
+    return corners.marked(
+        shown, [&](const std::array<Corner, 4>&, float bend) { return bend > threshold; });
 }
 
 }  // namespace granita

@@ -21,4 +21,7 @@ float displayed_difference(const Vec3f& a, const Vec3f& b);
 std::vector<std::uint8_t> unsettled_micropolygons(const Grid& grid, std::span<const float> noise,
                                                   float threshold, float noise_threshold);
 
+/// The same of the grid's opacity, in any channel as it is: edges of cut-outs.
+std::vector<std::uint8_t> unsettled_opacity(const Grid& grid, float threshold);
+
 }  // namespace granita

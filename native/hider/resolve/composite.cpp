@@ -213,10 +213,10 @@ class TileComposite {
         const std::uint32_t* const counts = lists.counts() + first;
         if (std::all_of(counts, counts + kPacket, [](std::uint32_t n) { return n == 0; })) return;
         std::optional<ListChannels> visitor;
-        if (m_channels) visitor.emplace(lists, m_table.pool(), *m_channels);
+        if (m_channels) visitor.emplace(lists, m_table.pool(), m_refined, *m_channels);
         PacketLayers layers;
-        composite_packet(lists, packet, m_table, m_settings.end, visitor ? &*visitor : nullptr,
-                         layers);
+        composite_packet(lists, packet, m_table, m_refined, m_settings.end,
+                         visitor ? &*visitor : nullptr, layers);
         for (int i = 0; i < kPacket; ++i)
             if (counts[i] > 0)
                 put_over(lists.sample(first + static_cast<std::uint32_t>(i)), layers, i);
@@ -260,11 +260,13 @@ class TileComposite {
     /// Hands layers to the channels.
     class ListChannels : public LayerVisitor {
       public:
-        ListChannels(const FragmentLists& lists, const GridPool& pool, ChannelLayers& channels)
-            : m_lists(lists), m_pool(pool), m_channels(channels) {}
-        void layer(std::uint32_t slot, const Fragment& fragment, bool first, bool adds,
-                   const Vec3d& transmission) override {
-            const SurfacePoint point = point_of(fragment, m_pool);
+        ListChannels(const FragmentLists& lists, const GridPool& pool,
+                     const RefinedSamples& refined, ChannelLayers& channels)
+            : m_lists(lists), m_pool(pool), m_refined(refined), m_channels(channels) {}
+        void layer(std::uint32_t slot, std::uint32_t k, const Fragment& fragment, bool first,
+                   bool adds, const Vec3d& transmission) override {
+            const SurfacePoint* const refined = m_refined.layer_point(slot, k);
+            const SurfacePoint point = refined ? *refined : point_of(fragment, m_pool);
             const std::uint32_t sample = m_lists.sample(slot);
             if (first) m_channels.set_first(sample, point);
             if (adds) m_channels.add(sample, point, transmission);
@@ -273,6 +275,7 @@ class TileComposite {
       private:
         const FragmentLists& m_lists;
         const GridPool& m_pool;
+        const RefinedSamples& m_refined;
         ChannelLayers& m_channels;
     };
 

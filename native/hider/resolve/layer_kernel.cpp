@@ -39,11 +39,13 @@ struct Layer {
 class PacketCompositor {
   public:
     PacketCompositor(const FragmentLists& lists, std::size_t packet, const LayerTable& table,
-                     const ListEnd& end, LayerVisitor* visitor, PacketLayers& out)
+                     const RefinedSamples& refined, const ListEnd& end, LayerVisitor* visitor,
+                     PacketLayers& out)
         : m_lists(lists),
           m_packet(packet),
           m_slot(static_cast<std::uint32_t>(packet * kPacket)),
           m_table(table),
+          m_refined(refined.any_layers() ? &refined : nullptr),
           m_end(end),
           m_visitor(visitor),
           m_out(out) {}
@@ -108,7 +110,7 @@ class PacketCompositor {
     /// Layer k of the lanes; returns those that are complete.
     HWY_INLINE std::uint32_t add_layer(std::uint32_t k, std::uint32_t lanes) {
         const FragmentLayer& fragments = m_lists.layer(m_packet, k);
-        const Layer layer = look(fragments, lanes);
+        const Layer layer = look(fragments, k, lanes);
         if (HWY_UNLIKELY(!m_colored && layer.colored)) spread();
         const std::uint32_t first = find_first(layer, fragments, lanes);
         const std::uint32_t adding = lanes & ~(m_out.ended >> m_part);
@@ -131,12 +133,13 @@ class PacketCompositor {
 
     /// Lane by lane into rows of eight floats, which are then turned into vectors: it costs the
     /// same whether neighbours see one micropolygon or, as in motion, each its own.
-    HWY_INLINE Layer look(const FragmentLayer& fragments, std::uint32_t lanes) const {
+    HWY_INLINE Layer look(const FragmentLayer& fragments, std::uint32_t k,
+                          std::uint32_t lanes) const {
         alignas(64) float rows[2][4 * kPacket];
         std::uint32_t flags = 0;
         for (int i = 0; i < lane_count(); ++i) {
             const FragmentLayer::Head& head = fragments.head[m_part + i];
-            const LayerLook& look = lanes >> i & 1u ? m_table.look(head.id) : m_nothing;
+            const LayerLook& look = lanes >> i & 1u ? look_of_lane(i, k, head.id) : m_nothing;
             const auto* const from = reinterpret_cast<const char*>(&look);
             std::memcpy(rows[0] + 4 * i, from, sizeof look / 2);
             std::memcpy(rows[1] + 4 * i, from + sizeof look / 2, sizeof look / 2);
@@ -154,6 +157,14 @@ class PacketCompositor {
         layer.holdout = hn::RebindMask(kTag, hn::TestBit(hn::BitCast(kIdTag, flag_bits),
                                                          hn::Set(kIdTag, LayerLook::kHoldout)));
         return layer;
+    }
+
+    HWY_INLINE const LayerLook& look_of_lane(int lane, std::uint32_t k, SurfaceId id) const {
+        if (HWY_UNLIKELY(m_refined != nullptr)) {
+            const auto slot = m_slot + static_cast<std::uint32_t>(m_part + lane);
+            if (const LayerLook* own = m_refined->look(slot, k)) return *own;
+        }
+        return m_table.look(id);
     }
 
     /// The row where the fragment is, in two halves.
@@ -215,7 +226,7 @@ class PacketCompositor {
                                      m_out.transmission[m_colored ? 1 : 0][i],
                                      m_out.transmission[m_colored ? 2 : 0][i]);
             const std::uint32_t slot = m_slot + static_cast<std::uint32_t>(i);
-            m_visitor->layer(slot, m_lists.at(slot, k), (first >> lane & 1u) != 0,
+            m_visitor->layer(slot, k, m_lists.at(slot, k), (first >> lane & 1u) != 0,
                              (adds >> lane & 1u) != 0, transmission);
         }
     }
@@ -296,6 +307,7 @@ class PacketCompositor {
     std::size_t m_packet;
     std::uint32_t m_slot;  ///< first of the packet
     const LayerTable& m_table;
+    const RefinedSamples* m_refined;  ///< nullptr: none
     const ListEnd& m_end;
     LayerVisitor* m_visitor;
     PacketLayers& m_out;
@@ -305,8 +317,9 @@ class PacketCompositor {
 };
 
 void composite_lanes(const FragmentLists& lists, std::size_t packet, const LayerTable& table,
-                     const ListEnd& end, LayerVisitor* visitor, PacketLayers& out) {
-    PacketCompositor(lists, packet, table, end, visitor, out).run();
+                     const RefinedSamples& refined, const ListEnd& end, LayerVisitor* visitor,
+                     PacketLayers& out) {
+    PacketCompositor(lists, packet, table, refined, end, visitor, out).run();
 }
 
 }  // namespace HWY_NAMESPACE
@@ -319,8 +332,9 @@ namespace granita {
 HWY_EXPORT(composite_lanes);
 
 void composite_packet(const FragmentLists& lists, std::size_t packet, const LayerTable& table,
-                      const ListEnd& end, LayerVisitor* visitor, PacketLayers& out) {
-    HWY_DYNAMIC_DISPATCH(composite_lanes)(lists, packet, table, end, visitor, out);
+                      const RefinedSamples& refined, const ListEnd& end, LayerVisitor* visitor,
+                      PacketLayers& out) {
+    HWY_DYNAMIC_DISPATCH(composite_lanes)(lists, packet, table, refined, end, visitor, out);
 }
 
 }  // namespace granita

@@ -3,7 +3,7 @@
 // SIMD target and chosen at run time (Highway), with the same bits on all.
 #pragma once
 
-#include "hider/resolve/layer_table.h"
+#include "hider/resolve/refined_samples.h"
 #include "hider/sample_lists.h"
 #include "hider/samples/sample_order.h"
 
@@ -26,10 +26,10 @@ struct PacketLayers {
 class LayerVisitor {
   public:
     virtual ~LayerVisitor() = default;
-    /// `first`: it is the one that stands for the sample.  `adds`: it is in front of the list's end
-    /// and no holdout.  `transmission`: in front of it.
-    virtual void layer(std::uint32_t slot, const Fragment& fragment, bool first, bool adds,
-                       const Vec3d& transmission) = 0;
+    /// Layer k of a slot.  `first`: it is the one that stands for the sample.  `adds`: it is in
+    /// front of the list's end and no holdout.  `transmission`: in front of it.
+    virtual void layer(std::uint32_t slot, std::uint32_t k, const Fragment& fragment, bool first,
+                       bool adds, const Vec3d& transmission) = 0;
 };
 
 /// Mean of the channels; exactly a channel where they are equal.
@@ -37,8 +37,10 @@ inline double channel_mean(double x, double y, double z) {
     return x + ((y - x) + (z - x)) / 3.0;
 }
 
-/// `lists` are sorted; `visitor` may be absent.
+/// `lists` are sorted; `refined`: layers that look otherwise than in the table; `visitor` may be
+/// absent.
 void composite_packet(const FragmentLists& lists, std::size_t packet, const LayerTable& table,
-                      const ListEnd& end, LayerVisitor* visitor, PacketLayers& out);
+                      const RefinedSamples& refined, const ListEnd& end, LayerVisitor* visitor,
+                      PacketLayers& out);
 
 }  // namespace granita

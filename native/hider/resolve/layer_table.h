@@ -29,6 +29,22 @@ struct alignas(32) LayerLook {
     LayerLook() : value{} {}
 };
 
+/// 0 for what is not a number.
+inline float clamp_opacity(float x) {
+    return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f;
+}
+
+/// Of one opacity and radiance all over.
+inline LayerLook look_of(const Vec3f& opacity, const Vec3f& radiance) {
+    LayerLook look;
+    for (int c = 0; c < 3; ++c) {
+        look.value[c] = clamp_opacity(opacity[c]);
+        look.value[3 + c] = radiance[c];
+    }
+    if (opacity.x != opacity.y || opacity.x != opacity.z) look.flags |= LayerLook::kColored;
+    return look;
+}
+
 /// The looks of a bucket's transparent micropolygons, once they are shaded: side by side, so that
 /// lists, which meet them in any order, find each in one place.
 class LayerTable {
@@ -60,10 +76,5 @@ class LayerTable {
     std::vector<LayerLook> m_lookups;  ///< by id
     std::vector<LayerRow> m_rows;
 };
-
-/// 0 for what is not a number.
-inline float clamp_opacity(float x) {
-    return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f;
-}
 
 }  // namespace granita

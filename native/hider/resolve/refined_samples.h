@@ -4,20 +4,21 @@
 #include <cstdint>
 #include <vector>
 
+#include "hider/resolve/layer_table.h"
 #include "hider/resolve/surface_interpolator.h"
 
 namespace granita {
 
-/// The samples of a tile whose surface behind all lists was shaded for each by itself
-/// (ShadingSystem::refine).
+/// The samples of a tile that have surfaces which were shaded for each by itself
+/// (ShadingSystem::refine): behind all lists, or layers in them.
 class RefinedSamples {
   public:
-    /// `count`: of the tile's samples.  The grid outlives this.
+    /// Behind the sample's list.  `count`: of the tile's samples.  The grid outlives this.
     void add(std::uint32_t sample, std::size_t count, const Grid& grid, int vertex) {
         m_index.resize(count, kNone);
         m_index[sample] = static_cast<std::uint32_t>(m_points.size());
         m_samples.push_back(sample);
-        m_points.push_back({&grid, {vertex, vertex, vertex}, {1.0f, 0.0f, 0.0f}});
+        m_points.push_back(point_at(grid, vertex));
     }
     const std::vector<std::uint32_t>& samples() const { return m_samples; }
     const SurfacePoint& point(std::size_t index) const { return m_points[index]; }
@@ -27,11 +28,47 @@ class RefinedSamples {
         return &m_points[m_index[sample]];
     }
 
+    /// Layer k of the list in a slot.
+    void add_layer(const FragmentLists& lists, std::uint32_t slot, std::uint32_t k,
+                   const Grid& grid, int vertex) {
+        m_lists.resize(lists.slots(), kNone);
+        if (m_lists[slot] == kNone) {
+            m_lists[slot] = static_cast<std::uint32_t>(m_layers.size());
+            m_layers.resize(m_layers.size() + lists.counts()[slot], kNone);
+        }
+        m_layers[m_lists[slot] + k] = static_cast<std::uint32_t>(m_looks.size());
+        m_looks.push_back(look_of(grid.opacity[vertex], grid.radiance[vertex]));
+        m_layer_points.push_back(point_at(grid, vertex));
+    }
+    bool any_layers() const { return !m_looks.empty(); }
+    /// What such a layer looks like; nullptr: as its micropolygon does.
+    const LayerLook* look(std::uint32_t slot, std::uint32_t k) const {
+        const std::uint32_t found = layer(slot, k);
+        return found == kNone ? nullptr : &m_looks[found];
+    }
+    /// Likewise where its channels are.
+    const SurfacePoint* layer_point(std::uint32_t slot, std::uint32_t k) const {
+        const std::uint32_t found = layer(slot, k);
+        return found == kNone ? nullptr : &m_layer_points[found];
+    }
+
   private:
     static constexpr std::uint32_t kNone = ~0u;
+    static SurfacePoint point_at(const Grid& grid, int vertex) {
+        return {&grid, {vertex, vertex, vertex}, {1.0f, 0.0f, 0.0f}};
+    }
+    std::uint32_t layer(std::uint32_t slot, std::uint32_t k) const {
+        if (m_lists.empty() || m_lists[slot] == kNone) return kNone;
+        return m_layers[m_lists[slot] + k];
+    }
+
     std::vector<std::uint32_t> m_index;    ///< [samples]; empty: none
     std::vector<std::uint32_t> m_samples;  ///< of the points
     std::vector<SurfacePoint> m_points;
+    std::vector<std::uint32_t> m_lists;   ///< [slots] its first layer in m_layers; empty: none
+    std::vector<std::uint32_t> m_layers;  ///< of lists that have any: the look of each layer
+    std::vector<LayerLook> m_looks;
+    std::vector<SurfacePoint> m_layer_points;  ///< of the looks
 };
 
 }  // namespace granita
