@@ -88,6 +88,15 @@ class SobolPoints {
           m_seed_y(static_cast<std::uint32_t>(mix_bits(seed + 0x632be59bd9b4e019ULL))),
           m_seed_z(static_cast<std::uint32_t>(mix_bits(seed + 0xc6bc279692b5c323ULL))) {}
 
+    /// The same net in every aligned run of a power of two, in an order of its own (Burley 2020,
+    /// section 5): what goes by the same index elsewhere, a sample's place in its pixel or its
+    /// time, is then not tied to it.
+    SobolPoints shuffled(std::uint64_t seed) const {
+        SobolPoints other = *this;
+        other.m_order = static_cast<std::uint32_t>(mix_bits(seed)) | 1u;
+        return other;
+    }
+
     /// The same sequence, of which index 0 is what is `first` here.
     SobolPoints from(std::uint32_t first) const {
         SobolPoints later = *this;
@@ -96,7 +105,7 @@ class SobolPoints {
     }
     /// In [0, 1)^2.
     Vec2f operator()(std::uint32_t index) const {
-        index += m_first;
+        index = place(index);
         // van der Corput is the bit reversal of the index.
         return {unit(reverse_bits(scramble(index, m_seed_x))),
                 unit(reverse_bits(scramble(kSobolSecond(index), m_seed_y)))};
@@ -104,7 +113,7 @@ class SobolPoints {
 
     /// The third coordinate, in [0, 1).
     float third(std::uint32_t index) const {
-        return unit(reverse_bits(scramble(kSobolThird(m_first + index), m_seed_z)));
+        return unit(reverse_bits(scramble(kSobolThird(place(index)), m_seed_z)));
     }
 
   private:
@@ -117,9 +126,14 @@ class SobolPoints {
         x ^= x * 0x53a22864u;
         return x;
     }
+    std::uint32_t place(std::uint32_t index) const {
+        index += m_first;
+        return m_order == 0 ? index : reverse_bits(scramble(reverse_bits(index), m_order));
+    }
     static float unit(std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
 
     std::uint32_t m_first = 0, m_seed_x, m_seed_y, m_seed_z;
+    std::uint32_t m_order = 0;  ///< 0: as it is
 };
 
 /// Axes x, y that make (x, y, n) a right-handed orthonormal frame (Duff et al. 2017).

@@ -28,7 +28,7 @@ DEFAULTS = {
     "seed": 0,
     "animate_seed": False,
     "light_samples": 16,
-    "shading_threshold": 0.15,
+    "shading_threshold": 0.1,
     "film_exposure": 1.0,
 }
 

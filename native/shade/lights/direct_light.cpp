@@ -406,6 +406,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
                  {},
                  grid_seed(placed ? GridKey{} : key, m_impl->scene.options.seed),
                  m_impl->world.by_lobe};
+    grid.placed = placed;
     grid.receives = m_impl->receives(key);
     grid.balance = noise;
     RayOffset ray_offset = m_impl->rays ? m_impl->rays->ray_offset(key) : RayOffset{};

@@ -20,7 +20,8 @@ struct LitGrid {
     std::vector<Vec2f> lamp_points;         ///< of the lamp and point at hand
     std::vector<LightSample> lamp_samples;  ///< there
     std::uint64_t seed = 0;
-    bool by_lobe = false;                     ///< as WorldEvaluator::by_lobe
+    bool by_lobe = false;  ///< as WorldEvaluator::by_lobe
+    bool placed = false;   ///< points go by places in the frame's sequences, as samples do
     std::vector<SobolPoints> sequences = {};  ///< [dimensions] as far as they were asked for
     std::uint64_t receives = ~0ULL;           ///< Instance::receives
     std::uint64_t shadow_rays = 0, occlusion_rays = 0;
@@ -37,8 +38,11 @@ struct LitGrid {
 
     /// A sequence that the grid shares, from its sample `first` on.
     SobolPoints sequence(std::size_t dimension, std::uint32_t first) {
-        while (sequences.size() <= dimension)
-            sequences.emplace_back(seed + 0x9e3779b97f4a7c15ULL * (sequences.size() + 1));
+        while (sequences.size() <= dimension) {
+            const std::uint64_t own = seed + 0x9e3779b97f4a7c15ULL * (sequences.size() + 1);
+            sequences.emplace_back(own);
+            if (placed) sequences.back() = sequences.back().shuffled(mix_bits(own));
+        }
         return sequences[dimension].from(first);
     }
     /// A point's `count` samples of it.  Each point takes as many as it uses: if all left out the
