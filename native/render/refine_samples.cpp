@@ -8,6 +8,7 @@
 #include "base/stage_timer.h"
 #include "hider/resolve/surface_interpolator.h"
 #include "math/sampling.h"
+#include "scene/channels.h"
 
 namespace granita {
 namespace {
@@ -25,12 +26,23 @@ std::uint32_t place_of(Vec2i tile, std::uint32_t sample, int samples) {
            sample % static_cast<std::uint32_t>(samples);
 }
 
+bool is_within(const Vec3f& opacity, const OpacityBounds& bounds) {
+    const float mean = (opacity.x + opacity.y + opacity.z) / 3.0f;
+    return std::min({opacity.x, opacity.y, opacity.z}) >= bounds.least && mean <= bounds.most;
+}
+
 }  // namespace
 
 BucketRefinement::BucketRefinement(Frame& frame, const Hider& hider,
                                    const std::vector<TileStore>& stores,
                                    const std::vector<bool>& seen)
-    : m_frame(frame), m_pool(hider.pool()), m_stores(stores), m_tiles(stores.size()) {
+    : m_frame(frame),
+      m_hider(hider),
+      m_pool(hider.pool()),
+      m_stores(stores),
+      m_has_channels(!ChannelSet(frame.scene.options).empty()),
+      m_times(stores.size()),
+      m_tiles(stores.size()) {
     const StageTimer timer(frame.statistics, Stage::Shade);
     m_unsettled.resize(m_pool.size(), 0);
     bool any = false;
@@ -40,26 +52,19 @@ BucketRefinement::BucketRefinement(Frame& frame, const Hider& hider,
             any = true;
         }
     if (!any) return;
-    for (std::size_t i = 0; i < stores.size(); ++i)
-        find(stores[i], hider.tile_samples(i), static_cast<std::uint32_t>(i));
-    if (!m_wanted.empty()) shade();
-}
-
-/// Whether any of these surfaces moves.
-bool BucketRefinement::any_moves(std::span<const SurfaceId> ids) const {
-    return std::ranges::any_of(ids, [this](SurfaceId id) {
-        return id != kNoSurface && m_pool.grid(m_pool.slot(id)).motion;
-    });
-}
-
-/// The same of what is in lists.
-bool BucketRefinement::any_moves(const FragmentLists& lists) const {
-    for (std::size_t packet = 0; packet < lists.packets() && !lists.empty(); ++packet)
-        for (std::uint32_t lane = 0; lane < FragmentLists::kLanes; ++lane)
-            for (std::uint32_t k = 0; k < lists.counts()[packet * FragmentLists::kLanes + lane];
-                 ++k)
-                if (any_moves({&lists.layer(packet, k).head[lane].id, 1})) return true;
-    return false;
+    for (std::uint32_t tile = 0; tile < stores.size(); ++tile) find_behind(tile);
+    if (!m_wanted.empty()) keep_behind();
+    for (std::uint32_t tile = 0; tile < stores.size(); ++tile) find_lists(tile);
+    while (!m_open.empty()) {
+        m_wanted.clear();
+        std::size_t left = 0;
+        for (std::size_t i = 0; i < m_open.size(); ++i) {
+            m_open[left] = m_open[i];
+            left += find_layer(left) ? 1 : 0;
+        }
+        m_open.resize(left);
+        if (!m_wanted.empty()) keep_layers();
+    }
 }
 
 bool BucketRefinement::is_unsettled(SurfaceId id) const {
@@ -68,20 +73,54 @@ bool BucketRefinement::is_unsettled(SurfaceId id) const {
     return place.grid->unsettled[static_cast<std::size_t>(place.micropolygon)] != 0;
 }
 
-void BucketRefinement::find(const TileStore& store, const TileSamples& samples,
-                            std::uint32_t tile) {
-    const std::size_t first = m_wanted.size();
-    const auto want = [&](SurfaceId id, std::uint32_t sample, std::uint32_t list,
-                          std::uint32_t layer, const SurfacePoint& at) {
-        Wanted one{m_pool.slot(id), tile, sample, list, layer, {}};
-        for (int k = 0; k < 3; ++k) {
-            one.point.vertex[k] = static_cast<std::uint32_t>(at.vertex[k]);
-            one.point.weight[k] = at.weight[k];
-        }
-        one.point.place = place_of(store.tile, sample, samples.samples);
-        m_wanted.push_back(one);
-    };
-    SurfaceInterpolator surfaces(m_frame.view.projection, store.tile, samples, m_pool);
+void BucketRefinement::want(SurfaceId id, std::uint32_t tile, std::uint32_t sample,
+                            std::size_t list, const SurfacePoint& at) {
+    const int samples = m_hider.tile_samples(tile).samples;
+    Wanted one{m_pool.slot(id), tile, sample, list, {}};
+    for (int k = 0; k < 3; ++k) {
+        one.point.vertex[k] = static_cast<std::uint32_t>(at.vertex[k]);
+        one.point.weight[k] = at.weight[k];
+    }
+    one.point.place = place_of(m_stores[tile].tile, sample, samples);
+    if (!m_times[tile].known) find_times(tile);
+    const TileTimes& times = m_times[tile];
+    const bool timed = !times.of_samples.empty() &&
+                       times.matters[sample / static_cast<std::uint32_t>(samples)] != 0;
+    one.point.time = timed ? times.of_samples[sample] : kAnyTime;
+    m_wanted.push_back(one);
+}
+
+/// Where nothing that a pixel sees moves, times do not matter: nor does whether they were made.
+/// What goes along with the camera moves too, though the bucket that sees it has made none.
+void BucketRefinement::find_times(std::uint32_t tile) {
+    const TileStore& store = m_stores[tile];
+    const TileSamples& samples = m_hider.tile_samples(tile);
+    const auto count = static_cast<std::size_t>(samples.samples);
+    TileTimes& out = m_times[tile];
+    out.known = true;
+    const bool camera_moves = m_frame.scene.camera.world_from_camera.size() > 1;
+    if (!camera_moves && samples.t.empty()) return;
+    out.of_samples = samples.t;
+    out.matters.assign(store.id.size() / count, camera_moves);
+    if (camera_moves) {
+        if (!samples.t.empty()) return;
+        TileSamples frame_samples = samples;
+        m_frame.table.fill_times(store.tile, frame_samples);
+        out.of_samples = std::move(frame_samples.t);
+        return;
+    }
+    for (std::size_t s = 0; s < store.id.size(); ++s)
+        if (store.id[s] != kNoSurface && moves(store.id[s])) out.matters[s / count] = 1;
+    const FragmentLists& lists = store.lists;
+    for (std::uint32_t slot = 0; slot < lists.slots() && !lists.empty(); ++slot)
+        for (std::uint32_t k = 0; k < lists.counts()[slot]; ++k)
+            if (moves(lists.at(slot, k).id)) out.matters[lists.sample(slot) / count] = 1;
+}
+
+void BucketRefinement::find_behind(std::uint32_t tile) {
+    const TileStore& store = m_stores[tile];
+    SurfaceInterpolator surfaces(m_frame.view.projection, store.tile, m_hider.tile_samples(tile),
+                                 m_pool);
     SurfaceId last = kNoSurface;
     bool last_unsettled = false;
     for (std::uint32_t s = 0; s < store.id.size(); ++s) {
@@ -91,47 +130,42 @@ void BucketRefinement::find(const TileStore& store, const TileSamples& samples,
             last = id;
             last_unsettled = is_unsettled(id);
         }
-        if (last_unsettled) want(id, s, 0, kBehind, surfaces.locate(s, id));
+        if (last_unsettled) want(id, tile, s, 0, surfaces.locate(s, id));
     }
-    const FragmentLists& lists = store.lists;
+}
+
+void BucketRefinement::find_lists(std::uint32_t tile) {
+    const FragmentLists& lists = m_stores[tile].lists;
     for (std::uint32_t slot = 0; slot < lists.slots() && !lists.empty(); ++slot)
-        for (std::uint32_t k = 0; k < lists.counts()[slot]; ++k) {
-            const Fragment fragment = lists.at(slot, k);
-            if (is_unsettled(fragment.id))
-                want(fragment.id, lists.sample(slot), slot, k, point_of(fragment, m_pool));
-        }
-    if (m_wanted.size() > first) set_times(store, samples, first);
+        for (std::uint32_t k = 0; k < lists.counts()[slot]; ++k)
+            if (is_unsettled(lists.at(slot, k).id)) {
+                m_open.push_back({tile, slot, 0});
+                break;
+            }
 }
 
-/// Where nothing that is seen moves, times do not matter: nor does whether they were made.  What
-/// goes along with the camera moves too, though the bucket that sees it has made none.
-void BucketRefinement::set_times(const TileStore& store, const TileSamples& samples,
-                                 std::size_t first) {
-    const auto count = static_cast<std::uint32_t>(samples.samples);
-    const bool camera_moves = m_frame.scene.camera.world_from_camera.size() > 1;
-    TileSamples frame_samples;
-    if (camera_moves && samples.t.empty()) {
-        frame_samples = samples;
-        m_frame.table.fill_times(store.tile, frame_samples);
-    }
-    const std::vector<float>& times =
-        camera_moves && samples.t.empty() ? frame_samples.t : samples.t;
-    const bool all_move = camera_moves || (!times.empty() && any_moves(store.lists));
-    std::uint32_t pixel = ~0u;
-    bool pixel_moves = false;
-    for (std::size_t i = first; i < m_wanted.size(); ++i) {
-        const std::uint32_t s = m_wanted[i].sample;
-        if (s / count != pixel) {
-            pixel = s / count;
-            pixel_moves =
-                all_move ||
-                (!times.empty() && any_moves(std::span(store.id).subspan(pixel * count, count)));
+/// Goes on to the list's next layer that is to be shaded; false where none is left that is seen.
+/// Layer by layer, as all layers of foliage would be twenty times as many as are seen.
+bool BucketRefinement::find_layer(std::size_t list) {
+    OpenList& open = m_open[list];
+    const FragmentLists& lists = m_stores[open.tile].lists;
+    const float ends = 1.0f - m_frame.scene.options.opacity_threshold;
+    for (; open.next < lists.counts()[open.slot]; ++open.next) {
+        const Vec3f& t = open.transmission;
+        if (std::max({t.x, t.y, t.z}) <= ends) return false;
+        const Fragment fragment = lists.at(open.slot, open.next);
+        const SurfacePoint at = point_of(fragment, m_pool);
+        if (is_unsettled(fragment.id)) {
+            want(fragment.id, open.tile, lists.sample(open.slot), list, at);
+            return true;
         }
-        m_wanted[i].point.time = pixel_moves ? times[s] : kAnyTime;
+        open.transmission *= Vec3f(1.0f) - glm::clamp(at(at.grid->opacity), 0.0f, 1.0f);
     }
+    return false;
 }
 
-void BucketRefinement::shade() {
+/// Sorts what is wanted by grid; returns the batches in that order.
+std::vector<Grid> BucketRefinement::shade() {
     std::stable_sort(m_wanted.begin(), m_wanted.end(),
                      [](const Wanted& a, const Wanted& b) { return a.slot < b.slot; });
     struct Batch {
@@ -144,7 +178,7 @@ void BucketRefinement::shade() {
             batches.push_back({i, i});
         batches.back().end = i + 1;
     }
-    m_shaded.resize(batches.size());
+    std::vector<Grid> shaded(batches.size());
     parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
         std::vector<RefinedPoint> points;
         for (std::size_t b = begin; b < end; ++b) {
@@ -152,22 +186,45 @@ void BucketRefinement::shade() {
             points.clear();
             for (std::size_t i = batches[b].begin; i < batches[b].end; ++i)
                 points.push_back(m_wanted[i].point);
-            m_shaded[b] =
+            shaded[b] =
                 m_frame.shading.refine(m_pool.grid(m_wanted[batches[b].begin].slot), points);
         }
     });
-    for (std::size_t b = 0; b < batches.size(); ++b)
-        for (std::size_t i = batches[b].begin; i < batches[b].end; ++i)
-            keep(m_wanted[i], m_shaded[b], static_cast<int>(i - batches[b].begin));
+    return shaded;
 }
 
-void BucketRefinement::keep(const Wanted& wanted, const Grid& shaded, int vertex) {
-    RefinedSamples& tile = m_tiles[wanted.tile];
-    const TileStore& store = m_stores[wanted.tile];
-    if (wanted.layer == kBehind)
-        tile.add(wanted.sample, store.id.size(), shaded, vertex);
-    else
-        tile.add_layer(store.lists, wanted.list, wanted.layer, shaded, vertex);
+/// What hiding took for opaque is: where a sample finds less, its light is that of the corners.
+void BucketRefinement::keep_behind() {
+    m_shaded.push_back(shade());
+    auto next = m_wanted.begin();
+    for (const Grid& grid : m_shaded.back())
+        for (int v = 0; v < grid.vertex_count(); ++v, ++next)
+            if (grid.opacity.empty() || is_within(grid.opacity[v], {1.0f, 1.0f}))
+                m_tiles[next->tile].add(next->sample, m_stores[next->tile].id.size(), grid, v);
+}
+
+/// A layer stays as it was where its opacity is not what the ends of lists have gone by.
+void BucketRefinement::keep_layers() {
+    std::vector<Grid> shaded = shade();
+    auto next = m_wanted.begin();
+    for (const Grid& grid : shaded)
+        for (int v = 0; v < grid.vertex_count(); ++v, ++next) {
+            OpenList& open = m_open[next->list];
+            const FragmentLists& lists = m_stores[open.tile].lists;
+            const Fragment fragment = lists.at(open.slot, open.next);
+            const SurfacePoint at = point_of(fragment, m_pool);
+            Vec3f opacity = at(at.grid->opacity);
+            if (is_within(grid.opacity[v], m_pool.opacity(fragment.id))) {
+                opacity = grid.opacity[v];
+                m_tiles[open.tile].add_layer(lists, open.slot, open.next,
+                                             look_of(opacity, grid.radiance[v], at.grid->holdout),
+                                             m_has_channels ? &grid : nullptr, v);
+            }
+            open.transmission *= Vec3f(1.0f) - glm::clamp(opacity, 0.0f, 1.0f);
+            ++open.next;
+        }
+    // Only channels are read again.
+    if (m_has_channels) m_shaded.push_back(std::move(shaded));
 }
 
 }  // namespace granita

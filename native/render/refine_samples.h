@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shading where samples are, once the corners of micropolygons are shaded (render/shade_seen.h) and
-// have told where that is not enough: edges of shadows and textures, highlights.  What is
+// have told where that is not enough: edges of shadows, textures and cut-outs, highlights.  What is
 // smooth costs nothing here, and what is not converges with the samples, in space, in time and over
 // lamps.
 #pragma once
@@ -14,7 +14,7 @@
 namespace granita {
 
 /// The samples of a bucket's tiles that see micropolygons which are not settled, behind their lists
-/// or in them.
+/// or in them: as far into a list as anything of it is seen.
 class BucketRefinement {
   public:
     /// `seen`: of shade_seen(); all of those are shaded.
@@ -26,24 +26,43 @@ class BucketRefinement {
     struct Wanted {
         std::uint32_t slot;  ///< of the grid
         std::uint32_t tile, sample;
-        std::uint32_t list, layer;  ///< slot of its list; kBehind: it is behind the list
+        std::size_t list;  ///< in m_open, of layers
         RefinedPoint point;
     };
-    static constexpr std::uint32_t kBehind = ~0u;
-    bool any_moves(std::span<const SurfaceId> ids) const;
-    bool any_moves(const FragmentLists& lists) const;
+    /// A list, as far as it is known how much is seen behind its first `next` layers.
+    struct OpenList {
+        std::uint32_t tile, slot, next;
+        Vec3f transmission{1.0f};
+    };
     bool is_unsettled(SurfaceId id) const;
-    void find(const TileStore& store, const TileSamples& samples, std::uint32_t tile);
-    void set_times(const TileStore& store, const TileSamples& samples, std::size_t first);
-    void shade();
-    void keep(const Wanted& wanted, const Grid& shaded, int vertex);
+    bool moves(SurfaceId id) const { return m_pool.grid(m_pool.slot(id)).motion; }
+    void want(SurfaceId id, std::uint32_t tile, std::uint32_t sample, std::size_t list,
+              const SurfacePoint& at);
+    void find_behind(std::uint32_t tile);
+    void find_lists(std::uint32_t tile);
+    bool find_layer(std::size_t list);
+    void find_times(std::uint32_t tile);
+    std::vector<Grid> shade();
+    void keep_behind();
+    void keep_layers();
+
+    /// When the samples of a tile see what they see.
+    struct TileTimes {
+        bool known = false;
+        std::vector<float> of_samples;      ///< empty: nothing of the tile moves
+        std::vector<std::uint8_t> matters;  ///< [pixels] whether anything seen there moves
+    };
 
     Frame& m_frame;
+    const Hider& m_hider;
     const GridPool& m_pool;
     const std::vector<TileStore>& m_stores;
+    bool m_has_channels;
     std::vector<std::uint8_t> m_unsettled;  ///< [slots] has any such micropolygon
-    std::vector<Wanted> m_wanted;
-    std::vector<Grid> m_shaded;
+    std::vector<TileTimes> m_times;         ///< [tiles]
+    std::vector<Wanted> m_wanted;           ///< by grid, once they are shaded
+    std::vector<OpenList> m_open;
+    std::vector<std::vector<Grid>> m_shaded;
     std::vector<RefinedSamples> m_tiles;
 };
 

@@ -273,16 +273,14 @@ struct ShadingSystem::Impl {
     /// Whether samples of the grid can be shaded by themselves.  Strands and spheres are drawn as
     /// something flat, whose places say little of their shadows.
     bool can_refine(const Grid& grid) const {
-        if (!refines || grid.shades_faces() || grid.holdout) return false;
+        if (!refines || grid.shades_faces()) return false;
         const std::int32_t index = scene.instances[grid.instance].geometry;
         return scene.geometries[static_cast<std::size_t>(index)].kind == GeometryKind::Mesh;
     }
 
-    /// Whether some of the grid's micropolygons look otherwise at some time of the shutter than
-    /// when it opens: all else being equal, light samples too.
-    bool changes_in_time(const Grid& grid) const {
-        if (!moves || !light) return false;
-        std::vector<RefinedPoint> probes;
+    /// Points at which it is asked whether anything changes within the shutter, kProbeTimes each.
+    std::vector<RefinedPoint> probes(const Grid& grid) const {
+        std::vector<RefinedPoint> points;
         const float open = std::max(grid.lifespan.open, 0.0f);
         const float exposed = std::min(grid.lifespan.close, 1.0f) - open;
         const int count = grid.micropolygon_count();
@@ -290,16 +288,45 @@ struct ShadingSystem::Impl {
             const Grid::Corners c = grid.corners(m);
             const auto at = [](int v) { return static_cast<std::uint32_t>(v); };
             for (const float part : kProbeTimes)
-                probes.push_back({{at(c.v0), at(c.v1), at(c.v2)},
+                points.push_back({{at(c.v0), at(c.v1), at(c.v2)},
                                   {0.5f, 0.0f, 0.5f},
                                   open + part * exposed,
                                   at(m)});
         }
-        const std::vector<Vec3f> shown = refine(grid, probes, 1.0f).radiance;
+        return points;
+    }
+
+    /// [probes], whether any differs by more than the threshold from when the shutter opens.
+    template <class Difference>
+    bool any_changes(const std::vector<Vec3f>& values, const Difference& difference) const {
         constexpr std::size_t kTimes = std::size(kProbeTimes);
-        for (std::size_t i = 0; i < shown.size(); ++i)
-            if (displayed_difference(shown[i], shown[i - i % kTimes]) > threshold) return true;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (difference(values[i], values[i - i % kTimes]) > threshold) return true;
         return false;
+    }
+
+    /// Whether some of the grid's micropolygons look otherwise at some time of the shutter than
+    /// when it opens: all else being equal, light samples too.
+    bool changes_in_time(const Grid& grid) const {
+        if (!moves || (!light && are_equal(grid.radiance))) return false;
+        return any_changes(refine(grid, probes(grid), 1.0f).radiance, displayed_difference);
+    }
+
+    /// The same of its opacity: of what grazes the view, say.
+    bool opacity_changes_in_time(const Grid& grid) const {
+        if (!moves) return false;
+        const RefinedPoints points(grid, scene, camera, probes(grid), moves, 1.0f);
+        Grid out;
+        out.material = grid.material;
+        shade_opacity(out, input(grid, points));
+        return any_changes(out.opacity, [](const Vec3f& a, const Vec3f& b) {
+            const Vec3f d = glm::abs(a - b);
+            return std::max({d.x, d.y, d.z});
+        });
+    }
+
+    std::vector<std::uint8_t> all_marked(const Grid& grid) const {
+        return std::vector<std::uint8_t>(static_cast<std::size_t>(grid.micropolygon_count()), 1);
     }
 
     PointPaths paths(const Grid& grid, const ShadingPoints& points) const {
@@ -339,7 +366,9 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
     if (grid.opacity_varies && m_impl->can_refine(grid)) {
         const float sharpness = m_impl->sharpness(grid);
         grid.unsettled_opacity =
-            unsettled_opacity(grid, m_impl->threshold / (sharpness * sharpness));
+            m_impl->opacity_changes_in_time(grid)
+                ? m_impl->all_marked(grid)
+                : unsettled_opacity(grid, m_impl->threshold / (sharpness * sharpness));
     }
     m_impl->statistics.add(Counter::GridsOpacityShaded);
 }
@@ -356,9 +385,13 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
                   refines ? &noise : nullptr);
     m_impl->statistics.add(Counter::GridsShaded);
     if (!refines) return;
+    if (grid.holdout) {
+        grid.unsettled = grid.unsettled_opacity;
+        return;
+    }
     grid.unsettled =
         m_impl->changes_in_time(grid)
-            ? std::vector<std::uint8_t>(static_cast<std::size_t>(grid.micropolygon_count()), 1)
+            ? m_impl->all_marked(grid)
             : unsettled_micropolygons(grid, noise, m_impl->threshold / (sharpness * sharpness),
                                       m_impl->noise_threshold / (sharpness * sharpness));
     if (grid.unsettled.empty()) grid.unsettled = grid.unsettled_opacity;

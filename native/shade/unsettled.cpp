@@ -144,11 +144,11 @@ class MicropolygonCorners {
     std::vector<std::array<Corner, 4>> m_corners;
 };
 
+}  // namespace
+
 bool are_equal(const std::vector<Vec3f>& values) {
     return std::ranges::all_of(values, [&](const Vec3f& v) { return v == values[0]; });
 }
-
-}  // namespace
 
 float displayed_difference(const Vec3f& a, const Vec3f& b) {
     return most(shown_color(a) - shown_color(b));

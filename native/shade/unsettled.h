@@ -13,6 +13,8 @@ namespace granita {
 /// up to white, and half of one for each factor e beyond.
 float displayed_difference(const Vec3f& a, const Vec3f& b);
 
+bool are_equal(const std::vector<Vec3f>& values);
+
 /// Marks the micropolygons that interpolating their corners would draw wrong: where displayed
 /// colour along a row of corners bends by more than `threshold`, be it an edge or a highlight, and,
 /// as an edge ends anywhere, those that share a point with one.  Slopes are drawn right.

@@ -2,6 +2,7 @@
 #include "shade/world_shader.h"
 
 #include <algorithm>
+#include <string_view>
 
 namespace granita {
 namespace {
@@ -10,6 +11,19 @@ namespace {
 constexpr RayType kTypes[] = {RayType::Camera, RayType::Diffuse, RayType::Glossy,
                               RayType::Singular};
 constexpr RayType kLightTypes[] = {RayType::Diffuse, RayType::Glossy, RayType::Singular};
+
+/// Nodes of which nothing is narrower than what they are given: images, and sums of them.  What
+/// draws, as comparisons do, may be.
+bool is_smooth(const Node& node) {
+    static constexpr std::string_view kSmooth[] = {
+        "ShaderNodeTexEnvironment", "ShaderNodeTexImage",   "ShaderNodeTexCoord",
+        "ShaderNodeMapping",        "ShaderNodeBackground", "ShaderNodeRGB",
+        "ShaderNodeValue",          "ShaderNodeGamma",      "ShaderNodeHueSaturation",
+        "ShaderNodeBrightContrast", "ShaderNodeInvert",     "ShaderNodeMixShader",
+        "ShaderNodeAddShader",      "ShaderNodeLightPath",  "ShaderNodeVectorRotate",
+        "ShaderNodeEmission"};
+    return std::ranges::find(kSmooth, node.type) != std::end(kSmooth);
+}
 
 bool is_visible(const World& world, RayType ray) {
     switch (ray) {
@@ -46,6 +60,7 @@ WorldShader::WorldShader(const Scene& scene, TextureStore& textures, Report& rep
     m_reads_images = std::any_of(graph.nodes.begin(), graph.nodes.end(), [](const Node& node) {
         return node.type == "ShaderNodeTexEnvironment" || node.type == "ShaderNodeTexImage";
     });
+    m_is_smooth = std::ranges::all_of(graph.nodes, is_smooth);
 }
 
 const SurfaceProgram& WorldShader::program(RayType ray) const {
@@ -83,6 +98,7 @@ WorldEvaluator WorldShader::evaluator() const {
         std::any_of(std::begin(kLightTypes), std::end(kLightTypes),
                     [this](RayType ray) { return &program(ray) != &program(RayType::Diffuse); });
     world.is_filtered = m_reads_images;
+    world.is_image = m_reads_images && m_is_smooth;
     return world;
 }
 

@@ -36,7 +36,7 @@ vec4 background(ivec2 texel, int pass) {
 #if AT_SAMPLE
     f = place_in_pixel(texel);
 #elif ROTATED
-    corner = clamp(corner, ivec2(0), size.xy - 2);  // around the turned cell nobody asks
+    corner = clamp(corner, ivec2(0), size.xy - 2);  // around the rotated cell nobody asks
 #endif
     const int i = ((size.z > 1 ? pass : 0) * size.y + corner.y) * size.x + corner.x;
     return mix(mix(corners[i], corners[i + 1], f.x),

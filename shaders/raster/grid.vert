@@ -26,7 +26,7 @@ layout(location = RASTER_CLIP_SCALE) uniform dvec2 clip_scale;
 layout(location = RASTER_CLIP_CENTER) uniform dvec2 clip_center;
 layout(location = RASTER_NEAR) uniform float near_clip;
 layout(location = RASTER_FIRST_PASS) uniform uint first_pass;
-layout(location = RASTER_LATTICE_TURN) uniform double turn;  // tangent; 0: not turned
+layout(location = RASTER_LATTICE_TURN) uniform double turn;  // tangent; 0: not rotated
 
 // Two passes over the same geometry must find the same depth.
 invariant gl_Position;

@@ -22,14 +22,14 @@ float independent_sample(ivec2 pixel, uint s, uint samples, uint table_seed, uin
     return d <= kY ? fraction20(bits) : fraction24(bits);
 }
 
-/// REGULAR: samples of a pixel in a pass; the lattice is turned where passes are many.
-uint regular_cells(uint side, bool turned) { return side * side + (turned ? 1u : 0u); }
+/// REGULAR: samples of a pixel in a pass; the lattice is rotated where passes are many.
+uint regular_cells(uint side, bool rotated) { return side * side + (rotated ? 1u : 0u); }
 
 /// REGULAR: the lattice's place of sample s relative to the pixel.
-vec2 regular_place(uint s, uint side, bool turned) {
-    const uint cell = s % regular_cells(side, turned), points = turned ? side * side + 1u : side;
-    const uint column = turned ? cell : cell % side;
-    const uint row = turned ? rotated_row(cell, side) : cell / side;
+vec2 regular_place(uint s, uint side, bool rotated) {
+    const uint cell = s % regular_cells(side, rotated), points = rotated ? side * side + 1u : side;
+    const uint column = rotated ? cell : cell % side;
+    const uint row = rotated ? rotated_row(cell, side) : cell / side;
     return vec2(uvec2(cell_center(column, points), cell_center(row, points))) * (1.0 / 1048576.0);
 }
 

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
+from test_refined_shading import turned
 
 EXECUTORS = ["SIMD", "COMPUTE", "REFERENCE"]
 SIZE = (48, 16)
@@ -126,13 +127,111 @@ def test_stripes_are_where_they_are():
     assert row(snapshot) == pytest.approx(fine.reshape(-1, 64).mean(axis=1), abs=EDGE)
 
 
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_a_hole_is_no_first_surface(executor):
+    snapshot = stage(executor, depth_pass=True)
+    sheet(snapshot, cut(snapshot, "GREATER_THAN", 20.3), 20.0)
+    sheet(snapshot, s.emission(snapshot, (0, 1, 0)), 30.0)
+    depth = s.render(snapshot)["depth"][2:-2]
+    assert depth[:, :20] == pytest.approx(30.0)
+    assert depth[:, 21:] == pytest.approx(20.0)
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_a_holdout_is_cut_out_where_it_is(executor):
+    snapshot = stage(executor)
+    sheet(snapshot, cut(snapshot, "GREATER_THAN", 20.3), 20.0)
+    sheet(snapshot, s.emission(snapshot), 30.0)
+    snapshot["instances"]["flags"] = [3 | 4, 3]
+    picture = s.render(snapshot)["combined"][2:-2].mean(axis=0)
+    assert picture[:, 0] == pytest.approx(1 - right_of(20.3), abs=EDGE)
+    assert picture[:, 3] == pytest.approx(1 - right_of(20.3), abs=EDGE)
+
+
+def fine_holes(snapshot, opacity, stripe):
+    """Adds a material of `opacity` with holes .12 wide that no corner of a pixel's micropolygon meets, and a texture's edge
+    across them at y = 8.4."""
+    index = cut(snapshot, "GREATER_THAN", 0.12, of_x=[("SUBTRACT", 0.44), ("FRACT", 0.0)])
+    nodes = snapshot["materials"][index]["nodes"]
+    mix = next(node for node in nodes if node["type"] == "ShaderNodeMixShader")
+    factor = mix["inputs"]["Fac"][1]
+    del nodes[factor + 1 :]
+    x = {"Value": link(factor, "Value"), "Value_001": opacity}
+    y = {"Value": link(1, "Y"), "Value_001": stripe}
+    math = "ShaderNodeMath"
+    nodes += [
+        {"type": math, "inputs": x, "properties": {"operation": "MULTIPLY"}},
+        {"type": math, "inputs": y, "properties": {"operation": "GREATER_THAN"}},
+        {"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1, 1, 1, 1)}},
+        {
+            "type": "ShaderNodeEmission",
+            "inputs": {"Color": link(factor + 2, "Value"), "Strength": 1.0},
+        },
+        {
+            "type": "ShaderNodeMixShader",
+            "inputs": {
+                "Fac": link(factor + 1, "Value"),
+                "Shader": link(factor + 3, "BSDF"),
+                "Shader_001": link(factor + 4, "Emission"),
+            },
+        },
+    ]
+    snapshot["materials"][index]["surface"] = (factor + 5, "Shader")
+    return index
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_holes_that_hiding_missed_let_no_world_through(executor):
+    """What is behind the sheets' end was culled: samples that find the holes there may not go by them."""
+    snapshot = stage(executor, opacity_threshold=0.996)
+    sheet(snapshot, fine_holes(snapshot, 0.97, 8.4), 20.0)
+    sheet(snapshot, fine_holes(snapshot, 0.97, 8.4), 25.0)
+    sheet(snapshot, s.emission(snapshot, (0, 0, 0)), 30.0)
+    result = s.render(snapshot)
+    assert result["statistics"]["points_refined"] > 0
+    assert result["combined"][..., 3].min() > 0.99
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_what_hiding_took_for_opaque_is_not_darkened_by_its_holes(executor):
+    snapshot = stage(executor)
+    sheet(snapshot, fine_holes(snapshot, 1.0, 8.4), 20.0)
+    # Where corners are whole pixels apart; elsewhere some meet a hole, and all are found there.
+    picture = s.render(snapshot)["combined"][:, 12:38]
+    assert picture[..., 3] == pytest.approx(1.0)
+    rows = picture[..., 0].mean(axis=1)
+    assert rows == pytest.approx(np.clip(np.arange(SIZE[1]) + 1 - 8.4, 0.0, 1.0), abs=EDGE)
+
+
+def test_opacity_that_follows_the_view_is_that_of_each_time():
+    """A sheet that turns, as opaque as it is turned away: the integral of Layer Weight's Facing, blend 1/2."""
+    snapshot = stage()
+    nodes = [
+        {"type": "ShaderNodeLayerWeight", "inputs": {"Blend": 0.5}},
+        {"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1, 1, 1, 1)}},
+        {"type": "ShaderNodeEmission", "inputs": {"Color": (1, 1, 1, 1), "Strength": 1.0}},
+        {
+            "type": "ShaderNodeMixShader",
+            "inputs": {
+                "Fac": link(0, "Facing"),
+                "Shader": link(1, "BSDF"),
+                "Shader_001": link(2, "Emission"),
+            },
+        },
+    ]
+    snapshot["materials"].append({"name": "Rim", "nodes": nodes, "surface": (3, "Shader")})
+    angles = np.linspace(0.0, 1.2, 33)
+    sheet(snapshot, 0, transforms=[turned(a) for a in angles])
+    expected = 1.2 - np.sin(1.2)  # of 1 - cos
+    assert row(snapshot)[20:28] == pytest.approx(expected / 1.2, abs=0.005)
+
+
 CHANGES = [
     {"bucket_size": 16},
     {"threads": 1},
     {"threads": 3},
     {"executor": "COMPUTE"},
     {"executor": "REFERENCE"},
-    {"list_memory": 1},
 ]
 
 
@@ -153,6 +252,23 @@ def test_no_bit_depends_on_buckets_threads_memory_or_executor(change):
     assert np.array_equal(base["passes"]["Emission"], other["passes"]["Emission"])
 
 
+def test_lists_in_parts_change_no_bit():
+    """40 faint layers of cut-outs; one of them moves over still ones in a corner."""
+
+    def shot(**options):
+        snapshot = stage(**{"samples": 256, **options})
+        for i in range(40):
+            sheet(snapshot, cut(snapshot, "GREATER_THAN", 1.1 * i + 0.7), 20.0 + i)
+        moves = {"transforms": [s.translation(-1.0), s.translation(2.0)]}
+        s.quad(snapshot, s.rectangle(2, 2, 7, 7, 10.0), s.emission(snapshot, alpha=0.5), **moves)
+        return s.render(snapshot)
+
+    whole, parts = shot(), shot(list_memory=1)
+    key = "peak_list_bytes"
+    assert parts["statistics"][key] < whole["statistics"][key]
+    assert np.array_equal(whole["combined"], parts["combined"])
+
+
 @pytest.mark.parametrize("crop", [(0, 0, 48, 1), (13, 5, 31, 9), (47, 15, 48, 16)])
 def test_crop_changes_no_bit(crop):
     whole = s.render(busy())["combined"]
@@ -166,6 +282,18 @@ def test_the_pass_of_what_is_refined_is_the_picture():
     assert result["passes"]["Emission"][..., :3] == pytest.approx(
         result["combined"][..., :3], abs=1e-5
     )
+
+
+def test_of_many_layers_those_are_shaded_that_are_seen():
+    """24 sheets half open: two of them are seen, in the mean, and of these what lies at edges."""
+    snapshot = stage(samples=64)
+    wave = 2 * np.pi / 3.3
+    for i in range(24):
+        of_x = [("ADD", 0.37 * i), ("MULTIPLY", wave), ("SINE", 0.0)]
+        sheet(snapshot, cut(snapshot, "GREATER_THAN", 0.0, of_x=of_x), 20.0 + i)
+    refined = s.render(snapshot)["statistics"]["points_refined"]
+    margin = 2
+    assert 0 < refined <= 4 * 64 * (SIZE[0] + 2 * margin) * (SIZE[1] + 2 * margin)
 
 
 def test_opacity_that_is_even_costs_nothing():

@@ -187,6 +187,23 @@ def test_crop_changes_no_bit(crop):
     assert np.array_equal(whole[crop[1] : crop[3], crop[0] : crop[2]], part)
 
 
+@pytest.mark.parametrize("crop", [(8, 8, 16, 16), (10, 0, 16, 16), (0, 8, 48, 16)])
+def test_nor_where_what_moves_is_left_out(crop):
+    """A still floor under a sweeping shadow, and a small pane that moves before a corner of it."""
+
+    def shot(**options):
+        snapshot = stage(samples=16, **options)
+        floor(snapshot)
+        caster(snapshot, -300, 0.0, **moves(8.0, 20.0))
+        pane = s.rectangle(2, 2, 7, 7, 8.0)
+        s.quad(snapshot, pane, s.emission(snapshot, alpha=0.5), **moves(-1.0, 1.0))
+        snapshot["instances"]["flags"].append(VISIBLE)
+        return s.render(snapshot)["combined"]
+
+    whole, part = shot(), shot(crop=np.array(crop, np.int32))
+    assert np.array_equal(whole[crop[1] : crop[3], crop[0] : crop[2]], part)
+
+
 def test_what_is_smooth_costs_nothing():
     snapshot = stage()
     floor(snapshot)

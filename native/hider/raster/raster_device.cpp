@@ -143,7 +143,7 @@ void RasterDevice::set_cell(const RasterCell& cell) const {
     const RegularLattice& lattice = m_target.lattice();
     const double texel = 2.0 / m_target.texel_size(), turn = lattice_turn();
     const double per_pixel = 2.0 * lattice.side / m_target.texel_size();
-    // Where the corner's place, turned, must be; half a texel as regular_lattice.h says.
+    // Where the corner's place, rotated, must be; half a texel as regular_lattice.h says.
     Vec2d corner = texel * Vec2d(m_target.origin()) - Vec2d(1.0);
     if (lattice.rotated && lattice.side % 2 == 1) corner.y += 0.5 * texel;
     corner = (corner - turn * Vec2d(corner.y, -corner.x)) / (1.0 + turn * turn);

@@ -16,7 +16,7 @@ namespace granita {
 struct RasterFilter {
     RegularLattice lattice;
 
-    /// One axis of a separable filter on a lattice that is not turned.
+    /// One axis of a separable filter on a lattice that is not rotated.
     int first = 0;                ///< sub-sample of weights[0]; 0 is the pixel's own lowest
     std::vector<double> weights;  ///< consecutive sub-samples; sum 1
 

@@ -56,7 +56,7 @@ class RasterTarget {
     int texel_size() const { return m_texel_size; }
     int layers() const { return m_layers; }
     const RegularLattice& lattice() const { return m_lattice; }
-    /// The target's texel at the first texel of a cell's corner pixel: a turned cell is a turned
+    /// The target's texel at the first texel of a cell's corner pixel: a rotated cell is a rotated
     /// square in the target.
     Vec2i origin() const { return m_origin; }
     /// Of raster/lattice.glsl.

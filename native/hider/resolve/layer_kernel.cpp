@@ -201,10 +201,19 @@ class PacketCompositor {
             hn::And(mask_of(lanes), hn::Eq(found, set(-std::numeric_limits<float>::infinity())));
         if (hn::AllFalse(kTag, first)) return 0;
         if (m_end.pass_alpha_threshold > 0.0f) first = hn::And(first, covers_enough(layer));
+        if (HWY_UNLIKELY(m_refined != nullptr)) first = hn::And(first, is_there(layer));
         V key, id;
         load_heads(fragments, m_part, key, id);
         hn::Store(hn::IfThenElse(first, key, found), kTag, m_out.first_key + m_part);
         return bits_of(first);
+    }
+
+    /// Not where a sample has found a hole: nothing of what is clear at all corners is in lists.
+    HWY_NOINLINE M is_there(const Layer& layer) const {
+        V all = hn::Zero(kTag);
+        for (int c = 0; c < 3; ++c)
+            all = all + hn::Abs(layer.opacity[c]) + hn::Abs(layer.radiance[c]);
+        return hn::Gt(all, hn::Zero(kTag));
     }
 
     HWY_NOINLINE M covers_enough(const Layer& layer) const {

@@ -35,12 +35,13 @@ inline float clamp_opacity(float x) {
 }
 
 /// Of one opacity and radiance all over.
-inline LayerLook look_of(const Vec3f& opacity, const Vec3f& radiance) {
+inline LayerLook look_of(const Vec3f& opacity, const Vec3f& radiance, bool holdout) {
     LayerLook look;
     for (int c = 0; c < 3; ++c) {
         look.value[c] = clamp_opacity(opacity[c]);
-        look.value[3 + c] = radiance[c];
+        look.value[3 + c] = holdout ? 0.0f : radiance[c];
     }
+    if (holdout) look.flags |= LayerLook::kHoldout;
     if (opacity.x != opacity.y || opacity.x != opacity.z) look.flags |= LayerLook::kColored;
     return look;
 }

@@ -28,17 +28,18 @@ class RefinedSamples {
         return &m_points[m_index[sample]];
     }
 
-    /// Layer k of the list in a slot.
+    /// Layer k of the list in a slot.  `grid`: where its channels are, nullptr without any; it
+    /// outlives this.
     void add_layer(const FragmentLists& lists, std::uint32_t slot, std::uint32_t k,
-                   const Grid& grid, int vertex) {
+                   const LayerLook& look, const Grid* grid, int vertex) {
         m_lists.resize(lists.slots(), kNone);
         if (m_lists[slot] == kNone) {
             m_lists[slot] = static_cast<std::uint32_t>(m_layers.size());
             m_layers.resize(m_layers.size() + lists.counts()[slot], kNone);
         }
         m_layers[m_lists[slot] + k] = static_cast<std::uint32_t>(m_looks.size());
-        m_looks.push_back(look_of(grid.opacity[vertex], grid.radiance[vertex]));
-        m_layer_points.push_back(point_at(grid, vertex));
+        m_looks.push_back(look);
+        if (grid) m_layer_points.push_back(point_at(*grid, vertex));
     }
     bool any_layers() const { return !m_looks.empty(); }
     /// What such a layer looks like; nullptr: as its micropolygon does.

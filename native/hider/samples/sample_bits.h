@@ -146,7 +146,7 @@ GRANITA_BITS_FN uint cell_center(uint i, uint n) {
     return (a / n << 6) + ((a % n) << 6) / n;
 }
 
-/// REGULAR, turned: the row of the sample in column i of side^2 + 1, a Korobov lattice that is its
+/// REGULAR, rotated: the row of the sample in column i of side^2 + 1, a Korobov lattice that is its
 /// own mirror image about the pixel's centre; side <= 256.
 GRANITA_BITS_FN uint rotated_row(uint i, uint side) {
     uint points = side * side + 1u;

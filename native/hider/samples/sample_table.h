@@ -43,7 +43,7 @@ struct SampleNeeds {
 /// REGULAR: sample = pass * cells + cell of the lattice, whose side's square is the nearest to
 /// Options::samples; all pixels share a pass's time and lens point (the paper, 9.3.5). Passes:
 /// Options::time_samples, or what the constructor is told where that is 0, if the frame has motion
-/// or a lens, else 1. Where there are more than one the lattice is turned (regular_lattice.h), and
+/// or a lens, else 1. Where there are more than one the lattice is rotated (regular_lattice.h), and
 /// a pass has a sample more.
 class SampleTable {
   public:

@@ -51,7 +51,7 @@ struct Located {
     float fraction, width;
 };
 
-/// `first`, `last`: between which columns it lies.
+/// `first`, `last`: the steps of the distribution between which it lies, both included.
 Located locate(const float* distribution, int count, float x, int first, int last) {
     const float* above = std::upper_bound(distribution + first, distribution + last + 1, x);
     const int index = std::clamp(static_cast<int>(above - distribution) - 1, 0, count - 1);
@@ -115,8 +115,10 @@ std::vector<float> Environment::bake(const WorldEvaluator& world, const Progress
     const int side = world.is_filtered ? 1 : kPlaces;
     const float spread = texel_angle() / static_cast<float>(side);
     std::vector<float> found(width * static_cast<std::size_t>(m_height));
-    if (world.by_lobe) m_glossy_texels = found.size();
-    if (world.is_filtered) m_radiance.resize(found.size() + m_glossy_texels);
+    if (world.is_image) {
+        m_glossy_texels = world.by_lobe ? found.size() : 0;
+        m_radiance.resize(found.size() + m_glossy_texels);
+    }
     std::atomic<std::size_t> broken = 0;
     parallel_for(static_cast<std::size_t>(m_height), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y != end; ++y) {
@@ -157,6 +159,7 @@ Environment::Environment(const WorldEvaluator& world, const Progress& progress, 
 void Environment::build_distribution(const std::vector<float>& luminance_of) {
     m_rows.resize(static_cast<std::size_t>(m_height) + 1);
     m_columns.resize(static_cast<std::size_t>(m_height) * (m_width + 1));
+    m_guides.reserve(static_cast<std::size_t>(m_height) * kGuides);
     std::vector<double> rows(m_height), columns(m_width);
     for (int row = 0; row < m_height; ++row) {
         const float* line = luminance_of.data() + static_cast<std::size_t>(row) * m_width;

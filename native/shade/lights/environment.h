@@ -25,6 +25,7 @@ struct WorldEvaluator {
     bool is_constant = false;  ///< one radiance for all directions, as each type of ray sees it
     bool by_lobe = false;      ///< diffuse, glossy and singular rays may see different worlds
     bool is_filtered = false;  ///< nothing narrower than `spread` is missed, as in images
+    bool is_image = false;     ///< and there is nothing but images: their means tell all
 };
 
 class Environment {

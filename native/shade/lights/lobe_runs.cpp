@@ -25,9 +25,9 @@ bool all_alike(const std::vector<LitPoint>& points, std::size_t lobe_count) {
 
 }  // namespace
 
-void place_lobe_samples(std::vector<LitPoint>& points, std::size_t lobe_count, bool disjoint) {
+void place_lobe_samples(std::vector<LitPoint>& points, std::size_t lobe_count, bool placed) {
     if (points.empty()) return;
-    if (disjoint || all_alike(points, lobe_count)) {
+    if (placed || all_alike(points, lobe_count)) {
         for (LitPoint& point : points)
             for (LitPoint::LobeSamples& lobe : point.samples)
                 lobe.first = point.place * static_cast<std::uint32_t>(lobe.count);

@@ -12,7 +12,7 @@ namespace granita {
 /// aligned runs.  Where Fresnel or masks make them differ, runs adjoin in the order of the places:
 /// no stratum is drawn twice or left out.
 /// @param lobe_count of the closure.
-/// @param disjoint points are no neighbours, and go by their places alone.
-void place_lobe_samples(std::vector<LitPoint>& points, std::size_t lobe_count, bool disjoint);
+/// @param placed points are no neighbours, and go by their places alone.
+void place_lobe_samples(std::vector<LitPoint>& points, std::size_t lobe_count, bool placed);
 
 }  // namespace granita

@@ -121,7 +121,7 @@ TEST(Environment, texels_of_a_filtered_world_have_its_irradiance) {
                                                       : Vec3f(0.0f, 0.0f, 3.0f + d.x));
         }};
     EXPECT_FALSE(Environment(world, kProgress, 64).has_radiance());
-    world.is_filtered = world.by_lobe = true;
+    world.is_filtered = world.is_image = world.by_lobe = true;
     const Environment environment(world, kProgress, 64);
     ASSERT_TRUE(environment.has_radiance());
     const SobolPoints points(3);
