@@ -48,10 +48,10 @@ def ask(script, job, python=None):
         return run_job(script, job, folder, python)
 
 
-def render(job, clock="processor"):
-    """Runs a job (render_frames.py); returns for each setting (image, median seconds)."""
+def render(job, clock="processor", python=None):
+    """Runs a job (render_frames.py), in a Blender or a Python that has it; returns for each setting (image, median seconds)."""
     with tempfile.TemporaryDirectory() as folder:
-        seconds = run_job("render_frames.py", job, folder)
+        seconds = run_job("render_frames.py", job, folder, python)
         column = {"wall": 0, "processor": 1}[clock]
         return [
             (

@@ -3,7 +3,7 @@
 
     blender -b --factory-startup --addons granita --python bench/render_frames.py -- JOB.json
 
-JOB: {"module": "scenes", "hero_scene", "moving_files" or "demo", "scene", "variant" (of moving_files), "folder", "file", "runs", "seed" (of
+JOB: {"module": "scenes", "lit_scenes", "lamp_scenes", "hero_scene", "moving_files" or "demo", "scene", "variant" (of moving_files), "folder", "file", "runs", "seed" (of
 Cycles), "size" (width and height, the scene's own without), "settings": [{"engine": "CYCLES" or "GRANITA", "samples",
 "shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), other
 properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FILE lists for each setting its runs as [wall, processor] seconds
@@ -33,6 +33,11 @@ def build(job):
         import scenes
 
         return lit_scenes.SCENES[job["scene"]](), 1, scenes.SHUTTER
+    if job["module"] == "lamp_scenes":
+        import lamp_scenes
+        import scenes
+
+        return lamp_scenes.SCENES[job["scene"]](), 1, scenes.SHUTTER
     if job["module"] == "hero_scene":
         import hero_scene
         import scenes

@@ -18,7 +18,8 @@ constexpr std::array kCounterNames = {
     "buckets_moving",        "buckets_transparent",
     "gl_primitives",         "gl_passes",
     "gl_dispatches",         "rays_shadow",
-    "rays_occlusion",        "texture_lookups",
+    "rays_occlusion",        "lamps_chosen",
+    "light_nodes",           "texture_lookups",
     "loop_pieces_shared",
 };
 static_assert(kCounterNames.size() == static_cast<std::size_t>(Counter::kCount));

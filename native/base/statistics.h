@@ -42,6 +42,8 @@ enum class Counter {
     GlDispatches,  ///< of the compute executor
     RaysShadow,
     RaysOcclusion,
+    LampsChosen,  ///< where there are many: lamps asked, summed over points
+    LightNodes,   ///< of the light tree, whose children a point compared
     TextureLookups,
     LoopPiecesShared,  ///< pieces of a stage's loops that another thread than the loop's own ran
     kCount

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cmath>
+
 #include "math/vec.h"
 
 namespace granita {
@@ -8,6 +10,11 @@ namespace granita {
 /// Of a linear colour of Rec. 709, as Cycles turns colours into numbers.
 inline float luminance(const Vec3f& c) {
     return 0.2126729f * c.x + 0.7151522f * c.y + 0.0721750f * c.z;
+}
+
+/// Mean of the channels' sizes.
+inline float mean_size(const Vec3f& c) {
+    return (std::abs(c.x) + std::abs(c.y) + std::abs(c.z)) / 3.0f;
 }
 
 }  // namespace granita

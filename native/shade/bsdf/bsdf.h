@@ -12,6 +12,7 @@
 
 #include "math/vec.h"
 #include "shade/bsdf/lobe.h"
+#include "shade/bsdf/lobe_reach.h"
 
 namespace granita {
 
@@ -50,6 +51,8 @@ class PointBsdf {
     BsdfValue albedo() const;
     /// False where evaluate() is 0 for every direction to the sphere around `to_center`.
     bool can_see(const Vec3f& to_center, float radius) const;
+    /// Bounds of the lobes that are not sharp.
+    void reaches(std::vector<LobeReach>& out) const;
     /// Sum over all lobes that are not sharp.
     BsdfValue evaluate(const Vec3f& wo) const;
     /// Density of sample(), per solid angle; 0 for sharp lobes.

@@ -4,19 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 
 #include "base/stage_timer.h"
 #include "scene/knot_time.h"
-#include "scene/shutter_warp.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/bsdf/bsdf_albedo.h"
-#include "shade/lights/light_lamp.h"
+#include "shade/lights/lamp_choice.h"
+#include "shade/lights/lamp_samples.h"
+#include "shade/lights/lamp_set.h"
 #include "shade/lights/lit_grid.h"
 #include "shade/lights/lit_point.h"
 #include "shade/lights/lobe_runs.h"
-#include "shade/lights/shadow_queue.h"
-#include "shade/rays/ray_scene.h"
 
 namespace granita {
 namespace {
@@ -29,6 +29,20 @@ std::uint64_t grid_seed(const GridKey& key, std::uint32_t frame_seed) {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+/// Points of an aligned square of the grid, which share a choice of lamps.
+constexpr std::uint32_t kSharing = 16;
+/// Lamps asked for each light sample: by points that one sample of the picture sees alone, and by
+/// others where a pixel has as many samples.
+constexpr float kAskedByPlaced = 4.0f, kAsked = 4.0f;
+constexpr int kSamplesOfAsked = 16;
+/// A choice that many share knows its lamps as much better.
+constexpr float kFiner = 4.0f;
+
+/// Of shading space.
+Vec3d camera_origin(const Scene& scene) {
+    return Vec3d(matrix_at(scene.camera.world_from_camera, scene.options.frame_time)[3]);
+}
+
 }  // namespace
 
 struct DirectLight::Impl {
@@ -38,22 +52,16 @@ struct DirectLight::Impl {
 
     void light_points(LitGrid& grid, const std::vector<LitPoint>& points,
                       std::size_t lobe_count) const;
-    void sample_lamp(LitGrid& grid, const LitPoint& point, const Lamp& lamp, std::size_t dimension,
-                     ShadowQueue& shadows) const;
     void sample_world(LitGrid& grid, const LitPoint& point) const;
     void add_texel(LitGrid& grid, const LitPoint& point, const Environment::Sample& from,
                    const BsdfValue& weight, float sign) const;
-    void sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe) const;
+    void sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
+                     const LampChoice* choice) const;
+    void sample_rest(LitGrid& grid, const LitPoint& point, const LampChoice* choice) const;
+    LampRate rate_of(const LitPoint& point, const LampChoice* choice, std::size_t lamp) const;
     void mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const;
     void look(LitGrid& grid, const EnvironmentSamples& samples, float spread, RayType glossy) const;
-    LitPlace place_at(const LitPoint& point, float uniform) const;
-    bool changes(const Lamp& lamp) const;
     std::uint64_t receives(const GridKey& key) const;
-    int samples_of(const LitPoint& point, const Lamp& lamp) const;
-    ShadowRay ray(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
-                  float distance, int blocker_set = -1) const;
-    Vec3f shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
-                 const LightSample& sample) const;
     Vec3f occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
                     const Vec3f& direction) const;
 
@@ -63,13 +71,10 @@ struct DirectLight::Impl {
     const Progress& progress;
     std::shared_ptr<GeometryCache> geometries;
     int sample_count;
-    ShutterWarp shutter;
-    std::vector<Lamp> lamps;
+    LampSet set;
+    float asked_by_corner;                     ///< lamps for each light sample
     std::unique_ptr<Environment> environment;  ///< nullptr where the world sheds no light
-    std::unique_ptr<RayScene> rays;            ///< nullptr where nothing can cast a shadow
     std::unordered_map<std::uint32_t, std::uint64_t> linked;  ///< Instance::receives by key
-    bool casters_move = false;
-    bool varies = false;  ///< casters or lamps do
 };
 
 DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator,
@@ -82,16 +87,9 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
       progress(frame_progress),
       geometries(cache ? std::move(cache) : std::make_shared<GeometryCache>()),
       sample_count(std::max(1, frame_scene.options.light_samples)),
-      shutter(frame_scene.options.shutter_curve) {
-    const float time = scene.options.frame_time;
-    const Vec3d origin(matrix_at(scene.camera.world_from_camera, time)[3]);
-    for (const Light& light : scene.lights) {
-        float energy = std::abs(light.energy);
-        for (const float knot : light.energy_knots) energy = std::max(energy, std::abs(knot));
-        if (light.color * energy == Vec3f(0.0f) || light.lifespan.is_empty()) continue;
-        lamps.emplace_back(light, time, origin);
-        varies = varies || lamps.back().varies();
-    }
+      set(frame_scene, camera_origin(frame_scene)),
+      asked_by_corner(kAsked *
+                      std::sqrt(static_cast<float>(scene.options.samples) / kSamplesOfAsked)) {
     for (const Instance& instance : scene.instances)
         if (instance.receives != ~0ULL) linked[instance.key] = instance.receives;
     if (scene.world.lights_scene && world.radiance) {
@@ -102,31 +100,15 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
                         environment->broken());
         if (environment->is_black()) environment.reset();
     }
-    const bool shadows = environment || std::ranges::any_of(lamps, [](const Lamp& lamp) {
+    const bool shadows = environment || std::ranges::any_of(set.lamps, [](const Lamp& lamp) {
                              return lamp.casts_shadow();
                          });
     if (!shadows) return;
     StageTimer timer(statistics, Stage::RayBuild);
-    rays = std::make_unique<RayScene>(scene, origin, std::move(opacity), progress, geometries,
-                                      &report);
+    auto rays = std::make_unique<RayScene>(scene, camera_origin(scene), std::move(opacity),
+                                           progress, geometries, &report);
     statistics.peak_ray_bytes(rays->bytes());
-    if (rays->empty()) rays.reset();
-    casters_move = rays && rays->moves();
-    varies = varies || casters_move;
-}
-
-/// The point at a time of its life drawn by `uniform` in [0, 1) through the shutter; at the frame
-/// time where nothing that light depends on changes.
-LitPlace DirectLight::Impl::place_at(const LitPoint& point, float uniform) const {
-    LitPlace place = point.at_frame;
-    if (!varies) return place;
-    place.time = shutter.time(point.exposed.x + uniform * (point.exposed.y - point.exposed.x));
-    if (!point.paths.moves()) return place;
-    const PointPaths::Place on_path = point.paths.at(point.index, place.time);
-    place.p = on_path.p;
-    place.normal = on_path.normal;
-    place.start = point.ray_offset(on_path.start, on_path.normal);
-    return place;
+    if (!rays->empty()) set.set_casters(std::move(rays));
 }
 
 std::uint64_t DirectLight::Impl::receives(const GridKey& key) const {
@@ -134,93 +116,11 @@ std::uint64_t DirectLight::Impl::receives(const GridKey& key) const {
     return found == linked.end() ? ~0ULL : found->second;
 }
 
-bool DirectLight::Impl::changes(const Lamp& lamp) const {
-    return lamp.varies() || (casters_move && lamp.casts_shadow());
-}
-
-/// None of a lamp below the horizon; one tells all about a lamp without size that nothing moving
-/// can come before.
-int DirectLight::Impl::samples_of(const LitPoint& point, const Lamp& lamp) const {
-    Vec3f center;
-    float radius;
-    const bool still = !lamp.varies() && !point.paths.moves();
-    if (still && lamp.at(0.0f).bound(center, radius) &&
-        !point.bsdf.can_see(center - point.at_frame.p, radius))
-        return 0;
-    if (!lamp.is_hard()) return point.sample_count;
-    if (!changes(lamp)) return 1;
-    if (lamp.varies() || point.paths.moves()) return point.sample_count;
-    const LitPlace& place = point.at_frame;
-    LightSample sample;
-    if (!lamp.at(place.time).sample(place.p, Vec2f(0.0f), sample)) return 0;
-    return rays->varies(place.start, sample.direction, sample.distance) ? point.sample_count : 1;
-}
-
-ShadowRay DirectLight::Impl::ray(const LitPoint& point, const LitPlace& place,
-                                 const Vec3f& direction, float distance, int blocker_set) const {
-    const bool turned_away = glm::dot(place.normal, direction) <= 0.0f &&
-                             glm::dot(point.at_frame.normal, direction) > 0.0f;
-    const LitPlace& from = turned_away ? point.at_frame : place;
-    return {from.start, direction, distance, from.time, blocker_set};
-}
-
-Vec3f DirectLight::Impl::shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place,
-                                const Lamp& lamp, const LightSample& sample) const {
-    if (!rays || !lamp.casts_shadow()) return Vec3f(1.0f);
-    ++grid.shadow_rays;
-    return rays->transmittance(
-        ray(point, place, sample.direction, sample.distance, lamp.blocker_set()));
-}
-
 Vec3f DirectLight::Impl::occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
                                    const Vec3f& direction) const {
-    if (!rays) return Vec3f(1.0f);
+    if (!set.rays) return Vec3f(1.0f);
     ++grid.occlusion_rays;
-    return rays->transmittance(ray(point, place, direction, kInfinity));
-}
-
-void DirectLight::Impl::sample_lamp(LitGrid& grid, const LitPoint& point, const Lamp& lamp,
-                                    std::size_t dimension, ShadowQueue& shadows) const {
-    const int count = samples_of(point, lamp);
-    // One sample of many tells all where nothing varies along its ray; one of one is any time's.
-    const bool timed = changes(lamp) && (count > 1 || point.sample_count == 1);
-    const SobolPoints sequence = grid.sequence(point, dimension, count);
-    const auto add = [&](const LitPlace& place, const LightSource& source,
-                         const LightSample& sample, int s) {
-        if (!(sample.pdf > 0.0f)) return;
-        const BsdfValue bsdf = lamp.apply(point.bsdf.evaluate(sample.direction));
-        const Vec3f value = total(bsdf) * sample.radiance;
-        if (value == Vec3f(0.0f)) return;
-        float density = static_cast<float>(count) * sample.pdf;
-        if (!source.is_hard() && lamp.reaches_glossy())
-            density += point.glossy_density(sample.direction);
-        const BsdfValue parts = bsdf * (sample.radiance / density);
-        if (rays && lamp.casts_shadow())
-            shadows.send(point.index, value / density, parts, LitGrid::sign(s, count),
-                         ray(point, place, sample.direction, sample.distance, lamp.blocker_set()));
-        else
-            shadows.send(point.index, value / density, parts, LitGrid::sign(s, count));
-    };
-    grid.lamp_points.clear();
-    for (int s = 0; s < count; ++s)
-        grid.lamp_points.push_back(sequence(static_cast<std::uint32_t>(s)));
-    grid.lamp_samples.resize(grid.lamp_points.size());
-    if (!timed) {
-        const LitPlace& place = point.at_frame;
-        if (!lamp.exists(place.time)) return;
-        const LightSource& source = lamp.at(place.time);
-        source.sample_all(place.p, grid.lamp_points, grid.lamp_samples);
-        for (int s = 0; s < count; ++s)
-            add(place, source, grid.lamp_samples[static_cast<std::size_t>(s)], s);
-        return;
-    }
-    for (std::size_t s = 0; s < grid.lamp_points.size(); ++s) {
-        const LitPlace place = place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
-        if (!lamp.exists(place.time)) continue;
-        const LightSource& source = lamp.at(place.time);
-        source.sample(place.p, grid.lamp_points[s], grid.lamp_samples[s]);
-        add(place, source, grid.lamp_samples[s], static_cast<int>(s));
-    }
+    return set.rays->transmittance(set.ray(point, place, direction, kInfinity));
 }
 
 void DirectLight::Impl::sample_world(LitGrid& grid, const LitPoint& point) const {
@@ -235,7 +135,7 @@ void DirectLight::Impl::sample_world(LitGrid& grid, const LitPoint& point) const
         if (total(value) == Vec3f(0.0f) || !(from.pdf > 0.0f)) continue;
         const float density =
             static_cast<float>(point.sample_count) * from.pdf + point.all_density(wo);
-        const Vec3f seen = occlusion(grid, point, place_at(point, sequence.third(index)), wo);
+        const Vec3f seen = occlusion(grid, point, set.place_at(point, sequence.third(index)), wo);
         const BsdfValue weight = value * (seen / density);
         const float sign = LitGrid::sign(s, point.sample_count);
         if (environment->has_radiance())
@@ -256,7 +156,15 @@ void DirectLight::Impl::add_texel(LitGrid& grid, const LitPoint& point,
     grid.add_world(point.index, reflected);
 }
 
-void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe) const {
+/// How often the point asks a lamp; `choice`: aimed there, or nullptr where each is asked.
+LampRate DirectLight::Impl::rate_of(const LitPoint& point, const LampChoice* choice,
+                                    std::size_t lamp) const {
+    if (!choice || lamp < set.everywhere) return {1.0f, point.sample_count};
+    return choice->rate_of(static_cast<std::uint32_t>(lamp - set.everywhere));
+}
+
+void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
+                                    const LampChoice* choice) const {
     const bool glossy = point.bsdf.kind(lobe) == LobeKind::Glossy;
     if (!environment && !glossy) return;
     const LitPoint::LobeSamples& samples = point.samples[lobe];
@@ -267,7 +175,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         if (!point.bsdf.sample(lobe, sequence(index), wo)) continue;
         const BsdfValue value = point.bsdf.evaluate(wo);
         if (total(value) == Vec3f(0.0f)) continue;
-        const LitPlace place = place_at(point, sequence.third(index));
+        const LitPlace place = set.place_at(point, sequence.third(index));
         const float sign = LitGrid::sign(s, samples.count);
         if (environment) {
             const Environment::Sample at = environment->at(wo);
@@ -288,68 +196,95 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             }
         }
         if (!glossy) continue;
-        for (const Lamp& lamp : lamps) {
-            LightSample sample;
-            if (!lamp.lights(grid.receives) || !lamp.reaches_glossy() ||
-                !lamp.meets(place.time, place.p, wo, sample))
-                continue;
+        set.meet(grid, place, wo, [&](std::size_t index, const Lamp& lamp, const LightSample& met) {
+            const LampRate rate = rate_of(point, choice, index);
             const float density =
-                static_cast<float>(point.sample_count) * sample.pdf + point.glossy_density(wo);
+                static_cast<float>(rate.samples) * met.pdf * rate.mean + point.glossy_density(wo);
             const BsdfValue bsdf = lamp.apply(value);
-            const Vec3f seen = shadow(grid, point, place, lamp, sample);
-            grid.add(point.index, total(bsdf) * sample.radiance / density * seen, sign);
-            grid.add_lamp(point.index, bsdf * (sample.radiance / density), seen);
-        }
+            const Vec3f seen = set.shadow(grid, point, place, lamp, met);
+            grid.add(point.index, total(bsdf) * met.radiance / density * seen, sign);
+            grid.add_lamp(point.index, bsdf * (met.radiance / density), seen);
+        });
     }
 }
 
 void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const {
     Vec3f wo, reflectance;
     if (!point.bsdf.reflect(lobe, wo, reflectance)) return;
-    const int count = varies ? point.sample_count : 1;
+    const int count = set.varies ? point.sample_count : 1;
     reflectance /= static_cast<float>(count);
     const SobolPoints sequence = grid.sequence(point, 1 + point.bsdf.index(lobe), count);
     Vec3f open(0.0f);
     for (int s = 0; s < count; ++s) {
-        const LitPlace place = place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
-        for (const Lamp& lamp : lamps) {
-            LightSample sample;
-            if (!lamp.lights(grid.receives) || !lamp.reaches_glossy() ||
-                !lamp.meets(place.time, place.p, wo, sample))
-                continue;
-            const Vec3f value = reflectance * lamp.glossy() * sample.radiance;
-            const Vec3f seen = shadow(grid, point, place, lamp, sample);
+        const LitPlace place = set.place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
+        set.meet(grid, place, wo, [&](std::size_t, const Lamp& lamp, const LightSample& met) {
+            const Vec3f value = reflectance * lamp.glossy() * met.radiance;
+            const Vec3f seen = set.shadow(grid, point, place, lamp, met);
             grid.add(point.index, value * seen, LitGrid::sign(s, count));
             grid.add_lamp(point.index, {Vec3f(0.0f), value}, seen);
-        }
+        });
         if (environment) open += reflectance * occlusion(grid, point, place, wo);
     }
     grid.look(grid.sharp, point.index, wo, {Vec3f(0.0f), open}, 0.0f);
 }
 
-/// Lamp by lamp, so that their rays keep together, then what only lobes find.  Dimensions are
-/// numbered by the closure's lobes, which are the same for all points: 0 the world's, then the
-/// lobes', then the lamps'.
+/// Dimensions are numbered by the closure's lobes, which are the same for all points: 0 the
+/// world's, then the lobes', then the choice's where there are many lamps, then the lamps'.
 void DirectLight::Impl::light_points(LitGrid& grid, const std::vector<LitPoint>& points,
                                      std::size_t lobe_count) const {
-    ShadowQueue shadows(rays.get(), grid);
-    for (std::size_t l = 0; l < lamps.size(); ++l) {
-        if (!lamps[l].lights(grid.receives)) continue;
-        for (const LitPoint& point : points) {
-            progress.check();
-            sample_lamp(grid, point, lamps[l], 1 + lobe_count + l, shadows);
-        }
-        shadows.deliver();
+    const std::size_t first = 1 + lobe_count;
+    light_by_all(set, grid, points, first + (set.tree ? 1 : 0), progress);
+    if (!set.tree) {
+        for (const LitPoint& point : points) sample_rest(grid, point, nullptr);
+        return;
     }
-    for (const LitPoint& point : points) {
-        progress.check();
-        sample_world(grid, point);
-        for (std::size_t k = 0; k < point.bsdf.lobe_count(); ++k) {
-            if (point.bsdf.is_sharp(k))
-                mirror(grid, point, k);
-            else
-                sample_lobe(grid, point, k);
+    std::vector<std::uint32_t> order(points.size());
+    std::iota(order.begin(), order.end(), 0u);
+    if (!grid.placed)
+        std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return points[i].place; });
+    const float asked = grid.placed ? kAskedByPlaced : asked_by_corner;
+    LampChoice choice(*set.tree);
+    LightReceiver receiver(grid.receives);
+    std::vector<ChosenLamp> chosen;
+    std::vector<LampTurn> turns;
+    for (std::size_t begin = 0, end; begin < order.size(); begin = end) {
+        receiver.clear();
+        const std::uint32_t square = points[order[begin]].place / kSharing;
+        for (end = begin; end < order.size(); ++end) {
+            const LitPoint& point = points[order[end]];
+            if (end > begin && (grid.placed || point.place / kSharing != square)) break;
+            receiver.add(point.reach(), point.bsdf);
         }
+        const int samples = points[order[begin]].sample_count;
+        const float lamps_asked = asked * static_cast<float>(samples);
+        choice.aim(receiver, samples, lamps_asked,
+                   grid.placed ? lamps_asked : kFiner * lamps_asked);
+        for (std::size_t i = begin; i < end; ++i) {
+            const LitPoint& point = points[order[i]];
+            chosen.clear();
+            choice.choose(grid.sequence(point, first, 1)(0).x, chosen);
+            int by_chance = 0;
+            for (const ChosenLamp& one : chosen)
+                turns.push_back({order[i], static_cast<std::uint32_t>(set.everywhere) + one.lamp,
+                                 one.rate, one.by_chance ? LitGrid::sign(by_chance++, 2) : 0.0f});
+            sample_rest(grid, point, &choice);
+        }
+    }
+    grid.light_nodes += choice.nodes_seen();
+    grid.lamps_chosen += turns.size();
+    light_by_chosen(set, grid, points, turns, first + 1 + set.everywhere, progress);
+}
+
+/// What lamps do not tell.
+void DirectLight::Impl::sample_rest(LitGrid& grid, const LitPoint& point,
+                                    const LampChoice* choice) const {
+    progress.check();
+    sample_world(grid, point);
+    for (std::size_t k = 0; k < point.bsdf.lobe_count(); ++k) {
+        if (point.bsdf.is_sharp(k))
+            mirror(grid, point, k);
+        else
+            sample_lobe(grid, point, k, choice);
     }
 }
 
@@ -384,7 +319,7 @@ DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& s
 DirectLight::~DirectLight() = default;
 
 bool DirectLight::varies() const {
-    return m_impl->varies;
+    return m_impl->set.varies;
 }
 
 std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const SurfaceClosure& closure,
@@ -393,7 +328,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
     if (noise) noise->assign(points.count, 0.0f);
     if (parts) parts->resize(points.count);
-    const bool dark = m_impl->lamps.empty() && !m_impl->environment;
+    const bool dark = m_impl->set.lamps.empty() && !m_impl->environment;
     if (closure.lobes.empty() || (dark && !parts)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     // Points with places of their own share the sequences of the frame.
@@ -409,10 +344,10 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     grid.placed = placed;
     grid.receives = m_impl->receives(key);
     grid.balance = noise;
-    RayOffset ray_offset = m_impl->rays ? m_impl->rays->ray_offset(key) : RayOffset{};
+    RayOffset ray_offset = m_impl->set.rays ? m_impl->set.rays->ray_offset(key) : RayOffset{};
     const Lifespan& life = paths.lifespan();
-    const Vec2f life_exposed(m_impl->shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),
-                             m_impl->shutter.uniform(std::clamp(life.close, 0.0f, 1.0f)));
+    const Vec2f life_exposed(m_impl->set.shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),
+                             m_impl->set.shutter.uniform(std::clamp(life.close, 0.0f, 1.0f)));
     // Points that lie closer share the light that a pixel's worth of them is due.
     const int sample_count = std::max(
         1, static_cast<int>(std::lround(points.share * static_cast<float>(m_impl->sample_count))));
@@ -429,13 +364,13 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         if (dark) continue;
         const Vec3f &p = points.p[i], &normal = points.geometric_normal[i];
         const Vec3f offset = points.ray_offset.empty() ? Vec3f(0.0f) : points.ray_offset[i];
-        if (m_impl->rays && !points.faces.empty())
-            ray_offset = m_impl->rays->ray_offset({key.instance, points.faces[i]});
+        if (m_impl->set.rays && !points.faces.empty())
+            ray_offset = m_impl->set.rays->ray_offset({key.instance, points.faces[i]});
         const Vec3f start = ray_offset(p + offset, normal);
         const bool timed = !points.times.empty() && points.times[i] >= 0.0f;
         const float time = timed ? points.times[i] : m_impl->scene.options.frame_time;
         const LitPlace at_frame{time, p, normal, start};
-        const Vec2f exposed = timed ? Vec2f(m_impl->shutter.uniform(time)) : life_exposed;
+        const Vec2f exposed = timed ? Vec2f(m_impl->set.shutter.uniform(time)) : life_exposed;
         // Neighbours share a sequence: aligned squares of points, and so the pixels that average
         // them, are stratified as one (Ahmed and Wonka 2020, without their shuffling of squares).
         // Faces of a batch are in Morton order already.
@@ -456,6 +391,8 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     m_impl->look(grid, grid.sharp, placed ? 0.0f : grid.sharp.spread(), RayType::Singular);
     m_impl->statistics.add(Counter::RaysShadow, grid.shadow_rays);
     m_impl->statistics.add(Counter::RaysOcclusion, grid.occlusion_rays);
+    m_impl->statistics.add(Counter::LampsChosen, grid.lamps_chosen);
+    m_impl->statistics.add(Counter::LightNodes, grid.light_nodes);
     return radiance;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "math/luminance.h"
 #include "math/sampling.h"
 #include "shade/lights/light_source.h"
 
@@ -124,6 +125,17 @@ class AreaLight : public LightSource {
         center = m_center;
         radius = glm::length(m_half);
         return true;
+    }
+
+    LightEmission emission() const override {
+        LightEmission out;
+        const float focus = m_tan_half > 0.0f ? m_tan_half * m_spread_scale : 1.0f;
+        out.intensity = mean_size(m_radiance) * focus * m_area;
+        out.near2 = m_area * kInversePi;
+        out.axis = m_front;
+        out.cone = 0.0f;
+        out.fall = m_tan_half > 0.0f ? std::atan(m_tan_half) : 0.5f * kPi;
+        return out;
     }
 
   private:

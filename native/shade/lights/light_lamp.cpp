@@ -34,4 +34,26 @@ Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin)
     }
 }
 
+bool Lamp::bound(LightBound& out) const {
+    out = {};
+    for (const auto& source : m_sources) {
+        Vec3f center;
+        float radius;
+        if (!source->bound(center, radius)) return false;
+        const LightEmission emission = source->emission();
+        LightBound here;
+        here.box.add(center);
+        here.box.grow(radius);
+        here.axis = emission.axis;
+        here.cone = emission.cone;
+        here.fall = emission.fall;
+        here.near2 = emission.near2;
+        here.diffuse = emission.intensity * m_diffuse;
+        here.glossy = emission.intensity * m_glossy;
+        here.sets = m_receiver_set < 0 ? ~0ULL : 1ULL << m_receiver_set;
+        out.add_time(here);
+    }
+    return true;
+}
+
 }  // namespace granita

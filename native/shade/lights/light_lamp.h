@@ -7,6 +7,7 @@
 
 #include "scene/light.h"
 #include "shade/bsdf/bsdf.h"
+#include "shade/lights/light_bound.h"
 #include "shade/lights/light_source.h"
 
 namespace granita {
@@ -38,6 +39,8 @@ class Lamp {
     bool meets(float time, const Vec3f& p, const Vec3f& direction, LightSample& sample) const {
         return exists(time) && at(time).intersect(p, direction, sample);
     }
+    /// Whether it has a place, and then a bound on it and on what it sheds.
+    bool bound(LightBound& out) const;
     /// Reflected light, by the lobes that see this lamp.
     BsdfValue apply(const BsdfValue& value) const {
         return {value.diffuse * m_diffuse, value.glossy * m_glossy};

@@ -106,4 +106,10 @@ PointPaths::Place PointPaths::at(std::size_t point, float time) const {
     return place;
 }
 
+Bounds3f PointPaths::reach(std::size_t point) const {
+    Bounds3f box;
+    for (std::size_t i = point; i < m_places.size(); i += m_count) box.add(m_places[i].p);
+    return box;
+}
+
 }  // namespace granita

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dice/grid.h"
+#include "math/bounds.h"
 #include "scene/scene.h"
 #include "shade/bsdf/lobe.h"
 
@@ -27,6 +28,8 @@ class PointPaths {
         Vec3f normal;  ///< unit, geometric, on the side that the viewer sees at the frame time
     };
     Place at(std::size_t point, float time) const;
+    /// Box around the point's places; empty of points that stand still.
+    Bounds3f reach(std::size_t point) const;
 
   private:
     void rise(const Grid& grid, const std::vector<Vec3f>& places, std::size_t first);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "math/luminance.h"
 #include "math/sampling.h"
 #include "shade/lights/light_source.h"
 
@@ -24,7 +25,23 @@ class SpotCone {
                                                : glm::inverse(frame.axes)),
           m_cos_half(std::cos(0.5f * light.spot_size)),
           m_smooth(std::max((1.0f - m_cos_half) * light.spot_blend, 1e-7f)),
-          m_cosine(light.spot_cosine) {}
+          m_cosine(light.spot_cosine),
+          m_widest(0.5f * light.spot_size) {
+        if (m_cosine) return;
+        // A cone through a sheared matrix is bound by nothing simpler than all directions.
+        const Vec3d &x = frame.axes[0], &y = frame.axes[1], &z = frame.axes[2];
+        const double across = std::max(glm::length(x), glm::length(y)), along = glm::length(z);
+        const double skew = std::max(
+            {std::abs(glm::dot(x, y)), std::abs(glm::dot(x, z)), std::abs(glm::dot(y, z))});
+        const bool even = skew < 1e-6 * across * across && skew < 1e-6 * along * along;
+        if (!even || m_cos_half <= 0.0f)
+            m_widest = even && across == along ? m_widest : kPi;
+        else
+            m_widest = static_cast<float>(std::atan(std::tan(m_widest) * across / along));
+    }
+
+    /// No light leaves farther from the axis; radians.
+    float widest() const { return m_widest; }
 
     /// Of light that leaves along `direction` (unit, world axes).
     float attenuation(const Vec3f& direction) const {
@@ -37,6 +54,7 @@ class SpotCone {
     Mat3d m_light_from_world;
     float m_cos_half, m_smooth;
     bool m_cosine;
+    float m_widest;
 };
 
 class PointLight : public LightSource {
@@ -45,6 +63,7 @@ class PointLight : public LightSource {
         : m_position(frame.position),
           m_radius(std::max(light.radius, 0.0f)),
           m_sphere(!light.soft_falloff),
+          m_axis(frame.direction),
           m_intensity(frame.power * (0.25f * kInversePi)) {
         if (light.kind == LightKind::Spot) m_cone = std::make_unique<SpotCone>(light, frame);
         if (!is_hard()) m_radiance = m_intensity / (kPi * m_radius * m_radius);
@@ -71,6 +90,17 @@ class PointLight : public LightSource {
         center = m_position;
         radius = m_radius;
         return true;
+    }
+
+    LightEmission emission() const override {
+        LightEmission out;
+        out.intensity = mean_size(m_intensity);
+        out.near2 = m_radius * m_radius;
+        if (!m_cone) return out;
+        out.axis = m_axis;
+        out.cone = m_cone->widest();
+        out.fall = 0.0f;
+        return out;
     }
 
   private:
@@ -146,7 +176,7 @@ class PointLight : public LightSource {
     Vec3f m_position;
     float m_radius;
     bool m_sphere;
-    Vec3f m_intensity, m_radiance{0.0f};
+    Vec3f m_axis, m_intensity, m_radiance{0.0f};
     std::unique_ptr<SpotCone> m_cone;
 };
 

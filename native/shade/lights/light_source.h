@@ -13,6 +13,7 @@
 #include <memory>
 #include <span>
 
+#include "math/sampling.h"
 #include "math/vec.h"
 #include "scene/light.h"
 
@@ -24,6 +25,16 @@ struct LightSample {
     float distance = 0.0f;  ///< metres; infinite for suns
     Vec3f radiance{0.0f};   ///< of hard lights: the irradiance across the direction
     float pdf = 0.0f;       ///< per solid angle; 1 of hard lights; 0 = nothing arrives
+};
+
+/// Where a light's power goes, as a bound.  At `p` it makes no more irradiance than `intensity` /
+/// (d^2 + near2), d to its sphere's box, times the cosine of the angle by which the way there
+/// leaves the cone, and none from `fall` past the cone on.
+struct LightEmission {
+    Vec3f axis{0.0f, 0.0f, -1.0f};
+    float cone = kPi, fall = 0.5f * kPi;  ///< radians
+    float intensity = 0.0f;               ///< mean of the channels
+    float near2 = 0.0f;                   ///< square metres
 };
 
 class LightSource {
@@ -44,6 +55,8 @@ class LightSource {
     virtual bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const = 0;
     /// A sphere around the light, shading space; false for lights without a place.
     virtual bool bound(Vec3f& center, float& radius) const = 0;
+    /// Of lights that have a place.
+    virtual LightEmission emission() const = 0;
 };
 
 /// `time`: shutter time at which the light stands; `origin`: the camera's world position.

@@ -43,6 +43,7 @@ class SunLight : public LightSource {
     }
 
     bool bound(Vec3f&, float&) const override { return false; }
+    LightEmission emission() const override { return {}; }
 
   private:
     Basis m_frame;

@@ -25,6 +25,7 @@ struct LitGrid {
     std::vector<SobolPoints> sequences = {};  ///< [dimensions] as far as they were asked for
     std::uint64_t receives = ~0ULL;           ///< Instance::receives
     std::uint64_t shadow_rays = 0, occlusion_rays = 0;
+    std::uint64_t lamps_chosen = 0, light_nodes = 0;
     /// [points] the luminance of a point's even samples less that of its odd ones: as much as its
     /// sum is in doubt.  nullptr: not asked for.
     std::vector<float>* balance = nullptr;

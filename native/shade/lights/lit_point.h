@@ -34,6 +34,12 @@ struct LitPoint {
     };
     std::vector<LobeSamples> samples;  ///< [lobes]
 
+    /// Where it is over the shutter.
+    Bounds3f reach() const {
+        Bounds3f box = paths.reach(index);
+        box.add(at_frame.p);
+        return box;
+    }
     void share_samples() {
         samples.resize(bsdf.lobe_count());
         for (std::size_t k = 0; k < samples.size(); ++k) {

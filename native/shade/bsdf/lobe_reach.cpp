@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/bsdf/lobe_reach.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/luminance.h"
+#include "math/sampling.h"
+#include "shade/bsdf/bsdf.h"
+#include "shade/bsdf/microfacet.h"
+
+namespace granita {
+namespace {
+
+/// Over GGX of the same alpha, at most: where the squared tangent is the squared alpha.
+constexpr float kBeckmannPeak = 1.5f;
+
+}  // namespace
+
+void DirectionCone::add(const Vec3f& direction) {
+    const float cosine = glm::dot(axis, direction);
+    if (cosine >= cos) return;
+    cos = std::max(cosine, -1.0f);
+    sin = std::sqrt(1.0f - cos * cos);
+}
+
+void LobeReach::join(const LobeReach& other) {
+    normal.add(other.normal.axis);
+    mirrored.add(other.mirrored.axis);
+    scale = std::max(scale, other.scale);
+    alpha2 = std::min(alpha2, other.alpha2);
+    long_tail = long_tail && other.long_tail;  // t is at most 1: the other tail is higher
+}
+
+void PointBsdf::reaches(std::vector<LobeReach>& out) const {
+    out.clear();
+    for (const Prepared& lobe : m_lobes) {
+        if (lobe.sharp) continue;
+        LobeReach reach;
+        reach.index = lobe.index;
+        reach.normal.axis = lobe.normal;
+        if (lobe.kind == LobeKind::Diffuse) {
+            reach.scale = mean_size(lobe.weight) * kInversePi;
+            out.push_back(reach);
+            continue;
+        }
+        reach.glossy = true;
+        reach.mirrored.axis = 2.0f * lobe.cos_wi * lobe.normal - m_wi;
+        reach.alpha2 = lobe.alpha * lobe.alpha;
+        // Half vectors lie no farther from the view than half way to the horizon behind.
+        const float sin_wi = std::sqrt(std::max(0.0f, 1.0f - lobe.cos_wi * lobe.cos_wi));
+        const float farthest = std::sqrt(0.5f * std::max(0.0f, 1.0f - sin_wi));
+        const bool ggx = lobe.distribution == Distribution::Ggx;
+        const float masking = ggx ? 1.0f + ggx_lambda(lobe.alpha, lobe.cos_wi) : 1.0f;
+        const Vec3f most = glm::max(fresnel(lobe, 1.0f), fresnel(lobe, farthest));
+        reach.scale = mean_size(lobe.weight * most) * (0.25f / (lobe.cos_wi * masking));
+        if (lobe.distribution == Distribution::Gtr1 && lobe.alpha < 1.0f) {
+            reach.long_tail = true;
+            reach.scale *= (reach.alpha2 - 1.0f) / (kPi * std::log(reach.alpha2));
+        } else {
+            reach.scale *= reach.alpha2 * kInversePi;
+            if (lobe.distribution == Distribution::Beckmann) reach.scale *= kBeckmannPeak;
+        }
+        out.push_back(reach);
+    }
+}
+
+}  // namespace granita

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "shade/lights/lamp_choice.h"
+#include "shade/lights/lamp_set.h"
+#include "shade/lights/shadow_queue.h"
+
+namespace granita {
+
+/// How a point asks a lamp.
+struct LampTurn {
+    std::uint32_t point = 0;  ///< in the list of lit points
+    std::uint32_t lamp = 0;
+    LampRate rate{1.0f, 1};
+    float sign = 0.0f;  ///< as LitGrid::sign, of all its samples; 0: they have their own
+};
+
+/// Sends what a lamp gives to a point, in samples of that dimension.
+void sample_lamp(const LampSet& set, LitGrid& grid, const LitPoint& point, const LampTurn& turn,
+                 std::size_t dimension, ShadowQueue& shadows);
+
+/// Each lamp lights each point, lamp by lamp, so that their rays keep together.  `first`: dimension
+/// of the first lamp.
+void light_by_all(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>& points,
+                  std::size_t first, const Progress& progress);
+
+/// The lamps that points have chosen, in the tree's order.
+void light_by_chosen(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>& points,
+                     const std::vector<LampTurn>& turns, std::size_t first,
+                     const Progress& progress);
+
+}  // namespace granita

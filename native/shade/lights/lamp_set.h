@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/progress.h"
+#include "scene/scene.h"
+#include "scene/shutter_warp.h"
+#include "shade/lights/light_lamp.h"
+#include "shade/lights/light_tree.h"
+#include "shade/lights/lit_grid.h"
+#include "shade/lights/lit_point.h"
+#include "shade/rays/ray_scene.h"
+
+namespace granita {
+
+/// The lamps of a frame, and what comes before them.
+struct LampSet {
+    /// `origin`: the camera's world position at the frame time.
+    LampSet(const Scene& scene, const Vec3d& origin);
+    /// Traces shadows from now on.
+    void set_casters(std::unique_ptr<RayScene> casters);
+
+    /// The point at a time of its life drawn by `uniform` in [0, 1) through the shutter; at the
+    /// frame time where nothing that light depends on changes.
+    LitPlace place_at(const LitPoint& point, float uniform) const;
+    /// Whether a lamp or its shadow does within the shutter.
+    bool changes(const Lamp& lamp) const {
+        return lamp.varies() || (casters_move && lamp.casts_shadow());
+    }
+    /// None of a lamp below the horizon; one tells all about a lamp without size that nothing
+    /// moving can come before.
+    int samples_of(const LitPoint& point, const Lamp& lamp) const;
+    ShadowRay ray(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
+                  float distance, int blocker_set = -1) const;
+    Vec3f shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
+                 const LightSample& sample) const;
+
+    /// Calls `met(index, lamp, sample)` for lamps that glossy lobes of the grid see along a
+    /// direction.
+    template <class Met>
+    void meet(const LitGrid& grid, const LitPlace& place, const Vec3f& direction,
+              const Met& met) const {
+        const auto ask = [&](std::size_t index) {
+            const Lamp& lamp = lamps[index];
+            LightSample sample;
+            if (lamp.lights(grid.receives) && lamp.reaches_glossy() &&
+                lamp.meets(place.time, place.p, direction, sample))
+                met(index, lamp, sample);
+        };
+        if (!tree) {
+            for (std::size_t l = 0; l < lamps.size(); ++l) ask(l);
+            return;
+        }
+        for (std::size_t l = 0; l < everywhere; ++l) ask(l);
+        tree->meet(place.p, direction, [&](std::uint32_t l) { ask(everywhere + l); });
+    }
+
+    ShutterWarp shutter;
+    std::vector<Lamp> lamps;  ///< where there is a tree, those without a place first
+    std::size_t everywhere = 0;
+    std::unique_ptr<LightTree> tree;  ///< of the others; nullptr: few, each is asked
+    std::unique_ptr<RayScene> rays;   ///< nullptr where nothing can cast a shadow
+    bool casters_move = false;
+    bool varies = false;  ///< casters or lamps do
+};
+
+}  // namespace granita
