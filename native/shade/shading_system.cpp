@@ -13,6 +13,7 @@
 #include "shade/nodes/node_compiler.h"
 #include "shade/shading_points.h"
 #include "shade/shadow_transparency.h"
+#include "shade/time_probes.h"
 #include "shade/unsettled.h"
 #include "shade/world_shader.h"
 
@@ -29,12 +30,6 @@ NodeGraph default_material() {
     graph.surface = {0, "BSDF"};
     return graph;
 }
-
-/// Micropolygons for each one at which it is asked whether time matters, and when: parts of the
-/// time that a grid is there for.  Not even ones, and not the ends alone: a highlight that sweeps
-/// past in the middle looks the same before and after.
-constexpr int kProbeStep = 29;
-constexpr float kProbeTimes[] = {0.0f, 0.31f, 0.57f, 1.0f};
 
 /// Radiance of a surface that nobody misses as a light: an 8-bit step of white.
 constexpr float kDimmestEmission = 0.004f;
@@ -278,51 +273,22 @@ struct ShadingSystem::Impl {
         return scene.geometries[static_cast<std::size_t>(index)].kind == GeometryKind::Mesh;
     }
 
-    /// Points at which it is asked whether anything changes within the shutter, kProbeTimes each.
-    std::vector<RefinedPoint> probes(const Grid& grid) const {
-        std::vector<RefinedPoint> points;
-        const float open = std::max(grid.lifespan.open, 0.0f);
-        const float exposed = std::min(grid.lifespan.close, 1.0f) - open;
-        const int count = grid.micropolygon_count();
-        for (int m = kProbeStep / 2 % count; m < count; m += kProbeStep) {
-            const Grid::Corners c = grid.corners(m);
-            const auto at = [](int v) { return static_cast<std::uint32_t>(v); };
-            for (const float part : kProbeTimes)
-                points.push_back({{at(c.v0), at(c.v1), at(c.v2)},
-                                  {0.5f, 0.0f, 0.5f},
-                                  open + part * exposed,
-                                  at(m)});
-        }
-        return points;
-    }
-
-    /// [probes], whether any differs by more than the threshold from when the shutter opens.
-    template <class Difference>
-    bool any_changes(const std::vector<Vec3f>& values, const Difference& difference) const {
-        constexpr std::size_t kTimes = std::size(kProbeTimes);
-        for (std::size_t i = 0; i < values.size(); ++i)
-            if (difference(values[i], values[i - i % kTimes]) > threshold) return true;
-        return false;
-    }
-
     /// Whether some of the grid's micropolygons look otherwise at some time of the shutter than
     /// when it opens: all else being equal, light samples too.
     bool changes_in_time(const Grid& grid) const {
         if (!moves || (!light && are_equal(grid.radiance))) return false;
-        return any_changes(refine(grid, probes(grid), 1.0f).radiance, displayed_difference);
+        return any_changes(refine(grid, time_probes(grid), 1.0f).radiance, threshold,
+                           displayed_difference);
     }
 
     /// The same of its opacity: of what grazes the view, say.
     bool opacity_changes_in_time(const Grid& grid) const {
         if (!moves) return false;
-        const RefinedPoints points(grid, scene, camera, probes(grid), moves, 1.0f);
+        const RefinedPoints points(grid, scene, camera, time_probes(grid), moves, 1.0f);
         Grid out;
         out.material = grid.material;
         shade_opacity(out, input(grid, points));
-        return any_changes(out.opacity, [](const Vec3f& a, const Vec3f& b) {
-            const Vec3f d = glm::abs(a - b);
-            return std::max({d.x, d.y, d.z});
-        });
+        return any_changes(out.opacity, threshold, opacity_difference);
     }
 
     std::vector<std::uint8_t> all_marked(const Grid& grid) const {
@@ -380,7 +346,7 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     const bool lit = !material.radiance.sources.lobes.empty();
     const float sharpness = lit || refines ? m_impl->sharpness(grid) : 1.0f;
     points.share *= sharpness;
-    std::vector<float> noise(points.count, 0.0f);
+    std::vector<float> noise(refines ? points.count : 0, 0.0f);
     m_impl->shade(grid, m_impl->input(grid, points), m_impl->paths(grid, points),
                   refines ? &noise : nullptr);
     m_impl->statistics.add(Counter::GridsShaded);

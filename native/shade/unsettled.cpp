@@ -154,6 +154,10 @@ float displayed_difference(const Vec3f& a, const Vec3f& b) {
     return most(shown_color(a) - shown_color(b));
 }
 
+float opacity_difference(const Vec3f& a, const Vec3f& b) {
+    return most(a - b);
+}
+
 std::vector<std::uint8_t> unsettled_micropolygons(const Grid& grid, std::span<const float> noise,
                                                   float threshold, float noise_threshold) {
     if (are_equal(grid.radiance)) return {};

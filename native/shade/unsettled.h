@@ -13,6 +13,9 @@ namespace granita {
 /// up to white, and half of one for each factor e beyond.
 float displayed_difference(const Vec3f& a, const Vec3f& b);
 
+/// The most that two opacities differ by in any channel.
+float opacity_difference(const Vec3f& a, const Vec3f& b);
+
 bool are_equal(const std::vector<Vec3f>& values);
 
 /// Marks the micropolygons that interpolating their corners would draw wrong: where displayed

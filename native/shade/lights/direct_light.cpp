@@ -152,8 +152,7 @@ void DirectLight::Impl::add_texel(LitGrid& grid, const LitPoint& point,
     const BsdfValue reflected{
         weight.diffuse * environment->texel_radiance(from.texel, RayType::Diffuse),
         weight.glossy * environment->texel_radiance(from.texel, RayType::Glossy)};
-    grid.add(point.index, total(reflected), sign);
-    grid.add_world(point.index, reflected);
+    grid.reflect_world(point.index, reflected, sign);
 }
 
 /// How often the point asks a lamp; `choice`: aimed there, or nullptr where each is asked.
@@ -186,8 +185,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
                 const BsdfValue reflected{
                     weight.diffuse * environment->constant_radiance(RayType::Diffuse),
                     weight.glossy * environment->constant_radiance(RayType::Glossy)};
-                grid.add(point.index, total(reflected), sign);
-                grid.add_world(point.index, reflected);
+                grid.reflect_world(point.index, reflected, sign);
             } else if (environment->has_radiance() && !glossy) {
                 add_texel(grid, point, at, weight, sign);
             } else {
@@ -301,8 +299,7 @@ void DirectLight::Impl::look(LitGrid& grid, const EnvironmentSamples& samples, f
             const BsdfValue value{samples.parts[k].diffuse * seen[k],
                                   samples.parts[k].glossy * seen_glossy[k]};
             if (!is_finite(total(value))) continue;
-            grid.add(point, total(value), samples.signs[k]);
-            grid.add_world(point, value);
+            grid.reflect_world(point, value, samples.signs[k]);
         } else if (is_finite(seen[k])) {
             grid.add(point, samples.weights[k] * seen[k], samples.signs[k]);
             if (grid.parts) grid.add_world(point, samples.parts[k] * seen[k]);

@@ -66,6 +66,12 @@ struct LitGrid {
         samples.add(point, direction, total(weight), sign);
         if (parts || by_lobe) samples.parts.push_back(weight);
     }
+    /// Light of the world, reflected.
+    void reflect_world(std::size_t point, const BsdfValue& value, float sign) {
+        add(point, total(value), sign);
+        add_world(point, value);
+    }
+    /// Of that the passes alone.
     void add_world(std::size_t point, const BsdfValue& value) {
         if (!parts) return;
         parts->diffuse[point] += value.diffuse;
