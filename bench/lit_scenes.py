@@ -63,6 +63,12 @@ def plane(scene, name, shader, size=30.0, location=(0, 0, -1)):
     return add(scene, name, mesh, location)
 
 
+def diffuse_floor(scene, color, height=-1):
+    """Of one colour."""
+    shader = material("Floor", "ShaderNodeBsdfDiffuse", color)
+    return plane(scene, "Floor", shader, location=(0, 0, height))
+
+
 def lamp(scene, kind, energy, location=(0, 0, 0), rotation=(0, 0, 0), **settings):
     light = bpy.data.lights.new(kind.title(), kind)
     light.energy = energy
@@ -127,7 +133,7 @@ def turning():
         head.modifiers.new("Subdivision", "SUBSURF").render_levels = 2
         head.data.materials.append(shader)
         animate(head, "rotation_euler", 2, 0.25 * (-1) ** i)
-    plane(scene, "Floor", material("Floor", "ShaderNodeBsdfDiffuse", (0.6, 0.6, 0.6)))
+    diffuse_floor(scene, (0.6, 0.6, 0.6))
     lamp(scene, "SUN", 2.0, rotation=(0.7, 0.5, 0), angle=0.01)
     lamp(scene, "AREA", 800, (6, -6, 6), (0.8, 0.5, 0), size=4.0)
     add_camera(scene, (0, -16, 7), focal=45, tilt=1.18)
@@ -146,7 +152,7 @@ def sweep():
         add(scene, f"Bar {i}", bar, (-12.5 + 2.5 * i, 0, 6), mover)
     animate(mover, "location", 0, 20 * pixel(scene))
     add_spheres(scene, "ShaderNodeBsdfDiffuse", None, (-7, -4, -0.8), (7, 4, 0), 20)
-    plane(scene, "Floor", material("Floor", "ShaderNodeBsdfDiffuse", (0.7, 0.7, 0.7)))
+    diffuse_floor(scene, (0.7, 0.7, 0.7))
     lamp(scene, "SUN", 2.0, rotation=(0, -0.9, 0), angle=0.0)
     add_camera(scene, (0, -6, 16), focal=40, tilt=0.35)
     scene.frame_set(1)
@@ -268,12 +274,7 @@ def leaves():
             scene, f"Twig {i}", mesh, (*random.uniform((-5, -2.5), (5, 2.5)), random.uniform(0, 3))
         )
         animate(twig, "rotation_euler", 2, 0.05 * (-1) ** i)
-    plane(
-        scene,
-        "Floor",
-        material("Floor", "ShaderNodeBsdfDiffuse", (0.5, 0.4, 0.3)),
-        location=(0, 0, -2),
-    )
+    diffuse_floor(scene, (0.5, 0.4, 0.3), -2)
     lamp(scene, "SUN", 3.0, rotation=(0.5, 0.3, 0), angle=0.01)
     world(scene, 0.3)
     scene.cycles.transparent_max_bounces = 64
@@ -295,12 +296,7 @@ def fur():
     px = pixel(scene)
     hair.root_radius, hair.tip_radius, hair.radius_scale = 1.5 * px, 0.3 * px, 1.0
     animate(ball, "rotation_euler", 2, 0.15)
-    plane(
-        scene,
-        "Floor",
-        material("Floor", "ShaderNodeBsdfDiffuse", (0.6, 0.6, 0.6)),
-        location=(0, 0, -3),
-    )
+    diffuse_floor(scene, (0.6, 0.6, 0.6), -3)
     lamp(scene, "SUN", 2.0, rotation=(0.6, 0.4, 0), angle=0.01)
     lamp(scene, "AREA", 900, (-6, 2, 8), (-0.2, -0.6, 0), size=4.0)
     add_camera(scene, (0, -6, 16), focal=45, tilt=0.35)

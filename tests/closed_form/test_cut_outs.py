@@ -4,12 +4,15 @@
 import numpy as np
 import pytest
 import snapshots as s
-from test_refined_shading import turned
-
-EXECUTORS = ["SIMD", "COMPUTE", "REFERENCE"]
-SIZE = (48, 16)
-# As of test_refined_shading.py: one elementary interval of the sixteen in a row of a pixel's samples.
-EDGE = 1 / 16
+from test_refined_shading import (
+    CHANGES,
+    CROPS,
+    EDGE,
+    EXECUTORS,
+    SIZE,
+    assert_crop_changes_no_bit,
+    turned,
+)
 
 
 def stage(executor="SIMD", **options):
@@ -226,15 +229,6 @@ def test_opacity_that_follows_the_view_is_that_of_each_time():
     assert row(snapshot)[20:28] == pytest.approx(expected / 1.2, abs=0.005)
 
 
-CHANGES = [
-    {"bucket_size": 16},
-    {"threads": 1},
-    {"threads": 3},
-    {"executor": "COMPUTE"},
-    {"executor": "REFERENCE"},
-]
-
-
 def busy(**options):
     snapshot = stage(**{"samples": 16, "passes": ["Emission"], **options})
     moves = {"transforms": [s.translation(-3.0), s.translation(4.0)]}
@@ -245,7 +239,7 @@ def busy(**options):
 
 
 @pytest.mark.parametrize("change", CHANGES, ids=str)
-def test_no_bit_depends_on_buckets_threads_memory_or_executor(change):
+def test_no_bit_depends_on_buckets_threads_or_executor(change):
     base, other = s.render(busy()), s.render(busy(**change))
     assert base["statistics"]["points_refined"] > 500
     assert np.array_equal(base["combined"], other["combined"])
@@ -269,11 +263,9 @@ def test_lists_in_parts_change_no_bit():
     assert np.array_equal(whole["combined"], parts["combined"])
 
 
-@pytest.mark.parametrize("crop", [(0, 0, 48, 1), (13, 5, 31, 9), (47, 15, 48, 16)])
+@pytest.mark.parametrize("crop", CROPS)
 def test_crop_changes_no_bit(crop):
-    whole = s.render(busy())["combined"]
-    part = s.render(busy(crop=np.array(crop, np.int32)))["combined"]
-    assert np.array_equal(whole[crop[1] : crop[3], crop[0] : crop[2]], part)
+    assert_crop_changes_no_bit(busy, crop)
 
 
 def test_the_pass_of_what_is_refined_is_the_picture():
