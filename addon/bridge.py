@@ -69,7 +69,7 @@ def rendering(snapshot):
     cancelled and joined.  Native exceptions arrive as those of this file.
     """
     core = load()
-    try:
+    with _translated(core):
         scene = core.Scene(snapshot)
         snapshot.clear()  # copied: a large scene need not be held twice
         job = core.Render(scene)
@@ -81,6 +81,26 @@ def rendering(snapshot):
                 job.finish()
             raise
         job.finish()
+
+
+def begin(snapshot):
+    """A running granita_core.Render of a snapshot, which is copied and kept."""
+    core = load()
+    with _translated(core):
+        return core.Render(core.Scene(snapshot))
+
+
+def end(job):
+    """Joins a job that is done and raises its first failure; at once where it is done."""
+    with _translated(load()):
+        job.finish()
+
+
+@contextmanager
+def _translated(core):
+    """Native exceptions as those of this file."""
+    try:
+        yield
     except core.Cancelled as error:
         raise Cancelled from error
     except core.GlError as error:

@@ -8,6 +8,7 @@ and exit with 1; `error_set` adds the banner in the window.
 
 import sys
 import traceback
+from contextlib import contextmanager
 
 import bpy
 
@@ -15,6 +16,8 @@ from . import bridge, command_line, final_render, frame_statistics, passes
 from .export import PersistentState
 from .export.base.report import Cancelled, ExportError, escaped
 from .export.shading.image import forget_images
+from .viewport import loop
+from .viewport.live_view import LiveView
 
 ENGINE_ID = "GRANITA"
 
@@ -43,6 +46,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
         super().__init__(*args, **kwargs)
         self.frame_statistics = frame_statistics.FrameStatistics()
         self.persistent_state = PersistentState()
+        self.live_view = None  # of the engine of a 3D view
 
     def update_render_passes(self, scene=None, renderlayer=None):
         """Blender calls it at any change of the view layer, without a net: what goes wrong is told, and
@@ -78,10 +82,38 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
         except _EXPLAINED as error:
             self._fail(str(error))
 
+    def view_update(self, context, depsgraph):
+        with _told(self):
+            self._live_view().update(context, depsgraph)
+            loop.wake()
+
+    def view_draw(self, context, depsgraph):
+        with _told(self):
+            view = self._live_view()
+            view.draw(context, depsgraph)
+            if not view.is_settled:
+                loop.wake()
+
+    def _live_view(self):
+        if self.live_view is None:
+            self.live_view = LiveView(self)
+            loop.add(self.live_view)
+        return self.live_view
+
     def _fail(self, text):
         self.frame_statistics.discard()
         self.report({"ERROR"}, escaped(text))
         self.error_set(escaped(text))
+
+
+@contextmanager
+def _told(engine):
+    """A fault inside a 3D view stands in its corner: Blender would call again and again."""
+    try:
+        yield
+    except Exception as error:
+        _print_traceback()
+        engine.update_stats("", escaped(f"{type(error).__name__}: {error}"))
 
 
 def _print_traceback():
@@ -95,8 +127,10 @@ _forget_images = bpy.app.handlers.persistent(forget_images)
 def register():
     bpy.utils.register_class(GranitaRenderEngine)
     bpy.app.handlers.render_init.append(_forget_images)
+    loop.register()
 
 
 def unregister():
+    loop.unregister()
     bpy.app.handlers.render_init.remove(_forget_images)
     bpy.utils.unregister_class(GranitaRenderEngine)

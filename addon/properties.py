@@ -59,6 +59,14 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
         (1, 4096),
         usual=(1, 1024),
     )
+    preview_samples: _whole(
+        "Preview Samples",
+        "Visibility samples a pixel of the finished picture in a 3D view. They cost little beside dicing and "
+        "shading: as many as of the final frame show what it will be",
+        64,
+        (1, 4096),
+        usual=(1, 1024),
+    )
     sampling: _choice(
         "Sampling",
         "How samples are spread over pixels, the shutter and the lens",

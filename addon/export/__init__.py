@@ -9,29 +9,34 @@ All of it is copied: no reference to anything of Blender's is kept after `export
 
 from dataclasses import replace
 
-from .base.blur_settings import blurs
 from .base.report import Cancelled, ExportError, Report
 from .base.snapshot import Snapshot
 from .geometry.velocity import points_by_velocity
 from .motion.adjacent_frames import read_adjacent_frames
 from .motion.appearing_instances import with_appearing_instances
 from .motion.sample_motion import Motion, sample_motion
-from .scene.camera import camera_record
 from .scene.frame_scene import FrameScene
 from .scene.instance import linked, place
 from .scene.lamp_emitters import add_emitters
 from .scene.lamps import energies, place_lamps, read_lamps
 from .scene.light_linking import link_lights
-from .scene.options import options_record, scene_frame
+from .scene.options import options_record, scene_crop, scene_frame
 from .scene.persistent_state import PersistentState
 from .scene.scene_objects import read_scene_objects
 from .scene.shutter import Clock, scene_shutter
+from .scene.viewpoint import CameraViewpoint
 
 __all__ = ["Cancelled", "ExportError", "PersistentState", "Report", "export_frame"]
 
 
 def export_frame(
-    engine, depsgraph, settings, report, check_cancel=lambda: False, persistent_state=None
+    engine,
+    depsgraph,
+    settings,
+    report,
+    check_cancel=lambda: False,
+    persistent_state=None,
+    viewpoint=None,
 ):
     """Copies the frame at which the depsgraph stands.
 
@@ -44,6 +49,7 @@ def export_frame(
         check_cancel: called often; raises, or returns true, to end the export.
         persistent_state: PersistentState of the engine where Blender keeps its evaluated scene from
             frame to frame: only what changed is read then.
+        viewpoint: of scene/viewpoint.py, a 3D view's; None: the scene's camera and its resolution.
 
     Returns:
         dict for `granita_core.Scene`.
@@ -56,12 +62,15 @@ def export_frame(
     clock = Clock(engine, scene)
     if persistent_state is not None:
         clock.after = lambda: persistent_state.note(depsgraph)
-    frame = scene_frame(scene.render)
+    if viewpoint is None:
+        # Taken once: past a camera marker within the shutter Blender changes it.
+        frame = scene_frame(scene.render)
+        viewpoint = CameraViewpoint(_render_camera(engine, scene), frame, scene_crop(scene, frame))
     shutter = scene_shutter(scene, view_layer, settings)
-    options = options_record(scene, view_layer, settings, frame, shutter.frame_time)
-    # Taken once: past a camera marker within the shutter Blender changes it.
-    camera = _render_camera(engine, scene)
-    camera_at_frame = camera_record(camera, frame, depsgraph, report)
+    options = options_record(
+        scene, view_layer, settings, viewpoint.frame, viewpoint.crop, shutter.frame_time
+    )
+    camera_at_frame = viewpoint.record(depsgraph, report)
 
     if persistent_state is not None:
         scene_objects = persistent_state.scene_objects(depsgraph, report, check_cancel)
@@ -72,10 +81,8 @@ def export_frame(
     scene_objects.choose(report)
     at_frame = FrameScene(
         depsgraph=depsgraph,
-        camera=camera,
-        camera_blurs=blurs(camera),
+        viewpoint=viewpoint,
         camera_record=camera_at_frame,
-        frame=frame,
         visit=scene_objects.scan,
         plain=scene_objects.plain,
         sources=scene_objects.sources,

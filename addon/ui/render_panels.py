@@ -36,7 +36,6 @@ class GRANITA_RENDER_PT_device(RenderPanel, bpy.types.Panel):
         if problem:
             draw_problem(column, problem)
         column.prop(context.scene.granita, "device")
-        column.label(text="Rendered view and previews are EEVEE's", icon="INFO")
 
 
 class GRANITA_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
@@ -49,6 +48,7 @@ class GRANITA_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         settings = context.scene.granita
         column = self.column()
         column.prop(settings, "samples")
+        column.prop(settings, "preview_samples")
         column.prop(settings, "sampling")
         if settings.sampling == "REGULAR":
             column.prop(settings, "time_samples")

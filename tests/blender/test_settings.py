@@ -12,6 +12,7 @@ import pytest
 DEFAULTS = {
     "device": "AUTO",
     "samples": 64,
+    "preview_samples": 64,
     "sampling": "INDEPENDENT",
     "time_samples": 0,
     "pixel_filter": "BLACKMAN_HARRIS",

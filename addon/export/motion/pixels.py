@@ -136,7 +136,7 @@ class PixelScale:
 
     def _frame_edges(self):
         """How far from the view axis the frame reaches, float64 (x, y); perspective: at 1 m."""
-        frame, record = self._scene.frame, self._scene.camera_record
+        frame, record = self._scene.viewpoint.frame, self._scene.camera_record
         center, scale = np.array(record["center"]), np.array(record["scale"])
         return np.maximum(np.abs(center), np.abs([frame.width, frame.height] - center)) / scale
 

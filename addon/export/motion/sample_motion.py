@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..base.blur_settings import fewest_segments
 from ..base.report import poll
 from ..geometry.subdivision import cages_only
 from ..scene.simulations import unbaked_rigid_bodies
@@ -100,7 +99,7 @@ def _wanted_segments(scene):
     """What objects ask for themselves; the scene's limit yields to it."""
     prototypes = scene.visit.prototypes
     return max(
-        [fewest_segments(scene.camera), *(prototype.fewest_segments for prototype in prototypes)]
+        [scene.viewpoint.fewest_segments, *(prototype.fewest_segments for prototype in prototypes)]
     )
 
 
@@ -122,12 +121,12 @@ def _paths(scene, steps):
     scale = PixelScale(scene, steps.cameras)
     cameras = {tick: steps.cameras[tick][None] for tick in sorted(steps.cameras)}
     at_frame = steps.cameras[steps.frame_tick]
-    moves = scene.camera_blurs and any((camera != at_frame).any() for camera in cameras.values())
+    moves = scene.viewpoint.blurs and any((camera != at_frame).any() for camera in cameras.values())
     if moves:
         views = {tick: scale.views[tick][None] for tick in cameras}
         yield "CAMERA", cameras, [(cameras, scale.camera()), (views, scale.view())]
     lenses = {tick: steps.lenses[tick][None] for tick in sorted(steps.lenses)}
-    if scene.camera_blurs and any(
+    if scene.viewpoint.blurs and any(
         (lens != lenses[steps.frame_tick]).any() for lens in lenses.values()
     ):
         yield "LENS", lenses, [(lenses, scale.lens(lenses))]

@@ -8,7 +8,6 @@ from ..base.transforms import is_finite
 from ..base.updates import changed_geometry, last_updates, lights_changed, originals
 from ..geometry.mesh import whole_mesh
 from ..geometry.subdivision import cage_mesh, has_cage
-from ..scene.camera import camera_knot, follows_object, lens_knot
 from ..scene.depsgraph import visit
 from ..scene.lamps import energies
 from .instance_velocity import InstanceVelocities
@@ -71,7 +70,7 @@ class ShutterSteps:
         if record["lens_radius"] > 0.0:
             at_frame = np.array([record["lens_radius"], record["focus_distance"]])
             self.lenses[frame_tick] = at_frame
-        self._follows = bool(self.lenses) and follows_object(scene.camera, scene.depsgraph)
+        self._follows = bool(self.lenses) and scene.viewpoint.follows_object(scene.depsgraph)
         self._focused_on_itself = False
 
     def read(self, tick, knows_updates):
@@ -120,15 +119,15 @@ class ShutterSteps:
 
     def _read_camera(self, tick):
         scene, last = self._scene, self.ticks[-2]
-        seen = scene.camera, scene.frame, scene.depsgraph, scene.camera_record
+        viewpoint, seen = scene.viewpoint, (scene.depsgraph, scene.camera_record)
         name = f"camera '{scene.camera_record['name']}'"
         knot = lens = None
         try:
-            knot = camera_knot(*seen)
-            if self._follows and not follows_object(scene.camera, scene.depsgraph):
+            knot = viewpoint.knot(*seen)
+            if self._follows and not viewpoint.follows_object(scene.depsgraph):
                 self._lose(name, "was left without its focus object")
             elif self.lenses and knot is not None:
-                lens = lens_knot(*seen)
+                lens = viewpoint.lens(*seen)
                 if lens is None and not self._focused_on_itself:
                     self._focused_on_itself = True
                     self._report(

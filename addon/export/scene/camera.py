@@ -57,6 +57,26 @@ def projection(frame, sensor_fit, span, shift):
     return scale, center
 
 
+def window_projection(matrix, width, height):
+    """Pixels from camera space (x right, y up, z forward) of an OpenGL projection.
+
+    Args:
+        matrix: [4, 4] clip from view space.
+        width, height: pixels of the window.
+
+    Returns:
+        ((sx, sy), (cx, cy), whether it is a perspective).
+    """
+    is_perspective = bool(matrix[3, 3] == 0.0)
+    half = np.array([width, height]) / 2.0
+    scale = half * (matrix[0, 0], matrix[1, 1])
+    if is_perspective:
+        center = half * (1.0 - matrix[:2, 2])
+    else:
+        center = half * (1.0 + matrix[:2, 3])
+    return tuple(map(float, scale)), tuple(map(float, center)), is_perspective
+
+
 def sensor_size(sensor_fit, sensor_width, sensor_height):
     """Millimetres along the fitted side.  AUTO always means the sensor's width, as in Blender."""
     return sensor_height if sensor_fit == "VERTICAL" else sensor_width

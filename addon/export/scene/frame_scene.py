@@ -13,10 +13,8 @@ from .plain_objects import PlainObjects
 @dataclass
 class FrameScene:
     depsgraph: object  # evaluated
-    camera: object  # original Object; a handler may delete it when time is moved
-    camera_blurs: bool
-    camera_record: dict  # camera.camera_record at the frame
-    frame: object  # camera.Frame
+    viewpoint: object  # of viewpoint.py
+    camera_record: dict  # its record at the frame
     visit: Visit
     plain: PlainObjects
     sources: list  # of geometry.GeometrySource

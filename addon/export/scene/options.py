@@ -83,7 +83,28 @@ def _samples(scene, view_layer, samples):
     return min(own, samples) if use == "BOUNDED" else own
 
 
-def options_record(scene, view_layer, settings, frame, frame_time):
+def scene_crop(scene, frame):
+    """Pixels of the frame that a final render makes: (x0, y0, x1, y1).
+
+    Raises:
+        ExportError: the border encloses no pixel.
+    """
+    render = scene.render
+    if not render.use_border:
+        return (0, 0, frame.width, frame.height)
+    crop = border(
+        frame,
+        render.border_min_x,
+        render.border_min_y,
+        render.border_max_x,
+        render.border_max_y,
+    )
+    if crop[2] <= crop[0] or crop[3] <= crop[1]:
+        raise ExportError(f"scene '{scene.name}'", "the render border encloses no pixel")
+    return crop
+
+
+def options_record(scene, view_layer, settings, frame, crop, frame_time):
     """The snapshot's options.
 
     Args:
@@ -91,23 +112,10 @@ def options_record(scene, view_layer, settings, frame, frame_time):
         view_layer: asked for its samples, its motion blur and a depth pass.
         settings: `scene.granita`, anything with some of its properties, or None.
         frame: Frame.
+        crop: pixels of it that are made, (x0, y0, x1, y1).
         frame_time: place of Blender's frame in the shutter, 0 to 1.
-
-    Raises:
-        ExportError: the border encloses no pixel.
     """
     render = scene.render
-    crop = (0, 0, frame.width, frame.height)
-    if render.use_border:
-        crop = border(
-            frame,
-            render.border_min_x,
-            render.border_min_y,
-            render.border_max_x,
-            render.border_max_y,
-        )
-        if crop[2] <= crop[0] or crop[3] <= crop[1]:
-            raise ExportError(f"scene '{scene.name}'", "the render border encloses no pixel")
     seed = int(getattr(settings, "seed", 0)) & 0x7FFFFFFF
     if getattr(settings, "animate_seed", False):
         seed = mixed_seed(seed, scene.frame_current)

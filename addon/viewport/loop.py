@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Goes on with all views between two events of the window, as long as any has something to do."""
+
+import sys
+import traceback
+
+import bpy
+
+from ..export.base.report import escaped
+
+_views = []
+
+
+def add(view):
+    _views.append(view)
+
+
+def wake():
+    """Something has changed."""
+    if not bpy.app.timers.is_registered(_step):
+        bpy.app.timers.register(_step, first_interval=0.0)
+
+
+def close_all(*_):
+    """Before the file goes, or the add-on: nothing of ours may run on."""
+    while _views:
+        _views.pop().close()
+    if bpy.app.timers.is_registered(_step):
+        bpy.app.timers.unregister(_step)
+
+
+def views():
+    """Those that are still there."""
+    return [view for view in _views if view.is_alive]
+
+
+def _step():
+    delays = []
+    for view in list(_views):
+        if not view.is_alive:
+            _views.remove(view)
+            view.close()
+            continue
+        try:
+            delays.append(view.step())
+        except Exception as error:  # a view that fails may not stop the others, nor the window
+            lines = traceback.format_exc().splitlines()
+            print("\n".join(escaped(line) for line in lines), file=sys.stderr)
+            view.fail(escaped(f"{type(error).__name__}: {error}"))
+    delays = [delay for delay in delays if delay is not None]
+    return min(delays) if delays else None
+
+
+_close_before_load = bpy.app.handlers.persistent(close_all)
+
+
+def register():
+    bpy.app.handlers.load_pre.append(_close_before_load)
+
+
+def unregister():
+    bpy.app.handlers.load_pre.remove(_close_before_load)
+    close_all()

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scene as a view shows it, read at all times of the shutter.
+
+The depsgraph of a window cannot be moved in time: it belongs to the artist, whose unkeyed changes would be lost, and
+to everything else that is drawn.  So the scene is copied (its objects are shared) and the copy's own depsgraph is
+evaluated: it is not the active one and writes nothing back.  The copy lives for one reading, between two events:
+no list shows it, no step of undo and no file holds it (docs/decisions/viewport.md).
+"""
+
+from contextlib import contextmanager
+
+import bpy
+
+from ..export import export_frame
+from ..export.base.report import ExportError
+
+_HANDLERS = (
+    "frame_change_pre",
+    "frame_change_post",
+    "depsgraph_update_pre",
+    "depsgraph_update_post",
+)
+
+_is_reading = False
+
+
+def is_reading():
+    """Whether what Blender calls now was caused by the reading itself."""
+    return _is_reading
+
+
+def read_snapshot(scene_name, layer_name, viewpoint_of, report):
+    """The snapshot of a scene at its frame.
+
+    Args:
+        viewpoint_of: called with the copied scene, returns one of export/scene/viewpoint.py.
+        report: called with (datablock, message).
+
+    Raises:
+        ExportError.
+    """
+    scene = bpy.data.scenes.get(scene_name)
+    if scene is None or layer_name not in scene.view_layers:
+        raise ExportError(f"scene '{scene_name}'", "is gone")
+    with _copied(scene, layer_name) as depsgraph:
+        copy = depsgraph.scene
+        return export_frame(None, depsgraph, copy.granita, report, viewpoint=viewpoint_of(copy))
+
+
+@contextmanager
+def _copied(scene, layer_name):
+    """The evaluated depsgraph of a copy that stands at the scene's frame."""
+    global _is_reading
+    _is_reading = True
+    try:
+        with _without_handlers():
+            copy = scene.copy()
+            try:
+                for layer in list(copy.view_layers):
+                    if layer.name != layer_name:
+                        copy.view_layers.remove(layer)
+                copy.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+                yield copy.view_layers[layer_name].depsgraph
+            finally:
+                bpy.data.scenes.remove(copy)
+                settle()
+    finally:
+        _is_reading = False
+
+
+def settle():
+    """Evaluates what is tagged: edits before a reading, so that views hear of them; after it what the removal of a
+    scene tags, so that no view takes it for an edit."""
+    for window in bpy.context.window_manager.windows:
+        window.view_layer.update()
+
+
+@contextmanager
+def _without_handlers():
+    """Functions of other add-ons may change the file, which would be read again, and so on for ever."""
+    kept = {name: list(getattr(bpy.app.handlers, name)) for name in _HANDLERS}
+    for name in _HANDLERS:
+        getattr(bpy.app.handlers, name).clear()
+    try:
+        yield
+    finally:
+        for name, functions in kept.items():
+            getattr(bpy.app.handlers, name)[:] = functions

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rendered shading in a 3D view, driven without a window: what it shows is what F12 makes."""
+
+import bpy
+import numpy as np
+import pytest
+import scene_parts as parts
+import view_parts
+from mathutils import Matrix
+
+
+@pytest.fixture
+def moving(scene):
+    """A square that slides past a lit sphere under a camera with a lens; motion blur on."""
+    camera = parts.add_camera(scene)
+    camera.data.dof.use_dof = True
+    camera.data.dof.focus_distance, camera.data.dof.aperture_fstop = 8.0, 0.1
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8)
+    ball = bpy.context.object
+    bpy.ops.object.shade_smooth()
+    ball.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    square = parts.add_square(scene, material=parts.emission("Glow", (0.25, 0.5, 0.75)))
+    square.location = (-1, 0, 1.2)
+    square.scale = (0.5, 0.5, 0.5)
+    square.keyframe_insert("location", frame=1)
+    square.location = (1, 0.3, 1.2)
+    square.keyframe_insert("location", frame=5)
+    bpy.ops.object.light_add(type="SUN", rotation=(0.5, 0.2, 0))
+    scene.render.use_motion_blur = True
+    scene.granita.samples = scene.granita.preview_samples = 16
+    scene.frame_set(3)
+    return scene
+
+
+def combined(render, scene):
+    planes = render(scene)
+    return np.stack([planes[f"ViewLayer.Combined.{c}"] for c in "RGBA"], axis=-1)
+
+
+@pytest.fixture
+def view(moving):
+    made = view_parts.View((moving.render.resolution_x, moving.render.resolution_y))
+    yield made.look_through_camera()
+    made.live.close()
+
+
+@pytest.mark.smoke
+def test_a_settled_camera_view_is_the_final_frame(moving, view, render):
+    scenes, objects = len(bpy.data.scenes), len(bpy.data.objects)
+    seen = view.edited().settle().copy()
+    assert view.engine.texts[-1].startswith("Samples 16/16")
+    assert (len(bpy.data.scenes), len(bpy.data.objects)) == (scenes, objects)
+    np.testing.assert_array_equal(seen, combined(render, moving))
+    moving.render.use_motion_blur = False
+    still = view.edited().settle()
+    assert np.abs(still - seen).max() > 0.1  # it had blurred
+
+
+@pytest.mark.parametrize("transparent", [False, True])
+def test_the_render_region_and_the_film_are_those_of_the_final_frame(
+    moving, view, render, transparent
+):
+    moving.render.film_transparent = transparent
+    moving.render.use_border = moving.render.use_crop_to_border = True
+    moving.render.border_min_x, moving.render.border_max_x = 0.26, 0.75
+    moving.render.border_min_y, moving.render.border_max_y = 0.25, 0.713
+    seen = view.edited().settle()
+    np.testing.assert_array_equal(seen, combined(render, moving))
+    assert (seen[..., 3] == 1.0).all() != transparent
+
+
+def test_every_edit_is_shown(moving, view, render):
+    view.edited().settle()
+
+    def recolor():
+        nodes = bpy.data.materials["Glow"].node_tree.nodes
+        next(n for n in nodes if n.type == "EMISSION").inputs["Color"].default_value = (1, 0, 0, 1)
+
+    edits = {
+        "shutter": lambda: setattr(moving.render, "motion_blur_shutter", 1.5),
+        "lens": lambda: setattr(moving.camera.data.dof, "aperture_fstop", 0.4),
+        "material": recolor,
+        "object": lambda: setattr(bpy.data.objects["Sphere"], "location", (0.4, 0.2, 0.0)),
+        "frame": lambda: moving.frame_set(4),
+        "exposure": lambda: setattr(moving.cycles, "film_exposure", 0.5)
+        if hasattr(moving, "cycles")
+        else setattr(moving.granita, "film_exposure", 0.5),
+    }
+    for name, edit in edits.items():
+        before = view.live.picture.pixels.copy()
+        edit()
+        after = view.edited().settle()
+        assert not np.array_equal(before, after), name
+        np.testing.assert_array_equal(after, combined(render, moving), err_msg=name)
+
+
+def test_what_no_picture_shows_is_not_made_again(moving, view):
+    view.edited().settle()
+    made = dict(view.live.counts)
+    bpy.data.objects["Sphere"].select_set(False)
+    bpy.data.objects["Sphere"].name = "Ball"
+    bpy.data.objects["Ball"].name = "Sphere"
+    redraws = view.engine.redraws
+    view.edited().settle()
+    assert view.live.counts["jobs"] == made["jobs"]
+    assert view.engine.redraws == redraws
+    assert view.step() is None and view.live.is_settled
+
+
+def test_the_newest_edit_wins(moving, view, render):
+    """Edits while a picture is being made: the last state is what settles, each time."""
+    moving.granita.preview_samples = moving.granita.samples = 256
+    view.edited()
+    for k in range(6):
+        bpy.data.objects["Sphere"].location.x = 0.1 * k
+        view.edited()
+        for _ in range(1 + 3 * k):
+            view.step()
+    np.testing.assert_array_equal(view.settle(), combined(render, moving))
+
+
+def test_a_view_of_its_own_moves_without_reading_the_scene_again(moving, view):
+    """The same place as the camera's, given as a view: the same picture but for the lens."""
+    moving.camera.data.dof.use_dof = False
+    through = view.edited().settle().copy()
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    camera = moving.camera.evaluated_get(depsgraph)
+    window = camera.calc_matrix_camera(depsgraph, x=64, y=48)
+    place = camera.matrix_world.inverted()
+    own = view.look_from(place, window).drawn().settle().copy()
+    # Its matrices are single numbers, the camera's a lens: edges may fall on other samples.
+    assert np.abs(own - through).mean() < 1e-3
+    readings = view.live.counts["readings"]
+    shifted = view.look_from(Matrix.Translation((0.5, 0, 0)) @ place, window).drawn().settle()
+    assert view.live.counts["readings"] == readings
+    assert np.abs(shifted - own).max() > 0.1
+
+
+def test_a_fault_of_the_scene_is_said_in_the_view(moving, view):
+    before = view.edited().settle().copy()
+    moving.camera.data.type = "PANO"
+    view.edited().settle()
+    assert "PANO is not supported" in view.engine.texts[-1]
+    np.testing.assert_array_equal(view.live.picture.pixels, before)
+    moving.camera.data.type = "PERSP"
+    np.testing.assert_array_equal(view.edited().settle(), before)
+
+
+def test_reading_leaves_unkeyed_edits_handlers_and_the_frame_alone(moving, view):
+    called = []
+    bpy.app.handlers.frame_change_post.append(called.append)
+    try:
+        square = bpy.data.objects["Square"]
+        square.location = (0.3, 0.4, 0.5)
+        view.edited().settle()
+        assert called == []
+        assert bpy.app.handlers.frame_change_post[-1] == called.append
+    finally:
+        bpy.app.handlers.frame_change_post.remove(called.append)
+    np.testing.assert_allclose(square.location, (0.3, 0.4, 0.5), atol=1e-6)
+    assert moving.frame_current == 3

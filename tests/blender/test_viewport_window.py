@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rendered shading in a window: its own pixels, an edit, an undo, other engines and back.  Under Xvfb; needs a
+Blender with windows."""
+
+import json
+import os
+import shutil
+import subprocess
+
+import bpy
+import pytest
+import scene_parts as parts
+
+pytestmark = pytest.mark.skipif(
+    not bpy.app.binary_path or shutil.which("xvfb-run") is None,
+    reason="needs a Blender with windows, and xvfb-run",
+)
+
+WATCH = """
+import bpy, json, sys, time
+import numpy as np
+found = {}
+window = bpy.context.window_manager.windows[0]
+area = next(a for a in window.screen.areas if a.type == "VIEW_3D")
+region = next(r for r in area.regions if r.type == "WINDOW")
+space = area.spaces.active
+scene = bpy.context.scene
+loop = sys.modules["granita.viewport.loop"]
+
+def settled():
+    deadline = time.monotonic() + 40
+    yield 0.2
+    while not (loop.views() and all(view.is_settled for view in loop.views())):
+        if time.monotonic() > deadline:
+            raise RuntimeError("does not settle")
+        yield 0.02
+    yield 0.3  # it is drawn
+
+def middle():
+    # 8-bit colour of the window in the middle of the view
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        bpy.ops.screen.screenshot(filepath=OUT + ".png")
+    image = bpy.data.images.load(OUT + ".png")
+    image.colorspace_settings.name = "Raw"
+    width, height = image.size
+    pixels = np.empty(width * height * 4, dtype=np.float32)
+    image.pixels.foreach_get(pixels)
+    bpy.data.images.remove(image)
+    x, y = region.x + region.width // 2, region.y + region.height // 2
+    return [round(255 * float(v)) for v in pixels.reshape(height, width, 4)[y, x, :3]]
+
+def steps():
+    space.overlay.show_overlays = False
+    space.show_gizmo = False
+    space.region_3d.view_perspective = "CAMERA"
+    space.shading.type = "RENDERED"
+    yield from settled()
+    found["first"] = middle()
+    found["is_idle"] = not bpy.app.timers.is_registered(loop._step)
+    counts = dict(loop.views()[0].counts)
+    yield 0.5
+    found["stays_idle"] = counts == loop.views()[0].counts
+    node = next(n for n in bpy.data.materials["Glow"].node_tree.nodes if n.type == "EMISSION")
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        bpy.ops.ed.undo_push(message="before")
+        node.inputs["Color"].default_value = (1, 0, 0, 1)
+        bpy.ops.ed.undo_push(message="red")
+    yield from settled()
+    found["edited"] = middle()
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        bpy.ops.ed.undo()
+    yield from settled()
+    found["undone"] = middle()
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        bpy.ops.screen.region_quadview()
+    yield from settled()
+    found["quad"] = len(loop.views())
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        bpy.ops.screen.region_quadview()
+    for engine in ("BLENDER_WORKBENCH", "GRANITA"):
+        scene = bpy.context.scene
+        scene.render.engine = engine
+        yield 0.3
+        found[engine] = len(loop.views())
+    yield from settled()
+    found["again"] = middle()
+    import addon_utils
+    bpy.context.scene.render.engine = "BLENDER_WORKBENCH"
+    addon_utils.disable("granita")
+    yield 0.3
+    found["end"] = True
+
+todo = steps()
+def step():
+    try:
+        return next(todo)
+    except StopIteration:
+        pass
+    except BaseException as error:
+        found["error"] = repr(error)
+    json.dump(found, open(OUT + ".json", "w"))
+    bpy.ops.wm.quit_blender()
+bpy.app.timers.register(step, first_interval=1.0)
+"""
+
+
+def test_a_window_shows_and_follows_what_is_edited(scene, tmp_path):
+    parts.add_camera(scene, ortho_scale=1.0)
+    parts.add_square(scene, size=4.0, material=parts.emission("Glow", (0.25, 0.5, 0.75)))
+    scene.view_settings.view_transform = "Standard"
+    blend = tmp_path / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend), copy=True)
+    out = tmp_path / "window"
+    script = tmp_path / "watch.py"
+    script.write_text(f"OUT = {str(out)!r}\n{WATCH}")
+    done = subprocess.run(
+        ["xvfb-run", "-a", "-s", "-screen 0 800x600x24", bpy.app.binary_path, "--factory-startup"]
+        + ["--addons", "granita", str(blend), "--python", str(script)],
+        env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=150,
+        check=False,
+    )
+    said = done.stdout + done.stderr
+    assert (tmp_path / "window.json").exists(), said
+    found = json.loads((tmp_path / "window.json").read_text())
+    assert done.returncode == 0 and "Traceback" not in said, said
+    glow = [137, 188, 225]  # sRGB of .25, .5, .75
+    assert found == {
+        "first": glow,
+        "is_idle": True,
+        "stays_idle": True,
+        "edited": [255, 0, 0],
+        "undone": glow,
+        "quad": 4,
+        "BLENDER_WORKBENCH": 0,
+        "GRANITA": 1,
+        "again": glow,
+        "end": True,
+    }, said
