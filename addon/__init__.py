@@ -19,8 +19,9 @@ bl_info = {
 
 def _parts():
     from . import engine, preferences, properties, ui
+    from .parts import part_output
 
-    return (properties, preferences, ui, engine)
+    return (properties, preferences, ui, part_output, engine)
 
 
 def register():

@@ -4,6 +4,9 @@
     --granita-device cpu|gpu|auto   overrides scene.granita.device
     --granita-stats FILE            appends one JSON object a frame (frame_statistics.py)
     --granita-threads N             overrides Blender's thread count; 0 = all
+    --granita-part K/N              renders the K-th of N parts of the frame into a part file (parts/)
+    --granita-merge N               joins the N part files of the frame instead of rendering it
+    --granita-parts FOLDER          of the part files; default: beside the output, named after it
 
 `--granita-device=cpu` is the same.  Other words after `--` belong to others and are left alone.
 """
@@ -12,6 +15,7 @@ import sys
 from dataclasses import dataclass
 
 PREFIX = "--granita-"
+MOST_PARTS = 4096
 
 
 class CommandLineError(Exception):
@@ -23,6 +27,9 @@ class CommandLine:
     device: str | None = None  # AUTO, CPU or GPU
     stats: str | None = None  # path of a file
     threads: int | None = None
+    part: tuple | None = None  # (K, N)
+    merge: int | None = None  # N
+    parts: str | None = None  # path of a folder
 
 
 def parse(argv=None):
@@ -42,6 +49,8 @@ def parse(argv=None):
         if not value or value.startswith("--"):
             raise CommandLineError(f"option {option} needs a value")
         setattr(values, option[len(PREFIX) :], reader(option, value))
+    if values.part and values.merge:
+        raise CommandLineError("--granita-part and --granita-merge exclude one another")
     return values
 
 
@@ -61,8 +70,27 @@ def _threads(option, value):
     return int(value)
 
 
+def _parts(option, value):
+    if not (value.isascii() and value.isdigit() and 1 <= int(value) <= MOST_PARTS):
+        raise CommandLineError(f"option {option}: '{value}' is not a number from 1 to {MOST_PARTS}")
+    return int(value)
+
+
+def _part(option, value):
+    number, slash, count = value.partition("/")
+    if not slash:
+        raise CommandLineError(f"option {option}: '{value}' is not K/N, as 3/8")
+    count = _parts(option, count)
+    if not (number.isascii() and number.isdigit() and 1 <= int(number) <= count):
+        raise CommandLineError(f"option {option}: there is no part '{number}' of {count}")
+    return int(number), count
+
+
 _READERS = {
     PREFIX + "device": _device,
     PREFIX + "stats": _path,
     PREFIX + "threads": _threads,
+    PREFIX + "part": _part,
+    PREFIX + "merge": _parts,
+    PREFIX + "parts": _path,
 }

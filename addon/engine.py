@@ -12,10 +12,11 @@ from contextlib import contextmanager
 
 import bpy
 
-from . import bridge, command_line, final_render, frame_statistics, passes
+from . import bridge, command_line, final_merge, final_render, frame_statistics, passes
 from .export import PersistentState
 from .export.base.report import Cancelled, ExportError, escaped
 from .export.shading.image import forget_images
+from .parts.part_file import PartError
 from .viewport import loop
 from .viewport.live_view import LiveView
 
@@ -30,6 +31,7 @@ _EXPLAINED = (
     command_line.CommandLineError,
     final_render.SettingsError,
     frame_statistics.StatisticsFileError,
+    PartError,
 )
 
 
@@ -60,6 +62,9 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
     def render(self, depsgraph):
         try:
             options = command_line.parse()
+            if options.merge is not None:
+                final_merge.FinalMerge(self, depsgraph, options).run()
+                return
             self.frame_statistics.open(options.stats)
             final_render.FinalRender(self, depsgraph, options, self.persistent_state).run(
                 self.frame_statistics

@@ -7,9 +7,17 @@ threads and hands finished tiles over through one queue, waited for with the GIL
 
 from time import perf_counter
 
+import bpy
+import numpy as np
+
 from . import bridge, passes
 from .export import export_frame
 from .export.base.report import Cancelled, Report, lines
+from .parts.collected_part import CollectedPart
+from .parts.part_file import file_name
+from .parts.part_output import folder_of, output_path
+from .parts.picture_digest import file_digest, picture_digest
+from .parts.rectangles import split
 from .properties import TILE_PIXELS
 from .status_line import StatusLine
 
@@ -41,6 +49,8 @@ class FinalRender:
         self.status = StatusLine(engine)
         self.report = Report()
         self.seconds = {}
+        self.origin = None  # the result's lower-left pixel in the frame
+        self.part = None  # CollectedPart, where one part of the frame alone is rendered
 
     def run(self, statistics):
         """Renders into the engine's result and adds the cost to `statistics`."""
@@ -49,7 +59,12 @@ class FinalRender:
         try:
             snapshot = self._export()
             options = snapshot["options"]
+            if self.part is not None and self.part.rect is None:
+                self._write_empty_part()
+                return
             job = self._render(snapshot)
+            if self.part is not None:
+                self.part.write()
             self.seconds["total"] = perf_counter() - started
             warnings = self.report.entries() + job.warnings()
             statistics.add_layer(self, options, job, warnings)
@@ -71,17 +86,51 @@ class FinalRender:
         )
         options = snapshot["options"]
         options.update(passes.requested(self.depsgraph.scene_eval, self.depsgraph.view_layer))
+        self.origin = [int(pixel) for pixel in options["crop"][:2]]
         options["bucket_size"] = -(-options["bucket_size"] // TILE_PIXELS) * TILE_PIXELS
         if self.options.device is not None:
             options["device"] = self.options.device
         if self.options.threads is not None:
             options["threads"] = self.options.threads
 
+        if self.options.part is not None:
+            self._cut_part(snapshot)
+
         self.depsgraph = None  # the next call frees it
         if not render.use_persistent_data:
             self.engine.free_blender_memory()
         self.seconds["export"] = perf_counter() - started
         return snapshot
+
+    def _cut_part(self, snapshot):
+        """Leaves of the snapshot's picture the part that the command line names."""
+        options = snapshot["options"]
+        crop = tuple(int(pixel) for pixel in options["crop"])
+        number, count = self.options.part
+        rect = split(crop, count, TILE_PIXELS)[number - 1]
+        core = bridge.load()
+        origin = {
+            "frame": int(options["frame"]),
+            "scene": self.scene,
+            "layer": self.layer,
+            "granita": core.__version__,
+            "build": file_digest(core.__file__),
+            "blender": bpy.app.version_string,
+            "picture": picture_digest(snapshot),
+        }
+        folder = folder_of(self.options, output_path(self.depsgraph.scene))
+        path = folder / file_name(origin["frame"], self.layer, self.options.part)
+        channels = [(p.native, p.channels) for p in self.passes]
+        self.part = CollectedPart(path, self.options.part, rect, crop, channels, origin)
+        self.origin = crop[:2]
+        if rect is not None:
+            options["crop"] = np.array(rect, dtype=np.int32)
+
+    def _write_empty_part(self):
+        """There are fewer tiles than parts.  A result without pixels still has to be complete: Blender
+        crashes where it saves none."""
+        self.engine.end_result(self.engine.begin_result(0, 0, 1, 1, layer=self.layer))
+        self.part.write()
 
     def _exporting(self):
         """Called often by the export."""
@@ -92,27 +141,28 @@ class FinalRender:
     def _render(self, snapshot):
         """Runs the native job to its end and returns it.  Empties the snapshot."""
         started = perf_counter()
-        origin = [int(pixel) for pixel in snapshot["options"]["crop"][:2]]
         job = None
         try:
             with bridge.rendering(snapshot) as job:
                 self.seconds["scene"] = perf_counter() - started
                 while not job.done():
-                    self._deliver(job.take_tiles(POLL_SECONDS), origin)
+                    self._deliver(job.take_tiles(POLL_SECONDS))
                     if self.engine.test_break():
                         raise Cancelled
                     self.engine.update_progress(job.fraction)
                     self.status.rendering(job)
-                self._deliver(job.take_tiles(0.0), origin)
+                self._deliver(job.take_tiles(0.0))
         finally:
             if job is not None:
                 self._tell(job.warnings())
         self.seconds["render"] = perf_counter() - started - self.seconds["scene"]
         return job
 
-    def _deliver(self, tiles, origin):
+    def _deliver(self, tiles):
         for tile in tiles:
-            passes.deliver(self.engine, tile, self.passes, self.layer, origin, self.exposure)
+            if self.part is not None:
+                self.part.add(tile, passes.tile_arrays(tile))
+            passes.deliver(self.engine, tile, self.passes, self.layer, self.origin, self.exposure)
 
     def _tell(self, warnings):
         for line in lines(warnings):

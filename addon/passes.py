@@ -122,6 +122,14 @@ def exposure_owner(scene):
     return cycles if hasattr(cycles, "film_exposure") else scene.granita
 
 
+def tile_arrays(tile):
+    """{native name: pixels} of all passes of a tile."""
+    arrays = {"Combined": tile.combined, **tile.passes}
+    if tile.depth is not None:
+        arrays["Depth"] = np.where(np.isfinite(tile.depth), tile.depth, NO_SURFACE_DEPTH)
+    return arrays
+
+
 def deliver(engine, tile, passes, layer, origin, exposure=1.0):
     """Copies one native tile into Blender's render result.
 
@@ -129,8 +137,8 @@ def deliver(engine, tile, passes, layer, origin, exposure=1.0):
     `origin`: the crop's lower-left pixel in the frame, which is (0, 0) of the result.  The result
     is closed on every path (an open one crashes the saving of float files).
     """
-    combined = tile.combined
-    height, width = combined.shape[:2]
+    height, width = tile.combined.shape[:2]
+    arrays = tile_arrays(tile)
     result = engine.begin_result(tile.x - origin[0], tile.y - origin[1], width, height, layer=layer)
     complete = False
     try:
@@ -139,9 +147,6 @@ def deliver(engine, tile, passes, layer, origin, exposure=1.0):
                 f"tile ({tile.x}, {tile.y}) of {width} x {height} pixels does not fit the result: "
                 f"{result.resolution_x} x {result.resolution_y} pixels are left"
             )
-        arrays = {"Combined": combined, **tile.passes}
-        if tile.depth is not None:
-            arrays["Depth"] = np.where(np.isfinite(tile.depth), tile.depth, NO_SURFACE_DEPTH)
         render_passes = result.layers[0].passes
         for p in passes:
             values = arrays[p.native]

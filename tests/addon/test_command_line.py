@@ -19,6 +19,8 @@ BLENDER = ["blender", "-b", "scene.blend", "-E", "GRANITA", "-f", "1"]
         (["--granita-stats=x=y"], CommandLine(stats="x=y")),
         (["--granita-threads", "0"], CommandLine(threads=0)),
         (["--granita-threads", "2", "--granita-threads", "5"], CommandLine(threads=5)),
+        (["--granita-part", "3/8", "--granita-parts=a"], CommandLine(part=(3, 8), parts="a")),
+        (["--granita-merge=64"], CommandLine(merge=64)),
         (["--cycles-device", "CPU", "scene", "--granita-threads=3"], CommandLine(threads=3)),
     ],
 )
@@ -41,6 +43,12 @@ def test_words_before_the_dashes_are_blenders():
         (["--granita-stats="], "--granita-stats needs a value"),
         (["--granita-threads", "two"], "'two' is not a number"),
         (["--granita-threads=-1"], "'-1' is not a number"),
+        (["--granita-part", "3"], "'3' is not K/N"),
+        (["--granita-part", "0/8"], "no part '0' of 8"),
+        (["--granita-part", "9/8"], "no part '9' of 8"),
+        (["--granita-part", "1/0"], "'0' is not a number from 1"),
+        (["--granita-merge", "x"], "'x' is not a number from 1"),
+        (["--granita-merge=2", "--granita-part=1/2"], "exclude one another"),
         (["--granita-threads", "1025"], "'1025' is not a number"),
     ],
 )
