@@ -37,6 +37,7 @@ def export_frame(
     check_cancel=lambda: False,
     persistent_state=None,
     viewpoint=None,
+    moves=True,
 ):
     """Copies the frame at which the depsgraph stands.
 
@@ -50,6 +51,7 @@ def export_frame(
         persistent_state: PersistentState of the engine where Blender keeps its evaluated scene from
             frame to frame: only what changed is read then.
         viewpoint: of scene/viewpoint.py, a 3D view's; None: the scene's camera and its resolution.
+        moves: false where the depsgraph may not be moved in time: what is at the frame stands still.
 
     Returns:
         dict for `granita_core.Scene`.
@@ -67,6 +69,8 @@ def export_frame(
         frame = scene_frame(scene.render)
         viewpoint = CameraViewpoint(_render_camera(engine, scene), frame, scene_crop(scene, frame))
     shutter = scene_shutter(scene, view_layer, settings)
+    if not moves:
+        shutter = replace(shutter, segments=0)
     options = options_record(
         scene, view_layer, settings, viewpoint.frame, viewpoint.crop, shutter.frame_time
     )
@@ -112,7 +116,7 @@ def export_frame(
     instances = place(seen.instances, scan, seen.chosen, motion.tracks, motion.lifespans, report)
     masks = link_lights(lamps, scan, report)
     instances = linked(instances, scan, seen.chosen, *masks)
-    if view_layer.use_pass_vector:
+    if view_layer.use_pass_vector and moves:
         found = read_adjacent_frames(clock, at_frame, fps, report, check_cancel)
         camera_at_frame["adjacent"] = found.camera
         instances = found.instances(instances, scan, seen.chosen)

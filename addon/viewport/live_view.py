@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One 3D view in Rendered shading, from its first to its last picture."""
+"""One 3D view in Rendered shading, from its first to its last picture.
+
+edit -> the frame is read, its motion carried over -> coarse picture
+     -> when edits rest: the shutter is read        -> the picture itself
+"""
 
 import weakref
 from time import perf_counter
@@ -7,11 +11,11 @@ from time import perf_counter
 import bpy
 import numpy as np
 
-from .. import bridge, passes
-from ..export.base.report import ExportError, Report
+from .. import bridge
+from ..export.base.report import ExportError
 from . import scene_reading
 from .live_picture import LivePicture, coarse_crop
-from .same import is_same
+from .scene_snapshots import SceneSnapshots
 from .sight import read_sight
 from .stages import LEAST_DIVISOR, Stage, next_divisor
 
@@ -19,6 +23,8 @@ POLL_SECONDS = 1.0 / 60.0
 WAIT_SECONDS = 0.25  # while a final render has the machine
 # The first picture of an edit is let through where it takes no longer: else a drag would show nothing.
 PATIENCE_SECONDS = 0.2
+# Without an edit, until the shutter is read and the picture itself is begun: within a drag neither is of use.
+REST_SECONDS = 0.08
 # Between two drawings of a picture that is refined: each uploads it whole.
 REFINE_SECONDS = 0.1
 
@@ -30,12 +36,14 @@ class LiveView:
 
     def __init__(self, engine):
         self._engine = weakref.ref(engine)
+        self._scene = SceneSnapshots()
         self._picture = LivePicture()
         self._sight = None  # as the view stands now
-        self._is_stale = False  # the scene is other than the snapshot
-        self._has_moved = False  # the view is
-        self._snapshot = None
-        self._report = Report()
+        self._is_stale = False  # the scene may be other than what was read
+        self._has_moved = False  # the view is another
+        self._is_unread = False  # the shutter is to be read once edits rest
+        self._is_coarse = False  # what is shown is not the picture itself
+        self._edited = 0.0  # when
         self._job = None
         self._dying = []  # cancelled jobs that still run: their end is not waited for
         self._job_sight = None  # what it shows
@@ -44,7 +52,7 @@ class LiveView:
         self._divisor = LEAST_DIVISOR
         self._began = self._drawn = 0.0
         self._waits = False
-        self.counts = {"readings": 0, "jobs": 0, "settled": 0}
+        self.counts = {"frames read": 0, "shutters read": 0, "jobs": 0, "settled": 0}
 
     @property
     def picture(self):
@@ -56,7 +64,11 @@ class LiveView:
 
     @property
     def is_settled(self):
-        return not (self._is_stale or self._has_moved or self._job)
+        return not (self._is_edited or self._is_unread or self._is_coarse or self._job)
+
+    @property
+    def _is_edited(self):
+        return self._is_stale or self._has_moved
 
     # Called by Blender.
 
@@ -64,7 +76,8 @@ class LiveView:
         """The scene has changed, or is shown for the first time."""
         if scene_reading.is_reading():
             return
-        self._is_stale = True
+        self._scene.note(depsgraph)
+        self._is_stale, self._edited = True, perf_counter()
         self._look(context, depsgraph)
 
     def draw(self, context, depsgraph):
@@ -79,7 +92,7 @@ class LiveView:
             context.region, context.space_data, context.region_data, depsgraph, pixel
         )
         if sight != self._sight:
-            self._has_moved = True
+            self._has_moved, self._edited = True, perf_counter()
             before, self._sight = self._sight, sight
             # What is read depends on what a camera sees, and on how large.
             if before is None or sight.camera or before.camera or sight.scene != before.scene:
@@ -87,20 +100,28 @@ class LiveView:
 
     # Called by the loop.
 
+    def forget(self):
+        """An undo, say: nothing that was noted is true any more."""
+        self._scene.forget()
+        self._is_stale, self._edited = True, perf_counter()
+
     def step(self):
         """Goes on; seconds until the next call, None where nothing is left to do."""
         self._dying = [job for job in self._dying if not job.done()]
         if bpy.app.is_job_running("RENDER"):
             return self._make_way()
         self._waits = False
-        if self._is_stale or self._has_moved:
-            if not self._shows_soon():
-                self._begin()
-        elif self._job is not None:
-            self._go_on()
-        if self._job is None and not (self._is_stale or self._has_moved):
-            return POLL_SECONDS if self._dying else None
-        return POLL_SECONDS
+        try:
+            if self._is_edited:
+                if not self._shows_soon():
+                    self._begin()
+            elif self._job is not None:
+                self._go_on()
+            elif self._is_unread or self._is_coarse:
+                self._rest()
+        except _EXPLAINED as error:
+            self.fail(str(error))
+        return None if self.is_settled and not self._dying else POLL_SECONDS
 
     def close(self):
         """Cancels and joins."""
@@ -111,12 +132,12 @@ class LiveView:
     def fail(self, text):
         """What went wrong stands in the view; what it shows stays."""
         self._cancel()
-        self._is_stale = self._has_moved = False
+        self._is_stale = self._has_moved = self._is_unread = self._is_coarse = False
         self._say(text)
 
     def _make_way(self):
         """A final render is under way: it has all threads, and the file is read by it."""
-        if self._job is not None or self._is_stale or self._has_moved:
+        if not self.is_settled:
             self._cancel()
             self._is_stale = True
         if not self._is_stale:
@@ -137,46 +158,40 @@ class LiveView:
         )
 
     def _begin(self):
+        """The first picture of an edit."""
         scene_reading.settle()
-        stale, self._is_stale = self._is_stale or self._snapshot is None, False
+        stale, self._is_stale = self._is_stale or self._scene.snapshot is None, False
         moved, self._has_moved = self._has_moved, False
         if self._sight.is_empty:
             self._cancel()
+            self._is_unread = self._is_coarse = False
             return
-        try:
-            bridge.load()
-            if stale:
-                before, self._snapshot = self._snapshot, None
-                self._snapshot = self._read()
-                if not moved and is_same(before, self._snapshot):
-                    return  # something else was edited, or selected: a running job goes on
-            self._cancel()
-            self._start(Stage(self._divisor))
-        except _EXPLAINED as error:
-            self.fail(str(error))
+        bridge.load()
+        if stale:
+            self.counts["frames read"] += 1
+            shows = self._scene.read_frame(self._sight)
+            if self._picture.expose(self._scene.exposure):
+                self._redraw()
+            self._is_unread = not self._scene.is_exact
+            if not (shows or moved):
+                return  # something else was edited, or selected: a running job goes on
+        self._cancel()
+        self._is_coarse = True
+        self._start(Stage(self._divisor))
 
-    def _read(self):
-        self._report = Report()
-        self.counts["readings"] += 1
-        sight = self._sight
-
-        def viewpoint_of(scene):
-            viewpoint = sight.viewpoint(scene)
-            if viewpoint is None:
-                raise ExportError(f"camera '{sight.camera}'", "is gone")
-            return viewpoint
-
-        snapshot = scene_reading.read_snapshot(sight.scene, sight.layer, viewpoint_of, self._report)
-        scene = bpy.data.scenes[sight.scene]
-        if self._picture.expose(passes.exposure_owner(scene).film_exposure):
-            self._redraw()
-        options = snapshot["options"]
-        options["samples"] = scene.granita.preview_samples
-        options["depth_pass"] = False
-        return snapshot
+    def _rest(self):
+        """The picture itself, once edits rest."""
+        if perf_counter() - self._edited < REST_SECONDS or _plays():
+            return
+        if self._is_unread:
+            self._is_unread = False
+            self.counts["shutters read"] += 1
+            self._is_coarse |= self._scene.read_shutter(self._sight)
+        if self._is_coarse:
+            self._start(Stage(1))
 
     def _start(self, stage):
-        snapshot, sight = self._snapshot, self._sight
+        snapshot, sight = self._scene.snapshot, self._sight
         if not sight.camera:
             options = {
                 **snapshot["options"],
@@ -191,7 +206,7 @@ class LiveView:
         if not stage.is_last:
             x0, y0, x1, y1 = coarse_crop(sight.crop, stage.divisor)
             self._staging = np.zeros((y1 - y0, x1 - x0, 4), dtype=np.float32)
-        self._say(f"Samples 0/{self._snapshot['options']['samples']}")
+            self._say(f"Samples 0/{snapshot['options']['samples']}")
 
     def _go_on(self):
         """Takes what the job has finished."""
@@ -211,25 +226,19 @@ class LiveView:
         if not (is_done or self._job.done()):
             return
         job, self._job = self._job, None
-        try:
-            bridge.end(job)
-        except _EXPLAINED as error:
-            self.fail(str(error))
-            return
+        bridge.end(job)
         if self._stage.is_last:
             self._settled(job)
         else:
-            seconds = perf_counter() - self._began
+            self._divisor = next_divisor(self._divisor, perf_counter() - self._began)
             self._picture.replace(self._job_sight, self._staging, self._stage.divisor)
-            self._divisor = next_divisor(self._divisor, seconds)
             self._redraw()
-            if not (self._is_stale or self._has_moved):
-                self._start(Stage(1))
 
     def _settled(self, job):
+        self._is_coarse = False
         self.counts["settled"] += 1
-        samples = self._snapshot["options"]["samples"]
-        warnings = len(self._report) + len(job.warnings())
+        samples = self._scene.snapshot["options"]["samples"]
+        warnings = len(self._scene.report) + len(job.warnings())
         text = f"Samples {samples}/{samples}"
         if warnings:
             text += f" | {warnings} warning{'s' if warnings > 1 else ''}"
@@ -253,3 +262,9 @@ class LiveView:
         engine = self._engine()
         if engine is not None:
             engine.tag_redraw()
+
+
+def _plays():
+    """Whether an animation is played: of its frames the first pictures alone are made."""
+    windows = bpy.context.window_manager.windows
+    return any(window.screen.is_animation_playing for window in windows)

@@ -54,10 +54,25 @@ def _step():
 _close_before_load = bpy.app.handlers.persistent(close_all)
 
 
+@bpy.app.handlers.persistent
+def _forget(*_):
+    """An undo may put other things where some were."""
+    for view in views():
+        view.forget()
+        wake()
+
+
+_UNDOING = ("undo_post", "redo_post")
+
+
 def register():
     bpy.app.handlers.load_pre.append(_close_before_load)
+    for name in _UNDOING:
+        getattr(bpy.app.handlers, name).append(_forget)
 
 
 def unregister():
     bpy.app.handlers.load_pre.remove(_close_before_load)
+    for name in _UNDOING:
+        getattr(bpy.app.handlers, name).remove(_forget)
     close_all()

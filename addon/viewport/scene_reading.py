@@ -47,6 +47,57 @@ def read_snapshot(scene_name, layer_name, viewpoint_of, report):
         return export_frame(None, depsgraph, copy.granita, report, viewpoint=viewpoint_of(copy))
 
 
+def read_still(scene_name, layer_name, viewpoint_of, persistent_state, report):
+    """The same without motion, of the window's own depsgraph: only what changed since the last time is read.
+
+    Args:
+        persistent_state: export.PersistentState, which has noted all updates since.
+    """
+    scene = bpy.data.scenes.get(scene_name)
+    if scene is None or layer_name not in scene.view_layers:
+        raise ExportError(f"scene '{scene_name}'", "is gone")
+    return export_frame(
+        None,
+        scene.view_layers[layer_name].depsgraph,
+        scene.granita,
+        report,
+        persistent_state=persistent_state,
+        viewpoint=viewpoint_of(scene),
+        moves=False,
+    )
+
+
+# Modifiers whose result depends on time without an animation that says so.
+_LIVING = {
+    "BUILD",
+    "CLOTH",
+    "COLLISION",
+    "DYNAMIC_PAINT",
+    "EXPLODE",
+    "FLUID",
+    "MESH_CACHE",
+    "MESH_SEQUENCE_CACHE",
+    "NODES",
+    "PARTICLE_SYSTEM",
+    "SOFT_BODY",
+    "WAVE",
+}
+
+
+def may_move(scene_name):
+    """Whether anything in the file can move by itself; false only where nothing does."""
+    scene = bpy.data.scenes[scene_name]
+    if len(bpy.data.actions) or len(bpy.data.cache_files) or scene.rigidbody_world is not None:
+        return True
+    if any("velocity" in mesh.attributes for mesh in bpy.data.meshes):
+        return True
+    groups = (bpy.data.objects, bpy.data.shape_keys, bpy.data.cameras, bpy.data.lights)
+    groups += (bpy.data.armatures, bpy.data.meshes, bpy.data.curves, bpy.data.lattices)
+    if any(block.animation_data is not None for group in groups for block in group):
+        return True
+    return any(m.type in _LIVING for thing in bpy.data.objects for m in thing.modifiers)
+
+
 @contextmanager
 def _copied(scene, layer_name):
     """The evaluated depsgraph of a copy that stands at the scene's frame."""

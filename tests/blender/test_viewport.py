@@ -130,9 +130,9 @@ def test_a_view_of_its_own_moves_without_reading_the_scene_again(moving, view):
     own = view.look_from(place, window).drawn().settle().copy()
     # Its matrices are single numbers, the camera's a lens: edges may fall on other samples.
     assert np.abs(own - through).mean() < 1e-3
-    readings = view.live.counts["readings"]
+    readings = view.live.counts["frames read"]
     shifted = view.look_from(Matrix.Translation((0.5, 0, 0)) @ place, window).drawn().settle()
-    assert view.live.counts["readings"] == readings
+    assert view.live.counts["frames read"] == readings
     assert np.abs(shifted - own).max() > 0.1
 
 

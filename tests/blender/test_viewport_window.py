@@ -56,6 +56,7 @@ def steps():
     space.shading.type = "RENDERED"
     yield from settled()
     found["first"] = middle()
+    yield from settled()  # the screenshot was an image of the file for a moment
     found["is_idle"] = not bpy.app.timers.is_registered(loop._step)
     counts = dict(loop.views()[0].counts)
     yield 0.5

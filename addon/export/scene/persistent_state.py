@@ -80,6 +80,8 @@ def _settings(depsgraph):
         tuple(collections(layer.layer_collection)),
         object_names(),
         list(everything),
+        depsgraph.mode == "VIEWPORT"
+        and [t.visible_get(view_layer=layer) for t in everything.values()],
         [
             _shown(thing.evaluated_get(depsgraph))
             for thing in everything.values()

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a view knows of its scene: the frame as it is now, and the shutter as it was read last."""
+
+import bpy
+
+from .. import passes
+from ..export import PersistentState
+from ..export.base.report import ExportError, Report
+from ..export.scene.shutter import is_blurred, scene_shutter
+from . import scene_reading
+from .carried_motion import ShutterTimes, carried
+from .same import is_same
+
+
+class SceneSnapshots:
+    """Belongs to one view.
+
+    Attributes:
+        snapshot: what a picture of the state that was read last shows.
+        is_exact: whether it holds the motion of that state, not one carried over.
+        report: export's Report of the reading.
+        exposure: of the film.
+    """
+
+    def __init__(self):
+        self.snapshot, self.is_exact = None, False
+        self.report = Report()
+        self.exposure = 1.0
+        self._state = PersistentState()
+        self._still, self._times = None, None  # ShutterTimes; None: nothing blurs
+        self._moving, self._moving_times = None, None  # of the last reading of a whole shutter
+
+    def note(self, depsgraph):
+        """What Blender tells of an edit, before the next reading."""
+        self._state.note(depsgraph)
+
+    def forget(self):
+        """Addresses may mean something else now."""
+        self._state = PersistentState()
+
+    def read_frame(self, sight):
+        """Reads what changed at the frame; whether it shows.
+
+        Raises:
+            ExportError: and nothing is known any more.
+        """
+        before, self._still, self.snapshot = self._still, None, None
+        self.report = Report()
+        still = scene_reading.read_still(
+            sight.scene, sight.layer, _viewpoint_of(sight), self._state, self.report
+        )
+        scene = bpy.data.scenes[sight.scene]
+        layer = scene.view_layers[sight.layer]
+        self._complete(still, scene)
+        blurs = is_blurred(scene, layer) and scene_reading.may_move(sight.scene)
+        times = _times(scene, layer) if blurs else None
+        changed = not is_same(before, still) or times != self._times
+        self.is_exact = not blurs
+        if not blurs:
+            self._moving = None
+        self._still, self._times = still, times
+        self.snapshot = still
+        if self._moving is not None:
+            self.snapshot = carried(still, times, self._moving, self._moving_times)
+        return changed
+
+    def read_shutter(self, sight):
+        """Reads the whole shutter; whether its picture is another than that of the last such reading."""
+        before = self._moving
+        self.report = Report()
+        moving = scene_reading.read_snapshot(
+            sight.scene, sight.layer, _viewpoint_of(sight), self.report
+        )
+        scene = bpy.data.scenes[sight.scene]
+        self._complete(moving, scene)
+        self._moving = self.snapshot = moving
+        self._moving_times = _times(scene, scene.view_layers[sight.layer])
+        self.is_exact = True
+        return not is_same(before, moving)
+
+    def _complete(self, snapshot, scene):
+        """Of a view are its own samples, and no pass but the picture."""
+        self.exposure = passes.exposure_owner(scene).film_exposure
+        options = snapshot["options"]
+        options["samples"] = scene.granita.preview_samples
+        options["depth_pass"] = False
+
+
+def _viewpoint_of(sight):
+    def viewpoint_of(scene):
+        viewpoint = sight.viewpoint(scene)
+        if viewpoint is None:
+            raise ExportError(f"camera '{sight.camera}'", "is gone")
+        return viewpoint
+
+    return viewpoint_of
+
+
+def _times(scene, layer):
+    shutter = scene_shutter(scene, layer, scene.granita)
+    return ShutterTimes(shutter.length, shutter.frame_time)

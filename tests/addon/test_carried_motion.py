@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motion carried over to a later reading: straight paths, of which every place is known."""
+
+import numpy as np
+import pytest
+from viewport.carried_motion import ShutterTimes, carried
+
+
+def at(x, y=0.0, z=0.0):
+    matrix = np.eye(4)
+    matrix[:3, 3] = x, y, z
+    return matrix
+
+
+def turned(angle, x=0.0):
+    matrix = at(x)
+    c, s = np.cos(angle), np.sin(angle)
+    matrix[:2, :2] = [[c, -s], [s, c]]
+    return matrix
+
+
+def snapshot(camera, places, points=None, **lens):
+    places = np.array(places)
+    return {
+        "camera": {
+            "world_from_camera": np.array(camera),
+            "lens_radius": 0.1,
+            "focus_distance": 5.0,
+            **lens,
+        },
+        "instances": {
+            "name": ["A"],
+            "key": np.array([7], dtype=np.uint32),
+            "knots": np.array([len(places)], dtype=np.int32),
+            "world_from_object": places,
+        },
+        "geometries": [
+            {"points": np.zeros((1, 1, 3), dtype=np.float32) if points is None else points}
+        ],
+        "lights": [],
+    }
+
+
+HALF = ShutterTimes(0.5, 0.5)
+MOVING = snapshot([at(0, -1), at(0, 1)], [at(1), at(2), at(3)])
+
+
+def test_what_did_not_change_keeps_its_very_knots():
+    still = snapshot([at(0)], [at(2)])
+    found = carried(still, HALF, MOVING, HALF)
+    assert found["instances"]["world_from_object"] is not still["instances"]["world_from_object"]
+    np.testing.assert_array_equal(
+        found["instances"]["world_from_object"], MOVING["instances"]["world_from_object"]
+    )
+    np.testing.assert_array_equal(
+        found["camera"]["world_from_camera"], MOVING["camera"]["world_from_camera"]
+    )
+
+
+def test_what_was_moved_and_turned_goes_on_in_the_same_direction():
+    found = carried(snapshot([at(0)], [turned(0.3, 10)]), HALF, MOVING, HALF)
+    np.testing.assert_allclose(
+        found["instances"]["world_from_object"], [turned(0.3, 9), turned(0.3, 10), turned(0.3, 11)]
+    )
+
+
+@pytest.mark.parametrize(
+    "times, ends", [(ShutterTimes(1.0, 0.5), (0, 4)), (ShutterTimes(0.5, 0.0), (2, 4))]
+)
+def test_a_longer_or_later_shutter_sees_more_of_the_path(times, ends):
+    """The path is x = 2 + 4 t for t frames after the frame."""
+    found = carried(snapshot([at(0)], [at(2)]), times, MOVING, HALF)
+    x = found["instances"]["world_from_object"][:, 0, 3]
+    np.testing.assert_allclose(x, np.linspace(*ends, 3), atol=1e-12)
+
+
+def test_deformation_goes_on_from_the_shape_that_is_there():
+    then = np.array([[[0, 0, 0]], [[0, 0, 2]]], dtype=np.float32)
+    now = np.array([[[5, 0, 1]]], dtype=np.float32)
+    moving = snapshot([at(0)], [at(0)], points=then)
+    found = carried(snapshot([at(0)], [at(0)], points=now), HALF, moving, HALF)
+    np.testing.assert_allclose(found["geometries"][0]["points"], [[[5, 0, 0]], [[5, 0, 2]]])
+
+
+def test_a_lens_that_changes_is_as_much_wider():
+    moving = snapshot([at(0)], [at(0)], lens_knots=np.array([[0.1, 4.0], [0.1, 6.0]]))
+    still = snapshot([at(0)], [at(0)], lens_radius=0.2)
+    found = carried(still, HALF, moving, HALF)
+    np.testing.assert_allclose(found["camera"]["lens_knots"], [[0.2, 4.0], [0.2, 6.0]])
+
+
+def test_others_than_before_stand_still():
+    still = snapshot([at(0)], [at(2)])
+    still["instances"]["name"] = ["B"]
+    assert carried(still, HALF, MOVING, HALF)["instances"] is still["instances"]
