@@ -11,6 +11,7 @@ import sys
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from . import host
 from .export.base.report import Cancelled
 
 MODULE = "granita_core"
@@ -30,6 +31,9 @@ class RenderError(Exception):
 
 def load():
     """Returns the module `granita_core`.  Raises NativeModuleMissing."""
+    unfit = host.problem(host.this_host())
+    if unfit:
+        raise NativeModuleMissing(unfit)
     for name, package in ((f".{MODULE}", __package__), (MODULE, None)):
         absolute = f"{package}{name}" if package else name
         try:
@@ -56,7 +60,7 @@ def _why_missing():
     folders = [Path(__file__).parent, *(Path(entry) for entry in sys.path if entry)]
     found = sorted({file.name for folder in folders for file in folder.glob(f"{MODULE}.*")})
     if found:
-        return f"the native module {found[0]} is not for {here}, which runs here"
+        return f"the native module is not for {here}, which runs here: there is {', '.join(found)}"
     return f"the native module {MODULE} is not installed: install a Granita package for {here}"
 
 

@@ -6,4 +6,5 @@ PYBIND11_MODULE(granita_core, module) {
     module.attr("__version__") = GRANITA_VERSION;
     granita::python::bind_errors(module);
     granita::python::bind_render(module);
+    granita::python::bind_system(module);
 }

@@ -77,5 +77,6 @@ std::shared_ptr<const Scene> read_scene(const py::dict& snapshot);
 
 void bind_errors(py::module_& module);
 void bind_render(py::module_& module);
+void bind_system(py::module_& module);
 
 }  // namespace granita::python
