@@ -87,11 +87,18 @@ def rendering(snapshot):
         job.finish()
 
 
-def begin(snapshot):
-    """A running granita_core.Render of a snapshot, which is copied and kept."""
+def new_session():
+    """A granita_core.Session: keeps what the next picture can use again."""
     core = load()
     with _translated(core):
-        return core.Render(core.Scene(snapshot))
+        return core.Session()
+
+
+def begin(snapshot, session):
+    """A running granita_core.Render of a snapshot, which is copied and kept.  `session`: of `new_session`."""
+    core = load()
+    with _translated(core):
+        return core.Render(core.Scene(snapshot, session))
 
 
 def end(job):

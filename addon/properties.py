@@ -67,6 +67,22 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
         (1, 4096),
         usual=(1, 1024),
     )
+    preview_moving: _choice(
+        "While Moving",
+        "Size of the first picture of an edit in a 3D view, before the picture itself",
+        "AUTO",
+        ("AUTO", "Automatic", "As large as a tenth of a second allows"),
+        ("2", "1/2", "Half as wide and high: finer, later"),
+        ("4", "1/4", "A quarter as wide and high"),
+        ("8", "1/8", "An eighth as wide and high: at once"),
+        **_NOT_ANIMATED,
+    )
+    preview_pause: _switch(
+        "Pause",
+        "3D views stay as they are, whatever is edited: nothing is read and nothing rendered",
+        False,
+        **_NOT_ANIMATED,
+    )
     sampling: _choice(
         "Sampling",
         "How samples are spread over pixels, the shutter and the lens",

@@ -70,7 +70,7 @@ def orbit(view, k):
 EDITS = {
     "shutter": lambda s, v, k: setattr(s.render, "motion_blur_shutter", 0.6 + 0.02 * k),
     "f-stop": lambda s, v, k: setattr(s.camera.data.dof, "aperture_fstop", 0.05 + 0.002 * k),
-    "focus": lambda s, v, k: setattr(s.camera.data.dof, "focus_distance", 15.0 + 0.1 * k),
+    "focus": lambda s, v, k: setattr(s.camera.data.dof, "focus_distance", 14.0 + 0.1 * k),
     "lamp strength": lambda s, v, k: setattr(
         lamp_of().data, "energy", lamp_of().data.energy * (1.2 if k == 0 else 1.03)
     ),

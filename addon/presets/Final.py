@@ -4,6 +4,7 @@ import bpy
 settings = bpy.context.scene.granita
 
 settings.samples = 64
+settings.preview_samples = 64
 settings.sampling = "INDEPENDENT"
 settings.time_samples = 0
 settings.light_samples = 16

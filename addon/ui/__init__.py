@@ -12,6 +12,7 @@ from . import (
     sampling_presets,
     stock_panels,
     view_layer_panels,
+    view_panels,
 )
 
 _PARTS = (
@@ -24,6 +25,7 @@ _PARTS = (
     material_panels,
     view_layer_panels,
     pass_panels,
+    view_panels,
     stock_panels,
 )
 

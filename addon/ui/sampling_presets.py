@@ -27,6 +27,7 @@ class GRANITA_OT_sampling_preset_add(AddPresetBase, bpy.types.Operator):
     preset_defines = ("settings = bpy.context.scene.granita",)
     preset_values = (
         "settings.samples",
+        "settings.preview_samples",
         "settings.sampling",
         "settings.time_samples",
         "settings.light_samples",

@@ -12,8 +12,9 @@ import bpy
 import numpy as np
 
 from .. import bridge
-from ..export.base.report import ExportError
+from ..export.base.report import ExportError, counted, lines
 from . import scene_reading
+from .costs import Costs
 from .live_picture import LivePicture, coarse_crop
 from .scene_snapshots import SceneSnapshots
 from .sight import read_sight
@@ -44,6 +45,7 @@ class LiveView:
         self._is_unread = False  # the shutter is to be read once edits rest
         self._is_coarse = False  # what is shown is not the picture itself
         self._edited = 0.0  # when
+        self._session = None  # of native code: what the next picture can use again
         self._job = None
         self._dying = []  # cancelled jobs that still run: their end is not waited for
         self._job_sight = None  # what it shows
@@ -52,6 +54,9 @@ class LiveView:
         self._divisor = LEAST_DIVISOR
         self._began = self._drawn = 0.0
         self._waits = False
+        self.region, self.looked = 0, 0.0  # address of the Region, and when it was drawn last
+        self.costs = Costs()
+        self.warnings = []  # of the picture, a line each
         self.counts = {"frames read": 0, "shutters read": 0, "jobs": 0, "settled": 0}
 
     @property
@@ -87,6 +92,7 @@ class LiveView:
         self._picture.draw()
 
     def _look(self, context, depsgraph):
+        self.region, self.looked = context.region.as_pointer(), perf_counter()
         pixel = max(int(self._engine().get_preview_pixel_size(depsgraph.scene)), 1)
         sight = read_sight(
             context.region, context.space_data, context.region_data, depsgraph, pixel
@@ -111,6 +117,8 @@ class LiveView:
         if bpy.app.is_job_running("RENDER"):
             return self._make_way()
         self._waits = False
+        if self._is_paused():
+            return None
         try:
             if self._is_edited:
                 if not self._shows_soon():
@@ -127,6 +135,7 @@ class LiveView:
         """Cancels and joins."""
         self._cancel()
         self._dying = []
+        self._session = None
         self._picture = LivePicture()
 
     def fail(self, text):
@@ -146,6 +155,16 @@ class LiveView:
             self._waits = True
             self._say("Waits for the render")
         return WAIT_SECONDS
+
+    def _is_paused(self):
+        scene = bpy.data.scenes.get(self._sight.scene) if self._sight is not None else None
+        if scene is None or not scene.granita.preview_pause:
+            return False
+        if self._job is not None:
+            self._cancel()
+            self._is_coarse = True
+            self._say("Paused")
+        return True
 
     def _shows_soon(self):
         if self._job is None or self._stage.is_last:
@@ -169,7 +188,9 @@ class LiveView:
         bridge.load()
         if stale:
             self.counts["frames read"] += 1
+            began = perf_counter()
             shows = self._scene.read_frame(self._sight)
+            self.costs.frame = perf_counter() - began
             if self._picture.expose(self._scene.exposure):
                 self._redraw()
             self._is_unread = not self._scene.is_exact
@@ -177,7 +198,7 @@ class LiveView:
                 return  # something else was edited, or selected: a running job goes on
         self._cancel()
         self._is_coarse = True
-        self._start(Stage(self._divisor))
+        self._start(Stage(self._first_divisor()))
 
     def _rest(self):
         """The picture itself, once edits rest."""
@@ -186,9 +207,15 @@ class LiveView:
         if self._is_unread:
             self._is_unread = False
             self.counts["shutters read"] += 1
+            began = perf_counter()
             self._is_coarse |= self._scene.read_shutter(self._sight)
+            self.costs.shutter = perf_counter() - began
         if self._is_coarse:
             self._start(Stage(1))
+
+    def _first_divisor(self):
+        wanted = bpy.data.scenes[self._sight.scene].granita.preview_moving
+        return self._divisor if wanted == "AUTO" else int(wanted)
 
     def _start(self, stage):
         snapshot, sight = self._scene.snapshot, self._sight
@@ -201,7 +228,9 @@ class LiveView:
             }
             snapshot = {**snapshot, "options": options, "camera": sight.own_record()}
         self._stage, self._job_sight, self._began = stage, sight, perf_counter()
-        self._job = bridge.begin(stage.snapshot(snapshot))
+        if self._session is None:
+            self._session = bridge.new_session()
+        self._job = bridge.begin(stage.snapshot(snapshot), self._session)
         self.counts["jobs"] += 1
         if not stage.is_last:
             x0, y0, x1, y1 = coarse_crop(sight.crop, stage.divisor)
@@ -230,18 +259,21 @@ class LiveView:
         if self._stage.is_last:
             self._settled(job)
         else:
-            self._divisor = next_divisor(self._divisor, perf_counter() - self._began)
+            self.costs.first = perf_counter() - self._began
+            self._divisor = next_divisor(self._stage.divisor, self.costs.first)
             self._picture.replace(self._job_sight, self._staging, self._stage.divisor)
             self._redraw()
 
     def _settled(self, job):
         self._is_coarse = False
         self.counts["settled"] += 1
+        self.costs.whole = perf_counter() - self._began
+        self.costs.statistics = job.statistics()
         samples = self._scene.snapshot["options"]["samples"]
-        warnings = len(self._scene.report) + len(job.warnings())
+        self.warnings = lines(self._scene.report.entries() + job.warnings())
         text = f"Samples {samples}/{samples}"
-        if warnings:
-            text += f" | {warnings} warning{'s' if warnings > 1 else ''}"
+        if self.warnings:
+            text += f" | {counted(len(self.warnings), 'warning')}"
         self._say(text)
         self._redraw()
 

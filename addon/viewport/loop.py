@@ -34,6 +34,13 @@ def views():
     return [view for view in _views if view.is_alive]
 
 
+def view_of(area):
+    """The view that an area shows, of four the one that was drawn last; or None."""
+    regions = {region.as_pointer() for region in area.regions}
+    found = [view for view in views() if view.region in regions]
+    return max(found, key=lambda view: view.looked, default=None)
+
+
 def _step():
     delays = []
     for view in list(_views):

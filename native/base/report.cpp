@@ -15,4 +15,8 @@ std::vector<Warning> Report::warnings() const {
     return list;
 }
 
+void Report::add(const Report& other) {
+    for (const Warning& w : other.warnings()) warn(w.datablock, w.message, w.count);
+}
+
 }  // namespace granita

@@ -23,6 +23,8 @@ class Report {
     void warn(const std::string& datablock, const std::string& message, std::uint64_t count = 1);
     /// Sorted by datablock, then message: independent of thread timing.
     std::vector<Warning> warnings() const;
+    /// Says all of another one.
+    void add(const Report& other);
 
   private:
     mutable std::mutex m_mutex;

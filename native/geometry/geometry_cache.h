@@ -9,38 +9,34 @@
 #include <vector>
 
 #include "base/report.h"
+#include "geometry/kept_geometry.h"
 #include "math/bounds.h"
 #include "scene/scene.h"
 
 namespace granita {
 
-class SharedElements;
-class SharedGeometry;
-
-/// Thread-safe; one a frame.
+/// Thread-safe; one a frame, over a store that may outlive it.
 class GeometryCache {
   public:
-    /// Object-space boxes of the finite points, one a knot of the geometry.
+    explicit GeometryCache(std::shared_ptr<KeptGeometry> kept = std::make_shared<KeptGeometry>())
+        : m_kept(std::move(kept)) {}
+
+    /// As of GeometryParts.  What there was to say of a geometry is said once a frame.
     std::shared_ptr<const std::vector<Bounds3f>> boxes(const Scene& scene, std::size_t geometry);
-    /// Of a mesh.
     std::shared_ptr<const SharedGeometry> shared(const Scene& scene, std::size_t geometry,
                                                  Report& report);
-    /// Of curves and points.
     std::shared_ptr<const SharedElements> elements(const Scene& scene, std::size_t geometry,
                                                    Report& report);
-    /// The largest radius of curves and points, metres; 0 for a mesh.
     float largest_radius(const Scene& scene, std::size_t geometry);
 
   private:
     struct Entry {
-        std::once_flag boxes_once, shared_once, elements_once, radius_once;
-        std::shared_ptr<const std::vector<Bounds3f>> boxes;
-        std::shared_ptr<const SharedGeometry> shared;
-        std::shared_ptr<const SharedElements> elements;
-        float largest_radius = 0.0f;
+        std::shared_ptr<GeometryParts> parts;
+        std::once_flag said;
     };
-    Entry& entry(std::size_t geometry);
+    Entry& entry(const Scene& scene, std::size_t geometry);
 
+    std::shared_ptr<KeptGeometry> m_kept;
     std::mutex m_mutex;
     std::map<std::size_t, Entry> m_entries;
 };

@@ -69,7 +69,7 @@ void paste(const Tile& tile, const Rect& crop, const std::vector<T>& from, std::
 }
 
 py::dict render(const py::dict& snapshot) {
-    const auto scene = read_scene(snapshot);
+    const std::shared_ptr<const Scene> scene = read_scene(snapshot);
     const Rect& crop = scene->options.crop;
     const std::size_t pixels =
         static_cast<std::size_t>(crop.width()) * static_cast<std::size_t>(crop.height());
@@ -111,15 +111,28 @@ py::dict render(const py::dict& snapshot) {
 /// What Python holds: a checked scene.
 struct SceneHandle {
     std::shared_ptr<const Scene> scene;
+    std::shared_ptr<Session> session;
 };
 
 }  // namespace
 
 void bind_render(py::module_& module) {
+    py::class_<Session, std::shared_ptr<Session>>(
+        module, "Session", py::module_local(),
+        "What outlives a picture: scenes that are made with one share what is the same in them.")
+        .def(py::init<>())
+        .def_property_readonly("geometries_adopted", &Session::geometries_adopted)
+        .def_property_readonly("geometries_made", &Session::geometries_made)
+        .def_property_readonly("ray_shapes_made", &Session::ray_shapes_made);
+
     py::class_<SceneHandle>(module, "Scene", py::module_local(),
                             "A checked frame (docs/scene_snapshot.md).")
-        .def(py::init([](const py::dict& snapshot) { return SceneHandle{read_scene(snapshot)}; }),
-             py::arg("snapshot"),
+        .def(py::init([](const py::dict& snapshot, const std::shared_ptr<Session>& session) {
+                 const std::shared_ptr<Scene> scene = read_scene(snapshot);
+                 if (session) session->adopt(*scene);
+                 return SceneHandle{scene, session};
+             }),
+             py::arg("snapshot"), py::arg("session") = nullptr,
              "Copies and checks the snapshot. Raises SceneError, which names the datablock.");
 
     py::class_<Tile>(module, "Tile", py::module_local(), "A finished rectangle of the picture.")
@@ -143,7 +156,7 @@ void bind_render(py::module_& module) {
     py::class_<RenderJob>(module, "Render", py::module_local(),
                           "A frame being rendered on its own threads.")
         .def(py::init([](const SceneHandle& handle) {
-                 return std::make_unique<RenderJob>(handle.scene);
+                 return std::make_unique<RenderJob>(handle.scene, kHardware, handle.session);
              }),
              py::arg("scene"))
         .def("take_tiles", &RenderJob::take_tiles, py::arg("seconds"),

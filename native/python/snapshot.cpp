@@ -180,7 +180,7 @@ std::vector<Mat4d> matrices(const Record& record, const char* key) {
     return list;
 }
 
-std::shared_ptr<const Scene> read_scene(const py::dict& snapshot) {
+std::shared_ptr<Scene> read_scene(const py::dict& snapshot) {
     const Record root(snapshot, "scene");
     auto scene = std::make_shared<Scene>();
     read_options(root.record("options"), scene->options);

@@ -73,7 +73,7 @@ void read_instances(const Record& record, Scene& scene);
 void read_graph(const Record& record, NodeGraph& graph);
 void read_light(const Record& record, Light& light);
 void read_image(const Record& record, Image& image);
-std::shared_ptr<const Scene> read_scene(const py::dict& snapshot);
+std::shared_ptr<Scene> read_scene(const py::dict& snapshot);
 
 void bind_errors(py::module_& module);
 void bind_render(py::module_& module);

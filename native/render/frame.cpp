@@ -79,12 +79,12 @@ BucketLayout make_layout(const Options& options, const Film& film, Executor exec
 }  // namespace
 
 Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& frame_report,
-             const Progress& frame_progress, ExecutorChoice frame_choice)
+             const Progress& frame_progress, ExecutorChoice frame_choice, const KeptShading& kept)
     : scene(frame_scene),
       statistics(frame_statistics),
       report(frame_report),
       progress(frame_progress),
-      shading(scene, statistics, report, progress, frame_choice.executor != Executor::Raster),
+      shading(scene, statistics, report, progress, frame_choice.executor != Executor::Raster, kept),
       view(make_view(scene, statistics, shading,
                      PixelFilter(scene.options.pixel_filter, scene.options.filter_width))),
       table(make_table(scene, view, report)),

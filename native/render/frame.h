@@ -16,7 +16,7 @@ namespace granita {
 
 struct Frame {
     Frame(const Scene& scene, Statistics& statistics, Report& report, const Progress& progress,
-          ExecutorChoice choice);
+          ExecutorChoice choice, const KeptShading& kept = {});
 
     const Scene& scene;
     Statistics& statistics;

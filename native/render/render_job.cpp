@@ -24,6 +24,7 @@ namespace granita {
 struct RenderJob::Impl {
     std::shared_ptr<const Scene> scene;
     gl::ContextOptions gpu;
+    std::shared_ptr<Session> session;
     Statistics statistics;
     Report reports[2];  ///< of the device that was chosen, and of the CPU in its place
     std::atomic<int> attempt{0};
@@ -72,7 +73,8 @@ struct RenderJob::Impl {
     /// One task a bucket, taken in spiral order (decision 14).
     void render(ThreadPool& pool, ExecutorChoice choice) {
         const StageLedger ledger(statistics);
-        Frame frame(*scene, statistics, reports[attempt], progress, std::move(choice));
+        Frame frame(*scene, statistics, reports[attempt], progress, std::move(choice),
+                    session ? session->shading() : KeptShading{});
         {
             const std::lock_guard lock(mutex);
             device = frame.choice.device;
@@ -129,10 +131,12 @@ struct RenderJob::Impl {
     }
 };
 
-RenderJob::RenderJob(std::shared_ptr<const Scene> scene, const gl::ContextOptions& gpu)
+RenderJob::RenderJob(std::shared_ptr<const Scene> scene, const gl::ContextOptions& gpu,
+                     std::shared_ptr<Session> session)
     : m_impl(std::make_unique<Impl>()) {
     m_impl->scene = std::move(scene);
     m_impl->gpu = gpu;
+    m_impl->session = std::move(session);
     const auto run = [impl = m_impl.get()] { impl->run(); };
     try {
         m_impl->driver = std::thread(run);

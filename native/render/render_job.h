@@ -11,6 +11,7 @@
 #include "base/statistics.h"
 #include "film/film.h"
 #include "render/choose_executor.h"
+#include "render/session.h"
 #include "scene/scene.h"
 
 namespace granita {
@@ -18,12 +19,14 @@ namespace granita {
 class RenderJob {
   public:
     /// Starts at once; returns before the frame is done, unless not one more thread can be made.
-    /// The scene is shared and immutable.  `gpu`: as in choose_executor.h.
+    /// The scene is shared and immutable.  `gpu`: as in choose_executor.h.  `session`: whose scene
+    /// it was made (Session::adopt); without one, nothing is kept.
     ///
     /// A GPU that fails in mid-frame costs the time spent: the CPU begins the frame anew, with one
     /// warning, and its tiles follow those that the GPU has finished and replace them.
     explicit RenderJob(std::shared_ptr<const Scene> scene,
-                       const gl::ContextOptions& gpu = kHardware);
+                       const gl::ContextOptions& gpu = kHardware,
+                       std::shared_ptr<Session> session = nullptr);
     /// Cancels and joins.
     ~RenderJob();
 

@@ -87,4 +87,7 @@ struct GeometryData {
     const Attribute* default_color() const;
 };
 
+/// Whether two are equal in every byte: one may stand for the other.
+bool is_same(const GeometryData& a, const GeometryData& b);
+
 }  // namespace granita

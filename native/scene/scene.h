@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scene/camera.h"
-#include "scene/geometry_data.h"
+#include "scene/geometry_list.h"
 #include "scene/lifespan.h"
 #include "scene/light.h"
 #include "scene/node_graph.h"
@@ -38,7 +38,7 @@ struct Instance {
 struct Scene {
     Options options;
     Camera camera;
-    std::vector<GeometryData> geometries;
+    GeometryList geometries;
     std::vector<Instance> instances;
     /// Four numbers an instance that shaders ask for: the object's colour, attributes of objects.
     std::map<std::string, std::vector<Vec4f>> instance_values;

@@ -106,11 +106,11 @@ struct ShadingSystem::Impl {
     bool moves;                        ///< anything of the frame
     float threshold, noise_threshold;  ///< of unsettled_micropolygons()
     float footprint;                   ///< of a sample, in steps of a grid
-    std::shared_ptr<GeometryCache> geometries = std::make_shared<GeometryCache>();
+    std::shared_ptr<GeometryCache> geometries;
     std::unique_ptr<DirectLight> light;  ///< nullptr where nothing that is seen reflects any
 
     Impl(const Scene& s, Statistics& stats, Report& warnings, const Progress& progress,
-         bool refines_samples)
+         bool refines_samples, const KeptShading& kept)
         : scene(s),
           statistics(stats),
           report(warnings),
@@ -124,7 +124,8 @@ struct ShadingSystem::Impl {
           threshold(s.options.shading_threshold * 8.0f /
                     std::sqrt(static_cast<float>(s.options.samples))),
           noise_threshold(refining_spares_noise(s.options, s.moves()) ? threshold : kNoThreshold),
-          footprint(1.0f / std::sqrt(static_cast<float>(s.options.samples))) {
+          footprint(1.0f / std::sqrt(static_cast<float>(s.options.samples))),
+          geometries(std::make_shared<GeometryCache>(kept.geometry)) {
         const StageTimer timer(stats, Stage::Shade);
         const ChannelSet* passes = channels.empty() ? nullptr : &channels;
         for (const Material& material : scene.materials) {
@@ -147,7 +148,7 @@ struct ShadingSystem::Impl {
         });
         if (!any_reflects) return;
         light = std::make_unique<DirectLight>(scene, world.evaluator(), statistics, report,
-                                              progress, shadow_opacity(), geometries);
+                                              progress, shadow_opacity(), geometries, kept.rays);
     }
 
     bool reflects(std::int32_t index) const {
@@ -301,8 +302,8 @@ struct ShadingSystem::Impl {
 };
 
 ShadingSystem::ShadingSystem(const Scene& scene, Statistics& statistics, Report& report,
-                             const Progress& progress, bool refines)
-    : m_impl(std::make_unique<Impl>(scene, statistics, report, progress, refines)) {}
+                             const Progress& progress, bool refines, const KeptShading& kept)
+    : m_impl(std::make_unique<Impl>(scene, statistics, report, progress, refines, kept)) {}
 
 ShadingSystem::~ShadingSystem() = default;
 

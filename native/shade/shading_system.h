@@ -12,6 +12,7 @@
 #include "dice/grid.h"
 #include "dice/view.h"
 #include "scene/scene.h"
+#include "shade/kept_shading.h"
 #include "shade/refined_points.h"
 
 namespace granita {
@@ -22,8 +23,9 @@ class ShadingSystem {
     /// nodes are reported once by material and node and replaced by their nearest kin.  Builds the
     /// ray scene only if something needs rays.
     /// @param refines whether refine() will be called where grids ask for it (Grid::unsettled).
+    /// @param kept of an earlier frame; what this one makes is left there too.
     ShadingSystem(const Scene& scene, Statistics& statistics, Report& report,
-                  const Progress& progress, bool refines = true);
+                  const Progress& progress, bool refines = true, const KeptShading& kept = {});
     ~ShadingSystem();
 
     /// For View: [materials + 1], the last for "no material".

@@ -13,7 +13,8 @@ from granita.ui.render_panels import GRANITA_RENDER_PT_sampling
 from granita.ui.sampling_presets import GRANITA_OT_sampling_preset_add as Add
 from granita.ui.sampling_presets import GRANITA_RENDER_PT_sampling_presets as Menu
 
-PREVIEW = {"samples": 8, "light_samples": 4, "dicing_rate": 2.0}
+PREVIEW = {"samples": 8, "preview_samples": 16, "light_samples": 4, "dicing_rate": 2.0}
+DRAFT = {"samples": 4, "preview_samples": 8, "light_samples": 2, "dicing_rate": 4.0}
 NAMES = [value.removeprefix("settings.") for value in Add.preset_values]
 
 
@@ -89,12 +90,14 @@ def test_the_sampling_panel_opens_the_menu():
 @pytest.mark.smoke
 def test_preview_and_final_set_what_they_say(settings, own_folder):
     final = {name: DEFAULTS[name] for name in NAMES}
-    assert {"Final", "Preview"} == drawn()[0].keys()
+    assert {"Draft", "Final", "Preview"} == drawn()[0].keys()
     settings.sampling, settings.time_samples, settings.shading_rate = "REGULAR", 3, 2.0
     settings.motion_factor = settings.focus_factor = 2.0
     settings.seed = 5
     choose("Preview")
     assert values(settings) == approximately({**final, **PREVIEW})
+    choose("Draft")
+    assert values(settings) == approximately({**final, **DRAFT})
     choose("Final")
     assert values(settings) == approximately(final)
     assert settings.seed == 5
@@ -107,7 +110,7 @@ def test_what_the_artist_adds_is_in_the_menu_until_it_is_removed(settings, own_f
     assert add(name="my own") == {"FINISHED"}
     assert [file.name for file in own_folder.iterdir()] == ["my_own.py"]
     chosen, removable = drawn()
-    assert chosen.keys() == {"Final", "Preview", "my own"} and "my own" in removable
+    assert chosen.keys() == {"Draft", "Final", "Preview", "my own"} and "my own" in removable
     choose("Final")
     choose("my own")
     assert values(settings) == mine

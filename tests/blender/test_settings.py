@@ -13,6 +13,8 @@ DEFAULTS = {
     "device": "AUTO",
     "samples": 64,
     "preview_samples": 64,
+    "preview_moving": "AUTO",
+    "preview_pause": False,
     "sampling": "INDEPENDENT",
     "time_samples": 0,
     "pixel_filter": "BLACKMAN_HARRIS",
@@ -139,6 +141,8 @@ def drawn(**context):
     scene, layer = bpy.context.scene, bpy.context.view_layer
     nothing = dict.fromkeys(("light", "material", "object", "world"))
     context = {**nothing, **context}
+    space = SimpleNamespace(shading=SimpleNamespace(type="RENDERED"))
+    context |= {"space_data": space, "area": SimpleNamespace(regions=())}
     context = SimpleNamespace(engine="GRANITA", scene=scene, view_layer=layer, **context)
     names = set()
     for panel in below(bpy.types.Panel):

@@ -136,6 +136,30 @@ def test_a_view_of_its_own_moves_without_reading_the_scene_again(moving, view):
     assert np.abs(shifted - own).max() > 0.1
 
 
+def test_a_paused_view_stays_as_it_is(moving, view):
+    before = view.edited().settle().copy()
+    counts = dict(view.live.counts)
+    moving.granita.preview_pause = True
+    bpy.data.objects["Sphere"].location.x = 1.0
+    assert view.edited().step() is None
+    assert view.live.counts == counts
+    moving.granita.preview_pause = False
+    assert not np.array_equal(view.edited().settle(), before)
+
+
+@pytest.mark.parametrize("size", ["2", "8"])
+def test_the_first_picture_is_as_large_as_asked_for(moving, view, size):
+    moving.granita.preview_moving = size
+    view.edited().step()
+    while view.live._stage is None or view.live._job is not None:
+        view.step()
+    pixels = view.live.picture.pixels
+    blocks = pixels[: 48 // int(size) * int(size)].reshape(48 // int(size), int(size), 64, 4)
+    assert (blocks == blocks[:, :1]).all() and np.ptp(pixels) > 0
+    view.settle()
+    assert dict(view.live.costs.lines())["Picture"] != "0 ms"
+
+
 def test_a_fault_of_the_scene_is_said_in_the_view(moving, view):
     before = view.edited().settle().copy()
     moving.camera.data.type = "PANO"

@@ -38,7 +38,7 @@ class View:
         live_view = sys.modules["granita.viewport.live_view"]
         self.engine = StandInEngine()
         self.live = live_view.LiveView(self.engine)
-        self.region = SimpleNamespace(width=size[0], height=size[1])
+        self.region = SimpleNamespace(width=size[0], height=size[1], as_pointer=lambda: 0)
         self.space = SimpleNamespace(
             use_local_camera=False,
             camera=None,

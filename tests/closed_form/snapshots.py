@@ -178,8 +178,13 @@ def translation(x, y=0.0, z=0.0):
 def render(snapshot):
     import granita_core
 
+    return granita_core.render(packed(snapshot))
+
+
+def packed(snapshot):
+    """As the native module takes it."""
     table = snapshot["instances"]
-    packed = {
+    arrays = {
         "name": table["name"],
         "geometry": np.array(table["geometry"], np.int32),
         "knots": np.array(table["knots"], np.int32),
@@ -189,15 +194,15 @@ def render(snapshot):
         "lifespan": np.array(table["lifespan"], np.float32).reshape(-1, 2),
     }
     if "key" in table:
-        packed["key"] = np.array(table["key"], np.uint32)
+        arrays["key"] = np.array(table["key"], np.uint32)
     if "flags" in table:
-        packed["flags"] = np.array(table["flags"], np.uint32)
+        arrays["flags"] = np.array(table["flags"], np.uint32)
     for name in ("receives", "blocks"):
         if name in table:
-            packed[name] = np.array([mask % 2**64 for mask in table[name]], np.uint64)
+            arrays[name] = np.array([mask % 2**64 for mask in table[name]], np.uint64)
     if "adjacent" in table:
-        packed["adjacent"] = table["adjacent"]
-    return granita_core.render({**snapshot, "instances": packed})
+        arrays["adjacent"] = table["adjacent"]
+    return {**snapshot, "instances": arrays}
 
 
 def alpha(snapshot):

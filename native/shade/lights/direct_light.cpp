@@ -48,7 +48,7 @@ Vec3d camera_origin(const Scene& scene) {
 struct DirectLight::Impl {
     Impl(const Scene& scene, WorldEvaluator world_evaluator, Statistics& frame_statistics,
          Report& report, const Progress& progress, ShadowOpacity opacity,
-         std::shared_ptr<GeometryCache> cache);
+         std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays);
 
     void light_points(LitGrid& grid, const std::vector<LitPoint>& points,
                       std::size_t lobe_count) const;
@@ -80,7 +80,7 @@ struct DirectLight::Impl {
 DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator,
                         Statistics& frame_statistics, Report& report,
                         const Progress& frame_progress, ShadowOpacity opacity,
-                        std::shared_ptr<GeometryCache> cache)
+                        std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays)
     : scene(frame_scene),
       world(std::move(world_evaluator)),
       statistics(frame_statistics),
@@ -106,7 +106,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
     if (!shadows) return;
     StageTimer timer(statistics, Stage::RayBuild);
     auto rays = std::make_unique<RayScene>(scene, camera_origin(scene), std::move(opacity),
-                                           progress, geometries, &report);
+                                           progress, geometries, &report, std::move(kept_rays));
     statistics.peak_ray_bytes(rays->bytes());
     if (!rays->empty()) set.set_casters(std::move(rays));
 }
@@ -309,9 +309,9 @@ void DirectLight::Impl::look(LitGrid& grid, const EnvironmentSamples& samples, f
 
 DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics,
                          Report& report, const Progress& progress, ShadowOpacity opacity,
-                         std::shared_ptr<GeometryCache> geometries)
+                         std::shared_ptr<GeometryCache> geometries, std::shared_ptr<KeptRays> rays)
     : m_impl(std::make_unique<Impl>(scene, std::move(world), statistics, report, progress,
-                                    std::move(opacity), std::move(geometries))) {}
+                                    std::move(opacity), std::move(geometries), std::move(rays))) {}
 
 DirectLight::~DirectLight() = default;
 

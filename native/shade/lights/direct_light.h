@@ -28,6 +28,7 @@
 #include "shade/bsdf/reflection.h"
 #include "shade/lights/environment.h"
 #include "shade/lights/light_motion.h"
+#include "shade/rays/kept_rays.h"
 #include "shade/rays/shadow_opacity.h"
 
 namespace granita {
@@ -37,10 +38,11 @@ class DirectLight {
     /// Bakes the world and, if any light or the world shines, builds the ray scene.  `world` is
     /// kept and called from any thread; scene, statistics and progress must outlive this.  Without
     /// `opacity` every surface casts a full shadow.  `geometries`: shared with dicing, if it is
-    /// given.  Throws Cancelled.
+    /// given; `rays`: where built geometries are looked for and left.  Throws Cancelled.
     DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics, Report& report,
                 const Progress& progress, ShadowOpacity opacity = {},
-                std::shared_ptr<GeometryCache> geometries = nullptr);
+                std::shared_ptr<GeometryCache> geometries = nullptr,
+                std::shared_ptr<KeptRays> rays = nullptr);
     ~DirectLight();
 
     /// Whether anything that sheds light or casts shadows changes within the shutter: then

@@ -154,7 +154,7 @@ VectorSource NodeBuilder::specular_normal(const std::string& input) {
 
 VectorSource NodeBuilder::with_valid_reflection(const VectorSource& normal, bool bent_alone) {
     const VectorSource out = new_source<Vec3f>();
-    const std::vector<GeometryData>& geometries = scene().geometries;
+    const GeometryList& geometries = scene().geometries;
     add_step(
         [=, &geometries](Run& run) {
             const auto normals = run.read(normal);

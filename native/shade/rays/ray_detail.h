@@ -10,8 +10,17 @@
 
 namespace granita {
 
+/// A pixel is as large as `angle` at each metre from `p` (object space), and at least `constant`.
+struct Eye {
+    Vec3f p{0.0f};
+    float angle = 0.0f, constant = 0.0f;
+    float pixel(const Vec3f& at) const { return angle * glm::distance(at, p) + constant; }
+    bool operator==(const Eye&) const = default;
+};
+
 class RayDetail {
   public:
+    RayDetail() = default;
     /// `box`: of the geometry, object space.
     RayDetail(const Scene& scene, int geometry, const Bounds3f& box);
 
@@ -19,14 +28,10 @@ class RayDetail {
     /// caster shows it to the camera.
     float pixel(const Vec3f& p_object) const;
 
+    /// All that it depends on.
+    const std::vector<Eye>& eyes() const { return m_eyes; }
+
   private:
-    /// A pixel is as large as this at each metre from the eye (object space), and at least
-    /// `constant`.
-    struct Eye {
-        Vec3f p;
-        float angle, constant;
-        float pixel(const Vec3f& at) const { return angle * glm::distance(at, p) + constant; }
-    };
     std::vector<Eye> m_eyes;
 };
 

@@ -23,18 +23,6 @@
 namespace granita {
 namespace {
 
-struct Releaser {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-template <class T>
-using Handle = std::unique_ptr<std::remove_pointer_t<T>, Releaser>;
-
-bool add_bytes(void* user, ssize_t bytes, bool) {
-    static_cast<std::atomic<long long>*>(user)->fetch_add(bytes, std::memory_order_relaxed);
-    return true;
-}
-
 bool goes_on(void* user, double) {
     return !static_cast<const Progress*>(user)->cancelled();
 }
@@ -86,14 +74,17 @@ struct ShadowContext {
 
 struct RayScene::Impl {
     Impl(const Scene& frame_scene, ShadowOpacity shadow_opacity,
-         std::shared_ptr<GeometryCache> shared)
+         std::shared_ptr<GeometryCache> shared, std::shared_ptr<KeptRays> kept_rays)
         : scene(frame_scene),
           opacity(std::move(shadow_opacity)),
-          cache(shared ? std::move(shared) : std::make_shared<GeometryCache>()) {}
+          cache(shared ? std::move(shared) : std::make_shared<GeometryCache>()),
+          kept(std::move(kept_rays)) {}
 
     void check(const std::string& what, const Progress& progress) const;
-    std::unique_ptr<RayShape> mesh_shape(int geometry, Report& report,
-                                         const Progress& progress) const;
+    RayDetail detail_of(int geometry, const SharedGeometry* shared) const;
+    void make_shape(KeptRayShape& made, const std::shared_ptr<const SharedGeometry>& shared,
+                    const RayDetail& detail, const Progress& progress) const;
+    void build(KeptRayShape& made, const Progress& progress) const;
     void build_geometry(int geometry, std::uint8_t use, Report& report, const Progress& progress);
     void add_instance(std::uint32_t index, const Vec3d& origin);
     static bool casts_shadow(const Instance& instance) {
@@ -108,11 +99,9 @@ struct RayScene::Impl {
     const Scene& scene;
     ShadowOpacity opacity;
     std::shared_ptr<GeometryCache> cache;
-    std::atomic<long long> embree_bytes{0};
-    Handle<RTCDevice> device;
-    std::vector<std::unique_ptr<RayShape>> shapes;  ///< [geometries] nullptr = casts no shadow
-    std::vector<Handle<RTCScene>> geometries;       ///< [geometries]
-    Handle<RTCScene> top;
+    std::shared_ptr<KeptRays> kept;                           ///< nullptr = nothing casts a shadow
+    std::vector<std::shared_ptr<const KeptRayShape>> shapes;  ///< [geometries], as `kept`
+    RtcHandle<RTCScene> top;
     InstanceMotion motion;
     std::vector<RayInstance> instances;                       ///< by Embree's id in `top`
     std::unordered_map<std::uint32_t, std::uint32_t> by_key;  ///< Instance::key to that id
@@ -120,7 +109,7 @@ struct RayScene::Impl {
 
 void RayScene::Impl::check(const std::string& what, const Progress& progress) const {
     progress.check();
-    const RTCError error = rtcGetDeviceError(device.get());
+    const RTCError error = rtcGetDeviceError(kept->device());
     if (error == RTC_ERROR_NONE) return;
     if (error == RTC_ERROR_OUT_OF_MEMORY)
         throw SceneError(what, "not enough memory for its shadow rays");
@@ -134,19 +123,20 @@ bool RayScene::Impl::lets_light_through(const Instance& instance) const {
                        [&](std::int32_t material) { return opacity.is_transparent(material); });
 }
 
-std::unique_ptr<RayShape> RayScene::Impl::mesh_shape(int index, Report& report,
-                                                     const Progress& progress) const {
-    auto shared = cache->shared(scene, static_cast<std::size_t>(index), report);
-    if (!shared->subdivision()) return std::make_unique<RayMesh>(std::move(shared));
-    Bounds3f box;
-    for (const Vec3f& p : shared->surface_points(static_cast<int>(shared->frame().knot)))
-        if (is_finite(p)) box.add(p);
-    const RayDetail detail(scene, index, box);
-    auto shape = std::make_unique<RaySubdivision>(std::move(shared), detail, progress);
-    if (shape->is_coarsened())
-        report.warn(scene.geometries[static_cast<std::size_t>(index)].name,
-                    "has so many faces near the camera that its shadows are coarser than a pixel");
-    return shape;
+void RayScene::Impl::make_shape(KeptRayShape& made,
+                                const std::shared_ptr<const SharedGeometry>& shared,
+                                const RayDetail& detail, const Progress& progress) const {
+    const RayKey& key = made.key;
+    if (!shared) {
+        made.shape = std::make_unique<RayElements>(*key.data, key.frame_time,
+                                                   (key.use & kLetsLightThrough) != 0);
+    } else if (!shared->subdivision()) {
+        made.shape = std::make_unique<RayMesh>(shared);
+    } else {
+        auto shape = std::make_unique<RaySubdivision>(shared, detail, progress);
+        made.is_coarsened = shape->is_coarsened();
+        made.shape = std::move(shape);
+    }
 }
 
 std::optional<Vec3f> RayScene::Impl::constant_of(const Instance& instance) const {
@@ -158,33 +148,58 @@ std::optional<Vec3f> RayScene::Impl::constant_of(const Instance& instance) const
     return first;
 }
 
+RayDetail RayScene::Impl::detail_of(int index, const SharedGeometry* shared) const {
+    if (!shared || !shared->subdivision()) return {};
+    Bounds3f box;
+    for (const Vec3f& p : shared->surface_points(static_cast<int>(shared->frame().knot)))
+        if (is_finite(p)) box.add(p);
+    return {scene, index, box};
+}
+
 void RayScene::Impl::build_geometry(int index, std::uint8_t use, Report& report,
                                     const Progress& progress) {
-    const GeometryData& data = scene.geometries[static_cast<std::size_t>(index)];
-    const float time = scene.options.frame_time;
-    std::unique_ptr<RayShape> shape;
-    if (data.kind == GeometryKind::Mesh)
-        shape = mesh_shape(index, report, progress);
-    else
-        shape = std::make_unique<RayElements>(data, time, (use & kLetsLightThrough) != 0);
-    const std::string what = data.name + " of " + shape->size();
-    Handle<RTCScene> built(rtcNewScene(device.get()));
-    rtcSetSceneFlags(built.get(), RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(built.get(), RTC_BUILD_QUALITY_MEDIUM);
-    rtcSetSceneProgressMonitorFunction(built.get(), goes_on, const_cast<Progress*>(&progress));
-    for (RTCGeometry handed : shape->hand_over(device.get())) {
-        if (use & ~kCasts) rtcSetGeometryOccludedFilterFunction(handed, pass_through);
+    const auto geometry = static_cast<std::size_t>(index);
+    std::shared_ptr<const SharedGeometry> shared;
+    if (scene.geometries[geometry].kind == GeometryKind::Mesh)
+        shared = cache->shared(scene, geometry, report);
+    const RayDetail detail = detail_of(index, shared.get());
+    const RayKey key{scene.geometries.share(geometry), scene.options.frame_time, use,
+                     detail.eyes()};
+    std::shared_ptr<const KeptRayShape>& shape = shapes[geometry];
+    shape = kept->find(key);
+    if (!shape) {
+        auto made = std::make_shared<KeptRayShape>();
+        made->key = key;
+        make_shape(*made, shared, detail, progress);
+        build(*made, progress);
+        kept->add(made);
+        shape = std::move(made);
+    }
+    if (shape->is_coarsened)
+        report.warn(key.data->name,
+                    "has so many faces near the camera that its shadows are coarser than a pixel");
+}
+
+void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
+    const std::string what = made.key.data->name + " of " + made.shape->size();
+    made.built.reset(rtcNewScene(kept->device()));
+    RTCScene built = made.built.get();
+    rtcSetSceneFlags(built, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(built, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneProgressMonitorFunction(built, goes_on, const_cast<Progress*>(&progress));
+    for (RTCGeometry handed : made.shape->hand_over(kept->device())) {
+        if (made.key.use & ~kCasts) rtcSetGeometryOccludedFilterFunction(handed, pass_through);
         rtcCommitGeometry(handed);
-        rtcAttachGeometry(built.get(), handed);
+        rtcAttachGeometry(built, handed);
         rtcReleaseGeometry(handed);
     }
     {
         const ForeignThreads embree;
-        rtcCommitScene(built.get());
+        rtcCommitScene(built);
     }
     check(what, progress);
-    shapes[static_cast<std::size_t>(index)] = std::move(shape);
-    geometries[static_cast<std::size_t>(index)] = std::move(built);
+    // Embree keeps the pointer, and the geometry may outlive the frame.
+    rtcSetSceneProgressMonitorFunction(built, nullptr, nullptr);
 }
 
 void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
@@ -193,14 +208,14 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     const auto transforms = ray_transforms(instance.world_from_object, origin);
     if (!transforms) return;
     const auto& columns = transforms->columns;
-    RTCGeometry node = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(node, geometries[geometry].get());
+    RTCGeometry node = rtcNewGeometry(kept->device(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(node, shapes[geometry]->built.get());
     rtcSetGeometryTimeStepCount(node, static_cast<unsigned>(columns.size()));
     for (unsigned k = 0; k < columns.size(); ++k)
         rtcSetGeometryTransform(node, k, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns[k].data());
     rtcCommitGeometry(node);
-    if (columns.size() > 1 || shapes[geometry]->knots() > 1 || !instance.lifespan.is_whole())
-        motion.add(box_of(geometries[geometry].get()), transforms->knots);
+    if (columns.size() > 1 || shapes[geometry]->shape->knots() > 1 || !instance.lifespan.is_whole())
+        motion.add(box_of(shapes[geometry]->built.get()), transforms->knots);
     rtcAttachGeometryByID(top.get(), node, static_cast<unsigned>(instances.size()));
     rtcReleaseGeometry(node);
     by_key[instance.key] = static_cast<std::uint32_t>(instances.size());
@@ -216,8 +231,8 @@ Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& r
     const Instance& source = scene.instances[instance.index];
     ShadowHit shadow;
     shadow.instance = instance.index;
-    shapes[static_cast<std::size_t>(source.geometry)]->locate(hit.geomID, hit.primID, hit.u, hit.v,
-                                                              shadow);
+    shapes[static_cast<std::size_t>(source.geometry)]->shape->locate(hit.geomID, hit.primID, hit.u,
+                                                                     hit.v, shadow);
     shadow.material = material_of(source, shadow.slot);
     if (!opacity.is_transparent(shadow.material)) return Vec3f(0.0f);
     shadow.direction = context.direction;
@@ -272,8 +287,9 @@ void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) 
 
 RayScene::RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacity,
                    const Progress& progress, std::shared_ptr<GeometryCache> geometries,
-                   Report* report)
-    : m_impl(std::make_unique<Impl>(scene, std::move(opacity), std::move(geometries))) {
+                   Report* report, std::shared_ptr<KeptRays> kept)
+    : m_impl(std::make_unique<Impl>(scene, std::move(opacity), std::move(geometries),
+                                    std::move(kept))) {
     Report unread;
     Report& warnings = report ? *report : unread;
     Impl& impl = *m_impl;
@@ -287,17 +303,13 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacit
         if (instance.blocks != ~0ULL) use |= kIsLinked;
     }
     if (std::all_of(uses.begin(), uses.end(), [](std::uint8_t use) { return use == 0; })) return;
-    impl.device.reset(rtcNewDevice(nullptr));
-    if (!impl.device)
-        throw Error("Embree cannot start: error " + std::to_string(rtcGetDeviceError(nullptr)));
-    rtcSetDeviceMemoryMonitorFunction(impl.device.get(), add_bytes, &impl.embree_bytes);
+    if (!impl.kept) impl.kept = std::make_shared<KeptRays>();
     impl.shapes.resize(scene.geometries.size());
-    impl.geometries.resize(scene.geometries.size());
     for (std::size_t g = 0; g < uses.size(); ++g) {
         progress.check();
         if (uses[g]) impl.build_geometry(static_cast<int>(g), uses[g], warnings, progress);
     }
-    impl.top.reset(rtcNewScene(impl.device.get()));
+    impl.top.reset(rtcNewScene(impl.kept->device()));
     rtcSetSceneFlags(impl.top.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneProgressMonitorFunction(impl.top.get(), goes_on, const_cast<Progress*>(&progress));
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
@@ -318,9 +330,9 @@ bool RayScene::empty() const {
 }
 
 std::size_t RayScene::bytes() const {
-    std::size_t sum = static_cast<std::size_t>(std::max(0LL, m_impl->embree_bytes.load()));
+    std::size_t sum = m_impl->kept ? m_impl->kept->embree_bytes() : 0;
     for (const auto& shape : m_impl->shapes)
-        if (shape) sum += shape->bytes();
+        if (shape) sum += shape->shape->bytes();
     return sum;
 }
 
@@ -330,7 +342,7 @@ RayOffset RayScene::ray_offset(const GridKey& key) const {
     const RayInstance& instance = m_impl->instances[found->second];
     const auto geometry =
         static_cast<std::size_t>(m_impl->scene.instances[instance.index].geometry);
-    const RayShape& shape = *m_impl->shapes[geometry];
+    const RayShape& shape = *m_impl->shapes[geometry]->shape;
     return {instance.distance, instance.scale * shape.extent(key.face),
             instance.scale * shape.error(key.face), true};
 }

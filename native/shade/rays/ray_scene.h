@@ -12,6 +12,7 @@
 #include "dice/grid.h"
 #include "geometry/geometry_cache.h"
 #include "scene/scene.h"
+#include "shade/rays/kept_rays.h"
 #include "shade/rays/ray_offset.h"
 #include "shade/rays/shadow_opacity.h"
 
@@ -28,11 +29,12 @@ struct ShadowRay {
 class RayScene {
   public:
     /// `origin`: the camera's world position.  Only instances that cast shadows are in it.
-    /// `geometries`: shared with dicing, where given; `report`: what geometries are reported to.
+    /// `geometries`: shared with dicing, where given; `report`: what geometries are reported to;
+    /// `kept`: where built geometries are looked for and left.
     /// Throws Cancelled, or SceneError naming the geometry that Embree could not take.
     RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacity,
              const Progress& progress, std::shared_ptr<GeometryCache> geometries = nullptr,
-             Report* report = nullptr);
+             Report* report = nullptr, std::shared_ptr<KeptRays> kept = nullptr);
     ~RayScene();
 
     bool empty() const;

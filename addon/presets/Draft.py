@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import bpy
+
+settings = bpy.context.scene.granita
+
+settings.samples = 4
+settings.preview_samples = 8
+settings.sampling = "INDEPENDENT"
+settings.time_samples = 0
+settings.light_samples = 2
+settings.shading_threshold = 0.1
+settings.opacity_threshold = 0.996
+settings.dicing_rate = 4.0
+settings.shading_rate = 0.0
+settings.motion_factor = 1.0
+settings.focus_factor = 1.0

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sidebar of 3D views: what Rendered shading shows there, and what it costs."""
+
+import bpy
+
+from ..viewport import loop
+
+
+class GRANITA_VIEW3D_PT_preview(bpy.types.Panel):
+    bl_idname = "GRANITA_VIEW3D_PT_preview"
+    bl_label = "Granita"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "View"
+    COMPAT_ENGINES = {"GRANITA"}
+
+    @classmethod
+    def poll(cls, context):
+        return (
+            context.engine in cls.COMPAT_ENGINES and context.space_data.shading.type == "RENDERED"
+        )
+
+    def draw(self, context):
+        scene, settings = context.scene, context.scene.granita
+        column = self.layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop(settings, "preview_pause")
+        column.prop(settings, "preview_samples")
+        column.prop(settings, "preview_moving")
+        column.separator()
+        column.prop(scene.render, "use_motion_blur")
+        row = column.row()
+        row.active = scene.render.use_motion_blur
+        row.prop(scene.render, "motion_blur_shutter")
+        if scene.camera is not None and scene.camera.type == "CAMERA":
+            lens = scene.camera.data.dof
+            column.prop(lens, "use_dof")
+            row = column.row()
+            row.active = lens.use_dof
+            row.prop(lens, "aperture_fstop")
+
+
+class GRANITA_VIEW3D_PT_costs(bpy.types.Panel):
+    bl_idname = "GRANITA_VIEW3D_PT_costs"
+    bl_label = "What It Costs"
+    bl_parent_id = GRANITA_VIEW3D_PT_preview.bl_idname
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        column = self.layout.column(align=True)
+        view = loop.view_of(context.area)
+        if view is None:
+            column.label(text="No picture yet")
+            return
+        for label, value in view.costs.lines():
+            row = column.split(factor=0.6)
+            row.label(text=label)
+            row.label(text=value)
+        for line in view.warnings:
+            column.label(text=line, icon="ERROR")
+
+
+_CLASSES = (GRANITA_VIEW3D_PT_preview, GRANITA_VIEW3D_PT_costs)
+
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

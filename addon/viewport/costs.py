@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the last picture of a view has cost, for its sidebar."""
+
+from dataclasses import dataclass, field
+
+_STAGES = (
+    ("open", "Opening"),
+    ("dice", "Dicing"),
+    ("ray_build", "Ray structure"),
+    ("hide", "Hiding"),
+    ("shade", "Shading"),
+    ("resolve", "Compositing"),
+)
+
+
+@dataclass
+class Costs:
+    frame: float = 0.0  # seconds of Blender's thread: reading the frame
+    shutter: float = 0.0  # reading the whole shutter
+    first: float = 0.0  # until the first picture
+    whole: float = 0.0  # of the picture itself
+    statistics: dict = field(default_factory=dict)  # of its job
+
+    def lines(self):
+        """[(label, value)]."""
+        found = [
+            ("Reading the frame", _seconds(self.frame)),
+            ("Reading the shutter", _seconds(self.shutter)),
+            ("First picture", _seconds(self.first)),
+            ("Picture", _seconds(self.whole)),
+        ]
+        for name, label in _STAGES:
+            if f"seconds_{name}" in self.statistics:
+                found.append(
+                    (f"    {label} (processor)", _seconds(self.statistics[f"seconds_{name}"]))
+                )
+        for name, label in (("points_shaded", "Shaded points"), ("micropolygons", "Micropolygons")):
+            if name in self.statistics:
+                found.append((label, f"{self.statistics[name]:,}"))
+        return found
+
+
+def _seconds(value):
+    return f"{value * 1000:.0f} ms" if value < 1.0 else f"{value:.1f} s"

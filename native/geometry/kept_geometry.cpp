@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/kept_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "geometry/shared_elements.h"
+#include "geometry/shared_geometry.h"
+
+namespace granita {
+
+std::shared_ptr<const std::vector<Bounds3f>> GeometryParts::boxes() {
+    std::call_once(m_boxes_once, [&] {
+        m_boxes = std::make_shared<std::vector<Bounds3f>>(element_boxes(*m_data));
+    });
+    return m_boxes;
+}
+
+std::shared_ptr<const SharedGeometry> GeometryParts::shared() {
+    std::call_once(m_shared_once, [&] {
+        m_shared = std::make_shared<SharedGeometry>(*m_data, m_frame_time, m_said);
+    });
+    return m_shared;
+}
+
+std::shared_ptr<const SharedElements> GeometryParts::elements() {
+    std::call_once(m_elements_once, [&] {
+        m_elements = std::make_shared<SharedElements>(*m_data, m_frame_time, m_said);
+    });
+    return m_elements;
+}
+
+float GeometryParts::largest_radius() {
+    std::call_once(m_radius_once, [&] {
+        for (const float radius : m_data->radius)
+            if (std::isfinite(radius)) m_largest_radius = std::max(m_largest_radius, radius);
+    });
+    return m_largest_radius;
+}
+
+std::shared_ptr<GeometryParts> KeptGeometry::find(const std::shared_ptr<const GeometryData>& data,
+                                                  float frame_time) {
+    const std::lock_guard lock(m_mutex);
+    std::shared_ptr<GeometryParts>& parts = m_parts[{data.get(), frame_time}];
+    if (!parts) {
+        parts = std::make_shared<GeometryParts>(data, frame_time);
+        ++m_made;
+    }
+    return parts;
+}
+
+void KeptGeometry::keep_only(const GeometryList& geometries) {
+    std::set<const GeometryData*> there;
+    for (const GeometryData& data : geometries) there.insert(&data);
+    const std::lock_guard lock(m_mutex);
+    std::erase_if(m_parts, [&](const auto& entry) { return !there.contains(entry.first.first); });
+}
+
+}  // namespace granita

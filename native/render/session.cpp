@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/session.h"
+
+#include <map>
+#include <string>
+
+namespace granita {
+
+Session::Session() {
+    m_shading.rays = std::make_shared<KeptRays>();
+}
+
+void Session::adopt(Scene& scene) {
+    const std::lock_guard lock(m_mutex);
+    std::multimap<std::string, std::size_t> by_name;
+    for (std::size_t i = 0; i < m_before.size(); ++i) by_name.emplace(m_before[i].name, i);
+    for (std::size_t i = 0; i < scene.geometries.size(); ++i) {
+        const auto [first, last] = by_name.equal_range(scene.geometries[i].name);
+        for (auto known = first; known != last; ++known)
+            if (is_same(m_before[known->second], scene.geometries[i])) {
+                scene.geometries.adopt(i, m_before, known->second);
+                by_name.erase(known);
+                ++m_adopted;
+                break;
+            }
+    }
+    m_before.share_all(scene.geometries);
+    m_shading.geometry->keep_only(m_before);
+    m_shading.rays->keep_only(m_before);
+}
+
+}  // namespace granita

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What outlives a picture: an edit makes again what depends on it and nothing else.
+//
+//   an edit of                                                parts of geometry   its rays
+//   its own bytes; Blender's time in the shutter              made again          made again
+//   how casters use it (opacity, lifespans, sets of lights)   kept                made again
+//   view, transforms; a subdivision surface                   kept                made again
+//   view, transforms; others                                  kept                kept
+//   lens, lights, colours, samples, film                      kept                kept
+//
+// A final frame is a session that lives for one picture.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+
+#include "scene/scene.h"
+#include "shade/kept_shading.h"
+
+namespace granita {
+
+/// Thread-safe; shared by the jobs that use it, of which one may still be ending when the next has
+/// begun.
+class Session {
+  public:
+    /// Throws Error where Embree does not start.
+    Session();
+
+    /// Before the scene is rendered: geometries that are the same in every byte as one of the scene
+    /// before become that one; what is made of others is forgotten.
+    void adopt(Scene& scene);
+
+    const KeptShading& shading() const { return m_shading; }
+
+    /// Since the session began.
+    std::uint64_t geometries_adopted() const { return m_adopted; }
+    std::uint64_t geometries_made() const { return m_shading.geometry->made(); }
+    std::uint64_t ray_shapes_made() const { return m_shading.rays->made(); }
+
+  private:
+    std::mutex m_mutex;
+    KeptShading m_shading;
+    GeometryList m_before;
+    std::atomic<std::uint64_t> m_adopted{0};
+};
+
+}  // namespace granita

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What of a picture the next one can use again, as far as geometry and rays are concerned; each
+// part knows what it is made of.
+#pragma once
+
+#include <memory>
+
+#include "geometry/kept_geometry.h"
+#include "shade/rays/kept_rays.h"
+
+namespace granita {
+
+struct KeptShading {
+    std::shared_ptr<KeptGeometry> geometry = std::make_shared<KeptGeometry>();
+    std::shared_ptr<KeptRays> rays;  ///< nullptr: none are kept
+};
+
+}  // namespace granita

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Geometries as Embree has built them: a store that may outlive a picture.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <type_traits>
+#include <vector>
+
+#include "scene/geometry_list.h"
+#include "shade/rays/ray_detail.h"
+#include "shade/rays/ray_shape.h"
+
+namespace granita {
+
+struct RtcReleaser {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+template <class T>
+using RtcHandle = std::unique_ptr<std::remove_pointer_t<T>, RtcReleaser>;
+
+/// What a built geometry depends on.
+struct RayKey {
+    std::shared_ptr<const GeometryData> data;
+    float frame_time = 0.0f;
+    std::uint8_t use = 0;   ///< by instances, of RayScene
+    std::vector<Eye> eyes;  ///< of a subdivision surface: how finely
+    bool operator==(const RayKey&) const = default;
+};
+
+struct KeptRayShape {
+    RayKey key;
+    std::unique_ptr<RayShape> shape;
+    RtcHandle<RTCScene> built;
+    bool is_coarsened = false;
+};
+
+/// Thread-safe.  Owns the device that all in it belong to.
+class KeptRays {
+  public:
+    /// Throws Error where Embree does not start.
+    KeptRays();
+
+    RTCDevice device() const { return m_device.get(); }
+    /// nullptr where it is not there.
+    std::shared_ptr<const KeptRayShape> find(const RayKey& key) const;
+    void add(std::shared_ptr<const KeptRayShape> made);
+    /// Forgets what is made of others.
+    void keep_only(const GeometryList& geometries);
+    /// How many were added.
+    std::uint64_t made() const { return m_made; }
+    /// Of Embree, whatever it was made for.
+    std::size_t embree_bytes() const;
+
+  private:
+    std::atomic<long long> m_bytes{0};
+    RtcHandle<RTCDevice> m_device;
+    mutable std::mutex m_mutex;
+    std::multimap<const GeometryData*, std::shared_ptr<const KeptRayShape>> m_shapes;
+    std::atomic<std::uint64_t> m_made{0};
+};
+
+}  // namespace granita

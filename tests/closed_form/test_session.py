@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A session makes again what an edit changes and nothing else, and the picture is that of a frame alone."""
+
+import copy
+
+import numpy as np
+import pytest
+import snapshots as s
+
+DOWN = np.diag([1.0, -1.0, -1.0, 1.0])  # shines along +z, away from the camera
+
+
+def matte(snapshot, color, alpha=None):
+    nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (*color, 1)}}]
+    surface = (0, "BSDF")
+    if alpha is not None:
+        nodes.append({"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1, 1, 1, 1)}})
+        mixed = {"Fac": alpha, "Shader": ("LINK", 1, "BSDF"), "Shader_001": ("LINK", 0, "BSDF")}
+        nodes.append({"type": "ShaderNodeMixShader", "inputs": mixed})
+        surface = (2, "Shader")
+    name = f"Matte {len(snapshot['materials'])}"
+    snapshot["materials"].append({"name": name, "nodes": nodes, "surface": surface})
+    return len(snapshot["materials"]) - 1
+
+
+def scene():
+    """A floor, a moving card, a subdivided cube, and a strand before them, under a sun with a lens."""
+    snapshot = s.perspective((48, 32), 60.0, executor="SIMD", samples=4)
+    snapshot["camera"].update(lens_radius=0.02, focus_distance=6.0)
+    s.quad(snapshot, s.rectangle(-6, -6, 6, 6, 9.0), matte(snapshot, (0.8, 0.8, 0.8)))
+    ends = [s.translation(-0.3), s.translation(0.3)]
+    card = s.rectangle(-1.5, -1, 0, 1, 6.0)
+    s.quad(snapshot, card, matte(snapshot, (0.9, 0.3, 0.1)), transforms=ends)
+    corners = [(x, y, z) for x in (0.3, 1.7) for y in (-0.7, 0.7) for z in (5.3, 6.7)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    cage = {"subdivision": {"scheme": "CATMULL_CLARK"}, "smooth": np.ones(6, np.uint8)}
+    s.mesh(snapshot, corners, faces, matte(snapshot, (0.2, 0.5, 0.9)), **cage)
+    snapshot["lights"] = [
+        {"name": "Sun", "kind": "SUN", "world_from_light": DOWN[None], "energy": 3.0}
+    ]
+    return snapshot
+
+
+def moved_camera(snapshot):
+    snapshot["camera"]["world_from_camera"] = s.translation(0.2)[None]
+
+
+def moved_card(snapshot):
+    snapshot["instances"]["world_from_object"][1] = s.translation(-0.5, 0.1)
+
+
+def bent_card(snapshot):
+    points = snapshot["geometries"][1]["points"].copy()
+    points[0, 0, 2] += 0.5
+    snapshot["geometries"][1]["points"] = points
+
+
+def see_through_card(snapshot):
+    snapshot["instances"]["materials"][1] = matte(snapshot, (0.9, 0.3, 0.1), 0.5)
+
+
+def other_light(snapshot):
+    snapshot["lights"][0]["energy"] = 5.0
+    snapshot["lights"][0]["world_from_light"] = s.translation(1.0)[None] @ DOWN
+
+
+def other_color(snapshot):
+    snapshot["materials"][0]["nodes"][0]["inputs"]["Color"] = (0.1, 0.8, 0.1, 1)
+
+
+def later_frame(snapshot):
+    snapshot["options"]["frame_time"] = 0.0
+
+
+def without_cube(snapshot):
+    for name in ("name", "geometry", "knots", "slots", "materials", "lifespan"):
+        del snapshot["instances"][name][2]
+    del snapshot["instances"]["world_from_object"][3:]
+    del snapshot["geometries"][2]
+
+
+# The edit, and how many geometries' parts and ray shapes are made anew of the three.
+EDITS = {
+    "nothing": (lambda snapshot: None, 0, 0),
+    "samples": (lambda snapshot: snapshot["options"].update(samples=16), 0, 0),
+    "lens": (lambda snapshot: snapshot["camera"].update(lens_radius=0.1, focus_distance=9.0), 0, 0),
+    "light": (other_light, 0, 0),
+    "colour": (other_color, 0, 0),
+    "place of a polygon": (moved_card, 0, 0),
+    "view": (moved_camera, 0, 1),  # the cage: rays meet it as closely as it is seen
+    "opacity": (see_through_card, 0, 1),
+    "shape": (bent_card, 1, 1),
+    "frame time": (later_frame, 3, 3),
+    "deletion": (without_cube, 0, 0),
+}
+
+
+class Kept:
+    def __init__(self):
+        import granita_core
+
+        self.core = granita_core
+        self.session = granita_core.Session()
+
+    def picture(self, snapshot):
+        width, height = snapshot["options"]["width"], snapshot["options"]["height"]
+        job = self.core.Render(self.core.Scene(s.packed(snapshot), self.session))
+        found = np.zeros((height, width, 4), np.float32)
+        while not job.done():
+            for tile in job.take_tiles(0.1):
+                values = tile.combined
+                y, x = tile.y, tile.x
+                found[y : y + values.shape[0], x : x + values.shape[1]] = values
+        job.finish()
+        return found
+
+    def made(self):
+        return np.array([self.session.geometries_made, self.session.ray_shapes_made])
+
+
+@pytest.mark.parametrize("name", EDITS)
+def test_an_edit_makes_again_what_it_changes(name):
+    edit, geometries, rays = EDITS[name]
+    kept = Kept()
+    first = scene()
+    np.testing.assert_array_equal(kept.picture(first), s.render(first)["combined"])
+    np.testing.assert_array_equal(kept.made(), (3, 3))
+    second = copy.deepcopy(first)
+    edit(second)
+    np.testing.assert_array_equal(kept.picture(second), s.render(second)["combined"])
+    np.testing.assert_array_equal(kept.made() - 3, (geometries, rays))
+
+
+def test_what_is_not_there_any_more_is_forgotten():
+    kept = Kept()
+    first, second = scene(), scene()
+    kept.picture(first)
+    without_cube(second)
+    kept.picture(second)
+    kept.picture(first)
+    np.testing.assert_array_equal(kept.made(), (4, 4))
+
+
+def test_equal_geometries_of_one_name_are_each_adopted():
+    snapshot = scene()
+    snapshot["geometries"][1] = dict(snapshot["geometries"][0])
+    kept = Kept()
+    kept.picture(snapshot)
+    np.testing.assert_array_equal(kept.picture(snapshot), s.render(snapshot)["combined"])
+    assert kept.session.geometries_adopted == 3
+    np.testing.assert_array_equal(kept.made(), (3, 3))
+
+
+def test_a_job_that_is_cancelled_leaves_a_session_whole():
+    kept = Kept()
+    snapshot = scene()
+    snapshot["options"]["samples"] = 256
+    for _ in range(5):
+        job = kept.core.Render(kept.core.Scene(s.packed(snapshot), kept.session))
+        job.cancel()
+    np.testing.assert_array_equal(kept.picture(snapshot), s.render(snapshot)["combined"])
+
+
+def test_warnings_are_those_of_a_frame_alone():
+    snapshot = scene()
+    broken = snapshot["geometries"][0]["points"].copy()
+    broken[0, 0, 0] = np.nan
+    snapshot["geometries"][0]["points"] = broken
+    alone = s.render(snapshot)["warnings"]
+    assert alone
+    kept = Kept()
+    for _ in range(2):
+        job = kept.core.Render(kept.core.Scene(s.packed(snapshot), kept.session))
+        job.finish()
+        assert job.warnings() == alone
