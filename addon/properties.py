@@ -139,6 +139,21 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
         1.0,
         (0.0, 10.0),
     )
+    noise_threshold: _real(
+        "Noise Threshold",
+        "Error of displayed colour below which a tile of 16 x 16 pixels takes no more samples; Samples is then the "
+        "most that any takes. 0.01 is hardly seen; 0: every pixel takes all Samples",
+        0.0,
+        (0.0, 1.0),
+        usual=(0.0, 0.1),
+        precision=4,
+    )
+    min_samples: _whole(
+        "Min Samples",
+        "Samples that every pixel takes at least, where there is a Noise Threshold. Fewer may miss what is small",
+        16,
+        (1, 4096),
+    )
     light_samples: _whole(
         "Light Samples",
         "Shadow rays from each shaded point to each light that has a size and to the world",

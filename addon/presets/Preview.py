@@ -5,6 +5,8 @@ settings = bpy.context.scene.granita
 
 settings.samples = 8
 settings.preview_samples = 16
+settings.noise_threshold = 0.0
+settings.min_samples = 16
 settings.sampling = "INDEPENDENT"
 settings.time_samples = 0
 settings.light_samples = 4

@@ -48,6 +48,10 @@ class GRANITA_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         settings = context.scene.granita
         column = self.column()
         column.prop(settings, "samples")
+        column.prop(settings, "noise_threshold")
+        row = column.row()
+        row.active = settings.noise_threshold > 0
+        row.prop(settings, "min_samples")
         column.prop(settings, "preview_samples")
         column.prop(settings, "sampling")
         if settings.sampling == "REGULAR":

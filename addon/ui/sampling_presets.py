@@ -28,6 +28,8 @@ class GRANITA_OT_sampling_preset_add(AddPresetBase, bpy.types.Operator):
     preset_values = (
         "settings.samples",
         "settings.preview_samples",
+        "settings.noise_threshold",
+        "settings.min_samples",
         "settings.sampling",
         "settings.time_samples",
         "settings.light_samples",

@@ -31,6 +31,7 @@ enum class Counter {
     Micropolygons,         ///< at the hider, counted once a bucket that tests them
     MicropolygonsDropped,  ///< non-finite, counted and reported
     SamplesTotal,          ///< of the picture's own pixels, without those around that filters reach
+    TilesResampled,        ///< looks at a tile with more samples, as fewer left it in doubt
     SampleTestsStatic,     ///< point-in-micropolygon tests without motion or lens
     SampleTestsMoving,     ///< with motion, lens or both
     SampleHits,            ///< tests that covered the sample (before the depth comparison)

@@ -41,7 +41,7 @@ struct HiderFrame {
 class Hider {
   public:
     explicit Hider(const HiderFrame& frame)
-        : m_projection(frame.projection), m_lens(frame.table->lens()) {}
+        : m_projection(frame.projection), m_table(*frame.table), m_lens(m_table.lens()) {}
     virtual ~Hider() = default;
     /// True only if nothing inside the bounds can be seen by any sample of the bucket, given what
     /// was hidden so far.
@@ -58,6 +58,7 @@ class Hider {
     /// In raster order of tiles.  No hide() afterwards.
     virtual std::vector<TileStore>& finish() = 0;
     virtual const GridPool& pool() const = 0;
+    const SampleTable& table() const { return m_table; }
     /// Of the pool's grids, by arrival, those that some sample of finish() sees.
     virtual std::vector<bool> seen_grids() const = 0;
     /// The samples of a tile of finish(), by index: made with exactly the needs that the bucket
@@ -66,6 +67,7 @@ class Hider {
 
   protected:
     const Projection m_projection;
+    const SampleTable& m_table;
     const LensShape& m_lens;
 };
 

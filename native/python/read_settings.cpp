@@ -70,6 +70,9 @@ void read_options(const Record& r, Options& o) {
     }
     o.frame = r.integer("frame", 0);
     o.samples = in_range(r, "samples", r.integer("samples", o.samples), 1, 4096);
+    o.noise_threshold =
+        at_least(r, "noise_threshold", r.number("noise_threshold", o.noise_threshold), 0.0);
+    o.min_samples = in_range(r, "min_samples", r.integer("min_samples", o.min_samples), 1, 4096);
     o.sampling = static_cast<Sampling>(choice(r, "sampling", r.text("sampling", "INDEPENDENT"),
                                               {"INDEPENDENT", "INTERLEAVED", "REGULAR"}));
     o.time_samples = in_range(r, "time_samples", r.integer("time_samples", 0), 0, 65536);

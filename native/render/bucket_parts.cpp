@@ -11,18 +11,19 @@ namespace {
 
 class TileParts {
   public:
-    TileParts(Frame& frame, Vec2i tile, const HiddenGrids& grids)
-        : m_frame(frame), m_tile(tile), m_grids(grids), m_colors(frame) {}
+    TileParts(Frame& frame, const SampleTable& table, Vec2i tile, const HiddenGrids& grids)
+        : m_frame(frame), m_table(table), m_tile(tile), m_grids(grids), m_colors(frame, table) {}
 
     /// `pixels`: of the tile, in the frame's coordinates.
-    TileContribution resolve(const Rect& pixels) {
+    ResolvedTile resolve(const Rect& pixels) {
         add(pixels);
-        return m_colors.filter(m_tile, m_samples);
+        return {m_tile, m_colors.filter(m_tile, m_samples), m_colors.noise(m_samples)};
     }
 
   private:
     void add(const Rect& pixels) {
         HiderFrame settings = m_frame.hider;
+        settings.table = &m_table;
         // The lists of one pixel are needed whatever they take.
         const bool is_pixel = pixels.width() == 1 && pixels.height() == 1;
         if (is_pixel) settings.list_bytes = ~std::uint64_t{0};
@@ -36,10 +37,10 @@ class TileParts {
         if (hider->overflowed()) return add_halves(pixels);
         const std::vector<bool> seen = shade_seen(m_frame, *hider, hidden);
         const BucketRefinement refinement(m_frame, *hider, *stores, seen);
-        LayerTable table(hider->pool(), seen);
+        LayerTable layers(hider->pool(), seen);
         m_samples = hider->tile_samples(0);
-        TileColors part(m_frame);
-        part.composite(stores->front(), m_samples, table, refinement.tile(0));
+        TileColors part(m_frame, m_table);
+        part.composite(stores->front(), m_samples, layers, refinement.tile(0));
         const Vec2i corner = m_tile * kTileSize;
         m_colors.take(part,
                       {pixels.x0 - corner.x, pixels.y0 - corner.y, pixels.x1 - corner.x,
@@ -55,7 +56,7 @@ class TileParts {
         for (const auto& grid : m_grids) {
             if (hider->overflowed()) break;
             if (hider->occluded(grid->grid().bounds)) continue;
-            hider->hide(grid->sweep(m_frame.view.projection, m_frame.table.lens()));
+            hider->hide(grid->sweep(m_frame.view.projection, m_frame.lens()));
             hidden.push_back(grid);
         }
         return hider;
@@ -75,6 +76,7 @@ class TileParts {
     }
 
     Frame& m_frame;
+    const SampleTable& m_table;
     Vec2i m_tile;
     const HiddenGrids& m_grids;
     TileSamples m_samples;
@@ -90,15 +92,17 @@ std::unique_ptr<Hider> make_hider(const HiderFrame& settings, const ExecutorChoi
                                                   : make_simd_hider(settings, tiles, pixels);
 }
 
-std::vector<TileContribution> resolve_in_parts(Frame& frame, int bucket, const HiddenGrids& grids) {
-    const Rect tiles = frame.layout.tiles(bucket), pixels = frame.layout.pixels(bucket);
-    std::vector<TileContribution> contributions;
+std::vector<ResolvedTile> resolve_in_parts(Frame& frame, const SampleTable& table,
+                                           const Rect& tiles, const Rect& pixels,
+                                           const HiddenGrids& grids) {
+    std::vector<ResolvedTile> resolved;
     for (int y = tiles.y0; y < tiles.y1; ++y)
         for (int x = tiles.x0; x < tiles.x1; ++x) {
             const Rect own{x * kTileSize, y * kTileSize, (x + 1) * kTileSize, (y + 1) * kTileSize};
-            contributions.push_back(TileParts(frame, {x, y}, grids).resolve(own.intersect(pixels)));
+            resolved.push_back(
+                TileParts(frame, table, {x, y}, grids).resolve(own.intersect(pixels)));
         }
-    return contributions;
+    return resolved;
 }
 
 }  // namespace granita

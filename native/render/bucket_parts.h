@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "render/resolved_tile.h"
 #include "render/shade_seen.h"
 
 namespace granita {
@@ -14,7 +15,9 @@ namespace granita {
 std::unique_ptr<Hider> make_hider(const HiderFrame& settings, const ExecutorChoice& choice,
                                   const Rect& tiles, const Rect& pixels);
 
-/// `grids`: all that the bucket's samples may see, from front to back.
-std::vector<TileContribution> resolve_in_parts(Frame& frame, int bucket, const HiddenGrids& grids);
+/// `pixels`: of these tiles; `grids`: all that their samples may see, from front to back.
+std::vector<ResolvedTile> resolve_in_parts(Frame& frame, const SampleTable& table,
+                                           const Rect& tiles, const Rect& pixels,
+                                           const HiddenGrids& grids);
 
 }  // namespace granita

@@ -5,7 +5,6 @@
 #include <thread>
 
 #include "base/stage_timer.h"
-#include "render/frame_blur.h"
 #include "render/raster_bucket.h"
 
 namespace granita {
@@ -27,19 +26,9 @@ View make_view(const Scene& scene, Statistics& statistics, const ShadingSystem& 
     return view;
 }
 
-SampleTable make_table(const Scene& scene, const View& view, Report& report) {
-    const StageTimer timer(*view.statistics, Stage::Hide);
-    const SampleNeeds needs{scene.moves(), scene.camera.projection.has_lens()};
-    const Options& options = scene.options;
-    if (options.sampling != Sampling::Regular || options.time_samples != 0)
-        return SampleTable(options, scene.camera, needs);
-    const PixelFilter filter(options.pixel_filter, options.filter_width);
-    return SampleTable(options, scene.camera, needs, automatic_passes(view, filter, report));
-}
-
 HiderFrame make_hider_frame(const Frame& frame) {
-    HiderFrame out{&frame.table, frame.view.projection, &frame.statistics,
-                   &frame.scene, &frame.report,         &frame.progress};
+    HiderFrame out{&frame.levels.all(), frame.view.projection, &frame.statistics,
+                   &frame.scene,        &frame.report,         &frame.progress};
     const Options& options = frame.scene.options;
     const bool has_passes = options.depth_pass || !ChannelSet(options).empty();
     out.list_end = {options.opacity_threshold, has_passes ? options.pass_alpha_threshold : 0.0f};
@@ -60,20 +49,32 @@ Vec3f constant_background_of(const ShadingSystem& shading) {
 /// Pixels along a bucket's side.  The CPU fills, sorts and composites a bucket's samples and lists
 /// while the cache still holds them: at 256 samples what is opaque takes 7 to 15 % less in buckets
 /// of 16 pixels than in buckets of 64, and feathers half (docs/decisions/transparency.md).
-int bucket_size(const Options& options, Executor executor) {
+int bucket_size(const Options& options, int samples, Executor executor) {
     constexpr std::int64_t kCachedSamples = 1 << 16;
     if (executor != Executor::Simd) return options.bucket_size;
     std::int64_t size = options.bucket_size;
-    while (size > kTileSize && size * size * options.samples > kCachedSamples) size -= kTileSize;
+    while (size > kTileSize && size * size * samples > kCachedSamples) size -= kTileSize;
     return static_cast<int>(size);
 }
 
+int rounded_down(int pixel) {
+    return pixel & -kTileSize;
+}
+
 /// The film merges what CPU buckets contribute to each other's pixels; raster buckets filter by
-/// themselves.
-BucketLayout make_layout(const Options& options, const Film& film, Executor executor) {
-    const int size = bucket_size(options, executor);
-    if (executor != Executor::Raster) return BucketLayout(film.sample_pixels(), size);
-    return BucketLayout(options.crop, size, options.crop.x0 - film.sample_pixels().x0);
+/// themselves.  Where tiles take what samples they need, that is decided by whole tiles, lest it
+/// depend on the crop.
+BucketLayout make_layout(const Options& options, const Film& film, const SampleLevels& levels,
+                         Executor executor) {
+    const int size = bucket_size(options, levels.fewest().samples(), executor);
+    const Rect& pixels = film.sample_pixels();
+    if (executor == Executor::Raster)
+        return BucketLayout(options.crop, size, options.crop.x0 - pixels.x0);
+    if (levels.count() == 1) return BucketLayout(pixels, size);
+    return BucketLayout(
+        {rounded_down(pixels.x0), rounded_down(pixels.y0), rounded_down(pixels.x1 + kTileSize - 1),
+         rounded_down(pixels.y1 + kTileSize - 1)},
+        size);
 }
 
 }  // namespace
@@ -87,17 +88,18 @@ Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& fra
       shading(scene, statistics, report, progress, frame_choice.executor != Executor::Raster, kept),
       view(make_view(scene, statistics, shading,
                      PixelFilter(scene.options.pixel_filter, scene.options.filter_width))),
-      table(make_table(scene, view, report)),
+      levels(view, PixelFilter(scene.options.pixel_filter, scene.options.filter_width),
+             frame_choice.executor != Executor::Raster, report),
       hider(make_hider_frame(*this)),
       constant_background(constant_background_of(shading)),
       choice(std::move(frame_choice)),
       raster(choice.executor == Executor::Raster
                  ? std::make_unique<RasterHider>(
-                       *choice.gl, make_raster_frame(scene, view.projection, table, statistics,
-                                                     report, choice.gl->info()))
+                       *choice.gl, make_raster_frame(scene, view.projection, levels.all(),
+                                                     statistics, report, choice.gl->info()))
                  : nullptr),
       film(scene.options),
-      layout(make_layout(scene.options, film, choice.executor)),
-      geometry(view, layout, report) {}
+      layout(make_layout(scene.options, film, levels, choice.executor)),
+      geometry(view, layout, report, levels.count() > 1) {}
 
 }  // namespace granita

@@ -10,6 +10,7 @@
 #include "hider/raster/raster_hider.h"
 #include "render/choose_executor.h"
 #include "render/frame_geometry.h"
+#include "render/sample_levels.h"
 #include "shade/shading_system.h"
 
 namespace granita {
@@ -24,14 +25,16 @@ struct Frame {
     const Progress& progress;
     ShadingSystem shading;
     View view;
-    SampleTable table;
-    HiderFrame hider;
+    SampleLevels levels;
+    HiderFrame hider;  ///< with all samples
     Vec3f constant_background{0.0f};
     ExecutorChoice choice;
     std::unique_ptr<RasterHider> raster;  ///< only where it was chosen
     Film film;
     BucketLayout layout;
     FrameGeometry geometry;
+
+    const LensShape& lens() const { return levels.all().lens(); }
 };
 
 }  // namespace granita

@@ -23,10 +23,12 @@ bool is_single(const Rect& range) {
 
 }  // namespace
 
-FrameGeometry::FrameGeometry(const View& view, const BucketLayout& layout, Report& report)
+FrameGeometry::FrameGeometry(const View& view, const BucketLayout& layout, Report& report,
+                             bool revisited)
     : m_view(view),
       m_layout(layout),
       m_report(report),
+      m_revisited(revisited),
       m_states(view.scene->instances.size()),
       m_finished(static_cast<std::size_t>(layout.count())) {
     const StageTimer timer(*view.statistics, Stage::Open);
@@ -74,7 +76,7 @@ std::shared_ptr<FrameGeometry::Opened> FrameGeometry::make_opened(std::uint32_t 
 }
 
 std::shared_ptr<GeometryNode> FrameGeometry::node(Opened& opened, std::uint32_t primitive) {
-    if (is_single(m_layout.range(opened.bounds[primitive]))) return nullptr;
+    if (!m_revisited && is_single(m_layout.range(opened.bounds[primitive]))) return nullptr;
     const std::lock_guard lock(opened.mutex);
     auto& node = opened.nodes[primitive];
     if (!node) {

@@ -20,7 +20,9 @@ namespace granita {
 
 class FrameGeometry {
   public:
-    FrameGeometry(const View& view, const BucketLayout& layout, Report& report);
+    /// `revisited`: buckets look at parts of themselves again, and find what they have diced.
+    FrameGeometry(const View& view, const BucketLayout& layout, Report& report,
+                  bool revisited = false);
 
     /// visit(instance) for those whose bound touches the bucket.
     template <class Visit>
@@ -56,7 +58,7 @@ class FrameGeometry {
             if (holds(m_layout.range(opened.bounds[face]), at)) visit(face);
         });
     }
-    /// The node of a primitive that several buckets want; nullptr if only one does.
+    /// The node of a primitive that is wanted more than once; nullptr if it is not.
     std::shared_ptr<GeometryNode> node(Opened& opened, std::uint32_t primitive);
     /// The bucket is done: releases everything that only it was still waiting for.
     void release(int bucket);
@@ -83,6 +85,7 @@ class FrameGeometry {
     const View& m_view;
     const BucketLayout& m_layout;
     Report& m_report;
+    const bool m_revisited;
     std::vector<State> m_states;
     HierarchicalGrid m_instances;
     std::vector<std::atomic<bool>> m_finished;  ///< [buckets]

@@ -79,7 +79,7 @@ Tile raster_bucket(Frame& frame, int bucket) {
     const Rect pixels = frame.layout.pixels(bucket);
     std::vector<std::shared_ptr<SharedGrid>> grids;
     visit_geometry(
-        frame, bucket, [](const TimeSlab&) { return false; },
+        frame, bucket, frame.layout.reach(bucket), [](const TimeSlab&) { return false; },
         [&](std::shared_ptr<SharedGrid> grid) {
             if (frame.shading.opacity_varies(grid->grid().material))
                 grid->ensure_opacity(frame.shading);
@@ -88,7 +88,7 @@ Tile raster_bucket(Frame& frame, int bucket) {
     std::vector<const GridSweep*> sweeps;
     sweeps.reserve(grids.size());
     for (const auto& grid : grids)
-        sweeps.push_back(&grid->sweep(frame.view.projection, frame.table.lens()));
+        sweeps.push_back(&grid->sweep(frame.view.projection, frame.lens()));
     count_needs(frame, sweeps);
 
     std::unique_ptr<RasterBucket> device_bucket;

@@ -105,7 +105,7 @@ void BucketRefinement::find_times(std::uint32_t tile) {
     if (camera_moves) {
         if (!samples.t.empty()) return;
         TileSamples frame_samples = samples;
-        m_frame.table.fill_times(store.tile, frame_samples);
+        m_hider.table().fill_times(store.tile, frame_samples);
         out.of_samples = std::move(frame_samples.t);
         return;
     }

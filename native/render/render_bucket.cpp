@@ -5,11 +5,16 @@
 #include "render/bucket_parts.h"
 #include "render/raster_bucket.h"
 #include "render/refine_samples.h"
+#include "render/resolved_tile.h"
 #include "render/tile_colors.h"
 #include "render/visit_geometry.h"
 
 namespace granita {
 namespace {
+
+Rect tile_pixels(const Rect& tiles) {
+    return {tiles.x0 * kTileSize, tiles.y0 * kTileSize, tiles.x1 * kTileSize, tiles.y1 * kTileSize};
+}
 
 /// The bucket's share of the frame's geometry is given back on every path.
 class Release {
@@ -35,19 +40,19 @@ void count_needs(Frame& frame, const HiddenGrids& grids) {
     frame.statistics.add(Counter::BucketsTransparent, transparent);
 }
 
-void hide_geometry(Frame& frame, int bucket, Hider& hider, HiddenGrids& grids) {
+void hide_geometry(Frame& frame, int bucket, const Rect& reach, Hider& hider, HiddenGrids& grids) {
     const StageTimer timer(frame.statistics, Stage::Hide);  // but for what is opened or diced
     const auto occluded = [&](const TimeSlab& slab) { return hider.occluded(slab); };
-    visit_geometry(frame, bucket, occluded, [&](std::shared_ptr<SharedGrid> grid) {
+    visit_geometry(frame, bucket, reach, occluded, [&](std::shared_ptr<SharedGrid> grid) {
         if (frame.shading.opacity_varies(grid->grid().material))
             grid->ensure_opacity(frame.shading);
-        hider.hide(grid->sweep(frame.view.projection, frame.table.lens()));
+        hider.hide(grid->sweep(frame.view.projection, frame.lens()));
         grids.push_back(std::move(grid));
     });
 }
 
 /// Composites and filters every tile; none where the lists did not fit.
-std::vector<TileContribution> resolve(Frame& frame, Hider& hider, const HiddenGrids& grids) {
+std::vector<ResolvedTile> resolve(Frame& frame, Hider& hider, const HiddenGrids& grids) {
     const std::vector<TileStore>* stores = nullptr;
     {
         const StageTimer timer(frame.statistics, Stage::Hide);
@@ -56,16 +61,46 @@ std::vector<TileContribution> resolve(Frame& frame, Hider& hider, const HiddenGr
     if (hider.overflowed()) return {};
     const std::vector<bool> seen = shade_seen(frame, hider, grids);
     const BucketRefinement refinement(frame, hider, *stores, seen);
-    LayerTable table(hider.pool(), seen);
-    std::vector<TileContribution> contributions;
-    contributions.reserve(stores->size());
-    TileColors colors(frame);
+    LayerTable layers(hider.pool(), seen);
+    const bool is_last = &hider.table() == &frame.levels.all();
+    std::vector<ResolvedTile> resolved;
+    resolved.reserve(stores->size());
+    TileColors colors(frame, hider.table());
     for (std::size_t i = 0; i < stores->size(); ++i) {
         const TileSamples& samples = hider.tile_samples(i);
-        colors.composite((*stores)[i], samples, table, refinement.tile(i));
-        contributions.push_back(colors.filter((*stores)[i].tile, samples));
+        const Vec2i tile = (*stores)[i].tile;
+        colors.composite((*stores)[i], samples, layers, refinement.tile(i));
+        resolved.push_back(
+            {tile, colors.filter(tile, samples), is_last ? 0.0f : colors.noise(samples)});
     }
-    return contributions;
+    return resolved;
+}
+
+/// These tiles of the bucket, seen with the samples of one level.
+std::vector<ResolvedTile> look(Frame& frame, int bucket, int level, const Rect& tiles) {
+    const SampleTable& table = frame.levels.table(level);
+    const Rect pixels = tile_pixels(tiles).intersect(frame.layout.pixels(bucket));
+    HiddenGrids grids;
+    {
+        HiderFrame settings = frame.hider;
+        settings.table = &table;
+        const auto hider = make_hider(settings, frame.choice, tiles, pixels);
+        hide_geometry(frame, bucket, pixels, *hider, grids);
+        if (level == 0) count_needs(frame, grids);
+        auto resolved = resolve(frame, *hider, grids);
+        if (!resolved.empty()) return resolved;
+    }
+    return resolve_in_parts(frame, table, tiles, pixels, grids);
+}
+
+/// Sees the tile again until its samples are enough.
+void look_again(Frame& frame, int bucket, ResolvedTile& tile) {
+    for (int level = 0, next; (next = frame.levels.next(level, tile.noise)) != level;
+         level = next) {
+        frame.statistics.add(Counter::TilesResampled);
+        const Vec2i at = tile.tile;
+        tile = std::move(look(frame, bucket, next, {at.x, at.y, at.x + 1, at.y + 1}).front());
+    }
 }
 
 }  // namespace
@@ -73,16 +108,11 @@ std::vector<TileContribution> resolve(Frame& frame, Hider& hider, const HiddenGr
 std::vector<Tile> render_bucket(Frame& frame, int bucket) {
     const Release release(frame.geometry, bucket);
     if (frame.raster) return {raster_bucket(frame, bucket)};
-    HiddenGrids grids;
     std::vector<TileContribution> contributions;
-    {
-        const auto hider = make_hider(frame.hider, frame.choice, frame.layout.tiles(bucket),
-                                      frame.layout.pixels(bucket));
-        hide_geometry(frame, bucket, *hider, grids);
-        count_needs(frame, grids);
-        contributions = resolve(frame, *hider, grids);
+    for (ResolvedTile& tile : look(frame, bucket, 0, frame.layout.tiles(bucket))) {
+        look_again(frame, bucket, tile);
+        contributions.push_back(std::move(tile.contribution));
     }
-    if (contributions.empty()) contributions = resolve_in_parts(frame, bucket, grids);
     const StageTimer timer(frame.statistics, Stage::Film);
     return frame.film.add(std::move(contributions));
 }

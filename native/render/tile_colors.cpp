@@ -9,7 +9,7 @@
 
 namespace granita {
 
-void TileColors::composite(const TileStore& store, const TileSamples& samples, LayerTable& table,
+void TileColors::composite(const TileStore& store, const TileSamples& samples, LayerTable& layers,
                            const RefinedSamples& refined) {
     m_frame.progress.check();
     const Options& options = m_frame.scene.options;
@@ -17,13 +17,13 @@ void TileColors::composite(const TileStore& store, const TileSamples& samples, L
     std::vector<Vec3f> background{Vec3f(0.0f)};
     if (!options.film_transparent || channels.has_environment()) {
         const StageTimer timer(m_frame.statistics, Stage::Shade);
-        background = tile_background(m_frame.scene.camera, m_frame.table, m_frame.shading,
+        background = tile_background(m_frame.scene.camera, m_table, m_frame.shading,
                                      m_frame.constant_background, store);
     }
     const StageTimer timer(m_frame.statistics, Stage::Resolve);
     const CompositeSettings settings{m_frame.view.projection, m_frame.hider.list_end,
                                      options.film_transparent, &channels, options.depth_pass};
-    composite_tile(store, samples, table, background, settings, m_colors, &m_channels, refined);
+    composite_tile(store, samples, layers, background, settings, m_colors, &m_channels, refined);
 }
 
 void TileColors::take(const TileColors& part, const Rect& pixels, int samples) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "film/tile_noise.h"
 #include "hider/hider.h"
 #include "hider/resolve/layer_table.h"
 #include "hider/resolve/refined_samples.h"
@@ -11,16 +12,19 @@ namespace granita {
 /// The composited samples of one tile after the other.
 class TileColors {
   public:
-    explicit TileColors(Frame& frame) : m_frame(frame) {}
+    TileColors(Frame& frame, const SampleTable& table) : m_frame(frame), m_table(table) {}
     /// All samples of a tile whose grids are shaded.
-    void composite(const TileStore& store, const TileSamples& samples, LayerTable& table,
+    void composite(const TileStore& store, const TileSamples& samples, LayerTable& layers,
                    const RefinedSamples& refined);
     /// Takes over the samples of these pixels (relative to the tile) of the same tile.
     void take(const TileColors& part, const Rect& pixels, int samples);
     TileContribution filter(Vec2i tile, const TileSamples& samples) const;
+    /// film/tile_noise.h
+    float noise(const TileSamples& samples) const { return tile_noise(samples, m_colors); }
 
   private:
     Frame& m_frame;
+    const SampleTable& m_table;
     SampleColors m_colors;
     SampleChannels m_channels;
 };

@@ -42,13 +42,9 @@ constexpr std::size_t kLargestWave = 32;
 
 class Visit {
   public:
-    Visit(Frame& frame, int bucket, const Occlusion& occlusion,
+    Visit(Frame& frame, int bucket, const Rect& reach, const Occlusion& occlusion,
           const std::function<void(std::shared_ptr<SharedGrid>)>& hide)
-        : m_frame(frame),
-          m_bucket(bucket),
-          m_reach(frame.layout.reach(bucket)),
-          m_occlusion(occlusion),
-          m_hide(hide) {}
+        : m_frame(frame), m_bucket(bucket), m_reach(reach), m_occlusion(occlusion), m_hide(hide) {}
 
     void run() {
         m_frame.geometry.for_each_instance(m_bucket, [&](std::uint32_t instance) {
@@ -228,9 +224,9 @@ class Visit {
 
 }  // namespace
 
-void visit_geometry(Frame& frame, int bucket, const Occlusion& occlusion,
+void visit_geometry(Frame& frame, int bucket, const Rect& reach, const Occlusion& occlusion,
                     const std::function<void(std::shared_ptr<SharedGrid>)>& hide) {
-    Visit(frame, bucket, occlusion, hide).run();
+    Visit(frame, bucket, reach, occlusion, hide).run();
 }
 
 }  // namespace granita

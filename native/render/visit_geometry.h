@@ -20,9 +20,10 @@ namespace granita {
 /// shutter.
 using Occlusion = std::function<bool(const TimeSlab&)>;
 
-/// Calls `hide` with every grid of the bucket that is not yet occluded, roughly from
-/// front to back. The order follows depth keys, then keys of identity: the same in every run.
-void visit_geometry(Frame& frame, int bucket, const Occlusion& occlusion,
+/// Calls `hide` with every grid of the bucket that reaches these pixels and is not yet occluded,
+/// roughly from front to back. The order follows depth keys, then keys of identity: the same in
+/// every run.
+void visit_geometry(Frame& frame, int bucket, const Rect& reach, const Occlusion& occlusion,
                     const std::function<void(std::shared_ptr<SharedGrid>)>& hide);
 
 }  // namespace granita

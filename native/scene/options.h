@@ -42,6 +42,10 @@ struct Options {
     Rect crop;                  ///< what is rendered, inside the frame
     int frame = 0;
     int samples = 64;
+    /// Error of displayed colour (film/tile_noise.h) below which a tile takes no more samples; 0 =
+    /// every pixel takes `samples`.
+    float noise_threshold = 0.0f;
+    int min_samples = 16;  ///< that every pixel takes at least, where noise_threshold is above 0
     Sampling sampling = Sampling::Independent;
     int time_samples = 0;
     FilterKind pixel_filter = FilterKind::BlackmanHarris;

@@ -5,15 +5,11 @@
 #include <array>
 #include <cmath>
 
+#include "math/displayed.h"
 #include "math/luminance.h"
 
 namespace granita {
 namespace {
-
-float displayed(float radiance) {
-    if (!(radiance > 0.0f)) return 0.0f;
-    return radiance < 1.0f ? std::sqrt(radiance) : 1.0f + 0.5f * std::log(radiance);
-}
 
 /// Second differences of values in doubt are less than this times their standard deviation, all but
 /// surely: their own is sqrt(6) of it, and a micropolygon has eight.

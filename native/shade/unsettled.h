@@ -9,8 +9,7 @@
 
 namespace granita {
 
-/// The most that two colours differ by in any channel as eye and displays take it: in square roots
-/// up to white, and half of one for each factor e beyond.
+/// The most that two colours differ by in any channel, displayed (math/displayed.h).
 float displayed_difference(const Vec3f& a, const Vec3f& b);
 
 /// The most that two opacities differ by in any channel.

@@ -15,6 +15,8 @@ DEFAULTS = {
     "preview_samples": 64,
     "preview_moving": "AUTO",
     "preview_pause": False,
+    "noise_threshold": 0.0,
+    "min_samples": 16,
     "sampling": "INDEPENDENT",
     "time_samples": 0,
     "pixel_filter": "BLACKMAN_HARRIS",

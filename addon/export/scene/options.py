@@ -12,6 +12,8 @@ MOST_SAMPLES = 4096  # as of scene.granita.samples
 # Read from the settings under the same name; (name, used where the settings lack it).
 _SETTINGS = (
     ("samples", 64),
+    ("noise_threshold", 0.0),
+    ("min_samples", 16),
     ("sampling", "INDEPENDENT"),
     ("time_samples", 0),
     ("pixel_filter", "BLACKMAN_HARRIS"),
