@@ -4,6 +4,7 @@
     --granita-device cpu|gpu|auto   overrides scene.granita.device
     --granita-stats FILE            appends one JSON object a frame (frame_statistics.py)
     --granita-threads N             overrides Blender's thread count; 0 = all
+    --granita-log json|openjd       lines for machines on the standard output (event_log.py)
     --granita-part K/N              renders the K-th of N parts of the frame into a part file (parts/)
     --granita-merge N               joins the N part files of the frame instead of rendering it
     --granita-parts FOLDER          of the part files; default: beside the output, named after it
@@ -13,6 +14,8 @@
 
 import sys
 from dataclasses import dataclass
+
+from .event_log import KINDS as LOG_KINDS
 
 PREFIX = "--granita-"
 MOST_PARTS = 4096
@@ -27,6 +30,7 @@ class CommandLine:
     device: str | None = None  # AUTO, CPU or GPU
     stats: str | None = None  # path of a file
     threads: int | None = None
+    log: str | None = None  # of event_log.KINDS
     part: tuple | None = None  # (K, N)
     merge: int | None = None  # N
     parts: str | None = None  # path of a folder
@@ -70,6 +74,12 @@ def _threads(option, value):
     return int(value)
 
 
+def _log(option, value):
+    if value not in LOG_KINDS:
+        raise CommandLineError(f"option {option}: '{value}' is not one of {', '.join(LOG_KINDS)}")
+    return value
+
+
 def _parts(option, value):
     if not (value.isascii() and value.isdigit() and 1 <= int(value) <= MOST_PARTS):
         raise CommandLineError(f"option {option}: '{value}' is not a number from 1 to {MOST_PARTS}")
@@ -90,6 +100,7 @@ _READERS = {
     PREFIX + "device": _device,
     PREFIX + "stats": _path,
     PREFIX + "threads": _threads,
+    PREFIX + "log": _log,
     PREFIX + "part": _part,
     PREFIX + "merge": _parts,
     PREFIX + "parts": _path,

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 import bpy
 
 from . import bridge, command_line, final_merge, final_render, frame_statistics, passes
+from .event_log import EventLog
 from .export import PersistentState
 from .export.base.report import Cancelled, ExportError, escaped
 from .export.shading.image import forget_images
@@ -47,6 +48,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **kwargs)
         self.frame_statistics = frame_statistics.FrameStatistics()
+        self.log = EventLog()
         self.persistent_state = PersistentState()
         self.live_view = None  # of the engine of a 3D view
 
@@ -62,6 +64,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
     def render(self, depsgraph):
         try:
             options = command_line.parse()
+            self.log = EventLog(options.log, depsgraph.scene.frame_current)
             if options.merge is not None:
                 final_merge.FinalMerge(self, depsgraph, options).run()
                 return
@@ -107,6 +110,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
 
     def _fail(self, text):
         self.frame_statistics.discard()
+        self.log.error(text)
         self.report({"ERROR"}, escaped(text))
         self.error_set(escaped(text))
 

@@ -7,6 +7,7 @@ Nothing is exported and nothing rendered; what follows in Blender is what follow
 from types import SimpleNamespace
 
 from . import passes
+from .event_log import EventLog
 from .export.base.report import Cancelled
 from .export.scene.options import scene_crop, scene_frame
 from .parts.joined_parts import read_parts
@@ -23,6 +24,7 @@ class FinalMerge:
         self.options = options
         self.scene = depsgraph.scene
         self.layer = depsgraph.view_layer.name
+        self.log = EventLog(options.log, self.scene.frame_current, self.layer)
         self.passes = passes.wanted(depsgraph.view_layer)
         self.exposure = passes.exposure_owner(depsgraph.scene_eval).film_exposure
 
@@ -45,6 +47,7 @@ class FinalMerge:
                 self.engine, _tile(part), self.passes, self.layer, crop[:2], self.exposure
             )
             self.engine.update_progress(number / count)
+            self.log.progress(number / count)
 
 
 def _tile(part):

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from . import bridge, passes
+from .event_log import EventLog
 from .export import export_frame
 from .export.base.report import Cancelled, Report, lines
 from .parts.collected_part import CollectedPart
@@ -46,7 +47,8 @@ class FinalRender:
         self.layer = depsgraph.view_layer.name
         self.passes = passes.wanted(depsgraph.view_layer)
         self.exposure = passes.exposure_owner(depsgraph.scene_eval).film_exposure
-        self.status = StatusLine(engine)
+        self.log = EventLog(options.log, depsgraph.scene.frame_current, self.layer)
+        self.status = StatusLine(engine, self.log)
         self.report = Report()
         self.seconds = {}
         self.origin = None  # the result's lower-left pixel in the frame
@@ -68,6 +70,7 @@ class FinalRender:
             self.seconds["total"] = perf_counter() - started
             warnings = self.report.entries() + job.warnings()
             statistics.add_layer(self, options, job, warnings)
+            self.log.layer(self.seconds)
         finally:
             self._tell(self.report.entries())
 
@@ -167,3 +170,4 @@ class FinalRender:
     def _tell(self, warnings):
         for line in lines(warnings):
             self.engine.report({"WARNING"}, line)
+            self.log.warning(line)

@@ -8,6 +8,8 @@ in it for failures: each line ends in `Sample k/n`, k buckets of n, and holds no
 
 from time import monotonic
 
+from .event_log import EventLog
+
 SECONDS_BETWEEN_LINES = 1.0
 
 
@@ -16,29 +18,33 @@ class StatusLine:
 
     _next = 0.0
 
-    def __init__(self, engine):
+    def __init__(self, engine, log=None):
+        """`log`: an EventLog, which hears of the same."""
         self._engine = engine
+        self._log = log or EventLog()
         self._started = None
 
     def exporting(self):
-        self._show("Exporting | Sample 0/1")
+        self._show("Exporting | Sample 0/1", 0.0)
 
     def rendering(self, job):
         """`job`: a granita_core.Render."""
         now = monotonic()
         if self._started is None:
             self._started = now
+        remaining = None
         text = f"Sample {job.buckets_done}/{job.buckets_total}"
         if job.fraction > 0.0:
             remaining = (now - self._started) * (1.0 - job.fraction) / job.fraction
             text = f"Remaining:{clock(remaining)} | {text}"
-        self._show(text)
+        self._show(text, job.fraction, remaining)
 
-    def _show(self, text):
+    def _show(self, text, fraction, remaining=None):
         now = monotonic()
         if now >= StatusLine._next:
             StatusLine._next = now + SECONDS_BETWEEN_LINES
             self._engine.update_stats("", text)
+            self._log.progress(fraction, remaining)
 
 
 def clock(seconds):

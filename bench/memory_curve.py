@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Memory over the frames of one rendered animation, with and without Persistent Data.
+"""Memory, threads, open files and seconds over the frames of one rendered animation, with and without Persistent Data.
 
     ./dev bench memory_curve [--frames 300] [--python PYTHON]
 
 PYTHON: one that has Blender as a module, instead of the `blender` that is installed.  The heap's slope is taken after the
 first fifty frames; what is resident goes up and down with what the allocator gives back, so its highest fifties are
-compared.  Prints a Markdown table, writes bench/results/memory_curve.json and draws docs/memory_curve.svg.
+compared; of seconds the medians of fifty frames.  Prints a Markdown table, writes bench/results/memory_curve.json and draws docs/memory_curve.svg.
 """
 
 import argparse
@@ -30,10 +30,28 @@ def main():
     for persistent in (False, True):
         job = {"frames": options.frames, "persistent": persistent}
         taken = frames.ask("render_animation.py", job, options.python)
+        with_data = ", persistent data" if persistent else ""
+        for kind in ("threads", "files"):
+            values = taken.pop(kind)
+            table.row(
+                f"{kind}{with_data}: more than after {WARM_UP} frames",
+                values[-1] - values[WARM_UP],
+                0,
+                "{:.0f}",
+            )
+        seconds = taken.pop("seconds")
+        early, late = (
+            np.median(part) for part in (seconds[WARM_UP : 2 * WARM_UP], seconds[-WARM_UP:])
+        )
+        table.row(
+            f"seconds a frame{with_data}: last {WARM_UP} frames over the second {WARM_UP}",
+            late / early,
+            1.2,
+        )
         for kind, values in taken.items():
             if not values:
                 continue
-            name = kind + (", persistent data" if persistent else "")
+            name = kind + with_data
             number = np.arange(1, len(values) + 1)
             if kind == "heap":
                 slope = np.polyfit(number[WARM_UP:], values[WARM_UP:], 1)[0] / 1e3

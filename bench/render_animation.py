@@ -3,13 +3,14 @@
 
     blender -b --factory-startup --addons granita --python bench/render_animation.py -- JOB.json
 
-JOB: {"file", "frames", "persistent"}.  The file gets {"resident": [bytes a frame], "heap": [bytes a frame]}; "heap", exact,
-is empty where the allocator cannot be asked.
+JOB: {"file", "frames", "persistent"}.  The file gets a list of numbers, one a frame, for each of "resident" and "heap" (bytes;
+"heap", exact, is empty where the allocator cannot be asked), "threads" and "files" (of the process, open ones) and "seconds".
 """
 
 import json
 import os
 import sys
+import time
 from pathlib import Path
 
 import bpy
@@ -91,12 +92,17 @@ def main():
     scene.render.use_persistent_data = job["persistent"]
     scene.frame_start, scene.frame_end = 1, job["frames"]
     scene.render.filepath = str(Path(job["file"]).with_name("frame_"))
-    taken = {"resident": [], "heap": []}
+    taken = {"resident": [], "heap": [], "threads": [], "files": [], "seconds": []}
+    last = [time.perf_counter()]
 
     def note(*_):
+        taken["seconds"].append(time.perf_counter() - last[0])
         taken["resident"].append(resident_bytes())
+        taken["threads"].append(len(os.listdir("/proc/self/task")))
+        taken["files"].append(len(os.listdir("/proc/self/fd")))
         heap = heap_bytes()
         taken["heap"] += [] if heap is None else [heap]
+        last[0] = time.perf_counter()
 
     bpy.app.handlers.render_post.append(note)
     bpy.ops.render.render(animation=True)
