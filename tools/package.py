@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Put the add-on and its native module together: a folder for one's own Blender, or the two zips.
+"""Put the add-on and its native modules together: a folder for one's own Blender, or the two zips.
 
-package.py folder ROOT MODULE FOLDER     FOLDER becomes the installed add-on
-package.py zips ROOT MODULE DIST         DIST/granita-VERSION-legacy.zip (3.4 and later) and
-                                         DIST/granita-VERSION.zip (extension, 4.2 and later)
+package.py folder ROOT FOLDER FILE...         FOLDER becomes the installed add-on
+package.py zips ROOT DIST PLATFORM FILE...    DIST/granita-VERSION-PLATFORM.zip (extension, 4.2 and
+                                              later) and DIST/granita-VERSION-PLATFORM-legacy.zip
+                                              (add-on, 3.4 and later)
+package.py files ZIP FILE...                  a plain zip
+
+FILE: the modules, and what else goes beside the add-on's own files.
 """
 
 import shutil
@@ -16,7 +20,7 @@ MANIFEST = "blender_manifest.toml"
 ZIP_DATE = (1980, 1, 1, 0, 0, 0)
 
 
-def package_files(root: Path, module: Path) -> dict[str, Path]:
+def package_files(root: Path, others: list[Path]) -> dict[str, Path]:
     """Path inside the add-on -> file, for everything that is installed."""
     addon = root / "addon"
     files = {
@@ -24,7 +28,7 @@ def package_files(root: Path, module: Path) -> dict[str, Path]:
         for path in sorted(addon.rglob("*"))
         if path.is_file() and "__pycache__" not in path.parts
     }
-    return files | {module.name: module, "LICENSE": root / "LICENSE"}
+    return files | {path.name: path for path in others} | {"LICENSE": root / "LICENSE"}
 
 
 def write_folder(files: dict[str, Path], folder: Path) -> None:
@@ -41,34 +45,51 @@ def write_folder(files: dict[str, Path], folder: Path) -> None:
         shutil.copy2(source, target)
 
 
+def _entry(name: str, mode: int) -> zipfile.ZipInfo:
+    info = zipfile.ZipInfo(name, ZIP_DATE)
+    info.compress_type = zipfile.ZIP_DEFLATED
+    info.create_system = 3  # Unix, wherever it is made
+    info.external_attr = mode << 16
+    return info
+
+
 def write_zip(files: dict[str, Path], target: Path, prefix: str) -> None:
-    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
+    """Whole or not at all: a zip that was interrupted has no name that anyone would install."""
+    unfinished = target.with_name(target.name + ".unfinished")
+    with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        if prefix:
+            # By this entry Blender 3.4 knows which folder an upgrade replaces.  Without it the files are
+            # written over the old ones, the loaded module among them, and Blender crashes.
+            archive.writestr(_entry(prefix, 0o40755), b"")
         for name, source in sorted(files.items()):
-            info = zipfile.ZipInfo(prefix + name, ZIP_DATE)
-            info.compress_type = zipfile.ZIP_DEFLATED
-            info.external_attr = 0o644 << 16
-            archive.writestr(info, source.read_bytes())
+            archive.writestr(_entry(prefix + name, 0o100644), source.read_bytes())
+    unfinished.replace(target)
     print(target)
 
 
-def write_zips(files: dict[str, Path], dist: Path, version: str) -> None:
+def write_zips(files: dict[str, Path], dist: Path, name: str) -> None:
     dist.mkdir(parents=True, exist_ok=True)
     # A legacy add-on lies in a folder of its module's name; an extension's files lie at the top,
     # and only there is the manifest read.
-    legacy = {name: path for name, path in files.items() if name != MANIFEST}
-    write_zip(legacy, dist / f"granita-{version}-legacy.zip", "granita/")
-    write_zip(files, dist / f"granita-{version}.zip", "")
+    legacy = {path: source for path, source in files.items() if path != MANIFEST}
+    write_zip(files, dist / f"{name}.zip", "")
+    write_zip(legacy, dist / f"{name}-legacy.zip", "granita/")
 
 
 def main() -> None:
-    if len(sys.argv) != 5 or sys.argv[1] not in ("folder", "zips"):
-        sys.exit(__doc__)
-    root, module, target = (Path(argument) for argument in sys.argv[2:])
-    files = package_files(root, module)
-    if sys.argv[1] == "folder":
-        write_folder(files, target)
+    arguments = sys.argv[1:]
+    if arguments[:1] == ["folder"] and len(arguments) >= 4:
+        root, folder, *others = map(Path, arguments[1:])
+        write_folder(package_files(root, others), folder)
+    elif arguments[:1] == ["zips"] and len(arguments) >= 5:
+        root, dist, platform, *others = map(Path, arguments[1:])
+        version = (root / "VERSION").read_text().strip()
+        write_zips(package_files(root, others), dist, f"granita-{version}-{platform}")
+    elif arguments[:1] == ["files"] and len(arguments) >= 3:
+        target, *others = map(Path, arguments[1:])
+        write_zip({path.name: path for path in others}, target, "")
     else:
-        write_zips(files, target, (root / "VERSION").read_text().strip())
+        sys.exit(__doc__)
 
 
 main()

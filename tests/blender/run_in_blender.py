@@ -5,10 +5,12 @@
     python run_in_blender.py -- [pytest arguments]        where Blender is the module `bpy`
 
 Without a path among the arguments all of tests/blender runs.  The native module is taken from
-Python's path, else from the tree's build folder.
+Python's path, else from the tree's build folder.  Where GRANITA_ADDON names an installed add-on's folder,
+that and its own module take the place of the tree's.
 """
 
 import atexit
+import importlib
 import importlib.util
 import os
 import shutil
@@ -19,6 +21,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
+ADDON = Path(os.environ.get("GRANITA_ADDON", ROOT / "addon"))
 
 
 def private_scripts():
@@ -26,7 +29,7 @@ def private_scripts():
     scripts = Path(tempfile.mkdtemp(prefix="granita-scripts-"))
     atexit.register(shutil.rmtree, scripts, ignore_errors=True)
     (scripts / "addons").mkdir()
-    (scripts / "addons" / "granita").symlink_to(ROOT / "addon")
+    (scripts / "addons" / "granita").symlink_to(ADDON)
     os.environ["BLENDER_USER_SCRIPTS"] = str(scripts)
     os.environ["BLENDER_USER_CONFIG"] = str(scripts / "config")
     sys.path.insert(0, str(scripts / "addons"))
@@ -34,6 +37,10 @@ def private_scripts():
 
 def find_native_module():
     if importlib.util.find_spec("granita_core"):
+        return
+    if "GRANITA_ADDON" in os.environ:
+        # Its own, under its one name: a process that loaded it twice would define its types twice.
+        sys.modules["granita_core"] = importlib.import_module("granita.granita_core")
         return
     for module in sorted((ROOT / "build").rglob("granita_core*.so")):
         folder = str(module.parent)
@@ -66,8 +73,8 @@ def main(arguments):
     import bpy  # noqa: F401  (first: Blender's own modules are found through it)
 
     private_scripts()
-    find_native_module()
     enable_addon()
+    find_native_module()
     import pytest
 
     if not any(Path(argument.split("::")[0]).exists() for argument in arguments):

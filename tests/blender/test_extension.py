@@ -23,7 +23,7 @@ def validator():
 def test_blender_accepts_the_extension(tmp_path):
     import granita_core
 
-    package = [ROOT / "tools" / "package.py", "zips", ROOT, granita_core.__file__, tmp_path]
+    package = [ROOT / "tools" / "package.py", "zips", ROOT, tmp_path, "here", granita_core.__file__]
     subprocess.run([sys.executable, *map(str, package)], check=True)
     (archive,) = (path for path in tmp_path.iterdir() if "legacy" not in path.name)
     done = subprocess.run(

@@ -28,7 +28,7 @@ def package(*arguments: object) -> None:
 @pytest.fixture(scope="module")
 def zips(module, tmp_path_factory) -> dict[str, list[str]]:
     dist = tmp_path_factory.mktemp("dist")
-    package("zips", ROOT, module, dist)
+    package("zips", ROOT, dist, "here", module)
     names = {}
     for path in dist.iterdir():
         with zipfile.ZipFile(path) as archive:
@@ -46,21 +46,22 @@ def test_the_module_exports_nothing_but_its_entry(module):
 
 
 def test_the_legacy_zip_is_a_folder_with_the_module(zips, module):
-    names = zips[f"granita-{VERSION}-legacy.zip"]
+    names = zips[f"granita-{VERSION}-here-legacy.zip"]
     assert all(name.startswith("granita/") for name in names)
+    assert names[0] == "granita/"  # Blender 3.4 replaces what has an entry of its own
     assert {"granita/__init__.py", f"granita/{module.name}", "granita/LICENSE"} <= set(names)
     assert not [name for name in names if "__pycache__" in name or "manifest" in name]
 
 
 def test_the_extension_zip_has_its_manifest_at_the_top(zips, module):
-    names = zips[f"granita-{VERSION}.zip"]
+    names = zips[f"granita-{VERSION}-here.zip"]
     assert {"blender_manifest.toml", "__init__.py", module.name, "LICENSE"} <= set(names)
 
 
 def test_both_zips_bring_the_presets(zips):
     for zip_name, prefix in (
-        (f"granita-{VERSION}-legacy.zip", "granita/"),
-        (f"granita-{VERSION}.zip", ""),
+        (f"granita-{VERSION}-here-legacy.zip", "granita/"),
+        (f"granita-{VERSION}-here.zip", ""),
     ):
         presets = {prefix + f"presets/{name}.py" for name in ("Preview", "Final")}
         assert presets <= set(zips[zip_name])
@@ -83,7 +84,7 @@ def test_installing_replaces_an_older_add_on_whole(module, tmp_path):
     folder.mkdir(parents=True)
     (folder / "__init__.py").write_text("")
     (folder / "left_over.py").write_text("")
-    package("folder", ROOT, module, folder)
+    package("folder", ROOT, folder, module)
     assert (folder / "engine.py").is_file()
     assert (folder / module.name).is_file()
     assert not (folder / "left_over.py").exists()
@@ -92,5 +93,5 @@ def test_installing_replaces_an_older_add_on_whole(module, tmp_path):
 def test_installing_does_not_empty_a_folder_that_is_no_add_on(module, tmp_path):
     (tmp_path / "thesis.txt").write_text("")
     with pytest.raises(subprocess.CalledProcessError):
-        package("folder", ROOT, module, tmp_path)
+        package("folder", ROOT, tmp_path, module)
     assert (tmp_path / "thesis.txt").exists()
