@@ -17,6 +17,7 @@ from window_pixels import Screen
 
 HERE = Path(__file__).resolve().parent
 EDITS = 1000
+EDITOR = HERE.parent / "tests" / "blender" / "viewport_edits.py"
 
 
 def run(seed, edits, timeout=3600, **job):
@@ -27,7 +28,7 @@ def run(seed, edits, timeout=3600, **job):
         file.write_text(json.dumps({"seed": seed, "edits": edits, "log": str(log), **job}))
         done = subprocess.run(
             ["blender", "--factory-startup", "--addons", "granita", "--window-geometry"]
-            + ["0", "0", "1000", "760", "--python", str(HERE / "viewport_edits.py")]
+            + ["0", "0", "1000", "760", "--python", str(EDITOR)]
             + ["--", str(file)],
             env={**os.environ, "DISPLAY": screen.name, "LIBGL_ALWAYS_SOFTWARE": "1"},
             stdin=subprocess.DEVNULL,

@@ -8,7 +8,7 @@ from ..export import PersistentState
 from ..export.base.report import ExportError, Report
 from ..export.scene.shutter import is_blurred, scene_shutter
 from . import scene_reading
-from .carried_motion import ShutterTimes, carried
+from .carried_motion import ShutterTimes, carried, corrected
 from .same import is_same
 
 
@@ -73,8 +73,9 @@ class SceneSnapshots:
         )
         scene = bpy.data.scenes[sight.scene]
         self._complete(moving, scene)
-        self._moving = self.snapshot = moving
         self._moving_times = _times(scene, scene.view_layers[sight.layer])
+        moving = corrected(moving, self._moving_times, self._still)
+        self._moving = self.snapshot = moving
         self.is_exact = True
         return not is_same(before, moving)
 

@@ -34,7 +34,7 @@ class Stage:
         options, camera, divisor = dict(snapshot["options"]), dict(snapshot["camera"]), self.divisor
         for name, most in _COARSE.items():
             options[name] = min(options[name], most)
-        options["shading_threshold"] = _NO_THRESHOLD
+        options["shading_threshold"], options["noise_threshold"] = _NO_THRESHOLD, 0.0
         options["width"] = -(-options["width"] // divisor)
         options["height"] = -(-options["height"] // divisor)
         crop = coarse_crop([int(pixel) for pixel in options["crop"]], divisor)

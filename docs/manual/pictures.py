@@ -240,4 +240,5 @@ def main():
         save(name, parts)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from viewport.carried_motion import ShutterTimes, carried
+from viewport.carried_motion import ShutterTimes, carried, corrected
 
 
 def at(x, y=0.0, z=0.0):
@@ -87,6 +87,21 @@ def test_a_lens_that_changes_is_as_much_wider():
     still = snapshot([at(0)], [at(0)], lens_radius=0.2)
     found = carried(still, HALF, moving, HALF)
     np.testing.assert_allclose(found["camera"]["lens_knots"], [[0.2, 4.0], [0.2, 6.0]])
+
+
+def test_what_agrees_at_the_frame_is_the_reading_of_the_shutter_itself():
+    still = snapshot([at(1e-7)], [at(2 + 1e-7)])
+    found = corrected(MOVING, HALF, still)
+    assert found["instances"] is MOVING["instances"] and found["camera"] is MOVING["camera"]
+
+
+def test_what_was_moved_without_a_key_moves_from_where_it_is():
+    still = snapshot([at(0, 0, 3)], [at(2, 5)])
+    found = corrected(MOVING, HALF, still)
+    places = found["instances"]["world_from_object"]
+    np.testing.assert_allclose(places, [at(1, 5), at(2, 5), at(3, 5)])
+    np.testing.assert_allclose(found["camera"]["world_from_camera"], [at(0, -1, 3), at(0, 1, 3)])
+    assert MOVING["instances"]["world_from_object"][0, 1, 3] == 0.0
 
 
 def test_others_than_before_stand_still():

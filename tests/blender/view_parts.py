@@ -10,6 +10,8 @@ from types import SimpleNamespace
 import bpy
 from mathutils import Matrix
 
+# Where a script sees what an evaluation touched, as `view_update` does.
+HANDLERS = ("depsgraph_update_post", "frame_change_post")
 SECONDS = 60.0  # after which a view is not going to settle
 
 
@@ -47,6 +49,17 @@ class View:
             clip_end=1000.0,
         )
         self.region_data = None
+        for evaluated in HANDLERS:
+            getattr(bpy.app.handlers, evaluated).append(self._evaluated)
+
+    def close(self):
+        for evaluated in HANDLERS:
+            getattr(bpy.app.handlers, evaluated).remove(self._evaluated)
+        self.live.close()
+
+    def _evaluated(self, _scene, depsgraph):
+        if self.region_data is not None:
+            self.live.update(self._context(depsgraph), depsgraph)
 
     def look_through_camera(self):
         """At one region pixel a frame pixel, without zoom or offset."""
@@ -60,26 +73,27 @@ class View:
         )
         return self
 
-    def _context(self):
-        depsgraph = bpy.context.evaluated_depsgraph_get()
+    def _context(self, depsgraph):
         if self.region_data.view_perspective == "CAMERA":
             camera = bpy.context.scene.camera.evaluated_get(depsgraph)
             window = camera.calc_matrix_camera(depsgraph, x=self.region.width, y=self.region.height)
             view = camera.matrix_world.normalized().inverted()
             self.region_data.perspective_matrix = window @ view
-        context = SimpleNamespace(
+        return SimpleNamespace(
             region=self.region, space_data=self.space, region_data=self.region_data
         )
-        return context, depsgraph
 
     def edited(self):
-        """Blender tells of an edit."""
-        self.live.update(*self._context())
+        """Blender evaluates an edit and tells of it."""
+        bpy.context.view_layer.update()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        self.live.update(self._context(depsgraph), depsgraph)
         return self
 
     def drawn(self):
         """Blender draws: without a window, all but the drawing itself."""
-        self.live._look(*self._context())
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        self.live._look(self._context(depsgraph), depsgraph)
         return self
 
     def step(self):

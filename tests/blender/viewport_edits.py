@@ -4,7 +4,7 @@ make it, with steps of undo; then a last picture beside one of a view that has s
 
     blender --factory-startup --addons granita --python viewport_edits.py -- JOB.json
 
-job: {"seed", "edits", "log"}.  Used by viewport_robustness.py and by a test.
+job: {"seed", "edits", "log"}.  Used by a test, and at length by bench/viewport_robustness.py.
 """
 
 import ctypes
