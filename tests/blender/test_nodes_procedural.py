@@ -70,6 +70,60 @@ def test_noise_lacunarity(scene, render, normalize):
     show(scene, render, tree, node, "Fac", contrast=2.0 if normalize else 1.0)
 
 
+MULTIFRACTALS = (
+    "MULTIFRACTAL", "RIDGED_MULTIFRACTAL", "HYBRID_MULTIFRACTAL", "FBM", "HETERO_TERRAIN"
+)  # fmt: skip
+# Detail: part of an octave, one, and several with and without a part.
+DETAILS = [0.4, 1.0, 3.0, 4.6]
+
+
+def set_offsets(node):
+    """Of the types that have them."""
+    for name, value in (("Offset", 0.7), ("Gain", 1.6)):
+        for found in node.inputs:
+            if found.identifier == name:
+                found.default_value = value
+
+
+@pytest.mark.skipif(
+    bpy.app.version >= (4, 1, 0), reason="a part of Noise Texture since Blender 4.1"
+)
+@pytest.mark.parametrize("detail", DETAILS)
+@pytest.mark.parametrize("kind", MULTIFRACTALS)
+def test_musgrave(scene, render, kind, detail):
+    inputs = {"Scale": 1.7, "Detail": detail, "Dimension": 0.6, "Lacunarity": 2.3}
+    tree, node = textured(scene, "ShaderNodeTexMusgrave", inputs, musgrave_type=kind)
+    set_offsets(node)
+    show(scene, render, tree, node, "Fac", contrast=1.0)
+
+
+@pytest.mark.skipif(
+    bpy.app.version >= (4, 1, 0), reason="a part of Noise Texture since Blender 4.1"
+)
+@pytest.mark.parametrize("dimensions", DIMENSIONS)
+def test_musgrave_dimensions(scene, render, dimensions):
+    inputs = {"Scale": 1.7, "Detail": 3.5}
+    tree, node = textured(scene, "ShaderNodeTexMusgrave", inputs, musgrave_dimensions=dimensions)
+    show(scene, render, tree, node, "Fac", contrast=0.5)
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 1, 0), reason="types of noise are of Blender 4.1")
+@pytest.mark.parametrize("detail", DETAILS)
+@pytest.mark.parametrize("kind", MULTIFRACTALS)
+def test_noise_types(scene, render, kind, detail):
+    inputs = {
+        "Scale": 1.7,
+        "Detail": detail,
+        "Roughness": 0.6,
+        "Lacunarity": 2.3,
+        "Distortion": 0.5,
+    }
+    tree, node = textured(scene, "ShaderNodeTexNoise", inputs, noise_type=kind)
+    set_offsets(node)
+    output = "Color" if detail == 3.0 else "Fac"
+    show(scene, render, tree, node, output, contrast=2.0 if kind == "FBM" else 1.0)
+
+
 @pytest.mark.parametrize("output", ["Value", "Color"])
 @pytest.mark.parametrize("dimensions", DIMENSIONS)
 def test_white_noise(scene, render, dimensions, output):

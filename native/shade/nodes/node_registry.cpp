@@ -68,6 +68,7 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeTexChecker", value(build_checker)},
         {"ShaderNodeTexGradient", value(build_gradient)},
         {"ShaderNodeTexNoise", value(build_noise_texture)},
+        {"ShaderNodeTexMusgrave", value(build_musgrave_texture)},
         {"ShaderNodeTexVoronoi", value(build_voronoi_texture)},
         {"ShaderNodeTexWave", value(build_wave_texture)},
         {"ShaderNodeTexMagic", value(build_magic_texture)},
@@ -88,7 +89,6 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeBevel", NodeKind{build_unbevelled, nullptr, "its normal, unbevelled"}},
         {"ShaderNodeLightFalloff", NodeKind{build_plain_falloff, nullptr, "its strength"}},
 
-        {"ShaderNodeTexMusgrave", flat},
         {"ShaderNodeTexGabor", flat},
         {"ShaderNodeTexPointDensity", flat},
         {"ShaderNodeTexIES", flat},

@@ -55,6 +55,7 @@ void build_checker(NodeBuilder&);
 void build_gradient(NodeBuilder&);
 void build_sky_texture(NodeBuilder&);
 void build_noise_texture(NodeBuilder&);
+void build_musgrave_texture(NodeBuilder&);
 void build_white_noise_texture(NodeBuilder&);
 void build_voronoi_texture(NodeBuilder&);
 void build_wave_texture(NodeBuilder&);

@@ -2,6 +2,7 @@
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/dimensions.h"
 #include "shade/nodes/gradient_noise.h"
+#include "shade/nodes/multifractal.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {
@@ -38,11 +39,28 @@ NoisePoint<N> noise_point(const Vec3f& vector, float w, float scale) {
     return p;
 }
 
+/// `noise` there and at two places far away.
+template <std::size_t N, class F>
+Vec3f three_noises(const NoisePoint<N>& p, const F& noise) {
+    return {noise(p), noise(moved<N>(p, static_cast<float>(N))),
+            noise(moved<N>(p, static_cast<float>(N + 1)))};
+}
+
+struct NoisePlace {
+    VectorSource vector;
+    FloatSource w, scale;
+};
+
 template <std::size_t N>
-void build(NodeBuilder& b) {
-    const VectorSource vector =
-        b.linked("Vector") || N == 1 ? b.vector("Vector") : generated_at(b, b.shift());
-    const FloatSource w = b.number("W"), scale = b.number("Scale", 5.0f);
+NoisePlace noise_place(NodeBuilder& b) {
+    return {b.linked("Vector") || N == 1 ? b.vector("Vector") : generated_at(b, b.shift()),
+            b.number("W"), b.number("Scale", 5.0f)};
+}
+
+/// fBm alone, which is brought to [0, 1] where that is asked for.
+template <std::size_t N>
+void build_fbm(NodeBuilder& b) {
+    const auto [vector, w, scale] = noise_place<N>(b);
     const FloatSource detail = b.number("Detail", 2.0f), roughness = b.number("Roughness", 0.5f);
     const FloatSource lacunarity = b.number("Lacunarity", 2.0f);
     const FloatSource distortion = b.number("Distortion");
@@ -57,24 +75,81 @@ void build(NodeBuilder& b) {
                             return fractal_noise<N>(p, octaves(d, r, l));
                         },
                         vector, w, scale, detail, roughness, lacunarity, distortion));
-    b.output_color(
-        "Color", b.map<Vec3f>(
-                     [=](const Vec3f& v, float w_, float s, float d, float r, float l, float x) {
-                         const NoisePoint<N> p = distorted<N>(noise_point<N>(v, w_, s), x);
-                         const Octaves o = octaves(d, r, l);
-                         return Vec3f(fractal_noise<N>(p, o),
-                                      fractal_noise<N>(moved<N>(p, static_cast<float>(N)), o),
-                                      fractal_noise<N>(moved<N>(p, static_cast<float>(N + 1)), o));
-                     },
-                     vector, w, scale, detail, roughness, lacunarity, distortion));
+    b.output_color("Color",
+                   b.map<Vec3f>(
+                       [=](const Vec3f& v, float w_, float s, float d, float r, float l, float x) {
+                           const NoisePoint<N> p = distorted<N>(noise_point<N>(v, w_, s), x);
+                           const Octaves o = octaves(d, r, l);
+                           return three_noises<N>(
+                               p, [&](const NoisePoint<N>& q) { return fractal_noise<N>(q, o); });
+                       },
+                       vector, w, scale, detail, roughness, lacunarity, distortion));
+}
+
+/// The other types of Noise Texture, since Blender 4.1.
+template <std::size_t N>
+void build_multifractal(NodeBuilder& b, Multifractal type) {
+    const auto [vector, w, scale] = noise_place<N>(b);
+    const FloatSource detail = b.number("Detail", 2.0f), roughness = b.number("Roughness", 0.5f);
+    const FloatSource lacunarity = b.number("Lacunarity", 2.0f), offset = b.number("Offset");
+    const FloatSource gain = b.number("Gain", 1.0f), distortion = b.number("Distortion");
+    const auto octaves = [](float d, float r, float l, float o, float g) {
+        return MultifractalOctaves{std::clamp(d, 0.0f, 15.0f) + 1.0f, std::max(r, 0.0f), l, o, g};
+    };
+    b.output("Fac", b.map<float>(
+                        [=](const Vec3f& v, float w_, float s, float d, float r, float l, float o,
+                            float g, float x) {
+                            const NoisePoint<N> p = distorted<N>(noise_point<N>(v, w_, s), x);
+                            return multifractal<N>(type, p, octaves(d, r, l, o, g));
+                        },
+                        vector, w, scale, detail, roughness, lacunarity, offset, gain, distortion));
+    b.output_color("Color",
+                   b.map<Vec3f>(
+                       [=](const Vec3f& v, float w_, float s, float d, float r, float l, float o,
+                           float g, float x) {
+                           const NoisePoint<N> p = distorted<N>(noise_point<N>(v, w_, s), x);
+                           const MultifractalOctaves all = octaves(d, r, l, o, g);
+                           return three_noises<N>(p, [&](const NoisePoint<N>& q) {
+                               return multifractal<N>(type, q, all);
+                           });
+                       },
+                       vector, w, scale, detail, roughness, lacunarity, offset, gain, distortion));
+}
+
+/// An octave's amplitude is lacunarity^-dimension of that before.
+template <std::size_t N>
+void build_musgrave(NodeBuilder& b, Multifractal type) {
+    const auto [vector, w, scale] = noise_place<N>(b);
+    const FloatSource detail = b.number("Detail", 2.0f), dimension = b.number("Dimension", 2.0f);
+    const FloatSource lacunarity = b.number("Lacunarity", 2.0f), offset = b.number("Offset");
+    const FloatSource gain = b.number("Gain", 1.0f);
+    b.output(
+        "Fac",
+        b.map<float>(
+            [=](const Vec3f& v, float w_, float s, float d, float h, float l, float o, float g) {
+                l = std::max(l, 1e-5f);
+                const MultifractalOctaves octaves{std::clamp(d, 0.0f, 15.0f),
+                                                  std::pow(l, -std::max(h, 1e-5f)), l, o, g};
+                return multifractal<N>(type, noise_point<N>(v, w_, s), octaves);
+            },
+            vector, w, scale, detail, dimension, lacunarity, offset, gain));
 }
 
 }  // namespace
 
 void build_noise_texture(NodeBuilder& b) {
-    const std::string type = b.text("noise_type", "FBM");
-    if (type != "FBM") b.warn("its type " + type + " is shown as fBM");
-    with_dimensions(b, "noise_dimensions", [&](auto n) { build<n()>(b); });
+    const Multifractal type = multifractal_of(b.text("noise_type", "FBM"));
+    with_dimensions(b, "noise_dimensions", [&](auto n) {
+        if (type == Multifractal::Fbm)
+            build_fbm<n()>(b);
+        else
+            build_multifractal<n()>(b, type);
+    });
+}
+
+void build_musgrave_texture(NodeBuilder& b) {
+    const Multifractal type = multifractal_of(b.text("musgrave_type", "FBM"));
+    with_dimensions(b, "musgrave_dimensions", [&](auto n) { build_musgrave<n()>(b, type); });
 }
 
 }  // namespace granita
