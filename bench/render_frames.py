@@ -86,4 +86,5 @@ def main():
     Path(job["file"]).write_text(json.dumps(seconds))
 
 
-main()
+if __name__ == "__main__":
+    main()
