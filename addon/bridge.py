@@ -7,7 +7,9 @@ message in the panel and at render, never a failed registration.
 """
 
 import importlib
+import os
 import sys
+import tempfile
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -64,16 +66,21 @@ def _why_missing():
     return f"the native module {MODULE} is not installed: install a Granita package for {here}"
 
 
+def crash_file():
+    """Where a fault of this process leaves its report."""
+    return os.path.join(tempfile.gettempdir(), f"granita-crash-{os.getpid()}.txt")
+
+
 @contextmanager
-def rendering(snapshot):
+def rendering(snapshot, about=""):
     """Renders a scene snapshot (docs/scene_snapshot.md): yields the running granita_core.Render.
-    The snapshot is emptied.
+    The snapshot is emptied.  `about`: lines that a report of a crash begins with.
 
     On a normal exit the job is finished and its first failure raised; on any other it is
     cancelled and joined.  Native exceptions arrive as those of this file.
     """
     core = load()
-    with _translated(core):
+    with _crash_reported(core, about), _translated(core):
         scene = core.Scene(snapshot)
         snapshot.clear()  # copied: a large scene need not be held twice
         job = core.Render(scene)
@@ -105,6 +112,16 @@ def end(job):
     """Joins a job that is done and raises its first failure; at once where it is done."""
     with _translated(load()):
         job.finish()
+
+
+@contextmanager
+def _crash_reported(core, about):
+    """A fault of the process leaves a file."""
+    report = core.CrashReport(crash_file(), about)
+    try:
+        yield
+    finally:
+        del report
 
 
 @contextmanager

@@ -47,7 +47,8 @@ class FinalRender:
         self.layer = depsgraph.view_layer.name
         self.passes = passes.wanted(depsgraph.view_layer)
         self.exposure = passes.exposure_owner(depsgraph.scene_eval).film_exposure
-        self.log = EventLog(options.log, depsgraph.scene.frame_current, self.layer)
+        self.frame = depsgraph.scene.frame_current
+        self.log = EventLog(options.log, self.frame, self.layer)
         self.status = StatusLine(engine, self.log)
         self.report = Report()
         self.seconds = {}
@@ -146,7 +147,7 @@ class FinalRender:
         started = perf_counter()
         job = None
         try:
-            with bridge.rendering(snapshot) as job:
+            with bridge.rendering(snapshot, self._about()) as job:
                 self.seconds["scene"] = perf_counter() - started
                 while not job.done():
                     self._deliver(job.take_tiles(POLL_SECONDS))
@@ -160,6 +161,16 @@ class FinalRender:
                 self._tell(job.warnings())
         self.seconds["render"] = perf_counter() - started - self.seconds["scene"]
         return job
+
+    def _about(self):
+        """What a report of a crash begins with."""
+        core = bridge.load()
+        return (
+            f"Granita {core.__version__}, build {file_digest(core.__file__)}, "
+            f"in Blender {bpy.app.version_string}\n"
+            f"scene '{self.scene}', view layer '{self.layer}', frame {self.frame}, "
+            f"file '{bpy.data.filepath}'"
+        )
 
     def _deliver(self, tiles):
         for tile in tiles:

@@ -2,6 +2,7 @@
 """A digest of all that a picture depends on: parts of one frame have the same."""
 
 import hashlib
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ def picture_digest(snapshot):
     return digest.hexdigest()
 
 
+@lru_cache(maxsize=4)
 def file_digest(path):
     """Hex digits for a file's content; "" where it cannot be read."""
     try:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/crash_report.h"
 #include "dice/knots.h"
 #include "dice/opened_elements.h"
 #include "dice/opened_polygons.h"
@@ -83,6 +84,7 @@ RasterBounds instance_bounds(const View& view, std::size_t index) {
 std::shared_ptr<const OpenedInstance> open_instance(const View& view, std::size_t index,
                                                     Report& report) {
     const Instance& instance = view.scene->instances[index];
+    const CrashScope scope("opens", instance.name);
     const std::size_t geometry = static_cast<std::size_t>(instance.geometry);
     const GeometryData& data = view.scene->geometries[geometry];
     const bool is_mesh = data.kind == GeometryKind::Mesh;

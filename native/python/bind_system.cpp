@@ -7,6 +7,7 @@
 #include <pybind11/stl.h>
 #include <tbb/version.h>
 
+#include "base/crash_report.h"
 #include "gl/gl_thread.h"
 #include "python/snapshot.h"
 
@@ -84,6 +85,10 @@ py::dict opengl() {
 void bind_system(py::module_& module) {
     module.def("system", &system,
                "{'compiler', 'portable', 'libraries': {name: version}, 'vector_units': [name]}");
+    py::class_<CrashReport>(module, "CrashReport", py::module_local(),
+                            "While it lives, a fault writes the file `path`, which begins with the "
+                            "lines `about`.")
+        .def(py::init<const std::string&, const std::string&>(), py::arg("path"), py::arg("about"));
     module.def(
         "opengl", &opengl,
         "{'vendor', 'renderer', 'version', 'software'} of the OpenGL that a frame would get, "

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/crash_report.h"
 #include "base/stage_timer.h"
 #include "shade/grid_channels.h"
 #include "shade/interpolated_points.h"
@@ -212,6 +213,7 @@ struct ShadingSystem::Impl {
     /// DirectLight::reflect().
     void shade(Grid& grid, const ShadingInput& in, const PointPaths& at,
                std::vector<float>* noise = nullptr) const {
+        const CrashScope scope("shades", scene.instances[grid.instance].name);
         const ShadingPoints& points = *in.points;
         const SurfaceProgram& surface = material(grid.material).radiance;
         Run run = surface.program.prepare(in, points.count);
