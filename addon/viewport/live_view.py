@@ -235,7 +235,8 @@ class LiveView:
         if not stage.is_last:
             x0, y0, x1, y1 = coarse_crop(sight.crop, stage.divisor)
             self._staging = np.zeros((y1 - y0, x1 - x0, 4), dtype=np.float32)
-            self._say(f"Samples 0/{snapshot['options']['samples']}")
+            # Shown with the picture: a drawing of its own would cost as much as that one.
+            self._say(f"Samples 0/{snapshot['options']['samples']}", now=False)
 
     def _go_on(self):
         """Takes what the job has finished."""
@@ -283,11 +284,12 @@ class LiveView:
             self._dying.append(self._job)
             self._job = None
 
-    def _say(self, text):
+    def _say(self, text, now=True):
         engine = self._engine()
         if engine is not None:
             engine.update_stats("", text)
-        self._redraw()
+        if now:
+            self._redraw()
 
     def _redraw(self):
         self._drawn = perf_counter()
