@@ -52,6 +52,11 @@ class GRANITA_RENDER_PT_sampling_presets(PresetPanel, EnginePanel, bpy.types.Pan
     bl_idname = "GRANITA_RENDER_PT_sampling_presets"
     bl_label = "Sampling Presets"
 
+    @staticmethod
+    def post_cb(context, *_):
+        """3D views hear of it: no evaluation follows what a script sets."""
+        context.scene.update_tag()
+
     def draw(self, context):
         self.layout.emboss = "PULLDOWN_MENU"
         self.layout.operator_context = "EXEC_DEFAULT"

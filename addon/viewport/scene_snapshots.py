@@ -17,7 +17,7 @@ class SceneSnapshots:
 
     Attributes:
         snapshot: what a picture of the state that was read last shows.
-        is_exact: whether it holds the motion of that state, not one carried over.
+        is_exact: whether it holds the motion of that state, not one that was carried over and may be another.
         report: export's Report of the reading.
         exposure: of the film.
     """
@@ -29,14 +29,18 @@ class SceneSnapshots:
         self._state = PersistentState()
         self._still, self._times = None, None  # ShutterTimes; None: nothing blurs
         self._moving, self._moving_times = None, None  # of the last reading of a whole shutter
+        self._paths_may_differ = True  # since then
+        self._clock = None
 
     def note(self, depsgraph):
         """What Blender tells of an edit, before the next reading."""
         self._state.note(depsgraph)
+        self._paths_may_differ |= any(_can_change_paths(update) for update in depsgraph.updates)
 
     def forget(self):
         """Addresses may mean something else now."""
         self._state = PersistentState()
+        self._paths_may_differ = True
 
     def read_frame(self, sight):
         """Reads what changed at the frame; whether it shows.
@@ -55,12 +59,17 @@ class SceneSnapshots:
         blurs = is_blurred(scene, layer) and scene_reading.may_move(sight.scene)
         times = _times(scene, layer) if blurs else None
         changed = not is_same(before, still) or times != self._times
-        self.is_exact = not blurs
+        clock = _clock(scene)
+        self._paths_may_differ |= changed or clock != self._clock or self._moving is None
+        self._clock = clock
+        self.is_exact = not blurs or not self._paths_may_differ
         if not blurs:
             self._moving = None
         self._still, self._times = still, times
         self.snapshot = still
-        if self._moving is not None:
+        if not self._paths_may_differ and self._moving is not None:
+            self.snapshot = self._moving
+        elif self._moving is not None:
             self.snapshot = carried(still, times, self._moving, self._moving_times)
         return changed
 
@@ -76,6 +85,7 @@ class SceneSnapshots:
         self._moving_times = _times(scene, scene.view_layers[sight.layer])
         moving = corrected(moving, self._moving_times, self._still)
         self._moving = self.snapshot = moving
+        self._paths_may_differ = False
         self.is_exact = True
         return not is_same(before, moving)
 
@@ -95,6 +105,29 @@ def _viewpoint_of(sight):
         return viewpoint
 
     return viewpoint_of
+
+
+def _can_change_paths(update):
+    """Not what a selection or the cursor is to Blender: the scene, without anything that moved.  A reading of the
+    shutter may hold the window up, and a click should not."""
+    if isinstance(update.id, (bpy.types.Scene, bpy.types.Collection)):
+        return update.is_updated_transform or update.is_updated_geometry
+    return True
+
+
+def _clock(scene):
+    """What of a scene makes other paths of the same keys."""
+    render = scene.render
+    return (
+        scene.granita.motion_steps,
+        render.fps,
+        render.fps_base,
+        render.frame_map_old,
+        render.frame_map_new,
+        scene.use_gravity,
+        tuple(scene.gravity),
+        tuple((m.frame, m.camera.name) for m in scene.timeline_markers if m.camera is not None),
+    )
 
 
 def _times(scene, layer):

@@ -107,6 +107,27 @@ def test_what_no_picture_shows_is_not_made_again(moving, view):
     assert view.step() is None and view.live.is_settled
 
 
+def test_a_selection_reads_no_shutter_and_a_key_of_another_frame_does(moving, view, render):
+    seen = view.edited().settle().copy()
+    counts = dict(view.live.counts)
+    for thing in moving.objects:
+        thing.select_set(True)
+        view.edited().settle()
+    assert view.live.counts["shutters read"] == counts["shutters read"]
+    assert view.live.counts["jobs"] == counts["jobs"]
+    moving.render.motion_blur_shutter = 1.0
+    moving.granita.motion_steps = 3
+    view.edited().settle()
+    assert view.live.counts["shutters read"] == counts["shutters read"] + 1
+    square = bpy.data.objects["Square"]
+    square.location = (3, 0, 1.2)
+    square.keyframe_insert("location", frame=6)
+    moving.frame_set(3)
+    after = view.edited().settle()
+    assert not np.array_equal(after, seen)
+    np.testing.assert_array_equal(after, combined(render, moving))
+
+
 def test_the_newest_edit_wins(moving, view, render):
     """Edits while a picture is being made: the last state is what settles, each time."""
     moving.granita.preview_samples = moving.granita.samples = 256
