@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders that are stopped at random times: under a frame's name there is a whole file or none.
+
+    ./dev bench cancels [--runs 50] [--seed 1]
+
+Float OpenEXR files of a small moving scene, an animation of 60 frames, stopped by SIGINT, SIGTERM or SIGKILL up to a second and a half after
+its first frame.  Prints each file that is not whole; ends with 1 where there is one.
+"""
+
+import argparse
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "tests" / "blender"))
+import exr  # noqa: E402
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
+BLENDER = ["blender", "-b", "--factory-startup", "--addons", "granita"]
+SCENE = """
+import sys
+sys.path[:0] = [{tests!r}]
+import bpy, scene_parts
+bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+scene = bpy.context.scene
+scene.render.engine = "GRANITA"
+scene.render.resolution_x, scene.render.resolution_y = 640, 480
+scene_parts.add_camera(scene, ortho_scale=4.0)
+square = scene_parts.add_square(scene, material=scene_parts.emission("Glow", (0.25, 0.5, 0.75)))
+for frame, x in ((0, -1.0), (60, 1.0)):
+    square.location.x = x
+    square.keyframe_insert("location", frame=frame)
+scene.render.use_motion_blur = True
+scene_parts.multilayer_exr(scene)
+bpy.ops.wm.save_as_mainfile(filepath={path!r})
+"""
+
+
+def run(*words):
+    streams = {
+        "stdin": subprocess.DEVNULL,
+        "stdout": subprocess.DEVNULL,
+        "stderr": subprocess.DEVNULL,
+    }
+    return subprocess.Popen([*BLENDER, *map(str, words)], **streams)
+
+
+def stopped(blend, out, stop, later):
+    """Paths of the files that a render leaves which is stopped `later` seconds after its first."""
+    process = run(blend, "-E", "GRANITA", "-o", out / "frame_####", "-s", 1, "-e", 60, "-a")
+    began = time.monotonic()
+    while not any(out.iterdir()) and time.monotonic() - began < 60.0:
+        time.sleep(0.02)
+    time.sleep(later)
+    process.send_signal(stop)
+    process.wait(timeout=60)
+    return sorted(out.iterdir())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--runs", type=int, default=50)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    chance = random.Random(options.seed)
+    whole, broken = 0, []
+    with tempfile.TemporaryDirectory() as folder:
+        blend = Path(folder) / "scene.blend"
+        code = SCENE.format(tests=str(HERE.parent / "tests" / "blender"), path=str(blend))
+        if run("--python-exit-code", 1, "--python-expr", code).wait():
+            sys.exit("the scene cannot be made")
+        for number in range(options.runs):
+            out = Path(folder) / str(number)
+            out.mkdir()
+            stop, later = chance.choice(SIGNALS), chance.uniform(0.0, 1.5)
+            for path in stopped(blend, out, stop, later):
+                try:
+                    exr.read(path)
+                    whole += 1
+                except Exception as error:
+                    broken.append(f"{stop.name}, {later:.3f} s later: {path.name}: {error}")
+                path.unlink()
+    print(f"{options.runs} runs, {whole} whole files, {len(broken)} broken", *broken, sep="\n")
+    sys.exit(bool(broken))
+
+
+if __name__ == "__main__":
+    main()
