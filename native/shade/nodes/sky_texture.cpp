@@ -1,27 +1,105 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stand-in for Sky Texture: a gradient from horizon to zenith in the mean colours of each model
-// at its default settings, without a sun (measured from Cycles 3.4, mean over all azimuths).
+// Sky Texture: sunlight scattered once (atmosphere.h) and the sun's disc.  Its other models are a
+// gradient from horizon to zenith in the mean colours of each at its default settings, without a
+// sun (measured from Cycles, mean over all azimuths).
 #include <algorithm>
+#include <cmath>
 
+#include "math/sampling.h"
+#include "shade/nodes/atmosphere.h"
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {
+namespace {
 
-void build_sky_texture(NodeBuilder& b) {
+struct Sun {
+    float elevation, azimuth;  ///< radians; the azimuth from x towards y
+    float diameter;            ///< radians; 0 = no disc
+    float strength;
+    Vec3f lowest, highest;  ///< XYZ at the disc's ends
+};
+
+/// Elevations go on over the zenith and down on the other side.
+void place_sun(float elevation, float rotation, Sun& sun) {
+    const float up = std::remainder(elevation, 2.0f * kPi);
+    const bool over = std::abs(up) > 0.5f * kPi;
+    sun.elevation = over ? std::copysign(kPi, up) - up : up;
+    sun.azimuth = 0.5f * kPi - rotation + (over ? kPi : 0.0f);
+}
+
+Vec3f rgb_of(const Vec3f& xyz) {
+    const Vec3f rgb(3.2404542f * xyz.x - 1.5371385f * xyz.y - 0.4985314f * xyz.z,
+                    -0.9692660f * xyz.x + 1.8760108f * xyz.y + 0.0415560f * xyz.z,
+                    0.0556434f * xyz.x - 0.2040259f * xyz.y + 1.0572252f * xyz.z);
+    return glm::max(rgb, Vec3f(0.0f));
+}
+
+/// @param away angle from its middle, within half of it.
+Vec3f disc(const Sun& sun, float elevation, float away) {
+    const float half = 0.5f * sun.diameter;
+    if (sun.elevation + half <= 0.0f) return Vec3f(0.0f);
+    const float height = sun.elevation > half ? (elevation - sun.elevation) / sun.diameter + 0.5f
+                                              : elevation / (sun.elevation + half);
+    const float part = away / half;
+    const float darkening = 1.0f - 0.6f * (1.0f - std::sqrt(std::max(1.0f - part * part, 0.0f)));
+    return sun.strength * darkening * glm::mix(sun.lowest, sun.highest, height);
+}
+
+/// Below the horizon its light fades within 24 degrees.
+float fade(float up) {
+    const float left = std::clamp(1.0f + 2.5f * up, 0.0f, 1.0f);
+    return left * left * left;
+}
+
+void build_scattering(NodeBuilder& b, const VectorSource& direction) {
+    const auto number = [&](const char* name, double otherwise) {
+        return static_cast<float>(b.value(name, otherwise));
+    };
+    Sun sun;
+    place_sun(number("sun_elevation", 0.26), number("sun_rotation", 0.0), sun);
+    const float dust = number("dust_density", b.value("aerosol_density", 1.0));
+    const Atmosphere atmosphere{sun.elevation, number("altitude", 0.0), number("air_density", 1.0),
+                                dust, number("ozone_density", 1.0)};
+    sun.diameter = b.value("sun_disc", 1.0) != 0.0 ? number("sun_size", 0.0095) : 0.0f;
+    sun.strength = number("sun_intensity", 1.0);
+    if (sun.diameter > 0.0f) {
+        const float half = 0.5f * sun.diameter;
+        sun.lowest = atmosphere.sun(std::max(sun.elevation - half, 0.0f), sun.diameter);
+        sun.highest = atmosphere.sun(std::max(sun.elevation + half, 0.0f), sun.diameter);
+    }
+    const Vec3f to_sun(std::cos(sun.elevation) * std::cos(sun.azimuth),
+                       std::cos(sun.elevation) * std::sin(sun.azimuth), std::sin(sun.elevation));
+    const auto table = sky_table(atmosphere);
+    b.output_color("Color", b.map<Vec3f>(
+                                // Not made unit, as in Cycles.
+                                [=](const Vec3f& d) {
+                                    const float up = std::clamp(d.z, -1.0f, 1.0f);
+                                    const float elevation = std::asin(up);
+                                    // Accurate for small angles, other than an arc cosine.
+                                    const float away = 2.0f * std::atan2(glm::length(d - to_sun),
+                                                                         glm::length(d + to_sun));
+                                    if (2.0f * away < sun.diameter && up >= 0.0f)
+                                        return rgb_of(disc(sun, elevation, away));
+                                    const float azimuth = std::atan2(d.y, d.x) - sun.azimuth;
+                                    return rgb_of(fade(up) * table->look_up(elevation, azimuth));
+                                },
+                                direction));
+}
+
+void build_gradient(NodeBuilder& b, const std::string& type, const VectorSource& direction) {
     struct Gradient {
         Vec3f below, horizon, zenith;
     };
-    const std::string type = b.text("sky_type", "NISHITA");
     const Gradient gradient =
         type == "PREETHAM"
             ? Gradient{{0.79f, 0.77f, 0.95f}, {0.66f, 0.77f, 1.07f}, {0.70f, 0.94f, 1.55f}}
         : type == "HOSEK_WILKIE"
             ? Gradient{{0.07f, 0.22f, 0.32f}, {0.13f, 0.19f, 0.26f}, {0.07f, 0.11f, 0.13f}}
             : Gradient{{0.0f, 0.0f, 0.0f}, {8.3f, 7.7f, 5.9f}, {0.55f, 0.87f, 1.44f}};
-    b.warn("Sky Texture is not supported; rendered as a plain gradient without a sun");
-    const VectorSource direction =
-        b.linked("Vector") ? b.vector("Vector") : generated_at(b, b.shift());
+    b.warn("Sky Texture's model " + type +
+           " is not supported; rendered as a plain gradient "
+           "without a sun");
     b.output_color("Color", b.map<Vec3f>(
                                 [gradient](const Vec3f& v) {
                                     const float length = glm::length(v);
@@ -30,6 +108,18 @@ void build_sky_texture(NodeBuilder& b) {
                                     return glm::mix(gradient.horizon, gradient.zenith, up);
                                 },
                                 direction));
+}
+
+}  // namespace
+
+void build_sky_texture(NodeBuilder& b) {
+    const VectorSource direction =
+        b.linked("Vector") ? b.vector("Vector") : generated_at(b, b.shift());
+    const std::string type = b.text("sky_type", "NISHITA");
+    if (type == "NISHITA" || type == "SINGLE_SCATTERING")
+        build_scattering(b, direction);
+    else
+        build_gradient(b, type, direction);
 }
 
 }  // namespace granita
