@@ -89,7 +89,9 @@ class SlurmNode:
         time.sleep(1.0)
 
     def stop(self):
-        self.run("scancel", "--user=root", "--signal=KILL")
+        # With its batch scripts, or their stepds outlive the daemons.
+        self.run("scancel", "--user=root", "--full", "--signal=KILL")
+        time.sleep(2.0)
         for process in reversed(self._daemons):
             process.terminate()
         for process in self._daemons:
