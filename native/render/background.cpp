@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hider/raster/raster_hider.h"
+#include "shade/unsettled.h"
 
 namespace granita {
 namespace {
@@ -76,29 +77,42 @@ class Directions {
     Vec2d m_origin;
 };
 
-/// One evaluation a pixel corner, bilinear between: a static pinhole camera sees a smooth function
-/// of the pixel.
-std::vector<Vec3f> from_corners(const Directions& directions, const ShadingSystem& shading,
-                                float spread, const TileSamples& samples) {
-    constexpr int kCorners = kTileSize + 1;
-    std::vector<Vec3f> corner_directions;
-    for (int y = 0; y < kCorners; ++y)
-        for (int x = 0; x < kCorners; ++x) corner_directions.push_back(directions.at(x, y, {}));
-    std::vector<Vec3f> corners;
-    shading.background(corner_directions, spread, corners);
-
-    std::vector<Vec3f> colors(samples.x.size());
-    for (std::size_t i = 0; i < colors.size(); ++i) {
-        const int x = std::clamp(static_cast<int>(samples.x[i]), 0, kTileSize - 1);
-        const int y = std::clamp(static_cast<int>(samples.y[i]), 0, kTileSize - 1);
-        const float fx = samples.x[i] - static_cast<float>(x),
-                    fy = samples.y[i] - static_cast<float>(y);
-        const Vec3f* c = &corners[static_cast<std::size_t>(y) * kCorners + x];
-        colors[i] =
-            glm::mix(glm::mix(c[0], c[1], fx), glm::mix(c[kCorners], c[kCorners + 1], fx), fy);
+/// Colours at the corners of a tile's pixels, [17][17].
+class PixelCorners {
+  public:
+    PixelCorners(const Directions& directions, const ShadingSystem& shading, float spread) {
+        std::vector<Vec3f> places;
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) places.push_back(directions.at(x, y, {}));
+        shading.background(places, spread, m_colors);
     }
-    return colors;
-}
+
+    /// Whether what is between the pixel's corners bends by less than the threshold
+    /// (shade/unsettled.h), as far as they tell.
+    bool settled(int pixel, float threshold) const {
+        const Vec3f* c = of(pixel % kTileSize, pixel / kTileSize);
+        const auto apart = [&](int a, int b) {
+            return displayed_difference(c[a], c[b]) > threshold;
+        };
+        return !apart(0, 1) && !apart(0, kSide) && !apart(0, kSide + 1) && !apart(1, kSide);
+    }
+
+    /// Bilinear, at a place in the tile.
+    Vec3f at(float x, float y) const {
+        const int column = std::clamp(static_cast<int>(x), 0, kTileSize - 1);
+        const int row = std::clamp(static_cast<int>(y), 0, kTileSize - 1);
+        const float fx = x - static_cast<float>(column), fy = y - static_cast<float>(row);
+        const Vec3f* c = of(column, row);
+        return glm::mix(glm::mix(c[0], c[1], fx), glm::mix(c[kSide], c[kSide + 1], fx), fy);
+    }
+
+  private:
+    static constexpr int kSide = kTileSize + 1;
+    const Vec3f* of(int column, int row) const {
+        return &m_colors[static_cast<std::size_t>(row) * kSide + column];
+    }
+    std::vector<Vec3f> m_colors;
+};
 
 }  // namespace
 
@@ -118,13 +132,21 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
     table.fill_tile(store.tile, needs, samples);
     const Directions directions(camera, store, samples);
     const float spread = pixel_spread(camera);
-    if (!directions.vary_in_pixel()) return from_corners(directions, shading, spread, samples);
-
+    std::vector<Vec3f> colors(store.id.size(), Vec3f(0.0f));
+    // A static pinhole camera sees a function of the pixel that is smooth but for what the world
+    // draws: a sun, a horizon.
+    if (!directions.vary_in_pixel()) {
+        const PixelCorners corners(directions, shading, spread);
+        for (const std::size_t i : uncovered) colors[i] = corners.at(samples.x[i], samples.y[i]);
+        const auto count = static_cast<std::size_t>(samples.samples);
+        std::erase_if(uncovered, [&](std::size_t i) {
+            return corners.settled(static_cast<int>(i / count), shading.threshold());
+        });
+    }
     std::vector<Vec3f> wanted, found;
     wanted.reserve(uncovered.size());
     for (const std::size_t i : uncovered) wanted.push_back(directions.of_sample(i));
     shading.background(wanted, spread, found);
-    std::vector<Vec3f> colors(store.id.size(), Vec3f(0.0f));
     for (std::size_t k = 0; k < uncovered.size(); ++k) colors[uncovered[k]] = found[k];
     return colors;
 }

@@ -313,6 +313,10 @@ const std::vector<std::vector<AttributeRequest>>& ShadingSystem::requests() cons
     return m_impl->requests;
 }
 
+float ShadingSystem::threshold() const {
+    return m_impl->threshold;
+}
+
 const std::vector<DisplacementHook>& ShadingSystem::displacement() const {
     return m_impl->displacement;
 }

@@ -48,6 +48,10 @@ class ShadingSystem {
     /// varies, opacity alone are there.
     Grid refine(const Grid& grid, std::span<const RefinedPoint> points) const;
 
+    /// Bend of displayed colour from which on samples are shaded by themselves, for the frame's
+    /// number of samples.
+    float threshold() const;
+
     /// The world as the camera sees it.  `directions` [n] unit, world space; `spread` radians a
     /// direction stands for (texture filtering).  Fills `out` [n].
     void background(const std::vector<Vec3f>& directions, float spread,

@@ -230,7 +230,7 @@ def test_sky_of_scattered_light(scene, render, sky):
 @pytest.mark.skipif(bpy.app.version >= (5, 0, 0), reason="there the ground begins elsewhere")
 @pytest.mark.parametrize("elevation", [0.3, 0.7])
 def test_the_disc_of_the_sun(scene, render, elevation):
-    """A large one, that many pixels see; the lower one is cut by the horizon.  Pixels at its edge are left out."""
+    """A large one, that many pixels see; the lower one is cut by the horizon."""
     sky_world(scene, sun_elevation=elevation, sun_size=0.9, sun_intensity=2.0)
     camera = scene_parts.add_camera(scene)
     camera.rotation_euler = (1.9, 0.0, 0.0)
@@ -240,7 +240,7 @@ def test_the_disc_of_the_sun(scene, render, elevation):
     level = theirs.max(-1)
     assert np.mean(level > 50) > 0.1
     error = np.abs(theirs - ours).max(-1)[level > 1] / level[level > 1]
-    assert np.quantile(error, 0.85) < 0.03
+    assert np.quantile(error, 0.95) < 0.03
 
 
 def test_the_sun_of_a_sky_lights(scene, render):
