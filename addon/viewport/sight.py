@@ -12,7 +12,7 @@ from mathutils import Vector
 
 from ..export.base.transforms import from_matrix, inverse, world_from_camera
 from ..export.scene.camera import Frame, window_projection
-from ..export.scene.options import border, scene_frame
+from ..export.scene.options import border, render_border, scene_frame
 from ..export.scene.viewpoint import CameraViewpoint, StillViewpoint
 
 
@@ -112,15 +112,7 @@ def _through_camera(names, region, region_data, camera, depsgraph, pixel):
     final = scene_frame(render)
     if abs(frame.width - final.width) <= 1 and abs(frame.height - final.height) <= 1:
         frame = final
-    crop = (0, 0, frame.width, frame.height)
-    if render.use_border:
-        crop = border(
-            frame,
-            render.border_min_x,
-            render.border_min_y,
-            render.border_max_x,
-            render.border_max_y,
-        )
+    crop = render_border(render, frame)
     # What the region does not show is not made.
     crop = (
         max(crop[0], -place[0] // pixel),

@@ -85,22 +85,26 @@ def _samples(scene, view_layer, samples):
     return min(own, samples) if use == "BOUNDED" else own
 
 
-def scene_crop(scene, frame):
-    """Pixels of the frame that a final render makes: (x0, y0, x1, y1).
-
-    Raises:
-        ExportError: the border encloses no pixel.
-    """
-    render = scene.render
+def render_border(render, frame):
+    """Pixels (x0, y0, x1, y1) of the frame that a scene's border encloses; without one, all."""
     if not render.use_border:
         return (0, 0, frame.width, frame.height)
-    crop = border(
+    return border(
         frame,
         render.border_min_x,
         render.border_min_y,
         render.border_max_x,
         render.border_max_y,
     )
+
+
+def scene_crop(scene, frame):
+    """Pixels of the frame that a final render makes: (x0, y0, x1, y1).
+
+    Raises:
+        ExportError: the border encloses no pixel.
+    """
+    crop = render_border(scene.render, frame)
     if crop[2] <= crop[0] or crop[3] <= crop[1]:
         raise ExportError(f"scene '{scene.name}'", "the render border encloses no pixel")
     return crop
