@@ -6,6 +6,7 @@
 #include "dice/grid_attributes.h"
 #include "dice/motion_bounds.h"
 #include "dice/parametric_positions.h"
+#include "math/normalize_or.h"
 
 namespace granita {
 namespace {
@@ -20,6 +21,7 @@ class LatticeDicer {
             static_cast<std::size_t>(lattice.n_u + 1) * static_cast<std::size_t>(lattice.n_v + 1);
         find_places();
         mesh.sample(patch, m_places.uv, m_samples);
+        m_border.assign(mesh.displaced() ? m_count : 0, {});
         place_border();
         grid.n_u = lattice.n_u;
         grid.n_v = lattice.n_v;
@@ -75,35 +77,76 @@ class LatticeDicer {
     }
 
     void place(const EdgePoint& point, int vertex) {
-        for (int k = 0; k < m_mesh->knot_count(); ++k) {
-            const std::size_t index = at_knot(k, vertex);
-            m_samples.positions[index] = point.p[k];
-            if (m_mesh->displaced()) m_samples.offset[index] = point.offset[k];
-        }
+        for (int k = 0; k < m_mesh->knot_count(); ++k)
+            m_samples.positions[at_knot(k, vertex)] = point.p[k];
+        if (m_mesh->displaced()) m_border[static_cast<std::size_t>(vertex)] = point.place;
     }
 
     void copy(int from, int to) {
-        for (int k = 0; k < m_mesh->knot_count(); ++k) {
+        for (int k = 0; k < m_mesh->knot_count(); ++k)
             m_samples.positions[at_knot(k, to)] = m_samples.positions[at_knot(k, from)];
-            if (m_mesh->displaced())
-                m_samples.offset[at_knot(k, to)] = m_samples.offset[at_knot(k, from)];
-        }
+        if (m_mesh->displaced())
+            m_border[static_cast<std::size_t>(to)] = m_border[static_cast<std::size_t>(from)];
     }
 
     std::size_t at_knot(int knot, int vertex) const {
         return static_cast<std::size_t>(knot) * m_count + static_cast<std::size_t>(vertex);
     }
 
-    void displace(Grid& grid) const {
-        const float bound = m_mesh->displacement(grid.material).bound;
-        std::uint64_t beyond = 0;
-        for (std::size_t i = 0; i < grid.positions.size(); ++i) {
-            grid.positions[i] += m_samples.offset[i];
-            if (glm::length(m_samples.offset[i]) > bound * 1.0001f + 1e-12f) ++beyond;
+    void displace(Grid& grid) {
+        const Displacement& displacement = *m_mesh->view().displacement;
+        const std::size_t instance = m_mesh->instance_index();
+        displacement.find(instance, m_mesh->shared(), *m_patch, m_places.uv, true, m_offsets);
+        find_displaced_normals();
+        displace_border(displacement);
+        for (int k = 0; k < grid.knots; ++k) {
+            const Mat3d turn = m_mesh->direction_matrix(k);
+            for (std::size_t i = 0; i < m_count; ++i)
+                grid.positions[at_knot(k, static_cast<int>(i))] +=
+                    Vec3f(turn * Vec3d(m_offsets.offset[i]));
         }
-        if (beyond)
-            m_mesh->report().warn(m_mesh->instance().name,
-                                  "vertices displaced beyond the displacement bound", beyond);
+    }
+
+    /// The tangents move as the offsets change.  The shading normal is that of the smooth surface
+    /// which has it where nothing is displaced: whose tangents are square to it.
+    void find_displaced_normals() {
+        const Mat3d turn(m_mesh->knots().frame_camera_from_object);
+        for (std::size_t i = 0; i < m_count; ++i) {
+            const Vec3d by_u = turn * Vec3d(m_offsets.by_u[i]),
+                        by_v = turn * Vec3d(m_offsets.by_v[i]);
+            const Vec3d su(m_samples.su[i]), sv(m_samples.sv[i]), n(m_samples.normal[i]);
+            const Vec3d flat_u = su - n * glm::dot(n, su), flat_v = sv - n * glm::dot(n, sv);
+            const double side = m_mesh->frame_orientation();
+            const Vec3d moved_u = su + by_u, moved_v = sv + by_v;
+            m_samples.su[i] = Vec3f(moved_u);
+            m_samples.sv[i] = Vec3f(moved_v);
+            m_samples.geometric_normal[i] = Vec3f(normalize_or(
+                side * glm::cross(moved_u, moved_v), Vec3d(m_samples.geometric_normal[i])));
+            m_samples.normal[i] =
+                Vec3f(normalize_or(side * glm::cross(flat_u + by_u, flat_v + by_v), n));
+        }
+    }
+
+    /// Every vertex of the border goes where its owner says, a run of one owner's at a time.
+    void displace_border(const Displacement& displacement) {
+        std::vector<int>& vertices = m_border_vertices;
+        vertices.clear();
+        for (int side = 0; side < 4; ++side)
+            for (int i = 0; i <= m_places.side_steps(side); ++i)
+                vertices.push_back(m_places.vertex(side, i));
+        const auto owner = [&](int vertex) { return m_border[static_cast<std::size_t>(vertex)]; };
+        for (std::size_t first = 0, last = 0; first < vertices.size(); first = last) {
+            const BasePatch* const patch = owner(vertices[first]).patch;
+            m_border_uv.clear();
+            for (last = first; last < vertices.size() && owner(vertices[last]).patch == patch;
+                 ++last)
+                m_border_uv.push_back(owner(vertices[last]).uv);
+            displacement.find(m_mesh->instance_index(), m_mesh->shared(), patch ? *patch : *m_patch,
+                              m_border_uv, false, m_border_offsets);
+            for (std::size_t i = first; i < last; ++i)
+                m_offsets.offset[static_cast<std::size_t>(vertices[i])] =
+                    m_border_offsets.offset[i - first];
+        }
     }
 
     void count_spared(const Grid& grid) {
@@ -156,6 +199,11 @@ class LatticeDicer {
     std::vector<float> m_by_u, m_by_v;
     std::vector<Vec3f> m_path;
     SurfaceSamples m_samples;
+    // Of what is displaced:
+    Offsets m_offsets, m_border_offsets;
+    std::vector<SurfacePlace> m_border;  ///< [vertices] who says where one goes, on the border
+    std::vector<int> m_border_vertices;
+    std::vector<Vec2d> m_border_uv;
 };
 
 }  // namespace

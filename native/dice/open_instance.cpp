@@ -12,6 +12,7 @@
 #include "geometry/geometry_cache.h"
 #include "geometry/shared_elements.h"
 #include "geometry/shared_geometry.h"
+#include "math/largest_stretch.h"
 
 namespace granita {
 namespace {
@@ -36,15 +37,6 @@ void add_transformed(Bounds3f& sum, const Mat4d& m, const Bounds3f& box) {
 /// reach a little further than 1.25).
 constexpr float kWidest = 1.26f;
 
-float displacement_bound(const View& view, const Instance& instance) {
-    if (view.displacement.empty()) return 0.0f;
-    float bound = instance.materials.empty() ? view.displacement.back().bound : 0.0f;
-    for (const std::int32_t m : instance.materials)
-        bound = std::max(bound, m < 0 ? view.displacement.back().bound
-                                      : view.displacement[static_cast<std::size_t>(m)].bound);
-    return bound;
-}
-
 class Nothing final : public OpenedInstance {
   public:
     std::size_t primitive_count() const override { return 0; }
@@ -64,6 +56,8 @@ std::vector<Bounds3f> instance_boxes(const View& view, std::size_t index) {
     const Knots knots = combine_knots(*view.scene, instance, data, data.knots == 1);
     if (!knots.finite) return {};
     const float radius = view.geometries->largest_radius(*view.scene, geometry);
+    const bool displaced = view.displacement && view.displacement->displaces(index);
+    const float moved = displaced ? view.displacement->bound(index) : 0.0f;
     std::vector<Bounds3f> out(static_cast<std::size_t>(knots.count));
     for (int k = 0; k < knots.count; ++k) {
         const Mat4d& m = knots.camera_from_object[static_cast<std::size_t>(k)];
@@ -72,7 +66,7 @@ std::vector<Bounds3f> instance_boxes(const View& view, std::size_t index) {
         if (box.empty()) continue;
         if (radius > 0.0f) box.grow(kWidest * radius * static_cast<float>(uniform_scale(m)));
         box.grow_relative(4e-6f);
-        box.grow(displacement_bound(view, instance));
+        box.grow(moved * static_cast<float>(largest_stretch(m)));
     }
     return out;
 }

@@ -67,10 +67,6 @@ OpenedElements::OpenedElements(const View& view, std::size_t instance,
         m_uneven.emplace_back(is_curve ? m : Mat4d(1.0));
         m_scales.push_back(m_uneven.back().is_uneven ? m_uneven.back().largest : uniform_scale(m));
     }
-    if (view.displacement.empty()) return;
-    for (const std::int32_t m : m_instance->materials)
-        if (m >= 0 && view.displacement[static_cast<std::size_t>(m)].constant != 0.0f)
-            report.warn(m_instance->name, "displacement has no effect on curves and points");
 }
 
 const EdgeRate& OpenedElements::rate_along(double width) const {

@@ -11,6 +11,7 @@
 #include "dice/patch_batch.h"
 #include "dice/raster_bound.h"
 #include "geometry/surface_evaluator.h"
+#include "math/largest_stretch.h"
 
 namespace granita {
 namespace {
@@ -35,7 +36,6 @@ OpenedMesh::OpenedMesh(const View& view, std::size_t instance,
       m_rate(view),
       m_vertex_count(data().vertex_count()) {
     transform_points();
-    for (const Mat4d& m : m_knots.camera_from_object) m_orientation.push_back(orientation_of(m));
     m_frame_orientation = orientation_of(m_knots.frame_camera_from_object);
     // The cofactor matrix times the orientation is the inverse transpose up to a positive factor,
     // and it exists for scale 0 too.
@@ -80,26 +80,13 @@ void OpenedMesh::transform_points() {
 }
 
 void OpenedMesh::find_displacement() {
-    const auto moves = [this](int material) {
-        const DisplacementHook hook = displacement(material);
-        return hook.constant != 0.0f;
-    };
-    for (const std::int32_t material : m_instance->materials) m_displaced |= moves(material);
-    if (m_instance->materials.empty()) m_displaced = moves(-1);
+    const Displacement* const displacement = m_view->displacement;
+    m_displaced = displacement && displacement->displaces(m_instance_index);
     if (!m_displaced) return;
-    constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
-    std::vector<std::int32_t> lowest(m_vertex_count, kNone);
-    m_vertex_displacement.assign(m_vertex_count, 0.0f);
-    std::size_t corner = 0;
-    for (std::uint32_t face = 0; face < data().face_count(); ++face) {
-        const std::int32_t slot = data().material_index.empty() ? 0 : data().material_index[face];
-        for (std::int32_t i = 0; i < data().face_sizes[face]; ++i) {
-            const std::size_t v = static_cast<std::size_t>(data().corner_verts[corner++]);
-            if (slot >= lowest[v]) continue;
-            lowest[v] = slot;
-            m_vertex_displacement[v] = displacement(material(face)).constant;
-        }
-    }
+    const float bound = displacement->bound(m_instance_index);
+    for (const Mat4d& m : m_knots.camera_from_object)
+        m_displacement_reach =
+            std::max(m_displacement_reach, bound * static_cast<float>(largest_stretch(m)));
 }
 
 float OpenedMesh::frame_scale() const {
@@ -116,12 +103,6 @@ int OpenedMesh::material(std::uint32_t face) const {
     // A face may keep the slot of a material that is gone: Blender takes the last one there is.
     return slots[static_cast<std::size_t>(
         std::clamp<std::int32_t>(slot, 0, static_cast<std::int32_t>(slots.size()) - 1))];
-}
-
-DisplacementHook OpenedMesh::displacement(int material) const {
-    if (m_view->displacement.empty()) return {};
-    return material < 0 ? m_view->displacement.back()
-                        : m_view->displacement[static_cast<std::size_t>(material)];
 }
 
 void OpenedMesh::attribute(const BasePatch& patch, const AttributeRequest& request,
@@ -186,8 +167,7 @@ std::unique_ptr<Primitive> OpenedMesh::primitive(std::size_t primitive) const {
 }
 
 std::uint64_t OpenedMesh::bytes() const {
-    return sizeof(*this) + sizeof(Vec3f) * m_points.size() +
-           sizeof(float) * m_vertex_displacement.size() + m_small.bytes();
+    return sizeof(*this) + sizeof(Vec3f) * m_points.size() + m_small.bytes();
 }
 
 }  // namespace granita

@@ -23,7 +23,6 @@ struct SurfaceSamples {
     std::vector<Vec3f> su, sv;            ///< [n] at the frame time
     std::vector<Vec3f> normal;            ///< [n] unit, shading, at the frame time
     std::vector<Vec3f> geometric_normal;  ///< [n] unit, at the frame time
-    std::vector<Vec3f> offset;            ///< [knots][n] displacement; empty when not displaced
 };
 
 class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<OpenedMesh> {
@@ -83,6 +82,9 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
         return {&m_points[static_cast<std::size_t>(knot) * m_vertex_count], m_vertex_count};
     }
     const EdgeRate& rate() const { return m_rate; }
+    /// -1 where the frame's matrix mirrors (camera space itself is left-handed): turns cross
+    /// products outward.
+    double frame_orientation() const { return m_frame_orientation; }
     Report& report() const { return *m_report; }
 
     /// The largest stretch from object to camera space at the frame time.
@@ -91,7 +93,12 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     int material(std::uint32_t face) const;
     /// Any material of the instance displaces.
     bool displaced() const { return m_displaced; }
-    DisplacementHook displacement(int material) const;
+    /// The longest way that displacement may move a point at any knot, metres.
+    float displacement_reach() const { return m_displacement_reach; }
+    /// From object to camera space at a knot, of directions.
+    Mat3d direction_matrix(int knot) const {
+        return Mat3d(m_knots.camera_from_object[static_cast<std::size_t>(knot)]);
+    }
 
     /// Object-space normals to camera space at the frame time, of any length.
     Vec3d camera_normal(const Vec3f& normal_object) const;
@@ -105,16 +112,10 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
         return m_points[static_cast<std::size_t>(knot) * m_vertex_count + vertex];
     }
     std::int32_t vertex_of(std::uint32_t corner) const { return data().corner_verts[corner]; }
-    /// Of a vertex, metres along the normal: the lowest slot that touches it decides (decision 10).
-    float vertex_displacement(std::size_t vertex) const { return m_vertex_displacement[vertex]; }
     /// From a knot's values to the frame time.
     Vec3d at_frame(const Vec3d& knot, const Vec3d& next) const {
         return knot * (1.0 - m_knots.frame_fraction) + next * m_knots.frame_fraction;
     }
-    /// -1 where the matrix mirrors (camera space itself is left-handed): turns cross products
-    /// outward.
-    double orientation(int knot) const { return m_orientation[static_cast<std::size_t>(knot)]; }
-    double frame_orientation() const { return m_frame_orientation; }
 
   private:
     /// [knots]
@@ -131,11 +132,10 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     EdgeRate m_rate;
     std::size_t m_vertex_count;
     std::vector<Vec3f> m_points;  ///< [knots][V] camera space
-    std::vector<double> m_orientation;
     double m_frame_orientation = 1.0;
     Mat3d m_camera_from_object_normal{1.0};
     bool m_displaced = false;
-    std::vector<float> m_vertex_displacement;
+    float m_displacement_reach = 0.0f;
     SmallFaces m_small;  ///< none where displaced
 };
 

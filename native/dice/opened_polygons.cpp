@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "dice/lattice_stencil.h"
-#include "geometry/vertex_normals.h"
+#include "geometry/patch_borders.h"
 #include "math/normalize_or.h"
 
 namespace granita {
@@ -21,13 +21,6 @@ OpenedPolygons::OpenedPolygons(const View& view, std::size_t instance,
                                Report& report)
     : OpenedMesh(view, instance, std::move(shared), std::move(knots), report) {
     find_small_faces();
-    if (!displaced()) return;
-    const std::size_t n = data().vertex_count();
-    for (int k = 0; k < knot_count(); ++k) {
-        std::vector<Vec3f> normals = granita::vertex_normals(data(), {&point(k, 0), n});
-        for (Vec3f& normal : normals) normal *= static_cast<float>(orientation(k));
-        m_directions.insert(m_directions.end(), normals.begin(), normals.end());
-    }
 }
 
 OpenedMesh::Start OpenedPolygons::start(const BasePatch& patch, int budget) const {
@@ -88,28 +81,12 @@ void OpenedPolygons::edge_point(const EdgeRef& edge, double t, EdgePoint& out) c
     for (int k = 0; k < knot_count(); ++k)
         out.p[k] = Vec3f(Vec3d(point(k, edge.a)) * (1.0 - t) + Vec3d(point(k, edge.b)) * t);
     if (!displaced()) return;
-    const double amount = vertex_displacement(edge.a) * (1.0 - t) + vertex_displacement(edge.b) * t;
-    const std::size_t n = data().vertex_count();
-    for (int k = 0; k < knot_count(); ++k) {
-        const Vec3f* directions = &m_directions[static_cast<std::size_t>(k) * n];
-        const Vec3d along = Vec3d(directions[edge.a]) * (1.0 - t) + Vec3d(directions[edge.b]) * t;
-        out.offset[k] = Vec3f(amount * normalize_or(along, Vec3d(0.0, 0.0, -1.0)));
-    }
+    const PatchBorders& borders = shared().borders();
+    out.place = borders.place(borders.edge_of(edge.a, edge.b), t);
 }
 
 bool OpenedPolygons::smooth(std::uint32_t face) const {
     return !data().smooth.empty() && data().smooth[face];
-}
-
-Vec3d OpenedPolygons::direction(const BasePatch& patch, int knot, const CornerWeights& weights,
-                                const Corners& at) const {
-    const Vec3d flat =
-        orientation(knot) * face_direction(at.p, blend(at.p, weights.du), blend(at.p, weights.dv));
-    if (!smooth(patch.face)) return flat;
-    const Vec3f* normals = &m_directions[static_cast<std::size_t>(knot) * data().vertex_count()];
-    Vec3d corner[4];
-    for (int i = 0; i < 4; ++i) corner[i] = normals[vertex_of(patch.corner[i])];
-    return normalize_or(blend(corner, weights.w), flat);
 }
 
 FrameFace OpenedPolygons::frame_face(const BasePatch& patch) const {
@@ -131,10 +108,8 @@ void OpenedPolygons::surface_point(const BasePatch& patch, const Vec2d& uv, Edge
     for (int k = 0; k < knot_count(); ++k) {
         const Corners at = corners(patch, k);
         out.p[k] = Vec3f(blend(at.p, weights.w));
-        if (displaced())
-            out.offset[k] = Vec3f(static_cast<double>(displacement(material(patch.face)).constant) *
-                                  direction(patch, k, weights, at));
     }
+    out.place = {nullptr, uv};
 }
 
 void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
@@ -145,16 +120,11 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
     for (const Vec2d& at : uv) weights.emplace_back(patch.kind, at);
 
     out.positions.resize(n * static_cast<std::size_t>(knot_count()));
-    if (displaced()) out.offset.resize(out.positions.size());
-    const double amount = displacement(material(patch.face)).constant;
     for (int k = 0; k < knot_count(); ++k) {
         const Corners at = corners(patch, k);
         const std::size_t base = static_cast<std::size_t>(k) * n;
-        for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t i = 0; i < n; ++i)
             out.positions[base + i] = Vec3f(blend(at.p, weights[i].w));
-            if (displaced())
-                out.offset[base + i] = Vec3f(amount * direction(patch, k, weights[i], at));
-        }
     }
 
     const FrameFace face = frame_face(patch);

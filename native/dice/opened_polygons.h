@@ -23,12 +23,7 @@ class OpenedPolygons final : public OpenedMesh {
     bool may_be_small(const BasePatch&) const override { return true; }
 
   private:
-    /// Unit direction of displacement at a knot.
-    Vec3d direction(const BasePatch& patch, int knot, const CornerWeights& weights,
-                    const Corners& at) const;
     bool smooth(std::uint32_t face) const;
-
-    std::vector<Vec3f> m_directions;  ///< [knots][V] vertex normals; empty when not displaced
 };
 
 }  // namespace granita

@@ -6,6 +6,7 @@
 
 #include "dice/whole_edges.h"
 #include "geometry/limit_vertices.h"
+#include "geometry/patch_borders.h"
 #include "math/normalize_or.h"
 
 namespace granita {
@@ -33,12 +34,6 @@ Vec3d OpenedSubdivision::direction(const double* columns, int knot) const {
         object = object * (1.0 - t.fraction) + Vec3d(p[3], p[4], p[5]) * t.fraction;
     const Mat4d& m = knots().camera_from_object[static_cast<std::size_t>(knot)];
     return Vec3d(m[0]) * object.x + Vec3d(m[1]) * object.y + Vec3d(m[2]) * object.z;
-}
-
-Vec3d OpenedSubdivision::normal(const double* du, const double* dv, int knot,
-                                const Vec3d& otherwise) const {
-    return normalize_or(orientation(knot) * glm::cross(direction(du, knot), direction(dv, knot)),
-                        otherwise);
 }
 
 Vec3d OpenedSubdivision::place(const double* columns, int knot) const {
@@ -165,24 +160,12 @@ std::vector<Bounds3f> OpenedSubdivision::boxes(const BasePatch& patch,
     return boxes;
 }
 
-void OpenedSubdivision::limit_point(int index, const Vec2d& uv, double amount,
-                                    EdgePoint& out) const {
+void OpenedSubdivision::limit_point(int index, const Vec2d& uv, EdgePoint& out) const {
     const LimitFace& limit = face(index);
-    const std::size_t columns = static_cast<std::size_t>(limit.columns());
-    thread_local std::vector<double> p, du, dv;
-    p.resize(columns);
-    if (!displaced()) {
-        limit.evaluate(uv, p.data());
-        for (int k = 0; k < knot_count(); ++k) out.p[k] = Vec3f(place(p.data(), k));
-        return;
-    }
-    du.resize(columns);
-    dv.resize(columns);
-    limit.evaluate(uv, p.data(), du.data(), dv.data());
-    for (int k = 0; k < knot_count(); ++k) {
-        out.p[k] = Vec3f(place(p.data(), k));
-        out.offset[k] = Vec3f(amount * normal(du.data(), dv.data(), k, kTowardsCamera));
-    }
+    thread_local std::vector<double> p;
+    p.resize(static_cast<std::size_t>(limit.columns()));
+    limit.evaluate(uv, p.data());
+    for (int k = 0; k < knot_count(); ++k) out.p[k] = Vec3f(place(p.data(), k));
 }
 
 void OpenedSubdivision::copy_vertex(std::size_t vertex, EdgePoint& out) const {
@@ -190,51 +173,46 @@ void OpenedSubdivision::copy_vertex(std::size_t vertex, EdgePoint& out) const {
 }
 
 void OpenedSubdivision::edge_point(const EdgeRef& ref, double t, EdgePoint& out) const {
-    if (ref.b != kWhole) {
-        const int index = static_cast<int>(ref.a);
-        if (t == 0.0) {
-            const std::size_t edge = topology().face_edge(ref.a, static_cast<int>(ref.b));
-            edge_point({static_cast<std::uint32_t>(edge), kWhole}, 0.5, out);
-            return;
-        }
-        const FaceCoordinates coordinates(topology(), index);
-        // The spokes meet in the centre: the first sub-face's.
-        const int sub = t == 1.0 ? 0 : static_cast<int>(ref.b);
-        limit_point(index, coordinates.sub_face(sub, {1.0, t}),
-                    displacement(material(ref.a)).constant, out);
+    if (displaced()) {
+        const PatchBorders& borders = shared().borders();
+        out.place = borders.place(
+            ref.b == kWhole ? PatchBorders::cage_edge(ref.a) : borders.spoke(ref.a, ref.b), t);
+    }
+    if (ref.b == kWhole) {
+        cage_point(ref.a, t, out);
         return;
     }
-    const SubdivisionTopology::Edge& edge = topology().edge(ref.a);
-    const bool at_vertex = t == 0.0 || t == 1.0;
-    const std::size_t lo = static_cast<std::size_t>(edge.lo),
-                      hi = static_cast<std::size_t>(edge.hi);
-    const SubdivisionTopology::Owner& owner =
-        at_vertex ? topology().vertex_owner(t == 0.0 ? lo : hi) : edge.owner;
-    if (at_vertex && !displaced()) {
-        copy_vertex(t == 0.0 ? lo : hi, out);
+    const int index = static_cast<int>(ref.a);
+    if (t == 0.0) {
+        cage_point(topology().face_edge(ref.a, static_cast<int>(ref.b)), 0.5, out);
         return;
     }
-    const double amount =
-        displaced() ? vertex_displacement(lo) * (1.0 - t) + vertex_displacement(hi) * t : 0.0;
-    const FaceCoordinates coordinates(topology(), owner.face);
-    Vec2d uv;
-    if (at_vertex) {
-        uv = coordinates.vertex(owner.local);
-    } else {
-        const std::uint32_t corner = shared().first_corner(static_cast<std::size_t>(owner.face)) +
-                                     static_cast<std::uint32_t>(owner.local);
-        uv = coordinates.edge(owner.local, vertex_of(corner) == edge.lo ? t : 1.0 - t);
+    // The spokes meet in the centre: the first sub-face's.
+    const int sub = t == 1.0 ? 0 : static_cast<int>(ref.b);
+    limit_point(index, FaceCoordinates(topology(), index).sub_face(sub, {1.0, t}), out);
+}
+
+void OpenedSubdivision::cage_point(std::size_t index, double t, EdgePoint& out) const {
+    const SubdivisionTopology::Edge& edge = topology().edge(index);
+    if (t == 0.0 || t == 1.0) {
+        copy_vertex(static_cast<std::size_t>(t == 0.0 ? edge.lo : edge.hi), out);
+        return;
     }
-    limit_point(owner.face, uv, amount, out);
-    if (at_vertex) copy_vertex(t == 0.0 ? lo : hi, out);
+    const SubdivisionTopology::Owner& owner = edge.owner;
+    const std::uint32_t corner = shared().first_corner(static_cast<std::size_t>(owner.face)) +
+                                 static_cast<std::uint32_t>(owner.local);
+    limit_point(owner.face,
+                FaceCoordinates(topology(), owner.face)
+                    .edge(owner.local, vertex_of(corner) == edge.lo ? t : 1.0 - t),
+                out);
 }
 
 void OpenedSubdivision::surface_point(const BasePatch& patch, const Vec2d& uv,
                                       EdgePoint& out) const {
     const int index = static_cast<int>(patch.face);
     const FaceCoordinates coordinates(topology(), index);
-    limit_point(index, coordinates.sub_face(static_cast<int>(patch.sub), uv),
-                displacement(material(patch.face)).constant, out);
+    limit_point(index, coordinates.sub_face(static_cast<int>(patch.sub), uv), out);
+    out.place = {nullptr, uv};
 }
 
 void OpenedSubdivision::sample(const BasePatch& patch, std::span<const Vec2d> uv,
@@ -244,7 +222,6 @@ void OpenedSubdivision::sample(const BasePatch& patch, std::span<const Vec2d> uv
     const FaceCoordinates coordinates(topology(), index);
     const std::size_t n = uv.size(), columns = static_cast<std::size_t>(limit.columns());
     const double scale = coordinates.sub_face_scale();
-    const double amount = displacement(material(patch.face)).constant;
     std::vector<double> p(columns), du(columns), dv(columns);
     const auto frame = [&](const std::vector<double>& from) {
         const int k = knots().frame_knot;
@@ -259,7 +236,6 @@ void OpenedSubdivision::sample(const BasePatch& patch, std::span<const Vec2d> uv
         normalize_or(frame_orientation() * glm::cross(frame(du), frame(dv)), kTowardsCamera);
 
     out.positions.resize(n * static_cast<std::size_t>(knot_count()));
-    if (displaced()) out.offset.resize(out.positions.size());
     out.su.resize(n);
     out.sv.resize(n);
     out.geometric_normal.resize(n);
@@ -269,8 +245,6 @@ void OpenedSubdivision::sample(const BasePatch& patch, std::span<const Vec2d> uv
         for (int k = 0; k < knot_count(); ++k) {
             const std::size_t to = static_cast<std::size_t>(k) * n + i;
             out.positions[to] = Vec3f(place(p.data(), k));
-            if (displaced())
-                out.offset[to] = Vec3f(amount * normal(du.data(), dv.data(), k, middle));
         }
         const Vec3d su = frame(du), sv = frame(dv);
         out.su[i] = Vec3f(scale * su);

@@ -35,14 +35,13 @@ class OpenedSubdivision final : public OpenedMesh {
     Vec3d place(const double* columns, int knot) const;
     /// A derivative likewise.
     Vec3d direction(const double* columns, int knot) const;
-    /// Unit, outward, of derivatives by u and v.
-    Vec3d normal(const double* du, const double* dv, int knot, const Vec3d& otherwise) const;
     /// Vertices lie where all faces have them (LimitVertices).
     void copy_vertex(std::size_t vertex, EdgePoint& out) const;
+    /// A point of an edge of the cage.
+    void cage_point(std::size_t edge, double t, EdgePoint& out) const;
     PatchEdge base_side(std::uint32_t face, int local, std::int32_t from, int budget,
                         const EdgeWalker& walk) const;
-    /// `amount`: displacement along the normal, metres.
-    void limit_point(int face, const Vec2d& uv, double amount, EdgePoint& out) const;
+    void limit_point(int face, const Vec2d& uv, EdgePoint& out) const;
 
     /// [edges] that stay whole, looked at as their ends are, without the surface between.
     std::vector<bool> m_whole;

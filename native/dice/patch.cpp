@@ -13,17 +13,10 @@ namespace granita {
 
 std::vector<Bounds3f> patch_boxes(const OpenedMesh& mesh, const BasePatch& patch,
                                   const Vec2d* corner_uv) {
-    float reach = 0.0f;
-    if (mesh.displaced()) {
-        // Of all materials: a border vertex may follow its neighbour's.
-        for (const std::int32_t m : mesh.instance().materials)
-            reach = std::max(reach, mesh.displacement(m).bound);
-        reach = std::max(reach, mesh.displacement(mesh.material(patch.face)).bound);
-    }
     std::vector<Bounds3f> boxes = mesh.boxes(patch, corner_uv);
     for (Bounds3f& box : boxes) {
         box.grow_relative(1e-6f);  // of positions
-        box.grow(reach);
+        box.grow(mesh.displacement_reach());
     }
     return boxes;
 }

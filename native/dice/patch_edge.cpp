@@ -28,8 +28,7 @@ void EdgeWalker::edge_point(const PatchEdge& side, double t, EdgePoint& out) con
     }
     const std::ptrdiff_t first = t > 0.0 ? m_mesh.knot_count() : 0;
     std::copy_n(line.p.begin() + first, m_mesh.knot_count(), out.p);
-    if (!line.offset.empty())
-        std::copy_n(line.offset.begin() + first, m_mesh.knot_count(), out.offset);
+    out.place = line.place[t > 0.0 ? 1 : 0];
 }
 
 void EdgeWalker::point(const PatchEdge& side, double at, EdgePoint& out) const {
@@ -89,10 +88,8 @@ PatchEdge EdgeWalker::draw(const Vec2d& uv0, const Vec2d& uv1, const EdgePoint& 
     const int knots = m_mesh.knot_count();
     line->p.assign(start.p, start.p + knots);
     line->p.insert(line->p.end(), end.p, end.p + knots);
-    if (m_mesh.displaced()) {
-        line->offset.assign(start.offset, start.offset + knots);
-        line->offset.insert(line->offset.end(), end.offset, end.offset + knots);
-    }
+    line->place[0] = start.place;
+    line->place[1] = end.place;
     PatchEdge side;
     side.line = std::move(line);
     side.most_outside = most_outside;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "dice/knots.h"
+#include "geometry/surface_place.h"
 #include "math/vec.h"
 
 namespace granita {
@@ -19,10 +20,10 @@ namespace granita {
 class OpenedMesh;
 struct BasePatch;
 
-/// A point of an edge at every knot, camera space.
+/// A point of an edge at every knot, camera space, not displaced.
 struct EdgePoint {
     Vec3f p[kMaxKnots];
-    Vec3f offset[kMaxKnots];  ///< displacement; only filled where the mesh is displaced
+    SurfacePlace place;  ///< who says how far it is displaced; only filled where the mesh is
 };
 
 /// A base edge as its mesh numbers it.
@@ -34,7 +35,8 @@ struct EdgeRef {
 struct Line {
     Vec2d uv0{0.0}, uv1{0.0};
     /// Start then end, [2][knots]: copied from the edges that the line meets there.
-    std::vector<Vec3f> p, offset;
+    std::vector<Vec3f> p;
+    SurfacePlace place[2];  ///< of start and end, as EdgePoint's
 };
 
 struct PatchEdge {

@@ -8,19 +8,12 @@
 
 #include "base/statistics.h"
 #include "geometry/attribute_request.h"
+#include "geometry/displacement.h"
 #include "geometry/geometry_cache.h"
 #include "math/projection.h"
 #include "scene/scene.h"
 
 namespace granita {
-
-/// What a material's displacement does while dicing: a hook (decision 6) and its bound, metres in
-/// world space. `displace` moves vertices along their normals: object-space scale is already in `p`
-/// (camera space, metres).
-struct DisplacementHook {
-    float bound = 0.0f;     ///< largest distance a vertex can move, metres
-    float constant = 0.0f;  ///< the one program of today: displace by this along the normal, metres
-};
 
 struct View {
     const Scene* scene = nullptr;
@@ -28,7 +21,7 @@ struct View {
     Projection projection;
     std::vector<std::vector<AttributeRequest>>
         requests;                                ///< [materials + 1], the last for material -1
-    std::vector<DisplacementHook> displacement;  ///< [materials + 1]; empty = none
+    const Displacement* displacement = nullptr;  ///< nullptr: nothing is displaced
 
     /// The rectangle that samples can reach through the filter.  Rates do not read it: outside
     /// Options::width and height they coarsen, whatever the crop and the filter.

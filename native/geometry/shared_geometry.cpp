@@ -6,6 +6,7 @@
 #include <string>
 
 #include "geometry/limit_vertices.h"
+#include "geometry/patch_borders.h"
 #include "geometry/polygon_patches.h"
 #include "geometry/subdivision_topology.h"
 #include "geometry/surface_evaluator.h"
@@ -91,6 +92,16 @@ void SharedGeometry::find_normals() {
     const bool smooth = std::ranges::any_of(m_data->smooth, [](std::uint8_t s) { return s != 0; });
     if (smooth && m_data->corner_normals.empty())
         m_vertex_normals = granita::vertex_normals(*m_data, m_frame_points);
+}
+
+std::uint32_t SharedGeometry::face_of(std::uint32_t corner) const {
+    const auto after = std::ranges::upper_bound(m_first_corner, corner);
+    return static_cast<std::uint32_t>(after - m_first_corner.begin()) - 1;
+}
+
+const PatchBorders& SharedGeometry::borders() const {
+    std::call_once(m_borders_once, [this] { m_borders = std::make_unique<PatchBorders>(*this); });
+    return *m_borders;
 }
 
 std::span<const Vec3f> SharedGeometry::knot_points(int knot) const {

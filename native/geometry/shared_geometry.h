@@ -22,6 +22,7 @@
 namespace granita {
 
 struct LimitVertices;
+class PatchBorders;
 class SubdivisionTopology;
 class SurfaceEvaluator;
 
@@ -55,6 +56,8 @@ class SharedGeometry {
     const GeometryData& data() const { return *m_data; }
     const std::vector<BasePatch>& patches() const { return m_patches; }
     std::uint32_t first_corner(std::size_t face) const { return m_first_corner[face]; }
+    std::uint32_t first_patch(std::size_t face) const { return m_first_patch[face]; }
+    std::uint32_t face_of(std::uint32_t corner) const;
     /// All knots hold the same points.
     bool is_static() const { return m_static; }
     /// The frame time among the geometry's knots; the first where it stands still.
@@ -85,6 +88,8 @@ class SharedGeometry {
     /// nullptr: polygons.
     const LimitVertices* limit() const { return m_limit.get(); }
     const SurfaceEvaluator& surface() const { return *m_surface; }
+    /// Who answers for what patches share.  Computed at the first call; any thread.
+    const PatchBorders& borders() const;
     std::uint64_t bytes() const;
 
   private:
@@ -109,6 +114,8 @@ class SharedGeometry {
     std::unique_ptr<SubdivisionTopology> m_subdivision;
     std::unique_ptr<const LimitVertices> m_limit;
     std::unique_ptr<const SurfaceEvaluator> m_surface;
+    mutable std::once_flag m_borders_once;
+    mutable std::unique_ptr<const PatchBorders> m_borders;
     mutable std::shared_mutex m_tangent_mutex;
     mutable std::map<std::string, std::vector<Vec4f>> m_tangents;  ///< [patches][4] by UV map
 };

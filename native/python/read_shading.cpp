@@ -63,6 +63,9 @@ void read_graph(const Record& r, NodeGraph& graph) {
         if (r.has("surface")) graph.surface = read_link(r, r.get("surface"), count, count);
         if (r.has("displacement"))
             graph.displacement = read_link(r, r.get("displacement"), count, count);
+        graph.displacement_method = static_cast<DisplacementMethod>(
+            choice(r, "displacement_method", r.text("displacement_method", "DISPLACEMENT"),
+                   {"BUMP", "DISPLACEMENT", "BOTH"}));
     } catch (const py::cast_error&) {
         r.fail("its node graph holds a value of the wrong type");
     }

@@ -30,10 +30,22 @@ struct Node {
         properties;  ///< enums as their identifiers, e.g. operation = "MULTIPLY"
 };
 
+/// What is done with NodeGraph::displacement: shading normals are bent by it, or the surface is
+/// moved, or both (which is the second where micropolygons are as fine as pixels).
+enum class DisplacementMethod { Bump, Displacement, Both };
+
 struct NodeGraph {
     std::vector<Node> nodes;
     NodeLink surface;       ///< node -1 = none
     NodeLink displacement;  ///< node -1 = none
+    DisplacementMethod displacement_method = DisplacementMethod::Displacement;
+
+    bool moves_surface() const {
+        return displacement.node >= 0 && displacement_method != DisplacementMethod::Bump;
+    }
+    bool bends_normals() const {
+        return displacement.node >= 0 && displacement_method == DisplacementMethod::Bump;
+    }
 };
 
 struct Material {

@@ -11,6 +11,7 @@
 #include "shade/interpolated_points.h"
 #include "shade/lights/direct_light.h"
 #include "shade/lights/light_sample_count.h"
+#include "shade/material_displacement.h"
 #include "shade/nodes/node_compiler.h"
 #include "shade/shading_points.h"
 #include "shade/shadow_transparency.h"
@@ -101,7 +102,7 @@ struct ShadingSystem::Impl {
     ChannelSet channels;
     std::vector<CompiledSurface> materials;  ///< [materials + 1]
     std::vector<std::vector<AttributeRequest>> requests;
-    std::vector<DisplacementHook> displacement;
+    std::unique_ptr<MaterialDisplacement> displacement;  ///< nullptr: nothing is displaced
     WorldShader world;
     bool refines;
     bool moves;                        ///< anything of the frame
@@ -129,18 +130,23 @@ struct ShadingSystem::Impl {
           geometries(std::make_shared<GeometryCache>(kept.geometry)) {
         const StageTimer timer(stats, Stage::Shade);
         const ChannelSet* passes = channels.empty() ? nullptr : &channels;
+        std::vector<std::optional<DisplacementProgram>> displacements;
         for (const Material& material : scene.materials) {
             progress.check();
             const std::string owner = "material '" + material.name + "'";
             materials.push_back(compile_surface(material.graph, scene, textures, report,
                                                 {owner, false, material.index}, passes));
-            if (material.graph.displacement.node >= 0)
-                report.warn(owner, "displacement is not supported yet; the surface stays smooth");
+            std::optional<DisplacementProgram>& moved = displacements.emplace_back();
+            if (material.graph.moves_surface())
+                moved = compile_displacement(material.graph, scene, textures, report,
+                                             {owner, false, material.index});
         }
         materials.push_back(
             compile_surface(default_material(), scene, textures, report, {"no material"}, passes));
         for (const CompiledSurface& material : materials) requests.push_back(material.requests);
-        displacement.resize(materials.size());
+        displacement = std::make_unique<MaterialDisplacement>(scene, std::move(displacements),
+                                                              geometries, report);
+        if (!displacement->any()) displacement.reset();
         warn_of_emission();
         const bool any_reflects = std::ranges::any_of(scene.instances, [this](const Instance& i) {
             if (!i.visible_camera) return false;
@@ -149,7 +155,8 @@ struct ShadingSystem::Impl {
         });
         if (!any_reflects) return;
         light = std::make_unique<DirectLight>(scene, world.evaluator(), statistics, report,
-                                              progress, shadow_opacity(), geometries, kept.rays);
+                                              progress, shadow_opacity(), geometries, kept.rays,
+                                              displacement.get());
     }
 
     bool reflects(std::int32_t index) const {
@@ -255,7 +262,8 @@ struct ShadingSystem::Impl {
     float sharpness(const Grid& grid) const { return light_sample_count(grid, scene, shutter); }
 
     Grid refine(const Grid& grid, std::span<const RefinedPoint> wanted, float point_size) const {
-        const RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
+        RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
+        if (light) light->lift(refined.points, grid.key);
         Grid out;
         out.key = grid.key;
         out.instance = grid.instance;
@@ -317,8 +325,8 @@ float ShadingSystem::threshold() const {
     return m_impl->threshold;
 }
 
-const std::vector<DisplacementHook>& ShadingSystem::displacement() const {
-    return m_impl->displacement;
+const Displacement* ShadingSystem::displacement() const {
+    return m_impl->displacement.get();
 }
 
 std::shared_ptr<GeometryCache> ShadingSystem::geometries() const {
@@ -353,6 +361,7 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     const bool lit = !material.radiance.sources.lobes.empty();
     const float sharpness = lit || refines ? m_impl->sharpness(grid) : 1.0f;
     points.share *= sharpness;
+    if (m_impl->light && lit) m_impl->light->lift(points, grid.key);
     std::vector<float> noise(refines ? points.count : 0, 0.0f);
     m_impl->shade(grid, m_impl->input(grid, points), m_impl->paths(grid, points),
                   refines ? &noise : nullptr);

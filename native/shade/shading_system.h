@@ -30,7 +30,8 @@ class ShadingSystem {
 
     /// For View: [materials + 1], the last for "no material".
     const std::vector<std::vector<AttributeRequest>>& requests() const;
-    const std::vector<DisplacementHook>& displacement() const;
+    /// nullptr: nothing is displaced.
+    const Displacement* displacement() const;
 
     /// For View: what rays and dicing know of the same geometries.
     std::shared_ptr<GeometryCache> geometries() const;

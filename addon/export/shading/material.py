@@ -20,6 +20,14 @@ def export_materials(materials, report, aovs=()):
     return records, list(images.values())
 
 
+def displacement_method(material):
+    """BUMP, DISPLACEMENT or BOTH: Cycles' own property until Blender 4.1, then the material's."""
+    if hasattr(material, "displacement_method"):
+        return material.displacement_method
+    cycles = getattr(material, "cycles", None)
+    return cycles.displacement_method if cycles is not None else "BUMP"
+
+
 def material_record(material, images, report, aovs=()):
     """One entry of the snapshot's `materials`; `images` {name: record} grows."""
     record = {"name": material.name_full, "index": material.pass_index, "displacement": None}
@@ -39,6 +47,7 @@ def material_record(material, images, report, aovs=()):
     if output is not None:
         surface = graph.add(output.inputs["Surface"])
         record["displacement"] = graph.add(output.inputs["Displacement"])
+        record["displacement_method"] = displacement_method(material)
         if output.inputs["Volume"].is_linked:
             report(owner, "its volume is not rendered")
     graph.add_aov_outputs(aovs)

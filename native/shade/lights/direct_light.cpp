@@ -48,7 +48,8 @@ Vec3d camera_origin(const Scene& scene) {
 struct DirectLight::Impl {
     Impl(const Scene& scene, WorldEvaluator world_evaluator, Statistics& frame_statistics,
          Report& report, const Progress& progress, ShadowOpacity opacity,
-         std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays);
+         std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
+         const Displacement* displacement);
 
     void light_points(LitGrid& grid, const std::vector<LitPoint>& points,
                       std::size_t lobe_count) const;
@@ -80,7 +81,8 @@ struct DirectLight::Impl {
 DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator,
                         Statistics& frame_statistics, Report& report,
                         const Progress& frame_progress, ShadowOpacity opacity,
-                        std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays)
+                        std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
+                        const Displacement* displacement)
     : scene(frame_scene),
       world(std::move(world_evaluator)),
       statistics(frame_statistics),
@@ -105,8 +107,9 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
                          });
     if (!shadows) return;
     StageTimer timer(statistics, Stage::RayBuild);
-    auto rays = std::make_unique<RayScene>(scene, camera_origin(scene), std::move(opacity),
-                                           progress, geometries, &report, std::move(kept_rays));
+    auto rays =
+        std::make_unique<RayScene>(scene, camera_origin(scene), std::move(opacity), progress,
+                                   geometries, &report, std::move(kept_rays), displacement);
     statistics.peak_ray_bytes(rays->bytes());
     if (!rays->empty()) set.set_casters(std::move(rays));
 }
@@ -309,14 +312,29 @@ void DirectLight::Impl::look(LitGrid& grid, const EnvironmentSamples& samples, f
 
 DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics,
                          Report& report, const Progress& progress, ShadowOpacity opacity,
-                         std::shared_ptr<GeometryCache> geometries, std::shared_ptr<KeptRays> rays)
+                         std::shared_ptr<GeometryCache> geometries, std::shared_ptr<KeptRays> rays,
+                         const Displacement* displacement)
     : m_impl(std::make_unique<Impl>(scene, std::move(world), statistics, report, progress,
-                                    std::move(opacity), std::move(geometries), std::move(rays))) {}
+                                    std::move(opacity), std::move(geometries), std::move(rays),
+                                    displacement)) {}
 
 DirectLight::~DirectLight() = default;
 
 bool DirectLight::varies() const {
     return m_impl->set.varies;
+}
+
+void DirectLight::lift(ShadingPoints& points, const GridKey& key) const {
+    const RayScene* rays = m_impl->set.rays.get();
+    if (!rays || !rays->is_displaced(key)) return;
+    const std::vector<float> heights = rays->heights_over(
+        key, {points.p, points.geometric_normal, points.backfacing, points.times});
+    points.ray_offset.resize(points.count, Vec3f(0.0f));
+    for (std::size_t i = 0; i < points.count; ++i) {
+        const float lifted = glm::dot(points.ray_offset[i], points.geometric_normal[i]);
+        if (heights[i] > lifted)
+            points.ray_offset[i] += (heights[i] - lifted) * points.geometric_normal[i];
+    }
 }
 
 std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const SurfaceClosure& closure,

@@ -22,6 +22,7 @@
 #include "base/report.h"
 #include "base/statistics.h"
 #include "dice/grid.h"
+#include "geometry/displacement.h"
 #include "geometry/geometry_cache.h"
 #include "scene/scene.h"
 #include "shade/bsdf/lobe.h"
@@ -38,12 +39,17 @@ class DirectLight {
     /// Bakes the world and, if any light or the world shines, builds the ray scene.  `world` is
     /// kept and called from any thread; scene, statistics and progress must outlive this.  Without
     /// `opacity` every surface casts a full shadow.  `geometries`: shared with dicing, if it is
-    /// given; `rays`: where built geometries are looked for and left.  Throws Cancelled.
+    /// given; `rays`: where built geometries are looked for and left; `displacement`: of instances,
+    /// if there is any.  Throws Cancelled.
     DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics, Report& report,
                 const Progress& progress, ShadowOpacity opacity = {},
                 std::shared_ptr<GeometryCache> geometries = nullptr,
-                std::shared_ptr<KeptRays> rays = nullptr);
+                std::shared_ptr<KeptRays> rays = nullptr,
+                const Displacement* displacement = nullptr);
     ~DirectLight();
+
+    /// Lifts where rays of points start above the triangles that rays meet of a displaced surface.
+    void lift(ShadingPoints& points, const GridKey& key) const;
 
     /// Whether anything that sheds light or casts shadows changes within the shutter: then
     /// reflect() wants to know where the points are.

@@ -8,24 +8,23 @@
 
 namespace granita {
 
+namespace {
+
+/// A height at a point and one step along u and v.
+struct Heights {
+    FloatSource here, next_u, next_v;
+};
+
 /// Mikkelsen's surface gradient (2010) with the grid's own steps as the differences.
-void build_bump(NodeBuilder& b) {
-    if (b.is_world()) {
-        b.output_vector("Normal", b.shading_normal());
-        return;
-    }
-    const VectorSource base = b.normal_input();
-    const FloatSource height = b.number_at("Height", Shift::None),
-                      height_u = b.number_at("Height", Shift::U),
-                      height_v = b.number_at("Height", Shift::V),
-                      strength = b.number("Strength", 1.0f), distance = b.number("Distance", 1.0f);
-    const float invert = b.flag("invert") ? -1.0f : 1.0f;
+VectorSource bumped_normal(NodeBuilder& b, const VectorSource& base, const Heights& height,
+                           const FloatSource& strength, const FloatSource& distance, float sign) {
     const VectorSource out = b.new_source<Vec3f>();
     b.add_step(
         [=](Run& run) {
             const auto normals = run.read(base);
-            const auto heights = run.read(height), us = run.read(height_u), vs = run.read(height_v),
-                       strengths = run.read(strength), distances = run.read(distance);
+            const auto heights = run.read(height.here), us = run.read(height.next_u),
+                       vs = run.read(height.next_v), strengths = run.read(strength),
+                       distances = run.read(distance);
             const ShadingPoints& points = *run.input().points;
             Vec3f* result = run.write(out);
             for (std::size_t i = 0; i < run.count(); ++i) {
@@ -35,15 +34,42 @@ void build_bump(NodeBuilder& b) {
                 const float determinant = glm::dot(points.dp_du[i], across_u);
                 const Vec3f gradient =
                     (us[i] - heights[i]) * across_u + (vs[i] - heights[i]) * across_v;
-                const float scale = distances[i] * invert * (determinant < 0.0f ? -1.0f : 1.0f);
+                const float scale = distances[i] * sign * (determinant < 0.0f ? -1.0f : 1.0f);
                 const Vec3f bumped = normalize_or(std::abs(determinant) * n - scale * gradient, n);
                 const float s = std::max(strengths[i], 0.0f);
                 result[i] = normalize_or(s * bumped + (1.0f - s) * n, n);
             }
         },
-        {base.slot, height.slot, height_u.slot, height_v.slot, strength.slot, distance.slot},
+        {base.slot, height.here.slot, height.next_u.slot, height.next_v.slot, strength.slot,
+         distance.slot},
         {out.slot});
-    b.output_vector("Normal", out);
+    return out;
+}
+
+}  // namespace
+
+void build_bump(NodeBuilder& b) {
+    if (b.is_world()) {
+        b.output_vector("Normal", b.shading_normal());
+        return;
+    }
+    const Heights heights{b.number_at("Height", Shift::None), b.number_at("Height", Shift::U),
+                          b.number_at("Height", Shift::V)};
+    b.output_vector("Normal",
+                    bumped_normal(b, b.normal_input(), heights, b.number("Strength", 1.0f),
+                                  b.number("Distance", 1.0f), b.flag("invert") ? -1.0f : 1.0f));
+}
+
+VectorSource bumped_by_displacement(NodeBuilder& b, const VectorSource& here,
+                                    const VectorSource& next_u, const VectorSource& next_v) {
+    const VectorSource normal = b.geometry<Vec3f>(
+        [](const ShadingInput& in, std::size_t i) { return in.points->normal[i]; });
+    const auto height = [&](const VectorSource& way) {
+        return b.map<float>([](const Vec3f& w, const Vec3f& n) { return glm::dot(w, n); }, way,
+                            normal);
+    };
+    const FloatSource one{-1, 1.0f};
+    return bumped_normal(b, normal, {height(here), height(next_u), height(next_v)}, one, one, 1.0f);
 }
 
 }  // namespace granita

@@ -8,8 +8,10 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "shade/nodes/displacement_range.h"
 #include "shade/nodes/light_path.h"
 #include "shade/nodes/node_registry.h"
+#include "shade/nodes/nodes.h"
 
 namespace granita {
 
@@ -35,7 +37,7 @@ int find_aov_output(const NodeGraph& graph, const std::string& name) {
 /// have none, read themselves.
 using ReadOutputs = std::vector<std::set<std::string>>;
 
-ReadOutputs read_outputs(const NodeGraph& graph, const std::string& owner,
+ReadOutputs read_outputs(const NodeGraph& graph, const NodeLink& root, const std::string& owner,
                          const std::vector<int>& aov_outputs) {
     ReadOutputs read(graph.nodes.size());
     const auto check = [&](const NodeLink& link, std::size_t limit) {
@@ -43,7 +45,7 @@ ReadOutputs read_outputs(const NodeGraph& graph, const std::string& owner,
             throw SceneError(owner, "a node link does not point to an earlier node");
         read[link.node].insert(link.output);
     };
-    if (graph.surface.node >= 0) check(graph.surface, graph.nodes.size());
+    if (root.node >= 0) check(root, graph.nodes.size());
     for (const int node : aov_outputs)
         if (node >= 0) read[node].insert("");
     for (std::size_t i = graph.nodes.size(); i-- > 0;) {
@@ -131,9 +133,9 @@ std::vector<AttributeRequest> used_requests(std::vector<AttributeRequest> all,
     return kept;
 }
 
-/// Values and closures of all nodes that are read.
-SurfaceSources build_graph(ProgramBuilder& builder, const NodeGraph& graph) {
-    builder.outputs.resize(graph.nodes.size());
+/// Values of all nodes that are read.
+void build_values(ProgramBuilder& builder, const NodeGraph& graph) {
+    builder.outputs.assign(graph.nodes.size(), {});
     for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
         if (builder.read[i].empty() || graph.nodes[i].type == kAovOutput) continue;
         const NodeKind* kind = find_node_kind(graph.nodes[i].type);
@@ -144,7 +146,38 @@ SurfaceSources build_graph(ProgramBuilder& builder, const NodeGraph& graph) {
             if (kind && kind->build) kind->build(b);
         }
     }
+}
 
+/// What the displacement output holds at a shift; 0 where that is nothing.
+VectorSource displacement_at(ProgramBuilder& builder, const NodeGraph& graph, Shift shift) {
+    const auto root = static_cast<std::size_t>(graph.displacement.node);
+    const NodeOutputs& outputs = builder.outputs[root][static_cast<std::size_t>(shift)];
+    const auto found = outputs.find(graph.displacement.output);
+    if (found == outputs.end()) return {-1, Vec3f(0.0f)};
+    if (found->second.kind != SocketKind::Number) return found->second.vector;
+    NodeBuilder b(builder, graph.nodes[root], root, shift);
+    return b.map<Vec3f>([](float x) { return Vec3f(x); }, found->second.number);
+}
+
+/// As Cycles does: the displacement's own nodes are built a second time, with normals not bent.
+void bend_normals(ProgramBuilder& builder, const NodeGraph& graph) {
+    ReadOutputs of_surface = std::move(builder.read);
+    builder.read = read_outputs(graph, graph.displacement, builder.owner, {});
+    build_values(builder, graph);
+    const auto root = static_cast<std::size_t>(graph.displacement.node);
+    NodeBuilder b(builder, graph.nodes[root], root, Shift::None);
+    const VectorSource here = displacement_at(builder, graph, Shift::None),
+                       next_u = displacement_at(builder, graph, Shift::U),
+                       next_v = displacement_at(builder, graph, Shift::V);
+    builder.bumped = bumped_by_displacement(b, here, next_u, next_v);
+    builder.is_bumped = true;
+    builder.read = std::move(of_surface);
+}
+
+/// Values and closures of all nodes that are read.
+SurfaceSources build_graph(ProgramBuilder& builder, const NodeGraph& graph) {
+    if (graph.bends_normals()) bend_normals(builder, graph);
+    build_values(builder, graph);
     SurfaceBuilder surface(graph.nodes.size());
     if (graph.surface.node >= 0) {
         const auto root = static_cast<std::size_t>(graph.surface.node);
@@ -194,7 +227,29 @@ bool told_apart(const NodeGraph& graph, const ReadOutputs& read, RayType a, RayT
 }  // namespace
 
 bool told_apart(const NodeGraph& graph, RayType a, RayType b) {
-    return told_apart(graph, read_outputs(graph, "", {}), a, b);
+    return told_apart(graph, read_outputs(graph, graph.surface, "", {}), a, b);
+}
+
+DisplacementProgram compile_displacement(const NodeGraph& graph, const Scene& scene,
+                                         TextureStore& textures, Report& report,
+                                         const GraphOwner& owner) {
+    ProgramBuilder builder{.scene = scene,
+                           .textures = textures,
+                           .report = report,
+                           .owner = owner.name,
+                           .material_index = owner.material_index,
+                           .read = read_outputs(graph, graph.displacement, owner.name, {})};
+    build_values(builder, graph);
+    DisplacementProgram compiled;
+    compiled.depends_on_instance = depends_on_instance(graph, builder.read);
+    compiled.offset = displacement_at(builder, graph, Shift::None);
+    compiled.longest = longest_displacement(graph, scene.images);
+    compiled.longest_in_world = is_in_world(graph);
+    std::vector<int> roots;
+    push_root(roots, compiled.offset.slot);
+    compiled.program = Program(builder.loads, builder.steps, builder.floats_a_point, roots);
+    compiled.requests = used_requests(builder.requests, {&compiled.program});
+    return compiled;
 }
 
 CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, TextureStore& textures,
@@ -212,7 +267,7 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
                               .is_world = owner.is_world,
                               .material_index = owner.material_index,
                               .ray_type = type,
-                              .read = read_outputs(graph, owner.name, aov_outputs)};
+                              .read = read_outputs(graph, graph.surface, owner.name, aov_outputs)};
     };
     ProgramBuilder builder = builder_for(ray, report);
 

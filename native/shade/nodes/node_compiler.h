@@ -43,6 +43,19 @@ struct CompiledSurface {
     OpacityProgram shadow;  ///< as shadow rays meet it
 };
 
+/// Where the points of a surface go.
+struct DisplacementProgram {
+    std::vector<AttributeRequest> requests;
+    Program program;
+    VectorSource offset;  ///< world axes
+    /// Whether instances of one geometry may be displaced differently.
+    bool depends_on_instance = false;
+    /// No offset is longer, in the space that the node names; infinite where the graph does not
+    /// tell.
+    float longest = 0.0f;
+    bool longest_in_world = false;
+};
+
 /// Whose graph it is.
 struct GraphOwner {
     std::string name;  ///< for messages: "material 'Wood'"
@@ -52,6 +65,11 @@ struct GraphOwner {
 
 /// Whether the graph's Light Path makes a difference between two types of ray.
 bool told_apart(const NodeGraph& graph, RayType a, RayType b);
+
+/// Compiles `graph.displacement`, which is there.
+DisplacementProgram compile_displacement(const NodeGraph& graph, const Scene& scene,
+                                         TextureStore& textures, Report& report,
+                                         const GraphOwner& owner);
 
 /// Compiles `graph.surface` for rays of a type, and what `passes` need beside it.  The scene,
 /// textures and report must outlive the programs.

@@ -45,6 +45,8 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeRGBCurve", value(build_rgb_curves)},
         {"ShaderNodeNormalMap", value(build_normal_map)},
         {"ShaderNodeBump", value(build_bump)},
+        {"ShaderNodeDisplacement", value(build_displacement)},
+        {"ShaderNodeVectorDisplacement", value(build_vector_displacement)},
         {"ShaderNodeAttribute", value(build_attribute)},
         {"ShaderNodeVertexColor", value(build_color_attribute)},
         {"ShaderNodeSeparateColor", value(build_separate_color)},

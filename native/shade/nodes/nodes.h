@@ -33,6 +33,8 @@ void build_color_ramp(NodeBuilder&);
 void build_rgb_curves(NodeBuilder&);
 void build_normal_map(NodeBuilder&);
 void build_bump(NodeBuilder&);
+void build_displacement(NodeBuilder&);
+void build_vector_displacement(NodeBuilder&);
 void build_attribute(NodeBuilder&);
 void build_color_attribute(NodeBuilder&);
 void build_value(NodeBuilder&);
@@ -72,6 +74,10 @@ void build_blackbody(NodeBuilder&);
 void build_wavelength(NodeBuilder&);
 void build_unoccluded(NodeBuilder&);
 void build_unbevelled(NodeBuilder&);
+
+/// The shading normal bent by a displacement at the point and one step along u and v.
+VectorSource bumped_by_displacement(NodeBuilder&, const VectorSource& here,
+                                    const VectorSource& next_u, const VectorSource& next_v);
 void build_plain_falloff(NodeBuilder&);
 
 }  // namespace granita

@@ -39,6 +39,9 @@ struct ProgramBuilder {
     std::vector<Step> steps{};
     std::vector<AttributeRequest> requests{};
     int floats_a_point = 0;
+    VectorSource
+        bumped{};  ///< the shading normal, where `is_bumped`: what displacement makes of it
+    bool is_bumped = false;
     /// [node][shift]
     std::vector<std::array<NodeOutputs, 3>> outputs{};
 

@@ -7,6 +7,8 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <limits>
+#include <map>
 #include <optional>
 #include <unordered_map>
 
@@ -15,6 +17,7 @@
 #include "scene/knot_time.h"
 #include "shade/rays/instance_motion.h"
 #include "shade/rays/ray_detail.h"
+#include "shade/rays/ray_displaced.h"
 #include "shade/rays/ray_elements.h"
 #include "shade/rays/ray_mesh.h"
 #include "shade/rays/ray_subdivision.h"
@@ -74,17 +77,30 @@ struct ShadowContext {
 
 struct RayScene::Impl {
     Impl(const Scene& frame_scene, ShadowOpacity shadow_opacity,
-         std::shared_ptr<GeometryCache> shared, std::shared_ptr<KeptRays> kept_rays)
+         std::shared_ptr<GeometryCache> shared, std::shared_ptr<KeptRays> kept_rays,
+         const Displacement* moved, const Vec3d& camera)
         : scene(frame_scene),
           opacity(std::move(shadow_opacity)),
           cache(shared ? std::move(shared) : std::make_shared<GeometryCache>()),
-          kept(std::move(kept_rays)) {}
+          kept(std::move(kept_rays)),
+          displacement(moved),
+          origin(camera) {}
 
     void check(const std::string& what, const Progress& progress) const;
     RayDetail detail_of(int geometry, const SharedGeometry* shared) const;
     void make_shape(KeptRayShape& made, const std::shared_ptr<const SharedGeometry>& shared,
                     const RayDetail& detail, const Progress& progress) const;
     void build(KeptRayShape& made, const Progress& progress) const;
+    void build_displaced(std::size_t instance, std::uint8_t use, Report& report,
+                         const Progress& progress);
+    bool is_displaced(std::size_t instance) const {
+        return displacement && displacement->displaces(instance);
+    }
+    /// What stands for an instance.
+    const KeptRayShape& shape_of(std::size_t instance) const {
+        if (is_displaced(instance)) return *displaced.at(displacement->same_as(instance));
+        return *shapes[static_cast<std::size_t>(scene.instances[instance].geometry)];
+    }
     void build_geometry(int geometry, std::uint8_t use, Report& report, const Progress& progress);
     void add_instance(std::uint32_t index, const Vec3d& origin);
     static bool casts_shadow(const Instance& instance) {
@@ -100,7 +116,11 @@ struct RayScene::Impl {
     ShadowOpacity opacity;
     std::shared_ptr<GeometryCache> cache;
     std::shared_ptr<KeptRays> kept;                           ///< nullptr = nothing casts a shadow
+    const Displacement* displacement;                         ///< nullptr: of none
+    Vec3d origin;                                             ///< of shading space
     std::vector<std::shared_ptr<const KeptRayShape>> shapes;  ///< [geometries], as `kept`
+    /// By the instance whose displacement it is.
+    std::unordered_map<std::size_t, std::shared_ptr<const KeptRayShape>> displaced;
     RtcHandle<RTCScene> top;
     InstanceMotion motion;
     std::vector<RayInstance> instances;                       ///< by Embree's id in `top`
@@ -149,7 +169,6 @@ std::optional<Vec3f> RayScene::Impl::constant_of(const Instance& instance) const
 }
 
 RayDetail RayScene::Impl::detail_of(int index, const SharedGeometry* shared) const {
-    if (!shared || !shared->subdivision()) return {};
     Bounds3f box;
     for (const Vec3f& p : shared->surface_points(static_cast<int>(shared->frame().knot)))
         if (is_finite(p)) box.add(p);
@@ -162,7 +181,8 @@ void RayScene::Impl::build_geometry(int index, std::uint8_t use, Report& report,
     std::shared_ptr<const SharedGeometry> shared;
     if (scene.geometries[geometry].kind == GeometryKind::Mesh)
         shared = cache->shared(scene, geometry, report);
-    const RayDetail detail = detail_of(index, shared.get());
+    const RayDetail detail =
+        shared && shared->subdivision() ? detail_of(index, shared.get()) : RayDetail();
     const RayKey key{scene.geometries.share(geometry), scene.options.frame_time, use,
                      detail.eyes()};
     std::shared_ptr<const KeptRayShape>& shape = shapes[geometry];
@@ -178,6 +198,25 @@ void RayScene::Impl::build_geometry(int index, std::uint8_t use, Report& report,
     if (shape->is_coarsened)
         report.warn(key.data->name,
                     "has so many faces near the camera that its shadows are coarser than a pixel");
+}
+
+/// Not kept for the next picture: materials may change.
+void RayScene::Impl::build_displaced(std::size_t index, std::uint8_t use, Report& report,
+                                     const Progress& progress) {
+    const Instance& instance = scene.instances[index];
+    const auto geometry = static_cast<std::size_t>(instance.geometry);
+    const auto shared = cache->shared(scene, geometry, report);
+    auto made = std::make_shared<KeptRayShape>();
+    made->key = {scene.geometries.share(geometry), scene.options.frame_time, use, {}};
+    auto shape = std::make_unique<RayDisplaced>(
+        shared, *displacement, index, detail_of(instance.geometry, shared.get()), progress);
+    if (shape->is_coarsened())
+        report.warn(
+            instance.name,
+            "is displaced so finely near the camera that its shadows are coarser than that");
+    made->shape = std::move(shape);
+    build(*made, progress);
+    displaced[index] = std::move(made);
 }
 
 void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
@@ -204,18 +243,18 @@ void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
 
 void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     const Instance& instance = scene.instances[index];
-    const auto geometry = static_cast<std::size_t>(instance.geometry);
     const auto transforms = ray_transforms(instance.world_from_object, origin);
     if (!transforms) return;
     const auto& columns = transforms->columns;
     RTCGeometry node = rtcNewGeometry(kept->device(), RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(node, shapes[geometry]->built.get());
+    const KeptRayShape& kept_shape = shape_of(index);
+    rtcSetGeometryInstancedScene(node, kept_shape.built.get());
     rtcSetGeometryTimeStepCount(node, static_cast<unsigned>(columns.size()));
     for (unsigned k = 0; k < columns.size(); ++k)
         rtcSetGeometryTransform(node, k, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns[k].data());
     rtcCommitGeometry(node);
-    if (columns.size() > 1 || shapes[geometry]->shape->knots() > 1 || !instance.lifespan.is_whole())
-        motion.add(box_of(shapes[geometry]->built.get()), transforms->knots);
+    if (columns.size() > 1 || kept_shape.shape->knots() > 1 || !instance.lifespan.is_whole())
+        motion.add(box_of(kept_shape.built.get()), transforms->knots);
     rtcAttachGeometryByID(top.get(), node, static_cast<unsigned>(instances.size()));
     rtcReleaseGeometry(node);
     by_key[instance.key] = static_cast<std::uint32_t>(instances.size());
@@ -231,8 +270,7 @@ Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& r
     const Instance& source = scene.instances[instance.index];
     ShadowHit shadow;
     shadow.instance = instance.index;
-    shapes[static_cast<std::size_t>(source.geometry)]->shape->locate(hit.geomID, hit.primID, hit.u,
-                                                                     hit.v, shadow);
+    shape_of(instance.index).shape->locate(hit.geomID, hit.primID, hit.u, hit.v, shadow);
     shadow.material = material_of(source, shadow.slot);
     if (!opacity.is_transparent(shadow.material)) return Vec3f(0.0f);
     shadow.direction = context.direction;
@@ -287,27 +325,37 @@ void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) 
 
 RayScene::RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacity,
                    const Progress& progress, std::shared_ptr<GeometryCache> geometries,
-                   Report* report, std::shared_ptr<KeptRays> kept)
+                   Report* report, std::shared_ptr<KeptRays> kept, const Displacement* displacement)
     : m_impl(std::make_unique<Impl>(scene, std::move(opacity), std::move(geometries),
-                                    std::move(kept))) {
+                                    std::move(kept), displacement, origin)) {
     Report unread;
     Report& warnings = report ? *report : unread;
     Impl& impl = *m_impl;
     std::vector<std::uint8_t> uses(scene.geometries.size(), 0);
-    for (const Instance& instance : scene.instances) {
+    std::map<std::size_t, std::uint8_t> displaced;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
         if (!impl.casts_shadow(instance)) continue;
-        std::uint8_t& use = uses[static_cast<std::size_t>(instance.geometry)];
+        std::uint8_t& use = impl.is_displaced(i)
+                                ? displaced[displacement->same_as(i)]
+                                : uses[static_cast<std::size_t>(instance.geometry)];
         use |= kCasts;
         if (impl.lets_light_through(instance)) use |= kLetsLightThrough;
         if (!instance.lifespan.is_whole()) use |= kAppears;
         if (instance.blocks != ~0ULL) use |= kIsLinked;
     }
-    if (std::all_of(uses.begin(), uses.end(), [](std::uint8_t use) { return use == 0; })) return;
+    if (displaced.empty() &&
+        std::all_of(uses.begin(), uses.end(), [](std::uint8_t use) { return use == 0; }))
+        return;
     if (!impl.kept) impl.kept = std::make_shared<KeptRays>();
     impl.shapes.resize(scene.geometries.size());
     for (std::size_t g = 0; g < uses.size(); ++g) {
         progress.check();
         if (uses[g]) impl.build_geometry(static_cast<int>(g), uses[g], warnings, progress);
+    }
+    for (const auto& [instance, use] : displaced) {
+        progress.check();
+        impl.build_displaced(instance, use, warnings, progress);
     }
     impl.top.reset(rtcNewScene(impl.kept->device()));
     rtcSetSceneFlags(impl.top.get(), RTC_SCENE_FLAG_ROBUST);
@@ -333,6 +381,7 @@ std::size_t RayScene::bytes() const {
     std::size_t sum = m_impl->kept ? m_impl->kept->embree_bytes() : 0;
     for (const auto& shape : m_impl->shapes)
         if (shape) sum += shape->shape->bytes();
+    for (const auto& [instance, shape] : m_impl->displaced) sum += shape->shape->bytes();
     return sum;
 }
 
@@ -340,9 +389,7 @@ RayOffset RayScene::ray_offset(const GridKey& key) const {
     const auto found = m_impl->by_key.find(key.instance);
     if (found == m_impl->by_key.end()) return {};
     const RayInstance& instance = m_impl->instances[found->second];
-    const auto geometry =
-        static_cast<std::size_t>(m_impl->scene.instances[instance.index].geometry);
-    const RayShape& shape = *m_impl->shapes[geometry]->shape;
+    const RayShape& shape = *m_impl->shape_of(instance.index).shape;
     return {instance.distance, instance.scale * shape.extent(key.face),
             instance.scale * shape.error(key.face), true};
 }
@@ -367,6 +414,82 @@ bool is_traceable(const ShadowRay& ray) {
 }
 
 }  // namespace
+
+bool RayScene::is_displaced(const GridKey& key) const {
+    const auto found = m_impl->by_key.find(key.instance);
+    return found != m_impl->by_key.end() &&
+           m_impl->is_displaced(m_impl->instances[found->second].index);
+}
+
+namespace {
+
+float longest_edge(RTCScene built, unsigned geometry, unsigned triangle) {
+    RTCGeometry of = rtcGetGeometry(built, geometry);
+    const auto* corners = static_cast<const std::array<std::uint32_t, 3>*>(
+        rtcGetGeometryBufferData(of, RTC_BUFFER_TYPE_INDEX, 0));
+    const auto* points =
+        static_cast<const Vec3f*>(rtcGetGeometryBufferData(of, RTC_BUFFER_TYPE_VERTEX, 0));
+    const auto& [a, b, c] = corners[triangle];
+    return std::max({glm::distance(points[a], points[b]), glm::distance(points[b], points[c]),
+                     glm::distance(points[c], points[a])});
+}
+
+/// The nearest triangle along a ray that is left through it, not farther than its own size;
+/// infinite where there is none.  What faces the ray is something else that hangs over it.
+float covering_distance(RTCScene built, const ShadowRay& from, bool from_behind) {
+    /// Of a triangle's longest edge.
+    constexpr float kFarthest = 2.0f;
+    constexpr float kNone = std::numeric_limits<float>::infinity();
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit ray{};
+    ray.ray.org_x = from.start.x, ray.ray.org_y = from.start.y, ray.ray.org_z = from.start.z;
+    ray.ray.dir_x = from.direction.x, ray.ray.dir_y = from.direction.y;
+    ray.ray.dir_z = from.direction.z;
+    ray.ray.tfar = from.distance;
+    ray.ray.time = from.time;
+    ray.ray.mask = ~0u;
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(built, &context, &ray);
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return kNone;
+    const Vec3f across(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
+    const bool leaves = (glm::dot(across, from.direction) > 0.0f) != from_behind;
+    if (!leaves || ray.ray.tfar > kFarthest * longest_edge(built, ray.hit.geomID, ray.hit.primID))
+        return kNone;
+    return ray.ray.tfar;
+}
+
+}  // namespace
+
+std::vector<float> RayScene::heights_over(const GridKey& key, const Covered& points) const {
+    const std::size_t index = m_impl->instances[m_impl->by_key.at(key.instance)].index;
+    const std::vector<Mat4d>& knots = m_impl->scene.instances[index].world_from_object;
+    const float reach = 2.0f * m_impl->displacement->bound(index);
+    RTCScene built = m_impl->shape_of(index).built.get();
+    const auto object_from_shading = [&](float time) {
+        Mat4d shading_from_object = matrix_at(knots, time);
+        shading_from_object[3] -= glm::dvec4(m_impl->origin, 0.0);
+        return glm::inverse(shading_from_object);
+    };
+    const float frame = m_impl->scene.options.frame_time;
+    const bool still = is_static(knots);
+    Mat4d into = object_from_shading(frame);
+    std::vector<float> heights(points.p.size(), 0.0f);
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+        const bool timed = !points.times.empty() && points.times[i] >= 0.0f;
+        const float time = timed ? points.times[i] : frame;
+        if (!still && !points.times.empty()) into = object_from_shading(time);
+        const Vec3f way(Mat3d(into) * Vec3d(points.up[i]));
+        const float length = glm::length(way);
+        if (!(length > 0.0f)) continue;
+        const ShadowRay up{Vec3f(transform_point(into, Vec3d(points.p[i]))), way / length, reach,
+                           time};
+        if (!is_traceable(up)) continue;
+        const float distance = covering_distance(built, up, points.from_behind[i] != 0);
+        if (std::isfinite(distance)) heights[i] = distance / length;
+    }
+    return heights;
+}
 
 Vec3f RayScene::transmittance(const ShadowRay& shadow) const {
     if (!is_traceable(shadow)) return Vec3f(1.0f);

@@ -10,6 +10,7 @@
 #include "base/progress.h"
 #include "base/report.h"
 #include "dice/grid.h"
+#include "geometry/displacement.h"
 #include "geometry/geometry_cache.h"
 #include "scene/scene.h"
 #include "shade/rays/kept_rays.h"
@@ -30,11 +31,13 @@ class RayScene {
   public:
     /// `origin`: the camera's world position.  Only instances that cast shadows are in it.
     /// `geometries`: shared with dicing, where given; `report`: what geometries are reported to;
-    /// `kept`: where built geometries are looked for and left.
+    /// `kept`: where built geometries are looked for and left; `displacement`: of instances, where
+    /// there is any, which must outlive this.
     /// Throws Cancelled, or SceneError naming the geometry that Embree could not take.
     RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacity,
              const Progress& progress, std::shared_ptr<GeometryCache> geometries = nullptr,
-             Report* report = nullptr, std::shared_ptr<KeptRays> kept = nullptr);
+             Report* report = nullptr, std::shared_ptr<KeptRays> kept = nullptr,
+             const Displacement* displacement = nullptr);
     ~RayScene();
 
     bool empty() const;
@@ -44,6 +47,17 @@ class RayScene {
     /// near it.
     bool varies(const Vec3f& start, const Vec3f& direction, float distance) const;
     std::size_t bytes() const;
+
+    /// Of points of an instance: `up` [n] unit, to the side from which they are seen.
+    struct Covered {
+        const std::vector<Vec3f>&p, &up;
+        const std::vector<std::uint8_t>& from_behind;  ///< [n] `up` points inwards
+        const std::vector<float>& times;               ///< [n], or empty; negative: the frame time
+    };
+    bool is_displaced(const GridKey& key) const;
+    /// [n] how far above points of a displaced instance its triangles lie that cover them: what is
+    /// diced finer than those are may lie below them.  0 where it does not.
+    std::vector<float> heights_over(const GridKey& key, const Covered& points) const;
 
     /// Of the points of a grid, or of those that lie on one face of several
     /// (ShadingPositions::faces).

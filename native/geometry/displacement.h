@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How materials move the surfaces of instances (decision 6), as dicing and rays ask for it.
+//
+// An offset is a function of the instance and of a place on its geometry, and of nothing else: not
+// of grids, rates or who asks.  What two patches share is moved as the patch that owns it says
+// (PatchBorders), so that both have the same bits (decision 10).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "geometry/shared_geometry.h"
+
+namespace granita {
+
+/// Offsets at n places of a patch, object space, at the frame time; they hold throughout the
+/// shutter, as in Cycles.
+struct Offsets {
+    std::vector<Vec3f> offset;
+    std::vector<Vec3f> by_u, by_v;  ///< derivatives, where they were asked for
+};
+
+/// Thread-safe; instances by their index in Scene::instances.
+class Displacement {
+  public:
+    virtual ~Displacement() = default;
+    virtual bool displaces(std::size_t instance) const = 0;
+    /// No offset of the instance is longer, object space.
+    virtual float bound(std::size_t instance) const = 0;
+    /// The instance whose offsets this one's are, but for how finely textures are read: to rays
+    /// one shape may stand for both.
+    virtual std::size_t same_as(std::size_t instance) const = 0;
+    virtual void find(std::size_t instance, const SharedGeometry& geometry, const BasePatch& patch,
+                      std::span<const Vec2d> uv, bool derivatives, Offsets& out) const = 0;
+};
+
+}  // namespace granita

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The surface itself at places of a patch, object space: where displacement starts from.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geometry/shared_geometry.h"
+
+namespace granita {
+
+/// At n places at the frame time.  Derivatives by u and v of the patch.
+struct SurfaceFrames {
+    std::vector<Vec3d> p, su, sv;
+    std::vector<Vec3d> normal;            ///< unit, shading, outward as modelled
+    std::vector<Vec3d> geometric_normal;  ///< unit
+};
+
+void find_frames(const SharedGeometry& geometry, const BasePatch& patch, std::span<const Vec2d> uv,
+                 SurfaceFrames& out);
+
+/// [surface_knots()][n]
+void find_positions(const SharedGeometry& geometry, const BasePatch& patch,
+                    std::span<const Vec2d> uv, std::vector<Vec3f>& out);
+
+}  // namespace granita

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/material_displacement.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "base/parallel.h"
+#include "geometry/surface_evaluator.h"
+#include "geometry/surface_frames.h"
+#include "math/largest_stretch.h"
+#include "math/normalize_or.h"
+#include "scene/knot_time.h"
+
+namespace granita {
+namespace {
+
+/// Of the largest offset that samples find: how far others may go where nodes do not tell.
+constexpr float kMargin = 2.0f;
+/// Places that are sampled for it, at least, and along a patch's side at most.
+constexpr std::size_t kSamples = 1 << 16;
+constexpr int kMostAlongSide = 256;
+/// Patches in a piece of that loop.
+constexpr std::size_t kGrain = 64;
+/// Of a patch: a place and the two beside it stay within it.
+constexpr double kLargestStep = 0.5;
+/// Of the coordinates: smaller steps drown in the rounding of single precision.
+constexpr double kSmallestStep = 4e-5;
+/// Of a pixel: between the points whose difference is a slope.  Over a whole one the normals of a
+/// ball of 20 pixels are .025 off, over a quarter .006.
+constexpr double kDifference = 0.25;
+
+}  // namespace
+
+/// An instance that is displaced.
+struct MaterialDisplacement::Target {
+    std::size_t same_as = 0;
+    Mat4d shading_from_object{1.0};  ///< at the frame time; origin at the camera
+    ObjectAxes axes;
+    Mat3d object_from_world{1.0};
+    // The camera in object space: a pixel is as large as `angle` at each metre from `eye`, plus
+    // `least`.
+    Vec3d eye{0.0};
+    double angle = 0.0, least = 0.0;
+    mutable std::once_flag bound_once;
+    mutable float bound = 0.0f;
+};
+
+/// Places of a patch as points that a program runs over.
+class MaterialDisplacement::Batch {
+  public:
+    Batch(const Target& target, const Instance& instance, const SharedGeometry& geometry,
+          const BasePatch& patch)
+        : m_target(target), m_instance(instance), m_geometry(geometry), m_patch(patch) {}
+
+    void run(const DisplacementProgram& program, std::span<const Vec2d> uv, bool derivatives,
+             Offsets& out) {
+        const std::size_t n = uv.size();
+        m_uv.assign(uv.begin(), uv.end());
+        find_frames(m_geometry, m_patch, m_uv, m_frames);
+        m_steps.resize(n);
+        for (std::size_t i = 0; i < n; ++i) m_steps[i] = step_at(i);
+        if (derivatives) add_neighbours(n);
+        fill_points();
+        fill_attributes(program.requests);
+        ShadingInput input;
+        input.points = &m_points;
+        input.attributes = &m_attributes;
+        input.instance = &m_instance;
+        input.axes = m_target.axes;
+        Run run = program.program.prepare(input, m_uv.size());
+        program.program.execute(run);
+        const auto offsets = run.read(program.offset);
+        const auto in_object = [&](std::size_t i) {
+            return Vec3f(m_target.object_from_world * Vec3d(offsets[i]));
+        };
+        for (std::size_t i = 0; i < n; ++i) out.offset[i] = in_object(i);
+        for (std::size_t i = 0; derivatives && i < n; ++i) {
+            const Vec2d step = kDifference * m_steps[i];
+            const auto slope = [&](std::size_t next, double by) {
+                return by != 0.0 ? (in_object(next) - out.offset[i]) / static_cast<float>(by)
+                                 : Vec3f(0.0f);
+            };
+            out.by_u[i] = slope(n + i, step.x);
+            out.by_v[i] = slope(2 * n + i, step.y);
+        }
+    }
+
+  private:
+    /// A pixel, in (u, v); towards the inside of the patch where a step leads out of it.
+    Vec2d step_at(std::size_t i) const {
+        const Vec3d& p = m_frames.p[i];
+        const double coordinates = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        const double pixel =
+            std::max(m_target.angle * glm::distance(p, m_target.eye) + m_target.least,
+                     kSmallestStep * coordinates);
+        const auto along = [&](const Vec3d& s, double at) {
+            const double length = glm::length(s);
+            if (!(length > 0.0)) return 0.0;
+            const double step = std::min(pixel / length, kLargestStep);
+            return m_geometry.subdivision() && at + step > 1.0 ? -step : step;
+        };
+        return {along(m_frames.su[i], m_uv[i].x), along(m_frames.sv[i], m_uv[i].y)};
+    }
+
+    void add_neighbours(std::size_t n) {
+        for (std::size_t i = 0; i < n; ++i)
+            m_uv.push_back(m_uv[i] + Vec2d(kDifference * m_steps[i].x, 0.0));
+        for (std::size_t i = 0; i < n; ++i)
+            m_uv.push_back(m_uv[i] + Vec2d(0.0, kDifference * m_steps[i].y));
+        m_steps.resize(3 * n);
+        for (std::size_t i = 0; i < 2 * n; ++i) m_steps[n + i] = m_steps[i % n];
+        find_frames(m_geometry, m_patch, m_uv, m_frames);
+    }
+
+    /// What is seen straight from above.
+    void fill_points() {
+        const std::size_t n = m_uv.size();
+        const Mat3f turn(m_target.shading_from_object);
+        const Mat3f turn_normal = m_target.axes.world_normal_from_object();
+        m_points.count = n;
+        for (auto* values : {&m_points.p, &m_points.normal, &m_points.geometric_normal,
+                             &m_points.view, &m_points.dp_du, &m_points.dp_dv})
+            values->resize(n);
+        m_points.backfacing.assign(n, 0);
+        for (std::size_t i = 0; i < n; ++i) {
+            const Vec3f flat(m_frames.geometric_normal[i]);
+            const Vec3f geometric = normalize_or(turn_normal * flat, flat);
+            m_points.p[i] = Vec3f(transform_point(m_target.shading_from_object, m_frames.p[i]));
+            m_points.geometric_normal[i] = geometric;
+            m_points.normal[i] = normalize_or(turn_normal * Vec3f(m_frames.normal[i]), geometric);
+            m_points.view[i] = geometric;
+            m_points.dp_du[i] = turn * Vec3f(m_frames.su[i] * m_steps[i].x);
+            m_points.dp_dv[i] = turn * Vec3f(m_frames.sv[i] * m_steps[i].y);
+        }
+    }
+
+    void fill_attributes(const std::vector<AttributeRequest>& requests) {
+        m_attributes.resize(requests.size());
+        for (std::size_t k = 0; k < requests.size(); ++k) {
+            GridAttribute& to = m_attributes[k];
+            to.attribute = static_cast<int>(k);
+            to.width = requests[k].width;
+            m_geometry.surface().attribute(m_patch, requests[k], m_uv, to.values, to.du, to.dv);
+            const auto width = static_cast<std::size_t>(to.width);
+            for (std::size_t i = 0; i < to.values.size(); ++i) {
+                to.du[i] *= static_cast<float>(m_steps[i / width].x);
+                to.dv[i] *= static_cast<float>(m_steps[i / width].y);
+            }
+        }
+    }
+
+    const Target& m_target;
+    const Instance& m_instance;
+    const SharedGeometry& m_geometry;
+    const BasePatch& m_patch;
+    std::vector<Vec2d> m_uv, m_steps;
+    SurfaceFrames m_frames;
+    ShadingPoints m_points;
+    std::vector<GridAttribute> m_attributes;
+};
+
+MaterialDisplacement::MaterialDisplacement(const Scene& scene,
+                                           std::vector<std::optional<DisplacementProgram>> programs,
+                                           std::shared_ptr<GeometryCache> geometries,
+                                           Report& report)
+    : m_scene(scene),
+      m_programs(std::move(programs)),
+      m_geometries(std::move(geometries)),
+      m_report(report),
+      m_targets(scene.instances.size()) {
+    if (std::ranges::none_of(m_programs, [](const auto& p) { return p.has_value(); })) return;
+    const Options& options = scene.options;
+    const Projection& projection = scene.camera.projection;
+    const Mat4d world_from_camera = matrix_at(scene.camera.world_from_camera, options.frame_time);
+    const double pixel = 1.0 / std::max(std::abs(projection.scale.x), std::abs(projection.scale.y));
+    std::map<std::pair<int, std::vector<std::int32_t>>, std::size_t> first_of;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        bool moves = false, alone = false;
+        for (const std::int32_t material : instance.materials)
+            if (const DisplacementProgram* p = program(material)) {
+                moves = true;
+                alone |= p->depends_on_instance;
+            }
+        if (!moves) continue;
+        if (scene.geometries[static_cast<std::size_t>(instance.geometry)].kind !=
+            GeometryKind::Mesh) {
+            report.warn(instance.name, "displacement has no effect on curves and points");
+            continue;
+        }
+        const Mat4d world_from_object = matrix_at(instance.world_from_object, options.frame_time);
+        const Mat3d inverse = glm::inverse(Mat3d(world_from_object));
+        if (!is_finite(Vec3f(inverse[0])) || !is_finite(Vec3f(inverse[1])) ||
+            !is_finite(Vec3f(inverse[2])))
+            continue;  // flat in some direction: there is no way back into its space
+        auto target = std::make_unique<Target>();
+        target->same_as =
+            alone ? i
+                  : first_of.try_emplace({instance.geometry, instance.materials}, i).first->second;
+        target->shading_from_object = world_from_object;
+        target->shading_from_object[3] -= glm::dvec4(Vec3d(world_from_camera[3]), 0.0);
+        target->axes = ObjectAxes(world_from_object);
+        target->object_from_world = inverse;
+        const double scale = largest_stretch(world_from_object);
+        target->eye = inverse * (Vec3d(world_from_camera[3]) - Vec3d(world_from_object[3]));
+        // A pixel across the largest stretch.
+        if (projection.perspective)
+            target->angle = pixel;
+        else
+            target->least = pixel / scale;
+        m_targets[i] = std::move(target);
+    }
+}
+
+MaterialDisplacement::~MaterialDisplacement() = default;
+
+bool MaterialDisplacement::any() const {
+    return std::ranges::any_of(m_targets, [](const auto& target) { return target != nullptr; });
+}
+
+bool MaterialDisplacement::displaces(std::size_t instance) const {
+    return m_targets[instance] != nullptr;
+}
+
+std::size_t MaterialDisplacement::same_as(std::size_t instance) const {
+    return m_targets[instance] ? m_targets[instance]->same_as : instance;
+}
+
+const DisplacementProgram* MaterialDisplacement::program(std::int32_t material) const {
+    if (material < 0) return nullptr;
+    const auto& program = m_programs[static_cast<std::size_t>(material)];
+    return program ? &*program : nullptr;
+}
+
+const DisplacementProgram* MaterialDisplacement::program_of(const Instance& instance,
+                                                            const SharedGeometry& geometry,
+                                                            std::uint32_t face) const {
+    const std::vector<std::int32_t>& of_faces = geometry.data().material_index;
+    const std::int32_t slot = of_faces.empty() ? 0 : of_faces[face];
+    const auto last = static_cast<std::int32_t>(instance.materials.size()) - 1;
+    return program(instance.materials[static_cast<std::size_t>(std::clamp(slot, 0, last))]);
+}
+
+void MaterialDisplacement::find(std::size_t index, const SharedGeometry& geometry,
+                                const BasePatch& patch, std::span<const Vec2d> uv, bool derivatives,
+                                Offsets& out) const {
+    const std::size_t n = uv.size();
+    out.offset.assign(n, Vec3f(0.0f));
+    out.by_u.assign(derivatives ? n : 0, Vec3f(0.0f));
+    out.by_v.assign(derivatives ? n : 0, Vec3f(0.0f));
+    const Instance& instance = m_scene.instances[index];
+    const DisplacementProgram* const program = program_of(instance, geometry, patch.face);
+    if (!program) return;
+    Batch(*m_targets[index], instance, geometry, patch).run(*program, uv, derivatives, out);
+    const float most = bound(index);
+    std::size_t broken = 0, beyond = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        Vec3f& offset = out.offset[i];
+        const float length = glm::length(offset);
+        const bool slopes = !derivatives || (is_finite(out.by_u[i]) && is_finite(out.by_v[i]));
+        if (std::isfinite(length) && length <= most && slopes) continue;
+        if (derivatives) out.by_u[i] = out.by_v[i] = Vec3f(0.0f);
+        if (!std::isfinite(length)) {
+            offset = Vec3f(0.0f);
+            ++broken;
+        } else if (length > most) {
+            offset *= most / length;
+            ++beyond;
+        }
+    }
+    if (broken)
+        m_report.warn(instance.name, "its displacement is no number at some points", broken);
+    if (beyond)
+        m_report.warn(instance.name,
+                      "is displaced farther at some points than was found beforehand: it is cut "
+                      "off there",
+                      beyond);
+}
+
+float MaterialDisplacement::bound(std::size_t instance) const {
+    const std::size_t source = m_targets[instance]->same_as;
+    const Target& target = *m_targets[source];
+    std::call_once(target.bound_once, [&] { target.bound = find_bound(source); });
+    return target.bound;
+}
+
+float MaterialDisplacement::find_bound(std::size_t index) const {
+    const Instance& instance = m_scene.instances[index];
+    const float stretch = static_cast<float>(largest_stretch(m_targets[index]->object_from_world));
+    float told = 0.0f;
+    for (const std::int32_t material : instance.materials)
+        if (const DisplacementProgram* p = program(material))
+            told = std::max(told, p->longest * (p->longest_in_world ? stretch : 1.0f));
+    if (std::isfinite(told)) return told * (1.0f + 1e-4f);
+    Report said_by_others;
+    const auto geometry =
+        m_geometries->shared(m_scene, static_cast<std::size_t>(instance.geometry), said_by_others);
+    return kMargin * sampled_bound(index, *geometry);
+}
+
+float MaterialDisplacement::sampled_bound(std::size_t index, const SharedGeometry& geometry) const {
+    const Instance& instance = m_scene.instances[index];
+    const std::vector<BasePatch>& patches = geometry.patches();
+    int side = 1;
+    while (side < kMostAlongSide &&
+           patches.size() * static_cast<std::size_t>(side * side) < kSamples)
+        side *= 2;
+    std::vector<float> most(patches.size(), 0.0f);
+    parallel_for(patches.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        std::vector<Vec2d> uv;
+        Offsets offsets;
+        for (std::size_t k = begin; k < end; ++k) {
+            const DisplacementProgram* const p = program_of(instance, geometry, patches[k].face);
+            if (!p) continue;
+            uv.clear();
+            for (int j = 0; j <= side; ++j)
+                for (int i = 0; i <= side; ++i) {
+                    if (patches[k].kind == PatchKind::Triangle && i + j > side) continue;
+                    uv.push_back(Vec2d(i, j) / static_cast<double>(side));
+                }
+            offsets.offset.resize(uv.size());
+            Batch(*m_targets[index], instance, geometry, patches[k]).run(*p, uv, false, offsets);
+            for (const Vec3f& offset : offsets.offset)
+                if (is_finite(offset)) most[k] = std::max(most[k], glm::length(offset));
+        }
+    });
+    return most.empty() ? 0.0f : std::ranges::max(most);
+}
+
+}  // namespace granita

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Displacement by the materials' programs, run over places of a patch at once.
+//
+// A program reads textures over a pixel of the camera, wherever the place may be: so an offset
+// depends on the place alone, and neither grids' borders nor what rays meet can be told from it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/report.h"
+#include "geometry/displacement.h"
+#include "geometry/geometry_cache.h"
+#include "shade/nodes/node_compiler.h"
+
+namespace granita {
+
+class MaterialDisplacement final : public Displacement {
+  public:
+    /// `programs` [materials]: those that move their surfaces.  All must outlive this.
+    MaterialDisplacement(const Scene& scene,
+                         std::vector<std::optional<DisplacementProgram>> programs,
+                         std::shared_ptr<GeometryCache> geometries, Report& report);
+    ~MaterialDisplacement() override;
+
+    /// Whether any instance is displaced at all.
+    bool any() const;
+    bool displaces(std::size_t instance) const override;
+    float bound(std::size_t instance) const override;
+    std::size_t same_as(std::size_t instance) const override;
+    void find(std::size_t instance, const SharedGeometry& geometry, const BasePatch& patch,
+              std::span<const Vec2d> uv, bool derivatives, Offsets& out) const override;
+
+  private:
+    struct Target;
+    class Batch;
+    const DisplacementProgram* program_of(const Instance& instance, const SharedGeometry& geometry,
+                                          std::uint32_t face) const;
+    const DisplacementProgram* program(std::int32_t material) const;
+    float find_bound(std::size_t instance) const;
+    float sampled_bound(std::size_t instance, const SharedGeometry& geometry) const;
+
+    const Scene& m_scene;
+    std::vector<std::optional<DisplacementProgram>> m_programs;
+    std::shared_ptr<GeometryCache> m_geometries;
+    Report& m_report;
+    std::vector<std::unique_ptr<Target>> m_targets;  ///< [instances]; nullptr: not displaced
+};
+
+}  // namespace granita

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/rays/ray_displaced.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "geometry/subdivision_topology.h"
+#include "geometry/surface_frames.h"
+#include "shade/rays/ray_heights.h"
+
+namespace granita {
+namespace {
+
+/// Pixels along a cell: what is finer casts no shadow of its own.
+constexpr float kCell = 2.0f;
+/// log2 of the cells along a patch's side.
+constexpr int kMostLevels = 9;
+/// Cells of a geometry, whatever the camera sees of it: for its shadow's sake.
+constexpr std::size_t kLeastCells = 1 << 14;
+/// Levels that a patch gets for that alone.
+constexpr int kMostUnseenLevels = 6;
+/// Points over all knots that a geometry may have: some gigabytes in Embree.
+constexpr std::size_t kMostPoints = 20'000'000;
+/// Patches that a thread takes at a time.
+constexpr std::size_t kGrain = 16;
+
+/// (i, j) of a lattice's cells; a triangle's have i + j <= cells.
+class Cells {
+  public:
+    Cells(PatchKind kind, int cells) : m_triangle(kind == PatchKind::Triangle), m_cells(cells) {}
+
+    std::uint32_t index(int i, int j) const {
+        // Rows of a triangle get shorter by one each.
+        const int before = m_triangle ? j * (m_cells + 1) - j * (j - 1) / 2 : j * (m_cells + 1);
+        return static_cast<std::uint32_t>(before + i);
+    }
+    template <class Act>
+    void for_points(Act act) const {
+        for (int j = 0; j <= m_cells; ++j)
+            for (int i = 0; i <= (m_triangle ? m_cells - j : m_cells); ++i) act(i, j);
+    }
+    /// Each with the lattice's corners (i, j) of a triangle.  Cells are cut as pairs of triangles
+    /// are, along the crease; those of a triangle along its own third side.
+    template <class Act>
+    void for_triangles(Act act) const {
+        using Corner = std::array<int, 2>;
+        for (int j = 0; j < m_cells; ++j)
+            for (int i = 0; i < (m_triangle ? m_cells - j : m_cells); ++i) {
+                const Corner a{i, j}, b{i + 1, j}, c{i + 1, j + 1}, d{i, j + 1};
+                if (!m_triangle) {
+                    act(a, b, c);
+                    act(a, c, d);
+                    continue;
+                }
+                act(a, b, d);
+                if (i + j + 1 < m_cells) act(b, c, d);
+            }
+    }
+    /// Where step i of a side is, sides running around the patch.
+    std::array<int, 2> on_side(int side, int i) const {
+        const int n = m_cells;
+        if (m_triangle)
+            return side == 0   ? std::array{i, 0}
+                   : side == 1 ? std::array{n - i, i}
+                               : std::array{0, n - i};
+        switch (side) {
+            case 0:
+                return {i, 0};
+            case 1:
+                return {n, i};
+            case 2:
+                return {n - i, n};
+            default:
+                return {0, n - i};
+        }
+    }
+
+  private:
+    bool m_triangle;
+    int m_cells;
+};
+
+}  // namespace
+
+RayDisplaced::RayDisplaced(std::shared_ptr<const SharedGeometry> shared,
+                           const Displacement& displacement, std::size_t instance,
+                           const RayDetail& detail, const Progress& progress)
+    : m_shared(std::move(shared)), m_borders(m_shared->borders()) {
+    m_triangles.knots = m_shared->surface_knots();
+    find_levels(detail);
+    coarsen();
+    find_edge_levels();
+    number();
+    const std::size_t patches = m_shared->patches().size();
+    parallel_for(patches, kGrain, [&](std::size_t begin, std::size_t end) {
+        progress.check();
+        for (std::size_t k = begin; k != end; ++k) place(k, displacement, instance);
+    });
+    m_extents.assign(m_shared->data().face_count(), 0.0f);
+    for (std::size_t k = 0; k < patches; ++k) {
+        float& extent = m_extents[m_shared->patches()[k].face];
+        const std::size_t last = k + 1 < patches ? m_first_point[k + 1] : m_triangles.point_count();
+        for (int knot = 0; knot < m_triangles.knots; ++knot)
+            for (std::size_t i = m_first_point[k]; i < last; ++i)
+                extent = std::max(extent, largest_coordinate(m_triangles.at(knot)[i]));
+    }
+    m_triangles.put_still_first();
+}
+
+void RayDisplaced::find_levels(const RayDetail& detail) {
+    const auto& patches = m_shared->patches();
+    m_levels.assign(patches.size(), 0);
+    int unseen = 0;
+    while (unseen < kMostUnseenLevels && patches.size() << (2 * unseen) < kLeastCells) ++unseen;
+    parallel_for(patches.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        SurfaceFrames frames;
+        for (std::size_t k = begin; k != end; ++k) {
+            static const std::vector<Vec2d> quad = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0.5}};
+            static const std::vector<Vec2d> triangle = {{0, 0}, {1, 0}, {0, 1}, {1 / 3., 1 / 3.}};
+            find_frames(*m_shared, patches[k],
+                        patches[k].kind == PatchKind::Triangle ? triangle : quad, frames);
+            float pixel = std::numeric_limits<float>::infinity();
+            double length = 0.0;
+            for (std::size_t i = 0; i < frames.p.size(); ++i) {
+                pixel = std::min(pixel, detail.pixel(Vec3f(frames.p[i])));
+                length = std::max({length, glm::length(frames.su[i]), glm::length(frames.sv[i])});
+            }
+            int level = 0;
+            while (level < kMostLevels &&
+                   length > static_cast<double>(kCell * pixel) * (1 << level))
+                ++level;
+            m_levels[k] = static_cast<std::uint8_t>(std::max(level, unseen));
+        }
+    });
+}
+
+void RayDisplaced::coarsen() {
+    const auto& patches = m_shared->patches();
+    const auto points = [&] {
+        std::size_t sum = 0;
+        for (std::size_t k = 0; k < patches.size(); ++k)
+            sum += point_count(patches[k], 1 << m_levels[k]);
+        return sum * static_cast<std::size_t>(m_triangles.knots);
+    };
+    while (points() > kMostPoints && std::ranges::any_of(m_levels, [](int l) { return l > 0; })) {
+        m_coarsened = true;
+        for (std::uint8_t& level : m_levels) level -= level > 0 ? 1 : 0;
+    }
+    // Sub-faces meet in the middle of an edge, which then is a point of both sides.
+    const SubdivisionTopology* topology = m_shared->subdivision();
+    for (std::size_t k = 0; topology && k < patches.size(); ++k)
+        for (int i = 0; patches[k].kind == PatchKind::Quad && i < 4; ++i)
+            if (topology->edge(topology->face_edge(patches[k].face, i)).halved)
+                m_levels[k] = std::max<std::uint8_t>(m_levels[k], 1);
+}
+
+int RayDisplaced::edge_level(const PatchBorders::Side& side, int level) const {
+    return std::abs(side.to - side.from) < 1.0 ? level + 1 : level;
+}
+
+void RayDisplaced::find_edge_levels() {
+    m_edge_levels.assign(m_borders.edge_count(), kMostLevels + 1);
+    const auto& patches = m_shared->patches();
+    for (std::size_t k = 0; k < patches.size(); ++k)
+        for (int i = 0; i < PatchBorders::side_count(patches[k].kind); ++i) {
+            const PatchBorders::Side side = m_borders.side(k, i);
+            std::uint8_t& level = m_edge_levels[side.edge];
+            level = std::min(level, static_cast<std::uint8_t>(edge_level(side, m_levels[k])));
+        }
+}
+
+std::size_t RayDisplaced::point_count(const BasePatch& patch, int cells) const {
+    const auto n = static_cast<std::size_t>(cells) + 1;
+    return patch.kind == PatchKind::Triangle ? n * (n + 1) / 2 : n * n;
+}
+
+std::size_t RayDisplaced::triangle_count(const BasePatch& patch, int cells) const {
+    const auto n = static_cast<std::size_t>(cells);
+    return patch.kind == PatchKind::Triangle ? n * n : 2 * n * n;
+}
+
+void RayDisplaced::number() {
+    const auto& patches = m_shared->patches();
+    std::size_t points = 0, triangles = 0;
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+        m_first_point.push_back(static_cast<std::uint32_t>(points));
+        m_first_triangle.push_back(static_cast<std::uint32_t>(triangles));
+        points += point_count(patches[k], 1 << m_levels[k]);
+        triangles += triangle_count(patches[k], 1 << m_levels[k]);
+    }
+    m_first_triangle.push_back(static_cast<std::uint32_t>(triangles));
+    m_triangles.points.resize(points * static_cast<std::size_t>(m_triangles.knots));
+    m_triangles.indices.resize(triangles);
+}
+
+/// The nearest of the points that the edge has.
+SurfacePlace RayDisplaced::border_place(const PatchBorders::Side& side, int i, int cells) const {
+    const double t = side.from + (side.to - side.from) * i / cells;
+    const double steps = 1 << m_edge_levels[side.edge];
+    return m_borders.place(side.edge, std::floor(t * steps + 0.5) / steps);
+}
+
+void RayDisplaced::place(std::size_t k, const Displacement& displacement, std::size_t instance) {
+    const BasePatch& patch = m_shared->patches()[k];
+    const int n = 1 << m_levels[k];
+    const Cells cells(patch.kind, n);
+    std::vector<SurfacePlace> places(point_count(patch, n));
+    cells.for_points([&](int i, int j) {
+        places[cells.index(i, j)] = {&patch, Vec2d(i, j) / double(n)};
+    });
+    for (int number = 0; number < PatchBorders::side_count(patch.kind); ++number) {
+        const PatchBorders::Side side = m_borders.side(k, number);
+        for (int i = 0; i <= n; ++i) {
+            const auto [u, v] = cells.on_side(number, i);
+            places[cells.index(u, v)] = border_place(side, i, n);
+        }
+    }
+    // Those of one owner at a time; the patch's own points lie in runs between them.
+    std::vector<std::uint32_t> order(places.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return places[i].patch; });
+    const std::size_t total = m_triangles.point_count();
+    std::vector<Vec2d> uv;
+    std::vector<Vec3f> positions;
+    Offsets offsets;
+    for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+        const BasePatch& owner = *places[order[first]].patch;
+        uv.clear();
+        for (last = first; last < order.size() && places[order[last]].patch == &owner; ++last)
+            uv.push_back(places[order[last]].uv);
+        find_positions(*m_shared, owner, uv, positions);
+        displacement.find(instance, *m_shared, owner, uv, false, offsets);
+        for (std::size_t knot = 0; knot < static_cast<std::size_t>(m_triangles.knots); ++knot)
+            for (std::size_t i = 0; i < uv.size(); ++i)
+                m_triangles.points[knot * total + m_first_point[k] + order[first + i]] =
+                    positions[knot * uv.size() + i] + offsets.offset[i];
+    }
+    std::size_t triangle = m_first_triangle[k];
+    const auto number_of = [&](const std::array<int, 2>& at) {
+        return m_first_point[k] + cells.index(at[0], at[1]);
+    };
+    cells.for_triangles([&](const auto& a, const auto& b, const auto& c) {
+        m_triangles.indices[triangle++] = {number_of(a), number_of(b), number_of(c)};
+    });
+}
+
+std::vector<RTCGeometry> RayDisplaced::hand_over(RTCDevice device) {
+    return m_triangles.hand_over(device);
+}
+
+std::string RayDisplaced::size() const {
+    return std::to_string(m_first_triangle.back()) + " triangles, displaced";
+}
+
+float RayDisplaced::extent(std::uint32_t face) const {
+    return face < m_extents.size() ? m_extents[face] : 0.0f;
+}
+
+void RayDisplaced::locate(std::uint32_t geometry, std::uint32_t triangle, float u, float v,
+                          ShadowHit& hit) const {
+    triangle = m_triangles.original(geometry, triangle);
+    const auto after = std::ranges::upper_bound(m_first_triangle, triangle);
+    const auto k = static_cast<std::size_t>(after - m_first_triangle.begin()) - 1;
+    hit.geometry = m_shared.get();
+    hit.patch = &m_shared->patches()[k];
+    const auto& slots = m_shared->data().material_index;
+    hit.slot = slots.empty() ? 0 : slots[hit.patch->face];
+    const int n = 1 << m_levels[k];
+    std::uint32_t left = triangle - m_first_triangle[k];
+    const auto place = [&](int i, int j, bool second) {
+        const Vec2d a(i, j), b(i + 1, j), c(i + 1, j + 1), d(i, j + 1);
+        const bool is_triangle = hit.patch->kind == PatchKind::Triangle;
+        const Vec2d p0 = is_triangle && second ? b : a;
+        const Vec2d p1 = second ? c : b;
+        const Vec2d p2 = is_triangle ? d : (second ? d : c);
+        const double w1 = static_cast<double>(u), w2 = static_cast<double>(v);
+        hit.uv = (p0 * (1.0 - w1 - w2) + p1 * w1 + p2 * w2) / static_cast<double>(n);
+    };
+    if (hit.patch->kind != PatchKind::Triangle) {
+        const auto cell = static_cast<int>(left / 2);
+        place(cell % n, cell / n, left % 2 != 0);
+        return;
+    }
+    // A row of n - j cells has 2 (n - j) - 1 triangles.
+    int j = 0;
+    while (left >= static_cast<std::uint32_t>(2 * (n - j) - 1)) {
+        left -= static_cast<std::uint32_t>(2 * (n - j) - 1);
+        ++j;
+    }
+    place(static_cast<int>(left / 2), j, left % 2 != 0);
+}
+
+std::size_t RayDisplaced::bytes() const {
+    return sizeof(*this) + m_triangles.bytes() + m_levels.size() + m_edge_levels.size() +
+           4 * (m_first_point.size() + m_first_triangle.size() + m_extents.size());
+}
+
+}  // namespace granita

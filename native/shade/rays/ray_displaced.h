@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A displaced mesh as triangles for rays: points of the same surface that is diced, at a rate of
+// its own.  Borders have the points of the coarser neighbour, each where its owner puts it: no ray
+// passes between two patches.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/progress.h"
+#include "geometry/displacement.h"
+#include "geometry/patch_borders.h"
+#include "shade/rays/ray_detail.h"
+#include "shade/rays/ray_primitives.h"
+#include "shade/rays/ray_shape.h"
+
+namespace granita {
+
+class RayDisplaced final : public RayShape {
+  public:
+    /// `instance`: whose displacement it is.  Throws Cancelled.
+    RayDisplaced(std::shared_ptr<const SharedGeometry> shared, const Displacement& displacement,
+                 std::size_t instance, const RayDetail& detail, const Progress& progress);
+
+    /// It was to be finer than memory allows.
+    bool is_coarsened() const { return m_coarsened; }
+    std::vector<RTCGeometry> hand_over(RTCDevice device) override;
+    std::string size() const override;
+    int knots() const override { return m_triangles.knots; }
+    /// Not known: rays start where RayScene::height_over() says.
+    float error(std::uint32_t) const override { return 0.0f; }
+    float extent(std::uint32_t face) const override;
+    void locate(std::uint32_t geometry, std::uint32_t triangle, float u, float v,
+                ShadowHit& hit) const override;
+    std::size_t bytes() const override;
+
+  private:
+    void find_levels(const RayDetail& detail);
+    void coarsen();
+    void find_edge_levels();
+    void number();
+    void place(std::size_t patch, const Displacement& displacement, std::size_t instance);
+    std::size_t point_count(const BasePatch& patch, int cells) const;
+    std::size_t triangle_count(const BasePatch& patch, int cells) const;
+    /// Of the whole edge, for a side of a patch with `level`.
+    int edge_level(const PatchBorders::Side& side, int level) const;
+    SurfacePlace border_place(const PatchBorders::Side& side, int i, int cells) const;
+
+    std::shared_ptr<const SharedGeometry> m_shared;
+    const PatchBorders& m_borders;
+    std::vector<std::uint8_t> m_levels;           ///< [patches] log2 of the cells along a side
+    std::vector<std::uint8_t> m_edge_levels;      ///< [edges]
+    std::vector<std::uint32_t> m_first_point;     ///< [patches]
+    std::vector<std::uint32_t> m_first_triangle;  ///< [patches + 1]
+    std::vector<float> m_extents;                 ///< [F]
+    bool m_coarsened = false;
+    RayPrimitives<3> m_triangles;
+};
+
+}  // namespace granita

@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces that materials move: a cube becomes a ball, edges of a rectangle become sines, a square tilts."""
+
+import numpy as np
+import pytest
+import snapshots as s
+
+SIZE = 64
+MIDDLE = SIZE / 2
+FULL = 0.8 * 3.0 / np.pi  # of a matte surface that the sun meets straight on
+
+
+def link(node, output):
+    return ("LINK", node, output)
+
+
+def vector_math(operation, **inputs):
+    return {
+        "type": "ShaderNodeVectorMath",
+        "inputs": inputs,
+        "properties": {"operation": operation},
+    }
+
+
+def matte(snapshot, nodes, displacement, method="DISPLACEMENT"):
+    """A white diffuse material whose displacement is an output of `nodes`; returns its index."""
+    bsdf = {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.8, 0.8, 0.8, 1)}}
+    snapshot["materials"].append(
+        {
+            "name": f"Matte {len(snapshot['materials'])}",
+            "nodes": [*nodes, bsdf],
+            "surface": (len(nodes), "BSDF"),
+            "displacement": displacement,
+            "displacement_method": method,
+        }
+    )
+    return len(snapshot["materials"]) - 1
+
+
+def onto_a_ball(snapshot, radius):
+    """Moves every point of whatever mesh to a sphere around its origin."""
+    nodes = [
+        {"type": "ShaderNodeTexCoord", "inputs": {}},
+        vector_math("NORMALIZE", Vector=link(0, "Object")),
+        vector_math("SCALE", Vector=link(1, "Vector"), Scale=float(radius)),
+        vector_math("SUBTRACT", Vector=link(2, "Vector"), Vector_001=link(0, "Object")),
+        {
+            "type": "ShaderNodeVectorDisplacement",
+            "inputs": {"Vector": link(3, "Vector"), "Midlevel": 0.0, "Scale": 1.0},
+            "properties": {"space": "OBJECT"},
+        },
+    ]
+    return matte(snapshot, nodes, (4, "Displacement"))
+
+
+def sun(snapshot, towards):
+    """A hard sun; `towards`: where its light comes from."""
+    z = np.asarray(towards, float) / np.linalg.norm(towards)
+    x = np.cross((0.3, 1.0, 0.2), z)
+    x /= np.linalg.norm(x)
+    turned = np.eye(4)
+    turned[:3, :3] = np.stack([x, np.cross(z, x), z], 1)
+    lamp = {"name": "Sun", "kind": "SUN", "world_from_light": turned[None], "energy": 3.0}
+    snapshot["lights"] = [{**lamp, "sun_angle": 0.0}]
+    return z
+
+
+def cube(snapshot, half, materials, transforms, subdivided=False):
+    sign = np.array([(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], float)
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    extra = {"subdivision": {"scheme": "CATMULL_CLARK"}} if subdivided else {}
+    s.mesh(snapshot, half * sign, faces, materials[0], transforms=transforms, **extra)
+    if len(materials) > 1:
+        snapshot["geometries"][0]["material_index"] = np.array([0, 1, 0, 1, 1, 0], np.int32)
+        snapshot["instances"]["slots"] = [len(materials)]
+        snapshot["instances"]["materials"] = list(materials)
+
+
+def turned(angle=0.6, x=MIDDLE):
+    c, n = np.cos(angle), np.sin(angle)
+    m = np.eye(4)
+    m[:3, :3] = np.array([[c, 0, n], [0, 1, 0], [-n, 0, c]]) @ [[1, 0, 0], [0, c, -n], [0, n, c]]
+    m[:3, 3] = (x, MIDDLE, 60.0)
+    return m
+
+
+def ball(radius=20.0, towards=(0, 0, -1), subdivided=False, **options):
+    snapshot = s.orthographic((SIZE, SIZE), **{"samples": 64, "executor": "SIMD", **options})
+    cube(snapshot, 12.0, [onto_a_ball(snapshot, radius)], [turned()], subdivided)
+    return snapshot, sun(snapshot, towards)
+
+
+def offsets():
+    y, x = np.mgrid[:SIZE, :SIZE] + 0.5 - MIDDLE
+    return x, y, np.hypot(x, y)
+
+
+@pytest.mark.parametrize("subdivided", [False, True], ids=["polygons", "subdivision"])
+def test_a_cube_that_is_moved_onto_a_ball_covers_its_disc(subdivided):
+    snapshot, _ = ball(subdivided=subdivided)
+    alpha = s.render(snapshot)["combined"][..., 3]
+    away = offsets()[2]
+    assert (alpha[away < 19.2] == 1.0).all()
+    assert (alpha[away > 20.8] == 0.0).all()
+    # A tenth of a pixel along the outline would be 12.6 pixels; micropolygons of a pixel cut arcs short by 1/160 of one
+    # on the average, and those that stretch as the cube's corners are rounded by more.
+    assert alpha.sum() == pytest.approx(np.pi * 20.0**2, abs=4.0)
+
+
+@pytest.mark.parametrize("towards", [(0, 0, -1), (1, 0.5, -0.6), (-0.4, 1, -0.3)])
+@pytest.mark.parametrize("subdivided", [False, True], ids=["polygons", "subdivision"])
+def test_its_normals_are_the_balls_and_it_does_not_shade_itself(subdivided, towards):
+    snapshot, light = ball(towards=towards, subdivided=subdivided)
+    color = s.render(snapshot)["combined"][..., 0]
+    x, y, away = offsets()
+    depth = -np.sqrt(np.maximum(20.0**2 - away**2, 0.0))
+    cosine = (x * light[0] + y * light[1] + depth * light[2]) / 20.0
+    inside = away < 18.5
+    # Slopes are differences over a quarter of a pixel, an eighth of 1/20 off, and a pixel is the mean of what changes in
+    # it by up to .1 near the outline.
+    bright = inside & (cosine > 0.15)
+    assert color[bright] == pytest.approx(FULL * cosine[bright], abs=0.02)
+    assert (color[inside & (cosine < -0.15)] == 0.0).all()
+
+
+@pytest.mark.parametrize("samples", [16])
+def test_nothing_is_seen_through_a_closed_surface_of_two_materials_in_motion(samples):
+    snapshot = s.orthographic((SIZE, SIZE), samples=samples, executor="SIMD")
+    materials = [onto_a_ball(snapshot, 20.0), onto_a_ball(snapshot, 17.0)]
+    cube(snapshot, 12.0, materials, [turned(0.6, MIDDLE - 2), turned(0.9, MIDDLE + 2)])
+    alpha = s.render(snapshot)["combined"][..., 3]
+    away = offsets()[2]
+    assert (alpha[away < 14.0] == 1.0).all()
+
+
+def test_a_rectangles_edges_become_sines():
+    snapshot = s.orthographic((SIZE, SIZE), samples=64, executor="SIMD")
+    height, wave = 5.0, 2 * np.pi / 24.0
+    nodes = [
+        {"type": "ShaderNodeTexCoord", "inputs": {}},
+        {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": link(0, "Object")}},
+        {
+            "type": "ShaderNodeMath",
+            "inputs": {"Value": link(1, "X"), "Value_001": wave},
+            "properties": {"operation": "MULTIPLY"},
+        },
+        {
+            "type": "ShaderNodeMath",
+            "inputs": {"Value": link(2, "Value"), "Value_001": 0.0},
+            "properties": {"operation": "SINE"},
+        },
+        {"type": "ShaderNodeCombineXYZ", "inputs": {"X": 0.0, "Y": link(3, "Value"), "Z": 0.0}},
+        {
+            "type": "ShaderNodeVectorDisplacement",
+            "inputs": {"Vector": link(4, "Vector"), "Midlevel": 0.0, "Scale": height},
+            "properties": {"space": "OBJECT"},
+        },
+    ]
+    material = matte(snapshot, nodes, (5, "Displacement"))
+    s.quad(snapshot, s.rectangle(4, 16, 60, 48, 10.0), material)
+    alpha = s.render(snapshot)["combined"][..., 3]
+    x = np.arange(5, 59)
+    edge = 48 + height * (np.cos(wave * x) - np.cos(wave * (x + 1))) / wave  # mean over a column
+    # 64 samples a pixel place an edge within 1/64 in each column, and a slope's a little worse.
+    assert alpha[32:, 5:59].sum(0) + 32 == pytest.approx(edge, abs=0.1)
+
+
+@pytest.mark.parametrize("method", ["BUMP", "DISPLACEMENT", "BOTH"])
+def test_a_height_that_grows_evenly_tilts_a_square(method):
+    snapshot = s.orthographic((SIZE, SIZE), samples=16, executor="SIMD")
+    slope = 0.5
+    nodes = [
+        {"type": "ShaderNodeTexCoord", "inputs": {}},
+        {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": link(0, "Object")}},
+        {
+            "type": "ShaderNodeDisplacement",
+            "inputs": {"Height": link(1, "X"), "Midlevel": 32.0, "Scale": slope},
+            "properties": {"space": "OBJECT"},
+        },
+    ]
+    material = matte(snapshot, nodes, (2, "Displacement"), method)
+    s.quad(snapshot, s.rectangle(4, 4, 60, 60, 40.0)[::-1], material)  # faces the camera
+    light = sun(snapshot, (0.3, 0, -1))
+    color = s.render(snapshot)["combined"][..., 0]
+    # It rises towards the camera, which is -z, and so leans to -x.
+    normal = np.array([-slope, 0.0, -1.0]) / np.hypot(1.0, slope)
+    assert color[8:56, 8:56] == pytest.approx(FULL * normal @ light, abs=2e-3)
+
+
+def test_pictures_do_not_depend_on_buckets_threads_or_crop():
+    snapshot, _ = ball(towards=(1, 0.5, -0.6), samples=16)
+    whole = s.render(snapshot)["combined"]
+    for change in ({"bucket_size": 16, "threads": 1}, {"bucket_size": 48, "threads": 2}):
+        other, _ = ball(towards=(1, 0.5, -0.6), samples=16, **change)
+        assert (s.render(other)["combined"] == whole).all(), change
+
+
+def test_points_of_a_material_that_displaces_are_named():
+    snapshot = s.orthographic((SIZE, SIZE), samples=4, executor="SIMD")
+    points = {
+        "name": "points 'Points'",
+        "kind": "POINTS",
+        "points": np.array([[[MIDDLE, MIDDLE, 40.0]]], np.float32),
+        "radius": np.array([[10.0]], np.float32),
+    }
+    snapshot["geometries"].append(points)
+    s.instance(snapshot, 0, onto_a_ball(snapshot, 20.0))
+    done = s.render(snapshot)
+    assert [m for _, m, _ in done["warnings"] if "no effect on curves and points" in m]
+    assert done["combined"][..., 3].sum() == pytest.approx(np.pi * 10.0**2, abs=5.0)
