@@ -170,9 +170,23 @@ class LatticeDicer {
         }
     }
 
+    /// Places in object space, of the frame and of those around it, are moved alike.
+    void displace_attribute(GridAttribute& out) {
+        const auto add = [&](const std::vector<Vec3f>& offsets, std::vector<float>& to) {
+            for (std::size_t i = 0; i < to.size(); ++i)
+                to[i] += offsets[i / 3][static_cast<int>(i % 3)];
+        };
+        add(m_offsets.offset, out.values);
+        add(m_offsets.by_u, m_by_u);
+        add(m_offsets.by_v, m_by_v);
+    }
+
     void find_attributes(Grid& grid) {
         const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
             m_mesh->attribute(*m_patch, request, m_places.uv, out.values, m_by_u, m_by_v);
+            if (m_mesh->displaced() && request.source != AttributeSource::Generated &&
+                is_position(request.source))
+                displace_attribute(out);
             if (!request.derivatives) {
                 out.du.clear();
                 out.dv.clear();

@@ -27,11 +27,11 @@ constexpr int kMostAlongSide = 256;
 constexpr std::size_t kGrain = 64;
 /// Of a patch: a place and the two beside it stay within it.
 constexpr double kLargestStep = 0.5;
-/// Of the coordinates: smaller steps drown in the rounding of single precision.
-constexpr double kSmallestStep = 4e-5;
 /// Of a pixel: between the points whose difference is a slope.  Over a whole one the normals of a
 /// ball of 20 pixels are .025 off, over a quarter .006.
-constexpr double kDifference = 0.25;
+constexpr double kDifference = 1.0 / 16.0;
+/// Of the coordinates: smaller differences drown in the rounding of single precision.
+constexpr double kLeastDifference = 2e-5;
 
 }  // namespace
 
@@ -79,7 +79,7 @@ class MaterialDisplacement::Batch {
         };
         for (std::size_t i = 0; i < n; ++i) out.offset[i] = in_object(i);
         for (std::size_t i = 0; derivatives && i < n; ++i) {
-            const Vec2d step = kDifference * m_steps[i];
+            const Vec2d& step = m_differences[i];
             const auto slope = [&](std::size_t next, double by) {
                 return by != 0.0 ? (in_object(next) - out.offset[i]) / static_cast<float>(by)
                                  : Vec3f(0.0f);
@@ -93,10 +93,7 @@ class MaterialDisplacement::Batch {
     /// A pixel, in (u, v); towards the inside of the patch where a step leads out of it.
     Vec2d step_at(std::size_t i) const {
         const Vec3d& p = m_frames.p[i];
-        const double coordinates = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-        const double pixel =
-            std::max(m_target.angle * glm::distance(p, m_target.eye) + m_target.least,
-                     kSmallestStep * coordinates);
+        const double pixel = m_target.angle * glm::distance(p, m_target.eye) + m_target.least;
         const auto along = [&](const Vec3d& s, double at) {
             const double length = glm::length(s);
             if (!(length > 0.0)) return 0.0;
@@ -106,11 +103,22 @@ class MaterialDisplacement::Batch {
         return {along(m_frames.su[i], m_uv[i].x), along(m_frames.sv[i], m_uv[i].y)};
     }
 
+    /// Of a pixel's step.
+    double difference_at(std::size_t i) const {
+        const Vec3d& p = m_frames.p[i];
+        const double pixel = m_target.angle * glm::distance(p, m_target.eye) + m_target.least;
+        const double least =
+            kLeastDifference * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        return pixel > 0.0 ? std::clamp(least / pixel, kDifference, 1.0) : 1.0;
+    }
+
     void add_neighbours(std::size_t n) {
+        m_differences.resize(n);
+        for (std::size_t i = 0; i < n; ++i) m_differences[i] = difference_at(i) * m_steps[i];
         for (std::size_t i = 0; i < n; ++i)
-            m_uv.push_back(m_uv[i] + Vec2d(kDifference * m_steps[i].x, 0.0));
+            m_uv.push_back(m_uv[i] + Vec2d(m_differences[i].x, 0.0));
         for (std::size_t i = 0; i < n; ++i)
-            m_uv.push_back(m_uv[i] + Vec2d(0.0, kDifference * m_steps[i].y));
+            m_uv.push_back(m_uv[i] + Vec2d(0.0, m_differences[i].y));
         m_steps.resize(3 * n);
         for (std::size_t i = 0; i < 2 * n; ++i) m_steps[n + i] = m_steps[i % n];
         find_frames(m_geometry, m_patch, m_uv, m_frames);
@@ -157,7 +165,7 @@ class MaterialDisplacement::Batch {
     const Instance& m_instance;
     const SharedGeometry& m_geometry;
     const BasePatch& m_patch;
-    std::vector<Vec2d> m_uv, m_steps;
+    std::vector<Vec2d> m_uv, m_steps, m_differences;
     SurfaceFrames m_frames;
     ShadingPoints m_points;
     std::vector<GridAttribute> m_attributes;
