@@ -203,8 +203,10 @@ MaterialDisplacement::MaterialDisplacement(const Scene& scene,
         const Mat4d world_from_object = matrix_at(instance.world_from_object, options.frame_time);
         const Mat3d inverse = glm::inverse(Mat3d(world_from_object));
         if (!is_finite(Vec3f(inverse[0])) || !is_finite(Vec3f(inverse[1])) ||
-            !is_finite(Vec3f(inverse[2])))
-            continue;  // flat in some direction: there is no way back into its space
+            !is_finite(Vec3f(inverse[2]))) {
+            report.warn(instance.name, "is scaled to nothing along an axis and is not displaced");
+            continue;
+        }
         auto target = std::make_unique<Target>();
         target->same_as =
             alone ? i

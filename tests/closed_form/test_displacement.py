@@ -187,6 +187,51 @@ def test_a_height_that_grows_evenly_tilts_a_square(method):
     assert color[8:56, 8:56] == pytest.approx(FULL * normal @ light, abs=2e-3)
 
 
+def waves(modelled, size=48, height=4.0, wave=2 * np.pi / 16.0):
+    """A sheet of waves that a low sun makes shade each other, displaced or modelled five times as finely as pixels."""
+    snapshot = s.orthographic((size, size), samples=16, executor="SIMD")
+    sun(snapshot, (1.0, 0.4, -0.6))
+    if modelled:
+        n = 5 * size
+        x, y = np.meshgrid(np.linspace(0, size, n + 1), np.linspace(0, size, n + 1))
+        z = 40.0 - height * np.sin(wave * x) * np.sin(wave * y)
+        first = np.arange(n * (n + 1)).reshape(n, n + 1)[:, :-1].ravel()
+        faces = np.stack([first, first + n + 1, first + n + 2, first + 1], 1)
+        points = np.stack([x, y, z], -1).reshape(-1, 3)
+        smooth = np.ones(len(faces), np.uint8)
+        s.mesh(snapshot, points, faces.tolist(), matte(snapshot, [], None), smooth=smooth)
+        return s.render(snapshot)["combined"][..., 0]
+    nodes = [
+        {"type": "ShaderNodeTexCoord", "inputs": {}},
+        {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": link(0, "Object")}},
+    ]
+
+    def math(operation, a, b=0.0):
+        inputs = {"Value": a, "Value_001": b}
+        properties = {"operation": operation}
+        nodes.append({"type": "ShaderNodeMath", "inputs": inputs, "properties": properties})
+        return link(len(nodes) - 1, "Value")
+
+    sines = [math("SINE", math("MULTIPLY", link(1, axis), wave)) for axis in "XY"]
+    inputs = {"Height": math("MULTIPLY", *sines), "Midlevel": 0.0, "Scale": height}
+    nodes.append({"type": "ShaderNodeDisplacement", "inputs": inputs})
+    material = matte(snapshot, nodes, (len(nodes) - 1, "Displacement"))
+    s.quad(snapshot, s.rectangle(0, 0, size, size, 40.0)[::-1], material)
+    return s.render(snapshot)["combined"][..., 0]
+
+
+def test_shadows_are_those_of_the_same_waves_modelled():
+    displaced, modelled = waves(False), waves(True)
+    assert (modelled < 0.02).mean() > 0.1  # there are shadows
+    # Edges of shadows are a part of a pixel away.
+    assert np.sqrt(np.mean((displaced - modelled) ** 2)) < 0.025
+    # Where nothing changes from pixel to pixel there is no speckle, dark or bright.
+    around = np.stack([np.roll(modelled, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)])
+    even = np.ptp(around, 0) < 0.1
+    assert even.mean() > 0.2
+    assert displaced[even] == pytest.approx(modelled[even], abs=0.06)
+
+
 def test_pictures_do_not_depend_on_buckets_threads_or_crop():
     snapshot, _ = ball(towards=(1, 0.5, -0.6), samples=16)
     whole = s.render(snapshot)["combined"]

@@ -19,19 +19,24 @@ namespace {
 constexpr float kCell = 1.0f;
 /// log2 of the cells along a patch's side.
 constexpr int kMostLevels = 10;
+/// To the nearest power of two.
+constexpr double kRounding = 1.41421356;
 /// Cells of a geometry, whatever the camera sees of it: for its shadow's sake.
 constexpr std::size_t kLeastCells = 1 << 14;
 /// Levels that a patch gets for that alone.
 constexpr int kMostUnseenLevels = 6;
 /// Points over all knots that a geometry may have: about a gigabyte in Embree.
 constexpr std::size_t kMostPoints = 8'000'000;
-/// Patches that a thread takes at a time.
+/// Points of a patch that are displaced at once.
+constexpr std::size_t kRun = 1024;
+/// Patches, or such runs, that a thread takes at a time.
 constexpr std::size_t kGrain = 16;
 
 /// (i, j) of a lattice's cells; a triangle's have i + j <= cells.
 class Cells {
   public:
-    Cells(PatchKind kind, int cells) : m_triangle(kind == PatchKind::Triangle), m_cells(cells) {}
+    Cells(PatchKind kind, int n_u, int n_v)
+        : m_triangle(kind == PatchKind::Triangle), m_cells(n_u), m_rows(n_v) {}
 
     std::uint32_t index(int i, int j) const {
         // Rows of a triangle get shorter by one each.
@@ -40,7 +45,7 @@ class Cells {
     }
     template <class Act>
     void for_points(Act act) const {
-        for (int j = 0; j <= m_cells; ++j)
+        for (int j = 0; j <= m_rows; ++j)
             for (int i = 0; i <= (m_triangle ? m_cells - j : m_cells); ++i) act(i, j);
     }
     /// Each with the lattice's corners (i, j) of a triangle.  Cells are cut as pairs of triangles
@@ -48,7 +53,7 @@ class Cells {
     template <class Act>
     void for_triangles(Act act) const {
         using Corner = std::array<int, 2>;
-        for (int j = 0; j < m_cells; ++j)
+        for (int j = 0; j < m_rows; ++j)
             for (int i = 0; i < (m_triangle ? m_cells - j : m_cells); ++i) {
                 const Corner a{i, j}, b{i + 1, j}, c{i + 1, j + 1}, d{i, j + 1};
                 if (!m_triangle) {
@@ -73,15 +78,15 @@ class Cells {
             case 1:
                 return {n, i};
             case 2:
-                return {n - i, n};
+                return {n - i, m_rows};
             default:
-                return {0, n - i};
+                return {0, m_rows - i};
         }
     }
 
   private:
     bool m_triangle;
-    int m_cells;
+    int m_cells, m_rows;
 };
 
 }  // namespace
@@ -113,7 +118,7 @@ RayDisplaced::RayDisplaced(std::shared_ptr<const SharedGeometry> shared,
 
 void RayDisplaced::find_levels(const RayDetail& detail) {
     const auto& patches = m_shared->patches();
-    m_levels.assign(patches.size(), 0);
+    m_levels.assign(patches.size(), {});
     int unseen = 0;
     while (unseen < kMostUnseenLevels && patches.size() << (2 * unseen) < kLeastCells) ++unseen;
     parallel_for(patches.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -124,16 +129,22 @@ void RayDisplaced::find_levels(const RayDetail& detail) {
             find_frames(*m_shared, patches[k],
                         patches[k].kind == PatchKind::Triangle ? triangle : quad, frames);
             float pixel = std::numeric_limits<float>::infinity();
-            double length = 0.0;
+            double length_u = 0.0, length_v = 0.0;
             for (std::size_t i = 0; i < frames.p.size(); ++i) {
                 pixel = std::min(pixel, detail.pixel(Vec3f(frames.p[i])));
-                length = std::max({length, glm::length(frames.su[i]), glm::length(frames.sv[i])});
+                length_u = std::max(length_u, glm::length(frames.su[i]));
+                length_v = std::max(length_v, glm::length(frames.sv[i]));
             }
-            int level = 0;
-            while (level < kMostLevels &&
-                   length > static_cast<double>(kCell * pixel) * (1 << level))
-                ++level;
-            m_levels[k] = static_cast<std::uint8_t>(std::max(level, unseen));
+            if (patches[k].kind == PatchKind::Triangle)
+                length_u = length_v = std::max(length_u, length_v);
+            const auto level = [&](double length) {
+                int found = 0;
+                while (found < kMostLevels &&
+                       length > kRounding * static_cast<double>(kCell * pixel) * (1 << found))
+                    ++found;
+                return static_cast<std::uint8_t>(std::max(found, unseen));
+            };
+            m_levels[k] = {level(length_u), level(length_v)};
         }
     });
 }
@@ -142,20 +153,24 @@ void RayDisplaced::coarsen() {
     const auto& patches = m_shared->patches();
     const auto points = [&] {
         std::size_t sum = 0;
-        for (std::size_t k = 0; k < patches.size(); ++k)
-            sum += point_count(patches[k], 1 << m_levels[k]);
+        for (std::size_t k = 0; k < patches.size(); ++k) sum += point_count(k);
         return sum * static_cast<std::size_t>(m_triangles.knots);
     };
-    while (points() > kMostPoints && std::ranges::any_of(m_levels, [](int l) { return l > 0; })) {
+    const auto can_be_coarser = [](const Levels& level) { return level.u > 0 || level.v > 0; };
+    while (points() > kMostPoints && std::ranges::any_of(m_levels, can_be_coarser)) {
         m_coarsened = true;
-        for (std::uint8_t& level : m_levels) level -= level > 0 ? 1 : 0;
+        for (Levels& level : m_levels) {
+            level.u -= level.u > 0 ? 1 : 0;
+            level.v -= level.v > 0 ? 1 : 0;
+        }
     }
     // Sub-faces meet in the middle of an edge, which then is a point of both sides.
     const SubdivisionTopology* topology = m_shared->subdivision();
     for (std::size_t k = 0; topology && k < patches.size(); ++k)
         for (int i = 0; patches[k].kind == PatchKind::Quad && i < 4; ++i)
             if (topology->edge(topology->face_edge(patches[k].face, i)).halved)
-                m_levels[k] = std::max<std::uint8_t>(m_levels[k], 1);
+                m_levels[k] = {std::max<std::uint8_t>(m_levels[k].u, 1),
+                               std::max<std::uint8_t>(m_levels[k].v, 1)};
 }
 
 int RayDisplaced::edge_level(const PatchBorders::Side& side, int level) const {
@@ -169,18 +184,20 @@ void RayDisplaced::find_edge_levels() {
         for (int i = 0; i < PatchBorders::side_count(patches[k].kind); ++i) {
             const PatchBorders::Side side = m_borders.side(k, i);
             std::uint8_t& level = m_edge_levels[side.edge];
-            level = std::min(level, static_cast<std::uint8_t>(edge_level(side, m_levels[k])));
+            level =
+                std::min(level, static_cast<std::uint8_t>(edge_level(side, m_levels[k].along(i))));
         }
 }
 
-std::size_t RayDisplaced::point_count(const BasePatch& patch, int cells) const {
-    const auto n = static_cast<std::size_t>(cells) + 1;
-    return patch.kind == PatchKind::Triangle ? n * (n + 1) / 2 : n * n;
+std::size_t RayDisplaced::point_count(std::size_t k) const {
+    const std::size_t n = (std::size_t{1} << m_levels[k].u) + 1;
+    if (m_shared->patches()[k].kind == PatchKind::Triangle) return n * (n + 1) / 2;
+    return n * ((std::size_t{1} << m_levels[k].v) + 1);
 }
 
-std::size_t RayDisplaced::triangle_count(const BasePatch& patch, int cells) const {
-    const auto n = static_cast<std::size_t>(cells);
-    return patch.kind == PatchKind::Triangle ? n * n : 2 * n * n;
+std::size_t RayDisplaced::triangle_count(std::size_t k) const {
+    const std::size_t cells = std::size_t{1} << (m_levels[k].u + m_levels[k].v);
+    return m_shared->patches()[k].kind == PatchKind::Triangle ? cells : 2 * cells;
 }
 
 void RayDisplaced::number() {
@@ -189,8 +206,8 @@ void RayDisplaced::number() {
     for (std::size_t k = 0; k < patches.size(); ++k) {
         m_first_point.push_back(static_cast<std::uint32_t>(points));
         m_first_triangle.push_back(static_cast<std::uint32_t>(triangles));
-        points += point_count(patches[k], 1 << m_levels[k]);
-        triangles += triangle_count(patches[k], 1 << m_levels[k]);
+        points += point_count(k);
+        triangles += triangle_count(k);
     }
     m_first_triangle.push_back(static_cast<std::uint32_t>(triangles));
     m_triangles.points.resize(points * static_cast<std::size_t>(m_triangles.knots));
@@ -206,14 +223,15 @@ SurfacePlace RayDisplaced::border_place(const PatchBorders::Side& side, int i, i
 
 void RayDisplaced::place(std::size_t k, const Displacement& displacement, std::size_t instance) {
     const BasePatch& patch = m_shared->patches()[k];
-    const int n = 1 << m_levels[k];
-    const Cells cells(patch.kind, n);
-    std::vector<SurfacePlace> places(point_count(patch, n));
+    const int n_u = 1 << m_levels[k].u, n_v = 1 << m_levels[k].v;
+    const Cells cells(patch.kind, n_u, n_v);
+    std::vector<SurfacePlace> places(point_count(k));
     cells.for_points([&](int i, int j) {
-        places[cells.index(i, j)] = {&patch, Vec2d(i, j) / double(n)};
+        places[cells.index(i, j)] = {&patch, Vec2d(i, j) / Vec2d(n_u, n_v)};
     });
     for (int number = 0; number < PatchBorders::side_count(patch.kind); ++number) {
         const PatchBorders::Side side = m_borders.side(k, number);
+        const int n = 1 << m_levels[k].along(number);
         for (int i = 0; i <= n; ++i) {
             const auto [u, v] = cells.on_side(number, i);
             places[cells.index(u, v)] = border_place(side, i, n);
@@ -223,22 +241,30 @@ void RayDisplaced::place(std::size_t k, const Displacement& displacement, std::s
     std::vector<std::uint32_t> order(places.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
     std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return places[i].patch; });
+    std::vector<std::size_t> runs{0};
+    for (std::size_t i = 1; i < order.size(); ++i)
+        if (i - runs.back() == kRun || places[order[i]].patch != places[order[i - 1]].patch)
+            runs.push_back(i);
+    runs.push_back(order.size());
     const std::size_t total = m_triangles.point_count();
-    std::vector<Vec2d> uv;
-    std::vector<Vec3f> positions;
-    Offsets offsets;
-    for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
-        const BasePatch& owner = *places[order[first]].patch;
-        uv.clear();
-        for (last = first; last < order.size() && places[order[last]].patch == &owner; ++last)
-            uv.push_back(places[order[last]].uv);
-        find_positions(*m_shared, owner, uv, positions);
-        displacement.find(instance, *m_shared, owner, uv, false, offsets);
-        for (std::size_t knot = 0; knot < static_cast<std::size_t>(m_triangles.knots); ++knot)
-            for (std::size_t i = 0; i < uv.size(); ++i)
-                m_triangles.points[knot * total + m_first_point[k] + order[first + i]] =
-                    positions[knot * uv.size() + i] + offsets.offset[i];
-    }
+    parallel_for(runs.size() - 1, kGrain, [&](std::size_t begin, std::size_t end) {
+        std::vector<Vec2d> uv;
+        std::vector<Vec3f> positions;
+        Offsets offsets;
+        for (std::size_t run = begin; run < end; ++run) {
+            const std::span<const std::uint32_t> of =
+                std::span(order).subspan(runs[run], runs[run + 1] - runs[run]);
+            const BasePatch& owner = *places[of[0]].patch;
+            uv.clear();
+            for (const std::uint32_t i : of) uv.push_back(places[i].uv);
+            find_positions(*m_shared, owner, uv, positions);
+            displacement.find(instance, *m_shared, owner, uv, false, offsets);
+            for (std::size_t knot = 0; knot < static_cast<std::size_t>(m_triangles.knots); ++knot)
+                for (std::size_t i = 0; i < of.size(); ++i)
+                    m_triangles.points[knot * total + m_first_point[k] + of[i]] =
+                        positions[knot * uv.size() + i] + offsets.offset[i];
+        }
+    });
     std::size_t triangle = m_first_triangle[k];
     const auto number_of = [&](const std::array<int, 2>& at) {
         return m_first_point[k] + cells.index(at[0], at[1]);
@@ -269,7 +295,8 @@ void RayDisplaced::locate(std::uint32_t geometry, std::uint32_t triangle, float 
     hit.patch = &m_shared->patches()[k];
     const auto& slots = m_shared->data().material_index;
     hit.slot = slots.empty() ? 0 : slots[hit.patch->face];
-    const int n = 1 << m_levels[k];
+    const int n = 1 << m_levels[k].u;
+    const Vec2d steps(n, 1 << m_levels[k].v);
     std::uint32_t left = triangle - m_first_triangle[k];
     const auto place = [&](int i, int j, bool second) {
         const Vec2d a(i, j), b(i + 1, j), c(i + 1, j + 1), d(i, j + 1);
@@ -278,7 +305,7 @@ void RayDisplaced::locate(std::uint32_t geometry, std::uint32_t triangle, float 
         const Vec2d p1 = second ? c : b;
         const Vec2d p2 = is_triangle ? d : (second ? d : c);
         const double w1 = static_cast<double>(u), w2 = static_cast<double>(v);
-        hit.uv = (p0 * (1.0 - w1 - w2) + p1 * w1 + p2 * w2) / static_cast<double>(n);
+        hit.uv = (p0 * (1.0 - w1 - w2) + p1 * w1 + p2 * w2) / steps;
     };
     if (hit.patch->kind != PatchKind::Triangle) {
         const auto cell = static_cast<int>(left / 2);
@@ -295,7 +322,8 @@ void RayDisplaced::locate(std::uint32_t geometry, std::uint32_t triangle, float 
 }
 
 std::size_t RayDisplaced::bytes() const {
-    return sizeof(*this) + m_triangles.bytes() + m_levels.size() + m_edge_levels.size() +
+    return sizeof(*this) + m_triangles.bytes() + sizeof(Levels) * m_levels.size() +
+           m_edge_levels.size() +
            4 * (m_first_point.size() + m_first_triangle.size() + m_extents.size());
 }
 

@@ -36,20 +36,26 @@ class RayDisplaced final : public RayShape {
     std::size_t bytes() const override;
 
   private:
+    /// log2 of the cells along u and v, alike in a triangle.
+    struct Levels {
+        std::uint8_t u = 0, v = 0;
+        /// Of a side of the patch.
+        int along(int side) const { return side % 2 == 0 ? u : v; }
+    };
     void find_levels(const RayDetail& detail);
     void coarsen();
     void find_edge_levels();
     void number();
     void place(std::size_t patch, const Displacement& displacement, std::size_t instance);
-    std::size_t point_count(const BasePatch& patch, int cells) const;
-    std::size_t triangle_count(const BasePatch& patch, int cells) const;
+    std::size_t point_count(std::size_t patch) const;
+    std::size_t triangle_count(std::size_t patch) const;
     /// Of the whole edge, for a side of a patch with `level`.
     int edge_level(const PatchBorders::Side& side, int level) const;
     SurfacePlace border_place(const PatchBorders::Side& side, int i, int cells) const;
 
     std::shared_ptr<const SharedGeometry> m_shared;
     const PatchBorders& m_borders;
-    std::vector<std::uint8_t> m_levels;           ///< [patches] log2 of the cells along a side
+    std::vector<Levels> m_levels;                 ///< [patches]
     std::vector<std::uint8_t> m_edge_levels;      ///< [edges]
     std::vector<std::uint32_t> m_first_point;     ///< [patches]
     std::vector<std::uint32_t> m_first_triangle;  ///< [patches + 1]

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Displacement by materials, against Cycles of the same Blender on a mesh as fine as its pixels."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+import scene_parts
+from node_comparison import Tree
+
+
+def hills(scene, method, vector=False):
+    """A smooth sheet of 2 m under a low sun, moved by a noise without detail."""
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=160, y_subdivisions=160, size=2)
+    sheet = bpy.context.object
+    sheet.data.polygons.foreach_set("use_smooth", [True] * len(sheet.data.polygons))
+    sheet.rotation_euler, sheet.scale = (0.2, -0.1, 0.3), (1.0, 1.0, 1.5)
+    tree = Tree(sheet)
+    material = tree.material
+    owner = material if hasattr(material, "displacement_method") else material.cycles
+    owner.displacement_method = method
+    place = tree.add("ShaderNodeTexCoord")
+    noise = tree.add("ShaderNodeTexNoise")
+    noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 3.0, 0.0
+    matte = tree.add("ShaderNodeBsdfDiffuse")
+    kind = "ShaderNodeVectorDisplacement" if vector else "ShaderNodeDisplacement"
+    displacement = tree.add(kind)
+    displacement.inputs["Midlevel"].default_value = 0.5
+    displacement.inputs["Scale"].default_value = 0.4
+    tree.links.new(place.outputs["Object"], noise.inputs["Vector"])
+    source = noise.outputs["Color" if vector else "Fac"]
+    tree.links.new(source, displacement.inputs["Vector" if vector else "Height"])
+    if vector:
+        displacement.space = "OBJECT"
+    tree.links.new(displacement.outputs[0], tree.output.inputs["Displacement"])
+    tree.links.new(matte.outputs[0], tree.output.inputs["Surface"])
+    camera = scene_parts.add_camera(scene, (0.0, -3.0, 2.5))
+    camera.rotation_euler = (math.radians(50.0), 0.0, 0.0)
+    sun = bpy.data.lights.new("Sun", "SUN")
+    sun.energy, sun.angle = math.pi, 0.0
+    scene_parts.add_object(scene, "Sun", sun).rotation_euler = (0.3, 1.0, 0.0)
+    scene.world = bpy.data.worlds.new("Black")
+    scene.world.color = (0.0, 0.0, 0.0)
+    scene.render.resolution_x, scene.render.resolution_y = 160, 120
+
+
+def pictures(scene, render):
+    return [
+        next(c for name, c in channels.items() if name.endswith("Combined.G"))
+        for channels in scene_parts.direct_light_of_both(scene, render, 32)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("method", "vector", "limit"),
+    [("DISPLACEMENT", False, 0.02), ("DISPLACEMENT", True, 0.02), ("BUMP", False, 0.02)],
+)
+def test_hills_are_those_of_cycles(scene, render, method, vector, limit):
+    hills(scene, method, vector)
+    granita, cycles = pictures(scene, render)
+    # What differs are outlines and the borders of shadows, which either has to a vertex or a pixel.
+    assert np.sqrt(np.mean((granita - cycles) ** 2)) < limit * cycles.max()
+    assert granita.mean() == pytest.approx(cycles.mean(), rel=0.01)
