@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/crash_report.h"
 #include "base/stage_timer.h"
@@ -221,10 +222,16 @@ struct ShadingSystem::Impl {
     void shade(Grid& grid, const ShadingInput& in, const PointPaths& at,
                std::vector<float>* noise = nullptr) const {
         const CrashScope scope("shades", scene.instances[grid.instance].name);
-        const ShadingPoints& points = *in.points;
         const SurfaceProgram& surface = material(grid.material).radiance;
-        Run run = surface.program.prepare(in, points.count);
+        Run run = surface.program.prepare(in, in.points->count);
         surface.program.execute(run);
+        // Light then knows no other normal, and does not fade as where a node bends one.
+        std::optional<ShadingPoints> bent;
+        if (surface.is_bumped) {
+            bent = *in.points;
+            bent->normal = values_of(run, surface.bumped);
+        }
+        const ShadingPoints& points = bent ? *bent : *in.points;
         std::size_t broken = 0;
         const SurfaceClosure closure = closure_of(run, surface.sources, broken);
         const bool has_passes = !channels.empty();

@@ -274,9 +274,12 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
     CompiledSurface compiled;
     compiled.radiance.sources = build_graph(builder, graph);
     if (passes) compiled.radiance.passes = pass_sources(builder, graph, aov_outputs, *passes);
+    compiled.radiance.is_bumped = builder.is_bumped;
+    compiled.radiance.bumped = builder.bumped;
+    std::vector<int> roots = roots_of(compiled.radiance.sources, compiled.radiance.passes);
+    if (builder.is_bumped) push_root(roots, builder.bumped.slot);
     compiled.radiance.program =
-        Program(builder.loads, builder.steps, builder.floats_a_point,
-                roots_of(compiled.radiance.sources, compiled.radiance.passes));
+        Program(builder.loads, builder.steps, builder.floats_a_point, roots);
     compiled.transparency = compiled.radiance.sources.transparency;
     compiled.opacity_program = opacity_program(builder, compiled.transparency);
     if (told_apart(graph, builder.read, ray, RayType::Shadow)) {

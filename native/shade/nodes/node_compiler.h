@@ -26,6 +26,8 @@ struct SurfaceProgram {
     Program program;
     SurfaceSources sources;
     PassSources passes;
+    bool is_bumped = false;
+    VectorSource bumped;  ///< where `is_bumped`: the shading normal, bent by displacement
 };
 
 /// What transparency needs alone.
