@@ -50,9 +50,10 @@ void PatchBorders::find_polygon_edges() {
     }
     const auto key = [](const PolygonEdge& e) { return std::tie(e.lo, e.hi, e.patch, e.a, e.b); };
     std::ranges::sort(m_edges, {}, key);
-    const auto [first, last] = std::ranges::unique(
-        m_edges, {}, [](const PolygonEdge& e) { return std::pair(e.lo, e.hi); });
-    m_edges.erase(first, last);
+    const auto is_same = [](const PolygonEdge& e, const PolygonEdge& f) {
+        return e.lo == f.lo && e.hi == f.hi;
+    };
+    m_edges.erase(std::unique(m_edges.begin(), m_edges.end(), is_same), m_edges.end());
     m_edges.shrink_to_fit();
     m_edge_count = m_edges.size();
 }
