@@ -89,13 +89,14 @@ def test_a_layer_may_have_its_own_world(glowing, render):
     "use, own, expected", [("USE", 25, 25), ("BOUNDED", 25, 9), ("IGNORE", 25, 9), ("USE", 0, 9)]
 )
 def test_a_layer_may_have_its_own_samples(scene, use, own, expected):
-    from granita.export.scene.options import options_record, scene_frame
+    from granita.export.scene.options import options_record, scene_crop, scene_frame
 
     scene.granita.samples = 9
     scene.view_layers[0].samples = own
     scene.cycles.use_layer_samples = use
     frame = scene_frame(scene.render)
-    record = options_record(scene, scene.view_layers[0], scene.granita, frame, 0.5)
+    crop = scene_crop(scene, frame)
+    record = options_record(scene, scene.view_layers[0], scene.granita, frame, crop, 0.5)
     assert record["samples"] == expected
 
 

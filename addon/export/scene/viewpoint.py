@@ -16,13 +16,10 @@ class CameraViewpoint:
     frame: Frame
     crop: tuple  # pixels of the frame that are made, (x0, y0, x1, y1)
 
-    @property
-    def blurs(self):
-        return blurs(self.camera)
-
-    @property
-    def fewest_segments(self):
-        return fewest_segments(self.camera)
+    def __post_init__(self):
+        # Read while it is sure to be there.
+        self.blurs = blurs(self.camera)
+        self.fewest_segments = fewest_segments(self.camera)
 
     def record(self, depsgraph, report):
         """The snapshot's camera at the depsgraph's time, with one knot: camera.camera_record."""
