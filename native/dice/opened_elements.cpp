@@ -112,11 +112,7 @@ int OpenedElements::grid_size() const {
 }
 
 int OpenedElements::material(std::size_t batch) const {
-    const std::vector<std::int32_t>& slots = m_instance->materials;
-    if (slots.empty()) return -1;
-    const std::int32_t slot = m_shared->slot(m_shared->batch(batch).front());
-    return slots[static_cast<std::size_t>(
-        std::clamp<std::int32_t>(slot, 0, static_cast<std::int32_t>(slots.size()) - 1))];
+    return m_instance->material(m_shared->slot(m_shared->batch(batch).front()));
 }
 
 std::unique_ptr<Grid> OpenedElements::make_grid(std::size_t batch, std::uint64_t path, int along,

@@ -97,12 +97,7 @@ float OpenedMesh::frame_scale() const {
 }
 
 int OpenedMesh::material(std::uint32_t face) const {
-    const std::vector<std::int32_t>& slots = m_instance->materials;
-    if (slots.empty()) return -1;
-    const std::int32_t slot = data().material_index.empty() ? 0 : data().material_index[face];
-    // A face may keep the slot of a material that is gone: Blender takes the last one there is.
-    return slots[static_cast<std::size_t>(
-        std::clamp<std::int32_t>(slot, 0, static_cast<std::int32_t>(slots.size()) - 1))];
+    return m_instance->material(data().slot(face));
 }
 
 void OpenedMesh::attribute(const BasePatch& patch, const AttributeRequest& request,

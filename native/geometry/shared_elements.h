@@ -35,9 +35,7 @@ class SharedElements {
     std::size_t point_count(std::uint32_t element) const {
         return m_first_point.empty() ? 1 : m_first_point[element + 1] - m_first_point[element];
     }
-    std::int32_t slot(std::uint32_t element) const {
-        return m_data->material_index.empty() ? 0 : m_data->material_index[element];
-    }
+    std::int32_t slot(std::uint32_t element) const { return m_data->slot(element); }
     /// The frame time among the geometry's knots.
     std::size_t frame_knot() const { return m_frame_knot; }
     double frame_fraction() const { return m_frame_fraction; }

@@ -81,6 +81,9 @@ struct GeometryData {
                : kind == GeometryKind::Curves ? curve_sizes.size()
                                               : vertex_count();
     }
+    std::int32_t slot(std::size_t element) const {
+        return material_index.empty() ? 0 : material_index[element];
+    }
     const Attribute* find_attribute(const std::string& attribute_name) const;
     /// The UV map that is active for render (first of kind Uv); nullptr when there is none.
     const Attribute* default_uv() const;

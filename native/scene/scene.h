@@ -2,6 +2,7 @@
 // One frame, complete and immutable: what Python hands over (docs/scene_snapshot.md).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -33,6 +34,14 @@ struct Instance {
     /// By sets of lights that are linked: those that light it, and those of which it casts shadows.
     std::uint64_t receives = ~0ULL, blocks = ~0ULL;
     std::uint32_t key = 0;  ///< rank of the persistent identity: orders micropolygons (decision 3)
+
+    /// Index in Scene::materials, -1 = none.  An element may keep the slot of a material that is
+    /// gone: Blender takes the last one there is.
+    std::int32_t material(std::int32_t slot) const {
+        if (materials.empty()) return -1;
+        const auto last = static_cast<std::int32_t>(materials.size()) - 1;
+        return materials[static_cast<std::size_t>(std::clamp(slot, 0, last))];
+    }
 };
 
 struct Scene {

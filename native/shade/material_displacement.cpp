@@ -60,7 +60,8 @@ class MaterialDisplacement::Batch {
              Offsets& out) {
         const std::size_t n = uv.size();
         m_uv.assign(uv.begin(), uv.end());
-        find_frames(m_geometry, m_patch, m_uv, m_frames);
+        m_frames = {};
+        add_frames(m_uv);
         m_steps.resize(n);
         for (std::size_t i = 0; i < n; ++i) m_steps[i] = step_at(i);
         if (derivatives) add_neighbours(n);
@@ -90,10 +91,26 @@ class MaterialDisplacement::Batch {
     }
 
   private:
+    /// Of these places, after those that are there.
+    void add_frames(std::span<const Vec2d> uv) {
+        find_frames(m_geometry, m_patch, uv, m_found);
+        const auto append = [](std::vector<Vec3d>& to, const std::vector<Vec3d>& from) {
+            to.insert(to.end(), from.begin(), from.end());
+        };
+        append(m_frames.p, m_found.p);
+        append(m_frames.su, m_found.su);
+        append(m_frames.sv, m_found.sv);
+        append(m_frames.normal, m_found.normal);
+        append(m_frames.geometric_normal, m_found.geometric_normal);
+    }
+
+    double pixel_at(std::size_t i) const {
+        return m_target.angle * glm::distance(m_frames.p[i], m_target.eye) + m_target.least;
+    }
+
     /// A pixel, in (u, v); towards the inside of the patch where a step leads out of it.
     Vec2d step_at(std::size_t i) const {
-        const Vec3d& p = m_frames.p[i];
-        const double pixel = m_target.angle * glm::distance(p, m_target.eye) + m_target.least;
+        const double pixel = pixel_at(i);
         const auto along = [&](const Vec3d& s, double at) {
             const double length = glm::length(s);
             if (!(length > 0.0)) return 0.0;
@@ -106,7 +123,7 @@ class MaterialDisplacement::Batch {
     /// Of a pixel's step.
     double difference_at(std::size_t i) const {
         const Vec3d& p = m_frames.p[i];
-        const double pixel = m_target.angle * glm::distance(p, m_target.eye) + m_target.least;
+        const double pixel = pixel_at(i);
         const double least =
             kLeastDifference * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
         return pixel > 0.0 ? std::clamp(least / pixel, kDifference, 1.0) : 1.0;
@@ -121,7 +138,7 @@ class MaterialDisplacement::Batch {
             m_uv.push_back(m_uv[i] + Vec2d(0.0, m_differences[i].y));
         m_steps.resize(3 * n);
         for (std::size_t i = 0; i < 2 * n; ++i) m_steps[n + i] = m_steps[i % n];
-        find_frames(m_geometry, m_patch, m_uv, m_frames);
+        add_frames(std::span(m_uv).subspan(n));
     }
 
     /// What is seen straight from above.
@@ -166,7 +183,7 @@ class MaterialDisplacement::Batch {
     const SharedGeometry& m_geometry;
     const BasePatch& m_patch;
     std::vector<Vec2d> m_uv, m_steps, m_differences;
-    SurfaceFrames m_frames;
+    SurfaceFrames m_frames, m_found;
     ShadingPoints m_points;
     std::vector<GridAttribute> m_attributes;
 };
@@ -249,10 +266,7 @@ const DisplacementProgram* MaterialDisplacement::program(std::int32_t material) 
 const DisplacementProgram* MaterialDisplacement::program_of(const Instance& instance,
                                                             const SharedGeometry& geometry,
                                                             std::uint32_t face) const {
-    const std::vector<std::int32_t>& of_faces = geometry.data().material_index;
-    const std::int32_t slot = of_faces.empty() ? 0 : of_faces[face];
-    const auto last = static_cast<std::int32_t>(instance.materials.size()) - 1;
-    return program(instance.materials[static_cast<std::size_t>(std::clamp(slot, 0, last))]);
+    return program(instance.material(geometry.data().slot(face)));
 }
 
 void MaterialDisplacement::find(std::size_t index, const SharedGeometry& geometry,
