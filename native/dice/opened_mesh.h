@@ -52,6 +52,8 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     /// [knots] conservative, not displaced, for the patch inside `corner_uv`.
     virtual std::vector<Bounds3f> boxes(const BasePatch& patch, const Vec2d* corner_uv) const = 0;
     virtual void edge_point(const EdgeRef& edge, double t, EdgePoint& out) const = 0;
+    /// Who says how far that point is displaced.
+    virtual SurfacePlace edge_place(const EdgeRef& edge, double t) const = 0;
     virtual void surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const = 0;
     virtual void sample(const BasePatch& patch, std::span<const Vec2d> uv,
                         SurfaceSamples& out) const = 0;

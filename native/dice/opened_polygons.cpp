@@ -80,9 +80,11 @@ std::vector<Bounds3f> OpenedPolygons::boxes(const BasePatch& patch, const Vec2d*
 void OpenedPolygons::edge_point(const EdgeRef& edge, double t, EdgePoint& out) const {
     for (int k = 0; k < knot_count(); ++k)
         out.p[k] = Vec3f(Vec3d(point(k, edge.a)) * (1.0 - t) + Vec3d(point(k, edge.b)) * t);
-    if (!displaced()) return;
+}
+
+SurfacePlace OpenedPolygons::edge_place(const EdgeRef& edge, double t) const {
     const PatchBorders& borders = shared().borders();
-    out.place = borders.place(borders.edge_of(edge.a, edge.b), t);
+    return borders.place(borders.edge_of(edge.a, edge.b), t);
 }
 
 bool OpenedPolygons::smooth(std::uint32_t face) const {
@@ -109,7 +111,6 @@ void OpenedPolygons::surface_point(const BasePatch& patch, const Vec2d& uv, Edge
         const Corners at = corners(patch, k);
         out.p[k] = Vec3f(blend(at.p, weights.w));
     }
-    out.place = {nullptr, uv};
 }
 
 void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,

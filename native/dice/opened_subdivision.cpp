@@ -173,11 +173,6 @@ void OpenedSubdivision::copy_vertex(std::size_t vertex, EdgePoint& out) const {
 }
 
 void OpenedSubdivision::edge_point(const EdgeRef& ref, double t, EdgePoint& out) const {
-    if (displaced()) {
-        const PatchBorders& borders = shared().borders();
-        out.place = borders.place(
-            ref.b == kWhole ? PatchBorders::cage_edge(ref.a) : borders.spoke(ref.a, ref.b), t);
-    }
     if (ref.b == kWhole) {
         cage_point(ref.a, t, out);
         return;
@@ -190,6 +185,12 @@ void OpenedSubdivision::edge_point(const EdgeRef& ref, double t, EdgePoint& out)
     // The spokes meet in the centre: the first sub-face's.
     const int sub = t == 1.0 ? 0 : static_cast<int>(ref.b);
     limit_point(index, FaceCoordinates(topology(), index).sub_face(sub, {1.0, t}), out);
+}
+
+SurfacePlace OpenedSubdivision::edge_place(const EdgeRef& ref, double t) const {
+    const PatchBorders& borders = shared().borders();
+    return borders.place(
+        ref.b == kWhole ? PatchBorders::cage_edge(ref.a) : borders.spoke(ref.a, ref.b), t);
 }
 
 void OpenedSubdivision::cage_point(std::size_t index, double t, EdgePoint& out) const {
@@ -212,7 +213,6 @@ void OpenedSubdivision::surface_point(const BasePatch& patch, const Vec2d& uv,
     const int index = static_cast<int>(patch.face);
     const FaceCoordinates coordinates(topology(), index);
     limit_point(index, coordinates.sub_face(static_cast<int>(patch.sub), uv), out);
-    out.place = {nullptr, uv};
 }
 
 void OpenedSubdivision::sample(const BasePatch& patch, std::span<const Vec2d> uv,

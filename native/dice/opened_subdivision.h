@@ -20,6 +20,7 @@ class OpenedSubdivision final : public OpenedMesh {
     bool straight_edges() const override { return false; }
     std::vector<Bounds3f> boxes(const BasePatch& patch, const Vec2d* corner_uv) const override;
     void edge_point(const EdgeRef& edge, double t, EdgePoint& out) const override;
+    SurfacePlace edge_place(const EdgeRef& edge, double t) const override;
     void surface_point(const BasePatch& patch, const Vec2d& uv, EdgePoint& out) const override;
     void sample(const BasePatch& patch, std::span<const Vec2d> uv,
                 SurfaceSamples& out) const override;

@@ -28,11 +28,19 @@ void EdgeWalker::edge_point(const PatchEdge& side, double t, EdgePoint& out) con
     }
     const std::ptrdiff_t first = t > 0.0 ? m_mesh.knot_count() : 0;
     std::copy_n(line.p.begin() + first, m_mesh.knot_count(), out.p);
-    out.place = line.place[t > 0.0 ? 1 : 0];
+}
+
+SurfacePlace EdgeWalker::edge_place(const PatchEdge& side, double t) const {
+    if (!side.line) return m_mesh.edge_place(side.edge, t);
+    const Line& line = *side.line;
+    if (t > 0.0 && t < 1.0) return {nullptr, line.uv0 * (1.0 - t) + line.uv1 * t};
+    return line.place[t > 0.0 ? 1 : 0];
 }
 
 void EdgeWalker::point(const PatchEdge& side, double at, EdgePoint& out) const {
-    edge_point(side, on_edge(side, side.reversed ? 1.0 - at : at), out);
+    const double t = on_edge(side, side.reversed ? 1.0 - at : at);
+    edge_point(side, t, out);
+    if (m_mesh.displaced()) out.place = edge_place(side, t);
 }
 
 void EdgeWalker::classify(PatchEdge& side) const {

@@ -23,7 +23,7 @@ struct BasePatch;
 /// A point of an edge at every knot, camera space, not displaced.
 struct EdgePoint {
     Vec3f p[kMaxKnots];
-    SurfacePlace place;  ///< who says how far it is displaced; only filled where the mesh is
+    SurfacePlace place;  ///< as of OpenedMesh::edge_place(); EdgeWalker::point() fills it
 };
 
 /// A base edge as its mesh numbers it.
@@ -75,6 +75,7 @@ class EdgeWalker {
 
   private:
     void edge_point(const PatchEdge& side, double t, EdgePoint& out) const;
+    SurfacePlace edge_place(const PatchEdge& side, double t) const;
 
     const OpenedMesh& m_mesh;
     const BasePatch& m_patch;
