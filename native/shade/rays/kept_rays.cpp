@@ -38,8 +38,7 @@ void KeptRays::add(std::shared_ptr<const KeptRayShape> made) {
 }
 
 void KeptRays::keep_only(const GeometryList& geometries) {
-    std::set<const GeometryData*> there;
-    for (const GeometryData& data : geometries) there.insert(&data);
+    const std::set<const GeometryData*> there = geometries.members();
     const std::lock_guard lock(m_mutex);
     std::erase_if(m_shapes, [&](const auto& entry) { return !there.contains(entry.first); });
 }

@@ -94,8 +94,7 @@ class Cells {
 RayDisplaced::RayDisplaced(std::shared_ptr<const SharedGeometry> shared,
                            const Displacement& displacement, std::size_t instance,
                            const RayDetail& detail, const Progress& progress)
-    : m_shared(std::move(shared)), m_borders(m_shared->borders()) {
-    m_triangles.knots = m_shared->surface_knots();
+    : RayFaces(std::move(shared)), m_borders(m_shared->borders()) {
     find_levels(detail);
     coarsen();
     find_edge_levels();
@@ -105,15 +104,15 @@ RayDisplaced::RayDisplaced(std::shared_ptr<const SharedGeometry> shared,
         progress.check();
         for (std::size_t k = begin; k != end; ++k) place(k, displacement, instance);
     });
-    m_extents.assign(m_shared->data().face_count(), 0.0f);
     for (std::size_t k = 0; k < patches; ++k) {
         float& extent = m_extents[m_shared->patches()[k].face];
-        const std::size_t last = k + 1 < patches ? m_first_point[k + 1] : m_triangles.point_count();
-        for (int knot = 0; knot < m_triangles.knots; ++knot)
+        const std::size_t last =
+            k + 1 < patches ? m_first_point[k + 1] : m_primitives.point_count();
+        for (int knot = 0; knot < m_primitives.knots; ++knot)
             for (std::size_t i = m_first_point[k]; i < last; ++i)
-                extent = std::max(extent, largest_coordinate(m_triangles.at(knot)[i]));
+                extent = std::max(extent, largest_coordinate(m_primitives.at(knot)[i]));
     }
-    m_triangles.put_still_first();
+    m_primitives.put_still_first();
 }
 
 void RayDisplaced::find_levels(const RayDetail& detail) {
@@ -154,7 +153,7 @@ void RayDisplaced::coarsen() {
     const auto points = [&] {
         std::size_t sum = 0;
         for (std::size_t k = 0; k < patches.size(); ++k) sum += point_count(k);
-        return sum * static_cast<std::size_t>(m_triangles.knots);
+        return sum * static_cast<std::size_t>(m_primitives.knots);
     };
     const auto can_be_coarser = [](const Levels& level) { return level.u > 0 || level.v > 0; };
     while (points() > kMostPoints && std::ranges::any_of(m_levels, can_be_coarser)) {
@@ -210,8 +209,8 @@ void RayDisplaced::number() {
         triangles += triangle_count(k);
     }
     m_first_triangle.push_back(static_cast<std::uint32_t>(triangles));
-    m_triangles.points.resize(points * static_cast<std::size_t>(m_triangles.knots));
-    m_triangles.indices.resize(triangles);
+    m_primitives.points.resize(points * static_cast<std::size_t>(m_primitives.knots));
+    m_primitives.indices.resize(triangles);
 }
 
 /// The nearest of the points that the edge has.
@@ -246,7 +245,7 @@ void RayDisplaced::place(std::size_t k, const Displacement& displacement, std::s
         if (i - runs.back() == kRun || places[order[i]].patch != places[order[i - 1]].patch)
             runs.push_back(i);
     runs.push_back(order.size());
-    const std::size_t total = m_triangles.point_count();
+    const std::size_t total = m_primitives.point_count();
     parallel_for(runs.size() - 1, kGrain, [&](std::size_t begin, std::size_t end) {
         std::vector<Vec2d> uv;
         std::vector<Vec3f> positions;
@@ -259,9 +258,9 @@ void RayDisplaced::place(std::size_t k, const Displacement& displacement, std::s
             for (const std::uint32_t i : of) uv.push_back(places[i].uv);
             find_positions(*m_shared, owner, uv, positions);
             displacement.find(instance, *m_shared, owner, uv, false, offsets);
-            for (std::size_t knot = 0; knot < static_cast<std::size_t>(m_triangles.knots); ++knot)
+            for (std::size_t knot = 0; knot < static_cast<std::size_t>(m_primitives.knots); ++knot)
                 for (std::size_t i = 0; i < of.size(); ++i)
-                    m_triangles.points[knot * total + m_first_point[k] + of[i]] =
+                    m_primitives.points[knot * total + m_first_point[k] + of[i]] =
                         positions[knot * uv.size() + i] + offsets.offset[i];
         }
     });
@@ -270,31 +269,20 @@ void RayDisplaced::place(std::size_t k, const Displacement& displacement, std::s
         return m_first_point[k] + cells.index(at[0], at[1]);
     };
     cells.for_triangles([&](const auto& a, const auto& b, const auto& c) {
-        m_triangles.indices[triangle++] = {number_of(a), number_of(b), number_of(c)};
+        m_primitives.indices[triangle++] = {number_of(a), number_of(b), number_of(c)};
     });
-}
-
-std::vector<RTCGeometry> RayDisplaced::hand_over(RTCDevice device) {
-    return m_triangles.hand_over(device);
 }
 
 std::string RayDisplaced::size() const {
     return std::to_string(m_first_triangle.back()) + " triangles, displaced";
 }
 
-float RayDisplaced::extent(std::uint32_t face) const {
-    return face < m_extents.size() ? m_extents[face] : 0.0f;
-}
-
 void RayDisplaced::locate(std::uint32_t geometry, std::uint32_t triangle, float u, float v,
                           ShadowHit& hit) const {
-    triangle = m_triangles.original(geometry, triangle);
+    triangle = m_primitives.original(geometry, triangle);
     const auto after = std::ranges::upper_bound(m_first_triangle, triangle);
     const auto k = static_cast<std::size_t>(after - m_first_triangle.begin()) - 1;
-    hit.geometry = m_shared.get();
-    hit.patch = &m_shared->patches()[k];
-    const auto& slots = m_shared->data().material_index;
-    hit.slot = slots.empty() ? 0 : slots[hit.patch->face];
+    locate_on(k, hit);
     const int n = 1 << m_levels[k].u;
     const Vec2d steps(n, 1 << m_levels[k].v);
     std::uint32_t left = triangle - m_first_triangle[k];
@@ -322,9 +310,8 @@ void RayDisplaced::locate(std::uint32_t geometry, std::uint32_t triangle, float 
 }
 
 std::size_t RayDisplaced::bytes() const {
-    return sizeof(*this) + m_triangles.bytes() + sizeof(Levels) * m_levels.size() +
-           m_edge_levels.size() +
-           4 * (m_first_point.size() + m_first_triangle.size() + m_extents.size());
+    return sizeof(*this) + bytes_of_faces() + sizeof(Levels) * m_levels.size() +
+           m_edge_levels.size() + 4 * (m_first_point.size() + m_first_triangle.size());
 }
 
 }  // namespace granita

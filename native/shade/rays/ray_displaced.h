@@ -12,12 +12,11 @@
 #include "geometry/displacement.h"
 #include "geometry/patch_borders.h"
 #include "shade/rays/ray_detail.h"
-#include "shade/rays/ray_primitives.h"
-#include "shade/rays/ray_shape.h"
+#include "shade/rays/ray_faces.h"
 
 namespace granita {
 
-class RayDisplaced final : public RayShape {
+class RayDisplaced final : public RayFaces<3> {
   public:
     /// `instance`: whose displacement it is.  Throws Cancelled.
     RayDisplaced(std::shared_ptr<const SharedGeometry> shared, const Displacement& displacement,
@@ -25,12 +24,9 @@ class RayDisplaced final : public RayShape {
 
     /// It was to be finer than memory allows.
     bool is_coarsened() const { return m_coarsened; }
-    std::vector<RTCGeometry> hand_over(RTCDevice device) override;
     std::string size() const override;
-    int knots() const override { return m_triangles.knots; }
-    /// Not known: rays start where RayScene::height_over() says.
+    /// Not known: rays start where RayScene::heights_over() says.
     float error(std::uint32_t) const override { return 0.0f; }
-    float extent(std::uint32_t face) const override;
     void locate(std::uint32_t geometry, std::uint32_t triangle, float u, float v,
                 ShadowHit& hit) const override;
     std::size_t bytes() const override;
@@ -53,15 +49,12 @@ class RayDisplaced final : public RayShape {
     int edge_level(const PatchBorders::Side& side, int level) const;
     SurfacePlace border_place(const PatchBorders::Side& side, int i, int cells) const;
 
-    std::shared_ptr<const SharedGeometry> m_shared;
     const PatchBorders& m_borders;
     std::vector<Levels> m_levels;                 ///< [patches]
     std::vector<std::uint8_t> m_edge_levels;      ///< [edges]
     std::vector<std::uint32_t> m_first_point;     ///< [patches]
     std::vector<std::uint32_t> m_first_triangle;  ///< [patches + 1]
-    std::vector<float> m_extents;                 ///< [F]
     bool m_coarsened = false;
-    RayPrimitives<3> m_triangles;
 };
 
 }  // namespace granita

@@ -7,21 +7,17 @@
 #include <vector>
 
 #include "geometry/shared_geometry.h"
-#include "shade/rays/ray_primitives.h"
-#include "shade/rays/ray_shape.h"
+#include "shade/rays/ray_faces.h"
 
 namespace granita {
 
-class RayMesh final : public RayShape {
+class RayMesh final : public RayFaces<3> {
   public:
     explicit RayMesh(std::shared_ptr<const SharedGeometry> shared);
 
-    std::vector<RTCGeometry> hand_over(RTCDevice device) override;
     std::string size() const override;
-    int knots() const override { return m_triangles.knots; }
     /// The triangles are the surface.
     float error(std::uint32_t) const override { return 0.0f; }
-    float extent(std::uint32_t face) const override;
     /// (u, v): the barycentric point of a triangle.
     void locate(std::uint32_t geometry, std::uint32_t triangle, float u, float v,
                 ShadowHit& hit) const override;
@@ -30,10 +26,7 @@ class RayMesh final : public RayShape {
   private:
     void add_polygons();
 
-    std::shared_ptr<const SharedGeometry> m_shared;
-    RayPrimitives<3> m_triangles;
     std::vector<std::uint32_t> m_patches;  ///< [triangles] patch, doubled, plus half
-    std::vector<float> m_extents;          ///< [F]
 };
 
 }  // namespace granita

@@ -15,6 +15,7 @@
 #include "base/stage_timer.h"
 #include "math/normalize_or.h"
 #include "scene/knot_time.h"
+#include "shade/rays/covering_triangle.h"
 #include "shade/rays/instance_motion.h"
 #include "shade/rays/ray_detail.h"
 #include "shade/rays/ray_displaced.h"
@@ -32,12 +33,6 @@ bool goes_on(void* user, double) {
 
 /// Rays traced at once.
 constexpr std::size_t kPacket = 16;
-
-std::int32_t material_of(const Instance& instance, std::int32_t slot) {
-    if (instance.materials.empty()) return -1;
-    const auto last = static_cast<std::int32_t>(instance.materials.size()) - 1;
-    return instance.materials[static_cast<std::size_t>(std::clamp(slot, 0, last))];
-}
 
 Bounds3f box_of(RTCScene geometry) {
     RTCBounds box;
@@ -271,7 +266,7 @@ Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& r
     ShadowHit shadow;
     shadow.instance = instance.index;
     shape_of(instance.index).shape->locate(hit.geomID, hit.primID, hit.u, hit.v, shadow);
-    shadow.material = material_of(source, shadow.slot);
+    shadow.material = source.material(shadow.slot);
     if (!opacity.is_transparent(shadow.material)) return Vec3f(0.0f);
     shadow.direction = context.direction;
     shadow.p = context.start + context.direction * ray.tfar;
@@ -402,64 +397,11 @@ bool RayScene::varies(const Vec3f& start, const Vec3f& direction, float distance
     return m_impl->motion.meet(start, direction, distance);
 }
 
-namespace {
-
-/// Embree leaves other rays undefined, and as Debian builds it ends the process at them.
-bool is_traceable(const ShadowRay& ray) {
-    constexpr float kFarthest = 1e18f;
-    for (int axis = 0; axis < 3; ++axis)
-        if (!(std::abs(ray.start[axis]) < kFarthest && std::abs(ray.direction[axis]) < kFarthest))
-            return false;
-    return ray.distance >= 0.0f && ray.time >= 0.0f && ray.time <= 1.0f;
-}
-
-}  // namespace
-
 bool RayScene::is_displaced(const GridKey& key) const {
     const auto found = m_impl->by_key.find(key.instance);
     return found != m_impl->by_key.end() &&
            m_impl->is_displaced(m_impl->instances[found->second].index);
 }
-
-namespace {
-
-float longest_edge(RTCScene built, unsigned geometry, unsigned triangle) {
-    RTCGeometry of = rtcGetGeometry(built, geometry);
-    const auto* corners = static_cast<const std::array<std::uint32_t, 3>*>(
-        rtcGetGeometryBufferData(of, RTC_BUFFER_TYPE_INDEX, 0));
-    const auto* points =
-        static_cast<const Vec3f*>(rtcGetGeometryBufferData(of, RTC_BUFFER_TYPE_VERTEX, 0));
-    const auto& [a, b, c] = corners[triangle];
-    return std::max({glm::distance(points[a], points[b]), glm::distance(points[b], points[c]),
-                     glm::distance(points[c], points[a])});
-}
-
-/// The nearest triangle along a ray that is left through it, not farther than its own size;
-/// infinite where there is none.  What faces the ray is something else that hangs over it.
-float covering_distance(RTCScene built, const ShadowRay& from, bool from_behind) {
-    /// Of a triangle's longest edge.
-    constexpr float kFarthest = 2.0f;
-    constexpr float kNone = std::numeric_limits<float>::infinity();
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit ray{};
-    ray.ray.org_x = from.start.x, ray.ray.org_y = from.start.y, ray.ray.org_z = from.start.z;
-    ray.ray.dir_x = from.direction.x, ray.ray.dir_y = from.direction.y;
-    ray.ray.dir_z = from.direction.z;
-    ray.ray.tfar = from.distance;
-    ray.ray.time = from.time;
-    ray.ray.mask = ~0u;
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(built, &context, &ray);
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return kNone;
-    const Vec3f across(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
-    const bool leaves = (glm::dot(across, from.direction) > 0.0f) != from_behind;
-    if (!leaves || ray.ray.tfar > kFarthest * longest_edge(built, ray.hit.geomID, ray.hit.primID))
-        return kNone;
-    return ray.ray.tfar;
-}
-
-}  // namespace
 
 std::vector<float> RayScene::heights_over(const GridKey& key, const Covered& points) const {
     const std::size_t index = m_impl->instances[m_impl->by_key.at(key.instance)].index;
@@ -484,7 +426,7 @@ std::vector<float> RayScene::heights_over(const GridKey& key, const Covered& poi
         if (!(length > 0.0f)) continue;
         const ShadowRay up{Vec3f(transform_point(into, Vec3d(points.p[i]))), way / length, reach,
                            time};
-        if (!is_traceable(up)) continue;
+        if (!up.is_traceable()) continue;
         const float distance = covering_distance(built, up, points.from_behind[i] != 0);
         if (std::isfinite(distance)) heights[i] = distance / length;
     }
@@ -492,7 +434,7 @@ std::vector<float> RayScene::heights_over(const GridKey& key, const Covered& poi
 }
 
 Vec3f RayScene::transmittance(const ShadowRay& shadow) const {
-    if (!is_traceable(shadow)) return Vec3f(1.0f);
+    if (!shadow.is_traceable()) return Vec3f(1.0f);
     ShadowContext context{};
     rtcInitIntersectContext(&context.embree);
     context.scene = m_impl.get();
@@ -523,7 +465,7 @@ void RayScene::transmittances(std::span<const ShadowRay> rays, std::span<Vec3f> 
         alignas(64) int valid[kPacket]{};
         for (std::size_t i = 0; i < count; ++i) {
             const ShadowRay& ray = rays[first + i];
-            if (!is_traceable(ray)) continue;
+            if (!ray.is_traceable()) continue;
             packet.org_x[i] = ray.start.x;
             packet.org_y[i] = ray.start.y;
             packet.org_z[i] = ray.start.z;

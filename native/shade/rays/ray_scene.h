@@ -16,16 +16,9 @@
 #include "shade/rays/kept_rays.h"
 #include "shade/rays/ray_offset.h"
 #include "shade/rays/shadow_opacity.h"
+#include "shade/rays/shadow_ray.h"
 
 namespace granita {
-
-/// A way of light, in shading space.  What is no number, or 1e18 metres away, meets nothing.
-struct ShadowRay {
-    Vec3f start, direction;  ///< direction is unit
-    float distance;          ///< metres; may be infinite
-    float time = 0.5f;       ///< of the shutter, [0, 1]
-    int blocker_set = -1;    ///< of the light: others than Instance::blocks names let it pass
-};
 
 class RayScene {
   public:

@@ -9,7 +9,7 @@
 #include "geometry/limit_face.h"
 #include "geometry/limit_vertices.h"
 #include "geometry/subdivision_topology.h"
-#include "geometry/surface_evaluator.h"
+#include "geometry/surface_frames.h"
 #include "shade/rays/patch_cells.h"
 
 namespace granita {
@@ -38,8 +38,7 @@ int levels_for(float height, float most) {
 
 RaySubdivision::RaySubdivision(std::shared_ptr<const SharedGeometry> shared,
                                const RayDetail& detail, const Progress& progress)
-    : m_shared(std::move(shared)) {
-    m_quads.knots = m_shared->surface_knots();
+    : RayFaces(std::move(shared)) {
     find_levels(detail);
     find_edge_levels();
     number_points();
@@ -50,13 +49,12 @@ RaySubdivision::RaySubdivision(std::shared_ptr<const SharedGeometry> shared,
     std::vector<float> extents(patches.size());
     parallel_patches(progress, [&](std::size_t k) { extents[k] = connect(k); });
     m_errors.assign(m_shared->data().face_count(), 0.0f);
-    m_extents.assign(m_shared->data().face_count(), 0.0f);
     for (std::size_t k = 0; k < patches.size(); ++k) {
         const std::uint32_t face = patches[k].face;
         m_errors[face] = std::max(m_errors[face], errors[k]);
         m_extents[face] = std::max(m_extents[face], extents[k]);
     }
-    m_quads.put_still_first();
+    m_primitives.put_still_first();
 }
 
 template <class Act>
@@ -113,7 +111,7 @@ void RaySubdivision::find_edge_levels() {
         points = 0;
         for (const BasePatch& patch : m_shared->patches())
             points += std::size_t{1} << 2 * patch_level(patch);
-        return points * static_cast<std::size_t>(m_quads.knots);
+        return points * static_cast<std::size_t>(m_primitives.knots);
     };
     while (count() > kMostPoints && std::ranges::any_of(m_levels, [](int l) { return l > 1; })) {
         m_coarsened = true;
@@ -185,11 +183,11 @@ void RaySubdivision::number_points() {
         points += patch.kind == PatchKind::SubFace ? cells * cells : (cells - 1) * (cells - 1);
     }
     if (!all_one) m_first_quad.push_back(quads);
-    m_quads.indices.resize(quads);
-    m_quads.points.resize(static_cast<std::size_t>(m_quads.knots) * points);
-    for (int knot = 0; knot < m_quads.knots; ++knot)
+    m_primitives.indices.resize(quads);
+    m_primitives.points.resize(static_cast<std::size_t>(m_primitives.knots) * points);
+    for (int knot = 0; knot < m_primitives.knots; ++knot)
         std::ranges::copy(m_shared->surface_points(knot),
-                          m_quads.points.begin() + static_cast<std::ptrdiff_t>(knot) * points);
+                          m_primitives.points.begin() + static_cast<std::ptrdiff_t>(knot) * points);
 }
 
 std::uint32_t RaySubdivision::edge_point(const PatchSide& side, int i) const {
@@ -237,12 +235,16 @@ float RaySubdivision::place(std::size_t k) {
     for (int s = 0; s < 4; ++s) sides[s] = side(patch, s);
     const auto line = static_cast<std::size_t>(cells) + 1;
     static thread_local std::vector<Vec3f> evaluated;  // [knots][points]
-    evaluate(patch, cells, evaluated);
+    static thread_local std::vector<Vec2d> uv;
+    uv.clear();
+    for (int j = 0; j <= cells; ++j)
+        for (int i = 0; i <= cells; ++i) uv.push_back(Vec2d(i, j) / static_cast<double>(cells));
+    find_positions(*m_shared, patch, uv, evaluated);
     float error = 0.0f;
-    for (int knot = 0; knot < m_quads.knots; ++knot) {
+    for (int knot = 0; knot < m_primitives.knots; ++knot) {
         const PatchCells at(&evaluated[static_cast<std::size_t>(knot) * line * line], cells);
         Vec3f* const points =
-            &m_quads.points[static_cast<std::size_t>(knot) * m_quads.point_count()];
+            &m_primitives.points[static_cast<std::size_t>(knot) * m_primitives.point_count()];
         float off = 0.0f;
         for (int s = 0; s < 4; ++s)
             if (sides[s].edge) off = std::max(off, at.error_of_side(s, sides[s].step));
@@ -271,7 +273,7 @@ float RaySubdivision::place(std::size_t k) {
 /// Makes a patch's quads; returns the largest coordinate of their points.
 float RaySubdivision::connect(std::size_t k) {
     const BasePatch& patch = m_shared->patches()[k];
-    auto* quads = &m_quads.indices[m_first_quad.empty() ? k : m_first_quad[k]];
+    auto* quads = &m_primitives.indices[m_first_quad.empty() ? k : m_first_quad[k]];
     const auto* const first = quads;
     if (is_one_quad(patch)) {
         std::uint32_t corner[4];
@@ -289,51 +291,24 @@ float RaySubdivision::connect(std::size_t k) {
     }
     float extent = 0.0f;
     for (const auto* quad = first; quad != quads; ++quad)
-        for (int knot = 0; knot < m_quads.knots; ++knot)
+        for (int knot = 0; knot < m_primitives.knots; ++knot)
             for (const std::uint32_t v : *quad)
-                extent = std::max(extent, largest_coordinate(m_quads.at(knot)[v]));
+                extent = std::max(extent, largest_coordinate(m_primitives.at(knot)[v]));
     return extent;
 }
 
 /// `out` [knots][(cells + 1)^2]: the limit.
-void RaySubdivision::evaluate(const BasePatch& patch, int cells, std::vector<Vec3f>& out) const {
-    const int face = static_cast<int>(patch.face);
-    const auto knots = static_cast<std::size_t>(m_quads.knots);
-    const LimitFace& limit = m_shared->surface().limit_face(face);
-    const FaceCoordinates coordinates(*m_shared->subdivision(), face);
-    static thread_local std::vector<double> p;
-    p.resize(3 * knots);
-    const auto count = static_cast<std::size_t>(cells + 1) * static_cast<std::size_t>(cells + 1);
-    out.resize(knots * count);
-    for (int j = 0, to = 0; j <= cells; ++j)
-        for (int i = 0; i <= cells; ++i, ++to) {
-            const Vec2d uv = Vec2d(i, j) / static_cast<double>(cells);
-            limit.evaluate(coordinates.sub_face(static_cast<int>(patch.sub), uv), p.data());
-            for (std::size_t knot = 0; knot < knots; ++knot)
-                out[knot * count + static_cast<std::size_t>(to)] =
-                    Vec3f(p[3 * knot], p[3 * knot + 1], p[3 * knot + 2]);
-        }
-}
-
-std::vector<RTCGeometry> RaySubdivision::hand_over(RTCDevice device) {
-    return m_quads.hand_over(device);
-}
-
 std::string RaySubdivision::size() const {
-    return std::to_string(m_quads.indices.size()) + " quads";
+    return std::to_string(m_primitives.indices.size()) + " quads";
 }
 
 float RaySubdivision::error(std::uint32_t face) const {
     return face < m_errors.size() ? m_errors[face] : 0.0f;
 }
 
-float RaySubdivision::extent(std::uint32_t face) const {
-    return face < m_extents.size() ? m_extents[face] : 0.0f;
-}
-
 void RaySubdivision::locate(std::uint32_t geometry, std::uint32_t quad, float u, float v,
                             ShadowHit& hit) const {
-    quad = m_quads.original(geometry, quad);
+    quad = m_primitives.original(geometry, quad);
     std::size_t k = quad;
     std::uint32_t cell = 0;
     if (!m_first_quad.empty()) {
@@ -341,18 +316,15 @@ void RaySubdivision::locate(std::uint32_t geometry, std::uint32_t quad, float u,
         k = static_cast<std::size_t>(after - m_first_quad.begin()) - 1;
         cell = quad - m_first_quad[k];
     }
-    hit.geometry = m_shared.get();
-    hit.patch = &m_shared->patches()[k];
-    const GeometryData& data = m_shared->data();
-    hit.slot = data.material_index.empty() ? 0 : data.material_index[hit.patch->face];
+    locate_on(k, hit);
     // Embree's corners are the cell's second, third, fourth and first.
     const std::uint32_t side = 1u << patch_level(*hit.patch);
     hit.uv = (Vec2d(cell % side, cell / side) + Vec2d(1.0 - v, u)) / static_cast<double>(side);
 }
 
 std::size_t RaySubdivision::bytes() const {
-    return sizeof(*this) + m_quads.bytes() + m_levels.size() + m_edge_levels.size() +
-           4 * (m_first_quad.size() + m_first_point.size() + m_errors.size() + m_extents.size());
+    return sizeof(*this) + bytes_of_faces() + m_levels.size() + m_edge_levels.size() +
+           4 * (m_first_quad.size() + m_first_point.size() + m_errors.size());
 }
 
 }  // namespace granita

@@ -15,27 +15,23 @@
 #include "geometry/shared_geometry.h"
 #include "geometry/subdivision_topology.h"
 #include "shade/rays/ray_detail.h"
-#include "shade/rays/ray_primitives.h"
-#include "shade/rays/ray_shape.h"
+#include "shade/rays/ray_faces.h"
 
 namespace granita {
 
-class RaySubdivision final : public RayShape {
+class RaySubdivision final : public RayFaces<4> {
   public:
     RaySubdivision(std::shared_ptr<const SharedGeometry> shared, const RayDetail& detail,
                    const Progress& progress);
 
-    std::vector<RTCGeometry> hand_over(RTCDevice device) override;
     std::string size() const override;
-    int knots() const override { return m_quads.knots; }
     float error(std::uint32_t face) const override;
-    float extent(std::uint32_t face) const override;
     void locate(std::uint32_t geometry, std::uint32_t quad, float u, float v,
                 ShadowHit& hit) const override;
     std::size_t bytes() const override;
     /// It had no room for as many cells as `detail` asks for.
     bool is_coarsened() const { return m_coarsened; }
-    std::size_t quad_count() const { return m_quads.indices.size(); }
+    std::size_t quad_count() const { return m_primitives.indices.size(); }
 
   private:
     /// A side of a patch along an edge of the cage: its point i is number first + sign * i of the
@@ -53,7 +49,6 @@ class RaySubdivision final : public RayShape {
     void number_points();
     float place(std::size_t patch);
     float connect(std::size_t patch);
-    void evaluate(const BasePatch& patch, int cells, std::vector<Vec3f>& out) const;
     bool is_quad(std::size_t face) const { return m_shared->data().face_sizes[face] == 4; }
     bool is_one_quad(const BasePatch& patch) const;
     /// log2 of the cells along a side of a patch.
@@ -64,15 +59,13 @@ class RaySubdivision final : public RayShape {
     std::uint32_t own_point(std::size_t patch, int i, int j) const;
     std::uint32_t point(std::size_t patch, const PatchSide* sides, int i, int j) const;
 
-    std::shared_ptr<const SharedGeometry> m_shared;
     std::vector<std::uint8_t> m_levels;             ///< [F] log2 of the cells along an edge
     std::vector<std::uint8_t> m_edge_levels;        ///< [edges]; empty = all are 0
     std::vector<std::uint32_t> m_first_edge_point;  ///< [edges] of those inside them
     std::vector<std::uint32_t> m_first_point;       ///< [patches] of their own
     std::vector<std::uint32_t> m_first_quad;        ///< [patches + 1]; empty = one quad a patch
     bool m_coarsened = false;
-    RayPrimitives<4> m_quads;
-    std::vector<float> m_errors, m_extents;  ///< [F]
+    std::vector<float> m_errors;  ///< [F]
 };
 
 }  // namespace granita
