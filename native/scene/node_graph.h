@@ -28,6 +28,24 @@ struct Node {
     std::map<std::string, NodeInput> inputs;
     std::map<std::string, NodeProperty>
         properties;  ///< enums as their identifiers, e.g. operation = "MULTIPLY"
+
+    /// Of a property of this type; `fallback` where there is none.
+    std::string text(const std::string& property, const std::string& fallback = "") const {
+        const std::string* found = property_as<std::string>(property);
+        return found ? *found : fallback;
+    }
+    double value(const std::string& property, double fallback = 0.0) const {
+        const double* found = property_as<double>(property);
+        return found ? *found : fallback;
+    }
+    bool flag(const std::string& property) const { return value(property) != 0.0; }
+
+  private:
+    template <class T>
+    const T* property_as(const std::string& property) const {
+        const auto found = properties.find(property);
+        return found == properties.end() ? nullptr : std::get_if<T>(&found->second);
+    }
 };
 
 /// What is done with NodeGraph::displacement: shading normals are bent by it, or the surface is

@@ -37,7 +37,7 @@ class SkyTable {
     std::vector<Vec3f> m_texels;  ///< [rows][columns]: half the sky, which is alike on both sides
 };
 
-/// The table of an atmosphere, kept for as long as it is asked for: frames of one file share it.
+/// The table of an atmosphere, kept among the last few: frames of one file share it.
 /// Any thread.
 std::shared_ptr<const SkyTable> sky_table(const Atmosphere& atmosphere);
 

@@ -11,20 +11,6 @@
 namespace granita {
 namespace {
 
-std::string text(const Node& node, const std::string& property, const std::string& fallback) {
-    const auto found = node.properties.find(property);
-    if (found == node.properties.end()) return fallback;
-    const auto* value = std::get_if<std::string>(&found->second);
-    return value ? *value : fallback;
-}
-
-bool flag(const Node& node, const std::string& property) {
-    const auto found = node.properties.find(property);
-    if (found == node.properties.end()) return false;
-    const auto* value = std::get_if<double>(&found->second);
-    return value && *value != 0.0;
-}
-
 struct Range {
     float low, high;
 };
@@ -63,12 +49,12 @@ class Ranges {
     static constexpr int kDeepest = 8;
 
     std::optional<Range> output(const Node& node, int depth) const {
-        static const std::set<std::string> kUnit = {"ShaderNodeTexChecker", "ShaderNodeTexGradient",
+        static const std::set<std::string> kUnit = {"ShaderNodeTexGradient",
                                                     "ShaderNodeTexWhiteNoise", "ShaderNodeTexWave"};
         const std::string& type = node.type;
         if (type == "ShaderNodeTexChecker") return checker(node, depth);
         if (kUnit.contains(type)) return Range{0.0f, 1.0f};
-        if (type == "ShaderNodeTexImage") return image(text(node, "image", ""));
+        if (type == "ShaderNodeTexImage") return image(node.text("image", ""));
         if (type == "ShaderNodeRGBToBW") return of(node, "Color", 0.0f, depth);
         if (type == "ShaderNodeMath") return math(node, depth);
         return std::nullopt;
@@ -92,8 +78,8 @@ class Ranges {
     }
 
     std::optional<Range> math(const Node& node, int depth) const {
-        if (flag(node, "use_clamp")) return Range{0.0f, 1.0f};
-        const std::string operation = text(node, "operation", "ADD");
+        if (node.flag("use_clamp")) return Range{0.0f, 1.0f};
+        const std::string operation = node.text("operation", "ADD");
         if (operation == "SINE" || operation == "COSINE") return Range{-1.0f, 1.0f};
         const auto a = of(node, "Value", 0.0f, depth), b = of(node, "Value_001", 0.0f, depth);
         if (!a || !b) return std::nullopt;
@@ -161,7 +147,7 @@ bool depends_on_instance(const NodeGraph& graph, const std::vector<std::set<std:
             if (is_in_world(graph)) return true;
             continue;
         }
-        if (node.type != "ShaderNodeTexCoord" || flag(node, "from_instancer")) return true;
+        if (node.type != "ShaderNodeTexCoord" || node.flag("from_instancer")) return true;
         const bool other = node.properties.contains("object_from_world");
         for (const std::string& output : read[i])
             if (output != "Generated" && output != "UV" && output != "Normal" &&
@@ -173,9 +159,9 @@ bool depends_on_instance(const NodeGraph& graph, const std::vector<std::set<std:
 
 bool is_in_world(const NodeGraph& graph) {
     const Node& node = graph.nodes[static_cast<std::size_t>(graph.displacement.node)];
-    if (node.type == "ShaderNodeDisplacement") return text(node, "space", "OBJECT") != "OBJECT";
+    if (node.type == "ShaderNodeDisplacement") return node.text("space", "OBJECT") != "OBJECT";
     if (node.type == "ShaderNodeVectorDisplacement")
-        return text(node, "space", "TANGENT") == "WORLD";
+        return node.text("space", "TANGENT") == "WORLD";
     return true;  // whatever reaches the output is taken for a way in the world
 }
 

@@ -57,63 +57,58 @@ NoisePlace noise_place(NodeBuilder& b) {
             b.number("W"), b.number("Scale", 5.0f)};
 }
 
+/// Value and colour of one kind of noise: `octaves_of` makes of the numbers `sources` what `noise`
+/// reads besides its place.
+template <std::size_t N, class OctavesOf, class Noise, class... Sources>
+void build_distorted(NodeBuilder& b, OctavesOf octaves_of, Noise noise, const Sources&... sources) {
+    const auto [vector, w, scale] = noise_place<N>(b);
+    const FloatSource distortion = b.number("Distortion");
+    b.output("Fac", b.map<float>(
+                        [=](const Vec3f& v, float w_, float s, float x, auto... numbers) {
+                            const NoisePoint<N> p = distorted<N>(noise_point<N>(v, w_, s), x);
+                            return noise(p, octaves_of(numbers...));
+                        },
+                        vector, w, scale, distortion, sources...));
+    b.output_color("Color",
+                   b.map<Vec3f>(
+                       [=](const Vec3f& v, float w_, float s, float x, auto... numbers) {
+                           const NoisePoint<N> p = distorted<N>(noise_point<N>(v, w_, s), x);
+                           const auto octaves = octaves_of(numbers...);
+                           return three_noises<N>(
+                               p, [&](const NoisePoint<N>& q) { return noise(q, octaves); });
+                       },
+                       vector, w, scale, distortion, sources...));
+}
+
 /// fBm alone, which is brought to [0, 1] where that is asked for.
 template <std::size_t N>
 void build_fbm(NodeBuilder& b) {
-    const auto [vector, w, scale] = noise_place<N>(b);
-    const FloatSource detail = b.number("Detail", 2.0f), roughness = b.number("Roughness", 0.5f);
-    const FloatSource lacunarity = b.number("Lacunarity", 2.0f);
-    const FloatSource distortion = b.number("Distortion");
     const bool normalize = b.value("normalize", 1.0) != 0.0;
     const bool bounded = b.value("generation", 1.0) < 2.0;
-    const auto octaves = [=](float d, float r, float l) {
-        return Octaves{d, bounded ? std::clamp(r, 0.0f, 1.0f) : std::max(r, 0.0f), l, normalize};
-    };
-    b.output("Fac", b.map<float>(
-                        [=](const Vec3f& v, float w_, float s, float d, float r, float l, float x) {
-                            const NoisePoint<N> p = distorted<N>(noise_point<N>(v, w_, s), x);
-                            return fractal_noise<N>(p, octaves(d, r, l));
-                        },
-                        vector, w, scale, detail, roughness, lacunarity, distortion));
-    b.output_color("Color",
-                   b.map<Vec3f>(
-                       [=](const Vec3f& v, float w_, float s, float d, float r, float l, float x) {
-                           const NoisePoint<N> p = distorted<N>(noise_point<N>(v, w_, s), x);
-                           const Octaves o = octaves(d, r, l);
-                           return three_noises<N>(
-                               p, [&](const NoisePoint<N>& q) { return fractal_noise<N>(q, o); });
-                       },
-                       vector, w, scale, detail, roughness, lacunarity, distortion));
+    build_distorted<N>(
+        b,
+        [=](float d, float r, float l) {
+            return Octaves{d, bounded ? std::clamp(r, 0.0f, 1.0f) : std::max(r, 0.0f), l,
+                           normalize};
+        },
+        [](const NoisePoint<N>& p, const Octaves& octaves) { return fractal_noise<N>(p, octaves); },
+        b.number("Detail", 2.0f), b.number("Roughness", 0.5f), b.number("Lacunarity", 2.0f));
 }
 
 /// The other types of Noise Texture, since Blender 4.1.
 template <std::size_t N>
 void build_multifractal(NodeBuilder& b, Multifractal type) {
-    const auto [vector, w, scale] = noise_place<N>(b);
-    const FloatSource detail = b.number("Detail", 2.0f), roughness = b.number("Roughness", 0.5f);
-    const FloatSource lacunarity = b.number("Lacunarity", 2.0f), offset = b.number("Offset");
-    const FloatSource gain = b.number("Gain", 1.0f), distortion = b.number("Distortion");
-    const auto octaves = [](float d, float r, float l, float o, float g) {
-        return MultifractalOctaves{std::clamp(d, 0.0f, 15.0f) + 1.0f, std::max(r, 0.0f), l, o, g};
-    };
-    b.output("Fac", b.map<float>(
-                        [=](const Vec3f& v, float w_, float s, float d, float r, float l, float o,
-                            float g, float x) {
-                            const NoisePoint<N> p = distorted<N>(noise_point<N>(v, w_, s), x);
-                            return multifractal<N>(type, p, octaves(d, r, l, o, g));
-                        },
-                        vector, w, scale, detail, roughness, lacunarity, offset, gain, distortion));
-    b.output_color("Color",
-                   b.map<Vec3f>(
-                       [=](const Vec3f& v, float w_, float s, float d, float r, float l, float o,
-                           float g, float x) {
-                           const NoisePoint<N> p = distorted<N>(noise_point<N>(v, w_, s), x);
-                           const MultifractalOctaves all = octaves(d, r, l, o, g);
-                           return three_noises<N>(p, [&](const NoisePoint<N>& q) {
-                               return multifractal<N>(type, q, all);
-                           });
-                       },
-                       vector, w, scale, detail, roughness, lacunarity, offset, gain, distortion));
+    build_distorted<N>(
+        b,
+        [](float d, float r, float l, float o, float g) {
+            return MultifractalOctaves{std::clamp(d, 0.0f, 15.0f) + 1.0f, std::max(r, 0.0f), l, o,
+                                       g};
+        },
+        [type](const NoisePoint<N>& p, const MultifractalOctaves& octaves) {
+            return multifractal<N>(type, p, octaves);
+        },
+        b.number("Detail", 2.0f), b.number("Roughness", 0.5f), b.number("Lacunarity", 2.0f),
+        b.number("Offset"), b.number("Gain", 1.0f));
 }
 
 /// An octave's amplitude is lacunarity^-dimension of that before.

@@ -66,20 +66,6 @@ VectorSource NodeBuilder::vector_at(const std::string& input, Shift shift,
     return {-1, constant ? Vec3f(*constant) : Vec3f(0.0f)};
 }
 
-std::string NodeBuilder::text(const std::string& property, const std::string& fallback) const {
-    const auto found = m_node.properties.find(property);
-    if (found == m_node.properties.end()) return fallback;
-    const auto* value = std::get_if<std::string>(&found->second);
-    return value ? *value : fallback;
-}
-
-double NodeBuilder::value(const std::string& property, double fallback) const {
-    const auto found = m_node.properties.find(property);
-    if (found == m_node.properties.end()) return fallback;
-    const auto* value = std::get_if<double>(&found->second);
-    return value ? *value : fallback;
-}
-
 std::vector<float> NodeBuilder::table(const std::string& property) const {
     const auto found = m_node.properties.find(property);
     if (found == m_node.properties.end()) return {};

@@ -82,9 +82,13 @@ class NodeBuilder {
     }
 
     // Properties.
-    std::string text(const std::string& property, const std::string& fallback = "") const;
-    double value(const std::string& property, double fallback = 0.0) const;
-    bool flag(const std::string& property) const { return value(property) != 0.0; }
+    std::string text(const std::string& property, const std::string& fallback = "") const {
+        return m_node.text(property, fallback);
+    }
+    double value(const std::string& property, double fallback = 0.0) const {
+        return m_node.value(property, fallback);
+    }
+    bool flag(const std::string& property) const { return m_node.flag(property); }
     std::vector<float> table(const std::string& property) const;
 
     // Outputs.
