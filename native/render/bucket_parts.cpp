@@ -17,7 +17,7 @@ class TileParts {
     /// `pixels`: of the tile, in the frame's coordinates.
     ResolvedTile resolve(const Rect& pixels) {
         add(pixels);
-        return {m_tile, m_colors.filter(m_tile, m_samples), m_colors.noise(m_samples)};
+        return m_colors.resolve(m_tile, m_samples);
     }
 
   private:

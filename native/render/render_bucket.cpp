@@ -62,7 +62,6 @@ std::vector<ResolvedTile> resolve(Frame& frame, Hider& hider, const HiddenGrids&
     const std::vector<bool> seen = shade_seen(frame, hider, grids);
     const BucketRefinement refinement(frame, hider, *stores, seen);
     LayerTable layers(hider.pool(), seen);
-    const bool is_last = &hider.table() == &frame.levels.all();
     std::vector<ResolvedTile> resolved;
     resolved.reserve(stores->size());
     TileColors colors(frame, hider.table());
@@ -70,8 +69,7 @@ std::vector<ResolvedTile> resolve(Frame& frame, Hider& hider, const HiddenGrids&
         const TileSamples& samples = hider.tile_samples(i);
         const Vec2i tile = (*stores)[i].tile;
         colors.composite((*stores)[i], samples, layers, refinement.tile(i));
-        resolved.push_back(
-            {tile, colors.filter(tile, samples), is_last ? 0.0f : colors.noise(samples)});
+        resolved.push_back(colors.resolve(tile, samples));
     }
     return resolved;
 }
@@ -98,7 +96,7 @@ void look_again(Frame& frame, int bucket, ResolvedTile& tile) {
     for (int level = 0, next; (next = frame.levels.next(level, tile.noise)) != level;
          level = next) {
         frame.statistics.add(Counter::TilesResampled);
-        const Vec2i at = tile.tile;
+        const Vec2i at = tile.contribution.tile;
         tile = std::move(look(frame, bucket, next, {at.x, at.y, at.x + 1, at.y + 1}).front());
     }
 }

@@ -7,7 +7,6 @@ namespace granita {
 
 /// What a tile gives to the film, once its samples have their colours.
 struct ResolvedTile {
-    Vec2i tile;
     TileContribution contribution;
     float noise = 0.0f;  ///< film/tile_noise.h; where more samples could be taken
 };

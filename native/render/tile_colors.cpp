@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/stage_timer.h"
+#include "film/tile_noise.h"
 #include "hider/resolve/composite.h"
 #include "render/background.h"
 
@@ -47,6 +48,11 @@ void TileColors::take(const TileColors& part, const Rect& pixels, int samples) {
     if (channels.empty()) return;
     copy(part.m_channels.filtered, m_channels.filtered, samples * channels.sample_width());
     copy(part.m_channels.center, m_channels.center, channels.center_width());
+}
+
+ResolvedTile TileColors::resolve(Vec2i tile, const TileSamples& samples) const {
+    const bool is_last = &m_table == &m_frame.levels.all();
+    return {filter(tile, samples), is_last ? 0.0f : tile_noise(samples, m_colors)};
 }
 
 TileContribution TileColors::filter(Vec2i tile, const TileSamples& samples) const {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "film/tile_noise.h"
 #include "hider/hider.h"
 #include "hider/resolve/layer_table.h"
 #include "hider/resolve/refined_samples.h"
 #include "render/frame.h"
+#include "render/resolved_tile.h"
 
 namespace granita {
 
@@ -18,11 +18,11 @@ class TileColors {
                    const RefinedSamples& refined);
     /// Takes over the samples of these pixels (relative to the tile) of the same tile.
     void take(const TileColors& part, const Rect& pixels, int samples);
-    TileContribution filter(Vec2i tile, const TileSamples& samples) const;
-    /// film/tile_noise.h
-    float noise(const TileSamples& samples) const { return tile_noise(samples, m_colors); }
+    ResolvedTile resolve(Vec2i tile, const TileSamples& samples) const;
 
   private:
+    TileContribution filter(Vec2i tile, const TileSamples& samples) const;
+
     Frame& m_frame;
     const SampleTable& m_table;
     SampleColors m_colors;
