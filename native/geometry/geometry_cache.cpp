@@ -20,7 +20,7 @@ std::shared_ptr<const SharedGeometry> GeometryCache::shared(const Scene& scene,
                                                             std::size_t geometry, Report& report) {
     Entry& found = entry(scene, geometry);
     auto shared = found.parts->shared();
-    std::call_once(found.said, [&] { report.add(found.parts->said()); });
+    found.say(report);
     return shared;
 }
 
@@ -29,7 +29,7 @@ std::shared_ptr<const SharedElements> GeometryCache::elements(const Scene& scene
                                                               Report& report) {
     Entry& found = entry(scene, geometry);
     auto elements = found.parts->elements();
-    std::call_once(found.said, [&] { report.add(found.parts->said()); });
+    found.say(report);
     return elements;
 }
 

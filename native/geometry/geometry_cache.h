@@ -33,6 +33,10 @@ class GeometryCache {
     struct Entry {
         std::shared_ptr<GeometryParts> parts;
         std::once_flag said;
+
+        void say(Report& report) {
+            std::call_once(said, [&] { report.add(parts->said()); });
+        }
     };
     Entry& entry(const Scene& scene, std::size_t geometry);
 

@@ -51,8 +51,7 @@ std::shared_ptr<GeometryParts> KeptGeometry::find(const std::shared_ptr<const Ge
 }
 
 void KeptGeometry::keep_only(const GeometryList& geometries) {
-    std::set<const GeometryData*> there;
-    for (const GeometryData& data : geometries) there.insert(&data);
+    const std::set<const GeometryData*> there = geometries.members();
     const std::lock_guard lock(m_mutex);
     std::erase_if(m_parts, [&](const auto& entry) { return !there.contains(entry.first.first); });
 }

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -48,6 +49,13 @@ class GeometryList {
     /// Puts one of another frame, equal in every byte, in the place of its own.
     void adopt(std::size_t i, const GeometryList& other, std::size_t j) {
         m_items[i] = other.m_items[j];
+    }
+
+    /// Who is in it.
+    std::set<const GeometryData*> members() const {
+        std::set<const GeometryData*> found;
+        for (const auto& item : m_items) found.insert(item.get());
+        return found;
     }
 
     /// Holds the same ones from now on.
