@@ -6,11 +6,13 @@ openjd  what Open Job Description takes from a task's output: openjd_progress, o
         openjd_fail (https://github.com/OpenJobDescription/openjd-specifications, "How Jobs Are Run")
 
 Blender's own lines stay beside them.  What is told is told in both forms of output: to the artist
-in words, here in fields.
+in words, here in fields.  The session's log keeps it too, asked for or not.
 """
 
 import json
 import sys
+
+from . import session_log
 
 KINDS = ("json", "openjd")
 
@@ -29,10 +31,12 @@ class EventLog:
             _print(f"openjd_progress: {100.0 * min(max(fraction, 0.0), 1.0):.1f}")
 
     def warning(self, text):
+        session_log.note("warning", self._about, text)
         if self._kind == "json":
             self._json("warning", text=text)
 
     def error(self, text):
+        session_log.note("error", self._about, text)
         if self._kind == "json":
             self._json("error", text=text)
         elif self._kind == "openjd":
@@ -40,6 +44,7 @@ class EventLog:
 
     def layer(self, seconds):
         """A view layer is done; `seconds` by stage."""
+        session_log.note("layer", self._about, f"{seconds.get('total', 0.0):.2f} s")
         if self._kind == "json":
             self._json("layer", seconds={name: round(s, 3) for name, s in seconds.items()})
         elif self._kind == "openjd":

@@ -2,6 +2,8 @@
 """Where the native module cannot run: the add-on registers, draws and says why; and what it says
 where it can."""
 
+import os
+
 import bpy
 import pytest
 import scene_parts
@@ -81,4 +83,21 @@ def test_preferences_show_what_is_there(unfit, request):
     shown = " ".join(texts)
     assert ("this is Windows" in shown) == unfit
     assert ("Vector units" in shown and "OpenGL" in shown) != unfit
-    assert "granita.copy_system_report" in texts
+    assert "granita.copy_system_report" in texts and "granita.open_log" in texts
+
+
+def test_the_log_opens(monkeypatch, tmp_path, scene):
+    """By the desktop's own program, for which a script stands that keeps what it is given."""
+    opener, opened = tmp_path / "xdg-open", tmp_path / "opened.txt"
+    opener.write_text(f'#!/bin/sh\ncp "$1" {opened}\n')
+    opener.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    scene.render.filepath = str(tmp_path / "frame.png")
+    scene_parts.add_camera(scene)
+    scene.camera.data.type = "PANO"
+    with pytest.raises(RuntimeError, match="camera"):
+        bpy.ops.render.render(write_still=True)
+    assert bpy.ops.granita.open_log() == {"FINISHED"}
+    text = opened.read_text()
+    assert "OpenGL: " in text
+    assert f"frame {scene.frame_current}: error: camera" in text
