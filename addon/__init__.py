@@ -18,10 +18,11 @@ bl_info = {
 
 
 def _parts():
-    from . import engine, preferences, properties, ui
+    from . import engine, preferences, properties, ui, written_frames
     from .parts import part_output
 
-    return (properties, preferences, ui, part_output, engine)
+    # What was written is looked at before its path is put back.
+    return (properties, preferences, ui, written_frames, part_output, engine)
 
 
 def register():

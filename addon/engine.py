@@ -12,7 +12,15 @@ from contextlib import contextmanager
 
 import bpy
 
-from . import bridge, command_line, final_merge, final_render, frame_statistics, passes
+from . import (
+    bridge,
+    command_line,
+    final_merge,
+    final_render,
+    frame_statistics,
+    passes,
+    written_frames,
+)
 from .event_log import EventLog
 from .export import PersistentState
 from .export.base.report import Cancelled, ExportError, escaped
@@ -65,6 +73,9 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
         try:
             options = command_line.parse()
             self.log = EventLog(options.log, depsgraph.scene.frame_current)
+            if lost := written_frames.problem():
+                self._fail(lost)
+                return
             if options.merge is not None:
                 final_merge.FinalMerge(self, depsgraph, options).run()
                 return

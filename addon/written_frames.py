@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""No half picture under a frame's name: what Blender wrote of a Granita frame is looked at.
+
+On a full disk Blender's own writer of OpenEXR leaves half a file, says "Saved" and ends with exit code 0 (measured in
+3.4, with every engine), and that of PNG leaves half a file beside its error.  Such a file is taken away, and the
+process of a farm ends with 1.
+"""
+
+import os
+import shutil
+import sys
+import time
+from pathlib import Path
+
+import bpy
+
+from .event_log import EventLog
+from .export.base.report import escaped
+from .whole_file import is_whole
+
+
+class _Frame:
+    """Of the render that runs."""
+
+    began = 0.0
+    number = 0  # a cancelled animation has gone back to its scene's own
+    problem = ""
+
+
+def problem():
+    """What became of an earlier frame of this render; empty where all is well."""
+    return _Frame.problem
+
+
+@bpy.app.handlers.persistent
+def _render_begins(*_):
+    _Frame.problem = ""
+
+
+@bpy.app.handlers.persistent
+def _frame_begins(scene, *_):
+    _Frame.began, _Frame.number = time.time(), scene.frame_current
+
+
+@bpy.app.handlers.persistent
+def _look_at_written(scene, *_):
+    if scene.render.engine != "GRANITA":
+        return
+    for path in _take_away(scene):
+        text = f"'{path}' was not written whole and is removed: the disk may be full"
+        _Frame.problem = text
+        EventLog(None, _Frame.number).error(text)
+        # A frame that was written is no longer the engine's: it cannot fail any more.
+        print(f"Error: Granita: {escaped(text)}", file=sys.stderr, flush=True)
+    if _Frame.problem and bpy.app.background and bpy.app.binary_path:
+        shutil.rmtree(bpy.app.tempdir, ignore_errors=True)
+        sys.stdout.flush()
+        os._exit(1)
+
+
+@bpy.app.handlers.persistent
+def _look_at_cancelled(scene, *_):
+    if scene.render.engine == "GRANITA":
+        for path in _take_away(scene):
+            print(f"Granita: removed '{escaped(str(path))}', half of a file", flush=True)
+
+
+def _take_away(scene):
+    """Removes those files of the frame that this render began and did not end; returns them."""
+    if scene.render.is_movie_format:
+        return []
+    taken = []
+    for path in _paths(scene):
+        try:
+            # The clock of a network's file system may be a little behind.
+            if path.stat().st_mtime >= _Frame.began - 2.0 and not is_whole(path):
+                path.unlink()
+                taken.append(path)
+        except OSError:
+            continue  # there is none, or none of ours
+    return taken
+
+
+def _paths(scene):
+    """Of an animation's frame, and of a still's."""
+    render = scene.render
+    still = bpy.path.abspath(render.filepath)
+    ending = render.file_extension if render.use_file_extension else ""
+    names = {render.frame_path(frame=_Frame.number), still}
+    if not still.lower().endswith(ending):
+        names.add(still + ending)
+    return [Path(name) for name in sorted(names) if name]
+
+
+_HANDLERS = (
+    ("render_init", _render_begins),
+    ("render_pre", _frame_begins),
+    ("render_write", _look_at_written),
+    ("render_cancel", _look_at_cancelled),
+)
+
+
+def register():
+    for name, function in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(function)
+
+
+def unregister():
+    for name, function in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(function)

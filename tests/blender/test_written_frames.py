@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files that a disk cut off: told apart from whole ones in every format and at every length, removed, exit code 1.
+
+A limit on the size of files stands for the disk: writing fails in the same places.
+"""
+
+import bpy
+import numpy as np
+import pytest
+import render_host
+import scene_parts
+
+from granita import whole_file
+
+# (format, codec of OpenEXR, other settings): those whose end can be seen.
+FORMATS = [
+    ("PNG", None, {}),
+    ("JPEG", None, {}),
+    *(("OPEN_EXR", codec, {}) for codec in ("NONE", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "DWAA")),
+    ("OPEN_EXR_MULTILAYER", "ZIP", {"use_exr_interleave": True}),
+    ("OPEN_EXR_MULTILAYER", "ZIP", {"use_exr_interleave": False}),
+]
+LIMIT = """
+import resource, signal
+import bpy
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+render = bpy.context.scene.render
+image = render.image_settings
+if hasattr(image, "media_type"):
+    image.media_type = "IMAGE"
+image.file_format, codec = "{}", "{}"
+if codec != "None":
+    image.exr_codec = codec
+render.resolution_x = render.resolution_y = 256
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, resource.RLIM_INFINITY))
+"""
+
+
+def set_format(image, kind, codec, others):
+    if hasattr(image, "media_type"):
+        image.media_type = "MULTI_LAYER_IMAGE" if "MULTI" in kind else "IMAGE"
+    image.file_format = kind
+    if codec:
+        image.exr_codec = codec
+    for name, value in others.items():
+        if hasattr(image, name):
+            setattr(image, name, value)
+
+
+@pytest.mark.parametrize("kind, codec, others", FORMATS)
+def test_a_cut_is_seen(scene, tmp_path, kind, codec, others):
+    scene_parts.add_camera(scene, ortho_scale=4.0)
+    scene_parts.add_square(scene, material=scene_parts.emission("Glow", (0.25, 0.5, 0.75)))
+    set_format(scene.render.image_settings, kind, codec, others)
+    path = tmp_path / "picture"
+    scene.render.use_file_extension = False
+    scene.render.filepath = str(path)
+    bpy.ops.render.render(write_still=True)
+    whole = path.read_bytes()
+    assert whole_file.is_whole(path)
+    lengths = np.random.default_rng(3).integers(0, len(whole), 40)
+    for length in {0, 1, 8, 9, len(whole) - 1, *map(int, lengths)}:
+        path.write_bytes(whole[:length])
+        assert not whole_file.is_whole(path), length
+
+
+@pytest.mark.parametrize("kind, codec", [("OPEN_EXR", "NONE"), ("OPEN_EXR", "ZIP"), ("PNG", None)])
+def test_a_full_disk_leaves_no_half_file(blend, tmp_path, kind, codec):
+    """The first of two frames fails; the second is not tried."""
+    outcome = render_host.run(blend, tmp_path / "out", LIMIT.format(kind, codec), last=2)
+    assert outcome.code == 1, outcome.output
+    assert outcome.files == []
+    assert "frame_0001" in outcome.output and "frame_0002" not in outcome.output
+    assert "removed" in outcome.output
+
+
+def test_whole_files_stay(blend, tmp_path):
+    outcome = render_host.run(blend, tmp_path / "out", last=2)
+    assert outcome.code == 0
+    assert [path.name for path in outcome.files] == ["frame_0001.exr", "frame_0002.exr"]
+    assert all(map(whole_file.is_whole, outcome.files))
