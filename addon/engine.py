@@ -6,8 +6,6 @@ crash while saving a float file.  `report({'ERROR'})` alone makes `blender -b` s
 and exit with 1; `error_set` adds the banner in the window.
 """
 
-import sys
-import traceback
 from contextlib import contextmanager
 
 import bpy
@@ -15,6 +13,7 @@ import bpy
 from . import (
     bridge,
     command_line,
+    fault,
     final_merge,
     final_render,
     frame_statistics,
@@ -66,8 +65,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
         try:
             passes.register(self, scene, renderlayer)
         except Exception as error:
-            _print_traceback()
-            self.report({"ERROR"}, escaped(f"passes: {type(error).__name__}: {error}"))
+            self.report({"ERROR"}, escaped(f"passes: {fault.traced(error)}"))
 
     def render(self, depsgraph):
         try:
@@ -92,8 +90,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
         except KeyboardInterrupt:
             self._fail("interrupted")
         except Exception as error:
-            _print_traceback()
-            self._fail(f"{type(error).__name__}: {error}")
+            self._fail(fault.traced(error))
 
     def render_frame_finish(self):
         try:
@@ -132,12 +129,7 @@ def _told(engine):
     try:
         yield
     except Exception as error:
-        _print_traceback()
-        engine.update_stats("", escaped(f"{type(error).__name__}: {error}"))
-
-
-def _print_traceback():
-    print("\n".join(escaped(line) for line in traceback.format_exc().splitlines()), file=sys.stderr)
+        engine.update_stats("", escaped(fault.traced(error)))
 
 
 # Handlers are forgotten where a file is loaded unless they are persistent.

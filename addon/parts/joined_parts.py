@@ -31,7 +31,8 @@ def read_parts(folder, frame, layer, count, crop, tile, passes):
     headers = [read(path).header for path in paths]
     # The latest is what was meant: those that differ from it were left over.
     latest = max(headers, key=lambda header: header["written"])
-    for path, header, rect in zip(paths, headers, split(crop, count, tile), strict=True):
+    rects = split(crop, count, tile)
+    for path, header, rect in zip(paths, headers, rects, strict=True):
         what = f"part file '{path}'"
         for key, complaint in _COMMON:
             if header[key] != latest[key]:
@@ -44,6 +45,6 @@ def read_parts(folder, frame, layer, count, crop, tile, passes):
         had = [(name, channels) for name, channels in header["passes"]]
         if rect and had != list(passes):
             raise PartError(f"{what} has other passes than the view layer asks for now: {had}")
-    for path, rect in zip(paths, split(crop, count, tile), strict=True):
+    for path, rect in zip(paths, rects, strict=True):
         if rect:
             yield read(path)

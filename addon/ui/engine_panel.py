@@ -10,3 +10,9 @@ class EnginePanel:
     @classmethod
     def poll(cls, context):
         return context.engine in cls.COMPAT_ENGINES
+
+    def column(self, heading="", align=False):
+        """Of properties that stand beside their names and are not animated here."""
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        return self.layout.column(heading=heading, align=align)

@@ -16,9 +16,7 @@ class GRANITA_MATERIAL_PT_settings(EnginePanel, bpy.types.Panel):
         return super().poll(context) and context.material is not None
 
     def draw(self, context):
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
-        self.layout.prop(context.material, "pass_index")
+        self.column().prop(context.material, "pass_index")
 
 
 register, unregister = bpy.utils.register_classes_factory((GRANITA_MATERIAL_PT_settings,))

@@ -23,9 +23,7 @@ class _PassPanel(EnginePanel):
         row.prop(owner, name, text=text)
 
     def begin(self, heading=""):
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
-        return self.layout.column(heading=heading, align=True)
+        return self.column(heading, align=True)
 
 
 class GRANITA_VIEWLAYER_PT_passes(_PassPanel, bpy.types.Panel):

@@ -20,11 +20,6 @@ def shutter_position_owner(scene):
 class RenderPanel(EnginePanel):
     bl_context = "render"
 
-    def column(self):
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
-        return self.layout.column()
-
 
 class GRANITA_RENDER_PT_device(RenderPanel, bpy.types.Panel):
     bl_label = "Granita"

@@ -10,11 +10,6 @@ class _LayerPanel(EnginePanel):
     bl_context = "view_layer"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def column(self, heading=""):
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
-        return self.layout.column(heading=heading)
-
 
 class GRANITA_VIEWLAYER_PT_filter(_LayerPanel, bpy.types.Panel):
     bl_label = "Filter"

@@ -37,18 +37,8 @@ def carried(still, times, moving, moving_times):
         **still,
         "camera": _camera(still["camera"], moving["camera"], before),
         "instances": _instances(still["instances"], moving["instances"], before),
-        "geometries": [
-            _geometry(now, then, before)
-            for now, then in zip(still["geometries"], moving["geometries"], strict=True)
-        ]
-        if len(still["geometries"]) == len(moving["geometries"])
-        else still["geometries"],
-        "lights": [
-            _light(now, then, before)
-            for now, then in zip(still["lights"], moving["lights"], strict=True)
-        ]
-        if len(still["lights"]) == len(moving["lights"])
-        else still["lights"],
+        "geometries": _each(_geometry, still["geometries"], moving["geometries"], before),
+        "lights": _each(_light, still["lights"], moving["lights"], before),
     }
 
 
@@ -181,6 +171,13 @@ def _instances(now, then, before):
     found = {**now, "world_from_object": np.concatenate(paths)}
     found["knots"] = np.array([len(path) for path in paths], dtype=np.int32)
     return found
+
+
+def _each(one, now, then, before):
+    """A list with the motion of another one: one(now, then, before) by place; still where there are more, or fewer."""
+    if len(now) != len(then):
+        return now
+    return [one(a, b, before) for a, b in zip(now, then)]
 
 
 def _geometry(now, then, before):

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Goes on with all views between two events of the window, as long as any has something to do."""
 
-import sys
-import traceback
-
 import bpy
 
+from .. import fault
 from ..export.base.report import escaped
 
 _views = []
@@ -51,9 +49,7 @@ def _step():
         try:
             delays.append(view.step())
         except Exception as error:  # a view that fails may not stop the others, nor the window
-            lines = traceback.format_exc().splitlines()
-            print("\n".join(escaped(line) for line in lines), file=sys.stderr)
-            view.fail(escaped(f"{type(error).__name__}: {error}"))
+            view.fail(escaped(fault.traced(error)))
     delays = [delay for delay in delays if delay is not None]
     return min(delays) if delays else None
 

@@ -39,10 +39,7 @@ def read_snapshot(scene_name, layer_name, viewpoint_of, report):
     Raises:
         ExportError.
     """
-    scene = bpy.data.scenes.get(scene_name)
-    if scene is None or layer_name not in scene.view_layers:
-        raise ExportError(f"scene '{scene_name}'", "is gone")
-    with _copied(scene, layer_name) as depsgraph:
+    with _copied(_scene(scene_name, layer_name), layer_name) as depsgraph:
         copy = depsgraph.scene
         return export_frame(None, depsgraph, copy.granita, report, viewpoint=viewpoint_of(copy))
 
@@ -53,9 +50,7 @@ def read_still(scene_name, layer_name, viewpoint_of, persistent_state, report):
     Args:
         persistent_state: export.PersistentState, which has noted all updates since.
     """
-    scene = bpy.data.scenes.get(scene_name)
-    if scene is None or layer_name not in scene.view_layers:
-        raise ExportError(f"scene '{scene_name}'", "is gone")
+    scene = _scene(scene_name, layer_name)
     return export_frame(
         None,
         scene.view_layers[layer_name].depsgraph,
@@ -65,6 +60,13 @@ def read_still(scene_name, layer_name, viewpoint_of, persistent_state, report):
         viewpoint=viewpoint_of(scene),
         moves=False,
     )
+
+
+def _scene(name, layer_name):
+    scene = bpy.data.scenes.get(name)
+    if scene is None or layer_name not in scene.view_layers:
+        raise ExportError(f"scene '{name}'", "is gone")
+    return scene
 
 
 # Modifiers whose result depends on time without an animation that says so.

@@ -11,7 +11,7 @@ import numpy as np
 from mathutils import Vector
 
 from ..export.base.transforms import from_matrix, inverse, world_from_camera
-from ..export.scene.camera import Frame, window_projection
+from ..export.scene.camera import PINHOLE, Frame, window_projection
 from ..export.scene.options import border, render_border, scene_frame
 from ..export.scene.viewpoint import CameraViewpoint, StillViewpoint
 
@@ -49,11 +49,7 @@ class Sight:
             "scale": scale,
             "center": center,
             "clip": clip,
-            "lens_radius": 0.0,
-            "focus_distance": 10.0,
-            "blades": 0,
-            "blade_rotation": 0.0,
-            "lens_ratio": 1.0,
+            **PINHOLE,
         }
 
 

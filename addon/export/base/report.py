@@ -58,6 +58,17 @@ class Report:
         return len(self._counts)
 
 
+def overheard(report):
+    """(said, note): what `note` is called with goes on to `report`, and stands in the list `said`."""
+    said = []
+
+    def note(datablock, message):
+        said.append((datablock, message))
+        report(datablock, message)
+
+    return said, note
+
+
 def escaped(text):
     """Text that does nothing to a terminal and stays on its line: control characters, line separators,
     marks that turn the direction of writing and halves of surrogate pairs are shown as Python writes them."""

@@ -21,7 +21,8 @@ _LAYOUT = {
 }
 # Of the nodes Attribute, Color Attribute and UV Map.
 _NAMING_PROPERTIES = {"attribute_name", "layer_name", "uv_map"}
-_DOMAINS = ("POINT", "FACE", "CORNER")
+# Blender's domain -> the snapshot's.
+_DOMAINS = {"POINT": "POINT", "FACE": "FACE", "CORNER": "CORNER"}
 # In place of a name: Geometry > Random Per Island, which the native side makes of edges.
 ISLANDS = ".random_per_island"
 # Stands among the names for Blender's Generated coordinates, which are no attribute.
@@ -94,20 +95,31 @@ def mesh_attributes(mesh, label, requested, report):
     """
     found = _uv_maps(mesh) + _colors(mesh)
     taken = {attribute.name for attribute in found}
-    for name in sorted(requested - taken):
-        attribute = mesh.attributes.get(name)
+    for attribute, domain, values in shadable(mesh, requested - taken, _DOMAINS, label, report):
+        found.append(Attribute(attribute.name, domain, "GENERIC", values))
+    finite_attributes(found, label, report)
+    return found
+
+
+def shadable(data, names, domains, label, report):
+    """Yields (attribute, the snapshot's domain, values) of those that there are; names those that cannot be shaded.
+
+    Args:
+        data: evaluated Mesh, Curves or PointCloud.
+        domains: Blender's domain -> the snapshot's.
+    """
+    for name in sorted(names):
+        attribute = data.attributes.get(name)
         if attribute is None:
             continue
-        values = attribute_values(attribute)
-        if values is None or attribute.domain not in _DOMAINS:
+        values, domain = attribute_values(attribute), domains.get(attribute.domain)
+        if values is None or domain is None:
             report(
                 label,
                 f"attribute '{name}' ({attribute.data_type} on {attribute.domain}) cannot be shaded",
             )
             continue
-        found.append(Attribute(name, attribute.domain, "GENERIC", values))
-    finite_attributes(found, label, report)
-    return found
+        yield attribute, domain, values
 
 
 def finite_attributes(attributes, label, report):
@@ -151,3 +163,10 @@ def attribute_values(attribute):
     values = np.empty(len(attribute.data) * width, dtype=dtype)
     attribute.data.foreach_get(member, values)
     return values.reshape(-1, width).astype(np.float32, copy=False)
+
+
+def vectors(collection, member="vector"):
+    """float32 [n, 3]."""
+    values = np.empty((len(collection), 3), dtype=np.float32)
+    collection.foreach_get(member, values.reshape(-1))
+    return values

@@ -4,11 +4,11 @@
 import numpy as np
 
 from ..base.snapshot import Attribute
+from .attributes import vectors
 from .elements import (
     Elements,
     element_attributes,
     element_geometry,
-    vector_attribute,
     with_radii,
 )
 
@@ -43,7 +43,7 @@ def read_curves(data, label, requested, report):
 
 def _read(_thing, data):
     attribute = data.attributes.get("position")
-    points = vector_attribute(attribute.data if attribute else data.position_data)
+    points = vectors(attribute.data if attribute else data.position_data)
     offsets = np.empty(len(data.curve_offset_data), dtype=np.int32)
     data.curve_offset_data.foreach_get("value", offsets)
     return with_radii(points, data, _RADIUS), np.diff(offsets)

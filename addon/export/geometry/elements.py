@@ -7,7 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.snapshot import Attribute, Geometry
-from .attributes import attribute_values, finite_attributes
+from .attributes import finite_attributes, shadable
+
+# Blender's domain -> the snapshot's.
+_DOMAINS = {"POINT": "POINT", "CURVE": "FACE"}
 
 
 @dataclass(frozen=True)
@@ -22,13 +25,6 @@ class Elements:
         """float32 [V, 3 or 4], or None where the elements are not the frame's any more."""
         points, sizes = self.read(thing, data)
         return points if np.array_equal(sizes, self.sizes) else None
-
-
-def vector_attribute(collection, member="vector"):
-    """float32 [n, 3]."""
-    values = np.empty((len(collection), 3), dtype=np.float32)
-    collection.foreach_get(member, values.reshape(-1))
-    return values
 
 
 def with_radii(points, data, default):
@@ -77,19 +73,8 @@ def element_attributes(data, label, requested, report):
         report: called with (datablock, message).
     """
     found = []
-    for name in sorted(requested):
-        attribute = data.attributes.get(name)
-        if attribute is None:
-            continue
-        values = attribute_values(attribute)
-        domain = {"POINT": "POINT", "CURVE": "FACE"}.get(attribute.domain)
-        if values is None or domain is None:
-            report(
-                label,
-                f"attribute '{name}' ({attribute.data_type} on {attribute.domain}) cannot be shaded",
-            )
-            continue
+    for attribute, domain, values in shadable(data, requested, _DOMAINS, label, report):
         color = attribute.data_type in {"FLOAT_COLOR", "BYTE_COLOR"}
-        found.append(Attribute(name, domain, "COLOR" if color else "GENERIC", values))
+        found.append(Attribute(attribute.name, domain, "COLOR" if color else "GENERIC", values))
     finite_attributes(found, label, report)
     return found

@@ -7,6 +7,7 @@ Read where a material asks for them: Blender is asked for undeformed places one 
 
 import numpy as np
 
+from .attributes import vectors
 from .mesh import read_points, read_topology
 from .subdivision import cage_mesh
 
@@ -20,9 +21,7 @@ _DEFORMERS = frozenset(
 
 def read_generated(mesh):
     """float32 [V, 3] of an evaluated mesh: [0, 1] within the texture space."""
-    places = np.empty((len(mesh.vertices), 3), dtype=np.float32)
-    mesh.vertices.foreach_get("undeformed_co", places.reshape(-1))
-    return _in_texture_space(mesh, places)
+    return _in_texture_space(mesh, vectors(mesh.vertices, "undeformed_co"))
 
 
 def cage_generated(evaluated, cage, topology, label, depsgraph, report):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.blur_settings import deforms
-from ..base.report import poll
+from ..base.report import overheard, poll
 from ..base.snapshot import Geometry
 from .attributes import GENERATED
 from .curves import read_curves
@@ -120,12 +120,7 @@ def read_geometries(scan, requested, depsgraph, report, check_cancel, known=()):
 
 def read_source(prototype, example, requested, depsgraph, report, check_cancel):
     """The GeometrySource of one InstancePrototype, or None where there is nothing to see."""
-    said = []
-
-    def note(datablock, message):
-        said.append((datablock, message))
-        report(datablock, message)
-
+    said, note = overheard(report)
     source = _read(prototype, example, requested, depsgraph, note, check_cancel)
     if source is not None:
         source.said = said

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.report import counted, poll
 from ..base.snapshot import Geometry
-from .attributes import ISLANDS, mesh_attributes
+from .attributes import ISLANDS, mesh_attributes, vectors
 
 
 @dataclass(frozen=True)
@@ -79,13 +79,8 @@ def unsigned(collection, member, width=1):
 
 def read_points(mesh):
     """float32 [V, 3], object space."""
-    points = np.empty((len(mesh.vertices), 3), dtype=np.float32)
     attribute = mesh.attributes.get("position")
-    if attribute is not None:
-        attribute.data.foreach_get("vector", points.reshape(-1))
-    else:
-        mesh.vertices.foreach_get("co", points.reshape(-1))
-    return points
+    return vectors(attribute.data) if attribute is not None else vectors(mesh.vertices, "co")
 
 
 def read_geometry(mesh, label, requested, report, check_cancel, subdivision=None):
@@ -189,21 +184,15 @@ def _shading(mesh):
             return None, None
         if mesh.normals_domain == "POINT":
             return np.ones(len(mesh.polygons), dtype=np.uint8), None
-        return _smooth(mesh), _vectors(mesh.corner_normals, "vector")
+        return _smooth(mesh), vectors(mesh.corner_normals)
     smooth = _smooth(mesh)
     if not mesh.use_auto_smooth or smooth is None:
         return smooth, None
     # On the evaluated mesh: the layer is the render's own, and is freed at once.
     mesh.calc_normals_split()
-    normals = _vectors(mesh.loops, "normal")
+    normals = vectors(mesh.loops, "normal")
     mesh.free_normals_split()
     return smooth, normals
-
-
-def _vectors(collection, member):
-    values = np.empty((len(collection), 3), dtype=np.float32)
-    collection.foreach_get(member, values.reshape(-1))
-    return values
 
 
 def _drop_broken_faces(geometry, report):

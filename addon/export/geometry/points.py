@@ -3,11 +3,11 @@
 
 import numpy as np
 
+from .attributes import vectors
 from .elements import (
     Elements,
     element_attributes,
     element_geometry,
-    vector_attribute,
     with_radii,
 )
 
@@ -26,5 +26,5 @@ def read_point_cloud(data, label, requested, report):
 
 def _read(_thing, data):
     attribute = data.attributes.get("position")
-    points = vector_attribute(attribute.data) if attribute else vector_attribute(data.points, "co")
+    points = vectors(attribute.data) if attribute else vectors(data.points, "co")
     return with_radii(points, data, _RADIUS), np.array([len(points)], dtype=np.int32)

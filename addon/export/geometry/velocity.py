@@ -8,6 +8,7 @@ it says all of the deformation, as in Cycles; the object's own motion comes on t
 import numpy as np
 
 from ..base.report import counted
+from .attributes import vectors
 
 NAME = "velocity"
 
@@ -39,8 +40,7 @@ def read_velocity(data, count, label, report):
 
 def finite_velocity(attribute, noun, label, report):
     """float32 [n, 3] of an attribute of vectors; what is not finite is 0 and named, by the noun for one of n."""
-    velocity = np.empty((len(attribute.data), 3), dtype=np.float32)
-    attribute.data.foreach_get("vector", velocity.reshape(-1))
+    velocity = vectors(attribute.data)
     broken = ~np.isfinite(velocity).all(axis=1)
     if broken.any():
         count = counted(np.count_nonzero(broken), noun)

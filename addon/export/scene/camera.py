@@ -90,6 +90,14 @@ def lens_radius(kind, focal_length_mm, f_stop):
     )
 
 
+# Of a record without depth of field.
+PINHOLE = {
+    "lens_radius": 0.0,
+    "focus_distance": 10.0,
+    "blades": 0,
+    "blade_rotation": 0.0,
+    "lens_ratio": 1.0,
+}
 _KINDS = {"PERSP": "PERSPECTIVE", "ORTHO": "ORTHOGRAPHIC"}
 
 
@@ -151,11 +159,7 @@ def camera_record(camera, frame, depsgraph, report):
         "scale": scale,
         "center": center,
         "clip": (data.clip_start, data.clip_end),
-        "lens_radius": 0.0,
-        "focus_distance": 10.0,
-        "blades": 0,
-        "blade_rotation": 0.0,
-        "lens_ratio": 1.0,
+        **PINHOLE,
     }
     if data.dof.use_dof:
         _add_lens(record, data, evaluated, depsgraph, report)

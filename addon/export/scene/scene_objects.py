@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.report import overheard
 from ..base.snapshot import Instances
 from ..geometry.attributes import requested_names
 from ..geometry.geometry_source import read_geometries
@@ -60,12 +61,7 @@ def read_scene_objects(depsgraph, known, report, check_cancel):
         report: called with (datablock, message).
         check_cancel: true when the user has cancelled.
     """
-    said = []
-
-    def note(datablock, message):
-        said.append((datablock, message))
-        report(datablock, message)
-
+    said, note = overheard(report)
     scan = visit(depsgraph, note, check_cancel)
     override = depsgraph.view_layer_eval.material_override
     used, slots = collect_materials(scan.prototypes, override)
