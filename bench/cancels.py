@@ -16,29 +16,13 @@ import tempfile
 import time
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "tests" / "blender"))
+TESTS = Path(__file__).resolve().parent.parent / "tests" / "blender"
+sys.path.insert(0, str(TESTS))
 import exr  # noqa: E402
 
+FRAMES = 60
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 BLENDER = ["blender", "-b", "--factory-startup", "--addons", "granita"]
-SCENE = """
-import sys
-sys.path[:0] = [{tests!r}]
-import bpy, scene_parts
-bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-scene = bpy.context.scene
-scene.render.engine = "GRANITA"
-scene.render.resolution_x, scene.render.resolution_y = 640, 480
-scene_parts.add_camera(scene, ortho_scale=4.0)
-square = scene_parts.add_square(scene, material=scene_parts.emission("Glow", (0.25, 0.5, 0.75)))
-for frame, x in ((0, -1.0), (60, 1.0)):
-    square.location.x = x
-    square.keyframe_insert("location", frame=frame)
-scene.render.use_motion_blur = True
-scene_parts.multilayer_exr(scene)
-bpy.ops.wm.save_as_mainfile(filepath={path!r})
-"""
 
 
 def run(*words):
@@ -52,7 +36,7 @@ def run(*words):
 
 def stopped(blend, out, stop, later):
     """Paths of the files that a render leaves which is stopped `later` seconds after its first."""
-    process = run(blend, "-E", "GRANITA", "-o", out / "frame_####", "-s", 1, "-e", 60, "-a")
+    process = run(blend, "-E", "GRANITA", "-o", out / "frame_####", "-a")
     began = time.monotonic()
     while not any(out.iterdir()) and time.monotonic() - began < 60.0:
         time.sleep(0.02)
@@ -71,8 +55,8 @@ def main():
     whole, broken = 0, []
     with tempfile.TemporaryDirectory() as folder:
         blend = Path(folder) / "scene.blend"
-        code = SCENE.format(tests=str(HERE.parent / "tests" / "blender"), path=str(blend))
-        if run("--python-exit-code", 1, "--python-expr", code).wait():
+        scene = ["--python", TESTS / "moving_square.py", "--", blend, 640, 64, FRAMES]
+        if run("--python-exit-code", 1, *scene).wait():
             sys.exit("the scene cannot be made")
         for number in range(options.runs):
             out = Path(folder) / str(number)

@@ -49,13 +49,8 @@ class Tree:
     """A material of nodes on an object; `add` and `link` by names."""
 
     def __init__(self, thing, name="Material"):
-        self.material = bpy.data.materials.new(name)
-        if self.material.node_tree is None:
-            self.material.use_nodes = True
+        self.material, self.nodes, self.links, self.output = scene_parts.node_material(name)
         thing.data.materials.append(self.material)
-        self.nodes, self.links = self.material.node_tree.nodes, self.material.node_tree.links
-        self.nodes.clear()
-        self.output = self.add("ShaderNodeOutputMaterial")
 
     def add(self, kind, **properties):
         node = self.nodes.new(kind)

@@ -66,6 +66,16 @@ def add_square(scene, name="Square", size=2.0, location=(0.0, 0.0, 0.0), materia
     return add_mesh(scene, name, corners, [(0, 1, 2, 3)], location, material)
 
 
+def add_collection(scene, name, things=()):
+    """A collection of the scene that holds just these objects of it."""
+    collection = bpy.data.collections.new(name)
+    scene.collection.children.link(collection)
+    for thing in things:
+        collection.objects.link(thing)
+        scene.collection.objects.unlink(thing)
+    return collection
+
+
 def add_subsurf(thing, levels=2):
     """A Subdivision modifier on smooth faces: of flat ones Blender's own facets are drawn."""
     mesh = thing.data
@@ -83,16 +93,26 @@ def cast_no_shadow(light):
         light.cycles.cast_shadow = False
 
 
-def emission(name, color, strength=1.0):
-    """A material whose pixels are `color` (linear RGB) times `strength`."""
+def node_material(name="Material"):
+    """(material, nodes, links, its output), without other nodes."""
     material = bpy.data.materials.new(name)
     if material.node_tree is None:
         material.use_nodes = True
-    nodes, links = material.node_tree.nodes, material.node_tree.links
-    nodes.clear()
-    emit = nodes.new("ShaderNodeEmission")
-    emit.inputs["Color"].default_value = (*color, 1.0)
-    emit.inputs["Strength"].default_value = strength
-    output = nodes.new("ShaderNodeOutputMaterial")
-    links.new(emit.outputs["Emission"], output.inputs["Surface"])
+    tree = material.node_tree
+    tree.nodes.clear()
+    return material, tree.nodes, tree.links, tree.nodes.new("ShaderNodeOutputMaterial")
+
+
+def closure(name, node_type, **inputs):
+    """A material of one shader node; `inputs` by the names of its sockets."""
+    material, nodes, links, output = node_material(name)
+    shader = nodes.new(node_type)
+    for socket, value in inputs.items():
+        shader.inputs[socket].default_value = value
+    links.new(shader.outputs[0], output.inputs["Surface"])
     return material
+
+
+def emission(name, color, strength=1.0):
+    """A material whose pixels are `color` (linear RGB) times `strength`."""
+    return closure(name, "ShaderNodeEmission", Color=(*color, 1.0), Strength=strength)

@@ -9,12 +9,8 @@ import scene_parts
 
 def random_as_color(name):
     """A material that emits Object Info's Random."""
-    material = bpy.data.materials.new(name)
-    material.use_nodes = True
-    nodes, links = material.node_tree.nodes, material.node_tree.links
-    nodes.clear()
+    material, nodes, links, output = scene_parts.node_material(name)
     info, emit = nodes.new("ShaderNodeObjectInfo"), nodes.new("ShaderNodeEmission")
-    output = nodes.new("ShaderNodeOutputMaterial")
     links.new(info.outputs["Random"], emit.inputs["Color"])
     links.new(emit.outputs[0], output.inputs["Surface"])
     return material

@@ -104,13 +104,7 @@ def test_coverage_is_that_of_cycles(scene, render, build):
 
 
 def matte():
-    material = bpy.data.materials.new("Matte")
-    material.use_nodes = True
-    material.node_tree.nodes.clear()
-    diffuse = material.node_tree.nodes.new("ShaderNodeBsdfDiffuse")
-    output = material.node_tree.nodes.new("ShaderNodeOutputMaterial")
-    material.node_tree.links.new(diffuse.outputs[0], output.inputs[0])
-    return material
+    return scene_parts.closure("Matte", "ShaderNodeBsdfDiffuse")
 
 
 def test_shading_is_that_of_cycles(scene, render):

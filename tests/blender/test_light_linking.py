@@ -13,14 +13,10 @@ pytestmark = pytest.mark.skipif(
 
 
 def matte(transparent=0.0):
-    material = bpy.data.materials.new("Matte")
-    if material.node_tree is None:
-        material.use_nodes = True
-    nodes, links = material.node_tree.nodes, material.node_tree.links
-    nodes.clear()
+    material, nodes, links, output = parts.node_material("Matte")
     diffuse, clear = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeBsdfTransparent")
     clear.inputs["Color"].default_value = (0.9, 0.6, 0.3, 1.0)
-    mix, output = nodes.new("ShaderNodeMixShader"), nodes.new("ShaderNodeOutputMaterial")
+    mix = nodes.new("ShaderNodeMixShader")
     mix.inputs[0].default_value = transparent
     links.new(diffuse.outputs[0], mix.inputs[1])
     links.new(clear.outputs[0], mix.inputs[2])

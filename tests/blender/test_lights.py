@@ -22,23 +22,8 @@ DIFFUSE, RIM, GLOSSY = 0.025, 0.06, 0.10
 SPOT_RATE = 0.5
 
 
-def shader(node_type, **inputs):
-    """A material of one closure."""
-    material = bpy.data.materials.new(node_type)
-    if material.node_tree is None:
-        material.use_nodes = True
-    nodes = material.node_tree.nodes
-    nodes.clear()
-    closure = nodes.new(node_type)
-    for name, value in inputs.items():
-        closure.inputs[name].default_value = value
-    output = nodes.new("ShaderNodeOutputMaterial")
-    material.node_tree.links.new(closure.outputs[0], output.inputs["Surface"])
-    return material
-
-
 def lambert():
-    return shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.6, 0.4, 1.0))
+    return scene_parts.closure("Matte", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.6, 0.4, 1.0))
 
 
 def set_stage(scene, material, ball=None):
@@ -216,7 +201,7 @@ def test_power_of_a_unit_area_of_lights_that_are_no_area(scene, render, kind):
 
 
 def test_a_light_that_glossy_surfaces_do_not_see(scene, render):
-    set_stage(scene, lambert(), shader("ShaderNodeBsdfGlossy", Roughness=0.6))
+    set_stage(scene, lambert(), scene_parts.closure("Shiny", "ShaderNodeBsdfGlossy", Roughness=0.6))
     add_light(scene, "AREA", 300.0, size=2.0).visible_glossy = False
     expect_alike(scene, render, DIFFUSE)
 
@@ -228,21 +213,21 @@ def test_a_world_of_one_colour_with_its_occlusion(scene, render):
 
 
 def test_rough_gloss_under_a_lamp_and_the_world(scene, render):
-    set_stage(scene, shader("ShaderNodeBsdfGlossy", Roughness=0.5))
+    set_stage(scene, scene_parts.closure("Shiny", "ShaderNodeBsdfGlossy", Roughness=0.5))
     add_light(scene, "AREA", 300.0, size=2.0)
     set_world(scene, (0.2, 0.3, 0.4))
     expect_alike(scene, render, GLOSSY)
 
 
 def test_a_mirror_sees_lamps_and_the_world(scene, render):
-    set_stage(scene, lambert(), shader("ShaderNodeBsdfGlossy", Roughness=0.0))
+    set_stage(scene, lambert(), scene_parts.closure("Shiny", "ShaderNodeBsdfGlossy", Roughness=0.0))
     add_light(scene, "AREA", 300.0, (0.0, -3.0, 5.0), (0.4, 0.0, 0.0), size=2.0)
     set_world(scene, (0.2, 0.3, 0.4))
     expect_alike(scene, render, GLOSSY)
 
 
 def test_glass_panes_let_light_through(scene, render):
-    glass = shader("ShaderNodeBsdfTransparent", Color=(0.9, 0.5, 0.3, 1.0))
+    glass = scene_parts.closure("Glass", "ShaderNodeBsdfTransparent", Color=(0.9, 0.5, 0.3, 1.0))
     ball = set_stage(scene, lambert(), glass)
     assert ball.data.materials[0] is glass
     add_light(scene, "SUN", 3.0, angle=0.05)

@@ -31,21 +31,6 @@ NAMES = {  # the view layer's property: (name before Blender 5, since, channels)
 }
 
 
-def shader(name, node_type, index, **inputs):
-    material = bpy.data.materials.new(name)
-    if material.node_tree is None:
-        material.use_nodes = True
-    nodes, links = material.node_tree.nodes, material.node_tree.links
-    nodes.clear()
-    closure = nodes.new(node_type)
-    for socket, value in inputs.items():
-        closure.inputs[socket].default_value = value
-    output = nodes.new("ShaderNodeOutputMaterial")
-    links.new(closure.outputs[0], output.inputs["Surface"])
-    material.pass_index = index
-    return material
-
-
 def add_aov_output(material, name, color, value):
     node = material.node_tree.nodes.new("ShaderNodeOutputAOV")
     if hasattr(node, "aov_name"):
@@ -60,10 +45,12 @@ def set_stage(scene):
     camera = scene_parts.add_camera(scene, (0.0, -6.0, 4.0))
     camera.rotation_euler = (math.radians(60.0), 0.0, 0.0)
     camera.data.lens = 35.0
-    matte = shader("Matte", "ShaderNodeBsdfDiffuse", 3, Color=(0.8, 0.6, 0.4, 1.0))
-    gloss = shader("Gloss", "ShaderNodeBsdfGlossy", 5, Color=(0.5, 0.7, 0.9, 1.0), Roughness=0.5)
+    matte = scene_parts.closure("Matte", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.6, 0.4, 1.0))
+    gloss = scene_parts.closure(
+        "Gloss", "ShaderNodeBsdfGlossy", Color=(0.5, 0.7, 0.9, 1.0), Roughness=0.5
+    )
     glow = scene_parts.emission("Glow", (0.25, 0.5, 0.75))
-    glow.pass_index = 8
+    matte.pass_index, gloss.pass_index, glow.pass_index = 3, 5, 8
     floor = scene_parts.add_square(scene, "Floor", 12.0, (0.0, 0.0, 0.0), matte)
     floor.pass_index = 1
     bpy.ops.mesh.primitive_uv_sphere_add(

@@ -25,15 +25,6 @@ def same(a, b):
     return np.array_equal(a, b)
 
 
-def part(scene, name, *things):
-    collection = bpy.data.collections.new(name)
-    scene.collection.children.link(collection)
-    for thing in things:
-        collection.objects.link(thing)
-        scene.collection.objects.unlink(thing)
-    return collection
-
-
 def at(wanted, act):
     """An edit of one frame alone."""
     return lambda frame: act() if frame == wanted else None
@@ -67,7 +58,10 @@ def a_child(scene, square):
 
 def instances_that_move(scene, square):
     empty = scene_parts.add_object(scene, "Place", None)
-    empty.instance_type, empty.instance_collection = "COLLECTION", part(scene, "Part", square)
+    empty.instance_type, empty.instance_collection = (
+        "COLLECTION",
+        scene_parts.add_collection(scene, "Part", [square]),
+    )
     drive(empty, "location", "frame", 0)
 
 
@@ -195,7 +189,7 @@ def another_name(scene, square):
 
 
 def a_collection_held_out(scene, square):
-    part(scene, "Part", square)
+    scene_parts.add_collection(scene, "Part", [square])
     layer = bpy.context.view_layer.layer_collection.children["Part"]
     drive(scene_parts.add_square(scene, "Mover"), "location", "frame", 0)
 

@@ -81,23 +81,18 @@ def test_transparency_is_looked_up_where_the_limit_is(scene, render):
 
 def opaque_beyond(x):
     """Opaque where the object's own x is larger, transparent elsewhere."""
-    material = bpy.data.materials.new("Part")
-    if material.node_tree is None:
-        material.use_nodes = True
-    tree = material.node_tree
-    tree.nodes.clear()
-    place = tree.nodes.new("ShaderNodeTexCoord")
-    parts = tree.nodes.new("ShaderNodeSeparateXYZ")
-    beyond = tree.nodes.new("ShaderNodeMath")
+    material, nodes, links, output = scene_parts.node_material("Part")
+    place = nodes.new("ShaderNodeTexCoord")
+    parts = nodes.new("ShaderNodeSeparateXYZ")
+    beyond = nodes.new("ShaderNodeMath")
     beyond.operation = "GREATER_THAN"
     beyond.inputs[1].default_value = x
-    mix = tree.nodes.new("ShaderNodeMixShader")
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(place.outputs["Object"], parts.inputs[0])
-    tree.links.new(parts.outputs["X"], beyond.inputs[0])
-    tree.links.new(beyond.outputs[0], mix.inputs["Fac"])
-    clear, opaque = (tree.nodes.new(f"ShaderNodeBsdf{name}") for name in ("Transparent", "Diffuse"))
-    tree.links.new(clear.outputs[0], mix.inputs[1])
-    tree.links.new(opaque.outputs[0], mix.inputs[2])
-    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    mix = nodes.new("ShaderNodeMixShader")
+    links.new(place.outputs["Object"], parts.inputs[0])
+    links.new(parts.outputs["X"], beyond.inputs[0])
+    links.new(beyond.outputs[0], mix.inputs["Fac"])
+    clear, opaque = (nodes.new(f"ShaderNodeBsdf{name}") for name in ("Transparent", "Diffuse"))
+    links.new(clear.outputs[0], mix.inputs[1])
+    links.new(opaque.outputs[0], mix.inputs[2])
+    links.new(mix.outputs[0], output.inputs["Surface"])
     return material

@@ -3,18 +3,11 @@
 Blender ends as it should, and the last picture is that of a view which has seen nothing of them."""
 
 import json
-import os
-import shutil
-import subprocess
 from pathlib import Path
 
-import bpy
-import pytest
+import window_host
 
-pytestmark = pytest.mark.skipif(
-    not bpy.app.binary_path or shutil.which("xvfb-run") is None,
-    reason="needs a Blender with windows, and xvfb-run",
-)
+pytestmark = window_host.needed
 
 
 def test_random_edits_leave_a_picture_as_a_fresh_view_has_it(tmp_path):
@@ -22,19 +15,9 @@ def test_random_edits_leave_a_picture_as_a_fresh_view_has_it(tmp_path):
     log.touch()
     job.write_text(json.dumps({"seed": 7, "edits": 40, "log": str(log), "pause": 0.1}))
     script = Path(__file__).with_name("viewport_edits.py")
-    done = subprocess.run(
-        ["xvfb-run", "-a", "-s", "-screen 0 800x600x24", bpy.app.binary_path, "--factory-startup"]
-        + ["--addons", "granita", "--python", str(script), "--", str(job)],
-        env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"},
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=150,
-        check=False,
-    )
+    code, said = window_host.run(script, job)
     entries = [json.loads(line) for line in log.read_text().splitlines()]
-    said = done.stdout + done.stderr
-    assert done.returncode == 0 and "Traceback" not in said, said
+    assert code == 0 and "Traceback" not in said, said
     assert len({entry["edit"] for entry in entries if "edit" in entry}) > 15
     assert entries[-1].get("end") and entries[-1]["same"], entries[-5:]
     assert set(entries[-1]["scenes"]) <= {"Scene", "Other"}

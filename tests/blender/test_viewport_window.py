@@ -3,18 +3,12 @@
 Blender with windows."""
 
 import json
-import os
-import shutil
-import subprocess
 
 import bpy
-import pytest
 import scene_parts as parts
+import window_host
 
-pytestmark = pytest.mark.skipif(
-    not bpy.app.binary_path or shutil.which("xvfb-run") is None,
-    reason="needs a Blender with windows, and xvfb-run",
-)
+pytestmark = window_host.needed
 
 WATCH = """
 import bpy, json, sys, time
@@ -114,20 +108,10 @@ def test_a_window_shows_and_follows_what_is_edited(scene, tmp_path):
     out = tmp_path / "window"
     script = tmp_path / "watch.py"
     script.write_text(f"OUT = {str(out)!r}\n{WATCH}")
-    done = subprocess.run(
-        ["xvfb-run", "-a", "-s", "-screen 0 800x600x24", bpy.app.binary_path, "--factory-startup"]
-        + ["--addons", "granita", str(blend), "--python", str(script)],
-        env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"},
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=150,
-        check=False,
-    )
-    said = done.stdout + done.stderr
+    code, said = window_host.run(script, blend=blend)
     assert (tmp_path / "window.json").exists(), said
     found = json.loads((tmp_path / "window.json").read_text())
-    assert done.returncode == 0 and "Traceback" not in said, said
+    assert code == 0 and "Traceback" not in said, said
     glow = [137, 188, 225]  # sRGB of .25, .5, .75
     assert found == {
         "first": glow,

@@ -3,22 +3,16 @@
 picture is the one of the background.  Under Xvfb; needs a Blender with windows."""
 
 import json
-import os
-import shutil
-import subprocess
 from pathlib import Path
 
 import bpy
 import exr
 import numpy as np
-import pytest
 import scene_parts as parts
+import window_host
 from mathutils import Matrix
 
-pytestmark = pytest.mark.skipif(
-    not bpy.app.binary_path or shutil.which("xvfb-run") is None,
-    reason="needs a Blender with windows, and xvfb-run",
-)
+pytestmark = window_host.needed
 
 # A timer on the main thread notes the longest gap between its calls while F12 renders, then saves
 # what it made.
@@ -69,16 +63,10 @@ def pressed_f12(tmp_path, prepare=""):
     out = tmp_path / "window"
     script = tmp_path / "watch.py"
     script.write_text(f"OUT, PREPARE = {str(out)!r}, {prepare!r}\n{WATCH}")
-    subprocess.run(
-        ["xvfb-run", "-a", "-s", "-screen 0 1024x768x24", bpy.app.binary_path]
-        + ["--factory-startup", "--addons", "granita", str(blend), "--python", str(script)],
-        env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"},
-        stdin=subprocess.DEVNULL,
-        timeout=150,
-        check=False,
-    )
+    _, said = window_host.run(script, blend=blend, size="1024x768")
+    assert Path(f"{out}.json").exists(), said
     state = json.loads(Path(f"{out}.json").read_text())
-    assert state["end"] == "complete", state
+    assert state["end"] == "complete", (state, said)
     return state, exr.read(f"{out}.exr")
 
 
@@ -172,17 +160,7 @@ bpy.app.timers.register(step, first_interval=1.0)
 def test_panels_draw_without_a_fault(tmp_path):
     script = tmp_path / "draw.py"
     script.write_text(DRAW)
-    done = subprocess.run(
-        ["xvfb-run", "-a", "-s", "-screen 0 800x600x24", bpy.app.binary_path, "--factory-startup"]
-        + ["--addons", "granita", "--python", str(script)],
-        env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"},
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=100,
-        check=False,
-    )
-    said = done.stdout + done.stderr
+    _, said = window_host.run(script)
     assert said.count("DRAWN") == 10, said
     for word in ("Traceback", "rna_uiItem", "not found"):
         assert word not in said, said

@@ -7,7 +7,6 @@ make it, with steps of undo; then a last picture beside one of a view that has s
 job: {"seed", "edits", "log"}.  Used by a test, and at length by bench/viewport_robustness.py.
 """
 
-import ctypes
 import json
 import random
 import sys
@@ -16,6 +15,9 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from heap import heap_bytes  # noqa: E402
 
 JOB = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
 LOG = open(JOB["log"], "a", buffering=1)
@@ -46,19 +48,6 @@ def context():
     return bpy.context.temp_override(
         window=window(), screen=window().screen, area=area(), region=region()
     )
-
-
-def heap():
-    """Bytes that Blender's allocator has handed out; None where it is not jemalloc."""
-    try:
-        mallctl = ctypes.CDLL(None).mallctl
-    except AttributeError:
-        return None
-    epoch, size = ctypes.c_uint64(1), ctypes.c_size_t(8)
-    mallctl(b"epoch", None, None, ctypes.byref(epoch), 8)
-    value = ctypes.c_size_t()
-    mallctl(b"stats.allocated", ctypes.byref(value), ctypes.byref(size), None, 0)
-    return value.value
 
 
 # ---- edits ----------------------------------------------------------------------------------
@@ -339,7 +328,7 @@ def steps():
         if edit in {engine, again, shading, revert, scene}:
             ready()
         if number % 25 == 24:
-            note(heap=heap(), views=len(loop().views()), number=number)
+            note(heap=heap_bytes(), views=len(loop().views()), number=number)
     yield from last()
 
 
@@ -356,7 +345,7 @@ def last():
         yield 0.05
     yield 0.3
     views = loop().views()
-    note(heap=heap(), views=len(views), settled=not still_busy())
+    note(heap=heap_bytes(), views=len(views), settled=not still_busy())
     before = views[0].picture.pixels if views else None
     before = None if before is None else before.copy()
     # Another engine and back: a view that knows nothing.

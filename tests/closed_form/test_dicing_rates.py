@@ -31,6 +31,15 @@ def picture(snapshot):
     return result["combined"][..., 0], result["statistics"]
 
 
+def expect_spared(all_points, fewer):
+    """Of the statistics without and with a factor: most points are spared, and as many as is said."""
+    assert fewer["points_diced"] < 0.4 * all_points["points_diced"]
+    spared = all_points["points_diced"] - fewer["points_diced"]
+    # Within the steps of a factor of two.
+    assert 0.5 < fewer["points_spared"] / spared < 2.0
+    assert all_points["points_spared"] == 0
+
+
 @pytest.mark.parametrize("period", [40, 8, 3])
 def test_motion_factor_spares_points_that_blur_hides(period):
     """A sheet of squares that goes 64 pixels: micropolygons four times as long along the way."""
@@ -46,11 +55,7 @@ def test_motion_factor_spares_points_that_blur_hides(period):
 
     fine, all_points = render(0.0)
     coarse, fewer = render(1.0)
-    assert fewer["points_diced"] < 0.4 * all_points["points_diced"]
-    # What is said to be spared is what is, within the steps of a factor of two.
-    spared = all_points["points_diced"] - fewer["points_diced"]
-    assert 0.5 < fewer["points_spared"] / spared < 2.0
-    assert all_points["points_spared"] == 0
+    expect_spared(all_points, fewer)
     # A square's edge may lie half a micropolygon elsewhere: a 64th of the way, and of what crosses a place.
     assert np.sqrt(np.mean((coarse - fine) ** 2)) < 0.02
 
@@ -93,9 +98,7 @@ def test_focus_factor_spares_points_that_the_lens_hides():
 
     fine, all_points = render(0.0)
     coarse, fewer = render(1.0)
-    assert fewer["points_diced"] < 0.4 * all_points["points_diced"]
-    spared = all_points["points_diced"] - fewer["points_diced"]
-    assert 0.5 < fewer["points_spared"] / spared < 2.0
+    expect_spared(all_points, fewer)
     assert np.sqrt(np.mean((coarse - fine) ** 2)) < 0.01
 
 

@@ -7,8 +7,8 @@ The raster executor draws REGULAR passes: its tolerances are those of a lattice 
 import numpy as np
 import pytest
 import snapshots as s
+from moving_edge import ramp
 from test_elements import cloud, curves
-from test_raster_blur import ramp
 
 # RMSE of a (0,2)-net of 64 samples for an edge that moves 20 pixels (docs/sampling_error.md).
 OWEN_20_64 = 0.0092

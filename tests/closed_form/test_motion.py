@@ -8,29 +8,17 @@ box; between its rows the next worse one.  A single pixel may be off by 4 times 
 import numpy as np
 import pytest
 import snapshots as s
+from moving_edge import add_moving_edge
 
 OWEN = {(5, 64): 0.0135, (20, 64): 0.0092, (20, 256): 0.0035, (100, 64): 0.0069, (100, 256): 0.0023}
 
 
-def ramp(e):
-    """Integral of the unit box's edge response: 0, e^2/2, e - 1/2."""
-    return np.where(e < 0, 0, np.where(e > 1, e - 0.5, 0.5 * e * e))
-
-
 @pytest.mark.parametrize("speed, samples", sorted(OWEN))
 def test_edge_moving_right(executor, speed, samples):
-    """Case 10: alpha = (G(e0 + v) - G(e0)) / v with e0 = edge minus the pixel's left side at t = 0."""
+    """Case 10."""
     width = speed + 30
     snapshot = s.orthographic((width, 16), samples=samples, executor=executor)
-    edge = 12.3
-    s.quad(
-        snapshot,
-        s.rectangle(-200, -50, edge, 70),
-        s.emission(snapshot),
-        transforms=[s.translation(0), s.translation(speed)],
-    )
-    e0 = edge - np.arange(width)
-    expected = np.broadcast_to((ramp(e0 + speed) - ramp(e0)) / speed, (16, width))
+    expected = np.broadcast_to(add_moving_edge(snapshot, width, speed), (16, width))
     error = s.alpha(snapshot) - expected
     blurred = (expected > 0) & (expected < 1)
     assert np.sqrt(np.mean(error[blurred] ** 2)) <= 1.3 * OWEN[speed, samples]

@@ -85,8 +85,11 @@ def test_crop_changes_no_bit():
     assert np.array_equal(whole[y0:y1, x0:x1], part)
 
 
-def test_hidden_grids_are_not_shaded():
-    snapshot = s.orthographic((64, 64), executor="RASTER", **REGULAR)
+@pytest.mark.parametrize(
+    "options", [REGULAR, {"samples": 4, "dicing_rate": 16}], ids=["regular", "independent"]
+)
+def test_hidden_grids_are_not_shaded(options):
+    snapshot = s.orthographic((64, 64), executor="RASTER", **options)
     material = s.emission(snapshot)
     s.quad(snapshot, s.rectangle(-5, -5, 70, 70, z=1.0), material)
     alone = s.render(snapshot)["statistics"]["points_shaded"]

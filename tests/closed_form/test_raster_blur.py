@@ -5,6 +5,7 @@ and the reference executor on the same samples."""
 import numpy as np
 import pytest
 import snapshots as s
+from moving_edge import add_moving_edge
 
 REGULAR = {"sampling": "REGULAR", "executor": "RASTER"}
 
@@ -33,10 +34,6 @@ def test_still_edge():
     assert not alpha[:, 9:].any()
 
 
-def ramp(e):
-    return np.where(e < 0, 0, np.where(e > 1, e - 0.5, 0.5 * e * e))
-
-
 def turned_lattice(side):
     """A lattice turned by atan(1 / side), for an even side: side x + y and side y - x are whole and a half."""
     u, v = np.meshgrid(np.arange(2 * side) + 0.5, np.arange(-side, side) + 0.5)
@@ -52,15 +49,7 @@ def test_edge_moving_right(speed, passes):
     end of the pixel."""
     width = speed + 20
     snapshot = s.orthographic((width, 4), samples=16, time_samples=passes, **REGULAR)
-    edge = 12.3
-    s.quad(
-        snapshot,
-        s.rectangle(-200, -50, edge, 70),
-        s.emission(snapshot),
-        transforms=[s.translation(0), s.translation(speed)],
-    )
-    e0 = edge - np.arange(width)
-    expected = (ramp(e0 + speed) - ramp(e0)) / speed
+    expected = add_moving_edge(snapshot, width, speed)
     error = np.abs(render(snapshot)[..., 3] - expected[None, :])
     # Each column is crossed once: its time is off by at most half a pass.
     assert error.max() <= 0.5 / passes + 1 / 34 / speed

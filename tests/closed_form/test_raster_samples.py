@@ -9,7 +9,8 @@ costs every sample around its way.
 import numpy as np
 import pytest
 import snapshots as s
-from test_raster_blur import busy_scene, ramp, render
+from moving_edge import add_moving_edge
+from test_raster_blur import busy_scene, render
 
 
 @pytest.fixture(params=["INDEPENDENT", "INTERLEAVED"])
@@ -57,13 +58,9 @@ def test_filters_are_those_of_the_cpu(pixel_filter):
 
 def test_moving_edge(sampling):
     """Case 10; a class of INTERLEAVED repeats every 4 pixels: errors of neighbours are one error."""
-    speed, samples, edge = 20, 64, 12.3
-    options = {"samples": samples, "sampling": sampling, "executor": "RASTER", "dicing_rate": 40}
+    options = {"samples": 64, "sampling": sampling, "executor": "RASTER", "dicing_rate": 40}
     snapshot = s.orthographic((48, 8), **options)
-    move = [s.translation(0), s.translation(speed)]
-    s.quad(snapshot, s.rectangle(-90, -20, edge, 30), s.emission(snapshot), transforms=move)
-    e0 = edge - np.arange(48)
-    expected = np.broadcast_to((ramp(e0 + speed) - ramp(e0)) / speed, (8, 48))
+    expected = np.broadcast_to(add_moving_edge(snapshot, 48, 20), (8, 48))
     error = render(snapshot)[..., 3] - expected
     # Four times the error of a (0,2)-net of 64 samples over 20 pixels (docs/sampling_error.md).
     assert np.abs(error).max() <= 4 * 0.0092
@@ -124,13 +121,3 @@ def test_buckets_threads_and_crop_change_no_bit(change):
 
     x0, y0, x1, y1 = change.get("crop", (0, 0, 96, 72))
     assert np.array_equal(picture()[y0:y1, x0:x1], picture(**change))
-
-
-def test_hidden_grids_are_not_shaded():
-    snapshot = s.orthographic((64, 64), executor="RASTER", samples=4, dicing_rate=16)
-    material = s.emission(snapshot)
-    s.quad(snapshot, s.rectangle(-5, -5, 70, 70, z=1.0), material)
-    alone = s.render(snapshot)["statistics"]["points_shaded"]
-    for layer in range(9):
-        s.quad(snapshot, s.rectangle(-5, -5, 70, 70, z=2.0 + layer), material)
-    assert s.render(snapshot)["statistics"]["points_shaded"] == alone

@@ -9,28 +9,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests/blender"))
-
-SCENE = """
-import sys
-sys.path[:0] = [{tests!r}]
-import bpy, scene_parts
-scene = bpy.context.scene
-bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-scene = bpy.context.scene
-scene.render.engine = "GRANITA"
-scene.render.resolution_x, scene.render.resolution_y = {width}, {width} * 3 // 4
-scene.granita.samples = {samples}
-scene.frame_end = 3
-scene_parts.add_camera(scene, ortho_scale=4.0)
-square = scene_parts.add_square(scene, material=scene_parts.emission("Glow", (0.25, 0.5, 0.75)))
-for frame, x in ((0, -1.0), (4, 1.0)):
-    square.location.x = x
-    square.keyframe_insert("location", frame=frame)
-scene.render.use_motion_blur = True
-scene_parts.multilayer_exr(scene)
-bpy.ops.wm.save_as_mainfile(filepath={path!r})
-"""
+TESTS = ROOT / "tests/blender"
+sys.path.insert(0, str(TESTS))
 
 
 @pytest.fixture(scope="session")
@@ -43,11 +23,10 @@ def blender(tmp_path_factory):
 
 
 def make_scene(blender, path, samples, width):
-    code = SCENE.format(
-        tests=str(ROOT / "tests/blender"), samples=samples, width=width, path=str(path)
-    )
+    """Three frames."""
     done = subprocess.run(
-        [blender, "-b", "--python-exit-code", "1", "--python-expr", code],
+        [blender, "-b", "--python-exit-code", "1", "--python", TESTS / "moving_square.py"]
+        + ["--", path, str(width), str(samples), "3"],
         capture_output=True,
         text=True,
         stdin=subprocess.DEVNULL,
@@ -59,7 +38,6 @@ def make_scene(blender, path, samples, width):
 
 @pytest.fixture(scope="session")
 def scene(blender, tmp_path_factory):
-    """Three small frames."""
     return make_scene(blender, tmp_path_factory.mktemp("scene") / "scene.blend", 16, 160)
 
 

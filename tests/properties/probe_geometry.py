@@ -18,7 +18,7 @@ def _shown(scene, lit=True):
 
 def _painted():
     """Diffuse by UV, the vertex colour and Generated together."""
-    made, nodes, links, _output = tree = stage.material("Painted")
+    made, nodes, links, _output = tree = scene_parts.node_material("Painted")
     coordinate, color, places = (
         nodes.new(f"ShaderNode{kind}") for kind in ("TexCoord", "VertexColor", "VectorMath")
     )

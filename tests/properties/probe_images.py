@@ -6,6 +6,7 @@ import tempfile
 
 import bpy
 import numpy as np
+import scene_parts
 import stage
 from probe import Probe
 
@@ -29,7 +30,7 @@ def _file(format_name, depth, extension, seed=1):
 def _shown(scene, image, kind="ShaderNodeTexImage"):
     stage.set_world(scene)
     stage.top_camera(scene)
-    made, nodes, links, output = stage.material()
+    made, nodes, links, output = scene_parts.node_material()
     stage.surface(scene, material=made)
     texture, emit = nodes.new(kind), nodes.new("ShaderNodeEmission")
     texture.image = image

@@ -13,10 +13,7 @@ def _lamp(kind, shape=None, nodes=False):
         stage.camera(scene)
         stage.add_floor(scene, z=-0.3)
         stage.add_cube(scene, size=0.6, material=stage.diffuse("Paint", (0.8, 0.5, 0.3)))
-        made, tree, links, output = stage.material("Shiny")
-        bsdf = tree.new("ShaderNodeBsdfGlossy")
-        bsdf.inputs["Roughness"].default_value = 0.5
-        links.new(bsdf.outputs[0], output.inputs["Surface"])
+        made = scene_parts.closure("Shiny", "ShaderNodeBsdfGlossy", Roughness=0.5)
         scene_parts.add_square(scene, "Shiny", 0.8, (-0.8, -0.8, -0.2), made)
         light = bpy.data.lights.new("Lamp", kind)
         light.energy = 2.0 if kind == "SUN" else 80.0

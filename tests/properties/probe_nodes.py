@@ -3,6 +3,7 @@
 
 import bpy
 import numpy as np
+import scene_parts
 import stage
 from probe import Probe
 
@@ -57,7 +58,7 @@ def _build(name, rich=False):
     def build(scene):
         stage.set_world(scene)
         stage.top_camera(scene)
-        made, nodes, links, output = stage.material()
+        made, nodes, links, output = scene_parts.node_material()
         thing = stage.surface(scene, material=made)
         thing.color = (0.3, 0.6, 0.9, 0.7)
         thing.pass_index, made.pass_index = 2, 3

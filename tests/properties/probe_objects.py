@@ -31,7 +31,7 @@ def _surroundings(scene, world=(0.2, 0.15, 0.3)):
 
 def _info(name="Info"):
     """Diffuse, its colour from Object Info: colour, indices, random."""
-    made, nodes, _links, _output = tree = stage.material(name)
+    made, nodes, _links, _output = tree = scene_parts.node_material(name)
     info = nodes.new("ShaderNodeObjectInfo").outputs
     stage.show_sum(tree, info["Color"], info["Object Index"])
     return made
@@ -96,7 +96,7 @@ def _instancer(kind):
 
 def _instanced():
     """Diffuse by Texture Coordinate > From Instancer."""
-    made, nodes, _links, _output = tree = stage.material("Instanced")
+    made, nodes, _links, _output = tree = scene_parts.node_material("Instanced")
     coordinate, info = nodes.new("ShaderNodeTexCoord"), nodes.new("ShaderNodeObjectInfo")
     coordinate.name = "Coordinate"
     stage.show_sum(tree, coordinate.outputs["UV"], info.outputs["Color"])

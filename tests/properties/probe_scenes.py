@@ -22,7 +22,7 @@ def _stage(scene, blur=False):
     glow.location = (-0.7, 0.7, 0.2)
     ball = stage.surface(scene, "Extra", 3, 0.5, material=stage.diffuse("Extra", (0.2, 0.8, 0.3)))
     ball.location = (0.8, -0.8, 0.4)
-    part = stage.collection(scene, "Part", [ball])
+    part = scene_parts.add_collection(scene, "Part", [ball])
     stage.add_sun(scene)
     stage.move(cube)
     if blur:
@@ -86,11 +86,8 @@ def _world(scene):
     world = stage.set_world(scene, (0.6, 0.4, 0.9), 0.5)
     stage.camera(scene)
     stage.add_floor(scene, stage.diffuse("Floor", (0.6, 0.5, 0.4))).scale = (0.4, 0.4, 1)
-    made, nodes, links, output = stage.material("Shiny")
-    bsdf = nodes.new("ShaderNodeBsdfGlossy")
-    bsdf.inputs["Roughness"].default_value = 0.4
-    links.new(bsdf.outputs[0], output.inputs["Surface"])
-    stage.add_cube(scene, material=made)
+    shiny = scene_parts.closure("Shiny", "ShaderNodeBsdfGlossy", Roughness=0.4)
+    stage.add_cube(scene, material=shiny)
     scene.view_layers[0].use_pass_mist = True
     world.mist_settings.start, world.mist_settings.depth = 3.0, 2.0
     return {"world": world, "background": world.node_tree.nodes["Background"]}

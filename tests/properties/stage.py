@@ -42,18 +42,8 @@ def finish_mesh(mesh):
     mesh.update()
 
 
-def material(name="Material"):
-    """An empty node material.  Returns (material, nodes, links, its output)."""
-    made = bpy.data.materials.new(name)
-    if made.node_tree is None:
-        made.use_nodes = True
-    tree = made.node_tree
-    tree.nodes.clear()
-    return made, tree.nodes, tree.links, tree.nodes.new("ShaderNodeOutputMaterial")
-
-
 def show_sum(tree, first, second, part=0.5):
-    """A tree of `material` shows `part` of one output and all of another, diffuse."""
+    """A tree of `scene_parts.node_material` shows `part` of one output and all of another, diffuse."""
     _made, nodes, links, output = tree
     add, shader = nodes.new("ShaderNodeVectorMath"), nodes.new("ShaderNodeBsdfDiffuse")
     add.operation = "MULTIPLY_ADD"
@@ -65,16 +55,12 @@ def show_sum(tree, first, second, part=0.5):
 
 
 def diffuse(name, color):
-    made, nodes, links, output = material(name)
-    bsdf = nodes.new("ShaderNodeBsdfDiffuse")
-    bsdf.inputs["Color"].default_value = (*color, 1.0)
-    links.new(bsdf.outputs[0], output.inputs["Surface"])
-    return made
+    return scene_parts.closure(name, "ShaderNodeBsdfDiffuse", Color=(*color, 1.0))
 
 
 def glowing(name, source="Generated"):
     """Emits its texture coordinate: places, UVs and normals show without light."""
-    made, nodes, links, output = material(name)
+    made, nodes, links, output = scene_parts.node_material(name)
     coordinate, emit = nodes.new("ShaderNodeTexCoord"), nodes.new("ShaderNodeEmission")
     links.new(coordinate.outputs[source], emit.inputs["Color"])
     links.new(emit.outputs[0], output.inputs["Surface"])
@@ -134,13 +120,3 @@ def move(thing, distance=0.5, axis=0):
         for key in curve.keyframe_points:
             key.interpolation = "LINEAR"
     thing.location[axis] = start
-
-
-def collection(scene, name, things=()):
-    """A collection of the scene, holding just these objects of it."""
-    made = bpy.data.collections.new(name)
-    scene.collection.children.link(made)
-    for thing in things:
-        made.objects.link(thing)
-        scene.collection.objects.unlink(thing)
-    return made
