@@ -24,6 +24,7 @@ from .event_log import EventLog
 from .export import PersistentState
 from .export.base.report import Cancelled, ExportError, escaped
 from .export.shading.image import forget_images
+from .handlers import registration
 from .parts.part_file import PartError
 from .viewport import loop
 from .viewport.live_view import LiveView
@@ -132,17 +133,16 @@ def _told(engine):
         engine.update_stats("", escaped(fault.traced(error)))
 
 
-# Handlers are forgotten where a file is loaded unless they are persistent.
-_forget_images = bpy.app.handlers.persistent(forget_images)
+_add_handlers, _remove_handlers = registration(("render_init", forget_images))
 
 
 def register():
     bpy.utils.register_class(GranitaRenderEngine)
-    bpy.app.handlers.render_init.append(_forget_images)
+    _add_handlers()
     loop.register()
 
 
 def unregister():
     loop.unregister()
-    bpy.app.handlers.render_init.remove(_forget_images)
+    _remove_handlers()
     bpy.utils.unregister_class(GranitaRenderEngine)

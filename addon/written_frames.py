@@ -16,6 +16,7 @@ import bpy
 
 from .event_log import EventLog
 from .export.base.report import escaped
+from .handlers import registration
 from .whole_file import is_whole
 
 
@@ -32,17 +33,14 @@ def problem():
     return _Frame.problem
 
 
-@bpy.app.handlers.persistent
 def _render_begins(*_):
     _Frame.problem = ""
 
 
-@bpy.app.handlers.persistent
 def _frame_begins(scene, *_):
     _Frame.began, _Frame.number = time.time(), scene.frame_current
 
 
-@bpy.app.handlers.persistent
 def _look_at_written(scene, *_):
     if scene.render.engine != "GRANITA":
         return
@@ -58,7 +56,6 @@ def _look_at_written(scene, *_):
         os._exit(1)
 
 
-@bpy.app.handlers.persistent
 def _look_at_cancelled(scene, *_):
     if scene.render.engine == "GRANITA":
         for path in _take_away(scene):
@@ -92,19 +89,9 @@ def _paths(scene):
     return [Path(name) for name in sorted(names) if name]
 
 
-_HANDLERS = (
+register, unregister = registration(
     ("render_init", _render_begins),
     ("render_pre", _frame_begins),
     ("render_write", _look_at_written),
     ("render_cancel", _look_at_cancelled),
 )
-
-
-def register():
-    for name, function in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(function)
-
-
-def unregister():
-    for name, function in _HANDLERS:
-        getattr(bpy.app.handlers, name).remove(function)

@@ -11,6 +11,7 @@ from pathlib import Path
 import bpy
 
 from .. import command_line
+from ..handlers import registration
 
 
 def folder_of(options, filepath):
@@ -38,7 +39,6 @@ def output_path(scene):
     return _Redirected.filepath if _Redirected.scene == scene.name else scene.render.filepath
 
 
-@bpy.app.handlers.persistent
 def redirect(scene, *_):
     """Before Blender copies the render settings."""
     if scene.render.engine != "GRANITA":
@@ -60,7 +60,6 @@ def redirect(scene, *_):
     render.use_compositing = render.use_sequencer = False
 
 
-@bpy.app.handlers.persistent
 def put_back(scene, *_):
     if _Redirected.scene != scene.name:
         return
@@ -71,14 +70,6 @@ def put_back(scene, *_):
     _Redirected.scene = None
 
 
-_HANDLERS = (("render_init", redirect), ("render_complete", put_back), ("render_cancel", put_back))
-
-
-def register():
-    for name, function in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(function)
-
-
-def unregister():
-    for name, function in _HANDLERS:
-        getattr(bpy.app.handlers, name).remove(function)
+register, unregister = registration(
+    ("render_init", redirect), ("render_complete", put_back), ("render_cancel", put_back)
+)

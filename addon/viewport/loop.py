@@ -5,6 +5,7 @@ import bpy
 
 from .. import fault
 from ..export.base.report import escaped
+from ..handlers import registration
 
 _views = []
 
@@ -54,10 +55,6 @@ def _step():
     return min(delays) if delays else None
 
 
-_close_before_load = bpy.app.handlers.persistent(close_all)
-
-
-@bpy.app.handlers.persistent
 def _forget(*_):
     """An undo may put other things where some were."""
     for view in views():
@@ -65,17 +62,11 @@ def _forget(*_):
         wake()
 
 
-_UNDOING = ("undo_post", "redo_post")
-
-
-def register():
-    bpy.app.handlers.load_pre.append(_close_before_load)
-    for name in _UNDOING:
-        getattr(bpy.app.handlers, name).append(_forget)
+register, _remove_handlers = registration(
+    ("load_pre", close_all), ("undo_post", _forget), ("redo_post", _forget)
+)
 
 
 def unregister():
-    bpy.app.handlers.load_pre.remove(_close_before_load)
-    for name in _UNDOING:
-        getattr(bpy.app.handlers, name).remove(_forget)
+    _remove_handlers()
     close_all()
