@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The module of the portable zip beside the one that g++ builds here: the same pictures, how much slower.
+
+    ./dev package --portable && ./dev bench portable_module [--runs 3] [--scenes NAME...]
+
+Debian's Blender renders each scene with this tree's add-on and module, and with the add-on of the legacy zip in an empty
+configuration, in turns, one thread each.  Prints the part of the numbers that are equal, the largest difference, the RMSE and the
+ratio of medians of processor seconds (whole frames, export included); writes bench/results/portable_module.json.
+"""
+
+import argparse
+import contextlib
+import os
+import statistics
+import tempfile
+import zipfile
+from pathlib import Path
+
+import frames
+import measure
+import numpy as np
+import pictures
+
+ROOT = Path(__file__).resolve().parent.parent
+# What each rests on: hiding alone, a lens, rays of Embree, opacity, ribbons, programs of noise, lights, and textures of
+# OpenImageIO with all the rest.
+SCENES = {
+    "spheres": ("scenes", 16),
+    "lens": ("scenes", 16),
+    "lit": ("scenes", 16),
+    "feathers": ("scenes", 16),
+    "grass": ("scenes", 16),
+    "wall": ("lit_scenes", 16),
+    "fur": ("lit_scenes", 16),
+    "lamps_100": ("lamp_scenes", 16),
+    "demo": ("demo", 16),
+}
+
+
+@contextlib.contextmanager
+def zip_alone(archive):
+    """Blender finds the add-on of the zip and nothing else."""
+    kept = dict(os.environ)
+    with tempfile.TemporaryDirectory() as folder:
+        with zipfile.ZipFile(archive) as opened:
+            opened.extractall(Path(folder) / "scripts/addons")
+        os.environ["BLENDER_USER_SCRIPTS"] = f"{folder}/scripts"
+        os.environ["BLENDER_USER_CONFIG"] = f"{folder}/config"
+        os.environ.pop("PYTHONPATH")  # the tree's module
+        try:
+            yield
+        finally:
+            os.environ |= kept
+
+
+def turn(job):
+    """(picture, processor seconds) of a process of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        ((run,),) = frames.run_job("render_frames.py", job, folder)
+        return pictures.load(Path(folder) / "0.exr"), run[1]
+
+
+def measured(name, archive, runs):
+    module, samples = SCENES[name]
+    setting = {"engine": "GRANITA", "samples": samples}
+    job = {"module": module, "scene": name, "runs": 1, "settings": [setting]}
+    seconds = {"tree": [], "zip": []}
+    for _ in range(runs):
+        tree, taken = turn(job)
+        seconds["tree"].append(taken)
+        with zip_alone(archive):
+            portable, taken = turn(job)
+        seconds["zip"].append(taken)
+    difference = np.abs(tree.astype(float) - portable)
+    medians = {place: statistics.median(taken) for place, taken in seconds.items()}
+    return {
+        "scene": name,
+        "equal": float(np.mean(difference == 0)),
+        "beyond": int(np.sum(difference.max(-1) > 2e-3)),
+        "largest": float(difference.max()),
+        "rmse": float(np.sqrt(np.mean(difference**2))),
+        **medians,
+        "ratio": medians["zip"] / medians["tree"],
+    }
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
+    options = parser.parse_args()
+    version = (ROOT / "VERSION").read_text().strip()
+    archive = ROOT / f"dist/granita-{version}-linux-x64-legacy.zip"
+    if not archive.is_file():
+        print(f"There is no {archive}: not measured (./dev package --portable)")
+        return
+    rows = []
+    print("| scene | equal | largest | pixels beyond 2e-3 | RMSE | g++, s | zip, s | ratio |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name in options.scenes:
+        row = measured(name, archive, options.runs)
+        rows.append(row)
+        print(
+            f"| {name} | {row['equal']:.2%} | {row['largest']:.1e} | {row['beyond']} | {row['rmse']:.1e} "
+            f"| {row['tree']:.2f} | {row['zip']:.2f} | {row['ratio']:.3f} |",
+            flush=True,
+        )
+    measure.save("portable_module", rows)
+
+
+if __name__ == "__main__":
+    main()
