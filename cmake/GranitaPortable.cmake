@@ -35,5 +35,5 @@ granita_static(granita_pybind11 HEADER pybind11/pybind11.h)
 
 # Builds in two places are equal, and a report of a crash names lines.
 target_compile_options(granita_flags INTERFACE -gline-tables-only
-  -ffile-prefix-map=${CMAKE_SOURCE_DIR}/= -ffile-prefix-map=${CMAKE_BINARY_DIR}/=)
+  -ffile-prefix-map=${GRANITA_PORTABLE_CACHE}/=portable/ -ffile-prefix-map=${CMAKE_SOURCE_DIR}/= -ffile-prefix-map=${CMAKE_BINARY_DIR}/=)
 target_compile_definitions(granita_flags INTERFACE GRANITA_PORTABLE=1)

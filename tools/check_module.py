@@ -53,6 +53,9 @@ def broken_rules(module: Path) -> list[str]:
     strangers = {n for n in undefined - weak if "@" not in n and not re.match(r"_?Py", n)}
     if strangers:
         problems.append(f"needs symbols of no library: {', '.join(sorted(strangers))}")
+    # What assert and exceptions say of themselves: a module made elsewhere would differ.
+    if paths := set(re.findall(rb"\0(/[\w./+-]+\.(?:c|cc|cpp|h|hpp|ipp))\0", module.read_bytes())):
+        problems.append(f"names folders of the machine: {min(paths).decode()}")
     sections = _run("readelf", "-SW", module)
     if re.search(r"\.(symtab|debug_)", sections):
         problems.append("is not stripped")

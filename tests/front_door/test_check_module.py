@@ -84,3 +84,9 @@ def test_a_symbol_of_no_library_is_named(problems):
 def test_symbols_and_search_paths_are_found(problems):
     assert "is not stripped" in problems(ENTRY, MAP, strip=False)
     assert "has RUNPATH" in problems(ENTRY, MAP, "-Wl,-rpath,/home/me")
+
+
+def test_a_path_of_the_machine_is_named(problems):
+    text = 'const char *where = "/home/me/granita/thing.hpp";\n'
+    text += ENTRY.replace("return 0", "return (void *)where")
+    assert "names folders of the machine: /home/me/granita/thing.hpp" in problems(text, MAP)

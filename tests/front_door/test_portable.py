@@ -4,6 +4,7 @@
 import hashlib
 import json
 import re
+import subprocess
 import sys
 import tarfile
 from dataclasses import replace
@@ -182,3 +183,32 @@ def test_what_fails_is_named_with_its_log(libraries, thing, monkeypatch):
     with pytest.raises(BuildError) as failure:
         libraries.build_all([])
     assert "the reason" in str(failure.value) and "thing.log" in str(failure.value)
+
+
+def built_at(folder, text):
+    """A delivered module, compiled with lines of debugging in a folder of its own."""
+    (folder / "native/python").mkdir(parents=True)
+    (folder / "m.c").write_text(text)
+    linker = "-Wl,--build-id=0x" + 40 * "0"
+    module = folder / "native/python/granita_core.c.so"
+    command = ["gcc", "-g", "-O1", "-shared", "-fPIC", "-nostartfiles", folder / "m.c", linker]
+    subprocess.run([*map(str, command), "-o", str(module)], check=True)
+    script = str(ROOT / "tools/portable/modules.py")
+    out = folder / "delivered"
+    subprocess.run([sys.executable, script, str(folder), str(out)], check=True)
+    return (out / "granita_core.c.so").read_bytes(), build_id(out / "granita_core.c.so.debug")
+
+
+def build_id(path):
+    notes = subprocess.run(
+        ["readelf", "-n", str(path)], check=True, capture_output=True, text=True
+    ).stdout
+    return re.search("Build ID: ([0-9a-f]{40})", notes)[1]
+
+
+def test_a_module_is_the_same_wherever_it_was_built(tmp_path):
+    here, there = (built_at(tmp_path / name, "int f;\n") for name in ("a", "b"))
+    assert here == there
+    other = built_at(tmp_path / "c", "int f = 7;\n")
+    assert other[1] != here[1]
+    assert bytes.fromhex(here[1]) in here[0]

@@ -33,6 +33,11 @@ NICENESS = 15
 UNBUILT = ("licence", "title", "notices", "linked", "source", "patches")
 
 
+def _meaning(function) -> str:
+    """Of its text what Python reads."""
+    return ast.dump(ast.parse(dedent(inspect.getsource(function))))
+
+
 class Libraries:
     def __init__(self, cache: Path):
         self.cache = cache / "portable"
@@ -40,8 +45,10 @@ class Libraries:
 
     def digest(self, component: Component) -> str:
         entry = {key: value for key, value in asdict(component).items() if key not in UNBUILT}
-        recipe = ast.dump(ast.parse(dedent(inspect.getsource(getattr(recipes, component.recipe)))))
+        recipe = _meaning(getattr(recipes, component.recipe))
         parts = [json.dumps(entry, sort_keys=True), recipe, toolchain.description()]
+        if component.recipe not in recipes.UNCOMPILED:
+            parts += [_meaning(recipes.Job.paths), _meaning(recipes.strip_libraries)]
         parts += [self.digest(self.components[name]) for name in component.needs]
         return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:12]
 
@@ -75,6 +82,7 @@ class Libraries:
             log=log,
         )
         getattr(recipes, component.recipe)(job)
+        recipes.strip_libraries(job)
         for notice in component.notices:
             target = prefix / "notices" / Path(notice).name
             target.parent.mkdir(exist_ok=True)
@@ -107,7 +115,11 @@ class Libraries:
         digest = hashlib.sha256(" ".join([*map(str, prefixes), *tags]).encode()).hexdigest()[:12]
         path = self.cache / f"granita-{digest}.cmake"
         return self.toolchain().cmake_file(
-            path, prefixes, GRANITA_PORTABLE="ON", GRANITA_PYTHONS=";".join(tags)
+            path,
+            prefixes,
+            GRANITA_PORTABLE="ON",
+            GRANITA_PORTABLE_CACHE=str(self.cache),
+            GRANITA_PYTHONS=";".join(tags),
         )
 
 
