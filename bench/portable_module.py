@@ -61,9 +61,14 @@ def turn(job):
 
 
 def measured(name, archive, runs):
+    with tempfile.TemporaryDirectory() as folder:
+        return compared(name, archive, runs, f"{folder}/scene.blend")
+
+
+def compared(name, archive, runs, blend):
     module, samples = SCENES[name]
     setting = {"engine": "GRANITA", "samples": samples}
-    job = {"module": module, "scene": name, "runs": 1, "settings": [setting]}
+    job = {"module": module, "scene": name, "runs": 1, "settings": [setting], "blend": blend}
     seconds = {"tree": [], "zip": []}
     for _ in range(runs):
         tree, taken = turn(job)

@@ -61,9 +61,23 @@ def build_demo():
     return scene, scene.frame_current - shutter / 2, shutter
 
 
+def build_once(job):
+    """As build; the scene of the job's file where that is there."""
+    path = job.get("blend")
+    if path is None:
+        return build(job)
+    if not Path(path).exists():
+        scene, opens, shutter = build(job)
+        scene["opens"], scene["shutter"] = float(opens), float(shutter)
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    scene = bpy.context.scene
+    return scene, scene["opens"], scene["shutter"]
+
+
 def main():
     job = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
-    scene, opens, shutter = build(job)
+    scene, opens, shutter = build_once(job)
     if "size" in job:
         engines.set_size(scene, *job["size"])
     seconds = [[] for _ in job["settings"]]
