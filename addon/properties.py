@@ -161,6 +161,14 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
         (1, 4096),
         usual=(1, 64),
     )
+    bounces: _choice(
+        "Bounces",
+        "How far light is followed from surface to surface: reflections, light off walls, surfaces that shine",
+        "NONE",
+        ("NONE", "None", "Lamps and the world alone light surfaces: fastest"),
+        ("FAST", "Fast", "Two bounces at most, within Cycles' limits"),
+        ("FULL", "Full", "As many as Cycles' Light Paths allow"),
+    )
     shading_threshold: _real(
         "Shading Threshold",
         "Bend of displayed colour between neighbouring shading points from which on samples are shaded by "

@@ -3,13 +3,14 @@
 
     blender -b --factory-startup --addons granita --python bench/render_frames.py -- JOB.json
 
-JOB: {"module": "scenes", "lit_scenes", "lamp_scenes", "hero_scene", "moving_files" or "demo", "scene", "variant" (of moving_files), "folder", "file", "runs", "seed" (of
+JOB: {"module": "scenes", "lit_scenes", "lamp_scenes", "bounced_scenes", "hero_scene", "moving_files" or "demo", "scene", "variant" (of moving_files), "folder", "file", "runs", "seed" (of
 Cycles), "size" (width and height, the scene's own without), "settings": [{"engine": "CYCLES" or "GRANITA", "samples",
-"shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), other
+"shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), "bounces" (light is followed so far; none without), other
 properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FILE lists for each setting its runs as [wall, processor] seconds
 of the whole frame, export included.
 """
 
+import importlib
 import json
 import sys
 import time
@@ -28,16 +29,10 @@ def build(job):
         import scenes
 
         return scenes.SCENES[job["scene"]](), 1, scenes.SHUTTER
-    if job["module"] == "lit_scenes":
-        import lit_scenes
+    if job["module"] in ("lit_scenes", "lamp_scenes", "bounced_scenes"):
         import scenes
 
-        return lit_scenes.SCENES[job["scene"]](), 1, scenes.SHUTTER
-    if job["module"] == "lamp_scenes":
-        import lamp_scenes
-        import scenes
-
-        return lamp_scenes.SCENES[job["scene"]](), 1, scenes.SHUTTER
+        return importlib.import_module(job["module"]).SCENES[job["scene"]](), 1, scenes.SHUTTER
     if job["module"] == "hero_scene":
         import hero_scene
         import scenes
@@ -86,12 +81,14 @@ def main():
             setting = dict(setting)
             engine, samples = setting.pop("engine"), setting.pop("samples")
             open_for = setting.pop("shutter", shutter)
-            at = setting.pop("at", None)
+            at, bounces = setting.pop("at", None), setting.pop("bounces", 0)
             begins, open_for = (opens, open_for) if at is None else (opens + at * open_for, 0.0)
             if engine == "CYCLES":
                 engines.set_cycles(scene, samples, job.get("seed", 0))
             else:
                 engines.set_granita(scene, samples, **setting)
+            if bounces:
+                engines.set_bounces(scene, bounces)
             engines.set_motion(scene, engine, begins, open_for)
             bpy.context.view_layer.update()
             processor = time.process_time()

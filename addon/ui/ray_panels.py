@@ -25,7 +25,7 @@ class GRANITA_OBJECT_PT_rays(_Panel, bpy.types.Panel):
         ("visible_diffuse", "Diffuse"),
         ("visible_glossy", "Glossy"),
     )
-    _SURFACE = (("visible_camera", "Camera"), ("visible_shadow", "Shadow"))
+    _SURFACE = (*_LIGHT, ("visible_shadow", "Shadow"))
     _TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "EMPTY", "LIGHT"}
 
     @classmethod

@@ -4,6 +4,7 @@
 import bpy
 
 from .. import bridge, passes
+from ..export.scene.light_paths import LIMITS
 from .engine_panel import EnginePanel
 from .problem import draw_problem
 from .sampling_presets import GRANITA_RENDER_PT_sampling_presets
@@ -57,6 +58,20 @@ class GRANITA_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         row = column.row(align=True)
         row.prop(settings, "seed")
         row.prop(settings, "animate_seed", text="", icon="TIME")
+
+
+class GRANITA_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
+    bl_label = "Light Paths"
+
+    def draw(self, context):
+        settings = context.scene.granita
+        column = self.column()
+        column.prop(settings, "bounces")
+        cycles = getattr(context.scene, "cycles", None)
+        if settings.bounces == "NONE" or cycles is None:
+            return
+        for name, _, _ in LIMITS:
+            column.prop(cycles, name)
 
 
 class GRANITA_RENDER_PT_geometry(RenderPanel, bpy.types.Panel):
@@ -145,6 +160,7 @@ class GRANITA_RENDER_PT_performance(RenderPanel, bpy.types.Panel):
 _CLASSES = (
     GRANITA_RENDER_PT_device,
     GRANITA_RENDER_PT_sampling,
+    GRANITA_RENDER_PT_light_paths,
     GRANITA_RENDER_PT_geometry,
     GRANITA_RENDER_PT_motion_blur,
     GRANITA_RENDER_PT_shutter_curve,

@@ -33,6 +33,8 @@ constexpr std::array kCounterNames = {
     "gl_dispatches",
     "rays_shadow",
     "rays_occlusion",
+    "rays_bounce",
+    "hits_shaded",
     "lamps_chosen",
     "light_nodes",
     "texture_lookups",

@@ -43,6 +43,8 @@ enum class Counter {
     GlDispatches,  ///< of the compute executor
     RaysShadow,
     RaysOcclusion,
+    RaysBounce,   ///< from surface to surface
+    HitsShaded,   ///< of these, surfaces met
     LampsChosen,  ///< where there are many: lamps asked, summed over points
     LightNodes,   ///< of the light tree, whose children a point compared
     TextureLookups,

@@ -103,6 +103,10 @@ struct Grid {
     std::vector<Vec3f>
         radiance;  ///< [vertices] premultiplied by opacity, plus emission; linear, unclamped
 
+    /// [points] what diffuse lobes reflect of other surfaces' light, by albedo: samples that are
+    /// shaded by themselves take it from here.  Empty: light is not followed so far.
+    std::vector<Vec3f> gathered;
+
     /// [micropolygons] 1 where the corners' radiance or opacity differs so much that samples are to
     /// be shaded by themselves, for which the shading state is kept; empty = nowhere.
     std::vector<std::uint8_t> unsettled;

@@ -97,6 +97,21 @@ void read_options(const Record& r, Options& o) {
     o.seed = static_cast<std::uint32_t>(r.integer("seed", 0));
     o.light_samples =
         in_range(r, "light_samples", r.integer("light_samples", o.light_samples), 1, 65536);
+    o.bounces.most = in_range(r, "bounces", r.integer("bounces", o.bounces.most), 0, 1024);
+    o.bounces.diffuse =
+        in_range(r, "diffuse_bounces", r.integer("diffuse_bounces", o.bounces.diffuse), 0, 1024);
+    o.bounces.glossy =
+        in_range(r, "glossy_bounces", r.integer("glossy_bounces", o.bounces.glossy), 0, 1024);
+    o.bounces.transmission =
+        in_range(r, "transmission_bounces",
+                 r.integer("transmission_bounces", o.bounces.transmission), 0, 1024);
+    o.bounces.transparent = in_range(
+        r, "transparent_bounces", r.integer("transparent_bounces", o.bounces.transparent), 0, 1024);
+    o.bounces.caustics = r.boolean("caustics", o.bounces.caustics);
+    o.bounces.filter_glossy =
+        at_least(r, "filter_glossy", r.number("filter_glossy", o.bounces.filter_glossy), 0.0);
+    o.bounces.clamp =
+        at_least(r, "clamp_indirect", r.number("clamp_indirect", o.bounces.clamp), 0.0);
     o.shading_threshold =
         at_least(r, "shading_threshold", r.number("shading_threshold", o.shading_threshold), 0.0);
     o.device =

@@ -37,6 +37,16 @@ struct Mist {
     float start = 5.0f, depth = 25.0f, exponent = 2.0f;
 };
 
+/// How far light is followed from surface to surface, as Cycles' Light Paths.
+struct Bounces {
+    int most = 0;  ///< 0: surfaces are lit by lamps and the world alone
+    int diffuse = 4, glossy = 4, transmission = 12;  ///< of these, by what reflects
+    int transparent = 8;         ///< surfaces passed through unbent, which are no bounces
+    bool caustics = true;        ///< glossy lobes reflect what reaches diffuse ones
+    float filter_glossy = 1.0f;  ///< how much blurrier they are for ways that few take; 0 = none
+    float clamp = 10.0f;  ///< most that a path brings, red, green and blue summed; 0 = no end
+};
+
 struct Options {
     int width = 0, height = 0;  ///< full frame, pixels
     Rect crop;                  ///< what is rendered, inside the frame
@@ -65,6 +75,7 @@ struct Options {
     std::uint32_t seed =
         0;  ///< of the sample table, the frame already mixed in where animate_seed is on
     int light_samples = 16;  ///< shadow rays a light and shading point, for lights with a size
+    Bounces bounces;
     /// Bend of displayed colour between neighbouring shading points (shade/unsettled.h) from which
     /// on samples are shaded by themselves, for 64 samples a pixel; in proportion to samples^-1/2.
     float shading_threshold = 0.06f;

@@ -27,6 +27,7 @@ struct Instance {
     std::vector<std::int32_t>
         materials;  ///< [slots] index in Scene::materials, -1 = none (Blender's default grey)
     bool visible_camera = true;
+    bool visible_diffuse = true, visible_glossy = true;  ///< to rays from other surfaces
     bool casts_shadow = true;
     bool holdout = false;
     int object_index = 0;  ///< pass_index

@@ -138,6 +138,9 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
     std::vector<Blend> blends;
     blends.reserve(wanted.size());
     for (const RefinedPoint& at : wanted) blends.push_back(blend_at(grid, at));
+    for (std::size_t i = 0; !grid.gathered.empty() && i < blends.size(); ++i)
+        gathered.push_back(
+            blends[i].mean<Vec3f>([&](std::size_t point) { return grid.gathered[point]; }));
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         const RefinedPoint& at = wanted[i];
         const float time = time_of(at);

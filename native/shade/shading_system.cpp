@@ -8,12 +8,16 @@
 
 #include "base/crash_report.h"
 #include "base/stage_timer.h"
+#include "shade/bounces/bounced_light.h"
+#include "shade/bounces/hit_shader.h"
+#include "shade/nodes/default_material.h"
 #include "shade/grid_channels.h"
 #include "shade/interpolated_points.h"
 #include "shade/lights/direct_light.h"
 #include "shade/lights/light_sample_count.h"
 #include "shade/material_displacement.h"
 #include "shade/nodes/node_compiler.h"
+#include "shade/nodes/surface_run.h"
 #include "shade/shading_points.h"
 #include "shade/shadow_transparency.h"
 #include "shade/time_probes.h"
@@ -24,64 +28,8 @@ namespace granita {
 
 namespace {
 
-/// Blender's look for a slot without a material.
-NodeGraph default_material() {
-    NodeGraph graph;
-    Node diffuse{"ShaderNodeBsdfDiffuse", "Default", {}, {}};
-    diffuse.inputs["Color"] = Vec4f(0.8f, 0.8f, 0.8f, 1.0f);
-    graph.nodes.push_back(std::move(diffuse));
-    graph.surface = {0, "BSDF"};
-    return graph;
-}
-
 /// Radiance of a surface that nobody misses as a light: an 8-bit step of white.
 constexpr float kDimmestEmission = 0.004f;
-
-template <class T>
-std::vector<T> values_of(const Run& run, const Source<T>& source) {
-    const Column<T> column = run.read(source);
-    std::vector<T> values(run.count());
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = column[i];
-    return values;
-}
-
-/// Values that are no numbers become 0; returns how many did.
-std::size_t make_finite(std::vector<Vec3f>& values) {
-    std::size_t broken = 0;
-    for (Vec3f& value : values)
-        if (!is_finite(value)) {
-            value = Vec3f(0.0f);
-            ++broken;
-        }
-    return broken;
-}
-
-/// `broken` counts weights of lobes that are no numbers: as in Cycles such a lobe is not there.
-SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::size_t& broken) {
-    SurfaceClosure closure;
-    for (const LobeSource& from : sources.lobes) {
-        Lobe lobe;
-        lobe.kind = from.kind;
-        lobe.distribution = from.distribution;
-        lobe.fresnel = from.fresnel;
-        lobe.multiscatter = from.multiscatter;
-        lobe.separable_masking = from.separable_masking;
-        lobe.burley = from.burley;
-        lobe.cosine_bumps = from.cosine_bumps;
-        lobe.weight = values_of(run, from.weight);
-        broken += make_finite(lobe.weight);
-        lobe.normal = values_of(run, from.normal);
-        lobe.roughness = values_of(run, from.roughness);
-        if (from.fresnel != FresnelKind::None || from.has_color) lobe.f0 = values_of(run, from.f0);
-        if (from.fresnel != FresnelKind::None) lobe.f90 = values_of(run, from.f90);
-        if (from.fresnel == FresnelKind::Dielectric) lobe.ior = values_of(run, from.ior);
-        closure.lobes.push_back(std::move(lobe));
-    }
-    if (!sources.emission.is(Vec3f(0.0f))) closure.emission = values_of(run, sources.emission);
-    if (!sources.transparency.is(Vec3f(0.0f)))
-        closure.transparency = values_of(run, sources.transparency);
-    return closure;
-}
 
 constexpr float kNoThreshold = std::numeric_limits<float>::infinity();
 
@@ -111,6 +59,8 @@ struct ShadingSystem::Impl {
     float footprint;                   ///< of a sample, in steps of a grid
     std::shared_ptr<GeometryCache> geometries;
     std::unique_ptr<DirectLight> light;  ///< nullptr where nothing that is seen reflects any
+    std::unique_ptr<HitShader> hits;     ///< where light is followed further, else nullptr
+    std::unique_ptr<BouncedLight> bounces;
 
     Impl(const Scene& s, Statistics& stats, Report& warnings, const Progress& progress,
          bool refines_samples, const KeptShading& kept)
@@ -158,14 +108,18 @@ struct ShadingSystem::Impl {
         light = std::make_unique<DirectLight>(scene, world.evaluator(), statistics, report,
                                               progress, shadow_opacity(), geometries, kept.rays,
                                               displacement.get());
+        if (scene.options.bounces.most == 0 || !light->rays()) return;
+        hits = std::make_unique<HitShader>(scene, textures, report);
+        bounces = std::make_unique<BouncedLight>(scene, *light, *hits, statistics, progress);
     }
 
     bool reflects(std::int32_t index) const {
         return !material(index).radiance.sources.lobes.empty();
     }
 
-    /// Only lamps and the world are sampled: a surface that shines is seen, but sheds no light.
+    /// Without bounces a surface that shines is seen, but sheds no light.
     void warn_of_emission() const {
+        if (scene.options.bounces.most > 0) return;
         const auto count = static_cast<std::int32_t>(scene.materials.size());
         bool any = false;
         for (std::int32_t i = 0; i < count && !any; ++i) any = reflects(i);
@@ -191,7 +145,7 @@ struct ShadingSystem::Impl {
             [this](std::int32_t index) {
                 return !material(index).shadow.transparency.is(Vec3f(0.0f));
             },
-            [this](const ShadowHit& hit) {
+            [this](const RayHit& hit) {
                 return shadow_transparency(material(hit.material).shadow, scene, hit);
             },
             [this](std::int32_t index) { return constant_transparency(material(index).shadow); }};
@@ -217,39 +171,61 @@ struct ShadingSystem::Impl {
         return in;
     }
 
+    /// Adds what surfaces send to each other: to points of a grid, whose `gathered` is filled, or
+    /// to samples in it, whose diffuse lobes take it from there.  Returns what of it is noise at
+    /// single points.
+    std::vector<Vec3f> add_bounces(const ShadingPoints& points, const SurfaceClosure& closure,
+                                   std::vector<LobeRay> leaving, std::vector<Vec3f>& gathered,
+                                   std::vector<Vec3f>& radiance) const {
+        const bool is_known = !gathered.empty();
+        if (is_known)
+            std::erase_if(leaving,
+                          [](const LobeRay& ray) { return ray.ray.type == RayType::Diffuse; });
+        GatheredLight light = bounces->gather(std::move(leaving), points.count);
+        if (!is_known) gathered = shared_light(points, closure, light);
+        for (std::size_t i = 0; i < points.count; ++i) {
+            const bool reflects = is_known || light.asked[i];
+            light.glossy[i] += reflects ? gathered[i] * diffuse_albedo(closure, i) : Vec3f(0.0f);
+            radiance[i] += light.glossy[i] + light.mirrored[i];
+        }
+        return std::move(light.glossy);
+    }
+
     /// Fills radiance and channels of `grid`, whose points are `in.points`; `noise` as
-    /// DirectLight::reflect().
+    /// DirectLight::reflect(), `settled` [vertices] with the radiance but for what is noise at
+    /// single points: empty where it is all.
     void shade(Grid& grid, const ShadingInput& in, const PointPaths& at,
-               std::vector<float>* noise = nullptr) const {
+               std::vector<float>* noise = nullptr, std::vector<Vec3f>* settled = nullptr) const {
         const CrashScope scope("shades", scene.instances[grid.instance].name);
         const SurfaceProgram& surface = material(grid.material).radiance;
-        Run run = surface.program.prepare(in, in.points->count);
-        surface.program.execute(run);
-        // Light then knows no other normal, and does not fade as where a node bends one.
-        std::optional<ShadingPoints> bent;
-        if (surface.is_bumped) {
-            bent = *in.points;
-            bent->normal = values_of(run, surface.bumped);
-        }
-        const ShadingPoints& points = bent ? *bent : *in.points;
-        std::size_t broken = 0;
-        const SurfaceClosure closure = closure_of(run, surface.sources, broken);
+        const SurfaceRun ran(surface, in);
+        const ShadingPoints& points = ran.points();
+        const SurfaceClosure& closure = ran.closure();
         const bool has_passes = !channels.empty();
         ReflectionParts parts;
-        std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
+        std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
+        std::vector<LobeRay> leaving;
         if (light)
-            radiance =
-                light->reflect(points, closure, grid.key, has_passes ? &parts : nullptr, at, noise);
+            radiance = light->reflect(points, closure, grid.key, has_passes ? &parts : nullptr, at,
+                                      noise, bounces ? &leaving : nullptr);
         else
             parts.resize(has_passes ? points.count : 0);
+        if (bounces && !closure.lobes.empty())
+            doubtful = add_bounces(points, closure, std::move(leaving), grid.gathered, radiance);
         for (std::size_t i = 0; i < closure.emission.size(); ++i)
             radiance[i] += closure.emission[i];
-        warn_of_broken(grid.material, broken + make_finite(radiance));
+        warn_of_broken(grid.material, ran.broken() + make_finite(radiance));
+        if (settled && !doubtful.empty()) {
+            *settled = radiance;
+            for (std::size_t i = 0; i < points.count; ++i) (*settled)[i] -= doubtful[i];
+            make_finite(*settled);
+            interpolate_points(grid, 1, *settled);
+        }
         interpolate_points(grid, 1, radiance);
         grid.radiance = std::move(radiance);
         if (has_passes)
             fill_channels(grid, channels, scene, camera,
-                          {points, closure, parts, run, surface.passes});
+                          {points, closure, parts, ran.run(), surface.passes});
         statistics.add(Counter::PointsShaded, points.count);
     }
 
@@ -278,6 +254,7 @@ struct ShadingSystem::Impl {
         out.n_u = static_cast<int>(wanted.size()) - 1;
         const Mat3f camera_from_world = glm::transpose(Mat3f(camera.world_from_camera));
         for (const Vec3f& p : refined.points.p) out.p.push_back(camera_from_world * p);
+        out.gathered = refined.gathered;
         if (!grid.opacity.empty()) shade_opacity(out, input(grid, refined));
         shade(out, input(grid, refined), {});
         return out;
@@ -370,19 +347,23 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     points.share *= sharpness;
     if (m_impl->light && lit) m_impl->light->lift(points, grid.key);
     std::vector<float> noise(refines ? points.count : 0, 0.0f);
+    std::vector<Vec3f> settled;
     m_impl->shade(grid, m_impl->input(grid, points), m_impl->paths(grid, points),
-                  refines ? &noise : nullptr);
+                  refines ? &noise : nullptr, refines ? &settled : nullptr);
     m_impl->statistics.add(Counter::GridsShaded);
     if (!refines) return;
     if (grid.holdout) {
         grid.unsettled = grid.unsettled_opacity;
         return;
     }
+    // Samples would be shaded by themselves where points happen to be too bright, not too dark.
+    if (!settled.empty()) settled.swap(grid.radiance);
     grid.unsettled =
         m_impl->changes_in_time(grid)
             ? m_impl->all_marked(grid)
             : unsettled_micropolygons(grid, noise, m_impl->threshold / (sharpness * sharpness),
                                       m_impl->noise_threshold / (sharpness * sharpness));
+    if (!settled.empty()) settled.swap(grid.radiance);
     if (grid.unsettled.empty()) grid.unsettled = grid.unsettled_opacity;
     for (std::size_t m = 0; m < grid.unsettled_opacity.size(); ++m)
         grid.unsettled[m] |= grid.unsettled_opacity[m];

@@ -18,7 +18,7 @@ struct Scratch {
 };
 
 /// The attributes that the material asks for, as a grid of one vertex holds them.
-void fill_attributes(const ShadowHit& hit, const std::vector<AttributeRequest>& requests,
+void fill_attributes(const RayHit& hit, const std::vector<AttributeRequest>& requests,
                      std::vector<GridAttribute>& attributes) {
     attributes.resize(requests.size());
     for (std::size_t k = 0; k < requests.size(); ++k) {
@@ -39,7 +39,7 @@ void fill_attributes(const ShadowHit& hit, const std::vector<AttributeRequest>& 
 }
 
 /// The hit as a point that is seen from where the ray started.
-void fill_point(const ShadowHit& hit, ShadingPoints& points) {
+void fill_point(const RayHit& hit, ShadingPoints& points) {
     const bool back = glm::dot(hit.normal, hit.direction) > 0.0f;
     const Vec3f normal = back ? -hit.normal : hit.normal;
     points.count = 1;
@@ -64,8 +64,7 @@ std::optional<Vec3f> constant_transparency(const OpacityProgram& material) {
     return clamped(material.transparency.constant);
 }
 
-Vec3f shadow_transparency(const OpacityProgram& material, const Scene& scene,
-                          const ShadowHit& hit) {
+Vec3f shadow_transparency(const OpacityProgram& material, const Scene& scene, const RayHit& hit) {
     if (const auto constant = constant_transparency(material)) return *constant;
     auto scratch = ObjectPool<std::unique_ptr<Scratch>>::take();
     if (!scratch) scratch = std::make_unique<Scratch>();

@@ -35,11 +35,13 @@ DEFAULTS = {
     "light_samples": 16,
     "shading_threshold": 0.1,
     "film_exposure": 1.0,
+    "bounces": "NONE",
 }
 
 NUMBERS = {
     "device": ["AUTO", "CPU", "GPU"],
     "sampling": ["INDEPENDENT", "INTERLEAVED", "REGULAR"],
+    "bounces": ["NONE", "FAST", "FULL"],
     "pixel_filter": [
         "BOX",
         "TENT",

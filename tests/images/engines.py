@@ -61,6 +61,14 @@ def set_cycles(scene, samples, seed=0):
     cycles.pixel_filter_type, cycles.filter_width = "BLACKMAN_HARRIS", 1.5
 
 
+def set_bounces(scene, most):
+    """Light is followed from surface to surface in either engine, without anything that tames its noise."""
+    cycles = scene.cycles
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = most
+    cycles.sample_clamp_indirect = cycles.blur_glossy = 0.0
+    scene.granita.bounces = "FULL"
+
+
 def set_granita(scene, samples, **settings):
     scene.render.engine = "GRANITA"
     values = {"pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5, "opacity_threshold": 1.0}

@@ -20,6 +20,8 @@ _SEEN_STRETCH = 1.1
 VISIBLE_CAMERA = 1
 CASTS_SHADOW = 2
 HOLDOUT = 4
+VISIBLE_DIFFUSE = 8
+VISIBLE_GLOSSY = 16
 
 
 @dataclass
@@ -111,6 +113,10 @@ def _flags(prototype, view_layer):
         flags |= VISIBLE_CAMERA
     if all(owner.visible_shadow for owner in owners):
         flags |= CASTS_SHADOW
+    if all(owner.visible_diffuse for owner in owners):
+        flags |= VISIBLE_DIFFUSE
+    if all(owner.visible_glossy for owner in owners):
+        flags |= VISIBLE_GLOSSY
     if placing.holdout_get(view_layer=view_layer):
         flags |= HOLDOUT
     return flags

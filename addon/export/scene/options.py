@@ -5,6 +5,7 @@ import numpy as np
 
 from ..base.report import ExportError
 from .camera import Frame
+from .light_paths import light_paths
 from .shutter import rolling_shutter, shutter_curve
 
 MOST_SAMPLES = 4096  # as of scene.granita.samples
@@ -142,5 +143,6 @@ def options_record(scene, view_layer, settings, frame, crop, frame_time):
         frame_time=frame_time,
         shutter_curve=shutter_curve(render),
         rolling_shutter=rolling_shutter(scene, view_layer),
+        **light_paths(scene, settings),
     )
     return record

@@ -71,6 +71,9 @@ struct ShadingPoints {
     /// [n] shutter time at which each is lit, where it then is; negative, or empty: over the whole
     /// shutter.
     std::vector<float> times;
+    /// [n] of the rays that see them, metres; empty: from the camera
+    std::vector<float> ray_lengths;
+    std::uint32_t depth = 0;  ///< how many surfaces lie between them and the camera
     /// [n] in the sample sequences of the frame; empty: in those of the grid, by row and column.
     std::vector<std::uint32_t> places;
 };

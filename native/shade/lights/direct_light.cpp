@@ -38,6 +38,19 @@ constexpr int kSamplesOfAsked = 16;
 /// A choice that many share knows its lamps as much better.
 constexpr float kFiner = 4.0f;
 
+/// From the border of a grid a little into it.  Where surfaces meet in an edge, points of it lie
+/// on both: half of their rays would start behind the other.
+Vec3f inwards(const ShadingPoints& points, std::size_t i) {
+    constexpr float kStep = 0.02f;  // of a micropolygon
+    if (points.columns == 0) return Vec3f(0.0f);
+    const std::size_t column = i % points.columns, row = i / points.columns;
+    const auto towards = [](std::size_t at, std::size_t last) {
+        return (at == 0 ? kStep : 0.0f) - (at == last ? kStep : 0.0f);
+    };
+    return towards(column, points.columns - 1) * points.dp_du[i] +
+           towards(row, points.count / points.columns - 1) * points.dp_dv[i];
+}
+
 /// Of shading space.
 Vec3d camera_origin(const Scene& scene) {
     return Vec3d(matrix_at(scene.camera.world_from_camera, scene.options.frame_time)[3]);
@@ -61,6 +74,8 @@ struct DirectLight::Impl {
     void sample_rest(LitGrid& grid, const LitPoint& point, const LampChoice* choice) const;
     LampRate rate_of(const LitPoint& point, const LampChoice* choice, std::size_t lamp) const;
     void mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const;
+    void leave(LitGrid& grid, const LitPoint& point, Ray ray, const Vec3f& weight, float pdf,
+               std::uint32_t place) const;
     void look(LitGrid& grid, const EnvironmentSamples& samples, float spread, RayType glossy) const;
     std::uint64_t receives(const GridKey& key) const;
     Vec3f occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
@@ -102,9 +117,9 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
                         environment->broken());
         if (environment->is_black()) environment.reset();
     }
-    const bool shadows = environment || std::ranges::any_of(set.lamps, [](const Lamp& lamp) {
-                             return lamp.casts_shadow();
-                         });
+    const bool shadows =
+        environment || scene.options.bounces.most > 0 ||
+        std::ranges::any_of(set.lamps, [](const Lamp& lamp) { return lamp.casts_shadow(); });
     if (!shadows) return;
     StageTimer timer(statistics, Stage::RayBuild);
     auto rays =
@@ -168,7 +183,7 @@ LampRate DirectLight::Impl::rate_of(const LitPoint& point, const LampChoice* cho
 void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
                                     const LampChoice* choice) const {
     const bool glossy = point.bsdf.kind(lobe) == LobeKind::Glossy;
-    if (!environment && !glossy) return;
+    if (!environment && !glossy && !grid.leaving) return;
     const LitPoint::LobeSamples& samples = point.samples[lobe];
     const SobolPoints sequence = grid.sequence(1 + point.bsdf.index(lobe), samples.first);
     for (int s = 0; s < samples.count; ++s) {
@@ -179,6 +194,13 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         if (total(value) == Vec3f(0.0f)) continue;
         const LitPlace place = set.place_at(point, sequence.third(index));
         const float sign = LitGrid::sign(s, samples.count);
+        if (grid.leaving) {
+            Ray ray = set.ray(point, place, wo, kInfinity);
+            ray.type = glossy ? RayType::Glossy : RayType::Diffuse;
+            const float density = point.all_density(wo);
+            leave(grid, point, ray, total(value) / density,
+                  density / static_cast<float>(point.lobe_samples(0)), samples.first + index);
+        }
         if (environment) {
             const Environment::Sample at = environment->at(wo);
             const float density =
@@ -209,6 +231,20 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
     }
 }
 
+void DirectLight::Impl::leave(LitGrid& grid, const LitPoint& point, Ray ray, const Vec3f& weight,
+                              float pdf, std::uint32_t place) const {
+    if (weight == Vec3f(0.0f) || !is_finite(weight)) return;
+    // A sample's part of the hemisphere, for rays that diffuse lobes send.
+    const float spread = ray.type == RayType::Diffuse
+                             ? std::sqrt(2.0f * kPi / static_cast<float>(point.sample_count))
+                             : 0.0f;
+    const int count = point.lobe_samples(set.varies ? point.sample_count : 1);
+    // Each grid has a part of the sequences to itself, as samples that are shaded alone have.
+    const auto first = grid.placed ? 0u : static_cast<std::uint32_t>(grid.seed) << 14;
+    grid.leaving->push_back({ray, weight, 1.0f / static_cast<float>(count), pdf,
+                             static_cast<std::uint32_t>(point.index), first + place, spread});
+}
+
 void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const {
     Vec3f wo, reflectance;
     if (!point.bsdf.reflect(lobe, wo, reflectance)) return;
@@ -224,6 +260,12 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
             grid.add(point.index, value * seen, LitGrid::sign(s, count));
             grid.add_lamp(point.index, {Vec3f(0.0f), value}, seen);
         });
+        if (grid.leaving) {
+            Ray ray = set.ray(point, place, wo, kInfinity);
+            ray.type = RayType::Singular;
+            leave(grid, point, ray, reflectance, kInfinity,
+                  point.place * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(s));
+        }
         if (environment) open += reflectance * occlusion(grid, point, place, wo);
     }
     grid.look(grid.sharp, point.index, wo, {Vec3f(0.0f), open}, 0.0f);
@@ -320,6 +362,10 @@ DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& s
 
 DirectLight::~DirectLight() = default;
 
+const RayScene* DirectLight::rays() const {
+    return m_impl->set.rays.get();
+}
+
 bool DirectLight::varies() const {
     return m_impl->set.varies;
 }
@@ -339,26 +385,29 @@ void DirectLight::lift(ShadingPoints& points, const GridKey& key) const {
 
 std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const SurfaceClosure& closure,
                                         const GridKey& key, ReflectionParts* parts,
-                                        const PointPaths& paths, std::vector<float>* noise) const {
+                                        const PointPaths& paths, std::vector<float>* noise,
+                                        std::vector<LobeRay>* leaving) const {
     std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
     if (noise) noise->assign(points.count, 0.0f);
     if (parts) parts->resize(points.count);
     const bool dark = m_impl->set.lamps.empty() && !m_impl->environment;
-    if (closure.lobes.empty() || (dark && !parts)) return radiance;
+    if (closure.lobes.empty() || (dark && !parts && !leaving)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     // Points with places of their own share the sequences of the frame.
     const bool placed = !points.places.empty();
-    LitGrid grid{radiance,
-                 parts,
-                 {},
-                 {},
-                 {},
-                 {},
-                 grid_seed(placed ? GridKey{} : key, m_impl->scene.options.seed),
-                 m_impl->world.by_lobe};
+    LitGrid grid{
+        radiance,
+        parts,
+        {},
+        {},
+        {},
+        {},
+        grid_seed(placed ? GridKey{0, 0, 1 + points.depth} : key, m_impl->scene.options.seed),
+        m_impl->world.by_lobe};
     grid.placed = placed;
     grid.receives = m_impl->receives(key);
     grid.balance = noise;
+    grid.leaving = leaving;
     RayOffset ray_offset = m_impl->set.rays ? m_impl->set.rays->ray_offset(key) : RayOffset{};
     const Lifespan& life = paths.lifespan();
     const Vec2f life_exposed(m_impl->set.shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),
@@ -367,7 +416,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     const int sample_count = std::max(
         1, static_cast<int>(std::lround(points.share * static_cast<float>(m_impl->sample_count))));
     std::vector<LitPoint> lit;
-    lit.reserve(dark ? 0 : points.count);
+    lit.reserve(dark && !leaving ? 0 : points.count);
     for (std::size_t i = 0; i < points.count; ++i) {
         PointBsdf bsdf(closure, points, i, albedo);
         if (bsdf.lobe_count() == 0) continue;
@@ -376,12 +425,13 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
             parts->diffuse_color[i] = color.diffuse;
             parts->glossy_color[i] = color.glossy;
         }
-        if (dark) continue;
+        if (dark && !leaving) continue;
         const Vec3f &p = points.p[i], &normal = points.geometric_normal[i];
         const Vec3f offset = points.ray_offset.empty() ? Vec3f(0.0f) : points.ray_offset[i];
         if (m_impl->set.rays && !points.faces.empty())
             ray_offset = m_impl->set.rays->ray_offset({key.instance, points.faces[i]});
-        const Vec3f start = ray_offset(p + offset, normal);
+        const Vec3f start =
+            ray_offset(p + offset + (leaving ? inwards(points, i) : Vec3f(0.0f)), normal);
         const bool timed = !points.times.empty() && points.times[i] >= 0.0f;
         const float time = timed ? points.times[i] : m_impl->scene.options.frame_time;
         const LitPlace at_frame{time, p, normal, start};

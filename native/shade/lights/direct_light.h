@@ -29,7 +29,9 @@
 #include "shade/bsdf/reflection.h"
 #include "shade/lights/environment.h"
 #include "shade/lights/light_motion.h"
+#include "shade/lights/lobe_ray.h"
 #include "shade/rays/kept_rays.h"
+#include "shade/rays/ray_scene.h"
 #include "shade/rays/shadow_opacity.h"
 
 namespace granita {
@@ -58,11 +60,15 @@ class DirectLight {
     /// Radiance reflected by the closure's lobes towards the view, [points.count]: the mean over
     /// the shutter, as far as the points are there, of what arrives, on the surface as it is at the
     /// frame time.  Fills `parts` where given, and `noise` [points.count] with how
-    /// far, either way, each point's luminance is in doubt.
+    /// far, either way, each point's luminance is in doubt.  `leaving`: gets the ways from which
+    /// surfaces would light the points, which their lobes are sampled by.
     std::vector<Vec3f> reflect(const ShadingPoints& points, const SurfaceClosure& closure,
                                const GridKey& seed, ReflectionParts* parts = nullptr,
-                               const PointPaths& paths = {},
-                               std::vector<float>* noise = nullptr) const;
+                               const PointPaths& paths = {}, std::vector<float>* noise = nullptr,
+                               std::vector<LobeRay>* leaving = nullptr) const;
+
+    /// What is met by rays; nullptr where none are traced.
+    const RayScene* rays() const;
 
   private:
     struct Impl;

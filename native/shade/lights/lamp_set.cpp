@@ -73,8 +73,8 @@ int LampSet::samples_of(const LitPoint& point, const Lamp& lamp) const {
     return rays->varies(place.start, sample.direction, sample.distance) ? point.sample_count : 1;
 }
 
-ShadowRay LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
-                       float distance, int blocker_set) const {
+Ray LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
+                 float distance, int blocker_set) const {
     const bool turned_away = glm::dot(place.normal, direction) <= 0.0f &&
                              glm::dot(point.at_frame.normal, direction) > 0.0f;
     const LitPlace& from = turned_away ? point.at_frame : place;

@@ -32,8 +32,8 @@ struct LampSet {
     /// None of a lamp below the horizon; one tells all about a lamp without size that nothing
     /// moving can come before.
     int samples_of(const LitPoint& point, const Lamp& lamp) const;
-    ShadowRay ray(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
-                  float distance, int blocker_set = -1) const;
+    Ray ray(const LitPoint& point, const LitPlace& place, const Vec3f& direction, float distance,
+            int blocker_set = -1) const;
     Vec3f shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                  const LightSample& sample) const;
 

@@ -48,6 +48,13 @@ struct LitPoint {
             samples[k].count = std::max(1, static_cast<int>(std::lround(share)));
         }
     }
+    /// Samples of all lobes; a mirror's ways are counted as `mirrored`.
+    int lobe_samples(int mirrored) const {
+        int sum = 0;
+        for (std::size_t k = 0; k < samples.size(); ++k)
+            sum += bsdf.is_sharp(k) ? mirrored : samples[k].count;
+        return sum;
+    }
     /// Expected samples a solid angle around `wo` over the lobes that `which` accepts.
     template <class Which>
     float lobe_density(const Vec3f& wo, Which which) const {

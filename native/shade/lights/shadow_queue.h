@@ -21,7 +21,7 @@ class ShadowQueue {
     /// `light`: reflected by the point where nothing is in between; `parts`: the same, diffuse and
     /// glossy apart; `sign`: as LitGrid::sign.
     void send(std::size_t point, const Vec3f& light, const BsdfValue& parts, float sign,
-              const ShadowRay& ray) {
+              const Ray& ray) {
         if (m_waiting.size() == kMost) deliver();
         m_waiting.push_back({point, light, parts, sign});
         m_rays_waiting.push_back(ray);
@@ -60,7 +60,7 @@ class ShadowQueue {
     const RayScene* m_rays;
     LitGrid& m_grid;
     std::vector<Light> m_waiting;
-    std::vector<ShadowRay> m_rays_waiting;
+    std::vector<Ray> m_rays_waiting;
     std::vector<Vec3f> m_seen;
 };
 

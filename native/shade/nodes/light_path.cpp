@@ -57,7 +57,8 @@ void build_light_path(NodeBuilder& b) {
                               [](const ShadingInput& in, std::size_t) { return in.ray_length; }));
     } else {
         b.output(kLength, b.geometry<float>([](const ShadingInput& in, std::size_t i) {
-            return glm::length(in.points->p[i]);
+            const std::vector<float>& lengths = in.points->ray_lengths;
+            return lengths.empty() ? glm::length(in.points->p[i]) : lengths[i];
         }));
     }
 }

@@ -22,7 +22,7 @@ float longest_edge(RTCScene built, unsigned geometry, unsigned triangle) {
 
 }  // namespace
 
-float covering_distance(RTCScene built, const ShadowRay& from, bool from_behind) {
+float covering_distance(RTCScene built, const Ray& from, bool from_behind) {
     /// Of a triangle's longest edge.
     constexpr float kFarthest = 2.0f;
     constexpr float kNone = std::numeric_limits<float>::infinity();

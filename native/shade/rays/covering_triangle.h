@@ -5,13 +5,13 @@
 
 #include <embree3/rtcore.h>
 
-#include "shade/rays/shadow_ray.h"
+#include "shade/rays/ray.h"
 
 namespace granita {
 
 /// The nearest triangle of `built`, which holds nothing else, along a ray that is left through it,
 /// not farther than its own size; infinite where there is none.  What faces the ray is something
 /// else that hangs over it.  `from_behind`: the ray goes inwards.
-float covering_distance(RTCScene built, const ShadowRay& from, bool from_behind);
+float covering_distance(RTCScene built, const Ray& from, bool from_behind);
 
 }  // namespace granita

@@ -278,7 +278,7 @@ std::string RayDisplaced::size() const {
 }
 
 void RayDisplaced::locate(std::uint32_t geometry, std::uint32_t triangle, float u, float v,
-                          ShadowHit& hit) const {
+                          RayHit& hit) const {
     triangle = m_primitives.original(geometry, triangle);
     const auto after = std::ranges::upper_bound(m_first_triangle, triangle);
     const auto k = static_cast<std::size_t>(after - m_first_triangle.begin()) - 1;

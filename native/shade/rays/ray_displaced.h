@@ -28,7 +28,7 @@ class RayDisplaced final : public RayFaces<3> {
     /// Not known: rays start where RayScene::heights_over() says.
     float error(std::uint32_t) const override { return 0.0f; }
     void locate(std::uint32_t geometry, std::uint32_t triangle, float u, float v,
-                ShadowHit& hit) const override;
+                RayHit& hit) const override;
     std::size_t bytes() const override;
 
   private:

@@ -99,7 +99,7 @@ std::vector<RTCGeometry> RayElements::hand_over(RTCDevice device) {
 }
 
 void RayElements::locate(std::uint32_t, std::uint32_t primitive, float u, float,
-                         ShadowHit& hit) const {
+                         RayHit& hit) const {
     hit.elements = m_shared.get();
     if (m_curves.empty()) {
         hit.place = {primitive, primitive, primitive, 0.0};

@@ -24,7 +24,7 @@ class RayElements final : public RayShape {
     /// Rays start outside of their own element (Grid::ray_offset).
     float error(std::uint32_t) const override { return 0.0f; }
     void locate(std::uint32_t geometry, std::uint32_t primitive, float u, float v,
-                ShadowHit& hit) const override;
+                RayHit& hit) const override;
     std::size_t bytes() const override;
 
   private:

@@ -30,7 +30,7 @@ class RayFaces : public RayShape {
         : m_shared(std::move(shared)), m_extents(m_shared->data().face_count(), 0.0f) {
         m_primitives.knots = m_shared->surface_knots();
     }
-    void locate_on(std::size_t patch, ShadowHit& hit) const {
+    void locate_on(std::size_t patch, RayHit& hit) const {
         hit.geometry = m_shared.get();
         hit.patch = &m_shared->patches()[patch];
         hit.slot = m_shared->data().slot(hit.patch->face);

@@ -44,7 +44,7 @@ std::string RayMesh::size() const {
 }
 
 void RayMesh::locate(std::uint32_t geometry, std::uint32_t triangle, float u, float v,
-                     ShadowHit& hit) const {
+                     RayHit& hit) const {
     triangle = m_primitives.original(geometry, triangle);
     const std::uint32_t half = m_patches[triangle] & 1u;
     locate_on(m_patches[triangle] / 2, hit);

@@ -20,7 +20,7 @@ class RayMesh final : public RayFaces<3> {
     float error(std::uint32_t) const override { return 0.0f; }
     /// (u, v): the barycentric point of a triangle.
     void locate(std::uint32_t geometry, std::uint32_t triangle, float u, float v,
-                ShadowHit& hit) const override;
+                RayHit& hit) const override;
     std::size_t bytes() const override;
 
   private:

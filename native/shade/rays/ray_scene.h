@@ -14,15 +14,17 @@
 #include "geometry/geometry_cache.h"
 #include "scene/scene.h"
 #include "shade/rays/kept_rays.h"
+#include "shade/rays/ray.h"
+#include "shade/rays/ray_hit.h"
 #include "shade/rays/ray_offset.h"
 #include "shade/rays/shadow_opacity.h"
-#include "shade/rays/shadow_ray.h"
 
 namespace granita {
 
 class RayScene {
   public:
-    /// `origin`: the camera's world position.  Only instances that cast shadows are in it.
+    /// `origin`: the camera's world position.  Only instances that cast shadows are in it, or
+    /// all where light is followed from surface to surface.
     /// `geometries`: shared with dicing, where given; `report`: what geometries are reported to;
     /// `kept`: where built geometries are looked for and left; `displacement`: of instances, where
     /// there is any, which must outlive this.
@@ -56,10 +58,21 @@ class RayScene {
     /// (ShadingPositions::faces).
     RayOffset ray_offset(const GridKey& key) const;
 
+    /// A surface that one of several rays meets.
+    struct Met {
+        std::uint32_t ray;  ///< its number
+        RayHit hit;         ///< its frame: of what stands still, else nullptr
+    };
+    /// The nearest surfaces that are there at the rays' times, in their order; those of other rays,
+    /// which meet none, are left out.
+    void nearest(std::span<const Ray> rays, std::vector<Met>& out) const;
+
+    RayFrame frame_at(std::uint32_t instance, float time) const;
+
     /// Share of light that passes, per channel.
-    Vec3f transmittance(const ShadowRay& ray) const;
+    Vec3f transmittance(const Ray& ray) const;
     /// The same of many, bit by bit; fastest where neighbours in the list go the same way.
-    void transmittances(std::span<const ShadowRay> rays, std::span<Vec3f> left) const;
+    void transmittances(std::span<const Ray> rays, std::span<Vec3f> left) const;
 
   private:
     struct Impl;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "shade/rays/shadow_opacity.h"
+#include "shade/rays/ray_hit.h"
 
 namespace granita {
 
@@ -32,7 +32,7 @@ class RayShape {
     virtual float error(std::uint32_t face) const = 0;
     /// Fills the place of a hit and its material slot.  `geometry`: which of hand_over()'s.
     virtual void locate(std::uint32_t geometry, std::uint32_t primitive, float u, float v,
-                        ShadowHit& hit) const = 0;
+                        RayHit& hit) const = 0;
     virtual std::size_t bytes() const = 0;
 };
 

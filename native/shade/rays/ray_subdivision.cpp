@@ -307,7 +307,7 @@ float RaySubdivision::error(std::uint32_t face) const {
 }
 
 void RaySubdivision::locate(std::uint32_t geometry, std::uint32_t quad, float u, float v,
-                            ShadowHit& hit) const {
+                            RayHit& hit) const {
     quad = m_primitives.original(geometry, quad);
     std::size_t k = quad;
     std::uint32_t cell = 0;

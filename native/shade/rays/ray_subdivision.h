@@ -27,7 +27,7 @@ class RaySubdivision final : public RayFaces<4> {
     std::string size() const override;
     float error(std::uint32_t face) const override;
     void locate(std::uint32_t geometry, std::uint32_t quad, float u, float v,
-                ShadowHit& hit) const override;
+                RayHit& hit) const override;
     std::size_t bytes() const override;
     /// It had no room for as many cells as `detail` asks for.
     bool is_coarsened() const { return m_coarsened; }

@@ -118,7 +118,7 @@ TEST(RayElements, transparent_ones_tell_where_they_were_met) {
     ShadowOpacity opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
     int curves = 0, points = 0;
-    opacity.transparency = [&](const ShadowHit& hit) {
+    opacity.transparency = [&](const RayHit& hit) {
         EXPECT_EQ(hit.place.element, 1u);
         EXPECT_EQ(hit.direction, kUp);
         if (hit.elements->data().kind == GeometryKind::Points) {

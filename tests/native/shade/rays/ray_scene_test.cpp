@@ -36,7 +36,7 @@ GeometryData cube() {
 }
 
 /// Where the hit's patch and uv say that it is, object space: linear over the patch.
-Vec3f object_position(const ShadowHit& hit) {
+Vec3f object_position(const RayHit& hit) {
     const CornerValues corners =
         corner_values(*hit.geometry, *hit.patch, {AttributeSource::ObjectPosition, "", 3, false});
     const CornerWeights weights(hit.patch->kind, hit.uv);
@@ -55,7 +55,7 @@ TEST(RayScene, a_square_blocks_exactly_the_rays_through_it) {
     // A lamp at height 2 above the square's centre doubles its shadow on the floor.
     const Vec3f lamp(2, 0, 2);
     const SobolPoints points(1);
-    std::vector<ShadowRay> rays_to_ask;
+    std::vector<Ray> rays_to_ask;
     std::vector<Vec3f> expected;
     for (std::uint32_t i = 0; i < 4096; ++i) {
         const Vec2f u = points(i) * 4.0f - 2.0f;
@@ -85,8 +85,8 @@ TEST(RayScene, rays_that_are_no_numbers_or_start_out_of_reach_meet_nothing) {
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), {}, progress);
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    const ShadowRay good{Vec3f(0.0f), kUp, kInfinity};
-    std::vector<ShadowRay> rays_to_ask;
+    const Ray good{Vec3f(0.0f), kUp, kInfinity};
+    std::vector<Ray> rays_to_ask;
     for (const float bad : {nan, kInfinity, -kInfinity, 1e19f, 1e30f})
         for (int axis = 0; axis < 3; ++axis) {
             rays_to_ask.push_back(good);
@@ -121,14 +121,14 @@ TEST(RayScene, stands_at_the_frame_time_between_knots) {
     EXPECT_EQ(rays.transmittance({{1, 0, 0}, kUp, kInfinity}), Vec3f(0.0f));
     EXPECT_EQ(rays.transmittance({{-1, 0, 0}, kUp, kInfinity}), Vec3f(1.0f));
     // Each ray of many has its own time: the square is at -1 + 4 t.
-    std::vector<ShadowRay> rays_to_ask;
+    std::vector<Ray> rays_to_ask;
     for (int i = 0; i <= 20; ++i)
         rays_to_ask.push_back(
             {{-1.0f + 0.2f * static_cast<float>(i), 0, 0}, kUp, kInfinity, 0.25f});
     std::vector<Vec3f> left(rays_to_ask.size());
     rays.transmittances(rays_to_ask, left);
     for (std::size_t i = 0; i < left.size(); ++i) EXPECT_EQ(left[i], Vec3f(i == 5 ? 0.0f : 1.0f));
-    for (ShadowRay& ray : rays_to_ask) ray.time = 0.25f * (ray.start.x + 1.0f);
+    for (Ray& ray : rays_to_ask) ray.time = 0.25f * (ray.start.x + 1.0f);
     rays.transmittances(rays_to_ask, left);
     for (const Vec3f& passes : left) EXPECT_EQ(passes, Vec3f(0.0f));
 }
@@ -228,7 +228,7 @@ TEST(RayScene, transparent_materials_multiply_and_opaque_ones_end) {
         scene.instances[add_instance(scene, square(1), at({0, 0, layer}))].materials = {0};
     ShadowOpacity opacity;
     opacity.is_transparent = [](std::int32_t material) { return material == 0; };
-    opacity.transparency = [](const ShadowHit& hit) {
+    opacity.transparency = [](const RayHit& hit) {
         // A cut-out: a hole where the first coordinate is positive, tinted glass elsewhere.
         EXPECT_EQ(hit.material, 0);
         EXPECT_NEAR(hit.normal.z, 1.0f, 1e-6f);
@@ -257,10 +257,10 @@ TEST(RayScene, rays_together_pass_what_each_passes_alone) {
     scene.instances[add_instance(scene, square(0.4f), at({1, 0, 1}))].materials = {1};
     ShadowOpacity opacity;
     opacity.is_transparent = [](std::int32_t material) { return material == 0; };
-    opacity.transparency = [](const ShadowHit& hit) { return Vec3f(0.25f + 0.5f * hit.p.x); };
+    opacity.transparency = [](const RayHit& hit) { return Vec3f(0.25f + 0.5f * hit.p.x); };
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
-    std::vector<ShadowRay> asked;
+    std::vector<Ray> asked;
     for (int i = 0; i < 100; ++i)
         asked.push_back(
             {{i % 2 + 0.007f * static_cast<float>(i % 50) + (i % 4 == 3 ? 5.0f : 0.0f), 0.1f, 0},
@@ -282,7 +282,7 @@ TEST(RayScene, places_are_not_looked_up_where_the_same_passes_everywhere) {
     scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].materials = {0, 0};
     ShadowOpacity opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
-    opacity.transparency = [](const ShadowHit&) -> Vec3f { throw SceneError("place", "asked"); };
+    opacity.transparency = [](const RayHit&) -> Vec3f { throw SceneError("place", "asked"); };
     opacity.constant = [](std::int32_t) { return Vec3f(0.5f, 0.25f, 1.0f); };
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
@@ -304,7 +304,7 @@ TEST(RayScene, casters_are_there_for_their_part_of_the_shutter) {
     scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].lifespan = {0.0f, 0.1f};
     ShadowOpacity opacity;
     opacity.is_transparent = [](std::int32_t material) { return material == 0; };
-    opacity.transparency = [](const ShadowHit&) { return Vec3f(0.5f); };
+    opacity.transparency = [](const RayHit&) { return Vec3f(0.5f); };
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
     const auto left = [&](float time, float distance) {
@@ -338,7 +338,7 @@ TEST(RayScene, hits_on_a_limit_surface_name_the_patch_and_the_place_on_it) {
     std::vector<Vec3f> seen;
     ShadowOpacity opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
-    opacity.transparency = [&](const ShadowHit& hit) {
+    opacity.transparency = [&](const RayHit& hit) {
         const Vec3f p = object_position(hit);
         EXPECT_LT(glm::length(p - hit.p), 1e-4f);
         seen.push_back(p);
@@ -372,7 +372,7 @@ TEST(RayScene, hits_on_what_moves_and_what_stands_still_of_a_mesh_name_their_fac
     float height = 0.0f;
     ShadowOpacity opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
-    opacity.transparency = [&](const ShadowHit& hit) {
+    opacity.transparency = [&](const RayHit& hit) {
         face = hit.patch->face;
         height = hit.p.z;
         EXPECT_EQ(hit.direction, -kUp);
@@ -396,7 +396,7 @@ TEST(RayScene, an_error_inside_a_material_comes_out_of_the_ray) {
     scene.materials.resize(1);
     ShadowOpacity opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
-    opacity.transparency = [](const ShadowHit&) -> Vec3f { throw SceneError("material 'M'", "x"); };
+    opacity.transparency = [](const RayHit&) -> Vec3f { throw SceneError("material 'M'", "x"); };
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
     EXPECT_THROW(rays.transmittance({{0, 0, 0}, kUp, kInfinity}), SceneError);

@@ -4,15 +4,17 @@
 #include <cmath>
 
 #include "math/vec.h"
+#include "shade/rays/ray_type.h"
 
 namespace granita {
 
 /// A way of light, in shading space.  What is no number, or 1e18 metres away, meets nothing.
-struct ShadowRay {
+struct Ray {
     Vec3f start, direction;  ///< direction is unit
     float distance;          ///< metres; may be infinite
     float time = 0.5f;       ///< of the shutter, [0, 1]
     int blocker_set = -1;    ///< of the light: others than Instance::blocks names let it pass
+    RayType type = RayType::Shadow;
 
     /// Embree leaves other rays undefined, and as Debian builds it ends the process at them.
     bool is_traceable() const {

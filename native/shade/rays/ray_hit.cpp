@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "shade/rays/shadow_opacity.h"
+#include "shade/rays/ray_hit.h"
 
 namespace granita {
 
-ShadowFrame::ShadowFrame(const Mat4d& matrix) {
+RayFrame::RayFrame(const Mat4d& matrix) {
     const Mat3d m(matrix);
     world_from_object = Mat3f(m);
     object_from_world = Mat3f(glm::inverse(m));

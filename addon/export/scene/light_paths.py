@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Limits of light's ways from surface to surface: `scene.granita.bounces` and those that Cycles has."""
+
+# Cycles' property, the snapshot's option, Cycles' default: taken where its add-on is not enabled.
+LIMITS = (
+    ("max_bounces", "bounces", 12),
+    ("diffuse_bounces", "diffuse_bounces", 4),
+    ("glossy_bounces", "glossy_bounces", 4),
+    ("transmission_bounces", "transmission_bounces", 12),
+    ("transparent_max_bounces", "transparent_bounces", 8),
+    ("sample_clamp_indirect", "clamp_indirect", 10.0),
+    ("caustics_reflective", "caustics", True),
+    ("blur_glossy", "filter_glossy", 1.0),
+)
+_FAST = 2  # bounces
+
+
+def light_paths(scene, settings):
+    """The options of bounces; none where light is not followed.
+
+    Args:
+        scene: whose settings of Cycles count.
+        settings: `scene.granita`, or None.
+    """
+    preset = getattr(settings, "bounces", "NONE")
+    if preset == "NONE":
+        return {}
+    cycles = getattr(scene, "cycles", None)
+    limits = {option: getattr(cycles, name, default) for name, option, default in LIMITS}
+    if preset == "FAST":
+        limits["bounces"] = min(limits["bounces"], _FAST)
+    return limits

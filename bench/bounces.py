@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rooms lit by what bounces, seconds against error beside Cycles, on the scenes of bounced_scenes.py.
+
+    ./dev bench bounces [--scenes still metal ...] [--reference 1024]
+
+One thread each, in turns; equal filter and shutter, four bounces in both, no clamps, no Filter Glossy.  Errors are against
+the mean of two of Cycles' pictures of half the reference's samples, which share none, so that the reference's own error is known; it
+is printed and not deducted.  Seconds are those of the processor.  The last column is how many times longer Cycles takes
+for an error as small, its own falling with the root of its samples.  Writes bench/results/bounces.json.
+"""
+
+import argparse
+import hashlib
+from pathlib import Path
+
+import frames
+import numpy as np
+from measure import save
+
+HERE = Path(__file__).resolve().parent
+SCENES = ("still", "metal", "mirror", "moving", "shining")
+BOUNCES = 4
+CYCLES_SAMPLES = 32
+SETTINGS = [
+    {"engine": "GRANITA", "samples": 16, "light_samples": 4},
+    {"engine": "GRANITA", "samples": 16, "light_samples": 16},
+    {"engine": "GRANITA", "samples": 64, "light_samples": 16},
+    {"engine": "CYCLES", "samples": CYCLES_SAMPLES},
+]
+
+
+def job_of(scene, settings, **more):
+    bounced = [{**setting, "bounces": BOUNCES} for setting in settings]
+    return {"module": "bounced_scenes", "scene": scene, "runs": 1, "settings": bounced, **more}
+
+
+def reference(scene, samples):
+    """(picture, its own error), kept in the cache until the scenes change."""
+    names = ("bounced_scenes.py", "lit_scenes.py", "scenes.py")
+    digest = hashlib.sha256("".join((HERE / n).read_text() for n in names).encode()).hexdigest()
+    file = frames.CACHE / f"bounced-{scene}-{samples}-{digest[:12]}.npy"
+    if not file.exists():
+        frames.CACHE.mkdir(parents=True, exist_ok=True)
+        setting = {"engine": "CYCLES", "samples": samples // 2}
+        parts = [frames.render(job_of(scene, [setting], seed=seed))[0][0] for seed in (1, 2)]
+        np.save(file, parts)
+    return frames.mean_and_error(np.load(file))
+
+
+def measure(scene, options):
+    truth, own = reference(scene, options.reference)
+    made = frames.render(job_of(scene, SETTINGS))
+    errors = [frames.errors(image, truth) for image, _ in made]
+    cycles = made[-1][1] * errors[-1]["rmse"] ** 2
+    rows = []
+    for setting, (image, seconds), error in zip(SETTINGS, made, errors, strict=True):
+        times = cycles / (seconds * error["rmse"] ** 2)
+        mean = float(image.mean() / truth.mean() - 1)
+        rows.append({"scene": scene, **setting, "seconds": seconds, **error, "mean": mean})
+        print(
+            f"| {scene} | {setting['engine'].title()} | {setting['samples']} "
+            f"| {setting.get('light_samples', '')} | {seconds:.2f} | {error['rmse']:.4f} "
+            f"| {error['flip']:.3f} | {100 * mean:+.2f} % | {own:.4f} | {times:.1f} |",
+            flush=True,
+        )
+    return rows
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--scenes", nargs="+", default=SCENES, choices=SCENES)
+    parser.add_argument("--reference", type=int, default=1024)
+    options = parser.parse_args()
+    print(
+        "| scene | | samples | light samples | seconds | RMSE | FLIP | mean | the reference's RMSE | times |"
+    )
+    print("|---|---|---|---|---|---|---|---|---|---|")
+    save("bounces", [row for scene in options.scenes for row in measure(scene, options)])
+
+
+if __name__ == "__main__":
+    main()

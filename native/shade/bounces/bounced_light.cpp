@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/bounces/bounced_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "math/sampling.h"
+#include "shade/nodes/surface_run.h"
+
+namespace granita {
+namespace {
+
+/// Uniform in [0, 1), of a way's place among the samples and how far it has come.
+float chance(std::uint32_t place, int depth, int passed, std::uint64_t salt) {
+    const auto at =
+        static_cast<std::uint64_t>(depth) << 48 | static_cast<std::uint64_t>(passed) << 32 | place;
+    return static_cast<float>(mix_bits(mix_bits(at) + salt) >> 40) * 0x1p-24f;
+}
+
+float largest(const Vec3f& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+}  // namespace
+
+/// The ways of a batch of points, a bounce at a time.
+class BouncedLight::Wave {
+  public:
+    Wave(const BouncedLight& light, std::vector<LobeRay>&& leaving, GatheredLight& gathered)
+        : m_light(light),
+          m_limits(light.m_scene.options.bounces),
+          m_salt(mix_bits(light.m_scene.options.seed + 1ULL)),
+          m_gathered(gathered),
+          m_points(light.m_scene, *light.m_direct.rays()) {
+        for (LobeRay& ray : leaving) {
+            BouncedPath path;
+            path.next = ray;
+            path.spread = ray.spread;
+            path.least_pdf = ray.pdf;
+            path.kind = ray.ray.type == RayType::Diffuse    ? BouncedPath::Kind::Diffuse
+                        : ray.ray.type == RayType::Singular ? BouncedPath::Kind::Mirrored
+                                                            : BouncedPath::Kind::Glossy;
+            follow(path);
+        }
+        m_paths.swap(m_next);
+        count_near();
+    }
+
+    void run() {
+        while (!m_paths.empty()) {
+            m_light.m_progress.check();
+            trace();
+            note_near();
+            shade();
+            m_paths.swap(m_next);
+            m_next.clear();
+        }
+        m_light.m_statistics.add(Counter::RaysBounce, m_rays_traced);
+        m_light.m_statistics.add(Counter::HitsShaded, m_hits_shaded);
+    }
+
+  private:
+    /// Keeps the way for the next wave, unless it may go no further.
+    void follow(BouncedPath& path) {
+        if (path.next.ray.type == RayType::Diffuse)
+            ++path.diffuse;
+        else
+            ++path.glossy;
+        if (path.kind == BouncedPath::Kind::Mirrored && path.next.ray.type != RayType::Singular)
+            path.kind = BouncedPath::Kind::Glossy;
+        if (is_within_limits(path)) m_next.push_back(path);
+    }
+
+    /// Surfaces one further than the limits are asked for what they emit alone.
+    bool is_within_limits(const BouncedPath& path) const {
+        const int more = m_light.m_hits.any_emits() ? 1 : 0;
+        return path.depth <= m_limits.most + more && path.diffuse <= m_limits.diffuse + more &&
+               path.glossy <= m_limits.glossy + more;
+    }
+    bool is_lit(const BouncedPath& path) const {
+        return path.depth <= m_limits.most && path.diffuse <= m_limits.diffuse &&
+               path.glossy <= m_limits.glossy;
+    }
+
+    void count_near() {
+        m_near_share.assign(m_gathered.nearness.size(), 0.0f);
+        for (const BouncedPath& path : m_paths)
+            m_near_share[path.next.point] += path.kind == BouncedPath::Kind::Diffuse ? 1.0f : 0.0f;
+        for (std::size_t i = 0; i < m_near_share.size(); ++i) {
+            m_gathered.asked[i] = m_near_share[i] > 0.0f;
+            if (m_gathered.asked[i]) m_near_share[i] = 1.0f / m_near_share[i];
+        }
+    }
+
+    /// Of surfaces that the first rays meet.
+    void note_near() {
+        for (const RayScene::Met& met : m_met) {
+            const BouncedPath& path = m_paths[met.ray];
+            if (path.depth > 1 || path.passed > 0 || path.kind != BouncedPath::Kind::Diffuse)
+                continue;
+            m_gathered.nearness[path.next.point] +=
+                m_near_share[path.next.point] / std::max(met.hit.distance, 1e-30f);
+        }
+    }
+
+    void trace() {
+        m_rays.clear();
+        for (const BouncedPath& path : m_paths) m_rays.push_back(path.next.ray);
+        m_rays_traced += m_rays.size();
+        m_light.m_direct.rays()->nearest(m_rays, m_met);
+    }
+
+    /// Surfaces by program and instance.  The order of a point's own ways does not depend on what
+    /// else is in the batch.
+    void shade() {
+        m_order.resize(m_met.size());
+        for (std::uint32_t i = 0; i < m_order.size(); ++i) m_order[i] = i;
+        const auto key = [&](std::uint32_t i) {
+            const BouncedPath& path = m_paths[m_met[i].ray];
+            return std::tuple(m_met[i].hit.instance, m_met[i].hit.material,
+                              static_cast<int>(path.next.ray.type), path.depth, is_lit(path),
+                              path.diffuse > 0);
+        };
+        std::ranges::stable_sort(m_order, {}, key);
+        std::vector<MetPath> batch;
+        for (std::size_t begin = 0, end; begin < m_order.size(); begin = end) {
+            batch.clear();
+            for (end = begin; end < m_order.size() && key(m_order[end]) == key(m_order[begin]);
+                 ++end) {
+                const RayScene::Met& met = m_met[m_order[end]];
+                batch.push_back({&m_paths[met.ray], &met.hit});
+            }
+            shade(batch);
+        }
+    }
+
+    void shade(const std::vector<MetPath>& batch) {
+        m_hits_shaded += batch.size();
+        const BouncedPath& first = *batch.front().path;
+        const RayHit& hit = *batch.front().hit;
+        const CompiledSurface& surface = m_light.m_hits.surface(hit.material, first.next.ray.type);
+        m_points.fill(batch, surface.requests, static_cast<std::uint32_t>(first.depth));
+        const GridKey key{m_light.m_scene.instances[hit.instance].key};
+        m_light.m_direct.lift(m_points.points(), key);
+        const SurfaceRun ran(surface.radiance, m_points.input());
+        SurfaceClosure closure = ran.closure();
+        tame(batch, closure);
+        std::vector<Vec3f> light(batch.size(), Vec3f(0.0f));
+        m_leaving.clear();
+        if (is_lit(first))
+            light = m_light.m_direct.reflect(ran.points(), closure, key, nullptr, {}, nullptr,
+                                             &m_leaving);
+        for (std::size_t i = 0; i < closure.emission.size(); ++i) light[i] += closure.emission[i];
+        for (std::size_t i = 0; i < batch.size(); ++i) bring(*batch[i].path, light[i]);
+        go_on(batch, ran.points(), closure);
+    }
+
+    /// Glossy lobes that would throw noise onto diffuse ones: left out, or, as by Cycles' Filter
+    /// Glossy, blurred as much as the way is improbable.
+    void tame(const std::vector<MetPath>& batch, SurfaceClosure& closure) const {
+        const auto is_glossy = [](const Lobe& lobe) { return lobe.kind == LobeKind::Glossy; };
+        if (!m_limits.caustics && batch.front().path->diffuse > 0)
+            std::erase_if(closure.lobes, is_glossy);
+        if (m_limits.filter_glossy == 0.0f) return;
+        for (Lobe& lobe : closure.lobes) {
+            if (!is_glossy(lobe) || lobe.distribution == Distribution::Sharp) continue;
+            for (std::size_t i = 0; i < batch.size(); ++i) {
+                const float known = batch[i].path->least_pdf / m_limits.filter_glossy;
+                if (!(known < 1.0f)) continue;
+                const float alpha = 0.5f * std::sqrt(1.0f - known);
+                lobe.roughness[i] = std::max(lobe.roughness[i], std::sqrt(alpha));
+            }
+        }
+    }
+
+    void bring(const BouncedPath& path, const Vec3f& light) {
+        const LobeRay& ray = path.next;
+        Vec3f brought = ray.weight * light;
+        if (!is_finite(brought)) return;
+        const float sum = (brought.x + brought.y + brought.z) / ray.share;
+        if (m_limits.clamp > 0.0f && sum > m_limits.clamp) brought *= m_limits.clamp / sum;
+        auto& to = path.kind == BouncedPath::Kind::Diffuse  ? m_gathered.diffuse
+                   : path.kind == BouncedPath::Kind::Glossy ? m_gathered.glossy
+                                                            : m_gathered.mirrored;
+        to[ray.point] += brought;
+    }
+
+    /// One way out of each point.
+    void go_on(const std::vector<MetPath>& batch, const ShadingPoints& points,
+               const SurfaceClosure& closure) {
+        std::ranges::stable_sort(m_leaving, {}, &LobeRay::point);
+        auto candidate = m_leaving.begin();
+        for (std::uint32_t i = 0; i < batch.size(); ++i) {
+            const auto begin = candidate;
+            while (candidate != m_leaving.end() && candidate->point == i) ++candidate;
+            Vec3f through(0.0f);
+            const BouncedPath& path = *batch[i].path;
+            if (!closure.transparency.empty() && path.passed < m_limits.transparent &&
+                is_finite(closure.transparency[i]))
+                through = glm::clamp(closure.transparency[i], Vec3f(0.0f), Vec3f(1.0f));
+            choose({begin, candidate}, through, path, *batch[i].hit, points, i);
+        }
+    }
+
+    void choose(std::span<const LobeRay> ways, const Vec3f& through, const BouncedPath& path,
+                const RayHit& hit, const ShadingPoints& points, std::size_t i) {
+        float sum = largest(through);
+        for (const LobeRay& way : ways) sum += largest(way.weight);
+        if (!(sum > 0.0f)) return;
+        // Ends more surely the less it can bring: as Cycles, by the root of that.
+        const float goes_on =
+            std::min(1.0f, std::sqrt(std::max(largest(path.throughput()) * sum, 0.0f)));
+        float u = chance(path.next.place, path.depth, path.passed, m_salt) / goes_on;
+        if (!(u < 1.0f)) return;
+        u *= sum;
+        BouncedPath next = path;
+        next.width = path.width + path.spread * hit.distance;
+        if (u < largest(through)) {
+            next.next.weight = path.next.weight * through * (sum / (largest(through) * goes_on));
+            ++next.passed;
+            next.length = path.length + hit.distance;
+            pass(next, hit, points, i);
+            return;
+        }
+        u -= largest(through);
+        const LobeRay* taken = ways.data();
+        for (const LobeRay& way : ways) {
+            taken = &way;
+            if (u < largest(way.weight)) break;
+            u -= largest(way.weight);
+        }
+        next.next = *taken;
+        next.next.weight =
+            path.next.weight * taken->weight * (sum / (largest(taken->weight) * goes_on));
+        next.next.share = path.next.share;
+        next.next.point = path.next.point;
+        next.next.place = path.next.place;
+        next.spread = std::max(path.spread, taken->spread);
+        next.least_pdf = std::min(path.least_pdf, taken->pdf);
+        next.length = 0.0f;
+        ++next.depth;
+        follow(next);
+    }
+
+    /// Straight on, from behind the surface.
+    void pass(BouncedPath& next, const RayHit& hit, const ShadingPoints& points, std::size_t i) {
+        const std::uint32_t face = points.faces.empty() ? 0 : points.faces[i];
+        const RayOffset offset = m_light.m_direct.rays()->ray_offset(
+            {m_light.m_scene.instances[hit.instance].key, face});
+        next.next.ray.start = offset(hit.p, -points.geometric_normal[i]);
+        m_next.push_back(next);
+    }
+
+    const BouncedLight& m_light;
+    const Bounces& m_limits;
+    std::uint64_t m_salt;
+    GatheredLight& m_gathered;
+    std::vector<float> m_near_share;  ///< [points] 1 / rays of diffuse lobes
+    HitPoints m_points;
+    std::vector<BouncedPath> m_paths, m_next;
+    std::vector<Ray> m_rays;
+    std::vector<RayScene::Met> m_met;
+    std::vector<std::uint32_t> m_order;
+    std::vector<LobeRay> m_leaving;
+    std::uint64_t m_rays_traced = 0, m_hits_shaded = 0;
+};
+
+BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const HitShader& hits,
+                           Statistics& statistics, const Progress& progress)
+    : m_scene(scene),
+      m_direct(direct),
+      m_hits(hits),
+      m_statistics(statistics),
+      m_progress(progress) {}
+
+GatheredLight BouncedLight::gather(std::vector<LobeRay> leaving, std::size_t points) const {
+    GatheredLight light(points);
+    if (!leaving.empty()) Wave(*this, std::move(leaving), light).run();
+    return light;
+}
+
+}  // namespace granita

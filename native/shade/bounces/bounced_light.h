@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light that surfaces send to each other: ways from the points of a grid over other surfaces,
+// traced and shaded in batches, a bounce of all at a time.
+//
+//   BouncedLight bounces(scene, direct, hits, statistics, progress);    // once a frame
+//   light = bounces.gather(leaving, points);          // any thread, any grid
+//
+// Each surface that is met adds what it emits and what of lamps and the world it reflects; one of
+// its lobes' samples, or the way through it, is followed further by a choice after their weights.
+// Ways end by Cycles' limits, or by Russian roulette (Arvo and Kirk 1990).
+//
+// What a way brings depends on itself alone: pictures are the same to the bit however points are
+// put together.
+#pragma once
+
+#include <vector>
+
+#include "base/progress.h"
+#include "base/statistics.h"
+#include "scene/scene.h"
+#include "shade/bounces/bounced_path.h"
+#include "shade/bounces/gathered_light.h"
+#include "shade/bounces/hit_points.h"
+#include "shade/bounces/hit_shader.h"
+#include "shade/lights/direct_light.h"
+
+namespace granita {
+
+class BouncedLight {
+  public:
+    /// All must outlive it; `direct` has rays.
+    BouncedLight(const Scene& scene, const DirectLight& direct, const HitShader& hits,
+                 Statistics& statistics, const Progress& progress);
+
+    /// What comes along the rays that leave `points`.
+    GatheredLight gather(std::vector<LobeRay> leaving, std::size_t points) const;
+
+  private:
+    class Wave;
+
+    const Scene& m_scene;
+    const DirectLight& m_direct;
+    const HitShader& m_hits;
+    Statistics& m_statistics;
+    const Progress& m_progress;
+};
+
+}  // namespace granita

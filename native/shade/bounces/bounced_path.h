@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "shade/lights/lobe_ray.h"
+
+namespace granita {
+
+/// Light's way from a point of a grid backwards, over the surfaces it has met so far.
+struct BouncedPath {
+    LobeRay next;                 ///< its weight: of the whole way; its point: of the grid
+    int depth = 1;                ///< surfaces that reflect, the grid's among them
+    int diffuse = 0, glossy = 0;  ///< of these
+    /// What the grid's own lobe makes of it.
+    enum class Kind { Diffuse, Glossy, Mirrored } kind = Kind::Diffuse;
+    int passed = 0;          ///< surfaces that let it through
+    float least_pdf = 0.0f;  ///< of its directions: how few ways go like it
+    float width = 0.0f;      ///< of the beam where the ray starts, metres
+    float spread = 0.0f;     ///< by which it grows, metres a metre
+    float length = 0.0f;     ///< that it went since it was last reflected
+
+    /// Its weight, were it its point's only one.
+    Vec3f throughput() const { return next.weight / next.share; }
+};
+
+}  // namespace granita

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "math/vec.h"
+#include "shade/bsdf/lobe.h"
+
+namespace granita {
+
+/// What other surfaces send to points and these towards the view, each [points].
+struct GatheredLight {
+    std::vector<Vec3f> diffuse;       ///< that diffuse lobes reflect
+    std::vector<Vec3f> glossy;        ///< that others do, but for
+    std::vector<Vec3f> mirrored;      ///< what mirrors alone bring, which is in no doubt
+    std::vector<std::uint8_t> asked;  ///< whether diffuse lobes sent rays
+    /// Mean of 1 / distance over these: how fast their light changes from place to place.
+    std::vector<float> nearness;
+
+    explicit GatheredLight(std::size_t points)
+        : diffuse(points, Vec3f(0.0f)),
+          glossy(points, Vec3f(0.0f)),
+          mirrored(points, Vec3f(0.0f)),
+          asked(points, 0),
+          nearness(points, 0.0f) {}
+};
+
+/// Weight of a point's diffuse lobes, at least a little.
+Vec3f diffuse_albedo(const SurfaceClosure& closure, std::size_t point);
+
+/// [points] what diffuse lobes gathered, by albedo, shared between neighbours of a grid: light of
+/// other surfaces varies as slowly as these are far away (Ward, Rubinstein and Clear 1988, their
+/// error bound read the other way).  Slopes stay: each point takes the plane that fits its
+/// neighbours best (locally weighted regression, Cleveland 1979).
+std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosure& closure,
+                                const GatheredLight& light);
+
+}  // namespace granita

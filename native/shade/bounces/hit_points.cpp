@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/bounces/hit_points.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "geometry/surface_evaluator.h"
+#include "geometry/surface_frames.h"
+#include "math/normalize_or.h"
+
+namespace granita {
+
+void HitPoints::resize(std::size_t n, const std::vector<AttributeRequest>& requests) {
+    ShadingPoints& p = m_points;
+    p = {};
+    p.count = n;
+    for (auto* values : {&p.p, &p.normal, &p.geometric_normal, &p.view}) values->resize(n);
+    p.dp_du.assign(n, Vec3f(0.0f));
+    p.dp_dv.assign(n, Vec3f(0.0f));
+    for (auto* values : {&p.times, &p.ray_lengths}) values->resize(n);
+    p.backfacing.resize(n);
+    p.places.resize(n);
+    m_attributes.resize(requests.size());
+    for (std::size_t k = 0; k < requests.size(); ++k) {
+        GridAttribute& attribute = m_attributes[k];
+        attribute.attribute = static_cast<int>(k);
+        attribute.width = requests[k].width;
+        const std::size_t size = n * static_cast<std::size_t>(requests[k].width);
+        attribute.values.assign(size, 0.0f);
+        attribute.du.assign(requests[k].derivatives ? size : 0, 0.0f);
+        attribute.dv.assign(requests[k].derivatives ? size : 0, 0.0f);
+    }
+}
+
+void HitPoints::fill_mesh(std::size_t i, const MetPath& met, const RayFrame& frame, bool displaced,
+                          const std::vector<AttributeRequest>& requests) {
+    static thread_local SurfaceFrames surface;
+    static thread_local std::vector<float> values, du, dv;
+    const RayHit& hit = *met.hit;
+    const std::span<const Vec2d> uv(&hit.uv, 1);
+    find_frames(*hit.geometry, *hit.patch, uv, surface);
+    const float side = m_points.backfacing[i] ? -1.0f : 1.0f;
+    if (!displaced)
+        m_points.normal[i] = side * Vec3f(normalize_or(frame.world_from_normal * surface.normal[0],
+                                                       Vec3d(hit.normal)));
+    const float width = met.path->width + met.path->spread * hit.distance;
+    const auto step = [&](const Vec3d& derivative, Vec3f& out) {
+        const Vec3f along = frame.world_from_object * Vec3f(derivative);
+        const float length = glm::length(along);
+        const float steps = length > width ? width / length : 1.0f;  // no further than the patch
+        out = along * steps;
+        return steps;
+    };
+    const float step_u = step(surface.su[0], m_points.dp_du[i]);
+    const float step_v = step(surface.sv[0], m_points.dp_dv[i]);
+    for (std::size_t k = 0; k < requests.size(); ++k) {
+        const auto n = static_cast<std::size_t>(requests[k].width);
+        hit.geometry->surface().attribute(*hit.patch, requests[k], uv, values, du, dv);
+        GridAttribute& to = m_attributes[k];
+        std::copy_n(values.begin(), n, to.values.begin() + static_cast<std::ptrdiff_t>(i * n));
+        for (std::size_t c = 0; c < n && !to.du.empty(); ++c) {
+            to.du[i * n + c] = du[c] * step_u;
+            to.dv[i * n + c] = dv[c] * step_v;
+        }
+    }
+}
+
+void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRequest>& requests,
+                     std::uint32_t depth) {
+    resize(met.size(), requests);
+    const RayHit& first = *met.front().hit;
+    const Instance& instance = m_scene.instances[first.instance];
+    m_points.depth = depth;
+    m_points.share = 1.0f / static_cast<float>(std::max(m_scene.options.light_samples, 1));
+    if (!first.elements) m_points.faces.resize(met.size());
+    const bool displaced = m_rays.is_displaced({instance.key});
+    m_input = {};
+    m_input.points = &m_points;
+    m_input.attributes = &m_attributes;
+    m_input.instance = &instance;
+    const bool still = first.frame != nullptr;
+    if (still) {
+        m_input.axes.world_from_object = first.frame->world_from_object;
+        m_input.axes.object_from_world = first.frame->object_from_world;
+    } else {
+        m_input.axes =
+            ObjectAxes(matrix_at(instance.world_from_object, m_scene.options.frame_time));
+    }
+    for (std::size_t i = 0; i < met.size(); ++i) {
+        const RayHit& hit = *met[i].hit;
+        const BouncedPath& path = *met[i].path;
+        const bool back = glm::dot(hit.normal, hit.direction) > 0.0f;
+        m_points.p[i] = hit.p;
+        m_points.normal[i] = m_points.geometric_normal[i] = back ? -hit.normal : hit.normal;
+        m_points.view[i] = -hit.direction;
+        m_points.backfacing[i] = back;
+        m_points.times[i] = path.next.ray.time;
+        m_points.places[i] = path.next.place;
+        m_points.ray_lengths[i] = path.length + hit.distance;
+        std::optional<RayFrame> moved;
+        if (!still) {
+            moved.emplace(m_rays.frame_at(hit.instance, path.next.ray.time));
+            ObjectAxes& axes = m_input.axes_at_times.emplace_back();
+            axes.world_from_object = moved->world_from_object;
+            axes.object_from_world = moved->object_from_world;
+        }
+        if (hit.elements) {
+            for (std::size_t k = 0; k < requests.size(); ++k)
+                element_value(
+                    *hit.elements, requests[k], hit.place,
+                    &m_attributes[k].values[i * static_cast<std::size_t>(requests[k].width)]);
+            continue;
+        }
+        m_points.faces[i] = hit.patch->face;
+        fill_mesh(i, met[i], still ? *hit.frame : *moved, displaced, requests);
+    }
+}
+
+}  // namespace granita

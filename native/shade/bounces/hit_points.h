@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Places that rays have met, as the shading points of one instance.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scene/scene.h"
+#include "shade/bounces/bounced_path.h"
+#include "shade/programs/program.h"
+#include "shade/rays/ray_scene.h"
+
+namespace granita {
+
+/// A way and the surface at its end.
+struct MetPath {
+    const BouncedPath* path;
+    const RayHit* hit;
+};
+
+class HitPoints {
+  public:
+    HitPoints(const Scene& scene, const RayScene& rays) : m_scene(scene), m_rays(rays) {}
+
+    /// `met`: of one instance and material, after `depth` surfaces.  Textures are filtered by the
+    /// width of each beam (Christensen et al. 2003).
+    void fill(std::span<const MetPath> met, const std::vector<AttributeRequest>& requests,
+              std::uint32_t depth);
+
+    ShadingPoints& points() { return m_points; }
+    /// Of points() and their attributes; valid until fill().
+    const ShadingInput& input() const { return m_input; }
+
+  private:
+    void resize(std::size_t n, const std::vector<AttributeRequest>& requests);
+    void fill_mesh(std::size_t i, const MetPath& met, const RayFrame& frame, bool displaced,
+                   const std::vector<AttributeRequest>& requests);
+
+    const Scene& m_scene;
+    const RayScene& m_rays;
+    ShadingPoints m_points;
+    std::vector<GridAttribute> m_attributes;
+    ShadingInput m_input;
+};
+
+}  // namespace granita

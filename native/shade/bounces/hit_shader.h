@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "scene/scene.h"
+#include "shade/nodes/node_compiler.h"
+
+namespace granita {
+
+/// The materials of a frame as rays from other surfaces see them: a program for each type of ray
+/// that a graph tells apart.
+class HitShader {
+  public:
+    /// Scene, textures and report must outlive it.
+    HitShader(const Scene& scene, TextureStore& textures, Report& report);
+
+    /// -1: no material.
+    const CompiledSurface& surface(std::int32_t material, RayType ray) const;
+    /// Whether any material sends out light of its own.
+    bool any_emits() const { return m_any_emits; }
+
+  private:
+    void add(const NodeGraph& graph, const Scene& scene, TextureStore& textures, Report& report,
+             const GraphOwner& owner);
+
+    std::vector<CompiledSurface> m_surfaces;
+    std::vector<std::array<std::size_t, 5>> m_of;  ///< [materials + 1][types of rays]
+    bool m_any_emits = false;
+};
+
+}  // namespace granita

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "math/vec.h"
+#include "shade/rays/ray.h"
+
+namespace granita {
+
+/// A way from which a lobe of a point would reflect light: towards other surfaces.
+struct LobeRay {
+    Ray ray;
+    Vec3f weight{0.0f};       ///< reflected radiance per radiance that comes along it
+    float share = 1.0f;       ///< of the samples of all its point's lobes: one of so many
+    float pdf = 0.0f;         ///< of its direction, per solid angle; infinite for a mirror's
+    std::uint32_t point = 0;  ///< in the grid, or batch
+    std::uint32_t place = 0;  ///< in sequences of samples: neighbours' are neighbours
+    float spread = 0.0f;      ///< radians that it stands for
+};
+
+}  // namespace granita

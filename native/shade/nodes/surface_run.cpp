@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/nodes/surface_run.h"
+
+#include <utility>
+
+namespace granita {
+namespace {
+
+SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::size_t& broken) {
+    SurfaceClosure closure;
+    for (const LobeSource& from : sources.lobes) {
+        Lobe lobe;
+        lobe.kind = from.kind;
+        lobe.distribution = from.distribution;
+        lobe.fresnel = from.fresnel;
+        lobe.multiscatter = from.multiscatter;
+        lobe.separable_masking = from.separable_masking;
+        lobe.burley = from.burley;
+        lobe.cosine_bumps = from.cosine_bumps;
+        lobe.weight = values_of(run, from.weight);
+        broken += make_finite(lobe.weight);
+        lobe.normal = values_of(run, from.normal);
+        lobe.roughness = values_of(run, from.roughness);
+        if (from.fresnel != FresnelKind::None || from.has_color) lobe.f0 = values_of(run, from.f0);
+        if (from.fresnel != FresnelKind::None) lobe.f90 = values_of(run, from.f90);
+        if (from.fresnel == FresnelKind::Dielectric) lobe.ior = values_of(run, from.ior);
+        closure.lobes.push_back(std::move(lobe));
+    }
+    if (!sources.emission.is(Vec3f(0.0f))) closure.emission = values_of(run, sources.emission);
+    if (!sources.transparency.is(Vec3f(0.0f)))
+        closure.transparency = values_of(run, sources.transparency);
+    return closure;
+}
+
+}  // namespace
+
+std::size_t make_finite(std::vector<Vec3f>& values) {
+    std::size_t broken = 0;
+    for (Vec3f& value : values)
+        if (!is_finite(value)) {
+            value = Vec3f(0.0f);
+            ++broken;
+        }
+    return broken;
+}
+
+SurfaceRun::SurfaceRun(const SurfaceProgram& surface, const ShadingInput& in)
+    : m_points(in.points), m_run(surface.program.prepare(in, in.points->count)) {
+    surface.program.execute(m_run);
+    // Light then knows no other normal, and does not fade as where a node bends one.
+    if (surface.is_bumped) {
+        m_bent = *in.points;
+        m_bent->normal = values_of(m_run, surface.bumped);
+    }
+    m_closure = closure_of(m_run, surface.sources, m_broken);
+}
+
+}  // namespace granita

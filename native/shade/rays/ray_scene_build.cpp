@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <map>
+
+#include "base/stage_timer.h"
+#include "scene/knot_time.h"
+#include "shade/rays/ray_displaced.h"
+#include "shade/rays/ray_elements.h"
+#include "shade/rays/ray_mesh.h"
+#include "shade/rays/ray_scene_impl.h"
+#include "shade/rays/ray_subdivision.h"
+#include "shade/rays/ray_transforms.h"
+
+namespace granita {
+namespace {
+
+bool goes_on(void* user, double) {
+    return !static_cast<const Progress*>(user)->cancelled();
+}
+
+Bounds3f box_of(RTCScene geometry) {
+    RTCBounds box;
+    rtcGetSceneBounds(geometry, &box);
+    return {{box.lower_x, box.lower_y, box.lower_z}, {box.upper_x, box.upper_y, box.upper_z}};
+}
+
+/// How instances use a geometry; for all but the first, hits are looked at one by one.
+enum Use : std::uint8_t {
+    kCasts = 1,
+    kLetsLightThrough = 2,
+    kAppears = 4,
+    kIsLinked = 8,
+    kIsHidden = 16,  ///< from some rays
+};
+
+}  // namespace
+
+void RayScene::Impl::check(const std::string& what, const Progress& progress) const {
+    progress.check();
+    const RTCError error = rtcGetDeviceError(kept->device());
+    if (error == RTC_ERROR_NONE) return;
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+        throw SceneError(what, "not enough memory for its shadow rays");
+    throw SceneError(what, "Embree failed with error " + std::to_string(error));
+}
+
+bool RayScene::Impl::lets_light_through(const Instance& instance) const {
+    if (!opacity.is_transparent) return false;
+    if (instance.materials.empty()) return opacity.is_transparent(-1);
+    return std::any_of(instance.materials.begin(), instance.materials.end(),
+                       [&](std::int32_t material) { return opacity.is_transparent(material); });
+}
+
+void RayScene::Impl::make_shape(KeptRayShape& made,
+                                const std::shared_ptr<const SharedGeometry>& shared,
+                                const RayDetail& detail, const Progress& progress) const {
+    const RayKey& key = made.key;
+    if (!shared) {
+        made.shape = std::make_unique<RayElements>(*key.data, key.frame_time,
+                                                   (key.use & kLetsLightThrough) != 0);
+    } else if (!shared->subdivision()) {
+        made.shape = std::make_unique<RayMesh>(shared);
+    } else {
+        auto shape = std::make_unique<RaySubdivision>(shared, detail, progress);
+        made.is_coarsened = shape->is_coarsened();
+        made.shape = std::move(shape);
+    }
+}
+
+std::optional<Vec3f> RayScene::Impl::constant_of(const Instance& instance) const {
+    if (!opacity.constant) return std::nullopt;
+    if (instance.materials.empty()) return opacity.constant(-1);
+    const std::optional<Vec3f> first = opacity.constant(instance.materials.front());
+    for (const std::int32_t material : instance.materials)
+        if (opacity.constant(material) != first) return std::nullopt;
+    return first;
+}
+
+RayDetail RayScene::Impl::detail_of(int index, const SharedGeometry* shared) const {
+    Bounds3f box;
+    for (const Vec3f& p : shared->surface_points(static_cast<int>(shared->frame().knot)))
+        if (is_finite(p)) box.add(p);
+    return {scene, index, box};
+}
+
+void RayScene::Impl::build_geometry(int index, std::uint8_t use, Report& report,
+                                    const Progress& progress) {
+    const auto geometry = static_cast<std::size_t>(index);
+    std::shared_ptr<const SharedGeometry> shared;
+    if (scene.geometries[geometry].kind == GeometryKind::Mesh)
+        shared = cache->shared(scene, geometry, report);
+    const RayDetail detail =
+        shared && shared->subdivision() ? detail_of(index, shared.get()) : RayDetail();
+    const RayKey key{scene.geometries.share(geometry), scene.options.frame_time, use,
+                     detail.eyes()};
+    std::shared_ptr<const KeptRayShape>& shape = shapes[geometry];
+    shape = kept->find(key);
+    if (!shape) {
+        auto made = std::make_shared<KeptRayShape>();
+        made->key = key;
+        make_shape(*made, shared, detail, progress);
+        build(*made, progress);
+        kept->add(made);
+        shape = std::move(made);
+    }
+    if (shape->is_coarsened)
+        report.warn(key.data->name,
+                    "has so many faces near the camera that its shadows are coarser than a pixel");
+}
+
+/// Not kept for the next picture: materials may change.
+void RayScene::Impl::build_displaced(std::size_t index, std::uint8_t use, Report& report,
+                                     const Progress& progress) {
+    const Instance& instance = scene.instances[index];
+    const auto geometry = static_cast<std::size_t>(instance.geometry);
+    const auto shared = cache->shared(scene, geometry, report);
+    auto made = std::make_shared<KeptRayShape>();
+    made->key = {scene.geometries.share(geometry), scene.options.frame_time, use, {}};
+    auto shape = std::make_unique<RayDisplaced>(
+        shared, *displacement, index, detail_of(instance.geometry, shared.get()), progress);
+    if (shape->is_coarsened())
+        report.warn(
+            instance.name,
+            "is displaced so finely near the camera that its shadows are coarser than that");
+    made->shape = std::move(shape);
+    build(*made, progress);
+    displaced[index] = std::move(made);
+}
+
+void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
+    const std::string what = made.key.data->name + " of " + made.shape->size();
+    made.built.reset(rtcNewScene(kept->device()));
+    RTCScene built = made.built.get();
+    rtcSetSceneFlags(built, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(built, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneProgressMonitorFunction(built, goes_on, const_cast<Progress*>(&progress));
+    for (RTCGeometry handed : made.shape->hand_over(kept->device())) {
+        if (made.key.use & ~kCasts) rtcSetGeometryOccludedFilterFunction(handed, pass_through);
+        if (made.key.use & (kAppears | kIsHidden))
+            rtcSetGeometryIntersectFilterFunction(handed, skip_absent);
+        rtcCommitGeometry(handed);
+        rtcAttachGeometry(built, handed);
+        rtcReleaseGeometry(handed);
+    }
+    {
+        const ForeignThreads embree;
+        rtcCommitScene(built);
+    }
+    check(what, progress);
+    // Embree keeps the pointer, and the geometry may outlive the frame.
+    rtcSetSceneProgressMonitorFunction(built, nullptr, nullptr);
+}
+
+void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
+    const Instance& instance = scene.instances[index];
+    const auto transforms = ray_transforms(instance.world_from_object, origin);
+    if (!transforms) return;
+    const auto& columns = transforms->columns;
+    RTCGeometry node = rtcNewGeometry(kept->device(), RTC_GEOMETRY_TYPE_INSTANCE);
+    const KeptRayShape& kept_shape = shape_of(index);
+    rtcSetGeometryInstancedScene(node, kept_shape.built.get());
+    rtcSetGeometryTimeStepCount(node, static_cast<unsigned>(columns.size()));
+    for (unsigned k = 0; k < columns.size(); ++k)
+        rtcSetGeometryTransform(node, k, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns[k].data());
+    rtcCommitGeometry(node);
+    if (columns.size() > 1 || kept_shape.shape->knots() > 1 || !instance.lifespan.is_whole())
+        motion.add(box_of(kept_shape.built.get()), transforms->knots);
+    rtcAttachGeometryByID(top.get(), node, static_cast<unsigned>(instances.size()));
+    rtcReleaseGeometry(node);
+    by_key[instance.key] = static_cast<std::uint32_t>(instances.size());
+    RayInstance& added =
+        instances.emplace_back(RayInstance{index, transforms->scale, transforms->distance,
+                                           lets_light_through(instance), constant_of(instance)});
+    const bool is_asked = added.lets_light_through || scene.options.bounces.most > 0;
+    if (is_asked && instance.world_from_object.size() <= 1)
+        added.still.emplace(matrix_at(instance.world_from_object, 0.0));
+}
+
+RayScene::RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacity,
+                   const Progress& progress, std::shared_ptr<GeometryCache> geometries,
+                   Report* report, std::shared_ptr<KeptRays> kept, const Displacement* displacement)
+    : m_impl(std::make_unique<Impl>(scene, std::move(opacity), std::move(geometries),
+                                    std::move(kept), displacement, origin)) {
+    Report unread;
+    Report& warnings = report ? *report : unread;
+    Impl& impl = *m_impl;
+    std::vector<std::uint8_t> uses(scene.geometries.size(), 0);
+    std::map<std::size_t, std::uint8_t> displaced;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        if (!impl.is_met(instance)) continue;
+        std::uint8_t& use = impl.is_displaced(i)
+                                ? displaced[displacement->same_as(i)]
+                                : uses[static_cast<std::size_t>(instance.geometry)];
+        use |= kCasts;
+        if (impl.lets_light_through(instance)) use |= kLetsLightThrough;
+        if (!instance.lifespan.is_whole()) use |= kAppears;
+        if (instance.blocks != ~0ULL) use |= kIsLinked;
+        const bool hidden =
+            !instance.casts_shadow || !instance.visible_diffuse || !instance.visible_glossy;
+        if (hidden && scene.options.bounces.most > 0) use |= kIsHidden;
+    }
+    if (displaced.empty() &&
+        std::all_of(uses.begin(), uses.end(), [](std::uint8_t use) { return use == 0; }))
+        return;
+    if (!impl.kept) impl.kept = std::make_shared<KeptRays>();
+    impl.shapes.resize(scene.geometries.size());
+    for (std::size_t g = 0; g < uses.size(); ++g) {
+        progress.check();
+        if (uses[g]) impl.build_geometry(static_cast<int>(g), uses[g], warnings, progress);
+    }
+    for (const auto& [instance, use] : displaced) {
+        progress.check();
+        impl.build_displaced(instance, use, warnings, progress);
+    }
+    impl.top.reset(rtcNewScene(impl.kept->device()));
+    rtcSetSceneFlags(impl.top.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneProgressMonitorFunction(impl.top.get(), goes_on, const_cast<Progress*>(&progress));
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
+        if (impl.is_met(scene.instances[i])) impl.add_instance(i, origin);
+    {
+        const ForeignThreads embree;
+        rtcCommitScene(impl.top.get());
+    }
+    impl.check("scene of " + std::to_string(impl.instances.size()) + " instances", progress);
+    // Embree keeps the pointer; the frame's progress may die before the scene does.
+    rtcSetSceneProgressMonitorFunction(impl.top.get(), nullptr, nullptr);
+}
+
+std::size_t RayScene::bytes() const {
+    std::size_t sum = m_impl->kept ? m_impl->kept->embree_bytes() : 0;
+    for (const auto& shape : m_impl->shapes)
+        if (shape) sum += shape->shape->bytes();
+    for (const auto& [instance, shape] : m_impl->displaced) sum += shape->shape->bytes();
+    return sum;
+}
+
+}  // namespace granita

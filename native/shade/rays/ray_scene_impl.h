@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What building (ray_scene_build.cpp) and tracing (ray_scene.cpp) share.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "shade/rays/instance_motion.h"
+#include "shade/rays/ray_detail.h"
+#include "shade/rays/ray_scene.h"
+
+namespace granita {
+
+/// What an instance tells a ray.
+struct RayInstance {
+    std::uint32_t index = 0;  ///< in Scene::instances
+    float scale = 1.0f;       ///< largest stretch of the transform at any knot
+    float distance = 0.0f;    ///< of its origin at any knot from that of shading space, metres
+    bool lets_light_through = false;
+    /// What passes, where it is the same all over.
+    std::optional<Vec3f> constant = {};
+    /// Of what lets light through and stands still.
+    std::optional<RayFrame> still = {};
+};
+
+struct ShadowContext;
+
+struct RayScene::Impl {
+    Impl(const Scene& frame_scene, ShadowOpacity shadow_opacity,
+         std::shared_ptr<GeometryCache> shared, std::shared_ptr<KeptRays> kept_rays,
+         const Displacement* moved, const Vec3d& camera)
+        : scene(frame_scene),
+          opacity(std::move(shadow_opacity)),
+          cache(shared ? std::move(shared) : std::make_shared<GeometryCache>()),
+          kept(std::move(kept_rays)),
+          displacement(moved),
+          origin(camera) {}
+
+    void check(const std::string& what, const Progress& progress) const;
+    RayDetail detail_of(int geometry, const SharedGeometry* shared) const;
+    void make_shape(KeptRayShape& made, const std::shared_ptr<const SharedGeometry>& shared,
+                    const RayDetail& detail, const Progress& progress) const;
+    void build(KeptRayShape& made, const Progress& progress) const;
+    void build_displaced(std::size_t instance, std::uint8_t use, Report& report,
+                         const Progress& progress);
+    bool is_displaced(std::size_t instance) const {
+        return displacement && displacement->displaces(instance);
+    }
+    /// What stands for an instance.
+    const KeptRayShape& shape_of(std::size_t instance) const {
+        if (is_displaced(instance)) return *displaced.at(displacement->same_as(instance));
+        return *shapes[static_cast<std::size_t>(scene.instances[instance].geometry)];
+    }
+    void build_geometry(int geometry, std::uint8_t use, Report& report, const Progress& progress);
+    void add_instance(std::uint32_t index, const Vec3d& origin);
+    bool is_met(const Instance& instance) const {
+        const bool seen = instance.visible_diffuse || instance.visible_glossy;
+        return (instance.casts_shadow || (seen && scene.options.bounces.most > 0)) &&
+               !instance.lifespan.is_empty();
+    }
+    bool lets_light_through(const Instance& instance) const;
+    std::optional<Vec3f> constant_of(const Instance& instance) const;
+    Vec3f transparency(const ShadowContext& context, const RTCRay& ray, const RTCHit& hit,
+                       const RayInstance& instance) const;
+    static void pass_through(const RTCFilterFunctionNArguments* arguments);
+    static void skip_absent(const RTCFilterFunctionNArguments* arguments);
+    /// All but the normal.
+    void locate(const RTCRay& traced, const RTCHit& at, const RayInstance& instance,
+                const Vec3f& start, const Vec3f& direction, RayHit& hit) const;
+    /// Of a hit whose frame is known.
+    static Vec3f normal_of(const RTCHit& at, const RayHit& hit);
+
+    const Scene& scene;
+    ShadowOpacity opacity;
+    std::shared_ptr<GeometryCache> cache;
+    std::shared_ptr<KeptRays> kept;                           ///< nullptr = nothing casts a shadow
+    const Displacement* displacement;                         ///< nullptr: of none
+    Vec3d origin;                                             ///< of shading space
+    std::vector<std::shared_ptr<const KeptRayShape>> shapes;  ///< [geometries], as `kept`
+    /// By the instance whose displacement it is.
+    std::unordered_map<std::size_t, std::shared_ptr<const KeptRayShape>> displaced;
+    RtcHandle<RTCScene> top;
+    InstanceMotion motion;
+    std::vector<RayInstance> instances;                       ///< by Embree's id in `top`
+    std::unordered_map<std::uint32_t, std::uint32_t> by_key;  ///< Instance::key to that id
+};
+
+}  // namespace granita

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light from surface to surface against closed forms: furnaces, mirrors, ways through what lets light pass."""
+
+import numpy as np
+import pytest
+import snapshots as s
+
+ALBEDO, EMITTED = 0.5, 1.0
+
+
+def material(snapshot, nodes, surface):
+    index = len(snapshot["materials"])
+    snapshot["materials"].append({"name": f"Material {index}", "nodes": nodes, "surface": surface})
+    return index
+
+
+def diffuse(snapshot, albedo, emitted=0.0):
+    nodes = [
+        {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (albedo,) * 3 + (1.0,)}},
+        {"type": "ShaderNodeEmission", "inputs": {"Color": (1.0,) * 4, "Strength": emitted}},
+        {
+            "type": "ShaderNodeAddShader",
+            "inputs": {"Shader": ("LINK", 0, "BSDF"), "Shader_001": ("LINK", 1, "Emission")},
+        },
+    ]
+    return material(snapshot, nodes, (2, "Shader") if emitted else (0, "BSDF"))
+
+
+def mirror(snapshot, color=1.0):
+    inputs = {"Color": (color,) * 3 + (1.0,), "Roughness": 0.0}
+    nodes = [{"type": "ShaderNodeBsdfGlossy", "inputs": inputs}]
+    return material(snapshot, nodes, (0, "BSDF"))
+
+
+def room(snapshot, surface, half=1.0, **more):
+    """A closed cube around the camera."""
+    corners = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    s.mesh(snapshot, half * np.array(corners, float), faces, surface, **more)
+
+
+def inside(bounces, **options):
+    """A view of 90 degrees from the middle of what is put around it."""
+    limits = {
+        "diffuse_bounces": 1000,
+        "glossy_bounces": 1000,
+        "clamp_indirect": 0.0,
+        "filter_glossy": 0.0,
+    }
+    return s.perspective((32, 32), 16, samples=16, bounces=bounces, **{**limits, **options})
+
+
+def mean(snapshot):
+    return s.render(snapshot)["combined"][..., 0].mean()
+
+
+@pytest.mark.parametrize("bounces", [1, 2, 4, 8])
+def test_a_furnace_sums_the_powers_of_its_albedo(bounces):
+    """What emits is met one bounce further than what reflects, as Cycles counts.  Twelve edges, at whose ends rays graze
+    both walls, lose a part in a thousand."""
+    snapshot = inside(bounces)
+    room(snapshot, diffuse(snapshot, ALBEDO, EMITTED))
+    powers = sum(ALBEDO**k for k in range(bounces + 2))
+    assert mean(snapshot) == pytest.approx(EMITTED * powers, rel=0.003)
+
+
+def test_no_bounces_cost_nothing():
+    snapshot = inside(0)
+    room(snapshot, diffuse(snapshot, ALBEDO, EMITTED))
+    rendered = s.render(snapshot)
+    assert rendered["statistics"]["rays_bounce"] == 0
+    assert np.ptp(rendered["combined"][..., :3]) == 0.0
+
+
+def test_limits_of_diffuse_and_glossy_bounces_are_their_own():
+    snapshot = inside(8, diffuse_bounces=1)
+    room(snapshot, diffuse(snapshot, ALBEDO, EMITTED))
+    assert mean(snapshot) == pytest.approx(1.0 + ALBEDO + ALBEDO**2, rel=0.003)
+    snapshot = inside(8, diffuse_bounces=0, glossy_bounces=0)
+    room(snapshot, mirror(snapshot))
+    assert mean(snapshot) == 0.0
+
+
+def test_most_that_a_way_brings():
+    """Each brings 7.5 (red, green and blue summed) at the first surface met: a clamp to 3 leaves 1 of 2.5."""
+    snapshot = inside(1, diffuse_bounces=0, clamp_indirect=3.0)
+    room(snapshot, diffuse(snapshot, ALBEDO, 5.0))
+    assert mean(snapshot) == pytest.approx(5.0 + 1.0, rel=0.003)
+
+
+def reflected_square(**options):
+    """A mirror across the frame, half of which shows a square that hangs behind the camera."""
+    snapshot = s.orthographic((64, 64), samples=16, bounces=4, **options)
+    s.quad(snapshot, s.rectangle(-8, -8, 72, 72, z=100.0), mirror(snapshot, 0.8))
+    return snapshot
+
+
+def test_a_mirror_shows_what_is_before_it():
+    """The camera looks straight at it: the square stands where it would be seen, at four fifths."""
+    snapshot = reflected_square()
+    s.quad(snapshot, s.rectangle(16, 24, 48, 40, z=-50.0), s.emission(snapshot))
+    seen = s.render(snapshot)["combined"][..., 0]
+    rows, columns = np.mgrid[0:64, 0:64]
+    # Raster rows run downwards or upwards alike: the square is symmetric about the middle.
+    covered = (columns >= 16) & (columns < 48) & (rows >= 24) & (rows < 40)
+    edge = np.zeros_like(covered)
+    edge[:, [15, 16, 47, 48]] = edge[[23, 24, 39, 40]] = True
+    assert seen[covered & ~edge] == pytest.approx(0.8, abs=1e-5)
+    assert seen[~covered & ~edge].max() <= 1e-5
+    assert seen.mean() == pytest.approx(0.8 * 32 * 16 / 64**2, rel=0.02)
+
+
+def test_what_moves_is_blurred_in_a_mirror():
+    """A square of 16 pixels that goes 16: a trapezoid, at each place the part of the shutter that it is there for."""
+    snapshot = reflected_square(light_samples=64)
+    ways = [s.translation(-8.0), s.translation(8.0)]
+    s.quad(
+        snapshot,
+        s.rectangle(24, -8, 40, 72, z=-50.0),
+        s.emission(snapshot),
+        transforms=ways,
+    )
+    seen = s.render(snapshot)["combined"][8:56, :, 0].mean(axis=0) / 0.8
+    place = np.arange(64) + 0.5
+    truth = np.clip(np.minimum(place - 16, 48 - place) / 16, 0.0, 1.0)
+    # A row's mean of 48 pixels with 16 samples of their own: .5 / sqrt(768) = .018 at most.
+    assert np.abs(seen - truth).max() <= 4 * 0.018
+
+
+def test_light_passes_what_is_transparent():
+    """A pane of a quarter's opacity before the square that a mirror shows."""
+    snapshot = reflected_square()
+    s.quad(snapshot, s.rectangle(-8, -8, 72, 72, z=-50.0), s.emission(snapshot))
+    pane = s.emission(snapshot, (0, 0, 0), alpha=0.25)
+    s.quad(snapshot, s.rectangle(-8, -8, 72, 72, z=-20.0), pane)
+    snapshot["options"]["light_samples"] = 64
+    # The camera, which has no place in an orthographic view, looks from before the pane.
+    assert mean(snapshot) == pytest.approx(0.8 * 0.75, abs=0.02)
+
+
+def test_what_casts_no_shadow_is_seen_in_mirrors():
+    snapshot = reflected_square()
+    s.quad(snapshot, s.rectangle(-8, -8, 72, 72, z=-50.0), s.emission(snapshot))
+    snapshot["instances"]["flags"] = [27, 25]
+    assert mean(snapshot) == pytest.approx(0.8, abs=1e-5)
+
+
+@pytest.mark.parametrize(("flags", "seen"), [(27 - 16, 0.0), (27 - 8, 0.8)])
+def test_what_is_hidden_from_a_type_of_ray_is_not_seen_by_it(flags, seen):
+    snapshot = reflected_square()
+    s.quad(snapshot, s.rectangle(-8, -8, 72, 72, z=-50.0), s.emission(snapshot))
+    snapshot["instances"]["flags"] = [27, flags]
+    assert mean(snapshot) == pytest.approx(seen, abs=1e-5)
+
+
+def colored_room(**options):
+    snapshot = inside(4, **options)
+    room(snapshot, diffuse(snapshot, ALBEDO, EMITTED))
+    s.mesh(
+        snapshot,
+        np.array([(-0.3, -0.4, 0.7), (0.4, -0.3, 0.6), (0.0, 0.4, 0.8)]),
+        [(0, 1, 2)],
+        mirror(snapshot, 0.9),
+    )
+    return s.render(snapshot)["combined"]
+
+
+def test_bits_do_not_depend_on_buckets_and_threads():
+    whole = colored_room()
+    assert np.array_equal(whole, colored_room(bucket_size=16))
+    assert np.array_equal(whole, colored_room(threads=1))
+    assert np.array_equal(whole[8:24, 4:20], colored_room(crop=np.int32([4, 8, 20, 24])))
+
+
+@pytest.mark.parametrize("size", [1e-4, 1e5])
+def test_rooms_of_any_size_are_as_bright(size):
+    snapshot = inside(4)
+    snapshot["camera"]["clip"] = (size / 10, size * 10)
+    room(snapshot, diffuse(snapshot, ALBEDO, EMITTED), half=size)
+    assert mean(snapshot) == pytest.approx(sum(ALBEDO**k for k in range(6)), rel=0.004)
+
+
+def test_two_mirrors_end():
+    """Facing each other, with nothing else to see."""
+    snapshot = reflected_square(glossy_bounces=1000)
+    snapshot["options"]["bounces"] = 64
+    s.quad(snapshot, s.rectangle(-8, -8, 72, 72, z=-50.0), mirror(snapshot))
+    assert mean(snapshot) == 0.0
