@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
+from test_elements import cloud, curves
 
 ALBEDO, EMITTED = 0.5, 1.0
 
@@ -136,6 +137,31 @@ def test_light_passes_what_is_transparent():
     snapshot["options"]["light_samples"] = 64
     # The camera, which has no place in an orthographic view, looks from before the pane.
     assert mean(snapshot) == pytest.approx(0.8 * 0.75, abs=0.02)
+
+
+def test_hair_and_points_are_seen_in_mirrors():
+    """A strand 10 pixels wide across the frame, a sphere of radius 8."""
+    snapshot = reflected_square()
+    shines = s.emission(snapshot)
+    strand = np.linspace((-8, 16, -50), (72, 16, -50), 5)
+    curves(snapshot, strand, [5], 5.0, shines)
+    cloud(snapshot, [(32, 44, -50)], 8.0, shines)
+    area = 64 * 10 + np.pi * 8**2
+    assert mean(snapshot) == pytest.approx(0.8 * area / 64**2, rel=0.02)
+
+
+@pytest.mark.parametrize("kind", ["strand", "points"])
+def test_hair_and_points_are_lit_by_what_they_see(kind):
+    """In a furnace of radiance 1 they reflect their albedo, but for what they hide from themselves."""
+    snapshot = inside(1, light_samples=64)
+    room(snapshot, s.emission(snapshot))
+    grey = diffuse(snapshot, ALBEDO)
+    if kind == "strand":
+        curves(snapshot, np.linspace((-0.9, 0, 0.5), (0.9, 0, 0.5), 5), [5], 0.1, grey)
+    else:
+        cloud(snapshot, [(0, 0, 0.5)], 0.1, grey)
+    seen = s.render(snapshot)["combined"][15:17, 15:17, 0]
+    assert seen.mean() == pytest.approx(ALBEDO, rel=0.05)
 
 
 def test_what_casts_no_shadow_is_seen_in_mirrors():

@@ -31,6 +31,7 @@ enum Use : std::uint8_t {
     kAppears = 4,
     kIsLinked = 8,
     kIsHidden = 16,  ///< from some rays
+    kIsShaded = 32,  ///< where rays meet it
 };
 
 }  // namespace
@@ -56,8 +57,8 @@ void RayScene::Impl::make_shape(KeptRayShape& made,
                                 const RayDetail& detail, const Progress& progress) const {
     const RayKey& key = made.key;
     if (!shared) {
-        made.shape = std::make_unique<RayElements>(*key.data, key.frame_time,
-                                                   (key.use & kLetsLightThrough) != 0);
+        made.shape = std::make_unique<RayElements>(
+            *key.data, key.frame_time, (key.use & (kLetsLightThrough | kIsShaded)) != 0);
     } else if (!shared->subdivision()) {
         made.shape = std::make_unique<RayMesh>(shared);
     } else {
@@ -135,7 +136,8 @@ void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
     rtcSetSceneBuildQuality(built, RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneProgressMonitorFunction(built, goes_on, const_cast<Progress*>(&progress));
     for (RTCGeometry handed : made.shape->hand_over(kept->device())) {
-        if (made.key.use & ~kCasts) rtcSetGeometryOccludedFilterFunction(handed, pass_through);
+        if (made.key.use & ~(kCasts | kIsShaded))
+            rtcSetGeometryOccludedFilterFunction(handed, pass_through);
         if (made.key.use & (kAppears | kIsHidden))
             rtcSetGeometryIntersectFilterFunction(handed, skip_absent);
         rtcCommitGeometry(handed);
@@ -192,7 +194,7 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacit
         std::uint8_t& use = impl.is_displaced(i)
                                 ? displaced[displacement->same_as(i)]
                                 : uses[static_cast<std::size_t>(instance.geometry)];
-        use |= kCasts;
+        use |= scene.options.bounces.most > 0 ? kCasts | kIsShaded : kCasts;
         if (impl.lets_light_through(instance)) use |= kLetsLightThrough;
         if (!instance.lifespan.is_whole()) use |= kAppears;
         if (instance.blocks != ~0ULL) use |= kIsLinked;
