@@ -33,7 +33,9 @@ granita_static(granita_oiio HEADER OpenImageIO/texture.h
 target_compile_definitions(granita_oiio INTERFACE OIIO_STATIC_DEFINE=1)
 granita_static(granita_pybind11 HEADER pybind11/pybind11.h)
 
-# Builds in two places are equal, and a report of a crash names lines.
+# Builds in two places are equal, and a report of a crash names lines.  ccache may make paths relative to the build.
+file(RELATIVE_PATH source_from_build ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR})
 target_compile_options(granita_flags INTERFACE -gline-tables-only
-  -ffile-prefix-map=${GRANITA_PORTABLE_CACHE}/=portable/ -ffile-prefix-map=${CMAKE_SOURCE_DIR}/= -ffile-prefix-map=${CMAKE_BINARY_DIR}/=)
+  -ffile-prefix-map=${GRANITA_PORTABLE_CACHE}/=portable/ -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=
+  -ffile-prefix-map=${source_from_build}/= -ffile-prefix-map=${CMAKE_BINARY_DIR}/=)
 target_compile_definitions(granita_flags INTERFACE GRANITA_PORTABLE=1)

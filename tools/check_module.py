@@ -54,7 +54,9 @@ def broken_rules(module: Path) -> list[str]:
     if strangers:
         problems.append(f"needs symbols of no library: {', '.join(sorted(strangers))}")
     # What assert and exceptions say of themselves: a module made elsewhere would differ.
-    if paths := set(re.findall(rb"\0(/[\w./+-]+\.(?:c|cc|cpp|h|hpp|ipp))\0", module.read_bytes())):
+    if paths := set(
+        re.findall(rb"\0((?:\.\./|/)[\w./+-]+\.(?:c|cc|cpp|h|hpp|ipp))\0", module.read_bytes())
+    ):
         problems.append(f"names folders of the machine: {min(paths).decode()}")
     sections = _run("readelf", "-SW", module)
     if re.search(r"\.(symtab|debug_)", sections):

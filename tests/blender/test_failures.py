@@ -197,6 +197,8 @@ def folder(tmp_path):
 @pytest.mark.parametrize("name", CASES)
 def test_exit_code_and_message(name, blend, folder):
     case = CASES[name]
+    if "PYTHONPATH" in case.env and "GRANITA_ADDON" in os.environ:
+        pytest.skip("an installed add-on finds its own module first")
 
     def filled(text):
         return text.replace("{folder}", str(folder))
