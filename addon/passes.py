@@ -27,6 +27,8 @@ PASSES = (
     Pass("Diffuse Color", "DiffCol", 3, "RGB", "COLOR", "use_pass_diffuse_color"),
     Pass("Glossy Direct", "GlossDir", 3, "RGB", "COLOR", "use_pass_glossy_direct"),
     Pass("Glossy Color", "GlossCol", 3, "RGB", "COLOR", "use_pass_glossy_color"),
+    Pass("Transmission Direct", "TransDir", 3, "RGB", "COLOR", "use_pass_transmission_direct"),
+    Pass("Transmission Color", "TransCol", 3, "RGB", "COLOR", "use_pass_transmission_color"),
     Pass("Emission", "Emit", 3, "RGB", "COLOR", "use_pass_emit"),
     Pass("Environment", "Env", 3, "RGB", "COLOR", "use_pass_environment"),
     Pass("Shadow", "Shadow", 3, "RGB", "COLOR", "use_pass_shadow"),
@@ -36,7 +38,14 @@ PASSES = (
 SERVED = frozenset(p.wanted for p in PASSES)
 
 # Passes of light, which the film's exposure multiplies.
-_EXPOSED = {"Combined", "Diffuse Direct", "Glossy Direct", "Emission", "Environment"}
+_EXPOSED = {
+    "Combined",
+    "Diffuse Direct",
+    "Glossy Direct",
+    "Transmission Direct",
+    "Emission",
+    "Environment",
+}
 
 # Blender's depth where there is no surface.
 NO_SURFACE_DEPTH = 1e10

@@ -24,6 +24,7 @@ class GRANITA_OBJECT_PT_rays(_Panel, bpy.types.Panel):
         ("visible_camera", "Camera"),
         ("visible_diffuse", "Diffuse"),
         ("visible_glossy", "Glossy"),
+        ("visible_transmission", "Transmission"),
     )
     _SURFACE = (*_LIGHT, ("visible_shadow", "Shadow"))
     _TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "EMPTY", "LIGHT"}

@@ -117,6 +117,7 @@ void read_light(const Record& r, Light& light) {
     light.casts_shadow = r.boolean("casts_shadow", true);
     light.visible_diffuse = r.boolean("visible_diffuse", true);
     light.visible_glossy = r.boolean("visible_glossy", true);
+    light.visible_transmission = r.boolean("visible_transmission", true);
     light.diffuse_factor = static_cast<float>(r.number("diffuse_factor", 1.0));
     light.specular_factor = static_cast<float>(r.number("specular_factor", 1.0));
     light.receiver_set = light_set(r, "receiver_set");

@@ -216,6 +216,7 @@ std::shared_ptr<Scene> read_scene(const py::dict& snapshot) {
         scene->world.visible_camera = world.boolean("visible_camera", true);
         scene->world.visible_diffuse = world.boolean("visible_diffuse", true);
         scene->world.visible_glossy = world.boolean("visible_glossy", true);
+        scene->world.visible_transmission = world.boolean("visible_transmission", true);
         read_graph(world, scene->world.graph);
     }
     if (root.has("instances")) read_instances(root.record("instances"), *scene);

@@ -21,6 +21,8 @@ enum class Quantity {
     DiffuseColor,   ///< their albedo
     GlossyDirect,
     GlossyColor,
+    TransmissionDirect,
+    TransmissionColor,
     Emission,
     LampsArriving,   ///< radiance reflected of lamps
     LampsUnblocked,  ///< the same without shadows

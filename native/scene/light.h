@@ -34,7 +34,7 @@ struct Light {
     Vec2f size{1.0f};  ///< area: metres, before the matrix's scale
     float spread = 3.14159265f;
     bool casts_shadow = true;
-    bool visible_diffuse = true, visible_glossy = true;
+    bool visible_diffuse = true, visible_glossy = true, visible_transmission = true;
     float diffuse_factor = 1.0f, specular_factor = 1.0f;
     /// Light and shadow linking: which bit of Instance::receives and ::blocks counts; -1 = it
     /// lights, and is shadowed by, everything.
@@ -51,7 +51,8 @@ struct World {
     NodeGraph graph;           ///< surface: a Background; node -1 = black
     bool lights_scene = true;  ///< false where the view layer drops the world (use_sky off)
     /// Whether rays of a type see it; to the others it is black.
-    bool visible_camera = true, visible_diffuse = true, visible_glossy = true;
+    bool visible_camera = true, visible_diffuse = true, visible_glossy = true,
+         visible_transmission = true;
 };
 
 }  // namespace granita

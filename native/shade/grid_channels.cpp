@@ -80,6 +80,12 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
             case Quantity::GlossyColor:
                 copy(shaded.parts.glossy_color);
                 break;
+            case Quantity::TransmissionDirect:
+                copy(shaded.parts.transmission);
+                break;
+            case Quantity::TransmissionColor:
+                copy(shaded.parts.transmission_color);
+                break;
             case Quantity::LampsArriving:
                 copy(shaded.parts.arriving);
                 break;

@@ -8,9 +8,10 @@ namespace granita {
 namespace {
 
 /// Shadow rays are never asked what the world sends.
-constexpr RayType kTypes[] = {RayType::Camera, RayType::Diffuse, RayType::Glossy,
-                              RayType::Singular};
-constexpr RayType kLightTypes[] = {RayType::Diffuse, RayType::Glossy, RayType::Singular};
+constexpr RayType kTypes[] = {RayType::Camera,   RayType::Diffuse,      RayType::Glossy,
+                              RayType::Singular, RayType::Transmission, RayType::Clear};
+constexpr RayType kLightTypes[] = {RayType::Diffuse, RayType::Glossy, RayType::Singular,
+                                   RayType::Transmission, RayType::Clear};
 
 /// Nodes of which nothing is narrower than what they are given: images, and sums of them.  What
 /// draws, as comparisons do, may be.
@@ -31,6 +32,9 @@ bool is_visible(const World& world, RayType ray) {
             return world.visible_camera;
         case RayType::Diffuse:
             return world.visible_diffuse;
+        case RayType::Transmission:
+        case RayType::Clear:
+            return world.visible_transmission;
         default:
             return world.visible_glossy;
     }

@@ -29,7 +29,7 @@ class WorldShader {
     const VectorSource& emission(RayType ray) const { return program(ray).sources.emission; }
 
     std::vector<SurfaceProgram> m_programs;
-    std::array<std::size_t, 5> m_program_of{};  ///< [types of rays]
+    std::array<std::size_t, kRayTypes> m_program_of{};  ///< [types of rays]
     bool m_reads_images = false;
     bool m_is_smooth = false;  ///< nothing of its graph is narrower than images are
 };

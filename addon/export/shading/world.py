@@ -9,8 +9,8 @@ def world_of(scene, view_layer):
     return getattr(view_layer, "world_override", None) or scene.world
 
 
-# The types of rays that a World can be hidden from.  Transmitted and scattered ones are not traced.
-RAY_TYPES = ("camera", "diffuse", "glossy")
+# The types of rays that a World can be hidden from.  Scattered ones are not traced.
+RAY_TYPES = ("camera", "diffuse", "glossy", "transmission")
 
 
 def ray_visibility(world):

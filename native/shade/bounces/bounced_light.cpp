@@ -38,9 +38,9 @@ class BouncedLight::Wave {
             path.next = ray;
             path.spread = ray.spread;
             path.least_pdf = ray.pdf;
-            path.kind = ray.ray.type == RayType::Diffuse    ? BouncedPath::Kind::Diffuse
-                        : ray.ray.type == RayType::Singular ? BouncedPath::Kind::Mirrored
-                                                            : BouncedPath::Kind::Glossy;
+            path.kind = ray.ray.type == RayType::Diffuse ? BouncedPath::Kind::Diffuse
+                        : is_sharp(ray.ray.type)         ? BouncedPath::Kind::Mirrored
+                                                         : BouncedPath::Kind::Glossy;
             follow(path);
         }
         m_paths.swap(m_next);
@@ -67,7 +67,7 @@ class BouncedLight::Wave {
             ++path.diffuse;
         else
             ++path.glossy;
-        if (path.kind == BouncedPath::Kind::Mirrored && path.next.ray.type != RayType::Singular)
+        if (path.kind == BouncedPath::Kind::Mirrored && !is_sharp(path.next.ray.type))
             path.kind = BouncedPath::Kind::Glossy;
         if (is_within_limits(path)) m_next.push_back(path);
     }
@@ -159,7 +159,9 @@ class BouncedLight::Wave {
     /// Glossy lobes that would throw noise onto diffuse ones: left out, or, as by Cycles' Filter
     /// Glossy, blurred as much as the way is improbable.
     void tame(const std::vector<MetPath>& batch, SurfaceClosure& closure) const {
-        const auto is_glossy = [](const Lobe& lobe) { return lobe.kind == LobeKind::Glossy; };
+        const auto is_glossy = [](const Lobe& lobe) {
+            return part_of(lobe.kind) != LightPart::Diffuse;
+        };
         if (!m_limits.caustics && batch.front().path->diffuse > 0)
             std::erase_if(closure.lobes, is_glossy);
         if (m_limits.filter_glossy == 0.0f) return;

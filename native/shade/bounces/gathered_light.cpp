@@ -131,7 +131,7 @@ class Sharing {
 Vec3f diffuse_albedo(const SurfaceClosure& closure, std::size_t point) {
     Vec3f sum(0.0f);
     for (const Lobe& lobe : closure.lobes)
-        if (lobe.kind == LobeKind::Diffuse) sum += lobe.weight[point];
+        if (part_of(lobe.kind) == LightPart::Diffuse) sum += lobe.weight[point];
     return glm::max(sum, Vec3f(kLeastAlbedo));
 }
 

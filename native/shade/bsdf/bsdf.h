@@ -2,10 +2,11 @@
 // The lobes of a closure at one point, prepared for evaluation and sampling; Cycles' formulas.
 //
 //   PointBsdf bsdf(closure, points, i, albedo);
-//   value = bsdf.evaluate(direction)                 // f cos, diffuse and glossy apart
+//   value = bsdf.evaluate(direction)                 // f cos, by the parts of light
 //   for each lobe: bsdf.sample(lobe, u, direction), bsdf.pdf(lobe, direction)
 //
-// `wi` is the view direction, `wo` points to the light (Cycles' names); both leave the surface.
+// `wi` is the view direction, `wo` points to the light (Cycles' names); both leave the surface,
+// `wo` of lobes that transmit on its far side.
 #pragma once
 
 #include <vector>
@@ -18,17 +19,23 @@ namespace granita {
 
 class GgxAlbedo;
 
-/// Reflected radiance per unit radiance and solid angle: BSDF times cosine times weight.
+/// Radiance towards the view per unit radiance and solid angle: BSDF times cosine times weight.
 struct BsdfValue {
-    Vec3f diffuse{0.0f}, glossy{0.0f};
+    Vec3f diffuse{0.0f}, glossy{0.0f}, transmission{0.0f};
+
+    Vec3f& part(LightPart part) {
+        return part == LightPart::Diffuse  ? diffuse
+               : part == LightPart::Glossy ? glossy
+                                           : transmission;
+    }
 };
 
 inline Vec3f total(const BsdfValue& value) {
-    return value.diffuse + value.glossy;
+    return value.diffuse + value.glossy + value.transmission;
 }
 
 inline BsdfValue operator*(const BsdfValue& value, const Vec3f& factor) {
-    return {value.diffuse * factor, value.glossy * factor};
+    return {value.diffuse * factor, value.glossy * factor, value.transmission * factor};
 }
 
 class PointBsdf {
@@ -39,6 +46,12 @@ class PointBsdf {
 
     std::size_t lobe_count() const { return m_lobes.size(); }
     LobeKind kind(std::size_t lobe) const { return m_lobes[lobe].kind; }
+    LightPart part(std::size_t lobe) const { return part_of(m_lobes[lobe].kind); }
+    /// Whether light comes through the surface; by any lobe.
+    bool transmits(std::size_t lobe) const { return granita::transmits(m_lobes[lobe].kind); }
+    bool transmits() const { return m_transmits; }
+    /// Of refractions: index of the far side relative to the viewer's.
+    float ior(std::size_t lobe) const { return m_lobes[lobe].ior; }
     /// In SurfaceClosure::lobes: those that reflect nothing here are left out.
     std::size_t index(std::size_t lobe) const { return m_lobes[lobe].index; }
     /// A mirror: one direction, no density; evaluate() leaves it out.
@@ -47,7 +60,7 @@ class PointBsdf {
     float importance(std::size_t lobe) const { return m_lobes[lobe].importance; }
 
     /// Share of white light from all sides that leaves along the view, weights included.  Fresnel
-    /// of glossy lobes is taken at the view's own angle.
+    /// is taken at the view's own angle.
     BsdfValue albedo() const;
     /// False where evaluate() is 0 for every direction to the sphere around `to_center`.
     bool can_see(const Vec3f& to_center, float radius) const;
@@ -57,10 +70,11 @@ class PointBsdf {
     BsdfValue evaluate(const Vec3f& wo) const;
     /// Density of sample(), per solid angle; 0 for sharp lobes.
     float pdf(std::size_t lobe, const Vec3f& wo) const;
-    /// False when the sampled direction leaves through the surface.
+    /// False when the sampled direction leaves on the wrong side of the surface.
     bool sample(std::size_t lobe, const Vec2f& u, Vec3f& wo) const;
-    /// Sharp lobes: the mirror direction and the reflectance along it.
-    bool reflect(std::size_t lobe, Vec3f& wo, Vec3f& reflectance) const;
+    /// Sharp lobes: the mirrored or refracted direction, and the share of the light there that
+    /// takes it.  False where there is none.
+    bool deflect(std::size_t lobe, Vec3f& wo, Vec3f& share) const;
 
   private:
     struct Prepared {
@@ -81,15 +95,37 @@ class PointBsdf {
         Vec3f oren_multiscatter{0.0f};
     };
 
-    Vec3f fresnel(const Prepared& lobe, float cos_half) const;
-    Vec3f evaluate_diffuse(const Prepared& lobe, const Vec3f& wo) const;
-    Vec3f evaluate_glossy(const Prepared& lobe, const Vec3f& wo) const;
+    /// The facets that send light from one direction to the view.
+    struct RefractingFacets {
+        Vec3f half;
+        float half_wi, density;
+        float jacobian;  ///< solid angle of half vectors per that of directions
+    };
+
+    // diffuse_lobe.cpp
     void prepare_diffuse(Prepared& lobe, const Vec3f* color, float roughness) const;
-    void prepare_glossy(Prepared& lobe, float roughness, bool multiscatter,
-                        const GgxAlbedo& albedo) const;
+    Vec3f evaluate_diffuse(const Prepared& lobe, const Vec3f& wo) const;
+    // glossy_lobe.cpp
+    void prepare_microfacets(Prepared& lobe, float roughness) const;
+    void compensate(Prepared& lobe, float roughness, const GgxAlbedo& albedo) const;
+    Vec3f fresnel(const Prepared& lobe, float cos_half) const;
+    Vec3f evaluate_glossy(const Prepared& lobe, const Vec3f& wo) const;
+    float pdf_glossy(const Prepared& lobe, const Vec3f& wo) const;
+    // refraction_lobe.cpp
+    void prepare_refraction(Prepared& lobe) const;
+    Vec3f transmittance(const Prepared& lobe, float cos_half) const;
+    bool refracting_facets(const Prepared& lobe, const Vec3f& wo, RefractingFacets& out) const;
+    Vec3f evaluate_refraction(const Prepared& lobe, const Vec3f& wo) const;
+    float pdf_refraction(const Prepared& lobe, const Vec3f& wo) const;
+    void reach_refraction(const Prepared& lobe, LobeReach& reach) const;  // lobe_reach.cpp
+    /// Share of the light that facets send the lobe's way.
+    Vec3f passed(const Prepared& lobe, float cos_half) const;
+    /// Where a facet sends the view.
+    bool turn(const Prepared& lobe, const Vec3f& half, Vec3f& wo) const;
 
     std::vector<Prepared> m_lobes;
     Vec3f m_wi, m_normal, m_geometric_normal;
+    bool m_transmits = false;
 };
 
 }  // namespace granita

@@ -12,7 +12,23 @@
 
 namespace granita {
 
-enum class LobeKind { Diffuse, Glossy };
+enum class LobeKind {
+    Diffuse,
+    Glossy,
+    Refraction,  ///< of microfacets: light from the far side
+};
+/// What lamps, worlds and passes tell apart of the light that a surface sends on.
+enum class LightPart { Diffuse, Glossy, Transmission };
+
+constexpr bool transmits(LobeKind kind) {
+    return kind == LobeKind::Refraction;
+}
+constexpr LightPart part_of(LobeKind kind) {
+    return kind == LobeKind::Diffuse  ? LightPart::Diffuse
+           : kind == LobeKind::Glossy ? LightPart::Glossy
+                                      : LightPart::Transmission;
+}
+
 enum class Distribution {
     Sharp,
     Beckmann,
@@ -26,6 +42,7 @@ enum class FresnelKind {
     Dielectric,  ///< exact, of ior, remapped so that normal incidence gives f0 and grazing f90
                  ///< (Cycles' principled)
 };
+// Refractions pass what their Fresnel does not reflect; None: all but where all is reflected.
 
 struct Lobe {
     LobeKind kind = LobeKind::Diffuse;
@@ -43,7 +60,8 @@ struct Lobe {
                                    ///< value (alpha = roughness^2)
     std::vector<Vec3f> f0, f90;    ///< [n] FresnelKind::None and diffuse lobes: f90 empty, f0 empty
                                    ///< or the lobe's colour, which energy compensation saturates
-    std::vector<float> ior;        ///< [n] Dielectric only
+    std::vector<float> ior;  ///< [n] Dielectric and refractions: of the far side relative to the
+                             ///< viewer's
 };
 
 struct SurfaceClosure {

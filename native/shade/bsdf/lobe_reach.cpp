@@ -8,12 +8,17 @@
 #include "math/sampling.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/bsdf/microfacet.h"
+#include "shade/bsdf/refraction.h"
 
 namespace granita {
 namespace {
 
 /// Over GGX of the same alpha, at most: where the squared tangent is the squared alpha.
 constexpr float kBeckmannPeak = 1.5f;
+
+/// Of an index from 1: what is bent less is as narrow as the view itself, and lamps in it are met
+/// by its own samples.
+constexpr float kLeastReachBend = 0.05f;
 
 }  // namespace
 
@@ -32,6 +37,22 @@ void LobeReach::join(const LobeReach& other) {
     long_tail = long_tail && other.long_tail;  // t is at most 1: the other tail is higher
 }
 
+/// The facets' normals turn by at least half as much as what they refract, unless the far side is
+/// three times less dense, so that what bounds a reflection about the refracted view is a bound
+/// here too, once its peak is right.
+void PointBsdf::reach_refraction(const Prepared& lobe, LobeReach& reach) const {
+    reach.normal.axis = -lobe.normal;
+    reach.alpha2 = lobe.alpha * lobe.alpha;
+    if (!refracted(m_wi, lobe.normal, lobe.ior, reach.mirrored.axis)) {
+        reach.mirrored.axis = -lobe.normal;  // only rough facets let light through: anywhere
+        reach.mirrored.cos = -1.0f;
+    }
+    const float bend = std::max(std::abs(lobe.ior - 1.0f), kLeastReachBend);
+    reach.scale =
+        mean_size(lobe.weight) * reach.alpha2 * kInversePi * lobe.ior * lobe.ior / (bend * bend);
+    if (lobe.distribution == Distribution::Beckmann) reach.scale *= kBeckmannPeak;
+}
+
 void PointBsdf::reaches(std::vector<LobeReach>& out) const {
     out.clear();
     for (const Prepared& lobe : m_lobes) {
@@ -45,6 +66,11 @@ void PointBsdf::reaches(std::vector<LobeReach>& out) const {
             continue;
         }
         reach.glossy = true;
+        if (lobe.kind == LobeKind::Refraction) {
+            reach_refraction(lobe, reach);
+            out.push_back(reach);
+            continue;
+        }
         reach.mirrored.axis = 2.0f * lobe.cos_wi * lobe.normal - m_wi;
         reach.alpha2 = lobe.alpha * lobe.alpha;
         // Half vectors lie no farther from the view than half way to the horizon behind.

@@ -8,6 +8,7 @@
 
 #include "math/sampling.h"
 #include "math/vec.h"
+#include "shade/bsdf/lobe.h"
 
 namespace granita {
 
@@ -82,6 +83,32 @@ inline Vec3f sample_beckmann(float alpha, const Vec2f& u) {
     const float sin_h = std::sqrt(std::max(0.0f, 1.0f - cos_h * cos_h));
     const float phi = 2.0f * kPi * u.y;
     return {sin_h * std::cos(phi), sin_h * std::sin(phi), cos_h};
+}
+
+/// Smith's Lambda.
+inline float lambda_of(Distribution distribution, float alpha, float cos_v) {
+    if (distribution == Distribution::Beckmann) return beckmann_lambda(alpha, cos_v);
+    constexpr float kCoatAlpha = 0.25f;
+    return ggx_lambda(distribution == Distribution::Gtr1 ? kCoatAlpha : alpha, cos_v);
+}
+
+inline float density_of(Distribution distribution, float alpha, float sin2) {
+    if (distribution == Distribution::Beckmann) return beckmann_density(alpha, sin2);
+    return distribution == Distribution::Gtr1 ? gtr1_density(alpha, sin2)
+                                              : ggx_density(alpha, sin2);
+}
+
+/// In the lobe's own frame; `wi` there.
+inline Vec3f sample_half_vector(Distribution distribution, float alpha, const Vec3f& wi,
+                                const Vec2f& u) {
+    if (distribution == Distribution::Beckmann) return sample_beckmann(alpha, u);
+    if (distribution == Distribution::Gtr1) return sample_gtr1(alpha, u);
+    return sample_ggx_visible(wi, alpha, u);
+}
+
+inline float squared_sine(const Vec3f& a, const Vec3f& b) {
+    const Vec3f c = glm::cross(a, b);
+    return std::min(glm::dot(c, c), 1.0f);
 }
 
 }  // namespace granita

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reflected light by what reflects it and where it comes from, for passes.  The total is summed by
-// itself: it has the same bits whether the parts are asked for or not.
+// Light that a surface sends on, by what sends it and where it comes from, for passes.  The total
+// is summed by itself: it has the same bits whether the parts are asked for or not.
 #pragma once
 
 #include <vector>
@@ -11,13 +11,14 @@ namespace granita {
 
 /// Each [points]; premultiplied by opacity like the radiance they are parts of.
 struct ReflectionParts {
-    std::vector<Vec3f> diffuse, glossy;              ///< by lobe; their sum is the total
-    std::vector<Vec3f> diffuse_color, glossy_color;  ///< the lobes' albedo towards the view
+    std::vector<Vec3f> diffuse, glossy, transmission;  ///< by lobe; their sum is the total
+    std::vector<Vec3f> diffuse_color, glossy_color, transmission_color;  ///< the lobes' albedo
+                                                                         ///< towards the view
     std::vector<Vec3f> arriving, unblocked;  ///< of lamps, all lobes; with and without shadows
 
     void resize(std::size_t points) {
-        for (auto* values :
-             {&diffuse, &glossy, &diffuse_color, &glossy_color, &arriving, &unblocked})
+        for (auto* values : {&diffuse, &glossy, &transmission, &diffuse_color, &glossy_color,
+                             &transmission_color, &arriving, &unblocked})
             values->assign(points, Vec3f(0.0f));
     }
 };

@@ -51,6 +51,19 @@ Vec3f inwards(const ShadingPoints& points, std::size_t i) {
            towards(row, points.count / points.columns - 1) * points.dp_dv[i];
 }
 
+/// The types of ray by which parts of light are seen.
+struct PartRays {
+    RayType diffuse, glossy, transmission;
+
+    RayType of(LightPart part) const {
+        return part == LightPart::Diffuse  ? diffuse
+               : part == LightPart::Glossy ? glossy
+                                           : transmission;
+    }
+};
+constexpr PartRays kBlurred{RayType::Diffuse, RayType::Glossy, RayType::Transmission};
+constexpr PartRays kSharp{RayType::Diffuse, RayType::Singular, RayType::Clear};
+
 /// Of shading space.
 Vec3d camera_origin(const Scene& scene) {
     return Vec3d(matrix_at(scene.camera.world_from_camera, scene.options.frame_time)[3]);
@@ -76,7 +89,8 @@ struct DirectLight::Impl {
     void mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const;
     void leave(LitGrid& grid, const LitPoint& point, Ray ray, const Vec3f& weight, float pdf,
                std::uint32_t place) const;
-    void look(LitGrid& grid, const EnvironmentSamples& samples, float spread, RayType glossy) const;
+    void look(LitGrid& grid, const EnvironmentSamples& samples, float spread,
+              const PartRays& types) const;
     std::uint64_t receives(const GridKey& key) const;
     Vec3f occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
                     const Vec3f& direction) const;
@@ -169,7 +183,8 @@ void DirectLight::Impl::add_texel(LitGrid& grid, const LitPoint& point,
                                   float sign) const {
     const BsdfValue reflected{
         weight.diffuse * environment->texel_radiance(from.texel, RayType::Diffuse),
-        weight.glossy * environment->texel_radiance(from.texel, RayType::Glossy)};
+        weight.glossy * environment->texel_radiance(from.texel, RayType::Glossy),
+        weight.transmission * environment->texel_radiance(from.texel, RayType::Transmission)};
     grid.reflect_world(point.index, reflected, sign);
 }
 
@@ -182,8 +197,8 @@ LampRate DirectLight::Impl::rate_of(const LitPoint& point, const LampChoice* cho
 
 void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
                                     const LampChoice* choice) const {
-    const bool glossy = point.bsdf.kind(lobe) == LobeKind::Glossy;
-    if (!environment && !glossy && !grid.leaving) return;
+    const bool meets_lamps = point.meets_lamps(lobe);
+    if (!environment && !meets_lamps && !grid.leaving) return;
     const LitPoint::LobeSamples& samples = point.samples[lobe];
     const SobolPoints sequence = grid.sequence(1 + point.bsdf.index(lobe), samples.first);
     for (int s = 0; s < samples.count; ++s) {
@@ -196,7 +211,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         const float sign = LitGrid::sign(s, samples.count);
         if (grid.leaving) {
             Ray ray = set.ray(point, place, wo, kInfinity);
-            ray.type = glossy ? RayType::Glossy : RayType::Diffuse;
+            ray.type = kBlurred.of(point.bsdf.part(lobe));
             const float density = point.all_density(wo);
             leave(grid, point, ray, total(value) / density,
                   density / static_cast<float>(point.lobe_samples(0)), samples.first + index);
@@ -209,21 +224,23 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             if (environment->is_constant()) {
                 const BsdfValue reflected{
                     weight.diffuse * environment->constant_radiance(RayType::Diffuse),
-                    weight.glossy * environment->constant_radiance(RayType::Glossy)};
+                    weight.glossy * environment->constant_radiance(RayType::Glossy),
+                    weight.transmission * environment->constant_radiance(RayType::Transmission)};
                 grid.reflect_world(point.index, reflected, sign);
-            } else if (environment->has_radiance() && !glossy) {
+            } else if (environment->has_radiance() && !meets_lamps) {
                 add_texel(grid, point, at, weight, sign);
             } else {
                 // Some lobes are narrower than the table's texels.
                 grid.look(grid.blurred, point.index, wo, weight, sign);
             }
         }
-        if (!glossy) continue;
+        if (!meets_lamps) continue;
         set.meet(grid, place, wo, [&](std::size_t index, const Lamp& lamp, const LightSample& met) {
             const LampRate rate = rate_of(point, choice, index);
             const float density =
-                static_cast<float>(rate.samples) * met.pdf * rate.mean + point.glossy_density(wo);
+                static_cast<float>(rate.samples) * met.pdf * rate.mean + point.meeting_density(wo);
             const BsdfValue bsdf = lamp.apply(value);
+            if (total(bsdf) == Vec3f(0.0f)) return;
             const Vec3f seen = set.shadow(grid, point, place, lamp, met);
             grid.add(point.index, total(bsdf) * met.radiance / density * seen, sign);
             grid.add_lamp(point.index, bsdf * (met.radiance / density), seen);
@@ -246,29 +263,31 @@ void DirectLight::Impl::leave(LitGrid& grid, const LitPoint& point, Ray ray, con
 }
 
 void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const {
-    Vec3f wo, reflectance;
-    if (!point.bsdf.reflect(lobe, wo, reflectance)) return;
+    Vec3f wo, share;
+    if (!point.bsdf.deflect(lobe, wo, share)) return;
     const int count = set.varies ? point.sample_count : 1;
-    reflectance /= static_cast<float>(count);
+    BsdfValue value;
+    value.part(point.bsdf.part(lobe)) = share / static_cast<float>(count);
     const SobolPoints sequence = grid.sequence(point, 1 + point.bsdf.index(lobe), count);
     Vec3f open(0.0f);
     for (int s = 0; s < count; ++s) {
         const LitPlace place = set.place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
         set.meet(grid, place, wo, [&](std::size_t, const Lamp& lamp, const LightSample& met) {
-            const Vec3f value = reflectance * lamp.glossy() * met.radiance;
+            const BsdfValue arriving = lamp.apply(value) * met.radiance;
+            if (total(arriving) == Vec3f(0.0f)) return;
             const Vec3f seen = set.shadow(grid, point, place, lamp, met);
-            grid.add(point.index, value * seen, LitGrid::sign(s, count));
-            grid.add_lamp(point.index, {Vec3f(0.0f), value}, seen);
+            grid.add(point.index, total(arriving) * seen, LitGrid::sign(s, count));
+            grid.add_lamp(point.index, arriving, seen);
         });
         if (grid.leaving) {
             Ray ray = set.ray(point, place, wo, kInfinity);
-            ray.type = RayType::Singular;
-            leave(grid, point, ray, reflectance, kInfinity,
+            ray.type = kSharp.of(point.bsdf.part(lobe));
+            leave(grid, point, ray, total(value), kInfinity,
                   point.place * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(s));
         }
-        if (environment) open += reflectance * occlusion(grid, point, place, wo);
+        if (environment) open += occlusion(grid, point, place, wo);
     }
-    grid.look(grid.sharp, point.index, wo, {Vec3f(0.0f), open}, 0.0f);
+    grid.look(grid.sharp, point.index, wo, value * open, 0.0f);
 }
 
 /// Dimensions are numbered by the closure's lobes, which are the same for all points: 0 the
@@ -331,25 +350,33 @@ void DirectLight::Impl::sample_rest(LitGrid& grid, const LitPoint& point,
     }
 }
 
-/// `glossy`: the type of ray that the samples' glossy parts are seen by.
 void DirectLight::Impl::look(LitGrid& grid, const EnvironmentSamples& samples, float spread,
-                             RayType glossy) const {
+                             const PartRays& types) const {
     if (samples.directions.empty()) return;
-    std::vector<Vec3f> seen, seen_glossy;
-    world.radiance(samples.directions, spread, world.by_lobe ? RayType::Diffuse : glossy, seen);
-    if (world.by_lobe) world.radiance(samples.directions, spread, glossy, seen_glossy);
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-        const std::size_t point = samples.points[k];
-        if (world.by_lobe) {
-            const BsdfValue value{samples.parts[k].diffuse * seen[k],
-                                  samples.parts[k].glossy * seen_glossy[k]};
-            if (!is_finite(total(value))) continue;
-            grid.reflect_world(point, value, samples.signs[k]);
-        } else if (is_finite(seen[k])) {
-            grid.add(point, samples.weights[k] * seen[k], samples.signs[k]);
-            if (grid.parts) grid.add_world(point, samples.parts[k] * seen[k]);
+    std::vector<Vec3f> seen;
+    if (!world.by_lobe) {
+        world.radiance(samples.directions, spread, types.glossy, seen);
+        for (std::size_t k = 0; k < seen.size(); ++k) {
+            if (!is_finite(seen[k])) continue;
+            grid.add(samples.points[k], samples.weights[k] * seen[k], samples.signs[k]);
+            if (grid.parts) grid.add_world(samples.points[k], samples.parts[k] * seen[k]);
         }
+        return;
     }
+    std::vector<BsdfValue> values = samples.parts;
+    const auto look_by = [&](LightPart part, RayType type) {
+        const bool any = std::ranges::any_of(
+            values, [&](BsdfValue& value) { return value.part(part) != Vec3f(0.0f); });
+        if (!any) return;
+        world.radiance(samples.directions, spread, type, seen);
+        for (std::size_t k = 0; k < seen.size(); ++k) values[k].part(part) *= seen[k];
+    };
+    look_by(LightPart::Diffuse, types.diffuse);
+    look_by(LightPart::Glossy, types.glossy);
+    look_by(LightPart::Transmission, types.transmission);
+    for (std::size_t k = 0; k < values.size(); ++k)
+        if (is_finite(total(values[k])))
+            grid.reflect_world(samples.points[k], values[k], samples.signs[k]);
 }
 
 DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics,
@@ -424,6 +451,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
             const BsdfValue color = bsdf.albedo();
             parts->diffuse_color[i] = color.diffuse;
             parts->glossy_color[i] = color.glossy;
+            parts->transmission_color[i] = color.transmission;
         }
         if (dark && !leaving) continue;
         const Vec3f &p = points.p[i], &normal = points.geometric_normal[i];
@@ -451,9 +479,9 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     place_lobe_samples(lit, closure.lobes.size(), placed);
     m_impl->light_points(grid, lit, closure.lobes.size());
     if (m_impl->environment)
-        m_impl->look(grid, grid.blurred, m_impl->environment->texel_angle(), RayType::Glossy);
+        m_impl->look(grid, grid.blurred, m_impl->environment->texel_angle(), kBlurred);
     // A point of its own stands for no neighbours: the mean of many does.
-    m_impl->look(grid, grid.sharp, placed ? 0.0f : grid.sharp.spread(), RayType::Singular);
+    m_impl->look(grid, grid.sharp, placed ? 0.0f : grid.sharp.spread(), kSharp);
     m_impl->statistics.add(Counter::RaysShadow, grid.shadow_rays);
     m_impl->statistics.add(Counter::RaysOcclusion, grid.occlusion_rays);
     m_impl->statistics.add(Counter::LampsChosen, grid.lamps_chosen);

@@ -116,8 +116,8 @@ std::vector<float> Environment::bake(const WorldEvaluator& world, const Progress
     const float spread = texel_angle() / static_cast<float>(side);
     std::vector<float> found(width * static_cast<std::size_t>(m_height));
     if (world.is_image) {
-        m_glossy_texels = world.by_lobe ? found.size() : 0;
-        m_radiance.resize(found.size() + m_glossy_texels);
+        m_texels_apart = world.by_lobe ? found.size() : 0;
+        m_radiance.resize(found.size() + 2 * m_texels_apart);
     }
     std::atomic<std::size_t> broken = 0;
     parallel_for(static_cast<std::size_t>(m_height), 1, [&](std::size_t begin, std::size_t end) {
@@ -127,10 +127,12 @@ std::vector<float> Environment::bake(const WorldEvaluator& world, const Progress
             float* texels = found.data() + width * y;
             Vec3f* const seen = m_radiance.empty() ? nullptr : m_radiance.data() + width * y;
             broken += row.add(world, spread, RayType::Diffuse, texels, seen);
-            // One density for both: it is large where either is.
-            if (world.by_lobe)
-                broken += row.add(world, spread, RayType::Glossy, texels,
-                                  seen ? seen + m_glossy_texels : nullptr);
+            if (!world.by_lobe) continue;
+            // One density for all: it is large where any is.
+            broken += row.add(world, spread, RayType::Glossy, texels,
+                              seen ? seen + m_texels_apart : nullptr);
+            broken += row.add(world, spread, RayType::Transmission, texels,
+                              seen ? seen + 2 * m_texels_apart : nullptr);
         }
     });
     m_broken = broken;
@@ -144,7 +146,8 @@ Environment::Environment(const WorldEvaluator& world, const Progress& progress, 
         return;
     }
     m_black = true;
-    for (const RayType ray : {RayType::Diffuse, RayType::Glossy, RayType::Singular}) {
+    for (const RayType ray : {RayType::Diffuse, RayType::Glossy, RayType::Singular,
+                              RayType::Transmission, RayType::Clear}) {
         std::vector<Vec3f> seen;
         world.radiance({Vec3f(0.0f, 0.0f, 1.0f)}, 0.0f, ray, seen);
         if (!is_finite(seen[0])) {

@@ -23,7 +23,7 @@ struct WorldEvaluator {
                        std::vector<Vec3f>& out)>
         radiance;
     bool is_constant = false;  ///< one radiance for all directions, as each type of ray sees it
-    bool by_lobe = false;      ///< diffuse, glossy and singular rays may see different worlds
+    bool by_lobe = false;      ///< the types of rays that lobes send may see different worlds
     bool is_filtered = false;  ///< nothing narrower than `spread` is missed, as in images
     bool is_image = false;     ///< and there is nothing but images: their means tell all
 };
@@ -63,9 +63,10 @@ class Environment {
     /// Whether texel_radiance() says what sample() stands for: of images, whose lookups are most of
     /// what lighting by a world costs.  A program may hold what is between a texel's places.
     bool has_radiance() const { return !m_radiance.empty(); }
-    /// The mean over a texel, as diffuse or glossy rays see it.
+    /// The mean over a texel, as diffuse, glossy or transmitted rays see it.
     const Vec3f& texel_radiance(std::size_t texel, RayType ray) const {
-        return m_radiance[ray == RayType::Diffuse ? texel : m_glossy_texels + texel];
+        const std::size_t world = ray == RayType::Diffuse ? 0 : ray == RayType::Glossy ? 1 : 2;
+        return m_radiance[world * m_texels_apart + texel];
     }
 
     /// Angle between neighbouring directions of the table: what sample() stands for.
@@ -81,15 +82,16 @@ class Environment {
     int m_width = 0, m_height = 0;
     std::size_t m_broken = 0;
     bool m_black = false, m_constant = false;
-    std::array<Vec3f, 5> m_constant_radiance{};  ///< [types of rays]
-    std::vector<float> m_rows;                   ///< [height + 1] distribution over rows
+    std::array<Vec3f, kRayTypes> m_constant_radiance{};  ///< [types of rays]
+    std::vector<float> m_rows;                           ///< [height + 1] distribution over rows
     std::vector<float> m_columns;  ///< [height][width + 1] distribution inside each row
     /// [height][kGuides] for each step of a row's distribution, the column before it: bisecting a
     /// thousand columns missed the cache five times, a tenth of a lit world's time.
     std::vector<std::uint16_t> m_guides;
-    /// [1 or 2][height][width] as diffuse rays see it, then glossy ones where that is another.
+    /// [1 or 3][height][width] as diffuse rays see it; where others see others, then glossy ones
+    /// and those that were transmitted.
     std::vector<Vec3f> m_radiance;
-    std::size_t m_glossy_texels = 0;
+    std::size_t m_texels_apart = 0;  ///< between two of them
 };
 
 }  // namespace granita

@@ -36,8 +36,8 @@ void sample_lamp(const LampSet& set, LitGrid& grid, const LitPoint& point, const
         const Vec3f value = total(bsdf) * sample.radiance;
         if (value == Vec3f(0.0f)) return;
         float density = static_cast<float>(count) * sample.pdf * turn.rate.mean;
-        if (!source.is_hard() && lamp.reaches_glossy())
-            density += point.glossy_density(sample.direction);
+        if (!source.is_hard() && lamp.meets_lobes())
+            density += point.meeting_density(sample.direction);
         const BsdfValue parts = bsdf * (sample.radiance / density);
         const float sign = turn.sign != 0.0f ? turn.sign : LitGrid::sign(s, count);
         if (set.rays && lamp.casts_shadow())

@@ -75,10 +75,12 @@ int LampSet::samples_of(const LitPoint& point, const Lamp& lamp) const {
 
 Ray LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
                  float distance, int blocker_set) const {
-    const bool turned_away = glm::dot(place.normal, direction) <= 0.0f &&
-                             glm::dot(point.at_frame.normal, direction) > 0.0f;
+    const float there = glm::dot(place.normal, direction);
+    const float at_frame = glm::dot(point.at_frame.normal, direction);
+    const bool below = point.bsdf.transmits() && at_frame < 0.0f;
+    const bool turned_away = below ? there >= 0.0f : there <= 0.0f && at_frame > 0.0f;
     const LitPlace& from = turned_away ? point.at_frame : place;
-    return {from.start, direction, distance, from.time, blocker_set};
+    return {below ? from.start_below() : from.start, direction, distance, from.time, blocker_set};
 }
 
 Vec3f LampSet::shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,

@@ -37,7 +37,7 @@ struct LampSet {
     Vec3f shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                  const LightSample& sample) const;
 
-    /// Calls `met(index, lamp, sample)` for lamps that glossy lobes of the grid see along a
+    /// Calls `met(index, lamp, sample)` for lamps that samples of the grid's lobes meet along a
     /// direction.
     template <class Met>
     void meet(const LitGrid& grid, const LitPlace& place, const Vec3f& direction,
@@ -45,7 +45,7 @@ struct LampSet {
         const auto ask = [&](std::size_t index) {
             const Lamp& lamp = lamps[index];
             LightSample sample;
-            if (lamp.lights(grid.receives) && lamp.reaches_glossy() &&
+            if (lamp.lights(grid.receives) && lamp.meets_lobes() &&
                 lamp.meets(place.time, place.p, direction, sample))
                 met(index, lamp, sample);
         };

@@ -24,6 +24,7 @@ Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin)
       m_casts_shadow(light.casts_shadow),
       m_diffuse(light.visible_diffuse ? light.diffuse_factor : 0.0f),
       m_glossy(light.visible_glossy ? light.specular_factor : 0.0f),
+      m_transmission(light.visible_transmission ? light.specular_factor : 0.0f),
       m_receiver_set(light.receiver_set),
       m_blocker_set(light.blocker_set) {
     const int places = varies_over_time(light) ? kPlaces : 1;
@@ -49,7 +50,7 @@ bool Lamp::bound(LightBound& out) const {
         here.fall = emission.fall;
         here.near2 = emission.near2;
         here.diffuse = emission.intensity * m_diffuse;
-        here.glossy = emission.intensity * m_glossy;
+        here.glossy = emission.intensity * std::max(m_glossy, m_transmission);
         here.sets = m_receiver_set < 0 ? ~0ULL : 1ULL << m_receiver_set;
         out.add_time(here);
     }

@@ -28,8 +28,8 @@ class Lamp {
     /// Whether it lights an instance of that mask (Instance::receives).
     bool lights(std::uint64_t receives) const { return in_light_set(receives, m_receiver_set); }
     int blocker_set() const { return m_blocker_set; }
-    bool reaches_glossy() const { return m_glossy > 0.0f; }
-    float glossy() const { return m_glossy; }
+    /// Whether samples of lobes may meet it.
+    bool meets_lobes() const { return m_glossy > 0.0f || m_transmission > 0.0f; }
     const LightSource& at(float time) const {
         const auto count = m_sources.size();
         const auto place = static_cast<std::size_t>(time * static_cast<float>(count));
@@ -41,16 +41,17 @@ class Lamp {
     }
     /// Whether it has a place, and then a bound on it and on what it sheds.
     bool bound(LightBound& out) const;
-    /// Reflected light, by the lobes that see this lamp.
+    /// Light that is sent on, by the lobes that see this lamp.
     BsdfValue apply(const BsdfValue& value) const {
-        return {value.diffuse * m_diffuse, value.glossy * m_glossy};
+        return {value.diffuse * m_diffuse, value.glossy * m_glossy,
+                value.transmission * m_transmission};
     }
 
   private:
     std::vector<std::unique_ptr<LightSource>> m_sources;  ///< one, or at equal parts of the shutter
     Lifespan m_lifespan;
     bool m_hard = true, m_casts_shadow;
-    float m_diffuse, m_glossy;
+    float m_diffuse, m_glossy, m_transmission;
     int m_receiver_set, m_blocker_set;
 };
 

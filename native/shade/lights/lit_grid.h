@@ -58,6 +58,7 @@ struct LitGrid {
         if (!parts) return;
         parts->diffuse[point] += value.diffuse * shadow;
         parts->glossy[point] += value.glossy * shadow;
+        parts->transmission[point] += value.transmission * shadow;
         parts->arriving[point] += total(value) * shadow;
         parts->unblocked[point] += total(value);
     }
@@ -78,6 +79,7 @@ struct LitGrid {
         if (!parts) return;
         parts->diffuse[point] += value.diffuse;
         parts->glossy[point] += value.glossy;
+        parts->transmission[point] += value.transmission;
     }
 };
 

@@ -16,6 +16,9 @@ struct LitPlace {
     float time = 0.0f;
     Vec3f p{0.0f}, normal{0.0f};  ///< geometric normal
     Vec3f start{0.0f};            ///< of rays
+
+    /// Of rays through the surface.
+    Vec3f start_below() const { return 2.0f * p - start; }
 };
 
 /// A shaded point while it is lit.
@@ -64,10 +67,11 @@ struct LitPoint {
                 sum += static_cast<float>(samples[k].count) * bsdf.pdf(k, wo);
         return sum;
     }
-    /// Lamps are met by samples of glossy lobes alone: over a diffuse lobe, sampling the lamp is
+    /// Lamps are met by samples of lobes that are not diffuse: over those, sampling the lamp is
     /// never much worse.
-    float glossy_density(const Vec3f& wo) const {
-        return lobe_density(wo, [&](std::size_t k) { return bsdf.kind(k) == LobeKind::Glossy; });
+    bool meets_lamps(std::size_t lobe) const { return bsdf.part(lobe) != LightPart::Diffuse; }
+    float meeting_density(const Vec3f& wo) const {
+        return lobe_density(wo, [&](std::size_t k) { return meets_lamps(k); });
     }
     float all_density(const Vec3f& wo) const {
         return lobe_density(wo, [](std::size_t) { return true; });

@@ -2,27 +2,18 @@
 #include "shade/nodes/dielectric_albedo.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "math/sampling.h"
 #include "shade/bsdf/bsdf_albedo.h"
 #include "shade/bsdf/fresnel.h"
+#include "shade/bsdf/unit_cube_table.h"
 
 namespace granita {
 
 namespace {
 
-constexpr int kSize = 16;  // entries along each axis
 constexpr int kSide = 16;  // kSide^2 quadrature points an entry
-
-/// The table's third axis: sqrt(|f0|) up to ior 7 and down to 1/7.
-float ior_axis(float ior) {
-    return std::sqrt(std::min(std::abs(ior - 1.0f) / (ior + 1.0f), 1.0f));
-}
-float ior_of_axis(float x) {
-    return (1.0f + x * x) / (1.0f - std::min(x * x, 0.98f));
-}
 
 float smith_lambda(float cosine, float alpha) {
     const float c2 = cosine * cosine;
@@ -63,42 +54,6 @@ float integrate(float roughness, float cosine, float ior) {
     return total > 0.0 ? static_cast<float>(reflected / total) : 0.0f;
 }
 
-struct Table {
-    std::array<float, kSize * kSize * kSize> values{};  ///< [ior][cosine][roughness]
-
-    Table() {
-        for (int z = 0; z < kSize; ++z)
-            for (int y = 0; y < kSize; ++y)
-                for (int x = 0; x < kSize; ++x)
-                    values[(z * kSize + y) * kSize + x] =
-                        integrate(unit(x), unit(y), ior_of_axis(unit(z)));
-    }
-    static float unit(int i) { return static_cast<float>(i) / (kSize - 1); }
-
-    float look_up(float x, float y, float z) const {
-        const std::array<float, 3> place = {x, y, z};
-        std::array<int, 3> cell{};
-        std::array<float, 3> t{};
-        for (int a = 0; a < 3; ++a) {
-            const float p = std::clamp(place[a], 0.0f, 1.0f) * (kSize - 1);
-            cell[a] = std::min(static_cast<int>(p), kSize - 2);
-            t[a] = p - static_cast<float>(cell[a]);
-        }
-        float sum = 0.0f;
-        for (int corner = 0; corner < 8; ++corner) {
-            float weight = 1.0f;
-            std::array<int, 3> at = cell;
-            for (int a = 0; a < 3; ++a) {
-                const bool far = corner >> a & 1;
-                at[a] += far;
-                weight *= far ? t[a] : 1.0f - t[a];
-            }
-            sum += weight * values[(at[2] * kSize + at[1]) * kSize + at[0]];
-        }
-        return sum;
-    }
-};
-
 /// Light that is reflected between microfacets meets Fresnel at each bounce (Kulla and Conty 2017):
 /// what is left, relative to a lobe that loses nothing.
 Vec3f multiscatter_darkening(const Vec3f& fresnel, float roughness, float cosine) {
@@ -131,7 +86,8 @@ float dielectric_mean_albedo(float ior) {
 }
 
 float dielectric_albedo(float roughness, float cosine, float ior) {
-    static const Table kTable;
+    static const UnitCubeTable kTable(
+        [](float x, float y, float z) { return integrate(x, y, ior_of_axis(z)); });
     return kTable.look_up(roughness, cosine, ior_axis(ior));
 }
 

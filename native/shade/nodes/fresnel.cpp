@@ -8,16 +8,6 @@
 #include "shade/nodes/nodes.h"
 
 namespace granita {
-namespace {
-
-FloatSource backfacing(NodeBuilder& b) {
-    if (b.is_world()) return {-1, 0.0f};
-    return b.geometry<float>([](const ShadingInput& in, std::size_t i) {
-        return in.points->backfacing[i] ? 1.0f : 0.0f;
-    });
-}
-
-}  // namespace
 
 void build_fresnel(NodeBuilder& b) {
     b.output("Fac", b.map<float>(
@@ -26,7 +16,7 @@ void build_fresnel(NodeBuilder& b) {
                             return fresnel_dielectric(glm::dot(view, n),
                                                       back != 0.0f ? 1.0f / eta : eta);
                         },
-                        b.number("IOR", 1.45f), b.normal_input(), b.view(), backfacing(b)));
+                        b.number("IOR", 1.45f), b.normal_input(), b.view(), b.backfacing()));
 }
 
 void build_layer_weight(NodeBuilder& b) {
@@ -38,7 +28,7 @@ void build_layer_weight(NodeBuilder& b) {
                                 return fresnel_dielectric(glm::dot(v, n),
                                                           back != 0.0f ? eta : 1.0f / eta);
                             },
-                            blend, normal, view, backfacing(b)));
+                            blend, normal, view, b.backfacing()));
     b.output("Facing", b.map<float>(
                            [](float x, const Vec3f& n, const Vec3f& v) {
                                float facing = std::abs(glm::dot(v, n));

@@ -23,6 +23,8 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeBsdfPrincipled", closure(build_principled)},
         {"ShaderNodeBsdfDiffuse", closure(build_diffuse)},
         {"ShaderNodeBsdfGlossy", closure(build_glossy)},
+        {"ShaderNodeBsdfGlass", closure(build_glass)},
+        {"ShaderNodeBsdfRefraction", closure(build_refraction)},
         {"ShaderNodeBsdfTransparent", closure(build_transparent)},
         {"ShaderNodeMixShader", closure(build_mix_shader)},
         {"ShaderNodeAddShader", closure(build_add_shader)},
@@ -95,8 +97,6 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeTexPointDensity", flat},
         {"ShaderNodeTexIES", flat},
 
-        {"ShaderNodeBsdfGlass", like_glossy},
-        {"ShaderNodeBsdfRefraction", like_glossy},
         {"ShaderNodeBsdfAnisotropic", like_glossy},
         {"ShaderNodeBsdfMetallic", like_glossy},
         {"ShaderNodeSubsurfaceScattering", like_diffuse},

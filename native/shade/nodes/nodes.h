@@ -11,6 +11,8 @@ void build_emission(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_background(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_diffuse(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_glossy(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_glass(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_refraction(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_transparent(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_mix_shader(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_add_shader(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);

@@ -7,13 +7,14 @@
 //   generation 2: a coat over a metallic lobe and a dielectric one, which takes its albedo from the
 //       diffuse layer below
 //
-// Subsurface is rendered as diffuse, transmission as its reflection alone; sheen, and what else is
-// set and left out, is told to the artist.
+// Beside the specular and diffuse ones, as far as it transmits, glass.  Subsurface is rendered as
+// diffuse; sheen, and what else is set and left out, is told to the artist.
 #include <algorithm>
 #include <cmath>
 
 #include "shade/bsdf/fresnel.h"
 #include "shade/nodes/dielectric_albedo.h"
+#include "shade/nodes/glass.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/principled_coat.h"
 #include "shade/nodes/scalar_math.h"
@@ -31,7 +32,6 @@ void warn_about_unused(NodeBuilder& b, const char* input, const char* what) {
 
 void warn_about_left_out(NodeBuilder& b) {
     warn_about_unused(b, "Subsurface Weight", "subsurface is rendered as diffuse");
-    warn_about_unused(b, "Transmission Weight", "transmission is rendered as its reflection alone");
     warn_about_unused(b, "Sheen Weight", "sheen is not rendered");
     warn_about_unused(b, "Anisotropic", "anisotropy is not rendered");
     warn_about_unused(b, "Thin Film Thickness", "thin film is not rendered");
@@ -52,12 +52,6 @@ void add_alpha(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weigh
     surface.add_transparency(b, scaled(b, {-1, kOne}, product(b, weight, clear)));
 }
 
-VectorSource multiplied(NodeBuilder& b, const VectorSource& x, const VectorSource& y) {
-    if (x.is(kOne) || y.is(Vec3f(0.0f))) return y;
-    if (y.is(kOne) || x.is(Vec3f(0.0f))) return x;
-    return b.map<Vec3f>([](const Vec3f& u, const Vec3f& v) { return u * v; }, x, y);
-}
-
 LobeSource glossy_lobe(const Common& c) {
     LobeSource lobe;
     lobe.kind = LobeKind::Glossy;
@@ -65,6 +59,50 @@ LobeSource glossy_lobe(const Common& c) {
     lobe.normal = c.specular_normal;
     lobe.roughness = c.roughness;
     return lobe;
+}
+
+/// Shared by Fresnel along the view; the reflection is tinted as it is at normal incidence.
+void add_first_glass(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
+                     const FloatSource& tint) {
+    GlassSource glass;
+    glass.sent = c.base_color;
+    glass.normal = c.specular_normal;
+    glass.roughness = c.roughness;
+    glass.ior = relative_ior(b, c.ior);
+    glass.multiscatter = c.multiscatter;
+    const FloatSource share = product(
+        b, c.weight,
+        b.map<float>([](float m, float t) { return (1.0f - m) * t; }, c.metallic, c.transmission));
+    glass.weight = scaled(b, compensated(b, glass), share);
+    const FloatSource fresnel = view_fresnel(b, glass.normal, glass.ior);
+
+    LobeSource sent;
+    sent.kind = LobeKind::Refraction;
+    sent.separable_masking = true;
+    sent.normal = glass.normal;
+    sent.ior = glass.ior;
+    LobeSource reflected = sent;
+    reflected.kind = LobeKind::Glossy;
+    reflected.fresnel = FresnelKind::Dielectric;
+    reflected.roughness = c.roughness;
+    reflected.f0 = b.map<Vec3f>(
+        [](const Vec3f& base, float t) {
+            return glm::clamp(base * t + Vec3f(1.0f - t), Vec3f(0.0f), kOne);
+        },
+        c.base_color, tint);
+    reflected.f90 = {-1, kOne};
+    reflected.weight = scaled(b, glass.weight, fresnel);
+    surface.add_lobe(reflected);
+    // Only GGX has a roughness of its own for what goes through.
+    sent.roughness =
+        c.multiscatter
+            ? c.roughness
+            : b.map<float>(
+                  [](float r, float t) { return 1.0f - (1.0f - r) * (1.0f - saturate(t)); },
+                  c.roughness, b.number("Transmission Roughness"));
+    sent.weight = scaled(b, multiplied(b, glass.weight, c.base_color),
+                         b.map<float>([](float f) { return 1.0f - f; }, fresnel));
+    surface.add_lobe(sent);
 }
 
 void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
@@ -98,8 +136,11 @@ void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common&
         },
         c.base_color, c.metallic, c.specular, tint);
     specular.f90 = {-1, kOne};
-    specular.weight = scaled(b, {-1, kOne}, c.weight);
+    const FloatSource opaque = b.map<float>([](float t, float m) { return 1.0f - t * (1.0f - m); },
+                                            c.transmission, c.metallic);
+    specular.weight = scaled(b, {-1, kOne}, product(b, c.weight, opaque));
     if (!(c.specular.is(0.0f) && c.metallic.is(0.0f))) surface.add_lobe(specular);
+    if (!c.transmission.is(0.0f)) add_first_glass(b, surface, c, tint);
     add_coat(b, surface, c.weight);
 }
 
@@ -115,6 +156,27 @@ void add_metal(NodeBuilder& b, SurfaceBuilder& surface, const Common& c, const V
     surface.add_lobe(metal);
 }
 
+void add_second_glass(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
+                      const VectorSource& weight, const VectorSource& tint) {
+    GlassSource glass;
+    glass.weight = weight;
+    glass.reflected = {-1, kOne};
+    // Through a body light passes two of them.
+    glass.sent = b.map<Vec3f>(
+        [](const Vec3f& base) { return glm::sqrt(glm::clamp(base, Vec3f(0.0f), kOne)); },
+        c.base_color);
+    glass.normal = c.specular_normal;
+    glass.roughness = c.roughness;
+    glass.ior = relative_ior(b, c.ior);
+    glass.f0 = b.map<Vec3f>(
+        [](float ior, const Vec3f& t) {
+            return glm::clamp(f0_from_ior(ior) * t, Vec3f(0.0f), kOne);
+        },
+        c.ior, tint);
+    glass.multiscatter = c.multiscatter;
+    add_glass(b, surface, glass);
+}
+
 void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
     const VectorSource coated = add_coat(b, surface, c.weight);
     surface.add_emission(b, multiplied(b, c.emission, coated));
@@ -122,8 +184,13 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common
     const VectorSource tint = b.color("Specular Tint", kOne);
     if (!c.metallic.is(0.0f)) add_metal(b, surface, c, coated, tint);
 
-    const FloatSource rest =
+    const FloatSource no_metal =
         product(b, c.weight, b.map<float>([](float m) { return 1.0f - m; }, c.metallic));
+    if (!c.transmission.is(0.0f))
+        add_second_glass(b, surface, c, scaled(b, coated, product(b, no_metal, c.transmission)),
+                         tint);
+    const FloatSource rest =
+        product(b, no_metal, b.map<float>([](float t) { return 1.0f - t; }, c.transmission));
     LobeSource specular = glossy_lobe(c);
     specular.fresnel = FresnelKind::Dielectric;
     specular.ior = b.map<float>(
@@ -156,9 +223,7 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common
     diffuse.roughness = b.map<float>(saturate, b.number("Diffuse Roughness"));
     diffuse.has_color = !diffuse.roughness.is(0.0f);
     diffuse.f0 = c.base_color;
-    const FloatSource opaque = b.map<float>([](float t) { return 1.0f - t; }, c.transmission);
-    diffuse.weight =
-        scaled(b, multiplied(b, c.base_color, coated), product(b, product(b, rest, opaque), below));
+    diffuse.weight = scaled(b, multiplied(b, c.base_color, coated), product(b, rest, below));
     surface.add_lobe(diffuse);
 }
 

@@ -23,7 +23,8 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::si
         lobe.roughness = values_of(run, from.roughness);
         if (from.fresnel != FresnelKind::None || from.has_color) lobe.f0 = values_of(run, from.f0);
         if (from.fresnel != FresnelKind::None) lobe.f90 = values_of(run, from.f90);
-        if (from.fresnel == FresnelKind::Dielectric) lobe.ior = values_of(run, from.ior);
+        if (from.fresnel == FresnelKind::Dielectric || from.kind == LobeKind::Refraction)
+            lobe.ior = values_of(run, from.ior);
         closure.lobes.push_back(std::move(lobe));
     }
     if (!sources.emission.is(Vec3f(0.0f))) closure.emission = values_of(run, sources.emission);

@@ -160,6 +160,13 @@ VectorSource NodeBuilder::with_valid_reflection(const VectorSource& normal, bool
     return out;
 }
 
+FloatSource NodeBuilder::backfacing() {
+    if (is_world()) return {-1, 0.0f};
+    return geometry<float>([](const ShadingInput& in, std::size_t i) {
+        return in.points->backfacing[i] ? 1.0f : 0.0f;
+    });
+}
+
 VectorSource NodeBuilder::view() {
     if (m_program.is_world) return {-1, Vec3f(0.0f, 0.0f, 1.0f)};
     return geometry<Vec3f>(

@@ -158,6 +158,8 @@ class NodeBuilder {
     VectorSource specular_normal(const std::string& input = "Normal");
     /// Unit, from the point to the eye.
     VectorSource view();
+    /// 1 where the viewer sees the surface's back.
+    FloatSource backfacing();
 
   private:
     const NodeOutput* link_source(const std::string& input, Shift shift) const;

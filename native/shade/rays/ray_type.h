@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+
 namespace granita {
 
 /// What a ray is traced for: materials and worlds tell it by the node Light Path.  Light of the
-/// world is asked for by the lobe that reflects it, Singular by mirrors.
-enum class RayType { Camera, Shadow, Diffuse, Glossy, Singular };
+/// world is asked for by the lobe that sends it on, Singular by mirrors, Clear by what is as sharp
+/// and transmits.
+enum class RayType { Camera, Shadow, Diffuse, Glossy, Singular, Transmission, Clear };
+constexpr std::size_t kRayTypes = 7;
+
+/// Of lobes that send light on in one direction.
+constexpr bool is_sharp(RayType ray) {
+    return ray == RayType::Singular || ray == RayType::Clear;
+}
 
 }  // namespace granita

@@ -199,7 +199,7 @@ TEST(Fresnel, sharp_lobes_mirror_with_their_reflectance) {
     const PointBsdf bsdf = prepare(lobe, points);
     ASSERT_TRUE(bsdf.is_sharp(0));
     Vec3f wo, reflectance;
-    ASSERT_TRUE(bsdf.reflect(0, wo, reflectance));
+    ASSERT_TRUE(bsdf.deflect(0, wo, reflectance));
     EXPECT_NEAR(wo.x, -points.view[0].x, 1e-6f);
     EXPECT_NEAR(wo.z, 0.5f, 1e-6f);
     // With the natural f0 and f90 the remapping is the identity; 60 degrees on glass: 0.0892.
@@ -217,7 +217,7 @@ TEST(Fresnel, f82_has_its_tint_at_82_degrees) {
         lobe.f0.assign(1, f0);
         lobe.f90.assign(1, tint);
         Vec3f wo, reflected;
-        EXPECT_TRUE(prepare(lobe, points).reflect(0, wo, reflected));
+        EXPECT_TRUE(prepare(lobe, points).deflect(0, wo, reflected));
         return reflected;
     };
     for (int c = 0; c < 3; ++c) {

@@ -57,13 +57,15 @@ TEST(Environment, a_disc_of_an_eighth_of_a_degree_is_sampled_in_a_black_world) {
     }
 }
 
-TEST(Environment, its_density_covers_what_either_kind_of_lobe_sees) {
-    WorldEvaluator world{
-        [](const std::vector<Vec3f>& directions, float, RayType ray, std::vector<Vec3f>& out) {
-            out.clear();
-            for (const Vec3f& d : directions)
-                out.emplace_back((ray == RayType::Glossy) == (d.z > 0.0f) ? 1.0f : 0.0f);
-        }};
+TEST(Environment, its_density_covers_what_any_kind_of_lobe_sees) {
+    WorldEvaluator world{[](const std::vector<Vec3f>& directions, float, RayType ray,
+                            std::vector<Vec3f>& out) {
+        out.clear();
+        for (const Vec3f& d : directions)
+            out.emplace_back(
+                ray == RayType::Transmission || (ray == RayType::Glossy) == (d.z > 0.0f) ? 1.0f
+                                                                                         : 0.0f);
+    }};
     world.by_lobe = true;
     const Environment environment(world, kProgress, 32);
     EXPECT_NEAR(environment.at(Vec3f(0.6f, 0.0f, 0.8f)).pdf, 1.0f / (4.0f * kPi), 1e-3f);

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Glass and Refraction.  Before Blender 4 the two sides of glass shared by Fresnel along the view,
+// since then by that of each facet.
+#include "shade/nodes/glass.h"
+
+#include <algorithm>
+
+#include "shade/bsdf/fresnel.h"
+#include "shade/bsdf/glass_albedo.h"
+#include "shade/nodes/nodes.h"
+#include "shade/nodes/scalar_math.h"
+
+namespace granita {
+
+namespace {
+
+const Vec3f kOne(1.0f);
+
+Distribution distribution_of(NodeBuilder& b) {
+    const std::string name = b.text("distribution", "GGX");
+    return name == "SHARP"      ? Distribution::Sharp
+           : name == "BECKMANN" ? Distribution::Beckmann
+                                : Distribution::Ggx;
+}
+
+VectorSource positive_color(NodeBuilder& b) {
+    return b.map<Vec3f>([](const Vec3f& c) { return glm::max(c, Vec3f(0.0f)); },
+                        b.color("Color", kOne));
+}
+
+LobeSource refraction(const GlassSource& glass) {
+    LobeSource lobe;
+    lobe.kind = LobeKind::Refraction;
+    lobe.distribution = glass.distribution;
+    lobe.normal = glass.normal;
+    lobe.roughness = glass.roughness;
+    lobe.ior = glass.ior;
+    return lobe;
+}
+
+GlassSource glass_source(NodeBuilder& b, const FloatSource& weight) {
+    GlassSource glass;
+    glass.weight = scaled(b, {-1, kOne}, weight);
+    glass.reflected = glass.sent = positive_color(b);
+    glass.normal = b.specular_normal();
+    glass.roughness = b.map<float>(saturate, b.number("Roughness"));
+    glass.ior = relative_ior(b, b.number("IOR", 1.45f));
+    glass.f0 = b.map<Vec3f>([](float ior) { return Vec3f(f0_from_ior(ior)); }, glass.ior);
+    glass.distribution = distribution_of(b);
+    glass.multiscatter = b.text("distribution") == "MULTI_GGX";
+    return glass;
+}
+
+}  // namespace
+
+FloatSource relative_ior(NodeBuilder& b, const FloatSource& ior) {
+    return b.map<float>(
+        [](float x, float back) {
+            const float eta = std::max(x, 1e-5f);
+            return back != 0.0f ? 1.0f / eta : eta;
+        },
+        ior, b.backfacing());
+}
+
+FloatSource view_fresnel(NodeBuilder& b, const VectorSource& normal, const FloatSource& ior) {
+    return b.map<float>([](const Vec3f& n, const Vec3f& view,
+                           float eta) { return fresnel_dielectric(glm::dot(n, view), eta); },
+                        normal, b.view(), ior);
+}
+
+VectorSource multiplied(NodeBuilder& b, const VectorSource& x, const VectorSource& y) {
+    if (x.is(kOne) || y.is(Vec3f(0.0f))) return y;
+    if (y.is(kOne) || x.is(Vec3f(0.0f))) return x;
+    return b.map<Vec3f>([](const Vec3f& u, const Vec3f& v) { return u * v; }, x, y);
+}
+
+VectorSource compensated(NodeBuilder& b, const GlassSource& glass) {
+    if (!glass.multiscatter || glass.roughness.is(0.0f)) return {-1, kOne};
+    return b.map<Vec3f>(
+        [](const Vec3f& color, float roughness, const Vec3f& n, const Vec3f& view, float ior) {
+            return glass_compensation(color, roughness, saturate(glm::dot(n, view)), ior);
+        },
+        glass.sent, glass.roughness, glass.normal, b.view(), glass.ior);
+}
+
+void add_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& glass) {
+    const VectorSource weight = multiplied(b, glass.weight, compensated(b, glass));
+    LobeSource sent = refraction(glass);
+    sent.fresnel = FresnelKind::Dielectric;
+    sent.f0 = glass.f0;
+    sent.f90 = {-1, kOne};
+    sent.weight = multiplied(b, weight, glass.sent);
+    LobeSource reflected = sent;
+    reflected.kind = LobeKind::Glossy;
+    reflected.weight = multiplied(b, weight, glass.reflected);
+    surface.add_lobe(reflected);
+    surface.add_lobe(sent);
+}
+
+void build_glass(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight) {
+    GlassSource glass = glass_source(b, weight);
+    if (b.value("generation", 2) >= 2 || glass.multiscatter) {
+        add_glass(b, surface, glass);
+        return;
+    }
+    const FloatSource fresnel = view_fresnel(b, glass.normal, glass.ior);
+    LobeSource sent = refraction(glass);
+    sent.separable_masking = true;
+    LobeSource reflected = sent;
+    reflected.kind = LobeKind::Glossy;
+    const VectorSource colored = multiplied(b, glass.weight, glass.sent);
+    reflected.weight = scaled(b, colored, fresnel);
+    sent.weight = scaled(b, colored, b.map<float>([](float f) { return 1.0f - f; }, fresnel));
+    surface.add_lobe(reflected);
+    surface.add_lobe(sent);
+}
+
+void build_refraction(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight) {
+    const GlassSource glass = glass_source(b, weight);
+    LobeSource sent = refraction(glass);
+    sent.separable_masking = b.value("generation", 2) < 2;
+    sent.weight = multiplied(b, glass.weight, b.color("Color", kOne));
+    surface.add_lobe(sent);
+}
+
+}  // namespace granita
