@@ -244,6 +244,11 @@ struct ShadingSystem::Impl {
     /// What interpolation misses is averaged by blur, as the noise of light samples is.
     float sharpness(const Grid& grid) const { return light_sample_count(grid, scene, shutter); }
 
+    bool is_round(const Grid& grid) const {
+        const std::int32_t index = scene.instances[grid.instance].geometry;
+        return scene.geometries[static_cast<std::size_t>(index)].kind == GeometryKind::Curves;
+    }
+
     Grid refine(const Grid& grid, std::span<const RefinedPoint> wanted, float point_size) const {
         RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
         if (light) light->lift(refined.points, grid.key);
@@ -345,6 +350,7 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     const bool lit = !material.radiance.sources.lobes.empty();
     const float sharpness = lit || refines ? m_impl->sharpness(grid) : 1.0f;
     points.share *= sharpness;
+    points.round = m_impl->is_round(grid);
     if (m_impl->light && lit) m_impl->light->lift(points, grid.key);
     std::vector<float> noise(refines ? points.count : 0, 0.0f);
     std::vector<Vec3f> settled;

@@ -7,8 +7,8 @@ import snapshots
 
 ALL = [
     "Depth", "Mist", "Vector", "Position", "Normal", "UV", "Object Index", "Material Index",
-    "Diffuse Direct", "Diffuse Color", "Glossy Direct", "Glossy Color", "Emission",
-    "Environment", "Shadow",
+    "Diffuse Direct", "Diffuse Color", "Glossy Direct", "Glossy Color", "Transmission Direct",
+    "Transmission Color", "Emission", "Environment", "Shadow",
 ]  # fmt: skip
 FLOATS = {"Vector": 4, "Mist": 1, "Object Index": 1, "Material Index": 1}
 # float32 sums over a pixel's samples, relative.
@@ -180,6 +180,7 @@ def test_parts_sum_to_the_picture(executor):
     parts = (
         p["Diffuse Direct"] * p["Diffuse Color"]
         + p["Glossy Direct"] * p["Glossy Color"]
+        + p["Transmission Direct"] * p["Transmission Color"]
         + p["Emission"]
         + p["Environment"]
     )

@@ -75,6 +75,8 @@ _PASSES = {
     "diffuse_color",
     "glossy_direct",
     "glossy_color",
+    "transmission_direct",
+    "transmission_color",
     "emit",
     "environment",
     "shadow",

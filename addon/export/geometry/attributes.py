@@ -25,6 +25,8 @@ _NAMING_PROPERTIES = {"attribute_name", "layer_name", "uv_map"}
 _DOMAINS = {"POINT": "POINT", "FACE": "FACE", "CORNER": "CORNER"}
 # In place of a name: Geometry > Random Per Island, which the native side makes of edges.
 ISLANDS = ".random_per_island"
+# Inputs of shaders that ask for a tangent, by default around the z axis of Generated.
+_STRETCHES = ("Anisotropic", "Anisotropy")
 # Stands among the names for Blender's Generated coordinates, which are no attribute.
 GENERATED = "\0generated"
 # Nodes that take Generated where nothing is linked to their Vector, or at all times.
@@ -76,9 +78,17 @@ def _asks_for_islands(node):
 
 def _asks_for_generated(node):
     linked = _linked(node)
-    return "Generated" in linked.values() or (
-        node["type"] in _BY_DEFAULT and "Vector" not in linked
+    return (
+        "Generated" in linked.values()
+        or (node["type"] in _BY_DEFAULT and "Vector" not in linked)
+        or (_is_stretched(node) and "Tangent" not in linked)
     )
+
+
+def _is_stretched(node):
+    """Whether its highlights are longer one way."""
+    inputs = node.get("inputs", {})
+    return any(inputs.get(name, 0.0) != 0.0 for name in _STRETCHES)
 
 
 def mesh_attributes(mesh, label, requested, report):

@@ -14,8 +14,9 @@ HitShader::HitShader(const Scene& scene, TextureStore& textures, Report& report)
 
 void HitShader::add(const NodeGraph& graph, const Scene& scene, TextureStore& textures,
                     Report& report, const GraphOwner& owner) {
-    std::array<std::size_t, 5>& of = m_of.emplace_back();
-    constexpr std::array kTypes{RayType::Diffuse, RayType::Glossy, RayType::Singular};
+    std::array<std::size_t, kRayTypes>& of = m_of.emplace_back();
+    constexpr std::array kTypes{RayType::Diffuse, RayType::Glossy, RayType::Singular,
+                                RayType::Transmission, RayType::Clear};
     for (std::size_t k = 0; k < kTypes.size(); ++k) {
         std::size_t same = 0;
         while (same < k && told_apart(graph, kTypes[same], kTypes[k])) ++same;

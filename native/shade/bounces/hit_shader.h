@@ -26,7 +26,7 @@ class HitShader {
              const GraphOwner& owner);
 
     std::vector<CompiledSurface> m_surfaces;
-    std::vector<std::array<std::size_t, 5>> m_of;  ///< [materials + 1][types of rays]
+    std::vector<std::array<std::size_t, kRayTypes>> m_of;  ///< [materials + 1][types of rays]
     bool m_any_emits = false;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/bsdf/bsdf.h"
 
+#include "math/sampling.h"
 #include "shade/bsdf/bsdf_albedo.h"
 #include "shade/bsdf/microfacet.h"
 #include "shade/bsdf/refraction.h"
@@ -38,20 +39,31 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
         if (!source.f90.empty()) lobe.f90 = source.f90[point];
         if (!source.ior.empty()) lobe.ior = source.ior[point];
         const float roughness = source.roughness.empty() ? 0.0f : source.roughness[point];
+        const LobeView view{m_wi, lobe.normal, m_geometric_normal, lobe.cos_wi};
         if (lobe.kind == LobeKind::Diffuse) {
             if (source.burley)
                 lobe.burley = roughness;
             else
                 prepare_diffuse(lobe, source.f0.empty() ? nullptr : &source.f0[point], roughness);
             lobe.importance = std::abs(average(lobe.weight));
+        } else if (is_shaped(lobe.kind)) {
+            lobe.shape = make_shape(source, point, view);
+            if (!lobe.shape) continue;
+            lobe.importance = std::abs(average(lobe.weight * lobe.shape->albedo()));
         } else {
             if (lobe.cos_wi <= 0.0f) continue;  // seen from below: reflects nothing
             if (lobe.fresnel == FresnelKind::None && source.f0.empty()) lobe.f0 = Vec3f(1.0f);
             prepare_microfacets(lobe, roughness);
+            if (!source.tangent.empty()) stretch(lobe, source.tangent[point], source.aspect[point]);
             if (lobe.kind == LobeKind::Refraction) {
                 prepare_refraction(lobe);
+            } else if (lobe.distribution == Distribution::AshikhminShirley) {
+                lobe.shape =
+                    make_ashikhmin_shirley(view, lobe.stretched ? lobe.x : Basis(lobe.normal).x,
+                                           lobe.stretched ? lobe.alphas : Vec2f(lobe.alpha));
+                lobe.sharp = false;
             } else if (source.multiscatter && source.distribution == Distribution::Ggx) {
-                compensate(lobe, roughness, albedo);
+                compensate(lobe, albedo);
             }
             lobe.importance = std::abs(average(lobe.weight * passed(lobe, lobe.cos_wi)));
         }
@@ -73,25 +85,29 @@ BsdfValue PointBsdf::evaluate(const Vec3f& wo) const {
     BsdfValue value;
     for (const Prepared& lobe : m_lobes) {
         if (lobe.sharp) continue;
-        switch (lobe.kind) {
-            case LobeKind::Diffuse:
-                value.diffuse += evaluate_diffuse(lobe, wo);
-                break;
-            case LobeKind::Glossy:
-                value.glossy += evaluate_glossy(lobe, wo);
-                break;
-            case LobeKind::Refraction:
-                value.transmission += evaluate_refraction(lobe, wo);
-                break;
-        }
+        if (lobe.shape)
+            value.part(part_of(lobe.kind)) += evaluate_shape(lobe, wo);
+        else if (lobe.kind == LobeKind::Diffuse)
+            value.diffuse += evaluate_diffuse(lobe, wo);
+        else if (lobe.kind == LobeKind::Refraction)
+            value.transmission += evaluate_refraction(lobe, wo);
+        else
+            value.glossy += evaluate_glossy(lobe, wo);
     }
     return value;
+}
+
+Vec3f PointBsdf::evaluate_shape(const Prepared& lobe, const Vec3f& wo) const {
+    const Vec3f value = lobe.weight * lobe.shape->evaluate(wo);
+    if (value == Vec3f(0.0f) || part_of(lobe.kind) != LightPart::Diffuse) return value;
+    return value * unshadowed(lobe, wo);
 }
 
 bool PointBsdf::can_see(const Vec3f& to_center, float radius) const {
     // Rounding must not hide a sphere that touches the horizon.
     const float reach = radius + 1e-5f * (radius + glm::length(to_center));
     for (const Prepared& lobe : m_lobes) {
+        if (sees_all_around(lobe.kind)) return true;
         const float side = granita::transmits(lobe.kind) ? -1.0f : 1.0f;
         if (!lobe.sharp && side * glm::dot(lobe.normal, to_center) > -reach) return true;
     }
@@ -102,9 +118,9 @@ BsdfValue PointBsdf::albedo() const {
     BsdfValue albedo;
     for (const Prepared& lobe : m_lobes) {
         const Vec3f along_view =
-            lobe.kind == LobeKind::Diffuse
-                ? lobe.weight
-                : lobe.weight * passed(lobe, lobe.cos_wi) * lobe.directional_albedo;
+            lobe.kind == LobeKind::Diffuse ? lobe.weight
+            : lobe.shape                   ? lobe.weight * lobe.shape->albedo()
+                         : lobe.weight * passed(lobe, lobe.cos_wi) * lobe.directional_albedo;
         albedo.part(part_of(lobe.kind)) += along_view;
     }
     return albedo;
@@ -113,6 +129,7 @@ BsdfValue PointBsdf::albedo() const {
 float PointBsdf::pdf(std::size_t index, const Vec3f& wo) const {
     const Prepared& lobe = m_lobes[index];
     if (lobe.sharp) return 0.0f;
+    if (lobe.shape) return lobe.shape->pdf(wo);
     if (lobe.kind == LobeKind::Refraction) return pdf_refraction(lobe, wo);
     const float cos_o = glm::dot(lobe.normal, wo);
     if (cos_o <= 0.0f) return 0.0f;
@@ -121,6 +138,12 @@ float PointBsdf::pdf(std::size_t index, const Vec3f& wo) const {
 
 bool PointBsdf::sample(std::size_t index, const Vec2f& u, Vec3f& wo) const {
     const Prepared& lobe = m_lobes[index];
+    if (lobe.shape) return lobe.shape->sample(u, wo);
+    if (lobe.stretched) {
+        const Vec3f h = sample_stretched(lobe.distribution, lobe.alphas, local(lobe, m_wi), u);
+        const Vec3f y = glm::cross(lobe.normal, lobe.x);
+        return turn(lobe, h.x * lobe.x + h.y * y + h.z * lobe.normal, wo);
+    }
     const Basis frame(lobe.normal);
     if (lobe.kind == LobeKind::Diffuse) {
         wo = frame.to_world(sample_cosine_hemisphere(u));

@@ -9,11 +9,13 @@
 // `wo` of lobes that transmit on its far side.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "math/vec.h"
 #include "shade/bsdf/lobe.h"
 #include "shade/bsdf/lobe_reach.h"
+#include "shade/bsdf/lobe_shape.h"
 
 namespace granita {
 
@@ -50,6 +52,8 @@ class PointBsdf {
     /// Whether light comes through the surface; by any lobe.
     bool transmits(std::size_t lobe) const { return granita::transmits(m_lobes[lobe].kind); }
     bool transmits() const { return m_transmits; }
+    /// The surface's own shading normal, faced to the viewer.
+    const Vec3f& surface_normal() const { return m_normal; }
     /// Of refractions: index of the far side relative to the viewer's.
     float ior(std::size_t lobe) const { return m_lobes[lobe].ior; }
     /// In SurfaceClosure::lobes: those that reflect nothing here are left out.
@@ -87,12 +91,16 @@ class PointBsdf {
         Vec3f f0{1.0f}, f90{1.0f}, dip{0.0f};
         float ior = 1.0f, f0_real = 0.0f;
         float alpha = 0.0f;
+        bool stretched = false;  ///< along x, and then of `alphas`
+        Vec3f x{0.0f};
+        Vec2f alphas{0.0f};
         float cos_wi = 0.0f;
         float importance = 0.0f;
         float directional_albedo = 1.0f;     ///< without Fresnel; known where energy is compensated
         float burley = -1.0f;                ///< Burley's roughness; < 0 = not his model
         float oren_a = 0.0f, oren_b = 0.0f;  ///< diffuse; b = 0 is Lambert
         Vec3f oren_multiscatter{0.0f};
+        std::shared_ptr<const LobeShape> shape;  ///< of kinds that are not of this class
     };
 
     /// The facets that send light from one direction to the view.
@@ -105,9 +113,19 @@ class PointBsdf {
     // diffuse_lobe.cpp
     void prepare_diffuse(Prepared& lobe, const Vec3f* color, float roughness) const;
     Vec3f evaluate_diffuse(const Prepared& lobe, const Vec3f& wo) const;
+    /// Of a diffuse lobe's light, where its normal is bent.
+    float unshadowed(const Prepared& lobe, const Vec3f& wo) const;
     // glossy_lobe.cpp
     void prepare_microfacets(Prepared& lobe, float roughness) const;
-    void compensate(Prepared& lobe, float roughness, const GgxAlbedo& albedo) const;
+    void stretch(Prepared& lobe, const Vec3f& tangent, float aspect) const;
+    /// Facets that mirror one direction to the view.
+    struct MirroringFacets {
+        Vec3f half;
+        float density, lambda_wi;
+    };
+    MirroringFacets mirroring_facets(const Prepared& lobe, const Vec3f& wo) const;
+    Vec3f local(const Prepared& lobe, const Vec3f& v) const;
+    void compensate(Prepared& lobe, const GgxAlbedo& albedo) const;
     Vec3f fresnel(const Prepared& lobe, float cos_half) const;
     Vec3f evaluate_glossy(const Prepared& lobe, const Vec3f& wo) const;
     float pdf_glossy(const Prepared& lobe, const Vec3f& wo) const;
@@ -118,6 +136,7 @@ class PointBsdf {
     Vec3f evaluate_refraction(const Prepared& lobe, const Vec3f& wo) const;
     float pdf_refraction(const Prepared& lobe, const Vec3f& wo) const;
     void reach_refraction(const Prepared& lobe, LobeReach& reach) const;  // lobe_reach.cpp
+    Vec3f evaluate_shape(const Prepared& lobe, const Vec3f& wo) const;
     /// Share of the light that facets send the lobe's way.
     Vec3f passed(const Prepared& lobe, float cos_half) const;
     /// Where a facet sends the view.

@@ -73,12 +73,15 @@ Vec3f PointBsdf::evaluate_diffuse(const Prepared& lobe, const Vec3f& wo) const {
             1.0f - (lobe.oren_a * kPi + lobe.oren_b * oren_nayar_g(std::min(cos_o, 1.0f)));
         value = cos_o * (Vec3f(lobe.oren_a + lobe.oren_b * t) + lobe.oren_multiscatter * lost);
     }
-    if (lobe.normal != m_normal) {
-        if (glm::dot(m_normal, wo) < 0.0f) return Vec3f(0.0f);  // through the surface
-        value *= lobe.cosine_bumps ? cosine_bump_shadowing(m_normal, lobe.normal, wo)
-                                   : bump_shadowing(m_normal, lobe.normal, wo);
-    }
-    return lobe.weight * value;
+    return lobe.weight * value * unshadowed(lobe, wo);
+}
+
+float PointBsdf::unshadowed(const Prepared& lobe, const Vec3f& wo) const {
+    if (lobe.normal == m_normal) return 1.0f;
+    // Through the surface goes only what transmits.
+    if ((glm::dot(m_normal, wo) < 0.0f) != granita::transmits(lobe.kind)) return 0.0f;
+    return lobe.cosine_bumps ? cosine_bump_shadowing(m_normal, lobe.normal, wo)
+                             : bump_shadowing(m_normal, lobe.normal, wo);
 }
 
 }  // namespace granita

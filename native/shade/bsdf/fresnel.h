@@ -35,10 +35,18 @@ inline float schlick_weight(float cosine) {
 // dip * cos (1 - cos)^6, where the dip is such that at cos = 1/7, 82 degrees, the tint is left of
 // it (Kutz, Hasan and Edmondson 2021, "Novel aspects of the Adobe Standard Material").
 
+constexpr float kF82Cosine = 1.0f / 7.0f;
+
+/// Schlick's reflectance at 82 degrees.
+inline Vec3f f82_schlick(const Vec3f& f0) {
+    return f0 + (Vec3f(1.0f) - f0) * schlick_weight(kF82Cosine);
+}
+/// `missing`: of that.
+inline Vec3f f82_dip_for(const Vec3f& missing) {
+    return missing / (kF82Cosine * (1.0f - kF82Cosine) * schlick_weight(kF82Cosine));
+}
 inline Vec3f f82_dip(const Vec3f& f0, const Vec3f& tint) {
-    constexpr float kCosine = 1.0f / 7.0f, kRest = 6.0f / 7.0f;
-    const Vec3f schlick = f0 + (Vec3f(1.0f) - f0) * schlick_weight(kCosine);
-    return schlick * (Vec3f(1.0f) - tint) / (kCosine * kRest * schlick_weight(kCosine));
+    return f82_dip_for(f82_schlick(f0) * (Vec3f(1.0f) - tint));
 }
 
 /// Dark colours dip below 0 before 82 degrees.
@@ -53,6 +61,21 @@ inline Vec3f fresnel_f82(const Vec3f& f0, const Vec3f& dip, float cosine) {
 /// 1/126.
 inline Vec3f f82_mean(const Vec3f& f0, const Vec3f& dip) {
     return f0 + (Vec3f(1.0f) - f0) * (1.0f / 21.0f) - dip * (1.0f / 126.0f);
+}
+
+/// Unpolarised reflectance of a metal of complex index n + i k, nearly exact: where n^2 + k^2 is
+/// far above 1.
+inline Vec3f fresnel_conductor(float cosine, const Vec3f& n, const Vec3f& k) {
+    const Vec3f c2(cosine * cosine), size2 = n * n + k * k, cross = 2.0f * cosine * n;
+    const Vec3f one(1.0f), parallel = size2 * c2 + one, across = size2 + c2;
+    return 0.5f * ((parallel - cross) / (parallel + cross) + (across - cross) / (across + cross));
+}
+
+/// Its cosine-weighted mean, by that of the F82 curve through its ends and 82 degrees.
+inline Vec3f conductor_mean(const Vec3f& n, const Vec3f& k) {
+    const Vec3f f0 = fresnel_conductor(1.0f, n, k);
+    const Vec3f missing = f82_schlick(f0) - fresnel_conductor(kF82Cosine, n, k);
+    return glm::clamp(f82_mean(f0, f82_dip_for(missing)), Vec3f(0.0f), Vec3f(1.0f));
 }
 
 }  // namespace granita

@@ -10,6 +10,8 @@ namespace {
 /// Below this alpha the lobe is narrower than a pixel of any usual frame (0.2 mrad reflected) and
 /// is treated as a mirror.
 constexpr float kSharpAlpha = 1e-4f;
+/// Of stretched facets along their smoother axis: densities stay numbers.
+constexpr float kLeastAlpha = 1e-5f;
 
 Vec3f mix(const Vec3f& a, const Vec3f& b, float t) {
     return a + (b - a) * t;
@@ -36,17 +38,18 @@ void PointBsdf::prepare_microfacets(Prepared& lobe, float roughness) const {
     if (lobe.fresnel == FresnelKind::F82Tint) lobe.dip = f82_dip(lobe.f0, lobe.f90);
 }
 
-void PointBsdf::compensate(Prepared& lobe, float roughness, const GgxAlbedo& albedo) const {
+void PointBsdf::compensate(Prepared& lobe, const GgxAlbedo& albedo) const {
     if (lobe.sharp) return;
-    const float clamped = std::clamp(roughness, 0.0f, 1.0f);
+    const float roughness = std::sqrt(lobe.alpha);
     // Kulla and Conty 2017: scale by 1 / E, then darken by what Fresnel takes at each extra bounce.
-    const float e = albedo.directional(clamped, lobe.cos_wi);
-    const float e_mean = albedo.average(clamped);
+    const float e = albedo.directional(roughness, lobe.cos_wi);
+    const float e_mean = albedo.average(roughness);
     const float missing = (1.0f - e) / e;
     lobe.directional_albedo = e;
     Vec3f fss = lobe.f0;
     if (lobe.fresnel == FresnelKind::Schlick) fss = mix(lobe.f0, lobe.f90, 1.0f / 21.0f);
     if (lobe.fresnel == FresnelKind::F82Tint) fss = f82_mean(lobe.f0, lobe.dip);
+    if (lobe.fresnel == FresnelKind::Conductor) fss = conductor_mean(lobe.f0, lobe.f90);
     if (lobe.fresnel == FresnelKind::Dielectric)
         fss =
             mix(lobe.f0, lobe.f90, fraction_between(lobe.f0_real, 1.0f, dielectric_mean(lobe.ior)));
@@ -60,6 +63,8 @@ Vec3f PointBsdf::fresnel(const Prepared& lobe, float cos_half) const {
             return mix(lobe.f0, lobe.f90, schlick_weight(cos_half));
         case FresnelKind::F82Tint:
             return fresnel_f82(lobe.f0, lobe.dip, cos_half);
+        case FresnelKind::Conductor:
+            return fresnel_conductor(cos_half, lobe.f0, lobe.f90);
         case FresnelKind::Dielectric:
             return mix(
                 lobe.f0, lobe.f90,
@@ -70,25 +75,52 @@ Vec3f PointBsdf::fresnel(const Prepared& lobe, float cos_half) const {
     return Vec3f(1.0f);
 }
 
+void PointBsdf::stretch(Prepared& lobe, const Vec3f& tangent, float aspect) const {
+    const Vec3f y = glm::cross(lobe.normal, tangent);
+    const float length = glm::length(y);
+    lobe.alphas = glm::clamp(Vec2f(lobe.alpha / aspect, lobe.alpha * aspect), Vec2f(kLeastAlpha),
+                             Vec2f(1.0f));
+    if (!(length > 0.0f) || lobe.alphas.x == lobe.alphas.y) return;
+    lobe.stretched = true;
+    lobe.x = glm::cross(y / length, lobe.normal);
+    lobe.alpha = std::sqrt(lobe.alphas.x * lobe.alphas.y);
+    lobe.sharp = lobe.distribution == Distribution::Sharp || lobe.alpha <= kSharpAlpha;
+}
+
+Vec3f PointBsdf::local(const Prepared& lobe, const Vec3f& v) const {
+    return {glm::dot(v, lobe.x), glm::dot(v, glm::cross(lobe.normal, lobe.x)),
+            glm::dot(v, lobe.normal)};
+}
+
+PointBsdf::MirroringFacets PointBsdf::mirroring_facets(const Prepared& lobe,
+                                                       const Vec3f& wo) const {
+    const Vec3f half = glm::normalize(m_wi + wo);
+    if (lobe.stretched)
+        return {half, stretched_density(lobe.distribution, lobe.alphas, local(lobe, half)),
+                stretched_lambda(lobe.distribution, lobe.alphas, local(lobe, m_wi))};
+    return {half, density_of(lobe.distribution, lobe.alpha, squared_sine(lobe.normal, half)),
+            lambda_of(lobe.distribution, lobe.alpha, lobe.cos_wi)};
+}
+
 Vec3f PointBsdf::evaluate_glossy(const Prepared& lobe, const Vec3f& wo) const {
     const float cos_o = glm::dot(lobe.normal, wo);
     if (cos_o <= 0.0f || glm::dot(m_geometric_normal, wo) < 0.0f) return Vec3f(0.0f);
-    const Vec3f half = glm::normalize(m_wi + wo);
-    const float d = density_of(lobe.distribution, lobe.alpha, squared_sine(lobe.normal, half));
-    const float lambda_i = lambda_of(lobe.distribution, lobe.alpha, lobe.cos_wi);
-    const float lambda_o = lambda_of(lobe.distribution, lobe.alpha, cos_o);
-    const float masking =
-        lobe.separable_masking ? (1.0f + lambda_i) * (1.0f + lambda_o) : 1.0f + lambda_i + lambda_o;
-    return lobe.weight * fresnel(lobe, glm::dot(half, m_wi)) *
-           (0.25f * d / (lobe.cos_wi * masking));
+    const MirroringFacets facets = mirroring_facets(lobe, wo);
+    const float lambda_o = lobe.stretched
+                               ? stretched_lambda(lobe.distribution, lobe.alphas, local(lobe, wo))
+                               : lambda_of(lobe.distribution, lobe.alpha, cos_o);
+    const float masking = lobe.separable_masking ? (1.0f + facets.lambda_wi) * (1.0f + lambda_o)
+                                                 : 1.0f + facets.lambda_wi + lambda_o;
+    return lobe.weight * fresnel(lobe, glm::dot(facets.half, m_wi)) *
+           (0.25f * facets.density / (lobe.cos_wi * masking));
 }
 
 float PointBsdf::pdf_glossy(const Prepared& lobe, const Vec3f& wo) const {
-    const Vec3f half = glm::normalize(m_wi + wo);
-    const float d = density_of(lobe.distribution, lobe.alpha, squared_sine(lobe.normal, half));
+    const MirroringFacets facets = mirroring_facets(lobe, wo);
     if (lobe.distribution != Distribution::Ggx)  // D cos(h) is sampled, not what is visible of it
-        return 0.25f * d * glm::dot(lobe.normal, half) / std::max(glm::dot(half, m_wi), 1e-9f);
-    return 0.25f * d / (lobe.cos_wi * (1.0f + ggx_lambda(lobe.alpha, lobe.cos_wi)));
+        return 0.25f * facets.density * glm::dot(lobe.normal, facets.half) /
+               std::max(glm::dot(facets.half, m_wi), 1e-9f);
+    return 0.25f * facets.density / (lobe.cos_wi * (1.0f + facets.lambda_wi));
 }
 
 }  // namespace granita

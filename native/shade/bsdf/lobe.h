@@ -16,17 +16,51 @@ enum class LobeKind {
     Diffuse,
     Glossy,
     Refraction,  ///< of microfacets: light from the far side
+    // Of lobe_shape.h:
+    Translucent,   ///< diffuse, from the far side
+    Sheen,         ///< roughness
+    GrazingSheen,  ///< Principled's before Blender 4
+    Velvet,        ///< roughness: the facets' spread
+    DiffuseToon,   ///< roughness: size; more[0]: smooth
+    GlossyToon,    ///< likewise
+    // Of a tube along the tangent; more: radial roughness, offset.
+    HairReflection,
+    HairTransmission,
+    PrincipledHair,  ///< f0: absorption; more[2]: relative roughness of the first reflection
 };
 /// What lamps, worlds and passes tell apart of the light that a surface sends on.
 enum class LightPart { Diffuse, Glossy, Transmission };
 
 constexpr bool transmits(LobeKind kind) {
-    return kind == LobeKind::Refraction;
+    return kind == LobeKind::Refraction || kind == LobeKind::Translucent ||
+           kind == LobeKind::HairTransmission || kind == LobeKind::PrincipledHair;
 }
+/// Lobes of tubes, which send light on to all sides.
+constexpr bool sees_all_around(LobeKind kind) {
+    return kind == LobeKind::PrincipledHair;
+}
+constexpr bool is_of_tube(LobeKind kind) {
+    return kind >= LobeKind::HairReflection;
+}
+/// Of lobe_shape.h.
+constexpr bool is_shaped(LobeKind kind) {
+    return kind > LobeKind::Refraction;
+}
+/// As Cycles counts them.
 constexpr LightPart part_of(LobeKind kind) {
-    return kind == LobeKind::Diffuse  ? LightPart::Diffuse
-           : kind == LobeKind::Glossy ? LightPart::Glossy
-                                      : LightPart::Transmission;
+    switch (kind) {
+        case LobeKind::Diffuse:
+        case LobeKind::Translucent:
+        case LobeKind::Sheen:
+        case LobeKind::GrazingSheen:
+        case LobeKind::DiffuseToon:
+            return LightPart::Diffuse;
+        case LobeKind::Refraction:
+        case LobeKind::HairTransmission:
+            return LightPart::Transmission;
+        default:
+            return LightPart::Glossy;
+    }
 }
 
 enum class Distribution {
@@ -34,11 +68,13 @@ enum class Distribution {
     Beckmann,
     Ggx,
     Gtr1,  ///< Burley's (2012) coat: longer tails, masked as a GGX of roughness 1/2
+    AshikhminShirley,
 };
 enum class FresnelKind {
     None,        ///< weight alone
     Schlick,     ///< f0 + (f90 - f0) (1 - cos)^5 at the half vector
     F82Tint,     ///< Schlick's with f90 = 1, tinted at 82 degrees by f90 (Kutz et al. 2021): metals
+    Conductor,   ///< of a complex index, real part f0, imaginary part f90
     Dielectric,  ///< exact, of ior, remapped so that normal incidence gives f0 and grazing f90
                  ///< (Cycles' principled)
 };
@@ -58,8 +94,11 @@ struct Lobe {
     std::vector<Vec3f> normal;  ///< [n] unit, facing the viewer as Cycles ensures
     std::vector<float> roughness;  ///< [n] diffuse: Oren-Nayar sigma socket; glossy: the socket's
                                    ///< value (alpha = roughness^2)
-    std::vector<Vec3f> f0, f90;    ///< [n] FresnelKind::None and diffuse lobes: f90 empty, f0 empty
-                                   ///< or the lobe's colour, which energy compensation saturates
+    std::vector<Vec3f> tangent;    ///< [n] glossy, where alpha differs along it, and of hairs
+    std::vector<float> aspect;     ///< [n] alpha / aspect along it, alpha * aspect across
+    std::vector<std::vector<float>> more;  ///< [][n] what its kind asks for beside
+    std::vector<Vec3f> f0, f90;  ///< [n] FresnelKind::None and diffuse lobes: f90 empty, f0 empty
+                                 ///< or the lobe's colour, which energy compensation saturates
     std::vector<float> ior;  ///< [n] Dielectric and refractions: of the far side relative to the
                              ///< viewer's
 };
@@ -81,10 +120,11 @@ struct ShadingPoints {
     std::vector<Vec3f> geometric_normal;  ///< [n] unit, faced to the viewer
     std::vector<Vec3f>
         view;  ///< [n] unit, from the point to the eye (orthographic: the constant direction)
-    std::vector<Vec3f> dp_du, dp_dv;       ///< [n] change over one grid step
-    std::vector<Vec3f> ray_offset;         ///< [n] as Grid::ray_offset; may be empty
-    std::vector<std::uint32_t> faces;      ///< [n] as ShadingPositions::faces; may be empty
-    float share = 1.0f;                    ///< as Grid::point_share
+    std::vector<Vec3f> dp_du, dp_dv;   ///< [n] change over one grid step
+    std::vector<Vec3f> ray_offset;     ///< [n] as Grid::ray_offset; may be empty
+    std::vector<std::uint32_t> faces;  ///< [n] as ShadingPositions::faces; may be empty
+    float share = 1.0f;                ///< as Grid::point_share
+    bool round = false;                ///< of ribbons that stand for tubes, as their normals say
     std::vector<std::uint8_t> backfacing;  ///< [n]
     /// [n] shutter time at which each is lit, where it then is; negative, or empty: over the whole
     /// shutter.

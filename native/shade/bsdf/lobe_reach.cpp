@@ -60,12 +60,19 @@ void PointBsdf::reaches(std::vector<LobeReach>& out) const {
         LobeReach reach;
         reach.index = lobe.index;
         reach.normal.axis = lobe.normal;
+        if (is_shaped(lobe.kind)) {
+            if (granita::transmits(lobe.kind)) reach.normal.axis = -lobe.normal;
+            reach.glossy_light = part_of(lobe.kind) != LightPart::Diffuse;
+            reach.scale = mean_size(lobe.weight) * lobe.shape->peak();
+            out.push_back(reach);
+            continue;
+        }
         if (lobe.kind == LobeKind::Diffuse) {
             reach.scale = mean_size(lobe.weight) * kInversePi;
             out.push_back(reach);
             continue;
         }
-        reach.glossy = true;
+        reach.glossy = reach.glossy_light = true;
         if (lobe.kind == LobeKind::Refraction) {
             reach_refraction(lobe, reach);
             out.push_back(reach);
@@ -77,13 +84,19 @@ void PointBsdf::reaches(std::vector<LobeReach>& out) const {
         const float sin_wi = std::sqrt(std::max(0.0f, 1.0f - lobe.cos_wi * lobe.cos_wi));
         const float farthest = std::sqrt(0.5f * std::max(0.0f, 1.0f - sin_wi));
         const bool ggx = lobe.distribution == Distribution::Ggx;
-        const float masking = ggx ? 1.0f + ggx_lambda(lobe.alpha, lobe.cos_wi) : 1.0f;
+        const float masking =
+            ggx && !lobe.stretched ? 1.0f + ggx_lambda(lobe.alpha, lobe.cos_wi) : 1.0f;
         const Vec3f most = glm::max(fresnel(lobe, 1.0f), fresnel(lobe, farthest));
         reach.scale = mean_size(lobe.weight * most) * (0.25f / (lobe.cos_wi * masking));
         if (lobe.distribution == Distribution::Gtr1 && lobe.alpha < 1.0f) {
             reach.long_tail = true;
             reach.scale *= (reach.alpha2 - 1.0f) / (kPi * std::log(reach.alpha2));
         } else {
+            if (lobe.stretched) {  // as wide all around as along its rougher axis
+                const float widest = std::max(lobe.alphas.x, lobe.alphas.y);
+                reach.scale *= widest * widest / reach.alpha2;
+                reach.alpha2 = widest * widest;
+            }
             reach.scale *= reach.alpha2 * kInversePi;
             if (lobe.distribution == Distribution::Beckmann) reach.scale *= kBeckmannPeak;
         }

@@ -23,6 +23,7 @@ struct DirectionCone {
 struct LobeReach {
     std::size_t index = 0;  ///< in SurfaceClosure::lobes
     bool glossy = false, long_tail = false;
+    bool glossy_light = false;  ///< it is lit by what lamps give to glossy lobes
     DirectionCone normal, mirrored;
     float scale = 0.0f, alpha2 = 1.0f;
 

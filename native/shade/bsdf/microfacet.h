@@ -50,8 +50,8 @@ inline float gtr1_density(float alpha, float sin2) {
 }
 
 /// Half vector with the density of visible normals, D G1 cos(h, wi) / cos(wi) (Heitz 2018).
-inline Vec3f sample_ggx_visible(const Vec3f& wi, float alpha, const Vec2f& u) {
-    const Vec3f stretched = glm::normalize(Vec3f(alpha * wi.x, alpha * wi.y, wi.z));
+inline Vec3f sample_ggx_visible(const Vec3f& wi, const Vec2f& alpha, const Vec2f& u) {
+    const Vec3f stretched = glm::normalize(Vec3f(alpha.x * wi.x, alpha.y * wi.y, wi.z));
     const Basis frame(stretched);
     // Basis's x axis need not lie in the horizontal plane; the cut of the projected disc does.
     const float length2 = stretched.x * stretched.x + stretched.y * stretched.y;
@@ -63,7 +63,10 @@ inline Vec3f sample_ggx_visible(const Vec3f& wi, float alpha, const Vec2f& u) {
     d.y = (1.0f - s) * std::sqrt(std::max(0.0f, 1.0f - d.x * d.x)) + s * d.y;
     const float z = std::sqrt(std::max(0.0f, 1.0f - d.x * d.x - d.y * d.y));
     const Vec3f h = d.x * t1 + d.y * t2 + z * stretched;
-    return glm::normalize(Vec3f(alpha * h.x, alpha * h.y, std::max(0.0f, h.z)));
+    return glm::normalize(Vec3f(alpha.x * h.x, alpha.y * h.y, std::max(0.0f, h.z)));
+}
+inline Vec3f sample_ggx_visible(const Vec3f& wi, float alpha, const Vec2f& u) {
+    return sample_ggx_visible(wi, Vec2f(alpha), u);
 }
 
 /// Half vector with the density D cos(h).
@@ -109,6 +112,32 @@ inline Vec3f sample_half_vector(Distribution distribution, float alpha, const Ve
 inline float squared_sine(const Vec3f& a, const Vec3f& b) {
     const Vec3f c = glm::cross(a, b);
     return std::min(glm::dot(c, c), 1.0f);
+}
+
+// The same of facets whose alpha differs along x and y of the lobe's frame, GGX and Beckmann.
+
+inline float stretched_lambda(Distribution distribution, const Vec2f& alpha, const Vec3f& v) {
+    // Along the direction's own azimuth the facets are as rough as its ellipse is wide.
+    const float across = v.x * v.x + v.y * v.y;
+    if (across <= 0.0f) return 0.0f;
+    const float x = alpha.x * v.x, y = alpha.y * v.y;
+    return lambda_of(distribution, std::sqrt((x * x + y * y) / across), v.z);
+}
+
+inline float stretched_density(Distribution distribution, const Vec2f& alpha, const Vec3f& half) {
+    const float x = half.x / alpha.x, y = half.y / alpha.y, area = alpha.x * alpha.y;
+    const float z2 = std::max(half.z * half.z, 1e-12f);
+    if (distribution == Distribution::Beckmann)
+        return std::exp(-(x * x + y * y) / z2) / (kPi * area * z2 * z2);
+    const float t = x * x + y * y + z2;
+    return 1.0f / (kPi * area * t * t);
+}
+
+inline Vec3f sample_stretched(Distribution distribution, const Vec2f& alpha, const Vec3f& wi,
+                              const Vec2f& u) {
+    if (distribution != Distribution::Beckmann) return sample_ggx_visible(wi, alpha, u);
+    const Vec3f h = sample_beckmann(1.0f, u);
+    return glm::normalize(Vec3f(alpha.x * h.x, alpha.y * h.y, h.z));
 }
 
 }  // namespace granita

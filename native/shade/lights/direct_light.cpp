@@ -472,8 +472,17 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
             : points.columns == 0 ? i
                                   : morton_index(static_cast<std::uint32_t>(i % points.columns),
                                                  static_cast<std::uint32_t>(i / points.columns)));
-        lit.push_back(
-            {i, std::move(bsdf), paths, ray_offset, at_frame, sample_count, place, exposed, {}});
+        const bool through_tube = points.round && bsdf.transmits();
+        lit.push_back({i,
+                       std::move(bsdf),
+                       paths,
+                       ray_offset,
+                       at_frame,
+                       sample_count,
+                       place,
+                       exposed,
+                       through_tube,
+                       {}});
         lit.back().share_samples();
     }
     place_lobe_samples(lit, closure.lobes.size(), placed);

@@ -80,6 +80,9 @@ Ray LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& dire
     const bool below = point.bsdf.transmits() && at_frame < 0.0f;
     const bool turned_away = below ? there >= 0.0f : there <= 0.0f && at_frame > 0.0f;
     const LitPlace& from = turned_away ? point.at_frame : place;
+    if (point.through_tube)
+        return {from.start_around(point.bsdf.surface_normal(), direction), direction, distance,
+                from.time, blocker_set};
     return {below ? from.start_below() : from.start, direction, distance, from.time, blocker_set};
 }
 

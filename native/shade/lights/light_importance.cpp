@@ -93,7 +93,7 @@ void importances(const LightNode& node, const LightReceiverView& receiver, float
         V diffuse = hn::Zero(kTag), glossy = hn::Zero(kTag);
         for (std::size_t l = 0; l < receiver.lobe_count; ++l) {
             const LobeReach& lobe = receiver.lobes[l];
-            V& sum = lobe.glossy ? glossy : diffuse;
+            V& sum = lobe.glossy_light ? glossy : diffuse;
             sum = sum + reflected(lobe, seen);
         }
         const V all = arriving * (column(node.diffuse) * diffuse + column(node.glossy) * glossy);

@@ -19,6 +19,12 @@ struct LitPlace {
 
     /// Of rays through the surface.
     Vec3f start_below() const { return 2.0f * p - start; }
+    /// Of rays out of a tube whose surface has `outward` where others start.
+    Vec3f start_around(const Vec3f& outward, const Vec3f& direction) const {
+        const float radius =
+            glm::dot(start - p, normal) / std::max(glm::dot(outward, normal), 0.05f);
+        return start + radius * (direction - outward);
+    }
 };
 
 /// A shaded point while it is lit.
@@ -31,6 +37,7 @@ struct LitPoint {
     int sample_count = 1;       ///< of a soft light, of the world's image, of all lobes together
     std::uint32_t place;        ///< in the grid, along Morton's curve
     Vec2f exposed{0.0f, 1.0f};  ///< the part of the shutter's light that it is there for
+    bool through_tube = false;  ///< light comes through what it is on, a tube
     struct LobeSamples {
         int count = 0;            ///< 0 of sharp lobes
         std::uint32_t first = 0;  ///< in the sequence of the lobe

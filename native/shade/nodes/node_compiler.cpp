@@ -81,9 +81,11 @@ std::vector<int> roots_of(const SurfaceSources& sources, const PassSources& pass
     push_root(roots, sources.emission.slot);
     push_root(roots, sources.transparency.slot);
     for (const LobeSource& lobe : sources.lobes) {
-        for (const int slot : {lobe.weight.slot, lobe.normal.slot, lobe.roughness.slot,
-                               lobe.f0.slot, lobe.f90.slot, lobe.ior.slot})
+        for (const int slot :
+             {lobe.weight.slot, lobe.normal.slot, lobe.roughness.slot, lobe.f0.slot, lobe.f90.slot,
+              lobe.ior.slot, lobe.tangent.slot, lobe.aspect.slot})
             push_root(roots, slot);
+        for (const FloatSource& value : lobe.more) push_root(roots, value.slot);
     }
     return roots;
 }

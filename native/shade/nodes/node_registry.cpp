@@ -14,7 +14,6 @@ std::map<std::string, NodeKind> all_kinds() {
         return NodeKind{build, nullptr, nullptr};
     };
     const auto closure = [](auto* build) { return NodeKind{nullptr, build, nullptr}; };
-    const auto like_glossy = NodeKind{nullptr, build_glossy, "Glossy BSDF"};
     const auto flat = NodeKind{build_flat_texture, nullptr, "a flat grey, its mean"};
     const auto like_diffuse = NodeKind{nullptr, build_diffuse, "Diffuse BSDF"};
     return {
@@ -23,6 +22,14 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeBsdfPrincipled", closure(build_principled)},
         {"ShaderNodeBsdfDiffuse", closure(build_diffuse)},
         {"ShaderNodeBsdfGlossy", closure(build_glossy)},
+        {"ShaderNodeBsdfAnisotropic", closure(build_glossy)},
+        {"ShaderNodeBsdfMetallic", closure(build_metallic)},
+        {"ShaderNodeBsdfTranslucent", closure(build_translucent)},
+        {"ShaderNodeBsdfSheen", closure(build_sheen)},
+        {"ShaderNodeBsdfVelvet", closure(build_velvet)},
+        {"ShaderNodeBsdfToon", closure(build_toon)},
+        {"ShaderNodeBsdfHair", closure(build_hair)},
+        {"ShaderNodeBsdfHairPrincipled", closure(build_principled_hair)},
         {"ShaderNodeBsdfGlass", closure(build_glass)},
         {"ShaderNodeBsdfRefraction", closure(build_refraction)},
         {"ShaderNodeBsdfTransparent", closure(build_transparent)},
@@ -97,15 +104,7 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeTexPointDensity", flat},
         {"ShaderNodeTexIES", flat},
 
-        {"ShaderNodeBsdfAnisotropic", like_glossy},
-        {"ShaderNodeBsdfMetallic", like_glossy},
         {"ShaderNodeSubsurfaceScattering", like_diffuse},
-        {"ShaderNodeBsdfHair", like_diffuse},
-        {"ShaderNodeBsdfHairPrincipled", like_diffuse},
-        {"ShaderNodeBsdfSheen", like_diffuse},
-        {"ShaderNodeBsdfVelvet", like_diffuse},
-        {"ShaderNodeBsdfToon", like_diffuse},
-        {"ShaderNodeBsdfTranslucent", like_diffuse},
         {"ShaderNodeEeveeSpecular", like_diffuse},
     };
 }

@@ -7,12 +7,15 @@
 //   generation 2: a coat over a metallic lobe and a dielectric one, which takes its albedo from the
 //       diffuse layer below
 //
-// Beside the specular and diffuse ones, as far as it transmits, glass.  Subsurface is rendered as
-// diffuse; sheen, and what else is set and left out, is told to the artist.
+// Beside the specular and diffuse ones, as far as it transmits, glass; sheen beside the first's
+// diffuse layer and over all of the second.  Subsurface is rendered as diffuse; what else is set
+// and left out is told to the artist.
 #include <algorithm>
 #include <cmath>
 
 #include "shade/bsdf/fresnel.h"
+#include "shade/bsdf/sheen_fit.h"
+#include "shade/nodes/anisotropy.h"
 #include "shade/nodes/dielectric_albedo.h"
 #include "shade/nodes/glass.h"
 #include "shade/nodes/nodes.h"
@@ -32,8 +35,6 @@ void warn_about_unused(NodeBuilder& b, const char* input, const char* what) {
 
 void warn_about_left_out(NodeBuilder& b) {
     warn_about_unused(b, "Subsurface Weight", "subsurface is rendered as diffuse");
-    warn_about_unused(b, "Sheen Weight", "sheen is not rendered");
-    warn_about_unused(b, "Anisotropic", "anisotropy is not rendered");
     warn_about_unused(b, "Thin Film Thickness", "thin film is not rendered");
 }
 
@@ -105,6 +106,62 @@ void add_first_glass(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
     surface.add_lobe(sent);
 }
 
+/// Cloth that shines where it grazes the light.
+void add_first_sheen(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
+                     const LobeSource& diffuse) {
+    const FloatSource sheen = b.number("Sheen Weight");
+    if (sheen.is(0.0f)) return;
+    LobeSource lobe;
+    lobe.kind = LobeKind::GrazingSheen;
+    lobe.cosine_bumps = true;
+    lobe.normal = diffuse.normal;
+    lobe.roughness = FloatSource{-1, 0.0f};
+    const VectorSource color = b.map<Vec3f>(
+        [](const Vec3f& base, float tint) {
+            const float light = luminance(base);
+            const Vec3f hue = light > 0.0f ? base / light : kOne;
+            return kOne * (1.0f - tint) + hue * tint;
+        },
+        c.base_color, b.number("Sheen Tint", 0.5f));
+    const FloatSource share = b.map<float>(
+        [](float s, float m, float t) { return std::max(s, 0.0f) * (1.0f - m) * (1.0f - t); },
+        sheen, c.metallic, c.transmission);
+    lobe.weight = scaled(b, color, product(b, c.weight, share));
+    surface.add_lobe(lobe);
+}
+
+/// What it leaves to the layers below.
+FloatSource add_second_sheen(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
+    const FloatSource sheen = b.number("Sheen Weight");
+    if (sheen.is(0.0f)) return {-1, 1.0f};
+    LobeSource lobe;
+    lobe.kind = LobeKind::Sheen;
+    lobe.normal = c.normal;
+    const FloatSource coat = b.number("Coat Weight");
+    if (!coat.is(0.0f))
+        lobe.normal = b.map<Vec3f>(
+            [](const Vec3f& n, const Vec3f& over, float w) {
+                const Vec3f mixed = n + (over - n) * saturate(w);
+                const float length = glm::length(mixed);
+                return length > 0.0f ? mixed / length : n;
+            },
+            c.normal, b.diffuse_normal("Coat Normal"), coat);
+    lobe.roughness = b.map<float>(saturate, b.number("Sheen Roughness", 0.5f));
+    const VectorSource tint = b.map<Vec3f>(
+        [](const Vec3f& t, float w) { return glm::max(t, Vec3f(0.0f)) * std::max(w, 0.0f); },
+        b.color("Sheen Tint", kOne), sheen);
+    lobe.weight = scaled(b, tint, c.weight);
+    surface.add_lobe(lobe);
+    return b.map<float>(
+        [](const Vec3f& color, float roughness, const Vec3f& n, const Vec3f& view) {
+            const float cosine = glm::dot(n, view);
+            if (cosine <= 0.0f) return 1.0f;
+            const float albedo = sheen_fit(std::min(cosine, 1.0f), roughness).albedo;
+            return saturate(1.0f - albedo * std::max({color.x, color.y, color.z}));
+        },
+        tint, lobe.roughness, lobe.normal, b.view());
+}
+
 void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
     surface.add_emission(b, c.emission);
     LobeSource diffuse;
@@ -119,6 +176,7 @@ void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common&
                        b.map<float>([](float m, float t) { return (1.0f - m) * (1.0f - t); },
                                     c.metallic, c.transmission)));
     surface.add_lobe(diffuse);
+    add_first_sheen(b, surface, c, diffuse);
 
     const FloatSource tint = b.number("Specular Tint");
     LobeSource specular = glossy_lobe(c);
@@ -139,6 +197,7 @@ void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common&
     const FloatSource opaque = b.map<float>([](float t, float m) { return 1.0f - t * (1.0f - m); },
                                             c.transmission, c.metallic);
     specular.weight = scaled(b, {-1, kOne}, product(b, c.weight, opaque));
+    stretch_by_socket(b, specular, "Anisotropic", "Anisotropic Rotation");
     if (!(c.specular.is(0.0f) && c.metallic.is(0.0f))) surface.add_lobe(specular);
     if (!c.transmission.is(0.0f)) add_first_glass(b, surface, c, tint);
     add_coat(b, surface, c.weight);
@@ -153,6 +212,7 @@ void add_metal(NodeBuilder& b, SurfaceBuilder& surface, const Common& c, const V
     metal.f0 = b.map<Vec3f>(reflectance, c.base_color);
     metal.f90 = b.map<Vec3f>(reflectance, tint);
     metal.weight = scaled(b, coated, product(b, c.weight, c.metallic));
+    stretch_by_socket(b, metal, "Anisotropic", "Anisotropic Rotation");
     surface.add_lobe(metal);
 }
 
@@ -177,7 +237,10 @@ void add_second_glass(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
     add_glass(b, surface, glass);
 }
 
-void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
+void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
+    const FloatSource below_sheen = add_second_sheen(b, surface, c);
+    c.weight = product(b, c.weight, below_sheen);
+    c.emission = scaled(b, c.emission, below_sheen);
     const VectorSource coated = add_coat(b, surface, c.weight);
     surface.add_emission(b, multiplied(b, c.emission, coated));
 
@@ -205,6 +268,7 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common
         specular.ior, tint);
     specular.f90 = {-1, kOne};
     specular.weight = scaled(b, coated, rest);
+    stretch_by_socket(b, specular, "Anisotropic", "Anisotropic Rotation");
     if (!specular.ior.is(1.0f)) surface.add_lobe(specular);
 
     // Light that the specular layer reflects does not reach the diffuse one.

@@ -21,9 +21,15 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::si
         broken += make_finite(lobe.weight);
         lobe.normal = values_of(run, from.normal);
         lobe.roughness = values_of(run, from.roughness);
+        if (from.is_stretched) {
+            lobe.tangent = values_of(run, from.tangent);
+            lobe.aspect = values_of(run, from.aspect);
+        }
+        for (const FloatSource& value : from.more) lobe.more.push_back(values_of(run, value));
         if (from.fresnel != FresnelKind::None || from.has_color) lobe.f0 = values_of(run, from.f0);
         if (from.fresnel != FresnelKind::None) lobe.f90 = values_of(run, from.f90);
-        if (from.fresnel == FresnelKind::Dielectric || from.kind == LobeKind::Refraction)
+        if (from.fresnel == FresnelKind::Dielectric || from.kind == LobeKind::Refraction ||
+            from.kind == LobeKind::PrincipledHair)
             lobe.ior = values_of(run, from.ior);
         closure.lobes.push_back(std::move(lobe));
     }

@@ -21,6 +21,10 @@ struct LobeSource {
     bool has_color = false;  ///< f0 is the lobe's colour though it has no Fresnel
     VectorSource f0, f90;
     FloatSource ior;
+    bool is_stretched = false;  ///< by `aspect` along `tangent`
+    VectorSource tangent;
+    FloatSource aspect;
+    std::vector<FloatSource> more;  ///< as Lobe::more
 };
 
 struct SurfaceSources {

@@ -37,6 +37,11 @@ double hemisphere_integral(Value value, int steps = 600) {
     return sum * 2 * kPi / (static_cast<double>(steps) * steps);
 }
 
+template <class Value>
+double sphere_integral(Value value) {
+    return hemisphere_integral([&](const Vec3f& wo) { return value(wo) + value(-wo); });
+}
+
 double albedo_of(const PointBsdf& bsdf) {
     return hemisphere_integral([&](const Vec3f& wo) {
         const BsdfValue value = bsdf.evaluate(wo);
@@ -132,21 +137,61 @@ TEST(Gtr1, its_density_is_normalised_and_long_tailed) {
     EXPECT_NEAR(ggx_density(0.01f, 0.2f) / ggx_density(0.01f, 0.4f), 4.0f, 4e-3f);
 }
 
+/// Longer along a direction that is no axis of the frame.
+Lobe brushed(const ShadingPoints& points, Distribution distribution) {
+    Lobe lobe = glossy(points, 0.6f);
+    lobe.distribution = distribution;
+    lobe.tangent.assign(1, glm::normalize(Vec3f(1.0f, 0.7f, 0.0f)));
+    lobe.aspect.assign(1, 0.6f);
+    return lobe;
+}
+
+Lobe of_kind(const ShadingPoints& points, LobeKind kind, float roughness, float more = 0.0f) {
+    Lobe lobe = glossy(points, roughness);
+    lobe.kind = kind;
+    lobe.more = {{more}};
+    return lobe;
+}
+
 class EveryLobe : public testing::TestWithParam<int> {
   protected:
     static Lobe make(const ShadingPoints& points, int which) {
-        if (which == 0) return lambert(points, 1.0f);
-        Lobe lobe = glossy(points, which == 1 ? 0.8f : 0.5f);
-        if (which == 3) lobe.distribution = Distribution::Beckmann;
-        if (which == 4) lobe.distribution = Distribution::Gtr1;
-        return lobe;
+        switch (which) {
+            case 0:
+                return lambert(points, 1.0f);
+            case 5:
+                return brushed(points, Distribution::Ggx);
+            case 6:
+                return brushed(points, Distribution::Beckmann);
+            case 7:
+                return brushed(points, Distribution::AshikhminShirley);
+            case 8:
+                return of_kind(points, LobeKind::Translucent, 0.0f);
+            case 9:
+                return of_kind(points, LobeKind::Sheen, 0.5f);
+            case 10:
+                return of_kind(points, LobeKind::GrazingSheen, 0.0f);
+            case 11:
+                return of_kind(points, LobeKind::Velvet, 0.7f);
+            case 12:
+                return of_kind(points, LobeKind::DiffuseToon, 0.5f, 0.2f);
+            case 13:
+                return of_kind(points, LobeKind::GlossyToon, 0.3f, 0.1f);
+            case 14:
+                return of_kind(points, LobeKind::Sheen, 1.0f);
+            default:
+                Lobe lobe = glossy(points, which == 1 ? 0.8f : 0.5f);
+                if (which == 3) lobe.distribution = Distribution::Beckmann;
+                if (which == 4) lobe.distribution = Distribution::Gtr1;
+                return lobe;
+        }
     }
 };
 
 TEST_P(EveryLobe, its_density_integrates_to_the_share_of_samples_that_leave_upwards) {
     const ShadingPoints points = one_point(0.4f);
     const PointBsdf bsdf = prepare(make(points, GetParam()), points);
-    const double integral = hemisphere_integral([&](const Vec3f& wo) { return bsdf.pdf(0, wo); });
+    const double integral = sphere_integral([&](const Vec3f& wo) { return bsdf.pdf(0, wo); });
     const SobolPoints sequence(5);
     const int count = 1 << 14;
     int valid = 0;
@@ -164,9 +209,9 @@ TEST_P(EveryLobe, sampling_estimates_what_quadrature_integrates) {
     const PointBsdf bsdf = prepare(make(points, GetParam()), points);
     const auto value = [&](const Vec3f& wo) {
         const BsdfValue f = bsdf.evaluate(wo);
-        return (f.diffuse.x + f.glossy.x) * radiance(wo);
+        return total(f).x * radiance(wo);
     };
-    const double expected = hemisphere_integral(value);
+    const double expected = sphere_integral(value);
     const SobolPoints sequence(9);
     const int count = 1 << 14;
     double sum = 0.0;
@@ -178,7 +223,102 @@ TEST_P(EveryLobe, sampling_estimates_what_quadrature_integrates) {
     EXPECT_NEAR(sum / count, expected, 0.006 * expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lobes, EveryLobe, testing::Range(0, 5));
+INSTANTIATE_TEST_SUITE_P(Lobes, EveryLobe, testing::Range(0, 15));
+
+// Burley 2012, 5.6: alpha / aspect along the tangent, alpha * aspect across; of a view along the
+// normal the density of facets alone tells what is reflected.
+TEST(Stretched, highlights_are_longer_along_the_tangent) {
+    const ShadingPoints points = one_point(1.0f);
+    const Lobe lobe = brushed(points, Distribution::Ggx);
+    const PointBsdf bsdf = prepare(lobe, points);
+    const Vec3f along = lobe.tangent[0], across(-along.y, along.x, 0.0f), up(0.0f, 0.0f, 1.0f);
+    const double wide = 0.36 / 0.6, narrow = 0.36 * 0.6;
+    const auto half_height = [&](const Vec3f& way, double alpha) {
+        // Where D has fallen to a quarter: tan = alpha, and D = 1 / (pi ax ay (2 cos^2)^2).
+        const auto c = static_cast<float>(1.0 / std::sqrt(1.0 + alpha * alpha));
+        const Vec3f half = c * up + std::sqrt(1.0f - c * c) * way;
+        return bsdf.evaluate(2.0f * c * half - up).glossy.x * std::pow(c, 4.0f);
+    };
+    EXPECT_NEAR(bsdf.evaluate(up).glossy.x, 0.25 / (kPi * wide * narrow), 1e-4);
+    // Masking takes its part of what is lit aslant; half vectors are as likely on both.
+    const auto unmasked = [&](double alpha) {
+        const double angle = 2.0 * std::atan(alpha), t = alpha * std::tan(angle);
+        return 1.0 / (1.0 + 0.5 * (std::sqrt(1.0 + t * t) - 1.0));
+    };
+    const double quarter = 0.25 * 0.25 / (kPi * wide * narrow);
+    EXPECT_NEAR(half_height(along, wide), quarter * unmasked(wide), 1e-4);
+    EXPECT_NEAR(half_height(across, narrow), quarter * unmasked(narrow), 1e-4);
+}
+
+TEST(Stretched, is_reciprocal) {
+    const Vec3f a = glm::normalize(Vec3f(0.5f, 0.1f, 0.6f));
+    const Vec3f b = glm::normalize(Vec3f(-0.3f, 0.4f, 0.9f));
+    for (const Distribution distribution :
+         {Distribution::Ggx, Distribution::Beckmann, Distribution::AshikhminShirley}) {
+        ShadingPoints points = one_point(1.0f);
+        const Lobe lobe = brushed(points, distribution);
+        points.view[0] = a;
+        const float from_a = prepare(lobe, points).evaluate(b).glossy.x / b.z;
+        points.view[0] = b;
+        const float from_b = prepare(lobe, points).evaluate(a).glossy.x / a.z;
+        EXPECT_GT(from_a, 0.01f);
+        EXPECT_NEAR(from_a, from_b, 1e-4f * from_a);
+    }
+}
+
+TEST(Translucent, is_a_lambert_lobe_of_the_far_side) {
+    const ShadingPoints points = one_point(0.7f);
+    const PointBsdf bsdf = prepare(of_kind(points, LobeKind::Translucent, 0.0f), points);
+    EXPECT_NEAR(bsdf.evaluate(Vec3f(0.6f, 0.0f, -0.8f)).diffuse.x, 0.8f * kInversePi, 1e-6f);
+    EXPECT_EQ(total(bsdf.evaluate(Vec3f(0.6f, 0.0f, 0.8f))), Vec3f(0.0f));
+    EXPECT_TRUE(bsdf.transmits());
+    EXPECT_TRUE(bsdf.can_see(Vec3f(0.0f, 0.0f, -2.0f), 0.5f));
+    EXPECT_FALSE(bsdf.can_see(Vec3f(0.0f, 0.0f, 2.0f), 0.5f));
+}
+
+// What it reflects of a white furnace is the albedo by which Principled dims what is below.
+TEST(Sheen, reflects_what_its_fit_says) {
+    for (const float roughness : {0.3f, 0.6f, 1.0f})
+        for (const float cos_view : {0.15f, 0.5f, 0.95f}) {
+            const ShadingPoints points = one_point(cos_view);
+            const PointBsdf bsdf = prepare(of_kind(points, LobeKind::Sheen, roughness), points);
+            EXPECT_NEAR(albedo_of(bsdf), bsdf.albedo().diffuse.x, 0.004);
+        }
+    // Cloth shines where it is grazed.
+    const auto albedo = [](float cos_view) {
+        const ShadingPoints points = one_point(cos_view);
+        return prepare(of_kind(points, LobeKind::Sheen, 1.0f), points).albedo().diffuse.x;
+    };
+    EXPECT_GT(albedo(0.1f), 1.5f * albedo(0.9f));
+}
+
+TEST(Toon, is_even_within_its_angle_and_fades_beyond) {
+    const ShadingPoints points = one_point(0.8f);
+    const PointBsdf bsdf = prepare(of_kind(points, LobeKind::DiffuseToon, 0.5f, 0.25f), points);
+    // Sampled up to 67.5 degrees: that cone's solid angle is the scale.
+    const double full = 0.5 / (kPi * (1.0 - std::cos(67.5 * kPi / 180.0)));
+    const auto value_at = [&](double degrees) {
+        const auto angle = static_cast<float>(degrees * kPi / 180.0);
+        return bsdf.evaluate(Vec3f(std::sin(angle), 0.0f, std::cos(angle))).diffuse.x;
+    };
+    EXPECT_NEAR(value_at(10.0), full, 1e-5);
+    EXPECT_NEAR(value_at(44.0), full, 1e-5);
+    EXPECT_NEAR(value_at(56.25), 0.5 * full, 1e-4);
+    EXPECT_EQ(value_at(70.0), 0.0f);
+}
+
+// Gold at 600 nm: n = .25, k = 3.1 reflect .91 straight on; at grazing angles all.
+TEST(Fresnel, conductors_by_their_complex_index) {
+    const Vec3f n(0.25f), k(3.1f);
+    EXPECT_NEAR(fresnel_conductor(1.0f, n, k).x, (0.5625f + 9.61f) / (1.5625f + 9.61f), 1e-6f);
+    EXPECT_NEAR(fresnel_conductor(0.0f, n, k).x, 1.0f, 1e-6f);
+    // A dielectric is one without absorption, where the formula is nearly exact: n far above 1.
+    EXPECT_NEAR(fresnel_conductor(0.7f, Vec3f(8.0f), Vec3f(0.0f)).x, fresnel_dielectric(0.7f, 8.0f),
+                2e-3f);
+    const double mean = hemisphere_integral(
+        [&](const Vec3f& wo) { return fresnel_conductor(wo.z, n, k).x * wo.z * kInversePi; }, 300);
+    EXPECT_NEAR(conductor_mean(n, k).x, mean, 2e-3);
+}
 
 TEST(Fresnel, dielectric_at_normal_grazing_and_brewsters_angle) {
     EXPECT_NEAR(fresnel_dielectric(1.0f, 1.5f), 0.04f, 1e-6f);

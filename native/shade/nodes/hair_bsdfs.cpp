@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hair BSDF and Principled Hair BSDF.
+#include <algorithm>
+#include <cmath>
+
+#include "shade/bsdf/hair_color.h"
+#include "shade/nodes/nodes.h"
+#include "shade/nodes/scalar_math.h"
+
+namespace granita {
+
+namespace {
+
+/// Along curves; of meshes along u, or v.
+VectorSource hair_axis(NodeBuilder& b, bool mesh_by_v) {
+    const VectorSource out = b.new_source<Vec3f>();
+    const GeometryList& geometries = b.scene().geometries;
+    b.add_step(
+        [=, &geometries](Run& run) {
+            const auto geometry = static_cast<std::size_t>(run.input().instance->geometry);
+            const bool is_curve = geometries[geometry].kind == GeometryKind::Curves;
+            const ShadingPoints& points = *run.input().points;
+            Vec3f* result = run.write(out);
+            for (std::size_t i = 0; i < run.count(); ++i) {
+                const Vec3f& step = !is_curve && mesh_by_v ? points.dp_dv[i] : points.dp_du[i];
+                const float length = glm::length(step);
+                result[i] = length > 0.0f ? step / length : Vec3f(1.0f, 0.0f, 0.0f);
+            }
+        },
+        {}, {out.slot});
+    return out;
+}
+
+/// 1 on curves.
+FloatSource on_curve(NodeBuilder& b) {
+    const GeometryList& geometries = b.scene().geometries;
+    return b.geometry<float>([&geometries](const ShadingInput& in, std::size_t) {
+        const auto geometry = static_cast<std::size_t>(in.instance->geometry);
+        return geometries[geometry].kind == GeometryKind::Curves ? 1.0f : 0.0f;
+    });
+}
+
+/// Factors of chance: 1 where there is none.
+FloatSource varied(NodeBuilder& b, const FloatSource& random, const FloatSource& amount) {
+    return b.map<float>([](float r, float a) { return 1.0f + 2.0f * (r - 0.5f) * a; }, random,
+                        amount);
+}
+
+VectorSource absorption(NodeBuilder& b, const FloatSource& random, const FloatSource& radial) {
+    const std::string by = b.text("parametrization", "COLOR");
+    if (by == "ABSORPTION")
+        return b.vector("Absorption Coefficient", Vec3f(0.245531f, 0.52f, 1.365f));
+    if (by == "COLOR")
+        return b.map<Vec3f>(hair_absorption,
+                            b.color("Color", Vec3f(0.017513f, 0.005763f, 0.002059f)), radial);
+    const FloatSource melanin =
+        product(b, b.number("Melanin", 0.8f),
+                varied(b, random, b.map<float>(saturate, b.number("Random Color"))));
+    return b.map<Vec3f>(
+        [](float amount, float red, const Vec3f& tint, float r) {
+            // From what looks even between 0 and 1 to concentrations.
+            const float dense = -std::log(std::max(1.0f - amount, 0.0001f));
+            return melanin_absorption(dense * (1.0f - red), dense * red) + hair_absorption(tint, r);
+        },
+        melanin, b.number("Melanin Redness", 1.0f), b.color("Tint", Vec3f(1.0f)), radial);
+}
+
+}  // namespace
+
+void build_hair(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight) {
+    LobeSource lobe;
+    lobe.kind = b.text("component", "Reflection") == "Transmission" ? LobeKind::HairTransmission
+                                                                    : LobeKind::HairReflection;
+    lobe.weight = scaled(b, b.color("Color", Vec3f(0.8f)), weight);
+    lobe.normal = b.specular_normal();
+    lobe.roughness = b.number("RoughnessU", 0.1f);
+    lobe.is_stretched = true;
+    FloatSource offset = b.number("Offset");
+    if (b.linked("Tangent")) {
+        lobe.tangent = b.map<Vec3f>(
+            [](const Vec3f& t) {
+                const float length = glm::length(t);
+                return length > 0.0f ? t / length : Vec3f(1.0f, 0.0f, 0.0f);
+            },
+            b.vector("Tangent"));
+    } else {
+        lobe.tangent = hair_axis(b, true);
+        offset = product(b, offset, on_curve(b));
+    }
+    lobe.aspect = FloatSource{-1, 1.0f};
+    lobe.more = {b.number("RoughnessV", 1.0f), offset};
+    surface.add_lobe(lobe);
+}
+
+void build_principled_hair(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight) {
+    if (b.text("model", "CHIANG") == "HUANG")
+        b.warn("Huang's model is not supported; rendered as Chiang's");
+    const FloatSource random_color = b.number("Random Color"),
+                      random_roughness = b.number("Random Roughness");
+    FloatSource random = b.number("Random", 0.5f);
+    if (!b.linked("Random")) {
+        random = {-1, 0.5f};
+        if (!random_color.is(0.0f) || !random_roughness.is(0.0f))
+            b.warn("Principled Hair: nothing is random but what is linked to Random");
+    }
+    const FloatSource factor = varied(b, random, random_roughness);
+    LobeSource lobe;
+    lobe.kind = LobeKind::PrincipledHair;
+    lobe.weight = scaled(b, {-1, Vec3f(1.0f)}, weight);
+    lobe.normal = b.shading_normal();
+    lobe.roughness = product(b, b.number("Roughness", 0.3f), factor);
+    const FloatSource radial = product(b, b.number("Radial Roughness", 0.3f), factor);
+    lobe.is_stretched = true;
+    lobe.tangent = hair_axis(b, false);
+    lobe.aspect = FloatSource{-1, 1.0f};
+    lobe.more = {radial, b.number("Offset", 0.0349066f),
+                 b.map<float>([](float coat) { return 1.0f - saturate(coat); }, b.number("Coat"))};
+    lobe.has_color = true;
+    lobe.f0 = absorption(b, random, radial);
+    lobe.ior = b.number("IOR", 1.55f);
+    surface.add_lobe(lobe);
+}
+
+}  // namespace granita

@@ -1,0 +1,309 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""BSDFs against Cycles' own: boards whose squares have a material each in turn, lean, show their fronts and backs,
+and are lit by one sun from before or behind.  A sun has no size here, so that no engine draws anything by chance."""
+
+import bpy
+import numpy as np
+import pytest
+import scene_parts
+from hair_parts import curve_through
+from node_comparison import LIMIT, SQUARES, Tree, board, render_both, rmse
+from test_nodes_shaders import shown, sun
+
+_SINCE_4 = bpy.app.version >= (4, 0, 0)
+# Before, Cycles walks at random between facets.
+_MULTI = ("MULTI_GGX",) if _SINCE_4 else ()
+BEFORE, BEHIND = (0.4, 0.2, 0.0), (0.4 + np.pi, 0.2, 0.0)
+_RENAMED = {"Transmission": "Transmission Weight", "Sheen": "Sheen Weight"}
+
+
+def node(tree, kind, values, **properties):
+    """A shader whose sockets are given constants or attributes; (name, scale, offset) is one that is changed."""
+    made = tree.add(kind, **properties)
+    for name, value in values.items():
+        target = made.inputs.get(name) or made.inputs[_RENAMED[name]]
+        if isinstance(value, str):
+            tree.link(tree.attribute(value, "Color" if target.type == "RGBA" else "Fac"), target)
+        elif isinstance(value, tuple) and isinstance(value[0], str):
+            math = tree.add("ShaderNodeMath", operation="MULTIPLY_ADD")
+            tree.link(tree.attribute(value[0], "Fac"), math.inputs[0])
+            math.inputs[1].default_value, math.inputs[2].default_value = value[1:]
+            tree.link(math.outputs[0], target)
+        else:
+            target.default_value = value
+    return made
+
+
+def compare(scene, render, kinds, turn, tilt=0.3, low=0.15):
+    """Per kind (RMSE, deviation) over its squares.
+
+    `kinds`: {name: function of a tree that returns a shader}.
+    """
+    sun(scene, turn)
+    # Cycles leaves out some faint light, by chance.
+    scene.cycles.light_sampling_threshold = 0.0
+    thing = board(scene, low, 1, tilt=tilt, both_sides=True)
+    for name, build in kinds.items():
+        tree = Tree(thing, name)
+        shown(tree, build(tree))
+    # By turns over fronts and backs alike, which change each square.
+    which = (np.arange(SQUARES * SQUARES) // 2) % len(kinds)
+    thing.data.polygons.foreach_set("material_index", which)
+    theirs, ours = render_both(scene, render)
+    rows = which.reshape(SQUARES, SQUARES).repeat(2, axis=0).repeat(2, axis=1)
+    report = {}
+    for k, name in enumerate(kinds):
+        mine = rows == k
+        report[name] = (rmse(theirs[mine], ours[mine]), float(theirs[mine].std()))
+    return report
+
+
+def check(report, limits=None):
+    """Errors are relative to the deviation where that is more than 1."""
+    limits = limits or {}
+    weak = {name: pair for name, pair in report.items() if pair[1] < 0.005}
+    assert not weak, weak
+    wrong = {
+        name: pair
+        for name, pair in report.items()
+        if pair[0] > limits.get(name, LIMIT) * max(pair[1], 1.0)
+    }
+    assert not wrong, "\n" + "\n".join(f"{n} {p}" for n, p in report.items())
+
+
+def _glasses():
+    kinds = {}
+    # Nearer to 1, Cycles lights pairs of directions under a lamp that no facet could refract.
+    values = {"Color": "A", "Roughness": ("B", 0.8, 0.2), "IOR": ("C", 0.6, 1.25)}
+    for distribution in ("GGX", "BECKMANN") + _MULTI:
+        kinds[f"Glass {distribution}"] = lambda tree, d=distribution: node(
+            tree, "ShaderNodeBsdfGlass", values, distribution=d
+        )
+    for distribution in ("GGX", "BECKMANN"):
+        kinds[f"Refraction {distribution}"] = lambda tree, d=distribution: node(
+            tree, "ShaderNodeBsdfRefraction", values, distribution=d
+        )
+    principled = {
+        "Base Color": "A",
+        "Roughness": ("B", 0.8, 0.2),
+        "IOR": ("C", 0.8, 1.05),
+        "Transmission": ("C", -0.5, 1.0),
+    }
+    for distribution in ("GGX",) + _MULTI:
+        kinds[f"Principled {distribution}"] = lambda tree, d=distribution: node(
+            tree, "ShaderNodeBsdfPrincipled", principled, distribution=d
+        )
+    if not _SINCE_4:
+        rough = {**principled, "Transmission Roughness": "B", "Specular Tint": 0.5, "Metallic": 0.2}
+        kinds["Principled, rough inside"] = lambda tree: node(
+            tree, "ShaderNodeBsdfPrincipled", rough, distribution="GGX"
+        )
+    return kinds
+
+
+@pytest.mark.parametrize("turn", [BEFORE, BEHIND], ids=["before", "behind"])
+def test_glass_and_refraction(scene, render, turn):
+    report = compare(scene, render, _glasses(), turn)
+    if turn is BEFORE:  # where refraction has nothing to show
+        report = {name: pair for name, pair in report.items() if "Refraction" not in name}
+    check(report)
+
+
+def test_the_world_behind_one_sharp_surface(scene, render):
+    """Each square bends the view its own way."""
+    thing = board(scene, 0.15, 1, tilt=0.3, both_sides=True)
+    tree = Tree(thing)
+    shown(
+        tree,
+        node(
+            tree,
+            "ShaderNodeBsdfRefraction",
+            # White: Cycles ends darker paths by chance.
+            {"Color": (1.0, 1.0, 1.0, 1.0), "Roughness": 0.0, "IOR": ("B", 0.8, 0.9)},
+        ),
+    )
+    world = bpy.data.worlds.new("World")
+    if world.node_tree is None:
+        world.use_nodes = True
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    place = nodes.new("ShaderNodeTexCoord")
+    away = nodes.new("ShaderNodeVectorMath")
+    away.operation = "ADD"
+    away.inputs[1].default_value = (1.5, 1.5, 1.5)
+    links.new(place.outputs["Generated"], away.inputs[0])
+    links.new(away.outputs[0], nodes["Background"].inputs["Color"])
+    scene.world = world
+    theirs, ours = render_both(scene, render)
+    # On the squares' diagonals Cycles' rays meet the square's other triangle; close to an edge a ray meets the next
+    # square, and each engine has its own place in a pixel.
+    free = theirs.any(axis=-1) & ours.any(axis=-1)
+    assert ours.any(axis=-1).mean() > 0.99
+    assert free.mean() > 0.9
+    assert theirs[free].std() > 0.05
+    assert rmse(theirs[free], ours[free]) < LIMIT
+
+
+def _cloths_and_cartoons():
+    grey = {"Color": "A"}
+    kinds = {
+        "Translucent": lambda tree: node(tree, "ShaderNodeBsdfTranslucent", grey),
+        "Toon": lambda tree: node(
+            tree,
+            "ShaderNodeBsdfToon",
+            {**grey, "Size": ("B", 0.4, 0.1), "Smooth": ("C", 0.4, 0.05)},
+        ),
+        "Glossy Toon": lambda tree: node(
+            tree,
+            "ShaderNodeBsdfToon",
+            # Together less than a right angle: past it Blender 3.4 cuts nothing off.
+            {**grey, "Size": ("B", 0.4, 0.1), "Smooth": ("C", 0.4, 0.05)},
+            component="GLOSSY",
+        ),
+    }
+    if _SINCE_4:
+        kinds["Velvet"] = lambda tree: node(
+            tree, "ShaderNodeBsdfSheen", {**grey, "Roughness": "B"}, distribution="ASHIKHMIN"
+        )
+        kinds["Sheen"] = lambda tree: node(
+            tree, "ShaderNodeBsdfSheen", {**grey, "Roughness": ("B", 0.7, 0.3)}
+        )
+    else:
+        kinds["Velvet"] = lambda tree: node(
+            tree, "ShaderNodeBsdfVelvet", {**grey, "Sigma": ("B", 0.8, 0.2)}
+        )
+    kinds["Principled"] = lambda tree: node(
+        tree,
+        "ShaderNodeBsdfPrincipled",
+        {
+            "Base Color": "A",
+            "Roughness": 0.4,
+            "Sheen": "B",
+            "Sheen Tint": ((0.9, 0.6, 0.3, 1.0) if _SINCE_4 else 0.6),
+        },
+        distribution="GGX",
+    )
+    return kinds
+
+
+# The tables of sheen, of which Granita has a fit (bsdf/sheen_fit.h).
+_SHEEN = {"Sheen": 0.02, "Principled": 0.01 if _SINCE_4 else LIMIT}
+
+
+@pytest.mark.parametrize("turn", [BEFORE, BEHIND], ids=["before", "behind"])
+def test_cloth_toon_and_translucent(scene, render, turn):
+    # Squares that lean far: cloth shines where it is grazed.
+    report = compare(scene, render, _cloths_and_cartoons(), turn, tilt=1.2)
+    if turn is BEHIND:
+        report = {"Translucent": report["Translucent"]}
+    else:
+        report.pop("Translucent")
+    check(report, _SHEEN)
+
+
+def _brushed():
+    values = {"Color": "A", "Roughness": ("B", 0.6, 0.2), "Anisotropy": ("C", 1.6, -0.9)}
+    principled = {
+        "Base Color": "A",
+        "Roughness": ("B", 0.6, 0.2),
+        "Anisotropic": "C",
+        "Anisotropic Rotation": 0.3,
+        "Metallic": 0.5,
+    }
+
+    def along(kind, values, **properties):
+        """Tangents that are one a square; by default they turn within."""
+
+        def build(tree):
+            made = node(tree, kind, values, **properties)
+            tree.link(tree.attribute("B", "Vector"), made.inputs["Tangent"])
+            return made
+
+        return build
+
+    glossy = "ShaderNodeBsdfAnisotropic"
+    kinds = {"Plain": along(glossy, values, distribution="GGX")}
+    for distribution in ("GGX", "BECKMANN", "ASHIKHMIN_SHIRLEY") + _MULTI:
+        kinds[distribution] = along(glossy, {**values, "Rotation": 0.1}, distribution=distribution)
+    kinds["Principled"] = along("ShaderNodeBsdfPrincipled", principled, distribution="GGX")
+    if hasattr(bpy.types, "ShaderNodeBsdfMetallic"):
+        metal = {"Roughness": ("B", 0.6, 0.2), "Anisotropy": "C"}
+        for fresnel in ("F82", "PHYSICAL_CONDUCTOR"):
+            for distribution in ("MULTI_GGX", "BECKMANN"):
+                kinds[f"Metallic {fresnel} {distribution}"] = along(
+                    "ShaderNodeBsdfMetallic",
+                    metal,
+                    fresnel_type=fresnel,
+                    distribution=distribution,
+                )
+    return kinds
+
+
+def test_brushed_and_metallic(scene, render):
+    check(compare(scene, render, _brushed(), BEFORE))
+
+
+def test_brushed_around_the_axis_of_generated(scene, render):
+    """The default tangent turns within a square, of which each engine has its own place: the mean of 64 of these."""
+    sun(scene)
+    tree = Tree(board(scene, 0.15, 1, tilt=0.3, both_sides=True))
+    values = {"Color": "A", "Roughness": 0.5, "Anisotropy": 0.6}
+    shown(tree, node(tree, "ShaderNodeBsdfAnisotropic", values, distribution="GGX"))
+    theirs, ours = render_both(scene, render, samples=64)
+    assert theirs.std() > 0.3
+    assert rmse(theirs, ours) < 0.01
+
+
+# Of the mean.  A tube's colours go linearly between a few places across it, where Fresnel's edge is steep.  Before
+# Blender 4 Cycles tilts the inclination of the light by the cuticles' angle, since then that of the view: the same but
+# far from the highlights, as here.
+_HAIR = {"ShaderNodeBsdfHair": 0.01, "ShaderNodeBsdfHairPrincipled": 0.15 if _SINCE_4 else 0.3}
+
+
+def give_material(thing, material):
+    """Of what nodes make: it has none of the object's."""
+    group = thing.modifiers[0].node_group
+    end = next(n for n in group.nodes if n.bl_idname == "NodeGroupOutput")
+    last = end.inputs[0].links[0].from_socket
+    given = group.nodes.new("GeometryNodeSetMaterial")
+    given.inputs["Material"].default_value = material
+    group.links.new(last, given.inputs["Geometry"])
+    group.links.new(given.outputs[0], end.inputs[0])
+
+
+@pytest.mark.parametrize("turn", [BEFORE, BEHIND], ids=["before", "behind"])
+def test_hair(scene, render, turn):
+    """Tubes side by side, of a material each, over blocks of pixels: each engine has its own samples of an edge."""
+    sun(scene, (turn[0] + 0.6, 0.3, 0.0))
+    scene.cycles.light_sampling_threshold = 0.0
+    if hasattr(scene, "cycles_curves"):
+        scene.cycles_curves.shape = "RIBBONS"
+    hair, principled = _HAIR
+    rough = {"RoughnessU": 0.3, "RoughnessV": 0.6, "Offset": 0.1}
+    kinds = [
+        (hair, {"Color": (0.8, 0.6, 0.3, 1.0), **rough}, {"component": "Reflection"}),
+        (hair, {"Color": (0.8, 0.6, 0.3, 1.0), **rough}, {"component": "Transmission"}),
+        (principled, {"Color": (0.6, 0.4, 0.2, 1.0)}, {}),
+        (principled, {"Melanin": 0.4, "Coat": 0.5}, {"parametrization": "MELANIN"}),
+    ]
+    for place, (kind, values, properties) in enumerate(kinds):
+        x = -0.75 + 0.5 * place
+        path = [(x, y, 0.1 * np.sin(3 * y + place)) for y in np.linspace(-1.2, 1.2, 13)]
+        thing = curve_through(scene, path, 0.2, f"Tube {place}")
+        tree = Tree(thing, f"Tube {place}")
+        made = tree.add(kind, **properties)
+        for name, value in values.items():
+            made.inputs[name].default_value = value
+        shown(tree, made)
+        give_material(thing, tree.material)
+    scene_parts.add_camera(scene, ortho_scale=2.0)
+    scene.render.resolution_x = scene.render.resolution_y = 64
+    theirs, ours = (
+        picture.reshape(8, 8, 4, 16, 3).mean(axis=(1, 3))
+        for picture in render_both(scene, render, samples=64)
+    )
+    for k, (kind, _, _) in enumerate(kinds):
+        error, mean = rmse(theirs[:, k], ours[:, k]), float(theirs[:, k].mean())
+        if mean < 0.005:  # of the other side: nothing, or what is left of it
+            assert ours[:, k].mean() < 0.01, (kind, k)
+        else:
+            assert error < _HAIR[kind] * mean, (kind, k, error, mean)
