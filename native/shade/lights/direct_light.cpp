@@ -14,9 +14,12 @@
 #include "shade/lights/lamp_choice.h"
 #include "shade/lights/lamp_samples.h"
 #include "shade/lights/lamp_set.h"
+#include "shade/lights/leaving_rays.h"
 #include "shade/lights/lit_grid.h"
 #include "shade/lights/lit_point.h"
 #include "shade/lights/lobe_runs.h"
+#include "shade/lights/part_rays.h"
+#include "shade/lights/world_light.h"
 
 namespace granita {
 namespace {
@@ -38,32 +41,6 @@ constexpr int kSamplesOfAsked = 16;
 /// A choice that many share knows its lamps as much better.
 constexpr float kFiner = 4.0f;
 
-/// From the border of a grid a little into it.  Where surfaces meet in an edge, points of it lie
-/// on both: half of their rays would start behind the other.
-Vec3f inwards(const ShadingPoints& points, std::size_t i) {
-    constexpr float kStep = 0.02f;  // of a micropolygon
-    if (points.columns == 0) return Vec3f(0.0f);
-    const std::size_t column = i % points.columns, row = i / points.columns;
-    const auto towards = [](std::size_t at, std::size_t last) {
-        return (at == 0 ? kStep : 0.0f) - (at == last ? kStep : 0.0f);
-    };
-    return towards(column, points.columns - 1) * points.dp_du[i] +
-           towards(row, points.count / points.columns - 1) * points.dp_dv[i];
-}
-
-/// The types of ray by which parts of light are seen.
-struct PartRays {
-    RayType diffuse, glossy, transmission;
-
-    RayType of(LightPart part) const {
-        return part == LightPart::Diffuse  ? diffuse
-               : part == LightPart::Glossy ? glossy
-                                           : transmission;
-    }
-};
-constexpr PartRays kBlurred{RayType::Diffuse, RayType::Glossy, RayType::Transmission};
-constexpr PartRays kSharp{RayType::Diffuse, RayType::Singular, RayType::Clear};
-
 /// Of shading space.
 Vec3d camera_origin(const Scene& scene) {
     return Vec3d(matrix_at(scene.camera.world_from_camera, scene.options.frame_time)[3]);
@@ -79,31 +56,21 @@ struct DirectLight::Impl {
 
     void light_points(LitGrid& grid, const std::vector<LitPoint>& points,
                       std::size_t lobe_count) const;
-    void sample_world(LitGrid& grid, const LitPoint& point) const;
-    void add_texel(LitGrid& grid, const LitPoint& point, const Environment::Sample& from,
-                   const BsdfValue& weight, float sign) const;
     void sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
                      const LampChoice* choice) const;
     void sample_rest(LitGrid& grid, const LitPoint& point, const LampChoice* choice) const;
     LampRate rate_of(const LitPoint& point, const LampChoice* choice, std::size_t lamp) const;
     void mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const;
-    void leave(LitGrid& grid, const LitPoint& point, Ray ray, const Vec3f& weight, float pdf,
-               std::uint32_t place) const;
-    void look(LitGrid& grid, const EnvironmentSamples& samples, float spread,
-              const PartRays& types) const;
     std::uint64_t receives(const GridKey& key) const;
-    Vec3f occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
-                    const Vec3f& direction) const;
 
     const Scene& scene;
-    WorldEvaluator world;
     Statistics& statistics;
     const Progress& progress;
     std::shared_ptr<GeometryCache> geometries;
     int sample_count;
     LampSet set;
-    float asked_by_corner;                     ///< lamps for each light sample
-    std::unique_ptr<Environment> environment;  ///< nullptr where the world sheds no light
+    float asked_by_corner;  ///< lamps for each light sample
+    WorldLight world;
     std::unordered_map<std::uint32_t, std::uint64_t> linked;  ///< Instance::receives by key
 };
 
@@ -113,26 +80,18 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
                         std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
                         const Displacement* displacement)
     : scene(frame_scene),
-      world(std::move(world_evaluator)),
       statistics(frame_statistics),
       progress(frame_progress),
       geometries(cache ? std::move(cache) : std::make_shared<GeometryCache>()),
       sample_count(std::max(1, frame_scene.options.light_samples)),
       set(frame_scene, camera_origin(frame_scene)),
       asked_by_corner(kAsked *
-                      std::sqrt(static_cast<float>(scene.options.samples) / kSamplesOfAsked)) {
+                      std::sqrt(static_cast<float>(scene.options.samples) / kSamplesOfAsked)),
+      world(scene.world, std::move(world_evaluator), report, progress) {
     for (const Instance& instance : scene.instances)
         if (instance.receives != ~0ULL) linked[instance.key] = instance.receives;
-    if (scene.world.lights_scene && world.radiance) {
-        environment = std::make_unique<Environment>(world, progress);
-        if (environment->broken() > 0)
-            report.warn("world '" + scene.world.name + "'",
-                        "is not finite in some directions, which light as black",
-                        environment->broken());
-        if (environment->is_black()) environment.reset();
-    }
     const bool shadows =
-        environment || scene.options.bounces.most > 0 ||
+        world.shines() || scene.options.bounces.most > 0 ||
         std::ranges::any_of(set.lamps, [](const Lamp& lamp) { return lamp.casts_shadow(); });
     if (!shadows) return;
     StageTimer timer(statistics, Stage::RayBuild);
@@ -148,46 +107,6 @@ std::uint64_t DirectLight::Impl::receives(const GridKey& key) const {
     return found == linked.end() ? ~0ULL : found->second;
 }
 
-Vec3f DirectLight::Impl::occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
-                                   const Vec3f& direction) const {
-    if (!set.rays) return Vec3f(1.0f);
-    ++grid.occlusion_rays;
-    return set.rays->transmittance(set.ray(point, place, direction, kInfinity));
-}
-
-void DirectLight::Impl::sample_world(LitGrid& grid, const LitPoint& point) const {
-    // A constant world needs no table: the lobes themselves are its best samples.
-    if (!environment || !environment->has_density()) return;
-    const SobolPoints sequence = grid.sequence(point, 0, point.sample_count);
-    for (int s = 0; s < point.sample_count; ++s) {
-        const auto index = static_cast<std::uint32_t>(s);
-        const Environment::Sample from = environment->sample(sequence(index));
-        const Vec3f& wo = from.direction;
-        const BsdfValue value = point.bsdf.evaluate(wo);
-        if (total(value) == Vec3f(0.0f) || !(from.pdf > 0.0f)) continue;
-        const float density =
-            static_cast<float>(point.sample_count) * from.pdf + point.all_density(wo);
-        const Vec3f seen = occlusion(grid, point, set.place_at(point, sequence.third(index)), wo);
-        const BsdfValue weight = value * (seen / density);
-        const float sign = LitGrid::sign(s, point.sample_count);
-        if (environment->has_radiance())
-            add_texel(grid, point, from, weight, sign);
-        else
-            grid.look(grid.blurred, point.index, wo, weight, sign);
-    }
-}
-
-/// What a texel of the world's table sends, reflected by `weight`.
-void DirectLight::Impl::add_texel(LitGrid& grid, const LitPoint& point,
-                                  const Environment::Sample& from, const BsdfValue& weight,
-                                  float sign) const {
-    const BsdfValue reflected{
-        weight.diffuse * environment->texel_radiance(from.texel, RayType::Diffuse),
-        weight.glossy * environment->texel_radiance(from.texel, RayType::Glossy),
-        weight.transmission * environment->texel_radiance(from.texel, RayType::Transmission)};
-    grid.reflect_world(point.index, reflected, sign);
-}
-
 /// How often the point asks a lamp; `choice`: aimed there, or nullptr where each is asked.
 LampRate DirectLight::Impl::rate_of(const LitPoint& point, const LampChoice* choice,
                                     std::size_t lamp) const {
@@ -198,7 +117,7 @@ LampRate DirectLight::Impl::rate_of(const LitPoint& point, const LampChoice* cho
 void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
                                     const LampChoice* choice) const {
     const bool meets_lamps = point.meets_lamps(lobe);
-    if (!environment && !meets_lamps && !grid.leaving) return;
+    if (!world.shines() && !meets_lamps && !grid.leaving) return;
     const LitPoint::LobeSamples& samples = point.samples[lobe];
     const SobolPoints sequence = grid.sequence(1 + point.bsdf.index(lobe), samples.first);
     for (int s = 0; s < samples.count; ++s) {
@@ -213,27 +132,10 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             Ray ray = set.ray(point, place, wo, kInfinity);
             ray.type = kBlurred.of(point.bsdf.part(lobe));
             const float density = point.all_density(wo);
-            leave(grid, point, ray, total(value) / density,
+            leave(set, grid, point, ray, total(value) / density,
                   density / static_cast<float>(point.lobe_samples(0)), samples.first + index);
         }
-        if (environment) {
-            const Environment::Sample at = environment->at(wo);
-            const float density =
-                point.all_density(wo) + static_cast<float>(point.sample_count) * at.pdf;
-            const BsdfValue weight = value * (occlusion(grid, point, place, wo) / density);
-            if (environment->is_constant()) {
-                const BsdfValue reflected{
-                    weight.diffuse * environment->constant_radiance(RayType::Diffuse),
-                    weight.glossy * environment->constant_radiance(RayType::Glossy),
-                    weight.transmission * environment->constant_radiance(RayType::Transmission)};
-                grid.reflect_world(point.index, reflected, sign);
-            } else if (environment->has_radiance() && !meets_lamps) {
-                add_texel(grid, point, at, weight, sign);
-            } else {
-                // Some lobes are narrower than the table's texels.
-                grid.look(grid.blurred, point.index, wo, weight, sign);
-            }
-        }
+        if (world.shines()) world.meet(set, grid, point, place, {wo, value, sign, meets_lamps});
         if (!meets_lamps) continue;
         set.meet(grid, place, wo, [&](std::size_t index, const Lamp& lamp, const LightSample& met) {
             const LampRate rate = rate_of(point, choice, index);
@@ -246,20 +148,6 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             grid.add_lamp(point.index, bsdf * (met.radiance / density), seen);
         });
     }
-}
-
-void DirectLight::Impl::leave(LitGrid& grid, const LitPoint& point, Ray ray, const Vec3f& weight,
-                              float pdf, std::uint32_t place) const {
-    if (weight == Vec3f(0.0f) || !is_finite(weight)) return;
-    // A sample's part of the hemisphere, for rays that diffuse lobes send.
-    const float spread = ray.type == RayType::Diffuse
-                             ? std::sqrt(2.0f * kPi / static_cast<float>(point.sample_count))
-                             : 0.0f;
-    const int count = point.lobe_samples(set.varies ? point.sample_count : 1);
-    // Each grid has a part of the sequences to itself, as samples that are shaded alone have.
-    const auto first = grid.placed ? 0u : static_cast<std::uint32_t>(grid.seed) << 14;
-    grid.leaving->push_back({ray, weight, 1.0f / static_cast<float>(count), pdf,
-                             static_cast<std::uint32_t>(point.index), first + place, spread});
 }
 
 void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const {
@@ -282,10 +170,10 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
         if (grid.leaving) {
             Ray ray = set.ray(point, place, wo, kInfinity);
             ray.type = kSharp.of(point.bsdf.part(lobe));
-            leave(grid, point, ray, total(value), kInfinity,
+            leave(set, grid, point, ray, total(value), kInfinity,
                   point.place * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(s));
         }
-        if (environment) open += occlusion(grid, point, place, wo);
+        if (world.shines()) open += set.occlusion(grid, point, place, wo);
     }
     grid.look(grid.sharp, point.index, wo, value * open, 0.0f);
 }
@@ -341,42 +229,13 @@ void DirectLight::Impl::light_points(LitGrid& grid, const std::vector<LitPoint>&
 void DirectLight::Impl::sample_rest(LitGrid& grid, const LitPoint& point,
                                     const LampChoice* choice) const {
     progress.check();
-    sample_world(grid, point);
+    world.sample(set, grid, point);
     for (std::size_t k = 0; k < point.bsdf.lobe_count(); ++k) {
         if (point.bsdf.is_sharp(k))
             mirror(grid, point, k);
         else
             sample_lobe(grid, point, k, choice);
     }
-}
-
-void DirectLight::Impl::look(LitGrid& grid, const EnvironmentSamples& samples, float spread,
-                             const PartRays& types) const {
-    if (samples.directions.empty()) return;
-    std::vector<Vec3f> seen;
-    if (!world.by_lobe) {
-        world.radiance(samples.directions, spread, types.glossy, seen);
-        for (std::size_t k = 0; k < seen.size(); ++k) {
-            if (!is_finite(seen[k])) continue;
-            grid.add(samples.points[k], samples.weights[k] * seen[k], samples.signs[k]);
-            if (grid.parts) grid.add_world(samples.points[k], samples.parts[k] * seen[k]);
-        }
-        return;
-    }
-    std::vector<BsdfValue> values = samples.parts;
-    const auto look_by = [&](LightPart part, RayType type) {
-        const bool any = std::ranges::any_of(
-            values, [&](BsdfValue& value) { return value.part(part) != Vec3f(0.0f); });
-        if (!any) return;
-        world.radiance(samples.directions, spread, type, seen);
-        for (std::size_t k = 0; k < seen.size(); ++k) values[k].part(part) *= seen[k];
-    };
-    look_by(LightPart::Diffuse, types.diffuse);
-    look_by(LightPart::Glossy, types.glossy);
-    look_by(LightPart::Transmission, types.transmission);
-    for (std::size_t k = 0; k < values.size(); ++k)
-        if (is_finite(total(values[k])))
-            grid.reflect_world(samples.points[k], values[k], samples.signs[k]);
 }
 
 DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics,
@@ -417,7 +276,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
     if (noise) noise->assign(points.count, 0.0f);
     if (parts) parts->resize(points.count);
-    const bool dark = m_impl->set.lamps.empty() && !m_impl->environment;
+    const bool dark = m_impl->set.lamps.empty() && !m_impl->world.shines();
     if (closure.lobes.empty() || (dark && !parts && !leaving)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     // Points with places of their own share the sequences of the frame.
@@ -430,7 +289,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         {},
         {},
         grid_seed(placed ? GridKey{0, 0, 1 + points.depth} : key, m_impl->scene.options.seed),
-        m_impl->world.by_lobe};
+        m_impl->world.by_lobe()};
     grid.placed = placed;
     grid.receives = m_impl->receives(key);
     grid.balance = noise;
@@ -487,10 +346,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     }
     place_lobe_samples(lit, closure.lobes.size(), placed);
     m_impl->light_points(grid, lit, closure.lobes.size());
-    if (m_impl->environment)
-        m_impl->look(grid, grid.blurred, m_impl->environment->texel_angle(), kBlurred);
-    // A point of its own stands for no neighbours: the mean of many does.
-    m_impl->look(grid, grid.sharp, placed ? 0.0f : grid.sharp.spread(), kSharp);
+    m_impl->world.deliver(grid);
     m_impl->statistics.add(Counter::RaysShadow, grid.shadow_rays);
     m_impl->statistics.add(Counter::RaysOcclusion, grid.occlusion_rays);
     m_impl->statistics.add(Counter::LampsChosen, grid.lamps_chosen);

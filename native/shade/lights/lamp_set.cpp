@@ -2,6 +2,7 @@
 #include "shade/lights/lamp_set.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace granita {
 namespace {
@@ -92,6 +93,14 @@ Vec3f LampSet::shadow(LitGrid& grid, const LitPoint& point, const LitPlace& plac
     ++grid.shadow_rays;
     return rays->transmittance(
         ray(point, place, sample.direction, sample.distance, lamp.blocker_set()));
+}
+
+Vec3f LampSet::occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
+                         const Vec3f& direction) const {
+    if (!rays) return Vec3f(1.0f);
+    ++grid.occlusion_rays;
+    return rays->transmittance(
+        ray(point, place, direction, std::numeric_limits<float>::infinity()));
 }
 
 }  // namespace granita

@@ -36,6 +36,9 @@ struct LampSet {
             int blocker_set = -1) const;
     Vec3f shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                  const LightSample& sample) const;
+    /// What of the world's light passes what comes before it.
+    Vec3f occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
+                    const Vec3f& direction) const;
 
     /// Calls `met(index, lamp, sample)` for lamps that samples of the grid's lobes meet along a
     /// direction.

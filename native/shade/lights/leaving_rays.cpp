@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/lights/leaving_rays.h"
+
+#include <cmath>
+
+namespace granita {
+
+Vec3f inwards(const ShadingPoints& points, std::size_t i) {
+    constexpr float kStep = 0.02f;  // of a micropolygon
+    if (points.columns == 0) return Vec3f(0.0f);
+    const std::size_t column = i % points.columns, row = i / points.columns;
+    const auto towards = [](std::size_t at, std::size_t last) {
+        return (at == 0 ? kStep : 0.0f) - (at == last ? kStep : 0.0f);
+    };
+    return towards(column, points.columns - 1) * points.dp_du[i] +
+           towards(row, points.count / points.columns - 1) * points.dp_dv[i];
+}
+
+void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& ray,
+           const Vec3f& weight, float pdf, std::uint32_t place) {
+    if (weight == Vec3f(0.0f) || !is_finite(weight)) return;
+    // A sample's part of the hemisphere, for rays that diffuse lobes send.
+    const float spread = ray.type == RayType::Diffuse
+                             ? std::sqrt(2.0f * kPi / static_cast<float>(point.sample_count))
+                             : 0.0f;
+    const int count = point.lobe_samples(set.varies ? point.sample_count : 1);
+    // Each grid has a part of the sequences to itself, as samples that are shaded alone have.
+    const auto first = grid.placed ? 0u : static_cast<std::uint32_t>(grid.seed) << 14;
+    grid.leaving->push_back({ray, weight, 1.0f / static_cast<float>(count), pdf,
+                             static_cast<std::uint32_t>(point.index), first + place, spread});
+}
+
+}  // namespace granita

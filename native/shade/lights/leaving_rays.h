@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Samples of lobes as ways to other surfaces (LobeRay).
+#pragma once
+
+#include "shade/lights/lamp_set.h"
+
+namespace granita {
+
+/// From the border of a grid a little into it.  Where surfaces meet in an edge, points of it lie
+/// on both: half of their rays would start behind the other.
+Vec3f inwards(const ShadingPoints& points, std::size_t i);
+
+/// Puts the way of a sample into LitGrid::leaving, which is asked for.
+/// @param weight reflected radiance per radiance that comes along `ray`.
+/// @param pdf of its direction, per solid angle; infinite for a mirror's.
+/// @param place in the sequence of its lobe.
+void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& ray,
+           const Vec3f& weight, float pdf, std::uint32_t place);
+
+}  // namespace granita

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "shade/bsdf/lobe.h"
+#include "shade/rays/ray_type.h"
+
+namespace granita {
+
+/// The types of ray by which parts of light are seen.
+struct PartRays {
+    RayType diffuse, glossy, transmission;
+
+    RayType of(LightPart part) const {
+        return part == LightPart::Diffuse  ? diffuse
+               : part == LightPart::Glossy ? glossy
+                                           : transmission;
+    }
+};
+constexpr PartRays kBlurred{RayType::Diffuse, RayType::Glossy, RayType::Transmission};
+constexpr PartRays kSharp{RayType::Diffuse, RayType::Singular, RayType::Clear};
+
+}  // namespace granita

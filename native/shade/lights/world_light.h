@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "base/progress.h"
+#include "base/report.h"
+#include "scene/scene.h"
+#include "shade/lights/environment.h"
+#include "shade/lights/lamp_set.h"
+#include "shade/lights/part_rays.h"
+
+namespace granita {
+
+/// The world of a frame as far as it sheds light on points.
+class WorldLight {
+  public:
+    /// Bakes it, unless `world` sheds no light.  `evaluator` is kept.  Throws Cancelled.
+    WorldLight(const World& world, WorldEvaluator evaluator, Report& report,
+               const Progress& progress);
+
+    bool shines() const { return m_environment != nullptr; }
+    /// As WorldEvaluator::by_lobe.
+    bool by_lobe() const { return m_evaluator.by_lobe; }
+
+    /// A point's samples of the world's own density, where it has one.
+    void sample(const LampSet& set, LitGrid& grid, const LitPoint& point) const;
+
+    /// A sample of a lobe that is not sharp.
+    struct LobeSample {
+        Vec3f wo;
+        BsdfValue value;  ///< of all lobes
+        float sign;       ///< as LitGrid::sign
+        bool is_narrow;   ///< its lobe may be narrower than the world's texels
+    };
+    /// What the sample sees of a world that shines.
+    void meet(const LampSet& set, LitGrid& grid, const LitPoint& point, const LitPlace& place,
+              const LobeSample& sample) const;
+
+    /// Brings what waits for the world's radiance (LitGrid::look).
+    void deliver(LitGrid& grid) const;
+
+  private:
+    void add_texel(LitGrid& grid, const LitPoint& point, const Environment::Sample& from,
+                   const BsdfValue& weight, float sign) const;
+    void look(LitGrid& grid, const EnvironmentSamples& samples, float spread,
+              const PartRays& types) const;
+
+    WorldEvaluator m_evaluator;
+    std::unique_ptr<Environment> m_environment;  ///< nullptr where the world sheds no light
+};
+
+}  // namespace granita
