@@ -129,7 +129,7 @@ class BouncedLight::Wave {
             for (end = begin; end < m_order.size() && key(m_order[end]) == key(m_order[begin]);
                  ++end) {
                 const RayScene::Met& met = m_met[m_order[end]];
-                batch.push_back({&m_paths[met.ray], &met.hit});
+                batch.push_back({&m_paths[met.ray], &met.hit, &met.frame()});
             }
             shade(batch);
         }

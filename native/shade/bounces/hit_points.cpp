@@ -2,7 +2,6 @@
 #include "shade/bounces/hit_points.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "geometry/surface_evaluator.h"
 #include "geometry/surface_frames.h"
@@ -32,11 +31,12 @@ void HitPoints::resize(std::size_t n, const std::vector<AttributeRequest>& reque
     }
 }
 
-void HitPoints::fill_mesh(std::size_t i, const MetPath& met, const RayFrame& frame, bool displaced,
+void HitPoints::fill_mesh(std::size_t i, const MetPath& met, bool displaced,
                           const std::vector<AttributeRequest>& requests) {
     static thread_local SurfaceFrames surface;
     static thread_local std::vector<float> values, du, dv;
     const RayHit& hit = *met.hit;
+    const RayFrame& frame = *met.frame;
     const std::span<const Vec2d> uv(&hit.uv, 1);
     find_frames(*hit.geometry, *hit.patch, uv, surface);
     const float side = m_points.backfacing[i] ? -1.0f : 1.0f;
@@ -97,12 +97,10 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
         m_points.times[i] = path.next.ray.time;
         m_points.places[i] = path.next.place;
         m_points.ray_lengths[i] = path.length + hit.distance;
-        std::optional<RayFrame> moved;
         if (!still) {
-            moved.emplace(m_rays.frame_at(hit.instance, path.next.ray.time));
             ObjectAxes& axes = m_input.axes_at_times.emplace_back();
-            axes.world_from_object = moved->world_from_object;
-            axes.object_from_world = moved->object_from_world;
+            axes.world_from_object = met[i].frame->world_from_object;
+            axes.object_from_world = met[i].frame->object_from_world;
         }
         if (hit.elements) {
             for (std::size_t k = 0; k < requests.size(); ++k)
@@ -112,7 +110,7 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
             continue;
         }
         m_points.faces[i] = hit.patch->face;
-        fill_mesh(i, met[i], still ? *hit.frame : *moved, displaced, requests);
+        fill_mesh(i, met[i], displaced, requests);
     }
 }
 

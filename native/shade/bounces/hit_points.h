@@ -16,6 +16,7 @@ namespace granita {
 struct MetPath {
     const BouncedPath* path;
     const RayHit* hit;
+    const RayFrame* frame;  ///< of what was met, at the ray's time
 };
 
 class HitPoints {
@@ -33,7 +34,7 @@ class HitPoints {
 
   private:
     void resize(std::size_t n, const std::vector<AttributeRequest>& requests);
-    void fill_mesh(std::size_t i, const MetPath& met, const RayFrame& frame, bool displaced,
+    void fill_mesh(std::size_t i, const MetPath& met, bool displaced,
                    const std::vector<AttributeRequest>& requests);
 
     const Scene& m_scene;

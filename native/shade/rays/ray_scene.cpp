@@ -58,14 +58,14 @@ void RayScene::Impl::locate(const RTCRay& traced, const RTCHit& at, const RayIns
     hit.frame = instance.still ? &*instance.still : nullptr;
 }
 
-Vec3f RayScene::Impl::normal_of(const RTCHit& at, const RayHit& hit) {
+Vec3f RayScene::Impl::normal_of(const RTCHit& at, const RayHit& hit, const RayFrame& frame) {
     if (hit.elements) return -hit.direction;  // they face the ray
-    return Vec3f(normalize_or(hit.frame->world_from_normal * Vec3d(at.Ng_x, at.Ng_y, at.Ng_z),
+    return Vec3f(normalize_or(frame.world_from_normal * Vec3d(at.Ng_x, at.Ng_y, at.Ng_z),
                               -Vec3d(hit.direction)));
 }
 
-RayFrame RayScene::frame_at(std::uint32_t instance, float time) const {
-    return RayFrame(matrix_at(m_impl->scene.instances[instance].world_from_object, time));
+RayFrame RayScene::Impl::frame_at(std::uint32_t instance, float time) const {
+    return RayFrame(matrix_at(scene.instances[instance].world_from_object, time));
 }
 
 Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& ray,
@@ -74,10 +74,8 @@ Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& r
     locate(ray, at, instance, context.start, context.direction, hit);
     if (!opacity.is_transparent(hit.material)) return Vec3f(0.0f);
     std::optional<RayFrame> moved;
-    if (!hit.frame)
-        hit.frame =
-            &moved.emplace(matrix_at(scene.instances[hit.instance].world_from_object, ray.time));
-    hit.normal = normal_of(at, hit);
+    if (!hit.frame) hit.frame = &moved.emplace(frame_at(hit.instance, ray.time));
+    hit.normal = normal_of(at, hit, *hit.frame);
     return opacity.transparency(hit);
 }
 
@@ -202,14 +200,11 @@ void RayScene::nearest(std::span<const Ray> rays, std::vector<Met>& out) const {
         traced.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(m_impl->top.get(), &context.embree, &traced);
         if (traced.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-        Met& met = out.emplace_back(Met{static_cast<std::uint32_t>(i), {}});
+        Met& met = out.emplace_back(Met{static_cast<std::uint32_t>(i), {}, {}});
         m_impl->locate(traced.ray, traced.hit, m_impl->instances[traced.hit.instID[0]], ray.start,
                        ray.direction, met.hit);
-        std::optional<RayFrame> moved;
-        const RayFrame* const still = met.hit.frame;
-        if (!still) met.hit.frame = &moved.emplace(frame_at(met.hit.instance, ray.time));
-        met.hit.normal = Impl::normal_of(traced.hit, met.hit);
-        met.hit.frame = still;
+        if (!met.hit.frame) met.moved.emplace(m_impl->frame_at(met.hit.instance, ray.time));
+        met.hit.normal = Impl::normal_of(traced.hit, met.hit, met.frame());
     }
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "base/progress.h"
@@ -60,14 +61,15 @@ class RayScene {
 
     /// A surface that one of several rays meets.
     struct Met {
-        std::uint32_t ray;  ///< its number
-        RayHit hit;         ///< its frame: of what stands still, else nullptr
+        std::uint32_t ray;              ///< its number
+        RayHit hit;                     ///< its frame: of what stands still, else nullptr
+        std::optional<RayFrame> moved;  ///< of what does not, at the ray's time
+
+        const RayFrame& frame() const { return moved ? *moved : *hit.frame; }
     };
     /// The nearest surfaces that are there at the rays' times, in their order; those of other rays,
     /// which meet none, are left out.
     void nearest(std::span<const Ray> rays, std::vector<Met>& out) const;
-
-    RayFrame frame_at(std::uint32_t instance, float time) const;
 
     /// Share of light that passes, per channel.
     Vec3f transmittance(const Ray& ray) const;

@@ -72,8 +72,8 @@ struct RayScene::Impl {
     /// All but the normal.
     void locate(const RTCRay& traced, const RTCHit& at, const RayInstance& instance,
                 const Vec3f& start, const Vec3f& direction, RayHit& hit) const;
-    /// Of a hit whose frame is known.
-    static Vec3f normal_of(const RTCHit& at, const RayHit& hit);
+    RayFrame frame_at(std::uint32_t instance, float time) const;
+    static Vec3f normal_of(const RTCHit& at, const RayHit& hit, const RayFrame& frame);
 
     const Scene& scene;
     ShadowOpacity opacity;
