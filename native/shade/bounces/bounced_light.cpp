@@ -143,8 +143,8 @@ class BouncedLight::Wave {
         m_points.fill(batch, surface.requests, static_cast<std::uint32_t>(first.depth));
         const GridKey key{m_light.m_scene.instances[hit.instance].key};
         m_light.m_direct.lift(m_points.points(), key);
-        const SurfaceRun ran(surface.radiance, m_points.input());
-        SurfaceClosure closure = ran.closure();
+        SurfaceRun ran(surface.radiance, m_points.input());
+        SurfaceClosure closure = ran.take_closure();
         tame(batch, closure);
         std::vector<Vec3f> light(batch.size(), Vec3f(0.0f));
         m_leaving.clear();

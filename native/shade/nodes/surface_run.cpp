@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/nodes/surface_run.h"
 
-#include <utility>
-
 namespace granita {
 namespace {
 

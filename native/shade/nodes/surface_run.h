@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "shade/nodes/node_compiler.h"
@@ -32,6 +33,8 @@ class SurfaceRun {
     /// Those of the input; their normals bent where a displacement says so.
     const ShadingPoints& points() const { return m_bent ? *m_bent : *m_points; }
     const SurfaceClosure& closure() const { return m_closure; }
+    /// To be changed; leaves none here.
+    SurfaceClosure take_closure() { return std::move(m_closure); }
     /// Weights of lobes that are no numbers: as in Cycles such a lobe is not there.
     std::size_t broken() const { return m_broken; }
     const Run& run() const { return m_run; }
