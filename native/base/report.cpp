@@ -19,4 +19,10 @@ void Report::add(const Report& other) {
     for (const Warning& w : other.warnings()) warn(w.datablock, w.message, w.count);
 }
 
+void Report::add_new(const Report& other) {
+    const std::vector<Warning> list = other.warnings();
+    const std::lock_guard lock(m_mutex);
+    for (const Warning& w : list) m_warnings.try_emplace({w.datablock, w.message}, w.count);
+}
+
 }  // namespace granita

@@ -25,6 +25,8 @@ class Report {
     std::vector<Warning> warnings() const;
     /// Says all of another one.
     void add(const Report& other);
+    /// Says what of another one was not said yet.
+    void add_new(const Report& other);
 
   private:
     mutable std::mutex m_mutex;

@@ -2,16 +2,11 @@
 #include "shade/world_shader.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 
 namespace granita {
 namespace {
-
-/// Shadow rays are never asked what the world sends.
-constexpr RayType kTypes[] = {RayType::Camera,   RayType::Diffuse,      RayType::Glossy,
-                              RayType::Singular, RayType::Transmission, RayType::Clear};
-constexpr RayType kLightTypes[] = {RayType::Diffuse, RayType::Glossy, RayType::Singular,
-                                   RayType::Transmission, RayType::Clear};
 
 /// Nodes of which nothing is narrower than what they are given: images, and sums of them.  What
 /// draws, as comparisons do, may be.
@@ -45,21 +40,22 @@ bool is_visible(const World& world, RayType ray) {
 WorldShader::WorldShader(const Scene& scene, TextureStore& textures, Report& report) {
     const NodeGraph& graph = scene.world.graph;
     const GraphOwner owner{"world '" + scene.world.name + "'", true};
-    std::vector<RayType> compiled_for;
-    Report said_already;
+    std::vector<RayType> seeing;
+    std::ranges::copy_if(kSeeingRays, std::back_inserter(seeing),
+                         [&](RayType ray) { return is_visible(scene.world, ray); });
     m_programs.emplace_back();  // of rays that do not see the world: it sends nothing
-    for (const RayType ray : kTypes) {
-        if (!is_visible(scene.world, ray)) continue;
-        const auto same =
-            std::find_if(compiled_for.begin(), compiled_for.end(),
-                         [&](RayType other) { return !told_apart(graph, other, ray); });
-        m_program_of[static_cast<std::size_t>(ray)] =
-            1 + static_cast<std::size_t>(same - compiled_for.begin());
-        if (same != compiled_for.end()) continue;
-        Report& warnings = compiled_for.empty() ? report : said_already;
+    for (const RayType ray : seeing) {
+        std::size_t& program = m_program_of[static_cast<std::size_t>(ray)];
+        const RayType alike = first_alike(graph, ray, seeing);
+        if (alike != ray) {
+            program = m_program_of[static_cast<std::size_t>(alike)];
+            continue;
+        }
+        program = m_programs.size();
+        Report warnings;
         m_programs.push_back(
             compile_surface(graph, scene, textures, warnings, owner, nullptr, ray).radiance);
-        compiled_for.push_back(ray);
+        report.add_new(warnings);
     }
     m_reads_images = std::any_of(graph.nodes.begin(), graph.nodes.end(), [](const Node& node) {
         return node.type == "ShaderNodeTexEnvironment" || node.type == "ShaderNodeTexImage";
@@ -96,11 +92,10 @@ WorldEvaluator WorldShader::evaluator() const {
     WorldEvaluator world;
     world.radiance = [this](const std::vector<Vec3f>& directions, float spread, RayType ray,
                             std::vector<Vec3f>& out) { radiance(directions, spread, ray, out); };
-    world.is_constant = std::all_of(std::begin(kLightTypes), std::end(kLightTypes),
-                                    [this](RayType ray) { return is_constant(ray); });
-    world.by_lobe =
-        std::any_of(std::begin(kLightTypes), std::end(kLightTypes),
-                    [this](RayType ray) { return &program(ray) != &program(RayType::Diffuse); });
+    world.is_constant =
+        std::ranges::all_of(kLightRays, [this](RayType ray) { return is_constant(ray); });
+    world.by_lobe = std::ranges::any_of(
+        kLightRays, [this](RayType ray) { return &program(ray) != &program(RayType::Diffuse); });
     world.is_filtered = m_reads_images;
     world.is_image = m_reads_images && m_is_smooth;
     return world;

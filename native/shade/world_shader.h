@@ -13,7 +13,7 @@ namespace granita {
 /// those that do not see it.
 class WorldShader {
   public:
-    /// Scene, textures and report must outlive it.
+    /// Scene and textures must outlive it.
     WorldShader(const Scene& scene, TextureStore& textures, Report& report);
 
     bool is_constant(RayType ray) const { return emission(ray).is_constant(); }

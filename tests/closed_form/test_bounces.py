@@ -206,6 +206,36 @@ def test_rooms_of_any_size_are_as_bright(size):
     assert mean(snapshot) == pytest.approx(sum(ALBEDO**k for k in range(6)), rel=0.004)
 
 
+def test_what_a_material_is_not_drawn_with_is_named_once():
+    """Whatever rays see it; of what the camera does not see, too."""
+    snapshot = inside(0)
+    nodes = [
+        {"type": "ShaderNodeUnheardOf", "inputs": {}},
+        {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": ("LINK", 0, "Color")}},
+        {"type": "ShaderNodeBsdfMetallic", "inputs": {"Thin Film Thickness": 100.0}},
+        {"type": "ShaderNodeLightPath", "inputs": {}},
+        {
+            "type": "ShaderNodeMixShader",
+            "inputs": {
+                "Fac": ("LINK", 3, "Is Camera Ray"),
+                "Shader": ("LINK", 2, "BSDF"),
+                "Shader_001": ("LINK", 1, "BSDF"),
+            },
+        },
+    ]
+    room(snapshot, material(snapshot, nodes, (4, "Shader")))
+
+    def warnings(bounces):
+        snapshot["options"]["bounces"] = bounces
+        return {message: count for _, message, count in s.render(snapshot)["warnings"]}
+
+    seen, met = warnings(0), warnings(1)
+    assert list(seen.values()) == [1] and "ShaderNodeUnheardOf" in next(iter(seen))
+    new = {message: count for message, count in met.items() if message not in seen}
+    assert {message: met[message] for message in seen} == seen
+    assert list(new.values()) == [1] and "thin film" in next(iter(new))
+
+
 def test_two_mirrors_end():
     """Facing each other, with nothing else to see."""
     snapshot = reflected_square(glossy_bounces=1000)

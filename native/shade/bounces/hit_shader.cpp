@@ -15,19 +15,18 @@ HitShader::HitShader(const Scene& scene, TextureStore& textures, Report& report)
 void HitShader::add(const NodeGraph& graph, const Scene& scene, TextureStore& textures,
                     Report& report, const GraphOwner& owner) {
     std::array<std::size_t, kRayTypes>& of = m_of.emplace_back();
-    constexpr std::array kTypes{RayType::Diffuse, RayType::Glossy, RayType::Singular,
-                                RayType::Transmission, RayType::Clear};
-    for (std::size_t k = 0; k < kTypes.size(); ++k) {
-        std::size_t same = 0;
-        while (same < k && told_apart(graph, kTypes[same], kTypes[k])) ++same;
-        const auto index = static_cast<std::size_t>(kTypes[k]);
-        if (same < k) {
-            of[index] = of[static_cast<std::size_t>(kTypes[same])];
+    for (const RayType ray : kLightRays) {
+        std::size_t& surface = of[static_cast<std::size_t>(ray)];
+        const RayType alike = first_alike(graph, ray, kLightRays);
+        if (alike != ray) {
+            surface = of[static_cast<std::size_t>(alike)];
             continue;
         }
-        of[index] = m_surfaces.size();
+        surface = m_surfaces.size();
+        Report warnings;
         m_surfaces.push_back(
-            compile_surface(graph, scene, textures, report, owner, nullptr, kTypes[k]));
+            compile_surface(graph, scene, textures, warnings, owner, nullptr, ray));
+        report.add_new(warnings);
         m_any_emits |= !m_surfaces.back().radiance.sources.emission.is(Vec3f(0.0f));
     }
 }

@@ -13,7 +13,8 @@ namespace granita {
 /// that a graph tells apart.
 class HitShader {
   public:
-    /// Scene, textures and report must outlive it.
+    /// Scene and textures must outlive it.  `report` knows what the camera's programs have said
+    /// and is told what is new.
     HitShader(const Scene& scene, TextureStore& textures, Report& report);
 
     /// -1: no material.

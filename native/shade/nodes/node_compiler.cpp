@@ -228,8 +228,10 @@ bool told_apart(const NodeGraph& graph, const ReadOutputs& read, RayType a, RayT
 
 }  // namespace
 
-bool told_apart(const NodeGraph& graph, RayType a, RayType b) {
-    return told_apart(graph, read_outputs(graph, graph.surface, "", {}), a, b);
+RayType first_alike(const NodeGraph& graph, RayType ray, std::span<const RayType> rays) {
+    const ReadOutputs read = read_outputs(graph, graph.surface, "", {});
+    return *std::ranges::find_if(
+        rays, [&](RayType other) { return !told_apart(graph, read, other, ray); });
 }
 
 DisplacementProgram compile_displacement(const NodeGraph& graph, const Scene& scene,

@@ -3,6 +3,7 @@
 // (docs/architecture.md, decision 6).
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -65,8 +66,9 @@ struct GraphOwner {
     int material_index = 0;  ///< pass_index
 };
 
-/// Whether the graph's Light Path makes a difference between two types of ray.
-bool told_apart(const NodeGraph& graph, RayType a, RayType b);
+/// The first of `rays`, of which `ray` is one, that the graph's Light Path does not tell apart from
+/// it.
+RayType first_alike(const NodeGraph& graph, RayType ray, std::span<const RayType> rays);
 
 /// Compiles `graph.displacement`, which is there.
 DisplacementProgram compile_displacement(const NodeGraph& graph, const Scene& scene,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 namespace granita {
@@ -10,6 +11,12 @@ namespace granita {
 /// and transmits.
 enum class RayType { Camera, Shadow, Diffuse, Glossy, Singular, Transmission, Clear };
 constexpr std::size_t kRayTypes = 7;
+/// Those that bring light: all but shadow rays, which ask what lets it through.
+constexpr std::array kSeeingRays{RayType::Camera,   RayType::Diffuse,      RayType::Glossy,
+                                 RayType::Singular, RayType::Transmission, RayType::Clear};
+/// Of these, those that lobes send.
+constexpr std::array kLightRays{RayType::Diffuse, RayType::Glossy, RayType::Singular,
+                                RayType::Transmission, RayType::Clear};
 
 /// Of lobes that send light on in one direction.
 constexpr bool is_sharp(RayType ray) {

@@ -20,6 +20,19 @@ TEST(Report, counts_equal_warnings_and_sorts_them) {
     EXPECT_EQ(list[1].count, 2u);
 }
 
+TEST(Report, adds_of_another_what_is_new_alone) {
+    Report report, other;
+    report.warn("object 'A'", "is empty");
+    other.warn("object 'A'", "is empty");
+    other.warn("object 'A'", "is far away", 2);
+    report.add_new(other);
+    const auto list = report.warnings();
+    ASSERT_EQ(list.size(), 2u);
+    EXPECT_EQ(list[0].count, 1u);
+    EXPECT_EQ(list[1].message, "is far away");
+    EXPECT_EQ(list[1].count, 2u);
+}
+
 TEST(Check, failure_throws_with_both_values) {
     try {
         GRANITA_CHECK_EQ(2 + 2, 5);
