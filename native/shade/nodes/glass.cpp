@@ -7,6 +7,7 @@
 
 #include "shade/bsdf/fresnel.h"
 #include "shade/bsdf/glass_albedo.h"
+#include "shade/nodes/distribution.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/scalar_math.h"
 
@@ -15,13 +16,6 @@ namespace granita {
 namespace {
 
 const Vec3f kOne(1.0f);
-
-Distribution distribution_of(NodeBuilder& b) {
-    const std::string name = b.text("distribution", "GGX");
-    return name == "SHARP"      ? Distribution::Sharp
-           : name == "BECKMANN" ? Distribution::Beckmann
-                                : Distribution::Ggx;
-}
 
 VectorSource positive_color(NodeBuilder& b) {
     return b.map<Vec3f>([](const Vec3f& c) { return glm::max(c, Vec3f(0.0f)); },
@@ -46,8 +40,9 @@ GlassSource glass_source(NodeBuilder& b, const FloatSource& weight) {
     glass.roughness = b.map<float>(saturate, b.number("Roughness"));
     glass.ior = relative_ior(b, b.number("IOR", 1.45f));
     glass.f0 = b.map<Vec3f>([](float ior) { return Vec3f(f0_from_ior(ior)); }, glass.ior);
-    glass.distribution = distribution_of(b);
-    glass.multiscatter = b.text("distribution") == "MULTI_GGX";
+    const std::string distribution = b.text("distribution", "GGX");
+    glass.distribution = distribution_of(distribution);
+    glass.multiscatter = distribution == "MULTI_GGX";
     return glass;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shaders of one closure each.  Diffuse also stands for its unsupported kin (node_registry.cpp).
 #include "shade/nodes/anisotropy.h"
+#include "shade/nodes/distribution.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/scalar_math.h"
 
@@ -34,10 +35,7 @@ void build_glossy(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& we
     LobeSource lobe;
     lobe.kind = LobeKind::Glossy;
     lobe.multiscatter = distribution == "MULTI_GGX";
-    lobe.distribution = distribution == "SHARP"               ? Distribution::Sharp
-                        : distribution == "BECKMANN"          ? Distribution::Beckmann
-                        : distribution == "ASHIKHMIN_SHIRLEY" ? Distribution::AshikhminShirley
-                                                              : Distribution::Ggx;
+    lobe.distribution = distribution_of(distribution);
     lobe.separable_masking = b.value("generation", 2) < 2;
     lobe.has_color = lobe.multiscatter;
     lobe.f0 = b.color("Color", Vec3f(0.8f));
@@ -53,7 +51,7 @@ void build_metallic(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& 
     LobeSource lobe;
     lobe.kind = LobeKind::Glossy;
     lobe.multiscatter = distribution == "MULTI_GGX";
-    lobe.distribution = distribution == "BECKMANN" ? Distribution::Beckmann : Distribution::Ggx;
+    lobe.distribution = distribution_of(distribution);
     if (b.text("fresnel_type", "F82") == "PHYSICAL_CONDUCTOR") {
         const auto positive = [](const Vec3f& v) { return glm::max(v, Vec3f(0.0f)); };
         lobe.fresnel = FresnelKind::Conductor;
