@@ -44,7 +44,7 @@ std::vector<Vec3d> points_at(const View& view, const Instance& instance, const K
 
 void add_instance(const View& view, const Instance& instance, FrameBlur& blur) {
     const Projection& projection = view.projection;
-    const GeometryData& data = view.scene->geometries[static_cast<std::size_t>(instance.geometry)];
+    const GeometryData& data = view.scene->geometry_of(instance);
     const Knots knots = combine_knots(*view.scene, instance, data, data.knots == 1);
     if (!knots.finite) return;
     std::vector<Vec2d> place;

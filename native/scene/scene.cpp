@@ -8,8 +8,7 @@ namespace granita {
 bool Scene::moves() const {
     return camera.world_from_camera.size() > 1 || has_lifespans() ||
            std::any_of(instances.begin(), instances.end(), [&](const Instance& instance) {
-               return instance.world_from_object.size() > 1 ||
-                      geometries[static_cast<std::size_t>(instance.geometry)].knots > 1;
+               return instance.world_from_object.size() > 1 || geometry_of(instance).knots > 1;
            });
 }
 

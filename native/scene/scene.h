@@ -57,6 +57,9 @@ struct Scene {
     std::vector<Light> lights;
     World world;
 
+    const GeometryData& geometry_of(const Instance& instance) const {
+        return geometries[static_cast<std::size_t>(instance.geometry)];
+    }
     /// Whether camera or geometry has more than one knot, or something appears or vanishes.
     bool moves() const;
     /// Whether some instance does not exist throughout the shutter.

@@ -110,8 +110,8 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                 break;
             case Quantity::Uv: {
                 const auto uv = shaded.run.read(shaded.sources.uv);
-                const int geometry = scene.instances[grid.instance].geometry;
-                const float mapped = scene.geometries[geometry].default_uv() ? 1.0f : 0.0f;
+                const GeometryData& geometry = scene.geometry_of(scene.instances[grid.instance]);
+                const float mapped = geometry.default_uv() ? 1.0f : 0.0f;
                 fill([&](std::size_t i) { return Vec3f(uv[i].x, uv[i].y, mapped); });
                 break;
             }

@@ -212,8 +212,7 @@ MaterialDisplacement::MaterialDisplacement(const Scene& scene,
                 alone |= p->depends_on_instance;
             }
         if (!moves) continue;
-        if (scene.geometries[static_cast<std::size_t>(instance.geometry)].kind !=
-            GeometryKind::Mesh) {
+        if (scene.geometry_of(instance).kind != GeometryKind::Mesh) {
             report.warn(instance.name, "displacement has no effect on curves and points");
             continue;
         }

@@ -245,8 +245,7 @@ struct ShadingSystem::Impl {
     float sharpness(const Grid& grid) const { return light_sample_count(grid, scene, shutter); }
 
     bool is_round(const Grid& grid) const {
-        const std::int32_t index = scene.instances[grid.instance].geometry;
-        return scene.geometries[static_cast<std::size_t>(index)].kind == GeometryKind::Curves;
+        return scene.geometry_of(scene.instances[grid.instance]).kind == GeometryKind::Curves;
     }
 
     Grid refine(const Grid& grid, std::span<const RefinedPoint> wanted, float point_size) const {
@@ -268,9 +267,8 @@ struct ShadingSystem::Impl {
     /// Whether samples of the grid can be shaded by themselves.  Strands and spheres are drawn as
     /// something flat, whose places say little of their shadows.
     bool can_refine(const Grid& grid) const {
-        if (!refines || grid.shades_faces()) return false;
-        const std::int32_t index = scene.instances[grid.instance].geometry;
-        return scene.geometries[static_cast<std::size_t>(index)].kind == GeometryKind::Mesh;
+        return refines && !grid.shades_faces() &&
+               scene.geometry_of(scene.instances[grid.instance]).kind == GeometryKind::Mesh;
     }
 
     /// Whether some of the grid's micropolygons look otherwise at some time of the shutter than

@@ -13,8 +13,7 @@ namespace {
 bool stands_still(const Scene& scene, const Grid& grid) {
     if (grid.knots == 1 && is_static(scene.camera.world_from_camera)) return true;
     const Instance& instance = scene.instances[grid.instance];
-    return scene.geometries[static_cast<std::size_t>(instance.geometry)].knots == 1 &&
-           is_static(instance.world_from_object);
+    return scene.geometry_of(instance).knots == 1 && is_static(instance.world_from_object);
 }
 
 /// Of the grid in camera space, at a time.

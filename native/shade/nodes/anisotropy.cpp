@@ -23,12 +23,12 @@ void stretch(NodeBuilder& b, LobeSource& lobe, const std::string& rotation,
 
 VectorSource default_tangent(NodeBuilder& b) {
     const VectorSource around = radial_tangent(b, RadialAxis::Z), out = b.new_source<Vec3f>();
-    const GeometryList& geometries = b.scene().geometries;
+    const Scene& scene = b.scene();
     b.add_step(
-        [=, &geometries](Run& run) {
+        [=, &scene](Run& run) {
             const auto radial = run.read(around);
-            const auto geometry = static_cast<std::size_t>(run.input().instance->geometry);
-            const bool is_curve = geometries[geometry].kind == GeometryKind::Curves;
+            const bool is_curve =
+                scene.geometry_of(*run.input().instance).kind == GeometryKind::Curves;
             const ShadingPoints& points = *run.input().points;
             Vec3f* result = run.write(out);
             for (std::size_t i = 0; i < run.count(); ++i) {

@@ -14,11 +14,11 @@ namespace {
 /// Along curves; of meshes along u, or v.
 VectorSource hair_axis(NodeBuilder& b, bool mesh_by_v) {
     const VectorSource out = b.new_source<Vec3f>();
-    const GeometryList& geometries = b.scene().geometries;
+    const Scene& scene = b.scene();
     b.add_step(
-        [=, &geometries](Run& run) {
-            const auto geometry = static_cast<std::size_t>(run.input().instance->geometry);
-            const bool is_curve = geometries[geometry].kind == GeometryKind::Curves;
+        [=, &scene](Run& run) {
+            const bool is_curve =
+                scene.geometry_of(*run.input().instance).kind == GeometryKind::Curves;
             const ShadingPoints& points = *run.input().points;
             Vec3f* result = run.write(out);
             for (std::size_t i = 0; i < run.count(); ++i) {
@@ -33,10 +33,9 @@ VectorSource hair_axis(NodeBuilder& b, bool mesh_by_v) {
 
 /// 1 on curves.
 FloatSource on_curve(NodeBuilder& b) {
-    const GeometryList& geometries = b.scene().geometries;
-    return b.geometry<float>([&geometries](const ShadingInput& in, std::size_t) {
-        const auto geometry = static_cast<std::size_t>(in.instance->geometry);
-        return geometries[geometry].kind == GeometryKind::Curves ? 1.0f : 0.0f;
+    const Scene& scene = b.scene();
+    return b.geometry<float>([&scene](const ShadingInput& in, std::size_t) {
+        return scene.geometry_of(*in.instance).kind == GeometryKind::Curves ? 1.0f : 0.0f;
     });
 }
 

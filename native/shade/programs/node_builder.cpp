@@ -141,13 +141,13 @@ VectorSource NodeBuilder::specular_normal(const std::string& input) {
 
 VectorSource NodeBuilder::with_valid_reflection(const VectorSource& normal, bool bent_alone) {
     const VectorSource out = new_source<Vec3f>();
-    const GeometryList& geometries = scene().geometries;
+    const Scene& frame = scene();
     add_step(
-        [=, &geometries](Run& run) {
+        [=, &frame](Run& run) {
             const auto normals = run.read(normal);
             const ShadingPoints& points = *run.input().points;
-            const auto geometry = static_cast<std::size_t>(run.input().instance->geometry);
-            const bool is_curve = geometries[geometry].kind == GeometryKind::Curves;
+            const bool is_curve =
+                frame.geometry_of(*run.input().instance).kind == GeometryKind::Curves;
             Vec3f* result = run.write(out);
             for (std::size_t i = 0; i < run.count(); ++i) {
                 const bool keep = is_curve || (bent_alone && normals[i] == points.normal[i]);
