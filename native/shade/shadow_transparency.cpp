@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/object_pool.h"
-#include "geometry/surface_evaluator.h"
+#include "shade/rays/hit_attributes.h"
 
 namespace granita {
 namespace {
@@ -13,30 +13,9 @@ namespace {
 /// What one hit needs; a frame has tens of millions of them.
 struct Scratch {
     ShadingPoints points;
-    std::vector<GridAttribute> attributes;
+    HitAttributes attributes;
     std::vector<float> memory;  ///< of the run
 };
-
-/// The attributes that the material asks for, as a grid of one vertex holds them.
-void fill_attributes(const RayHit& hit, const std::vector<AttributeRequest>& requests,
-                     std::vector<GridAttribute>& attributes) {
-    attributes.resize(requests.size());
-    for (std::size_t k = 0; k < requests.size(); ++k) {
-        GridAttribute& attribute = attributes[k];
-        attribute.attribute = static_cast<int>(k);
-        attribute.width = requests[k].width;
-        const auto width = static_cast<std::size_t>(requests[k].width);
-        attribute.values.resize(width);
-        if (hit.elements)
-            element_value(*hit.elements, requests[k], hit.place, attribute.values.data());
-        else
-            hit.geometry->surface().attribute(*hit.patch, requests[k], {&hit.uv, 1},
-                                              attribute.values, attribute.du, attribute.dv);
-        const std::size_t derivatives = requests[k].derivatives ? width : 0;
-        attribute.du.assign(derivatives, 0.0f);
-        attribute.dv.assign(derivatives, 0.0f);
-    }
-}
 
 /// The hit as a point that is seen from where the ray started.
 void fill_point(const RayHit& hit, ShadingPoints& points) {
@@ -69,10 +48,11 @@ Vec3f shadow_transparency(const OpacityProgram& material, const Scene& scene, co
     auto scratch = ObjectPool<std::unique_ptr<Scratch>>::take();
     if (!scratch) scratch = std::make_unique<Scratch>();
     fill_point(hit, scratch->points);
-    fill_attributes(hit, material.requests, scratch->attributes);
+    scratch->attributes.resize(material.requests, 1);
+    scratch->attributes.fill(0, hit, material.requests);
     ShadingInput input;
     input.points = &scratch->points;
-    input.attributes = &scratch->attributes;
+    input.attributes = &scratch->attributes.grid();
     input.instance = &scene.instances[hit.instance];
     input.axes.world_from_object = hit.frame->world_from_object;
     input.axes.object_from_world = hit.frame->object_from_world;

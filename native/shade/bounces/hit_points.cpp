@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "geometry/surface_evaluator.h"
 #include "geometry/surface_frames.h"
 #include "math/normalize_or.h"
 
@@ -19,22 +18,12 @@ void HitPoints::resize(std::size_t n, const std::vector<AttributeRequest>& reque
     for (auto* values : {&p.times, &p.ray_lengths}) values->resize(n);
     p.backfacing.resize(n);
     p.places.resize(n);
-    m_attributes.resize(requests.size());
-    for (std::size_t k = 0; k < requests.size(); ++k) {
-        GridAttribute& attribute = m_attributes[k];
-        attribute.attribute = static_cast<int>(k);
-        attribute.width = requests[k].width;
-        const std::size_t size = n * static_cast<std::size_t>(requests[k].width);
-        attribute.values.assign(size, 0.0f);
-        attribute.du.assign(requests[k].derivatives ? size : 0, 0.0f);
-        attribute.dv.assign(requests[k].derivatives ? size : 0, 0.0f);
-    }
+    m_attributes.resize(requests, n);
 }
 
 void HitPoints::fill_mesh(std::size_t i, const MetPath& met, bool displaced,
                           const std::vector<AttributeRequest>& requests) {
     static thread_local SurfaceFrames surface;
-    static thread_local std::vector<float> values, du, dv;
     const RayHit& hit = *met.hit;
     const RayFrame& frame = *met.frame;
     const std::span<const Vec2d> uv(&hit.uv, 1);
@@ -53,16 +42,7 @@ void HitPoints::fill_mesh(std::size_t i, const MetPath& met, bool displaced,
     };
     const float step_u = step(surface.su[0], m_points.dp_du[i]);
     const float step_v = step(surface.sv[0], m_points.dp_dv[i]);
-    for (std::size_t k = 0; k < requests.size(); ++k) {
-        const auto n = static_cast<std::size_t>(requests[k].width);
-        hit.geometry->surface().attribute(*hit.patch, requests[k], uv, values, du, dv);
-        GridAttribute& to = m_attributes[k];
-        std::copy_n(values.begin(), n, to.values.begin() + static_cast<std::ptrdiff_t>(i * n));
-        for (std::size_t c = 0; c < n && !to.du.empty(); ++c) {
-            to.du[i * n + c] = du[c] * step_u;
-            to.dv[i * n + c] = dv[c] * step_v;
-        }
-    }
+    m_attributes.fill(i, hit, requests, Vec2f(step_u, step_v));
 }
 
 void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRequest>& requests,
@@ -76,7 +56,7 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
     const bool displaced = m_rays.is_displaced({instance.key});
     m_input = {};
     m_input.points = &m_points;
-    m_input.attributes = &m_attributes;
+    m_input.attributes = &m_attributes.grid();
     m_input.instance = &instance;
     const bool still = first.frame != nullptr;
     if (still) {
@@ -103,10 +83,7 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
             axes.object_from_world = met[i].frame->object_from_world;
         }
         if (hit.elements) {
-            for (std::size_t k = 0; k < requests.size(); ++k)
-                element_value(
-                    *hit.elements, requests[k], hit.place,
-                    &m_attributes[k].values[i * static_cast<std::size_t>(requests[k].width)]);
+            m_attributes.fill(i, hit, requests);
             continue;
         }
         m_points.faces[i] = hit.patch->face;

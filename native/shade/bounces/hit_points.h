@@ -8,6 +8,7 @@
 #include "scene/scene.h"
 #include "shade/bounces/bounced_path.h"
 #include "shade/programs/program.h"
+#include "shade/rays/hit_attributes.h"
 #include "shade/rays/ray_scene.h"
 
 namespace granita {
@@ -40,7 +41,7 @@ class HitPoints {
     const Scene& m_scene;
     const RayScene& m_rays;
     ShadingPoints m_points;
-    std::vector<GridAttribute> m_attributes;
+    HitAttributes m_attributes;
     ShadingInput m_input;
 };
 
