@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "shade/rays/set_ray.h"
+
 namespace granita {
 namespace {
 
@@ -29,12 +31,7 @@ float covering_distance(RTCScene built, const Ray& from, bool from_behind) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit ray{};
-    ray.ray.org_x = from.start.x, ray.ray.org_y = from.start.y, ray.ray.org_z = from.start.z;
-    ray.ray.dir_x = from.direction.x, ray.ray.dir_y = from.direction.y;
-    ray.ray.dir_z = from.direction.z;
-    ray.ray.tfar = from.distance;
-    ray.ray.time = from.time;
-    ray.ray.mask = ~0u;
+    set_ray(ray.ray, from);
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(built, &context, &ray);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return kNone;

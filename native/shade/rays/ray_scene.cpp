@@ -9,20 +9,13 @@
 #include "scene/knot_time.h"
 #include "shade/rays/covering_triangle.h"
 #include "shade/rays/ray_scene_impl.h"
+#include "shade/rays/set_ray.h"
 
 namespace granita {
 namespace {
 
 /// Rays traced at once.
 constexpr std::size_t kPacket = 16;
-
-void set_ray(RTCRay& to, const Ray& from) {
-    to.org_x = from.start.x, to.org_y = from.start.y, to.org_z = from.start.z;
-    to.dir_x = from.direction.x, to.dir_y = from.direction.y, to.dir_z = from.direction.z;
-    to.tfar = from.distance;
-    to.time = from.time;
-    to.mask = ~0u;
-}
 
 /// Of rays that look for what is nearest.
 struct MetContext {
