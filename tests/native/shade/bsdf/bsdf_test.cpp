@@ -19,10 +19,6 @@ ShadingPoints one_point(float cos_view) {
     return points;
 }
 
-PointBsdf prepare(const Lobe& lobe, const ShadingPoints& points) {
-    return PointBsdf(closure_of(lobe), points, 0, GgxAlbedo::shared());
-}
-
 /// Integral of the value over the hemisphere by mid-points in (cos, phi): no sampling involved.
 template <class Value>
 double hemisphere_integral(Value value, int steps = 600) {
@@ -380,8 +376,8 @@ TEST(Fresnel, f82s_mean_is_that_of_quadrature) {
 
 TEST(PointBsdf, what_lies_below_the_horizon_is_not_seen_and_reflects_nothing) {
     const ShadingPoints points = points_facing_up({{0, 0, 0}});
-    const PointBsdf diffuse(closure_of(lambert(points, 1.0f)), points, 0, GgxAlbedo::shared());
-    const PointBsdf shiny(closure_of(glossy(points, 0.5f)), points, 0, GgxAlbedo::shared());
+    const PointBsdf diffuse = prepare(lambert(points, 1.0f), points);
+    const PointBsdf shiny = prepare(glossy(points, 0.5f), points);
     const SobolPoints sequence(3);
     int hidden = 0;
     for (std::uint32_t i = 0; i < 1000; ++i) {

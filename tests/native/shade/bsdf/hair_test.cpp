@@ -4,7 +4,6 @@
 
 #include "math/sampling.h"
 #include "shade/bsdf/bsdf.h"
-#include "shade/bsdf/bsdf_albedo.h"
 #include "shade/bsdf/hair_color.h"
 #include "shade/lights/light_scene.h"
 
@@ -29,10 +28,6 @@ Lobe lobe_of(const ShadingPoints& points, LobeKind kind, float roughness, float 
     lobe.ior.assign(1, 1.55f);
     lobe.f0.assign(1, Vec3f(0.0f));
     return lobe;
-}
-
-PointBsdf prepare(const Lobe& lobe, const ShadingPoints& points) {
-    return PointBsdf(closure_of(lobe), points, 0, GgxAlbedo::shared());
 }
 
 /// Integral over the sphere by mid-points in inclination and azimuth about the hair.

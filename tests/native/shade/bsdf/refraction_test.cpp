@@ -39,10 +39,6 @@ Lobe with_fresnel(Lobe lobe, float ior) {
     return lobe;
 }
 
-PointBsdf prepare(const Lobe& lobe, const ShadingPoints& points) {
-    return PointBsdf(closure_of(lobe), points, 0, GgxAlbedo::shared());
-}
-
 /// Integral over the sphere by mid-points in both angles: no sampling involved.
 template <class Value>
 double sphere_integral(Value value, int steps = 700) {

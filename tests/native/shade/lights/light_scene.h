@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "shade/bsdf/bsdf.h"
+#include "shade/bsdf/bsdf_albedo.h"
 #include "shade/bsdf/lobe.h"
 #include "shade/lights/environment.h"
 
@@ -90,6 +92,11 @@ inline SurfaceClosure closure_of(Lobe lobe) {
     SurfaceClosure closure;
     closure.lobes.push_back(std::move(lobe));
     return closure;
+}
+
+/// At the first point.
+inline PointBsdf prepare(const Lobe& lobe, const ShadingPoints& points) {
+    return PointBsdf(closure_of(lobe), points, 0, GgxAlbedo::shared());
 }
 
 inline Lobe lambert(const ShadingPoints& points, float albedo) {
