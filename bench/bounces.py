@@ -10,14 +10,10 @@ for an error as small, its own falling with the root of its samples.  Writes ben
 """
 
 import argparse
-import hashlib
-from pathlib import Path
 
 import frames
-import numpy as np
 from measure import save
 
-HERE = Path(__file__).resolve().parent
 SCENES = ("still", "metal", "mirror", "moving", "shining")
 BOUNCES = 4
 CYCLES_SAMPLES = 32
@@ -29,22 +25,15 @@ SETTINGS = [
 ]
 
 
-def job_of(scene, settings, **more):
+def job_of(scene, settings):
     bounced = [{**setting, "bounces": BOUNCES} for setting in settings]
-    return {"module": "bounced_scenes", "scene": scene, "runs": 1, "settings": bounced, **more}
+    return {"module": "bounced_scenes", "scene": scene, "runs": 1, "settings": bounced}
 
 
 def reference(scene, samples):
-    """(picture, its own error), kept in the cache until the scenes change."""
-    names = ("bounced_scenes.py", "lit_scenes.py", "scenes.py")
-    digest = hashlib.sha256("".join((HERE / n).read_text() for n in names).encode()).hexdigest()
-    file = frames.CACHE / f"bounced-{scene}-{samples}-{digest[:12]}.npy"
-    if not file.exists():
-        frames.CACHE.mkdir(parents=True, exist_ok=True)
-        setting = {"engine": "CYCLES", "samples": samples // 2}
-        parts = [frames.render(job_of(scene, [setting], seed=seed))[0][0] for seed in (1, 2)]
-        np.save(file, parts)
-    return frames.mean_and_error(np.load(file))
+    files = ("bounced_scenes.py", "lit_scenes.py", "scenes.py")
+    job = job_of(scene, [{"engine": "CYCLES"}])
+    return frames.reference_of_halves(f"bounced-{scene}", job, samples, files)
 
 
 def measure(scene, options):

@@ -80,29 +80,51 @@ def reference(scene, samples, all_scenes):
     The mean of four pictures that share no sample, nor any with what is measured: from their differences its error is
     known.
     """
-    file = CACHE / f"{scene}-{samples}-{fingerprint(scene, all_scenes)}.npy"
-    if not file.exists():
-        CACHE.mkdir(parents=True, exist_ok=True)
+
+    def parts():
         job = {"module": "scenes", "scene": scene, "runs": 1}
         job["settings"] = [{"engine": "CYCLES", "samples": samples // len(SEEDS)}]
-        np.save(file, [render({**job, "seed": seed})[0][0] for seed in SEEDS])
-    return mean_and_error(np.load(file))
+        return [render({**job, "seed": seed})[0][0] for seed in SEEDS]
+
+    return kept_reference(f"{scene}-{samples}-{fingerprint(scene, all_scenes)}", parts)
 
 
 def still_reference(scene, samples, all_scenes, stills=32):
     """The same as the mean of Cycles' pictures without blur, spread over the shutter: each of the four parts has
     `stills` times of its own."""
-    file = CACHE / f"{scene}-stills{stills}-{samples}-{fingerprint(scene, all_scenes)}.npy"
-    if not file.exists():
-        CACHE.mkdir(parents=True, exist_ok=True)
-        parts = []
+
+    def parts():
         for part, seed in enumerate(SEEDS):
             times = [(i + (part + 0.5) / len(SEEDS)) / stills for i in range(stills)]
             each = {"engine": "CYCLES", "samples": samples // (len(SEEDS) * stills)}
             job = {"module": "scenes", "scene": scene, "runs": 1, "seed": seed}
             job["settings"] = [{**each, "at": at} for at in times]
-            parts.append(np.mean([image for image, _ in render(job)], axis=0))
-        np.save(file, parts)
+            yield np.mean([image for image, _ in render(job)], axis=0)
+
+    name = f"{scene}-stills{stills}-{samples}-{fingerprint(scene, all_scenes)}"
+    return kept_reference(name, parts)
+
+
+def reference_of_halves(name, job, samples, files, python=None):
+    """The same as the mean of two pictures of half the samples, kept as that until `files` of this folder change.
+
+    `job` (render_frames.py) has one setting, without samples."""
+    digest = hashlib.sha256("".join((HERE / file).read_text() for file in files).encode())
+
+    def parts():
+        halves = [{**setting, "samples": samples // 2} for setting in job["settings"]]
+        for seed in (1, 2):
+            yield render({**job, "settings": halves, "seed": seed}, python=python)[0][0]
+
+    return kept_reference(f"{name}-{samples}-{digest.hexdigest()[:12]}", parts)
+
+
+def kept_reference(name, parts):
+    """mean_and_error() of what `parts` renders where the cache has nothing of that name."""
+    file = CACHE / f"{name}.npy"
+    if not file.exists():
+        CACHE.mkdir(parents=True, exist_ok=True)
+        np.save(file, list(parts()))
     return mean_and_error(np.load(file))
 
 

@@ -10,14 +10,10 @@ deducted.  Seconds are those of the processor.  Prints a table, writes bench/res
 """
 
 import argparse
-import hashlib
-from pathlib import Path
 
 import frames
-import numpy as np
 from measure import save
 
-HERE = Path(__file__).resolve().parent
 SCENES = (
     "still", "moving", "turning", "sweep", "slide", "bolt", "bokeh", "wall", "leaves", "fur"
 )  # fmt: skip
@@ -25,16 +21,8 @@ NEVER = 1000.0  # a threshold that nothing reaches
 
 
 def reference(scene, samples):
-    """(picture, its own error), kept in the cache until the scenes change."""
-    made_by = "".join((HERE / name).read_text() for name in ("lit_scenes.py", "scenes.py"))
-    digest = hashlib.sha256(made_by.encode()).hexdigest()[:12]
-    file = frames.CACHE / f"lit-{scene}-{samples}-{digest}.npy"
-    if not file.exists():
-        frames.CACHE.mkdir(parents=True, exist_ok=True)
-        job = {"module": "lit_scenes", "scene": scene, "runs": 1}
-        job["settings"] = [{"engine": "CYCLES", "samples": samples // 2}]
-        np.save(file, [frames.render({**job, "seed": seed})[0][0] for seed in (1, 2)])
-    return frames.mean_and_error(np.load(file))
+    job = {"module": "lit_scenes", "scene": scene, "runs": 1, "settings": [{"engine": "CYCLES"}]}
+    return frames.reference_of_halves(f"lit-{scene}", job, samples, ("lit_scenes.py", "scenes.py"))
 
 
 def settings(samples):

@@ -9,14 +9,11 @@ deducted.  Seconds are those of the processor, medians of three.  Prints a table
 """
 
 import argparse
-import hashlib
-from pathlib import Path
 
 import frames
 import numpy as np
 from measure import save
 
-HERE = Path(__file__).resolve().parent
 VERSION = "4.5"
 PYTHON = str(frames.CACHE.parent / f"bpy-{VERSION}" / "bin" / "python")
 SETTINGS = {
@@ -29,17 +26,9 @@ SETTINGS = {
 
 
 def reference(scene, samples):
-    """(picture, its own error), kept in the cache until the scenes change."""
     files = ("lamp_scenes.py", "lit_scenes.py", "scenes.py")
-    digest = hashlib.sha256("".join((HERE / name).read_text() for name in files).encode())
-    file = frames.CACHE / f"{scene}-{VERSION}-{samples}-{digest.hexdigest()[:12]}.npy"
-    if not file.exists():
-        frames.CACHE.mkdir(parents=True, exist_ok=True)
-        job = {"module": "lamp_scenes", "scene": scene, "runs": 1}
-        job["settings"] = [{"engine": "CYCLES", "samples": samples // 2}]
-        parts = [frames.render({**job, "seed": seed}, python=PYTHON)[0][0] for seed in (1, 2)]
-        np.save(file, parts)
-    return frames.mean_and_error(np.load(file))
+    job = {"module": "lamp_scenes", "scene": scene, "runs": 1, "settings": [{"engine": "CYCLES"}]}
+    return frames.reference_of_halves(f"{scene}-{VERSION}", job, samples, files, PYTHON)
 
 
 def measure(count, options):
