@@ -47,7 +47,6 @@ class PointBsdf {
               const GgxAlbedo& albedo);
 
     std::size_t lobe_count() const { return m_lobes.size(); }
-    LobeKind kind(std::size_t lobe) const { return m_lobes[lobe].kind; }
     LightPart part(std::size_t lobe) const { return part_of(m_lobes[lobe].kind); }
     /// Whether light comes through the surface; by any lobe.
     bool transmits(std::size_t lobe) const { return granita::transmits(m_lobes[lobe].kind); }

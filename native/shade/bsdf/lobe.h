@@ -39,9 +39,6 @@ constexpr bool transmits(LobeKind kind) {
 constexpr bool sees_all_around(LobeKind kind) {
     return kind == LobeKind::PrincipledHair;
 }
-constexpr bool is_of_tube(LobeKind kind) {
-    return kind >= LobeKind::HairReflection;
-}
 /// Of lobe_shape.h.
 constexpr bool is_shaped(LobeKind kind) {
     return kind > LobeKind::Refraction;

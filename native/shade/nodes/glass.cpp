@@ -63,12 +63,6 @@ FloatSource view_fresnel(NodeBuilder& b, const VectorSource& normal, const Float
                         normal, b.view(), ior);
 }
 
-VectorSource multiplied(NodeBuilder& b, const VectorSource& x, const VectorSource& y) {
-    if (x.is(kOne) || y.is(Vec3f(0.0f))) return y;
-    if (y.is(kOne) || x.is(Vec3f(0.0f))) return x;
-    return b.map<Vec3f>([](const Vec3f& u, const Vec3f& v) { return u * v; }, x, y);
-}
-
 VectorSource compensated(NodeBuilder& b, const GlassSource& glass) {
     if (!glass.multiscatter || glass.roughness.is(0.0f)) return {-1, kOne};
     return b.map<Vec3f>(
@@ -79,15 +73,15 @@ VectorSource compensated(NodeBuilder& b, const GlassSource& glass) {
 }
 
 void add_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& glass) {
-    const VectorSource weight = multiplied(b, glass.weight, compensated(b, glass));
+    const VectorSource weight = product(b, glass.weight, compensated(b, glass));
     LobeSource sent = refraction(glass);
     sent.fresnel = FresnelKind::Dielectric;
     sent.f0 = glass.f0;
     sent.f90 = {-1, kOne};
-    sent.weight = multiplied(b, weight, glass.sent);
+    sent.weight = product(b, weight, glass.sent);
     LobeSource reflected = sent;
     reflected.kind = LobeKind::Glossy;
-    reflected.weight = multiplied(b, weight, glass.reflected);
+    reflected.weight = product(b, weight, glass.reflected);
     surface.add_lobe(reflected);
     surface.add_lobe(sent);
 }
@@ -103,7 +97,7 @@ void build_glass(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& wei
     sent.separable_masking = true;
     LobeSource reflected = sent;
     reflected.kind = LobeKind::Glossy;
-    const VectorSource colored = multiplied(b, glass.weight, glass.sent);
+    const VectorSource colored = product(b, glass.weight, glass.sent);
     reflected.weight = scaled(b, colored, fresnel);
     sent.weight = scaled(b, colored, b.map<float>([](float f) { return 1.0f - f; }, fresnel));
     surface.add_lobe(reflected);
@@ -114,7 +108,7 @@ void build_refraction(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource
     const GlassSource glass = glass_source(b, weight);
     LobeSource sent = refraction(glass);
     sent.separable_masking = b.value("generation", 2) < 2;
-    sent.weight = multiplied(b, glass.weight, b.color("Color", kOne));
+    sent.weight = product(b, glass.weight, b.color("Color", kOne));
     surface.add_lobe(sent);
 }
 

@@ -24,8 +24,6 @@ FloatSource relative_ior(NodeBuilder& b, const FloatSource& ior);
 /// Reflectance of the smooth boundary along the view.
 FloatSource view_fresnel(NodeBuilder& b, const VectorSource& normal, const FloatSource& ior);
 
-VectorSource multiplied(NodeBuilder& b, const VectorSource& x, const VectorSource& y);
-
 /// As Cycles since Blender 4: Fresnel's of each facet.
 void add_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& glass);
 

@@ -101,7 +101,7 @@ void add_first_glass(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
             : b.map<float>(
                   [](float r, float t) { return 1.0f - (1.0f - r) * (1.0f - saturate(t)); },
                   c.roughness, b.number("Transmission Roughness"));
-    sent.weight = scaled(b, multiplied(b, glass.weight, c.base_color),
+    sent.weight = scaled(b, product(b, glass.weight, c.base_color),
                          b.map<float>([](float f) { return 1.0f - f; }, fresnel));
     surface.add_lobe(sent);
 }
@@ -242,7 +242,7 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
     c.weight = product(b, c.weight, below_sheen);
     c.emission = scaled(b, c.emission, below_sheen);
     const VectorSource coated = add_coat(b, surface, c.weight);
-    surface.add_emission(b, multiplied(b, c.emission, coated));
+    surface.add_emission(b, product(b, c.emission, coated));
 
     const VectorSource tint = b.color("Specular Tint", kOne);
     if (!c.metallic.is(0.0f)) add_metal(b, surface, c, coated, tint);
@@ -287,7 +287,7 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
     diffuse.roughness = b.map<float>(saturate, b.number("Diffuse Roughness"));
     diffuse.has_color = !diffuse.roughness.is(0.0f);
     diffuse.f0 = c.base_color;
-    diffuse.weight = scaled(b, multiplied(b, c.base_color, coated), product(b, rest, below));
+    diffuse.weight = scaled(b, product(b, c.base_color, coated), product(b, rest, below));
     surface.add_lobe(diffuse);
 }
 

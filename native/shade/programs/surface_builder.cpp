@@ -16,6 +16,13 @@ FloatSource product(NodeBuilder& b, const FloatSource& x, const FloatSource& y) 
     return b.map<float>([](float u, float v) { return u * v; }, x, y);
 }
 
+VectorSource product(NodeBuilder& b, const VectorSource& x, const VectorSource& y) {
+    const Vec3f zero(0.0f), one(1.0f);
+    if (x.is(one) || y.is(zero)) return y;
+    if (y.is(one) || x.is(zero)) return x;
+    return b.map<Vec3f>([](const Vec3f& u, const Vec3f& v) { return u * v; }, x, y);
+}
+
 namespace {
 
 VectorSource sum(NodeBuilder& b, const VectorSource& x, const VectorSource& y) {

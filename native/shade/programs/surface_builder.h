@@ -63,5 +63,6 @@ class SurfaceBuilder {
 /// weight times colour.
 VectorSource scaled(NodeBuilder& b, const VectorSource& color, const FloatSource& weight);
 FloatSource product(NodeBuilder& b, const FloatSource& x, const FloatSource& y);
+VectorSource product(NodeBuilder& b, const VectorSource& x, const VectorSource& y);
 
 }  // namespace granita
