@@ -12,11 +12,11 @@ namespace granita {
 enum class RayType { Camera, Shadow, Diffuse, Glossy, Singular, Transmission, Clear };
 constexpr std::size_t kRayTypes = 7;
 /// Those that bring light: all but shadow rays, which ask what lets it through.
-constexpr std::array kSeeingRays{RayType::Camera,   RayType::Diffuse,      RayType::Glossy,
-                                 RayType::Singular, RayType::Transmission, RayType::Clear};
+inline constexpr std::array kSeeingRays{RayType::Camera,   RayType::Diffuse,      RayType::Glossy,
+                                        RayType::Singular, RayType::Transmission, RayType::Clear};
 /// Of these, those that lobes send.
-constexpr std::array kLightRays{RayType::Diffuse, RayType::Glossy, RayType::Singular,
-                                RayType::Transmission, RayType::Clear};
+inline constexpr std::array kLightRays{RayType::Diffuse, RayType::Glossy, RayType::Singular,
+                                       RayType::Transmission, RayType::Clear};
 
 /// Of lobes that send light on in one direction.
 constexpr bool is_sharp(RayType ray) {
