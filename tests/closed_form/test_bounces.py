@@ -211,7 +211,7 @@ def test_what_a_material_is_not_drawn_with_is_named_once():
     snapshot = inside(0)
     nodes = [
         {"type": "ShaderNodeUnheardOf", "inputs": {}},
-        {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": ("LINK", 0, "Color")}},
+        {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Roughness": ("LINK", 0, "Value")}},
         {"type": "ShaderNodeBsdfMetallic", "inputs": {"Thin Film Thickness": 100.0}},
         {"type": "ShaderNodeLightPath", "inputs": {}},
         {
