@@ -163,9 +163,9 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
     )
     bounces: _choice(
         "Bounces",
-        "How far light is followed from surface to surface: reflections, light off walls, surfaces that shine",
+        "How far light is followed from surface to surface: reflections, light off walls",
         "NONE",
-        ("NONE", "None", "Lamps and the world alone light surfaces: fastest"),
+        ("NONE", "None", "Lamps, meshes that shine and the world alone light surfaces: fastest"),
         ("FAST", "Fast", "Two bounces at most, within Cycles' limits"),
         ("FULL", "Full", "As many as Cycles' Light Paths allow"),
     )

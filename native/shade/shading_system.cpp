@@ -16,6 +16,7 @@
 #include "shade/lights/light_sample_count.h"
 #include "shade/material_displacement.h"
 #include "shade/nodes/default_material.h"
+#include "shade/nodes/material_emission.h"
 #include "shade/nodes/node_compiler.h"
 #include "shade/nodes/surface_run.h"
 #include "shade/shading_points.h"
@@ -51,6 +52,7 @@ struct ShadingSystem::Impl {
     ChannelSet channels;
     std::vector<CompiledSurface> materials;  ///< [materials + 1]
     std::vector<std::vector<AttributeRequest>> requests;
+    std::unique_ptr<MaterialEmission> emission;
     std::unique_ptr<MaterialDisplacement> displacement;  ///< nullptr: nothing is displaced
     WorldShader world;
     bool refines;
@@ -98,7 +100,7 @@ struct ShadingSystem::Impl {
         displacement = std::make_unique<MaterialDisplacement>(scene, std::move(displacements),
                                                               geometries, report);
         if (!displacement->any()) displacement.reset();
-        warn_of_emission();
+        emission = std::make_unique<MaterialEmission>(scene, textures, materials);
         const bool any_reflects = std::ranges::any_of(scene.instances, [this](const Instance& i) {
             if (!i.visible_camera) return false;
             const auto shows = [this](int index) { return reflects(index); };
@@ -106,29 +108,28 @@ struct ShadingSystem::Impl {
         });
         if (!any_reflects) return;
         light = std::make_unique<DirectLight>(scene, world.evaluator(), statistics, report,
-                                              progress, shadow_opacity(), geometries, kept.rays,
+                                              progress, ray_materials(), geometries, kept.rays,
                                               displacement.get());
+        if (scene.options.bounces.most == 0) warn_of_emission();
         if (scene.options.bounces.most == 0 || !light->rays()) return;
         hits = std::make_unique<HitShader>(scene, textures, report);
-        bounces = std::make_unique<BouncedLight>(scene, *light, *hits, statistics, progress);
+        bounces =
+            std::make_unique<BouncedLight>(scene, *light, *hits, *emission, statistics, progress);
     }
 
     bool reflects(std::int32_t index) const {
         return !material(index).radiance.sources.lobes.empty();
     }
 
-    /// Without bounces a surface that shines is seen, but sheds no light.
+    /// Without bounces a surface that shines but is no lamp is seen, and sheds no light.
     void warn_of_emission() const {
-        if (scene.options.bounces.most > 0) return;
-        const auto count = static_cast<std::int32_t>(scene.materials.size());
-        bool any = false;
-        for (std::int32_t i = 0; i < count && !any; ++i) any = reflects(i);
-        if (!any) return;
         for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-            const auto& emission = materials[i].radiance.sources.emission;
-            if (emission.is_constant() && luminance(emission.constant) < kDimmestEmission) continue;
+            const auto index = static_cast<std::int32_t>(i);
+            if (!emission->any(index) || emission->constant(index) != Vec3f(0.0f)) continue;
+            const auto& seen = materials[i].radiance.sources.emission;
+            if (seen.is_constant() && luminance(seen.constant) < kDimmestEmission) continue;
             report.warn("material '" + scene.materials[i].name + "'",
-                        "its emission is seen but lights nothing: add a lamp where it should");
+                        "its emission varies: it is seen, but lights nothing without bounces");
         }
     }
 
@@ -140,7 +141,7 @@ struct ShadingSystem::Impl {
         report.warn(owner, "is not finite at some points, where it is left out", count);
     }
 
-    ShadowOpacity shadow_opacity() const {
+    RayMaterials ray_materials() const {
         return {
             [this](std::int32_t index) {
                 return !material(index).shadow.transparency.is(Vec3f(0.0f));
@@ -148,7 +149,8 @@ struct ShadingSystem::Impl {
             [this](const RayHit& hit) {
                 return shadow_transparency(material(hit.material).shadow, scene, hit);
             },
-            [this](std::int32_t index) { return constant_transparency(material(index).shadow); }};
+            [this](std::int32_t index) { return constant_transparency(material(index).shadow); },
+            [this](std::int32_t index) { return emission->constant(index); }};
     }
 
     const CompiledSurface& material(int index) const {

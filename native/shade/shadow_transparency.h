@@ -2,7 +2,7 @@
 #pragma once
 
 #include "shade/nodes/node_compiler.h"
-#include "shade/rays/shadow_opacity.h"
+#include "shade/rays/ray_materials.h"
 
 namespace granita {
 

@@ -88,16 +88,17 @@ def room(scene):
     return ball
 
 
-def render_bounced(scene, render, cycles_samples, blur_glossy=0.0):
-    """(Cycles, Granita) with four bounces, without clamps: float32 [h, w, 3]."""
+def render_bounced(scene, render, cycles_samples, blur_glossy=0.0, bounces="FULL"):
+    """(Cycles, Granita) with four bounces or none, without clamps: float32 [h, w, 3]."""
     cycles, settings = scene.cycles, scene.granita
-    settings.bounces, settings.light_samples = "FULL", 64
+    settings.bounces, settings.light_samples = bounces, 64
     cycles.diffuse_bounces = cycles.glossy_bounces = 4
     cycles.sample_clamp_indirect, cycles.blur_glossy = 0.0, blur_glossy
     scene.view_settings.view_transform = "Raw"
     cycles.samples = cycles_samples
     cycles.use_denoising = cycles.use_adaptive_sampling = False
-    cycles.max_bounces, cycles.pixel_filter_type = 4, "BOX"
+    cycles.max_bounces = 4 if bounces == "FULL" else 0
+    cycles.pixel_filter_type = "BOX"
     settings.samples, settings.pixel_filter, settings.filter_width = 16, "BOX", 1.0
     made = []
     for engine in ("CYCLES", "GRANITA"):

@@ -44,14 +44,16 @@ class BouncedLight::Wave {
             follow(path);
         }
         m_paths.swap(m_next);
-        count_near();
+        for (const BouncedPath& path : m_paths)
+            if (path.kind == BouncedPath::Kind::Diffuse) m_gathered.asked[path.next.point] = 1;
     }
 
     void run() {
+        bool is_first = true;
         while (!m_paths.empty()) {
             m_light.m_progress.check();
             trace();
-            note_near();
+            if (std::exchange(is_first, false)) note_near();
             shade();
             m_paths.swap(m_next);
             m_next.clear();
@@ -74,7 +76,7 @@ class BouncedLight::Wave {
 
     /// Surfaces one further than the limits are asked for what they emit alone.
     bool is_within_limits(const BouncedPath& path) const {
-        const int more = m_light.m_hits.any_emits() ? 1 : 0;
+        const int more = m_light.m_any_shines ? 1 : 0;
         return path.depth <= m_limits.most + more && path.diffuse <= m_limits.diffuse + more &&
                path.glossy <= m_limits.glossy + more;
     }
@@ -83,25 +85,18 @@ class BouncedLight::Wave {
                path.glossy <= m_limits.glossy;
     }
 
-    void count_near() {
-        m_near_share.assign(m_gathered.nearness.size(), 0.0f);
-        for (const BouncedPath& path : m_paths)
-            m_near_share[path.next.point] += path.kind == BouncedPath::Kind::Diffuse ? 1.0f : 0.0f;
-        for (std::size_t i = 0; i < m_near_share.size(); ++i) {
-            m_gathered.asked[i] = m_near_share[i] > 0.0f;
-            if (m_gathered.asked[i]) m_near_share[i] = 1.0f / m_near_share[i];
-        }
-    }
-
-    /// Of surfaces that the first rays meet.
+    /// Of surfaces that the first rays meet: what light they bring varies as these are near,
+    /// however few they are.
     void note_near() {
-        for (const RayScene::Met& met : m_met) {
-            const BouncedPath& path = m_paths[met.ray];
-            if (path.depth > 1 || path.passed > 0 || path.kind != BouncedPath::Kind::Diffuse)
-                continue;
-            m_gathered.nearness[path.next.point] +=
-                m_near_share[path.next.point] / std::max(met.hit.distance, 1e-30f);
+        std::vector<float> met(m_gathered.nearness.size(), 0.0f);
+        for (const RayScene::Met& one : m_met) {
+            const BouncedPath& path = m_paths[one.ray];
+            if (path.kind != BouncedPath::Kind::Diffuse) continue;
+            m_gathered.nearness[path.next.point] += 1.0f / std::max(one.hit.distance, 1e-30f);
+            ++met[path.next.point];
         }
+        for (std::size_t i = 0; i < met.size(); ++i)
+            if (met[i] > 0.0f) m_gathered.nearness[i] /= met[i];
     }
 
     void trace() {
@@ -151,7 +146,9 @@ class BouncedLight::Wave {
         if (is_lit(first))
             light = m_light.m_direct.reflect(ran.points(), closure, key, nullptr, {}, nullptr,
                                              &m_leaving);
-        for (std::size_t i = 0; i < closure.emission.size(); ++i) light[i] += closure.emission[i];
+        if (!m_light.is_lamp(hit))
+            for (std::size_t i = 0; i < closure.emission.size(); ++i)
+                light[i] += closure.emission[i];
         for (std::size_t i = 0; i < batch.size(); ++i) bring(*batch[i].path, light[i]);
         go_on(batch, ran.points(), closure);
     }
@@ -258,7 +255,6 @@ class BouncedLight::Wave {
     const Bounces& m_limits;
     std::uint64_t m_salt;
     GatheredLight& m_gathered;
-    std::vector<float> m_near_share;  ///< [points] 1 / rays of diffuse lobes
     HitPoints m_points;
     std::vector<BouncedPath> m_paths, m_next;
     std::vector<Ray> m_rays;
@@ -269,12 +265,23 @@ class BouncedLight::Wave {
 };
 
 BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const HitShader& hits,
-                           Statistics& statistics, const Progress& progress)
+                           const MaterialEmission& emission, Statistics& statistics,
+                           const Progress& progress)
     : m_scene(scene),
       m_direct(direct),
       m_hits(hits),
+      m_emission(emission),
       m_statistics(statistics),
-      m_progress(progress) {}
+      m_progress(progress) {
+    for (std::size_t i = 0; i < scene.instances.size() && !m_any_shines; ++i) {
+        const bool is_lamp = direct.is_lamp(i);
+        m_any_shines =
+            std::ranges::any_of(scene.instances[i].materials, [&](std::int32_t material) {
+                return emission.any(material) &&
+                       !(is_lamp && emission.constant(material) != Vec3f(0.0f));
+            });
+    }
+}
 
 GatheredLight BouncedLight::gather(std::vector<LobeRay> leaving, std::size_t points) const {
     GatheredLight light(points);

@@ -2,12 +2,12 @@
 // Light that surfaces send to each other: ways from the points of a grid over other surfaces,
 // traced and shaded in batches, a bounce of all at a time.
 //
-//   BouncedLight bounces(scene, direct, hits, statistics, progress);    // once a frame
+//   BouncedLight bounces(scene, direct, hits, emission, statistics, progress);    // once a frame
 //   light = bounces.gather(leaving, points);          // any thread, any grid
 //
-// Each surface that is met adds what it emits and what of lamps and the world it reflects; one of
-// its lobes' samples, or the way through it, is followed further by a choice after their weights.
-// Ways end by Cycles' limits, or by Russian roulette (Arvo and Kirk 1990).
+// Each surface that is met adds what it emits, unless it is a lamp, and what of lamps and the world
+// it reflects; one of its lobes' samples, or the way through it, is followed further by a choice
+// after their weights. Ways end by Cycles' limits, or by Russian roulette (Arvo and Kirk 1990).
 //
 // What a way brings depends on itself alone: pictures are the same to the bit however points are
 // put together.
@@ -23,6 +23,7 @@
 #include "shade/bounces/hit_points.h"
 #include "shade/bounces/hit_shader.h"
 #include "shade/lights/direct_light.h"
+#include "shade/nodes/material_emission.h"
 
 namespace granita {
 
@@ -30,7 +31,8 @@ class BouncedLight {
   public:
     /// All must outlive it; `direct` has rays.
     BouncedLight(const Scene& scene, const DirectLight& direct, const HitShader& hits,
-                 Statistics& statistics, const Progress& progress);
+                 const MaterialEmission& emission, Statistics& statistics,
+                 const Progress& progress);
 
     /// What comes along the rays that leave `points`.
     GatheredLight gather(std::vector<LobeRay> leaving, std::size_t points) const;
@@ -38,9 +40,16 @@ class BouncedLight {
   private:
     class Wave;
 
+    /// Whether what a surface emits is light that DirectLight knows.
+    bool is_lamp(const RayHit& hit) const {
+        return m_direct.is_lamp(hit.instance) && m_emission.constant(hit.material) != Vec3f(0.0f);
+    }
+
     const Scene& m_scene;
     const DirectLight& m_direct;
     const HitShader& m_hits;
+    const MaterialEmission& m_emission;
+    bool m_any_shines = false;  ///< of surfaces that are no lamps
     Statistics& m_statistics;
     const Progress& m_progress;
 };

@@ -16,7 +16,7 @@ struct GatheredLight {
     std::vector<Vec3f> glossy;        ///< that others do, but for
     std::vector<Vec3f> mirrored;      ///< what mirrors alone bring, which is in no doubt
     std::vector<std::uint8_t> asked;  ///< whether diffuse lobes sent rays
-    /// Mean of 1 / distance over these: how fast their light changes from place to place.
+    /// Mean of 1 / distance of what these meet: how fast its light changes from place to place.
     std::vector<float> nearness;
 
     explicit GatheredLight(std::size_t points)

@@ -27,7 +27,6 @@ void HitShader::add(const NodeGraph& graph, const Scene& scene, TextureStore& te
         m_surfaces.push_back(
             compile_surface(graph, scene, textures, warnings, owner, nullptr, ray));
         report.add_new(warnings);
-        m_any_emits |= !m_surfaces.back().radiance.sources.emission.is(Vec3f(0.0f));
     }
 }
 

@@ -19,8 +19,6 @@ class HitShader {
 
     /// -1: no material.
     const CompiledSurface& surface(std::int32_t material, RayType ray) const;
-    /// Whether any material sends out light of its own.
-    bool any_emits() const { return m_any_emits; }
 
   private:
     void add(const NodeGraph& graph, const Scene& scene, TextureStore& textures, Report& report,
@@ -28,7 +26,6 @@ class HitShader {
 
     std::vector<CompiledSurface> m_surfaces;
     std::vector<std::array<std::size_t, kRayTypes>> m_of;  ///< [materials + 1][types of rays]
-    bool m_any_emits = false;
 };
 
 }  // namespace granita

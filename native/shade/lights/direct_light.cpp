@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <unordered_map>
@@ -19,6 +20,7 @@
 #include "shade/lights/lit_point.h"
 #include "shade/lights/lobe_runs.h"
 #include "shade/lights/part_rays.h"
+#include "shade/lights/shining_faces.h"
 #include "shade/lights/world_light.h"
 
 namespace granita {
@@ -34,9 +36,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Points of an aligned square of the grid, which share a choice of lamps.
 constexpr std::uint32_t kSharing = 16;
-/// Lamps asked for each light sample: by points that one sample of the picture sees alone, and by
-/// others where a pixel has as many samples.
-constexpr float kAskedByPlaced = 4.0f, kAsked = 4.0f;
+/// Points that many samples of the picture see ask as many times more lamps as noise would allow if
+/// a pixel had so many.
 constexpr int kSamplesOfAsked = 16;
 /// A choice that many share knows its lamps as much better.
 constexpr float kFiner = 4.0f;
@@ -50,7 +51,7 @@ Vec3d camera_origin(const Scene& scene) {
 
 struct DirectLight::Impl {
     Impl(const Scene& scene, WorldEvaluator world_evaluator, Statistics& frame_statistics,
-         Report& report, const Progress& progress, ShadowOpacity opacity,
+         Report& report, const Progress& progress, RayMaterials materials,
          std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
          const Displacement* displacement);
 
@@ -69,14 +70,15 @@ struct DirectLight::Impl {
     std::shared_ptr<GeometryCache> geometries;
     int sample_count;
     LampSet set;
-    float asked_by_corner;  ///< lamps for each light sample
+    float finer_by_corner;  ///< how many times more lamps these ask
     WorldLight world;
     std::unordered_map<std::uint32_t, std::uint64_t> linked;  ///< Instance::receives by key
+    std::vector<bool> shining;  ///< [instances] whose faces are lamps; empty: none's
 };
 
 DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator,
                         Statistics& frame_statistics, Report& report,
-                        const Progress& frame_progress, ShadowOpacity opacity,
+                        const Progress& frame_progress, RayMaterials materials,
                         std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
                         const Displacement* displacement)
     : scene(frame_scene),
@@ -84,22 +86,29 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
       progress(frame_progress),
       geometries(cache ? std::move(cache) : std::make_shared<GeometryCache>()),
       sample_count(std::max(1, frame_scene.options.light_samples)),
-      set(frame_scene, camera_origin(frame_scene)),
-      asked_by_corner(kAsked *
-                      std::sqrt(static_cast<float>(scene.options.samples) / kSamplesOfAsked)),
+      set(frame_scene.options.shutter_curve),
+      finer_by_corner(std::sqrt(static_cast<float>(scene.options.samples) / kSamplesOfAsked)),
       world(scene.world, std::move(world_evaluator), report, progress) {
     for (const Instance& instance : scene.instances)
         if (instance.receives != ~0ULL) linked[instance.key] = instance.receives;
-    const bool shadows =
+    const Vec3d origin = camera_origin(scene);
+    std::vector<Lamp> lamps = lamps_of(scene, origin);
+    const bool asks_rays =
         world.shines() || scene.options.bounces.most > 0 ||
-        std::ranges::any_of(set.lamps, [](const Lamp& lamp) { return lamp.casts_shadow(); });
-    if (!shadows) return;
-    StageTimer timer(statistics, Stage::RayBuild);
-    auto rays =
-        std::make_unique<RayScene>(scene, camera_origin(scene), std::move(opacity), progress,
-                                   geometries, &report, std::move(kept_rays), displacement);
-    statistics.peak_ray_bytes(rays->bytes());
-    if (!rays->empty()) set.set_casters(std::move(rays));
+        std::ranges::any_of(lamps, [](const Lamp& lamp) { return lamp.casts_shadow(); }) ||
+        std::ranges::any_of(scene.instances,
+                            [&](const Instance& instance) { return materials.shines(instance); });
+    if (asks_rays) {
+        StageTimer timer(statistics, Stage::RayBuild);
+        auto rays = std::make_unique<RayScene>(scene, origin, materials, progress, geometries,
+                                               &report, std::move(kept_rays), displacement);
+        statistics.peak_ray_bytes(rays->bytes());
+        ShiningFaces found = shining_faces(scene, *rays, materials);
+        std::ranges::move(found.lamps, std::back_inserter(lamps));
+        if (!found.lamps.empty()) shining = std::move(found.instances);
+        if (!rays->empty()) set.set_casters(std::move(rays));
+    }
+    set.set_lamps(std::move(lamps));
 }
 
 std::uint64_t DirectLight::Impl::receives(const GridKey& key) const {
@@ -192,7 +201,7 @@ void DirectLight::Impl::light_points(LitGrid& grid, const std::vector<LitPoint>&
     std::iota(order.begin(), order.end(), 0u);
     if (!grid.placed)
         std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return points[i].place; });
-    const float asked = grid.placed ? kAskedByPlaced : asked_by_corner;
+    const float asked = set.asked * (grid.placed ? 1.0f : finer_by_corner);
     LampChoice choice(*set.tree);
     LightReceiver receiver(grid.receives);
     std::vector<ChosenLamp> chosen;
@@ -239,17 +248,21 @@ void DirectLight::Impl::sample_rest(LitGrid& grid, const LitPoint& point,
 }
 
 DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics,
-                         Report& report, const Progress& progress, ShadowOpacity opacity,
+                         Report& report, const Progress& progress, RayMaterials materials,
                          std::shared_ptr<GeometryCache> geometries, std::shared_ptr<KeptRays> rays,
                          const Displacement* displacement)
     : m_impl(std::make_unique<Impl>(scene, std::move(world), statistics, report, progress,
-                                    std::move(opacity), std::move(geometries), std::move(rays),
+                                    std::move(materials), std::move(geometries), std::move(rays),
                                     displacement)) {}
 
 DirectLight::~DirectLight() = default;
 
 const RayScene* DirectLight::rays() const {
     return m_impl->set.rays.get();
+}
+
+bool DirectLight::is_lamp(std::size_t instance) const {
+    return !m_impl->shining.empty() && m_impl->shining[instance];
 }
 
 bool DirectLight::varies() const {
@@ -301,6 +314,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     // Points that lie closer share the light that a pixel's worth of them is due.
     const int sample_count = std::max(
         1, static_cast<int>(std::lround(points.share * static_cast<float>(m_impl->sample_count))));
+    const bool meets_surfaces = leaving || !m_impl->shining.empty();
     std::vector<LitPoint> lit;
     lit.reserve(dark && !leaving ? 0 : points.count);
     for (std::size_t i = 0; i < points.count; ++i) {
@@ -313,12 +327,12 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
             parts->transmission_color[i] = color.transmission;
         }
         if (dark && !leaving) continue;
-        const Vec3f &p = points.p[i], &normal = points.geometric_normal[i];
+        const Vec3f& normal = points.geometric_normal[i];
+        const Vec3f p = points.p[i] + (meets_surfaces ? inwards(points, i) : Vec3f(0.0f));
         const Vec3f offset = points.ray_offset.empty() ? Vec3f(0.0f) : points.ray_offset[i];
         if (m_impl->set.rays && !points.faces.empty())
             ray_offset = m_impl->set.rays->ray_offset({key.instance, points.faces[i]});
-        const Vec3f start =
-            ray_offset(p + offset + (leaving ? inwards(points, i) : Vec3f(0.0f)), normal);
+        const Vec3f start = ray_offset(p + offset, normal);
         const bool timed = !points.times.empty() && points.times[i] >= 0.0f;
         const float time = timed ? points.times[i] : m_impl->scene.options.frame_time;
         const LitPlace at_frame{time, p, normal, start};

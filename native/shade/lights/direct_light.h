@@ -31,20 +31,20 @@
 #include "shade/lights/light_motion.h"
 #include "shade/lights/lobe_ray.h"
 #include "shade/rays/kept_rays.h"
+#include "shade/rays/ray_materials.h"
 #include "shade/rays/ray_scene.h"
-#include "shade/rays/shadow_opacity.h"
 
 namespace granita {
 
 class DirectLight {
   public:
-    /// Bakes the world and, if any light or the world shines, builds the ray scene.  `world` is
-    /// kept and called from any thread; scene, statistics and progress must outlive this.  Without
-    /// `opacity` every surface casts a full shadow.  `geometries`: shared with dicing, if it is
-    /// given; `rays`: where built geometries are looked for and left; `displacement`: of instances,
-    /// if there is any.  Throws Cancelled.
+    /// Bakes the world and, if any light or the world or a surface shines, builds the ray scene.
+    /// `world` is kept and called from any thread; scene, statistics and progress must outlive
+    /// this.  Without `materials` every surface casts a full shadow and none is a lamp.
+    /// `geometries`: shared with dicing, if it is given; `rays`: where built geometries are looked
+    /// for and left; `displacement`: of instances, if there is any.  Throws Cancelled.
     DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics, Report& report,
-                const Progress& progress, ShadowOpacity opacity = {},
+                const Progress& progress, RayMaterials materials = {},
                 std::shared_ptr<GeometryCache> geometries = nullptr,
                 std::shared_ptr<KeptRays> rays = nullptr,
                 const Displacement* displacement = nullptr);
@@ -66,6 +66,10 @@ class DirectLight {
                                const GridKey& seed, ReflectionParts* parts = nullptr,
                                const PointPaths& paths = {}, std::vector<float>* noise = nullptr,
                                std::vector<LobeRay>* leaving = nullptr) const;
+
+    /// Whether what RayMaterials::emitted tells of an instance is among the light that reflect()
+    /// knows, so that ways which meet it bring none.
+    bool is_lamp(std::size_t instance) const;
 
     /// What is met by rays; nullptr where none are traced.
     const RayScene* rays() const;

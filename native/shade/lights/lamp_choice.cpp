@@ -12,7 +12,7 @@ namespace {
 /// may be all that is left, where the few are shadowed.
 constexpr float kLeastOfRest = 0.25f;
 constexpr int kMostOpened = 512;
-/// Samples of a soft lamp for each time that it would be asked.
+/// Samples of a soft lamp for each time that it would be asked; of a mesh's face one.
 constexpr float kSamplesPerRate = 4.0f;
 
 }  // namespace
@@ -104,7 +104,8 @@ void LampChoice::sort_out(float once) {
         if (entry.importance == 0.0f) continue;
         const float rate = entry.importance / once;
         if (rate >= 1.0f && m_tree.is_lamp(entry.slot)) {
-            m_always.push_back({m_tree.lamp(entry.slot), {1.0f, samples_at(rate)}, false});
+            const std::uint32_t lamp = m_tree.lamp(entry.slot);
+            m_always.push_back({lamp, {1.0f, samples_at(lamp, rate)}, false});
         } else {
             sum += static_cast<double>(rate);
             m_chances.push_back({entry.slot, rate, sum});
@@ -112,11 +113,12 @@ void LampChoice::sort_out(float once) {
     }
 }
 
-int LampChoice::samples_at(float rate) const {
+int LampChoice::samples_at(std::uint32_t lamp, float rate) const {
     // Rounded differently on two ways, the same rate has as many samples.
     constexpr float kRounding = 1.0f - 1e-5f;
     const float wanted =
-        std::min(kSamplesPerRate * kRounding * rate, static_cast<float>(m_samples));
+        std::min((m_tree.is_face(lamp) ? 1.0f : kSamplesPerRate) * kRounding * rate,
+                 static_cast<float>(m_samples));
     const auto whole = static_cast<std::uint32_t>(std::ceil(wanted));
     return std::min(m_samples, static_cast<int>(std::bit_ceil(std::max(1u, whole))));
 }
@@ -153,7 +155,8 @@ ChosenLamp LampChoice::descend(Slot slot, float u, float rate) const {
         rate *= importance[last] / sum;
         slot = node * LightTree::kWidth + last;
     }
-    return {m_tree.lamp(slot), {rate, samples_at(rate)}, true};
+    const std::uint32_t lamp = m_tree.lamp(slot);
+    return {lamp, {rate, samples_at(lamp, rate)}, true};
 }
 
 LampRate LampChoice::rate_of(std::uint32_t lamp) const {
@@ -172,7 +175,7 @@ LampRate LampChoice::rate_of(std::uint32_t lamp) const {
         share *= here / sum;
         chance = std::ranges::find(m_chances, slot, &Chance::slot);
     }
-    return {chance->rate * share, samples_at(chance->rate * share)};
+    return {chance->rate * share, samples_at(lamp, chance->rate * share)};
 }
 
 }  // namespace granita

@@ -62,7 +62,7 @@ class LampChoice {
     void open(const Least& least);
     float importance_of_one(float asked);
     void sort_out(float once);
-    int samples_at(float rate) const;
+    int samples_at(std::uint32_t lamp, float rate) const;
     /// To one of the lamps below, by u in [0, 1).
     ChosenLamp descend(Slot slot, float u, float rate) const;
 

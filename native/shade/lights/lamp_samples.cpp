@@ -29,21 +29,19 @@ void sample_lamp(const LampSet& set, LitGrid& grid, const LitPoint& point, const
     // One sample of many tells all where nothing varies along its ray; one of one is any time's.
     const bool timed = set.changes(lamp) && (wanted > 1 || point.sample_count == 1);
     const SobolPoints sequence = grid.sequence(point, dimension, count);
-    const auto add = [&](const LitPlace& place, const LightSource& source,
-                         const LightSample& sample, int s) {
+    const auto add = [&](const LitPlace& place, const LightSample& sample, int s) {
         if (!(sample.pdf > 0.0f)) return;
         const BsdfValue bsdf = lamp.apply(point.bsdf.evaluate(sample.direction));
         const Vec3f value = total(bsdf) * sample.radiance;
         if (value == Vec3f(0.0f)) return;
         float density = static_cast<float>(count) * sample.pdf * turn.rate.mean;
-        if (!source.is_hard() && lamp.meets_lobes())
+        if (!lamp.is_hard() && lamp.meets_lobes())
             density += point.meeting_density(sample.direction);
         const BsdfValue parts = bsdf * (sample.radiance / density);
         const float sign = turn.sign != 0.0f ? turn.sign : LitGrid::sign(s, count);
         if (set.rays && lamp.casts_shadow())
-            shadows.send(
-                point.index, value / density, parts, sign,
-                set.ray(point, place, sample.direction, sample.distance, lamp.blocker_set()));
+            shadows.send(point.index, value / density, parts, sign,
+                         set.ray_to(point, place, lamp, sample));
         else
             shadows.send(point.index, value / density, parts, sign);
     };
@@ -54,18 +52,16 @@ void sample_lamp(const LampSet& set, LitGrid& grid, const LitPoint& point, const
     if (!timed) {
         const LitPlace& place = point.at_frame;
         if (!lamp.exists(place.time)) return;
-        const LightSource& source = lamp.at(place.time);
-        source.sample_all(place.p, grid.lamp_points, grid.lamp_samples);
+        lamp.sample_all(place.time, place.p, grid.lamp_points, grid.lamp_samples);
         for (int s = 0; s < count; ++s)
-            add(place, source, grid.lamp_samples[static_cast<std::size_t>(s)], s);
+            add(place, grid.lamp_samples[static_cast<std::size_t>(s)], s);
         return;
     }
     for (std::size_t s = 0; s < grid.lamp_points.size(); ++s) {
         const LitPlace place = set.place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
         if (!lamp.exists(place.time)) continue;
-        const LightSource& source = lamp.at(place.time);
-        source.sample(place.p, grid.lamp_points[s], grid.lamp_samples[s]);
-        add(place, source, grid.lamp_samples[s], static_cast<int>(s));
+        lamp.sample(place.time, place.p, grid.lamp_points[s], grid.lamp_samples[s]);
+        add(place, grid.lamp_samples[s], static_cast<int>(s));
     }
 }
 

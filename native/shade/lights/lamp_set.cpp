@@ -7,30 +7,46 @@
 namespace granita {
 namespace {
 
-/// As many lamps are all asked: no choice pays.
-constexpr std::size_t kFewLamps = 16;
+/// As many lamps, and faces that shine, are all asked: no choice pays.
+constexpr std::ptrdiff_t kFewLamps = 16, kFewFaces = 4;
+/// Of others, for each light sample: lamps take some samples each time, faces one.
+constexpr float kAsked = 4.0f, kAskedOfFaces = 2.0f;
+
+/// What lies so little before a surface that shines, as a part of the way there and of the numbers
+/// that places are told in, casts no shadow: or it would cast one itself.
+constexpr float kBefore = 1e-4f, kRounding = 0x1p-20f;
 
 }  // namespace
 
-LampSet::LampSet(const Scene& scene, const Vec3d& origin) : shutter(scene.options.shutter_curve) {
+std::vector<Lamp> lamps_of(const Scene& scene, const Vec3d& origin) {
+    std::vector<Lamp> lamps;
     for (const Light& light : scene.lights) {
         float energy = std::abs(light.energy);
         for (const float knot : light.energy_knots) energy = std::max(energy, std::abs(knot));
         if (light.color * energy == Vec3f(0.0f) || light.lifespan.is_empty()) continue;
         lamps.emplace_back(light, scene.options.frame_time, origin);
-        varies = varies || lamps.back().varies();
     }
-    const auto without_place = [](const Lamp& lamp) {
+    return lamps;
+}
+
+void LampSet::set_lamps(std::vector<Lamp> made) {
+    lamps = std::move(made);
+    for (const Lamp& lamp : lamps) varies = varies || lamp.varies();
+    const auto has_place = [](const Lamp& lamp) {
         LightBound bound;
-        return !lamp.bound(bound);
+        return !lamp.is_surface() && lamp.bound(bound);
     };
-    const auto placed = static_cast<std::size_t>(
-        std::ranges::count_if(lamps, [&](const Lamp& lamp) { return !without_place(lamp); }));
-    if (placed <= kFewLamps) return;
-    std::stable_partition(lamps.begin(), lamps.end(), without_place);
-    everywhere = lamps.size() - placed;
-    std::vector<LightBound> bounds(placed);
-    for (std::size_t l = 0; l < placed; ++l) lamps[everywhere + l].bound(bounds[l]);
+    const bool many_lamps = std::ranges::count_if(lamps, has_place) > kFewLamps;
+    const bool many_faces = std::ranges::count_if(lamps, &Lamp::is_surface) > kFewFaces;
+    if (!many_lamps && !many_faces) return;
+    const auto chosen = std::stable_partition(lamps.begin(), lamps.end(), [&](const Lamp& lamp) {
+        return !(lamp.is_surface() ? many_faces : many_lamps && has_place(lamp));
+    });
+    everywhere = static_cast<std::size_t>(chosen - lamps.begin());
+    asked = many_lamps ? kAsked : kAskedOfFaces;
+    const std::size_t in_tree = lamps.size() - everywhere;
+    std::vector<LightBound> bounds(in_tree);
+    for (std::size_t l = 0; l < in_tree; ++l) lamps[everywhere + l].bound(bounds[l]);
     std::vector<std::uint32_t> order;
     tree = std::make_unique<LightTree>(bounds, order);
     std::vector<Lamp> ordered;
@@ -62,7 +78,7 @@ int LampSet::samples_of(const LitPoint& point, const Lamp& lamp) const {
     Vec3f center;
     float radius;
     const bool still = !lamp.varies() && !point.paths.moves();
-    if (still && lamp.at(0.0f).bound(center, radius) &&
+    if (still && lamp.bound(center, radius) &&
         !point.bsdf.can_see(center - point.at_frame.p, radius))
         return 0;
     if (!lamp.is_hard()) return point.sample_count;
@@ -70,7 +86,7 @@ int LampSet::samples_of(const LitPoint& point, const Lamp& lamp) const {
     if (lamp.varies() || point.paths.moves()) return point.sample_count;
     const LitPlace& place = point.at_frame;
     LightSample sample;
-    if (!lamp.at(place.time).sample(place.p, Vec2f(0.0f), sample)) return 0;
+    if (!lamp.sample(place.time, place.p, Vec2f(0.0f), sample)) return 0;
     return rays->varies(place.start, sample.direction, sample.distance) ? point.sample_count : 1;
 }
 
@@ -87,12 +103,26 @@ Ray LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& dire
     return {below ? from.start_below() : from.start, direction, distance, from.time, blocker_set};
 }
 
+Ray LampSet::ray_to(const LitPoint& point, const LitPlace& place, const Lamp& lamp,
+                    const LightSample& sample) const {
+    Ray to = ray(point, place, sample.direction, sample.distance, lamp.blocker_set());
+    if (!lamp.is_surface()) return to;
+    // Where it starts beside the point, as of strands, it would pass the surface or fall short.
+    const Vec3f target = place.p + sample.direction * sample.distance;
+    const Vec3f way = target - to.start;
+    const float length = glm::length(way);
+    if (length > 0.0f) to.direction = way / length;
+    const Vec3f size = glm::max(glm::abs(to.start), glm::abs(target));
+    to.distance =
+        std::max(0.0f, length * (1.0f - kBefore) - kRounding * std::max({size.x, size.y, size.z}));
+    return to;
+}
+
 Vec3f LampSet::shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                       const LightSample& sample) const {
     if (!rays || !lamp.casts_shadow()) return Vec3f(1.0f);
     ++grid.shadow_rays;
-    return rays->transmittance(
-        ray(point, place, sample.direction, sample.distance, lamp.blocker_set()));
+    return rays->transmittance(ray_to(point, place, lamp, sample));
 }
 
 Vec3f LampSet::occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,

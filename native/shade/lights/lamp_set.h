@@ -17,8 +17,10 @@ namespace granita {
 
 /// The lamps of a frame, and what comes before them.
 struct LampSet {
-    /// `origin`: the camera's world position at the frame time.
-    LampSet(const Scene& scene, const Vec3d& origin);
+    /// `curve`: Options::shutter_curve.
+    explicit LampSet(const std::vector<float>& curve) : shutter(curve) {}
+    /// Once, before light is asked for: where there are many, they are put in a tree.
+    void set_lamps(std::vector<Lamp> made);
     /// Traces shadows from now on.
     void set_casters(std::unique_ptr<RayScene> casters);
 
@@ -34,6 +36,9 @@ struct LampSet {
     int samples_of(const LitPoint& point, const Lamp& lamp) const;
     Ray ray(const LitPoint& point, const LitPlace& place, const Vec3f& direction, float distance,
             int blocker_set = -1) const;
+    /// Towards what a lamp sends.
+    Ray ray_to(const LitPoint& point, const LitPlace& place, const Lamp& lamp,
+               const LightSample& sample) const;
     Vec3f shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                  const LightSample& sample) const;
     /// What of the world's light passes what comes before it.
@@ -61,12 +66,16 @@ struct LampSet {
     }
 
     ShutterWarp shutter;
-    std::vector<Lamp> lamps;  ///< where there is a tree, those without a place first
+    std::vector<Lamp> lamps;  ///< where there is a tree, those that are not in it first
     std::size_t everywhere = 0;
     std::unique_ptr<LightTree> tree;  ///< of the others; nullptr: few, each is asked
+    float asked = 0.0f;               ///< of these, for each light sample of few
     std::unique_ptr<RayScene> rays;   ///< nullptr where nothing can cast a shadow
     bool casters_move = false;
     bool varies = false;  ///< casters or lamps do
 };
+
+/// Those of a scene that shine.  `origin`: the camera's world position at the frame time.
+std::vector<Lamp> lamps_of(const Scene& scene, const Vec3d& origin);
 
 }  // namespace granita

@@ -21,6 +21,7 @@ struct LightBound {
     float near2 = 0.0f;                   ///< square metres
     float diffuse = 0.0f, glossy = 0.0f;  ///< intensity as such lobes see it, mean of the channels
     std::uint64_t sets = 0;               ///< of Instance::receives; all: lights everything
+    bool is_face = false;                 ///< one of many of a mesh
 
     /// The box and the cone that hold both.
     void join(const LightBound& other);

@@ -2,6 +2,7 @@
 #include "shade/lights/light_lamp.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace granita {
 namespace {
@@ -35,24 +36,51 @@ Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin)
     }
 }
 
+Lamp::Lamp(MovingTriangle triangle, const Instance& instance)
+    : m_lifespan(instance.lifespan),
+      m_hard(false),
+      m_casts_shadow(true),
+      m_is_surface(true),
+      m_diffuse(instance.visible_diffuse ? 1.0f : 0.0f),
+      m_glossy(instance.visible_glossy ? 1.0f : 0.0f),
+      m_transmission(m_glossy),
+      m_receiver_set(-1),
+      m_blocker_set(-1) {
+    if (triangle.is_still())
+        m_sources.push_back(std::make_unique<TriangleLight>(triangle.at(0.0f)));
+    else
+        m_moving = std::make_unique<const MovingTriangle>(std::move(triangle));
+}
+
+LightBound Lamp::bound_of(const LightSource& source) const {
+    LightBound here;
+    Vec3f center(0.0f);
+    float radius = 0.0f;
+    source.bound(center, radius);
+    const LightEmission emission = source.emission();
+    here.box.add(center);
+    here.box.grow(radius);
+    here.axis = emission.axis;
+    here.cone = emission.cone;
+    here.fall = emission.fall;
+    here.near2 = emission.near2;
+    here.diffuse = emission.intensity * m_diffuse;
+    here.glossy = emission.intensity * std::max(m_glossy, m_transmission);
+    here.sets = m_receiver_set < 0 ? ~0ULL : 1ULL << m_receiver_set;
+    here.is_face = m_is_surface;
+    return here;
+}
+
 bool Lamp::bound(LightBound& out) const {
     out = {};
+    out.is_face = m_is_surface;
+    if (m_moving)
+        m_moving->at_knots([&](const TriangleLight& place) { out.add_time(bound_of(place)); });
     for (const auto& source : m_sources) {
         Vec3f center;
         float radius;
         if (!source->bound(center, radius)) return false;
-        const LightEmission emission = source->emission();
-        LightBound here;
-        here.box.add(center);
-        here.box.grow(radius);
-        here.axis = emission.axis;
-        here.cone = emission.cone;
-        here.fall = emission.fall;
-        here.near2 = emission.near2;
-        here.diffuse = emission.intensity * m_diffuse;
-        here.glossy = emission.intensity * std::max(m_glossy, m_transmission);
-        here.sets = m_receiver_set < 0 ? ~0ULL : 1ULL << m_receiver_set;
-        out.add_time(here);
+        out.add_time(bound_of(*source));
     }
     return true;
 }

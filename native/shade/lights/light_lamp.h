@@ -5,10 +5,11 @@
 #include <memory>
 #include <vector>
 
-#include "scene/light.h"
+#include "scene/scene.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/lights/light_bound.h"
 #include "shade/lights/light_source.h"
+#include "shade/lights/light_triangle.h"
 
 namespace granita {
 
@@ -17,29 +18,44 @@ class Lamp {
   public:
     /// `origin`: the camera's world position at the frame time.
     Lamp(const Light& light, float frame_time, const Vec3d& origin);
+    /// A triangle of an instance that shines.
+    Lamp(MovingTriangle triangle, const Instance& instance);
 
     /// Whether its place or its strength changes within the shutter.
-    bool varies() const { return m_sources.size() > 1 || !m_lifespan.is_whole(); }
+    bool varies() const { return m_moving || m_sources.size() > 1 || !m_lifespan.is_whole(); }
     /// Whether it is there.
     bool exists(float time) const { return m_lifespan.contains(time); }
     /// Without a size at all times.
     bool is_hard() const { return m_hard; }
     bool casts_shadow() const { return m_casts_shadow; }
+    /// Whether rays meet it, which are to end before it.
+    bool is_surface() const { return m_is_surface; }
     /// Whether it lights an instance of that mask (Instance::receives).
     bool lights(std::uint64_t receives) const { return in_light_set(receives, m_receiver_set); }
     int blocker_set() const { return m_blocker_set; }
     /// Whether samples of lobes may meet it.
     bool meets_lobes() const { return m_glossy > 0.0f || m_transmission > 0.0f; }
-    const LightSource& at(float time) const {
-        const auto count = m_sources.size();
-        const auto place = static_cast<std::size_t>(time * static_cast<float>(count));
-        return *m_sources[place < count ? place : count - 1];
+    /// LightSource::sample_all at a time.
+    void sample_all(float time, const Vec3f& p, std::span<const Vec2f> u,
+                    std::span<LightSample> samples) const {
+        if (m_moving)
+            m_moving->at(time).sample_all(p, u, samples);
+        else
+            at(time).sample_all(p, u, samples);
+    }
+    bool sample(float time, const Vec3f& p, const Vec2f& u, LightSample& sample) const {
+        sample_all(time, p, {&u, 1}, {&sample, 1});
+        return sample.pdf > 0.0f;
     }
     /// What a ray of that time meets of it: LightSource::intersect.
     bool meets(float time, const Vec3f& p, const Vec3f& direction, LightSample& sample) const {
-        return exists(time) && at(time).intersect(p, direction, sample);
+        if (!exists(time)) return false;
+        return m_moving ? m_moving->at(time).intersect(p, direction, sample)
+                        : at(time).intersect(p, direction, sample);
     }
-    /// Whether it has a place, and then a bound on it and on what it sheds.
+    /// Of one that does not vary: LightSource::bound.
+    bool bound(Vec3f& center, float& radius) const { return at(0.0f).bound(center, radius); }
+    /// Whether it has a place, and then a bound on it and on what it sheds over the shutter.
     bool bound(LightBound& out) const;
     /// Light that is sent on, by the lobes that see this lamp.
     BsdfValue apply(const BsdfValue& value) const {
@@ -48,9 +64,17 @@ class Lamp {
     }
 
   private:
+    const LightSource& at(float time) const {
+        const auto count = m_sources.size();
+        const auto place = static_cast<std::size_t>(time * static_cast<float>(count));
+        return *m_sources[place < count ? place : count - 1];
+    }
+    LightBound bound_of(const LightSource& source) const;
+
     std::vector<std::unique_ptr<LightSource>> m_sources;  ///< one, or at equal parts of the shutter
+    std::unique_ptr<const MovingTriangle> m_moving;       ///< instead of these
     Lifespan m_lifespan;
-    bool m_hard = true, m_casts_shadow;
+    bool m_hard = true, m_casts_shadow, m_is_surface = false;
     float m_diffuse, m_glossy, m_transmission;
     int m_receiver_set, m_blocker_set;
 };

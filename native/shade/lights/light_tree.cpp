@@ -25,7 +25,7 @@ LightTree::LightTree(const std::vector<LightBound>& lamps, std::vector<std::uint
 
 std::size_t LightTree::bytes() const {
     return m_nodes.size() * sizeof(LightNode) +
-           (m_slot_of_lamp.size() + m_slot_of_node.size()) * sizeof(Slot);
+           (m_slot_of_lamp.size() + m_slot_of_node.size()) * sizeof(Slot) + m_is_face.size() / 8;
 }
 
 std::uint32_t LightTree::add_node(const std::vector<LightBound>& lamps, std::uint32_t* first,
@@ -43,6 +43,7 @@ std::uint32_t LightTree::add_node(const std::vector<LightBound>& lamps, std::uin
             // Groups come in the order of the range: so do lamps.
             m_nodes[index].child[i] = static_cast<std::uint32_t>(m_slot_of_lamp.size()) | kLamp;
             m_slot_of_lamp.push_back(slot);
+            m_is_face.push_back(lamps[*group.first].is_face);
         } else {
             const std::uint32_t below = add_node(lamps, group.first, group.last, slot);
             m_nodes[index].child[i] = below;

@@ -27,6 +27,7 @@ class LightTree {
     std::uint32_t lamp(Slot slot) const { return child(slot) & ~kLamp; }
     std::uint32_t node(Slot slot) const { return child(slot); }
     Slot slot_of_lamp(std::uint32_t lamp) const { return m_slot_of_lamp[lamp]; }
+    bool is_face(std::uint32_t lamp) const { return m_is_face[lamp]; }
     /// kNoSlot of the root, which is node 0.
     Slot slot_of_node(std::uint32_t node) const { return m_slot_of_node[node]; }
 
@@ -67,6 +68,7 @@ class LightTree {
 
     std::vector<LightNode> m_nodes;
     std::vector<Slot> m_slot_of_lamp, m_slot_of_node;
+    std::vector<bool> m_is_face;  ///< [lamps]
 };
 
 }  // namespace granita

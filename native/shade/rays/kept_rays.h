@@ -38,6 +38,7 @@ struct KeptRayShape {
     RayKey key;
     std::unique_ptr<RayShape> shape;
     RtcHandle<RTCScene> built;
+    std::vector<RayPart> parts;  ///< by Embree's id in `built`, which owns them
     bool is_coarsened = false;
 };
 

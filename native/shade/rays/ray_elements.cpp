@@ -63,7 +63,7 @@ void RayElements::fill_curves(int knot, float* out) const {
     }
 }
 
-std::vector<RTCGeometry> RayElements::hand_over(RTCDevice device) {
+std::vector<RayPart> RayElements::hand_over(RTCDevice device) {
     const bool curves = m_data->kind == GeometryKind::Curves;
     const std::size_t count = curves ? m_segments + 3 * m_curves.size() : m_data->vertex_count();
     RTCGeometry geometry = rtcNewGeometry(
@@ -93,7 +93,7 @@ std::vector<RTCGeometry> RayElements::hand_over(RTCDevice device) {
             first += segments + 3;
         }
     }
-    if (allocated) return {geometry};
+    if (allocated) return {{geometry}};
     rtcReleaseGeometry(geometry);
     return {};
 }

@@ -17,7 +17,7 @@ class RayElements final : public RayShape {
     /// `located`: locate() will be asked.
     RayElements(const GeometryData& data, float frame_time, bool located);
 
-    std::vector<RTCGeometry> hand_over(RTCDevice device) override;
+    std::vector<RayPart> hand_over(RTCDevice device) override;
     std::string size() const override;
     int knots() const override { return m_knots; }
     float extent(std::uint32_t) const override { return m_extent; }

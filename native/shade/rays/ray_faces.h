@@ -17,7 +17,7 @@ namespace granita {
 template <std::size_t Corners>
 class RayFaces : public RayShape {
   public:
-    std::vector<RTCGeometry> hand_over(RTCDevice device) override {
+    std::vector<RayPart> hand_over(RTCDevice device) override {
         return m_primitives.hand_over(device);
     }
     int knots() const override { return m_primitives.knots; }

@@ -28,7 +28,7 @@ void RayPrimitives<N>::put_still_first() {
 }
 
 template <std::size_t N>
-std::vector<RTCGeometry> RayPrimitives<N>::hand_over(RTCDevice device) {
+std::vector<RayPart> RayPrimitives<N>::hand_over(RTCDevice device) {
     bool allocated = true;
     // Embree reads 16 bytes at the last vertex.
     constexpr std::size_t kPadding = 16 - sizeof(Vec3f);
@@ -39,12 +39,12 @@ std::vector<RTCGeometry> RayPrimitives<N>::hand_over(RTCDevice device) {
         allocated = data != nullptr;
         if (allocated) std::ranges::copy(at(knot), static_cast<Vec3f*>(data));
     }
-    std::vector<RTCGeometry> handed;
+    std::vector<RayPart> handed;
     const auto add = [&](std::size_t first, std::size_t last, int knot_count) {
         if (first == last) return;
         RTCGeometry geometry =
             rtcNewGeometry(device, N == 3 ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_QUAD);
-        handed.push_back(geometry);
+        handed.push_back({geometry, static_cast<std::uint32_t>(last - first), N, knot_count});
         rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(knot_count));
         for (int knot = 0; knot < knot_count; ++knot)
             rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(knot),
@@ -66,7 +66,7 @@ std::vector<RTCGeometry> RayPrimitives<N>::hand_over(RTCDevice device) {
     std::vector<Vec3f>().swap(points);
     std::vector<std::array<std::uint32_t, N>>().swap(indices);
     if (allocated) return handed;
-    for (RTCGeometry geometry : handed) rtcReleaseGeometry(geometry);
+    for (const RayPart& part : handed) rtcReleaseGeometry(part.geometry);
     return {};
 }
 

@@ -14,6 +14,15 @@
 
 namespace granita {
 
+/// One of Embree's geometries: `count` primitives of so many corners, whose buffers it keeps; of
+/// curves and points no corners.
+struct RayPart {
+    RTCGeometry geometry;
+    std::uint32_t count = 0;
+    std::uint32_t corners = 0;
+    int knots = 1;
+};
+
 /// N: 3 or 4.  Embree cuts a quad between its second and its fourth corner.
 template <std::size_t N>
 struct RayPrimitives {
@@ -29,7 +38,7 @@ struct RayPrimitives {
     /// Once all are there.
     void put_still_first();
     /// As RayShape::hand_over(); points and indices are given back.
-    std::vector<RTCGeometry> hand_over(RTCDevice device);
+    std::vector<RayPart> hand_over(RTCDevice device);
     /// The number that a primitive of a geometry handed over had before put_still_first().
     std::uint32_t original(std::uint32_t geometry, std::uint32_t primitive) const {
         if (m_order.empty()) return primitive;

@@ -9,6 +9,7 @@
 #include "scene/knot_time.h"
 #include "shade/rays/covering_triangle.h"
 #include "shade/rays/ray_scene_impl.h"
+#include "shade/rays/ray_transforms.h"
 #include "shade/rays/set_ray.h"
 
 namespace granita {
@@ -65,11 +66,11 @@ Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& r
                                    const RTCHit& at, const RayInstance& instance) const {
     RayHit hit;
     locate(ray, at, instance, context.start, context.direction, hit);
-    if (!opacity.is_transparent(hit.material)) return Vec3f(0.0f);
+    if (!materials.is_transparent(hit.material)) return Vec3f(0.0f);
     std::optional<RayFrame> moved;
     if (!hit.frame) hit.frame = &moved.emplace(frame_at(hit.instance, ray.time));
     hit.normal = normal_of(at, hit, *hit.frame);
-    return opacity.transparency(hit);
+    return materials.transparency(hit);
 }
 
 /// Called for hits on geometry that may let light through, not exist or not be in the light's set:
@@ -132,6 +133,18 @@ RayOffset RayScene::ray_offset(const GridKey& key) const {
     const RayShape& shape = *m_impl->shape_of(instance.index).shape;
     return {instance.distance, instance.scale * shape.extent(key.face),
             instance.scale * shape.error(key.face), true};
+}
+
+std::vector<Mat4d> RayScene::transforms(std::size_t instance) const {
+    if (!m_impl->by_key.contains(m_impl->scene.instances[instance].key)) return {};
+    const auto made =
+        ray_transforms(m_impl->scene.instances[instance].world_from_object, m_impl->origin);
+    return made ? made->knots : std::vector<Mat4d>{};
+}
+
+void RayScene::triangles(std::size_t instance,
+                         const std::function<void(const RayTriangle&)>& visit) const {
+    for_each_triangle(m_impl->shape_of(instance), visit);
 }
 
 bool RayScene::moves() const {

@@ -17,8 +17,9 @@
 #include "shade/rays/kept_rays.h"
 #include "shade/rays/ray.h"
 #include "shade/rays/ray_hit.h"
+#include "shade/rays/ray_materials.h"
 #include "shade/rays/ray_offset.h"
-#include "shade/rays/shadow_opacity.h"
+#include "shade/rays/ray_triangles.h"
 
 namespace granita {
 
@@ -30,7 +31,7 @@ class RayScene {
     /// `kept`: where built geometries are looked for and left; `displacement`: of instances, where
     /// there is any, which must outlive this.
     /// Throws Cancelled, or SceneError naming the geometry that Embree could not take.
-    RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacity,
+    RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materials,
              const Progress& progress, std::shared_ptr<GeometryCache> geometries = nullptr,
              Report* report = nullptr, std::shared_ptr<KeptRays> kept = nullptr,
              const Displacement* displacement = nullptr);
@@ -70,6 +71,13 @@ class RayScene {
     /// The nearest surfaces that are there at the rays' times, in their order; those of other rays,
     /// which meet none, are left out.
     void nearest(std::span<const Ray> rays, std::vector<Met>& out) const;
+
+    /// Shading space from an instance's own at equal steps of the shutter, as rays know it; none
+    /// of what they do not meet.
+    std::vector<Mat4d> transforms(std::size_t instance) const;
+    /// What rays meet of an instance that they meet, in its own space.
+    void triangles(std::size_t instance,
+                   const std::function<void(const RayTriangle&)>& visit) const;
 
     /// Share of light that passes, per channel.
     Vec3f transmittance(const Ray& ray) const;

@@ -46,10 +46,10 @@ void RayScene::Impl::check(const std::string& what, const Progress& progress) co
 }
 
 bool RayScene::Impl::lets_light_through(const Instance& instance) const {
-    if (!opacity.is_transparent) return false;
-    if (instance.materials.empty()) return opacity.is_transparent(-1);
+    if (!materials.is_transparent) return false;
+    if (instance.materials.empty()) return materials.is_transparent(-1);
     return std::any_of(instance.materials.begin(), instance.materials.end(),
-                       [&](std::int32_t material) { return opacity.is_transparent(material); });
+                       [&](std::int32_t material) { return materials.is_transparent(material); });
 }
 
 void RayScene::Impl::make_shape(KeptRayShape& made,
@@ -69,11 +69,11 @@ void RayScene::Impl::make_shape(KeptRayShape& made,
 }
 
 std::optional<Vec3f> RayScene::Impl::constant_of(const Instance& instance) const {
-    if (!opacity.constant) return std::nullopt;
-    if (instance.materials.empty()) return opacity.constant(-1);
-    const std::optional<Vec3f> first = opacity.constant(instance.materials.front());
+    if (!materials.constant) return std::nullopt;
+    if (instance.materials.empty()) return materials.constant(-1);
+    const std::optional<Vec3f> first = materials.constant(instance.materials.front());
     for (const std::int32_t material : instance.materials)
-        if (opacity.constant(material) != first) return std::nullopt;
+        if (materials.constant(material) != first) return std::nullopt;
     return first;
 }
 
@@ -135,7 +135,9 @@ void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
     rtcSetSceneFlags(built, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(built, RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneProgressMonitorFunction(built, goes_on, const_cast<Progress*>(&progress));
-    for (RTCGeometry handed : made.shape->hand_over(kept->device())) {
+    made.parts = made.shape->hand_over(kept->device());
+    for (const RayPart& part : made.parts) {
+        RTCGeometry handed = part.geometry;
         if (made.key.use & ~(kCasts | kIsShaded))
             rtcSetGeometryOccludedFilterFunction(handed, pass_through);
         if (made.key.use & (kAppears | kIsHidden))
@@ -178,10 +180,10 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
         added.still.emplace(matrix_at(instance.world_from_object, 0.0));
 }
 
-RayScene::RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacity,
+RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materials,
                    const Progress& progress, std::shared_ptr<GeometryCache> geometries,
                    Report* report, std::shared_ptr<KeptRays> kept, const Displacement* displacement)
-    : m_impl(std::make_unique<Impl>(scene, std::move(opacity), std::move(geometries),
+    : m_impl(std::make_unique<Impl>(scene, std::move(materials), std::move(geometries),
                                     std::move(kept), displacement, origin)) {
     Report unread;
     Report& warnings = report ? *report : unread;
@@ -198,9 +200,9 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, ShadowOpacity opacit
         if (impl.lets_light_through(instance)) use |= kLetsLightThrough;
         if (!instance.lifespan.is_whole()) use |= kAppears;
         if (instance.blocks != ~0ULL) use |= kIsLinked;
-        const bool hidden =
-            !instance.casts_shadow || !instance.visible_diffuse || !instance.visible_glossy;
-        if (hidden && scene.options.bounces.most > 0) use |= kIsHidden;
+        const bool hidden = scene.options.bounces.most > 0 &&
+                            !(instance.visible_diffuse && instance.visible_glossy);
+        if (hidden || !instance.casts_shadow) use |= kIsHidden;
     }
     if (displaced.empty() &&
         std::all_of(uses.begin(), uses.end(), [](std::uint8_t use) { return use == 0; }))

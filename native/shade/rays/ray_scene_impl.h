@@ -31,11 +31,11 @@ struct RayInstance {
 struct ShadowContext;
 
 struct RayScene::Impl {
-    Impl(const Scene& frame_scene, ShadowOpacity shadow_opacity,
+    Impl(const Scene& frame_scene, RayMaterials ray_materials,
          std::shared_ptr<GeometryCache> shared, std::shared_ptr<KeptRays> kept_rays,
          const Displacement* moved, const Vec3d& camera)
         : scene(frame_scene),
-          opacity(std::move(shadow_opacity)),
+          materials(std::move(ray_materials)),
           cache(shared ? std::move(shared) : std::make_shared<GeometryCache>()),
           kept(std::move(kept_rays)),
           displacement(moved),
@@ -60,7 +60,8 @@ struct RayScene::Impl {
     void add_instance(std::uint32_t index, const Vec3d& origin);
     bool is_met(const Instance& instance) const {
         const bool seen = instance.visible_diffuse || instance.visible_glossy;
-        return (instance.casts_shadow || (seen && scene.options.bounces.most > 0)) &&
+        return (instance.casts_shadow || (seen && scene.options.bounces.most > 0) ||
+                materials.shines(instance)) &&
                !instance.lifespan.is_empty();
     }
     bool lets_light_through(const Instance& instance) const;
@@ -76,7 +77,7 @@ struct RayScene::Impl {
     static Vec3f normal_of(const RTCHit& at, const RayHit& hit, const RayFrame& frame);
 
     const Scene& scene;
-    ShadowOpacity opacity;
+    RayMaterials materials;
     std::shared_ptr<GeometryCache> cache;
     std::shared_ptr<KeptRays> kept;                           ///< nullptr = nothing casts a shadow
     const Displacement* displacement;                         ///< nullptr: of none

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "shade/rays/ray_hit.h"
+#include "shade/rays/ray_primitives.h"
 
 namespace granita {
 
@@ -19,7 +20,7 @@ class RayShape {
     /// Embree's own copies, to be committed and released by the caller and numbered as they come;
     /// what only they need is given back here.  Empty: nothing to meet, or not enough memory (the
     /// device's error tells).
-    virtual std::vector<RTCGeometry> hand_over(RTCDevice device) = 0;
+    virtual std::vector<RayPart> hand_over(RTCDevice device) = 0;
     /// How much there is of it, for messages: "12 triangles".
     virtual std::string size() const = 0;
     /// 1 = it does not deform.

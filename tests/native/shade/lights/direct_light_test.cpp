@@ -20,7 +20,7 @@ class DirectLightTest : public testing::Test {
 
     Scene scene = empty_scene();
     WorldEvaluator world = constant_world(Vec3f(0.0f));
-    ShadowOpacity opacity;
+    RayMaterials opacity;
     Statistics statistics;
     Report report;
     Progress progress;

@@ -104,7 +104,7 @@ float reflected(const Lamp& lamp, const Vec3f& p, const PointBsdf& bsdf, float t
     float sum = 0.0f;
     for (std::uint32_t s = 0; s < kSamples; ++s) {
         LightSample sample;
-        if (!lamp.at(time).sample(p, sequence(s), sample)) continue;
+        if (!lamp.sample(time, p, sequence(s), sample)) continue;
         const Vec3f value = total(bsdf.evaluate(sample.direction)) * sample.radiance / sample.pdf;
         sum += (value.x + value.y + value.z) / 3.0f;
     }

@@ -115,7 +115,7 @@ TEST(RayElements, transparent_ones_tell_where_they_were_met) {
     scene.instances[add_instance(scene, two, at({0, 0, 0}))].materials = {0};
     scene.instances[add_instance(scene, cloud({{9, 9, 9}, {0.6f, 1, 2}}, 0.1f), at({0, 0, 0}))]
         .materials = {0};
-    ShadowOpacity opacity;
+    RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
     int curves = 0, points = 0;
     opacity.transparency = [&](const RayHit& hit) {

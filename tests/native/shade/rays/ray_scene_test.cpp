@@ -226,7 +226,7 @@ TEST(RayScene, transparent_materials_multiply_and_opaque_ones_end) {
     scene.materials.resize(2);
     for (int layer = 1; layer <= 3; ++layer)
         scene.instances[add_instance(scene, square(1), at({0, 0, layer}))].materials = {0};
-    ShadowOpacity opacity;
+    RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t material) { return material == 0; };
     opacity.transparency = [](const RayHit& hit) {
         // A cut-out: a hole where the first coordinate is positive, tinted glass elsewhere.
@@ -255,7 +255,7 @@ TEST(RayScene, rays_together_pass_what_each_passes_alone) {
     for (const float z : {1.0f, 2.0f})
         scene.instances[add_instance(scene, square(0.4f), at({0, 0, z}))].materials = {0};
     scene.instances[add_instance(scene, square(0.4f), at({1, 0, 1}))].materials = {1};
-    ShadowOpacity opacity;
+    RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t material) { return material == 0; };
     opacity.transparency = [](const RayHit& hit) { return Vec3f(0.25f + 0.5f * hit.p.x); };
     const Progress progress;
@@ -280,7 +280,7 @@ TEST(RayScene, places_are_not_looked_up_where_the_same_passes_everywhere) {
     Scene scene = empty_scene();
     scene.materials.resize(1);
     scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].materials = {0, 0};
-    ShadowOpacity opacity;
+    RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
     opacity.transparency = [](const RayHit&) -> Vec3f { throw SceneError("place", "asked"); };
     opacity.constant = [](std::int32_t) { return Vec3f(0.5f, 0.25f, 1.0f); };
@@ -302,7 +302,7 @@ TEST(RayScene, casters_are_there_for_their_part_of_the_shutter) {
     after.materials = {0};
     scene.instances.push_back(after);
     scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].lifespan = {0.0f, 0.1f};
-    ShadowOpacity opacity;
+    RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t material) { return material == 0; };
     opacity.transparency = [](const RayHit&) { return Vec3f(0.5f); };
     const Progress progress;
@@ -336,7 +336,7 @@ TEST(RayScene, hits_on_a_limit_surface_name_the_patch_and_the_place_on_it) {
     scene.materials.resize(1);
     scene.instances[add_instance(scene, cage, at({0, 0, 0}))].materials = {0};
     std::vector<Vec3f> seen;
-    ShadowOpacity opacity;
+    RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
     opacity.transparency = [&](const RayHit& hit) {
         const Vec3f p = object_position(hit);
@@ -370,7 +370,7 @@ TEST(RayScene, hits_on_what_moves_and_what_stands_still_of_a_mesh_name_their_fac
 
     std::uint32_t face = 9;
     float height = 0.0f;
-    ShadowOpacity opacity;
+    RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
     opacity.transparency = [&](const RayHit& hit) {
         face = hit.patch->face;
@@ -394,7 +394,7 @@ TEST(RayScene, an_error_inside_a_material_comes_out_of_the_ray) {
     Scene scene = empty_scene();
     scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].materials = {0};
     scene.materials.resize(1);
-    ShadowOpacity opacity;
+    RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
     opacity.transparency = [](const RayHit&) -> Vec3f { throw SceneError("material 'M'", "x"); };
     const Progress progress;

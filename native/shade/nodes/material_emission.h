@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "shade/nodes/node_compiler.h"
+
+namespace granita {
+
+/// What materials send to all sides and from everywhere, alike to all rays that lobes send: their
+/// meshes are lamps.
+class MaterialEmission {
+  public:
+    /// `seen`: the scene's materials as the camera has them.
+    MaterialEmission(const Scene& scene, TextureStore& textures,
+                     const std::vector<CompiledSurface>& seen);
+
+    /// 0 of what sends none, or not everywhere the same; `material` -1: none.
+    Vec3f constant(std::int32_t material) const {
+        return material < 0 ? Vec3f(0.0f) : m_constant[static_cast<std::size_t>(material)];
+    }
+    /// Whether it sends out any.
+    bool any(std::int32_t material) const {
+        return material >= 0 && m_any[static_cast<std::size_t>(material)];
+    }
+
+  private:
+    std::vector<Vec3f> m_constant;
+    std::vector<bool> m_any;
+};
+
+}  // namespace granita

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/rays/ray_triangles.h"
+
+#include <vector>
+
+#include "shade/rays/kept_rays.h"
+
+namespace granita {
+namespace {
+
+/// As Embree cuts a quad.
+constexpr std::array<std::array<std::uint32_t, 3>, 2> kHalves{{{0, 1, 3}, {2, 3, 1}}};
+
+}  // namespace
+
+void for_each_triangle(const KeptRayShape& of,
+                       const std::function<void(const RayTriangle&)>& visit) {
+    std::vector<std::array<Vec3f, 3>> corners;
+    for (std::uint32_t g = 0; g < of.parts.size(); ++g) {
+        const RayPart& part = of.parts[g];
+        if (part.corners == 0) continue;
+        const auto knots = static_cast<unsigned>(part.knots);
+        std::vector<const Vec3f*> points;
+        for (unsigned knot = 0; knot < knots; ++knot)
+            points.push_back(static_cast<const Vec3f*>(
+                rtcGetGeometryBufferData(part.geometry, RTC_BUFFER_TYPE_VERTEX, knot)));
+        const auto* indices = static_cast<const std::uint32_t*>(
+            rtcGetGeometryBufferData(part.geometry, RTC_BUFFER_TYPE_INDEX, 0));
+        corners.resize(knots);
+        for (std::uint32_t k = 0; k < part.count; ++k) {
+            const std::uint32_t* of_primitive = indices + std::size_t{k} * part.corners;
+            RayHit hit;
+            of.shape->locate(g, k, 0.25f, 0.25f, hit);
+            for (std::size_t half = 0; half < (part.corners == 4 ? 2u : 1u); ++half) {
+                for (unsigned knot = 0; knot < knots; ++knot)
+                    for (std::size_t c = 0; c < 3; ++c)
+                        corners[knot][c] =
+                            points[knot][of_primitive[part.corners == 4 ? kHalves[half][c] : c]];
+                visit({hit.slot, corners});
+            }
+        }
+    }
+}
+
+}  // namespace granita
