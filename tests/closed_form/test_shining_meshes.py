@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import snapshots as s
 from test_bounces import mirror
+from test_elements import curves
 from test_refined_shading import ALBEDO, EXECUTORS
 
 SIZE = (32, 32)
@@ -243,3 +244,15 @@ def test_what_varies_is_met_by_chance_and_named_where_nothing_bounces():
             truth += (1 - cosine) * 0.25 * cosine**4 / (FLOOR - LAMP) ** 2
     truth *= ALBEDO / np.pi
     assert seen(snapshot).mean() == pytest.approx(truth.mean(), rel=0.02)
+
+
+def test_strands_that_shine_are_named_where_nothing_bounces():
+    snapshot = stage()
+    curves(snapshot, np.linspace((4, 16, LAMP), (28, 16, LAMP), 5), [5], 1.0, s.emission(snapshot))
+    snapshot["instances"]["flags"].append(HIDDEN_LAMP)
+    assert [text for _, text, _ in s.render(snapshot)["warnings"]] == [
+        "shines, but is no mesh: it is seen, but lights nothing without bounces"
+    ]
+    snapshot["options"].update(bounces=1)
+    rendered = s.render(snapshot)
+    assert rendered["warnings"] == [] and rendered["combined"][..., 0].mean() > 0.001

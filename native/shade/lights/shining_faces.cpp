@@ -10,8 +10,8 @@
 namespace granita {
 namespace {
 
-/// Lamps of a frame: some 300 bytes each, with their part of the tree.
-constexpr std::size_t kMostFaces = std::size_t{1} << 18;
+/// Lamps of a frame: some 600 bytes each while the tree is made of them.
+constexpr std::size_t kMostFaces = std::size_t{1} << 19;
 
 /// Whether it has an area at some time.
 bool is_seen(const MovingTriangle& triangle) {
@@ -59,12 +59,24 @@ class Collector {
 
 }  // namespace
 
-ShiningFaces shining_faces(const Scene& scene, const RayScene& rays,
-                           const RayMaterials& materials) {
+ShiningFaces shining_faces(const Scene& scene, const RayScene& rays, const RayMaterials& materials,
+                           Report& report) {
     Collector collector(scene, rays, materials);
+    std::vector<std::uint32_t> shining;
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
-        if (materials.shines(scene.instances[i])) collector.add(i);
-    return collector.take();
+        if (materials.shines(scene.instances[i])) shining.push_back(i);
+    for (const std::uint32_t i : shining) collector.add(i);
+    ShiningFaces found = collector.take();
+    for (const std::uint32_t i : shining) {
+        if (found.instances[i] || scene.options.bounces.most > 0) continue;
+        const bool is_mesh = scene.geometry_of(scene.instances[i]).kind == GeometryKind::Mesh;
+        report.warn(scene.instances[i].name,
+                    is_mesh ? "shines with more faces than are lamps: it is seen, but lights "
+                              "nothing without bounces"
+                            : "shines, but is no mesh: it is seen, but lights nothing without "
+                              "bounces");
+    }
+    return found;
 }
 
 }  // namespace granita

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "base/report.h"
 #include "scene/scene.h"
 #include "shade/lights/light_lamp.h"
 #include "shade/rays/ray_scene.h"
@@ -15,8 +16,9 @@ struct ShiningFaces {
     std::vector<bool> instances;  ///< [instances] which are among them
 };
 
-/// Of materials that RayMaterials::emitted tells, as far as there are not too many: what is left
-/// out is met by chance.
-ShiningFaces shining_faces(const Scene& scene, const RayScene& rays, const RayMaterials& materials);
+/// Of materials that RayMaterials::emitted tells, as far as there are not too many.  What is left
+/// out, strands and points too, is met by chance, and named where nothing bounces.
+ShiningFaces shining_faces(const Scene& scene, const RayScene& rays, const RayMaterials& materials,
+                           Report& report);
 
 }  // namespace granita
