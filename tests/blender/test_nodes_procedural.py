@@ -227,6 +227,27 @@ def test_sky_of_scattered_light(scene, render, sky):
     check(scene, render, limit=0.01 if bpy.app.version < (5, 0, 0) else 0.02, relative=True)
 
 
+DAYLIGHTS = {
+    "as it comes": {},
+    "low and hazy": {"sun_direction": (0.8, -0.55, 0.1), "turbidity": 6.0},
+    "clear noon": {"sun_direction": (0.1, 0.2, 0.97), "turbidity": 2.0},
+}
+
+
+@pytest.mark.skipif(
+    "PREETHAM" not in enum_values("ShaderNodeTexSky", "sky_type"), reason="this Blender has none"
+)
+@pytest.mark.parametrize("sky", DAYLIGHTS)
+def test_daylight(scene, render, sky):
+    tree = Tree(board(scene, -1.0, 1.0))
+    node = tree.add("ShaderNodeTexSky", sky_type="PREETHAM", **DAYLIGHTS[sky])
+    unit = tree.add("ShaderNodeVectorMath", operation="NORMALIZE")
+    tree.link(tree.attribute("A"), unit.inputs[0])
+    tree.link(unit.outputs["Vector"], node.inputs["Vector"])
+    tree.emit(node.outputs["Color"])
+    check(scene, render, limit=0.01, relative=True)
+
+
 @pytest.mark.skipif(bpy.app.version >= (5, 0, 0), reason="there the ground begins elsewhere")
 @pytest.mark.parametrize("elevation", [0.3, 0.7])
 def test_the_disc_of_the_sun(scene, render, elevation):

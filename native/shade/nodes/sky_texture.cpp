@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sky Texture: sunlight scattered once (atmosphere.h) and the sun's disc.  Its other models are a
-// gradient from horizon to zenith in the mean colours of each at its default settings, without a
-// sun (measured from Cycles, mean over all azimuths).
+// Sky Texture: sunlight scattered once (atmosphere.h) and the sun's disc, or a fit to daylight
+// (daylight.h).  Its other models are a gradient from horizon to zenith in the mean colours of each
+// at its default settings, without a sun (measured from Cycles, mean over all azimuths).
 #include <algorithm>
 #include <cmath>
 
+#include "math/normalize_or.h"
 #include "math/sampling.h"
 #include "shade/nodes/atmosphere.h"
 #include "shade/nodes/coordinates.h"
+#include "shade/nodes/daylight.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {
@@ -87,14 +89,21 @@ void build_scattering(NodeBuilder& b, const VectorSource& direction) {
                                 direction));
 }
 
+void build_daylight(NodeBuilder& b, const VectorSource& direction) {
+    std::vector<float> at = b.table("sun_direction");
+    at.resize(3, 0.0f);
+    const Daylight sky(normalize_or(Vec3f(at[0], at[1], at[2]), Vec3f(0.0f, 0.0f, 1.0f)),
+                       static_cast<float>(b.value("turbidity", 2.2)));
+    b.output_color("Color",
+                   b.map<Vec3f>([sky](const Vec3f& d) { return rgb_of(sky.xyz(d)); }, direction));
+}
+
 void build_gradient(NodeBuilder& b, const std::string& type, const VectorSource& direction) {
     struct Gradient {
         Vec3f below, horizon, zenith;
     };
     const Gradient gradient =
-        type == "PREETHAM"
-            ? Gradient{{0.79f, 0.77f, 0.95f}, {0.66f, 0.77f, 1.07f}, {0.70f, 0.94f, 1.55f}}
-        : type == "HOSEK_WILKIE"
+        type == "HOSEK_WILKIE"
             ? Gradient{{0.07f, 0.22f, 0.32f}, {0.13f, 0.19f, 0.26f}, {0.07f, 0.11f, 0.13f}}
             : Gradient{{0.0f, 0.0f, 0.0f}, {8.3f, 7.7f, 5.9f}, {0.55f, 0.87f, 1.44f}};
     b.warn("Sky Texture's model " + type +
@@ -118,6 +127,8 @@ void build_sky_texture(NodeBuilder& b) {
     const std::string type = b.text("sky_type", "NISHITA");
     if (type == "NISHITA" || type == "SINGLE_SCATTERING")
         build_scattering(b, direction);
+    else if (type == "PREETHAM")
+        build_daylight(b, direction);
     else
         build_gradient(b, type, direction);
 }
