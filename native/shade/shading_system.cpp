@@ -125,11 +125,12 @@ struct ShadingSystem::Impl {
     void warn_of_emission() const {
         for (std::size_t i = 0; i < scene.materials.size(); ++i) {
             const auto index = static_cast<std::int32_t>(i);
-            if (!emission->any(index) || emission->constant(index) != Vec3f(0.0f)) continue;
-            const auto& seen = materials[i].radiance.sources.emission;
-            if (seen.is_constant() && luminance(seen.constant) < kDimmestEmission) continue;
-            report.warn("material '" + scene.materials[i].name + "'",
-                        "its emission varies: it is seen, but lights nothing without bounces");
+            const bool is_lamp = emission->constant(index) != Vec3f(0.0f);
+            if (is_lamp || !(emission->brightest(index) >= kDimmestEmission)) continue;
+            report.warn(
+                "material '" + scene.materials[i].name + "'",
+                "its emission varies, by place or view or kind of ray: it lights nothing without "
+                "bounces");
         }
     }
 

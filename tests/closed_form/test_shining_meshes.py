@@ -256,3 +256,88 @@ def test_strands_that_shine_are_named_where_nothing_bounces():
     snapshot["options"].update(bounces=1)
     rendered = s.render(snapshot)
     assert rendered["warnings"] == [] and rendered["combined"][..., 0].mean() > 0.001
+
+
+@pytest.mark.parametrize("thickness", [0.0003, 0.01])
+def test_a_thin_box_lights_as_its_side_does(thickness):
+    """Its far side does not shine through, however thin it is."""
+    snapshot = stage(light_samples=256)
+    corners = [(x, y, z) for z in (LAMP - thickness, LAMP) for y in (12, 18) for x in (10, 22)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    shines(snapshot, np.array(corners), faces)
+    truth = ALBEDO * form_factor(10, 12, 22, 18, FLOOR - LAMP, *pixels())
+    assert seen(snapshot).mean() == pytest.approx(truth.mean(), rel=0.01)
+
+
+def test_what_lies_just_before_it_hides_it():
+    snapshot = stage()
+    square(snapshot, 10, 12, 22, 18)
+    s.quad(snapshot, s.rectangle(9, 11, 23, 19, LAMP + 0.0003), 0)
+    snapshot["instances"]["flags"].append(SHADOWS)
+    assert seen(snapshot).max() == 0.0
+
+
+@pytest.mark.parametrize("moves", [False, True])
+@pytest.mark.parametrize("far", [1e4, 1e5])
+def test_vertices_far_from_their_object_light_all_the_same(far, moves):
+    """Rays meet them less exactly than their lamp stands: it is not to shadow itself."""
+    snapshot = stage(light_samples=64)
+    away = far * np.array([0.71, 0.53, 1.17])
+    turn = np.eye(4)
+    turn[:2, :2] = [[np.cos(0.4), -np.sin(0.4)], [np.sin(0.4), np.cos(0.4)]]
+    tilt = np.eye(4)
+    tilt[1:3, 1:3] = [[np.cos(0.2), -np.sin(0.2)], [np.sin(0.2), np.cos(0.2)]]
+    turn = turn @ tilt
+    there = np.eye(4)
+    there[:3, 3] = -(turn[:3, :3] @ away) + (16, 15, FLOOR - 3)
+    matrix = there @ turn
+    corners = np.array([(-6, -3, 0), (6, -3, 0), (6, 3, 0), (-6, 3, 0)]) + away
+    ways = [matrix, s.translation(0.01) @ matrix] if moves else [matrix]
+    shines(snapshot, corners, [(0, 1, 2, 3)], transforms=ways)
+    lit = seen(snapshot).mean()
+    unturned = stage(light_samples=64)
+    still = np.eye(4)
+    still[:3, :3], still[:3, 3] = turn[:3, :3], (16, 15, FLOOR - 3)
+    shines(unturned, corners - away, [(0, 1, 2, 3)], transforms=[still])
+    # Single precision holds vertices at 1e5 m to 8 mm of their 6 and 12 m.
+    assert lit == pytest.approx(seen(unturned).mean(), rel=0.01)
+
+
+def test_emission_for_one_type_of_ray_alone_is_named():
+    nodes = [
+        {"type": "ShaderNodeLightPath", "inputs": {}},
+        {
+            "type": "ShaderNodeEmission",
+            "inputs": {"Color": (1.0,) * 4, "Strength": ("LINK", 0, "Is Diffuse Ray")},
+        },
+    ]
+    snapshot = stage()
+    snapshot["materials"].append({"name": "Rays", "nodes": nodes, "surface": (1, "Emission")})
+    s.quad(snapshot, s.rectangle(10, 12, 22, 18, LAMP), 1)
+    snapshot["instances"]["flags"].append(HIDDEN_LAMP)
+    assert [owner for owner, *_ in s.render(snapshot)["warnings"]] == ["material 'Rays'"]
+
+
+def test_no_way_goes_further_for_what_no_ray_sees():
+    def rays(extra):
+        snapshot = stage(bounces=2, diffuse_bounces=4)
+        square(snapshot, -8, -8, 40, 40, 5.0)
+        if extra:
+            snapshot["materials"].append(
+                {
+                    "name": "Hidden",
+                    "nodes": [
+                        {"type": "ShaderNodeLayerWeight", "inputs": {}},
+                        {
+                            "type": "ShaderNodeEmission",
+                            "inputs": {"Strength": ("LINK", 0, "Facing")},
+                        },
+                    ],
+                    "surface": (1, "Emission"),
+                }
+            )
+            s.quad(snapshot, s.rectangle(0, 0, 4, 4, 8.0), len(snapshot["materials"]) - 1)
+            snapshot["instances"]["flags"].append(SHADOWS)
+        return s.render(snapshot)["statistics"]["rays_bounce"]
+
+    assert rays(True) == rays(False)

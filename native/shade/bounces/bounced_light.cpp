@@ -274,12 +274,14 @@ BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const 
       m_statistics(statistics),
       m_progress(progress) {
     for (std::size_t i = 0; i < scene.instances.size() && !m_any_shines; ++i) {
+        const Instance& instance = scene.instances[i];
+        const bool is_met = instance.visible_diffuse || instance.visible_glossy;
+        if (!is_met || instance.lifespan.is_empty()) continue;
         const bool is_lamp = direct.is_lamp(i);
-        m_any_shines =
-            std::ranges::any_of(scene.instances[i].materials, [&](std::int32_t material) {
-                return emission.any(material) &&
-                       !(is_lamp && emission.constant(material) != Vec3f(0.0f));
-            });
+        m_any_shines = std::ranges::any_of(instance.materials, [&](std::int32_t material) {
+            return emission.any(material) &&
+                   !(is_lamp && emission.constant(material) != Vec3f(0.0f));
+        });
     }
 }
 

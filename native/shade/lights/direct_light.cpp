@@ -103,7 +103,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
         auto rays = std::make_unique<RayScene>(scene, origin, materials, progress, geometries,
                                                &report, std::move(kept_rays), displacement);
         statistics.peak_ray_bytes(rays->bytes());
-        ShiningFaces found = shining_faces(scene, *rays, materials, report);
+        ShiningFaces found = shining_faces(scene, *rays, materials, report, progress);
         std::ranges::move(found.lamps, std::back_inserter(lamps));
         if (!found.lamps.empty()) shining = std::move(found.instances);
         if (!rays->empty()) set.set_casters(std::move(rays));

@@ -12,9 +12,9 @@ constexpr std::ptrdiff_t kFewLamps = 16, kFewFaces = 4;
 /// Of others, for each light sample: lamps take some samples each time, faces one.
 constexpr float kAsked = 4.0f, kAskedOfFaces = 2.0f;
 
-/// What lies so little before a surface that shines, as a part of the way there and of the numbers
-/// that places are told in, casts no shadow: or it would cast one itself.
-constexpr float kBefore = 1e-4f, kRounding = 0x1p-20f;
+/// Of a ray's way to a surface that shines, and of the numbers that places are told in: what lies
+/// in the lamp's own plane casts no shadow on it.
+constexpr float kRounding = 0x1p-20f;
 
 }  // namespace
 
@@ -113,8 +113,8 @@ Ray LampSet::ray_to(const LitPoint& point, const LitPlace& place, const Lamp& la
     const float length = glm::length(way);
     if (length > 0.0f) to.direction = way / length;
     const Vec3f size = glm::max(glm::abs(to.start), glm::abs(target));
-    to.distance =
-        std::max(0.0f, length * (1.0f - kBefore) - kRounding * std::max({size.x, size.y, size.z}));
+    to.distance = std::max(0.0f, length - kRounding * std::max({length, size.x, size.y, size.z}));
+    to.target = lamp.target();
     return to;
 }
 

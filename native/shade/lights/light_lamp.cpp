@@ -41,6 +41,7 @@ Lamp::Lamp(MovingTriangle triangle, const Instance& instance)
       m_hard(false),
       m_casts_shadow(true),
       m_is_surface(true),
+      m_target(triangle.target),
       m_diffuse(instance.visible_diffuse ? 1.0f : 0.0f),
       m_glossy(instance.visible_glossy ? 1.0f : 0.0f),
       m_transmission(m_glossy),

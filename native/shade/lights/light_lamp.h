@@ -30,6 +30,8 @@ class Lamp {
     bool casts_shadow() const { return m_casts_shadow; }
     /// Whether rays meet it, which are to end before it.
     bool is_surface() const { return m_is_surface; }
+    /// Of a surface: what rays meet of it.
+    const RayTarget& target() const { return m_target; }
     /// Whether it lights an instance of that mask (Instance::receives).
     bool lights(std::uint64_t receives) const { return in_light_set(receives, m_receiver_set); }
     int blocker_set() const { return m_blocker_set; }
@@ -75,6 +77,7 @@ class Lamp {
     std::unique_ptr<const MovingTriangle> m_moving;       ///< instead of these
     Lifespan m_lifespan;
     bool m_hard = true, m_casts_shadow, m_is_surface = false;
+    RayTarget m_target;
     float m_diffuse, m_glossy, m_transmission;
     int m_receiver_set, m_blocker_set;
 };

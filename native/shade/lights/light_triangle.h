@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "shade/lights/light_source.h"
+#include "shade/rays/ray.h"
 
 namespace granita {
 
@@ -45,6 +46,7 @@ struct MovingTriangle {
     std::vector<TriangleLight::Corners> corners;            ///< [knots], object space
     std::shared_ptr<const std::vector<Mat4d>> from_object;  ///< [knots], to shading space
     Vec3f radiance;
+    RayTarget target;  ///< what rays meet of it
 
     bool is_still() const { return corners.size() == 1 && from_object->size() == 1; }
     TriangleLight at(float time) const;

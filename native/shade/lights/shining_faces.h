@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "base/progress.h"
 #include "base/report.h"
 #include "scene/scene.h"
 #include "shade/lights/light_lamp.h"
@@ -17,8 +18,9 @@ struct ShiningFaces {
 };
 
 /// Of materials that RayMaterials::emitted tells, as far as there are not too many.  What is left
-/// out, strands and points too, is met by chance, and named where nothing bounces.
+/// out, strands and points too, is met by chance, and named where nothing bounces.  Throws
+/// Cancelled.
 ShiningFaces shining_faces(const Scene& scene, const RayScene& rays, const RayMaterials& materials,
-                           Report& report);
+                           Report& report, const Progress& progress);
 
 }  // namespace granita

@@ -2,6 +2,7 @@
 #include "shade/nodes/material_emission.h"
 
 #include <array>
+#include <limits>
 #include <optional>
 
 #include "math/luminance.h"
@@ -14,11 +15,13 @@ const VectorSource& emission(const CompiledSurface& surface) {
     return surface.radiance.sources.emission;
 }
 
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
 }  // namespace
 
 MaterialEmission::MaterialEmission(const Scene& scene, TextureStore& textures,
                                    const std::vector<CompiledSurface>& seen)
-    : m_constant(scene.materials.size(), Vec3f(0.0f)), m_any(scene.materials.size(), false) {
+    : m_constant(scene.materials.size(), Vec3f(0.0f)), m_brightest(scene.materials.size(), 0.0f) {
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         std::optional<Vec3f> constant;
@@ -32,7 +35,8 @@ MaterialEmission::MaterialEmission(const Scene& scene, TextureStore& textures,
                                       {"material '" + material.name + "'", false, material.index},
                                       nullptr, ray);
             const VectorSource& sent = emission(own ? *own : seen[i]);
-            m_any[i] = m_any[i] || !sent.is(Vec3f(0.0f));
+            const float seen_of_it = sent.is_constant() ? luminance(sent.constant) : kInfinity;
+            if (!(seen_of_it <= m_brightest[i])) m_brightest[i] = seen_of_it;
             varies =
                 varies || !sent.is_constant() || sent.constant != constant.value_or(sent.constant);
             constant = sent.constant;

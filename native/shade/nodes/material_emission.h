@@ -19,14 +19,17 @@ class MaterialEmission {
     Vec3f constant(std::int32_t material) const {
         return material < 0 ? Vec3f(0.0f) : m_constant[static_cast<std::size_t>(material)];
     }
-    /// Whether it sends out any.
-    bool any(std::int32_t material) const {
-        return material >= 0 && m_any[static_cast<std::size_t>(material)];
+    /// Most luminance that rays of lobes may see of it; infinite where it varies from place to
+    /// place or by the view.
+    float brightest(std::int32_t material) const {
+        return material < 0 ? 0.0f : m_brightest[static_cast<std::size_t>(material)];
     }
+    /// Whether it sends out any.
+    bool any(std::int32_t material) const { return brightest(material) > 0.0f; }
 
   private:
     std::vector<Vec3f> m_constant;
-    std::vector<bool> m_any;
+    std::vector<float> m_brightest;
 };
 
 }  // namespace granita

@@ -2,11 +2,18 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "math/vec.h"
 #include "shade/rays/ray_type.h"
 
 namespace granita {
+
+/// A triangle, or quad, that rays meet, by Embree's numbers.
+struct RayTarget {
+    std::uint32_t instance = ~0u, geometry = ~0u, primitive = ~0u;
+    bool operator==(const RayTarget&) const = default;
+};
 
 /// A way of light, in shading space.  What is no number, or 1e18 metres away, meets nothing.
 struct Ray {
@@ -15,6 +22,7 @@ struct Ray {
     float time = 0.5f;       ///< of the shutter, [0, 1]
     int blocker_set = -1;    ///< of the light: others than Instance::blocks names let it pass
     RayType type = RayType::Shadow;
+    RayTarget target = {};  ///< where it goes to, which casts no shadow on itself
 
     /// Embree leaves other rays undefined, and as Debian builds it ends the process at them.
     bool is_traceable() const {

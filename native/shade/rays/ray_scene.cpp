@@ -37,6 +37,7 @@ struct ShadowContext {
     Vec3f start, direction;  ///< shading space: what Embree hands back is in the object's
     Vec3f left{1.0f};
     int blocker_set = -1;
+    const Ray* rays = nullptr;  ///< by their ids
     std::exception_ptr failure;
 };
 
@@ -78,15 +79,20 @@ Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& r
 /// once.
 void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) {
     auto* context = reinterpret_cast<ShadowContext*>(arguments->context);
-    if (context->looked_at) {
-        for (unsigned i = 0; i < arguments->N; ++i)
-            if (arguments->valid[i] == -1)
-                context->looked_at[RTCRayN_id(arguments->ray, arguments->N, i)] = true;
-        return;
-    }
-    if (arguments->valid[0] != -1) return;
     const auto* scene = static_cast<const Impl*>(context->scene);
-    const RayInstance& instance = scene->instances[arguments->context->instID[0]];
+    const unsigned id = arguments->context->instID[0];
+    const RayInstance& instance = scene->instances[id];
+    for (unsigned i = 0; i < arguments->N; ++i) {
+        if (arguments->valid[i] != -1) continue;
+        const Ray& ray = context->rays[RTCRayN_id(arguments->ray, arguments->N, i)];
+        const RayTarget met{id, RTCHitN_geomID(arguments->hit, arguments->N, i),
+                            RTCHitN_primID(arguments->hit, arguments->N, i)};
+        if (met == ray.target)
+            arguments->valid[i] = 0;
+        else if (context->looked_at && !instance.is_plain)
+            context->looked_at[RTCRayN_id(arguments->ray, arguments->N, i)] = true;
+    }
+    if (context->looked_at || arguments->valid[0] != -1 || instance.is_plain) return;
     const float time = reinterpret_cast<const RTCRay*>(arguments->ray)->time;
     const Instance& met = scene->scene.instances[instance.index];
     if (!met.casts_shadow || !met.lifespan.contains(time) ||
@@ -144,7 +150,8 @@ std::vector<Mat4d> RayScene::transforms(std::size_t instance) const {
 
 void RayScene::triangles(std::size_t instance,
                          const std::function<void(const RayTriangle&)>& visit) const {
-    for_each_triangle(m_impl->shape_of(instance), visit);
+    const std::uint32_t id = m_impl->by_key.at(m_impl->scene.instances[instance].key);
+    for_each_triangle(m_impl->shape_of(instance), id, visit);
 }
 
 bool RayScene::moves() const {
@@ -222,6 +229,7 @@ Vec3f RayScene::transmittance(const Ray& shadow) const {
     context.start = shadow.start;
     context.direction = shadow.direction;
     context.blocker_set = shadow.blocker_set;
+    context.rays = &shadow;
     RTCRay ray{};
     set_ray(ray, shadow);
     rtcOccluded1(m_impl->top.get(), &context.embree, &ray);
@@ -234,9 +242,11 @@ void RayScene::transmittances(std::span<const Ray> rays, std::span<Vec3f> left) 
     ShadowContext context{};
     rtcInitIntersectContext(&context.embree);
     context.looked_at = looked_at;
+    context.scene = m_impl.get();
     for (std::size_t first = 0; first < rays.size(); first += kPacket) {
         const std::size_t count = std::min(kPacket, rays.size() - first);
         std::fill_n(looked_at, kPacket, false);
+        context.rays = &rays[first];
         alignas(64) RTCRay16 packet{};
         alignas(64) int valid[kPacket]{};
         for (std::size_t i = 0; i < count; ++i) {

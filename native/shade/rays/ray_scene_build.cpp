@@ -32,6 +32,7 @@ enum Use : std::uint8_t {
     kIsLinked = 8,
     kIsHidden = 16,  ///< from some rays
     kIsShaded = 32,  ///< where rays meet it
+    kShines = 64,    ///< rays go to its faces
 };
 
 }  // namespace
@@ -172,9 +173,11 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     rtcAttachGeometryByID(top.get(), node, static_cast<unsigned>(instances.size()));
     rtcReleaseGeometry(node);
     by_key[instance.key] = static_cast<std::uint32_t>(instances.size());
-    RayInstance& added =
-        instances.emplace_back(RayInstance{index, transforms->scale, transforms->distance,
-                                           lets_light_through(instance), constant_of(instance)});
+    const bool passes = lets_light_through(instance);
+    const bool is_plain = instance.casts_shadow && !passes && instance.lifespan.is_whole() &&
+                          instance.blocks == ~0ULL;
+    RayInstance& added = instances.emplace_back(RayInstance{
+        index, transforms->scale, transforms->distance, passes, is_plain, constant_of(instance)});
     const bool is_asked = added.lets_light_through || scene.options.bounces.most > 0;
     if (is_asked && instance.world_from_object.size() <= 1)
         added.still.emplace(matrix_at(instance.world_from_object, 0.0));
@@ -200,6 +203,7 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materia
         if (impl.lets_light_through(instance)) use |= kLetsLightThrough;
         if (!instance.lifespan.is_whole()) use |= kAppears;
         if (instance.blocks != ~0ULL) use |= kIsLinked;
+        if (impl.materials.shines(instance)) use |= kShines;
         const bool hidden = scene.options.bounces.most > 0 &&
                             !(instance.visible_diffuse && instance.visible_glossy);
         if (hidden || !instance.casts_shadow) use |= kIsHidden;

@@ -13,7 +13,7 @@ constexpr std::array<std::array<std::uint32_t, 3>, 2> kHalves{{{0, 1, 3}, {2, 3,
 
 }  // namespace
 
-void for_each_triangle(const KeptRayShape& of,
+void for_each_triangle(const KeptRayShape& of, std::uint32_t instance,
                        const std::function<void(const RayTriangle&)>& visit) {
     std::vector<std::array<Vec3f, 3>> corners;
     for (std::uint32_t g = 0; g < of.parts.size(); ++g) {
@@ -36,7 +36,7 @@ void for_each_triangle(const KeptRayShape& of,
                     for (std::size_t c = 0; c < 3; ++c)
                         corners[knot][c] =
                             points[knot][of_primitive[part.corners == 4 ? kHalves[half][c] : c]];
-                visit({hit.slot, corners});
+                visit({hit.slot, {instance, g, k}, corners});
             }
         }
     }

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "math/vec.h"
+#include "shade/rays/ray.h"
 
 namespace granita {
 
@@ -14,12 +15,13 @@ struct KeptRayShape;
 
 /// A triangle of a mesh, or half of a quad, as rays meet it.
 struct RayTriangle {
-    std::int32_t slot = 0;                          ///< of the material
+    std::int32_t slot = 0;  ///< of the material
+    RayTarget target;
     std::span<const std::array<Vec3f, 3>> corners;  ///< [knots] object space
 };
 
-/// None of curves and points.
-void for_each_triangle(const KeptRayShape& of,
+/// None of curves and points.  `instance`: Embree's number of it.
+void for_each_triangle(const KeptRayShape& of, std::uint32_t instance,
                        const std::function<void(const RayTriangle&)>& visit);
 
 }  // namespace granita
