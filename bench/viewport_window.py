@@ -19,6 +19,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 import lit_scenes  # noqa: E402
 import scenes  # noqa: E402
+from view_edits import EDITS, open_lens  # noqa: E402
 
 JOB = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
 LOG = open(JOB["log"], "a", buffering=1)
@@ -41,52 +42,6 @@ def build():
     bpy.ops.wm.save_as_mainfile(filepath=JOB["blend"])
 
 
-def lamp_of():
-    return next(thing for thing in bpy.data.objects if thing.type == "LIGHT")
-
-
-def mesh_of():
-    return next(t for t in bpy.data.objects if t.type == "MESH" and t.data.materials)
-
-
-def color_of():
-    """The colour socket of a material's first shader."""
-    nodes = mesh_of().data.materials[0].node_tree.nodes
-    shader = next(n for n in nodes if n.type.startswith(("BSDF", "EMISSION")))
-    return next(s for s in shader.inputs if s.name in ("Color", "Base Color"))
-
-
-def orbit(view, k):
-    from mathutils import Quaternion
-
-    if view.view_perspective == "CAMERA":
-        view.view_perspective = "PERSP"
-        view.view_distance, view.view_location = 20.0, (0, 0, 0)
-        view.view_rotation = Quaternion((1, 0, 0), 0.4)
-    view.view_rotation = Quaternion((0, 0, 1), 0.02 * (1 + k)) @ view.view_rotation
-
-
-# edit(scene, RegionView3D, k): k counts the calls, each makes another picture.
-EDITS = {
-    "shutter": lambda s, v, k: setattr(s.render, "motion_blur_shutter", 0.6 + 0.02 * k),
-    "f-stop": lambda s, v, k: setattr(s.camera.data.dof, "aperture_fstop", 0.05 + 0.002 * k),
-    "focus": lambda s, v, k: setattr(s.camera.data.dof, "focus_distance", 14.0 + 0.1 * k),
-    "lamp strength": lambda s, v, k: setattr(
-        lamp_of().data, "energy", lamp_of().data.energy * (1.2 if k == 0 else 1.03)
-    ),
-    "lamp color": lambda s, v, k: setattr(lamp_of().data, "color", (1, 0.7 - 0.01 * k, 0.5)),
-    "material color": lambda s, v, k: setattr(
-        color_of(), "default_value", (0.9, 0.2 + 0.01 * k, 0.1, 1)
-    ),
-    "object moved": lambda s, v, k: setattr(
-        mesh_of(), "location", (0.1 + 0.02 * k, 0.1, mesh_of().location[2])
-    ),
-    "frame": lambda s, v, k: s.frame_set(s.frame_current + 1),
-    "orbit": lambda s, v, k: orbit(v, k),
-    "to camera": lambda s, v, k: setattr(v, "view_perspective", "CAMERA"),
-}
-
-
 def steps(scene):
     window = bpy.context.window_manager.windows[0]
     area = next(a for a in window.screen.areas if a.type == "VIEW_3D")
@@ -101,10 +56,8 @@ def steps(scene):
     # The frame is 480 pixels wide: Blender draws it region.width * zoom^2 / 4 wide.
     view.view_camera_zoom = (2.0 * math.sqrt(480 / region.width) - math.sqrt(2.0)) * 50.0
     scene.camera.data.show_passepartout = False
-    scene.camera.data.dof.use_dof = JOB.get("lens", True)
-    if scene.camera.data.dof.aperture_fstop > 1:
-        scene.camera.data.dof.aperture_fstop = 0.05
-        scene.camera.data.dof.focus_distance = 15.0
+    if JOB.get("lens", True):
+        open_lens(scene.camera.data)
     yield 0.5
     height = window.height
     note(

@@ -18,6 +18,7 @@ class Costs:
     frame: float = 0.0  # seconds of Blender's thread: reading the frame
     shutter: float = 0.0  # reading the whole shutter
     first: float = 0.0  # until the first picture
+    divisor: int = 1  # pixels of the view that one of its pixels is wide
     whole: float = 0.0  # of the picture itself
     statistics: dict = field(default_factory=dict)  # of its job
 
@@ -26,7 +27,7 @@ class Costs:
         found = [
             ("Reading the frame", _seconds(self.frame)),
             ("Reading the shutter", _seconds(self.shutter)),
-            ("First picture", _seconds(self.first)),
+            ("First picture", f"{_seconds(self.first)}, 1:{self.divisor}"),
             ("Picture", _seconds(self.whole)),
         ]
         for name, label in _STAGES:

@@ -24,6 +24,9 @@ POLL_SECONDS = 1.0 / 60.0
 WAIT_SECONDS = 0.25  # while a final render has the machine
 # The first picture of an edit is let through where it takes no longer: else a drag would show nothing.
 PATIENCE_SECONDS = 0.2
+# The window's next drawing shows the first picture of an edit where Blender's thread waits so long for it: without,
+# each picture of a drag would cost a drawing of the one before it.
+HOLD_SECONDS = 0.06
 # Without an edit, until the shutter is read and the picture itself is begun: within a drag neither is of use.
 REST_SECONDS = 0.08
 # Between two drawings of a picture that is refined: each uploads it whole.
@@ -57,7 +60,9 @@ class LiveView:
         self.region, self.looked = 0, 0.0  # address of the Region, and when it was drawn last
         self.costs = Costs()
         self.warnings = []  # of the picture, a line each
-        self.counts = {"frames read": 0, "shutters read": 0, "jobs": 0, "settled": 0}
+        self.counts = dict.fromkeys(
+            ("frames read", "shutters read", "jobs", "pictures", "settled"), 0
+        )
 
     @property
     def picture(self):
@@ -196,9 +201,13 @@ class LiveView:
             self._is_unread = not self._scene.is_exact
             if not (shows or moved):
                 return  # something else was edited, or selected: a running job goes on
+        if self._job is not None and not self._stage.is_last:
+            self._divisor = next_divisor(self._stage.divisor, perf_counter() - self._began)
         self._cancel()
         self._is_coarse = True
         self._start(Stage(self._first_divisor()))
+        while self._job is not None and (left := self._began + HOLD_SECONDS - perf_counter()) > 0.0:
+            self._go_on(left)
 
     def _rest(self):
         """The picture itself, once edits rest."""
@@ -238,10 +247,10 @@ class LiveView:
             # Shown with the picture: a drawing of its own would cost as much as that one.
             self._say(f"Samples 0/{snapshot['options']['samples']}", now=False)
 
-    def _go_on(self):
-        """Takes what the job has finished."""
+    def _go_on(self, seconds=0.0):
+        """Takes what the job has finished; waits at most so long for some of it."""
         is_done = self._job.done()  # asked first: no tile comes after
-        tiles = self._job.take_tiles(0.0)
+        tiles = self._job.take_tiles(seconds)
         if self._stage.is_last:
             for tile in tiles:
                 self._picture.paste(tile.x, tile.y, tile.combined)
@@ -260,8 +269,11 @@ class LiveView:
         if self._stage.is_last:
             self._settled(job)
         else:
+            self.counts["pictures"] += 1
             self.costs.first = perf_counter() - self._began
-            self._divisor = next_divisor(self._stage.divisor, self.costs.first)
+            self.costs.divisor = self._stage.divisor
+            is_anew = job.statistics()["buckets_seen_before"] == 0
+            self._divisor = next_divisor(self._stage.divisor, self.costs.first, is_anew)
             self._picture.replace(self._job_sight, self._staging, self._stage.divisor)
             self._redraw()
 

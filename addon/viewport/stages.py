@@ -13,10 +13,9 @@ from .live_picture import coarse_crop
 
 LEAST_DIVISOR, MOST_DIVISOR = 2, 8
 # Seconds that the first picture may take before the next is made of fewer pixels, or of more.
-_SLOW, _FAST = 0.12, 0.03
+_SLOW, _FAST = 0.1, 0.025
 
 _COARSE = {"samples": 4, "light_samples": 2}
-_NO_THRESHOLD = 1000.0
 
 
 @dataclass(frozen=True)
@@ -34,7 +33,7 @@ class Stage:
         options, camera, divisor = dict(snapshot["options"]), dict(snapshot["camera"]), self.divisor
         for name, most in _COARSE.items():
             options[name] = min(options[name], most)
-        options["shading_threshold"], options["noise_threshold"] = _NO_THRESHOLD, 0.0
+        options["refine_samples"], options["noise_threshold"] = False, 0.0
         options["width"] = -(-options["width"] // divisor)
         options["height"] = -(-options["height"] // divisor)
         crop = coarse_crop([int(pixel) for pixel in options["crop"]], divisor)
@@ -44,10 +43,11 @@ class Stage:
         return {**snapshot, "options": options, "camera": camera}
 
 
-def next_divisor(divisor, seconds):
-    """Of the next first picture, where this one took so long."""
+def next_divisor(divisor, seconds, is_anew=True):
+    """Of the next first picture, where this one took so long.  What was not made anew, but of what is kept of the
+    picture before, tells nothing of one of another size, which is."""
     if seconds > _SLOW:
         return min(divisor * 2, MOST_DIVISOR)
-    if seconds < _FAST:
+    if seconds < _FAST and is_anew:
         return max(divisor // 2, LEAST_DIVISOR)
     return divisor

@@ -23,6 +23,7 @@ enum class Counter {
     GridsCulled,         ///< diced grids that the hierarchical depth rejected, counted a bucket
     GridsSwept,          ///< sweeps made (hider/grid_sweep.h): one of each grid that was hidden
     GridsShaded,         ///< radiance run
+    GridsShadedBefore,   ///< radiance taken from an equal grid of an earlier picture
     GridsOpacityShaded,  ///< opacity run before visibility
     PointsDiced,
     PointsSpared,  ///< about as many more without motion_factor and focus_factor
@@ -38,6 +39,7 @@ enum class Counter {
     FragmentsStored,       ///< transparent list entries
     BucketsMoving,         ///< buckets that met any motion or lens blur
     BucketsTransparent,
+    BucketsSeenBefore,  ///< whose samples an earlier picture has found
     GlPrimitives,  ///< triangles drawn by the raster executor
     GlPasses,
     GlDispatches,  ///< of the compute executor

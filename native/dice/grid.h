@@ -115,6 +115,12 @@ struct Grid {
 
     std::vector<float> channels;  ///< [vertices][ChannelSet::vertex_width()]; empty = none asked
 
+    /// Part of the light samples of a point that radiance was made with; 0 = not shaded, or not to
+    /// the end.
+    float light_share = 0.0f;
+    /// Something of radiance, or of opacity, was not finite, which is left out and was said.
+    bool broken_radiance = false, broken_opacity = false;
+
     int vertex_count() const { return disjoint ? 4 * n_u : (n_u + 1) * (n_v + 1); }
     int micropolygon_count() const { return n_u * n_v; }
     std::size_t point_count() const {

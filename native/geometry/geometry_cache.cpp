@@ -33,6 +33,13 @@ std::shared_ptr<const SharedElements> GeometryCache::elements(const Scene& scene
     return elements;
 }
 
+void GeometryCache::say(const Scene& scene, std::size_t geometry, Report& report) {
+    if (scene.geometries[geometry].kind == GeometryKind::Mesh)
+        shared(scene, geometry, report);
+    else
+        elements(scene, geometry, report);
+}
+
 float GeometryCache::largest_radius(const Scene& scene, std::size_t geometry) {
     return entry(scene, geometry).parts->largest_radius();
 }

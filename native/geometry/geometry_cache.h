@@ -28,6 +28,8 @@ class GeometryCache {
     std::shared_ptr<const SharedElements> elements(const Scene& scene, std::size_t geometry,
                                                    Report& report);
     float largest_radius(const Scene& scene, std::size_t geometry);
+    /// What there is to say of a geometry, which is built where no earlier frame has.
+    void say(const Scene& scene, std::size_t geometry, Report& report);
 
   private:
     struct Entry {

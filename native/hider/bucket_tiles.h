@@ -73,7 +73,7 @@ class BucketTiles {
   private:
     void report_dropped(const Grid& grid, std::uint64_t dropped) const;
 
-    const HiderFrame& m_frame;
+    HiderFrame m_frame;
     Rect m_tiles, m_pixels;
     GridPool m_pool;
     std::vector<TileStore> m_stores;

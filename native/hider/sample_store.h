@@ -28,7 +28,8 @@ class GridPool {
         std::uint32_t slot;  ///< index in arrival order
         int micropolygon;
     };
-    /// The id of the grid's micropolygon 0.  The grid must outlive the pool.
+    /// The id of the grid's micropolygon 0.  The grid must outlive the pool, or what is asked of
+    /// it.
     SurfaceId add(const Grid& grid);
     Place locate(SurfaceId id) const;
     /// Place::slot alone.
@@ -46,6 +47,8 @@ class GridPool {
     /// Ids are less than this.
     SurfaceId id_end() const;
     const Grid& grid(std::uint32_t slot) const { return *m_grids[slot]; }
+    /// The id of its micropolygon 0.
+    SurfaceId base(std::uint32_t slot) const { return m_bases[slot]; }
 
   private:
     std::vector<const Grid*> m_grids;

@@ -29,6 +29,7 @@ struct Projection {
     // Within the shutter the lens may close and focus farther away (Camera::lens): the two above
     // are then the widest and the nearest, and these, metres, the way from there.
     double lens_closing = 0.0, focus_travel = 0.0;
+    bool operator==(const Projection&) const = default;
 
     bool has_lens() const { return lens_radius > 0.0; }
     double farthest_focus() const { return focus + focus_travel; }

@@ -112,6 +112,7 @@ void read_options(const Record& r, Options& o) {
         at_least(r, "filter_glossy", r.number("filter_glossy", o.bounces.filter_glossy), 0.0);
     o.bounces.clamp =
         at_least(r, "clamp_indirect", r.number("clamp_indirect", o.bounces.clamp), 0.0);
+    o.refine_samples = r.boolean("refine_samples", o.refine_samples);
     o.shading_threshold =
         at_least(r, "shading_threshold", r.number("shading_threshold", o.shading_threshold), 0.0);
     o.device =

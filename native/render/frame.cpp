@@ -26,9 +26,9 @@ View make_view(const Scene& scene, Statistics& statistics, const ShadingSystem& 
     return view;
 }
 
-HiderFrame make_hider_frame(const Frame& frame) {
+HiderFrame make_hider_frame(Frame& frame) {
     HiderFrame out{&frame.levels.all(), frame.view.projection, &frame.statistics,
-                   &frame.scene,        &frame.report,         &frame.progress};
+                   &frame.scene,        &frame.said(),         &frame.progress};
     const Options& options = frame.scene.options;
     const bool has_passes = options.depth_pass || !ChannelSet(options).empty();
     out.list_end = {options.opacity_threshold, has_passes ? options.pass_alpha_threshold : 0.0f};
@@ -77,20 +77,54 @@ BucketLayout make_layout(const Options& options, const Film& film, const SampleL
         size);
 }
 
+KeptShading shading_after(KeptShading shading, const KeptVisibility* before, const Scene& scene) {
+    if (!before) return shading;
+    const SceneChanges changes(before->scene(), scene);
+    if ((changes.parts & part::kReadByShading) == 0) shading.grids = before->shaded_grids();
+    return shading;
+}
+
+PixelFilter filter_of(const Scene& scene) {
+    return PixelFilter(scene.options.pixel_filter, scene.options.filter_width);
+}
+
+/// What is kept of the frame.  Displaced surfaces are not, whose materials say things while they
+/// are diced, nor what takes its samples by noise, nor what lies in a device.
+std::unique_ptr<KeptVisibility> make_visibility(Frame& frame,
+                                                const std::shared_ptr<const Scene>& scene,
+                                                const std::shared_ptr<Statistics>& statistics) {
+    if (frame.choice.gl || frame.levels.count() > 1 || frame.shading.displacement()) return nullptr;
+    if (frame.before) {
+        const SceneChanges changes(frame.before->scene(), *scene);
+        if (frame.before->serves(changes, frame.shading, frame.film.sample_pixels())) {
+            frame.sees_anew = false;
+            frame.before->renew(scene, changes, frame.shading);
+            frame.before->say(*frame.shading.geometries(), frame.report);
+            return std::move(frame.before);
+        }
+        frame.before->forget_samples();
+    }
+    return std::make_unique<KeptVisibility>(scene, statistics, frame.shading,
+                                            frame.film.sample_pixels(), frame.layout.count(),
+                                            frame.shared_levels);
+}
+
 }  // namespace
 
-Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& frame_report,
-             const Progress& frame_progress, ExecutorChoice frame_choice, const KeptShading& kept)
-    : scene(frame_scene),
-      statistics(frame_statistics),
+Frame::Frame(const std::shared_ptr<const Scene>& frame_scene,
+             const std::shared_ptr<Statistics>& frame_statistics, Report& frame_report,
+             const Progress& frame_progress, ExecutorChoice frame_choice, KeptPicture kept)
+    : scene(*frame_scene),
+      statistics(*frame_statistics),
       report(frame_report),
       progress(frame_progress),
-      shading(scene, statistics, report, progress, frame_choice.executor != Executor::Raster, kept),
-      view(make_view(scene, statistics, shading,
-                     PixelFilter(scene.options.pixel_filter, scene.options.filter_width))),
-      levels(view, PixelFilter(scene.options.pixel_filter, scene.options.filter_width),
-             frame_choice.executor != Executor::Raster, report),
-      hider(make_hider_frame(*this)),
+      before(std::move(kept.visibility)),
+      shading(scene, statistics, report, progress, frame_choice.executor != Executor::Raster,
+              shading_after(std::move(kept.shading), before.get(), scene)),
+      view(make_view(scene, statistics, shading, filter_of(scene))),
+      shared_levels(std::make_shared<const SampleLevels>(
+          view, filter_of(scene), frame_choice.executor != Executor::Raster, report)),
+      levels(*shared_levels),
       constant_background(constant_background_of(shading)),
       choice(std::move(frame_choice)),
       raster(choice.executor == Executor::Raster
@@ -100,6 +134,21 @@ Frame::Frame(const Scene& frame_scene, Statistics& frame_statistics, Report& fra
                  : nullptr),
       film(scene.options),
       layout(make_layout(scene.options, film, levels, choice.executor)),
-      geometry(view, layout, report, levels.count() > 1) {}
+      visibility(kept.is_kept ? make_visibility(*this, frame_scene, frame_statistics) : nullptr),
+      hider(make_hider_frame(*this)),
+      geometry(view, layout, report, said(), levels.count() > 1) {}
+
+std::unique_ptr<KeptVisibility> Frame::take_visibility() {
+    if (!visibility) return nullptr;
+    if (sees_anew) {
+        report.add(visibility->said());
+        std::vector<std::size_t> opened;
+        geometry.for_each_opened([&](std::uint32_t instance) {
+            opened.push_back(static_cast<std::size_t>(scene.instances[instance].geometry));
+        });
+        visibility->set_opened(std::move(opened));
+    }
+    return visibility->is_whole() ? std::move(visibility) : nullptr;
+}
 
 }  // namespace granita

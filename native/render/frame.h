@@ -10,31 +10,48 @@
 #include "hider/raster/raster_hider.h"
 #include "render/choose_executor.h"
 #include "render/frame_geometry.h"
+#include "render/kept_visibility.h"
 #include "render/sample_levels.h"
 #include "shade/shading_system.h"
 
 namespace granita {
 
+/// What a frame takes over from pictures before it.
+struct KeptPicture {
+    KeptShading shading;
+    std::unique_ptr<KeptVisibility> visibility;  ///< of one of its size, or nullptr
+    bool is_kept = false;                        ///< whether a later picture wants its own
+};
+
 struct Frame {
-    Frame(const Scene& scene, Statistics& statistics, Report& report, const Progress& progress,
-          ExecutorChoice choice, const KeptShading& kept = {});
+    /// Scene and statistics are shared with what is kept.
+    Frame(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<Statistics>& statistics,
+          Report& report, const Progress& progress, ExecutorChoice choice, KeptPicture kept = {});
+    /// Once all buckets are done: what this leaves to a later picture, or nullptr.
+    std::unique_ptr<KeptVisibility> take_visibility();
 
     const Scene& scene;
     Statistics& statistics;
     Report& report;
     const Progress& progress;
+    std::unique_ptr<KeptVisibility> before;  ///< whose grids lend their radiance, or nullptr
     ShadingSystem shading;
     View view;
-    SampleLevels levels;
-    HiderFrame hider;  ///< with all samples
+    std::shared_ptr<const SampleLevels> shared_levels;
+    const SampleLevels& levels;
     Vec3f constant_background{0.0f};
     ExecutorChoice choice;
     std::unique_ptr<RasterHider> raster;  ///< only where it was chosen
     Film film;
     BucketLayout layout;
+    bool sees_anew = true;                       ///< else visibility is that of an earlier picture
+    std::unique_ptr<KeptVisibility> visibility;  ///< what is kept of this frame, or nullptr
+    HiderFrame hider;                            ///< with all samples
     FrameGeometry geometry;
 
     const LensShape& lens() const { return levels.all().lens(); }
+    /// Where what there is to say of what samples see is noted.
+    Report& said() { return visibility && sees_anew ? visibility->said() : report; }
 };
 
 }  // namespace granita

@@ -24,10 +24,11 @@ bool is_single(const Rect& range) {
 }  // namespace
 
 FrameGeometry::FrameGeometry(const View& view, const BucketLayout& layout, Report& report,
-                             bool revisited)
+                             Report& said, bool revisited)
     : m_view(view),
       m_layout(layout),
       m_report(report),
+      m_said(said),
       m_revisited(revisited),
       m_states(view.scene->instances.size()),
       m_finished(static_cast<std::size_t>(layout.count())) {
@@ -59,7 +60,9 @@ std::shared_ptr<FrameGeometry::Opened> FrameGeometry::open(std::uint32_t instanc
 std::shared_ptr<FrameGeometry::Opened> FrameGeometry::make_opened(std::uint32_t instance) const {
     const StageTimer timer(*m_view.statistics, Stage::Open);
     auto opened = std::make_shared<Opened>();
-    opened->geometry = open_instance(m_view, instance, m_report);
+    const auto shared = static_cast<std::size_t>(m_view.scene->instances[instance].geometry);
+    m_view.geometries->say(*m_view.scene, shared, m_report);
+    opened->geometry = open_instance(m_view, instance, m_said);
     const Rect& area = m_states[instance].buckets;
     const std::size_t count = opened->geometry->primitive_count();
     opened->bounds.resize(count);

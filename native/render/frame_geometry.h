@@ -20,8 +20,9 @@ namespace granita {
 
 class FrameGeometry {
   public:
+    /// What there is to say of geometries goes to `report`, of opened instances to `said`.
     /// `revisited`: buckets look at parts of themselves again, and find what they have diced.
-    FrameGeometry(const View& view, const BucketLayout& layout, Report& report,
+    FrameGeometry(const View& view, const BucketLayout& layout, Report& report, Report& said,
                   bool revisited = false);
 
     /// visit(instance) for those whose bound touches the bucket.
@@ -63,6 +64,13 @@ class FrameGeometry {
     /// The bucket is done: releases everything that only it was still waiting for.
     void release(int bucket);
 
+    /// Calls visit(instance) for those that were opened.
+    template <class Visit>
+    void for_each_opened(Visit visit) const {
+        for (std::size_t i = 0; i < m_states.size(); ++i)
+            if (m_states[i].is_open) visit(static_cast<std::uint32_t>(i));
+    }
+
     const BucketLayout& layout() const { return m_layout; }
     /// As HierarchicalGrid::entries(), of instances.
     std::size_t list_entries() const { return m_instances.entries(); }
@@ -84,7 +92,7 @@ class FrameGeometry {
 
     const View& m_view;
     const BucketLayout& m_layout;
-    Report& m_report;
+    Report &m_report, &m_said;
     const bool m_revisited;
     std::vector<State> m_states;
     HierarchicalGrid m_instances;

@@ -32,10 +32,10 @@ void SharedGrid::count_bytes() {
     m_statistics.add_grid_bytes(m_bytes);
 }
 
-void SharedGrid::ensure_shading_state() {
+void SharedGrid::ensure_shading_state(Statistics& statistics) {
     std::call_once(m_has_state, [&] {
         if (!m_grid->shading_state) return;
-        const StageTimer timer(m_statistics, Stage::Dice);
+        const StageTimer timer(statistics, Stage::Dice);
         m_grid->shading_state(*m_grid);
         m_grid->shading_state = {};
         count_bytes();
@@ -51,22 +51,32 @@ const GridSweep& SharedGrid::sweep(const Projection& projection, const LensShape
     return *m_sweep;
 }
 
-void SharedGrid::ensure_opacity(const ShadingSystem& shading) {
+void SharedGrid::ensure_opacity(const ShadingSystem& shading, Statistics& statistics) {
     std::call_once(m_opacity, [&] {
-        ensure_shading_state();
-        const StageTimer timer(m_statistics, Stage::Shade);
+        ensure_shading_state(statistics);
+        const StageTimer timer(statistics, Stage::Shade);
         shading.shade_opacity(*m_grid);
     });
 }
 
-void SharedGrid::ensure_radiance(const ShadingSystem& shading) {
-    std::call_once(m_radiance, [&] {
-        ensure_shading_state();
-        const StageTimer timer(m_statistics, Stage::Shade);
+void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& statistics, bool stays) {
+    std::call_once(*m_radiance, [&] {
+        ensure_shading_state(statistics);
+        const StageTimer timer(statistics, Stage::Shade);
         shading.shade_radiance(*m_grid);
-        if (m_grid->unsettled.empty()) drop_shading_state(*m_grid);
+        if (!stays && m_grid->unsettled.empty()) drop_shading_state(*m_grid);
         count_bytes();
     });
+}
+
+void SharedGrid::forget_radiance() {
+    m_radiance.emplace();
+    m_grid->light_share = 0.0f;
+    m_grid->broken_radiance = false;
+    m_grid->radiance.clear();
+    m_grid->gathered.clear();
+    m_grid->unsettled.clear();
+    m_grid->channels.clear();
 }
 
 std::shared_ptr<SharedGrid> dice_counted(const Primitive& primitive, Statistics& statistics) {

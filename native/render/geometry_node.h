@@ -24,21 +24,27 @@ class SharedGrid {
     SharedGrid(std::unique_ptr<Grid> grid, Statistics& statistics);
     ~SharedGrid();
     const Grid& grid() const { return *m_grid; }
-    void ensure_opacity(const ShadingSystem& shading);
-    void ensure_radiance(const ShadingSystem& shading);
+    void ensure_opacity(const ShadingSystem& shading, Statistics& statistics);
+    /// `stays`: a later picture may shade it anew.
+    void ensure_radiance(const ShadingSystem& shading, Statistics& statistics, bool stays = false);
+    /// Between two pictures: the next one shades it anew.
+    void forget_radiance();
     /// What hiding must know of it, once its opacity is there where that varies.
     const GridSweep& sweep(const Projection& projection, const LensShape& lens);
 
   private:
-    void ensure_shading_state();
+    void ensure_shading_state(Statistics& statistics);
     void count_bytes();
 
     std::unique_ptr<Grid> m_grid;
     Statistics& m_statistics;
     std::uint64_t m_bytes = 0;
     std::optional<GridSweep> m_sweep;
-    std::once_flag m_has_state, m_opacity, m_radiance, m_has_sweep;
+    std::once_flag m_has_state, m_opacity, m_has_sweep;
+    std::optional<std::once_flag> m_radiance{std::in_place};
 };
+
+using HiddenGrids = std::vector<std::shared_ptr<SharedGrid>>;  ///< in a hider's arrival order
 
 /// Splits until diceable and dices, with the counters.  nullptr when nothing is left of it.
 std::shared_ptr<SharedGrid> dice_counted(const Primitive& primitive, Statistics& statistics);

@@ -82,7 +82,7 @@ Tile raster_bucket(Frame& frame, int bucket) {
         frame, bucket, frame.layout.reach(bucket), [](const TimeSlab&) { return false; },
         [&](std::shared_ptr<SharedGrid> grid) {
             if (frame.shading.opacity_varies(grid->grid().material))
-                grid->ensure_opacity(frame.shading);
+                grid->ensure_opacity(frame.shading, frame.statistics);
             grids.push_back(std::move(grid));
         });
     std::vector<const GridSweep*> sweeps;

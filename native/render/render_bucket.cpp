@@ -45,33 +45,35 @@ void hide_geometry(Frame& frame, int bucket, const Rect& reach, Hider& hider, Hi
     const auto occluded = [&](const TimeSlab& slab) { return hider.occluded(slab); };
     visit_geometry(frame, bucket, reach, occluded, [&](std::shared_ptr<SharedGrid> grid) {
         if (frame.shading.opacity_varies(grid->grid().material))
-            grid->ensure_opacity(frame.shading);
+            grid->ensure_opacity(frame.shading, frame.statistics);
         hider.hide(grid->sweep(frame.view.projection, frame.lens()));
         grids.push_back(std::move(grid));
     });
 }
 
-/// Composites and filters every tile; none where the lists did not fit.
-std::vector<ResolvedTile> resolve(Frame& frame, Hider& hider, const HiddenGrids& grids) {
-    const std::vector<TileStore>* stores = nullptr;
-    {
-        const StageTimer timer(frame.statistics, Stage::Hide);
-        stores = &hider.finish();
-    }
-    if (hider.overflowed()) return {};
-    const std::vector<bool> seen = shade_seen(frame, hider, grids);
-    const BucketRefinement refinement(frame, hider, *stores, seen);
+/// Composites and filters every tile of a hider that has finished, whose grids that are `seen` are
+/// shaded.
+std::vector<ResolvedTile> resolve(Frame& frame, Hider& hider, const std::vector<bool>& seen) {
+    const std::vector<TileStore>& stores = hider.finish();
+    const BucketRefinement refinement(frame, hider, stores, seen);
     LayerTable layers(hider.pool(), seen);
     std::vector<ResolvedTile> resolved;
-    resolved.reserve(stores->size());
+    resolved.reserve(stores.size());
     TileColors colors(frame, hider.table());
-    for (std::size_t i = 0; i < stores->size(); ++i) {
+    for (std::size_t i = 0; i < stores.size(); ++i) {
         const TileSamples& samples = hider.tile_samples(i);
-        const Vec2i tile = (*stores)[i].tile;
-        colors.composite((*stores)[i], samples, layers, refinement.tile(i));
+        const Vec2i tile = stores[i].tile;
+        colors.composite(stores[i], samples, layers, refinement.tile(i));
         resolved.push_back(colors.resolve(tile, samples));
     }
     return resolved;
+}
+
+/// Whether the lists did fit.
+bool finish(Frame& frame, Hider& hider) {
+    const StageTimer timer(frame.statistics, Stage::Hide);
+    hider.finish();
+    return !hider.overflowed();
 }
 
 /// These tiles of the bucket, seen with the samples of one level.
@@ -82,17 +84,30 @@ std::vector<ResolvedTile> look(Frame& frame, int bucket, int level, const Rect& 
     {
         HiderFrame settings = frame.hider;
         settings.table = &table;
-        const auto hider = make_hider(settings, frame.choice, tiles, pixels);
+        auto hider = make_hider(settings, frame.choice, tiles, pixels);
         hide_geometry(frame, bucket, pixels, *hider, grids);
         if (level == 0) count_needs(frame, grids);
-        auto resolved = resolve(frame, *hider, grids);
-        if (!resolved.empty()) return resolved;
+        if (finish(frame, *hider)) {
+            std::vector<bool> seen = shade_seen(frame, *hider, grids);
+            auto resolved = resolve(frame, *hider, seen);
+            if (frame.visibility)
+                frame.visibility->keep(bucket,
+                                       {std::move(hider), std::move(grids), std::move(seen)});
+            return resolved;
+        }
     }
     return resolve_in_parts(frame, table, tiles, pixels, grids);
 }
 
-/// Sees the tile again until its samples are enough.
-void look_again(Frame& frame, int bucket, ResolvedTile& tile) {
+/// As an earlier picture has seen it.
+std::vector<ResolvedTile> look_again(Frame& frame, const KeptVisibility::Bucket& bucket) {
+    frame.statistics.add(Counter::BucketsSeenBefore);
+    shade_grids(frame, bucket.grids, bucket.seen);
+    return resolve(frame, *bucket.hider, bucket.seen);
+}
+
+/// With more samples, until its samples are enough.
+void look_closer(Frame& frame, int bucket, ResolvedTile& tile) {
     for (int level = 0, next; (next = frame.levels.next(level, tile.noise)) != level;
          level = next) {
         frame.statistics.add(Counter::TilesResampled);
@@ -107,8 +122,11 @@ std::vector<Tile> render_bucket(Frame& frame, int bucket) {
     const Release release(frame.geometry, bucket);
     if (frame.raster) return {raster_bucket(frame, bucket)};
     std::vector<TileContribution> contributions;
-    for (ResolvedTile& tile : look(frame, bucket, 0, frame.layout.tiles(bucket))) {
-        look_again(frame, bucket, tile);
+    std::vector<ResolvedTile> tiles = frame.sees_anew
+                                          ? look(frame, bucket, 0, frame.layout.tiles(bucket))
+                                          : look_again(frame, *frame.visibility->bucket(bucket));
+    for (ResolvedTile& tile : tiles) {
+        look_closer(frame, bucket, tile);
         contributions.push_back(std::move(tile.contribution));
     }
     const StageTimer timer(frame.statistics, Stage::Film);

@@ -25,7 +25,7 @@ struct RenderJob::Impl {
     std::shared_ptr<const Scene> scene;
     gl::ContextOptions gpu;
     std::shared_ptr<Session> session;
-    Statistics statistics;
+    std::shared_ptr<Statistics> statistics = std::make_shared<Statistics>();
     Report reports[2];  ///< of the device that was chosen, and of the CPU in its place
     std::atomic<int> attempt{0};
     Progress progress;
@@ -72,9 +72,8 @@ struct RenderJob::Impl {
 
     /// One task a bucket, taken in spiral order (decision 14).
     void render(ThreadPool& pool, ExecutorChoice choice) {
-        const StageLedger ledger(statistics);
-        Frame frame(*scene, statistics, reports[attempt], progress, std::move(choice),
-                    session ? session->shading() : KeptShading{});
+        const StageLedger ledger(*statistics);
+        Frame frame(scene, statistics, reports[attempt], progress, std::move(choice), kept());
         {
             const std::lock_guard lock(mutex);
             device = frame.choice.device;
@@ -86,7 +85,7 @@ struct RenderJob::Impl {
         std::optional<GlError> lost;
         gl::GlThread* const gl = frame.choice.gl.get();
         pool.run_on_all([&] {
-            const StageLedger own(statistics);
+            const StageLedger own(*statistics);
             if (gl != nullptr) gl->clock().add_worker(1);
             try {
                 for (std::size_t i = next++; i < order.size(); i = next++) {
@@ -106,8 +105,15 @@ struct RenderJob::Impl {
             const std::lock_guard lock(mutex);
             device_use = gl->clock().use();
         }
+        if (auto visibility = frame.take_visibility(); session && !lost)
+            session->keep(std::move(visibility));
         progress.check();
         if (lost) throw *lost;
+    }
+
+    KeptPicture kept() {
+        if (!session) return {};
+        return {session->shading(), session->take_visibility(*scene), true};
     }
 
     void run() {
@@ -186,7 +192,7 @@ void RenderJob::finish() {
 }
 
 const Statistics& RenderJob::statistics() const {
-    return m_impl->statistics;
+    return *m_impl->statistics;
 }
 const Report& RenderJob::report() const {
     return m_impl->reports[m_impl->attempt];

@@ -8,13 +8,19 @@
 //   view, transforms; others                                  kept                kept
 //   lens, lights, colours, samples, film                      kept                kept
 //
+// What samples have seen and how grids were shaded is kept by picture (kept_visibility.h); which
+// edit each of them reads stands in scene/scene_changes.h.
+//
 // A final frame is a session that lives for one picture.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <mutex>
+#include <vector>
 
+#include "render/kept_visibility.h"
 #include "scene/scene.h"
 #include "shade/kept_shading.h"
 
@@ -33,6 +39,12 @@ class Session {
 
     const KeptShading& shading() const { return m_shading; }
 
+    /// What a picture of the scene's size has left, or nullptr.  Who takes it has it alone.
+    std::unique_ptr<KeptVisibility> take_visibility(const Scene& scene);
+    /// Of the pictures that came last, one of each size, as many as fit in
+    /// KeptVisibility::kMostBytes.
+    void keep(std::unique_ptr<KeptVisibility> visibility);
+
     /// Since the session began.
     std::uint64_t geometries_adopted() const { return m_adopted; }
     std::uint64_t geometries_made() const { return m_shading.geometry->made(); }
@@ -42,6 +54,7 @@ class Session {
     std::mutex m_mutex;
     KeptShading m_shading;
     GeometryList m_before;
+    std::vector<std::unique_ptr<KeptVisibility>> m_visibility;  ///< latest first
     std::atomic<std::uint64_t> m_adopted{0};
 };
 

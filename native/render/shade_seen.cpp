@@ -11,7 +11,9 @@ void shade_grids(const Frame& frame, const HiddenGrids& grids, const std::vector
     parallel_for(grids.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t slot = begin; slot < end; ++slot) {
             frame.progress.check();
-            if (seen[slot]) grids[slot]->ensure_radiance(frame.shading);
+            if (seen[slot])
+                grids[slot]->ensure_radiance(frame.shading, frame.statistics,
+                                             frame.visibility != nullptr);
         }
     });
 }

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "hider/hider.h"
 #include "render/frame.h"
 
 namespace granita {
-
-using HiddenGrids = std::vector<std::shared_ptr<SharedGrid>>;  ///< in a hider's arrival order
 
 /// Shades those of the grids that are seen [grids], on all threads that have nothing else to do.
 void shade_grids(const Frame& frame, const HiddenGrids& grids, const std::vector<bool>& seen);

@@ -51,7 +51,7 @@ void TileColors::take(const TileColors& part, const Rect& pixels, int samples) {
 }
 
 ResolvedTile TileColors::resolve(Vec2i tile, const TileSamples& samples) const {
-    const bool is_last = &m_table == &m_frame.levels.all();
+    const bool is_last = m_table.samples() == m_frame.levels.all().samples();
     return {filter(tile, samples), is_last ? 0.0f : tile_noise(samples, m_colors)};
 }
 

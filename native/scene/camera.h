@@ -22,6 +22,7 @@ struct Camera {
     float blade_rotation = 0.0f;  ///< radians
     float lens_ratio =
         1.0f;  ///< > 1 narrows the lens in x (anamorphic), as Blender's aperture_ratio
+    bool operator==(const Camera&) const = default;
 };
 
 }  // namespace granita

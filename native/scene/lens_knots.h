@@ -28,6 +28,7 @@ class LensKnots {
     float opening(float t) const { return static_cast<float>(at(t).x / m_widest); }
     /// 1 / focus distance at the time t, never outside what Projection's range says.
     float inverse_focus(float t) const;
+    bool operator==(const LensKnots&) const = default;
 
   private:
     Vec2d at(float t) const;

@@ -39,6 +39,7 @@ struct Light {
     /// Light and shadow linking: which bit of Instance::receives and ::blocks counts; -1 = it
     /// lights, and is shadowed by, everything.
     int receiver_set = -1, blocker_set = -1;
+    bool operator==(const Light&) const = default;
 };
 
 /// Whether an instance with this mask is in a set.
@@ -53,6 +54,7 @@ struct World {
     /// Whether rays of a type see it; to the others it is black.
     bool visible_camera = true, visible_diffuse = true, visible_glossy = true,
          visible_transmission = true;
+    bool operator==(const World&) const = default;
 };
 
 }  // namespace granita

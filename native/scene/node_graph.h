@@ -16,6 +16,7 @@ namespace granita {
 struct NodeLink {
     int node = -1;       ///< index in NodeGraph::nodes, smaller than the reader's own
     std::string output;  ///< socket identifier, e.g. "Color", "Fac", "BSDF"
+    bool operator==(const NodeLink&) const = default;
 };
 
 /// Unlinked constant (scalar in x; vector in xyz; colour in rgb(a)) or link.
@@ -39,6 +40,7 @@ struct Node {
         return found ? *found : fallback;
     }
     bool flag(const std::string& property) const { return value(property) != 0.0; }
+    bool operator==(const Node&) const = default;
 
   private:
     template <class T>
@@ -64,12 +66,14 @@ struct NodeGraph {
     bool bends_normals() const {
         return displacement.node >= 0 && displacement_method == DisplacementMethod::Bump;
     }
+    bool operator==(const NodeGraph&) const = default;
 };
 
 struct Material {
     std::string name;
     int index = 0;  ///< pass_index
     NodeGraph graph;
+    bool operator==(const Material&) const = default;
 };
 
 /// An image that nodes refer to by name.  Either a file (OpenImageIO reads it, tiled and cached) or
@@ -81,6 +85,7 @@ struct Image {
     std::string alpha_mode = "STRAIGHT";
     int width = 0, height = 0;
     std::vector<float> pixels;  ///< [height][width][4], lower-left first, scene-linear, or empty
+    bool operator==(const Image&) const = default;
 };
 
 }  // namespace granita

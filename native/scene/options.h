@@ -30,11 +30,13 @@ enum class FilterKind {
 struct Aov {
     std::string name;
     bool is_color = true;  ///< else one number
+    bool operator==(const Aov&) const = default;
 };
 
 /// Blender's mist: ((distance to the camera - start) / depth) to the power of exponent, in [0, 1].
 struct Mist {
     float start = 5.0f, depth = 25.0f, exponent = 2.0f;
+    bool operator==(const Mist&) const = default;
 };
 
 /// How far light is followed from surface to surface, as Cycles' Light Paths.
@@ -45,6 +47,7 @@ struct Bounces {
     bool caustics = true;        ///< glossy lobes reflect what reaches diffuse ones
     float filter_glossy = 1.0f;  ///< how much blurrier they are for ways that few take; 0 = none
     float clamp = 10.0f;  ///< most that a path brings, red, green and blue summed; 0 = no end
+    bool operator==(const Bounces&) const = default;
 };
 
 struct Options {
@@ -79,6 +82,7 @@ struct Options {
     /// Bend of displayed colour between neighbouring shading points (shade/unsettled.h) from which
     /// on samples are shaded by themselves, for 64 samples a pixel; in proportion to samples^-1/2.
     float shading_threshold = 0.06f;
+    bool refine_samples = true;  ///< false: none are shaded by themselves
     Device device = Device::Auto;
     Executor executor = Executor::Auto;  ///< overrides device; tests and benches
     int threads = 0;                     ///< 0 = all
@@ -98,6 +102,7 @@ struct Options {
 
     /// Part of the shutter in which one row is exposed.
     float row_exposure() const { return rolling_shutter >= 0.0f ? rolling_shutter : 1.0f; }
+    bool operator==(const Options&) const = default;
 };
 
 }  // namespace granita

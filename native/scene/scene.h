@@ -35,6 +35,7 @@ struct Instance {
     /// By sets of lights that are linked: those that light it, and those of which it casts shadows.
     std::uint64_t receives = ~0ULL, blocks = ~0ULL;
     std::uint32_t key = 0;  ///< rank of the persistent identity: orders micropolygons (decision 3)
+    bool operator==(const Instance&) const = default;
 
     /// Index in Scene::materials, -1 = none.  An element may keep the slot of a material that is
     /// gone: Blender takes the last one there is.

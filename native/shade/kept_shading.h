@@ -7,12 +7,16 @@
 
 #include "geometry/kept_geometry.h"
 #include "shade/rays/kept_rays.h"
+#include "shade/shaded_grids.h"
 
 namespace granita {
 
 struct KeptShading {
     std::shared_ptr<KeptGeometry> geometry = std::make_shared<KeptGeometry>();
     std::shared_ptr<KeptRays> rays;  ///< nullptr: none are kept
+    /// Of an earlier picture in which nothing that shading reads was another, but for grids
+    /// themselves; may be nullptr.
+    std::shared_ptr<const ShadedGrids> grids;
 };
 
 }  // namespace granita

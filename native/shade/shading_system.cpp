@@ -60,8 +60,9 @@ struct ShadingSystem::Impl {
     float threshold, noise_threshold;  ///< of unsettled_micropolygons()
     float footprint;                   ///< of a sample, in steps of a grid
     std::shared_ptr<GeometryCache> geometries;
-    std::unique_ptr<DirectLight> light;  ///< nullptr where nothing that is seen reflects any
-    std::unique_ptr<HitShader> hits;     ///< where light is followed further, else nullptr
+    std::shared_ptr<const ShadedGrids> shaded;  ///< of an earlier picture, or nullptr
+    std::unique_ptr<DirectLight> light;         ///< nullptr where nothing that is seen reflects any
+    std::unique_ptr<HitShader> hits;            ///< where light is followed further, else nullptr
     std::unique_ptr<BouncedLight> bounces;
 
     Impl(const Scene& s, Statistics& stats, Report& warnings, const Progress& progress,
@@ -74,13 +75,14 @@ struct ShadingSystem::Impl {
           shutter(s.options.shutter_curve),
           channels(s.options),
           world(s, textures, report),
-          refines(refines_samples),
+          refines(refines_samples && s.options.refine_samples),
           moves(s.moves()),
           threshold(s.options.shading_threshold * 8.0f /
                     std::sqrt(static_cast<float>(s.options.samples))),
           noise_threshold(refining_spares_noise(s.options, s.moves()) ? threshold : kNoThreshold),
           footprint(1.0f / std::sqrt(static_cast<float>(s.options.samples))),
-          geometries(std::make_shared<GeometryCache>(kept.geometry)) {
+          geometries(std::make_shared<GeometryCache>(kept.geometry)),
+          shaded(kept.grids) {
         const StageTimer timer(stats, Stage::Shade);
         const ChannelSet* passes = channels.empty() ? nullptr : &channels;
         std::vector<std::optional<DisplacementProgram>> displacements;
@@ -217,7 +219,9 @@ struct ShadingSystem::Impl {
             doubtful = add_bounces(points, closure, std::move(leaving), grid.gathered, radiance);
         for (std::size_t i = 0; i < closure.emission.size(); ++i)
             radiance[i] += closure.emission[i];
-        warn_of_broken(grid.material, ran.broken() + make_finite(radiance));
+        const std::size_t broken = ran.broken() + make_finite(radiance);
+        grid.broken_radiance |= broken > 0;
+        warn_of_broken(grid.material, broken);
         if (settled && !doubtful.empty()) {
             *settled = radiance;
             for (std::size_t i = 0; i < points.count; ++i) (*settled)[i] -= doubtful[i];
@@ -238,7 +242,9 @@ struct ShadingSystem::Impl {
         Run run = surface.opacity_program.prepare(in, in.points->count);
         surface.opacity_program.execute(run);
         grid.opacity = values_of(run, surface.transparency);
-        warn_of_broken(grid.material, make_finite(grid.opacity));
+        const std::size_t broken = make_finite(grid.opacity);
+        grid.broken_opacity = broken > 0;
+        warn_of_broken(grid.material, broken);
         for (Vec3f& opacity : grid.opacity)
             opacity = glm::clamp(Vec3f(1.0f) - opacity, Vec3f(0.0f), Vec3f(1.0f));
         interpolate_points(grid, 1, grid.opacity);
@@ -276,19 +282,21 @@ struct ShadingSystem::Impl {
 
     /// Whether some of the grid's micropolygons look otherwise at some time of the shutter than
     /// when it opens: all else being equal, light samples too.
-    bool changes_in_time(const Grid& grid) const {
+    bool changes_in_time(Grid& grid) const {
         if (!moves || (!light && are_equal(grid.radiance))) return false;
-        return any_changes(refine(grid, time_probes(grid), 1.0f).radiance, threshold,
-                           displayed_difference);
+        const Grid probes = refine(grid, time_probes(grid), 1.0f);
+        grid.broken_radiance |= probes.broken_radiance || probes.broken_opacity;
+        return any_changes(probes.radiance, threshold, displayed_difference);
     }
 
     /// The same of its opacity: of what grazes the view, say.
-    bool opacity_changes_in_time(const Grid& grid) const {
+    bool opacity_changes_in_time(Grid& grid) const {
         if (!moves) return false;
         const RefinedPoints points(grid, scene, camera, time_probes(grid), moves, 1.0f);
         Grid out;
         out.material = grid.material;
         shade_opacity(out, input(grid, points));
+        grid.broken_opacity |= out.broken_opacity;
         return any_changes(out.opacity, threshold, opacity_difference);
     }
 
@@ -296,8 +304,52 @@ struct ShadingSystem::Impl {
         return std::vector<std::uint8_t>(static_cast<std::size_t>(grid.micropolygon_count()), 1);
     }
 
+    /// Takes radiance from an equal grid of an earlier picture, shaded with as many light samples;
+    /// false where there is none.
+    bool take_shaded(Grid& grid, float share) const {
+        const Grid* same = shaded ? shaded->find(grid) : nullptr;
+        if (same == nullptr) return false;
+        // What samples are shaded by themselves goes by the share itself.
+        const bool is_enough = refines ? same->light_share == share
+                                       : !light || light->sample_count(same->light_share) ==
+                                                       light->sample_count(share);
+        if (!is_enough) return false;
+        take_shading(*same, grid);
+        statistics.add(Counter::GridsShadedBefore);
+        return true;
+    }
+
     PointPaths paths(const Grid& grid, const ShadingPoints& points) const {
         return light && light->varies() ? PointPaths(grid, scene, points) : PointPaths();
+    }
+
+    void shade_anew(Grid& grid, bool lit, float sharpness) const {
+        ShadingPoints points = shading_points(grid, camera);
+        const bool wants_refining = can_refine(grid);
+        points.share *= sharpness;
+        points.round = is_round(grid);
+        if (light && lit) light->lift(points, grid.key);
+        std::vector<float> noise(wants_refining ? points.count : 0, 0.0f);
+        std::vector<Vec3f> settled;
+        shade(grid, input(grid, points), paths(grid, points), wants_refining ? &noise : nullptr,
+              wants_refining ? &settled : nullptr);
+        statistics.add(Counter::GridsShaded);
+        if (!wants_refining) return;
+        if (grid.holdout) {
+            grid.unsettled = grid.unsettled_opacity;
+            return;
+        }
+        // Samples would be shaded by themselves where points happen to be too bright, not too dark.
+        if (!settled.empty()) settled.swap(grid.radiance);
+        grid.unsettled =
+            changes_in_time(grid)
+                ? all_marked(grid)
+                : unsettled_micropolygons(grid, noise, threshold / (sharpness * sharpness),
+                                          noise_threshold / (sharpness * sharpness));
+        if (!settled.empty()) settled.swap(grid.radiance);
+        if (grid.unsettled.empty()) grid.unsettled = grid.unsettled_opacity;
+        for (std::size_t m = 0; m < grid.unsettled_opacity.size(); ++m)
+            grid.unsettled[m] |= grid.unsettled_opacity[m];
     }
 };
 
@@ -327,6 +379,10 @@ bool ShadingSystem::opacity_varies(int material) const {
     return !m_impl->material(material).transparency.is(Vec3f(0.0f));
 }
 
+bool ShadingSystem::lets_light_through(int material) const {
+    return !m_impl->material(material).shadow.transparency.is(Vec3f(0.0f));
+}
+
 void ShadingSystem::shade_opacity(Grid& grid) const {
     if (!opacity_varies(grid.material)) return;
     const ShadingPoints points = shading_points(grid, m_impl->camera);
@@ -345,35 +401,12 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 }
 
 void ShadingSystem::shade_radiance(Grid& grid) const {
-    const CompiledSurface& material = m_impl->material(grid.material);
-    ShadingPoints points = shading_points(grid, m_impl->camera);
-    const bool refines = m_impl->can_refine(grid);
-    const bool lit = !material.radiance.sources.lobes.empty();
-    const float sharpness = lit || refines ? m_impl->sharpness(grid) : 1.0f;
-    points.share *= sharpness;
-    points.round = m_impl->is_round(grid);
-    if (m_impl->light && lit) m_impl->light->lift(points, grid.key);
-    std::vector<float> noise(refines ? points.count : 0, 0.0f);
-    std::vector<Vec3f> settled;
-    m_impl->shade(grid, m_impl->input(grid, points), m_impl->paths(grid, points),
-                  refines ? &noise : nullptr, refines ? &settled : nullptr);
-    m_impl->statistics.add(Counter::GridsShaded);
-    if (!refines) return;
-    if (grid.holdout) {
-        grid.unsettled = grid.unsettled_opacity;
-        return;
-    }
-    // Samples would be shaded by themselves where points happen to be too bright, not too dark.
-    if (!settled.empty()) settled.swap(grid.radiance);
-    grid.unsettled =
-        m_impl->changes_in_time(grid)
-            ? m_impl->all_marked(grid)
-            : unsettled_micropolygons(grid, noise, m_impl->threshold / (sharpness * sharpness),
-                                      m_impl->noise_threshold / (sharpness * sharpness));
-    if (!settled.empty()) settled.swap(grid.radiance);
-    if (grid.unsettled.empty()) grid.unsettled = grid.unsettled_opacity;
-    for (std::size_t m = 0; m < grid.unsettled_opacity.size(); ++m)
-        grid.unsettled[m] |= grid.unsettled_opacity[m];
+    const bool lit = !m_impl->material(grid.material).radiance.sources.lobes.empty();
+    const float sharpness = lit || m_impl->can_refine(grid) ? m_impl->sharpness(grid) : 1.0f;
+    const float share = grid.point_share * sharpness;
+    if (m_impl->take_shaded(grid, share)) return;
+    m_impl->shade_anew(grid, lit, sharpness);
+    grid.light_share = share;
 }
 
 Grid ShadingSystem::refine(const Grid& grid, std::span<const RefinedPoint> wanted) const {

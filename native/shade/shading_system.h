@@ -38,10 +38,12 @@ class ShadingSystem {
 
     /// Whether opacity must run before visibility (it is not the constant 1).  -1 = no material.
     bool opacity_varies(int material) const;
+    /// Whether shadows of it are not black all over.  -1 = no material.
+    bool lets_light_through(int material) const;
     /// Fills Grid::opacity and opacity_varies.  Thread-safe for different grids.
     void shade_opacity(Grid& grid) const;
-    /// Fills Grid::radiance (premultiplied by opacity, plus emission) and what depends on it.
-    /// Thread-safe for different grids.
+    /// Fills Grid::radiance (premultiplied by opacity, plus emission) and what depends on it, or
+    /// takes it from an equal grid of an earlier picture.  Thread-safe for different grids.
     void shade_radiance(Grid& grid) const;
 
     /// Shades points between the vertices of a shaded grid, each at its time.

@@ -19,7 +19,6 @@ def snapshot():
             "crop": np.array([3, 0, 101, 33], dtype=np.int32),
             "samples": 64,
             "light_samples": 16,
-            "shading_threshold": 0.1,
         },
         "camera": {"scale": (200.0, 100.0), "center": (50.5, 32.0)},
         "geometries": [object()],
@@ -38,6 +37,7 @@ def test_the_first_stage_shows_the_same_in_fewer_pixels():
     assert (options["width"], options["height"]) == (26, 16)
     assert options["crop"].tolist() == [0, 0, 26, 9]
     assert (options["samples"], options["light_samples"]) == (4, 2)
+    assert options["refine_samples"] is False
     assert first["camera"] == {"scale": (50.0, 25.0), "center": (12.625, 8.0)}
     assert first["geometries"] is whole["geometries"]
     assert whole["options"]["width"] == 101 and whole["camera"]["scale"] == (200.0, 100.0)
@@ -61,6 +61,7 @@ def test_the_first_picture_becomes_smaller_where_it_is_slow():
     assert [next_divisor(d, 1.0) for d in (2, 4, 8)] == [4, 8, 8]
     assert [next_divisor(d, 0.001) for d in (8, 4, 2)] == [4, 2, 2]
     assert next_divisor(4, 0.08) == 4
+    assert next_divisor(4, 0.001, is_anew=False) == 4
 
 
 @pytest.mark.parametrize("other", ["camera", "crop"])

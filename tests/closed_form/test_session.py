@@ -72,6 +72,27 @@ def later_frame(snapshot):
     snapshot["options"]["frame_time"] = 0.0
 
 
+def other_lens(snapshot):
+    snapshot["camera"].update(lens_radius=0.1, focus_distance=9.0)
+
+
+def slightly_other_lens(snapshot):
+    snapshot["camera"].update(lens_radius=0.0201, focus_distance=6.01)
+
+
+def other_world(snapshot):
+    snapshot["world"] = {
+        "name": "World",
+        "nodes": [{"type": "ShaderNodeBackground", "inputs": {"Color": (0.2, 0.3, 0.9, 1)}}],
+        "surface": (0, "Background"),
+    }
+
+
+def unlit_card(snapshot):
+    snapshot["lights"][0]["receiver_set"] = 0
+    snapshot["instances"]["receives"] = [2**64 - 1, 0, 2**64 - 1]
+
+
 def without_cube(snapshot):
     for name in ("name", "geometry", "knots", "slots", "materials", "lifespan"):
         del snapshot["instances"][name][2]
@@ -83,7 +104,7 @@ def without_cube(snapshot):
 EDITS = {
     "nothing": (lambda snapshot: None, 0, 0),
     "samples": (lambda snapshot: snapshot["options"].update(samples=16), 0, 0),
-    "lens": (lambda snapshot: snapshot["camera"].update(lens_radius=0.1, focus_distance=9.0), 0, 0),
+    "lens": (other_lens, 0, 0),
     "light": (other_light, 0, 0),
     "colour": (other_color, 0, 0),
     "place of a polygon": (moved_card, 0, 0),
@@ -92,6 +113,26 @@ EDITS = {
     "shape": (bent_card, 1, 1),
     "frame time": (later_frame, 3, 3),
     "deletion": (without_cube, 0, 0),
+}
+
+
+# What of the whole picture's work is done again after an edit: buckets hidden, grids diced, shaded.
+ALL, FEWER, NONE = "all", "fewer", "none"
+STAGES = {
+    "nothing": (lambda snapshot: None, NONE, NONE, NONE),
+    "filter": (lambda snapshot: snapshot["options"].update(pixel_filter="TENT"), NONE, NONE, NONE),
+    "film": (lambda snapshot: snapshot["options"].update(film_transparent=False), NONE, NONE, NONE),
+    "light": (other_light, NONE, NONE, ALL),
+    "light samples": (lambda s: s["options"].update(light_samples=4), NONE, NONE, ALL),
+    "world": (other_world, NONE, NONE, ALL),
+    "light linking": (unlit_card, NONE, NONE, ALL),
+    "colour": (other_color, NONE, NONE, FEWER),
+    "lens": (slightly_other_lens, ALL, ALL, NONE),
+    "opacity": (see_through_card, ALL, ALL, ALL),
+    "place of a polygon": (moved_card, ALL, ALL, ALL),
+    "view": (moved_camera, ALL, ALL, ALL),
+    "samples": (lambda snapshot: snapshot["options"].update(samples=16), ALL, ALL, ALL),
+    "shape": (bent_card, ALL, ALL, ALL),
 }
 
 
@@ -112,6 +153,7 @@ class Kept:
                 y, x = tile.y, tile.x
                 found[y : y + values.shape[0], x : x + values.shape[1]] = values
         job.finish()
+        self.statistics = job.statistics()
         return found
 
     def made(self):
@@ -129,6 +171,65 @@ def test_an_edit_makes_again_what_it_changes(name):
     edit(second)
     np.testing.assert_array_equal(kept.picture(second), s.render(second)["combined"])
     np.testing.assert_array_equal(kept.made() - 3, (geometries, rays))
+
+
+def part(count, whole):
+    return NONE if count == 0 else ALL if count == whole else FEWER
+
+
+@pytest.mark.parametrize("refines", [False, True])
+@pytest.mark.parametrize("name", STAGES)
+def test_an_edit_costs_the_stages_that_read_it(name, refines):
+    edit, *expected = STAGES[name]
+    if name == "lens" and refines:
+        expected[2] = FEWER  # what a blur asks for is shaded finer or less
+    first = scene()
+    first["options"]["refine_samples"] = refines
+    kept = Kept()
+    kept.picture(first)
+    second = copy.deepcopy(first)
+    edit(second)
+    alone = s.render(second)
+    np.testing.assert_array_equal(kept.picture(second), alone["combined"])
+    done, whole = kept.statistics, alone["statistics"]
+    buckets = whole["buckets_moving"]  # a lens is there
+    found = [
+        part(buckets - done["buckets_seen_before"], buckets),
+        part(done["grids_diced"], whole["grids_diced"]),
+        part(done["grids_shaded"], whole["grids_shaded"]),
+    ]
+    assert found == expected
+    assert job_warnings(kept, second) == alone["warnings"]
+
+
+def job_warnings(kept, snapshot):
+    job = kept.core.Render(kept.core.Scene(s.packed(snapshot), kept.session))
+    job.finish()
+    return job.warnings()
+
+
+def test_pictures_of_two_sizes_are_kept_side_by_side():
+    coarse, whole = scene(), scene()
+    coarse["options"]["samples"] = 1
+    kept = Kept()
+    for snapshot in (coarse, whole):
+        kept.picture(snapshot)
+    for snapshot in (coarse, whole):
+        other_light(snapshot)
+        np.testing.assert_array_equal(kept.picture(snapshot), s.render(snapshot)["combined"])
+        assert kept.statistics["grids_diced"] == 0
+
+
+def test_edits_in_any_order_leave_no_trace():
+    """Each picture is that of a frame alone, whatever was kept before it."""
+    edits = [other_light, other_color, slightly_other_lens, moved_camera, other_world, other_lens]
+    edits += [see_through_card, moved_card, bent_card]
+    random = np.random.default_rng(3)
+    kept = Kept()
+    snapshot = scene()
+    for k in random.permutation(2 * len(edits)) % len(edits):
+        edits[k](snapshot)
+        np.testing.assert_array_equal(kept.picture(snapshot), s.render(snapshot)["combined"])
 
 
 def test_what_is_not_there_any_more_is_forgotten():
@@ -155,8 +256,11 @@ def test_a_job_that_is_cancelled_leaves_a_session_whole():
     kept = Kept()
     snapshot = scene()
     snapshot["options"]["samples"] = 256
-    for _ in range(5):
+    kept.picture(snapshot)
+    for k in range(5):
+        snapshot["lights"][0]["energy"] = 4.0 + k
         job = kept.core.Render(kept.core.Scene(s.packed(snapshot), kept.session))
+        job.take_tiles(0.002 * k)
         job.cancel()
     np.testing.assert_array_equal(kept.picture(snapshot), s.render(snapshot)["combined"])
 

@@ -19,11 +19,10 @@ void LayerTable::fill() {
     m_lookups.clear();
     m_rows.clear();
     m_lookups.resize(m_pool.id_end());
-    SurfaceId base = 0;
     for (std::uint32_t slot = 0; slot < m_pool.size(); ++slot) {
+        if (!m_seen[slot]) continue;
         const Grid& grid = m_pool.grid(slot);
-        if (m_seen[slot] && !grid.opacity.empty()) add(grid, base);
-        base += static_cast<SurfaceId>(grid.micropolygon_count());
+        if (!grid.opacity.empty()) add(grid, m_pool.base(slot));
     }
 }
 

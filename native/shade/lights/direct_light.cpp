@@ -269,6 +269,12 @@ bool DirectLight::varies() const {
     return m_impl->set.varies;
 }
 
+/// Points that lie closer share the light that a pixel's worth of them is due.
+int DirectLight::sample_count(float share) const {
+    return std::max(
+        1, static_cast<int>(std::lround(share * static_cast<float>(m_impl->sample_count))));
+}
+
 void DirectLight::lift(ShadingPoints& points, const GridKey& key) const {
     const RayScene* rays = m_impl->set.rays.get();
     if (!rays || !rays->is_displaced(key)) return;
@@ -311,9 +317,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     const Lifespan& life = paths.lifespan();
     const Vec2f life_exposed(m_impl->set.shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),
                              m_impl->set.shutter.uniform(std::clamp(life.close, 0.0f, 1.0f)));
-    // Points that lie closer share the light that a pixel's worth of them is due.
-    const int sample_count = std::max(
-        1, static_cast<int>(std::lround(points.share * static_cast<float>(m_impl->sample_count))));
+    const int sample_count = this->sample_count(points.share);
     const bool meets_surfaces = leaving || !m_impl->shining.empty();
     std::vector<LitPoint> lit;
     lit.reserve(dark && !leaving ? 0 : points.count);

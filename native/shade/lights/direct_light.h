@@ -70,6 +70,8 @@ class DirectLight {
     /// Whether what RayMaterials::emitted tells of an instance is among the light that reflect()
     /// knows, so that ways which meet it bring none.
     bool is_lamp(std::size_t instance) const;
+    /// Light samples of a point for ShadingPoints::share.
+    int sample_count(float share) const;
 
     /// What is met by rays; nullptr where none are traced.
     const RayScene* rays() const;

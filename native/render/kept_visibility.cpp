@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/kept_visibility.h"
+
+#include <algorithm>
+
+namespace granita {
+namespace {
+
+/// Of image files, which may be written anew under their names.
+std::vector<std::filesystem::file_time_type> image_times(const Scene& scene) {
+    std::vector<std::filesystem::file_time_type> times;
+    for (const Image& image : scene.images) {
+        std::error_code missing;
+        times.push_back(image.path.empty() ? std::filesystem::file_time_type{}
+                                           : std::filesystem::last_write_time(image.path, missing));
+    }
+    return times;
+}
+
+template <class T>
+std::uint64_t bytes_of(const std::vector<T>& values) {
+    return values.size() * sizeof(T);
+}
+
+std::uint64_t bytes_of(const KeptVisibility::Bucket& bucket, std::size_t tiles) {
+    std::uint64_t bytes = 0;
+    const std::vector<TileStore>& stores = bucket.hider->finish();
+    for (std::size_t i = 0; i < tiles; ++i) {
+        const TileSamples& s = bucket.hider->tile_samples(i);
+        bytes += bytes_of(stores[i].key) + bytes_of(stores[i].id) +
+                 stores[i].lists.total() * sizeof(Fragment);
+        for (const auto* values : {&s.x, &s.y, &s.t, &s.u, &s.v, &s.inverse_focus})
+            bytes += bytes_of(*values);
+    }
+    for (const auto& grid : bucket.grids)
+        if (grid) bytes += grid->grid().bytes();
+    return bytes;
+}
+
+}  // namespace
+
+KeptVisibility::KeptVisibility(std::shared_ptr<const Scene> scene,
+                               std::shared_ptr<Statistics> statistics, const ShadingSystem& shading,
+                               const Rect& sample_pixels, int buckets,
+                               std::shared_ptr<const SampleLevels> levels)
+    : m_scene(std::move(scene)),
+      m_image_times(image_times(*m_scene)),
+      m_traits(traits_of(*m_scene, shading)),
+      m_sample_pixels(sample_pixels),
+      m_statistics(std::move(statistics)),
+      m_levels(std::move(levels)),
+      m_buckets(static_cast<std::size_t>(buckets)) {}
+
+KeptVisibility::~KeptVisibility() = default;
+
+std::vector<KeptVisibility::Traits> KeptVisibility::traits_of(const Scene& scene,
+                                                              const ShadingSystem& shading) {
+    std::vector<Traits> traits;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const auto material = static_cast<int>(m);
+        traits.push_back({shading.opacity_varies(material), shading.lets_light_through(material),
+                          shading.requests()[m]});
+    }
+    return traits;
+}
+
+bool KeptVisibility::is_of_size(const Scene& scene) const {
+    const Options &a = m_scene->options, &b = scene.options;
+    return a.width == b.width && a.height == b.height && a.crop == b.crop && a.samples == b.samples;
+}
+
+bool KeptVisibility::serves(const SceneChanges& changes, const ShadingSystem& shading,
+                            const Rect& sample_pixels) const {
+    if ((changes.parts & part::kReadByHiding) != 0 || sample_pixels != m_sample_pixels)
+        return false;
+    if (image_times(*m_scene) != m_image_times) return false;
+    for (std::size_t m = 0; m < m_traits.size(); ++m) {
+        if (!changes.materials[m]) continue;
+        const auto material = static_cast<int>(m);
+        if (m_traits[m].opacity_varies || shading.opacity_varies(material)) return false;
+        if (m_traits[m].requests != shading.requests()[m]) return false;
+    }
+    return true;
+}
+
+void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChanges& changes,
+                           const ShadingSystem& shading) {
+    bool all = (changes.parts & part::kReadByShading & ~part::kMaterials) != 0 ||
+               scene->options.bounces.most > 0;
+    for (std::size_t m = 0; m < m_traits.size(); ++m)
+        all |= changes.materials[m] &&
+               (m_traits[m].lets_light_through || shading.lets_light_through(static_cast<int>(m)));
+    for (const auto& bucket : m_buckets)
+        for (const auto& shared : bucket->grids) {
+            if (!shared) continue;
+            const Grid& grid = shared->grid();
+            const bool is_other =
+                grid.material >= 0 && changes.materials[static_cast<std::size_t>(grid.material)];
+            if (all || is_other || grid.broken_radiance || grid.light_share == 0.0f) shared->forget_radiance();
+        }
+    m_traits = traits_of(*scene, shading);
+    m_scene = std::move(scene);
+}
+
+std::shared_ptr<const ShadedGrids> KeptVisibility::shaded_grids() const {
+    auto grids = std::make_shared<ShadedGrids>();
+    for (const auto& bucket : m_buckets)
+        for (const auto& shared : bucket->grids)
+            if (shared) grids->add(shared->grid());
+    return grids;
+}
+
+void KeptVisibility::forget_samples() {
+    for (const auto& bucket : m_buckets) bucket->hider.reset();
+}
+
+void KeptVisibility::keep(int index, Bucket bucket) {
+    if (m_given_up) return;
+    for (std::size_t slot = 0; slot < bucket.seen.size(); ++slot) {
+        if (bucket.grids[slot]->grid().broken_opacity) give_up();  // which is to be said again
+        if (!bucket.seen[slot]) bucket.grids[slot].reset();
+    }
+    m_bytes += bytes_of(bucket, bucket.hider->finish().size());
+    if (m_bytes > kMostBytes) give_up();
+    m_buckets[static_cast<std::size_t>(index)] = std::make_unique<Bucket>(std::move(bucket));
+}
+
+bool KeptVisibility::is_whole() const {
+    return !m_given_up &&
+           std::ranges::all_of(m_buckets, [](const auto& b) { return b != nullptr; });
+}
+
+void KeptVisibility::say(GeometryCache& geometries, Report& report) const {
+    report.add(m_said);
+    for (const std::size_t geometry : m_opened) geometries.say(*m_scene, geometry, report);
+}
+
+}  // namespace granita
