@@ -40,7 +40,7 @@ enum class Counter {
     BucketsMoving,         ///< buckets that met any motion or lens blur
     BucketsTransparent,
     BucketsSeenBefore,  ///< whose samples an earlier picture has found
-    GlPrimitives,  ///< triangles drawn by the raster executor
+    GlPrimitives,       ///< triangles drawn by the raster executor
     GlPasses,
     GlDispatches,  ///< of the compute executor
     RaysShadow,

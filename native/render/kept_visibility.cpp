@@ -96,7 +96,8 @@ void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChange
             const Grid& grid = shared->grid();
             const bool is_other =
                 grid.material >= 0 && changes.materials[static_cast<std::size_t>(grid.material)];
-            if (all || is_other || grid.broken_radiance || grid.light_share == 0.0f) shared->forget_radiance();
+            if (all || is_other || grid.broken_radiance || grid.light_share == 0.0f)
+                shared->forget_radiance();
         }
     m_traits = traits_of(*scene, shading);
     m_scene = std::move(scene);
