@@ -15,7 +15,8 @@ from pathlib import Path
 
 import bpy
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "blender"))
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "tests" / "blender")]
 import lit_scenes  # noqa: E402
 import scenes  # noqa: E402
 import view_edits  # noqa: E402

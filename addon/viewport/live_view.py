@@ -24,11 +24,11 @@ POLL_SECONDS = 1.0 / 60.0
 WAIT_SECONDS = 0.25  # while a final render has the machine
 # The first picture of an edit is let through where it takes no longer: else a drag would show nothing.
 PATIENCE_SECONDS = 0.2
-# The window's next drawing shows the first picture of an edit where Blender's thread waits so long for it: without,
-# each picture of a drag would cost a drawing of the one before it.
-HOLD_SECONDS = 0.06
-# Without an edit, until the shutter is read and the picture itself is begun: within a drag neither is of use.
+# Without an edit, until the shutter is read and the picture itself is begun: within a drag neither is of use.  At
+# least two drawings of the window, between which Blender hears of no edit.
 REST_SECONDS = 0.08
+# Beyond this it was not the drawing that took so long.
+SLOW_DRAWING_SECONDS = 0.3
 # Between two drawings of a picture that is refined: each uploads it whole.
 REFINE_SECONDS = 0.1
 
@@ -58,6 +58,9 @@ class LiveView:
         self._began = self._drawn = 0.0
         self._waits = False
         self.region, self.looked = 0, 0.0  # address of the Region, and when it was drawn last
+        self._stepped = self._drawing = (
+            0.0  # when step() ended last; seconds of the window's last drawing
+        )
         self.costs = Costs()
         self.warnings = []  # of the picture, a line each
         self.counts = dict.fromkeys(
@@ -118,12 +121,21 @@ class LiveView:
 
     def step(self):
         """Goes on; seconds until the next call, None where nothing is left to do."""
+        if self.looked > self._stepped:
+            self._drawing = min(perf_counter() - self.looked, SLOW_DRAWING_SECONDS)
+        try:
+            return self._step()
+        finally:
+            self._stepped = perf_counter()
+
+    def _step(self):
         self._dying = [job for job in self._dying if not job.done()]
         if bpy.app.is_job_running("RENDER"):
             return self._make_way()
         self._waits = False
         if self._is_paused():
             return None
+        scene_reading.settle()
         try:
             if self._is_edited:
                 if not self._shows_soon():
@@ -183,7 +195,6 @@ class LiveView:
 
     def _begin(self):
         """The first picture of an edit."""
-        scene_reading.settle()
         stale, self._is_stale = self._is_stale or self._scene.snapshot is None, False
         moved, self._has_moved = self._has_moved, False
         if self._sight.is_empty:
@@ -206,12 +217,16 @@ class LiveView:
         self._cancel()
         self._is_coarse = True
         self._start(Stage(self._first_divisor()))
-        while self._job is not None and (left := self._began + HOLD_SECONDS - perf_counter()) > 0.0:
+        # So that the window's next drawing shows it, for no longer than that takes: without, each picture of a drag
+        # would cost a drawing of the one before it.
+        hold = min(self._drawing, PATIENCE_SECONDS)
+        while self._job is not None and (left := self._began + hold - perf_counter()) > 0.0:
             self._go_on(left)
 
     def _rest(self):
         """The picture itself, once edits rest."""
-        if perf_counter() - self._edited < REST_SECONDS or _plays():
+        rest = max(REST_SECONDS, 2.0 * self._drawing)
+        if perf_counter() - self._edited < rest or _plays():
             return
         if self._is_unread:
             self._is_unread = False

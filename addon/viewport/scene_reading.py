@@ -122,8 +122,8 @@ def _copied(scene, layer_name):
 
 
 def settle():
-    """Evaluates what is tagged: edits before a reading, so that views hear of them; after it what the removal of a
-    scene tags, so that no view takes it for an edit."""
+    """Evaluates what is tagged: edits before a view goes on, which hears of them now and not a drawing later; after a
+    reading what the removal of a scene tags, so that no view takes it for an edit."""
     for window in bpy.context.window_manager.windows:
         window.view_layer.update()
 

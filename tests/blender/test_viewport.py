@@ -94,6 +94,31 @@ def test_every_edit_is_shown(moving, view, render):
         np.testing.assert_array_equal(after, combined(render, moving), err_msg=name)
 
 
+# An edit, and whether grids are diced and shaded anew for the settled picture.
+SMALL_EDITS = {
+    "lamp strength": (lambda: setattr(bpy.data.lights[0], "energy", 5.0), False, True),
+    "lamp place": (
+        lambda: setattr(bpy.data.objects["Sun"], "rotation_euler", (1, 0, 0)),
+        False,
+        True,
+    ),
+    "shape": (lambda: setattr(bpy.data.objects["Sphere"], "scale", (1, 1, 0.5)), True, True),
+}
+
+
+@pytest.mark.parametrize("name", SMALL_EDITS)
+def test_an_edit_costs_what_it_changes(moving, view, render, name):
+    edit, dices, shades = SMALL_EDITS[name]
+    before = view.edited().settle().copy()
+    edit()
+    seen = view.edited().settle()
+    done = view.live.costs.statistics
+    assert (done["grids_diced"] > 0, done["grids_shaded"] > 0) == (dices, shades)
+    assert (done["buckets_seen_before"] == 0) == dices
+    assert not np.array_equal(before, seen)
+    np.testing.assert_array_equal(seen, combined(render, moving))
+
+
 def test_what_no_picture_shows_is_not_made_again(moving, view):
     view.edited().settle()
     made = dict(view.live.counts)
