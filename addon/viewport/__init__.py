@@ -4,6 +4,7 @@
     view_update, view_draw -> live_view (what has changed) -> scene_reading (a snapshot of it)
                            -> native job, coarse first -> live_picture -> the view
 
-Nothing waits: Blender's own thread reads the scene and takes finished tiles between two events (loop.py), native
-threads do the rest.  No thread of Python's is made, and no reference to anything of Blender's outlives a call.
+Blender's own thread reads the scene and takes finished tiles between two events (loop.py), native threads do the rest:
+it waits for them no longer than the window takes to be drawn, for the first picture of an edit alone.  No thread of
+Python's is made, and no reference to anything of Blender's outlives a call.
 """

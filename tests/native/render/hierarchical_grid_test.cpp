@@ -112,7 +112,7 @@ TEST(FrameGeometry, lists_of_moving_instances_do_not_multiply_with_buckets) {
     view.projection = scene.camera.projection;
     for (const int bucket_size : {16, 64}) {
         const BucketLayout layout({0, 0, 3840, 2160}, bucket_size);
-        FrameGeometry geometry(view, layout, report);
+        FrameGeometry geometry(view, layout, report, report);
         EXPECT_LE(geometry.list_entries(), 24u * 500 + 90);
         int instances = 0, faces = 0;
         const int bucket = layout.index(3, 2);
