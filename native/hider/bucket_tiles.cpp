@@ -85,6 +85,18 @@ void BucketTiles::need_time(std::size_t i) {
     m_frame.table->fill_times(m_stores[i].tile, m_samples[i]);
 }
 
+void BucketTiles::drop_samples() {
+    for (TileSamples& samples : m_samples) ObjectPool<TileSamples>::give(std::move(samples));
+    m_samples.clear();
+}
+
+void BucketTiles::make_samples() {
+    for (std::size_t i = m_samples.size(); i < m_stores.size(); ++i) {
+        m_samples.push_back(ObjectPool<TileSamples>::take());
+        m_frame.table->fill_tile(m_stores[i].tile, m_needs[i], m_samples.back());
+    }
+}
+
 bool BucketTiles::limit_lists() {
     const std::uint64_t bytes = m_list_memory.bytes();
     if (m_frame.statistics) m_frame.statistics->note_list_bytes(bytes);

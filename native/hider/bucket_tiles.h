@@ -42,6 +42,9 @@ class BucketTiles {
     const TileSamples& samples(std::size_t i) const { return m_samples[i]; }
     std::vector<TileStore>& stores() { return m_stores; }
     const GridPool& pool() const { return m_pool; }
+    void drop_samples();
+    /// The same that were dropped.
+    void make_samples();
     /// Adds the grid to the pool; counts and reports the micropolygons that are left out of it.
     SurfaceId add(const Grid& grid, const GridClasses& classes);
 

@@ -64,6 +64,10 @@ class Hider {
     /// The samples of a tile of finish(), by index: made with exactly the needs that the bucket
     /// met.
     virtual const TileSamples& tile_samples(std::size_t tile_index) const = 0;
+    /// Of what is kept after finish(): samples are three quarters of its memory, and cheap to make.
+    /// Their table must still be there.
+    virtual void drop_samples() = 0;
+    virtual void make_samples() = 0;
 
   protected:
     const Projection m_projection;

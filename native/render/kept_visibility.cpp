@@ -22,16 +22,10 @@ std::uint64_t bytes_of(const std::vector<T>& values) {
     return values.size() * sizeof(T);
 }
 
-std::uint64_t bytes_of(const KeptVisibility::Bucket& bucket, std::size_t tiles) {
+std::uint64_t bytes_of(const KeptVisibility::Bucket& bucket) {
     std::uint64_t bytes = 0;
-    const std::vector<TileStore>& stores = bucket.hider->finish();
-    for (std::size_t i = 0; i < tiles; ++i) {
-        const TileSamples& s = bucket.hider->tile_samples(i);
-        bytes += bytes_of(stores[i].key) + bytes_of(stores[i].id) +
-                 stores[i].lists.total() * sizeof(Fragment);
-        for (const auto* values : {&s.x, &s.y, &s.t, &s.u, &s.v, &s.inverse_focus})
-            bytes += bytes_of(*values);
-    }
+    for (const TileStore& store : bucket.hider->finish())
+        bytes += bytes_of(store.key) + bytes_of(store.id) + store.lists.total() * sizeof(Fragment);
     for (const auto& grid : bucket.grids)
         if (grid) bytes += grid->grid().bytes();
     return bytes;
@@ -121,7 +115,8 @@ void KeptVisibility::keep(int index, Bucket bucket) {
         if (bucket.grids[slot]->grid().broken_opacity) give_up();  // which is to be said again
         if (!bucket.seen[slot]) bucket.grids[slot].reset();
     }
-    m_bytes += bytes_of(bucket, bucket.hider->finish().size());
+    bucket.hider->drop_samples();
+    m_bytes += bytes_of(bucket);
     if (m_bytes > kMostBytes) give_up();
     m_buckets[static_cast<std::size_t>(index)] = std::make_unique<Bucket>(std::move(bucket));
 }

@@ -23,7 +23,7 @@ namespace granita {
 class KeptVisibility {
   public:
     struct Bucket {
-        std::unique_ptr<Hider> hider;  ///< finished
+        std::unique_ptr<Hider> hider;  ///< finished, without samples
         HiddenGrids grids;             ///< of its pool; nullptr where no sample sees it
         std::vector<bool> seen;        ///< [grids]
     };

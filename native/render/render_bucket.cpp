@@ -103,7 +103,10 @@ std::vector<ResolvedTile> look(Frame& frame, int bucket, int level, const Rect& 
 std::vector<ResolvedTile> look_again(Frame& frame, const KeptVisibility::Bucket& bucket) {
     frame.statistics.add(Counter::BucketsSeenBefore);
     shade_grids(frame, bucket.grids, bucket.seen);
-    return resolve(frame, *bucket.hider, bucket.seen);
+    bucket.hider->make_samples();
+    std::vector<ResolvedTile> resolved = resolve(frame, *bucket.hider, bucket.seen);
+    bucket.hider->drop_samples();
+    return resolved;
 }
 
 /// With more samples, until its samples are enough.

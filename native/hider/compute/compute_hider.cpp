@@ -94,6 +94,8 @@ class ComputeHider : public Hider {
     const GridPool& pool() const override { return m_tiles.pool(); }
     std::vector<bool> seen_grids() const override { return m_tiles.seen_grids(); }
     const TileSamples& tile_samples(std::size_t i) const override { return m_tiles.samples(i); }
+    void drop_samples() override { m_tiles.drop_samples(); }
+    void make_samples() override { m_tiles.make_samples(); }
 
   private:
     /// Where samples meet their fragments: the device hands over keys and ids.
