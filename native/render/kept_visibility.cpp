@@ -52,7 +52,7 @@ std::vector<KeptVisibility::Traits> KeptVisibility::traits_of(const Scene& scene
     std::vector<Traits> traits;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const auto material = static_cast<int>(m);
-        traits.push_back({shading.opacity_varies(material), shading.lets_light_through(material),
+        traits.push_back({shading.opacity_varies(material), shading.reaches_others(material),
                           shading.requests()[m]});
     }
     return traits;
@@ -83,7 +83,7 @@ void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChange
                scene->options.bounces.most > 0;
     for (std::size_t m = 0; m < m_traits.size(); ++m)
         all |= changes.materials[m] &&
-               (m_traits[m].lets_light_through || shading.lets_light_through(static_cast<int>(m)));
+               (m_traits[m].reaches_others || shading.reaches_others(static_cast<int>(m)));
     for (const auto& bucket : m_buckets)
         for (const auto& shared : bucket->grids) {
             if (!shared) continue;

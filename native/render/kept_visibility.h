@@ -70,9 +70,9 @@ class KeptVisibility {
     static constexpr std::uint64_t kMostBytes = 512ULL << 20;
 
   private:
-    /// What hiding knows of a material.
+    /// What hiding, and other surfaces, know of a material.
     struct Traits {
-        bool opacity_varies, lets_light_through;
+        bool opacity_varies, reaches_others;
         std::vector<AttributeRequest> requests;
     };
     static std::vector<Traits> traits_of(const Scene& scene, const ShadingSystem& shading);

@@ -379,8 +379,9 @@ bool ShadingSystem::opacity_varies(int material) const {
     return !m_impl->material(material).transparency.is(Vec3f(0.0f));
 }
 
-bool ShadingSystem::lets_light_through(int material) const {
-    return !m_impl->material(material).shadow.transparency.is(Vec3f(0.0f));
+bool ShadingSystem::reaches_others(int material) const {
+    return !m_impl->material(material).shadow.transparency.is(Vec3f(0.0f)) ||
+           m_impl->emission->any(material);
 }
 
 void ShadingSystem::shade_opacity(Grid& grid) const {

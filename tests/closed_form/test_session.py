@@ -68,6 +68,13 @@ def other_color(snapshot):
     snapshot["materials"][0]["nodes"][0]["inputs"]["Color"] = (0.1, 0.8, 0.1, 1)
 
 
+def shining_cube(snapshot, strength=1.0):
+    nodes = [
+        {"type": "ShaderNodeEmission", "inputs": {"Color": (1, 1, 1, 1), "Strength": strength}}
+    ]
+    snapshot["materials"][2].update(nodes=nodes, surface=(0, "Emission"))
+
+
 def later_frame(snapshot):
     snapshot["options"]["frame_time"] = 0.0
 
@@ -127,6 +134,7 @@ STAGES = {
     "world": (other_world, NONE, NONE, ALL),
     "light linking": (unlit_card, NONE, NONE, ALL),
     "colour": (other_color, NONE, NONE, FEWER),
+    "what shines": (shining_cube, NONE, NONE, ALL),
     "lens": (slightly_other_lens, ALL, ALL, NONE),
     "opacity": (see_through_card, ALL, ALL, ALL),
     "place of a polygon": (moved_card, ALL, ALL, ALL),
