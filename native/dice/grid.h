@@ -106,6 +106,9 @@ struct Grid {
     /// [points] what diffuse lobes reflect of other surfaces' light, by albedo: samples that are
     /// shaded by themselves take it from here.  Empty: light is not followed so far.
     std::vector<Vec3f> gathered;
+    /// [points] likewise what is scattered below the surface, by its weight: light of lamps and the
+    /// world, and of other surfaces.
+    std::vector<Vec3f> scattered, scattered_bounced;
 
     /// [micropolygons] 1 where the corners' radiance or opacity differs so much that samples are to
     /// be shaded by themselves, for which the shading state is kept; empty = nowhere.

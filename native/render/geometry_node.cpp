@@ -75,6 +75,8 @@ void SharedGrid::forget_radiance() {
     m_grid->broken_radiance = false;
     m_grid->radiance.clear();
     m_grid->gathered.clear();
+    m_grid->scattered.clear();
+    m_grid->scattered_bounced.clear();
     m_grid->unsettled.clear();
     m_grid->channels.clear();
 }

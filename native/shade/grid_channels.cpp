@@ -18,6 +18,8 @@ float mean(const Vec3f& v) {
 Vec3f average_normal(const ShadingPoints& points, const SurfaceClosure& closure, std::size_t i) {
     Vec3f sum(0.0f);
     for (const Lobe& lobe : closure.lobes) sum += lobe.normal[i] * std::abs(mean(lobe.weight[i]));
+    for (const SubsurfaceLobe& lobe : closure.subsurface)
+        sum += lobe.normal[i] * std::abs(mean(lobe.weight[i]));
     const float length = glm::length(sum);
     return length > 0.0f ? sum / length : points.normal[i];
 }

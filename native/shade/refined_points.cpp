@@ -138,9 +138,13 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
     std::vector<Blend> blends;
     blends.reserve(wanted.size());
     for (const RefinedPoint& at : wanted) blends.push_back(blend_at(grid, at));
-    for (std::size_t i = 0; !grid.gathered.empty() && i < blends.size(); ++i)
-        gathered.push_back(
-            blends[i].mean<Vec3f>([&](std::size_t point) { return grid.gathered[point]; }));
+    const auto take = [&](const std::vector<Vec3f>& from, std::vector<Vec3f>& to) {
+        for (std::size_t i = 0; !from.empty() && i < blends.size(); ++i)
+            to.push_back(blends[i].mean<Vec3f>([&](std::size_t point) { return from[point]; }));
+    };
+    take(grid.gathered, gathered);
+    take(grid.scattered, scattered);
+    take(grid.scattered_bounced, scattered_bounced);
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         const RefinedPoint& at = wanted[i];
         const float time = time_of(at);

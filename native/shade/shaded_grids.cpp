@@ -51,6 +51,8 @@ const Grid* ShadedGrids::find(const Grid& grid) const {
 void take_shading(const Grid& from, Grid& to) {
     to.radiance = from.radiance;
     to.gathered = from.gathered;
+    to.scattered = from.scattered;
+    to.scattered_bounced = from.scattered_bounced;
     to.unsettled = from.unsettled;
     to.channels = from.channels;
     to.light_share = from.light_share;

@@ -21,6 +21,8 @@
 #include "shade/nodes/surface_run.h"
 #include "shade/shading_points.h"
 #include "shade/shadow_transparency.h"
+#include "shade/subsurface/shared_scattering.h"
+#include "shade/subsurface/subsurface_light.h"
 #include "shade/time_probes.h"
 #include "shade/unsettled.h"
 #include "shade/world_shader.h"
@@ -32,7 +34,10 @@ namespace {
 /// Radiance of a surface that nobody misses as a light: an 8-bit step of white.
 constexpr float kDimmestEmission = 0.004f;
 
-constexpr float kNoThreshold = std::numeric_limits<float>::infinity();
+/// Metres: what scatters no farther is drawn as diffuse, as in Cycles.
+constexpr float kLeastScattering = 1e-8f;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Refined samples have one light sample each, or a few; corners have Options::light_samples, and
 /// those of their neighbours.  What moves is in doubt about its time, which only samples know.
@@ -64,6 +69,7 @@ struct ShadingSystem::Impl {
     std::unique_ptr<DirectLight> light;         ///< nullptr where nothing that is seen reflects any
     std::unique_ptr<HitShader> hits;            ///< where light is followed further, else nullptr
     std::unique_ptr<BouncedLight> bounces;
+    std::unique_ptr<SubsurfaceLight> below;  ///< where light is scattered below surfaces
 
     Impl(const Scene& s, Statistics& stats, Report& warnings, const Progress& progress,
          bool refines_samples, const KeptShading& kept)
@@ -79,7 +85,7 @@ struct ShadingSystem::Impl {
           moves(s.moves()),
           threshold(s.options.shading_threshold * 8.0f /
                     std::sqrt(static_cast<float>(s.options.samples))),
-          noise_threshold(refining_spares_noise(s.options, s.moves()) ? threshold : kNoThreshold),
+          noise_threshold(refining_spares_noise(s.options, s.moves()) ? threshold : kInfinity),
           footprint(1.0f / std::sqrt(static_cast<float>(s.options.samples))),
           geometries(std::make_shared<GeometryCache>(kept.geometry)),
           shaded(kept.grids) {
@@ -113,14 +119,26 @@ struct ShadingSystem::Impl {
                                               progress, ray_materials(), geometries, kept.rays,
                                               displacement.get());
         if (scene.options.bounces.most == 0) warn_of_emission();
-        if (scene.options.bounces.most == 0 || !light->rays()) return;
-        hits = std::make_unique<HitShader>(scene, textures, report);
-        bounces =
-            std::make_unique<BouncedLight>(scene, *light, *hits, *emission, statistics, progress);
+        if (!light->rays()) return;
+        if (scene.options.bounces.most > 0) {
+            hits = std::make_unique<HitShader>(scene, textures, report);
+            bounces = std::make_unique<BouncedLight>(scene, *light, *hits, *emission, statistics,
+                                                     progress);
+        }
+        if (!any_scatters()) return;
+        const auto bent = [this](std::int32_t index) {
+            const SurfaceProgram& radiance = material(index).radiance;
+            return radiance.bends_scattered() ? &material(index) : nullptr;
+        };
+        below = std::make_unique<SubsurfaceLight>(scene, *light, bounces.get(), bent, progress);
     }
 
-    bool reflects(std::int32_t index) const {
-        return !material(index).radiance.sources.lobes.empty();
+    bool reflects(std::int32_t index) const { return material(index).radiance.sources.reflects(); }
+    bool scatters(std::int32_t index) const { return material(index).radiance.scatters(); }
+    bool any_scatters() const {
+        return std::ranges::any_of(scene.instances, [this](const Instance& i) {
+            return std::ranges::any_of(i.materials, [this](int index) { return scatters(index); });
+        });
     }
 
     /// Without bounces a surface that shines but is no lamp is seen, and sheds no light.
@@ -145,7 +163,7 @@ struct ShadingSystem::Impl {
     }
 
     RayMaterials ray_materials() const {
-        return {
+        RayMaterials asked{
             [this](std::int32_t index) {
                 return !material(index).shadow.transparency.is(Vec3f(0.0f));
             },
@@ -154,6 +172,9 @@ struct ShadingSystem::Impl {
             },
             [this](std::int32_t index) { return constant_transparency(material(index).shadow); },
             [this](std::int32_t index) { return emission->constant(index); }};
+        if (any_scatters())
+            asked.is_scattering = [this](std::int32_t index) { return scatters(index); };
+        return asked;
     }
 
     const CompiledSurface& material(int index) const {
@@ -196,6 +217,26 @@ struct ShadingSystem::Impl {
         return std::move(light.glossy);
     }
 
+    /// Adds what is scattered below the surface, as add_bounces() of points or samples.
+    void add_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
+                       const PointPaths& at, Grid& grid, ReflectionParts* parts,
+                       std::vector<Vec3f>& radiance) const {
+        if (grid.scattered.empty()) {
+            ScatteredLight light = below->gather(points, closure, grid.key, at, parts);
+            grid.scattered = std::move(light.direct);
+            grid.scattered_bounced = std::move(light.bounced);
+        }
+        for (std::size_t i = 0; i < points.count; ++i) {
+            const Vec3f weight = subsurface_weight(closure, i);
+            const Vec3f direct = grid.scattered[i] * weight;
+            radiance[i] += direct;
+            if (!grid.scattered_bounced.empty()) radiance[i] += grid.scattered_bounced[i] * weight;
+            if (!parts) continue;
+            parts->diffuse[i] += direct;
+            parts->diffuse_color[i] += weight;
+        }
+    }
+
     /// Fills radiance and channels of `grid`, whose points are `in.points`; `noise` as
     /// DirectLight::reflect(), `settled` [vertices] with the radiance but for what is noise at
     /// single points: empty where it is all.
@@ -203,9 +244,13 @@ struct ShadingSystem::Impl {
                std::vector<float>* noise = nullptr, std::vector<Vec3f>* settled = nullptr) const {
         const CrashScope scope("shades", scene.instances[grid.instance].name);
         const SurfaceProgram& surface = material(grid.material).radiance;
-        const SurfaceRun ran(surface, in);
+        SurfaceRun ran(surface, in);
         const ShadingPoints& points = ran.points();
-        const SurfaceClosure& closure = ran.closure();
+        SurfaceClosure closure = ran.take_closure();
+        if (!closure.subsurface.empty()) {
+            const bool has_body = below && light->rays()->has_body(grid.key);
+            draw_as_diffuse(closure, has_body ? kLeastScattering : kInfinity);
+        }
         const bool has_passes = !channels.empty();
         ReflectionParts parts;
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
@@ -217,6 +262,8 @@ struct ShadingSystem::Impl {
             parts.resize(has_passes ? points.count : 0);
         if (bounces && !closure.lobes.empty())
             doubtful = add_bounces(points, closure, std::move(leaving), grid.gathered, radiance);
+        if (!closure.subsurface.empty())
+            add_scattered(points, closure, at, grid, has_passes ? &parts : nullptr, radiance);
         for (std::size_t i = 0; i < closure.emission.size(); ++i)
             radiance[i] += closure.emission[i];
         const std::size_t broken = ran.broken() + make_finite(radiance);
@@ -268,6 +315,8 @@ struct ShadingSystem::Impl {
         const Mat3f camera_from_world = glm::transpose(Mat3f(camera.world_from_camera));
         for (const Vec3f& p : refined.points.p) out.p.push_back(camera_from_world * p);
         out.gathered = refined.gathered;
+        out.scattered = refined.scattered;
+        out.scattered_bounced = refined.scattered_bounced;
         if (!grid.opacity.empty()) shade_opacity(out, input(grid, refined));
         shade(out, input(grid, refined), {});
         return out;
@@ -402,7 +451,7 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 }
 
 void ShadingSystem::shade_radiance(Grid& grid) const {
-    const bool lit = !m_impl->material(grid.material).radiance.sources.lobes.empty();
+    const bool lit = m_impl->reflects(grid.material);
     const float sharpness = lit || m_impl->can_refine(grid) ? m_impl->sharpness(grid) : 1.0f;
     const float share = grid.point_share * sharpness;
     if (m_impl->take_shaded(grid, share)) return;

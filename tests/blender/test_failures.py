@@ -41,7 +41,7 @@ tree.links.new(node.outputs["Color"], emission.inputs["Color"])
 UNKNOWN_NODE = """
 import bpy
 tree = bpy.data.materials["Glow"].node_tree
-node = tree.nodes.new("ShaderNodeSubsurfaceScattering")
+node = tree.nodes.new("ShaderNodeEeveeSpecular")
 node.name = "Whisker"
 output = next(n for n in tree.nodes if n.type == "OUTPUT_MATERIAL")
 tree.links.new(node.outputs[0], output.inputs["Surface"])

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "math/sampling.h"
@@ -140,6 +141,7 @@ class BouncedLight::Wave {
         m_light.m_direct.lift(m_points.points(), key);
         SurfaceRun ran(surface.radiance, m_points.input());
         SurfaceClosure closure = ran.take_closure();
+        draw_as_diffuse(closure, std::numeric_limits<float>::infinity());
         tame(batch, closure);
         std::vector<Vec3f> light(batch.size(), Vec3f(0.0f));
         m_leaving.clear();

@@ -9,6 +9,9 @@
 namespace granita {
 namespace {
 
+/// What Burley's diffuse lobe reflects back, of all of it: most where it grazes the view.
+constexpr float kRetro = 0.1f;
+
 float average(const Vec3f& c) {
     return (c.x + c.y + c.z) * (1.0f / 3.0f);
 }
@@ -30,6 +33,7 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
         lobe.distribution = source.distribution;
         lobe.separable_masking = source.separable_masking;
         lobe.cosine_bumps = source.cosine_bumps;
+        lobe.retro_alone = source.retro_alone;
         lobe.fresnel = source.fresnel;
         lobe.weight = source.weight[point];
         if (lobe.weight == Vec3f(0.0f)) continue;
@@ -45,7 +49,7 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
                 lobe.burley = roughness;
             else
                 prepare_diffuse(lobe, source.f0.empty() ? nullptr : &source.f0[point], roughness);
-            lobe.importance = std::abs(average(lobe.weight));
+            lobe.importance = std::abs(average(lobe.weight)) * (lobe.retro_alone ? kRetro : 1.0f);
         } else if (is_shaped(lobe.kind)) {
             lobe.shape = make_shape(source, point, view);
             if (!lobe.shape) continue;

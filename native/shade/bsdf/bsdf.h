@@ -85,7 +85,7 @@ class PointBsdf {
         LobeKind kind;
         Distribution distribution;
         FresnelKind fresnel;
-        bool sharp = false, separable_masking = false, cosine_bumps = false;
+        bool sharp = false, separable_masking = false, cosine_bumps = false, retro_alone = false;
         Vec3f weight, normal;
         Vec3f f0{1.0f}, f90{1.0f}, dip{0.0f};
         float ior = 1.0f, f0_real = 0.0f;

@@ -17,10 +17,11 @@ float oren_nayar_g(float cos_theta) {
 }
 
 /// Burley 2012, with the retro-reflection of 2015: relative to Lambert.
-float burley_factor(float roughness, float cos_wi_wo, float cos_i, float cos_o) {
+float burley_factor(float roughness, bool retro_alone, float cos_wi_wo, float cos_i, float cos_o) {
     const float fi = schlick_weight(cos_i), fo = schlick_weight(cos_o);
     const float retro = roughness * (cos_wi_wo + 1.0f);
-    return (1.0f - 0.5f * fi) * (1.0f - 0.5f * fo) + retro * (fo + fi + fo * fi * (retro - 1.0f));
+    const float plain = retro_alone ? 0.0f : (1.0f - 0.5f * fi) * (1.0f - 0.5f * fo);
+    return plain + retro * (fo + fi + fo * fi * (retro - 1.0f));
 }
 
 /// Fades light that grazes a bumped surface (Conty Estevez, Lecocq and Stein 2019).
@@ -64,7 +65,8 @@ Vec3f PointBsdf::evaluate_diffuse(const Prepared& lobe, const Vec3f& wo) const {
     if (cos_o <= 0.0f) return Vec3f(0.0f);
     Vec3f value(cos_o * kInversePi);
     if (lobe.burley >= 0.0f) {
-        value *= burley_factor(lobe.burley, glm::dot(wo, m_wi), lobe.cos_wi, cos_o);
+        value *=
+            burley_factor(lobe.burley, lobe.retro_alone, glm::dot(wo, m_wi), lobe.cos_wi, cos_o);
     } else if (lobe.oren_b > 0.0f) {
         const float cos_i = std::max(lobe.cos_wi, 0.0f);
         float t = glm::dot(wo, m_wi) - cos_o * cos_i;

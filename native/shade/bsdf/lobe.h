@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "math/vec.h"
+#include "shade/bsdf/subsurface_lobe.h"
 
 namespace granita {
 
@@ -86,6 +87,7 @@ struct Lobe {
                                      ///< Cycles before Blender 4; else height-correlated
     bool burley = false;        ///< diffuse: Burley's (2012) retro-reflection with `roughness`, as
                                 ///< Principled before Blender 4
+    bool retro_alone = false;   ///< of that what goes back alone
     bool cosine_bumps = false;  ///< diffuse: bent normals fade light as before Blender 4
     std::vector<Vec3f> weight;  ///< [n]
     std::vector<Vec3f> normal;  ///< [n] unit, facing the viewer as Cycles ensures
@@ -102,6 +104,7 @@ struct Lobe {
 
 struct SurfaceClosure {
     std::vector<Lobe> lobes;
+    std::vector<SubsurfaceLobe> subsurface;
     std::vector<Vec3f> emission;      ///< [n] radiance, empty = none
     std::vector<Vec3f> transparency;  ///< [n] weight of Transparent closures, empty = none; opacity
                                       ///< = 1 - transparency

@@ -12,6 +12,7 @@
 #include "scene/knot_time.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/bsdf/bsdf_albedo.h"
+#include "shade/lights/grid_samples.h"
 #include "shade/lights/lamp_choice.h"
 #include "shade/lights/lamp_samples.h"
 #include "shade/lights/lamp_set.h"
@@ -25,12 +26,6 @@
 
 namespace granita {
 namespace {
-
-/// Seed of a grid, from its identity alone (decision 3).
-std::uint64_t grid_seed(const GridKey& key, std::uint32_t frame_seed) {
-    const auto face = (static_cast<std::uint64_t>(key.instance) << 32) | key.face;
-    return mix_bits(mix_bits(face + 0x9e3779b97f4a7c15ULL * (frame_seed + 1ULL)) ^ key.path);
-}
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -96,8 +91,9 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
     const bool asks_rays =
         world.shines() || scene.options.bounces.most > 0 ||
         std::ranges::any_of(lamps, [](const Lamp& lamp) { return lamp.casts_shadow(); }) ||
-        std::ranges::any_of(scene.instances,
-                            [&](const Instance& instance) { return materials.shines(instance); });
+        std::ranges::any_of(scene.instances, [&](const Instance& instance) {
+            return materials.shines(instance) || materials.scatters(instance);
+        });
     if (asks_rays) {
         StageTimer timer(statistics, Stage::RayBuild);
         auto rays = std::make_unique<RayScene>(scene, origin, materials, progress, geometries,
@@ -341,14 +337,6 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         const float time = timed ? points.times[i] : m_impl->scene.options.frame_time;
         const LitPlace at_frame{time, p, normal, start};
         const Vec2f exposed = timed ? Vec2f(m_impl->set.shutter.uniform(time)) : life_exposed;
-        // Neighbours share a sequence: aligned squares of points, and so the pixels that average
-        // them, are stratified as one (Ahmed and Wonka 2020, without their shuffling of squares).
-        // Faces of a batch are in Morton order already.
-        const auto place = static_cast<std::uint32_t>(
-            placed                ? points.places[i]
-            : points.columns == 0 ? i
-                                  : morton_index(static_cast<std::uint32_t>(i % points.columns),
-                                                 static_cast<std::uint32_t>(i / points.columns)));
         const bool through_tube = points.round && bsdf.transmits();
         lit.push_back({i,
                        std::move(bsdf),
@@ -356,7 +344,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
                        ray_offset,
                        at_frame,
                        sample_count,
-                       place,
+                       place_in_sequence(points, i),
                        exposed,
                        through_tube,
                        {}});

@@ -87,6 +87,11 @@ std::vector<int> roots_of(const SurfaceSources& sources, const PassSources& pass
             push_root(roots, slot);
         for (const FloatSource& value : lobe.more) push_root(roots, value.slot);
     }
+    for (const SubsurfaceSource& lobe : sources.subsurface)
+        for (const int slot :
+             {lobe.weight.slot, lobe.normal.slot, lobe.albedo.slot, lobe.radius.slot,
+              lobe.anisotropy.slot, lobe.roughness.slot, lobe.ior.slot})
+            push_root(roots, slot);
     return roots;
 }
 

@@ -3,6 +3,7 @@
 // (docs/architecture.md, decision 6).
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +30,13 @@ struct SurfaceProgram {
     PassSources passes;
     bool is_bumped = false;
     VectorSource bumped;  ///< where `is_bumped`: the shading normal, bent by displacement
+
+    bool scatters() const { return !sources.subsurface.empty(); }
+    /// Whether nodes bend normals of what is scattered below the surface.
+    bool bends_scattered() const {
+        return scatters() &&
+               (is_bumped || std::ranges::any_of(sources.subsurface, &SubsurfaceSource::is_bent));
+    }
 };
 
 /// What transparency needs alone.

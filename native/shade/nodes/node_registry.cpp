@@ -24,6 +24,7 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeBsdfGlossy", closure(build_glossy)},
         {"ShaderNodeBsdfAnisotropic", closure(build_glossy)},
         {"ShaderNodeBsdfMetallic", closure(build_metallic)},
+        {"ShaderNodeSubsurfaceScattering", closure(build_subsurface)},
         {"ShaderNodeBsdfTranslucent", closure(build_translucent)},
         {"ShaderNodeBsdfSheen", closure(build_sheen)},
         {"ShaderNodeBsdfVelvet", closure(build_velvet)},
@@ -104,7 +105,6 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeTexPointDensity", flat},
         {"ShaderNodeTexIES", flat},
 
-        {"ShaderNodeSubsurfaceScattering", like_diffuse},
         {"ShaderNodeEeveeSpecular", like_diffuse},
     };
 }

@@ -12,6 +12,7 @@ void build_background(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_diffuse(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_glossy(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_metallic(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_subsurface(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_translucent(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_sheen(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_velvet(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);

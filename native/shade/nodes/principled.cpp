@@ -8,8 +8,8 @@
 //       diffuse layer below
 //
 // Beside the specular and diffuse ones, as far as it transmits, glass; sheen beside the first's
-// diffuse layer and over all of the second.  Subsurface is rendered as diffuse; what else is set
-// and left out is told to the artist.
+// diffuse layer and over all of the second.  Subsurface takes the place of the first's diffuse
+// layer, of a share of the second's.  What is set and left out is told to the artist.
 #include <algorithm>
 #include <cmath>
 
@@ -21,6 +21,7 @@
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/principled_coat.h"
 #include "shade/nodes/scalar_math.h"
+#include "shade/nodes/subsurface.h"
 
 namespace granita {
 
@@ -28,14 +29,10 @@ namespace {
 
 const Vec3f kOne(1.0f);
 
-/// A socket under its name of Blender 4; the exporter renames older ones.
-void warn_about_unused(NodeBuilder& b, const char* input, const char* what) {
-    if (b.linked(input) || !b.number(input).is(0.0f)) b.warn(std::string("Principled ") + what);
-}
-
 void warn_about_left_out(NodeBuilder& b) {
-    warn_about_unused(b, "Subsurface Weight", "subsurface is rendered as diffuse");
-    warn_about_unused(b, "Thin Film Thickness", "thin film is not rendered");
+    constexpr const char* kFilm = "Thin Film Thickness";
+    if (b.linked(kFilm) || !b.number(kFilm).is(0.0f))
+        b.warn("Principled thin film is not rendered");
 }
 
 struct Common {
@@ -162,6 +159,58 @@ FloatSource add_second_sheen(NodeBuilder& b, SurfaceBuilder& surface, const Comm
         tint, lobe.roughness, lobe.normal, b.view());
 }
 
+/// Sockets under their names of Blender 4; the exporter renames older ones.
+SubsurfaceSource subsurface_of(NodeBuilder& b, const Common& c, const FloatSource& scale) {
+    SubsurfaceSource lobe;
+    lobe.normal = c.normal;
+    lobe.radius = scaled(b, b.vector("Subsurface Radius", Vec3f(1.0f, 0.2f, 0.1f)), scale);
+    lobe.roughness = c.roughness;
+    lobe.anisotropy = b.number("Subsurface Anisotropy");
+    lobe.ior = b.number("Subsurface IOR", 1.4f);
+    return lobe;
+}
+
+/// As far as there is any, it takes the place of `diffuse` but for what that reflects back, in a
+/// colour of its own; the more, the farther it reaches.
+void add_first_subsurface(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
+                          LobeSource& diffuse, const FloatSource& share) {
+    const FloatSource amount = b.map<float>(saturate, b.number("Subsurface Weight"));
+    if (amount.is(0.0f)) return;
+    SubsurfaceSource lobe = subsurface_of(b, c, amount);
+    lobe.burley = true;
+    lobe.albedo =
+        b.map<Vec3f>([](const Vec3f& base, const Vec3f& below,
+                        float s) { return base * (1.0f - s) + glm::max(below, Vec3f(0.0f)) * s; },
+                     c.base_color, b.color("Subsurface Color", Vec3f(0.8f)), amount);
+    const VectorSource all = scaled(b, lobe.albedo, share);
+    const FloatSource is_there =
+        b.map<float>([](float s) { return s > 0.0f ? 1.0f : 0.0f; }, amount);
+    lobe.weight = scaled(b, all, is_there);
+    set_subsurface_method(b, lobe, "subsurface_method");
+    surface.add_subsurface(lobe);
+    LobeSource back = diffuse;
+    back.retro_alone = true;
+    back.weight = scaled(b, all, is_there);
+    surface.add_lobe(back);
+    diffuse.weight =
+        scaled(b, diffuse.weight, b.map<float>([](float there) { return 1.0f - there; }, is_there));
+}
+
+/// Returns what is left to diffuse.
+FloatSource add_second_subsurface(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
+                                  const VectorSource& weight) {
+    const FloatSource amount = b.map<float>(saturate, b.number("Subsurface Weight"));
+    if (amount.is(0.0f)) return {-1, 1.0f};
+    SubsurfaceSource lobe = subsurface_of(b, c, b.number("Subsurface Scale", 0.05f));
+    lobe.albedo =
+        b.map<Vec3f>([](const Vec3f& base) { return glm::min(base, kOne); }, c.base_color);
+    if (b.text("subsurface_method") != "RANDOM_WALK_SKIN") lobe.ior = c.ior;
+    lobe.weight = scaled(b, product(b, lobe.albedo, weight), amount);
+    set_subsurface_method(b, lobe, "subsurface_method");
+    surface.add_subsurface(lobe);
+    return b.map<float>([](float s) { return 1.0f - s; }, amount);
+}
+
 void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
     surface.add_emission(b, c.emission);
     LobeSource diffuse;
@@ -170,11 +219,12 @@ void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common&
     diffuse.cosine_bumps = true;
     diffuse.normal = c.normal;
     diffuse.roughness = c.roughness;
-    diffuse.weight =
-        scaled(b, c.base_color,
-               product(b, c.weight,
-                       b.map<float>([](float m, float t) { return (1.0f - m) * (1.0f - t); },
-                                    c.metallic, c.transmission)));
+    const FloatSource share =
+        product(b, c.weight,
+                b.map<float>([](float m, float t) { return (1.0f - m) * (1.0f - t); }, c.metallic,
+                             c.transmission));
+    diffuse.weight = scaled(b, c.base_color, share);
+    add_first_subsurface(b, surface, c, diffuse, share);
     surface.add_lobe(diffuse);
     add_first_sheen(b, surface, c, diffuse);
 
@@ -281,13 +331,15 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
             return saturate(1.0f - std::max({albedo.x, albedo.y, albedo.z}));
         },
         specular.f0, specular.ior, c.roughness, c.specular_normal, b.view());
+    const VectorSource reached = scaled(b, coated, product(b, rest, below));
     LobeSource diffuse;
     diffuse.kind = LobeKind::Diffuse;
     diffuse.normal = c.normal;
     diffuse.roughness = b.map<float>(saturate, b.number("Diffuse Roughness"));
     diffuse.has_color = !diffuse.roughness.is(0.0f);
     diffuse.f0 = c.base_color;
-    diffuse.weight = scaled(b, product(b, c.base_color, coated), product(b, rest, below));
+    diffuse.weight =
+        scaled(b, product(b, c.base_color, reached), add_second_subsurface(b, surface, c, reached));
     surface.add_lobe(diffuse);
 }
 

@@ -14,6 +14,7 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::si
         lobe.multiscatter = from.multiscatter;
         lobe.separable_masking = from.separable_masking;
         lobe.burley = from.burley;
+        lobe.retro_alone = from.retro_alone;
         lobe.cosine_bumps = from.cosine_bumps;
         lobe.weight = values_of(run, from.weight);
         broken += make_finite(lobe.weight);
@@ -30,6 +31,21 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::si
             from.kind == LobeKind::PrincipledHair)
             lobe.ior = values_of(run, from.ior);
         closure.lobes.push_back(std::move(lobe));
+    }
+    for (const SubsurfaceSource& from : sources.subsurface) {
+        SubsurfaceLobe lobe;
+        lobe.walks = from.walks;
+        lobe.burley = from.burley;
+        lobe.entry = from.entry;
+        lobe.weight = values_of(run, from.weight);
+        broken += make_finite(lobe.weight);
+        lobe.normal = values_of(run, from.normal);
+        lobe.albedo = values_of(run, from.albedo);
+        lobe.radius = values_of(run, from.radius);
+        lobe.anisotropy = values_of(run, from.anisotropy);
+        lobe.roughness = values_of(run, from.roughness);
+        lobe.ior = values_of(run, from.ior);
+        closure.subsurface.push_back(std::move(lobe));
     }
     if (!sources.emission.is(Vec3f(0.0f))) closure.emission = values_of(run, sources.emission);
     if (!sources.transparency.is(Vec3f(0.0f)))

@@ -62,4 +62,8 @@ void SurfaceBuilder::add_lobe(const LobeSource& lobe) {
     if (!lobe.weight.is(Vec3f(0.0f))) m_sources.lobes.push_back(lobe);
 }
 
+void SurfaceBuilder::add_subsurface(const SubsurfaceSource& lobe) {
+    if (!lobe.weight.is(Vec3f(0.0f))) m_sources.subsurface.push_back(lobe);
+}
+
 }  // namespace granita

@@ -16,6 +16,7 @@ struct LobeSource {
     Distribution distribution = Distribution::Ggx;
     FresnelKind fresnel = FresnelKind::None;
     bool multiscatter = false, separable_masking = false, burley = false, cosine_bumps = false;
+    bool retro_alone = false;
     VectorSource weight, normal;
     FloatSource roughness;
     bool has_color = false;  ///< f0 is the lobe's colour though it has no Fresnel
@@ -27,10 +28,22 @@ struct LobeSource {
     std::vector<FloatSource> more;  ///< as Lobe::more
 };
 
+/// As SubsurfaceLobe.
+struct SubsurfaceSource {
+    bool walks = true, burley = false;
+    bool is_bent = false;  ///< `normal` is another than the surface's own
+    SubsurfaceEntry entry = SubsurfaceEntry::Diffuse;
+    VectorSource weight, normal, albedo, radius;
+    FloatSource anisotropy, roughness, ior;
+};
+
 struct SurfaceSources {
     std::vector<LobeSource> lobes;
+    std::vector<SubsurfaceSource> subsurface;
     VectorSource emission, transparency;  ///< the constant 0 = none
     bool additive = false;                ///< may reflect or emit where it is fully transparent
+
+    bool reflects() const { return !lobes.empty() || !subsurface.empty(); }
 };
 
 class SurfaceBuilder {
@@ -50,6 +63,7 @@ class SurfaceBuilder {
     void add_emission(NodeBuilder& b, const VectorSource& radiance);
     void add_transparency(NodeBuilder& b, const VectorSource& weight);
     void add_lobe(const LobeSource& lobe);
+    void add_subsurface(const SubsurfaceSource& lobe);
     void set_additive() { m_sources.additive = true; }
 
     const SurfaceSources& sources() const { return m_sources; }

@@ -23,7 +23,12 @@ struct RayMaterials {
     /// What it sends to all sides and from everywhere, so that its meshes are lamps; 0: they are
     /// none.
     std::function<Vec3f(std::int32_t material)> emitted = nullptr;
+    /// Whether light is scattered below its surfaces, which rays then meet from inside.
+    std::function<bool(std::int32_t material)> is_scattering = nullptr;
 
+    bool scatters(const Instance& instance) const {
+        return is_scattering && std::ranges::any_of(instance.materials, is_scattering);
+    }
     /// Whether meshes of the instance are lamps, and what rays leave the lamps light.
     bool shines(const Instance& instance) const {
         if (!emitted || !(instance.visible_diffuse || instance.visible_glossy)) return false;

@@ -41,16 +41,15 @@ struct ShadowContext {
     std::exception_ptr failure;
 };
 
-void RayScene::Impl::locate(const RTCRay& traced, const RTCHit& at, const RayInstance& instance,
+void RayScene::Impl::locate(const RTCRay& traced, const RTCHit& at, std::uint32_t instance,
                             const Vec3f& start, const Vec3f& direction, RayHit& hit) const {
-    const Instance& source = scene.instances[instance.index];
-    hit.instance = instance.index;
-    shape_of(instance.index).shape->locate(at.geomID, at.primID, at.u, at.v, hit);
+    const Instance& source = scene.instances[instance];
+    hit.instance = instance;
+    shape_of(instance).shape->locate(at.geomID, at.primID, at.u, at.v, hit);
     hit.material = source.material(hit.slot);
     hit.direction = direction;
     hit.p = start + direction * traced.tfar;
     hit.distance = traced.tfar;
-    hit.frame = instance.still ? &*instance.still : nullptr;
 }
 
 Vec3f RayScene::Impl::normal_of(const RTCHit& at, const RayHit& hit, const RayFrame& frame) {
@@ -66,8 +65,9 @@ RayFrame RayScene::Impl::frame_at(std::uint32_t instance, float time) const {
 Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& ray,
                                    const RTCHit& at, const RayInstance& instance) const {
     RayHit hit;
-    locate(ray, at, instance, context.start, context.direction, hit);
+    locate(ray, at, instance.index, context.start, context.direction, hit);
     if (!materials.is_transparent(hit.material)) return Vec3f(0.0f);
+    hit.frame = instance.still ? &*instance.still : nullptr;
     std::optional<RayFrame> moved;
     if (!hit.frame) hit.frame = &moved.emplace(frame_at(hit.instance, ray.time));
     hit.normal = normal_of(at, hit, *hit.frame);
@@ -214,11 +214,55 @@ void RayScene::nearest(std::span<const Ray> rays, std::vector<Met>& out) const {
         rtcIntersect1(m_impl->top.get(), &context.embree, &traced);
         if (traced.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
         Met& met = out.emplace_back(Met{static_cast<std::uint32_t>(i), {}, {}});
-        m_impl->locate(traced.ray, traced.hit, m_impl->instances[traced.hit.instID[0]], ray.start,
-                       ray.direction, met.hit);
+        const RayInstance& instance = m_impl->instances[traced.hit.instID[0]];
+        m_impl->locate(traced.ray, traced.hit, instance.index, ray.start, ray.direction, met.hit);
+        met.hit.frame = instance.still ? &*instance.still : nullptr;
         if (!met.hit.frame) met.moved.emplace(m_impl->frame_at(met.hit.instance, ray.time));
         met.hit.normal = Impl::normal_of(traced.hit, met.hit, met.frame());
     }
+}
+
+bool RayScene::has_body(const GridKey& key) const {
+    const auto found = m_impl->by_key.find(key.instance);
+    if (found == m_impl->by_key.end()) return false;
+    const Instance& source = m_impl->scene.instances[m_impl->instances[found->second].index];
+    return m_impl->scene.geometries[static_cast<std::size_t>(source.geometry)].kind ==
+           GeometryKind::Mesh;
+}
+
+RayScene::Body RayScene::body(const GridKey& key, float time) const {
+    const RayInstance& instance = m_impl->instances[m_impl->by_key.at(key.instance)];
+    Mat4d shading_from_object =
+        matrix_at(m_impl->scene.instances[instance.index].world_from_object, time);
+    shading_from_object[3] -= glm::dvec4(m_impl->origin, 0.0);
+    Body body{instance.index,
+              glm::inverse(shading_from_object),
+              time,
+              instance.still ? &*instance.still : nullptr,
+              {}};
+    if (!body.still) body.moved.emplace(m_impl->frame_at(instance.index, time));
+    return body;
+}
+
+bool RayScene::nearest(const Body& body, const Ray& ray, Met& met) const {
+    if (!ray.is_traceable()) return false;
+    // Not of unit length in the object, so that distances stay those of the world.
+    const Ray inside{Vec3f(transform_point(body.object_from_shading, Vec3d(ray.start))),
+                     Vec3f(Mat3d(body.object_from_shading) * Vec3d(ray.direction)), ray.distance,
+                     body.time};
+    if (!inside.is_traceable()) return false;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit traced{};
+    set_ray(traced.ray, inside);
+    traced.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(m_impl->shape_of(body.instance).built.get(), &context, &traced);
+    if (traced.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    m_impl->locate(traced.ray, traced.hit, body.instance, ray.start, ray.direction, met.hit);
+    met.hit.frame = body.still;
+    met.moved = body.moved;
+    met.hit.normal = Impl::normal_of(traced.hit, met.hit, met.frame());
+    return true;
 }
 
 Vec3f RayScene::transmittance(const Ray& shadow) const {

@@ -25,8 +25,8 @@ namespace granita {
 
 class RayScene {
   public:
-    /// `origin`: the camera's world position.  Only instances that cast shadows are in it, or
-    /// all where light is followed from surface to surface.
+    /// `origin`: the camera's world position.  Only instances that cast shadows or scatter light
+    /// are in it, or all where light is followed from surface to surface.
     /// `geometries`: shared with dicing, where given; `report`: what geometries are reported to;
     /// `kept`: where built geometries are looked for and left; `displacement`: of instances, where
     /// there is any, which must outlive this.
@@ -78,6 +78,20 @@ class RayScene {
     /// What rays meet of an instance that they meet, in its own space.
     void triangles(std::size_t instance,
                    const std::function<void(const RayTriangle&)>& visit) const;
+
+    /// One mesh alone, at a time of the shutter: what light inside of it meets.
+    struct Body {
+        std::uint32_t instance = 0;  ///< in Scene::instances
+        Mat4d object_from_shading{1.0};
+        float time = 0.0f;
+        const RayFrame* still = nullptr;  ///< as RayHit::frame
+        std::optional<RayFrame> moved;    ///< as Met's
+    };
+    /// Whether light can be followed inside of what the grid is of.
+    bool has_body(const GridKey& key) const;
+    Body body(const GridKey& key, float time) const;
+    /// False where the ray, whose time is the body's, meets nothing.
+    bool nearest(const Body& body, const Ray& ray, Met& met) const;
 
     /// Share of light that passes, per channel.
     Vec3f transmittance(const Ray& ray) const;

@@ -62,7 +62,7 @@ struct RayScene::Impl {
     bool is_met(const Instance& instance) const {
         const bool seen = instance.visible_diffuse || instance.visible_glossy;
         return (instance.casts_shadow || (seen && scene.options.bounces.most > 0) ||
-                materials.shines(instance)) &&
+                materials.shines(instance) || materials.scatters(instance)) &&
                !instance.lifespan.is_empty();
     }
     bool lets_light_through(const Instance& instance) const;
@@ -71,9 +71,9 @@ struct RayScene::Impl {
                        const RayInstance& instance) const;
     static void pass_through(const RTCFilterFunctionNArguments* arguments);
     static void skip_absent(const RTCFilterFunctionNArguments* arguments);
-    /// All but the normal.
-    void locate(const RTCRay& traced, const RTCHit& at, const RayInstance& instance,
-                const Vec3f& start, const Vec3f& direction, RayHit& hit) const;
+    /// All but the frame and the normal.  `instance`: in Scene::instances.
+    void locate(const RTCRay& traced, const RTCHit& at, std::uint32_t instance, const Vec3f& start,
+                const Vec3f& direction, RayHit& hit) const;
     RayFrame frame_at(std::uint32_t instance, float time) const;
     static Vec3f normal_of(const RTCHit& at, const RayHit& hit, const RayFrame& frame);
 

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/subsurface/probe.h"
+
+#include <array>
+
+namespace granita {
+namespace {
+
+/// Surfaces that one probe may meet.
+constexpr int kMostHits = 16;
+constexpr std::array kShares{0.5f, 0.25f, 0.25f};
+
+}  // namespace
+
+void probe(const RayScene& rays, const RayScene::Body& body, const BurleyProfile& profile,
+           const Vec3f& p, const Vec3f& normal, Vec2f u, std::vector<Probed>& out) {
+    out.clear();
+    const Basis frame(normal);
+    const std::array axes{frame.n, frame.x, frame.y};
+    std::size_t axis = 0;
+    while (axis < 2 && u.y >= kShares[axis]) u.y -= kShares[axis++];
+    const float phi = 2.0f * kPi * u.y / kShares[axis];
+    const float r = profile.sample(u.x), reach = profile.reach();
+    const float half = std::sqrt(std::max(0.0f, reach * reach - r * r));
+    const Vec3f &x = axes[(axis + 1) % 3], &y = axes[(axis + 2) % 3];
+    const Vec3f direction = -axes[axis];
+    Vec3f start = p + r * (std::cos(phi) * x + std::sin(phi) * y) - half * direction;
+    float left = 2.0f * half;
+    RayScene::Met met;
+    const RayHit& hit = met.hit;
+    for (int k = 0; k < kMostHits && left > 0.0f; ++k) {
+        if (!rays.nearest(body, {start, direction, left, body.time}, met)) return;
+        const Vec3f way = hit.p - p;
+        float density = 0.0f;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const Vec3f flat = way - glm::dot(way, axes[a]) * axes[a];
+            density += kShares[a] * std::abs(glm::dot(axes[a], hit.normal)) *
+                       profile.density(glm::length(flat));
+        }
+        const Vec3f weight = profile.value(glm::length(way)) / density;
+        if (is_finite(weight)) out.push_back({met, weight});
+        const float past = 4.0f * RayOffset::kRounding * (glm::length(hit.p) + reach);
+        start = hit.p + past * direction;
+        left -= hit.distance + past;
+    }
+}
+
+}  // namespace granita

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points of a mesh around one of its own, by a profile of distance (King, Kulla, Conty and Fajardo
+// 2013, "BSSRDF Importance Sampling").
+#pragma once
+
+#include <vector>
+
+#include "shade/rays/ray_scene.h"
+#include "shade/subsurface/burley_profile.h"
+
+namespace granita {
+
+struct Probed {
+    RayScene::Met met;
+    Vec3f weight;  ///< the profile over the density of what is found there
+};
+
+/// What a probe meets that is let down on a disc about `p`: along the normal, one time in two, or
+/// across it, so that steep parts are found too.  What several could have found is weighed by all
+/// (balance heuristic over axes and channels).
+/// @param normal geometric, unit.
+void probe(const RayScene& rays, const RayScene::Body& body, const BurleyProfile& profile,
+           const Vec3f& p, const Vec3f& normal, Vec2f u, std::vector<Probed>& out);
+
+}  // namespace granita

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is scattered below a surface varies no faster than light goes there: points of a grid share
+// what their ways have found, each channel as far as it goes.
+#pragma once
+
+#include <vector>
+
+#include "math/vec.h"
+#include "shade/bsdf/lobe.h"
+
+namespace granita {
+
+/// Of all that scatters at a point.
+Vec3f subsurface_weight(const SurfaceClosure& closure, std::size_t point);
+
+/// Ways that each point of a grid takes, a power of two: of `most` one in as many as the root of
+/// the number that share, so that both time and noise gain by it.
+int ways_of_points(const ShadingPoints& points, const SurfaceClosure& closure, int most);
+
+/// [points] `light`, by weight, shared.
+std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
+                                   const std::vector<Vec3f>& light);
+
+}  // namespace granita

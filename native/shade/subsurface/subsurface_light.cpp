@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/subsurface/subsurface_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "math/luminance.h"
+#include "math/normalize_or.h"
+#include "math/sampling.h"
+#include "shade/bounces/hit_points.h"
+#include "shade/lights/grid_samples.h"
+#include "shade/lights/leaving_rays.h"
+#include "shade/nodes/surface_run.h"
+#include "shade/subsurface/entry.h"
+#include "shade/subsurface/probe.h"
+#include "shade/subsurface/random_walk.h"
+#include "shade/subsurface/shared_scattering.h"
+
+namespace granita {
+namespace {
+
+/// Of the sequences by which ends are lit: no surface lies so deep.
+constexpr std::uint32_t kDepth = 1u << 20;
+constexpr float kLeastAlbedo = 1e-6f;
+}  // namespace
+
+/// The ways of a batch of points.
+class SubsurfaceLight::Batch {
+  public:
+    Batch(const SubsurfaceLight& light, const ShadingPoints& points, const SurfaceClosure& closure,
+          const GridKey& key, const PointPaths& paths, ReflectionParts* parts)
+        : m_light(light),
+          m_rays(*light.m_direct.rays()),
+          m_points(points),
+          m_key(key),
+          m_paths(paths),
+          m_parts(parts),
+          m_seed(grid_seed(key, light.m_scene.options.seed)),
+          m_direct(points.count, Vec3f(0.0f)) {
+        const auto samples = static_cast<float>(light.m_scene.options.light_samples);
+        const int most = std::max(1, static_cast<int>(std::lround(points.share * samples)));
+        m_count = ways_of_points(points, closure, most);
+    }
+
+    void scatter(const SubsurfaceLobe& lobe, std::size_t index) {
+        m_exits.clear();
+        m_ways.clear();
+        const std::uint64_t seed = mix_bits(m_seed + 0x9e3779b97f4a7c15ULL * (index + 1));
+        const SobolPoints entries(seed), times(mix_bits(seed));
+        m_body = m_rays.body(m_key, m_light.m_scene.options.frame_time);
+        for (std::size_t i = 0; i < m_points.count; ++i) {
+            if (lobe.weight[i] == Vec3f(0.0f)) continue;
+            m_light.m_progress.check();
+            const std::uint32_t first =
+                place_in_sequence(m_points, i) * static_cast<std::uint32_t>(m_count);
+            for (std::uint32_t s = first; s < first + static_cast<std::uint32_t>(m_count); ++s) {
+                if (m_light.m_direct.varies()) move_to(time_at(times(s).x));
+                if (lobe.walks)
+                    walk_from(lobe, i, s, entries(s), mix_bits(seed ^ mix_bits(s + 1ULL)));
+                else
+                    probe_from(lobe, i, s, entries(s));
+            }
+        }
+        light_exits(lobe.burley);
+    }
+
+    /// Not by weight, nor shared yet.
+    ScatteredLight finish() {
+        ScatteredLight light{std::move(m_direct), {}};
+        if (m_light.m_bounces)
+            light.bounced = m_light.m_bounces->gather(std::move(m_leaving), m_points.count).diffuse;
+        return light;
+    }
+
+  private:
+    float time_at(float uniform) const {
+        const Lifespan& life = m_paths.lifespan();
+        const ShutterWarp& shutter = m_light.m_shutter;
+        const float open = shutter.uniform(std::clamp(life.open, 0.0f, 1.0f));
+        const float close = shutter.uniform(std::clamp(life.close, 0.0f, 1.0f));
+        return shutter.time(open + uniform * (close - open));
+    }
+
+    void move_to(float time) {
+        if (time != m_body.time) m_body = m_rays.body(m_key, time);
+    }
+
+    /// Where the point is then, and the normal there.
+    std::pair<Vec3f, Vec3f> place_of(std::size_t i) const {
+        if (m_paths.moves()) {
+            const PointPaths::Place there = m_paths.at(i, m_body.time);
+            return {there.p, there.normal};
+        }
+        return {m_points.p[i], m_points.geometric_normal[i]};
+    }
+
+    void walk_from(const SubsurfaceLobe& lobe, std::size_t i, std::uint32_t sample, const Vec2f& u,
+                   std::uint64_t seed) {
+        WalkStart start;
+        std::tie(start.p, start.normal) = place_of(i);
+        start.seed = seed;
+        if (!enter(lobe, i, m_points.view[i], u, start.direction) ||
+            !(glm::dot(start.normal, start.direction) < 0.0f))
+            return;
+        const std::uint32_t face = m_points.faces.empty() ? m_key.face : m_points.faces[i];
+        const RayOffset offset = m_rays.ray_offset({m_key.instance, face});
+        start.p = offset(start.p + inwards(m_points, i), -start.normal);
+        const ScatteringMedium medium(lobe.albedo[i], lobe.radius[i], lobe.anisotropy[i]);
+        // The way itself takes on the albedo.
+        Vec3f weight = lobe.weight[i] / glm::max(lobe.albedo[i], Vec3f(kLeastAlbedo)) /
+                       static_cast<float>(m_count);
+        RayScene::Met exit{};
+        if (!walk(m_rays, m_body, medium, start, weight, exit)) return;
+        exit.hit.direction = -exit.hit.direction;  // as if it were seen from outside
+        add_exit(i, sample, weight, exit);
+    }
+
+    void probe_from(const SubsurfaceLobe& lobe, std::size_t i, std::uint32_t sample,
+                    const Vec2f& u) {
+        const auto [p, normal] = place_of(i);
+        probe(m_rays, m_body, BurleyProfile(lobe.radius[i]), p, normal, u, m_probed);
+        for (Probed& met : m_probed) {
+            // On the side of the mesh on which the point itself is seen.
+            RayHit& hit = met.met.hit;
+            hit.direction = m_points.backfacing[i] ? hit.normal : -hit.normal;
+            add_exit(i, sample, lobe.weight[i] * met.weight / static_cast<float>(m_count), met.met);
+        }
+    }
+
+    void add_exit(std::size_t point, std::uint32_t place, const Vec3f& weight,
+                  RayScene::Met& exit) {
+        exit.hit.distance = 0.0f;
+        m_exits.push_back(exit);
+        BouncedPath& way = m_ways.emplace_back();
+        way.width =
+            std::max(glm::length(m_points.dp_du[point]), glm::length(m_points.dp_dv[point]));
+        way.next.ray.time = m_body.time;
+        way.next.weight = weight;
+        way.next.point = static_cast<std::uint32_t>(point);
+        // As rays of lobes: a part of the sequences for each grid.
+        way.next.place = (static_cast<std::uint32_t>(m_seed) << 14) + place;
+    }
+
+    /// By material where any bends its normals, else all at once.
+    void light_exits(bool burley) {
+        std::vector<std::uint32_t> order(m_exits.size());
+        std::iota(order.begin(), order.end(), 0u);
+        const auto surface_at = [&](std::uint32_t k) {
+            return m_light.m_bent(m_exits[k].hit.material);
+        };
+        std::ranges::stable_sort(order, {}, [&](std::uint32_t k) {
+            return surface_at(k) ? m_exits[k].hit.material
+                                 : std::numeric_limits<std::int32_t>::min();
+        });
+        std::vector<std::uint32_t> batch;
+        for (std::size_t begin = 0, end; begin < order.size(); begin = end) {
+            const CompiledSurface* surface = surface_at(order[begin]);
+            batch.clear();
+            for (end = begin; end < order.size() && surface_at(order[end]) == surface; ++end)
+                batch.push_back(order[end]);
+            light_batch(batch, surface, burley);
+        }
+    }
+
+    /// `surface`: bends the normals of these exits, or nullptr.
+    void light_batch(const std::vector<std::uint32_t>& batch, const CompiledSurface* surface,
+                     bool burley) {
+        std::vector<MetPath> met;
+        for (const std::uint32_t k : batch)
+            met.push_back({&m_ways[k], &m_exits[k].hit, &m_exits[k].frame()});
+        HitPoints ends(m_light.m_scene, m_rays);
+        static const std::vector<AttributeRequest> kNone;
+        ends.fill(met, surface ? surface->requests : kNone, kDepth);
+        m_light.m_direct.lift(ends.points(), {m_key.instance});
+        ends.points().view = ends.points().normal;
+        SurfaceClosure closure;
+        Lobe& lobe = closure.lobes.emplace_back();
+        lobe.burley = burley;
+        lobe.normal = ends.points().normal;
+        lobe.roughness.assign(batch.size(), 0.0f);
+        for (const std::uint32_t k : batch) lobe.weight.push_back(m_ways[k].next.weight);
+        if (!surface) {
+            light_points(batch, ends.points(), closure);
+            return;
+        }
+        const SurfaceRun ran(surface->radiance, ends.input());
+        for (std::size_t i = 0; i < batch.size(); ++i) lobe.normal[i] = bent_normal(ran, i);
+        light_points(batch, ran.points(), closure);
+    }
+
+    /// The mean of what scatters there.
+    static Vec3f bent_normal(const SurfaceRun& ran, std::size_t i) {
+        Vec3f sum(0.0f);
+        for (const SubsurfaceLobe& lobe : ran.closure().subsurface)
+            sum += lobe.normal[i] * luminance(lobe.weight[i]);
+        return normalize_or(sum, ran.points().normal[i]);
+    }
+
+    void light_points(const std::vector<std::uint32_t>& batch, const ShadingPoints& points,
+                      const SurfaceClosure& closure) {
+        std::vector<LobeRay> leaving;
+        ReflectionParts parts;
+        const std::vector<Vec3f> light =
+            m_light.m_direct.reflect(points, closure, {m_key.instance}, m_parts ? &parts : nullptr,
+                                     {}, nullptr, m_light.m_bounces ? &leaving : nullptr);
+        for (std::size_t k = 0; k < light.size(); ++k) {
+            const std::size_t i = m_ways[batch[k]].next.point;
+            m_direct[i] += light[k];
+            if (!m_parts) continue;
+            m_parts->arriving[i] += parts.arriving[k];
+            m_parts->unblocked[i] += parts.unblocked[k];
+        }
+        for (LobeRay& ray : leaving) {
+            ray.point = m_ways[batch[ray.point]].next.point;
+            ray.share /= static_cast<float>(m_count);
+            m_leaving.push_back(ray);
+        }
+    }
+
+    const SubsurfaceLight& m_light;
+    const RayScene& m_rays;
+    const ShadingPoints& m_points;
+    const GridKey& m_key;
+    const PointPaths& m_paths;
+    ReflectionParts* m_parts;
+    std::uint64_t m_seed;
+    int m_count = 1;  ///< of ways a point
+    std::vector<Vec3f> m_direct;
+    RayScene::Body m_body;
+    std::vector<RayScene::Met> m_exits;
+    std::vector<Probed> m_probed;
+    std::vector<BouncedPath> m_ways;  ///< [exits]
+    std::vector<LobeRay> m_leaving;
+};
+
+SubsurfaceLight::SubsurfaceLight(const Scene& scene, const DirectLight& direct,
+                                 const BouncedLight* bounces, BentSurface bent,
+                                 const Progress& progress)
+    : m_scene(scene),
+      m_direct(direct),
+      m_bounces(bounces),
+      m_bent(std::move(bent)),
+      m_progress(progress),
+      m_shutter(scene.options.shutter_curve) {}
+
+ScatteredLight SubsurfaceLight::gather(const ShadingPoints& points, const SurfaceClosure& closure,
+                                       const GridKey& key, const PointPaths& paths,
+                                       ReflectionParts* parts) const {
+    Batch batch(*this, points, closure, key, paths, parts);
+    for (std::size_t k = 0; k < closure.subsurface.size(); ++k)
+        batch.scatter(closure.subsurface[k], k);
+    ScatteredLight light = batch.finish();
+    for (auto* values : {&light.direct, &light.bounced})
+        if (!values->empty()) *values = share_scattered(points, closure, *values);
+    return light;
+}
+
+}  // namespace granita

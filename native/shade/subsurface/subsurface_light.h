@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light that leaves a surface where it did not enter it: ways from the points of a grid through the
+// inside of their mesh, whose ends are lit together as one batch.
+//
+//   SubsurfaceLight below(scene, direct, bounces, bent, progress);    // once a frame
+//   light = below.gather(points, closure, grid.key, paths, parts);    // any thread, any grid
+//
+// What is gathered of a point depends on it alone: pictures are the same to the bit however points
+// are put together.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "base/progress.h"
+#include "scene/scene.h"
+#include "scene/shutter_warp.h"
+#include "shade/bounces/bounced_light.h"
+#include "shade/lights/direct_light.h"
+#include "shade/nodes/node_compiler.h"
+
+namespace granita {
+
+/// Each [points] and shared by neighbours: radiance by the weight of what scatters.
+struct ScatteredLight {
+    std::vector<Vec3f> direct;
+    std::vector<Vec3f> bounced;  ///< of other surfaces; empty: light is not followed so far
+};
+
+class SubsurfaceLight {
+  public:
+    /// The surface of a material, whose nodes bend the normals by which light enters; nullptr:
+    /// they do not.
+    using BentSurface = std::function<const CompiledSurface*(std::int32_t material)>;
+
+    /// All must outlive it; `direct` has rays; `bounces` nullptr: what enters has come straight
+    /// from lamps and the world.
+    SubsurfaceLight(const Scene& scene, const DirectLight& direct, const BouncedLight* bounces,
+                    BentSurface bent, const Progress& progress);
+
+    /// What closure.subsurface scatters of points that are there at the times that `paths` and the
+    /// shutter tell.  `parts`, where given, gets what arrives of lamps.
+    ScatteredLight gather(const ShadingPoints& points, const SurfaceClosure& closure,
+                          const GridKey& key, const PointPaths& paths,
+                          ReflectionParts* parts) const;
+
+  private:
+    class Batch;
+
+    const Scene& m_scene;
+    const DirectLight& m_direct;
+    const BouncedLight* m_bounces;
+    BentSurface m_bent;
+    const Progress& m_progress;
+    ShutterWarp m_shutter;
+};
+
+}  // namespace granita

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light scattered below surfaces beside Cycles in the same Blender: a ball, a sheet lit from behind, a head."""
+
+import math
+
+import bpy
+import node_comparison
+import numpy as np
+import pytest
+import scene_parts
+
+COLOR, RADIUS = (0.8, 0.5, 0.3), (0.3, 0.15, 0.08)
+SIZE, BLOCK = 24, 4
+
+
+def scattering(thing, method):
+    """Subsurface Scattering, or, after a colon, that of a Principled without reflections."""
+    tree = node_comparison.Tree(thing)
+    if not method.startswith("Principled: "):
+        shader = tree.add("ShaderNodeSubsurfaceScattering", falloff=method)
+        inputs = {"Color": (*COLOR, 1.0), "Scale": 1.0, "Radius": RADIUS}
+    else:
+        shader = tree.add("ShaderNodeBsdfPrincipled")
+        shader.subsurface_method = method.split(": ")[1]
+        old = "Subsurface" in shader.inputs
+        inputs = {
+            "Base Color": (*COLOR, 1.0),
+            "Subsurface Radius": RADIUS,
+            "Subsurface" if old else "Subsurface Weight": 0.7,
+            "Specular" if old else "Specular IOR Level": 0.0,
+            **({"Subsurface Color": (0.3, 0.6, 0.8, 1.0)} if old else {"Subsurface Scale": 1.0}),
+        }
+    for name, value in inputs.items():
+        shader.inputs[name].default_value = value
+    tree.link(shader.outputs[0], tree.output.inputs["Surface"])
+
+
+def smooth(thing):
+    thing.data.polygons.foreach_set("use_smooth", [True] * len(thing.data.polygons))
+    return thing
+
+
+def ball(scene):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24)
+    lamp(scene, "SUN", 3.0, turn=(math.radians(100), 0.0, math.radians(40)))
+    scene_parts.add_camera(scene, ortho_scale=2.4)
+    return smooth(bpy.context.object)
+
+
+def sheet(scene):
+    """A fifth of a metre thick, lit from behind."""
+    bpy.ops.mesh.primitive_cube_add(size=1.0, scale=(4.0, 4.0, 0.2))
+    lamp(scene, "SUN", 3.0, turn=(math.pi, 0.0, 0.0))
+    scene_parts.add_camera(scene, ortho_scale=2.0)
+    return bpy.context.object
+
+
+def head(scene):
+    bpy.ops.mesh.primitive_monkey_add(rotation=(math.radians(80), 0.0, math.radians(20)))
+    lamp(scene, "POINT", 400.0, (1.5, 3.5, 1.5), shadow_soft_size=0.5)
+    lamp(scene, "POINT", 200.0, (-3.0, -3.0, 3.0), shadow_soft_size=0.5)
+    camera = scene_parts.add_camera(scene, (0.0, -5.0, 0.0))
+    camera.rotation_euler, camera.data.lens = (math.pi / 2, 0.0, 0.0), 55.0
+    return smooth(bpy.context.object)
+
+
+def lamp(scene, kind, energy, place=(0.0, 0.0, 0.0), turn=(0.0, 0.0, 0.0), **properties):
+    data = bpy.data.lights.new("Lamp", kind)
+    data.energy = energy
+    for name, value in properties.items():
+        setattr(data, name, value)
+    scene_parts.add_object(scene, "Lamp", data, place).rotation_euler = turn
+
+
+def methods():
+    shader = bpy.types.ShaderNodeSubsurfaceScattering.bl_rna.properties["falloff"]
+    return [item.identifier for item in shader.enum_items]
+
+
+def compare(scene, render, samples=1024):
+    """(Cycles, Granita): means of blocks of pixels, [blocks, blocks, 3]."""
+    scene.render.resolution_x = scene.render.resolution_y = SIZE
+    blocks = []
+    for channels in scene_parts.direct_light_of_both(scene, render, samples)[::-1]:
+        layer = next(name for name in channels if name.endswith("Combined.R"))[:-1]
+        picture = np.stack([channels[layer + c] for c in "RGB"], axis=-1)
+        rows = SIZE // BLOCK
+        blocks.append(picture.reshape(rows, BLOCK, rows, BLOCK, 3).mean(axis=(1, 3)))
+    return blocks
+
+
+def agrees(theirs, ours, mean=0.02, rmse=0.03):
+    level = theirs.mean(axis=(0, 1))
+    assert ours.mean(axis=(0, 1)) == pytest.approx(level, rel=mean)
+    assert np.sqrt(((ours - theirs) ** 2).mean(axis=(0, 1))).max() < rmse * level.max()
+
+
+@pytest.mark.parametrize("make", [ball, sheet, head])
+@pytest.mark.parametrize("method", methods())
+def test_light_goes_as_far_as_in_cycles(scene, render, make, method):
+    scattering(make(scene), method)
+    agrees(*compare(scene, render))
+
+
+@pytest.mark.parametrize("method", methods())
+def test_subsurface_of_principled(scene, render, method):
+    scattering(ball(scene), f"Principled: {method}")
+    agrees(*compare(scene, render))

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light scattered below surfaces against closed forms: slabs that keep their albedo, edges of shadows that follow the
+profile, sheets that let light through."""
+
+import numpy as np
+import pytest
+import snapshots as s
+
+SIZE = 32
+
+
+def scattering(
+    snapshot,
+    method="RANDOM_WALK",
+    albedo=(0.8, 0.5, 0.2),
+    reach=(1.0, 1.0, 1.0),
+    generation=1,
+    **inputs,
+):
+    """A material of Subsurface Scattering alone; returns its index."""
+    inputs = {"Color": (*albedo, 1.0), "Scale": 1.0, "Radius": reach, "IOR": 1.4, **inputs}
+    properties = {"falloff": method, "generation": float(generation)}
+    node = {"type": "ShaderNodeSubsurfaceScattering", "inputs": inputs, "properties": properties}
+    index = len(snapshot["materials"])
+    snapshot["materials"].append({"name": "Wax", "nodes": [node], "surface": (0, "BSSRDF")})
+    return index
+
+
+def slab(snapshot, material, depth=4e2, half=4e2):
+    """Seen from in front, its face at z = 10 across the whole frame."""
+    corners = [
+        (x, y, z)
+        for z in (10.0, 10.0 + depth)
+        for y in (SIZE / 2 - half, SIZE / 2 + half)
+        for x in (SIZE / 2 - half, SIZE / 2 + half)
+    ]
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    s.mesh(snapshot, corners, faces, material)
+
+
+def lit_half(snapshot, axis=None):
+    """By a white world; `axis`: by that half of it alone that is on this axis' positive side."""
+    s.half_world(snapshot)
+    world = snapshot["world"]
+    world["lights_scene"] = True
+    if axis:
+        world["nodes"][2]["inputs"]["Value"] = ("LINK", 1, axis)
+    else:
+        world["nodes"][3]["inputs"]["Color"] = (1.0,) * 4
+
+
+def view(**options):
+    return s.orthographic((SIZE, SIZE), **{"samples": 4, "light_samples": 16, **options})
+
+
+def seen(snapshot):
+    return s.render(snapshot)["combined"][..., :3].astype(float)
+
+
+ALBEDO = (0.9, 0.5, 0.2)
+METHODS = ["BURLEY", "RANDOM_WALK", "RANDOM_WALK_FIXED_RADIUS"]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_big_slab_keeps_its_albedo(method):
+    """Under white light from all around.  Of the walk the tolerance is that of van de Hulst's fit, .002, and the noise of
+    16384 ways."""
+    snapshot = view()
+    slab(snapshot, scattering(snapshot, method, ALBEDO, (8.0, 4.0, 2.0)))
+    lit_half(snapshot)
+    assert seen(snapshot).mean(axis=(0, 1)) == pytest.approx(ALBEDO, abs=0.004)
+
+
+# Heaslet and Warming 1965, "Radiative transport and wall temperature slip in an absorbing planar medium": share of
+# diffuse light that a sheet lets through which scatters all that it meets, by its thickness in mean free paths.
+LET_THROUGH = {0.1: 0.9157, 1.0: 0.5532, 5.0: 0.2077}
+
+
+@pytest.mark.parametrize("thickness", LET_THROUGH)
+def test_a_white_sheet_lets_through_what_it_does_not_reflect(thickness):
+    """Lit from behind, then from before."""
+    means = []
+    for turned in (1.0, -1.0):
+        snapshot = view()
+        radius = (4 * np.pi / thickness,) * 3  # a mean free path is a 4 pi-th of it
+        material = scattering(snapshot, "RANDOM_WALK_FIXED_RADIUS", (1.0,) * 3, radius)
+        slab(snapshot, material, depth=1.0, half=1e3)
+        lit_half(snapshot, "Z")
+        snapshot["camera"]["world_from_camera"] = np.diag([turned, 1.0, turned, 1.0])[None]
+        snapshot["camera"]["world_from_camera"][0, :3, 3] = (
+            (0, 0, 0) if turned > 0 else (SIZE, 0, 21)
+        )
+        means.append(seen(snapshot).mean())
+    assert means[0] == pytest.approx(LET_THROUGH[thickness], abs=0.01)
+    assert sum(means) == pytest.approx(1.0, abs=0.01)
+
+
+def line_integral(x, d):
+    """Share of what a point at `x` shows that Burley's profile takes from where x > 0, which is lit."""
+    r = d * np.linspace(0.0, 16.0, 20001)[1:]
+    radial = (np.exp(-r / d) + np.exp(-r / (3 * d))) / (4 * d)
+    beyond = (
+        np.arccos(np.clip(-x / r, -1.0, 1.0)) / np.pi
+    )  # of the circle, where x + r cos(phi) > 0
+    return np.sum(radial * beyond) / np.sum(radial)
+
+
+def test_the_edge_of_a_shadow_follows_the_profile():
+    """A sun straight above, of whose light a sheet takes what falls on x < 16."""
+    snapshot = view(light_samples=64)
+    d = 3.0
+    slab(snapshot, scattering(snapshot, "BURLEY", (0.8,) * 3, (4 * np.pi * d,) * 3))
+    s.quad(snapshot, s.rectangle(-4e3, -4e3, SIZE / 2, 4e3, -1.0))
+    snapshot["instances"]["flags"] = [27, 27 - 1]
+    down = np.diag([1.0, -1.0, -1.0, 1.0])
+    snapshot["lights"] = [
+        {"name": "Sun", "kind": "SUN", "world_from_light": down[None], "energy": np.pi}
+    ]
+    row = seen(snapshot)[..., 0].mean(axis=0)
+    truth = 0.8 * np.array([line_integral(x + 0.5 - SIZE / 2, d) for x in range(SIZE)])
+    # A column's mean of 2048 probes: .5 / sqrt(2048) = .011 at most.
+    assert np.abs(row - truth).max() < 3 * 0.011
+    assert row.mean() == pytest.approx(truth.mean(), abs=0.005)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_what_scatters_nowhere_is_diffuse(method):
+    pictures = []
+    for kind in ("scatters", "diffuse"):
+        snapshot = view()
+        material = scattering(snapshot, method, ALBEDO, (0.0,) * 3)
+        if kind == "diffuse":
+            snapshot["materials"][0]["nodes"][0]["type"] = "ShaderNodeBsdfDiffuse"
+        slab(snapshot, material)
+        lit_half(snapshot, "X")
+        pictures.append(seen(snapshot))
+    assert np.array_equal(*pictures)
+
+
+def lump(method="RANDOM_WALK", **options):
+    snapshot = view(**options)
+    slab(snapshot, scattering(snapshot, method, ALBEDO, (8.0, 4.0, 2.0), 2), depth=8.0, half=12.0)
+    lit_half(snapshot, "X")
+    return seen(snapshot)
+
+
+@pytest.mark.parametrize("method", ["BURLEY", "RANDOM_WALK", "RANDOM_WALK_SKIN"])
+@pytest.mark.parametrize("bounces", [0, 2])
+def test_bits_do_not_depend_on_buckets_and_threads(method, bounces):
+    whole = lump(method, bounces=bounces)
+    assert np.array_equal(whole, lump(method, bounces=bounces, bucket_size=16))
+    assert np.array_equal(whole, lump(method, bounces=bounces, threads=1))
+    crop = np.int32([4, 8, 20, 24])
+    assert np.array_equal(whole[8:24, 4:20], lump(method, bounces=bounces, crop=crop))
