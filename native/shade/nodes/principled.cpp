@@ -196,15 +196,15 @@ void add_first_subsurface(NodeBuilder& b, SurfaceBuilder& surface, const Common&
         scaled(b, diffuse.weight, b.map<float>([](float there) { return 1.0f - there; }, is_there));
 }
 
-/// Returns what is left to diffuse.
+/// Returns what is left to diffuse.  `ior`: of the specular layer.
 FloatSource add_second_subsurface(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
-                                  const VectorSource& weight) {
+                                  const FloatSource& ior, const VectorSource& weight) {
     const FloatSource amount = b.map<float>(saturate, b.number("Subsurface Weight"));
     if (amount.is(0.0f)) return {-1, 1.0f};
     SubsurfaceSource lobe = subsurface_of(b, c, b.number("Subsurface Scale", 0.05f));
     lobe.albedo =
         b.map<Vec3f>([](const Vec3f& base) { return glm::min(base, kOne); }, c.base_color);
-    if (b.text("subsurface_method") != "RANDOM_WALK_SKIN") lobe.ior = c.ior;
+    if (b.text("subsurface_method") != "RANDOM_WALK_SKIN") lobe.ior = ior;
     lobe.weight = scaled(b, product(b, lobe.albedo, weight), amount);
     set_subsurface_method(b, lobe, "subsurface_method");
     surface.add_subsurface(lobe);
@@ -338,8 +338,8 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
     diffuse.roughness = b.map<float>(saturate, b.number("Diffuse Roughness"));
     diffuse.has_color = !diffuse.roughness.is(0.0f);
     diffuse.f0 = c.base_color;
-    diffuse.weight =
-        scaled(b, product(b, c.base_color, reached), add_second_subsurface(b, surface, c, reached));
+    diffuse.weight = scaled(b, product(b, c.base_color, reached),
+                            add_second_subsurface(b, surface, c, specular.ior, reached));
     surface.add_lobe(diffuse);
 }
 

@@ -21,14 +21,14 @@ class BurleyProfile {
     }
     /// Where it is cut off, with less than .4 % of it outside.
     float reach() const { return kCut * std::max({m_d.x, m_d.y, m_d.z}); }
-    /// Per area at a distance, by channel.
+    /// 2 pi r R(r): per metre of radius, by channel.
     Vec3f value(float r) const {
         Vec3f value(0.0f);
         for (int c = 0; c < 3; ++c)
-            if (m_d[c] > 0.0f) value[c] = radial(m_d[c], r) / (2.0f * kPi * r);
+            if (m_d[c] > 0.0f) value[c] = radial(m_d[c], r);
         return value;
     }
-    /// Of sample(), per area of the plane.
+    /// Of sample(), per metre.
     float density(float r) const {
         const Vec3f all = value(r);
         return (all.x + all.y + all.z) / m_channels;

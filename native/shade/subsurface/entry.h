@@ -10,9 +10,8 @@ namespace granita {
 
 /// Direction in which a way enters the medium at a point that is seen from `view`, of the density
 /// of what leaves there: nothing need be weighed.  False where none does.
-inline bool enter(const SubsurfaceLobe& lobe, std::size_t point, const Vec3f& view, Vec2f u,
-                  Vec3f& direction) {
-    const Vec3f& normal = lobe.normal[point];
+inline bool enter(const SubsurfaceLobe& lobe, std::size_t point, const Vec3f& normal,
+                  const Vec3f& view, Vec2f u, Vec3f& direction) {
     SubsurfaceEntry entry = lobe.entry;
     float roughness = lobe.roughness[point];
     if (entry == SubsurfaceEntry::Mixed) {

@@ -30,14 +30,14 @@ void probe(const RayScene& rays, const RayScene::Body& body, const BurleyProfile
     const RayHit& hit = met.hit;
     for (int k = 0; k < kMostHits && left > 0.0f; ++k) {
         if (!rays.nearest(body, {start, direction, left, body.time}, met)) return;
-        const Vec3f way = hit.p - p;
-        float density = 0.0f;
+        std::array<float, 3> found;
+        float squares = 0.0f;
         for (std::size_t a = 0; a < 3; ++a) {
-            const Vec3f flat = way - glm::dot(way, axes[a]) * axes[a];
-            density += kShares[a] * std::abs(glm::dot(axes[a], hit.normal)) *
-                       profile.density(glm::length(flat));
+            found[a] = kShares[a] * std::abs(glm::dot(axes[a], hit.normal));
+            squares += found[a] * found[a];
         }
-        const Vec3f weight = profile.value(glm::length(way)) / density;
+        const Vec3f weight =
+            profile.value(glm::distance(hit.p, p)) * (found[axis] / (squares * profile.density(r)));
         if (is_finite(weight)) out.push_back({met, weight});
         const float past = 4.0f * RayOffset::kRounding * (glm::length(hit.p) + reach);
         start = hit.p + past * direction;

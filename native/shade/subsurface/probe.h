@@ -16,8 +16,9 @@ struct Probed {
 };
 
 /// What a probe meets that is let down on a disc about `p`: along the normal, one time in two, or
-/// across it, so that steep parts are found too.  What several could have found is weighed by all
-/// (balance heuristic over axes and channels).
+/// across it, so that steep parts are found too: axes share by the power heuristic, channels by the
+/// balance heuristic.  As Cycles has it, the profile of the distance to `p` is spread over the
+/// probe's own circle: what lies above or below gets more than the profile alone would give.
 /// @param normal geometric, unit.
 void probe(const RayScene& rays, const RayScene::Body& body, const BurleyProfile& profile,
            const Vec3f& p, const Vec3f& normal, Vec2f u, std::vector<Probed>& out);

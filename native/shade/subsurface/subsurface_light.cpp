@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "math/luminance.h"
@@ -44,6 +43,7 @@ class SubsurfaceLight::Batch {
         const auto samples = static_cast<float>(light.m_scene.options.light_samples);
         const int most = std::max(1, static_cast<int>(std::lround(points.share * samples)));
         m_count = ways_of_points(points, closure, most);
+        m_front = points.columns > 0 && std::ranges::count(points.backfacing, 0) > 0;
     }
 
     void scatter(const SubsurfaceLobe& lobe, std::size_t index) {
@@ -59,6 +59,7 @@ class SubsurfaceLight::Batch {
                 place_in_sequence(m_points, i) * static_cast<std::uint32_t>(m_count);
             for (std::uint32_t s = first; s < first + static_cast<std::uint32_t>(m_count); ++s) {
                 if (m_light.m_direct.varies()) move_to(time_at(times(s).x));
+                if (s == first || m_light.m_direct.varies()) stand_on(i);
                 if (lobe.walks)
                     walk_from(lobe, i, s, entries(s), mix_bits(seed ^ mix_bits(s + 1ULL)));
                 else
@@ -89,26 +90,48 @@ class SubsurfaceLight::Batch {
         if (time != m_body.time) m_body = m_rays.body(m_key, time);
     }
 
-    /// Where the point is then, and the normal there.
-    std::pair<Vec3f, Vec3f> place_of(std::size_t i) const {
+    /// Where a lattice bends away from the viewer, its points that are behind count as those
+    /// before: of a body they are not seen, but what is seen between them and those is.
+    bool is_turned(std::size_t i) const { return m_front && m_points.backfacing[i]; }
+    Vec3f faced(std::size_t i, const Vec3f& normal) const {
+        return is_turned(i) ? -normal : normal;
+    }
+
+    /// Puts a point onto what rays meet of its mesh, from which coarse points of curved or small
+    /// faces may lie as far as light goes.
+    void stand_on(std::size_t i) {
+        m_p = m_points.p[i];
+        m_normal = m_points.geometric_normal[i];
         if (m_paths.moves()) {
             const PointPaths::Place there = m_paths.at(i, m_body.time);
-            return {there.p, there.normal};
+            m_p = there.p;
+            m_normal = there.normal;
         }
-        return {m_points.p[i], m_points.geometric_normal[i]};
+        m_normal = faced(i, m_normal);
+        m_p += inwards(m_points, i);
+        const std::uint32_t face = m_points.faces.empty() ? m_key.face : m_points.faces[i];
+        m_offset = m_rays.ray_offset({m_key.instance, face});
+        const float step = std::max(glm::length(m_points.dp_du[i]), glm::length(m_points.dp_dv[i]));
+        const float height = step + glm::length(m_offset(m_p, m_normal) - m_p);
+        const Ray down{m_p + height * m_normal, -m_normal, 2.0f * height, m_body.time};
+        if (RayScene::Met met{}; m_rays.nearest(m_body, down, met)) {
+            m_p = met.hit.p;
+            m_offset.error = 0.0f;
+        }
     }
 
     void walk_from(const SubsurfaceLobe& lobe, std::size_t i, std::uint32_t sample, const Vec2f& u,
                    std::uint64_t seed) {
         WalkStart start;
-        std::tie(start.p, start.normal) = place_of(i);
+        start.normal = m_normal;
         start.seed = seed;
-        if (!enter(lobe, i, m_points.view[i], u, start.direction) ||
-            !(glm::dot(start.normal, start.direction) < 0.0f))
+        const Vec3f normal = faced(i, lobe.normal[i]);
+        Vec3f view = m_points.view[i];
+        if (is_turned(i)) view -= 2.0f * glm::dot(view, normal) * normal;
+        if (!enter(lobe, i, normal, view, u, start.direction) ||
+            !(glm::dot(m_normal, start.direction) < 0.0f))
             return;
-        const std::uint32_t face = m_points.faces.empty() ? m_key.face : m_points.faces[i];
-        const RayOffset offset = m_rays.ray_offset({m_key.instance, face});
-        start.p = offset(start.p + inwards(m_points, i), -start.normal);
+        start.p = m_offset(m_p, -m_normal);
         const ScatteringMedium medium(lobe.albedo[i], lobe.radius[i], lobe.anisotropy[i]);
         // The way itself takes on the albedo.
         Vec3f weight = lobe.weight[i] / glm::max(lobe.albedo[i], Vec3f(kLeastAlbedo)) /
@@ -121,12 +144,12 @@ class SubsurfaceLight::Batch {
 
     void probe_from(const SubsurfaceLobe& lobe, std::size_t i, std::uint32_t sample,
                     const Vec2f& u) {
-        const auto [p, normal] = place_of(i);
-        probe(m_rays, m_body, BurleyProfile(lobe.radius[i]), p, normal, u, m_probed);
+        probe(m_rays, m_body, BurleyProfile(lobe.radius[i]), m_p, m_normal, u, m_probed);
         for (Probed& met : m_probed) {
             // On the side of the mesh on which the point itself is seen.
             RayHit& hit = met.met.hit;
-            hit.direction = m_points.backfacing[i] ? hit.normal : -hit.normal;
+            const bool from_behind = m_points.backfacing[i] && !is_turned(i);
+            hit.direction = from_behind ? hit.normal : -hit.normal;
             add_exit(i, sample, lobe.weight[i] * met.weight / static_cast<float>(m_count), met.met);
         }
     }
@@ -229,6 +252,10 @@ class SubsurfaceLight::Batch {
     ReflectionParts* m_parts;
     std::uint64_t m_seed;
     int m_count = 1;  ///< of ways a point
+    // Of the point at hand, at the time of the body.
+    Vec3f m_p{0.0f}, m_normal{0.0f};
+    RayOffset m_offset;
+    bool m_front = false;  ///< some point of a lattice is seen from the front
     std::vector<Vec3f> m_direct;
     RayScene::Body m_body;
     std::vector<RayScene::Met> m_exits;

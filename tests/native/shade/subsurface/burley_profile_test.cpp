@@ -8,16 +8,16 @@ namespace {
 
 const Vec3f kReach(2.0f, 0.7f, 0.0f);
 
-TEST(BurleyProfile, IntegratesToOneOverThePlane) {
+TEST(BurleyProfile, IntegratesToOne) {
     const BurleyProfile profile(kReach);
     constexpr int kSteps = 400000;
     glm::dvec3 sum(0.0);
     double density = 0.0;
     const double step = profile.reach() / kSteps;
     for (int k = 0; k < kSteps; ++k) {
-        const double r = (k + 0.5) * step, ring = 2.0 * M_PI * r * step;
-        sum += glm::dvec3(profile.value(static_cast<float>(r))) * ring;
-        density += profile.density(static_cast<float>(r)) * ring;
+        const double r = (k + 0.5) * step;
+        sum += glm::dvec3(profile.value(static_cast<float>(r))) * step;
+        density += profile.density(static_cast<float>(r)) * step;
     }
     EXPECT_NEAR(sum.x, 1.0, 1e-4);
     EXPECT_NEAR(sum.y, 1.0, 1e-4);
