@@ -430,7 +430,7 @@ bool ShadingSystem::opacity_varies(int material) const {
 
 bool ShadingSystem::reaches_others(int material) const {
     return !m_impl->material(material).shadow.transparency.is(Vec3f(0.0f)) ||
-           m_impl->emission->any(material);
+           m_impl->emission->any(material) || m_impl->material(material).radiance.bends_scattered();
 }
 
 void ShadingSystem::shade_opacity(Grid& grid) const {
