@@ -13,10 +13,6 @@ namespace granita {
 /// Of all that scatters at a point.
 Vec3f subsurface_weight(const SurfaceClosure& closure, std::size_t point);
 
-/// Ways that each point of a grid takes, a power of two: of `most` one in as many as the root of
-/// the number that share, so that both time and noise gain by it.
-int ways_of_points(const ShadingPoints& points, const SurfaceClosure& closure, int most);
-
 /// [points] `light`, by weight, shared.
 std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
                                    const std::vector<Vec3f>& light);

@@ -30,8 +30,8 @@ constexpr float kLeastAlbedo = 1e-6f;
 /// The ways of a batch of points.
 class SubsurfaceLight::Batch {
   public:
-    Batch(const SubsurfaceLight& light, const ShadingPoints& points, const SurfaceClosure& closure,
-          const GridKey& key, const PointPaths& paths, ReflectionParts* parts)
+    Batch(const SubsurfaceLight& light, const ShadingPoints& points, const GridKey& key,
+          const PointPaths& paths, ReflectionParts* parts)
         : m_light(light),
           m_rays(*light.m_direct.rays()),
           m_points(points),
@@ -41,8 +41,7 @@ class SubsurfaceLight::Batch {
           m_seed(grid_seed(key, light.m_scene.options.seed)),
           m_direct(points.count, Vec3f(0.0f)) {
         const auto samples = static_cast<float>(light.m_scene.options.light_samples);
-        const int most = std::max(1, static_cast<int>(std::lround(points.share * samples)));
-        m_count = ways_of_points(points, closure, most);
+        m_count = std::max(1, static_cast<int>(std::lround(points.share * samples)));
         m_front = points.columns > 0 && std::ranges::count(points.backfacing, 0) > 0;
     }
 
@@ -277,7 +276,7 @@ SubsurfaceLight::SubsurfaceLight(const Scene& scene, const DirectLight& direct,
 ScatteredLight SubsurfaceLight::gather(const ShadingPoints& points, const SurfaceClosure& closure,
                                        const GridKey& key, const PointPaths& paths,
                                        ReflectionParts* parts) const {
-    Batch batch(*this, points, closure, key, paths, parts);
+    Batch batch(*this, points, key, paths, parts);
     for (std::size_t k = 0; k < closure.subsurface.size(); ++k)
         batch.scatter(closure.subsurface[k], k);
     ScatteredLight light = batch.finish();
