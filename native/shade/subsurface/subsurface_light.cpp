@@ -192,6 +192,7 @@ class SubsurfaceLight::Batch {
     void light_batch(const std::vector<std::uint32_t>& batch, const CompiledSurface* surface,
                      bool burley) {
         std::vector<MetPath> met;
+        met.reserve(batch.size());
         for (const std::uint32_t k : batch)
             met.push_back({&m_ways[k], &m_exits[k].hit, &m_exits[k].frame()});
         HitPoints ends(m_light.m_scene, m_rays);
