@@ -64,9 +64,10 @@ class Tree:
     def link(self, source, target):
         self.links.new(source, target)
 
-    def emit(self, source):
+    def emit(self, source, strength=1.0):
         """Shows an output."""
         emission = self.add("ShaderNodeEmission")
+        emission.inputs["Strength"].default_value = strength
         self.link(source, emission.inputs["Color"])
         self.link(emission.outputs[0], self.output.inputs["Surface"])
 

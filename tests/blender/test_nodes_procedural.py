@@ -227,25 +227,47 @@ def test_sky_of_scattered_light(scene, render, sky):
     check(scene, render, limit=0.01 if bpy.app.version < (5, 0, 0) else 0.02, relative=True)
 
 
-DAYLIGHTS = {
-    "as it comes": {},
-    "low and hazy": {"sun_direction": (0.8, -0.55, 0.1), "turbidity": 6.0},
-    "clear noon": {"sun_direction": (0.1, 0.2, 0.97), "turbidity": 2.0},
+FITTED = {
+    "Preetham": ("PREETHAM", {}),
+    "Preetham, low and hazy": ("PREETHAM", {"sun_direction": (0.8, -0.55, 0.1), "turbidity": 6.0}),
+    "Preetham, clear noon": ("PREETHAM", {"sun_direction": (0.1, 0.2, 0.97), "turbidity": 2.0}),
+    "Hosek": ("HOSEK_WILKIE", {}),
+    "Hosek, low and hazy": (
+        "HOSEK_WILKIE",
+        {"sun_direction": (0.8, -0.55, 0.1), "turbidity": 6.3, "ground_albedo": 0.0},
+    ),
+    "Hosek, clearest over snow": (
+        "HOSEK_WILKIE",
+        {"sun_direction": (0.5, 0.2, 0.6), "turbidity": 1.0, "ground_albedo": 1.0},
+    ),
+    "Hosek, haziest, sun at the zenith": (
+        "HOSEK_WILKIE",
+        {"sun_direction": (0.0, 0.0, 1.0), "turbidity": 10.0, "ground_albedo": 0.7},
+    ),
+    "Hosek, sun below the horizon": (
+        "HOSEK_WILKIE",
+        {"sun_direction": (-0.3, 0.6, -0.4), "turbidity": 3.5},
+    ),
 }
 
 
 @pytest.mark.skipif(
     "PREETHAM" not in enum_values("ShaderNodeTexSky", "sky_type"), reason="this Blender has none"
 )
-@pytest.mark.parametrize("sky", DAYLIGHTS)
-def test_daylight(scene, render, sky):
+@pytest.mark.parametrize("unit", [True, False], ids=["unit", "of any length"])
+@pytest.mark.parametrize("sky", FITTED)
+def test_fits_to_daylight(scene, render, sky, unit):
+    model, properties = FITTED[sky]
     tree = Tree(board(scene, -1.0, 1.0))
-    node = tree.add("ShaderNodeTexSky", sky_type="PREETHAM", **DAYLIGHTS[sky])
-    unit = tree.add("ShaderNodeVectorMath", operation="NORMALIZE")
-    tree.link(tree.attribute("A"), unit.inputs[0])
-    tree.link(unit.outputs["Vector"], node.inputs["Vector"])
-    tree.emit(node.outputs["Color"])
-    check(scene, render, limit=0.01, relative=True)
+    node = tree.add("ShaderNodeTexSky", sky_type=model, **properties)
+    direction = tree.attribute("A")
+    if unit:
+        normalize = tree.add("ShaderNodeVectorMath", operation="NORMALIZE")
+        tree.link(direction, normalize.inputs[0])
+        direction = normalize.outputs["Vector"]
+    tree.link(direction, node.inputs["Vector"])
+    tree.emit(node.outputs["Color"], strength=20.0)
+    check(scene, render, limit=1e-4, relative=True)  # one formula in floats
 
 
 @pytest.mark.skipif(bpy.app.version >= (5, 0, 0), reason="there the ground begins elsewhere")

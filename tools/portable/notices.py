@@ -13,6 +13,7 @@ from component import Component
 from libraries import Libraries
 
 RULE = "=" * 78
+NATIVE = Path(__file__).parents[2] / "native"
 
 
 def third_party(libraries: Libraries) -> str:
@@ -26,6 +27,10 @@ def third_party(libraries: Libraries) -> str:
         folder = libraries.prefix(component) / "notices"
         for notice in component.notices:
             text += (folder / Path(notice).name).read_text(errors="replace").rstrip() + "\n\n"
+    for notice in sorted(NATIVE.rglob("*.LICENSE.txt")):  # of data sets of others
+        text += (
+            f"\n{RULE}\n{notice.name.partition('.')[0]}\n{RULE}\n{notice.read_text().rstrip()}\n\n"
+        )
     return text
 
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/angle_between.h"
 #include "math/sampling.h"
 
 namespace granita {
@@ -16,10 +17,6 @@ constexpr float kLowest = 0.001f;
 
 float cubic(float t, float a, float b, float c, float d) {
     return ((a * t + b) * t + c) * t + d;
-}
-
-float angle_between(const Vec3f& a, const Vec3f& b) {
-    return 2.0f * std::atan2(glm::length(a - b), glm::length(a + b));
 }
 
 }  // namespace

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sky Texture: sunlight scattered once (atmosphere.h) and the sun's disc, or a fit to daylight
-// (daylight.h).  Its other models are a gradient from horizon to zenith in the mean colours of each
-// at its default settings, without a sun (measured from Cycles, mean over all azimuths).
+// Sky Texture: sunlight scattered once (atmosphere.h) and the sun's disc, or fits to daylight
+// (daylight.h, hosek_wilkie.h).  Blender 5's multiple scattering is a gradient from horizon to
+// zenith in its mean colours at default settings, without a sun (measured from Cycles, mean over
+// all azimuths).
 #include <algorithm>
 #include <cmath>
 
+#include "math/angle_between.h"
 #include "math/normalize_or.h"
 #include "math/sampling.h"
 #include "shade/nodes/atmosphere.h"
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/daylight.h"
+#include "shade/nodes/hosek_wilkie.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {
@@ -54,17 +57,19 @@ float fade(float up) {
     return left * left * left;
 }
 
+float number(const NodeBuilder& b, const char* name, double otherwise) {
+    return static_cast<float>(b.value(name, otherwise));
+}
+
 void build_scattering(NodeBuilder& b, const VectorSource& direction) {
-    const auto number = [&](const char* name, double otherwise) {
-        return static_cast<float>(b.value(name, otherwise));
-    };
     Sun sun;
-    place_sun(number("sun_elevation", 0.26), number("sun_rotation", 0.0), sun);
-    const float dust = number("dust_density", b.value("aerosol_density", 1.0));
-    const Atmosphere atmosphere{sun.elevation, number("altitude", 0.0), number("air_density", 1.0),
-                                dust, number("ozone_density", 1.0)};
-    sun.diameter = b.value("sun_disc", 1.0) != 0.0 ? number("sun_size", 0.0095) : 0.0f;
-    sun.strength = number("sun_intensity", 1.0);
+    place_sun(number(b, "sun_elevation", 0.26), number(b, "sun_rotation", 0.0), sun);
+    const float dust = number(b, "dust_density", b.value("aerosol_density", 1.0));
+    const Atmosphere atmosphere{sun.elevation, number(b, "altitude", 0.0),
+                                number(b, "air_density", 1.0), dust,
+                                number(b, "ozone_density", 1.0)};
+    sun.diameter = b.value("sun_disc", 1.0) != 0.0 ? number(b, "sun_size", 0.0095) : 0.0f;
+    sun.strength = number(b, "sun_intensity", 1.0);
     if (sun.diameter > 0.0f) {
         const float half = 0.5f * sun.diameter;
         sun.lowest = atmosphere.sun(std::max(sun.elevation - half, 0.0f), sun.diameter);
@@ -78,9 +83,7 @@ void build_scattering(NodeBuilder& b, const VectorSource& direction) {
                                 [=](const Vec3f& d) {
                                     const float up = std::clamp(d.z, -1.0f, 1.0f);
                                     const float elevation = std::asin(up);
-                                    // Accurate for small angles, other than an arc cosine.
-                                    const float away = 2.0f * std::atan2(glm::length(d - to_sun),
-                                                                         glm::length(d + to_sun));
+                                    const float away = angle_between(d, to_sun);
                                     if (2.0f * away < sun.diameter && up >= 0.0f)
                                         return rgb_of(disc(sun, elevation, away));
                                     const float azimuth = std::atan2(d.y, d.x) - sun.azimuth;
@@ -89,32 +92,36 @@ void build_scattering(NodeBuilder& b, const VectorSource& direction) {
                                 direction));
 }
 
-void build_daylight(NodeBuilder& b, const VectorSource& direction) {
+/// Cycles takes a direction's height and azimuth as they are, whatever its length.
+Vec3f at_its_height(const Vec3f& d) {
+    const float up = std::clamp(d.z, -1.0f, 1.0f);
+    const Vec3f level = normalize_or(Vec3f(d.x, d.y, 0.0f), Vec3f(1.0f, 0.0f, 0.0f));
+    return std::sqrt(1.0f - up * up) * level + Vec3f(0.0f, 0.0f, up);
+}
+
+template <class Sky>
+void build_fit(NodeBuilder& b, const VectorSource& direction, const Sky& sky) {
+    b.output_color("Color",
+                   b.map<Vec3f>([sky](const Vec3f& d) { return rgb_of(sky.xyz(at_its_height(d))); },
+                                direction));
+}
+
+Vec3f direction_to_sun(const NodeBuilder& b) {
     std::vector<float> at = b.table("sun_direction");
     at.resize(3, 0.0f);
-    const Daylight sky(normalize_or(Vec3f(at[0], at[1], at[2]), Vec3f(0.0f, 0.0f, 1.0f)),
-                       static_cast<float>(b.value("turbidity", 2.2)));
-    b.output_color("Color",
-                   b.map<Vec3f>([sky](const Vec3f& d) { return rgb_of(sky.xyz(d)); }, direction));
+    return normalize_or(Vec3f(at[0], at[1], at[2]), Vec3f(0.0f, 0.0f, 1.0f));
 }
 
 void build_gradient(NodeBuilder& b, const std::string& type, const VectorSource& direction) {
-    struct Gradient {
-        Vec3f below, horizon, zenith;
-    };
-    const Gradient gradient =
-        type == "HOSEK_WILKIE"
-            ? Gradient{{0.07f, 0.22f, 0.32f}, {0.13f, 0.19f, 0.26f}, {0.07f, 0.11f, 0.13f}}
-            : Gradient{{0.0f, 0.0f, 0.0f}, {8.3f, 7.7f, 5.9f}, {0.55f, 0.87f, 1.44f}};
     b.warn("Sky Texture's model " + type +
-           " is not supported; rendered as a plain gradient "
-           "without a sun");
+           " is not supported; rendered as a plain gradient without a sun");
     b.output_color("Color", b.map<Vec3f>(
-                                [gradient](const Vec3f& v) {
+                                [](const Vec3f& v) {
                                     const float length = glm::length(v);
                                     const float up = length > 0.0f ? v.z / length : 0.0f;
-                                    if (up < 0.0f) return gradient.below;
-                                    return glm::mix(gradient.horizon, gradient.zenith, up);
+                                    if (up < 0.0f) return Vec3f(0.0f);
+                                    return glm::mix(Vec3f(8.3f, 7.7f, 5.9f),
+                                                    Vec3f(0.55f, 0.87f, 1.44f), up);
                                 },
                                 direction));
 }
@@ -128,7 +135,11 @@ void build_sky_texture(NodeBuilder& b) {
     if (type == "NISHITA" || type == "SINGLE_SCATTERING")
         build_scattering(b, direction);
     else if (type == "PREETHAM")
-        build_daylight(b, direction);
+        build_fit(b, direction, Daylight(direction_to_sun(b), number(b, "turbidity", 2.2)));
+    else if (type == "HOSEK_WILKIE")
+        build_fit(b, direction,
+                  HosekWilkieSky(direction_to_sun(b), number(b, "turbidity", 2.2),
+                                 number(b, "ground_albedo", 0.3)));
     else
         build_gradient(b, type, direction);
 }

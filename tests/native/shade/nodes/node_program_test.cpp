@@ -174,7 +174,8 @@ TEST(NodeProgram, unknown_node_is_reported_once_and_is_zero) {
 
 TEST(NodeProgram, a_sky_is_bright_above_and_told_to_be_a_stand_in) {
     Compiler c;
-    const int sky = c.add("ShaderNodeTexSky", {}, {{"sky_type", std::string("HOSEK_WILKIE")}});
+    const int sky =
+        c.add("ShaderNodeTexSky", {}, {{"sky_type", std::string("MULTIPLE_SCATTERING")}});
     const int background =
         c.add("ShaderNodeBackground", {{"Color", link(sky, "Color")}, {"Strength", constant(2)}});
     c.graph.surface = {background, "Background"};
@@ -184,8 +185,8 @@ TEST(NodeProgram, a_sky_is_bright_above_and_told_to_be_a_stand_in) {
     points.count = 2;
     points.p = {Vec3f(0, 0, 1), Vec3f(1, 0, 0)};
     const auto radiance = run_emission(world, {}, points);
-    EXPECT_FLOAT_EQ(radiance[0].z, 2 * 0.13f);
-    EXPECT_FLOAT_EQ(radiance[1].x, 2 * 0.13f);
+    EXPECT_FLOAT_EQ(radiance[0].z, 2 * 1.44f);
+    EXPECT_FLOAT_EQ(radiance[1].x, 2 * 8.3f);
     ASSERT_EQ(c.report.warnings().size(), 1u);
     EXPECT_EQ(c.report.warnings()[0].datablock, "world 'Test'");
 }
