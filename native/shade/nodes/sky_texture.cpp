@@ -1,36 +1,57 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sky Texture: sunlight scattered once (atmosphere.h) and the sun's disc, or fits to daylight
-// (daylight.h, hosek_wilkie.h).  Blender 5's multiple scattering is a gradient from horizon to
-// zenith in its mean colours at default settings, without a sun (measured from Cycles, mean over
-// all azimuths).
+// Sky Texture: scattered sunlight (sky_table.h) and the sun's disc, or fits to daylight
+// (daylight.h, hosek_wilkie.h).
 #include <algorithm>
 #include <cmath>
 
 #include "math/angle_between.h"
 #include "math/normalize_or.h"
 #include "math/sampling.h"
-#include "shade/nodes/atmosphere.h"
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/daylight.h"
 #include "shade/nodes/hosek_wilkie.h"
+#include "shade/nodes/multiple_scattering.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/single_scattering.h"
+#include "shade/nodes/sky_table.h"
 
 namespace granita {
 namespace {
 
+/// Radians: as small as Cycles lets it be.
+constexpr float kLeastSun = 0.0005f;
+
 struct Sun {
     float elevation, azimuth;  ///< radians; the azimuth from x towards y
-    float diameter;            ///< radians; 0 = no disc
-    float strength;
-    Vec3f lowest, highest;  ///< XYZ at the disc's ends
+    float diameter = 0.0f;     ///< radians; 0 = no disc
+    float strength = 1.0f;
+    float horizon = 0.0f;       ///< elevation that hides it
+    Vec3f lowest{}, highest{};  ///< XYZ at the disc's ends
 };
 
 /// Elevations go on over the zenith and down on the other side.
-void place_sun(float elevation, float rotation, Sun& sun) {
+Sun placed_sun(float elevation, float rotation) {
     const float up = std::remainder(elevation, 2.0f * kPi);
     const bool over = std::abs(up) > 0.5f * kPi;
-    sun.elevation = over ? std::copysign(kPi, up) - up : up;
-    sun.azimuth = 0.5f * kPi - rotation + (over ? kPi : 0.0f);
+    return {over ? std::copysign(kPi, up) - up : up, 0.5f * kPi - rotation + (over ? kPi : 0.0f)};
+}
+
+void light_disc(SkyModel model, const Atmosphere& air, Sun& sun) {
+    const float half = 0.5f * sun.diameter;
+    const float lowest = sun.elevation - half, highest = sun.elevation + half;
+    if (model == SkyModel::MultipleScattering) {
+        sun.lowest = MultipleScattering::sun(air, lowest, sun.diameter);
+        sun.highest = MultipleScattering::sun(air, highest, sun.diameter);
+    } else if (highest > 0.0f) {
+        sun.lowest = SingleScattering::sun(air, std::max(lowest, 0.0f), sun.diameter);
+        sun.highest = SingleScattering::sun(air, highest, sun.diameter);
+    }
+}
+
+/// How far below level the earth begins.  `altitude` metres.
+float dip_of_horizon(float altitude) {
+    constexpr float kEarthRadius = 6371e3f;
+    return std::acos(std::min(kEarthRadius / (kEarthRadius + altitude), 1.0f));
 }
 
 Vec3f rgb_of(const Vec3f& xyz) {
@@ -40,54 +61,49 @@ Vec3f rgb_of(const Vec3f& xyz) {
     return glm::max(rgb, Vec3f(0.0f));
 }
 
+/// @param height 0 at the disc's lowest place, 1 at its highest.
 /// @param away angle from its middle, within half of it.
-Vec3f disc(const Sun& sun, float elevation, float away) {
-    const float half = 0.5f * sun.diameter;
-    if (sun.elevation + half <= 0.0f) return Vec3f(0.0f);
-    const float height = sun.elevation > half ? (elevation - sun.elevation) / sun.diameter + 0.5f
-                                              : elevation / (sun.elevation + half);
-    const float part = away / half;
+Vec3f disc(const Sun& sun, float height, float away) {
+    const float part = 2.0f * away / sun.diameter;
     const float darkening = 1.0f - 0.6f * (1.0f - std::sqrt(std::max(1.0f - part * part, 0.0f)));
     return sun.strength * darkening * glm::mix(sun.lowest, sun.highest, height);
-}
-
-/// Below the horizon its light fades within 24 degrees.
-float fade(float up) {
-    const float left = std::clamp(1.0f + 2.5f * up, 0.0f, 1.0f);
-    return left * left * left;
 }
 
 float number(const NodeBuilder& b, const char* name, double otherwise) {
     return static_cast<float>(b.value(name, otherwise));
 }
 
-void build_scattering(NodeBuilder& b, const VectorSource& direction) {
-    Sun sun;
-    place_sun(number(b, "sun_elevation", 0.26), number(b, "sun_rotation", 0.0), sun);
+void build_scattering(NodeBuilder& b, SkyModel model, const VectorSource& direction) {
+    const bool nishita = model == SkyModel::Nishita;
+    Sun sun = placed_sun(number(b, "sun_elevation", 0.26), number(b, "sun_rotation", 0.0));
     const float dust = number(b, "dust_density", b.value("aerosol_density", 1.0));
-    const Atmosphere atmosphere{sun.elevation, number(b, "altitude", 0.0),
-                                number(b, "air_density", 1.0), dust,
-                                number(b, "ozone_density", 1.0)};
-    sun.diameter = b.value("sun_disc", 1.0) != 0.0 ? number(b, "sun_size", 0.0095) : 0.0f;
-    sun.strength = number(b, "sun_intensity", 1.0);
-    if (sun.diameter > 0.0f) {
-        const float half = 0.5f * sun.diameter;
-        sun.lowest = atmosphere.sun(std::max(sun.elevation - half, 0.0f), sun.diameter);
-        sun.highest = atmosphere.sun(std::max(sun.elevation + half, 0.0f), sun.diameter);
+    const Atmosphere air{sun.elevation, number(b, "altitude", 0.0), number(b, "air_density", 1.0),
+                         dust, number(b, "ozone_density", 1.0)};
+    if (b.value("sun_disc", 1.0) != 0.0) {
+        sun.diameter = std::max(number(b, "sun_size", 0.0095), kLeastSun);
+        sun.strength = number(b, "sun_intensity", 1.0);
+        sun.horizon = nishita ? 0.0f : -dip_of_horizon(air.altitude);
+        light_disc(model, air, sun);
     }
     const Vec3f to_sun(std::cos(sun.elevation) * std::cos(sun.azimuth),
                        std::cos(sun.elevation) * std::sin(sun.azimuth), std::sin(sun.elevation));
-    const auto table = sky_table(atmosphere);
+    // Nishita's low sun is stretched over what is left of it.
+    const float half = 0.5f * sun.diameter;
+    const bool cut = nishita && sun.elevation <= half;
+    const float bottom = cut ? 0.0f : sun.elevation - half;
+    const float extent = cut ? sun.elevation + half : sun.diameter;
+    const auto table = sky_table(model, air);
     b.output_color("Color", b.map<Vec3f>(
                                 // Not made unit, as in Cycles.
                                 [=](const Vec3f& d) {
-                                    const float up = std::clamp(d.z, -1.0f, 1.0f);
-                                    const float elevation = std::asin(up);
+                                    const float elevation = std::asin(std::clamp(d.z, -1.0f, 1.0f));
                                     const float away = angle_between(d, to_sun);
-                                    if (2.0f * away < sun.diameter && up >= 0.0f)
-                                        return rgb_of(disc(sun, elevation, away));
-                                    const float azimuth = std::atan2(d.y, d.x) - sun.azimuth;
-                                    return rgb_of(fade(up) * table->look_up(elevation, azimuth));
+                                    const Vec3f sky = table->look_up(
+                                        elevation, std::atan2(d.y, d.x) - sun.azimuth);
+                                    if (away >= half || elevation < sun.horizon) return rgb_of(sky);
+                                    const Vec3f seen =
+                                        disc(sun, (elevation - bottom) / extent, away);
+                                    return rgb_of(nishita ? seen : seen + sky);
                                 },
                                 direction));
 }
@@ -112,36 +128,24 @@ Vec3f direction_to_sun(const NodeBuilder& b) {
     return normalize_or(Vec3f(at[0], at[1], at[2]), Vec3f(0.0f, 0.0f, 1.0f));
 }
 
-void build_gradient(NodeBuilder& b, const std::string& type, const VectorSource& direction) {
-    b.warn("Sky Texture's model " + type +
-           " is not supported; rendered as a plain gradient without a sun");
-    b.output_color("Color", b.map<Vec3f>(
-                                [](const Vec3f& v) {
-                                    const float length = glm::length(v);
-                                    const float up = length > 0.0f ? v.z / length : 0.0f;
-                                    if (up < 0.0f) return Vec3f(0.0f);
-                                    return glm::mix(Vec3f(8.3f, 7.7f, 5.9f),
-                                                    Vec3f(0.55f, 0.87f, 1.44f), up);
-                                },
-                                direction));
-}
-
 }  // namespace
 
 void build_sky_texture(NodeBuilder& b) {
     const VectorSource direction =
         b.linked("Vector") ? b.vector("Vector") : generated_at(b, b.shift());
     const std::string type = b.text("sky_type", "NISHITA");
-    if (type == "NISHITA" || type == "SINGLE_SCATTERING")
-        build_scattering(b, direction);
-    else if (type == "PREETHAM")
+    if (type == "PREETHAM")
         build_fit(b, direction, Daylight(direction_to_sun(b), number(b, "turbidity", 2.2)));
     else if (type == "HOSEK_WILKIE")
         build_fit(b, direction,
                   HosekWilkieSky(direction_to_sun(b), number(b, "turbidity", 2.2),
                                  number(b, "ground_albedo", 0.3)));
+    else if (type == "MULTIPLE_SCATTERING")
+        build_scattering(b, SkyModel::MultipleScattering, direction);
+    else if (type == "SINGLE_SCATTERING")
+        build_scattering(b, SkyModel::SingleScattering, direction);
     else
-        build_gradient(b, type, direction);
+        build_scattering(b, SkyModel::Nishita, direction);
 }
 
 }  // namespace granita

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "shade/nodes/atmosphere.h"
+#include "shade/nodes/single_scattering.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 
-#include "base/parallel.h"
 #include "math/sampling.h"
 
 namespace granita {
@@ -116,15 +114,14 @@ Vec3f viewer(float altitude) {
     return {0.0f, 0.0f, kEarthRadius + std::clamp(altitude, 1.0f, 59999.0f)};
 }
 
-constexpr int kRows = 128, kColumns = 256;
-
 }  // namespace
 
-Vec3f Atmosphere::sky(const Vec3f& direction) const {
-    const Vec3f to_sun = towards(sun_elevation), densities(air, dust, ozone);
+Vec3f SingleScattering::sky(const Vec3f& direction) const {
+    const Vec3f to_sun = towards(m_air.sun_elevation);
+    const Vec3f densities(m_air.air, m_air.dust, m_air.ozone);
     const float cosine = glm::dot(direction, to_sun);
     const float by_air = air_phase(cosine), by_dust = dust_phase(cosine) * kDustScattering;
-    const Vec3f start = viewer(altitude);
+    const Vec3f start = viewer(m_air.altitude);
     const float step = distance_out(start, direction) / kSteps;
     Vec3f depth(0.0f);
     Spectrum spectrum{};
@@ -144,68 +141,16 @@ Vec3f Atmosphere::sky(const Vec3f& direction) const {
     return xyz_of(spectrum);
 }
 
-Vec3f Atmosphere::sun(float elevation, float angular_diameter) const {
+Vec3f SingleScattering::sun(const Atmosphere& air, float elevation, float angular_diameter) {
     const float solid_angle = 2.0f * kPi * (1.0f - std::cos(0.5f * angular_diameter));
-    const Vec3f depth = depth_along(viewer(altitude), towards(elevation));
+    const Vec3f depth = depth_along(viewer(air.altitude), towards(elevation));
     Spectrum spectrum;
     // Ozone is not taken from it, as in Blender.
     for (std::size_t k = 0; k < kWavelengths; ++k)
-        spectrum[k] =
-            kIrradiance[k] / solid_angle *
-            std::exp(-(depth.x * air * kAirScattering[k] + depth.y * dust * kDustExtinction));
+        spectrum[k] = kIrradiance[k] / solid_angle *
+                      std::exp(-(depth.x * air.air * kAirScattering[k] +
+                                 depth.y * air.dust * kDustExtinction));
     return xyz_of(spectrum);
-}
-
-/// Rows are denser towards the horizon; both ends as Blender places them.
-SkyTable::SkyTable(const Atmosphere& atmosphere) {
-    m_texels.resize(static_cast<std::size_t>(kRows) * kColumns);
-    parallel_for(kRows, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; ++row) {
-            const float part = static_cast<float>(row) / kRows;
-            const float elevation = 0.5f * kPi * part * part;
-            for (std::size_t column = 0; column < kColumns; ++column) {
-                const float azimuth = kPi - kPi * static_cast<float>(column) / kColumns;
-                m_texels[row * kColumns + column] =
-                    atmosphere.sky({std::cos(elevation) * std::cos(azimuth),
-                                    std::cos(elevation) * std::sin(azimuth), std::sin(elevation)});
-            }
-        }
-    });
-}
-
-Vec3f SkyTable::look_up(float elevation, float azimuth) const {
-    const float away = 1.0f - std::abs(std::remainder(azimuth, 2.0f * kPi)) / kPi;  // 1 = the sun's
-    const float x = away * kColumns - 0.5f;
-    const float y = std::sqrt(std::clamp(elevation / (0.5f * kPi), 0.0f, 1.0f)) * kRows - 0.5f;
-    const float x0 = std::floor(x), y0 = std::floor(y);
-    const auto at = [&](float column, float row) {
-        const int c = std::clamp(static_cast<int>(column), 0, kColumns - 1);
-        const int r = std::clamp(static_cast<int>(row), 0, kRows - 1);
-        return m_texels[static_cast<std::size_t>(r) * kColumns + static_cast<std::size_t>(c)];
-    };
-    const Vec3f below = glm::mix(at(x0, y0), at(x0 + 1.0f, y0), x - x0);
-    const Vec3f above = glm::mix(at(x0, y0 + 1.0f), at(x0 + 1.0f, y0 + 1.0f), x - x0);
-    return glm::mix(below, above, y - y0);
-}
-
-std::shared_ptr<const SkyTable> sky_table(const Atmosphere& atmosphere) {
-    struct Kept {
-        Atmosphere of;
-        std::shared_ptr<const SkyTable> table;
-    };
-    constexpr std::size_t kMost = 4;  // of .4 MB; a frame has a world
-    static std::mutex mutex;
-    static std::vector<Kept> kept;
-    {
-        const std::lock_guard lock(mutex);
-        for (const Kept& one : kept)
-            if (one.of == atmosphere) return one.table;
-    }
-    auto table = std::make_shared<const SkyTable>(atmosphere);
-    const std::lock_guard lock(mutex);
-    if (kept.size() == kMost) kept.erase(kept.begin());
-    kept.push_back({atmosphere, table});
-    return table;
 }
 
 }  // namespace granita
