@@ -3,7 +3,7 @@
 
     blender -b --factory-startup --addons granita --python bench/render_frames.py -- JOB.json
 
-JOB: {"module": "scenes", "lit_scenes", "lamp_scenes", "bounced_scenes", "hero_scene", "moving_files" or "demo", "scene", "variant" (of moving_files), "folder", "file", "runs", "seed" (of
+JOB: {"module": "scenes", "lit_scenes", "lamp_scenes", "bounced_scenes", "hero_scene", "moving_files", "opened_files" (the scene is a path) or "demo", "scene", "variant" (of moving_files), "folder", "file", "runs", "seed" (of
 Cycles), "size" (width and height, the scene's own without), "settings": [{"engine": "CYCLES" or "GRANITA", "samples",
 "shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), "bounces" (light is followed so far; none without), other
 properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FILE lists for each setting its runs as [wall, processor] seconds
@@ -40,6 +40,10 @@ def build(job):
         return hero_scene.hero(), 1, scenes.SHUTTER
     if job["module"] == "demo":
         return build_demo()
+    if job["module"] == "opened_files":
+        import opened_files
+
+        return opened_files.build(job["scene"])
     import moving_files
 
     return moving_files.build(job["scene"], job["variant"])

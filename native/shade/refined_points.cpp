@@ -7,6 +7,7 @@
 #include "scene/knot_time.h"
 #include "shade/lights/anchor.h"
 #include "shade/lights/vertex_paths.h"
+#include "shade/moving_eye.h"
 
 namespace granita {
 namespace {
@@ -94,38 +95,13 @@ GridAttribute blended(const GridAttribute& from, const std::vector<Blend>& blend
     return out;
 }
 
-/// The eye over the shutter, in shading space.
-class Eye {
-  public:
-    Eye(const Scene& scene, const ShadingCamera& camera)
-        : m_knots(scene.camera.world_from_camera),
-          m_perspective(camera.perspective),
-          m_origin(camera.world_from_camera[3]),
-          m_ahead(Mat3f(camera.world_from_camera) * Vec3f(0, 0, -1)) {}
-
-    /// Unit, towards it.
-    Vec3f view(const Vec3f& p, float time) const {
-        if (is_static(m_knots)) return m_perspective ? normalize_or(-p, m_ahead) : m_ahead;
-        const Mat4d at = matrix_at(m_knots, time);
-        const Vec3f ahead = Mat3f(Mat3d(at)) * Vec3f(0, 0, -1);
-        if (!m_perspective) return ahead;
-        return normalize_or(Vec3f(Vec3d(at[3]) - m_origin) - p, ahead);
-    }
-
-  private:
-    const std::vector<Mat4d>& m_knots;
-    bool m_perspective;
-    Vec3d m_origin;
-    Vec3f m_ahead;
-};
-
 }  // namespace
 
 RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const ShadingCamera& camera,
                              std::span<const RefinedPoint> wanted, bool timed, float point_size) {
     const ShadingPoints around = shading_points(grid, camera);
     const VertexPaths paths(grid, scene);
-    const Eye eye(scene, camera);
+    const MovingEye eye(scene, camera);
     points.count = wanted.size();
     // Corners have the light samples of their neighbours too, which interpolation averages.
     points.share = around.share * std::min(1.0f, 2.0f * point_size * point_size);

@@ -15,10 +15,12 @@
 #include "shade/lights/direct_light.h"
 #include "shade/lights/light_sample_count.h"
 #include "shade/material_displacement.h"
+#include "shade/moving_eye.h"
 #include "shade/nodes/default_material.h"
 #include "shade/nodes/material_emission.h"
 #include "shade/nodes/node_compiler.h"
 #include "shade/nodes/surface_run.h"
+#include "shade/seen_points.h"
 #include "shade/shading_points.h"
 #include "shade/shadow_transparency.h"
 #include "shade/subsurface/shared_scattering.h"
@@ -53,6 +55,7 @@ struct ShadingSystem::Impl {
     Report& report;
     TextureStore textures;
     ShadingCamera camera;
+    MovingEye eye;
     ShutterWarp shutter;
     ChannelSet channels;
     std::vector<CompiledSurface> materials;  ///< [materials + 1]
@@ -78,6 +81,7 @@ struct ShadingSystem::Impl {
           report(warnings),
           textures(s, stats, report),
           camera(s),
+          eye(s, camera),
           shutter(s.options.shutter_curve),
           channels(s.options),
           world(s, textures, report),
@@ -378,9 +382,12 @@ struct ShadingSystem::Impl {
         points.share *= sharpness;
         points.round = is_round(grid);
         if (light && lit) light->lift(points, grid.key);
+        const PointPaths at = paths(grid, points);
+        if (bounces && lit)
+            points.shares = seen_shares(points, at, grid.key, *light->rays(), scene, eye, shutter);
         std::vector<float> noise(wants_refining ? points.count : 0, 0.0f);
         std::vector<Vec3f> settled;
-        shade(grid, input(grid, points), paths(grid, points), wants_refining ? &noise : nullptr,
+        shade(grid, input(grid, points), at, wants_refining ? &noise : nullptr,
               wants_refining ? &settled : nullptr);
         statistics.add(Counter::GridsShaded);
         if (!wants_refining) return;

@@ -65,6 +65,7 @@ def set_bounces(scene, most):
     """Light is followed from surface to surface in either engine, without anything that tames its noise."""
     cycles = scene.cycles
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = most
+    cycles.transmission_bounces = most
     cycles.sample_clamp_indirect = cycles.blur_glossy = 0.0
     scene.granita.bounces = "FULL"
 

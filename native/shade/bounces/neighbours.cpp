@@ -103,7 +103,8 @@ class Sharing {
             std::min(std::max(m_noisy.by_reach[m_at], m_noisy.by_reach[j]), m_most_by_reach);
         const float near = 1.0f - glm::length(way) * by_reach;
         const float bend = 1.0f - glm::dot(m_points.normal[m_at], m_points.normal[j]);
-        const float weight = std::max(near, 0.0f) * std::max(1.0f - bend / kBend, 0.0f);
+        const float told = m_points.shares.empty() ? 1.0f : m_points.shares[j];
+        const float weight = told * std::max(near, 0.0f) * std::max(1.0f - bend / kBend, 0.0f);
         if (!(weight > 0.0f) || !is_finite(m_noisy.values[j])) return;
         m_fit.add(weight, glm::dot(way, m_x), glm::dot(way, m_y), m_noisy.values[j]);
         m_least = glm::min(m_least, m_noisy.values[j]);

@@ -124,6 +124,7 @@ struct ShadingPoints {
     std::vector<Vec3f> ray_offset;     ///< [n] as Grid::ray_offset; may be empty
     std::vector<std::uint32_t> faces;  ///< [n] as ShadingPositions::faces; may be empty
     float share = 1.0f;                ///< as Grid::point_share
+    std::vector<float> shares;         ///< [n] part of that which each is due; empty: all of it
     bool round = false;                ///< of ribbons that stand for tubes, as their normals say
     std::vector<std::uint8_t> backfacing;  ///< [n]
     /// [n] shutter time at which each is lit, where it then is; negative, or empty: over the whole

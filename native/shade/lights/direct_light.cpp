@@ -338,13 +338,20 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         const LitPlace at_frame{time, p, normal, start};
         const Vec2f exposed = timed ? Vec2f(m_impl->set.shutter.uniform(time)) : life_exposed;
         const bool through_tube = points.round && bsdf.transmits();
+        int count = sample_count;
+        std::uint32_t place = place_in_sequence(points, i);
+        if (!points.shares.empty() && points.shares[i] != 1.0f) {
+            count = this->sample_count(points.share * points.shares[i]);
+            // Behind what the others take of the sequences.
+            place += beyond(points) * static_cast<std::uint32_t>(sample_count / count + 1);
+        }
         lit.push_back({i,
                        std::move(bsdf),
                        paths,
                        ray_offset,
                        at_frame,
-                       sample_count,
-                       place_in_sequence(points, i),
+                       count,
+                       place,
                        exposed,
                        through_tube,
                        {}});

@@ -3,6 +3,8 @@
 // point's.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 
 #include "dice/grid.h"
@@ -25,6 +27,15 @@ inline std::uint32_t place_in_sequence(const ShadingPoints& points, std::size_t 
     if (points.columns == 0) return static_cast<std::uint32_t>(i);
     return morton_index(static_cast<std::uint32_t>(i % points.columns),
                         static_cast<std::uint32_t>(i / points.columns));
+}
+
+/// More than any point's place in a grid's sequences.
+inline std::uint32_t beyond(const ShadingPoints& points) {
+    if (points.columns == 0) return static_cast<std::uint32_t>(points.count);
+    const auto columns = static_cast<std::uint32_t>(points.columns);
+    const auto rows = static_cast<std::uint32_t>(points.count) / columns;
+    const std::uint32_t side = std::bit_ceil(std::max(columns, rows));
+    return side * side;
 }
 
 }  // namespace granita

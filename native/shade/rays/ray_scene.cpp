@@ -89,14 +89,16 @@ void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) 
                             RTCHitN_primID(arguments->hit, arguments->N, i)};
         if (met == ray.target)
             arguments->valid[i] = 0;
-        else if (context->looked_at && !instance.is_plain)
+        else if (context->looked_at != nullptr && !instance.is_plain)
             context->looked_at[RTCRayN_id(arguments->ray, arguments->N, i)] = true;
     }
-    if (context->looked_at || arguments->valid[0] != -1 || instance.is_plain) return;
+    if (context->looked_at != nullptr || arguments->valid[0] != -1 || instance.is_plain) return;
     const float time = reinterpret_cast<const RTCRay*>(arguments->ray)->time;
     const Instance& met = scene->scene.instances[instance.index];
-    if (!met.casts_shadow || !met.lifespan.contains(time) ||
-        !in_light_set(met.blocks, context->blocker_set)) {
+    const bool is_there = context->rays->type == RayType::Camera
+                              ? met.visible_camera
+                              : met.casts_shadow && in_light_set(met.blocks, context->blocker_set);
+    if (!is_there || !met.lifespan.contains(time)) {
         arguments->valid[0] = 0;
         return;
     }

@@ -174,8 +174,8 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     rtcReleaseGeometry(node);
     by_key[instance.key] = static_cast<std::uint32_t>(instances.size());
     const bool passes = lets_light_through(instance);
-    const bool is_plain = instance.casts_shadow && !passes && instance.lifespan.is_whole() &&
-                          instance.blocks == ~0ULL;
+    const bool is_plain = instance.casts_shadow && instance.visible_camera && !passes &&
+                          instance.lifespan.is_whole() && instance.blocks == ~0ULL;
     RayInstance& added = instances.emplace_back(RayInstance{
         index, transforms->scale, transforms->distance, passes, is_plain, constant_of(instance)});
     const bool is_asked =
@@ -205,8 +205,9 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materia
         if (!instance.lifespan.is_whole()) use |= kAppears;
         if (instance.blocks != ~0ULL) use |= kIsLinked;
         if (impl.materials.shines(instance)) use |= kShines;
-        const bool hidden = scene.options.bounces.most > 0 &&
-                            !(instance.visible_diffuse && instance.visible_glossy);
+        const bool hidden =
+            scene.options.bounces.most > 0 &&
+            !(instance.visible_camera && instance.visible_diffuse && instance.visible_glossy);
         if (hidden || !instance.casts_shadow) use |= kIsHidden;
     }
     if (displaced.empty() &&

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "math/normalize_or.h"
+#include "scene/knot_time.h"
+#include "scene/scene.h"
+#include "shade/programs/shading_camera.h"
+
+namespace granita {
+
+/// The eye over the shutter, in shading space.
+class MovingEye {
+  public:
+    /// The scene outlives this.
+    MovingEye(const Scene& scene, const ShadingCamera& camera)
+        : m_knots(scene.camera.world_from_camera),
+          m_perspective(camera.perspective),
+          m_origin(camera.world_from_camera[3]),
+          m_at_frame(camera.world_from_camera) {}
+
+    bool is_perspective() const { return m_perspective; }
+    /// Its axes in the columns (z ahead), and where it is in the last.
+    Mat4d place(float time) const {
+        Mat4d at = is_static(m_knots) ? m_at_frame : matrix_at(m_knots, time);
+        at[3] -= glm::dvec4(m_origin, 0.0);
+        return at;
+    }
+    /// Unit, towards it.
+    Vec3f view(const Vec3f& p, float time) const {
+        const Mat4d at = place(time);
+        const Vec3f back = Mat3f(Mat3d(at)) * Vec3f(0, 0, -1);
+        return m_perspective ? normalize_or(Vec3f(at[3]) - p, back) : back;
+    }
+
+  private:
+    const std::vector<Mat4d>& m_knots;
+    bool m_perspective;
+    Vec3d m_origin;
+    Mat4d m_at_frame;
+};
+
+}  // namespace granita

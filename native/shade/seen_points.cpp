@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/seen_points.h"
+
+#include <algorithm>
+
+#include "math/luminance.h"
+#include "math/sampling.h"
+#include "shade/lights/grid_samples.h"
+
+namespace granita {
+namespace {
+
+/// Of points that are not seen.  One of a pixel's 16 samples may see them after all, through an
+/// edge: their noise then counts for a 16th, as much as these ways are fewer.
+constexpr float kUnseenShare = 0.125f;
+/// Light that passes what lies before a point, so that it is seen.
+constexpr float kLeastSeen = 0.02f;
+
+class Looks {
+  public:
+    Looks(const ShadingPoints& points, const PointPaths& paths, const GridKey& key,
+          const RayScene& rays, const Scene& scene, const MovingEye& eye,
+          const ShutterWarp& shutter)
+        : m_points(points),
+          m_paths(paths),
+          m_rays(rays),
+          m_scene(scene),
+          m_eye(eye),
+          m_shutter(shutter),
+          m_offset(rays.ray_offset(key)),
+          m_key(key),
+          m_at_frame(eye.place(scene.options.frame_time)),
+          m_sequence(mix_bits(grid_seed(key, scene.options.seed))),
+          m_lens(mix_bits(mix_bits(grid_seed(key, scene.options.seed)))),
+          m_moves(scene.moves()) {}
+
+    /// From the point to the eye.
+    Ray from(std::size_t i) {
+        const std::uint32_t place = place_in_sequence(m_points, i);
+        const float frame_time = m_scene.options.frame_time;
+        const float time = m_moves ? m_shutter.time(m_sequence(place).x) : frame_time;
+        const Mat4d at = m_moves ? m_eye.place(time) : m_at_frame;
+        Vec3f p = m_points.p[i], normal = m_points.geometric_normal[i];
+        if (m_paths.moves()) {
+            const PointPaths::Place there = m_paths.at(i, time);
+            p = there.start;
+            normal = there.normal;
+        } else if (!m_points.ray_offset.empty()) {
+            p += m_points.ray_offset[i];
+        }
+        if (!m_points.faces.empty())
+            m_offset = m_rays.ray_offset({m_key.instance, m_points.faces[i]});
+        const Projection& projection = m_scene.camera.projection;
+        const Mat3f axes{Mat3d(at)};
+        Vec3f eye(at[3]);
+        if (projection.has_lens() && projection.perspective)
+            eye += axes *
+                   Vec3f(static_cast<float>(projection.lens_radius) * sample_disc(m_lens(place)),
+                         0.0f);
+        // Of what the surface turns to the eye of that time.
+        const Vec3f ahead = axes[2];
+        Vec3f way = projection.perspective ? eye - p : -ahead;
+        if (glm::dot(way, normal) < 0.0f) normal = -normal;
+        const Vec3f start = m_offset(p, normal);
+        if (projection.perspective) way = eye - start;
+        const float length = glm::length(way);
+        const float depth = glm::dot(start - Vec3f(at[3]), ahead);
+        const float clear = 1.0f - static_cast<float>(projection.near_clip) / depth;
+        Ray ray{start, way / length, projection.perspective ? length * clear : depth, time};
+        ray.type = RayType::Camera;
+        return ray;
+    }
+
+  private:
+    const ShadingPoints& m_points;
+    const PointPaths& m_paths;
+    const RayScene& m_rays;
+    const Scene& m_scene;
+    const MovingEye& m_eye;
+    const ShutterWarp& m_shutter;
+    RayOffset m_offset;
+    GridKey m_key;
+    Mat4d m_at_frame;
+    SobolPoints m_sequence, m_lens;
+    bool m_moves;
+};
+
+/// Of a lattice, those beside one that is seen.
+std::vector<std::uint8_t> with_neighbours(const std::vector<std::uint8_t>& seen,
+                                          std::size_t columns) {
+    if (columns == 0) return seen;
+    const auto grown = [](const std::vector<std::uint8_t>& from, std::size_t step,
+                          std::size_t row) {
+        std::vector<std::uint8_t> to = from;
+        for (std::size_t i = 0; i + step < from.size(); ++i) {
+            if (step == 1 && i % row == row - 1) continue;
+            to[i] |= from[i + step];
+            to[i + step] |= from[i];
+        }
+        return to;
+    };
+    return grown(grown(seen, 1, columns), columns, columns);
+}
+
+}  // namespace
+
+std::vector<float> seen_shares(const ShadingPoints& points, const PointPaths& paths,
+                               const GridKey& key, const RayScene& rays, const Scene& scene,
+                               const MovingEye& eye, const ShutterWarp& shutter) {
+    Looks looks(points, paths, key, rays, scene, eye, shutter);
+    std::vector<Ray> asked;
+    asked.reserve(points.count);
+    for (std::size_t i = 0; i < points.count; ++i) asked.push_back(looks.from(i));
+    std::vector<Vec3f> left(points.count);
+    rays.transmittances(asked, left);
+    std::vector<std::uint8_t> seen(points.count);
+    for (std::size_t i = 0; i < points.count; ++i) seen[i] = luminance(left[i]) > kLeastSeen;
+    seen = with_neighbours(seen, points.columns);
+    if (std::ranges::count(seen, 0) == 0) return {};
+    std::vector<float> shares(points.count);
+    std::ranges::transform(seen, shares.begin(),
+                           [](std::uint8_t is_seen) { return is_seen ? 1.0f : kUnseenShare; });
+    return shares;
+}
+
+}  // namespace granita

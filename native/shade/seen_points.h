@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hiding tells which grids are seen, not which of their points: of a tuft of hair or of leaves most
+// are shaded for a few that show.  Where light is followed from surface to surface, which is what
+// costs most, a ray to the eye tells them apart: those that it cannot see get fewer ways.
+#pragma once
+
+#include <vector>
+
+#include "scene/scene.h"
+#include "scene/shutter_warp.h"
+#include "shade/bsdf/lobe.h"
+#include "shade/lights/light_motion.h"
+#include "shade/moving_eye.h"
+#include "shade/rays/ray_scene.h"
+
+namespace granita {
+
+/// [points] part of its light samples that each is due: all of them next to what is seen through
+/// some point of the lens at some time of the shutter, one of each that the point asks, else few.
+/// What a point brings stays right, it is its noise that none or few see.  The same whatever
+/// bucket asks; empty where all are seen.
+/// @param points of the grid of `key`, lifted.
+std::vector<float> seen_shares(const ShadingPoints& points, const PointPaths& paths,
+                               const GridKey& key, const RayScene& rays, const Scene& scene,
+                               const MovingEye& eye, const ShutterWarp& shutter);
+
+}  // namespace granita

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points that the camera cannot see send fewer ways, and bring as much."""
+
+import numpy as np
+import pytest
+import snapshots as s
+from test_bounces import ALBEDO, diffuse, inside, room
+
+SEEN, CAMERA = 27, 1  # an instance's flags: by all rays, by the camera
+
+
+WIDTH, PERIOD = 0.4, 0.8  # of bars, at .8 of the way to the walls
+
+
+def barred(ways=(0.0,), **options):
+    """In a furnace of radiance 1 a grey wall behind bars that shine as well."""
+    snapshot = inside(1, light_samples=64, **options)
+    room(snapshot, s.emission(snapshot))
+    s.quad(snapshot, s.rectangle(-0.9, -0.9, 0.9, 0.9, z=0.9), diffuse(snapshot, ALBEDO))
+    bars, knots = s.emission(snapshot), [s.translation(x) for x in ways]
+    for left in np.arange(-1.6, 1.6, PERIOD):
+        corners = s.rectangle(left, -0.85, left + WIDTH, 0.85, z=0.8)
+        s.quad(snapshot, corners, bars, transforms=knots)
+    return snapshot
+
+
+def ways_sent(flags):
+    """`flags`: of the bars."""
+    snapshot = barred()
+    bars = len(snapshot["instances"]["geometry"]) - 2
+    snapshot["instances"]["flags"] = [SEEN, SEEN] + [flags] * bars
+    return s.render(snapshot)["statistics"]["rays_bounce"]
+
+
+def test_what_is_hidden_sends_fewer_ways():
+    """Half of the wall; bars that the camera does not see hide nothing."""
+    assert ways_sent(SEEN) < 0.7 * ways_sent(SEEN - CAMERA)
+
+
+def test_what_shows_between_bars_is_as_bright():
+    """The furnace is shut: all that comes to the wall sums to 1."""
+    seen = s.render(barred())["combined"][8:24, 8:24, 0]
+    wall = seen[seen < 0.7]
+    assert wall.size > 60
+    assert wall.mean() == pytest.approx(ALBEDO, rel=0.01)
+
+
+def test_what_bars_pass_over_is_as_bright():
+    """By their period within the shutter: they cover half of all."""
+    snapshot = barred(ways=(-PERIOD / 2, PERIOD / 2))
+    snapshot["options"]["samples"] = 64
+    seen = s.render(snapshot)["combined"]
+    assert seen[8:24, 8:24, 0].mean() == pytest.approx((1 + ALBEDO) / 2, rel=0.01)
+
+
+def test_bits_do_not_depend_on_buckets_and_threads():
+    whole = s.render(barred())["combined"]
+    assert np.array_equal(whole, s.render(barred(bucket_size=16))["combined"])
+    assert np.array_equal(whole, s.render(barred(threads=1))["combined"])
+    part = s.render(barred(crop=np.int32([4, 8, 20, 24])))["combined"]
+    assert np.array_equal(whole[8:24, 4:20], part)
