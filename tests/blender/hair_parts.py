@@ -52,6 +52,17 @@ def curve_through(scene, places, radius, name="Curve"):
     return with_nodes(thing, build)
 
 
+def give_material(thing, material):
+    """Of what nodes make: it has none of the object's."""
+    group = thing.modifiers[0].node_group
+    end = next(n for n in group.nodes if n.bl_idname == "NodeGroupOutput")
+    last = end.inputs[0].links[0].from_socket
+    given = group.nodes.new("GeometryNodeSetMaterial")
+    given.inputs["Material"].default_value = material
+    group.links.new(last, given.inputs["Geometry"])
+    group.links.new(given.outputs[0], end.inputs[0])
+
+
 def mesh_points(scene, vertices, faces, radius, name="Cloud"):
     """A mesh whose vertices nodes turn into points."""
     thing = scene_parts.add_mesh(scene, name, vertices, faces)

@@ -86,6 +86,21 @@ def add_subsurf(thing, levels=2):
     return modifier
 
 
+def fcurves_of(thing):
+    """Of its action, which has layers since Blender 4.4 and nothing else since 5."""
+    action = thing.animation_data.action
+    if hasattr(action, "fcurves"):
+        return action.fcurves
+    return action.layers[0].strips[0].channelbag(thing.animation_data.action_slot).fcurves
+
+
+def make_linear(thing):
+    """Its keys, from one to the next."""
+    for curve in fcurves_of(thing):
+        for key in curve.keyframe_points:
+            key.interpolation = "LINEAR"
+
+
 def cast_no_shadow(light):
     """In both engines: Cycles has a switch of its own before Blender 5."""
     light.use_shadow = False
@@ -111,6 +126,11 @@ def closure(name, node_type, **inputs):
         shader.inputs[socket].default_value = value
     links.new(shader.outputs[0], output.inputs["Surface"])
     return material
+
+
+def matte():
+    """Lambert's, of 0.8: Cycles' for objects without a material before Blender 5."""
+    return closure("Matte", "ShaderNodeBsdfDiffuse")
 
 
 def emission(name, color, strength=1.0):

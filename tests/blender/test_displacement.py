@@ -58,7 +58,11 @@ def pictures(scene, render):
 
 @pytest.mark.parametrize(
     ("method", "vector", "limit"),
-    [("DISPLACEMENT", False, 0.02), ("DISPLACEMENT", True, 0.02), ("BUMP", False, 0.03)],
+    [
+        ("DISPLACEMENT", False, 0.02),
+        ("DISPLACEMENT", True, 0.02),
+        ("BUMP", False, 0.03 if bpy.app.version >= (4, 5, 0) else 0.05),
+    ],
 )
 def test_hills_are_those_of_cycles(scene, render, method, vector, limit):
     if method == "BUMP" and bpy.app.version < (4, 0, 0):
@@ -68,6 +72,7 @@ def test_hills_are_those_of_cycles(scene, render, method, vector, limit):
     hills(scene, method, vector)
     granita, cycles = pictures(scene, render)
     # What differs are outlines and the borders of shadows, which either has to a vertex or a pixel; where normals are
-    # bent, differences over a pixel, which either takes another way (.024 of the brightest in 4.5).
+    # bent, differences over a pixel, which either takes another way (.024 of the brightest in 4.5, .043 in 4.2, whose bumps have no width of
+    # their own and take heights a whole pixel apart).
     assert np.sqrt(np.mean((granita - cycles) ** 2)) < limit * cycles.max()
     assert granita.mean() == pytest.approx(cycles.mean(), rel=0.01)

@@ -68,7 +68,7 @@ def test_a_lamp_that_a_handler_deletes_shines_on(scene):
 def test_the_picture_is_lit_by_the_mean(scene, render):
     """A sun that rises from 0 to 2 through the shutter lights as one of strength 1."""
     with_shutter(scene)
-    scene_parts.add_square(scene, size=20.0)
+    scene_parts.add_square(scene, size=20.0, material=scene_parts.matte())
     scene.granita.light_samples = 64
     sun = add_sun(scene)
     still = render(scene, "still")["ViewLayer.Combined.R"]

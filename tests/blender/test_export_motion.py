@@ -228,12 +228,7 @@ def test_its_animation_goes_on_afterwards(moving, persistent):
         square.evaluated_get(bpy.context.evaluated_depsgraph_get()).animation_data,
     ):
         assert not any(curve.mute for curve in data.drivers)
-    action = square.animation_data.action
-    curves = (
-        action.fcurves
-        if hasattr(action, "fcurves")
-        else action.layers[0].strips[0].channelbags[0].fcurves
-    )
+    curves = scene_parts.fcurves_of(square)
     assert len(curves) == 1 and not curves[0].mute
 
 

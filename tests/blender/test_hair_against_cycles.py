@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scene_parts
 from cycles_coverage import SAMPLES, blurred, expect_coverage_of_cycles
-from hair_parts import furry, grid_points, spiral_curves
+from hair_parts import furry, give_material, grid_points, spiral_curves
 from motion_parts import drive, open_shutter
 
 
@@ -103,15 +103,11 @@ def test_coverage_is_that_of_cycles(scene, render, build):
     expect_coverage_of_cycles(scene, render, least=0.01)
 
 
-def matte():
-    return scene_parts.closure("Matte", "ShaderNodeBsdfDiffuse")
-
-
 def test_shading_is_that_of_cycles(scene, render):
     """Rounded ribbons in the light of a sun from the side, without shadows: means of colour."""
     scene_parts.add_camera(scene, (0, -5, 2.5)).rotation_euler.x = 1.15
     thing = spiral_curves(scene, radius=0.08)
-    thing.data.materials.append(matte())
+    give_material(thing, scene_parts.matte())
     sun = bpy.data.lights.new("Sun", "SUN")
     sun.energy = 2.0
     scene_parts.cast_no_shadow(sun)
@@ -128,16 +124,17 @@ def test_shading_is_that_of_cycles(scene, render):
         color = next(values for key, values in passes.items() if key.endswith("Combined.R"))
         alpha = next(values for key, values in passes.items() if key.endswith("Combined.A"))
         means.append(color.sum() / alpha.sum())
-    assert abs(means[0] / means[1] - 1.0) < 0.02, means
+    # Since Blender 5 Cycles draws the pieces of a polyline as cones (here a hundredth more), whatever the shape.
+    assert abs(means[0] / means[1] - 1.0) < (0.02 if bpy.app.version < (5, 0, 0) else 0.03), means
 
 
 @pytest.mark.parametrize("build", [spiral_curves, grid_points])
 def test_shadows_are_those_of_cycles(scene, render, build):
     """On a floor that the camera sees from above, of moving things: means of colour in blocks."""
     scene_parts.add_camera(scene, (0, 0, 8), ortho_scale=6.0)
-    scene_parts.add_square(scene, "Floor", 8.0, (0, 0, -0.7), matte())
+    scene_parts.add_square(scene, "Floor", 8.0, (0, 0, -0.7), scene_parts.matte())
     thing = build(scene)
-    thing.data.materials.append(matte())
+    give_material(thing, scene_parts.matte())
     drive(thing, "location", "(frame - 10) / 2", 0)
     sun = bpy.data.lights.new("Sun", "SUN")
     sun.energy, sun.angle = 2.0, 0.0

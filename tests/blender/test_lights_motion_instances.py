@@ -130,7 +130,7 @@ def test_an_instance_lights_as_its_lamp_would(moving, render):
 
 def test_it_lights_for_as_long_as_it_is_there(moving, render):
     """A sun that comes after 5/8 of the shutter."""
-    scene_parts.add_square(moving, size=20.0)
+    scene_parts.add_square(moving, size=20.0, material=scene_parts.matte())
     moving.granita.light_samples = 64
     count_of(moving, "0 if frame < 10.05 else 1")
     bpy.data.lights["Lamp"].type = "SUN"

@@ -88,8 +88,7 @@ def keyed(thing, first, last):
     for frame, value in (first, last):
         thing.location.x = value
         thing.keyframe_insert("location", index=0, frame=frame)
-    for key in thing.animation_data.action.fcurves[0].keyframe_points:
-        key.interpolation = "LINEAR"
+    scene_parts.make_linear(thing)
 
 
 def keys(scene, thing):

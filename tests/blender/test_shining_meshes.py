@@ -48,9 +48,7 @@ def bulbs(scene):
     for frame, height in ((0, 0.9), (1, 0.6), (2, 0.3)):
         first.location.y = height
         first.keyframe_insert("location", index=1, frame=frame)
-    for curve in first.animation_data.action.fcurves:
-        for key in curve.keyframe_points:
-            key.interpolation = "LINEAR"
+    scene_parts.make_linear(first)
     scene.render.use_motion_blur = True
     scene.frame_set(1)
 

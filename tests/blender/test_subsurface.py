@@ -96,7 +96,7 @@ def agrees(theirs, ours):
     """Noise of both leaves up to .05 in blocks and .015 in the mean, more where a channel has next to no light; inversions
     of the albedo part by a hundredth."""
     level = theirs.mean(axis=(0, 1))
-    assert ours.mean(axis=(0, 1)) == pytest.approx(level, rel=0.03, abs=0.02 * level.max())
+    assert ours.mean(axis=(0, 1)) == pytest.approx(level, rel=0.03, abs=0.02 * float(level.max()))
     assert np.sqrt(((ours - theirs) ** 2).mean(axis=(0, 1))).max() < 0.065 * level.max()
 
 

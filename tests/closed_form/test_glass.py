@@ -40,7 +40,7 @@ def test_white_glass_in_a_white_world_is_not_seen():
     pane(snapshot, 0)
     pane(snapshot, 1, roughness=0.5, distribution="MULTI_GGX")
     pane(snapshot, 2, roughness=1.0, distribution="MULTI_GGX")
-    pane(snapshot, 3, roughness=0.0, generation=1)
+    pane(snapshot, 3, roughness=0.0, version=306)
     pane(snapshot, 4, kind="ShaderNodeBsdfRefraction")
     sharp, rough, roughest, old, refraction = means(snapshot, 5)
     assert sharp == pytest.approx(1.0, abs=1e-5)

@@ -14,12 +14,12 @@ def scattering(
     method="RANDOM_WALK",
     albedo=(0.8, 0.5, 0.2),
     reach=(1.0, 1.0, 1.0),
-    generation=1,
+    version=306,
     **inputs,
 ):
     """A material of Subsurface Scattering alone; returns its index."""
     inputs = {"Color": (*albedo, 1.0), "Scale": 1.0, "Radius": reach, "IOR": 1.4, **inputs}
-    properties = {"falloff": method, "generation": float(generation)}
+    properties = {"falloff": method, "version": float(version)}
     node = {"type": "ShaderNodeSubsurfaceScattering", "inputs": inputs, "properties": properties}
     index = len(snapshot["materials"])
     snapshot["materials"].append({"name": "Wax", "nodes": [node], "surface": (0, "BSSRDF")})

@@ -98,7 +98,8 @@ def _fill_vectors(node):
     """Vectors of no length are the same to most operations, and of no direction to the others."""
     for place, socket in enumerate(node.inputs):
         if socket.type == "VECTOR" and not socket.hide_value and not any(socket.default_value):
-            socket.default_value = (0.3 / (1 + place), 0.5, 0.2 + 0.3 * place)
+            value = (0.3 / (1 + place), 0.5, 0.2 + 0.3 * place)
+            socket.default_value = value[: len(socket.default_value)]
 
 
 def _takes_shaders(node):

@@ -116,7 +116,5 @@ def move(thing, distance=0.5, axis=0):
     for frame in (0, 2):
         thing.location[axis] = start + distance * (frame - 1)
         thing.keyframe_insert("location", index=axis, frame=frame)
-    for curve in thing.animation_data.action.fcurves:
-        for key in curve.keyframe_points:
-            key.interpolation = "LINEAR"
+    scene_parts.make_linear(thing)
     thing.location[axis] = start

@@ -72,6 +72,11 @@ class Libraries:
         log = logs / f"{component.name}.log"
         log.write_text("")
         prepare(component, self.cache / "downloads", work / "source")
+        # First: a recipe may move its source away.
+        for notice in component.notices:
+            target = prefix / "notices" / Path(notice).name
+            target.parent.mkdir(exist_ok=True)
+            shutil.copy(work / "source" / notice, target)
         job = recipes.Job(
             component=component,
             source=work / "source",
@@ -83,10 +88,6 @@ class Libraries:
         )
         getattr(recipes, component.recipe)(job)
         recipes.strip_libraries(job)
-        for notice in component.notices:
-            target = prefix / "notices" / Path(notice).name
-            target.parent.mkdir(exist_ok=True)
-            shutil.copy(work / "source" / notice, target)
         (prefix / DONE).write_text("")
         shutil.rmtree(work)
 

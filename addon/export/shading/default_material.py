@@ -6,7 +6,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
-from .nodes import generation
+from .nodes import version
 
 
 def fill_empty_slots(instances, materials):
@@ -35,6 +35,6 @@ def _principled():
         "type": "ShaderNodeBsdfPrincipled",
         "name": "Default",
         "inputs": {"Base Color": (0.8, 0.8, 0.8, 1.0), "Roughness": 0.5, "IOR": 1.5},
-        "properties": {"distribution": "MULTI_GGX", "generation": generation()},
+        "properties": {"distribution": "MULTI_GGX", "version": version()},
     }
     return {"name": "", "index": 0, "displacement": None, "nodes": [node], "surface": (0, "BSDF")}

@@ -81,7 +81,7 @@ class FlatGraph:
             if origin.node is not None:
                 self._add_nodes(origin)
             self._add_input(inputs, socket.identifier, origin, node)
-        properties = {"aov_name": aov_name(node), "generation": generation()}
+        properties = {"aov_name": aov_name(node), "version": version()}
         self.nodes.append(
             {
                 "type": node.bl_idname,
@@ -117,7 +117,7 @@ class FlatGraph:
                 "type": node.bl_idname,
                 "name": node.name,
                 "inputs": inputs,
-                "properties": {**properties, "generation": generation()},
+                "properties": {**properties, "version": version()},
             }
         )
 
@@ -150,11 +150,9 @@ class FlatGraph:
         return ("LINK", len(self.nodes) - 1, output)
 
 
-def generation():
-    """1: shaders mean what they meant before Blender 4; 2: since then; 3: and coats keep their energy."""
-    if bpy.app.version < (4, 0, 0):
-        return 1
-    return 2 if bpy.app.version < (4, 5, 0) else 3
+def version():
+    """Of Blender, whose releases change what nodes mean: 405 is 4.5."""
+    return 100 * bpy.app.version[0] + bpy.app.version[1]
 
 
 def aov_name(node):

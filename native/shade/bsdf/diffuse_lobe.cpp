@@ -36,7 +36,7 @@ float bump_shadowing(const Vec3f& surface_normal, const Vec3f& normal, const Vec
     return 1.0f / (1.0f + ggx_lambda(std::sqrt(alpha2), abs_o));
 }
 
-/// The same before Blender 4: a smooth step over the cosines' ratio (Chiang, Li and Burley 2019).
+/// The same before Blender 4.5: a smooth step over the cosines' ratio (Chiang, Li and Burley 2019).
 float cosine_bump_shadowing(const Vec3f& surface_normal, const Vec3f& normal, const Vec3f& wo) {
     const float bent = glm::dot(surface_normal, normal) * glm::dot(normal, wo);
     const float g = bent != 0.0f ? glm::dot(surface_normal, wo) / bent : 0.0f;

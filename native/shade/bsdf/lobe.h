@@ -88,7 +88,7 @@ struct Lobe {
     bool burley = false;        ///< diffuse: Burley's (2012) retro-reflection with `roughness`, as
                                 ///< Principled before Blender 4
     bool retro_alone = false;   ///< of that what goes back alone
-    bool cosine_bumps = false;  ///< diffuse: bent normals fade light as before Blender 4
+    bool cosine_bumps = false;  ///< diffuse: bent normals fade light as before Blender 4.5
     std::vector<Vec3f> weight;  ///< [n]
     std::vector<Vec3f> normal;  ///< [n] unit, facing the viewer as Cycles ensures
     std::vector<float> roughness;  ///< [n] diffuse: Oren-Nayar sigma socket; glossy: the socket's

@@ -58,7 +58,7 @@ void stretch_by_socket(NodeBuilder& b, LobeSource& lobe, const std::string& amou
                        const std::string& rotation) {
     const FloatSource anisotropic = b.number(amount);
     if (anisotropic.is(0.0f)) return;
-    const bool first = b.value("generation", 2) < 2;
+    const bool first = !b.since(4, 0);
     stretch(b, lobe, rotation,
             b.map<float>(
                 [first](float x) {

@@ -88,7 +88,7 @@ void add_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& glass
 
 void build_glass(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight) {
     GlassSource glass = glass_source(b, weight);
-    if (b.value("generation", 2) >= 2 || glass.multiscatter) {
+    if (b.since(4, 0) || glass.multiscatter) {
         add_glass(b, surface, glass);
         return;
     }
@@ -107,7 +107,7 @@ void build_glass(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& wei
 void build_refraction(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight) {
     const GlassSource glass = glass_source(b, weight);
     LobeSource sent = refraction(glass);
-    sent.separable_masking = b.value("generation", 2) < 2;
+    sent.separable_masking = !b.since(4, 0);
     sent.weight = product(b, glass.weight, b.color("Color", kOne));
     surface.add_lobe(sent);
 }

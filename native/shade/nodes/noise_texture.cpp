@@ -84,7 +84,7 @@ void build_distorted(NodeBuilder& b, OctavesOf octaves_of, Noise noise, const So
 template <std::size_t N>
 void build_fbm(NodeBuilder& b) {
     const bool normalize = b.value("normalize", 1.0) != 0.0;
-    const bool bounded = b.value("generation", 1.0) < 2.0;
+    const bool bounded = !b.since(4, 0);
     build_distorted<N>(
         b,
         [=](float d, float r, float l) {

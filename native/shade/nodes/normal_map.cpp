@@ -54,7 +54,7 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
                        uv_v = uv_at(b, name, Shift::V), out = b.new_source<Vec3f>();
     const FloatSource sign = b.attribute_component(of_corners, 3, Shift::None);
     // Since Blender 4 strength scales the map's slopes, before it blended the resulting normals.
-    const bool scales_slopes = b.value("generation", 2) >= 2;
+    const bool scales_slopes = b.since(4, 0);
     b.add_step(
         [=](Run& run) {
             const auto colors = run.read(color), uvs = run.read(uv), us = run.read(uv_u),

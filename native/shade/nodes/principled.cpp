@@ -133,6 +133,7 @@ FloatSource add_second_sheen(NodeBuilder& b, SurfaceBuilder& surface, const Comm
     if (sheen.is(0.0f)) return {-1, 1.0f};
     LobeSource lobe;
     lobe.kind = LobeKind::Sheen;
+    lobe.cosine_bumps = !b.since(4, 5);
     lobe.normal = c.normal;
     const FloatSource coat = b.number("Coat Weight");
     if (!coat.is(0.0f))
@@ -336,6 +337,7 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
     diffuse.kind = LobeKind::Diffuse;
     diffuse.normal = c.normal;
     diffuse.roughness = b.map<float>(saturate, b.number("Diffuse Roughness"));
+    diffuse.cosine_bumps = !b.since(4, 5);
     diffuse.has_color = !diffuse.roughness.is(0.0f);
     diffuse.f0 = c.base_color;
     diffuse.weight = scaled(b, product(b, c.base_color, reached),
@@ -355,7 +357,7 @@ void build_principled(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource
     c.emission = scaled(b, emission, product(b, c.weight, strength));
 
     warn_about_left_out(b);
-    const bool first = b.value("generation", 2) < 2;
+    const bool first = !b.since(4, 0);
     c.base_color = b.map<Vec3f>([](const Vec3f& v) { return glm::max(v, Vec3f(0.0f)); },
                                 b.color("Base Color", Vec3f(0.8f)));
     c.normal = b.diffuse_normal();

@@ -47,11 +47,10 @@ VectorSource let_through(NodeBuilder& b, const LobeSource& coat, const FloatSour
 VectorSource add_coat(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight) {
     const FloatSource coat = b.number("Coat Weight");
     if (coat.is(0.0f)) return {-1, kOne};
-    const double generation = b.value("generation", 2);
-    const bool first_generation = generation < 2;
+    const bool first_generation = !b.since(4, 0);
     LobeSource lobe;
     lobe.kind = LobeKind::Glossy;
-    lobe.multiscatter = generation >= 3;  // whatever the node's distribution
+    lobe.multiscatter = b.since(4, 5);  // whatever the node's distribution
     lobe.separable_masking = first_generation;
     if (first_generation) lobe.distribution = Distribution::Gtr1;
     lobe.fresnel = FresnelKind::Dielectric;

@@ -21,12 +21,12 @@ void build_diffuse(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& w
     lobe.f0 = b.color("Color", Vec3f(0.8f));
     lobe.weight = scaled(b, lobe.f0, weight);
     lobe.normal = b.diffuse_normal();
-    lobe.cosine_bumps = b.value("generation", 2) < 2;
+    lobe.cosine_bumps = !b.since(4, 5);
     // Of the kin only Diffuse itself has a roughness that means Oren-Nayar's sigma.
     lobe.roughness = b.node().type == "ShaderNodeBsdfDiffuse" ? clamped_roughness(b, 0.0f)
                                                               : FloatSource{-1, 0.0f};
-    // Since Blender 4 light that bounces inside a rough surface takes on its colour.
-    lobe.has_color = b.value("generation", 2) >= 2 && !lobe.roughness.is(0.0f);
+    // Since Blender 4.3 light that bounces inside a rough surface takes on its colour.
+    lobe.has_color = b.since(4, 3) && !lobe.roughness.is(0.0f);
     surface.add_lobe(lobe);
 }
 
@@ -36,7 +36,7 @@ void build_glossy(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& we
     lobe.kind = LobeKind::Glossy;
     lobe.multiscatter = distribution == "MULTI_GGX";
     lobe.distribution = distribution_of(distribution);
-    lobe.separable_masking = b.value("generation", 2) < 2;
+    lobe.separable_masking = !b.since(4, 0);
     lobe.has_color = lobe.multiscatter;
     lobe.f0 = b.color("Color", Vec3f(0.8f));
     lobe.weight = scaled(b, lobe.f0, weight);
@@ -82,7 +82,7 @@ LobeSource plain_lobe(NodeBuilder& b, LobeKind kind, const FloatSource& weight) 
     lobe.kind = kind;
     lobe.weight = scaled(b, b.color("Color", Vec3f(0.8f)), weight);
     lobe.normal = b.diffuse_normal();
-    lobe.cosine_bumps = b.value("generation", 2) < 2;
+    lobe.cosine_bumps = !b.since(4, 5);
     lobe.roughness = FloatSource{-1, 0.0f};
     return lobe;
 }

@@ -14,7 +14,7 @@ namespace granita {
 
 void set_subsurface_method(NodeBuilder& b, SubsurfaceSource& lobe, const char* property) {
     const std::string method = b.text(property, "RANDOM_WALK");
-    const bool first = b.value("generation", 2) < 2;
+    const bool first = !b.since(4, 0);
     const bool skin = method == (first ? "RANDOM_WALK" : "RANDOM_WALK_SKIN");
     lobe.walks = method != "BURLEY";
     lobe.is_bent = b.linked("Normal");

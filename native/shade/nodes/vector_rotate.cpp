@@ -91,7 +91,7 @@ void build_vector_transform(NodeBuilder& b) {
         return;
     }
     // Cycles turned normals like any direction before Blender 4.
-    const bool as_normals = type == "NORMAL" && b.value("generation", 2) >= 2;
+    const bool as_normals = type == "NORMAL" && b.since(4, 0);
     const VectorSource out = b.new_source<Vec3f>();
     b.add_step(
         [=](Run& run) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cellular noise (Worley 1996) in one to four dimensions: the nearest of points strewn one to a
-// cell.
+// cell.  Blender 5.0 strews them by another hash, but in one dimension.
+#include <algorithm>
 #include <limits>
 
 #include "math/hash.h"
+#include "math/pcg_hash.h"
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/dimensions.h"
 #include "shade/nodes/nodes.h"
@@ -15,9 +17,20 @@ namespace {
 template <std::size_t N>
 using CellPoint = std::array<float, N>;
 
+template <std::size_t N>
+std::array<std::int32_t, N> indices(const CellPoint<N>& k) {
+    std::array<std::int32_t, N> cell;
+    // Clamped: far from the origin a cell has no index, and converting it would be undefined.
+    for (std::size_t c = 0; c < N; ++c)
+        cell[c] = static_cast<std::int32_t>(std::clamp(k[c], -2147483520.0f, 2147483520.0f));
+    return cell;
+}
+
 /// Where in its cell the point lies, [0, 1] along each axis.
 template <std::size_t N>
-CellPoint<N> point_in_cell(const CellPoint<N>& k) {
+CellPoint<N> point_in_cell(const CellPoint<N>& k, bool pcg) {
+    if constexpr (N > 1)
+        if (pcg) return pcg_hash<N>(indices<N>(k));
     if constexpr (N == 1) return {hash_floats(k[0])};
     if constexpr (N == 2) return {hash_floats(k[0], k[1]), hash_floats(k[0], k[1], 1.0f)};
     if constexpr (N == 3)
@@ -28,11 +41,21 @@ CellPoint<N> point_in_cell(const CellPoint<N>& k) {
                 hash_floats(k[2], k[3], k[0], k[1]), hash_floats(k[1], k[2], k[3], k[0])};
 }
 
+template <std::size_t N>
+Vec3f color_of_cell(const CellPoint<N>& k, bool pcg) {
+    if (N == 1 || !pcg) return hash_color(k);
+    std::array < std::int32_t, N<4 ? 3 : 4> cell{};
+    std::ranges::copy(indices<N>(k), cell.begin());
+    const auto values = pcg_hash<cell.size()>(cell);
+    return {values[0], values[1], values[2]};
+}
+
 enum class Metric { Euclidean, Manhattan, Chebychev, Minkowski };
 
 struct Settings {
     Metric metric = Metric::Euclidean;
     bool second = false;  ///< the second nearest point instead of the nearest
+    bool pcg = false;
 };
 
 template <std::size_t N>
@@ -79,7 +102,7 @@ Found<N> find(const Vec3f& vector, float w, float scale, float randomness, float
             offset[c] = static_cast<float>(rest % 3) - 1.0f;
             cell[c] = base[c] + offset[c];
         }
-        const CellPoint<N> strewn = point_in_cell<N>(cell);
+        const CellPoint<N> strewn = point_in_cell<N>(cell, settings.pcg);
         Found<N> here;
         for (std::size_t c = 0; c < N; ++c) {
             const float place = offset[c] + strewn[c] * spread;
@@ -120,9 +143,10 @@ void build(NodeBuilder& b, const Settings& settings) {
     b.output("Distance", b.map<float>([=](const Vec3f& v, float w_, float s, float r,
                                           float e) { return at(v, w_, s, r, e).distance; },
                                       vector, w, scale, randomness, exponent));
-    b.output_color("Color",
-                   b.map<Vec3f>([=](const Vec3f& v, float w_, float s, float r,
-                                    float e) { return hash_color(at(v, w_, s, r, e).cell); },
+    b.output_color("Color", b.map<Vec3f>(
+                                [=](const Vec3f& v, float w_, float s, float r, float e) {
+                                    return color_of_cell<N>(at(v, w_, s, r, e).cell, settings.pcg);
+                                },
                                 vector, w, scale, randomness, exponent));
     if constexpr (N > 1)
         b.output_vector("Position", b.map<Vec3f>(
@@ -152,7 +176,7 @@ void build_voronoi_texture(NodeBuilder& b) {
     }
     if (b.linked("Detail") || b.number("Detail").constant > 0.0f || b.flag("normalize"))
         b.warn("it is shown without Detail and Normalize");
-    const Settings settings{metric_of(b.text("distance")), feature == "F2"};
+    const Settings settings{metric_of(b.text("distance")), feature == "F2", b.since(5, 0)};
     with_dimensions(b, "voronoi_dimensions", [&](auto n) { build<n()>(b, settings); });
 }
 

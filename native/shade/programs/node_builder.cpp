@@ -129,12 +129,12 @@ VectorSource NodeBuilder::normal_input(const std::string& input) {
 
 VectorSource NodeBuilder::diffuse_normal(const std::string& input) {
     const VectorSource normal = normal_input(input);
-    if (m_program.is_world || !is_first_generation()) return normal;
+    if (m_program.is_world || since(4, 0)) return normal;
     return with_valid_reflection(normal, false);
 }
 
 VectorSource NodeBuilder::specular_normal(const std::string& input) {
-    if (m_program.is_world || is_first_generation()) return diffuse_normal(input);
+    if (m_program.is_world || !since(4, 0)) return diffuse_normal(input);
     const VectorSource normal = normal_input(input);
     return linked(input) ? with_valid_reflection(normal, true) : normal;
 }

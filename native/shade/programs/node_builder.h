@@ -89,6 +89,8 @@ class NodeBuilder {
         return m_node.value(property, fallback);
     }
     bool flag(const std::string& property) const { return m_node.flag(property); }
+    /// Whether the node means what it means in this version of Blender and later ones.
+    bool since(int major, int minor) const { return value("version", 400) >= 100 * major + minor; }
     std::vector<float> table(const std::string& property) const;
 
     // Outputs.
@@ -165,7 +167,6 @@ class NodeBuilder {
     const NodeOutput* link_source(const std::string& input, Shift shift) const;
     /// `bent_alone`: the surface's own normal stays.
     VectorSource with_valid_reflection(const VectorSource& normal, bool bent_alone);
-    bool is_first_generation() const { return value("generation", 2) < 2; }
     /// The slot of `width` components of an attribute from `first` on; equal loads share one.
     int load(const AttributeRequest& request, Shift shift, int width, int first);
 
