@@ -21,10 +21,14 @@ struct PassKind {
 /// What Cycles filters is filtered, what it takes of one sample is of one sample.
 const PassKind kPasses[] = {
     {"Diffuse Direct", Quantity::DiffuseDirect, Merge::Layers, 3, Quantity::DiffuseColor},
+    {"Diffuse Indirect", Quantity::DiffuseIndirect, Merge::Layers, 3, Quantity::DiffuseColor},
     {"Diffuse Color", Quantity::DiffuseColor, Merge::Layers, 3},
     {"Glossy Direct", Quantity::GlossyDirect, Merge::Layers, 3, Quantity::GlossyColor},
+    {"Glossy Indirect", Quantity::GlossyIndirect, Merge::Layers, 3, Quantity::GlossyColor},
     {"Glossy Color", Quantity::GlossyColor, Merge::Layers, 3},
     {"Transmission Direct", Quantity::TransmissionDirect, Merge::Layers, 3,
+     Quantity::TransmissionColor},
+    {"Transmission Indirect", Quantity::TransmissionIndirect, Merge::Layers, 3,
      Quantity::TransmissionColor},
     {"Transmission Color", Quantity::TransmissionColor, Merge::Layers, 3},
     {"Emission", Quantity::Emission, Merge::Layers, 3},

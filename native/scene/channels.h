@@ -17,11 +17,14 @@
 namespace granita {
 
 enum class Quantity {
-    DiffuseDirect,  ///< radiance that diffuse lobes reflect
-    DiffuseColor,   ///< their albedo
+    DiffuseDirect,    ///< radiance of lamps and the world that diffuse lobes reflect
+    DiffuseIndirect,  ///< of other surfaces
+    DiffuseColor,     ///< their albedo
     GlossyDirect,
+    GlossyIndirect,
     GlossyColor,
     TransmissionDirect,
+    TransmissionIndirect,
     TransmissionColor,
     Emission,
     LampsArriving,   ///< radiance reflected of lamps

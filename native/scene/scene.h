@@ -27,7 +27,8 @@ struct Instance {
     std::vector<std::int32_t>
         materials;  ///< [slots] index in Scene::materials, -1 = none (Blender's default grey)
     bool visible_camera = true;
-    bool visible_diffuse = true, visible_glossy = true;  ///< to rays from other surfaces
+    /// To rays from other surfaces, by what sends them.
+    bool visible_diffuse = true, visible_glossy = true, visible_transmission = true;
     bool casts_shadow = true;
     bool holdout = false;
     int object_index = 0;  ///< pass_index
@@ -37,6 +38,9 @@ struct Instance {
     std::uint32_t key = 0;  ///< rank of the persistent identity: orders micropolygons (decision 3)
     bool operator==(const Instance&) const = default;
 
+    bool is_seen_by_surfaces() const {
+        return visible_diffuse || visible_glossy || visible_transmission;
+    }
     /// Index in Scene::materials, -1 = none.  An element may keep the slot of a material that is
     /// gone: Blender takes the last one there is.
     std::int32_t material(std::int32_t slot) const {

@@ -46,6 +46,7 @@ Camera with_groups_of(Camera camera, const Camera& other) {
 Instance with_groups_of(Instance instance, const Instance& other) {
     instance.visible_diffuse = other.visible_diffuse;
     instance.visible_glossy = other.visible_glossy;
+    instance.visible_transmission = other.visible_transmission;
     instance.casts_shadow = other.casts_shadow;
     instance.receives = other.receives;
     instance.blocks = other.blocks;

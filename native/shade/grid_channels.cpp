@@ -73,17 +73,26 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
             case Quantity::DiffuseDirect:
                 copy(shaded.parts.diffuse);
                 break;
+            case Quantity::DiffuseIndirect:
+                copy(shaded.parts.diffuse_bounced);
+                break;
             case Quantity::DiffuseColor:
                 copy(shaded.parts.diffuse_color);
                 break;
             case Quantity::GlossyDirect:
                 copy(shaded.parts.glossy);
                 break;
+            case Quantity::GlossyIndirect:
+                copy(shaded.parts.glossy_bounced);
+                break;
             case Quantity::GlossyColor:
                 copy(shaded.parts.glossy_color);
                 break;
             case Quantity::TransmissionDirect:
                 copy(shaded.parts.transmission);
+                break;
+            case Quantity::TransmissionIndirect:
+                copy(shaded.parts.transmission_bounced);
                 break;
             case Quantity::TransmissionColor:
                 copy(shaded.parts.transmission_color);

@@ -205,18 +205,20 @@ struct ShadingSystem::Impl {
     /// to samples in it, whose diffuse lobes take it from there.  Returns what of it is noise at
     /// single points.
     std::vector<Vec3f> add_bounces(const ShadingPoints& points, const SurfaceClosure& closure,
-                                   std::vector<LobeRay> leaving, std::vector<Vec3f>& gathered,
-                                   std::vector<Vec3f>& radiance) const {
-        const bool is_known = !gathered.empty();
-        if (is_known)
-            std::erase_if(leaving,
-                          [](const LobeRay& ray) { return ray.ray.type == RayType::Diffuse; });
-        GatheredLight light = bounces->gather(std::move(leaving), points.count);
-        if (!is_known) gathered = shared_light(points, closure, light);
+                                   const LeavingRays& leaving, std::vector<Vec3f>& gathered,
+                                   ReflectionParts* parts, std::vector<Vec3f>& radiance) const {
+        GatheredLight light = bounces->gather(leaving.rays, points.count);
+        if (leaving.diffuse) gathered = shared_light(points, closure, light);
         for (std::size_t i = 0; i < points.count; ++i) {
-            const bool reflects = is_known || light.asked[i];
-            light.glossy[i] += reflects ? gathered[i] * diffuse_albedo(closure, i) : Vec3f(0.0f);
-            radiance[i] += light.glossy[i] + light.mirrored[i];
+            const Vec3f diffuse = gathered[i] * diffuse_albedo(closure, i);
+            const Vec3f others = light.glossy[i] + light.mirrored[i];
+            if (parts) {
+                parts->diffuse_bounced[i] = diffuse;
+                parts->glossy_bounced[i] = others - light.transmitted[i];
+                parts->transmission_bounced[i] = light.transmitted[i];
+            }
+            light.glossy[i] += diffuse;
+            radiance[i] += diffuse + others;
         }
         return std::move(light.glossy);
     }
@@ -233,10 +235,12 @@ struct ShadingSystem::Impl {
         for (std::size_t i = 0; i < points.count; ++i) {
             const Vec3f weight = subsurface_weight(closure, i);
             const Vec3f direct = grid.scattered[i] * weight;
-            radiance[i] += direct;
-            if (!grid.scattered_bounced.empty()) radiance[i] += grid.scattered_bounced[i] * weight;
+            const Vec3f bounced =
+                grid.scattered_bounced.empty() ? Vec3f(0.0f) : grid.scattered_bounced[i] * weight;
+            radiance[i] += direct + bounced;
             if (!parts) continue;
             parts->diffuse[i] += direct;
+            parts->diffuse_bounced[i] += bounced;
             parts->diffuse_color[i] += weight;
         }
     }
@@ -258,14 +262,15 @@ struct ShadingSystem::Impl {
         const bool has_passes = !channels.empty();
         ReflectionParts parts;
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
-        std::vector<LobeRay> leaving;
+        LeavingRays leaving{{}, grid.gathered.empty()};
         if (light)
             radiance = light->reflect(points, closure, grid.key, has_passes ? &parts : nullptr, at,
                                       noise, bounces ? &leaving : nullptr);
         else
             parts.resize(has_passes ? points.count : 0);
         if (bounces && !closure.lobes.empty())
-            doubtful = add_bounces(points, closure, std::move(leaving), grid.gathered, radiance);
+            doubtful = add_bounces(points, closure, leaving, grid.gathered,
+                                   has_passes ? &parts : nullptr, radiance);
         if (!closure.subsurface.empty())
             add_scattered(points, closure, at, grid, has_passes ? &parts : nullptr, radiance);
         for (std::size_t i = 0; i < closure.emission.size(); ++i)

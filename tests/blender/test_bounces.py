@@ -88,11 +88,13 @@ def room(scene):
     return ball
 
 
-def render_bounced(scene, render, cycles_samples, blur_glossy=0.0, bounces="FULL"):
-    """(Cycles, Granita) with four bounces or none, without clamps: float32 [h, w, 3]."""
+def render_bounced(
+    scene, render, cycles_samples, blur_glossy=0.0, bounces="FULL", all_passes=False
+):
+    """(Cycles, Granita) with four bounces or none, without clamps: float32 [h, w, 3], or all passes by name."""
     cycles, settings = scene.cycles, scene.granita
     settings.bounces, settings.light_samples = bounces, 64
-    cycles.diffuse_bounces = cycles.glossy_bounces = 4
+    cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 4
     cycles.sample_clamp_indirect, cycles.blur_glossy = 0.0, blur_glossy
     scene.view_settings.view_transform = "Raw"
     cycles.samples = cycles_samples
@@ -104,9 +106,48 @@ def render_bounced(scene, render, cycles_samples, blur_glossy=0.0, bounces="FULL
     for engine in ("CYCLES", "GRANITA"):
         scene.render.engine = engine
         passes = render(scene, engine)
-        layer = next(name for name in passes if name.endswith("Combined.R"))[:-1]
-        made.append(np.stack([passes[layer + c] for c in "RGB"], axis=-1))
+        made.append(passes if all_passes else picture(passes, "Combined"))
     return made
+
+
+def picture(passes, name):
+    layer = next(key for key in passes if key.endswith(f".{name}.R"))[:-1]
+    return np.stack([passes[layer + c] for c in "RGB"], axis=-1)
+
+
+LOBES = {  # before Blender 5, and since
+    "diffuse": ("Diff", "Diffuse "),
+    "glossy": ("Gloss", "Glossy "),
+    "transmission": ("Trans", "Transmission "),
+}
+PARTS = {"direct": ("Dir", "Direct"), "indirect": ("Ind", "Indirect"), "color": ("Col", "Color")}
+
+
+def test_light_passes_are_those_of_cycles(scene, render):
+    """Of a pane of rough glass before a room, in which a ball is glossy."""
+    surface(room(scene), "ShaderNodeBsdfGlossy", (0.7, 0.7, 0.7), Roughness=0.4)
+    pane = scene_parts.add_square(scene, "Pane", 0.8, (-0.4, 0.3, 0.6))
+    surface(pane, "ShaderNodeBsdfRefraction", (0.9, 0.9, 0.9), Roughness=0.5, IOR=1.45)
+    # Small, it would be a highlight of one pixel, whose samples tell nothing of lobes.
+    bpy.data.lights["Lamp"].shadow_soft_size = 0.25
+    layer = scene.view_layers[0]
+    for lobe in LOBES:
+        for part in PARTS:
+            setattr(layer, f"use_pass_{lobe}_{part}", True)
+    theirs, ours = render_bounced(scene, render, 1024, all_passes=True)
+    total = np.zeros_like(picture(ours, "Combined"))
+    since = bpy.app.version >= (5, 0, 0)
+    for lobe, names in LOBES.items():
+        made = [
+            {part: picture(passes, names[since] + PARTS[part][since]) for part in PARTS}
+            for passes in (theirs, ours)
+        ]
+        for part in PARTS:
+            means = [passes[part].mean() for passes in made]
+            # Noise of 576 pixels, of 40 in the pane and 20 of the ball.
+            assert means[1] == pytest.approx(means[0], rel=0.03, abs=1e-3), (lobe, part)
+        total += (made[1]["direct"] + made[1]["indirect"]) * made[1]["color"]
+    assert total == pytest.approx(picture(ours, "Combined"), abs=1e-4)
 
 
 @pytest.mark.parametrize(("kind", "rough"), [("Diffuse", None), ("Glossy", 0.3), ("Glossy", 0.0)])

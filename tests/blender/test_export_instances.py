@@ -185,7 +185,7 @@ def test_flags(scene, cube):
     snapshot, _, _ = export_probe.through_engine(scene)
     instances = snapshot["instances"]
     flags = dict(zip(instances["name"], instances["flags"].tolist()))
-    seen = 8 + 16  # by diffuse and glossy rays
+    seen = 8 + 16 + 32  # by diffuse, glossy and transmission rays
     expected = {"Cube": 3, "A": 2, "B": 1, "C": 7, "D": 3, "E": 7, "F": 2}
     assert flags == {name: flag + seen for name, flag in expected.items()}
     index = dict(zip(instances["name"], instances["object_index"].tolist()))
@@ -197,7 +197,7 @@ def test_an_instancer_hides_and_holds_out_its_instances(scene, cube):
     bpy.data.objects["Place0"].visible_camera = False
     bpy.data.objects["Place1"].is_holdout = True
     snapshot, _, _ = export_probe.through_engine(scene)
-    assert snapshot["instances"]["flags"].tolist() == [2 + 24, 7 + 24, 3 + 24]
+    assert snapshot["instances"]["flags"].tolist() == [2 + 56, 7 + 56, 3 + 56]
 
 
 def test_keys_stay_when_others_come_and_go(scene, cube):

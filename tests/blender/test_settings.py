@@ -211,7 +211,7 @@ def test_all_passes_are_shown_and_those_not_made_are_greyed():
     row = SimpleNamespace(prop=lambda *_, **__: None)
     column = SimpleNamespace(row=lambda: row)
     layer = bpy.context.view_layer
-    for name, made in (("use_pass_emit", True), ("use_pass_diffuse_indirect", False)):
+    for name, made in (("use_pass_emit", True), ("use_pass_ambient_occlusion", False)):
         pass_panels._PassPanel().show(column, layer, name, "")
         assert row.active is made
 

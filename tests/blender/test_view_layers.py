@@ -144,12 +144,12 @@ def test_passes_that_are_not_made_are_named(scene):
     layer = scene.view_layers[0]
     assert passes.missing(layer) == []
     layer.use_pass_ambient_occlusion = layer.use_pass_cryptomatte_object = True
-    layer.use_pass_diffuse_direct = layer.use_pass_diffuse_indirect = True
+    layer.use_pass_diffuse_direct = layer.use_pass_subsurface_direct = True
     layer.cycles.denoising_store_passes = True
     layer.lightgroups.add(name="Key")
     names = passes.missing(layer)
     assert len(names) == 5
-    for word in ("Ambient Occlusion", "Cryptomatte Object", "Diffuse Indirect", "Key", "enois"):
+    for word in ("Ambient Occlusion", "Cryptomatte Object", "Subsurface", "Key", "enois"):
         assert any(word in name for name in names), (word, names)
 
 

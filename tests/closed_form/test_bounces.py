@@ -169,16 +169,84 @@ def test_hair_and_points_are_lit_by_what_they_see(kind):
 def test_what_casts_no_shadow_is_seen_in_mirrors():
     snapshot = reflected_square()
     s.quad(snapshot, s.rectangle(-8, -8, 72, 72, z=-50.0), s.emission(snapshot))
-    snapshot["instances"]["flags"] = [27, 25]
+    snapshot["instances"]["flags"] = [59, 59 - 2]
     assert mean(snapshot) == pytest.approx(0.8, abs=1e-5)
 
 
-@pytest.mark.parametrize(("flags", "seen"), [(27 - 16, 0.0), (27 - 8, 0.8)])
+@pytest.mark.parametrize(("flags", "seen"), [(59 - 16, 0.0), (59 - 8 - 32, 0.8)])
 def test_what_is_hidden_from_a_type_of_ray_is_not_seen_by_it(flags, seen):
     snapshot = reflected_square()
     s.quad(snapshot, s.rectangle(-8, -8, 72, 72, z=-50.0), s.emission(snapshot))
-    snapshot["instances"]["flags"] = [27, flags]
+    snapshot["instances"]["flags"] = [59, flags]
     assert mean(snapshot) == pytest.approx(seen, abs=1e-5)
+
+
+def sheets(count, **limits):
+    """Of glass without an index, one behind the other, before what shines."""
+    snapshot = s.orthographic((16, 16), samples=16, bounces=8, glossy_bounces=0, **limits)
+    nodes = [{"type": "ShaderNodeBsdfRefraction", "inputs": {"IOR": 1.0, "Roughness": 0.0}}]
+    glass = material(snapshot, nodes, (0, "BSDF"))
+    for i in range(count):
+        s.quad(snapshot, s.rectangle(-8, -8, 24, 24, z=10.0 + i), glass)
+    s.quad(snapshot, s.rectangle(-8, -8, 24, 24, z=50.0), s.emission(snapshot))
+    return snapshot
+
+
+@pytest.mark.parametrize(("limit", "seen"), [(0, 0.0), (1, 0.0), (2, 1.0), (3, 1.0)])
+def test_what_goes_through_has_a_limit_of_its_own(limit, seen):
+    """The third sheet is met after two, and shows what is behind it as a lamp is shown."""
+    assert mean(sheets(3, transmission_bounces=limit)) == pytest.approx(seen, abs=1e-5)
+
+
+@pytest.mark.parametrize(("hidden", "seen"), [(32, 1.0), (16, 1.0), (16 + 32, 0.0)])
+def test_rays_through_a_surface_are_glossy_as_well(hidden, seen):
+    """Hidden from one of the two alone it is still seen, as in Cycles."""
+    snapshot = sheets(1)
+    snapshot["materials"][-1] = varying_emission()
+    snapshot["instances"]["flags"] = [59, 59 - hidden]
+    assert mean(snapshot) == pytest.approx(seen, abs=1e-5)
+
+
+def varying_emission():
+    """Of radiance 1, as no lamp is: by a texture whose colours are the same."""
+    colors = {"Color1": (1.0,) * 4, "Color2": (1.0,) * 4}
+    nodes = [
+        {"type": "ShaderNodeTexChecker", "inputs": colors},
+        {"type": "ShaderNodeEmission", "inputs": {"Color": ("LINK", 0, "Color")}},
+    ]
+    return {"name": "Shines", "nodes": nodes, "surface": (1, "Emission")}
+
+
+def test_saturated_colours_keep_to_themselves():
+    """Squares of pure red and of white, a gloss of a twentieth over them, in a furnace: of what red ones get of green and
+    blue nothing is known, and neighbours tell nothing of the gloss."""
+    gloss = 0.05
+    snapshot = inside(1, light_samples=4)
+    room(snapshot, len(snapshot["materials"]))
+    snapshot["materials"].append(varying_emission())
+    colors = {"Color1": (1.0, 0.0, 0.0, 1.0), "Color2": (1.0,) * 4, "Scale": 10.0}
+    nodes = [
+        {"type": "ShaderNodeTexCoord", "inputs": {}},
+        {"type": "ShaderNodeTexChecker", "inputs": {**colors, "Vector": ("LINK", 0, "Object")}},
+        {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": ("LINK", 1, "Color")}},
+        {"type": "ShaderNodeBsdfGlossy", "inputs": {"Color": (1.0,) * 4, "Roughness": 0.2}},
+        {
+            "type": "ShaderNodeMixShader",
+            "inputs": {
+                "Fac": gloss,
+                "Shader": ("LINK", 2, "BSDF"),
+                "Shader_001": ("LINK", 3, "BSDF"),
+            },
+        },
+    ]
+    square = s.rectangle(-0.4, -0.4, 0.4, 0.4, z=0.5)
+    s.quad(snapshot, square, material(snapshot, nodes, (4, "Shader")))
+    seen = s.render(snapshot)["combined"][5:27, 5:27]
+    # Samples of the gloss leave noise, as much as itself at most.
+    assert np.abs(seen[..., 0] - 1.0).max() < gloss
+    green = seen[..., 1]
+    assert green.min() > 0.0 and green.max() < 1.0 + gloss
+    assert green.mean() == pytest.approx(0.5 + gloss / 2, rel=0.02)
 
 
 def colored_room(**options):

@@ -6,7 +6,7 @@ import pytest
 import snapshots as s
 from test_bounces import ALBEDO, diffuse, inside, room
 
-SEEN, CAMERA = 27, 1  # an instance's flags: by all rays, by the camera
+SEEN, CAMERA = 59, 1  # an instance's flags: by all rays, by the camera
 
 
 WIDTH, PERIOD = 0.4, 0.8  # of bars, at .8 of the way to the walls

@@ -111,7 +111,7 @@ def test_the_edge_of_a_shadow_follows_the_profile():
     d = 3.0
     slab(snapshot, scattering(snapshot, "BURLEY", (0.8,) * 3, (4 * np.pi * d,) * 3))
     s.quad(snapshot, s.rectangle(-4e3, -4e3, SIZE / 2, 4e3, -1.0))
-    snapshot["instances"]["flags"] = [27, 27 - 1]
+    snapshot["instances"]["flags"] = [59, 59 - 1]
     down = np.diag([1.0, -1.0, -1.0, 1.0])
     snapshot["lights"] = [
         {"name": "Sun", "kind": "SUN", "world_from_light": down[None], "energy": np.pi}

@@ -22,6 +22,7 @@ CASTS_SHADOW = 2
 HOLDOUT = 4
 VISIBLE_DIFFUSE = 8
 VISIBLE_GLOSSY = 16
+VISIBLE_TRANSMISSION = 32
 
 
 @dataclass
@@ -117,6 +118,8 @@ def _flags(prototype, view_layer):
         flags |= VISIBLE_DIFFUSE
     if all(owner.visible_glossy for owner in owners):
         flags |= VISIBLE_GLOSSY
+    if all(owner.visible_transmission for owner in owners):
+        flags |= VISIBLE_TRANSMISSION
     if placing.holdout_get(view_layer=view_layer):
         flags |= HOLDOUT
     return flags

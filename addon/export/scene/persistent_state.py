@@ -93,8 +93,8 @@ def _settings(depsgraph):
 def _shown(thing):
     """What can be animated and is no change of place or shape."""
     visible = thing.visible_camera, thing.visible_shadow, thing.is_holdout
-    reflected = thing.visible_diffuse, thing.visible_glossy
-    return thing.hide_render, thing.pass_index, *visible, *reflected
+    to_surfaces = thing.visible_diffuse, thing.visible_glossy, thing.visible_transmission
+    return thing.hide_render, thing.pass_index, *visible, *to_surfaces
 
 
 def _renew(scene_objects, touched, depsgraph, report, check_cancel):

@@ -28,15 +28,17 @@ float largest(const Vec3f& v) {
 /// The ways of a batch of points, a bounce at a time.
 class BouncedLight::Wave {
   public:
-    Wave(const BouncedLight& light, std::vector<LobeRay>&& leaving, GatheredLight& gathered)
+    Wave(const BouncedLight& light, const std::vector<LobeRay>& leaving, GatheredLight& gathered)
         : m_light(light),
           m_limits(light.m_scene.options.bounces),
           m_salt(mix_bits(light.m_scene.options.seed + 1ULL)),
           m_gathered(gathered),
           m_points(light.m_scene, *light.m_direct.rays()) {
-        for (LobeRay& ray : leaving) {
+        for (const LobeRay& ray : leaving) {
             BouncedPath path;
             path.next = ray;
+            path.diffuse_part = ray.diffuse;
+            path.transmitted = ray.transmitted;
             path.spread = ray.spread;
             path.least_pdf = ray.pdf;
             path.kind = ray.ray.type == RayType::Diffuse ? BouncedPath::Kind::Diffuse
@@ -45,8 +47,6 @@ class BouncedLight::Wave {
             follow(path);
         }
         m_paths.swap(m_next);
-        for (const BouncedPath& path : m_paths)
-            if (path.kind == BouncedPath::Kind::Diffuse) m_gathered.asked[path.next.point] = 1;
     }
 
     void run() {
@@ -68,6 +68,8 @@ class BouncedLight::Wave {
     void follow(BouncedPath& path) {
         if (path.next.ray.type == RayType::Diffuse)
             ++path.diffuse;
+        else if (goes_through(path.next.ray.type))
+            ++path.transmission;
         else
             ++path.glossy;
         if (path.kind == BouncedPath::Kind::Mirrored && !is_sharp(path.next.ray.type))
@@ -77,13 +79,13 @@ class BouncedLight::Wave {
 
     /// Surfaces one further than the limits are asked for what they emit alone.
     bool is_within_limits(const BouncedPath& path) const {
-        const int more = m_light.m_any_shines ? 1 : 0;
-        return path.depth <= m_limits.most + more && path.diffuse <= m_limits.diffuse + more &&
-               path.glossy <= m_limits.glossy + more;
+        return is_within(path, m_light.m_any_shines ? 1 : 0);
     }
-    bool is_lit(const BouncedPath& path) const {
-        return path.depth <= m_limits.most && path.diffuse <= m_limits.diffuse &&
-               path.glossy <= m_limits.glossy;
+    bool is_lit(const BouncedPath& path) const { return is_within(path, 0); }
+    bool is_within(const BouncedPath& path, int more) const {
+        return path.depth <= m_limits.most + more && path.diffuse <= m_limits.diffuse + more &&
+               path.glossy <= m_limits.glossy + more &&
+               path.transmission <= m_limits.transmission + more;
     }
 
     /// Of surfaces that the first rays meet: what light they bring varies as these are near,
@@ -144,7 +146,7 @@ class BouncedLight::Wave {
         draw_as_diffuse(closure, std::numeric_limits<float>::infinity());
         tame(batch, closure);
         std::vector<Vec3f> light(batch.size(), Vec3f(0.0f));
-        m_leaving.clear();
+        m_leaving.rays.clear();
         if (is_lit(first))
             light = m_light.m_direct.reflect(ran.points(), closure, key, nullptr, {}, nullptr,
                                              &m_leaving);
@@ -181,20 +183,21 @@ class BouncedLight::Wave {
         if (!is_finite(brought)) return;
         const float sum = (brought.x + brought.y + brought.z) / ray.share;
         if (m_limits.clamp > 0.0f && sum > m_limits.clamp) brought *= m_limits.clamp / sum;
-        auto& to = path.kind == BouncedPath::Kind::Diffuse  ? m_gathered.diffuse
-                   : path.kind == BouncedPath::Kind::Glossy ? m_gathered.glossy
-                                                            : m_gathered.mirrored;
-        to[ray.point] += brought;
+        const Vec3f diffuse = brought * path.diffuse_part;
+        const bool is_mirrored = path.kind == BouncedPath::Kind::Mirrored;
+        m_gathered.diffuse[ray.point] += diffuse;
+        (is_mirrored ? m_gathered.mirrored : m_gathered.glossy)[ray.point] += brought - diffuse;
+        m_gathered.transmitted[ray.point] += brought * path.transmitted;
     }
 
     /// One way out of each point.
     void go_on(const std::vector<MetPath>& batch, const ShadingPoints& points,
                const SurfaceClosure& closure) {
-        std::ranges::stable_sort(m_leaving, {}, &LobeRay::point);
-        auto candidate = m_leaving.begin();
+        std::ranges::stable_sort(m_leaving.rays, {}, &LobeRay::point);
+        auto candidate = m_leaving.rays.begin();
         for (std::uint32_t i = 0; i < batch.size(); ++i) {
             const auto begin = candidate;
-            while (candidate != m_leaving.end() && candidate->point == i) ++candidate;
+            while (candidate != m_leaving.rays.end() && candidate->point == i) ++candidate;
             Vec3f through(0.0f);
             const BouncedPath& path = *batch[i].path;
             if (!closure.transparency.empty() && path.passed < m_limits.transparent &&
@@ -262,7 +265,7 @@ class BouncedLight::Wave {
     std::vector<Ray> m_rays;
     std::vector<RayScene::Met> m_met;
     std::vector<std::uint32_t> m_order;
-    std::vector<LobeRay> m_leaving;
+    LeavingRays m_leaving;
     std::uint64_t m_rays_traced = 0, m_hits_shaded = 0;
 };
 
@@ -277,8 +280,7 @@ BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const 
       m_progress(progress) {
     for (std::size_t i = 0; i < scene.instances.size() && !m_any_shines; ++i) {
         const Instance& instance = scene.instances[i];
-        const bool is_met = instance.visible_diffuse || instance.visible_glossy;
-        if (!is_met || instance.lifespan.is_empty()) continue;
+        if (!instance.is_seen_by_surfaces() || instance.lifespan.is_empty()) continue;
         const bool is_lamp = direct.is_lamp(i);
         m_any_shines = std::ranges::any_of(instance.materials, [&](std::int32_t material) {
             return emission.any(material) &&
@@ -287,9 +289,9 @@ BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const 
     }
 }
 
-GatheredLight BouncedLight::gather(std::vector<LobeRay> leaving, std::size_t points) const {
+GatheredLight BouncedLight::gather(const std::vector<LobeRay>& leaving, std::size_t points) const {
     GatheredLight light(points);
-    if (!leaving.empty()) Wave(*this, std::move(leaving), light).run();
+    if (!leaving.empty()) Wave(*this, leaving, light).run();
     return light;
 }
 

@@ -35,7 +35,7 @@ class BouncedLight {
                  const Progress& progress);
 
     /// What comes along the rays that leave `points`.
-    GatheredLight gather(std::vector<LobeRay> leaving, std::size_t points) const;
+    GatheredLight gather(const std::vector<LobeRay>& leaving, std::size_t points) const;
 
   private:
     class Wave;

@@ -9,10 +9,12 @@ namespace granita {
 
 /// Light's way from a point of a grid backwards, over the surfaces it has met so far.
 struct BouncedPath {
-    LobeRay next;                 ///< its weight: of the whole way; its point: of the grid
-    int depth = 1;                ///< surfaces that reflect, the grid's among them
-    int diffuse = 0, glossy = 0;  ///< of these
-    /// What the grid's own lobe makes of it.
+    LobeRay next;   ///< its weight: of the whole way; its point: of the grid
+    int depth = 1;  ///< surfaces that send it on, the grid's among them
+    int diffuse = 0, glossy = 0, transmission = 0;  ///< of these, by how
+    /// As LobeRay's, of the lobes of the grid's own point.
+    Vec3f diffuse_part{0.0f}, transmitted{0.0f};
+    /// What sent it from there.
     enum class Kind { Diffuse, Glossy, Mirrored } kind = Kind::Diffuse;
     int passed = 0;          ///< surfaces that let it through
     float least_pdf = 0.0f;  ///< of its directions: how few ways go like it

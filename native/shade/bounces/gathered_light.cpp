@@ -12,7 +12,7 @@ namespace {
 constexpr float kNear = 0.25f;
 /// In steps of the grid: what varies faster than this is not drawn any more.
 constexpr float kLeastReach = 2.0f;
-/// Least albedo by which light is told.
+/// Least albedo by which light is told: of what a pure red surface gets only the red is known.
 constexpr float kLeastAlbedo = 1e-4f;
 
 }  // namespace
@@ -21,15 +21,18 @@ Vec3f diffuse_albedo(const SurfaceClosure& closure, std::size_t point) {
     Vec3f sum(0.0f);
     for (const Lobe& lobe : closure.lobes)
         if (part_of(lobe.kind) == LightPart::Diffuse) sum += lobe.weight[point];
-    return glm::max(sum, Vec3f(kLeastAlbedo));
+    return sum;
 }
 
 std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosure& closure,
                                 const GatheredLight& light) {
-    NoisyValues noisy{light.diffuse, light.nearness, light.asked, kLeastReach};
+    NoisyValues noisy{light.diffuse, std::vector<Vec3f>(points.count),
+                      std::vector<Vec3f>(points.count), kLeastReach};
     for (std::size_t i = 0; i < points.count; ++i) {
-        noisy.values[i] /= diffuse_albedo(closure, i);
-        noisy.by_reach[i] /= kNear;
+        const Vec3f albedo = diffuse_albedo(closure, i);
+        noisy.told[i] = Vec3f(glm::greaterThan(albedo, Vec3f(kLeastAlbedo)));
+        noisy.values[i] *= noisy.told[i] / glm::max(albedo, Vec3f(kLeastAlbedo));
+        noisy.by_reach[i] = Vec3f(light.nearness[i] / kNear);
     }
     return share(points, noisy);
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "math/vec.h"
@@ -12,10 +11,10 @@ namespace granita {
 
 /// What other surfaces send to points and these towards the view, each [points].
 struct GatheredLight {
-    std::vector<Vec3f> diffuse;       ///< that diffuse lobes reflect
-    std::vector<Vec3f> glossy;        ///< that others do, but for
-    std::vector<Vec3f> mirrored;      ///< what mirrors alone bring, which is in no doubt
-    std::vector<std::uint8_t> asked;  ///< whether diffuse lobes sent rays
+    std::vector<Vec3f> diffuse;      ///< that diffuse lobes reflect
+    std::vector<Vec3f> glossy;       ///< that others do, but for
+    std::vector<Vec3f> mirrored;     ///< what mirrors alone bring, which is in no doubt
+    std::vector<Vec3f> transmitted;  ///< of these two, what goes through
     /// Mean of 1 / distance of what these meet: how fast its light changes from place to place.
     std::vector<float> nearness;
 
@@ -23,17 +22,16 @@ struct GatheredLight {
         : diffuse(points, Vec3f(0.0f)),
           glossy(points, Vec3f(0.0f)),
           mirrored(points, Vec3f(0.0f)),
-          asked(points, 0),
+          transmitted(points, Vec3f(0.0f)),
           nearness(points, 0.0f) {}
 };
 
-/// Weight of a point's diffuse lobes, at least a little.
+/// Weight of a point's diffuse lobes.
 Vec3f diffuse_albedo(const SurfaceClosure& closure, std::size_t point);
 
 /// [points] what diffuse lobes gathered, by albedo, shared between neighbours of a grid: light of
 /// other surfaces varies as slowly as these are far away (Ward, Rubinstein and Clear 1988, their
-/// error bound read the other way).  Slopes stay: each point takes the plane that fits its
-/// neighbours best (locally weighted regression, Cleveland 1979).
+/// error bound read the other way).
 std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosure& closure,
                                 const GatheredLight& light);
 

@@ -19,7 +19,7 @@ constexpr float kRidge = 1e-3f;
 /// The plane that fits values around a point best, and its height there.
 class PlaneFit {
   public:
-    void add(float weight, float x, float y, const Vec3f& value) {
+    void add(const Vec3f& weight, float x, float y, const Vec3f& value) {
         m_w += weight;
         m_x += weight * x;
         m_y += weight * y;
@@ -30,23 +30,22 @@ class PlaneFit {
         m_xv += weight * x * value;
         m_yv += weight * y * value;
     }
+    /// Not finite of channels that nobody told.
     Vec3f height() const {
         // About the mean place of the neighbours.
-        const float x = m_x / m_w, y = m_y / m_w;
-        const Vec3f mean = m_v / m_w;
-        const float ridge = kRidge * (m_xx + m_yy) + 1e-30f;
-        const float xx = m_xx - x * m_x + ridge, yy = m_yy - y * m_y + ridge;
-        const float xy = m_xy - x * m_y;
+        const Vec3f x = m_x / m_w, y = m_y / m_w, mean = m_v / m_w;
+        const Vec3f ridge = kRidge * (m_xx + m_yy) + 1e-30f;
+        const Vec3f xx = m_xx - x * m_x + ridge, yy = m_yy - y * m_y + ridge;
+        const Vec3f xy = m_xy - x * m_y;
         const Vec3f xv = m_xv - m_x * mean, yv = m_yv - m_y * mean;
-        const float determinant = xx * yy - xy * xy;
+        const Vec3f determinant = xx * yy - xy * xy;
         const Vec3f along_x = (yy * xv - xy * yv) / determinant;
         const Vec3f along_y = (xx * yv - xy * xv) / determinant;
         return mean - x * along_x - y * along_y;
     }
-    float weight() const { return m_w; }
 
   private:
-    float m_w = 0, m_x = 0, m_y = 0, m_xx = 0, m_xy = 0, m_yy = 0;
+    Vec3f m_w{0.0f}, m_x{0.0f}, m_y{0.0f}, m_xx{0.0f}, m_xy{0.0f}, m_yy{0.0f};
     Vec3f m_v{0.0f}, m_xv{0.0f}, m_yv{0.0f};
 };
 
@@ -73,10 +72,11 @@ class Sharing {
                          u <= std::min(x + kReach, columns - 1); ++u)
                         take(static_cast<std::size_t>(v * columns + u));
             }
-            if (!(m_fit.weight() > 0.0f)) continue;
             const Vec3f height = m_fit.height();
-            if (is_finite(height))
-                shared[static_cast<std::size_t>(i)] = glm::clamp(height, m_least, m_most);
+            for (int c = 0; c < 3; ++c)
+                if (std::isfinite(height[c]))
+                    shared[static_cast<std::size_t>(i)][c] =
+                        std::clamp(height[c], m_least[c], m_most[c]);
         }
         return shared;
     }
@@ -88,7 +88,7 @@ class Sharing {
         m_least = Vec3f(std::numeric_limits<float>::max());
         m_most = Vec3f(0.0f);
         const float step = std::max(glm::length(m_points.dp_du[i]), glm::length(m_points.dp_dv[i]));
-        m_most_by_reach = 1.0f / (m_noisy.least_reach * std::max(step, 1e-30f));
+        m_most_by_reach = Vec3f(1.0f / (m_noisy.least_reach * std::max(step, 1e-30f)));
         const Vec3f& normal = m_points.normal[i];
         const Vec3f other = std::abs(normal.x) < 0.7f ? Vec3f(1, 0, 0) : Vec3f(0, 1, 0);
         m_x = glm::normalize(glm::cross(normal, other));
@@ -96,25 +96,27 @@ class Sharing {
     }
 
     void take(std::size_t j) {
-        if (!m_noisy.known[j]) return;
         const Vec3f way = m_points.p[j] - m_points.p[m_at];
         // What lies in a narrow place tells nothing of what is outside.
-        const float by_reach =
-            std::min(std::max(m_noisy.by_reach[m_at], m_noisy.by_reach[j]), m_most_by_reach);
-        const float near = 1.0f - glm::length(way) * by_reach;
+        const Vec3f by_reach =
+            glm::min(glm::max(m_noisy.by_reach[m_at], m_noisy.by_reach[j]), m_most_by_reach);
+        const Vec3f near = glm::max(1.0f - glm::length(way) * by_reach, Vec3f(0.0f));
         const float bend = 1.0f - glm::dot(m_points.normal[m_at], m_points.normal[j]);
-        const float told = m_points.shares.empty() ? 1.0f : m_points.shares[j];
-        const float weight = told * std::max(near, 0.0f) * std::max(1.0f - bend / kBend, 0.0f);
-        if (!(weight > 0.0f) || !is_finite(m_noisy.values[j])) return;
+        const float asked = m_points.shares.empty() ? 1.0f : m_points.shares[j];
+        const Vec3f weight = asked * std::max(1.0f - bend / kBend, 0.0f) * near * m_noisy.told[j];
+        if (weight == Vec3f(0.0f) || !is_finite(m_noisy.values[j])) return;
         m_fit.add(weight, glm::dot(way, m_x), glm::dot(way, m_y), m_noisy.values[j]);
-        m_least = glm::min(m_least, m_noisy.values[j]);
-        m_most = glm::max(m_most, m_noisy.values[j]);
+        for (int c = 0; c < 3; ++c) {
+            if (!(weight[c] > 0.0f)) continue;
+            m_least[c] = std::min(m_least[c], m_noisy.values[j][c]);
+            m_most[c] = std::max(m_most[c], m_noisy.values[j][c]);
+        }
     }
 
     const ShadingPoints& m_points;
     const NoisyValues& m_noisy;
     std::size_t m_at = 0;
-    float m_most_by_reach = 0.0f;
+    Vec3f m_most_by_reach{0.0f};
     Vec3f m_x{0.0f}, m_y{0.0f}, m_least{0.0f}, m_most{0.0f};
     PlaneFit m_fit;
 };

@@ -11,13 +11,16 @@ namespace granita {
 
 /// Each [points]; premultiplied by opacity like the radiance they are parts of.
 struct ReflectionParts {
-    std::vector<Vec3f> diffuse, glossy, transmission;  ///< by lobe; their sum is the total
+    /// By lobe, of lamps and the world, and of other surfaces; their sum is the total.
+    std::vector<Vec3f> diffuse, glossy, transmission;
+    std::vector<Vec3f> diffuse_bounced, glossy_bounced, transmission_bounced;
     std::vector<Vec3f> diffuse_color, glossy_color, transmission_color;  ///< the lobes' albedo
                                                                          ///< towards the view
     std::vector<Vec3f> arriving, unblocked;  ///< of lamps, all lobes; with and without shadows
 
     void resize(std::size_t points) {
-        for (auto* values : {&diffuse, &glossy, &transmission, &diffuse_color, &glossy_color,
+        for (auto* values : {&diffuse, &glossy, &transmission, &diffuse_bounced, &glossy_bounced,
+                             &transmission_bounced, &diffuse_color, &glossy_color,
                              &transmission_color, &arriving, &unblocked})
             values->assign(points, Vec3f(0.0f));
     }

@@ -133,11 +133,14 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         if (total(value) == Vec3f(0.0f)) continue;
         const LitPlace place = set.place_at(point, sequence.third(index));
         const float sign = LitGrid::sign(s, samples.count);
-        if (grid.leaving) {
+        if (grid.leaving && (grid.leaving->diffuse || meets_lamps)) {
             Ray ray = set.ray(point, place, wo, kInfinity);
             ray.type = kBlurred.of(point.bsdf.part(lobe));
-            const float density = point.all_density(wo);
-            leave(set, grid, point, ray, total(value) / density,
+            BsdfValue sent = value;
+            if (!grid.leaving->diffuse) sent.diffuse = Vec3f(0.0f);
+            const float density =
+                grid.leaving->diffuse ? point.all_density(wo) : point.meeting_density(wo);
+            leave(set, grid, point, ray, sent * Vec3f(1.0f / density),
                   density / static_cast<float>(point.lobe_samples(0)), samples.first + index);
         }
         if (world.shines()) world.meet(set, grid, point, place, {wo, value, sign, meets_lamps});
@@ -175,7 +178,7 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
         if (grid.leaving) {
             Ray ray = set.ray(point, place, wo, kInfinity);
             ray.type = kSharp.of(point.bsdf.part(lobe));
-            leave(set, grid, point, ray, total(value), kInfinity,
+            leave(set, grid, point, ray, value, kInfinity,
                   point.place * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(s));
         }
         if (world.shines()) open += set.occlusion(grid, point, place, wo);
@@ -287,7 +290,7 @@ void DirectLight::lift(ShadingPoints& points, const GridKey& key) const {
 std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const SurfaceClosure& closure,
                                         const GridKey& key, ReflectionParts* parts,
                                         const PointPaths& paths, std::vector<float>* noise,
-                                        std::vector<LobeRay>* leaving) const {
+                                        LeavingRays* leaving) const {
     std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
     if (noise) noise->assign(points.count, 0.0f);
     if (parts) parts->resize(points.count);

@@ -65,7 +65,7 @@ class DirectLight {
     std::vector<Vec3f> reflect(const ShadingPoints& points, const SurfaceClosure& closure,
                                const GridKey& seed, ReflectionParts* parts = nullptr,
                                const PointPaths& paths = {}, std::vector<float>* noise = nullptr,
-                               std::vector<LobeRay>* leaving = nullptr) const;
+                               LeavingRays* leaving = nullptr) const;
 
     /// Whether what RayMaterials::emitted tells of an instance is among the light that reflect()
     /// knows, so that ways which meet it bring none.

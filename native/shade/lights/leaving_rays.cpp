@@ -2,6 +2,7 @@
 #include "shade/lights/leaving_rays.h"
 
 #include <cmath>
+#include <limits>
 
 namespace granita {
 
@@ -17,7 +18,8 @@ Vec3f inwards(const ShadingPoints& points, std::size_t i) {
 }
 
 void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& ray,
-           const Vec3f& weight, float pdf, std::uint32_t place) {
+           const BsdfValue& value, float pdf, std::uint32_t place) {
+    const Vec3f weight = total(value);
     if (weight == Vec3f(0.0f) || !is_finite(weight)) return;
     // A sample's part of the hemisphere, for rays that diffuse lobes send.
     const float spread = ray.type == RayType::Diffuse
@@ -26,8 +28,10 @@ void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& 
     const int count = point.lobe_samples(set.varies ? point.sample_count : 1);
     // Each grid has a part of the sequences to itself, as samples that are shaded alone have.
     const auto first = grid.placed ? 0u : static_cast<std::uint32_t>(grid.seed) << 14;
-    grid.leaving->push_back({ray, weight, 1.0f / static_cast<float>(count), pdf,
-                             static_cast<std::uint32_t>(point.index), first + place, spread});
+    const Vec3f whole = glm::max(weight, Vec3f(std::numeric_limits<float>::min()));
+    grid.leaving->rays.push_back({ray, weight, value.diffuse / whole, value.transmission / whole,
+                                  1.0f / static_cast<float>(count), pdf,
+                                  static_cast<std::uint32_t>(point.index), first + place, spread});
 }
 
 }  // namespace granita

@@ -11,10 +11,10 @@ namespace granita {
 Vec3f inwards(const ShadingPoints& points, std::size_t i);
 
 /// Puts the way of a sample into LitGrid::leaving, which is asked for.
-/// @param weight reflected radiance per radiance that comes along `ray`.
+/// @param value reflected radiance per radiance that comes along `ray`.
 /// @param pdf of its direction, per solid angle; infinite for a mirror's.
 /// @param place in the sequence of its lobe.
 void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& ray,
-           const Vec3f& weight, float pdf, std::uint32_t place);
+           const BsdfValue& value, float pdf, std::uint32_t place);
 
 }  // namespace granita

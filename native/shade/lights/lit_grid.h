@@ -30,7 +30,7 @@ struct LitGrid {
     /// [points] the luminance of a point's even samples less that of its odd ones: as much as its
     /// sum is in doubt.  nullptr: not asked for.
     std::vector<float>* balance = nullptr;
-    std::vector<LobeRay>* leaving = nullptr;  ///< to other surfaces; nullptr: not asked for
+    LeavingRays* leaving = nullptr;  ///< to other surfaces; nullptr: not asked for
 
     /// Of sample `s` of `count` which the point takes alike; one alone is in no doubt.
     static float sign(int s, int count) { return count < 2 ? 0.0f : s % 2 == 0 ? 1.0f : -1.0f; }

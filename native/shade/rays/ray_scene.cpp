@@ -116,6 +116,12 @@ void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) 
     if (context->left != Vec3f(0.0f)) arguments->valid[0] = 0;
 }
 
+/// Rays that go through a surface are glossy as well (Cycles).
+static bool is_seen(const Instance& met, RayType type) {
+    if (type == RayType::Diffuse) return met.visible_diffuse;
+    return met.visible_glossy || (goes_through(type) && met.visible_transmission);
+}
+
 /// What does not exist at the ray's time, or is hidden from its like, is not met.
 void RayScene::Impl::skip_absent(const RTCFilterFunctionNArguments* arguments) {
     const unsigned id = arguments->context->instID[0];
@@ -124,8 +130,7 @@ void RayScene::Impl::skip_absent(const RTCFilterFunctionNArguments* arguments) {
     const auto* scene = static_cast<const Impl*>(context.scene);
     const Ray& ray = context.rays[reinterpret_cast<const RTCRay*>(arguments->ray)->id];
     const Instance& met = scene->scene.instances[scene->instances[id].index];
-    const bool seen = ray.type == RayType::Diffuse ? met.visible_diffuse : met.visible_glossy;
-    if (!seen || !met.lifespan.contains(ray.time)) arguments->valid[0] = 0;
+    if (!is_seen(met, ray.type) || !met.lifespan.contains(ray.time)) arguments->valid[0] = 0;
 }
 
 RayScene::~RayScene() = default;

@@ -205,9 +205,9 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materia
         if (!instance.lifespan.is_whole()) use |= kAppears;
         if (instance.blocks != ~0ULL) use |= kIsLinked;
         if (impl.materials.shines(instance)) use |= kShines;
-        const bool hidden =
-            scene.options.bounces.most > 0 &&
-            !(instance.visible_camera && instance.visible_diffuse && instance.visible_glossy);
+        const bool hidden = scene.options.bounces.most > 0 &&
+                            !(instance.visible_camera && instance.visible_diffuse &&
+                              instance.visible_glossy && instance.visible_transmission);
         if (hidden || !instance.casts_shadow) use |= kIsHidden;
     }
     if (displaced.empty() &&

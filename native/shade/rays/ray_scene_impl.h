@@ -60,7 +60,7 @@ struct RayScene::Impl {
     void build_geometry(int geometry, std::uint8_t use, Report& report, const Progress& progress);
     void add_instance(std::uint32_t index, const Vec3d& origin);
     bool is_met(const Instance& instance) const {
-        const bool seen = instance.visible_diffuse || instance.visible_glossy;
+        const bool seen = instance.is_seen_by_surfaces();
         return (instance.casts_shadow || (seen && scene.options.bounces.most > 0) ||
                 materials.shines(instance) || materials.scatters(instance)) &&
                !instance.lifespan.is_empty();

@@ -18,6 +18,10 @@ inline constexpr std::array kSeeingRays{RayType::Camera,   RayType::Diffuse,    
 inline constexpr std::array kLightRays{RayType::Diffuse, RayType::Glossy, RayType::Singular,
                                        RayType::Transmission, RayType::Clear};
 
+/// Of lobes that send light through the surface.
+constexpr bool goes_through(RayType ray) {
+    return ray == RayType::Transmission || ray == RayType::Clear;
+}
 /// Of lobes that send light on in one direction.
 constexpr bool is_sharp(RayType ray) {
     return ray == RayType::Singular || ray == RayType::Clear;

@@ -32,19 +32,13 @@ Vec3f subsurface_weight(const SurfaceClosure& closure, std::size_t point) {
 std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
                                    const std::vector<Vec3f>& light) {
     const std::size_t count = points.count;
-    NoisyValues noisy{light, std::vector<float>(count), std::vector<std::uint8_t>(count)};
-    for (std::size_t i = 0; i < count; ++i)
+    NoisyValues noisy{light, std::vector<Vec3f>(count), std::vector<Vec3f>(count)};
+    for (std::size_t i = 0; i < count; ++i) {
         noisy.values[i] /= glm::max(subsurface_weight(closure, i), Vec3f(kLeastWeight));
-    std::vector<Vec3f> all(count);
-    for (int c = 0; c < 3; ++c) {
-        for (std::size_t i = 0; i < count; ++i) {
-            noisy.by_reach[i] = by_reach(closure, i, c);
-            noisy.known[i] = noisy.by_reach[i] > 0.0f;
-        }
-        const std::vector<Vec3f> shared = share(points, noisy);
-        for (std::size_t i = 0; i < count; ++i) all[i][c] = shared[i][c];
+        for (int c = 0; c < 3; ++c) noisy.by_reach[i][c] = by_reach(closure, i, c);
+        noisy.told[i] = Vec3f(glm::greaterThan(noisy.by_reach[i], Vec3f(0.0f)));
     }
-    return all;
+    return share(points, noisy);
 }
 
 }  // namespace granita

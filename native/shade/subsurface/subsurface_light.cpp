@@ -72,7 +72,7 @@ class SubsurfaceLight::Batch {
     ScatteredLight finish() {
         ScatteredLight light{std::move(m_direct), {}};
         if (m_light.m_bounces)
-            light.bounced = m_light.m_bounces->gather(std::move(m_leaving), m_points.count).diffuse;
+            light.bounced = m_light.m_bounces->gather(m_leaving, m_points.count).diffuse;
         return light;
     }
 
@@ -225,7 +225,7 @@ class SubsurfaceLight::Batch {
 
     void light_points(const std::vector<std::uint32_t>& batch, const ShadingPoints& points,
                       const SurfaceClosure& closure) {
-        std::vector<LobeRay> leaving;
+        LeavingRays leaving;
         ReflectionParts parts;
         const std::vector<Vec3f> light =
             m_light.m_direct.reflect(points, closure, {m_key.instance}, m_parts ? &parts : nullptr,
@@ -237,7 +237,7 @@ class SubsurfaceLight::Batch {
             m_parts->arriving[i] += parts.arriving[k];
             m_parts->unblocked[i] += parts.unblocked[k];
         }
-        for (LobeRay& ray : leaving) {
+        for (LobeRay& ray : leaving.rays) {
             ray.point = m_ways[batch[ray.point]].next.point;
             ray.share /= static_cast<float>(m_count);
             m_leaving.push_back(ray);

@@ -177,6 +177,21 @@ Vec4f magnified(TiledImage& image, const TextureMode& mode, Vec2f center) {
     return image.decoder().seen_of_stored(stored);
 }
 
+/// Of an image that its rim goes on from for ever: what of the footprint is out there sees one
+/// texel, or a line of them, not the rows within that coarse levels would mix in.
+TexturePlace kept_to_image(TexturePlace place) {
+    for (int axis = 0; axis < 2; ++axis) {
+        const float half = 0.5f * (std::abs(place.along_u[axis]) + std::abs(place.along_v[axis]));
+        if (!(half > 0.0f && std::isfinite(half))) continue;
+        const float from = std::clamp(place.center[axis] - half, 0.0f, 1.0f);
+        const float to = std::clamp(place.center[axis] + half, 0.0f, 1.0f);
+        const float kept = 0.5f * (to - from) / half;
+        place.along_u[axis] *= kept;
+        place.along_v[axis] *= kept;
+    }
+    return place;
+}
+
 }  // namespace
 
 TextureFootprint TextureFootprint::of(const Vec2f& along_u, const Vec2f& along_v,
@@ -199,7 +214,9 @@ TextureFootprint TextureFootprint::of(const Vec2f& along_u, const Vec2f& along_v
     return print;
 }
 
-Vec4f filtered(TiledImage& image, const TextureMode& mode, const TexturePlace& place) {
+Vec4f filtered(TiledImage& image, const TextureMode& mode, const TexturePlace& asked) {
+    const TexturePlace place =
+        mode.extension == TextureExtension::Extend ? kept_to_image(asked) : asked;
     const Vec2f size(image.level(0).width, image.level(0).height);
     const TextureFootprint print = TextureFootprint::of(place.along_u, place.along_v, size);
     // Rows run downward.
