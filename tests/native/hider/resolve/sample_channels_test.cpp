@@ -129,7 +129,7 @@ TEST(ChannelSet, SharesChannelsAndRefusesWhatItDoesNotKnow) {
     EXPECT_EQ(three.channels().size(), 3u);
     EXPECT_EQ(three.vertex_width(), 6);
     EXPECT_EQ(three.sample_width(), 9);
-    options.passes = {"Diffuse Indirect"};
+    options.passes = {"Ambient Occlusion"};
     EXPECT_THROW(ChannelSet{options}, SceneError);
     options.passes = {"Normal"};
     options.aovs = {{"Normal", true}};
