@@ -32,7 +32,8 @@ std::string_view embedded_text(std::string_view name) {
 
 std::string shader_source(std::string_view name, const Defines& defines) {
     std::string source = "#version 450 core\n";
-    for (const auto& [key, value] : defines) source += "#define " + key + " " + value + "\n";
+    for (const auto& [key, value] : defines)
+        source.append("#define ").append(key).append(" ").append(value).append("\n");
     std::set<std::string> seen;
     append_file(std::string(name), seen, source);
     return source;

@@ -134,7 +134,7 @@ def test_white_noise(scene, render, dimensions, output):
     show(scene, render, tree, node, output)
 
 
-@pytest.mark.parametrize("feature", ["F1", "F2"])
+@pytest.mark.parametrize("feature", ["F1", "F2", "SMOOTH_F1"])
 @pytest.mark.parametrize("output", ["Distance", "Color", "Position"])
 @pytest.mark.parametrize("dimensions", DIMENSIONS)
 def test_voronoi(scene, render, dimensions, output, feature):
@@ -151,6 +151,47 @@ def test_voronoi(scene, render, dimensions, output, feature):
 def test_voronoi_metric(scene, render, metric):
     tree, node = textured(scene, "ShaderNodeTexVoronoi", {"Scale": 1.7}, distance=metric)
     show(scene, render, tree, node, "Distance")
+
+
+@pytest.mark.parametrize("feature", ["DISTANCE_TO_EDGE", "N_SPHERE_RADIUS"])
+@pytest.mark.parametrize("dimensions", DIMENSIONS)
+def test_voronoi_borders(scene, render, dimensions, feature):
+    inputs = {"Scale": 1.7, "Randomness": 0.8}
+    tree, node = textured(
+        scene, "ShaderNodeTexVoronoi", inputs, voronoi_dimensions=dimensions, feature=feature
+    )
+    output = "Radius" if feature == "N_SPHERE_RADIUS" else "Distance"
+    show(scene, render, tree, node, output, contrast=2.5)
+
+
+@pytest.mark.parametrize("smoothness", [0.0, 0.1, 0.6])
+@pytest.mark.parametrize("output", ["Distance", "Color"])
+def test_voronoi_smoothness(scene, render, output, smoothness):
+    inputs = {"Scale": 1.7, "Smoothness": smoothness}
+    tree, node = textured(scene, "ShaderNodeTexVoronoi", inputs, feature="SMOOTH_F1")
+    show(scene, render, tree, node, output)
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 0, 0), reason="one octave before 4.0")
+@pytest.mark.parametrize("normalize", [False, True])
+@pytest.mark.parametrize("detail", [0.0, 1.0, 2.4])
+@pytest.mark.parametrize(
+    ("feature", "output"),
+    [
+        ("F1", "Distance"),
+        ("F1", "Color"),
+        ("F1", "Position"),
+        ("F2", "Distance"),
+        ("SMOOTH_F1", "Distance"),
+        ("DISTANCE_TO_EDGE", "Distance"),
+    ],
+)
+def test_voronoi_octaves(scene, render, feature, output, detail, normalize):
+    inputs = {"Scale": 1.3, "Detail": detail, "Roughness": 0.6, "Lacunarity": 2.2}
+    tree, node = textured(
+        scene, "ShaderNodeTexVoronoi", inputs, feature=feature, normalize=normalize
+    )
+    show(scene, render, tree, node, output, contrast=1.0 if output == "Color" else 6.0)
 
 
 @pytest.mark.parametrize("profile", enum_values("ShaderNodeTexWave", "wave_profile"))

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points strewn one to a cell of a lattice in one to four dimensions (Worley 1996).  Blender 5.0
+// strews them by another hash, but in one dimension.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "math/hash.h"
+#include "math/pcg_hash.h"
+#include "math/vec.h"
+
+namespace granita {
+
+template <std::size_t N>
+using CellPoint = std::array<float, N>;
+
+template <std::size_t N>
+std::array<std::int32_t, N> indices(const CellPoint<N>& k) {
+    std::array<std::int32_t, N> cell;
+    // Clamped: far from the origin a cell has no index, and converting it would be undefined.
+    for (std::size_t c = 0; c < N; ++c)
+        cell[c] = static_cast<std::int32_t>(std::clamp(k[c], -2147483520.0f, 2147483520.0f));
+    return cell;
+}
+
+/// Where in its cell the point lies, [0, 1] along each axis.
+template <std::size_t N>
+CellPoint<N> point_in_cell(const CellPoint<N>& k, bool pcg) {
+    if constexpr (N > 1)
+        if (pcg) return pcg_hash<N>(indices<N>(k));
+    if constexpr (N == 1) return {hash_floats(k[0])};
+    if constexpr (N == 2) return {hash_floats(k[0], k[1]), hash_floats(k[0], k[1], 1.0f)};
+    if constexpr (N == 3)
+        return {hash_floats(k[0], k[1], k[2]), hash_floats(k[0], k[1], k[2], 1.0f),
+                hash_floats(k[0], k[1], k[2], 2.0f)};
+    if constexpr (N == 4)
+        return {hash_floats(k[0], k[1], k[2], k[3]), hash_floats(k[3], k[0], k[1], k[2]),
+                hash_floats(k[2], k[3], k[0], k[1]), hash_floats(k[1], k[2], k[3], k[0])};
+}
+
+template <std::size_t N>
+Vec3f color_of_cell(const CellPoint<N>& k, bool pcg) {
+    if (N == 1 || !pcg) return hash_color(k);
+    std::array<std::int32_t, (N < 4 ? 3 : 4)> cell{};
+    std::ranges::copy(indices<N>(k), cell.begin());
+    const auto values = pcg_hash<cell.size()>(cell);
+    return {values[0], values[1], values[2]};
+}
+
+enum class Metric { Euclidean, Manhattan, Chebychev, Minkowski };
+
+template <std::size_t N>
+float length_of(const CellPoint<N>& d, Metric metric, float exponent) {
+    float sum = 0.0f;
+    for (const float x : d) {
+        const float a = std::abs(x);
+        if (N == 1 || metric == Metric::Manhattan)
+            sum += a;
+        else if (metric == Metric::Chebychev)
+            sum = std::max(sum, a);
+        else if (metric == Metric::Minkowski)
+            sum += std::pow(a, exponent);
+        else
+            sum += a * a;
+    }
+    if (N == 1) return sum;
+    if (metric == Metric::Minkowski) return std::pow(sum, 1.0f / exponent);
+    return metric == Metric::Euclidean ? std::sqrt(sum) : sum;
+}
+
+template <std::size_t N>
+CellPoint<N> difference(const CellPoint<N>& a, const CellPoint<N>& b) {
+    CellPoint<N> d;
+    for (std::size_t c = 0; c < N; ++c) d[c] = a[c] - b[c];
+    return d;
+}
+
+template <std::size_t N>
+float dot(const CellPoint<N>& a, const CellPoint<N>& b) {
+    float sum = 0.0f;
+    for (std::size_t c = 0; c < N; ++c) sum += a[c] * b[c];
+    return sum;
+}
+
+/// Cells around a place, and their points as seen from the corner of its own cell.
+template <std::size_t N>
+class CellsAround {
+  public:
+    CellsAround(const CellPoint<N>& place, float randomness, bool pcg)
+        : m_randomness(randomness), m_pcg(pcg) {
+        for (std::size_t c = 0; c < N; ++c) {
+            m_base[c] = std::floor(place[c]);
+            m_inside[c] = place[c] - m_base[c];
+        }
+    }
+    const CellPoint<N>& base() const { return m_base; }
+    const CellPoint<N>& inside() const { return m_inside; }
+    CellPoint<N> cell(const CellPoint<N>& offset) const {
+        CellPoint<N> cell;
+        for (std::size_t c = 0; c < N; ++c) cell[c] = m_base[c] + offset[c];
+        return cell;
+    }
+    CellPoint<N> point(const CellPoint<N>& offset) const {
+        CellPoint<N> point = point_in_cell<N>(cell(offset), m_pcg);
+        for (std::size_t c = 0; c < N; ++c) point[c] = offset[c] + point[c] * m_randomness;
+        return point;
+    }
+    Vec3f color(const CellPoint<N>& offset) const { return color_of_cell<N>(cell(offset), m_pcg); }
+
+    /// `visit(offset, point)` of the cells up to `reach` away, the first axis fastest.
+    template <class Visit>
+    void each(int reach, const Visit& visit) const {
+        const int side = 2 * reach + 1;
+        int cells = 1;
+        for (std::size_t c = 0; c < N; ++c) cells *= side;
+        for (int index = 0; index < cells; ++index) {
+            CellPoint<N> offset;
+            for (std::size_t c = 0, rest = static_cast<std::size_t>(index); c < N; ++c) {
+                offset[c] = static_cast<float>(rest % static_cast<std::size_t>(side)) -
+                            static_cast<float>(reach);
+                rest /= static_cast<std::size_t>(side);
+            }
+            visit(offset, point(offset));
+        }
+    }
+
+  private:
+    CellPoint<N> m_base, m_inside;
+    float m_randomness;
+    bool m_pcg;
+};
+
+}  // namespace granita
