@@ -194,8 +194,7 @@ SmallFaces::SmallFaces(const OpenedMesh& mesh) {
         wider.add(m.place);
         const Vec3f size = wider.hi - wider.lo;
         micropolygons += m.micropolygons();
-        if (!last || micropolygons > most || !m.goes_with(*last) ||
-            std::max({size.x, size.y, size.z}) > kRegion) {
+        if (!last || micropolygons > most || !m.goes_with(*last) || largest(size) > kRegion) {
             m_batches.push_back(static_cast<std::uint32_t>(m_order.size()));
             m_whole.push_back(m.levels.whole());
             micropolygons = m.micropolygons();

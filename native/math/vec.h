@@ -25,6 +25,11 @@ inline bool is_finite(const Vec3f& v) {
     return glm::all(glm::not_(glm::isnan(v))) && glm::all(glm::not_(glm::isinf(v)));
 }
 
+/// Of its three numbers.
+inline float largest(const Vec3f& v) {
+    return glm::max(glm::max(v.x, v.y), v.z);
+}
+
 inline Vec3d transform_point(const Mat4d& m, const Vec3d& p) {
     return Vec3d(m * glm::dvec4(p, 1.0));
 }

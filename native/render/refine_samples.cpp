@@ -152,7 +152,7 @@ bool BucketRefinement::find_layer(std::size_t list) {
     const float ends = 1.0f - m_frame.scene.options.opacity_threshold;
     for (; open.next < lists.counts()[open.slot]; ++open.next) {
         const Vec3f& t = open.transmission;
-        if (std::max({t.x, t.y, t.z}) <= ends) return false;
+        if (largest(t) <= ends) return false;
         const Fragment fragment = lists.at(open.slot, open.next);
         const SurfacePoint at = point_of(fragment, m_pool);
         if (is_unsettled(fragment.id)) {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <vector>
+
+#include "math/vec.h"
+#include "scene/lifespan.h"
 
 namespace granita {
 
@@ -23,6 +27,11 @@ class ShutterWarp {
 
     /// The number that time() turns into this one of [0, 1].
     float uniform(float time) const;
+    /// The part of the shutter's light, from and to, for which something is there.
+    Vec2f exposed(const Lifespan& life) const {
+        return {uniform(std::clamp(life.open, 0.0f, 1.0f)),
+                uniform(std::clamp(life.close, 0.0f, 1.0f))};
+    }
 
   private:
     static constexpr int kCells = 4096;

@@ -22,7 +22,7 @@ Shown shown_color(const Vec3f& c) {
 
 float most(const Shown& difference) {
     const Shown size = glm::abs(difference);
-    return std::max({size.x, size.y, size.z});
+    return largest(size);
 }
 
 /// From a point's neighbour before it along u or v, and to the one after it.

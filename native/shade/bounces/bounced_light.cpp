@@ -19,10 +19,6 @@ float chance(std::uint32_t place, int depth, int passed, std::uint64_t salt) {
     return static_cast<float>(mix_bits(mix_bits(at) + salt) >> 40) * 0x1p-24f;
 }
 
-float largest(const Vec3f& v) {
-    return std::max({v.x, v.y, v.z});
-}
-
 }  // namespace
 
 /// The ways of a batch of points, a bounce at a time.

@@ -313,9 +313,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     grid.balance = noise;
     grid.leaving = leaving;
     RayOffset ray_offset = m_impl->set.rays ? m_impl->set.rays->ray_offset(key) : RayOffset{};
-    const Lifespan& life = paths.lifespan();
-    const Vec2f life_exposed(m_impl->set.shutter.uniform(std::clamp(life.open, 0.0f, 1.0f)),
-                             m_impl->set.shutter.uniform(std::clamp(life.close, 0.0f, 1.0f)));
+    const Vec2f life_exposed = m_impl->set.shutter.exposed(paths.lifespan());
     const int sample_count = this->sample_count(points.share);
     const bool meets_surfaces = leaving || !m_impl->shining.empty();
     std::vector<LitPoint> lit;

@@ -45,7 +45,7 @@ class Splitter {
   private:
     void try_axis(int axis) {
         const Vec3f size = m_centers.hi - m_centers.lo;
-        const float longest = std::max({size.x, size.y, size.z});
+        const float longest = largest(size);
         if (!(size[axis] > 0.0f)) return;
         const Bins bins{axis, m_centers.lo[axis], static_cast<float>(kBins) / size[axis]};
         std::array<LightBound, kBins> of_bin;

@@ -42,7 +42,7 @@ bool TriangleLight::is_far(const Vec3f& p) const {
 
 float TriangleLight::rounding(const Vec3f& p) const {
     const Vec3f size = glm::max(glm::abs(p), glm::abs(m_corners[0]));
-    return kRounding * std::max({size.x, size.y, size.z});
+    return kRounding * largest(size);
 }
 
 float TriangleLight::height(const Vec3f& p) const {

@@ -8,12 +8,12 @@ namespace granita {
 
 namespace {
 
-/// Hue in turns, for `range` = largest minus smallest channel > 0.
-float hue(const Vec3f& c, float largest, float range) {
+/// Hue in turns, for `range` = most minus least channel > 0.
+float hue(const Vec3f& c, float most, float range) {
     float sixths;
-    if (c.x == largest) {
+    if (c.x == most) {
         sixths = (c.y - c.z) / range;
-    } else if (c.y == largest) {
+    } else if (c.y == most) {
         sixths = 2.0f + (c.z - c.x) / range;
     } else {
         sixths = 4.0f + (c.x - c.y) / range;
@@ -21,9 +21,6 @@ float hue(const Vec3f& c, float largest, float range) {
     return sixths < 0.0f ? sixths / 6.0f + 1.0f : sixths / 6.0f;
 }
 
-float largest_of(const Vec3f& c) {
-    return std::max({c.x, c.y, c.z});
-}
 float smallest_of(const Vec3f& c) {
     return std::min({c.x, c.y, c.z});
 }
@@ -31,7 +28,7 @@ float smallest_of(const Vec3f& c) {
 }  // namespace
 
 Vec3f hsv_from_rgb(const Vec3f& rgb) {
-    const float value = largest_of(rgb), range = value - smallest_of(rgb);
+    const float value = largest(rgb), range = value - smallest_of(rgb);
     const float saturation = value != 0.0f ? range / value : 0.0f;
     return {saturation != 0.0f ? hue(rgb, value, range) : 0.0f, saturation, value};
 }
@@ -59,13 +56,13 @@ Vec3f rgb_from_hsv(const Vec3f& hsv) {
 }
 
 Vec3f hsl_from_rgb(const Vec3f& rgb) {
-    const float largest = largest_of(rgb), smallest = smallest_of(rgb);
-    const float lightness = std::min(1.0f, (largest + smallest) / 2.0f);
-    if (largest == smallest) return {0.0f, 0.0f, lightness};
-    const float range = largest - smallest;
+    const float most = largest(rgb), least = smallest_of(rgb);
+    const float lightness = std::min(1.0f, (most + least) / 2.0f);
+    if (most == least) return {0.0f, 0.0f, lightness};
+    const float range = most - least;
     const float saturation =
-        lightness > 0.5f ? range / (2.0f - largest - smallest) : range / (largest + smallest);
-    return {hue(rgb, largest, range), saturation, lightness};
+        lightness > 0.5f ? range / (2.0f - most - least) : range / (most + least);
+    return {hue(rgb, most, range), saturation, lightness};
 }
 
 Vec3f rgb_from_hsl(const Vec3f& hsl) {

@@ -155,7 +155,7 @@ FloatSource add_second_sheen(NodeBuilder& b, SurfaceBuilder& surface, const Comm
             const float cosine = glm::dot(n, view);
             if (cosine <= 0.0f) return 1.0f;
             const float albedo = sheen_fit(std::min(cosine, 1.0f), roughness).albedo;
-            return saturate(1.0f - albedo * std::max({color.x, color.y, color.z}));
+            return saturate(1.0f - albedo * largest(color));
         },
         tint, lobe.roughness, lobe.normal, b.view());
 }
@@ -329,7 +329,7 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
                        const Vec3f& view) {
             if (ior == 1.0f) return 1.0f;
             const Vec3f albedo = layer_albedo(f0, ior, roughness, glm::dot(n, view), multiscatter);
-            return saturate(1.0f - std::max({albedo.x, albedo.y, albedo.z}));
+            return saturate(1.0f - largest(albedo));
         },
         specular.f0, specular.ior, c.roughness, c.specular_normal, b.view());
     const VectorSource reached = scaled(b, coated, product(b, rest, below));

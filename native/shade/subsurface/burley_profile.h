@@ -20,7 +20,7 @@ class BurleyProfile {
         for (int c = 0; c < 3; ++c) m_channels += d[c] > 0.0f ? 1.0f : 0.0f;
     }
     /// Where it is cut off, with less than .4 % of it outside.
-    float reach() const { return kCut * std::max({m_d.x, m_d.y, m_d.z}); }
+    float reach() const { return kCut * largest(m_d); }
     /// 2 pi r R(r): per metre of radius, by channel.
     Vec3f value(float r) const {
         Vec3f value(0.0f);

@@ -26,10 +26,6 @@ class Numbers {
     std::uint64_t m_state;
 };
 
-float largest(const Vec3f& v) {
-    return std::max({v.x, v.y, v.z});
-}
-
 /// Directions and distances that lead out of a half-space as light itself finds its way: Dwivedi's,
 /// after Krivanek and d'Eon 2014 ("A Zero-variance-based Sampling Scheme for Monte Carlo Subsurface
 /// Scattering") and Meng, Hanika and Dachsbacher 2016 ("Improving the Dwivedi Sampling Scheme").

@@ -78,11 +78,8 @@ class SubsurfaceLight::Batch {
 
   private:
     float time_at(float uniform) const {
-        const Lifespan& life = m_paths.lifespan();
-        const ShutterWarp& shutter = m_light.m_shutter;
-        const float open = shutter.uniform(std::clamp(life.open, 0.0f, 1.0f));
-        const float close = shutter.uniform(std::clamp(life.close, 0.0f, 1.0f));
-        return shutter.time(open + uniform * (close - open));
+        const Vec2f exposed = m_light.m_shutter.exposed(m_paths.lifespan());
+        return m_light.m_shutter.time(exposed.x + uniform * (exposed.y - exposed.x));
     }
 
     void move_to(float time) {
