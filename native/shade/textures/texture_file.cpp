@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <exception>
+#include <string_view>
 #include <utility>
 
 #include "shade/textures/image_format.h"
@@ -67,14 +68,16 @@ bool TextureFile::open(const Image& image) {
     // Cycles: colour channels of data, packed channels and ignored alpha are left untouched; others
     // arrive associated.
     OIIO::ImageSpec config;
-    if (m_space.is_data || m_opaque || image.alpha_mode == "CHANNEL_PACKED")
-        config.attribute("oiio:UnassociatedAlpha", 1);
+    const bool untouched = m_space.is_data || m_opaque || image.alpha_mode == "CHANNEL_PACKED";
+    const bool is_png = std::string_view(format.reader) == "png";
+    if (untouched || is_png) config.attribute("oiio:UnassociatedAlpha", 1);
     if (!m_input->open(image.path, m_spec, config)) {
         m_header.error = m_input->geterror();
         return false;
     }
     if (!check(m_spec)) return false;
     m_channels = std::min(m_spec.nchannels, 4);
+    m_associate = is_png && !untouched && (m_channels == 2 || m_channels == 4);
     m_raw_type = m_spec.format == OIIO::TypeUInt8  ? TexelType::Byte
                  : m_spec.format == OIIO::TypeHalf ? TexelType::Half
                                                    : TexelType::Float;
@@ -166,6 +169,7 @@ bool TextureFile::read_rows(int begin, int count, std::byte* out) {
             : m_input->read_scanlines(0, 0, top, top + count, m_spec.z, 0, m_channels, raw_type(),
                                       raw);
     if (complete) {
+        if (m_associate) associate(raw, texels);
         convert(raw, texels, out);
     } else {
         m_header.error = m_input->geterror();
@@ -189,6 +193,21 @@ bool TextureFile::read_tile(int level, int across, int down, std::byte* out) {
     }
     convert(raw, texels, out);
     return true;
+}
+
+/// Colour times alpha, of the numbers as they are stored: so do Blender and Cycles.  OpenImageIO's
+/// own reader of PNG does so in 2.4, bytes rounded down, and multiplies light in 2.5.
+void TextureFile::associate(void* raw, std::size_t count) const {
+    const int alpha = m_channels - 1;
+    const auto multiply = [&](auto* texel, auto product) {
+        for (std::size_t i = 0; i < count; ++i, texel += m_channels)
+            for (int c = 0; c < alpha; ++c) texel[c] = product(texel[c], texel[alpha]);
+    };
+    if (m_raw_type == TexelType::Byte)
+        multiply(static_cast<std::uint8_t*>(raw),
+                 [](int x, int a) { return static_cast<std::uint8_t>(x * a / 255); });
+    else
+        multiply(static_cast<float*>(raw), [](float x, float a) { return x * a; });
 }
 
 /// From the file's channels and colour space to texels.

@@ -50,6 +50,7 @@ class TextureFile {
     bool open(const Image& image);
     bool check(const OIIO::ImageSpec& spec);
     void find_levels();
+    void associate(void* raw, std::size_t count) const;
     void convert(const void* raw, std::size_t count, std::byte* out) const;
     void* raw_memory(std::size_t texels);
     OIIO::TypeDesc raw_type() const;
@@ -62,8 +63,9 @@ class TextureFile {
     std::vector<std::byte> m_raw;
     TexelType m_raw_type = TexelType::Byte;
     int m_channels = 0, m_strip = 64;
-    bool m_as_it_is = false;  ///< numbers are stored as the file has them
-    bool m_opaque = false;    ///< alpha is to be ignored
+    bool m_as_it_is = false;   ///< numbers are stored as the file has them
+    bool m_opaque = false;     ///< alpha is to be ignored
+    bool m_associate = false;  ///< its reader leaves the product with alpha to us
 };
 
 }  // namespace granita

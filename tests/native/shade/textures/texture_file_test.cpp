@@ -53,6 +53,28 @@ TEST(TextureFile, colour_spaces_become_scene_linear) {
                 1e-4);  // middle grey
 }
 
+// In bytes of sRGB, 200 half covered is 200 * 128 / 255 = 100.4; of their light it would be 146.
+TEST(TextureFile, alpha_of_png_multiplies_what_is_stored) {
+    for (const OIIO::TypeDesc& type : {OIIO::TypeUInt8, OIIO::TypeUInt16}) {
+        ImageFile file(".png");
+        OIIO::ImageSpec spec(2, 1, 4, type);
+        spec.attribute("oiio:UnassociatedAlpha", 1);
+        const float c = 200 / 255.0f, a = 128 / 255.0f;
+        const float texels[] = {c, c, c, a, c, c, c, 1.0f};
+        const auto out = OIIO::ImageOutput::create(file.path());
+        ASSERT_TRUE(out && out->open(file.path(), spec) &&
+                    out->write_image(OIIO::TypeFloat, texels) && out->close());
+        Image image = file.image("sRGB");
+        image.alpha_mode = "STRAIGHT";
+        Look look(image);
+        const Vec4f half = look.at({0.25f, 0.5f}, 0.0f), whole = look.at({0.75f, 0.5f}, 0.0f);
+        const bool bytes = type == OIIO::TypeUInt8;
+        EXPECT_NEAR(half.x, linear_from_srgb(bytes ? 100 / 255.0f : c * a), bytes ? 1e-5 : 1e-4);
+        EXPECT_NEAR(whole.x, linear_from_srgb(c), 1e-4);
+        EXPECT_NEAR(half.w, a, 1e-4);
+    }
+}
+
 TEST(TextureFile, what_is_no_number_is_black) {
     ImageFile file(".exr");
     const float values[] = {NAN, INFINITY, -INFINITY, 4.0f};
