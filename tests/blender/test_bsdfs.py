@@ -238,6 +238,44 @@ def _brushed():
     return kinds
 
 
+def _filmed():
+    film = {"Thin Film Thickness": ("A", 700.0, 0.0), "Thin Film IOR": ("C", 0.8, 1.1)}
+    principled = "ShaderNodeBsdfPrincipled"
+    plain = {**film, "Base Color": (0.5, 0.3, 0.1, 1.0), "Roughness": ("B", 0.4, 0.2)}
+    shapes = {
+        "Dielectric": {},
+        "Tinted": {"Specular Tint": (0.9, 0.6, 0.3, 1.0), "Specular IOR Level": 0.8},
+        "Diamond": {"IOR": 2.4},
+        "Without specular": {"IOR": 1.0},
+        "Glass": {"Transmission Weight": 1.0, "IOR": 1.5},
+        "Half a metal": {"Metallic": 0.5, "Specular Tint": (0.7, 0.8, 0.9, 1.0)},
+    }
+    kinds = {
+        f"{name} {distribution}": lambda tree, d=distribution, v=values: node(
+            tree, principled, {**plain, **v}, distribution=d
+        )
+        for name, values in shapes.items()
+        for distribution in ("GGX", "MULTI_GGX")
+    }
+    if bpy.app.version >= (5, 0, 0):
+        bare = {**film, "Roughness": ("B", 0.4, 0.2)}
+        kinds["Glass's own"] = lambda tree: node(tree, "ShaderNodeBsdfGlass", {**bare, "IOR": 1.6})
+        for fresnel in ("F82", "PHYSICAL_CONDUCTOR"):
+            kinds[f"Metallic {fresnel}"] = lambda tree, f=fresnel: node(
+                tree, "ShaderNodeBsdfMetallic", bare, fresnel_type=f
+            )
+    return kinds
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 2, 0), reason="Blender 4.2 brought thin films")
+@pytest.mark.parametrize("turn", [BEFORE, BEHIND], ids=["before", "behind"])
+def test_thin_films(scene, render, turn):
+    report = compare(scene, render, _filmed(), turn)
+    if turn is BEHIND:
+        report = {name: pair for name, pair in report.items() if "Glass" in name}
+    check(report)
+
+
 def test_brushed_and_metallic(scene, render):
     check(compare(scene, render, _brushed(), BEFORE))
 

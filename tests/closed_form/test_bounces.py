@@ -282,7 +282,11 @@ def test_what_a_material_is_not_drawn_with_is_named_once():
     nodes = [
         {"type": "ShaderNodeUnheardOf", "inputs": {}},
         {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Roughness": ("LINK", 0, "Value")}},
-        {"type": "ShaderNodeBsdfMetallic", "inputs": {"Thin Film Thickness": 100.0}},
+        {
+            "type": "ShaderNodeBsdfHairPrincipled",
+            "inputs": {},
+            "properties": {"model": "HUANG"},
+        },
         {"type": "ShaderNodeLightPath", "inputs": {}},
         {
             "type": "ShaderNodeMixShader",
@@ -303,7 +307,7 @@ def test_what_a_material_is_not_drawn_with_is_named_once():
     assert list(seen.values()) == [1] and "ShaderNodeUnheardOf" in next(iter(seen))
     new = {message: count for message, count in met.items() if message not in seen}
     assert {message: met[message] for message in seen} == seen
-    assert list(new.values()) == [1] and "thin film" in next(iter(new))
+    assert list(new.values()) == [1] and "Huang" in next(iter(new))
 
 
 def test_two_mirrors_end():

@@ -57,6 +57,8 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
         } else {
             if (lobe.cos_wi <= 0.0f) continue;  // seen from below: reflects nothing
             if (lobe.fresnel == FresnelKind::None && source.f0.empty()) lobe.f0 = Vec3f(1.0f);
+            if (!source.more.empty())
+                lobe.film = {source.more[0][point], source.more[1][point], source.film_spectrum};
             prepare_microfacets(lobe, roughness);
             if (!source.tangent.empty()) stretch(lobe, source.tangent[point], source.aspect[point]);
             if (lobe.kind == LobeKind::Refraction) {

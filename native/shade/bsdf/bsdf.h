@@ -89,6 +89,7 @@ class PointBsdf {
         Vec3f weight, normal;
         Vec3f f0{1.0f}, f90{1.0f}, dip{0.0f};
         float ior = 1.0f, f0_real = 0.0f;
+        ThinFilm film;
         float alpha = 0.0f;
         bool stretched = false;  ///< along x, and then of `alphas`
         Vec3f x{0.0f};
@@ -126,6 +127,7 @@ class PointBsdf {
     Vec3f local(const Prepared& lobe, const Vec3f& v) const;
     void compensate(Prepared& lobe, const GgxAlbedo& albedo) const;
     Vec3f fresnel(const Prepared& lobe, float cos_half) const;
+    Vec3f film_fresnel(const Prepared& lobe, float cos_half) const;
     Vec3f evaluate_glossy(const Prepared& lobe, const Vec3f& wo) const;
     float pdf_glossy(const Prepared& lobe, const Vec3f& wo) const;
     // refraction_lobe.cpp

@@ -57,7 +57,16 @@ void PointBsdf::compensate(Prepared& lobe, const GgxAlbedo& albedo) const {
     lobe.weight *= Vec3f(1.0f) + fms * missing;
 }
 
+Vec3f PointBsdf::film_fresnel(const Prepared& lobe, float cos_half) const {
+    if (lobe.fresnel == FresnelKind::Conductor)
+        return film_on_conductor(lobe.film, cos_half, lobe.f0, lobe.f90);
+    if (lobe.fresnel == FresnelKind::F82Tint)
+        return film_on_metal(lobe.film, cos_half, lobe.f0, lobe.dip);
+    return film_on_dielectric(lobe.film, cos_half, lobe.ior, lobe.f0);
+}
+
 Vec3f PointBsdf::fresnel(const Prepared& lobe, float cos_half) const {
+    if (lobe.film.is_there()) return film_fresnel(lobe, cos_half);
     switch (lobe.fresnel) {
         case FresnelKind::Schlick:
             return mix(lobe.f0, lobe.f90, schlick_weight(cos_half));

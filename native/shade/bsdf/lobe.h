@@ -10,6 +10,7 @@
 
 #include "math/vec.h"
 #include "shade/bsdf/subsurface_lobe.h"
+#include "shade/bsdf/thin_film.h"
 
 namespace granita {
 
@@ -76,6 +77,7 @@ enum class FresnelKind {
     Dielectric,  ///< exact, of ior, remapped so that normal incidence gives f0 and grazing f90
                  ///< (Cycles' principled)
 };
+// Under a thin film Dielectric, F82Tint and Conductor are those of the body below it.
 // Refractions pass what their Fresnel does not reflect; None: all but where all is reflected.
 
 struct Lobe {
@@ -95,7 +97,9 @@ struct Lobe {
                                    ///< value (alpha = roughness^2)
     std::vector<Vec3f> tangent;    ///< [n] glossy, where alpha differs along it, and of hairs
     std::vector<float> aspect;     ///< [n] alpha / aspect along it, alpha * aspect across
-    std::vector<std::vector<float>> more;  ///< [][n] what its kind asks for beside
+    std::vector<std::vector<float>> more;  ///< [][n] what its kind asks for beside; of microfacets
+                                           ///< a thin film's thickness and index, if there is one
+    FilmSpectrum film_spectrum = FilmSpectrum::Observed;
     std::vector<Vec3f> f0, f90;  ///< [n] FresnelKind::None and diffuse lobes: f90 empty, f0 empty
                                  ///< or the lobe's colour, which energy compensation saturates
     std::vector<float> ior;  ///< [n] Dielectric and refractions: of the far side relative to the

@@ -91,9 +91,11 @@ float dielectric_albedo(float roughness, float cosine, float ior) {
     return kTable.look_up(roughness, cosine, ior_axis(ior));
 }
 
-Vec3f layer_albedo(const Vec3f& f0, float ior, float roughness, float cosine, bool multiscatter) {
+Vec3f layer_albedo(const Vec3f& f0, float ior, float roughness, float cosine, bool multiscatter,
+                   const ThinFilm& film) {
     const auto mixed = [&](float grazing) { return f0 * (1.0f - grazing) + Vec3f(grazing); };
-    const Vec3f albedo = mixed(dielectric_albedo(roughness, cosine, ior));
+    const Vec3f albedo = film.is_there() ? film_on_dielectric(film, cosine, ior, f0)
+                                         : mixed(dielectric_albedo(roughness, cosine, ior));
     if (!multiscatter) return albedo;
     return albedo * multiscatter_darkening(mixed(dielectric_mean_albedo(ior)), roughness, cosine);
 }

@@ -43,7 +43,16 @@ GlassSource glass_source(NodeBuilder& b, const FloatSource& weight) {
     const std::string distribution = b.text("distribution", "GGX");
     glass.distribution = distribution_of(distribution);
     glass.multiscatter = distribution == "MULTI_GGX";
+    glass.film = film_source(b);
     return glass;
+}
+
+/// From inside the film's index is relative to the body's.  `ior`: as relative_ior().
+FilmSource seen_from(NodeBuilder& b, FilmSource film, const FloatSource& ior) {
+    film.ior = b.map<float>(
+        [](float outside, float eta, float back) { return back != 0.0f ? outside * eta : outside; },
+        film.ior, ior, b.backfacing());
+    return film;
 }
 
 }  // namespace
@@ -79,6 +88,7 @@ void add_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& glass
     sent.f0 = glass.f0;
     sent.f90 = {-1, kOne};
     sent.weight = product(b, weight, glass.sent);
+    cover(sent, seen_from(b, glass.film, glass.ior));
     LobeSource reflected = sent;
     reflected.kind = LobeKind::Glossy;
     reflected.weight = product(b, weight, glass.reflected);

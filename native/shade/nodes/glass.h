@@ -2,7 +2,7 @@
 // What Glass, Refraction and Principled share.
 #pragma once
 
-#include "shade/programs/surface_builder.h"
+#include "shade/nodes/film.h"
 
 namespace granita {
 
@@ -16,6 +16,7 @@ struct GlassSource {
     FloatSource ior;  ///< as relative_ior()
     Distribution distribution = Distribution::Ggx;
     bool multiscatter = false;
+    FilmSource film;  ///< its index relative to the outside of the body
 };
 
 /// The socket's index, at least 1e-5; from behind it is that of leaving the body.

@@ -9,7 +9,7 @@
 //
 // Beside the specular and diffuse ones, as far as it transmits, glass; sheen beside the first's
 // diffuse layer and over all of the second.  Subsurface takes the place of the first's diffuse
-// layer, of a share of the second's.  What is set and left out is told to the artist.
+// layer, of a share of the second's.
 #include <algorithm>
 #include <cmath>
 
@@ -29,12 +29,6 @@ namespace {
 
 const Vec3f kOne(1.0f);
 
-void warn_about_left_out(NodeBuilder& b) {
-    constexpr const char* kFilm = "Thin Film Thickness";
-    if (b.linked(kFilm) || !b.number(kFilm).is(0.0f))
-        b.warn("Principled thin film is not rendered");
-}
-
 struct Common {
     FloatSource weight;     ///< alpha applied
     VectorSource emission;  ///< weighted
@@ -42,6 +36,7 @@ struct Common {
     VectorSource specular_normal;  ///< of glossy lobes
     FloatSource metallic, roughness, transmission, specular, ior;
     bool multiscatter = false;
+    FilmSource film;
 };
 
 void add_alpha(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight,
@@ -258,8 +253,11 @@ void add_metal(NodeBuilder& b, SurfaceBuilder& surface, const Common& c, const V
                const VectorSource& tint) {
     const auto reflectance = [](const Vec3f& v) { return glm::clamp(v, Vec3f(0.0f), kOne); };
     LobeSource metal = glossy_lobe(c);
+    // Before Blender 5 metals have none.
+    if (c.film.spectrum == FilmSpectrum::Observed) cover(metal, c.film);
     // With a white tint F82 is Schlick's.
-    metal.fresnel = tint.is(kOne) ? FresnelKind::Schlick : FresnelKind::F82Tint;
+    const bool schlick = tint.is(kOne) && metal.more.empty();
+    metal.fresnel = schlick ? FresnelKind::Schlick : FresnelKind::F82Tint;
     metal.f0 = b.map<Vec3f>(reflectance, c.base_color);
     metal.f90 = b.map<Vec3f>(reflectance, tint);
     metal.weight = scaled(b, coated, product(b, c.weight, c.metallic));
@@ -285,6 +283,7 @@ void add_second_glass(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
         },
         c.ior, tint);
     glass.multiscatter = c.multiscatter;
+    glass.film = c.film;
     add_glass(b, surface, glass);
 }
 
@@ -320,18 +319,23 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
     specular.f90 = {-1, kOne};
     specular.weight = scaled(b, coated, rest);
     stretch_by_socket(b, specular, "Anisotropic", "Anisotropic Rotation");
-    if (!specular.ior.is(1.0f)) surface.add_lobe(specular);
+    cover(specular, c.film);
+    if (!specular.ior.is(1.0f) || c.film.is_there()) surface.add_lobe(specular);
 
     // Light that the specular layer reflects does not reach the diffuse one.
     const bool multiscatter = c.multiscatter;
     const FloatSource below = b.map<float>(
-        [multiscatter](const Vec3f& f0, float ior, float roughness, const Vec3f& n,
-                       const Vec3f& view) {
-            if (ior == 1.0f) return 1.0f;
-            const Vec3f albedo = layer_albedo(f0, ior, roughness, glm::dot(n, view), multiscatter);
+        [multiscatter, spectrum = c.film.spectrum](const Vec3f& f0, float ior, float roughness,
+                                                   const Vec3f& n, const Vec3f& view,
+                                                   float thickness, float film_ior) {
+            const ThinFilm film{thickness, film_ior, spectrum};
+            if (ior == 1.0f && !film.is_there()) return 1.0f;
+            const Vec3f albedo =
+                layer_albedo(f0, ior, roughness, glm::dot(n, view), multiscatter, film);
             return saturate(1.0f - largest(albedo));
         },
-        specular.f0, specular.ior, c.roughness, c.specular_normal, b.view());
+        specular.f0, specular.ior, c.roughness, c.specular_normal, b.view(), c.film.thickness,
+        c.film.ior);
     const VectorSource reached = scaled(b, coated, product(b, rest, below));
     LobeSource diffuse;
     diffuse.kind = LobeKind::Diffuse;
@@ -356,7 +360,6 @@ void build_principled(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource
     const FloatSource strength = b.number("Emission Strength", 1.0f);
     c.emission = scaled(b, emission, product(b, c.weight, strength));
 
-    warn_about_left_out(b);
     const bool first = !b.since(4, 0);
     c.base_color = b.map<Vec3f>([](const Vec3f& v) { return glm::max(v, Vec3f(0.0f)); },
                                 b.color("Base Color", Vec3f(0.8f)));
@@ -371,6 +374,7 @@ void build_principled(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource
     if (first) {
         add_first_generation(b, surface, c);
     } else {
+        c.film = film_source(b);
         add_second_generation(b, surface, c);
     }
 }

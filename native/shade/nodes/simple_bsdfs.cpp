@@ -2,6 +2,7 @@
 // Shaders of one closure each.  Diffuse also stands for its unsupported kin (node_registry.cpp).
 #include "shade/nodes/anisotropy.h"
 #include "shade/nodes/distribution.h"
+#include "shade/nodes/film.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/scalar_math.h"
 
@@ -69,8 +70,7 @@ void build_metallic(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& 
     lobe.normal = b.specular_normal();
     lobe.roughness = clamped_roughness(b, 0.5f);
     stretch_by_socket(b, lobe, "Anisotropy", "Rotation");
-    if (b.linked("Thin Film Thickness") || !b.number("Thin Film Thickness").is(0.0f))
-        b.warn("Metallic thin film is not rendered");
+    cover(lobe, film_source(b));
     surface.add_lobe(lobe);
 }
 

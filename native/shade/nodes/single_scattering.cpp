@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "math/observer.h"
 #include "math/sampling.h"
 
 namespace granita {
@@ -18,7 +19,7 @@ constexpr float kDustForward = 0.76f;                       ///< mean cosine
 constexpr float kOzoneHeight = 25e3f, kOzoneHalfWidth = 15e3f;
 constexpr int kSteps = 32;
 
-constexpr std::size_t kWavelengths = 21;  ///< from 380 to 780 nm
+constexpr std::size_t kWavelengths = 21;  ///< from 380 to 780 nm: every other of the observer's
 constexpr float kWavelengthStep = 20.0f;  ///< nm
 using Spectrum = std::array<float, kWavelengths>;
 
@@ -39,19 +40,6 @@ constexpr Spectrum kOzoneAbsorption{
     6.3551336e-7f, 9.6707041e-7f, 1.5479740e-6f, 2.0903865e-6f, 2.4612806e-6f, 2.7355130e-6f,
     2.1512586e-6f, 1.5905184e-6f, 1.1235620e-6f, 7.3527551e-7f, 4.6450130e-7f, 3.3096080e-7f,
     2.2512612e-7f, 1.4879129e-7f, 1.6828623e-7f};
-/// The CIE's observer of 1931.
-constexpr std::array<Spectrum, 3> kObserver{
-    Spectrum{0.001368f,     0.01431f,      0.13438f,      0.34828f, 0.2908f,     0.09564f,
-             0.0049f,       0.06327f,      0.2904f,       0.5945f,  0.9163f,     1.0622f,
-             0.8544499f,    0.4479f,       0.1649f,       0.04677f, 0.01135916f, 0.002899327f,
-             0.0006900786f, 0.0001661505f, 0.00004150994f},
-    Spectrum{0.000039f, 0.000396f, 0.004f,    0.023f,    0.06f,      0.13902f, 0.323f,
-             0.71f,     0.954f,    0.995f,    0.87f,     0.631f,     0.381f,   0.175f,
-             0.061f,    0.017f,    0.004102f, 0.001047f, 0.0002492f, 0.00006f, 0.00001499f},
-    Spectrum{0.006450001f, 0.06785001f, 0.6456f, 1.74706f,     1.6692f, 0.8129501f, 0.272f,
-             0.07824999f,  0.0203f,     0.0039f, 0.001650001f, 0.0008f, 0.00019f,   0.00002f,
-             0.0f,         0.0f,        0.0f,    0.0f,         0.0f,    0.0f,       0.0f}};
-
 /// Gauss-Laguerre nodes and weights of eight points, the weights times exp(node), both by 25: the
 /// last node is within the air.
 constexpr std::array<float, 8> kNodes{0.006811185f, 0.03614807f, 0.09004347f, 0.1706680f,
@@ -63,7 +51,7 @@ Vec3f xyz_of(const Spectrum& spectrum) {
     Vec3f xyz(0.0f);
     for (int c = 0; c < 3; ++c)
         for (std::size_t i = 0; i < kWavelengths; ++i)
-            xyz[c] += kObserver[static_cast<std::size_t>(c)][i] * spectrum[i];
+            xyz[c] += kObserver[static_cast<std::size_t>(c)][2 * i] * spectrum[i];
     return kWavelengthStep * xyz;
 }
 

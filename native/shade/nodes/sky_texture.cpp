@@ -6,6 +6,7 @@
 
 #include "math/angle_between.h"
 #include "math/normalize_or.h"
+#include "math/observer.h"
 #include "math/sampling.h"
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/daylight.h"
@@ -55,10 +56,7 @@ float dip_of_horizon(float altitude) {
 }
 
 Vec3f rgb_of(const Vec3f& xyz) {
-    const Vec3f rgb(3.2404542f * xyz.x - 1.5371385f * xyz.y - 0.4985314f * xyz.z,
-                    -0.9692660f * xyz.x + 1.8760108f * xyz.y + 0.0415560f * xyz.z,
-                    0.0556434f * xyz.x - 0.2040259f * xyz.y + 1.0572252f * xyz.z);
-    return glm::max(rgb, Vec3f(0.0f));
+    return glm::max(rgb_of_xyz(xyz), Vec3f(0.0f));
 }
 
 /// @param height 0 at the disc's lowest place, 1 at its highest.

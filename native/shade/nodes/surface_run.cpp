@@ -25,6 +25,7 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::si
             lobe.aspect = values_of(run, from.aspect);
         }
         for (const FloatSource& value : from.more) lobe.more.push_back(values_of(run, value));
+        lobe.film_spectrum = from.film_spectrum;
         if (from.fresnel != FresnelKind::None || from.has_color) lobe.f0 = values_of(run, from.f0);
         if (from.fresnel != FresnelKind::None) lobe.f90 = values_of(run, from.f90);
         if (from.fresnel == FresnelKind::Dielectric || from.kind == LobeKind::Refraction ||

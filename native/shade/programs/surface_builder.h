@@ -26,6 +26,7 @@ struct LobeSource {
     VectorSource tangent;
     FloatSource aspect;
     std::vector<FloatSource> more;  ///< as Lobe::more
+    FilmSpectrum film_spectrum = FilmSpectrum::Observed;
 };
 
 /// As SubsurfaceLobe.
