@@ -21,6 +21,11 @@ enum class AttributeSource {
                        ///< polygon's corners; zeros elsewhere
     Tangent,  ///< likewise, of the UV map `name` (empty: active for render), and whether it
               ///< is mirrored (tangents.h); zeros on subdivision surfaces
+    // Of curves and points; zeros elsewhere.
+    ElementRandom,   ///< a number in [0, 1] a curve or point: a hash of its index, as in Cycles
+    CurveLength,     ///< of the lines between its points, object space, at the frame time
+    CurveIntercept,  ///< the part of that from the root
+    ElementRadius,   ///< object space, at the frame time
 };
 
 /// Whether the value is a place on the surface itself.

@@ -1,9 +1,46 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/element_values.h"
 
+#include <array>
+
 #include "geometry/corner_values.h"
+#include "math/hash.h"
 
 namespace granita {
+namespace {
+
+/// Along the lines between points, the last but in part.
+double length_to(const SharedElements& elements, std::size_t first, std::size_t point,
+                 double fraction) {
+    double length = 0.0;
+    for (std::size_t v = first; v <= point; ++v) {
+        const double part = v < point ? 1.0 : fraction;
+        if (part > 0.0)
+            length += part * glm::length(elements.frame_point(v + 1) - elements.frame_point(v));
+    }
+    return length;
+}
+
+double curve_length(const SharedElements& elements, std::uint32_t curve) {
+    const std::size_t first = elements.first_point(curve), count = elements.point_count(curve);
+    return count < 2 ? 0.0 : length_to(elements, first, first + count - 2, 1.0);
+}
+
+double curve_intercept(const SharedElements& elements, const ElementPlace& place) {
+    const double length = curve_length(elements, place.element);
+    if (!(length > 0.0)) return 0.0;
+    const std::size_t first = elements.first_point(place.element);
+    return length_to(elements, first, place.point,
+                     place.next == place.point ? 0.0 : place.fraction) /
+           length;
+}
+
+/// In [0, 1].
+double element_random(std::uint32_t element) {
+    return hash_words(std::array<std::uint32_t, 2>{element, 0u}) / static_cast<double>(0xffffffffu);
+}
+
+}  // namespace
 
 void element_value(const SharedElements& elements, const AttributeRequest& request,
                    const ElementPlace& place, float* out) {
@@ -25,6 +62,14 @@ void element_value(const SharedElements& elements, const AttributeRequest& reque
         set(generated(elements.frame_box(), position(elements.first_point(place.element))));
     } else if (is_position(request.source)) {
         set(along(position));
+    } else if (request.source == AttributeSource::ElementRandom) {
+        set(Vec3d(element_random(place.element)));
+    } else if (request.source == AttributeSource::CurveLength) {
+        set(Vec3d(curve_length(elements, place.element)));
+    } else if (request.source == AttributeSource::CurveIntercept) {
+        set(Vec3d(curve_intercept(elements, place)));
+    } else if (request.source == AttributeSource::ElementRadius) {
+        set(Vec3d(along([&](std::size_t v) { return elements.frame_radius(v); })));
     } else if (const Attribute* attribute = find_attribute(elements.data(), request)) {
         const std::size_t n = static_cast<std::size_t>(attribute->width);
         const auto component = [&](std::size_t element, std::size_t c) {

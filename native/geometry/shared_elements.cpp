@@ -65,6 +65,17 @@ Vec3d SharedElements::frame_point(std::size_t vertex) const {
            Vec3d(m_data->points[(m_frame_knot + 1) * n + vertex]) * m_frame_fraction;
 }
 
+double SharedElements::frame_radius(std::size_t vertex) const {
+    const std::size_t n = m_data->vertex_count(), knots = m_data->radius.size() / n;
+    const auto at = [&](std::size_t knot) {
+        return static_cast<double>(m_data->radius[std::min(knot, knots - 1) * n + vertex]);
+    };
+    const double now = at(m_frame_knot);
+    return m_frame_fraction == 0.0
+               ? now
+               : now * (1.0 - m_frame_fraction) + at(m_frame_knot + 1) * m_frame_fraction;
+}
+
 void SharedElements::find_elements(Report& report) {
     const GeometryData& d = *m_data;
     const std::size_t n = d.vertex_count();

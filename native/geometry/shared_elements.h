@@ -41,6 +41,7 @@ class SharedElements {
     double frame_fraction() const { return m_frame_fraction; }
     /// Object space, at the frame time.
     Vec3d frame_point(std::size_t vertex) const;
+    double frame_radius(std::size_t vertex) const;
     /// Of the finite frame points.
     const Bounds3f& frame_box() const { return m_frame_box; }
     std::uint64_t bytes() const;

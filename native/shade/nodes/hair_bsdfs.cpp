@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "shade/bsdf/hair_color.h"
+#include "shade/nodes/instance_value.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/scalar_math.h"
 
@@ -29,14 +30,6 @@ VectorSource hair_axis(NodeBuilder& b, bool mesh_by_v) {
         },
         {}, {out.slot});
     return out;
-}
-
-/// 1 on curves.
-FloatSource on_curve(NodeBuilder& b) {
-    const Scene& scene = b.scene();
-    return b.geometry<float>([&scene](const ShadingInput& in, std::size_t) {
-        return scene.geometry_of(*in.instance).kind == GeometryKind::Curves ? 1.0f : 0.0f;
-    });
 }
 
 /// Factors of chance: 1 where there is none.
@@ -84,7 +77,7 @@ void build_hair(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weig
             b.vector("Tangent"));
     } else {
         lobe.tangent = hair_axis(b, true);
-        offset = product(b, offset, on_curve(b));
+        offset = product(b, offset, is_of_kind(b, GeometryKind::Curves));
     }
     lobe.aspect = FloatSource{-1, 1.0f};
     lobe.more = {b.number("RoughnessV", 1.0f), offset};
@@ -100,7 +93,11 @@ void build_principled_hair(NodeBuilder& b, SurfaceBuilder& surface, const FloatS
     if (!b.linked("Random")) {
         random = {-1, 0.5f};
         if (!random_color.is(0.0f) || !random_roughness.is(0.0f))
-            b.warn("Principled Hair: nothing is random but what is linked to Random");
+            random = b.map<float>([](float number, float of_curve,
+                                     float curve) { return curve != 0.0f ? of_curve : number; },
+                                  b.number("Random", 0.5f),
+                                  b.attribute_component({AttributeSource::ElementRandom, "", 1}, 0),
+                                  is_of_kind(b, GeometryKind::Curves));
     }
     const FloatSource factor = varied(b, random, random_roughness);
     LobeSource lobe;

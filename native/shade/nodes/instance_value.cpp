@@ -17,4 +17,10 @@ InstanceValue instance_value(NodeBuilder& b, const std::string& key) {
             })};
 }
 
+FloatSource is_of_kind(NodeBuilder& b, GeometryKind kind) {
+    return b.geometry<float>([&scene = b.scene(), kind](const ShadingInput& in, std::size_t) {
+        return scene.geometry_of(*in.instance).kind == kind ? 1.0f : 0.0f;
+    });
+}
+
 }  // namespace granita

@@ -14,4 +14,7 @@ struct InstanceValue {
 /// The instance's four numbers under a key; zeros where the frame has none, and in the world.
 InstanceValue instance_value(NodeBuilder& b, const std::string& key);
 
+/// 1 on geometry of a kind, else 0.
+FloatSource is_of_kind(NodeBuilder& b, GeometryKind kind);
+
 }  // namespace granita

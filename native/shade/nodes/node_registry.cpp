@@ -76,6 +76,8 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeLayerWeight", value(build_layer_weight)},
         {"ShaderNodeLightPath", value(build_light_path)},
         {"ShaderNodeObjectInfo", value(build_object_info)},
+        {"ShaderNodeHairInfo", value(build_hair_info)},
+        {"ShaderNodePointInfo", value(build_point_info)},
         {"ShaderNodeCameraData", value(build_camera_data)},
         {"ShaderNodeTexChecker", value(build_checker)},
         {"ShaderNodeTexGradient", value(build_gradient)},
@@ -102,8 +104,8 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeLightFalloff", NodeKind{build_plain_falloff, nullptr, "its strength"}},
 
         {"ShaderNodeTexGabor", flat},
-        {"ShaderNodeTexPointDensity", flat},
         {"ShaderNodeTexIES", flat},
+        {"ShaderNodeTexPointDensity", flat},
 
         {"ShaderNodeEeveeSpecular", like_diffuse},
     };

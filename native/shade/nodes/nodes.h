@@ -62,6 +62,8 @@ void build_fresnel(NodeBuilder&);
 void build_layer_weight(NodeBuilder&);
 void build_light_path(NodeBuilder&);
 void build_object_info(NodeBuilder&);
+void build_hair_info(NodeBuilder&);
+void build_point_info(NodeBuilder&);
 void build_camera_data(NodeBuilder&);
 void build_checker(NodeBuilder&);
 void build_gradient(NodeBuilder&);
