@@ -81,7 +81,8 @@ def export_frame(
     else:
         scene_objects = read_scene_objects(depsgraph, None, report, check_cancel)
     world, world_images = _world(depsgraph, report)
-    lamps = read_lamps(depsgraph, scene_objects.scan, scene_objects.lights(), report)
+    lamp_images = {}
+    lamps = read_lamps(depsgraph, scene_objects.scan, scene_objects.lights(), lamp_images, report)
     scene_objects.choose(report)
     at_frame = FrameScene(
         depsgraph=depsgraph,
@@ -110,7 +111,7 @@ def export_frame(
             scene_objects, at_frame.visit, depsgraph, report, check_cancel
         )
         later = seen.lights()[len(scene_objects.lights()) :]
-        lamps += read_lamps(depsgraph, seen.scan, later, report)
+        lamps += read_lamps(depsgraph, seen.scan, later, lamp_images, report)
         points = {**motion.points, **points_by_velocity(seen.sources, shutter, fps)}
     scan = seen.scan
     instances = place(seen.instances, scan, seen.chosen, motion.tracks, motion.lifespans, report)
@@ -134,7 +135,7 @@ def export_frame(
         ],
         instances=replace(instances),
         materials=materials,
-        images=_each_once(seen.images + world_images),
+        images=_each_once(seen.images + world_images + list(lamp_images.values())),
         lights=[record for _, record in lights],
         world=world,
     )

@@ -122,6 +122,7 @@ void read_light(const Record& r, Light& light) {
     light.specular_factor = static_cast<float>(r.number("specular_factor", 1.0));
     light.receiver_set = light_set(r, "receiver_set");
     light.blocker_set = light_set(r, "blocker_set");
+    if (r.has("nodes")) read_graph(r, light.graph);
 }
 
 }  // namespace granita::python

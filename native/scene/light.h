@@ -39,6 +39,7 @@ struct Light {
     /// Light and shadow linking: which bit of Instance::receives and ::blocks counts; -1 = it
     /// lights, and is shadowed by, everything.
     int receiver_set = -1, blocker_set = -1;
+    NodeGraph graph;  ///< surface: an Emission that multiplies its light; node -1 = none
     bool operator==(const Light&) const = default;
 };
 

@@ -12,6 +12,7 @@
 #include "shade/bounces/hit_shader.h"
 #include "shade/grid_channels.h"
 #include "shade/interpolated_points.h"
+#include "shade/lamp_shader.h"
 #include "shade/lights/direct_light.h"
 #include "shade/lights/light_sample_count.h"
 #include "shade/material_displacement.h"
@@ -119,9 +120,9 @@ struct ShadingSystem::Impl {
             return i.materials.empty() ? shows(-1) : std::ranges::any_of(i.materials, shows);
         });
         if (!any_reflects) return;
-        light = std::make_unique<DirectLight>(scene, world.evaluator(), statistics, report,
-                                              progress, ray_materials(), geometries, kept.rays,
-                                              displacement.get());
+        light = std::make_unique<DirectLight>(
+            scene, world.evaluator(), statistics, report, progress, ray_materials(), geometries,
+            kept.rays, displacement.get(), light_patterns(scene, textures, report));
         if (scene.options.bounces.most == 0) warn_of_emission();
         if (!light->rays()) return;
         if (scene.options.bounces.most > 0) {

@@ -12,6 +12,7 @@ import bpy
 import numpy as np
 import pytest
 import scene_parts
+from photometry import ies_file
 
 # Measured over 3.4 and 4.5: diffuse scenes .003 to .012, a scaled spot's hard rim .035, glossy
 # highlights of few pixels .05.
@@ -247,3 +248,43 @@ def test_a_linked_strength_that_varies_is_named(scene):
     assert said == [
         ("light 'Light'", "what is linked to Strength of 'Emission' varies and is not used")
     ]
+
+
+def light_tree(light):
+    light.data.use_nodes = True
+    return light.data.node_tree
+
+
+@pytest.mark.parametrize("kind", ["POINT", "SPOT", "AREA"])
+@pytest.mark.parametrize("linked", [False, True], ids=["its own vector", "a turned vector"])
+def test_photometric_lamps(scene, render, kind, linked):
+    if kind == "AREA" and not linked and bpy.app.version < (4, 0, 0):
+        pytest.skip("this Blender's area lights shine everywhere as straight ahead")
+    set_stage(scene, lambert())
+    spot = {"spot_size": 2.0} if kind == "SPOT" else {}
+    light = add_light(scene, kind, 30.0, (1.0, -1.5, 3.0), (0.5, 0.4, 0.7), **spot)
+    light.scale = (1.0, 1.0, 1.0) if kind == "AREA" else (2.0, 2.0, 2.0)
+    tree = light_tree(light)
+    file = bpy.data.texts.new("Luminaire.ies")
+    file.write(ies_file("a quarter"))
+    ies = tree.nodes.new("ShaderNodeTexIES")
+    ies.ies = file
+    ies.inputs["Strength"].default_value = 0.3
+    if linked:
+        place, turn = (tree.nodes.new(f"ShaderNode{n}") for n in ("TexCoord", "Mapping"))
+        turn.inputs["Rotation"].default_value = (0.3, 0.0, 1.0)
+        tree.links.new(place.outputs["Normal"], turn.inputs["Vector"])
+        tree.links.new(turn.outputs[0], ies.inputs["Vector"])
+    tree.links.new(ies.outputs["Fac"], tree.nodes["Emission"].inputs["Strength"])
+    if kind == "SPOT":
+        scene.granita.dicing_rate = SPOT_RATE
+    expect_alike(scene, render, DIFFUSE)
+
+
+def test_a_slide_in_a_lamp(scene, render):
+    set_stage(scene, lambert())
+    tree = light_tree(add_light(scene, "POINT", 500.0, (1.0, -1.5, 3.0), (0.5, 0.4, 0.7)))
+    place, slide = (tree.nodes.new(f"ShaderNode{n}") for n in ("TexCoord", "TexGradient"))
+    tree.links.new(place.outputs["Normal"], slide.inputs["Vector"])
+    tree.links.new(slide.outputs["Color"], tree.nodes["Emission"].inputs["Color"])
+    expect_alike(scene, render, DIFFUSE)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import scene_parts
 from node_comparison import PIXELS, Tree, board, check, enum_values, render_both, socket
+from photometry import LAYOUTS, ies_file
 
 DIMENSIONS = ["1D", "2D", "3D", "4D"]
 METRICS = enum_values("ShaderNodeTexVoronoi", "distance")
@@ -342,3 +343,38 @@ def test_the_sun_of_a_sky_lights(scene, render, model):
     scene.render.resolution_x = scene.render.resolution_y = PIXELS
     theirs, ours = render_both(scene, render, samples=64)
     assert ours.mean(axis=(0, 1)) == pytest.approx(theirs.mean(axis=(0, 1)), rel=0.01)
+
+
+def _ies(tree, text, **properties):
+    file = bpy.data.texts.new("Luminaire.ies")
+    file.write(text)
+    return tree.add("ShaderNodeTexIES", ies=file, **properties)
+
+
+# Blender 3.4 reads no others, or what lies outside of their angles.
+_OLD_LAYOUTS = ("all around", "half around", "a quarter", "even around", "from 90")
+
+
+@pytest.mark.parametrize("layout", _OLD_LAYOUTS if bpy.app.version < (4, 0, 0) else LAYOUTS)
+def test_photometric_files(scene, render, layout):
+    tree = Tree(board(scene, -1.0, 1.0))
+    node = _ies(tree, ies_file(layout, "INCLUDE" if layout == "all around" else "NONE"))
+    tree.link(tree.attribute("A"), node.inputs["Vector"])
+    strength = tree.add("ShaderNodeMath", operation="MULTIPLY_ADD")
+    tree.link(tree.attribute("B", "Fac"), strength.inputs[0])
+    strength.inputs[1].default_value, strength.inputs[2].default_value = 0.01, 0.02
+    tree.link(strength.outputs[0], node.inputs["Strength"])
+    tree.emit(node.outputs["Fac"])
+    check(scene, render)
+
+
+@pytest.mark.parametrize("text", [ies_file("half around"), "not a table"], ids=["one", "none"])
+def test_photometric_files_on_disk(scene, render, tmp_path, text):
+    file = tmp_path / "luminaire.ies"
+    file.write_text(text)
+    tree = Tree(board(scene, -1.0, 1.0))
+    node = tree.add("ShaderNodeTexIES", mode="EXTERNAL", filepath=str(file))
+    tree.link(tree.attribute("A"), node.inputs["Vector"])
+    tree.link(tree.attribute("B", "Fac"), node.inputs["Strength"])
+    tree.emit(node.outputs["Fac"], strength=0.02)
+    check(scene, render)

@@ -7,7 +7,7 @@ from ..base.transforms import is_finite
 from ..base.updates import originals
 
 
-def read_lamps(depsgraph, scan, things, report):
+def read_lamps(depsgraph, scan, things, images, report):
     """Records of the snapshot without their places, each lamp read once.
 
     Args:
@@ -15,6 +15,7 @@ def read_lamps(depsgraph, scan, things, report):
         scan: depsgraph.Visit.
         things: of it, lights.  What is hidden at the frame, or deleted by a handler of another add-on, is left
             out.
+        images: {name: record}; those that lights' nodes show are added.
         report: called with (datablock, message).
 
     Returns:
@@ -30,7 +31,7 @@ def read_lamps(depsgraph, scan, things, report):
         if owners is None or prototype.is_hidden_now(owners):
             continue
         if prototype.address not in records:
-            records[prototype.address] = light_record(owners[0], None, report)
+            records[prototype.address] = light_record(owners[0], None, report, images)
         found.append((thing, dict(records[prototype.address])))
     return found
 
@@ -48,7 +49,7 @@ def energies(depsgraph):
     if len(bpy.data.lights) == 0:
         return {}
     return {
-        thing.as_pointer(): light_record(thing.evaluated_get(depsgraph), None, silent)["energy"]
+        thing.as_pointer(): light_record(thing.evaluated_get(depsgraph), None, silent, {})["energy"]
         for thing in bpy.data.objects
         if thing.type == "LIGHT"
     }

@@ -10,24 +10,29 @@ import math
 import bpy
 
 from .constant_nodes import as_number, constant
+from .nodes import FlatGraph
 
+# Nodes that tell places apart: of a lamp, directions alone are.
+_BY_DISTANCE = {"ShaderNodeLightFalloff", "ShaderNodeCameraData"}
 _AREA_SHAPES = {"SQUARE", "RECTANGLE", "DISK", "ELLIPSE"}
 
 
-def light_record(light_object, matrices, report):
+def light_record(light_object, matrices, report, images=None):
     """One entry of the snapshot's `lights`.
 
     Args:
         light_object: evaluated Object of type LIGHT.
         matrices: float64 [K, 4, 4], world from light; None: not yet known.
         report: called with (datablock, message) for what cannot be taken over.
+        images: {name: record}; those that its nodes show are added.  None: nodes that vary are not taken over.
 
     Returns:
         dict of plain values; a light that Cycles would not let shine has energy 0.
     """
     light = light_object.data
     label = f"light '{light_object.name}'"
-    color, factor = _emission(light, label, report)
+    graph = None if images is None else _graph(light, label, images, report)
+    color, factor = ([1.0] * 3, 1.0) if graph else _emission(light, label, report)
     energy = light.energy * factor * 2.0 ** getattr(light, "exposure", 0.0)
     if light.type == "AREA" and bpy.app.version < (4, 0, 0):
         energy *= math.pi / 4.0  # radiance was P / (4 A) until 4.0 made it P / (pi A)
@@ -43,6 +48,7 @@ def light_record(light_object, matrices, report):
     shape = getattr(light, "shape", "SQUARE")
     size = getattr(light, "size", 0.0)
     return {
+        **(graph or {}),
         "name": light_object.name,
         "kind": light.type,
         "world_from_light": matrices,
@@ -96,19 +102,62 @@ def _area(light, matrix):
     return area * (math.pi / 4.0 if light.shape in ("DISK", "ELLIPSE") else 1.0)
 
 
+def _surface(light):
+    """The socket Surface of the light's output, if something is linked to it."""
+    outputs = [node for node in light.node_tree.nodes if node.type == "OUTPUT_LIGHT"]
+    output = next((node for node in outputs if node.is_active_output), None)
+    surface = output.inputs["Surface"] if output else None
+    return surface if surface is not None and surface.is_linked else None
+
+
+def _first_shader(surface):
+    node = surface.links[0].from_node
+    while node.type == "REROUTE" and node.inputs[0].is_linked:
+        node = node.inputs[0].links[0].from_node
+    return node
+
+
+def _graph(light, label, images, report):
+    """{"nodes": ..., "surface": ...} of a light whose nodes vary by direction, else None."""
+    if not light.use_nodes or light.node_tree is None or _surface(light) is None:
+        return None
+    node = _first_shader(_surface(light))
+    if node.type == "EMISSION":
+        inputs = [node.inputs[name] for name in ("Color", "Strength")]
+        if node.mute or all(constant(light.node_tree, i)[0] is not None for i in inputs):
+            return None
+    said, shown = [], {}
+    graph = FlatGraph(light.node_tree, label, shown, lambda *words: said.append(words))
+    surface = graph.add(_surface(light))
+    if surface is None or any(n["type"] in _BY_DISTANCE for n in graph.nodes):
+        return None
+    for words in said:
+        report(*words)
+    if light.type == "AREA":
+        _face_forward(graph.nodes)
+    if any(n["type"] == "ShaderNodeNewGeometry" for n in graph.nodes):
+        report(label, "a Geometry node among its nodes is read in the light's own axes")
+    images.update(shown)
+    return {"nodes": graph.nodes, "surface": surface}
+
+
+def _face_forward(nodes):
+    """Its normal is that of an area light's plane, wherever its light goes."""
+    for node in nodes:
+        for name, value in node["inputs"].items():
+            if isinstance(value, tuple) and value[0] == "LINK" and value[2] == "Normal":
+                if nodes[value[1]]["type"] == "ShaderNodeTexCoord":
+                    node["inputs"][name] = (0.0, 0.0, -1.0)
+
+
 def _emission(light, label, report):
     """Colour and strength of the light's Emission node; white and 1 without nodes."""
     if not light.use_nodes or light.node_tree is None:
         return [1.0] * 3, 1.0
-    outputs = [node for node in light.node_tree.nodes if node.type == "OUTPUT_LIGHT"]
-    output = next((node for node in outputs if node.is_active_output), None)
-    surface = output.inputs["Surface"] if output else None
-    if surface is None or not surface.is_linked:
+    surface = _surface(light)
+    if surface is None:
         return [1.0] * 3, 0.0
-    link = surface.links[0]
-    node = link.from_node
-    while node.type == "REROUTE" and node.inputs[0].is_linked:
-        node = node.inputs[0].links[0].from_node
+    node = _first_shader(surface)
     if node.type == "EMISSION" and node.mute:
         return [1.0] * 3, 0.0
     if node.type != "EMISSION":

@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from .ies import ies_table
 from .image import image_name
 from .spectrum import TEMPERATURES, WAVELENGTHS, blackbody, monochromatic
 
@@ -151,6 +152,10 @@ def _texture_coordinate(node, owner, images, report):
     return {"object_from_world": matrix.ravel()}
 
 
+def _ies(node, *_):
+    return ies_table(node)
+
+
 _SPECIAL = {
     "ShaderNodeValue": _value,
     "ShaderNodeRGB": _color,
@@ -164,4 +169,5 @@ _SPECIAL = {
     "ShaderNodeTexImage": _image_texture,
     "ShaderNodeTexEnvironment": _image_texture,
     "ShaderNodeTexCoord": _texture_coordinate,
+    "ShaderNodeTexIES": _ies,
 }

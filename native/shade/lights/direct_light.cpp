@@ -48,7 +48,7 @@ struct DirectLight::Impl {
     Impl(const Scene& scene, WorldEvaluator world_evaluator, Statistics& frame_statistics,
          Report& report, const Progress& progress, RayMaterials materials,
          std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
-         const Displacement* displacement);
+         const Displacement* displacement, const LightPatterns& patterns);
 
     void light_points(LitGrid& grid, const std::vector<LitPoint>& points,
                       std::size_t lobe_count) const;
@@ -75,7 +75,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
                         Statistics& frame_statistics, Report& report,
                         const Progress& frame_progress, RayMaterials materials,
                         std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
-                        const Displacement* displacement)
+                        const Displacement* displacement, const LightPatterns& patterns)
     : scene(frame_scene),
       statistics(frame_statistics),
       progress(frame_progress),
@@ -87,7 +87,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
     for (const Instance& instance : scene.instances)
         if (instance.receives != ~0ULL) linked[instance.key] = instance.receives;
     const Vec3d origin = camera_origin(scene);
-    std::vector<Lamp> lamps = lamps_of(scene, origin);
+    std::vector<Lamp> lamps = lamps_of(scene, origin, patterns);
     const bool asks_rays =
         world.shines() || scene.options.bounces.most > 0 ||
         std::ranges::any_of(lamps, [](const Lamp& lamp) { return lamp.casts_shadow(); }) ||
@@ -249,10 +249,10 @@ void DirectLight::Impl::sample_rest(LitGrid& grid, const LitPoint& point,
 DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics,
                          Report& report, const Progress& progress, RayMaterials materials,
                          std::shared_ptr<GeometryCache> geometries, std::shared_ptr<KeptRays> rays,
-                         const Displacement* displacement)
+                         const Displacement* displacement, const LightPatterns& patterns)
     : m_impl(std::make_unique<Impl>(scene, std::move(world), statistics, report, progress,
                                     std::move(materials), std::move(geometries), std::move(rays),
-                                    displacement)) {}
+                                    displacement, patterns)) {}
 
 DirectLight::~DirectLight() = default;
 

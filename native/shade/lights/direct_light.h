@@ -29,6 +29,7 @@
 #include "shade/bsdf/reflection.h"
 #include "shade/lights/environment.h"
 #include "shade/lights/light_motion.h"
+#include "shade/lights/light_pattern.h"
 #include "shade/lights/lobe_ray.h"
 #include "shade/rays/kept_rays.h"
 #include "shade/rays/ray_materials.h"
@@ -42,12 +43,13 @@ class DirectLight {
     /// `world` is kept and called from any thread; scene, statistics and progress must outlive
     /// this.  Without `materials` every surface casts a full shadow and none is a lamp.
     /// `geometries`: shared with dicing, if it is given; `rays`: where built geometries are looked
-    /// for and left; `displacement`: of instances, if there is any.  Throws Cancelled.
+    /// for and left; `displacement`: of instances, if there is any; `patterns`: of lamps with
+    /// nodes.  Throws Cancelled.
     DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics, Report& report,
                 const Progress& progress, RayMaterials materials = {},
                 std::shared_ptr<GeometryCache> geometries = nullptr,
                 std::shared_ptr<KeptRays> rays = nullptr,
-                const Displacement* displacement = nullptr);
+                const Displacement* displacement = nullptr, const LightPatterns& patterns = {});
     ~DirectLight();
 
     /// Lifts where rays of points start above the triangles that rays meet of a displaced surface.

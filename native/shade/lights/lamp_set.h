@@ -76,6 +76,6 @@ struct LampSet {
 };
 
 /// Those of a scene that shine.  `origin`: the camera's world position at the frame time.
-std::vector<Lamp> lamps_of(const Scene& scene, const Vec3d& origin);
+std::vector<Lamp> lamps_of(const Scene& scene, const Vec3d& origin, const LightPatterns& patterns);
 
 }  // namespace granita

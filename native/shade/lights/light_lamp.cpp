@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "scene/knot_time.h"
+
 namespace granita {
 namespace {
 
@@ -20,7 +22,8 @@ bool varies_over_time(const Light& light) {
 
 }  // namespace
 
-Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin)
+Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin,
+           std::shared_ptr<const LightPattern> pattern)
     : m_lifespan(light.lifespan),
       m_casts_shadow(light.casts_shadow),
       m_diffuse(light.visible_diffuse ? light.diffuse_factor : 0.0f),
@@ -32,6 +35,9 @@ Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin)
     for (int k = 0; k < places; ++k) {
         const float time = places > 1 ? (static_cast<float>(k) + 0.5f) / kPlaces : frame_time;
         m_sources.push_back(make_light_source(light, time, origin));
+        if (pattern)
+            m_sources.back() = with_pattern(std::move(m_sources.back()), pattern,
+                                            Mat3d(matrix_at(light.world_from_light, time)));
         m_hard = m_hard && m_sources.back()->is_hard();
     }
 }

@@ -8,6 +8,7 @@
 #include "scene/scene.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/lights/light_bound.h"
+#include "shade/lights/light_pattern.h"
 #include "shade/lights/light_source.h"
 #include "shade/lights/light_triangle.h"
 
@@ -17,7 +18,9 @@ namespace granita {
 class Lamp {
   public:
     /// `origin`: the camera's world position at the frame time.
-    Lamp(const Light& light, float frame_time, const Vec3d& origin);
+    /// `pattern`: of its nodes, or nullptr.
+    Lamp(const Light& light, float frame_time, const Vec3d& origin,
+         std::shared_ptr<const LightPattern> pattern = nullptr);
     /// A triangle of an instance that shines.
     Lamp(MovingTriangle triangle, const Instance& instance);
 

@@ -89,6 +89,7 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeTexBrick", value(build_brick_texture)},
         {"ShaderNodeTexWhiteNoise", value(build_white_noise_texture)},
         {"ShaderNodeTexSky", value(build_sky_texture)},
+        {"ShaderNodeTexIES", value(build_ies_texture)},
         {"ShaderNodeVectorCurve", value(build_vector_curves)},
         {"ShaderNodeFloatCurve", value(build_float_curve)},
         {"ShaderNodeVectorRotate", value(build_vector_rotate)},
@@ -104,7 +105,6 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeLightFalloff", NodeKind{build_plain_falloff, nullptr, "its strength"}},
 
         {"ShaderNodeTexGabor", flat},
-        {"ShaderNodeTexIES", flat},
         {"ShaderNodeTexPointDensity", flat},
 
         {"ShaderNodeEeveeSpecular", like_diffuse},

@@ -75,6 +75,7 @@ void build_voronoi_texture(NodeBuilder&);
 void build_wave_texture(NodeBuilder&);
 void build_magic_texture(NodeBuilder&);
 void build_brick_texture(NodeBuilder&);
+void build_ies_texture(NodeBuilder&);
 void build_flat_texture(NodeBuilder&);
 void build_vector_curves(NodeBuilder&);
 void build_float_curve(NodeBuilder&);

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "base/report.h"
+#include "scene/scene.h"
+#include "shade/lights/light_pattern.h"
+#include "shade/textures/texture.h"
+
+namespace granita {
+
+/// The nodes of the scene's lights, run over all directions once.  They see what a world's do: a
+/// direction, here in the lamp's own axes, and no place.
+LightPatterns light_patterns(const Scene& scene, TextureStore& textures, Report& report);
+
+}  // namespace granita
