@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lights whose nodes tell directions apart."""
+
+import numpy as np
+import pytest
+import snapshots as s
+
+SIZE, POWER, HEIGHT = 32, 4e4, 40.0
+ALBEDO = 0.8
+
+
+def link(node, output):
+    return ("LINK", node, output)
+
+
+# Shines by the cosine to its axis, twice as strong in green.
+COSINE = [
+    {"type": "ShaderNodeTexCoord", "inputs": {}},
+    {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": link(0, "Normal")}},
+    {
+        "type": "ShaderNodeMath",
+        "inputs": {"Value": link(1, "Z"), "Value_001": -1.0},
+        "properties": {"operation": "MULTIPLY", "use_clamp": 1.0},
+    },
+    {
+        "type": "ShaderNodeEmission",
+        "inputs": {"Color": (1.0, 2.0, 1.0, 1.0), "Strength": link(2, "Value")},
+    },
+]
+
+
+def stage(turn, **light):
+    """A floor before the camera, and a lamp between them that is turned about x."""
+    snapshot = s.orthographic((SIZE, SIZE), executor="SIMD", samples=64, light_samples=4)
+    nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (ALBEDO,) * 3 + (1,)}}]
+    snapshot["materials"].append({"name": "Matte", "nodes": nodes, "surface": (0, "BSDF")})
+    s.quad(snapshot, s.rectangle(-9, -9, SIZE + 9, SIZE + 9, 60.0), 0)
+    place = np.eye(4)
+    # Along +z, to the floor, where it is not turned.
+    place[:3, :3] = [
+        [1.0, 0.0, 0.0],
+        [0.0, -np.cos(turn), np.sin(turn)],
+        [0.0, -np.sin(turn), -np.cos(turn)],
+    ]
+    place[:3, 3] = SIZE / 2, SIZE / 2, 60.0 - HEIGHT
+    snapshot["lights"] = [
+        {
+            "name": "Lamp",
+            "kind": "POINT",
+            "world_from_light": place[None],
+            "energy": POWER,
+            "color": (1.0, 1.0, 1.0),
+            "nodes": COSINE,
+            "surface": (3, "Emission"),
+            **light,
+        }
+    ]
+    return snapshot, -place[:3, 2]
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.01])
+@pytest.mark.parametrize("turn", [0.0, 0.7, -0.9])
+def test_a_lamp_that_shines_by_the_cosine(turn, radius):
+    snapshot, axis = stage(turn, radius=radius)
+    image = s.render(snapshot)["combined"][..., :3]
+    x, y = np.meshgrid(np.arange(SIZE) + 0.5 - SIZE / 2, np.arange(SIZE) + 0.5 - SIZE / 2)
+    way = np.stack([x, y, np.full_like(x, HEIGHT)], axis=-1)
+    distance = np.linalg.norm(way, axis=-1)
+    cosine = np.maximum(way @ axis, 0.0) / distance
+    expected = ALBEDO / np.pi * POWER / (4 * np.pi) * cosine * HEIGHT / distance**3
+    # Corners of micropolygons are a pixel apart, a fortieth of the height: (1 / 40)^2 of the light.
+    np.testing.assert_allclose(image[..., 0], expected, atol=0.001 * expected.max())
+    np.testing.assert_allclose(image[..., 1], 2 * image[..., 0], rtol=1e-5)
+
+
+def test_instances_of_a_lamp_share_what_one_is():
+    snapshot, _ = stage(0.4)
+    alone = s.render(snapshot)["combined"]
+    snapshot["lights"] *= 2
+    np.testing.assert_allclose(s.render(snapshot)["combined"][..., 1], 2 * alone[..., 1], rtol=1e-5)
