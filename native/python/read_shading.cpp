@@ -63,6 +63,7 @@ void read_graph(const Record& r, NodeGraph& graph) {
         if (r.has("surface")) graph.surface = read_link(r, r.get("surface"), count, count);
         if (r.has("displacement"))
             graph.displacement = read_link(r, r.get("displacement"), count, count);
+        if (r.has("volume")) graph.volume = read_link(r, r.get("volume"), count, count);
         graph.displacement_method = static_cast<DisplacementMethod>(
             choice(r, "displacement_method", r.text("displacement_method", "DISPLACEMENT"),
                    {"BUMP", "DISPLACEMENT", "BOTH"}));

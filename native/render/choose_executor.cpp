@@ -28,6 +28,10 @@ std::string raster_obstacle(const Scene& scene) {
         // The world is evaluated at the corners of pixels, for whole passes.
         return "the world would differ from sample to sample";
     }
+    if (std::ranges::any_of(scene.materials,
+                            [](const Material& m) { return m.graph.has_volume(); }) ||
+        scene.world.graph.has_volume())
+        return "something is filled by a volume";
     if (!ChannelSet(scene.options).empty()) return "passes beside Combined and Depth are asked for";
     return {};
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/frame_geometry.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "base/stage_timer.h"
 #include "dice/raster_bound.h"
@@ -21,6 +23,16 @@ bool is_single(const Rect& range) {
     return range.width() == 1 && range.height() == 1;
 }
 
+/// Whether the camera sees surfaces of it.
+bool is_drawn(const Scene& scene, const Instance& instance) {
+    const auto draws = [&](std::int32_t material) {
+        return material < 0 ||
+               !scene.materials[static_cast<std::size_t>(material)].graph.has_only_volume();
+    };
+    return instance.visible_camera &&
+           (instance.materials.empty() || std::ranges::any_of(instance.materials, draws));
+}
+
 }  // namespace
 
 FrameGeometry::FrameGeometry(const View& view, const BucketLayout& layout, Report& report,
@@ -36,7 +48,7 @@ FrameGeometry::FrameGeometry(const View& view, const BucketLayout& layout, Repor
     std::vector<Rect> ranges(m_states.size());
     parallel_for(m_states.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            if (!view.scene->instances[i].visible_camera) continue;
+            if (!is_drawn(*view.scene, view.scene->instances[i])) continue;
             State& state = m_states[i];
             std::vector<Bounds3f> boxes = instance_boxes(view, i);
             state.bounds = raster_bound_of(view.projection, boxes);

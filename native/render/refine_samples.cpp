@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "base/stage_timer.h"
 #include "hider/resolve/surface_interpolator.h"
-#include "math/sampling.h"
+#include "render/sample_place.h"
 #include "scene/channels.h"
 
 namespace granita {
@@ -15,16 +15,6 @@ namespace {
 
 /// Points that are shaded at once.
 constexpr std::size_t kBatch = 1024;
-
-/// In the sample sequences of the frame: pixels along Morton's curve, whose aligned squares are
-/// stratified as one.
-std::uint32_t place_of(Vec2i tile, std::uint32_t sample, int samples) {
-    const std::uint32_t pixel = sample / static_cast<std::uint32_t>(samples);
-    const auto x = static_cast<std::uint32_t>(tile.x * kTileSize) + pixel % kTileSize;
-    const auto y = static_cast<std::uint32_t>(tile.y * kTileSize) + pixel / kTileSize;
-    return morton_index(x, y) * static_cast<std::uint32_t>(samples) +
-           sample % static_cast<std::uint32_t>(samples);
-}
 
 bool is_within(const Vec3f& opacity, const OpacityBounds& bounds) {
     const float mean = (opacity.x + opacity.y + opacity.z) / 3.0f;

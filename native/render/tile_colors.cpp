@@ -7,6 +7,7 @@
 #include "film/tile_noise.h"
 #include "hider/resolve/composite.h"
 #include "render/background.h"
+#include "render/tile_volumes.h"
 
 namespace granita {
 
@@ -24,7 +25,14 @@ void TileColors::composite(const TileStore& store, const TileSamples& samples, L
     const StageTimer timer(m_frame.statistics, Stage::Resolve);
     const CompositeSettings settings{m_frame.view.projection, m_frame.hider.list_end,
                                      options.film_transparent, &channels, options.depth_pass};
-    composite_tile(store, samples, layers, background, settings, m_colors, &m_channels, refined);
+    if (!m_frame.shading.volumes()) {
+        composite_tile(store, samples, layers, background, settings, m_colors, &m_channels,
+                       refined);
+        return;
+    }
+    const TileVolumes volumes(m_frame, m_table, store, layers.pool(), refined);
+    composite_tile(store, samples, layers, background, settings, m_colors, &m_channels,
+                   volumes.refined, volumes.samples);
 }
 
 void TileColors::take(const TileColors& part, const Rect& pixels, int samples) {

@@ -58,6 +58,7 @@ struct NodeGraph {
     std::vector<Node> nodes;
     NodeLink surface;       ///< node -1 = none
     NodeLink displacement;  ///< node -1 = none
+    NodeLink volume;        ///< what is inside; node -1 = nothing
     DisplacementMethod displacement_method = DisplacementMethod::Displacement;
 
     bool moves_surface() const {
@@ -66,6 +67,9 @@ struct NodeGraph {
     bool bends_normals() const {
         return displacement.node >= 0 && displacement_method == DisplacementMethod::Bump;
     }
+    bool has_volume() const { return volume.node >= 0; }
+    /// There is something inside, but no surface around it.
+    bool has_only_volume() const { return has_volume() && surface.node < 0; }
     bool operator==(const NodeGraph&) const = default;
 };
 

@@ -70,6 +70,8 @@ struct ShadingSystem::Impl {
     float footprint;                   ///< of a sample, in steps of a grid
     std::shared_ptr<GeometryCache> geometries;
     std::shared_ptr<const ShadedGrids> shaded;  ///< of an earlier picture, or nullptr
+    std::unique_ptr<Volumes> volumes;           ///< nullptr where nothing is filled
+    std::unique_ptr<SeenVolumes> seen_volumes;  ///< likewise
     std::unique_ptr<DirectLight> light;         ///< nullptr where nothing that is seen reflects any
     std::unique_ptr<HitShader> hits;            ///< where light is followed further, else nullptr
     std::unique_ptr<BouncedLight> bounces;
@@ -119,7 +121,8 @@ struct ShadingSystem::Impl {
             const auto shows = [this](int index) { return reflects(index); };
             return i.materials.empty() ? shows(-1) : std::ranges::any_of(i.materials, shows);
         });
-        if (!any_reflects) return;
+        if (Volumes::any(scene)) volumes = std::make_unique<Volumes>(scene, textures, report);
+        if (!any_reflects && !volumes) return;
         light = std::make_unique<DirectLight>(
             scene, world.evaluator(), statistics, report, progress, ray_materials(), geometries,
             kept.rays, displacement.get(), light_patterns(scene, textures, report));
@@ -127,9 +130,11 @@ struct ShadingSystem::Impl {
         if (!light->rays()) return;
         if (scene.options.bounces.most > 0) {
             hits = std::make_unique<HitShader>(scene, textures, report);
-            bounces = std::make_unique<BouncedLight>(scene, *light, *hits, *emission, statistics,
-                                                     progress);
+            bounces = std::make_unique<BouncedLight>(scene, *light, *hits, *emission, volumes.get(),
+                                                     statistics, progress);
         }
+        if (volumes)
+            seen_volumes = std::make_unique<SeenVolumes>(scene, *volumes, *light, bounces.get());
         if (!any_scatters()) return;
         const auto bent = [this](std::int32_t index) {
             const SurfaceProgram& radiance = material(index).radiance;
@@ -177,6 +182,7 @@ struct ShadingSystem::Impl {
             },
             [this](std::int32_t index) { return constant_transparency(material(index).shadow); },
             [this](std::int32_t index) { return emission->constant(index); }};
+        if (volumes) volumes->tell(asked);
         if (any_scatters())
             asked.is_scattering = [this](std::int32_t index) { return scatters(index); };
         return asked;
@@ -443,7 +449,9 @@ bool ShadingSystem::opacity_varies(int material) const {
 
 bool ShadingSystem::reaches_others(int material) const {
     return !m_impl->material(material).shadow.transparency.is(Vec3f(0.0f)) ||
-           m_impl->emission->any(material) || m_impl->material(material).radiance.bends_scattered();
+           m_impl->emission->any(material) ||
+           m_impl->material(material).radiance.bends_scattered() ||
+           (m_impl->volumes && m_impl->volumes->inside(material) != RayMaterials::Inside::Nothing);
 }
 
 void ShadingSystem::shade_opacity(Grid& grid) const {
@@ -480,6 +488,10 @@ Grid ShadingSystem::refine(const Grid& grid, std::span<const RefinedPoint> wante
 void ShadingSystem::background(const std::vector<Vec3f>& directions, float spread,
                                std::vector<Vec3f>& out) const {
     m_impl->world.radiance(directions, spread, RayType::Camera, out);
+}
+
+const SeenVolumes* ShadingSystem::volumes() const {
+    return m_impl->seen_volumes.get();
 }
 
 bool ShadingSystem::background_is_constant() const {

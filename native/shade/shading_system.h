@@ -14,6 +14,7 @@
 #include "scene/scene.h"
 #include "shade/kept_shading.h"
 #include "shade/refined_points.h"
+#include "shade/seen_volumes.h"
 
 namespace granita {
 
@@ -62,6 +63,9 @@ class ShadingSystem {
                     std::vector<Vec3f>& out) const;
     /// The world's colour is one constant: `background` of any one direction.
     bool background_is_constant() const;
+
+    /// nullptr where nothing is filled.
+    const SeenVolumes* volumes() const;
 
   private:
     struct Impl;

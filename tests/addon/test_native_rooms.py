@@ -8,7 +8,7 @@ import pytest
 
 NATIVE = Path(__file__).resolve().parents[2] / "native"
 STAGES = "base math scene geometry dice shade gl hider film render python".split()
-SHADE = "rays bsdf lights textures programs nodes bounces subsurface".split()
+SHADE = "rays bsdf lights textures programs nodes volumes bounces subsurface".split()
 # What a room of `hider` knows beside itself and the files above the rooms.
 HIDER = {
     "samples": set(),

@@ -45,6 +45,8 @@ def troubles(thing):
     for modifier in thing.modifiers:
         if modifier.type == "MESH_SEQUENCE_CACHE" and modifier.show_render:
             found += _cache_troubles(modifier)
+        if modifier.type == "FLUID" and modifier.show_render and _is_smoke(modifier):
+            found.append("its grids of smoke and fire are not read: its box is filled evenly")
     # Blender notes a failure on the copy that it evaluated.
     failed = {
         curve.data_path: None
@@ -54,6 +56,11 @@ def troubles(thing):
         if not curve.driver.is_valid
     }
     return found + [f"the driver of its {path} fails: the value stays as it was" for path in failed]
+
+
+def _is_smoke(modifier):
+    domain = modifier.domain_settings if modifier.fluid_type == "DOMAIN" else None
+    return domain is not None and domain.domain_type == "GAS"
 
 
 def _cache_troubles(modifier):

@@ -48,7 +48,6 @@ def material_record(material, images, report, aovs=()):
         surface = graph.add(output.inputs["Surface"])
         record["displacement"] = graph.add(output.inputs["Displacement"])
         record["displacement_method"] = displacement_method(material)
-        if output.inputs["Volume"].is_linked:
-            report(owner, "its volume is not rendered")
+        record["volume"] = graph.add(output.inputs["Volume"])
     graph.add_aov_outputs(aovs)
     return {**record, "nodes": graph.nodes, "surface": surface}

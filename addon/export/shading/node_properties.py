@@ -165,6 +165,7 @@ _SPECIAL = {
     "ShaderNodeFloatCurve": _free_curves,
     "ShaderNodeNormal": _direction,
     "ShaderNodeBlackbody": _blackbody,
+    "ShaderNodeVolumePrincipled": _blackbody,
     "ShaderNodeWavelength": _wavelength,
     "ShaderNodeTexImage": _image_texture,
     "ShaderNodeTexEnvironment": _image_texture,

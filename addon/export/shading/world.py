@@ -52,8 +52,7 @@ def export_world(scene, view_layer, report, images=None):
     output = world.node_tree.get_output_node("CYCLES")
     if output is not None:
         record["surface"] = graph.add(output.inputs["Surface"])
-        if output.inputs["Volume"].is_linked:
-            report(owner, "its volume is not rendered")
+        record["volume"] = graph.add(output.inputs["Volume"])
     if images is not None:
         known = {image["name"] for image in images}
         images.extend(image for image in shown.values() if image["name"] not in known)

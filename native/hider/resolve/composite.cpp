@@ -61,7 +61,8 @@ class TileComposite {
   public:
     TileComposite(const TileStore& store, const TileSamples& samples, LayerTable& table,
                   std::span<const Vec3f> background, const CompositeSettings& settings,
-                  ChannelLayers* channels, const RefinedSamples& refined, SampleColors& colors)
+                  ChannelLayers* channels, const RefinedSamples& refined,
+                  std::span<const SampleVolume> volumes, SampleColors& colors)
         : m_store(store),
           m_samples(samples),
           m_table(table),
@@ -69,6 +70,7 @@ class TileComposite {
           m_settings(settings),
           m_channels(channels),
           m_refined(refined),
+          m_volumes(volumes),
           m_colors(colors),
           m_blurred(!samples.t.empty() || !samples.u.empty()),
           m_surface(settings.projection, store.tile, samples, table.pool()) {}
@@ -79,6 +81,7 @@ class TileComposite {
         for (std::uint32_t first = 0; first < m_store.key.size(); first += kRun)
             if (m_done.empty() || !finish_run(first)) set_behind(first);
         set_refined();
+        if (!m_volumes.empty()) put_volumes_over();
         if (m_store.lists.empty()) return;
         m_table.fill();
         for (std::size_t p = 0; p < m_store.lists.packets(); ++p) add_lists(p);
@@ -113,6 +116,18 @@ class TileComposite {
         for (std::size_t i = 0; i < m_refined.samples().size(); ++i) {
             const std::uint32_t sample = m_refined.samples()[i];
             m_colors.set(sample, opaque(sample, m_refined.point(i)));
+        }
+    }
+
+    void put_volumes_over() {
+        for (std::uint32_t sample = 0; sample < m_store.key.size(); ++sample) {
+            const SampleVolume& volume = m_volumes[sample];
+            SampleColor color = m_colors[sample];
+            const Vec3f& left = volume.transmittance;
+            color.color = volume.light + left * color.color;
+            color.alpha = static_cast<float>(1.0 - channel_mean(left.x, left.y, left.z) *
+                                                       (1.0 - color.alpha));
+            m_colors.set(sample, color);
         }
     }
 
@@ -286,6 +301,7 @@ class TileComposite {
     const CompositeSettings& m_settings;
     ChannelLayers* m_channels;
     const RefinedSamples& m_refined;
+    std::span<const SampleVolume> m_volumes;
     SampleColors& m_colors;
     bool m_blurred;
     std::vector<std::uint8_t> m_done;  ///< [samples] 1 = has its colour; empty: none has
@@ -298,7 +314,8 @@ class TileComposite {
 
 void composite_tile(const TileStore& store, const TileSamples& samples, LayerTable& table,
                     std::span<const Vec3f> background, const CompositeSettings& settings,
-                    SampleColors& colors, SampleChannels* channels, const RefinedSamples& refined) {
+                    SampleColors& colors, SampleChannels* channels, const RefinedSamples& refined,
+                    std::span<const SampleVolume> volumes) {
     const std::size_t count = store.key.size();
     const bool has_channels = settings.channels && !settings.channels->empty();
     GRANITA_CHECK(!has_channels || channels);
@@ -308,7 +325,7 @@ void composite_tile(const TileStore& store, const TileSamples& samples, LayerTab
     if (has_channels) layers.emplace(*settings.channels, samples, *channels);
     colors.resize(count);
     TileComposite(store, samples, table, background, settings, layers ? &*layers : nullptr, refined,
-                  colors)
+                  volumes, colors)
         .run();
 }
 

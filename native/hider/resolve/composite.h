@@ -24,6 +24,12 @@ struct CompositeSettings {
     bool depth = true;                     ///< whether SampleColors::depth is wanted
 };
 
+/// What lies between a sample's list and what is behind it, or the layer before that.
+struct SampleVolume {
+    Vec3f transmittance{1.0f};  ///< from what is behind to the camera
+    Vec3f light{0.0f};          ///< that it sends to the camera, but for the layers before it
+};
+
 /// Fills [256 * samples] colours in sample order.  `background`: premultiplied radiance behind
 /// everything: one value, or one a sample; read where the film is not transparent or channels have
 /// the environment.  `table`: of the hider's pool.
@@ -35,9 +41,10 @@ struct CompositeSettings {
 /// is 1 less what holdouts cut out.  Depth is that of the first layer, or
 /// anything where it is not wanted.  Fills `channels` where
 /// settings.channels asks for some; holdouts take part in Merge::First and Center alone.
+/// `volumes` [256 * samples], or empty: not seen by channels.
 void composite_tile(const TileStore& store, const TileSamples& samples, LayerTable& table,
                     std::span<const Vec3f> background, const CompositeSettings& settings,
                     SampleColors& colors, SampleChannels* channels = nullptr,
-                    const RefinedSamples& refined = {});
+                    const RefinedSamples& refined = {}, std::span<const SampleVolume> volumes = {});
 
 }  // namespace granita

@@ -41,6 +41,16 @@ class RefinedSamples {
         m_looks.push_back(look);
         if (grid) m_layer_points.push_back(point_at(*grid, vertex));
     }
+    /// Layer k of the list in a slot then looks like this, wherever it is met; as add_layer().
+    void change_layer(const FragmentLists& lists, std::uint32_t slot, std::uint32_t k,
+                      const LayerLook& look, const SurfacePoint* channels) {
+        if (const std::uint32_t found = layer(slot, k); found != kNone) {
+            m_looks[found] = look;
+            return;
+        }
+        add_layer(lists, slot, k, look, nullptr, 0);
+        if (channels) m_layer_points.push_back(*channels);
+    }
     bool any_layers() const { return !m_looks.empty(); }
     /// What such a layer looks like; nullptr: as its micropolygon does.
     const LayerLook* look(std::uint32_t slot, std::uint32_t k) const {

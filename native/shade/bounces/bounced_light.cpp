@@ -6,8 +6,10 @@
 #include <limits>
 #include <utility>
 
+#include "math/luminance.h"
 #include "math/sampling.h"
 #include "shade/nodes/surface_run.h"
+#include "shade/volumes/scatter_points.h"
 
 namespace granita {
 namespace {
@@ -19,12 +21,16 @@ float chance(std::uint32_t place, int depth, int passed, std::uint64_t salt) {
     return static_cast<float>(mix_bits(mix_bits(at) + salt) >> 40) * 0x1p-24f;
 }
 
+/// Places in media that send a way on, beside the first.
+constexpr int kVolumeBounces = 0;
+
 }  // namespace
 
 /// The ways of a batch of points, a bounce at a time.
 class BouncedLight::Wave {
   public:
-    Wave(const BouncedLight& light, const std::vector<LobeRay>& leaving, GatheredLight& gathered)
+    Wave(const BouncedLight& light, const std::vector<LobeRay>& leaving, bool is_scattered,
+         GatheredLight& gathered)
         : m_light(light),
           m_limits(light.m_scene.options.bounces),
           m_salt(mix_bits(light.m_scene.options.seed + 1ULL)),
@@ -40,7 +46,7 @@ class BouncedLight::Wave {
             path.kind = ray.ray.type == RayType::Diffuse ? BouncedPath::Kind::Diffuse
                         : is_sharp(ray.ray.type)         ? BouncedPath::Kind::Mirrored
                                                          : BouncedPath::Kind::Glossy;
-            follow(path);
+            follow(path, is_scattered);
         }
         m_paths.swap(m_next);
     }
@@ -50,6 +56,7 @@ class BouncedLight::Wave {
         while (!m_paths.empty()) {
             m_light.m_progress.check();
             trace();
+            if (m_light.m_volumes) pass_volumes();
             if (std::exchange(is_first, false)) note_near();
             shade();
             m_paths.swap(m_next);
@@ -60,9 +67,26 @@ class BouncedLight::Wave {
     }
 
   private:
+    static constexpr std::uint32_t kNothing = ~0u;
+    /// Where a way is, from which it goes on: on a surface, or in a medium, where there is no hit.
+    struct End {
+        const RayHit* hit;
+        const ShadingPoints* points;
+        std::size_t point;
+        float distance;
+    };
+    /// A place in a medium that a way is scattered at.
+    struct Scattering {
+        std::uint32_t path;
+        ScatterPlace place;
+        float u;
+    };
+
     /// Keeps the way for the next wave, unless it may go no further.
-    void follow(BouncedPath& path) {
-        if (path.next.ray.type == RayType::Diffuse)
+    void follow(BouncedPath& path, bool is_scattered) {
+        if (is_scattered)
+            ++path.volume;
+        else if (path.next.ray.type == RayType::Diffuse)
             ++path.diffuse;
         else if (goes_through(path.next.ray.type))
             ++path.transmission;
@@ -81,7 +105,8 @@ class BouncedLight::Wave {
     bool is_within(const BouncedPath& path, int more) const {
         return path.depth <= m_limits.most + more && path.diffuse <= m_limits.diffuse + more &&
                path.glossy <= m_limits.glossy + more &&
-               path.transmission <= m_limits.transmission + more;
+               path.transmission <= m_limits.transmission + more &&
+               path.volume <= kVolumeBounces + more;
     }
 
     /// Of surfaces that the first rays meet: what light they bring varies as these are near,
@@ -103,6 +128,90 @@ class BouncedLight::Wave {
         for (const BouncedPath& path : m_paths) m_rays.push_back(path.next.ray);
         m_rays_traced += m_rays.size();
         m_light.m_direct.rays()->nearest(m_rays, m_met);
+    }
+
+    /// Light of what fills the ways to the surfaces that were met, and what passes it.  Of a
+    /// surface and a place before it that scatters light, one is gone on with.
+    void pass_volumes() {
+        std::vector<std::uint32_t> met_by(m_paths.size(), kNothing);
+        for (std::uint32_t k = 0; k < m_met.size(); ++k) met_by[m_met[k].ray] = k;
+        for (std::size_t i = 0; i < m_paths.size(); ++i)
+            if (met_by[i] != kNothing) m_rays[i].distance = m_met[met_by[i]].hit.distance;
+        m_light.m_volumes->find(m_rays, m_media);
+        m_scattering.clear();
+        std::vector<std::uint8_t> is_left(m_met.size(), 1);
+        for (std::uint32_t i = 0; i < m_paths.size(); ++i) {
+            BouncedPath& path = m_paths[i];
+            MediumWalk walk(m_media.of(i));
+            const Vec3f emitted = walk.advance(m_rays[i].distance);
+            if (emitted != Vec3f(0.0f)) bring(path, emitted);
+            const bool has_met = met_by[i] != kNothing;
+            const float scattered = scatter(path, i, has_met ? mean_size(walk.transmittance()) : 0);
+            if (!has_met) continue;
+            if (scattered == 1.0f)
+                is_left[met_by[i]] = 0;
+            else
+                path.next.weight *= walk.transmittance() / (1.0f - scattered);
+        }
+        std::size_t left = 0;
+        for (std::size_t k = 0; k < m_met.size(); ++k)
+            if (is_left[k]) m_met[left++] = m_met[k];
+        m_met.erase(m_met.begin() + static_cast<std::ptrdiff_t>(left), m_met.end());
+        shade_scattering();
+    }
+
+    /// 1 where the way is gone on with at a place that scatters light, else how likely that was;
+    /// `passing`: mean of what passes to a surface that is met.
+    float scatter(const BouncedPath& path, std::uint32_t i, float passing) {
+        if (!m_light.m_volumes->scatters() || !is_lit(path)) return 0.0f;
+        const ScatterSampler sampler(m_rays[i], m_media.of(i), {});
+        const float chance = sampler.scattered() / (sampler.scattered() + passing);
+        if (!(chance > 0.0f)) return 0.0f;
+        const auto step = static_cast<std::uint32_t>(path.depth + 256 * path.passed);
+        const std::uint32_t seed = m_light.m_scene.options.seed;
+        const Vec4f u = scatter_numbers(seed, step, path.next.place);
+        if (!(u.z < chance)) return chance;
+        Scattering made{i, {}, u.w};
+        if (sampler.sample(Vec3f(u), made.place)) {
+            made.place.weight /= chance;
+            m_scattering.push_back(made);
+        }
+        return 1.0f;
+    }
+
+    /// Ways after as many surfaces together.
+    void shade_scattering() {
+        std::ranges::stable_sort(m_scattering, {},
+                                 [&](const Scattering& s) { return m_paths[s.path].depth; });
+        for (std::size_t begin = 0, end; begin < m_scattering.size(); begin = end) {
+            const int depth = m_paths[m_scattering[begin].path].depth;
+            for (end = begin;
+                 end < m_scattering.size() && m_paths[m_scattering[end].path].depth == depth;)
+                ++end;
+            shade_scattering({m_scattering.begin() + static_cast<std::ptrdiff_t>(begin),
+                              m_scattering.begin() + static_cast<std::ptrdiff_t>(end)},
+                             depth);
+        }
+    }
+
+    void shade_scattering(std::span<const Scattering> batch, int depth) {
+        m_hits_shaded += batch.size();
+        ScatterPoints places(static_cast<std::uint32_t>(depth),
+                             m_light.m_scene.options.light_samples);
+        for (const Scattering& one : batch)
+            places.add(m_rays[one.path], one.place, m_paths[one.path].next.place, one.u);
+        places.finish();
+        m_leaving.rays.clear();
+        const std::vector<Vec3f> light = m_light.m_direct.reflect(
+            places.points(), places.closure(), {}, nullptr, {}, nullptr, &m_leaving);
+        for (std::size_t k = 0; k < batch.size(); ++k) bring(m_paths[batch[k].path], light[k]);
+        std::ranges::stable_sort(m_leaving.rays, {}, &LobeRay::point);
+        auto candidate = m_leaving.rays.begin();
+        for (std::uint32_t k = 0; k < batch.size(); ++k) {
+            const auto begin = candidate;
+            while (candidate != m_leaving.rays.end() && candidate->point == k) ++candidate;
+            choose({begin, candidate}, m_paths[batch[k].path], batch[k].place.distance);
+        }
     }
 
     /// Surfaces by program and instance.  The order of a point's own ways does not depend on what
@@ -199,12 +308,18 @@ class BouncedLight::Wave {
             if (!closure.transparency.empty() && path.passed < m_limits.transparent &&
                 is_finite(closure.transparency[i]))
                 through = glm::clamp(closure.transparency[i], Vec3f(0.0f), Vec3f(1.0f));
-            choose({begin, candidate}, through, path, *batch[i].hit, points, i);
+            choose({begin, candidate}, through, path,
+                   {batch[i].hit, &points, i, batch[i].hit->distance});
         }
     }
 
+    /// One of the ways out, of a place `distance` metres away in a medium.
+    void choose(std::span<const LobeRay> ways, const BouncedPath& path, float distance) {
+        choose(ways, Vec3f(0.0f), path, {nullptr, nullptr, 0, distance});
+    }
+
     void choose(std::span<const LobeRay> ways, const Vec3f& through, const BouncedPath& path,
-                const RayHit& hit, const ShadingPoints& points, std::size_t i) {
+                const End& end) {
         float sum = largest(through);
         for (const LobeRay& way : ways) sum += largest(way.weight);
         if (!(sum > 0.0f)) return;
@@ -215,12 +330,12 @@ class BouncedLight::Wave {
         if (!(u < 1.0f)) return;
         u *= sum;
         BouncedPath next = path;
-        next.width = path.width + path.spread * hit.distance;
+        next.width = path.width + path.spread * end.distance;
         if (u < largest(through)) {
             next.next.weight = path.next.weight * through * (sum / (largest(through) * goes_on));
             ++next.passed;
-            next.length = path.length + hit.distance;
-            pass(next, hit, points, i);
+            next.length = path.length + end.distance;
+            pass(next, *end.hit, *end.points, end.point);
             return;
         }
         u -= largest(through);
@@ -240,7 +355,7 @@ class BouncedLight::Wave {
         next.least_pdf = std::min(path.least_pdf, taken->pdf);
         next.length = 0.0f;
         ++next.depth;
-        follow(next);
+        follow(next, end.hit == nullptr);
     }
 
     /// Straight on, from behind the surface.
@@ -262,16 +377,20 @@ class BouncedLight::Wave {
     std::vector<RayScene::Met> m_met;
     std::vector<std::uint32_t> m_order;
     LeavingRays m_leaving;
+    RayMedia m_media;
+    std::vector<Scattering> m_scattering;
     std::uint64_t m_rays_traced = 0, m_hits_shaded = 0;
 };
 
 BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const HitShader& hits,
-                           const MaterialEmission& emission, Statistics& statistics,
-                           const Progress& progress)
+                           const MaterialEmission& emission, const Volumes* volumes,
+                           Statistics& statistics, const Progress& progress)
     : m_scene(scene),
       m_direct(direct),
       m_hits(hits),
       m_emission(emission),
+      m_volumes(volumes),
+      m_any_shines(volumes && volumes->shines()),
       m_statistics(statistics),
       m_progress(progress) {
     for (std::size_t i = 0; i < scene.instances.size() && !m_any_shines; ++i) {
@@ -287,7 +406,14 @@ BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const 
 
 GatheredLight BouncedLight::gather(const std::vector<LobeRay>& leaving, std::size_t points) const {
     GatheredLight light(points);
-    if (!leaving.empty()) Wave(*this, leaving, light).run();
+    if (!leaving.empty()) Wave(*this, leaving, false, light).run();
+    return light;
+}
+
+GatheredLight BouncedLight::gather_scattered(const std::vector<LobeRay>& leaving,
+                                             std::size_t points) const {
+    GatheredLight light(points);
+    if (!leaving.empty()) Wave(*this, leaving, true, light).run();
     return light;
 }
 

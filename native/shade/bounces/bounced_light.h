@@ -7,7 +7,8 @@
 //
 // Each surface that is met adds what it emits, unless it is a lamp, and what of lamps and the world
 // it reflects; one of its lobes' samples, or the way through it, is followed further by a choice
-// after their weights. Ways end by Cycles' limits, or by Russian roulette (Arvo and Kirk 1990).
+// after their weights; what fills the way before it adds what it emits, or scatters light itself.
+// Ways end by Cycles' limits, or by Russian roulette (Arvo and Kirk 1990).
 //
 // What a way brings depends on itself alone: pictures are the same to the bit however points are
 // put together.
@@ -24,18 +25,21 @@
 #include "shade/bounces/hit_shader.h"
 #include "shade/lights/direct_light.h"
 #include "shade/nodes/material_emission.h"
+#include "shade/volumes/volumes.h"
 
 namespace granita {
 
 class BouncedLight {
   public:
-    /// All must outlive it; `direct` has rays.
+    /// All must outlive it; `direct` has rays.  `volumes` nullptr: nothing is filled.
     BouncedLight(const Scene& scene, const DirectLight& direct, const HitShader& hits,
-                 const MaterialEmission& emission, Statistics& statistics,
+                 const MaterialEmission& emission, const Volumes* volumes, Statistics& statistics,
                  const Progress& progress);
 
     /// What comes along the rays that leave `points`.
     GatheredLight gather(const std::vector<LobeRay>& leaving, std::size_t points) const;
+    /// The same of points where a medium scatters light (ScatterPoints).
+    GatheredLight gather_scattered(const std::vector<LobeRay>& leaving, std::size_t points) const;
 
   private:
     class Wave;
@@ -49,6 +53,7 @@ class BouncedLight {
     const DirectLight& m_direct;
     const HitShader& m_hits;
     const MaterialEmission& m_emission;
+    const Volumes* m_volumes;
     bool m_any_shines = false;  ///< of surfaces that are no lamps
     Statistics& m_statistics;
     const Progress& m_progress;

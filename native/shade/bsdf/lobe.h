@@ -29,17 +29,22 @@ enum class LobeKind {
     HairReflection,
     HairTransmission,
     PrincipledHair,  ///< f0: absorption; more[2]: relative roughness of the first reflection
+    Phase,           ///< of a medium; roughness: mean cosine
 };
+/// How a Phase lobe sends light on.
+enum class PhaseKind : std::uint8_t { HenyeyGreenstein, Rayleigh };
+
 /// What lamps, worlds and passes tell apart of the light that a surface sends on.
 enum class LightPart { Diffuse, Glossy, Transmission };
 
 constexpr bool transmits(LobeKind kind) {
     return kind == LobeKind::Refraction || kind == LobeKind::Translucent ||
-           kind == LobeKind::HairTransmission || kind == LobeKind::PrincipledHair;
+           kind == LobeKind::HairTransmission || kind == LobeKind::PrincipledHair ||
+           kind == LobeKind::Phase;
 }
-/// Lobes of tubes, which send light on to all sides.
+/// Lobes of tubes and media, which send light on to all sides.
 constexpr bool sees_all_around(LobeKind kind) {
-    return kind == LobeKind::PrincipledHair;
+    return kind == LobeKind::PrincipledHair || kind == LobeKind::Phase;
 }
 /// Of lobe_shape.h.
 constexpr bool is_shaped(LobeKind kind) {
@@ -56,6 +61,7 @@ constexpr LightPart part_of(LobeKind kind) {
             return LightPart::Diffuse;
         case LobeKind::Refraction:
         case LobeKind::HairTransmission:
+        case LobeKind::Phase:
             return LightPart::Transmission;
         default:
             return LightPart::Glossy;
@@ -87,12 +93,13 @@ struct Lobe {
     bool multiscatter = false;       ///< glossy: energy compensation as Cycles' MULTI_GGX
     bool separable_masking = false;  ///< glossy: Smith's masking of view and light multiplied, as
                                      ///< Cycles before Blender 4; else height-correlated
-    bool burley = false;        ///< diffuse: Burley's (2012) retro-reflection with `roughness`, as
-                                ///< Principled before Blender 4
-    bool retro_alone = false;   ///< of that what goes back alone
-    bool cosine_bumps = false;  ///< diffuse: bent normals fade light as before Blender 4.5
-    std::vector<Vec3f> weight;  ///< [n]
-    std::vector<Vec3f> normal;  ///< [n] unit, facing the viewer as Cycles ensures
+    bool burley = false;       ///< diffuse: Burley's (2012) retro-reflection with `roughness`, as
+                               ///< Principled before Blender 4
+    bool retro_alone = false;  ///< of that what goes back alone
+    PhaseKind phase = PhaseKind::HenyeyGreenstein;
+    bool cosine_bumps = false;     ///< diffuse: bent normals fade light as before Blender 4.5
+    std::vector<Vec3f> weight;     ///< [n]
+    std::vector<Vec3f> normal;     ///< [n] unit, facing the viewer as Cycles ensures
     std::vector<float> roughness;  ///< [n] diffuse: Oren-Nayar sigma socket; glossy: the socket's
                                    ///< value (alpha = roughness^2)
     std::vector<Vec3f> tangent;    ///< [n] glossy, where alpha differs along it, and of hairs

@@ -35,6 +35,8 @@ std::unique_ptr<const LobeShape> make_shape(const Lobe& lobe, std::size_t point,
             form.sigma = lobe.f0[point];
             return make_principled_hair(view, form);
         }
+        case LobeKind::Phase:
+            return make_phase(view, lobe.phase, lobe.roughness[point]);
         case LobeKind::Diffuse:
         case LobeKind::Glossy:
         case LobeKind::Refraction:

@@ -68,6 +68,7 @@ struct DirectLight::Impl {
     float finer_by_corner;  ///< how many times more lamps these ask
     WorldLight world;
     std::unordered_map<std::uint32_t, std::uint64_t> linked;  ///< Instance::receives by key
+    std::vector<LightAnchor> anchors;
     std::vector<bool> shining;  ///< [instances] whose faces are lamps; empty: none's
 };
 
@@ -91,9 +92,11 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
     const bool asks_rays =
         world.shines() || scene.options.bounces.most > 0 ||
         std::ranges::any_of(lamps, [](const Lamp& lamp) { return lamp.casts_shadow(); }) ||
-        std::ranges::any_of(scene.instances, [&](const Instance& instance) {
-            return materials.shines(instance) || materials.scatters(instance);
-        });
+        std::ranges::any_of(scene.instances,
+                            [&](const Instance& instance) {
+                                return materials.shines(instance) || materials.scatters(instance);
+                            }) ||
+        materials.dim;
     if (asks_rays) {
         StageTimer timer(statistics, Stage::RayBuild);
         auto rays = std::make_unique<RayScene>(scene, origin, materials, progress, geometries,
@@ -104,6 +107,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
         if (!found.lamps.empty()) shining = std::move(found.instances);
         if (!rays->empty()) set.set_casters(std::move(rays));
     }
+    anchors = anchors_of(lamps);
     set.set_lamps(std::move(lamps));
 }
 
@@ -258,6 +262,10 @@ DirectLight::~DirectLight() = default;
 
 const RayScene* DirectLight::rays() const {
     return m_impl->set.rays.get();
+}
+
+const std::vector<LightAnchor>& DirectLight::anchors() const {
+    return m_impl->anchors;
 }
 
 bool DirectLight::is_lamp(std::size_t instance) const {

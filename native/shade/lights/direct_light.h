@@ -28,6 +28,7 @@
 #include "shade/bsdf/lobe.h"
 #include "shade/bsdf/reflection.h"
 #include "shade/lights/environment.h"
+#include "shade/lights/light_anchor.h"
 #include "shade/lights/light_motion.h"
 #include "shade/lights/light_pattern.h"
 #include "shade/lights/lobe_ray.h"
@@ -74,6 +75,9 @@ class DirectLight {
     bool is_lamp(std::size_t instance) const;
     /// Light samples of a point for ShadingPoints::share.
     int sample_count(float share) const;
+
+    /// The strongest of what has a place and stands still.
+    const std::vector<LightAnchor>& anchors() const;
 
     /// What is met by rays; nullptr where none are traced.
     const RayScene* rays() const;

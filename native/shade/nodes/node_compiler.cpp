@@ -182,14 +182,14 @@ void bend_normals(ProgramBuilder& builder, const NodeGraph& graph) {
 }
 
 /// Values and closures of all nodes that are read.
-SurfaceSources build_graph(ProgramBuilder& builder, const NodeGraph& graph) {
-    if (graph.bends_normals()) bend_normals(builder, graph);
+SurfaceBuilder build_closures(ProgramBuilder& builder, const NodeGraph& graph,
+                              const NodeLink& link) {
     build_values(builder, graph);
     SurfaceBuilder surface(graph.nodes.size());
-    if (graph.surface.node >= 0) {
-        const auto root = static_cast<std::size_t>(graph.surface.node);
+    if (link.node >= 0) {
+        const auto root = static_cast<std::size_t>(link.node);
         NodeBuilder b(builder, graph.nodes[root], root, Shift::None);
-        surface.add_weight(b, graph.surface, {-1, 1.0f});
+        surface.add_weight(b, link, {-1, 1.0f});
     }
     for (std::size_t i = graph.nodes.size(); i-- > 0;) {
         if (surface.weight(i).is(0.0f)) continue;
@@ -210,7 +210,14 @@ SurfaceSources build_graph(ProgramBuilder& builder, const NodeGraph& graph) {
             surface.add_emission(b, scaled(b, color, surface.weight(i)));
         }
     }
-    return surface.sources();
+    return surface;
+}
+
+SurfaceSources build_graph(ProgramBuilder& builder, const NodeGraph& graph) {
+    if (graph.bends_normals()) bend_normals(builder, graph);
+    SurfaceSources sources = build_closures(builder, graph, graph.surface).sources();
+    if (graph.has_only_volume()) sources.transparency = {-1, Vec3f(1.0f)};
+    return sources;
 }
 
 Program opacity_program(const ProgramBuilder& builder, const VectorSource& transparency) {
@@ -233,8 +240,9 @@ bool told_apart(const NodeGraph& graph, const ReadOutputs& read, RayType a, RayT
 
 }  // namespace
 
-RayType first_alike(const NodeGraph& graph, RayType ray, std::span<const RayType> rays) {
-    const ReadOutputs read = read_outputs(graph, graph.surface, "", {});
+RayType first_alike(const NodeGraph& graph, const NodeLink& root, RayType ray,
+                    std::span<const RayType> rays) {
+    const ReadOutputs read = read_outputs(graph, root, "", {});
     return *std::ranges::find_if(
         rays, [&](RayType other) { return !told_apart(graph, read, other, ray); });
 }
@@ -256,6 +264,32 @@ DisplacementProgram compile_displacement(const NodeGraph& graph, const Scene& sc
     compiled.longest_in_world = is_in_world(graph);
     std::vector<int> roots;
     push_root(roots, compiled.offset.slot);
+    compiled.program = Program(builder.loads, builder.steps, builder.floats_a_point, roots);
+    compiled.requests = used_requests(builder.requests, {&compiled.program});
+    return compiled;
+}
+
+VolumeProgram compile_volume(const NodeGraph& graph, const Scene& scene, TextureStore& textures,
+                             Report& report, const GraphOwner& owner, RayType ray) {
+    ProgramBuilder builder{.scene = scene,
+                           .textures = textures,
+                           .report = report,
+                           .owner = owner.name,
+                           .is_world = owner.is_world,
+                           .material_index = owner.material_index,
+                           .ray_type = ray,
+                           .read = read_outputs(graph, graph.volume, owner.name, {})};
+    const SurfaceBuilder built = build_closures(builder, graph, graph.volume);
+    VolumeProgram compiled;
+    compiled.sources = built.volume();
+    compiled.emission = built.sources().emission;
+    std::vector<int> roots;
+    push_root(roots, compiled.emission.slot);
+    push_root(roots, compiled.sources.absorption.slot);
+    for (const PhaseSource& phase : compiled.sources.phases) {
+        push_root(roots, phase.scattering.slot);
+        push_root(roots, phase.anisotropy.slot);
+    }
     compiled.program = Program(builder.loads, builder.steps, builder.floats_a_point, roots);
     compiled.requests = used_requests(builder.requests, {&compiled.program});
     return compiled;

@@ -67,6 +67,17 @@ struct DisplacementProgram {
     bool longest_in_world = false;
 };
 
+/// What is inside of what a graph is of.
+struct VolumeProgram {
+    std::vector<AttributeRequest> requests;
+    Program program;
+    VolumeSources sources;
+    VectorSource emission;  ///< radiance a metre
+
+    /// The same everywhere.
+    bool is_homogeneous() const { return program.loads().empty() && program.step_count() == 0; }
+};
+
 /// Whose graph it is.
 struct GraphOwner {
     std::string name;  ///< for messages: "material 'Wood'"
@@ -74,9 +85,18 @@ struct GraphOwner {
     int material_index = 0;  ///< pass_index
 };
 
-/// The first of `rays`, of which `ray` is one, that the graph's Light Path does not tell apart from
-/// it.
-RayType first_alike(const NodeGraph& graph, RayType ray, std::span<const RayType> rays);
+/// The first of `rays`, of which `ray` is one, that the Light Path of what feeds `root` does not
+/// tell apart from it.
+RayType first_alike(const NodeGraph& graph, const NodeLink& root, RayType ray,
+                    std::span<const RayType> rays);
+/// Of the surface.
+inline RayType first_alike(const NodeGraph& graph, RayType ray, std::span<const RayType> rays) {
+    return first_alike(graph, graph.surface, ray, rays);
+}
+
+/// Compiles `graph.volume`, which is there.
+VolumeProgram compile_volume(const NodeGraph& graph, const Scene& scene, TextureStore& textures,
+                             Report& report, const GraphOwner& owner, RayType ray);
 
 /// Compiles `graph.displacement`, which is there.
 DisplacementProgram compile_displacement(const NodeGraph& graph, const Scene& scene,

@@ -37,6 +37,11 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeMixShader", closure(build_mix_shader)},
         {"ShaderNodeAddShader", closure(build_add_shader)},
 
+        {"ShaderNodeVolumeAbsorption", closure(build_volume_absorption)},
+        {"ShaderNodeVolumeScatter", closure(build_volume_scatter)},
+        {"ShaderNodeVolumeCoefficients", closure(build_volume_coefficients)},
+        {"ShaderNodeVolumePrincipled", closure(build_principled_volume)},
+
         {"ShaderNodeValue", value(build_value)},
         {"ShaderNodeRGB", value(build_rgb)},
         {"ShaderNodeTexImage", value(build_image_texture)},

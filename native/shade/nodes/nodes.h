@@ -25,6 +25,10 @@ void build_transparent(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight)
 void build_mix_shader(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_add_shader(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_principled(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_volume_absorption(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_volume_scatter(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_volume_coefficients(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_principled_volume(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 
 // values
 void build_image_texture(NodeBuilder&);
@@ -88,6 +92,9 @@ void build_wavelength(NodeBuilder&);
 void build_unoccluded(NodeBuilder&);
 void build_unbevelled(NodeBuilder&);
 
+/// By a number, linear between the entries of the property `spectrum` (rgb), which lie evenly from
+/// `low` to `high`.
+VectorSource spectrum_color(NodeBuilder&, const char* input);
 /// The shading normal bent by a displacement at the point and one step along u and v.
 VectorSource bumped_by_displacement(NodeBuilder&, const VectorSource& here,
                                     const VectorSource& next_u, const VectorSource& next_v);

@@ -8,42 +8,34 @@
 
 namespace granita {
 
-namespace {
-
-/// Linear between the entries of the property `spectrum` (rgb), which lie evenly from `low` to
-/// `high`.
-void build_spectrum(NodeBuilder& b, const char* input) {
+VectorSource spectrum_color(NodeBuilder& b, const char* input) {
     const auto table = std::make_shared<const std::vector<float>>(b.table("spectrum"));
     if (table->size() < 6) {
         b.warn("has no table of colours");
-        b.output_color("Color", {-1, Vec3f(1.0f)});
-        return;
+        return {-1, Vec3f(1.0f)};
     }
     const auto low = static_cast<float>(b.value("low"));
     const auto high = static_cast<float>(b.value("high"));
-    b.output_color(
-        "Color", b.map<Vec3f>(
-                     [=](float x) {
-                         const std::size_t segments = table->size() / 3 - 1;
-                         const auto last = static_cast<float>(segments);
-                         const float part = (x - low) / (high - low);
-                         const float place = (part > 0.0f ? std::min(part, 1.0f) : 0.0f) * last;
-                         const auto i = static_cast<std::size_t>(std::min(place, last - 1.0f));
-                         const float t = place - static_cast<float>(i);
-                         const float* c = table->data() + 3 * i;
-                         return Vec3f(c[0], c[1], c[2]) * (1.0f - t) + Vec3f(c[3], c[4], c[5]) * t;
-                     },
-                     b.number(input)));
+    return b.map<Vec3f>(
+        [=](float x) {
+            const std::size_t segments = table->size() / 3 - 1;
+            const auto last = static_cast<float>(segments);
+            const float part = (x - low) / (high - low);
+            const float place = (part > 0.0f ? std::min(part, 1.0f) : 0.0f) * last;
+            const auto i = static_cast<std::size_t>(std::min(place, last - 1.0f));
+            const float t = place - static_cast<float>(i);
+            const float* c = table->data() + 3 * i;
+            return Vec3f(c[0], c[1], c[2]) * (1.0f - t) + Vec3f(c[3], c[4], c[5]) * t;
+        },
+        b.number(input));
 }
 
-}  // namespace
-
 void build_blackbody(NodeBuilder& b) {
-    build_spectrum(b, "Temperature");
+    b.output_color("Color", spectrum_color(b, "Temperature"));
 }
 
 void build_wavelength(NodeBuilder& b) {
-    build_spectrum(b, "Wavelength");
+    b.output_color("Color", spectrum_color(b, "Wavelength"));
 }
 
 }  // namespace granita

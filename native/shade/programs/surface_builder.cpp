@@ -58,6 +58,14 @@ void SurfaceBuilder::add_transparency(NodeBuilder& b, const VectorSource& weight
     m_sources.transparency = sum(b, m_sources.transparency, weight);
 }
 
+void SurfaceBuilder::add_absorption(NodeBuilder& b, const VectorSource& coefficient) {
+    m_volume.absorption = sum(b, m_volume.absorption, coefficient);
+}
+
+void SurfaceBuilder::add_phase(const PhaseSource& phase) {
+    if (!phase.scattering.is(Vec3f(0.0f))) m_volume.phases.push_back(phase);
+}
+
 void SurfaceBuilder::add_lobe(const LobeSource& lobe) {
     if (!lobe.weight.is(Vec3f(0.0f))) m_sources.lobes.push_back(lobe);
 }

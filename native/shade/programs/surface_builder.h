@@ -38,6 +38,19 @@ struct SubsurfaceSource {
     FloatSource anisotropy, roughness, ior;
 };
 
+/// How a medium scatters light about its way.
+struct PhaseSource {
+    PhaseKind kind = PhaseKind::HenyeyGreenstein;
+    VectorSource scattering;  ///< coefficient, 1 / metre
+    FloatSource anisotropy;   ///< mean cosine
+};
+
+/// What is inside of a thing, per metre.
+struct VolumeSources {
+    VectorSource absorption;  ///< coefficient; the constant 0 = none
+    std::vector<PhaseSource> phases;
+};
+
 struct SurfaceSources {
     std::vector<LobeSource> lobes;
     std::vector<SubsurfaceSource> subsurface;
@@ -66,13 +79,18 @@ class SurfaceBuilder {
     void add_lobe(const LobeSource& lobe);
     void add_subsurface(const SubsurfaceSource& lobe);
     void set_additive() { m_sources.additive = true; }
+    void add_absorption(NodeBuilder& b, const VectorSource& coefficient);
+    void add_phase(const PhaseSource& phase);
 
     const SurfaceSources& sources() const { return m_sources; }
+    /// Beside their emission.
+    const VolumeSources& volume() const { return m_volume; }
 
   private:
     std::vector<FloatSource> m_weights;
     std::vector<std::string> m_outputs;
     SurfaceSources m_sources;
+    VolumeSources m_volume;
 };
 
 /// weight times colour.

@@ -22,6 +22,8 @@ class HitAttributes {
               const std::optional<Vec2f>& steps = std::nullopt);
 
     const std::vector<GridAttribute>& grid() const { return m_attributes; }
+    /// [points][width] of a request.
+    float* values(std::size_t request) { return m_attributes[request].values.data(); }
 
   private:
     std::vector<GridAttribute> m_attributes;

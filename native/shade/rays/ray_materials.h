@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "math/vec.h"
 #include "scene/scene.h"
+#include "shade/rays/ray.h"
 #include "shade/rays/ray_hit.h"
 
 namespace granita {
@@ -25,9 +27,26 @@ struct RayMaterials {
     std::function<Vec3f(std::int32_t material)> emitted = nullptr;
     /// Whether light is scattered below its surfaces, which rays then meet from inside.
     std::function<bool(std::int32_t material)> is_scattering = nullptr;
+    /// What is there inside of its surfaces, and whether these are there themselves.
+    enum class Inside { Nothing, Volume, VolumeAlone };
+    std::function<Inside(std::int32_t material)> inside = nullptr;
+    /// Multiplies what is left of the light of shadow rays by what passes the volumes on their way.
+    std::function<void(std::span<const Ray>, std::span<Vec3f> left)> dim = nullptr;
 
     bool scatters(const Instance& instance) const {
         return is_scattering && std::ranges::any_of(instance.materials, is_scattering);
+    }
+    bool holds_volume(const Instance& instance) const {
+        return inside && std::ranges::any_of(instance.materials, [this](std::int32_t material) {
+                   return inside(material) != Inside::Nothing;
+               });
+    }
+    /// Whether nothing of the instance is a surface.
+    bool is_volume_alone(const Instance& instance) const {
+        return inside && !instance.materials.empty() &&
+               std::ranges::all_of(instance.materials, [this](std::int32_t material) {
+                   return inside(material) == Inside::VolumeAlone;
+               });
     }
     /// Whether meshes of the instance are lamps, and what rays leave the lamps light.
     bool shines(const Instance& instance) const {

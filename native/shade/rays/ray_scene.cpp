@@ -18,13 +18,6 @@ namespace {
 /// Rays traced at once.
 constexpr std::size_t kPacket = 16;
 
-/// Of rays that look for what is nearest.
-struct MetContext {
-    RTCIntersectContext embree;  // first, as below
-    const void* scene = nullptr;
-    const Ray* rays = nullptr;  ///< by their ids
-};
-
 }  // namespace
 
 /// A ray and what is left of its light.
@@ -128,6 +121,7 @@ void RayScene::Impl::skip_absent(const RTCFilterFunctionNArguments* arguments) {
     if (arguments->valid[0] != -1 || id == RTC_INVALID_GEOMETRY_ID) return;
     const auto& context = *reinterpret_cast<const MetContext*>(arguments->context);
     const auto* scene = static_cast<const Impl*>(context.scene);
+    if (context.crossings) return scene->note_crossing(arguments);
     const Ray& ray = context.rays[reinterpret_cast<const RTCRay*>(arguments->ray)->id];
     const Instance& met = scene->scene.instances[scene->instances[id].index];
     if (!is_seen(met, ray.type) || !met.lifespan.contains(ray.time)) arguments->valid[0] = 0;
@@ -136,7 +130,7 @@ void RayScene::Impl::skip_absent(const RTCFilterFunctionNArguments* arguments) {
 RayScene::~RayScene() = default;
 
 bool RayScene::empty() const {
-    return m_impl->instances.empty();
+    return m_impl->instances.empty() && !m_impl->volumes && !m_impl->materials.dim;
 }
 
 RayOffset RayScene::ray_offset(const GridKey& key) const {
@@ -206,7 +200,7 @@ std::vector<float> RayScene::heights_over(const GridKey& key, const Covered& poi
 
 void RayScene::nearest(std::span<const Ray> rays, std::vector<Met>& out) const {
     out.clear();
-    if (empty()) return;
+    if (!m_impl->top) return;
     MetContext context{};
     rtcInitIntersectContext(&context.embree);
     context.scene = m_impl.get();
@@ -273,7 +267,14 @@ bool RayScene::nearest(const Body& body, const Ray& ray, Met& met) const {
 }
 
 Vec3f RayScene::transmittance(const Ray& shadow) const {
-    if (!shadow.is_traceable()) return Vec3f(1.0f);
+    Vec3f left = past_surfaces(shadow);
+    if (m_impl->materials.dim && left != Vec3f(0.0f))
+        m_impl->materials.dim({&shadow, 1}, {&left, 1});
+    return left;
+}
+
+Vec3f RayScene::past_surfaces(const Ray& shadow) const {
+    if (!shadow.is_traceable() || !m_impl->top) return Vec3f(1.0f);
     ShadowContext context{};
     rtcInitIntersectContext(&context.embree);
     context.scene = m_impl.get();
@@ -289,6 +290,15 @@ Vec3f RayScene::transmittance(const Ray& shadow) const {
 }
 
 void RayScene::transmittances(std::span<const Ray> rays, std::span<Vec3f> left) const {
+    past_surfaces(rays, left);
+    if (m_impl->materials.dim) m_impl->materials.dim(rays, left);
+}
+
+void RayScene::past_surfaces(std::span<const Ray> rays, std::span<Vec3f> left) const {
+    if (!m_impl->top) {
+        std::ranges::fill(left, Vec3f(1.0f));
+        return;
+    }
     bool looked_at[kPacket];
     ShadowContext context{};
     rtcInitIntersectContext(&context.embree);
@@ -317,7 +327,7 @@ void RayScene::transmittances(std::span<const Ray> rays, std::span<Vec3f> left) 
         }
         rtcOccluded16(valid, m_impl->top.get(), &context.embree, &packet);
         for (std::size_t i = 0; i < count; ++i)
-            left[first + i] = looked_at[i] ? transmittance(rays[first + i])
+            left[first + i] = looked_at[i] ? past_surfaces(rays[first + i])
                                            : Vec3f(packet.tfar[i] < 0.0f ? 0.0f : 1.0f);
     }
 }

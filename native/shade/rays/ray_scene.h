@@ -20,6 +20,7 @@
 #include "shade/rays/ray_materials.h"
 #include "shade/rays/ray_offset.h"
 #include "shade/rays/ray_triangles.h"
+#include "shade/rays/volume_span.h"
 
 namespace granita {
 
@@ -37,6 +38,7 @@ class RayScene {
              const Displacement* displacement = nullptr);
     ~RayScene();
 
+    /// Whether rays meet nothing, and pass nothing.
     bool empty() const;
     /// Whether any caster moves or deforms within the shutter.
     bool moves() const;
@@ -93,12 +95,21 @@ class RayScene {
     /// False where the ray, whose time is the body's, meets nothing.
     bool nearest(const Body& body, const Ray& ray, Met& met) const;
 
+    /// Where the ray is inside of instances whose material fills them there, one after the other.
+    /// What it leaves before it has entered it starts in.  Rays of a type to which an instance is
+    /// not visible, and of times at which it is not there, do not meet it.
+    void volumes(const Ray& ray, std::vector<VolumeSpan>& out) const;
+
     /// Share of light that passes, per channel.
     Vec3f transmittance(const Ray& ray) const;
     /// The same of many, bit by bit; fastest where neighbours in the list go the same way.
     void transmittances(std::span<const Ray> rays, std::span<Vec3f> left) const;
 
   private:
+    /// transmittance() and transmittances() without volumes.
+    Vec3f past_surfaces(const Ray& ray) const;
+    void past_surfaces(std::span<const Ray> rays, std::span<Vec3f> left) const;
+
     struct Impl;
     std::unique_ptr<Impl> m_impl;
 };

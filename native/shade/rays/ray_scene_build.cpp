@@ -33,6 +33,7 @@ enum Use : std::uint8_t {
     kIsHidden = 16,  ///< from some rays
     kIsShaded = 32,  ///< where rays meet it
     kShines = 64,    ///< rays go to its faces
+    kBounds = 128,   ///< volumes
 };
 
 }  // namespace
@@ -141,7 +142,7 @@ void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
         RTCGeometry handed = part.geometry;
         if (made.key.use & ~(kCasts | kIsShaded))
             rtcSetGeometryOccludedFilterFunction(handed, pass_through);
-        if (made.key.use & (kAppears | kIsHidden))
+        if (made.key.use & (kAppears | kIsHidden | kBounds))
             rtcSetGeometryIntersectFilterFunction(handed, skip_absent);
         rtcCommitGeometry(handed);
         rtcAttachGeometry(built, handed);
@@ -156,19 +157,26 @@ void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
     rtcSetSceneProgressMonitorFunction(built, nullptr, nullptr);
 }
 
-void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
-    const Instance& instance = scene.instances[index];
-    const auto transforms = ray_transforms(instance.world_from_object, origin);
-    if (!transforms) return;
-    const auto& columns = transforms->columns;
+RTCGeometry RayScene::Impl::instance_node(std::uint32_t index,
+                                          const RayTransforms& transforms) const {
+    const auto& columns = transforms.columns;
     RTCGeometry node = rtcNewGeometry(kept->device(), RTC_GEOMETRY_TYPE_INSTANCE);
-    const KeptRayShape& kept_shape = shape_of(index);
-    rtcSetGeometryInstancedScene(node, kept_shape.built.get());
+    rtcSetGeometryInstancedScene(node, shape_of(index).built.get());
     rtcSetGeometryTimeStepCount(node, static_cast<unsigned>(columns.size()));
     for (unsigned k = 0; k < columns.size(); ++k)
         rtcSetGeometryTransform(node, k, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns[k].data());
     rtcCommitGeometry(node);
-    if (columns.size() > 1 || kept_shape.shape->knots() > 1 || !instance.lifespan.is_whole())
+    return node;
+}
+
+void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
+    const Instance& instance = scene.instances[index];
+    const auto transforms = ray_transforms(instance.world_from_object, origin);
+    if (!transforms) return;
+    RTCGeometry node = instance_node(index, *transforms);
+    const KeptRayShape& kept_shape = shape_of(index);
+    if (transforms->columns.size() > 1 || kept_shape.shape->knots() > 1 ||
+        !instance.lifespan.is_whole())
         motion.add(box_of(kept_shape.built.get()), transforms->knots);
     rtcAttachGeometryByID(top.get(), node, static_cast<unsigned>(instances.size()));
     rtcReleaseGeometry(node);
@@ -184,6 +192,29 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
         added.still.emplace(matrix_at(instance.world_from_object, 0.0));
 }
 
+void RayScene::Impl::add_volumes() {
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        if (!holds_volume(scene.instances[i])) continue;
+        const auto transforms = ray_transforms(scene.instances[i].world_from_object, origin);
+        if (!transforms) continue;
+        if (!volumes) {
+            volumes.reset(rtcNewScene(kept->device()));
+            rtcSetSceneFlags(volumes.get(), RTC_SCENE_FLAG_ROBUST);
+        }
+        const KeptRayShape& shape = shape_of(i);
+        if (transforms->columns.size() > 1 || shape.shape->knots() > 1 ||
+            !scene.instances[i].lifespan.is_whole())
+            motion.add(box_of(shape.built.get()), transforms->knots);
+        RTCGeometry node = instance_node(i, *transforms);
+        rtcAttachGeometryByID(volumes.get(), node, static_cast<unsigned>(volume_instances.size()));
+        rtcReleaseGeometry(node);
+        volume_instances.push_back(i);
+    }
+    if (!volumes) return;
+    const ForeignThreads embree;
+    rtcCommitScene(volumes.get());
+}
+
 RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materials,
                    const Progress& progress, std::shared_ptr<GeometryCache> geometries,
                    Report* report, std::shared_ptr<KeptRays> kept, const Displacement* displacement)
@@ -196,7 +227,7 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materia
     std::map<std::size_t, std::uint8_t> displaced;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        if (!impl.is_met(instance)) continue;
+        if (!impl.is_met(instance) && !impl.holds_volume(instance)) continue;
         std::uint8_t& use = impl.is_displaced(i)
                                 ? displaced[displacement->same_as(i)]
                                 : uses[static_cast<std::size_t>(instance.geometry)];
@@ -205,6 +236,7 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materia
         if (!instance.lifespan.is_whole()) use |= kAppears;
         if (instance.blocks != ~0ULL) use |= kIsLinked;
         if (impl.materials.shines(instance)) use |= kShines;
+        if (impl.holds_volume(instance)) use |= kBounds;
         const bool hidden = scene.options.bounces.most > 0 &&
                             !(instance.visible_camera && instance.visible_diffuse &&
                               instance.visible_glossy && instance.visible_transmission);
@@ -232,6 +264,7 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materia
         const ForeignThreads embree;
         rtcCommitScene(impl.top.get());
     }
+    impl.add_volumes();
     impl.check("scene of " + std::to_string(impl.instances.size()) + " instances", progress);
     // Embree keeps the pointer; the frame's progress may die before the scene does.
     rtcSetSceneProgressMonitorFunction(impl.top.get(), nullptr, nullptr);

@@ -13,6 +13,7 @@
 #include "shade/rays/instance_motion.h"
 #include "shade/rays/ray_detail.h"
 #include "shade/rays/ray_scene.h"
+#include "shade/rays/ray_transforms.h"
 
 namespace granita {
 
@@ -30,6 +31,22 @@ struct RayInstance {
 };
 
 struct ShadowContext;
+
+/// Where a ray passes a surface that bounds a volume.
+struct VolumeCrossing {
+    float distance;
+    std::uint32_t instance;  ///< in Scene::instances
+    std::int32_t material;
+    bool enters;
+};
+
+/// Of rays that look for what is nearest, or for all that bounds volumes.
+struct MetContext {
+    RTCIntersectContext embree;  // first: Embree hands a pointer to it back
+    const void* scene = nullptr;
+    const Ray* rays = nullptr;                         ///< by their ids
+    std::vector<VolumeCrossing>* crossings = nullptr;  ///< where volumes are asked for
+};
 
 struct RayScene::Impl {
     Impl(const Scene& frame_scene, RayMaterials ray_materials,
@@ -60,11 +77,18 @@ struct RayScene::Impl {
     void build_geometry(int geometry, std::uint8_t use, Report& report, const Progress& progress);
     void add_instance(std::uint32_t index, const Vec3d& origin);
     bool is_met(const Instance& instance) const {
+        if (materials.is_volume_alone(instance)) return false;
         const bool seen = instance.is_seen_by_surfaces();
         return (instance.casts_shadow || (seen && scene.options.bounces.most > 0) ||
                 materials.shines(instance) || materials.scatters(instance)) &&
                !instance.lifespan.is_empty();
     }
+    bool holds_volume(const Instance& instance) const {
+        return !instance.lifespan.is_empty() && materials.holds_volume(instance);
+    }
+    RTCGeometry instance_node(std::uint32_t index, const RayTransforms& transforms) const;
+    void add_volumes();
+    void note_crossing(const RTCFilterFunctionNArguments* arguments) const;
     bool lets_light_through(const Instance& instance) const;
     std::optional<Vec3f> constant_of(const Instance& instance) const;
     Vec3f transparency(const ShadowContext& context, const RTCRay& ray, const RTCHit& hit,
@@ -90,6 +114,8 @@ struct RayScene::Impl {
     InstanceMotion motion;
     std::vector<RayInstance> instances;                       ///< by Embree's id in `top`
     std::unordered_map<std::uint32_t, std::uint32_t> by_key;  ///< Instance::key to that id
+    RtcHandle<RTCScene> volumes;                  ///< what bounds them; nullptr: there are none
+    std::vector<std::uint32_t> volume_instances;  ///< by Embree's id there, in Scene::instances
 };
 
 }  // namespace granita

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where samples look: from their points of the lens, at their times.
+#pragma once
+
+#include "hider/sample_store.h"
+#include "hider/samples/sample_table.h"
+#include "scene/camera.h"
+#include "shade/rays/ray.h"
+
+namespace granita {
+
+/// When and from which point of the unit lens a sample looks.
+struct Look {
+    double t = 0.0;
+    Vec2d lens{0.0};
+    double inverse_focus = 0.0;
+};
+
+/// World direction through a raster position (pixels): a point at infinity obeys X = cx + sx (slope
+/// + lx / focus) (math/projection.h with z -> infinity).
+Vec3f world_direction(const Camera& camera, Vec2d raster, const Look& look);
+
+class CameraRays {
+  public:
+    /// Of a tile, which both must outlive this.
+    CameraRays(const Camera& camera, const TileStore& store, const TileSamples& samples)
+        : m_camera(camera), m_samples(samples), m_origin(Vec2d(store.tile * kTileSize)) {}
+
+    bool vary_in_pixel() const {
+        return !m_samples.u.empty() ||
+               (!m_samples.t.empty() && m_camera.world_from_camera.size() > 1);
+    }
+
+    /// World direction through a tile position (pixels).
+    Vec3f direction(double x, double y, const Look& look) const {
+        return world_direction(m_camera, {m_origin.x + x, m_origin.y + y}, look);
+    }
+    /// Of a sample.
+    Vec3f direction(std::size_t i) const {
+        return direction(m_samples.x[i], m_samples.y[i], look(i));
+    }
+
+    struct Seen {
+        Ray ray;        ///< of a sample, without end
+        float stretch;  ///< metres along it a metre of depth
+    };
+    /// `origin`: of shading space, in the world.
+    Seen ray(std::size_t i, const Vec3d& origin, float frame_time) const;
+
+  private:
+    Look look(std::size_t i) const;
+
+    const Camera& m_camera;
+    const TileSamples& m_samples;
+    Vec2d m_origin;
+};
+
+}  // namespace granita

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "hider/resolve/composite.h"
+#include "render/frame.h"
+
+namespace granita {
+
+/// What the volumes of a scene make of a tile's samples: between the layers of their lists, and
+/// before what is behind these.
+struct TileVolumes {
+    /// Whose grids are shaded.
+    TileVolumes(Frame& frame, const SampleTable& table, const TileStore& store,
+                const GridPool& pool, const RefinedSamples& refined);
+
+    RefinedSamples refined;             ///< and what is seen of layers through volumes
+    std::vector<SampleVolume> samples;  ///< [256 * samples]
+};
+
+}  // namespace granita

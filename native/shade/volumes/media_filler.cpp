@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/volumes/media_filler.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/knot_time.h"
+#include "shade/rays/hit_attributes.h"
+
+namespace granita {
+namespace {
+
+/// Of one ray through one part of a thing, as Cycles has it.
+constexpr float kMostSteps = 1024.0f;
+/// Places that a program is run over at once.
+constexpr std::size_t kBatch = 4096;
+
+/// Reads a program's values; of a homogeneous one without a run.
+class Values {
+  public:
+    explicit Values(const Run* run) : m_run(run) {}
+    template <class T>
+    T operator()(const Source<T>& source, std::size_t i) const {
+        return source.is_constant() ? source.constant : m_run->read(source)[i];
+    }
+
+  private:
+    const Run* m_run;
+};
+
+Vec3f positive(const Vec3f& v) {
+    return is_finite(v) ? glm::max(v, Vec3f(0.0f)) : Vec3f(0.0f);
+}
+
+void add_values(const VolumeProgram& program, const Values& values, std::size_t i,
+                MediumPiece& piece) {
+    piece.extinction += positive(values(program.sources.absorption, i));
+    piece.emission += positive(values(program.emission, i));
+    for (const PhaseSource& phase : program.sources.phases) {
+        const Vec3f scattering = positive(values(phase.scattering, i));
+        if (scattering == Vec3f(0.0f)) continue;
+        piece.extinction += scattering;
+        piece.scattering += scattering;
+        piece.phases.push_back({phase.kind, values(phase.anisotropy, i), scattering});
+    }
+}
+
+}  // namespace
+
+void MediaFiller::add_ray(const Ray& ray, float shift, std::span<const FilledSpan> spans) {
+    m_ends.clear();
+    for (const FilledSpan& span : spans) {
+        m_ends.push_back(span.begin);
+        m_ends.push_back(span.end);
+    }
+    std::ranges::sort(m_ends);
+    for (std::size_t i = 0; i + 1 < m_ends.size(); ++i) {
+        if (!(m_ends[i] < m_ends[i + 1])) continue;
+        m_there.clear();
+        for (const FilledSpan& span : spans)
+            if (span.begin <= m_ends[i] && m_ends[i + 1] <= span.end) m_there.push_back(span);
+        if (!m_there.empty()) add_pieces(ray, shift, m_ends[i], m_ends[i + 1], m_there);
+    }
+    m_media.end_ray();
+}
+
+/// Of a part in which the same things are there all along.
+void MediaFiller::add_pieces(const Ray& ray, float shift, float begin, float end,
+                             std::span<const FilledSpan> there) {
+    float step = end - begin;
+    for (const FilledSpan& span : there)
+        if (!span.program->is_homogeneous())
+            step = std::min(step, m_things.steps.at(span.instance));
+    float count = 1.0f;
+    if (step < end - begin) {
+        count = std::min(std::ceil((end - begin) / step), kMostSteps);
+        if (std::isfinite(end)) step = (end - begin) / count;
+    }
+    const auto steps = static_cast<std::size_t>(count);
+    for (std::size_t k = 0; k < steps; ++k) {
+        const std::size_t number = m_media.pieces.size();
+        MediumPiece& piece = m_media.pieces.emplace_back();
+        piece.begin = k == 0 ? begin : begin + static_cast<float>(k) * step;
+        piece.end = steps == 1 ? end : begin + static_cast<float>(k + 1) * step;
+        const float at = piece.begin + shift * (piece.end - piece.begin);
+        for (const FilledSpan& span : there) {
+            if (span.program->is_homogeneous()) {
+                add_values(*span.program, Values(nullptr), 0, piece);
+                continue;
+            }
+            Asked& asked = m_asked[{span.instance, span.material, ray.type}];
+            asked.program = span.program;
+            asked.places.push_back(
+                {number, ray.start + ray.direction * at, ray.direction, ray.time});
+        }
+    }
+}
+
+void MediaFiller::fill() {
+    for (const auto& [key, asked] : m_asked) {
+        const std::span<const Place> places(asked.places);
+        for (std::size_t first = 0; first < places.size(); first += kBatch)
+            fill(std::get<0>(key), *asked.program,
+                 places.subspan(first, std::min(kBatch, places.size() - first)));
+    }
+    m_asked.clear();
+}
+
+void MediaFiller::fill(std::uint32_t instance, const VolumeProgram& program,
+                       std::span<const Place> places) {
+    ShadingPoints points;
+    points.count = places.size();
+    points.dp_du.assign(places.size(), Vec3f(0.0f));
+    points.dp_dv.assign(places.size(), Vec3f(0.0f));
+    points.backfacing.assign(places.size(), 0);
+    HitAttributes attributes;
+    attributes.resize(program.requests, places.size());
+    ShadingInput input;
+    input.points = &points;
+    input.attributes = &attributes.grid();
+    const bool in_world = instance == FilledThings::kWorld;
+    const Instance* const thing = in_world ? nullptr : &m_scene.instances[instance];
+    const bool moves = thing && thing->world_from_object.size() > 1;
+    Mat4d world_from_object(1.0);
+    if (thing) world_from_object = matrix_at(thing->world_from_object, m_scene.options.frame_time);
+    Mat4d object_from_world = glm::inverse(world_from_object);
+    input.instance = thing;
+    if (thing) input.axes = ObjectAxes(world_from_object);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Place& place = places[i];
+        const Vec3d world = m_things.origin + Vec3d(place.p);
+        points.p.push_back(in_world ? Vec3f(world) : place.p);
+        for (auto* back : {&points.view, &points.normal, &points.geometric_normal})
+            back->push_back(-place.direction);
+        points.times.push_back(place.time);
+        if (in_world) continue;
+        if (moves) {
+            world_from_object = matrix_at(thing->world_from_object, place.time);
+            object_from_world = glm::inverse(world_from_object);
+            input.axes_at_times.emplace_back(world_from_object);
+        }
+        const Vec3f p(transform_point(object_from_world, world));
+        for (std::size_t k = 0; k < program.requests.size(); ++k) {
+            const AttributeSource source = program.requests[k].source;
+            if (!is_position(source)) continue;
+            const Vec3f value = source == AttributeSource::Generated
+                                    ? m_things.spaces.at(instance).generated(p)
+                                    : p;
+            std::copy_n(&value.x, 3, attributes.values(k) + 3 * i);
+        }
+    }
+    Run run = program.program.prepare(input, places.size());
+    program.program.execute(run);
+    for (std::size_t i = 0; i < places.size(); ++i)
+        add_values(program, Values(&run), i, m_media.pieces[places[i].piece]);
+}
+
+}  // namespace granita

@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What fills things and the world beside Cycles in the same Blender."""
+
+import math
+
+import bpy
+import node_comparison
+import numpy as np
+import pytest
+import scene_parts
+from test_subsurface import lamp
+
+SIZE, BLOCK = 64, 8
+
+
+def blocks(channels):
+    """Means of blocks of pixels, [blocks, blocks, 3]."""
+    layer = next(name for name in channels if name.endswith("Combined.R"))[:-1]
+    picture = np.stack([channels[layer + c] for c in "RGB"], axis=-1)
+    rows = SIZE // BLOCK
+    return picture.reshape(rows, BLOCK, rows, BLOCK, 3).mean(axis=(1, 3))
+
+
+def both(scene, render, samples, bounces=0):
+    """(Cycles, Granita): blocks() of each; `bounces` of all kinds but in volumes."""
+    scene.render.resolution_x = scene.render.resolution_y = SIZE
+    cycles = scene.cycles
+    cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = samples, False, False
+    cycles.pixel_filter_type = "BOX"
+    cycles.max_bounces = bounces
+    cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
+    cycles.volume_bounces = 0
+    cycles.sample_clamp_indirect = 0.0
+    cycles.blur_glossy = cycles.light_sampling_threshold = 0.0
+    scene.granita.samples = samples
+    scene.granita.pixel_filter, scene.granita.filter_width = "BOX", 1.0
+    scene.granita.bounces = "FULL" if bounces else "NONE"
+    pictures = []
+    for engine in ("CYCLES", "GRANITA"):
+        scene.render.engine = engine
+        pictures.append(blocks(render(scene, engine)))
+    return pictures
+
+
+def agrees(theirs, ours, mean=0.02, block=0.05):
+    """Noise of both leaves up to `block` in blocks."""
+    level = theirs.mean(axis=(0, 1))
+    assert level.max() > 0.01
+    assert ours.mean(axis=(0, 1)) == pytest.approx(level, rel=mean, abs=mean * level.max())
+    assert np.sqrt(((ours - theirs) ** 2).mean(axis=(0, 1))).max() < block * level.max()
+
+
+def checkered_wall(scene):
+    bpy.ops.mesh.primitive_plane_add(size=12.0, location=(0, 0, -2))
+    tree = node_comparison.Tree(bpy.context.object)
+    checker = tree.add("ShaderNodeTexChecker")
+    checker.inputs["Scale"].default_value = 12.0
+    tree.emit(checker.outputs["Color"])
+
+
+def filled(thing, kind, **inputs):
+    """The volume node in a material without a surface; returns its tree."""
+    tree = node_comparison.Tree(thing)
+    node = tree.add(kind)
+    for name, value in inputs.items():
+        node.inputs[name.replace("_", " ")].default_value = value
+    tree.link(node.outputs[0], tree.output.inputs["Volume"])
+    return tree
+
+
+def turned_cube(size=2.0, location=(0, 0, 0)):
+    bpy.ops.mesh.primitive_cube_add(size=size, location=location, rotation=(0.5, 0.3, 0.7))
+    return bpy.context.object
+
+
+def orthographic(scene):
+    scene_parts.add_camera(scene, (0, 0, 8), ortho_scale=4.0)
+
+
+ABSORBING = [
+    ("ShaderNodeVolumeAbsorption", {"Color": (0.9, 0.4, 0.1, 1.0), "Density": 0.8}),
+    ("ShaderNodeEmission", {"Color": (0.9, 0.4, 0.1, 1.0), "Strength": 0.3}),
+    (
+        "ShaderNodeVolumePrincipled",
+        {
+            "Color": (0.0, 0.0, 0.0, 1.0),
+            "Density": 0.7,
+            "Absorption_Color": (0.5, 0.2, 0.1, 1.0),
+            "Emission_Color": (0.2, 0.3, 0.9, 1.0),
+            "Emission_Strength": 0.4,
+        },
+    ),
+    (
+        "ShaderNodeVolumePrincipled",
+        {
+            "Color": (0.0, 0.0, 0.0, 1.0),
+            "Density": 0.7,
+            "Blackbody_Intensity": 1.0,
+            "Temperature": 1800.0,
+            "Blackbody_Tint": (1.0, 0.8, 0.9, 1.0),
+        },
+    ),
+]
+
+
+@pytest.mark.parametrize("kind, inputs", ABSORBING)
+def test_what_absorbs_and_emits(scene, render, kind, inputs):
+    """Two that overlap, before a wall.  Colours of black bodies are known within a hundredth."""
+    checkered_wall(scene)
+    filled(turned_cube(), kind, **inputs)
+    filled(turned_cube(1.5, (0.6, 0.4, 0.5)), kind, **inputs)
+    orthographic(scene)
+    agrees(*both(scene, render, 16), mean=0.01, block=0.02)
+
+
+def lit_cube(scene, kind="ShaderNodeVolumeScatter", **inputs):
+    inputs = {"Color": (0.8, 0.6, 0.4, 1.0), "Density": 0.7, **inputs}
+    filled(turned_cube(), kind, **inputs)
+    lamp(scene, "POINT", 3000.0, (2.0, 1.0, 2.0), shadow_soft_size=0.3)
+    orthographic(scene)
+
+
+@pytest.mark.parametrize("anisotropy", [0.0, 0.6, -0.4])
+def test_light_is_scattered_once(scene, render, anisotropy):
+    lit_cube(scene, Anisotropy=anisotropy)
+    agrees(*both(scene, render, 256))
+
+
+def test_principled_scatters_light_of_sun_and_world(scene, render):
+    filled(turned_cube(), "ShaderNodeVolumePrincipled", Density=1.5, Anisotropy=0.3)
+    lamp(scene, "SUN", 3.0, turn=(math.radians(60), 0.0, 0.4))
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.use_nodes = True
+    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.2, 0.4, 0.8, 1.0)
+    orthographic(scene)
+    agrees(*both(scene, render, 256))
+
+
+def test_volumes_shade_what_is_behind_them(scene, render):
+    """A floor in the shadow of a cube of smoke: above it, as of faces in one plane Cycles meets either."""
+    bpy.ops.mesh.primitive_plane_add(size=8.0)
+    floor = node_comparison.Tree(bpy.context.object)
+    shader = floor.add("ShaderNodeBsdfDiffuse")
+    floor.link(shader.outputs[0], floor.output.inputs["Surface"])
+    bpy.ops.mesh.primitive_cube_add(size=1.0, location=(0, 0, 0.8))
+    filled(bpy.context.object, "ShaderNodeVolumeScatter", Color=(0.2, 0.5, 0.8, 1.0), Density=1.0)
+    lamp(scene, "POINT", 300.0, (2.0, 1.0, 2.5), shadow_soft_size=0.1)
+    camera = scene_parts.add_camera(scene, (0, -5, 3))
+    camera.rotation_euler = (math.radians(60), 0, 0)
+    agrees(*both(scene, render, 256))
+
+
+def fog(scene, density=0.1):
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.use_nodes = True
+    tree = scene.world.node_tree
+    node = tree.nodes.new("ShaderNodeVolumeScatter")
+    node.inputs["Density"].default_value = density
+    output = next(n for n in tree.nodes if n.type == "OUTPUT_WORLD")
+    tree.links.new(node.outputs[0], output.inputs["Volume"])
+
+
+def test_fog_shows_the_cone_of_a_spot_lamp(scene, render):
+    bpy.ops.mesh.primitive_plane_add(size=20.0)
+    floor = node_comparison.Tree(bpy.context.object)
+    shader = floor.add("ShaderNodeBsdfDiffuse")
+    floor.link(shader.outputs[0], floor.output.inputs["Surface"])
+    fog(scene)
+    lamp(
+        scene,
+        "SPOT",
+        2000.0,
+        (0.0, 0.0, 4.0),
+        (0.0, 0.4, 0.0),
+        spot_size=math.radians(40),
+        shadow_soft_size=0.1,
+    )
+    camera = scene_parts.add_camera(scene, (0, -9, 2))
+    camera.rotation_euler = (math.radians(88), 0, 0)
+    agrees(*both(scene, render, 256))
+
+
+def test_glass_that_absorbs(scene, render):
+    checkered_wall(scene)
+    thing = turned_cube()
+    tree = filled(thing, "ShaderNodeVolumeAbsorption", Color=(0.2, 0.8, 0.5, 1.0), Density=0.9)
+    glass = tree.add("ShaderNodeBsdfGlass")
+    glass.inputs["Roughness"].default_value = 0.0
+    tree.link(glass.outputs[0], tree.output.inputs["Surface"])
+    orthographic(scene)
+    agrees(*both(scene, render, 256, bounces=8))
+
+
+@pytest.mark.parametrize("coordinate", ["Generated", "Object"])
+def test_density_may_vary(scene, render, coordinate):
+    checkered_wall(scene)
+    thing = turned_cube()
+    tree = filled(thing, "ShaderNodeVolumeAbsorption", Color=(0.2, 0.8, 0.5, 1.0))
+    where = tree.add("ShaderNodeTexCoord")
+    noise = tree.add("ShaderNodeTexNoise")
+    noise.inputs["Scale"].default_value = 3.0
+    strong = tree.add("ShaderNodeMath", operation="MULTIPLY")
+    strong.inputs[1].default_value = 4.0
+    tree.link(where.outputs[coordinate], noise.inputs["Vector"])
+    tree.link(noise.outputs["Fac" if "Fac" in noise.outputs else 0], strong.inputs[0])
+    tree.link(strong.outputs[0], tree.nodes["Volume Absorption"].inputs["Density"])
+    orthographic(scene)
+    agrees(*both(scene, render, 64), mean=0.01, block=0.03)
+
+
+def test_smoke_of_noise_is_lit(scene, render):
+    thing = turned_cube()
+    tree = filled(thing, "ShaderNodeVolumePrincipled")
+    noise = tree.add("ShaderNodeTexNoise")
+    noise.inputs["Scale"].default_value = 2.5
+    ramp = tree.add("ShaderNodeMapRange")
+    for name, value in (("From Min", 0.4), ("From Max", 0.7), ("To Max", 6.0)):
+        ramp.inputs[name].default_value = value
+    where = tree.add("ShaderNodeTexCoord")
+    tree.link(where.outputs["Object"], noise.inputs["Vector"])
+    tree.link(noise.outputs[0], ramp.inputs["Value"])
+    tree.link(ramp.outputs[0], tree.nodes["Principled Volume"].inputs["Density"])
+    lamp(scene, "POINT", 300.0, (2.0, 1.0, 2.0), shadow_soft_size=0.3)
+    orthographic(scene)
+    agrees(*both(scene, render, 256))

@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What fills things against closed forms: Beer and Lambert's law, emission, light that is scattered once."""
+
+import numpy as np
+import pytest
+import snapshots as s
+from test_bounces import material
+
+SIGMA = 0.3
+
+
+def absorption(density=SIGMA, color=0.0):
+    return {
+        "type": "ShaderNodeVolumeAbsorption",
+        "inputs": {"Color": (color, color, color, 1.0), "Density": density},
+    }
+
+
+def scatter(density, color=1.0, anisotropy=0.0):
+    return {
+        "type": "ShaderNodeVolumeScatter",
+        "inputs": {
+            "Color": (color, color, color, 1.0),
+            "Density": density,
+            "Anisotropy": anisotropy,
+        },
+    }
+
+
+def emitted(strength):
+    return {"type": "ShaderNodeEmission", "inputs": {"Color": (1.0,) * 4, "Strength": strength}}
+
+
+def filled(snapshot, *nodes, surface=None):
+    """A material with the sum of volume nodes in it, and no surface but where `surface` nodes say so."""
+    nodes = list(nodes)
+    outputs = {"ShaderNodeEmission": "Emission"}
+    last = (0, outputs.get(nodes[0]["type"], "Volume"))
+    for i in range(1, len(nodes)):
+        inputs = {
+            "Shader": ("LINK", *last),
+            "Shader_001": ("LINK", i, outputs.get(nodes[i]["type"], "Volume")),
+        }
+        nodes.append({"type": "ShaderNodeAddShader", "inputs": inputs})
+        last = (len(nodes) - 1, "Shader")
+    root = None
+    if surface is not None:
+        root = (len(nodes), "BSDF")
+        nodes.append(surface)
+    index = material(snapshot, nodes, root)
+    snapshot["materials"][index]["volume"] = last
+    return index
+
+
+def box(snapshot, low, high, surface, **more):
+    corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+    points = np.array(low) + np.array(corners, float) * (np.array(high, float) - low)
+    # Outwards: counter-clockwise as seen from outside.
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    return s.mesh(snapshot, points, faces, surface, **more)
+
+
+def wall(snapshot, z=10.0, color=(1, 1, 1)):
+    s.quad(snapshot, s.rectangle(-90, -90, 90, 90, z), s.emission(snapshot, color))
+
+
+def view(size=(16, 16), **options):
+    return s.orthographic(size, samples=4, **options)
+
+
+def mean(snapshot):
+    return s.render(snapshot)["combined"][..., 0].mean()
+
+
+def test_a_slab_dims_what_is_behind_it(executor):
+    snapshot = view(executor=executor)
+    wall(snapshot)
+    box(snapshot, (-1, -1, 2), (20, 20, 5), filled(snapshot, absorption()))
+    image = s.render(snapshot)["combined"]
+    assert image[..., :3] == pytest.approx(np.exp(-3 * SIGMA), rel=1e-5)
+    assert image[..., 3] == pytest.approx(1.0)
+
+
+def test_alpha_is_what_does_not_pass():
+    snapshot = view()
+    box(snapshot, (-1, -1, 2), (20, 20, 5), filled(snapshot, absorption()))
+    image = s.render(snapshot)["combined"]
+    assert image[..., :3] == pytest.approx(0.0)
+    assert image[..., 3] == pytest.approx(1 - np.exp(-3 * SIGMA), rel=1e-5)
+
+
+def test_each_channel_has_a_coefficient():
+    snapshot = view()
+    wall(snapshot)
+    node = absorption()
+    node["inputs"]["Color"] = (1.0, 0.5, 0.0, 1.0)
+    box(snapshot, (-1, -1, 2), (20, 20, 5), filled(snapshot, node))
+    image = s.render(snapshot)["combined"][8, 8, :3]
+    assert image == pytest.approx(np.exp(-3 * SIGMA * np.array([0.0, 0.5, 1.0])), rel=1e-5)
+
+
+@pytest.mark.parametrize("sigma", [0.0, 1e-6, 0.3, 20.0])
+def test_what_emits_is_seen_through_itself(sigma):
+    snapshot = view()
+    box(snapshot, (-1, -1, 2), (20, 20, 5), filled(snapshot, emitted(0.7), absorption(sigma)))
+    expected = 0.7 * (3.0 if sigma == 0 else -np.expm1(-3 * sigma) / sigma)
+    assert mean(snapshot) == pytest.approx(expected, rel=1e-5)
+
+
+def test_media_that_overlap_add_up():
+    """The boxes share 4 to 5, and a face at 7."""
+    snapshot = view()
+    wall(snapshot)
+    for low, high in ((2, 5), (4, 7), (7, 8)):
+        box(snapshot, (-1, -1, low), (20, 20, high), filled(snapshot, absorption()))
+    assert mean(snapshot) == pytest.approx(np.exp(-7 * SIGMA), rel=1e-5)
+
+
+def test_the_camera_may_be_inside():
+    snapshot = view()
+    wall(snapshot)
+    box(snapshot, (-1, -1, -4), (20, 20, 5), filled(snapshot, absorption()))
+    assert mean(snapshot) == pytest.approx(np.exp(-5 * SIGMA), rel=1e-5)
+
+
+def test_surfaces_stand_inside():
+    """The part of a layer is dimmed by what is before it: half is there, half behind all."""
+    snapshot = view()
+    wall(snapshot)
+    box(snapshot, (-1, -1, 2), (20, 20, 5), filled(snapshot, emitted(0.2), absorption()))
+    s.quad(snapshot, s.rectangle(-50, -50, 50, 50, 3.0), s.emission(snapshot, (2, 2, 2), alpha=0.5))
+    sent = [0.2 * -np.expm1(-SIGMA * d) / SIGMA for d in (1.0, 2.0)]
+    t = [np.exp(-SIGMA), np.exp(-3 * SIGMA)]
+    expected = sent[0] + t[0] * 0.5 * 2 + 0.5 * (t[0] * sent[1] + t[1])
+    assert mean(snapshot) == pytest.approx(expected, rel=1e-5)
+
+
+def test_a_moving_slab_is_there_as_long_as_it_is():
+    """It enters the view within the shutter: at the left edge it is there all the time, at the right never."""
+    snapshot = s.orthographic((64, 4), samples=256)
+    wall(snapshot)
+    box(
+        snapshot,
+        (-200, -50, 2),
+        (0, 50, 5),
+        filled(snapshot, absorption()),
+        transforms=[s.translation(0.0), s.translation(64.0)],
+    )
+    image = s.render(snapshot)["combined"][..., 0].mean(axis=0)
+    there = 1.0 - (np.arange(64) + 0.5) / 64
+    expected = 1 - there * (1 - np.exp(-3 * SIGMA))
+    # 1024 stratified samples a column, of a step.
+    assert np.abs(image - expected).max() < 0.02
+    assert image.mean() == pytest.approx(expected.mean(), rel=2e-3)
+
+
+def test_a_slab_dims_through_the_lens():
+    snapshot = s.perspective((32, 32), 64.0, samples=64)
+    snapshot["camera"].update(lens_radius=0.02, focus_distance=5.0)
+    wall(snapshot)
+    box(snapshot, (-2, -2, 4), (2, 2, 6), filled(snapshot, absorption()))
+    # In the middle rays run along the axis, but for the lens, which lengthens them by .4 %.
+    middle = s.render(snapshot)["combined"][15:17, 15:17, 0].mean()
+    assert middle == pytest.approx(np.exp(-2 * SIGMA), rel=2e-3)
+
+
+def world_of(snapshot, *nodes, background=1.0):
+    s.constant_world(snapshot, background)
+    snapshot["world"]["lights_scene"] = True
+    snapshot["world"]["nodes"] += list(nodes)
+    snapshot["world"]["volume"] = (1, "Volume" if "Volume" in nodes[0]["type"] else "Emission")
+
+
+def test_a_world_that_is_filled_hides_its_background():
+    snapshot = view()
+    world_of(snapshot, absorption())
+    s.quad(snapshot, s.rectangle(0, 0, 8, 16, 4.0), s.emission(snapshot))
+    image = s.render(snapshot)["combined"][..., 0]
+    assert image[:, :7] == pytest.approx(np.exp(-4 * SIGMA), rel=1e-5)
+    assert image[:, 9:] == pytest.approx(0.0)
+
+
+LAMP = {
+    "name": "Lamp",
+    "kind": "POINT",
+    "color": (1, 1, 1),
+    "energy": 400.0,
+    "radius": 0.0,
+}
+
+
+def lamp(snapshot, place, **more):
+    matrix = np.eye(4)
+    matrix[:3, 3] = place
+    snapshot.setdefault("lights", []).append({**LAMP, "world_from_light": matrix[None], **more})
+
+
+def scattered_once(d, sigma, intensity, z0=0.0, z1=np.inf):
+    """Light of a point lamp d beside a ray and 20 along it, scattered once, evenly, to the ray's start."""
+    z = np.linspace(z0, min(z1, 400.0), 2_000_001)
+    r = np.sqrt(d * d + (z - 20.0) ** 2)
+    f = intensity * sigma / (4 * np.pi) * np.exp(-sigma * (z + r)) / (r * r)
+    return np.trapezoid(f, z) if hasattr(np, "trapezoid") else np.trapz(f, z)
+
+
+def test_a_point_lamp_in_an_endless_medium():
+    snapshot = s.orthographic((16, 16), samples=1024, film_transparent=False)
+    world_of(snapshot, scatter(0.05), background=0.0)
+    lamp(snapshot, (-5.0, 8.0, 20.0))
+    image = s.render(snapshot)["combined"][..., 0].mean(axis=0)
+    # Rows lie up to 8 away from the lamp's: the mean over them.
+    expected = [
+        np.mean(
+            [scattered_once(np.hypot(x + 5.5, y - 7.5), 0.05, 400 / (4 * np.pi)) for y in range(16)]
+        )
+        for x in (0, 8, 15)
+    ]
+    assert image[[0, 8, 15]] == pytest.approx(np.array(expected), rel=0.01)
+
+
+def test_light_of_lamps_is_dimmed_by_what_it_passes():
+    """A diffuse floor below an absorbing slab, the lamp above it: the same as without, times what passes."""
+    images = []
+    for density in (0.0, 0.5):
+        snapshot = view((8, 8))
+        inputs = {"Color": (0.8, 0.8, 0.8, 1.0)}
+        floor = material(
+            snapshot, [{"type": "ShaderNodeBsdfDiffuse", "inputs": inputs}], (0, "BSDF")
+        )
+        s.quad(snapshot, s.rectangle(-50, -50, 50, 50, 10.0), floor)
+        box(snapshot, (-90, -90, -3), (90, 90, -1), filled(snapshot, absorption(density)))
+        lamp(snapshot, (4.0, 4.0, -1000.0), energy=1e8)
+        images.append(s.render(snapshot)["combined"][..., 0])
+    assert images[1] / images[0] == pytest.approx(np.exp(-2 * 0.5), rel=1e-4)
+
+
+@pytest.mark.parametrize("options", [{"bucket_size": 16}, {"threads": 1}])
+def test_no_bit_depends_on_buckets_or_threads(options):
+    def image(**options):
+        snapshot = s.busy("SIMD", samples=4, film_transparent=False, **options)
+        box(snapshot, (-2, -2, 3), (2, 2, 6), filled(snapshot, scatter(0.2), emitted(0.1)))
+        lamp(snapshot, (0.0, 3.0, 4.0))
+        return s.render(snapshot)["combined"]
+
+    assert (image() == image(**options)).all()
+
+
+def test_crop_changes_no_bit():
+    def image(**options):
+        snapshot = s.busy("SIMD", samples=4, **options)
+        box(snapshot, (-2, -2, 3), (2, 2, 6), filled(snapshot, scatter(0.2)))
+        lamp(snapshot, (0.0, 3.0, 4.0))
+        return s.render(snapshot)["combined"]
+
+    whole = image()
+    part = image(crop=np.array((20, 10, 60, 50), np.int32))
+    assert (part == whole[10:50, 20:60]).all()
