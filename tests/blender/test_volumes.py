@@ -4,6 +4,7 @@
 import math
 
 import bpy
+import export_probe
 import node_comparison
 import numpy as np
 import pytest
@@ -223,3 +224,19 @@ def test_smoke_of_noise_is_lit(scene, render):
     lamp(scene, "POINT", 300.0, (2.0, 1.0, 2.0), shadow_soft_size=0.3)
     orthographic(scene)
     agrees(*both(scene, render, 256))
+
+
+def test_what_is_not_read_of_smoke_is_named(scene):
+    domain = turned_cube()
+    fluid = domain.modifiers.new("Fluid", "FLUID")
+    fluid.fluid_type = "DOMAIN"
+    fluid.domain_settings.domain_type = "GAS"
+    tree = filled(domain, "ShaderNodeVolumePrincipled")
+    info = tree.add("ShaderNodeVolumeInfo")
+    tree.link(info.outputs["Density"], tree.nodes["Principled Volume"].inputs["Density"])
+    scene_parts.add_camera(scene)
+    snapshot, report, _ = export_probe.through_engine(scene)
+    named = {datablock: message for datablock, message, _ in report.entries()}
+    assert "smoke" in named[f"object '{domain.name}'"]
+    assert snapshot["materials"][0]["surface"] is None
+    assert snapshot["materials"][0]["volume"] is not None

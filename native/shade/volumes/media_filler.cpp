@@ -12,6 +12,9 @@ namespace {
 
 /// Of one ray through one part of a thing, as Cycles has it.
 constexpr float kMostSteps = 1024.0f;
+/// And what short ways take.
+constexpr float kLeastSteps = 8.0f;
+constexpr float kGolden = 0.618034f;
 /// Places that a program is run over at once.
 constexpr std::size_t kBatch = 4096;
 
@@ -67,13 +70,14 @@ void MediaFiller::add_ray(const Ray& ray, float shift, std::span<const FilledSpa
 /// Of a part in which the same things are there all along.
 void MediaFiller::add_pieces(const Ray& ray, float shift, float begin, float end,
                              std::span<const FilledSpan> there) {
-    float step = end - begin;
+    float step = end - begin, count = 1.0f;
     for (const FilledSpan& span : there)
-        if (!span.program->is_homogeneous())
+        if (!span.program->is_homogeneous()) {
             step = std::min(step, m_things.steps.at(span.instance));
-    float count = 1.0f;
-    if (step < end - begin) {
-        count = std::min(std::ceil((end - begin) / step), kMostSteps);
+            count = kLeastSteps;
+        }
+    if (step < end - begin || count > 1.0f) {
+        count = std::clamp(std::ceil((end - begin) / step), count, kMostSteps);
         if (std::isfinite(end)) step = (end - begin) / count;
     }
     const auto steps = static_cast<std::size_t>(count);
@@ -82,7 +86,9 @@ void MediaFiller::add_pieces(const Ray& ray, float shift, float begin, float end
         MediumPiece& piece = m_media.pieces.emplace_back();
         piece.begin = k == 0 ? begin : begin + static_cast<float>(k) * step;
         piece.end = steps == 1 ? end : begin + static_cast<float>(k + 1) * step;
-        const float at = piece.begin + shift * (piece.end - piece.begin);
+        // Of steps that are all shifted alike, the sum is as much in doubt as one.
+        const float own = shift + kGolden * static_cast<float>(k);
+        const float at = piece.begin + (own - std::floor(own)) * (piece.end - piece.begin);
         for (const FilledSpan& span : there) {
             if (span.program->is_homogeneous()) {
                 add_values(*span.program, Values(nullptr), 0, piece);
