@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/tile_volumes.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "render/camera_rays.h"

@@ -235,8 +235,10 @@ def test_what_is_not_read_of_smoke_is_named(scene):
     info = tree.add("ShaderNodeVolumeInfo")
     tree.link(info.outputs["Density"], tree.nodes["Principled Volume"].inputs["Density"])
     scene_parts.add_camera(scene)
+    scene.cycles.volume_bounces = 3
     snapshot, report, _ = export_probe.through_engine(scene)
     named = {datablock: message for datablock, message, _ in report.entries()}
     assert "smoke" in named[f"object '{domain.name}'"]
+    assert "once, not 4 times" in named["render settings"]
     assert snapshot["materials"][0]["surface"] is None
     assert snapshot["materials"][0]["volume"] is not None

@@ -30,3 +30,16 @@ def light_paths(scene, settings):
     if preset == "FAST":
         limits["bounces"] = min(limits["bounces"], _FAST)
     return limits
+
+
+def report_volume_bounces(scene, records, report):
+    """Names the limit that is not read, where something is filled.
+
+    Args:
+        scene: whose settings of Cycles count.
+        records: of materials and the world.
+        report: called with (datablock, message).
+    """
+    bounces = getattr(getattr(scene, "cycles", None), "volume_bounces", 0)
+    if bounces > 0 and any(record.get("volume") for record in records):
+        report("render settings", f"volumes scatter light once, not {bounces + 1} times")

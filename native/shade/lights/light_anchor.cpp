@@ -7,7 +7,7 @@
 namespace granita {
 namespace {
 
-/// What is as good as found without the others' help.
+/// Light of others is found by distances alone.
 constexpr std::size_t kMost = 8;
 
 }  // namespace
