@@ -31,7 +31,6 @@
 #include "shade/world_shader.h"
 
 namespace granita {
-
 namespace {
 
 /// Radiance of a surface that nobody misses as a light: an 8-bit step of white.
@@ -39,7 +38,6 @@ constexpr float kDimmestEmission = 0.004f;
 
 /// Metres: what scatters no farther is drawn as diffuse, as in Cycles.
 constexpr float kLeastScattering = 1e-8f;
-
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Refined samples have one light sample each, or a few; corners have Options::light_samples, and

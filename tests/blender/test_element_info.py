@@ -11,7 +11,6 @@ import scene_parts
 from hair_parts import curve_through, furry, grid_points
 from node_comparison import Tree, render_both, rmse
 from test_bsdfs import give_material
-from test_nodes_shaders import sun
 
 PIXELS, BLOCK = 64, 8
 # Relative to the deviation of the blocks: what edges make of 64 samples.
@@ -89,24 +88,3 @@ def test_faces_have_neither(scene, render):
     assert not theirs.any()
     assert not ours.any()
     assert bpy.data.materials[tree.material.name]
-
-
-def test_principled_hair_is_random_by_itself(scene, render):
-    """As if Random were linked to that of Hair Info."""
-    thing = furry(scene, count=25)
-    tree = Tree(thing)
-    hair = tree.add("ShaderNodeBsdfHairPrincipled", parametrization="MELANIN")
-    hair.inputs["Melanin"].default_value = 0.4
-    hair.inputs["Random Color"].default_value = 0.9
-    hair.inputs["Random Roughness"].default_value = 0.5
-    tree.link(hair.outputs[0], tree.output.inputs["Surface"])
-    sun(scene)
-    scene_parts.add_camera(scene, (0, -5, 1), ortho_scale=3.0).rotation_euler.x = 1.3
-    scene.render.resolution_x = scene.render.resolution_y = PIXELS
-    _, by_itself = render_both(scene, render)
-    tree.link(tree.add("ShaderNodeHairInfo").outputs["Random"], hair.inputs["Random"])
-    _, linked = render_both(scene, render)
-    assert np.array_equal(by_itself, linked)
-    hair.inputs["Random Color"].default_value = 0.0
-    _, even = render_both(scene, render)
-    assert rmse(even, linked) > 0.01

@@ -223,7 +223,8 @@ def test_smoke_of_noise_is_lit(scene, render):
     tree.link(ramp.outputs[0], tree.nodes["Principled Volume"].inputs["Density"])
     lamp(scene, "POINT", 300.0, (2.0, 1.0, 2.0), shadow_soft_size=0.3)
     orthographic(scene)
-    agrees(*both(scene, render, 256))
+    # Both march in steps, of their own: 2.1 % were seen.
+    agrees(*both(scene, render, 256), mean=0.03)
 
 
 def test_what_is_not_read_of_smoke_is_named(scene):

@@ -93,11 +93,7 @@ void build_principled_hair(NodeBuilder& b, SurfaceBuilder& surface, const FloatS
     if (!b.linked("Random")) {
         random = {-1, 0.5f};
         if (!random_color.is(0.0f) || !random_roughness.is(0.0f))
-            random = b.map<float>([](float number, float of_curve,
-                                     float curve) { return curve != 0.0f ? of_curve : number; },
-                                  b.number("Random", 0.5f),
-                                  b.attribute_component({AttributeSource::ElementRandom, "", 1}, 0),
-                                  is_of_kind(b, GeometryKind::Curves));
+            b.warn("Principled Hair: nothing is random but what is linked to Random");
     }
     const FloatSource factor = varied(b, random, random_roughness);
     LobeSource lobe;
