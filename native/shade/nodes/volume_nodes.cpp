@@ -43,10 +43,12 @@ void build_volume_scatter(NodeBuilder& b, SurfaceBuilder& volume, const FloatSou
 }
 
 void build_volume_coefficients(NodeBuilder& b, SurfaceBuilder& volume, const FloatSource& weight) {
-    volume.add_absorption(
-        b, scaled(b, b.map<Vec3f>(positive, b.vector("Absorption Coefficients")), weight));
-    add_phase(b, volume, scaled(b, b.vector("Scatter Coefficients"), weight));
-    volume.add_emission(b, scaled(b, b.vector("Emission Coefficients"), weight));
+    const auto coefficients = [&](const char* name) {
+        return scaled(b, b.map<Vec3f>(positive, b.vector(name)), weight);
+    };
+    volume.add_absorption(b, coefficients("Absorption Coefficients"));
+    add_phase(b, volume, coefficients("Scatter Coefficients"));
+    volume.add_emission(b, coefficients("Emission Coefficients"));
 }
 
 void build_principled_volume(NodeBuilder& b, SurfaceBuilder& volume, const FloatSource& weight) {
