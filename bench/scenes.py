@@ -7,9 +7,14 @@ Colours glow where lighting is not the point.  Frames are 16 to 9, as large as a
 """
 
 import math
+import sys
+from pathlib import Path
 
 import bpy
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "demo"))
+from keyframes import make_linear  # noqa: E402
 
 SHUTTER = 0.5
 SCALE = 16.0  # metres across the frame, where the camera is orthographic
@@ -44,9 +49,7 @@ def animate(item, path, index, change):
     for frame in (0, 2):
         getattr(item, path)[index] = rest + change * ((frame - 1) / SHUTTER - 0.5)
         item.keyframe_insert(path, index=index, frame=frame)
-    for curve in item.animation_data.action.fcurves:
-        for key in curve.keyframe_points:
-            key.interpolation = "LINEAR"
+    make_linear(item)
 
 
 def add_camera(scene, location, focal=None, tilt=0.0):

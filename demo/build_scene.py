@@ -18,6 +18,7 @@ from mathutils import Vector
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
+import keyframes  # noqa: E402
 import textures  # noqa: E402
 import turned  # noqa: E402
 
@@ -177,9 +178,7 @@ def add_taken_pawn(mesh: bpy.types.Mesh) -> None:
         pawn.location, pawn.rotation_euler = location, rotation
         pawn.keyframe_insert("location", frame=frame)
         pawn.keyframe_insert("rotation_euler", frame=frame)
-    for curve in pawn.animation_data.action.fcurves:
-        for key in curve.keyframe_points:
-            key.interpolation = "LINEAR"
+    keyframes.make_linear(pawn)
 
 
 def plane(

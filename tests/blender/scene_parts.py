@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What test scenes are made of: plain data calls, the same in every Blender."""
 
+import sys
+from pathlib import Path
+
 import bpy
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "demo"))
+from keyframes import fcurves_of, make_linear  # noqa: E402, F401
 
 
 def multilayer_exr(scene):
@@ -84,21 +90,6 @@ def add_subsurf(thing, levels=2):
     modifier = thing.modifiers.new("Subsurf", "SUBSURF")
     modifier.levels = modifier.render_levels = levels
     return modifier
-
-
-def fcurves_of(thing):
-    """Of its action, which has layers since Blender 4.4 and nothing else since 5."""
-    action = thing.animation_data.action
-    if hasattr(action, "fcurves"):
-        return action.fcurves
-    return action.layers[0].strips[0].channelbag(thing.animation_data.action_slot).fcurves
-
-
-def make_linear(thing):
-    """Its keys, from one to the next."""
-    for curve in fcurves_of(thing):
-        for key in curve.keyframe_points:
-            key.interpolation = "LINEAR"
 
 
 def cast_no_shadow(light):

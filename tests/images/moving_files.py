@@ -15,11 +15,13 @@ import bpy
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))
+DEMO = HERE.parent.parent / "demo"
+sys.path[:0] = [str(HERE), str(DEMO)]
 import engines  # noqa: E402
+import keyframes  # noqa: E402
 
 ASSETS = HERE / "assets" / "moving"
-DEMO_ASSETS = HERE.parent.parent / "demo" / "assets"
+DEMO_ASSETS = DEMO / "assets"
 WIDTH, HEIGHT = 240, 135
 if "bool" not in vars(np):
     np.bool = bool  # the glTF importer of Blender 3.4 asks for it
@@ -51,9 +53,7 @@ def move(item, path, value, index):
     for offset in (-1, 4):
         getattr(item, path)[index] = start + value * offset
         item.keyframe_insert(path, index=index, frame=frame + offset)
-    for curve in item.animation_data.action.fcurves:
-        for key in curve.keyframe_points:
-            key.interpolation = "LINEAR"
+    keyframes.make_linear(item)
     bpy.context.scene.frame_set(frame)
 
 
