@@ -13,24 +13,24 @@ void bind_errors(py::module_& module) {
     static py::object* internal_error =
         new py::exception<InternalError>(module, "InternalError", error->ptr());
     static py::object* cancelled = new py::exception<Cancelled>(module, "Cancelled", error->ptr());
-    py::register_local_exception_translator(
-        [](std::exception_ptr pointer) {  // NOLINT(performance-unnecessary-value-param): pybind11's
-            try {
-                if (pointer) std::rethrow_exception(pointer);
-            } catch (const SceneError& e) {
-                py::object instance = (*scene_error)(e.what());
-                instance.attr("datablock") = e.datablock();
-                PyErr_SetObject(scene_error->ptr(), instance.ptr());
-            } catch (const GlError& e) {
-                PyErr_SetString(gl_error->ptr(), e.what());
-            } catch (const InternalError& e) {
-                PyErr_SetString(internal_error->ptr(), e.what());
-            } catch (const Cancelled& e) {
-                PyErr_SetString(cancelled->ptr(), e.what());
-            } catch (const Error& e) {
-                PyErr_SetString(error->ptr(), e.what());
-            }
-        });
+    // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11's signature
+    py::register_local_exception_translator([](std::exception_ptr pointer) {
+        try {
+            if (pointer) std::rethrow_exception(pointer);
+        } catch (const SceneError& e) {
+            py::object instance = (*scene_error)(e.what());
+            instance.attr("datablock") = e.datablock();
+            PyErr_SetObject(scene_error->ptr(), instance.ptr());
+        } catch (const GlError& e) {
+            PyErr_SetString(gl_error->ptr(), e.what());
+        } catch (const InternalError& e) {
+            PyErr_SetString(internal_error->ptr(), e.what());
+        } catch (const Cancelled& e) {
+            PyErr_SetString(cancelled->ptr(), e.what());
+        } catch (const Error& e) {
+            PyErr_SetString(error->ptr(), e.what());
+        }
+    });
 }
 
 }  // namespace granita::python

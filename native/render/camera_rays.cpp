@@ -8,16 +8,6 @@
 namespace granita {
 namespace {
 
-/// world_from_camera's rotation at shutter time t, between its knots.
-Mat3d rotation_at(const Camera& camera, double t) {
-    const auto& knots = camera.world_from_camera;
-    const double at = t * static_cast<double>(knots.size() - 1);
-    const auto k = std::min(static_cast<std::size_t>(at), knots.size() - 1);
-    const auto next = std::min(k + 1, knots.size() - 1);
-    const double f = at - static_cast<double>(k);
-    return Mat3d(knots[k]) * (1.0 - f) + Mat3d(knots[next]) * f;
-}
-
 /// Through a raster position, one metre deep, in camera space.
 Vec3d slope(const Projection& p, Vec2d raster, const Look& look) {
     Vec3d direction(0.0, 0.0, 1.0);
@@ -29,14 +19,8 @@ Vec3d slope(const Projection& p, Vec2d raster, const Look& look) {
 }  // namespace
 
 Vec3f world_direction(const Camera& camera, Vec2d raster, const Look& look) {
-    const Projection& p = camera.projection;
-    Vec3d direction(0.0, 0.0, 1.0);
-    if (p.perspective) {
-        direction.x = (raster.x - p.center.x) / p.scale.x;
-        direction.y = (raster.y - p.center.y) / p.scale.y;
-        direction -= Vec3d(look.lens, 0.0) * (p.lens_radius * look.inverse_focus);
-    }
-    return Vec3f(glm::normalize(rotation_at(camera, look.t) * direction));
+    const Mat3d world_from_camera(matrix_at(camera.world_from_camera, look.t));
+    return Vec3f(glm::normalize(world_from_camera * slope(camera.projection, raster, look)));
 }
 
 Look CameraRays::look(std::size_t i) const {

@@ -55,13 +55,12 @@ RasterFrame make_raster_frame(const Scene& scene, const Projection& projection,
     const auto factor = [&](double d) { return filter.evaluate(static_cast<float>(d)); };
     if (table.sampling() == Sampling::Regular) {
         frame.filter = make_raster_filter(table.lattice(), filter.radius(), factor);
-        frame.passes =
-            raster_passes(table, {scene.moves(), scene.camera.projection.has_lens()}, projection);
+        frame.passes = raster_passes(table, table.needs(), projection);
     } else {
         frame.filter = make_gathering_filter(sample_lattice(table.samples()), filter.radius(),
                                              filter.is_box(), factor);
         frame.table = &table;
-        frame.needs = {scene.moves(), scene.camera.projection.has_lens()};
+        frame.needs = table.needs();
         frame.lifespans = scene.has_lifespans();
     }
     frame.opacity_threshold = scene.options.opacity_threshold;

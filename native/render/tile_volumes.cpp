@@ -33,10 +33,10 @@ TileVolumes::TileVolumes(Frame& frame, const SampleTable& table, const TileStore
                          const GridPool& pool, const RefinedSamples& already)
     : refined(already), samples(store.id.size()) {
     const Scene& scene = frame.scene;
-    const bool has_channels = !ChannelSet(scene.options).empty();
+    const bool has_channels = !frame.film.channels().empty();
     // The hider may have met no motion and no lens in this tile; what fills things has both.
     TileSamples looks;
-    table.fill_tile(store.tile, {scene.moves(), scene.camera.projection.has_lens()}, looks);
+    table.fill_tile(store.tile, table.needs(), looks);
     const CameraRays rays(scene.camera, store, looks);
     const float frame_time = scene.options.frame_time;
     const Vec3d origin(matrix_at(scene.camera.world_from_camera, frame_time)[3]);

@@ -18,14 +18,11 @@ class MovingEye {
         : m_knots(scene.camera.world_from_camera),
           m_perspective(camera.perspective),
           m_origin(camera.world_from_camera[3]),
-          m_at_frame(camera.world_from_camera) {}
+          m_at_frame(relative(camera.world_from_camera)) {}
 
-    bool is_perspective() const { return m_perspective; }
     /// Its axes in the columns (z ahead), and where it is in the last.
     Mat4d place(float time) const {
-        Mat4d at = is_static(m_knots) ? m_at_frame : matrix_at(m_knots, time);
-        at[3] -= glm::dvec4(m_origin, 0.0);
-        return at;
+        return is_static(m_knots) ? m_at_frame : relative(matrix_at(m_knots, time));
     }
     /// Unit, towards it.
     Vec3f view(const Vec3f& p, float time) const {
@@ -35,6 +32,11 @@ class MovingEye {
     }
 
   private:
+    Mat4d relative(Mat4d at) const {
+        at[3] -= glm::dvec4(m_origin, 0.0);
+        return at;
+    }
+
     const std::vector<Mat4d>& m_knots;
     bool m_perspective;
     Vec3d m_origin;

@@ -20,7 +20,7 @@ class Looks {
   public:
     Looks(const ShadingPoints& points, const PointPaths& paths, const GridKey& key,
           const RayScene& rays, const Scene& scene, const MovingEye& eye,
-          const ShutterWarp& shutter)
+          const ShutterWarp* shutter)
         : m_points(points),
           m_paths(paths),
           m_rays(rays),
@@ -31,15 +31,14 @@ class Looks {
           m_key(key),
           m_at_frame(eye.place(scene.options.frame_time)),
           m_sequence(mix_bits(grid_seed(key, scene.options.seed))),
-          m_lens(mix_bits(mix_bits(grid_seed(key, scene.options.seed)))),
-          m_moves(scene.moves()) {}
+          m_lens(mix_bits(mix_bits(grid_seed(key, scene.options.seed)))) {}
 
     /// From the point to the eye.
     Ray from(std::size_t i) {
         const std::uint32_t place = place_in_sequence(m_points, i);
         const float frame_time = m_scene.options.frame_time;
-        const float time = m_moves ? m_shutter.time(m_sequence(place).x) : frame_time;
-        const Mat4d at = m_moves ? m_eye.place(time) : m_at_frame;
+        const float time = m_shutter ? m_shutter->time(m_sequence(place).x) : frame_time;
+        const Mat4d at = m_shutter ? m_eye.place(time) : m_at_frame;
         Vec3f p = m_points.p[i], normal = m_points.geometric_normal[i];
         if (m_paths.moves()) {
             const PointPaths::Place there = m_paths.at(i, time);
@@ -77,12 +76,11 @@ class Looks {
     const RayScene& m_rays;
     const Scene& m_scene;
     const MovingEye& m_eye;
-    const ShutterWarp& m_shutter;
+    const ShutterWarp* m_shutter;
     RayOffset m_offset;
     GridKey m_key;
     Mat4d m_at_frame;
     SobolPoints m_sequence, m_lens;
-    bool m_moves;
 };
 
 /// Of a lattice, those beside one that is seen.
@@ -106,7 +104,7 @@ std::vector<std::uint8_t> with_neighbours(const std::vector<std::uint8_t>& seen,
 
 std::vector<float> seen_shares(const ShadingPoints& points, const PointPaths& paths,
                                const GridKey& key, const RayScene& rays, const Scene& scene,
-                               const MovingEye& eye, const ShutterWarp& shutter) {
+                               const MovingEye& eye, const ShutterWarp* shutter) {
     Looks looks(points, paths, key, rays, scene, eye, shutter);
     std::vector<Ray> asked;
     asked.reserve(points.count);

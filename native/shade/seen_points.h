@@ -20,8 +20,9 @@ namespace granita {
 /// What a point brings stays right, it is its noise that none or few see.  The same whatever
 /// bucket asks; empty where all are seen.
 /// @param points of the grid of `key`, lifted.
+/// @param shutter nullptr where nothing moves.
 std::vector<float> seen_shares(const ShadingPoints& points, const PointPaths& paths,
                                const GridKey& key, const RayScene& rays, const Scene& scene,
-                               const MovingEye& eye, const ShutterWarp& shutter);
+                               const MovingEye& eye, const ShutterWarp* shutter);
 
 }  // namespace granita

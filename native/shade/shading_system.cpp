@@ -394,7 +394,8 @@ struct ShadingSystem::Impl {
         if (light && lit) light->lift(points, grid.key);
         const PointPaths at = paths(grid, points);
         if (bounces && lit)
-            points.shares = seen_shares(points, at, grid.key, *light->rays(), scene, eye, shutter);
+            points.shares = seen_shares(points, at, grid.key, *light->rays(), scene, eye,
+                                        moves ? &shutter : nullptr);
         std::vector<float> noise(wants_refining ? points.count : 0, 0.0f);
         std::vector<Vec3f> settled;
         shade(grid, input(grid, points), at, wants_refining ? &noise : nullptr,
@@ -449,7 +450,7 @@ bool ShadingSystem::reaches_others(int material) const {
     return !m_impl->material(material).shadow.transparency.is(Vec3f(0.0f)) ||
            m_impl->emission->any(material) ||
            m_impl->material(material).radiance.bends_scattered() ||
-           (m_impl->volumes && m_impl->volumes->inside(material) != RayMaterials::Inside::Nothing);
+           (m_impl->volumes && m_impl->volumes->fills(material));
 }
 
 void ShadingSystem::shade_opacity(Grid& grid) const {

@@ -49,6 +49,7 @@ float fraction24(std::uint32_t bits) {
 SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNeeds frame,
                          int automatic_passes)
     : m_samples(options.samples),
+      m_needs(frame),
       m_sampling(options.sampling),
       m_seed(options.seed),
       m_shutter(options.shutter_curve),

@@ -54,6 +54,7 @@ class SampleTable {
                 int automatic_passes = kDefaultPasses);
     /// A pixel's samples.
     int samples() const { return m_samples; }
+    SampleNeeds needs() const { return m_needs; }  ///< of the frame
     Sampling sampling() const { return m_sampling; }
     const RegularLattice& lattice() const { return m_lattice; }  ///< REGULAR
     std::uint32_t seed() const { return m_seed; }
@@ -70,6 +71,7 @@ class SampleTable {
     void move_lens(TileSamples& samples) const;
 
     int m_samples;
+    SampleNeeds m_needs;
     RegularLattice m_lattice;
     Sampling m_sampling;
     std::uint32_t m_seed;

@@ -39,15 +39,11 @@ class Voronoi {
         m_in.smoothness = std::clamp(0.5f * in.smoothness, std::numeric_limits<float>::min(), 0.5f);
         m_in.detail = std::clamp(in.detail, 0.0f, 15.0f);
         m_in.roughness = std::clamp(in.roughness, 0.0f, 1.0f);
+        if (m_in.roughness == 0.0f) m_in.detail = 0.0f;
     }
 
     /// Sum of octaves, the last one by as much as it is asked for.
     VoronoiValue<N> value(const CellPoint<N>& place) const {
-        if (is_one_octave()) {
-            VoronoiValue<N> one = octave(place);
-            if (m_settings.normalize) one.distance /= farthest();
-            return one;
-        }
         VoronoiValue<N> sum;
         float amplitude = 1.0f, scale = 1.0f, most = 0.0f;
         for_octaves([&](float share) {
@@ -70,17 +66,13 @@ class Voronoi {
     /// To the border of the cell.
     float edge(const CellPoint<N>& place) const {
         const float most = 0.5f + 0.5f * m_in.randomness;
-        if (is_one_octave()) {
-            const float distance = edge_of_octave(place);
-            return m_settings.normalize ? distance / most : distance;
-        }
         float amplitude = 1.0f, scale = 1.0f, least = 8.0f, farthest = most;
         for_octaves([&](float share) {
             const float here = edge_of_octave(scaled(place, scale)) / scale;
             const float farther = std::lerp(farthest, most / scale, amplitude);
             farthest = std::lerp(farthest, farther, share);
             const float nearer = std::lerp(least, std::min(least, here), amplitude);
-            least = share < 1.0f ? std::lerp(least, std::min(least, nearer), share) : nearer;
+            least = std::lerp(least, nearer, share);
             scale *= m_in.lacunarity;
             amplitude *= m_in.roughness;
         });
@@ -116,7 +108,6 @@ class Voronoi {
     CellsAround<N> around(const CellPoint<N>& place) const {
         return CellsAround<N>(place, m_in.randomness, m_settings.pcg);
     }
-    bool is_one_octave() const { return m_in.detail == 0.0f || m_in.roughness == 0.0f; }
     /// `visit(share)` of each octave.
     template <class Visit>
     void for_octaves(const Visit& visit) const {

@@ -10,6 +10,7 @@
 #include "shade/rays/covering_triangle.h"
 #include "shade/rays/ray_scene_impl.h"
 #include "shade/rays/ray_transforms.h"
+#include "shade/rays/ray_visibility.h"
 #include "shade/rays/set_ray.h"
 
 namespace granita {
@@ -88,9 +89,9 @@ void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) 
     if (context->looked_at != nullptr || arguments->valid[0] != -1 || instance.is_plain) return;
     const float time = reinterpret_cast<const RTCRay*>(arguments->ray)->time;
     const Instance& met = scene->scene.instances[instance.index];
-    const bool is_there = context->rays->type == RayType::Camera
-                              ? met.visible_camera
-                              : met.casts_shadow && in_light_set(met.blocks, context->blocker_set);
+    const RayType type = context->rays->type;
+    const bool is_there = meets(type, met) && (type != RayType::Shadow ||
+                                               in_light_set(met.blocks, context->blocker_set));
     if (!is_there || !met.lifespan.contains(time)) {
         arguments->valid[0] = 0;
         return;
@@ -109,12 +110,6 @@ void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) 
     if (context->left != Vec3f(0.0f)) arguments->valid[0] = 0;
 }
 
-/// Rays that go through a surface are glossy as well (Cycles).
-static bool is_seen(const Instance& met, RayType type) {
-    if (type == RayType::Diffuse) return met.visible_diffuse;
-    return met.visible_glossy || (goes_through(type) && met.visible_transmission);
-}
-
 /// What does not exist at the ray's time, or is hidden from its like, is not met.
 void RayScene::Impl::skip_absent(const RTCFilterFunctionNArguments* arguments) {
     const unsigned id = arguments->context->instID[0];
@@ -124,7 +119,7 @@ void RayScene::Impl::skip_absent(const RTCFilterFunctionNArguments* arguments) {
     if (context.crossings) return scene->note_crossing(arguments);
     const Ray& ray = context.rays[reinterpret_cast<const RTCRay*>(arguments->ray)->id];
     const Instance& met = scene->scene.instances[scene->instances[id].index];
-    if (!is_seen(met, ray.type) || !met.lifespan.contains(ray.time)) arguments->valid[0] = 0;
+    if (!meets(ray.type, met) || !met.lifespan.contains(ray.time)) arguments->valid[0] = 0;
 }
 
 RayScene::~RayScene() = default;

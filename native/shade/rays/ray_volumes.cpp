@@ -6,26 +6,11 @@
 #include <limits>
 
 #include "shade/rays/ray_scene_impl.h"
+#include "shade/rays/ray_visibility.h"
 #include "shade/rays/set_ray.h"
 
 namespace granita {
 namespace {
-
-bool is_visible(const Instance& instance, RayType ray) {
-    switch (ray) {
-        case RayType::Camera:
-            return instance.visible_camera;
-        case RayType::Shadow:
-            return instance.casts_shadow;
-        case RayType::Diffuse:
-            return instance.visible_diffuse;
-        case RayType::Transmission:
-        case RayType::Clear:
-            return instance.visible_glossy || instance.visible_transmission;
-        default:
-            return instance.visible_glossy;
-    }
-}
 
 /// By instance; what is left where it is entered, as where edges are grazed, is not there.
 bool is_before(const VolumeCrossing& a, const VolumeCrossing& b) {
@@ -44,7 +29,7 @@ void RayScene::Impl::note_crossing(const RTCFilterFunctionNArguments* arguments)
     const Instance& instance = scene.instances[index];
     const Ray& ray = context.rays[0];
     arguments->valid[0] = 0;  // goes on
-    if (!is_visible(instance, ray.type) || !instance.lifespan.contains(ray.time)) return;
+    if (!meets(ray.type, instance) || !instance.lifespan.contains(ray.time)) return;
     std::int32_t material = instance.materials.front();
     if (instance.materials.size() > 1) {
         RayHit hit;

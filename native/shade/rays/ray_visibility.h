@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "scene/scene.h"
+#include "shade/rays/ray_type.h"
+
+namespace granita {
+
+/// Whether such rays can meet the instance.  Those that go through a surface are glossy as well
+/// (Cycles).
+inline bool meets(RayType ray, const Instance& instance) {
+    if (ray == RayType::Camera) return instance.visible_camera;
+    if (ray == RayType::Shadow) return instance.casts_shadow;
+    if (ray == RayType::Diffuse) return instance.visible_diffuse;
+    return instance.visible_glossy || (goes_through(ray) && instance.visible_transmission);
+}
+
+}  // namespace granita
