@@ -106,9 +106,10 @@ def test_plain_smooth_and_flat_need_no_corner_normals(scene, cube):
     assert "corner_normals" not in geometry and geometry["smooth"].tolist() == [1] * 6
 
 
-def test_custom_normals(scene, cube):
+@pytest.mark.parametrize("smooth", [True, False])
+def test_custom_normals(scene, cube, smooth):
     mesh = cube.data
-    mesh.polygons.foreach_set("use_smooth", [True] * 6)
+    mesh.polygons.foreach_set("use_smooth", [smooth] * 6)
     if hasattr(mesh, "use_auto_smooth"):
         mesh.use_auto_smooth = True
     wanted = np.tile(np.array([0.6, 0.0, 0.8]), (24, 1))

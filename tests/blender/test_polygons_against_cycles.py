@@ -90,6 +90,37 @@ def test_smooth_waves(scene, render, faces):
     check(scene, render, rms=0.01)
 
 
+def split_nothing(mesh):
+    pass
+
+
+def split_edges(mesh):
+    mesh.edges.foreach_set("use_edge_sharp", [i % 5 == 0 for i in range(len(mesh.edges))])
+
+
+def bend_normals(mesh):
+    mesh.normals_split_custom_set([(0.6, 0.0, 0.8)] * len(mesh.loops))
+
+
+@pytest.mark.parametrize("split", [split_nothing, split_edges, bend_normals])
+@pytest.mark.parametrize("smooth_faces", [0, 1])
+@pytest.mark.parametrize("auto_smooth", [False, True])
+def test_flat_faces_and_split_normals(scene, render, split, smooth_faces, auto_smooth):
+    """Bent normals light no faces that turn away from the sun here, where Cycles' rays start above smooth ones: these
+    have no offset.  Faces: all flat, or every second one smooth."""
+    add_sun(scene)
+    thing = add_waves(scene, 8, 0.12)
+    mesh = thing.data
+    mesh.polygons.foreach_set("use_smooth", [bool(smooth_faces and i % 2) for i in range(64)])
+    if hasattr(mesh, "use_auto_smooth"):
+        mesh.use_auto_smooth, mesh.auto_smooth_angle = auto_smooth, 3.0
+    split(mesh)
+    mesh.update()
+    thing.cycles.shadow_terminator_geometry_offset = 0.0
+    scene_parts.add_camera(scene, ortho_scale=2.2)
+    check(scene, render)
+
+
 @pytest.mark.parametrize("levels", [1, 2])
 def test_flat_faces_under_subdivision_show_the_facets_of_their_level(scene, render, levels):
     add_sun(scene)

@@ -174,25 +174,34 @@ def has_flat_faces(mesh):
 
 def _shading(mesh):
     """(uint8 [F] or None, float32 [C, 3] or None): smooth flags, and normals where these do not
-    say it all.
+    say it all; those are for flat faces too.
 
-    From Blender 4.1 on the mesh says so itself: CORNER means custom normals, sharp edges, or flat
-    faces beside smooth ones.  Before, normals are split only with Auto Smooth.
+    From Blender 4.1 on custom normals and sharp edges alone split normals in Cycles, though the
+    mesh itself splits them between flat faces and smooth ones as well.  Before, Auto Smooth does.
     """
     if hasattr(mesh, "normals_domain"):
         if mesh.normals_domain == "FACE":
             return None, None
-        if mesh.normals_domain == "POINT":
-            return np.ones(len(mesh.polygons), dtype=np.uint8), None
-        return _smooth(mesh), vectors(mesh.corner_normals)
+        if mesh.has_custom_normals or _has_sharp_edges(mesh):
+            return _smooth(mesh), vectors(mesh.corner_normals)
+        return _smooth(mesh), None
     smooth = _smooth(mesh)
-    if not mesh.use_auto_smooth or smooth is None:
+    if not mesh.use_auto_smooth:
         return smooth, None
     # On the evaluated mesh: the layer is the render's own, and is freed at once.
     mesh.calc_normals_split()
     normals = vectors(mesh.loops, "normal")
     mesh.free_normals_split()
     return smooth, normals
+
+
+def _has_sharp_edges(mesh):
+    attribute = mesh.attributes.get("sharp_edge")
+    if attribute is None:
+        return False
+    values = np.zeros(len(mesh.edges), dtype=np.bool_)
+    attribute.data.foreach_get("value", values)
+    return bool(values.any())
 
 
 def _drop_broken_faces(geometry, report):
