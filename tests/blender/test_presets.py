@@ -66,6 +66,11 @@ def choose(name):
     bpy.ops.script.execute_preset(filepath=item.filepath, menu_idname=item.menu_idname)
 
 
+def presets(folder):
+    """{file name: text}; Python may keep compiled ones beside them."""
+    return {file.name: file.read_text() for file in Path(folder).glob("*.py")}
+
+
 def values(settings):
     return {name: getattr(settings, name) for name in NAMES}
 
@@ -108,20 +113,20 @@ def test_what_the_artist_adds_is_in_the_menu_until_it_is_removed(settings, own_f
     mine = values(settings)
     add = bpy.ops.render.granita_sampling_preset_add
     assert add(name="my own") == {"FINISHED"}
-    assert [file.name for file in own_folder.iterdir()] == ["my_own.py"]
+    assert presets(own_folder).keys() == {"my_own.py"}
     chosen, removable = drawn()
     assert chosen.keys() == {"Draft", "Final", "Preview", "my own"} and "my own" in removable
     choose("Final")
     choose("my own")
     assert values(settings) == mine
     assert add(name="my own", remove_name=True) == {"FINISHED"}
-    assert list(own_folder.iterdir()) == []
+    assert presets(own_folder) == {}
 
 
 @pytest.mark.parametrize("remove", [False, True])
 def test_what_comes_with_granita_stays(settings, own_folder, remove):
-    shipped = {file.name: file.read_text() for file in Path(sampling_presets.SHIPPED).iterdir()}
+    shipped = presets(sampling_presets.SHIPPED)
     add = bpy.ops.render.granita_sampling_preset_add
     assert add(name="Preview", remove_name=remove) == {"CANCELLED"}
-    assert list(own_folder.iterdir()) == []
-    assert {f.name: f.read_text() for f in Path(sampling_presets.SHIPPED).iterdir()} == shipped
+    assert presets(own_folder) == {}
+    assert presets(sampling_presets.SHIPPED) == shipped
