@@ -20,9 +20,18 @@ bl_info = {
 def _parts():
     from . import engine, preferences, properties, ui, written_frames
     from .parts import part_output
+    from .viewport import shading_settings
 
     # What was written is looked at before its path is put back.
-    return (properties, preferences, ui, written_frames, part_output, engine)
+    return (
+        properties,
+        shading_settings,
+        preferences,
+        ui,
+        written_frames,
+        part_output,
+        engine,
+    )
 
 
 def register():

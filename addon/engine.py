@@ -18,6 +18,7 @@ from . import (
     final_render,
     frame_statistics,
     passes,
+    preview_render,
     written_frames,
 )
 from .event_log import EventLog
@@ -47,7 +48,7 @@ _EXPLAINED = (
 class GranitaRenderEngine(bpy.types.RenderEngine):
     bl_idname = ENGINE_ID
     bl_label = "Granita"
-    bl_use_preview = False
+    bl_use_preview = True
     bl_use_postprocess = True  # else the compositor and the normal way of saving are skipped
     bl_use_eevee_viewport = True
     bl_use_shading_nodes_custom = False  # Cycles' and EEVEE's nodes are ours
@@ -70,6 +71,9 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph):
         try:
+            if self.is_preview:
+                preview_render.render_preview(self, depsgraph)
+                return
             options = command_line.parse()
             self.log = EventLog(options.log, depsgraph.scene.frame_current)
             if lost := written_frames.problem():
@@ -95,7 +99,8 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
 
     def render_frame_finish(self):
         try:
-            self.frame_statistics.write()
+            if not self.is_preview:
+                self.frame_statistics.write()
         except _EXPLAINED as error:
             self._fail(str(error))
 

@@ -41,7 +41,7 @@ PASSES = (
 SERVED = frozenset(p.wanted for p in PASSES)
 
 # Passes of light, which the film's exposure multiplies.
-_EXPOSED = {
+EXPOSED = {
     "Combined",
     "Diffuse Direct",
     "Diffuse Indirect",
@@ -145,6 +145,17 @@ def tile_arrays(tile):
     return arrays
 
 
+def shown_pixels(tile, name):
+    """float32 [h, w, 4]: a pass of a tile as a picture, single numbers in grey."""
+    if name == "Combined":
+        return tile.combined
+    values = tile.passes[name]
+    height, width = tile.combined.shape[:2]
+    pixels = np.ones((height, width, 4), dtype=np.float32)
+    pixels[..., :3] = values.reshape(height, width, -1)[..., :3]
+    return pixels
+
+
 def deliver(engine, tile, passes, layer, origin, exposure=1.0):
     """Copies one native tile into Blender's render result.
 
@@ -165,7 +176,7 @@ def deliver(engine, tile, passes, layer, origin, exposure=1.0):
         render_passes = result.layers[0].passes
         for p in passes:
             values = arrays[p.native]
-            if exposure != 1.0 and p.native in _EXPOSED:
+            if exposure != 1.0 and p.native in EXPOSED:
                 values = np.array(values, dtype=np.float32)
                 values[..., :3] *= np.float32(exposure)
             _put(render_passes[display_name(p)], values, width * height, p.channels)

@@ -81,6 +81,7 @@ def export_frame(
         scene_objects = persistent_state.scene_objects(depsgraph, report, check_cancel)
     else:
         scene_objects = read_scene_objects(depsgraph, None, report, check_cancel)
+    scene_objects.hidden = viewpoint.hidden
     world, world_images = _world(depsgraph, report)
     lamp_images = {}
     lamps = read_lamps(depsgraph, scene_objects.scan, scene_objects.lights(), lamp_images, report)

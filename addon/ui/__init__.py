@@ -2,6 +2,7 @@
 """Panels: Granita's own, and Blender's that serve it as they are."""
 
 from . import (
+    compare_operators,
     light_panels,
     linking_panels,
     material_panels,
@@ -25,6 +26,7 @@ _PARTS = (
     material_panels,
     view_layer_panels,
     pass_panels,
+    compare_operators,
     view_panels,
     stock_panels,
 )

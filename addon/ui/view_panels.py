@@ -4,6 +4,7 @@
 import bpy
 
 from ..viewport import loop
+from .compare_operators import GRANITA_OT_compare_pictures, GRANITA_OT_keep_picture
 
 
 class GRANITA_VIEW3D_PT_preview(bpy.types.Panel):
@@ -25,6 +26,8 @@ class GRANITA_VIEW3D_PT_preview(bpy.types.Panel):
         column = self.layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
+        shown = context.space_data.shading.granita
+        column.prop(shown, "render_pass")
         column.prop(settings, "preview_pause")
         column.prop(settings, "preview_samples")
         column.prop(settings, "preview_moving")
@@ -33,12 +36,34 @@ class GRANITA_VIEW3D_PT_preview(bpy.types.Panel):
         row = column.row()
         row.active = scene.render.use_motion_blur
         row.prop(scene.render, "motion_blur_shutter")
+        row = column.row(heading="One Time")
+        row.active = scene.render.use_motion_blur
+        row.prop(shown, "use_time", text="")
+        row = row.row()
+        row.active = shown.use_time
+        row.prop(shown, "time", text="", slider=True)
+        column.prop(shown, "use_paths")
+        row = column.row(align=True)
+        row.operator(GRANITA_OT_keep_picture.bl_idname)
+        row.operator(GRANITA_OT_compare_pictures.bl_idname)
         if scene.camera is not None and scene.camera.type == "CAMERA":
             lens = scene.camera.data.dof
             column.prop(lens, "use_dof")
             row = column.row()
             row.active = lens.use_dof
             row.prop(lens, "aperture_fstop")
+
+
+class GRANITA_VIEW3D_PT_shading_pass(bpy.types.Panel):
+    bl_label = "Render Pass"
+    bl_parent_id = "VIEW3D_PT_shading"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "HEADER"
+
+    poll = GRANITA_VIEW3D_PT_preview.poll
+
+    def draw(self, context):
+        self.layout.prop(context.space_data.shading.granita, "render_pass", text="")
 
 
 class GRANITA_VIEW3D_PT_costs(bpy.types.Panel):
@@ -63,6 +88,10 @@ class GRANITA_VIEW3D_PT_costs(bpy.types.Panel):
             column.label(text=line, icon="ERROR")
 
 
-_CLASSES = (GRANITA_VIEW3D_PT_preview, GRANITA_VIEW3D_PT_costs)
+_CLASSES = (
+    GRANITA_VIEW3D_PT_preview,
+    GRANITA_VIEW3D_PT_costs,
+    GRANITA_VIEW3D_PT_shading_pass,
+)
 
 register, unregister = bpy.utils.register_classes_factory(_CLASSES)

@@ -112,16 +112,17 @@ class _Before:
 
     def at_frame(self, path):
         """Where a path [K, ...] was at Blender's frame."""
-        return _at(path, np.array([self._moving_times.frame_time]))[0]
+        return path_at(path, np.array([self._moving_times.frame_time]))[0]
 
     def knots(self, path):
         """The path at as many times of the new shutter; it goes on straight where that is longer."""
         if self._is_same:
             return path
-        return _at(path, self._times.times_of(self._moving_times, len(path)))
+        return path_at(path, self._times.times_of(self._moving_times, len(path)))
 
 
-def _at(path, times):
+def path_at(path, times):
+    """[len(times), ...]: where an equidistant path [K, ...] is at times of its shutter; it goes on straight."""
     last = len(path) - 1
     place = times * last
     first = np.clip(np.floor(place).astype(int), 0, max(last - 1, 0))

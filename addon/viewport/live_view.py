@@ -6,16 +6,18 @@ edit -> the frame is read, its motion carried over -> coarse picture
 """
 
 import weakref
+from dataclasses import replace
 from time import perf_counter
 
 import bpy
 import numpy as np
 
-from .. import bridge
+from .. import bridge, passes
 from ..export.base.report import ExportError, counted, lines
-from . import scene_reading
+from . import motion_paths, scene_reading
 from .costs import Costs
 from .live_picture import LivePicture, coarse_crop
+from .one_time import at_time
 from .scene_snapshots import SceneSnapshots
 from .sight import read_sight
 from .stages import LEAST_DIVISOR, Stage, next_divisor
@@ -42,6 +44,8 @@ class LiveView:
         self._engine = weakref.ref(engine)
         self._scene = SceneSnapshots()
         self._picture = LivePicture()
+        self._shown = None  # snapshot and sight of the picture that is being made
+        self._paths = self._paths_of = None  # and the snapshot whose they are
         self._sight = None  # as the view stands now
         self._is_stale = False  # the scene may be other than what was read
         self._has_moved = False  # the view is another
@@ -61,6 +65,7 @@ class LiveView:
         self._stepped = self._drawing = (
             0.0  # when step() ended last; seconds of the window's last drawing
         )
+        self.kept_pixels = None  # of a picture that later ones are compared with
         self.costs = Costs()
         self.warnings = []  # of the picture, a line each
         self.counts = dict.fromkeys(
@@ -98,6 +103,14 @@ class LiveView:
         if not scene_reading.is_reading():
             self._look(context, depsgraph)
         self._picture.draw()
+        if context.space_data.shading.granita.use_paths and self._shown is not None:
+            self._draw_paths()
+
+    def _draw_paths(self):
+        snapshot, sight = self._shown
+        if self._paths_of is not snapshot:
+            self._paths, self._paths_of = motion_paths.motion_paths(snapshot), snapshot
+        motion_paths.draw(self._paths, sight.place, sight.pixel)
 
     def _look(self, context, depsgraph):
         self.region, self.looked = context.region.as_pointer(), perf_counter()
@@ -109,7 +122,7 @@ class LiveView:
             self._has_moved, self._edited = True, perf_counter()
             before, self._sight = self._sight, sight
             # What is read depends on what a camera sees, and on how large.
-            if before is None or sight.camera or before.camera or sight.scene != before.scene:
+            if before is None or _reads_other(before, sight):
                 self._is_stale = True
 
     # Called by the loop.
@@ -251,6 +264,9 @@ class LiveView:
                 "crop": np.array(sight.crop, dtype=np.int32),
             }
             snapshot = {**snapshot, "options": options, "camera": sight.own_record()}
+        self._shown = snapshot, sight
+        if sight.look.time is not None:
+            snapshot = at_time(snapshot, sight.look.time)
         self._stage, self._job_sight, self._began = stage, sight, perf_counter()
         if self._session is None:
             self._session = bridge.new_session()
@@ -268,13 +284,13 @@ class LiveView:
         tiles = self._job.take_tiles(seconds)
         if self._stage.is_last:
             for tile in tiles:
-                self._picture.paste(tile.x, tile.y, tile.combined)
+                self._picture.paste(tile.x, tile.y, self._pixels_of(tile))
             if tiles and perf_counter() - self._drawn > REFINE_SECONDS:
                 self._redraw()
         else:
             x0, y0, _, _ = coarse_crop(self._job_sight.crop, self._stage.divisor)
             for tile in tiles:
-                values = tile.combined
+                values = self._pixels_of(tile)
                 x, y = tile.x - x0, tile.y - y0
                 self._staging[y : y + values.shape[0], x : x + values.shape[1]] = values
         if not (is_done or self._job.done()):
@@ -291,6 +307,9 @@ class LiveView:
             self._divisor = next_divisor(self._stage.divisor, self.costs.first, is_anew)
             self._picture.replace(self._job_sight, self._staging, self._stage.divisor)
             self._redraw()
+
+    def _pixels_of(self, tile):
+        return passes.shown_pixels(tile, self._job_sight.look.shown)
 
     def _settled(self, job):
         self._is_coarse = False
@@ -323,6 +342,15 @@ class LiveView:
         engine = self._engine()
         if engine is not None:
             engine.tag_redraw()
+
+
+def _reads_other(before, sight):
+    """Whether the scene is to be read again, of which depends what a camera sees, and how large; not for another place
+    of a view of its own, nor for another time within the shutter."""
+    a, b = (replace(s, look=replace(s.look, time=None)) for s in (before, sight))
+    if a.camera or b.camera or a.scene != b.scene:
+        return a != b
+    return a.look != b.look
 
 
 def _plays():

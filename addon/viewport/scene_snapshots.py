@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a view knows of its scene: the frame as it is now, and the shutter as it was read last."""
 
+import os
+
 import bpy
 
 from .. import passes
@@ -31,6 +33,7 @@ class SceneSnapshots:
         self._moving, self._moving_times = None, None  # of the last reading of a whole shutter
         self._paths_may_differ = True  # since then
         self._clock = None
+        self._image_times = []
 
     def note(self, depsgraph):
         """What Blender tells of an edit, before the next reading."""
@@ -55,10 +58,15 @@ class SceneSnapshots:
         )
         scene = bpy.data.scenes[sight.scene]
         layer = scene.view_layers[sight.layer]
-        self._complete(still, scene)
+        self._complete(still, scene, sight)
         blurs = is_blurred(scene, layer) and scene_reading.may_move(sight.scene)
         times = _times(scene, layer) if blurs else None
-        changed = not is_same(before, still) or times != self._times
+        image_times = _image_times(still)
+        changed = not is_same(before, still) or (times, image_times) != (
+            self._times,
+            self._image_times,
+        )
+        self._image_times = image_times
         clock = _clock(scene)
         self._paths_may_differ |= changed or clock != self._clock or self._moving is None
         self._clock = clock
@@ -81,7 +89,7 @@ class SceneSnapshots:
             sight.scene, sight.layer, _viewpoint_of(sight), self.report
         )
         scene = bpy.data.scenes[sight.scene]
-        self._complete(moving, scene)
+        self._complete(moving, scene, sight)
         self._moving_times = _times(scene, scene.view_layers[sight.layer])
         moving = corrected(moving, self._moving_times, self._still)
         self._moving = self.snapshot = moving
@@ -89,12 +97,17 @@ class SceneSnapshots:
         self.is_exact = True
         return not is_same(before, moving)
 
-    def _complete(self, snapshot, scene):
-        """Of a view are its own samples, and no pass but the picture."""
-        self.exposure = passes.exposure_owner(scene).film_exposure
+    def _complete(self, snapshot, scene, sight):
+        """Of a view are its own samples, and the one pass that it shows."""
+        shown = sight.look.shown
+        is_light = shown in passes.EXPOSED
+        self.exposure = passes.exposure_owner(scene).film_exposure if is_light else 1.0
         options = snapshot["options"]
         options["samples"] = scene.granita.preview_samples
         options["depth_pass"] = False
+        if shown != "Combined":
+            options.update(passes.requested(scene, scene.view_layers[sight.layer]))
+            options.update(passes=[shown], aovs=[])
 
 
 def _viewpoint_of(sight):
@@ -113,6 +126,17 @@ def _can_change_paths(update):
     if isinstance(update.id, (bpy.types.Scene, bpy.types.Collection)):
         return update.is_updated_transform or update.is_updated_geometry
     return True
+
+
+def _image_times(snapshot):
+    """When the files of images were written last: under their names they may be others."""
+    found = []
+    for image in snapshot["images"]:
+        try:
+            found.append(os.stat(image["path"]).st_mtime_ns if image["path"] else 0)
+        except OSError:
+            found.append(0)
+    return found
 
 
 def _clock(scene):

@@ -7,6 +7,7 @@ the final frame, to the bit.
 
 from dataclasses import dataclass
 
+import bpy
 import numpy as np
 from mathutils import Vector
 
@@ -14,6 +15,22 @@ from ..export.base.transforms import from_matrix, inverse, world_from_camera
 from ..export.scene.camera import PINHOLE, Frame, window_projection
 from ..export.scene.options import border, render_border, scene_frame
 from ..export.scene.viewpoint import CameraViewpoint, StillViewpoint
+from .shading_settings import native_name
+
+_SHOW_TYPES = [
+    name
+    for name in bpy.types.SpaceView3D.bl_rna.properties.keys()
+    if name.startswith("show_object_viewport_")
+]
+
+
+@dataclass(frozen=True)
+class Look:
+    """What of the scene this view alone shows."""
+
+    hidden: frozenset = frozenset()  # addresses of original objects: local view, local collections
+    shown: str = "Combined"  # native name of a pass
+    time: float = None  # within the shutter; None: all of it
 
 
 @dataclass(frozen=True)
@@ -25,6 +42,7 @@ class Sight:
     crop: tuple  # of the frame, (x0, y0, x1, y1)
     place: tuple  # region pixel of the frame's lower left corner
     pixel: int  # region pixels a picture pixel is wide
+    look: Look
     # Of the view's own place: (kind, world from camera, 16 numbers, scale, center, clip).
     own: tuple = None
 
@@ -35,9 +53,11 @@ class Sight:
     def viewpoint(self, scene):
         """Of export/scene/viewpoint.py, or None where the camera is gone."""
         if not self.camera:
-            return StillViewpoint(self.own_record(), self.frame, self.crop)
+            return StillViewpoint(self.own_record(), self.frame, self.crop, self.look.hidden)
         camera = scene.objects.get(self.camera)
-        return CameraViewpoint(camera, self.frame, self.crop) if camera is not None else None
+        if camera is None:
+            return None
+        return CameraViewpoint(camera, self.frame, self.crop, self.look.hidden)
 
     def own_record(self):
         """The snapshot's camera of the view's own place."""
@@ -63,10 +83,11 @@ def read_sight(region, space, region_data, depsgraph, pixel):
     """
     scene = depsgraph.scene
     names = scene.name, depsgraph.view_layer.name
+    look = _look(space, depsgraph)
     if region_data.view_perspective == "CAMERA":
         camera = space.camera if space.use_local_camera else scene.camera
         if camera is not None and camera.type == "CAMERA":
-            return _through_camera(names, region, region_data, camera, depsgraph, pixel)
+            return _through_camera(names, region, region_data, camera, depsgraph, pixel, look)
     frame = Frame(-(-region.width // pixel), -(-region.height // pixel))
     crop = (0, 0, frame.width, frame.height)
     if space.use_render_border:
@@ -77,8 +98,24 @@ def read_sight(region, space, region_data, depsgraph, pixel):
             space.render_border_max_x,
             space.render_border_max_y,
         )
-    return Sight(
-        *names, "", frame, crop, (0, 0), pixel, own_view(region, space, region_data, pixel)
+    own = own_view(region, space, region_data, pixel)
+    return Sight(*names, "", frame, crop, (0, 0), pixel, look, own)
+
+
+def _look(space, depsgraph):
+    settings = space.shading.granita
+    time = settings.time if settings.use_time else None
+    return Look(_hidden(space, depsgraph), native_name(settings.render_pass), time)
+
+
+def _hidden(space, depsgraph):
+    shows_all_types = all(getattr(space, name) for name in _SHOW_TYPES)
+    if shows_all_types and not (space.local_view or space.use_local_collections):
+        return frozenset()
+    return frozenset(
+        thing.as_pointer()
+        for thing in depsgraph.view_layer.objects
+        if not thing.evaluated_get(depsgraph).visible_in_viewport_get(space)
     )
 
 
@@ -99,7 +136,7 @@ def own_view(region, space, region_data, pixel):
     return kind, tuple(matrix.reshape(-1)), scale, center, clip
 
 
-def _through_camera(names, region, region_data, camera, depsgraph, pixel):
+def _through_camera(names, region, region_data, camera, depsgraph, pixel, look):
     scene = depsgraph.scene
     render = scene.render
     (x0, y0), (x1, y1) = _camera_frame(region, region_data, camera, depsgraph)
@@ -116,7 +153,7 @@ def _through_camera(names, region, region_data, camera, depsgraph, pixel):
         min(crop[2], -((place[0] - region.width) // pixel)),
         min(crop[3], -((place[1] - region.height) // pixel)),
     )
-    return Sight(*names, camera.name, frame, crop, place, pixel)
+    return Sight(*names, camera.name, frame, crop, place, pixel, look)
 
 
 def _camera_frame(region, region_data, camera, depsgraph):

@@ -78,9 +78,7 @@ BucketLayout make_layout(const Options& options, const Film& film, const SampleL
 }
 
 KeptShading shading_after(KeptShading shading, const KeptVisibility* before, const Scene& scene) {
-    if (!before) return shading;
-    const SceneChanges changes(before->scene(), scene);
-    if ((changes.parts & part::kReadByShading) == 0) shading.grids = before->shaded_grids();
+    if (before) shading.grids = before->shaded_grids(scene);
     return shading;
 }
 

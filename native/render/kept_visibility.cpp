@@ -97,7 +97,10 @@ void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChange
     m_scene = std::move(scene);
 }
 
-std::shared_ptr<const ShadedGrids> KeptVisibility::shaded_grids() const {
+std::shared_ptr<const ShadedGrids> KeptVisibility::shaded_grids(const Scene& scene) const {
+    const SceneChanges changes(*m_scene, scene);
+    if ((changes.parts & part::kReadByShading) != 0 || image_times(*m_scene) != m_image_times)
+        return nullptr;
     auto grids = std::make_shared<ShadedGrids>();
     for (const auto& bucket : m_buckets)
         for (const auto& shared : bucket->grids)

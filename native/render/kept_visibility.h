@@ -42,8 +42,9 @@ class KeptVisibility {
     /// It is the scene's from now on.  What was shaded stays where nothing of it changed.
     void renew(std::shared_ptr<const Scene> scene, const SceneChanges& changes,
                const ShadingSystem& shading);
-    /// Its grids for a picture that sees others, under the same light.  It must outlive them.
-    std::shared_ptr<const ShadedGrids> shaded_grids() const;
+    /// Its grids for a picture that may see others, or nullptr where these are not under the same
+    /// light.  It must outlive them.
+    std::shared_ptr<const ShadedGrids> shaded_grids(const Scene& scene) const;
     /// Nothing but shaded_grids() is wanted any more.
     void forget_samples();
 

@@ -145,7 +145,11 @@ def drawn(**context):
     scene, layer = bpy.context.scene, bpy.context.view_layer
     nothing = dict.fromkeys(("light", "material", "object", "world"))
     context = {**nothing, **context}
-    space = SimpleNamespace(shading=SimpleNamespace(type="RENDERED"))
+    own = SimpleNamespace(
+        bl_rna=sys.modules["granita.viewport.shading_settings"].GranitaViewSettings.bl_rna,
+        use_time=True,
+    )
+    space = SimpleNamespace(shading=SimpleNamespace(type="RENDERED", granita=own))
     context |= {"space_data": space, "area": SimpleNamespace(regions=())}
     context = SimpleNamespace(engine="GRANITA", scene=scene, view_layer=layer, **context)
     names = set()
@@ -161,7 +165,8 @@ def test_all_that_is_read_is_shown():
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     scene = bpy.context.scene
     scene.granita.sampling = "REGULAR"
-    assert drawn() >= DEFAULTS.keys() | {"pass_alpha_threshold"}
+    of_views = {"render_pass", "use_time", "time", "use_paths"}
+    assert drawn() >= DEFAULTS.keys() | {"pass_alpha_threshold"} | of_views
     scene.granita.sampling = "INDEPENDENT"
     assert "z_batch_size" in drawn()
 

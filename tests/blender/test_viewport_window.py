@@ -66,6 +66,29 @@ def steps():
         bpy.ops.ed.undo()
     yield from settled()
     found["undone"] = middle()
+    shown = space.shading.granita
+    shown.use_paths = True
+    yield from settled()
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        bpy.ops.view3d.granita_keep_picture()
+    shown.render_pass = "NORMAL"
+    area.tag_redraw()
+    yield from settled()
+    found["pass"] = middle()
+    yield from settled()
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        bpy.ops.view3d.granita_compare_pictures()
+    found["compared"] = "Granita Comparison" in bpy.data.images
+    shown.render_pass = "COMBINED"
+    empty = bpy.data.objects.new("Empty", None)
+    bpy.context.scene.collection.objects.link(empty)
+    for thing in bpy.context.scene.objects:
+        thing.select_set(thing == empty)
+    for name in ("local", "global"):
+        with bpy.context.temp_override(window=window, area=area, region=region):
+            bpy.ops.view3d.localview(frame_selected=False)
+        yield from settled()
+        found[name] = middle()
     with bpy.context.temp_override(window=window, area=area, region=region):
         bpy.ops.screen.region_quadview()
     yield from settled()
@@ -119,6 +142,10 @@ def test_a_window_shows_and_follows_what_is_edited(scene, tmp_path):
         "stays_idle": True,
         "edited": [255, 0, 0],
         "undone": glow,
+        "pass": [0, 0, 255],
+        "compared": True,
+        "local": [0, 0, 0],
+        "global": glow,
         "quad": 4,
         "BLENDER_WORKBENCH": 0,
         "GRANITA": 1,

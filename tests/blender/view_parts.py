@@ -41,12 +41,20 @@ class View:
         self.engine = StandInEngine()
         self.live = live_view.LiveView(self.engine)
         self.region = SimpleNamespace(width=size[0], height=size[1], as_pointer=lambda: 0)
+        shown = SimpleNamespace(render_pass="COMBINED", use_time=False, time=0.5, use_paths=False)
+        types = (
+            n for n in bpy.types.SpaceView3D.bl_rna.properties.keys() if n[:12] == "show_object_"
+        )
         self.space = SimpleNamespace(
             use_local_camera=False,
             camera=None,
             use_render_border=False,
             clip_start=0.01,
             clip_end=1000.0,
+            local_view=None,
+            use_local_collections=False,
+            shading=SimpleNamespace(granita=shown),
+            **dict.fromkeys(types, True),
         )
         self.region_data = None
         for evaluated in HANDLERS:

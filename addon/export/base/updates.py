@@ -31,11 +31,16 @@ class Touched:
                 self.otherwise.add(pointer)
 
 
-def originals():
-    """{address: original Object}, of the whole file."""
+def originals(depsgraph=None):
+    """{address: original Object}, of the whole file; of a preview's depsgraph, of that scene, which is not of the file."""
     import bpy
 
-    return {thing.as_pointer(): thing for thing in bpy.data.objects}
+    found = bpy.data.objects
+    if depsgraph is not None:
+        scene = depsgraph.scene
+        if not any(scene.as_pointer() == known.as_pointer() for known in bpy.data.scenes):
+            found = scene.objects
+    return {thing.as_pointer(): thing for thing in found}
 
 
 def object_names():

@@ -23,7 +23,7 @@ def read_lamps(depsgraph, scan, things, images, report):
     """
     from ..shading.light import light_record
 
-    everything = originals() if len(things) else {}
+    everything = originals(depsgraph) if len(things) else {}
     records, found = {}, []
     for thing in things:
         prototype = scan.prototypes[scan.prototype[thing]]

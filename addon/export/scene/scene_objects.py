@@ -31,10 +31,12 @@ class SceneObjects:
     # What of the snapshot's instances a place does not change, once it is made, and of which things.
     chosen: np.ndarray = None  # int [n]
     instances: Instances = None
+    hidden: frozenset = frozenset()  # of the viewpoint
 
     def choose(self, report):
         """Finds what can be rendered of it."""
         chosen = usable(self.scan, self.table, report)
+        chosen = chosen[self._is_shown()[chosen]]
         if self.instances is None or not np.array_equal(chosen, self.chosen):
             self.instances = unplaced_instances(self.scan, chosen, self.table)
         self.chosen = chosen
@@ -48,7 +50,13 @@ class SceneObjects:
 
     def lights(self):
         """int [lights], things of the scan."""
-        return np.flatnonzero(self.is_light[self.scan.prototype])
+        return np.flatnonzero(self.is_light[self.scan.prototype] & self._is_shown())
+
+    def _is_shown(self):
+        """bool [n]: an instance is hidden with what places it."""
+        prototypes = self.scan.prototypes
+        hidden = [(p.parent_address or p.address) in self.hidden for p in prototypes]
+        return ~np.array(hidden, dtype=bool)[self.scan.prototype]
 
 
 def read_scene_objects(depsgraph, known, report, check_cancel):

@@ -15,6 +15,7 @@ class CameraViewpoint:
     camera: object  # original Object; a handler may delete it when time is moved
     frame: Frame
     crop: tuple  # pixels of the frame that are made, (x0, y0, x1, y1)
+    hidden: frozenset = frozenset()  # addresses of original objects that are not seen from here
 
     def __post_init__(self):
         # Read while it is sure to be there.
@@ -42,6 +43,7 @@ class StillViewpoint:
     still_record: dict  # as of camera.camera_record
     frame: Frame
     crop: tuple
+    hidden: frozenset = frozenset()
 
     blurs = False
     fewest_segments = 1
