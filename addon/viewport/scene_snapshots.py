@@ -13,6 +13,17 @@ from . import scene_reading
 from .carried_motion import ShutterTimes, carried, corrected
 from .same import is_same
 
+# Of a snapshot, what is often the same at all times of the shutter.
+_MAY_STAND_STILL = {"options", "camera", "materials", "images", "lights", "world"}
+# Read at the frame alone.
+_LOOKS = (
+    bpy.types.Material,
+    bpy.types.World,
+    bpy.types.Image,
+    bpy.types.Texture,
+    bpy.types.ShaderNodeTree,
+)
+
 
 class SceneSnapshots:
     """Belongs to one view.
@@ -68,7 +79,10 @@ class SceneSnapshots:
         )
         self._image_times = image_times
         clock = _clock(scene)
-        self._paths_may_differ |= changed or clock != self._clock or self._moving is None
+        is_timed = times == self._times and clock == self._clock
+        if changed and not (is_timed and self._takes_over(before, still)):
+            self._paths_may_differ = True
+        self._paths_may_differ |= not is_timed or self._moving is None
         self._clock = clock
         self.is_exact = not blurs or not self._paths_may_differ
         if not blurs:
@@ -80,6 +94,18 @@ class SceneSnapshots:
         elif self._moving is not None:
             self.snapshot = carried(still, times, self._moving, self._moving_times)
         return changed
+
+    def _takes_over(self, before, still):
+        """Whether what differs between two frames is the same at all times of the shutter: then the last reading of
+        that has it too."""
+        if before is None or self._moving is None:
+            return False
+        others = [name for name in still if not is_same(before[name], still[name])]
+        for name in others:
+            if name not in _MAY_STAND_STILL or not is_same(self._moving[name], before[name]):
+                return False
+        self._moving = {**self._moving, **{name: still[name] for name in others}}
+        return True
 
     def read_shutter(self, sight):
         """Reads the whole shutter; whether its picture is another than that of the last such reading."""
@@ -121,11 +147,24 @@ def _viewpoint_of(sight):
 
 
 def _can_change_paths(update):
-    """Not what a selection or the cursor is to Blender: the scene, without anything that moved.  A reading of the
-    shutter may hold the window up, and a click should not."""
-    if isinstance(update.id, (bpy.types.Scene, bpy.types.Collection)):
+    """Not what a selection or the cursor is to Blender: the scene, without anything that moved; nor how a surface looks,
+    nor a lamp or a camera that nothing moves.  A reading of the shutter may hold the window up, and neither a click
+    nor a drag of a colour should."""
+    thing, types = update.id, bpy.types
+    if isinstance(thing, (types.Scene, types.Collection)):
         return update.is_updated_transform or update.is_updated_geometry
-    return True
+    if isinstance(thing, (types.Light, types.Camera)):
+        return _is_animated(thing)
+    if isinstance(thing, types.Object) and thing.type in {"LIGHT", "CAMERA"}:
+        leads = thing.parent is not None or len(thing.constraints) > 0
+        return leads or _is_animated(thing) or _is_animated(thing.data)
+    return not isinstance(thing, _LOOKS)
+
+
+def _is_animated(thing):
+    dof = getattr(thing, "dof", None)
+    follows = dof is not None and dof.focus_object is not None
+    return follows or thing.animation_data is not None
 
 
 def _image_times(snapshot):

@@ -153,6 +153,46 @@ def test_a_selection_reads_no_shutter_and_a_key_of_another_frame_does(moving, vi
     np.testing.assert_array_equal(after, combined(render, moving))
 
 
+def _paint(scene):
+    nodes = bpy.data.materials["Glow"].node_tree.nodes
+    next(n for n in nodes if n.type == "EMISSION").inputs["Strength"].default_value = 0.3
+
+
+def _follow(scene):
+    bpy.data.objects["Sun"].constraints.new("COPY_ROTATION").target = bpy.data.objects["Square"]
+
+
+# An edit under a shutter that is read, and whether it is read again.
+UNMOVING = {
+    "material": (_paint, False),
+    "lamp strength": (lambda s: setattr(bpy.data.lights[0], "energy", 5.0), False),
+    "lamp turned": (lambda s: setattr(bpy.data.objects["Sun"], "rotation_euler", (1, 0, 0)), False),
+    "f-stop": (lambda s: setattr(s.camera.data.dof, "aperture_fstop", 0.3), False),
+    "samples": (lambda s: setattr(s.granita, "light_samples", 3), False),
+    "lamp led": (_follow, True),
+    "focus led": (
+        lambda s: setattr(s.camera.data.dof, "focus_object", bpy.data.objects["Square"]),
+        True,
+    ),
+    "lamp keyed": (lambda s: bpy.data.lights[0].keyframe_insert("energy", frame=9), True),
+}
+
+
+@pytest.mark.parametrize("name", UNMOVING)
+def test_what_is_the_same_at_all_times_is_not_read_at_all_of_them(moving, view, render, name):
+    edit, reads = UNMOVING[name]
+    bpy.data.objects["Square"].keyframe_insert("rotation_euler", frame=1)
+    bpy.data.objects["Square"].rotation_euler = (0.5, 0, 0)
+    bpy.data.objects["Square"].keyframe_insert("rotation_euler", frame=5)
+    moving.frame_set(3)
+    view.edited().settle()
+    before = view.live.counts["shutters read"]
+    edit(moving)
+    seen = view.edited().settle()
+    assert view.live.counts["shutters read"] - before == reads
+    np.testing.assert_array_equal(seen, combined(render, moving))
+
+
 def test_the_newest_edit_wins(moving, view, render):
     """Edits while a picture is being made: the last state is what settles, each time."""
     moving.granita.preview_samples = moving.granita.samples = 256

@@ -252,6 +252,58 @@ def no_camera():
         things.collection.objects.link(things.camera)
 
 
+def look():
+    """Another pass, one time of the shutter, paths over the picture."""
+    shown = area().spaces.active.shading.granita
+    shown.render_pass = CHANCE.choice(("COMBINED", "NORMAL", "DIFFUSE_DIRECT", "MIST"))
+    shown.use_time, shown.time = CHANCE.random() < 0.5, CHANCE.random()
+    shown.use_paths = CHANCE.random() < 0.5
+    area().tag_redraw()
+
+
+def local_view():
+    object_mode()
+    thing = any_mesh()
+    if thing is not None and thing.visible_get():
+        activate(thing)
+    with context():
+        bpy.ops.view3d.localview(frame_selected=False)
+
+
+def bounces():
+    settings = bpy.context.scene.granita
+    settings.bounces = CHANCE.choice(("NONE", "FAST", "FULL"))
+
+
+def smoke():
+    """Something is filled, or the world."""
+    thing = any_mesh()
+    tree = None
+    if CHANCE.random() < 0.3 and bpy.context.scene.world is not None:
+        bpy.context.scene.world.use_nodes = True
+        tree = bpy.context.scene.world.node_tree
+    elif thing is not None and thing.active_material is not None:
+        tree = thing.active_material.node_tree
+    output = tree and next((n for n in tree.nodes if n.type.startswith("OUTPUT")), None)
+    if output:
+        node = tree.nodes.new("ShaderNodeVolumePrincipled")
+        node.inputs["Density"].default_value = CHANCE.choice((0.05, 0.5))
+        tree.links.new(node.outputs[0], output.inputs["Volume"])
+
+
+def preview():
+    if len(bpy.data.materials):
+        CHANCE.choice(list(bpy.data.materials)).asset_generate_preview()
+
+
+def compare():
+    with context():
+        for name in ("keep_picture", "compare_pictures"):
+            operator = getattr(bpy.ops.view3d, f"granita_{name}")
+            if operator.poll():
+                operator()
+
+
 def f12():
     with context():
         bpy.ops.render.render("INVOKE_DEFAULT")
@@ -281,11 +333,13 @@ def again():
 
 EDITS = {
     **dict.fromkeys((add, move, key, hide, modifier, material, frame, undo, redo, shutter), 4),
-    **dict.fromkeys((delete, edit_mode, view, zoom, lens, film, lamp, collection), 3),
-    **dict.fromkeys((shading, engine, quad, scene, no_camera, f12, play), 1),
+    **dict.fromkeys((delete, edit_mode, view, zoom, lens, film, lamp, collection, look), 3),
+    **dict.fromkeys((shading, engine, quad, scene, no_camera, f12, play, local_view), 1),
+    **dict.fromkeys((bounces, smoke, preview, compare), 1),
     **dict.fromkeys((revert, again), JOB.get("heavy", 1)),
 }
 _SCENE_STAYS = {undo, redo, quad, view, zoom, shading, f12, play, revert, again}
+_SCENE_STAYS |= {look, local_view, preview, compare}
 
 
 def ready():
@@ -336,6 +390,8 @@ def last():
     if window().screen.is_animation_playing:
         play()
     object_mode()
+    if area().spaces.active.local_view:
+        local_view()
     if len(area().spaces.active.region_quadviews):
         quad()
     ready()
