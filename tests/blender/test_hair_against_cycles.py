@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 import scene_parts
 from cycles_coverage import SAMPLES, blurred, expect_coverage_of_cycles
-from hair_parts import furry, give_material, grid_points, spiral_curves
+from hair_parts import curve_through, furry, give_material, grid_points, spiral_curves
 from motion_parts import drive, open_shutter
+from node_comparison import Tree, render_both
 
 
 def curves(scene):
@@ -174,3 +175,59 @@ def test_points_that_stay_spheres_under_uneven_scale_are_named(scene, render, ca
     cloud.scale = (1.0, 0.4, 1.0)
     render(scene)
     assert f"object '{cloud.name}': is scaled unevenly" in capfd.readouterr().out
+
+
+@pytest.mark.parametrize("turn", [(0.9, 0.2, 0.0), (0.2, 1.0, 0.0), (2.6, 0.3, 0.0)])
+@pytest.mark.parametrize("width", [0.3, 0.8, 2.0, 8.0])
+def test_principled_hair_of_any_width_is_as_bright(scene, render, width, turn):
+    """Mean over ribbons that many pixels wide, under a sun from before, from a side, from behind."""
+    hairs = [strand(scene, k, 0.5 * width * 4.0 / 64) for k in range(5)]
+    for thing in hairs:
+        tree = Tree(thing, thing.name)
+        shader = tree.add("ShaderNodeBsdfHairPrincipled", parametrization="ABSORPTION")
+        shader.inputs["Absorption Coefficient"].default_value = (0.0, 0.3, 1.0)
+        tree.link(shader.outputs[0], tree.output.inputs["Surface"])
+        give_material(thing, tree.material)
+    scene_parts.add_camera(scene, ortho_scale=4.0)
+    sun_of(scene, turn)
+    # From behind Cycles' rays meet the next segment of the hair that they leave: some light is lost at its ends.
+    agree_in_mean(scene, render, 0.15 if turn[0] > 2.0 else 0.05)
+
+
+def strand(scene, k, radius):
+    x = -1.6 + 0.787 * k  # at 5 places of a pixel
+    return curve_through(
+        scene, [(x, y, 0.0) for y in np.linspace(-1.5, 1.5, 9)], radius, f"Strand{k}"
+    )
+
+
+def sun_of(scene, turn):
+    light = bpy.data.lights.new("Sun", "SUN")
+    light.energy, light.angle = 3.0, 0.0
+    scene_parts.add_object(scene, "Sun", light).rotation_euler = turn
+
+
+def agree_in_mean(scene, render, limit=0.05):
+    scene.render.resolution_x = scene.render.resolution_y = 64
+    scene.cycles_curves.shape = "RIBBONS"
+    scene.cycles.light_sampling_threshold = 0.0
+    theirs, ours = (p.mean(axis=(0, 1)) for p in render_both(scene, render, samples=64))
+    assert ours == pytest.approx(theirs, rel=limit)
+
+
+@pytest.mark.parametrize("linked", [False, True])
+def test_principled_hair_is_random_by_itself(scene, render, linked):
+    """As if Random were linked to that of Hair Info."""
+    thing = furry(scene, count=400, root_radius=0.05)
+    thing.show_instancer_for_render = False
+    tree = Tree(thing)
+    hair = tree.add("ShaderNodeBsdfHairPrincipled", parametrization="MELANIN")
+    hair.inputs["Melanin"].default_value = 0.4
+    hair.inputs["Random Color"].default_value = 0.9
+    hair.inputs["Random Roughness"].default_value = 0.5
+    tree.link(hair.outputs[0], tree.output.inputs["Surface"])
+    if linked:
+        tree.link(tree.add("ShaderNodeHairInfo").outputs["Random"], hair.inputs["Random"])
+    sun_of(scene, (0.9, 0.2, 0.0))
+    scene_parts.add_camera(scene, (0, -5, 1), ortho_scale=3.0).rotation_euler.x = 1.3
+    agree_in_mean(scene, render)

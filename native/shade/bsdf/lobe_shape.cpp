@@ -33,6 +33,9 @@ std::unique_ptr<const LobeShape> make_shape(const Lobe& lobe, std::size_t point,
             form.first_roughness = lobe.more[2][point];
             form.ior = lobe.ior[point];
             form.sigma = lobe.f0[point];
+            form.cells = lobe.more[3][point];
+            form.aside = lobe.more[4][point];
+            form.tilts_light = lobe.more[5][point] != 0.0f;
             return make_principled_hair(view, form);
         }
         case LobeKind::Phase:

@@ -39,6 +39,11 @@ struct HairForm {
     float first_roughness = 1.0f;  ///< of the first reflection, relative
     float ior = 1.55f;
     Vec3f sigma{0.0f};  ///< absorption over the radius
+    /// Of a ribbon so many cells wide the point stands for that one which lies `aside` of the
+    /// middle, on the side to which its normal leans; 0: it is where its normal says.
+    float cells = 0.0f, aside = 0.0f;
+    bool tilts_light = false;  ///< scales tilt the light's inclination, as in Cycles before
+                               ///< Blender 4; else the view's
 };
 
 /// Of a kind that is_shaped(); nullptr where there is nothing of it.

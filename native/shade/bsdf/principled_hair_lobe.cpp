@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "math/luminance.h"
 #include "math/sampling.h"
@@ -15,7 +16,7 @@
 namespace granita {
 namespace {
 
-constexpr int kPaths = 4;
+constexpr std::size_t kPaths = 4;
 
 float cosine_of(float sine) {
     return std::sqrt(std::max(0.0f, 1.0f - sine * sine));
@@ -70,6 +71,14 @@ Vec2f split(float u) {
     return (Vec2f(static_cast<float>(odd), static_cast<float>(even)) + 0.5f) / 4096.0f;
 }
 
+/// Light that meets the hair at one place of its width.
+struct Crossing {
+    float weight;  ///< of the width that the point stands for
+    std::array<float, kPaths - 1> deflections;
+    std::array<Vec3f, kPaths> attenuation;
+    std::array<float, kPaths> shares;  ///< of samples
+};
+
 class PrincipledHair : public LobeShape {
   public:
     PrincipledHair(const LobeView& view, const HairForm& form) : m_x(form.tangent) {
@@ -78,50 +87,45 @@ class PrincipledHair : public LobeShape {
         m_y = length > 1e-6f ? y / length : Basis(m_x).x;
         m_z = glm::cross(m_x, m_y);
         set_roughness(form);
-        // Where across the hair the view meets it: the sine of the tube's normal.
-        const float h = std::clamp(glm::dot(glm::cross(view.normal, m_x), m_z), -1.0f, 1.0f);
         m_sin_o = std::clamp(glm::dot(view.wi, m_x), -1.0f, 1.0f);
         m_cos_o = cosine_of(m_sin_o);
         m_phi_o = std::atan2(glm::dot(view.wi, m_z), glm::dot(view.wi, m_y));
-        m_gamma_o = std::asin(h);
-        const float eta = std::max(form.ior, 1.0001f);
-        const float sin_gamma_t = h * m_cos_o / std::sqrt(eta * eta - m_sin_o * m_sin_o);
-        m_gamma_t = std::asin(std::clamp(sin_gamma_t, -1.0f, 1.0f));
-        const float way = 2.0f * cosine_of(sin_gamma_t) / cosine_of(m_sin_o / eta);
-        const float reflected = fresnel_dielectric(m_cos_o * cosine_of(h), eta);
-        attenuate(reflected, glm::exp(-form.sigma * way));
-        m_albedo = glm::exp(-glm::sqrt(form.sigma) * hair_absorption_scale(4.0f * m_variance[1])) +
-                   reflected;
-        tilt(-form.offset);
+        // Where across the hair the view meets it: the sine of the tube's normal.
+        const float h = std::clamp(glm::dot(glm::cross(view.normal, m_x), m_z), -1.0f, 1.0f);
+        cross(form, h);
+        for (std::size_t p = 0; p < kPaths; ++p) {
+            // Scales lean: each path leaves its cone by another multiple.
+            const float turn = std::array{-2.0f, 1.0f, 4.0f, 0.0f}[p] * form.offset;
+            (form.tilts_light ? m_light_tilt : m_view_tilt)[p] = {std::cos(turn), std::sin(turn)};
+            m_cones[p] = tilted({m_cos_o, m_sin_o}, m_view_tilt[p], -1.0f);
+        }
     }
 
     Vec3f evaluate(const Vec3f& wo) const override {
-        const Densities d = densities(wo);
-        Vec3f sum(0.0f);
-        for (int p = 0; p < kPaths; ++p) sum += m_attenuation[p] * d[p];
-        return sum;
+        return sum_of<Vec3f>(wo, &Crossing::attenuation);
     }
-    float pdf(const Vec3f& wo) const override {
-        const Densities d = densities(wo);
-        float sum = 0.0f;
-        for (int p = 0; p < kPaths; ++p) sum += m_share[p] * d[p];
-        return sum;
-    }
+    float pdf(const Vec3f& wo) const override { return sum_of<float>(wo, &Crossing::shares); }
     bool sample(const Vec2f& u, Vec3f& wo) const override {
         float turn = u.x;
-        int p = 0;
-        for (; p < kPaths - 1 && turn >= m_share[p]; ++p) turn -= m_share[p];
-        turn = m_share[p] > 0.0f ? std::clamp(turn / m_share[p], 0.0f, 0.99999994f) : 0.5f;
+        const Crossing* crossing = m_crossings.data();
+        while (crossing != &m_crossings.back() && turn >= crossing->weight)
+            turn -= (crossing++)->weight;
+        turn = std::clamp(turn / crossing->weight, 0.0f, 0.99999994f);
+        const auto& shares = crossing->shares;
+        std::size_t p = 0;
+        for (; p < kPaths - 1 && turn >= shares[p]; ++p) turn -= shares[p];
+        turn = shares[p] > 0.0f ? std::clamp(turn / shares[p], 0.0f, 0.99999994f) : 0.5f;
         const Vec2f w = split(u.y);
         const float v = m_variance[p];
         const float along =
             1.0f + v * std::log(std::max(w.x, 1e-5f) + (1.0f - w.x) * std::exp(-2.0f / v));
-        const float sine = std::clamp(
-            -along * m_tilted[p].x + cosine_of(along) * std::cos(2.0f * kPi * w.y) * m_tilted[p].y,
+        const float on_cone = std::clamp(
+            -along * m_cones[p].y + cosine_of(along) * std::cos(2.0f * kPi * w.y) * m_cones[p].x,
             -1.0f, 1.0f);
-        const float phi =
-            m_phi_o + (p < kPaths - 1 ? deflection(p) + m_azimuth.sample(turn) : 2.0f * kPi * turn);
-        const float c = cosine_of(sine);
+        const float sine = tilted({cosine_of(on_cone), on_cone}, m_light_tilt[p], 1.0f).y;
+        const float around =
+            p < kPaths - 1 ? crossing->deflections[p] + m_azimuth.sample(turn) : 2.0f * kPi * turn;
+        const float phi = m_phi_o + around, c = cosine_of(sine);
         wo = sine * m_x + c * (std::cos(phi) * m_y + std::sin(phi) * m_z);
         return true;
     }
@@ -131,8 +135,6 @@ class PrincipledHair : public LobeShape {
     }
 
   private:
-    using Densities = std::array<float, kPaths>;
-
     /// Cuticles scatter by what an artist can tell apart, not by the densities' own parameters.
     void set_roughness(const HairForm& form) {
         const auto bounded = [](float x) { return std::clamp(x, 0.001f, 1.0f); };
@@ -146,54 +148,103 @@ class PrincipledHair : public LobeShape {
         m_azimuth.scale =
             (0.265f * s + 1.194f * s * s + 5.372f * std::pow(s, 22.0f)) * std::sqrt(kPi / 8.0f);
     }
-    void attenuate(float fresnel, const Vec3f& passed) {
-        m_attenuation[0] = Vec3f(fresnel);
-        m_attenuation[1] = (1.0f - fresnel) * (1.0f - fresnel) * passed;
-        m_attenuation[2] = m_attenuation[1] * passed * fresnel;
+    /// Azimuth turns by up to a full circle across the hair: what a point stands for is met at
+    /// evenly turned places, closer than the azimuthal densities are wide.
+    void cross(const HairForm& form, float h) {
+        float first = std::asin(h), last = first;
+        if (form.cells >= 1.0f) {
+            const float middle = std::copysign(form.aside, h), half = 1.0f / form.cells;
+            first = std::asin(std::max(middle - half, -1.0f));
+            last = std::asin(std::min(middle + half, 1.0f));
+        }
+        constexpr float kSpacing = 2.0f;  // of the densities' scale
+        constexpr float kMost = 64.0f;
+        const float turn = 2.0f * (last - first);
+        const float count = std::clamp(std::ceil(turn / (kSpacing * m_azimuth.scale)), 1.0f, kMost);
+        const float step = (last - first) / count;
+        float sum = 0.0f, reflected = 0.0f;
+        for (float k = 0.5f; k < count; k += 1.0f) {
+            const float gamma = first + k * step, weight = std::cos(gamma);
+            sum += weight;
+            reflected += weight * add_crossing(form, gamma, weight);
+        }
+        for (Crossing& crossing : m_crossings) crossing.weight /= sum;
+        m_albedo = glm::exp(-glm::sqrt(form.sigma) * hair_absorption_scale(4.0f * m_variance[1])) +
+                   reflected / sum;
+    }
+    /// Returns what is reflected.
+    float add_crossing(const HairForm& form, float gamma, float weight) {
+        const float h = std::sin(gamma), eta = std::max(form.ior, 1.0001f);
+        const float sin_inside = h * m_cos_o / std::sqrt(eta * eta - m_sin_o * m_sin_o);
+        const float inside = std::asin(std::clamp(sin_inside, -1.0f, 1.0f));
+        const float way = 2.0f * cosine_of(sin_inside) / cosine_of(m_sin_o / eta);
+        const float reflected = fresnel_dielectric(m_cos_o * cosine_of(h), eta);
+        Crossing& crossing = m_crossings.emplace_back();
+        crossing.weight = weight;
+        for (std::size_t p = 0; p < kPaths - 1; ++p) {
+            const auto n = static_cast<float>(p);
+            crossing.deflections[p] = 2.0f * n * inside - 2.0f * gamma + n * kPi;
+        }
+        attenuate(reflected, glm::exp(-form.sigma * way), crossing);
+        return reflected;
+    }
+    static void attenuate(float fresnel, const Vec3f& passed, Crossing& crossing) {
+        auto& attenuation = crossing.attenuation;
+        attenuation[0] = Vec3f(fresnel);
+        attenuation[1] = (1.0f - fresnel) * (1.0f - fresnel) * passed;
+        attenuation[2] = attenuation[1] * passed * fresnel;
         const Vec3f once = passed * fresnel;
         for (int c = 0; c < 3; ++c)
-            m_attenuation[3][c] =
-                once[c] < 1.0f ? m_attenuation[2][c] * once[c] / (1.0f - once[c]) : 0.0f;
+            attenuation[3][c] =
+                once[c] < 1.0f ? attenuation[2][c] * once[c] / (1.0f - once[c]) : 0.0f;
         float total = 0.0f;
-        for (int p = 0; p < kPaths; ++p) total += luminance(m_attenuation[p]);
-        for (int p = 0; p < kPaths; ++p)
-            m_share[p] = total > 0.0f ? luminance(m_attenuation[p]) / total : 0.25f;
+        for (const Vec3f& part : attenuation) total += luminance(part);
+        for (std::size_t p = 0; p < kPaths; ++p)
+            crossing.shares[p] = total > 0.0f ? luminance(attenuation[p]) / total : 0.25f;
     }
-    /// Scales lean by `alpha`: each path leaves its cone by another multiple.
-    void tilt(float alpha) {
-        const std::array<float, kPaths> turns = {-2.0f, 1.0f, 4.0f, 0.0f};
-        for (int p = 0; p < kPaths; ++p) {
-            const float s = std::sin(turns[p] * alpha), c = std::cos(turns[p] * alpha);
-            m_tilted[p] = {m_sin_o * c + m_cos_o * s, std::abs(m_cos_o * c - m_sin_o * s)};
-        }
+    static std::array<Vec2f, kPaths> no_turns() {
+        std::array<Vec2f, kPaths> none;
+        none.fill({1.0f, 0.0f});
+        return none;
     }
-    float deflection(int p) const {
-        const auto n = static_cast<float>(p);
-        return 2.0f * n * m_gamma_t - 2.0f * m_gamma_o + n * kPi;
+    /// Cosine and sine of an inclination, turned on by an angle or, `sign` -1, back by it.
+    static Vec2f tilted(const Vec2f& inclination, const Vec2f& angle, float sign) {
+        const float s = sign * angle.y;
+        return {std::abs(inclination.x * angle.x - inclination.y * s),
+                inclination.y * angle.x + inclination.x * s};
     }
-    Densities densities(const Vec3f& wo) const {
+    /// Densities of all ways through the hair, by `factors` of these.
+    template <class T>
+    T sum_of(const Vec3f& wo, std::array<T, kPaths> Crossing::*factors) const {
         const float sine = std::clamp(glm::dot(wo, m_x), -1.0f, 1.0f), cosine = cosine_of(sine);
         const float phi = std::atan2(glm::dot(wo, m_z), glm::dot(wo, m_y)) - m_phi_o;
-        Densities d{};
-        for (int p = 0; p < kPaths; ++p) {
-            const float along =
-                longitudinal(sine, cosine, m_tilted[p].x, m_tilted[p].y, m_variance[p]);
-            const float around = p < kPaths - 1
-                                     ? m_azimuth.density(angle_in_circle(phi - deflection(p)))
-                                     : 0.5f * kInversePi;
-            d[p] = along * around;
+        std::array<T, kPaths> around{};
+        for (const Crossing& crossing : m_crossings) {
+            const std::array<T, kPaths>& factor = crossing.*factors;
+            for (std::size_t p = 0; p < kPaths - 1; ++p)
+                around[p] +=
+                    factor[p] * (crossing.weight *
+                                 m_azimuth.density(angle_in_circle(phi - crossing.deflections[p])));
+            around[kPaths - 1] += factor[kPaths - 1] * (crossing.weight * 0.5f * kInversePi);
         }
-        return d;
+        T sum(0.0f);
+        for (std::size_t p = 0; p < kPaths; ++p) {
+            const Vec2f light = tilted({cosine, sine}, m_light_tilt[p], -1.0f);
+            sum += around[p] *
+                   longitudinal(light.y, light.x, m_cones[p].y, m_cones[p].x, m_variance[p]);
+        }
+        return sum;
     }
 
     Vec3f m_x, m_y, m_z;
     float m_sin_o, m_cos_o, m_phi_o;  ///< of the view
-    float m_gamma_o, m_gamma_t;       ///< where it enters, and inside
-    std::array<float, kPaths> m_variance{}, m_share{};
-    std::array<Vec3f, kPaths> m_attenuation{};
-    std::array<Vec2f, kPaths> m_tilted{};  ///< sine and cosine of the view for each path
+    std::array<float, kPaths> m_variance{};
+    // Cosines and sines, for each path: of the scales' turn of the view or the light, and of the
+    // view's inclination with it.
+    std::array<Vec2f, kPaths> m_view_tilt = no_turns(), m_light_tilt = no_turns(), m_cones{};
     TrimmedLogistic m_azimuth{};
-    Vec3f m_albedo;
+    std::vector<Crossing> m_crossings;
+    Vec3f m_albedo{0.0f};
 };
 
 }  // namespace

@@ -32,6 +32,27 @@ VectorSource hair_axis(NodeBuilder& b, bool mesh_by_v) {
     return out;
 }
 
+/// Of a ribbon how many rows of its points, less one, lie side by side; where rays meet one it is
+/// known as a whole.
+FloatSource cells_across(NodeBuilder& b) {
+    return b.geometry<float>([](const ShadingInput& in, std::size_t) {
+        const ShadingPoints& points = *in.points;
+        return points.columns == 0 ? 1.0f
+                                   : static_cast<float>(points.count / points.columns) - 1.0f;
+    });
+}
+
+/// How far a point's row lies from the middle of these, over half the width.
+FloatSource cell_aside(NodeBuilder& b) {
+    return b.geometry<float>([](const ShadingInput& in, std::size_t i) {
+        const ShadingPoints& points = *in.points;
+        if (points.columns == 0 || points.count == points.columns) return 0.0f;
+        const auto row = static_cast<float>(i / points.columns);
+        const auto last = static_cast<float>(points.count / points.columns - 1);
+        return std::abs(2.0f * row / last - 1.0f);
+    });
+}
+
 /// Factors of chance: 1 where there is none.
 FloatSource varied(NodeBuilder& b, const FloatSource& random, const FloatSource& amount) {
     return b.map<float>([](float r, float a) { return 1.0f + 2.0f * (r - 0.5f) * a; }, random,
@@ -87,14 +108,16 @@ void build_hair(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weig
 void build_principled_hair(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight) {
     if (b.text("model", "CHIANG") == "HUANG")
         b.warn("Huang's model is not supported; rendered as Chiang's");
-    const FloatSource random_color = b.number("Random Color"),
-                      random_roughness = b.number("Random Roughness");
-    FloatSource random = b.number("Random", 0.5f);
-    if (!b.linked("Random")) {
-        random = {-1, 0.5f};
-        if (!random_color.is(0.0f) || !random_roughness.is(0.0f))
-            b.warn("Principled Hair: nothing is random but what is linked to Random");
-    }
+    const FloatSource is_curve = is_of_kind(b, GeometryKind::Curves);
+    // Each curve its own, where nothing says otherwise.
+    const FloatSource random_roughness = b.number("Random Roughness");
+    const bool is_even = b.number("Random Color").is(0.0f) && random_roughness.is(0.0f);
+    const FloatSource random =
+        is_even ? FloatSource{-1, 0.5f}
+        : b.linked("Random")
+            ? b.number("Random")
+            : product(b, b.attribute_component({AttributeSource::ElementRandom, "", 1}, 0),
+                      is_curve);
     const FloatSource factor = varied(b, random, random_roughness);
     LobeSource lobe;
     lobe.kind = LobeKind::PrincipledHair;
@@ -105,8 +128,12 @@ void build_principled_hair(NodeBuilder& b, SurfaceBuilder& surface, const FloatS
     lobe.is_stretched = true;
     lobe.tangent = hair_axis(b, false);
     lobe.aspect = FloatSource{-1, 1.0f};
-    lobe.more = {radial, b.number("Offset", 0.0349066f),
-                 b.map<float>([](float coat) { return 1.0f - saturate(coat); }, b.number("Coat"))};
+    lobe.more = {radial,
+                 b.number("Offset", 0.0349066f),
+                 b.map<float>([](float coat) { return 1.0f - saturate(coat); }, b.number("Coat")),
+                 product(b, cells_across(b), is_curve),
+                 cell_aside(b),
+                 FloatSource{-1, b.since(4, 0) ? 0.0f : 1.0f}};
     lobe.has_color = true;
     lobe.f0 = absorption(b, random, radial);
     lobe.ior = b.number("IOR", 1.55f);

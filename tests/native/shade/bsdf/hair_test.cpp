@@ -24,7 +24,7 @@ Lobe lobe_of(const ShadingPoints& points, LobeKind kind, float roughness, float 
     Lobe lobe = glossy(points, roughness);
     lobe.kind = kind;
     lobe.tangent.assign(1, Vec3f(1.0f, 0.0f, 0.0f));
-    lobe.more = {{radial}, {kTilt}, {1.0f}};
+    lobe.more = {{radial}, {kTilt}, {1.0f}, {0.0f}, {0.0f}, {0.0f}};
     lobe.ior.assign(1, 1.55f);
     lobe.f0.assign(1, Vec3f(0.0f));
     return lobe;
@@ -107,6 +107,38 @@ TEST(PrincipledHair, a_clear_hair_in_a_white_furnace_vanishes) {
             EXPECT_NEAR(albedo, 1.0, 0.01) << roughness << " " << turn;
             EXPECT_TRUE(bsdf.can_see(Vec3f(0, 0, -5), 0.1f));
         }
+}
+
+// A ribbon that is as narrow as a pixel is one cell wide, of which each side is a point's.
+TEST(PrincipledHair, what_a_point_stands_for_is_the_mean_over_its_part_of_the_width) {
+    const auto at_place = [](float h) {
+        const ShadingPoints points = hair(0.3f, std::asin(h));
+        Lobe lobe = lobe_of(points, LobeKind::PrincipledHair, 0.3f, 0.3f);
+        lobe.f0.assign(1, Vec3f(0.4f));
+        return prepare(lobe, points);
+    };
+    for (const float cells : {1.0f, 2.0f}) {
+        const ShadingPoints points = hair(0.3f, 0.4f);
+        Lobe lobe = lobe_of(points, LobeKind::PrincipledHair, 0.3f, 0.3f);
+        lobe.f0.assign(1, Vec3f(0.4f));
+        lobe.more[3] = {cells};
+        lobe.more[4] = {1.0f};  // the last of its points
+        const PointBsdf whole = prepare(lobe, points);
+        for (const float phi : {-2.0f, -0.7f, 0.1f, 1.2f, 2.9f}) {
+            const Vec3f wo = glm::normalize(Vec3f(-0.2f, std::sin(phi), std::cos(phi)));
+            double sum = 0.0;
+            const int steps = 400;
+            for (int i = 0; i < steps; ++i) {
+                const float from = 1.0f - 1.0f / cells;
+                const float h = from + (1.0f - from) * (static_cast<float>(i) + 0.5f) / steps;
+                sum += at_place(h).evaluate(wo).glossy.x;
+            }
+            const double expected = sum / steps;
+            // Places 2 scales of the density apart: as much as an aliased sum is off.
+            EXPECT_NEAR(whole.evaluate(wo).glossy.x, expected, 0.03 * expected + 0.002)
+                << cells << " " << phi;
+        }
+    }
 }
 
 // A smooth tube mirrors light about its own surface, and lets light through on the other side.
