@@ -139,7 +139,7 @@ def mirror_map(mesh):
 
 
 @pytest.mark.parametrize("smooth", [True, False])
-@pytest.mark.parametrize("case", ["default", "named", "mirrored", "without a map"])
+@pytest.mark.parametrize("case", ["default", "named", "mirrored", "without a map", "shown"])
 def test_tangents_of_coarse_meshes(scene, render, case, smooth):
     if case == "without a map" and bpy.app.version >= (5, 0, 0):
         pytest.skip(
@@ -153,11 +153,14 @@ def test_tangents_of_coarse_meshes(scene, render, case, smooth):
         # No vertex on the seam of the sphere that takes a map's place: there the sign of a zero decides.
         thing.data.transform(Matrix.Rotation(0.1, 4, "Z"))
     tree = Tree(thing)
-    bend = tree.add("ShaderNodeNormalMap", space="TANGENT")
+    if case == "shown":
+        node = tree.add("ShaderNodeTangent", direction_type="UV_MAP")
+    else:
+        node = tree.add("ShaderNodeNormalMap", space="TANGENT")
+        node.inputs["Color"].default_value = (0.8, 0.35, 0.8, 1.0)
     if case == "named":
-        bend.uv_map = thing.data.uv_layers[0].name
-    bend.inputs["Color"].default_value = (0.8, 0.35, 0.8, 1.0)
-    show_normal(tree, bend.outputs[0])
+        node.uv_map = thing.data.uv_layers[0].name
+    show_normal(tree, node.outputs[0])
     scene_parts.add_camera(scene, ortho_scale=1.2)  # no silhouette
     scene.render.resolution_x = scene.render.resolution_y = 64
     # Normals change by up to .01 across a pixel, and one sample lies anywhere in it.

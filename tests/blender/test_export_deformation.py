@@ -245,6 +245,7 @@ def test_equal_counts_of_other_faces_do_not_smear(moving):
     else:
         tree.outputs.new("NodeSocketGeometry", "Geometry")
     switch = tree.nodes.new("GeometryNodeSwitch")
+    switch.input_type = "GEOMETRY"
     output = tree.nodes.new("NodeGroupOutput")
     geometry = [s for s in switch.inputs if s.type == "GEOMETRY"]
     for socket, order in zip(geometry, ((0, 1, 2, 3), (3, 2, 1, 0))):

@@ -122,8 +122,9 @@ class InstanceVelocities:
     def _read(self, maker):
         """({id of an instance: float64 [3]}, whether these are an attribute of their own) of an evaluated Object,
         or None."""
-        # Ids of particles look the same.
-        if not hasattr(maker, "evaluated_geometry") or len(maker.particle_systems):
+        # Ids of particles look the same; of what is no geometry, an empty, Blender 5.2 has none to show.
+        has_nodes = any(modifier.type == "NODES" for modifier in maker.modifiers)
+        if not has_nodes or not hasattr(maker, "evaluated_geometry") or len(maker.particle_systems):
             return None
         geometry = maker.evaluated_geometry()  # holds what is read
         instances = geometry.instances_pointcloud()

@@ -42,8 +42,8 @@ TangentFrame tangent_frame(const Vec3f& normal, const Vec3f& dp_du, const Vec3f&
 }
 
 /// Polygons have tangents at their corners, which are interpolated as normals are and, as in
-/// Cycles, not made unit again.  On a subdivision surface the map's own derivatives are what the
-/// corners' tangents tend to as it is refined.
+/// Cycles, not made unit again; since Blender 5.1 the normals are.  On a subdivision surface the
+/// map's own derivatives are what the corners' tangents tend to as it is refined.
 void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatSource& strength) {
     const std::string name = b.text("uv_map");
     const AttributeRequest of_corners{AttributeSource::Tangent, name, 4};
@@ -54,7 +54,7 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
                        uv_v = uv_at(b, name, Shift::V), out = b.new_source<Vec3f>();
     const FloatSource sign = b.attribute_component(of_corners, 3, Shift::None);
     // Since Blender 4 strength scales the map's slopes, before it blended the resulting normals.
-    const bool scales_slopes = b.since(4, 0);
+    const bool scales_slopes = b.since(4, 0), has_unit_normals = b.since(5, 1);
     b.add_step(
         [=](Run& run) {
             const auto colors = run.read(color), uvs = run.read(uv), us = run.read(uv_u),
@@ -68,12 +68,14 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
                 const Vec3f normal = points.normal[i] * side;  // as modelled
                 const bool has_tangent = tangents[i] != Vec3f(0.0f);
                 TangentFrame frame;
-                if (has_tangent)
-                    frame = {corner_normals[i], tangents[i],
-                             signs[i] * glm::cross(corner_normals[i], tangents[i]), true};
-                else
+                if (has_tangent) {
+                    const Vec3f& smooth = corner_normals[i];
+                    const Vec3f up = has_unit_normals ? normalize_or(smooth, smooth) : smooth;
+                    frame = {up, tangents[i], signs[i] * glm::cross(up, tangents[i]), true};
+                } else {
                     frame = tangent_frame(normal, points.dp_du[i], points.dp_dv[i],
                                           Vec2f(us[i] - uvs[i]), Vec2f(vs[i] - uvs[i]));
+                }
                 if (!frame.valid) {  // no UV map: Cycles leaves the normal alone
                     result[i] = points.normal[i];
                     continue;
@@ -98,15 +100,26 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
 
 }  // namespace
 
+/// As a Normal Map's, but along the surface that is shaded.
 VectorSource uv_tangent(NodeBuilder& b, const std::string& name) {
+    const VectorSource of_corners =
+        b.attribute_at({AttributeSource::Tangent, name, 4}, Shift::None);
     const VectorSource uv = uv_at(b, name, Shift::None), uv_u = uv_at(b, name, Shift::U),
                        uv_v = uv_at(b, name, Shift::V), out = b.new_source<Vec3f>();
     b.add_step(
         [=](Run& run) {
-            const auto uvs = run.read(uv), us = run.read(uv_u), vs = run.read(uv_v);
+            const auto uvs = run.read(uv), us = run.read(uv_u), vs = run.read(uv_v),
+                       tangents = run.read(of_corners);
             const ShadingPoints& points = *run.input().points;
             Vec3f* result = run.write(out);
             for (std::size_t i = 0; i < run.count(); ++i) {
+                if (tangents[i] != Vec3f(0.0f)) {
+                    const Vec3f& normal = points.normal[i];
+                    const Vec3f along =
+                        run.input().axes_at(i).world_normal_from_object() * tangents[i];
+                    result[i] = normalize_or(along - normal * glm::dot(normal, along), Vec3f(0.0f));
+                    continue;
+                }
                 const TangentFrame frame =
                     tangent_frame(points.normal[i], points.dp_du[i], points.dp_dv[i],
                                   Vec2f(us[i] - uvs[i]), Vec2f(vs[i] - uvs[i]));
@@ -114,7 +127,7 @@ VectorSource uv_tangent(NodeBuilder& b, const std::string& name) {
                     frame.valid ? frame.tangent : normalize_or(points.dp_du[i], Vec3f(0.0f));
             }
         },
-        {uv.slot, uv_u.slot, uv_v.slot}, {out.slot});
+        {of_corners.slot, uv.slot, uv_u.slot, uv_v.slot}, {out.slot});
     return out;
 }
 
