@@ -4,8 +4,10 @@
     --granita-device cpu|gpu|auto   overrides scene.granita.device
     --granita-stats FILE            appends one JSON object a frame (frame_statistics.py)
     --granita-threads N             overrides Blender's thread count; 0 = all
+    --granita-memory MIB            a frame for which the process would hold more is given up
     --granita-log json|openjd       lines for machines on the standard output (event_log.py)
     --granita-part K/N              renders the K-th of N parts of the frame into a part file (parts/)
+    --granita-cut N                 looks at the frame and cuts it into N parts of about the same cost
     --granita-merge N               joins the N part files of the frame instead of rendering it
     --granita-parts FOLDER          of the part files; default: beside the output, named after it
 
@@ -19,6 +21,7 @@ from .event_log import KINDS as LOG_KINDS
 
 PREFIX = "--granita-"
 MOST_PARTS = 4096
+MOST_MEMORY = 1 << 30  # MiB
 
 
 class CommandLineError(Exception):
@@ -30,8 +33,10 @@ class CommandLine:
     device: str | None = None  # AUTO, CPU or GPU
     stats: str | None = None  # path of a file
     threads: int | None = None
+    memory: int | None = None  # MiB
     log: str | None = None  # of event_log.KINDS
     part: tuple | None = None  # (K, N)
+    cut: int | None = None  # N
     merge: int | None = None  # N
     parts: str | None = None  # path of a folder
 
@@ -53,8 +58,8 @@ def parse(argv=None):
         if not value or value.startswith("--"):
             raise CommandLineError(f"option {option} needs a value")
         setattr(values, option[len(PREFIX) :], reader(option, value))
-    if values.part and values.merge:
-        raise CommandLineError("--granita-part and --granita-merge exclude one another")
+    if sum(value is not None for value in (values.part, values.cut, values.merge)) > 1:
+        raise CommandLineError("--granita-part, -cut and -merge exclude one another")
     return values
 
 
@@ -68,10 +73,14 @@ def _path(option, value):
     return value
 
 
-def _threads(option, value):
-    if not (value.isascii() and value.isdigit() and int(value) <= 1024):
-        raise CommandLineError(f"option {option}: '{value}' is not a number from 0 to 1024")
-    return int(value)
+def _number(least, most):
+    def read(option, value):
+        if not (value.isascii() and value.isdigit() and least <= int(value) <= most):
+            text = f"'{value}' is not a number from {least} to {most}"
+            raise CommandLineError(f"option {option}: {text}")
+        return int(value)
+
+    return read
 
 
 def _log(option, value):
@@ -80,10 +89,7 @@ def _log(option, value):
     return value
 
 
-def _parts(option, value):
-    if not (value.isascii() and value.isdigit() and 1 <= int(value) <= MOST_PARTS):
-        raise CommandLineError(f"option {option}: '{value}' is not a number from 1 to {MOST_PARTS}")
-    return int(value)
+_parts = _number(1, MOST_PARTS)
 
 
 def _part(option, value):
@@ -99,9 +105,11 @@ def _part(option, value):
 _READERS = {
     PREFIX + "device": _device,
     PREFIX + "stats": _path,
-    PREFIX + "threads": _threads,
+    PREFIX + "threads": _number(0, 1024),
+    PREFIX + "memory": _number(1, MOST_MEMORY),
     PREFIX + "log": _log,
     PREFIX + "part": _part,
+    PREFIX + "cut": _parts,
     PREFIX + "merge": _parts,
     PREFIX + "parts": _path,
 }

@@ -14,11 +14,10 @@ from . import bridge, passes
 from .event_log import EventLog
 from .export import export_frame
 from .export.base.report import Cancelled, Report, lines
-from .parts.collected_part import CollectedPart
-from .parts.part_file import file_name
+from .parts.coarse_look import coarse, tile_costs
+from .parts.frame_cut import FrameCut
 from .parts.part_output import folder_of, output_path
 from .parts.picture_digest import file_digest, picture_digest
-from .parts.rectangles import split
 from .properties import TILE_PIXELS
 from .status_line import StatusLine
 
@@ -53,7 +52,8 @@ class FinalRender:
         self.report = Report()
         self.seconds = {}
         self.origin = None  # the result's lower-left pixel in the frame
-        self.part = None  # CollectedPart, where one part of the frame alone is rendered
+        self.cut = None  # FrameCut, where the frame is rendered in parts
+        self.part = None  # CollectedPart, where one of them is rendered
 
     def run(self, statistics):
         """Renders into the engine's result and adds the cost to `statistics`."""
@@ -62,8 +62,12 @@ class FinalRender:
         try:
             snapshot = self._export()
             options = snapshot["options"]
+            if self.options.cut is not None:
+                self._cut_by_cost(snapshot)
+                return
             if self.part is not None and self.part.rect is None:
-                self._write_empty_part()
+                self._end_empty()
+                self.part.write()
                 return
             job = self._render(snapshot)
             if self.part is not None:
@@ -96,9 +100,13 @@ class FinalRender:
             options["device"] = self.options.device
         if self.options.threads is not None:
             options["threads"] = self.options.threads
+        if self.options.memory is not None:
+            options["memory"] = self.options.memory
 
+        if self.options.part is not None or self.options.cut is not None:
+            self.cut = self._frame_cut(snapshot)
         if self.options.part is not None:
-            self._cut_part(snapshot)
+            self._cut_part(options)
 
         self.depsgraph = None  # the next call frees it
         if not render.use_persistent_data:
@@ -106,12 +114,8 @@ class FinalRender:
         self.seconds["export"] = perf_counter() - started
         return snapshot
 
-    def _cut_part(self, snapshot):
-        """Leaves of the snapshot's picture the part that the command line names."""
+    def _frame_cut(self, snapshot):
         options = snapshot["options"]
-        crop = tuple(int(pixel) for pixel in options["crop"])
-        number, count = self.options.part
-        rect = split(crop, count, TILE_PIXELS)[number - 1]
         core = bridge.load()
         origin = {
             "frame": int(options["frame"]),
@@ -123,39 +127,59 @@ class FinalRender:
             "picture": picture_digest(snapshot),
         }
         folder = folder_of(self.options, output_path(self.depsgraph.scene))
-        path = folder / file_name(origin["frame"], self.layer, self.options.part)
-        channels = [(p.native, p.channels) for p in self.passes]
-        self.part = CollectedPart(path, self.options.part, rect, crop, channels, origin)
-        self.origin = crop[:2]
-        if rect is not None:
-            options["crop"] = np.array(rect, dtype=np.int32)
+        crop = tuple(int(pixel) for pixel in options["crop"])
+        return FrameCut(folder, origin, crop, TILE_PIXELS)
 
-    def _write_empty_part(self):
-        """There are fewer tiles than parts.  A result without pixels still has to be complete: Blender
-        crashes where it saves none."""
+    def _cut_part(self, options):
+        """Leaves of the picture the part that the command line names."""
+        channels = [(p.native, p.channels) for p in self.passes]
+        self.part = self.cut.part(self.options.part, channels)
+        if self.part.rect is not None:
+            options["crop"] = np.array(self.part.rect, dtype=np.int32)
+
+    def _cut_by_cost(self, snapshot):
+        """Says how the parts are to be cut, by a coarse look at the frame."""
+        look = self._render(coarse(snapshot, TILE_PIXELS), deliver=lambda tiles: None)
+        costs = tile_costs(look.bucket_seconds(), self.cut.crop, TILE_PIXELS)
+        self.cut.write(self.options.cut, costs)
+        self._end_empty()
+
+    def _end_empty(self):
+        """A result without pixels still has to be complete: Blender crashes where it saves none."""
         self.engine.end_result(self.engine.begin_result(0, 0, 1, 1, layer=self.layer))
-        self.part.write()
 
     def _exporting(self):
         """Called often by the export."""
         if self.engine.test_break():
             raise Cancelled
+        if self.options.memory is not None:
+            self._check_memory(self.options.memory)
         self.status.exporting()
 
-    def _render(self, snapshot):
+    def _check_memory(self, limit):
+        """Of the export; the render looks itself."""
+        held = bridge.load().process_memory() >> 20
+        if held > limit:
+            raise SettingsError(
+                f"the export wants more memory than {limit} MiB, its limit: "
+                f"{held} MiB are taken by Blender and the scene"
+            )
+
+    def _render(self, snapshot, deliver=None):
         """Runs the native job to its end and returns it.  Empties the snapshot."""
         started = perf_counter()
+        deliver = deliver or self._deliver
         job = None
         try:
             with bridge.rendering(snapshot, self._about()) as job:
                 self.seconds["scene"] = perf_counter() - started
                 while not job.done():
-                    self._deliver(job.take_tiles(POLL_SECONDS))
+                    deliver(job.take_tiles(POLL_SECONDS))
                     if self.engine.test_break():
                         raise Cancelled
                     self.engine.update_progress(job.fraction)
                     self.status.rendering(job)
-                self._deliver(job.take_tiles(0.0))
+                deliver(job.take_tiles(0.0))
         finally:
             if job is not None:
                 self._tell(job.warnings())

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A frame in N parts: how long the longest takes beside the whole frame, export and saving included.
 
+Parts are cut by place, and by what a coarse look at the frame says of their cost.
+
     ./dev bench frame_parts [--counts 1 2 4 8 16 32 64] [--scene demo] [--size 960 540] [--samples 64]
 
 One thread, processor seconds: each part stands for a machine of its own.  What every part does again is what its least one
@@ -31,21 +33,26 @@ def main():
         "render_parts.py", {**job, "samples": options.samples, "counts": options.counts}
     )
     whole = max(taken[str(options.counts[0])]["parts"])
-    rows, measured, ideal = [], [], []
+    rows, measured, by_cost, ideal = [], [], [], []
     print(
-        "| parts | longest, s | ideal, s | all together, s | shortest, s | merging, s |\n|---|---|---|---|---|---|"
+        "| parts | longest, s | by cost, s | the look, s | ideal, s | all together, s | shortest, s | merging, s |"
     )
+    print("|---" * 8 + "|")
     for count in options.counts:
         parts = taken[str(count)]["parts"]
-        row = {"parts": count, "longest": max(parts), "ideal": whole / count, "sum": sum(parts)}
+        row = {"parts": count, "longest": max(parts), "by_cost": max(taken[str(count)]["by_cost"])}
+        row |= {"look": taken[str(count)]["look"], "ideal": whole / count, "sum": sum(parts)}
         row |= {"shortest": min(parts), "merge": taken[str(count)]["merge"]}
         rows.append(row)
         measured.append((count, row["longest"]))
+        by_cost.append((count, row["by_cost"]))
         ideal.append((count, row["ideal"]))
         numbers = " | ".join(f"{row[key]:.2f}" for key in list(row)[1:])
         print(f"| {count} | {numbers} |", flush=True)
     measure.save("frame_parts", rows)
-    panel = plot.Panel("Seconds of the longest part", {"measured": measured, "ideal": ideal})
+    panel = plot.Panel(
+        "Seconds of the longest part", {"by place": measured, "by cost": by_cost, "ideal": ideal}
+    )
     plot.save(ROOT / "docs" / "frame_parts.svg", [panel], "parts", "s")
 
 

@@ -4,7 +4,8 @@
     blender -b --factory-startup --addons granita --python bench/render_parts.py -- JOB.json
 
 JOB: {"module", "scene", "size" (width, height), "samples", "counts" [N], "folder", "file"}.  The file gets for each N
-{"parts": [processor seconds of each], "merge": processor seconds}.
+{"parts": [processor seconds of each], "merge": processor seconds, "look": processor seconds of a coarse look, "by_cost": as
+"parts", cut by it}.
 """
 
 import json
@@ -27,6 +28,10 @@ def seconds_of(options):
     return time.process_time() - began
 
 
+def seconds_of_parts(count):
+    return [seconds_of([f"--granita-part={k}/{count}"]) for k in range(1, count + 1)]
+
+
 def main():
     job = json.loads(Path(ARGUMENTS[ARGUMENTS.index("--") + 1]).read_text())
     scene, frame, _ = render_frames.build(job)
@@ -44,8 +49,10 @@ def main():
     answer = {}
     for count in job["counts"]:
         render.filepath = str(folder / f"of_{count}.exr")
-        parts = [seconds_of([f"--granita-part={k}/{count}"]) for k in range(1, count + 1)]
-        answer[count] = {"parts": parts, "merge": seconds_of([f"--granita-merge={count}"])}
+        answer[count] = {"parts": seconds_of_parts(count)}
+        answer[count]["merge"] = seconds_of([f"--granita-merge={count}"])
+        answer[count]["look"] = seconds_of([f"--granita-cut={count}"])
+        answer[count]["by_cost"] = seconds_of_parts(count)
     Path(job["file"]).write_text(json.dumps(answer))
 
 

@@ -3,8 +3,8 @@
 
 from pathlib import Path
 
+from .frame_cut import rectangles
 from .part_file import PartError, file_name, read
-from .rectangles import split
 
 # What has to be the same in all parts, and how it is called where it is not.  The first one that
 # differs explains the others: another version of Granita may well read a scene differently.
@@ -31,7 +31,7 @@ def read_parts(folder, frame, layer, count, crop, tile, passes):
     headers = [read(path).header for path in paths]
     # The latest is what was meant: those that differ from it were left over.
     latest = max(headers, key=lambda header: header["written"])
-    rects = split(crop, count, tile)
+    rects = rectangles(folder, frame, layer, count, crop, tile)
     for path, header, rect in zip(paths, headers, rects, strict=True):
         what = f"part file '{path}'"
         for key, complaint in _COMMON:
@@ -41,7 +41,9 @@ def read_parts(folder, frame, layer, count, crop, tile, passes):
                     f"{latest['written']}): render this part again"
                 )
         if header["crop"] != list(crop) or header["rect"] != (rect and list(rect)):
-            raise PartError(f"{what} is of a frame of another size or border")
+            raise PartError(
+                f"{what} is of a frame of another size or border, or cut in another way"
+            )
         had = [(name, channels) for name, channels in header["passes"]]
         if rect and had != list(passes):
             raise PartError(f"{what} has other passes than the view layer asks for now: {had}")

@@ -12,6 +12,7 @@ import bpy
 
 from .. import command_line
 from ..handlers import registration
+from .frame_cut import CUT
 
 
 def folder_of(options, filepath):
@@ -47,14 +48,14 @@ def redirect(scene, *_):
         options = command_line.parse()
     except command_line.CommandLineError:
         return  # told by the render
-    if options.part is None:
+    if options.part is None and options.cut is None:
         return
     put_back(scene)
     render = scene.render
     _Redirected.scene, _Redirected.filepath = scene.name, render.filepath
     _Redirected.use_compositing = render.use_compositing
     _Redirected.use_sequencer = render.use_sequencer
-    number, count = options.part
+    number, count = options.part or (CUT, options.cut)
     folder = folder_of(options, render.filepath)
     render.filepath = str(folder / f"part_{number}-of-{count}_####")
     render.use_compositing = render.use_sequencer = False

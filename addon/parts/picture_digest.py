@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 # No bit of the picture depends on these (docs/scene_snapshot.md); `crop` is what parts differ in.
-_FREE = {"crop", "device", "executor", "threads", "bucket_size", "z_batch_size", "list_memory"}
+_FREE = {"crop", "device", "executor", "threads", "bucket_size", "z_batch_size"}
+_FREE |= {"list_memory", "memory"}
 
 
 def picture_digest(snapshot):

@@ -71,6 +71,7 @@ class Statistics {
     /// Bytes of grids that came into being; the most that lived at a time are peak_grid_bytes().
     void add_grid_bytes(std::uint64_t bytes);
     void remove_grid_bytes(std::uint64_t bytes) { m_grid_bytes.fetch_sub(bytes); }
+    std::uint64_t grid_bytes() const { return m_grid_bytes.load(); }
     std::uint64_t peak_grid_bytes() const { return m_peak_grid_bytes.load(); }
     /// Bytes of the structure that rays trace, its triangles included.
     void peak_ray_bytes(std::uint64_t bytes) { m_peak_ray_bytes.store(bytes); }

@@ -54,6 +54,13 @@ py::list warning_list(const RenderJob& job) {
     return list;
 }
 
+py::list bucket_seconds(const RenderJob& job) {
+    py::list list;
+    for (const auto& [pixels, seconds] : job.bucket_seconds())
+        list.append(py::make_tuple(pixels.x0, pixels.y0, pixels.x1, pixels.y1, seconds));
+    return list;
+}
+
 /// Copies a tile's values, `width` floats a pixel, to their place in the crop's.
 template <class T>
 void paste(const Tile& tile, const Rect& crop, const std::vector<T>& from, std::size_t width,
@@ -170,6 +177,8 @@ void bind_render(py::module_& module) {
         .def_property_readonly("buckets_done", &RenderJob::buckets_done)
         .def_property_readonly("buckets_total", &RenderJob::buckets_total)
         .def_property_readonly("device", &RenderJob::device)
+        .def("bucket_seconds", &bucket_seconds,
+             "[(x0, y0, x1, y1, seconds)] of each bucket's pixels, once the frame is finished.")
         .def("statistics", &statistics_dict)
         .def("warnings", &warning_list, "[(datablock, message, count)]");
 

@@ -8,6 +8,7 @@
 #include <tbb/version.h>
 
 #include "base/crash_report.h"
+#include "base/process_memory.h"
 #include "gl/gl_thread.h"
 #include "python/snapshot.h"
 
@@ -89,6 +90,9 @@ void bind_system(py::module_& module) {
                             "While it lives, a fault writes the file `path`, which begins with the "
                             "lines `about`.")
         .def(py::init<const std::string&, const std::string&>(), py::arg("path"), py::arg("about"));
+    module.def("process_memory", &process_memory,
+               "Bytes that this process holds, without files that are mapped; 0 where the system "
+               "does not tell.");
     module.def(
         "opengl", &opengl,
         "{'vendor', 'renderer', 'version', 'software'} of the OpenGL that a frame would get, "

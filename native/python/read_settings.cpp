@@ -94,6 +94,7 @@ void read_options(const Record& r, Options& o) {
     o.opacity_threshold =
         at_least(r, "opacity_threshold", r.number("opacity_threshold", o.opacity_threshold), 0.0);
     o.list_memory = in_range(r, "list_memory", r.integer("list_memory", o.list_memory), 1, 1 << 20);
+    o.memory = in_range(r, "memory", r.integer("memory", o.memory), 0, 1 << 30);
     o.seed = static_cast<std::uint32_t>(r.integer("seed", 0));
     o.light_samples =
         in_range(r, "light_samples", r.integer("light_samples", o.light_samples), 1, 65536);

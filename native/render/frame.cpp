@@ -35,7 +35,10 @@ HiderFrame make_hider_frame(Frame& frame) {
     out.z_batch_size = options.z_batch_size;
     const unsigned threads =
         options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-    out.list_bytes = (static_cast<std::uint64_t>(options.list_memory) << 20) / threads;
+    const int list_memory = options.memory > 0
+                                ? std::clamp(options.memory / 4, 1, options.list_memory)
+                                : options.list_memory;
+    out.list_bytes = (static_cast<std::uint64_t>(list_memory) << 20) / threads;
     return out;
 }
 

@@ -8,6 +8,7 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -17,16 +18,21 @@
 #include "base/stage_timer.h"
 #include "base/thread_pool.h"
 #include "render/frame.h"
+#include "render/frame_memory.h"
 #include "render/render_bucket.h"
 
 namespace granita {
 
 struct RenderJob::Impl {
+    explicit Impl(std::shared_ptr<const Scene> s)
+        : scene(std::move(s)), memory(scene->options, *statistics) {}
+
     std::shared_ptr<const Scene> scene;
     gl::ContextOptions gpu;
     std::shared_ptr<Session> session;
     std::shared_ptr<Statistics> statistics = std::make_shared<Statistics>();
     Report reports[2];  ///< of the device that was chosen, and of the CPU in its place
+    FrameMemory memory;
     std::atomic<int> attempt{0};
     Progress progress;
     std::string device;
@@ -35,6 +41,7 @@ struct RenderJob::Impl {
     std::mutex mutex;
     std::condition_variable changed;
     std::deque<Tile> tiles;
+    std::vector<std::pair<Rect, double>> bucket_seconds;  ///< each written by who renders it
     std::exception_ptr failure;
     bool finished = false;
     std::thread driver;
@@ -43,6 +50,17 @@ struct RenderJob::Impl {
         const std::lock_guard lock(mutex);
         if (!failure) failure = std::move(error);
         progress.cancel();
+    }
+    void fail(const std::string& why) { fail(std::make_exception_ptr(Error(why))); }
+    /// With what is being handled.
+    void fail() {
+        try {
+            throw;
+        } catch (const std::bad_alloc&) {
+            fail("the system gives no more memory: " + memory.text(nullptr));
+        } catch (...) {
+            fail(std::current_exception());
+        }
     }
 
     void deliver(std::vector<Tile> ready) {
@@ -73,7 +91,12 @@ struct RenderJob::Impl {
     /// One task a bucket, taken in spiral order (decision 14).
     void render(ThreadPool& pool, ExecutorChoice choice) {
         const StageLedger ledger(*statistics);
-        Frame frame(scene, statistics, reports[attempt], progress, std::move(choice), kept());
+        const auto give_up = [this](const std::string& why) { fail(why); };
+        Frame frame = [&] {
+            const MemoryWatch watch(memory, nullptr, give_up);
+            return Frame(scene, statistics, reports[attempt], progress, std::move(choice), kept());
+        }();
+        const MemoryWatch watch(memory, &frame.shading, give_up);
         {
             const std::lock_guard lock(mutex);
             device = frame.choice.device;
@@ -81,6 +104,7 @@ struct RenderJob::Impl {
         progress.add_done(-progress.done());
         progress.set_total(frame.layout.count());
         const std::vector<int> order = frame.layout.spiral();
+        bucket_seconds.assign(order.size(), {});
         std::atomic<std::size_t> next{0};
         std::optional<GlError> lost;
         gl::GlThread* const gl = frame.choice.gl.get();
@@ -89,7 +113,11 @@ struct RenderJob::Impl {
             if (gl != nullptr) gl->clock().add_worker(1);
             try {
                 for (std::size_t i = next++; i < order.size(); i = next++) {
+                    const auto began = std::chrono::steady_clock::now();
                     deliver(render_bucket(frame, order[i]));
+                    const std::chrono::duration<double> took =
+                        std::chrono::steady_clock::now() - began;
+                    bucket_seconds[i] = {frame.layout.pixels(order[i]), took.count()};
                     progress.add_done(1);
                 }
             } catch (const GlError& error) {
@@ -97,7 +125,7 @@ struct RenderJob::Impl {
                 const std::lock_guard lock(mutex);
                 if (!lost) lost = error;
             } catch (...) {
-                fail(std::current_exception());
+                fail();
             }
             if (gl != nullptr) gl->clock().add_worker(-1);
         });
@@ -129,7 +157,7 @@ struct RenderJob::Impl {
                 render(cpu_instead(*scene, *lost, reports[1]));
             }
         } catch (...) {
-            fail(std::current_exception());
+            fail();
         }
         const std::lock_guard lock(mutex);
         finished = true;
@@ -139,8 +167,7 @@ struct RenderJob::Impl {
 
 RenderJob::RenderJob(std::shared_ptr<const Scene> scene, const gl::ContextOptions& gpu,
                      std::shared_ptr<Session> session)
-    : m_impl(std::make_unique<Impl>()) {
-    m_impl->scene = std::move(scene);
+    : m_impl(std::make_unique<Impl>(std::move(scene))) {
     m_impl->gpu = gpu;
     m_impl->session = std::move(session);
     const auto run = [impl = m_impl.get()] { impl->run(); };
@@ -189,6 +216,11 @@ void RenderJob::cancel() {
 void RenderJob::finish() {
     if (m_impl->driver.joinable()) m_impl->driver.join();
     if (m_impl->failure) std::rethrow_exception(m_impl->failure);
+}
+
+std::vector<std::pair<Rect, double>> RenderJob::bucket_seconds() const {
+    const std::lock_guard lock(m_impl->mutex);
+    return m_impl->finished ? m_impl->bucket_seconds : decltype(m_impl->bucket_seconds){};
 }
 
 const Statistics& RenderJob::statistics() const {

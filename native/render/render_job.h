@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/report.h"
@@ -41,6 +42,8 @@ class RenderJob {
     /// Joins; rethrows the first failure (SceneError, GlError, Cancelled, ...).
     void finish();
 
+    /// Once the frame is finished: pixels of each bucket and the seconds that a thread took for it.
+    std::vector<std::pair<Rect, double>> bucket_seconds() const;
     const Statistics& statistics() const;
     const Report& report() const;
     std::string device() const;

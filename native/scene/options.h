@@ -75,6 +75,9 @@ struct Options {
     /// MiB of transparent samples' lists, in all threads together: buckets that want more of it are
     /// rendered in parts.
     int list_memory = 1024;
+    /// MiB that the process may hold, Blender's included, before the frame is given up; 0 = no end.
+    /// Textures and lists of samples have a quarter of it each.
+    int memory = 0;
     std::uint32_t seed =
         0;  ///< of the sample table, the frame already mixed in where animate_seed is on
     int light_samples = 16;  ///< shadow rays a light and shading point, for lights with a size

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "base/crash_report.h"
@@ -35,10 +34,8 @@ namespace {
 
 /// Radiance of a surface that nobody misses as a light: an 8-bit step of white.
 constexpr float kDimmestEmission = 0.004f;
-
 /// Metres: what scatters no farther is drawn as diffuse, as in Cycles.
 constexpr float kLeastScattering = 1e-8f;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Refined samples have one light sample each, or a few; corners have Options::light_samples, and
 /// those of their neighbours.  What moves is in doubt about its time, which only samples know.
@@ -90,7 +87,7 @@ struct ShadingSystem::Impl {
           moves(s.moves()),
           threshold(s.options.shading_threshold * 8.0f /
                     std::sqrt(static_cast<float>(s.options.samples))),
-          noise_threshold(refining_spares_noise(s.options, s.moves()) ? threshold : kInfinity),
+          noise_threshold(refining_spares_noise(s.options, s.moves()) ? threshold : HUGE_VALF),
           footprint(1.0f / std::sqrt(static_cast<float>(s.options.samples))),
           geometries(std::make_shared<GeometryCache>(kept.geometry)),
           shaded(kept.grids) {
@@ -262,7 +259,7 @@ struct ShadingSystem::Impl {
         SurfaceClosure closure = ran.take_closure();
         if (!closure.subsurface.empty()) {
             const bool has_body = below && light->rays()->has_body(grid.key);
-            draw_as_diffuse(closure, has_body ? kLeastScattering : kInfinity);
+            draw_as_diffuse(closure, has_body ? kLeastScattering : HUGE_VALF);
         }
         const bool has_passes = !channels.empty();
         ReflectionParts parts;
@@ -457,8 +454,8 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
     if (!opacity_varies(grid.material)) return;
     const ShadingPoints points = shading_points(grid, m_impl->camera);
     m_impl->shade_opacity(grid, m_impl->input(grid, points));
-    grid.opacity_varies = std::any_of(grid.opacity.begin(), grid.opacity.end(),
-                                      [](const Vec3f& opacity) { return opacity != Vec3f(1.0f); });
+    grid.opacity_varies =
+        std::ranges::any_of(grid.opacity, [](const Vec3f& o) { return o != Vec3f(1.0f); });
     grid.additive = m_impl->material(grid.material).radiance.sources.additive;
     if (grid.opacity_varies && m_impl->can_refine(grid)) {
         const float sharpness = m_impl->sharpness(grid);
@@ -487,6 +484,10 @@ Grid ShadingSystem::refine(const Grid& grid, std::span<const RefinedPoint> wante
 void ShadingSystem::background(const std::vector<Vec3f>& directions, float spread,
                                std::vector<Vec3f>& out) const {
     m_impl->world.radiance(directions, spread, RayType::Camera, out);
+}
+
+TextureStore& ShadingSystem::textures() const {
+    return m_impl->textures;
 }
 
 const SeenVolumes* ShadingSystem::volumes() const {

@@ -15,6 +15,7 @@
 #include "shade/kept_shading.h"
 #include "shade/refined_points.h"
 #include "shade/seen_volumes.h"
+#include "shade/textures/texture.h"
 
 namespace granita {
 
@@ -66,6 +67,9 @@ class ShadingSystem {
 
     /// nullptr where nothing is filled.
     const SeenVolumes* volumes() const;
+
+    /// Of which TextureStore says what may be done meanwhile.
+    TextureStore& textures() const;
 
   private:
     struct Impl;

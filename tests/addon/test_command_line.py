@@ -19,6 +19,7 @@ BLENDER = ["blender", "-b", "scene.blend", "-E", "GRANITA", "-f", "1"]
         (["--granita-stats=x=y"], CommandLine(stats="x=y")),
         (["--granita-threads", "0"], CommandLine(threads=0)),
         (["--granita-threads", "2", "--granita-threads", "5"], CommandLine(threads=5)),
+        (["--granita-memory", "1800"], CommandLine(memory=1800)),
         (["--granita-part", "3/8", "--granita-parts=a"], CommandLine(part=(3, 8), parts="a")),
         (["--granita-log", "openjd"], CommandLine(log="openjd")),
         (["--granita-merge=64"], CommandLine(merge=64)),
@@ -51,7 +52,10 @@ def test_words_before_the_dashes_are_blenders():
         (["--granita-log", "xml"], "'xml' is not one of json, openjd"),
         (["--granita-merge", "x"], "'x' is not a number from 1"),
         (["--granita-merge=2", "--granita-part=1/2"], "exclude one another"),
+        (["--granita-cut=2", "--granita-part=1/2"], "exclude one another"),
+        (["--granita-cut", "0"], "'0' is not a number from 1"),
         (["--granita-threads", "1025"], "'1025' is not a number"),
+        (["--granita-memory=0"], "'0' is not a number from 1"),
     ],
 )
 def test_refuses(words, message):

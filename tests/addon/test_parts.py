@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from addon.parts import part_file
+from addon.parts.coarse_look import coarse, tile_costs
 from addon.parts.collected_part import CollectedPart
+from addon.parts.frame_cut import FrameCut
 from addon.parts.joined_parts import read_parts
 from addon.parts.part_file import PartError
 from addon.parts.picture_digest import picture_digest
@@ -20,8 +22,11 @@ ORIGIN = {"frame": 7, "granita": "1", "build": "b", "blender": "3.4", "picture":
 
 @pytest.mark.parametrize("crop", [(0, 0, 1920, 1080), (33, 7, 200, 401), (5, 5, 6, 6)])
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 8, 13, 64, 100])
-def test_parts_cover_each_pixel_once(crop, count):
-    parts = split(crop, count, 16)
+@pytest.mark.parametrize("by_cost", [False, True])
+def test_parts_cover_each_pixel_once(crop, count, by_cost):
+    rows, columns = -(-crop[3] // 16) - crop[1] // 16, -(-crop[2] // 16) - crop[0] // 16
+    costs = np.random.default_rng(count).random((rows, columns)) ** 8 if by_cost else None
+    parts = split(crop, count, 16, costs)
     covered = np.zeros((crop[3], crop[2]), int)
     for rect in filter(None, parts):
         x0, y0, x1, y1 = rect
@@ -39,6 +44,43 @@ def test_parts_are_of_nearly_equal_size():
     assert max(sizes) / min(sizes) < 1.1
     # 6 x 3 tiles: as many parts as there are, and nothing for those beyond.
     assert split((0, 0, 96, 48), 20, 16).count(None) == 2
+
+
+def test_parts_by_cost_are_of_nearly_equal_cost():
+    """A hundredfold in a quarter of the frame: 64 by 64 tiles, whose strips are a fifth of a part at most."""
+    costs = np.ones((64, 64))
+    costs[:32, 32:] = 100.0
+    parts = split((0, 0, 1024, 1024), 8, 16, costs)
+    sums = [costs[y0 // 16 : y1 // 16, x0 // 16 : x1 // 16].sum() for x0, y0, x1, y1 in parts]
+    assert max(sums) < 1.2 * costs.sum() / 8
+
+
+def test_a_look_is_a_quarter_of_the_frame():
+    whole = {
+        "options": {
+            "width": 100,
+            "height": 70,
+            "crop": np.array([33, 0, 100, 70]),
+            "samples": 64,
+            "dicing_rate": 1.0,
+            "passes": ["Combined"],
+        },
+        "camera": {"scale": (40.0, 44.0), "center": (50.0, 35.0), "clip": (0.1, 9.0)},
+    }
+    look = coarse(whole, 16)
+    options = look["options"]
+    assert (options["width"], options["height"], options["samples"]) == (25, 18, 16)
+    assert list(options["crop"]) == [8, 0, 25, 18] and "passes" not in options
+    assert look["camera"] == {"scale": (10.0, 11.0), "center": (12.5, 8.75), "clip": (0.1, 9.0)}
+    assert whole["options"]["width"] == 100
+
+
+def test_buckets_of_a_look_say_what_tiles_cost():
+    """Four tiles along each: one that is half beyond the crop, a whole one, and one of a filter's rim."""
+    buckets = [(8, 0, 16, 16, 2.0), (16, 0, 32, 16, 8.0), (16, -2, 32, 0, 1.0)]
+    costs = tile_costs(buckets, (33, 0, 100, 40), 16)
+    assert costs.shape == (3, 5)  # tiles 2 to 6
+    assert np.array_equal(costs[0] / costs[0, 0], [1, 1, 2, 2, 2])
 
 
 def values(rect, seed):
@@ -122,6 +164,23 @@ def test_an_older_or_foreign_part_is_named(folder, key):
 def test_parts_of_another_size_or_with_other_passes_are_named(folder):
     refused(folder, "another size or border", crop=(0, 0, 96, 40))
     refused(folder, "other passes", passes=[("Combined", 4)])
+
+
+def test_parts_are_cut_as_the_look_said(folder):
+    """By place they were cut otherwise; of another size the cut is refused."""
+    about = {**ORIGIN, "layer": "View/Layer"}
+    cut = FrameCut(folder, about, CROP, 16)
+    costs = np.ones((3, 7))
+    costs[:, 0] = 100.0
+    cut.write(3, costs)
+    refused(folder, "cut in another way")
+    rects = split(CROP, 3, 16, costs)
+    assert rects != split(CROP, 3, 16)
+    for k, rect in enumerate(rects, 1):
+        assert cut.part((k, 3), PASSES).rect == rect
+        save(folder, k, rect)
+    assert [tuple(part.header["rect"]) for part in joined(folder)] == rects
+    refused(folder, "look again", crop=(0, 0, 96, 40))
 
 
 def test_what_is_no_part_file_is_told(folder):

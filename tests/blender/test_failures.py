@@ -134,6 +134,9 @@ CASES = {
     "statistics on a full disk": Case(
         1, "'/dev/full' cannot be written", options=("--granita-stats", "/dev/full")
     ),
+    "less memory than Blender itself takes": Case(
+        1, "wants more memory than 1 MiB, its limit", options=("--granita-memory", "1")
+    ),
     "unknown option": Case(
         1, "unknown option --granita-devcie", options=("--granita-devcie", "cpu")
     ),

@@ -89,6 +89,22 @@ def test_joined_parts_are_the_whole_frame(rich, render, options, tmp_path, count
     assert_equal(render(rich, "joined"), whole)
 
 
+def test_parts_of_equal_cost_are_the_whole_frame_too(rich, render, options, tmp_path):
+    """What glows costs little, what is lit much; the look itself leaves no picture under the frame's name."""
+    whole = render(rich, "whole")
+    options("cut=5")
+    rich.render.filepath = str(tmp_path / "frame.exr")
+    bpy.ops.render.render(write_still=True)
+    assert not (tmp_path / "frame.exr").exists()
+    cuts = sorted(path.name for path in (tmp_path / "parts").glob("*.part"))
+    assert cuts == ["0001.Second%20layer%2f2.0-of-5.part", "0001.ViewLayer.0-of-5.part"]
+    for number in range(1, 6):
+        options(f"part={number}/5")
+        bpy.ops.render.render(write_still=True)
+    options("merge=5")
+    assert_equal(render(rich, "joined"), whole)
+
+
 def test_machines_do_their_parts_by_themselves(blend, tmp_path):
     """Each part and the joining in a Blender of its own, found by the output path alone."""
     out = tmp_path / "out"

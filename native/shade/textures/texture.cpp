@@ -16,6 +16,12 @@ namespace {
 /// Of decoded tiles, all images together; what is beyond lies in a temporary file, or is read again
 /// where a file has tiles and levels of its own.
 constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
+
+std::uint64_t memory_of(const Options& options) {
+    const std::uint64_t share = (static_cast<std::uint64_t>(options.memory) << 20) / 4;
+    return share > 0 ? std::min(share, kMemory) : kMemory;
+}
+
 constexpr std::size_t kOpenFiles = 64;
 /// Look-ups during which no tile is freed.
 constexpr std::size_t kBatch = 256;
@@ -89,13 +95,24 @@ struct TextureStore::Impl {
     std::map<std::string, std::shared_ptr<const Texture>> textures;
 
     Impl(const Scene& s, Statistics& stats, Report& r)
-        : scene(s), statistics(stats), report(r), cache(std::make_shared<TileCache>(kMemory, r)) {}
+        : scene(s),
+          statistics(stats),
+          report(r),
+          cache(std::make_shared<TileCache>(memory_of(s.options), r)) {}
 };
 
 TextureStore::TextureStore(const Scene& scene, Statistics& statistics, Report& report)
     : m_impl(std::make_unique<Impl>(scene, statistics, report)) {}
 
 TextureStore::~TextureStore() = default;
+
+std::uint64_t TextureStore::byte_count() const {
+    return m_impl->cache->byte_count();
+}
+
+void TextureStore::keep_within(std::uint64_t bytes) {
+    m_impl->cache->set_limit(bytes);
+}
 
 std::shared_ptr<const Texture> TextureStore::find(const std::string& name,
                                                   const std::string& user) {

@@ -45,6 +45,11 @@ class TextureStore {
     /// Scene::images by name.  A name that is not there is reported with `user` and is magenta.
     std::shared_ptr<const Texture> find(const std::string& image, const std::string& user);
 
+    /// Of decoded tiles in memory.  Thread-safe.
+    std::uint64_t byte_count() const;
+    /// From now on, where it is less than before.  Thread-safe.
+    void keep_within(std::uint64_t bytes);
+
   private:
     struct Impl;
     std::unique_ptr<Impl> m_impl;

@@ -107,6 +107,13 @@ void TileCache::free_retired() {
     });
 }
 
+void TileCache::set_limit(std::uint64_t bytes) {
+    const std::lock_guard lock(m_mutex);
+    m_limit = bytes;
+    if (m_bytes > m_limit) trim();
+    free_retired();
+}
+
 std::uint64_t TileCache::byte_count() const {
     const std::lock_guard lock(m_mutex);
     return m_bytes + m_retired_bytes;

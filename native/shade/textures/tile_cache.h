@@ -99,6 +99,8 @@ class TileCache {
             slot, slot.spilled == TileSlot::kInItsFile ? read() : read_spilled(slot, shape), true);
     }
 
+    void set_limit(std::uint64_t bytes);
+
     /// Of all tiles in memory, those included that wait for their last readers.
     std::uint64_t byte_count() const;
 

@@ -60,6 +60,18 @@ TEST(TileCache, memory_stays_within_what_is_allowed) {
     }
 }
 
+TEST(TileCache, a_limit_that_is_lowered_holds_at_once) {
+    Report report;
+    TileCache cache(1000 * kShape.byte_count(), report);
+    std::vector<TileSlot> slots(100);
+    for (int i = 0; i < 100; ++i) cache.insert(slots[i], tile_of(i), true);
+    ASSERT_EQ(cache.byte_count(), 100 * kShape.byte_count());
+    cache.set_limit(10 * kShape.byte_count());
+    EXPECT_EQ(cache.byte_count(), 10 * kShape.byte_count());
+    const TileCache::ReadScope scope(cache);
+    for (int i = 0; i < 100; ++i) ASSERT_EQ(value_of(seen(cache, slots[i])), i);
+}
+
 TEST(TileCache, a_tile_that_is_being_read_is_not_freed) {
     Report report;
     TileCache cache(kShape.byte_count(), report);

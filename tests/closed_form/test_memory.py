@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A frame for which memory does not suffice ends by itself and says what took it."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import snapshots as s
+
+HERE = Path(__file__).resolve().parent
+# In a process of its own: what others have freed would be used first.
+SCRIPT = f"""
+import sys, resource
+sys.path.insert(0, {str(HERE)!r})
+from test_memory import large, megabytes
+import granita_core
+snapshot = large()
+taken, resident = megabytes(), megabytes("VmRSS")
+{{}}
+try:
+    granita_core.render(snapshot)
+except granita_core.Error as error:
+    print(type(error).__name__, error)
+print("most", resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024 - resident)
+"""
+
+
+def megabytes(line="RssAnon"):
+    """MiB that this process holds, by proc(5)."""
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return int(next(value for value in lines if value.startswith(line)).split()[1]) // 1024
+
+
+def large():
+    """A million faces under a sun: what rays trace of them takes hundreds of MiB."""
+    side = 1000
+    snapshot = s.orthographic((32, 32), samples=1, threads=2)
+    u, v = np.meshgrid(np.arange(side + 1), np.arange(side + 1))
+    points = np.stack([u * 0.032, v * 0.032, 10 + np.sin(0.3 * u) * np.cos(0.4 * v)], -1)
+    first = (np.arange(side) + (side + 1) * np.arange(side)[:, None]).ravel()
+    corners = first[:, None] + np.array([0, 1, side + 2, side + 1])
+    snapshot["geometries"].append(
+        {
+            "name": "mesh 'Large'",
+            "points": np.float32(points.reshape(1, -1, 3)),
+            "face_sizes": np.full(side * side, 4, np.int32),
+            "corner_verts": np.int32(corners.ravel()),
+        }
+    )
+    s.instance(snapshot, 0)
+    along = np.diag([1.0, -1.0, -1.0, 1.0])
+    snapshot["lights"] = [
+        {"name": "Sun", "kind": "SUN", "world_from_light": along[None], "energy": 3.0}
+    ]
+    return snapshot
+
+
+def outcome(before):
+    """(what the frame said, MiB that it took at most)"""
+    run = subprocess.run(
+        [sys.executable, "-c", SCRIPT.format(before)], capture_output=True, text=True, timeout=300
+    )
+    assert run.returncode == 0, run.stderr
+    said, _, most = run.stdout.rpartition("most")
+    return said, int(most)
+
+
+def test_a_frame_ends_where_it_wants_more_than_its_limit():
+    said, free = outcome("")
+    assert said == "" and free > 300
+    said, most = outcome("snapshot['options']['memory'] = taken + 150")
+    assert said.startswith("Error the frame wants more memory than")
+    assert "by Blender and the scene" in said and "by what was being made" in said
+    # It is looked at a hundred times a second, and ends where a loop next asks whether to go on.
+    assert most < 150 + 100
+
+
+def test_a_frame_ends_where_the_system_gives_no_more():
+    said, _ = outcome(
+        "limit = (megabytes('VmData') + 250) << 20; resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))"
+    )
+    assert said.startswith("Error the system gives no more memory")
+
+
+@pytest.mark.parametrize("memory", [1 << 20, 1 << 30])
+def test_no_bit_depends_on_a_limit_that_suffices(memory):
+    def picture(**options):
+        snapshot = s.orthographic((40, 40), samples=16, **options)
+        for z in range(1, 9):
+            s.quad(
+                snapshot, s.rectangle(-2, 3, 30 + z, 50, z), s.emission(snapshot, (z, 1, 0), 0.3)
+            )
+        return s.render(snapshot)["combined"]
+
+    assert np.array_equal(picture(memory=memory), picture())
