@@ -43,10 +43,14 @@ def curve_through(scene, places, radius, name="Curve"):
         info = nodes.new("GeometryNodeObjectInfo")
         info.inputs["Object"].default_value = source
         curve = nodes.new("GeometryNodeMeshToCurve")
+        # What a mesh becomes is made of straight pieces, which Cycles 5 draws as such, with round ends.
+        smooth = nodes.new("GeometryNodeCurveSplineType")
+        smooth.spline_type = "CATMULL_ROM"
         width = nodes.new("GeometryNodeSetCurveRadius")
         width.inputs["Radius"].default_value = radius
         links.new(info.outputs["Geometry"], curve.inputs[0])
-        links.new(curve.outputs[0], width.inputs["Curve"])
+        links.new(curve.outputs[0], smooth.inputs["Curve"])
+        links.new(smooth.outputs[0], width.inputs["Curve"])
         return width.outputs[0]
 
     return with_nodes(thing, build)

@@ -35,7 +35,7 @@ def read_curves(data, label, requested, report):
     if _any_set(data, "cyclic"):
         report(label, "its cyclic curves are left open")
     if _any_set(data, "curve_type", np.int32):
-        report(label, "all its curves are taken for Catmull-Rom, as Cycles does")
+        report(label, "all its curves are taken for Catmull-Rom, as in Cycles before Blender 5")
     attributes = _surface_uv(data) + element_attributes(data, label, requested - {_UV}, report)
     geometry = element_geometry("CURVES", label, points, attributes, curve_sizes=sizes)
     return geometry, Elements(sizes, _read)
