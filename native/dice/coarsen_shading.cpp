@@ -53,6 +53,7 @@ void coarsen_shading(Grid& grid, const Projection& projection, double rate) {
     if (grid.p.empty()) grid.p = grid.positions;
     for (std::vector<Vec3f>* values : {&grid.p, &grid.normal, &grid.geometric_normal})
         keep(*values, places.anchors, 1, 1);
+    keep(grid.rise, places.anchors, 1, 1);
     keep(grid.dp_du, places.anchors, 1, u);
     keep(grid.dp_dv, places.anchors, 1, v);
     for (GridAttribute& attribute : grid.attributes) {

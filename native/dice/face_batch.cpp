@@ -154,6 +154,8 @@ void FaceBatch::add_point(Grid& grid, const std::vector<Face>& faces, const Clus
             height = std::max(height, glm::dot(vertices[static_cast<std::size_t>(v)] - p, up));
     if (m_mesh->shared().subdivision()) height += bulge(faces, cluster);
     grid.ray_offset.push_back(up * height);
+    // Faces below a pixel show no faces where light ends.
+    if (m_mesh->rises()) grid.rise.emplace_back(0.0f);
 }
 
 /// How far the limit surface may stand above the corners of a cluster's faces, camera space.

@@ -10,7 +10,7 @@ std::uint64_t Grid::bytes() const {
                                   geometric_normal.size() + dp_du.size() + dp_dv.size() +
                                   opacity.size() + radiance.size() + ray_offset.size() +
                                   gathered.size() + scattered.size() + scattered_bounced.size();
-    floats += channels.size() + shading_positions.anchors.size() +
+    floats += 4 * rise.size() + channels.size() + shading_positions.anchors.size() +
               shading_positions.point_of.size() + shading_positions.faces.size();
     return sizeof(Grid) + unsettled.size() + unsettled_opacity.size() + 4 * floats +
            sizeof(Vec3f) * vectors;

@@ -85,6 +85,12 @@ struct Grid {
     /// [points] from p to where its rays may start: outside the hair or sphere that is drawn here
     /// as something flat.  Empty: at p.
     std::vector<Vec3f> ray_offset;
+    /// [points] from p to the smooth surface that normals of a mesh tell of, on the side that is
+    /// seen, and how far the nearest side of its triangle is (smooth_rise.h).  Empty: the surface
+    /// has no normals but its own.
+    std::vector<Vec4f> rise;
+    /// Cosine to its faces below which rays to lamps start there.
+    float terminator_offset = 0.0f;
     /// Part of a square pixel that a point stands for, at most 1: how much light it is worth.
     float point_share = 1.0f;
 

@@ -33,6 +33,8 @@ class LatticeDicer {
         set_frame_positions(grid, mesh.knots());
         std::swap(grid.normal, m_samples.normal);
         std::swap(grid.geometric_normal, m_samples.geometric_normal);
+        std::swap(grid.rise, m_samples.rise);
+        grid.terminator_offset = mesh.instance().terminator_offset;
         count_spared(grid);
         find_derivatives(grid);
         find_attributes(grid);

@@ -23,6 +23,7 @@ struct SurfaceSamples {
     std::vector<Vec3f> su, sv;            ///< [n] at the frame time
     std::vector<Vec3f> normal;            ///< [n] unit, shading, at the frame time
     std::vector<Vec3f> geometric_normal;  ///< [n] unit, at the frame time
+    std::vector<Vec4f> rise;              ///< [n] as Grid::rise; empty unless OpenedMesh::rises()
 };
 
 class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<OpenedMesh> {
@@ -93,6 +94,13 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     float frame_scale() const;
     /// Index in Scene::materials, -1 = none.
     int material(std::uint32_t face) const;
+    /// Normals of its own tell of a smoother surface.
+    bool rises() const {
+        return !m_displaced && !m_shared->subdivision() &&
+               (!data().corner_normals.empty() || !m_shared->vertex_normals().empty());
+    }
+    /// Grid::rise where the face itself has the normal `flat`.
+    Vec4f rise(const FrameFace& face, const CornerWeights& weights, const Vec3d& flat) const;
     /// Any material of the instance displaces.
     bool displaced() const { return m_displaced; }
     /// The longest way that displacement may move a point at any knot, metres.

@@ -253,6 +253,7 @@ void OpenedSubdivision::sample(const BasePatch& patch, std::span<const Vec2d> uv
             Vec3f(normalize_or(frame_orientation() * glm::cross(su, sv), middle));
     }
     out.normal = out.geometric_normal;
+    out.rise.clear();
 }
 
 }  // namespace granita

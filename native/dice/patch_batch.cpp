@@ -218,6 +218,8 @@ void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
         points += static_cast<std::size_t>(piece.grid->vertex_count());
     for (auto* values : {&grid.p, &grid.normal, &grid.geometric_normal, &grid.dp_du, &grid.dp_dv})
         values->reserve(points);
+    grid.terminator_offset = m_mesh->instance().terminator_offset;
+    grid.rise.reserve(m_mesh->rises() ? points : 0);
     ShadingPositions& places = grid.shading_positions;
     places.point_of.resize(static_cast<std::size_t>(grid.vertex_count()));
     for (auto* values : {&places.anchors, &places.faces}) values->reserve(points);
@@ -233,6 +235,7 @@ void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
         begin(piece.face, slot);
         append(piece.grid->normal, grid.normal);
         append(piece.grid->geometric_normal, grid.geometric_normal);
+        append(piece.grid->rise, grid.rise);
         append(piece.grid->dp_du, grid.dp_du);
         append(piece.grid->dp_dv, grid.dp_dv);
     };
@@ -254,6 +257,7 @@ void PatchBatch::add_points(const Lattice& lattice, Grid& grid) const {
         const Vec3d flat = face.geometric_normal(su, sv);
         grid.geometric_normal.emplace_back(flat);
         grid.normal.emplace_back(face.shading_normal(weights, flat));
+        if (m_mesh->rises()) grid.rise.push_back(m_mesh->rise(face, weights, flat));
         const Vec2d &by_u = stencil.step_u[v], &by_v = stencil.step_v[v];
         grid.dp_du.emplace_back(su * by_u.x + sv * by_u.y);
         grid.dp_dv.emplace_back(su * by_v.x + sv * by_v.y);

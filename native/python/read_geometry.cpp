@@ -218,6 +218,7 @@ void read_instances(const Record& r, Scene& scene) {
         instance.visible_diffuse = f & 8u;
         instance.visible_glossy = f & 16u;
         instance.visible_transmission = f & 32u;
+        instance.terminator_offset = static_cast<float>(f >> 16) / 65535.0f;
         instance.object_index = object_index.empty() ? 0 : object_index[i];
         instance.random = random.empty() ? 0.0f : random[i];
         instance.key = key.empty() ? static_cast<std::uint32_t>(i) : key[i];

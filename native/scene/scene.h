@@ -31,6 +31,8 @@ struct Instance {
     bool visible_diffuse = true, visible_glossy = true, visible_transmission = true;
     bool casts_shadow = true;
     bool holdout = false;
+    /// Cosine to smooth faces below which rays to lamps start above them (dice/smooth_rise.h).
+    float terminator_offset = 0.0f;
     int object_index = 0;  ///< pass_index
     float random = 0.0f;
     /// By sets of lights that are linked: those that light it, and those of which it casts shadows.

@@ -103,6 +103,7 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
     const VertexPaths paths(grid, scene);
     const MovingEye eye(scene, camera);
     points.count = wanted.size();
+    points.terminator_offset = around.terminator_offset;
     // Corners have the light samples of their neighbours too, which interpolation averages.
     points.share = around.share * std::min(1.0f, 2.0f * point_size * point_size);
     for (auto* values : {&points.p, &points.normal, &points.geometric_normal, &points.view,
@@ -159,6 +160,10 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
         Vec3f offset = points.geometric_normal.back() * lift;
         if (!around.ray_offset.empty()) offset += turn * mean(around.ray_offset);
         points.ray_offset.push_back(offset);
+        if (!around.rise.empty()) {
+            const Vec4f rise = blend.mean<Vec4f>([&](std::size_t k) { return around.rise[k]; });
+            points.rise.emplace_back(turn * Vec3f(rise), rise.w);
+        }
         if (!around.faces.empty()) points.faces.push_back(around.faces[blend.point[0]]);
         if (timed) points.times.push_back(at.time);
     }

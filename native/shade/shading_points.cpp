@@ -35,6 +35,8 @@ ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
         points.dp_dv[i] = rotation * grid.dp_dv[i];
         points.backfacing[i] = side < 0.0f;
     }
+    points.terminator_offset = grid.terminator_offset;
+    for (const Vec4f& rise : grid.rise) points.rise.emplace_back(rotation * Vec3f(rise), rise.w);
     for (const Vec3f& offset : grid.ray_offset) points.ray_offset.push_back(rotation * offset);
     return points;
 }

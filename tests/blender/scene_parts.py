@@ -127,3 +127,9 @@ def matte():
 def emission(name, color, strength=1.0):
     """A material whose pixels are `color` (linear RGB) times `strength`."""
     return closure(name, "ShaderNodeEmission", Color=(*color, 1.0), Strength=strength)
+
+
+def set_terminator_offset(thing, offset):
+    """Geometry Offset: an object's own since Blender 4.3, of Cycles' add-on before."""
+    name = "shadow_terminator_geometry_offset"
+    setattr(thing if hasattr(thing, name) else thing.cycles, name, offset)

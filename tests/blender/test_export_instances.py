@@ -173,6 +173,7 @@ def test_flags(scene, cube):
     things["B"].visible_shadow = False
     things["C"].is_holdout = True
     things["D"].pass_index = 7
+    scene_parts.set_terminator_offset(things["D"], 0.5)
     held = bpy.data.collections.new("Held")
     indirect = bpy.data.collections.new("Indirect")
     for collection, name in ((held, "E"), (indirect, "F")):
@@ -187,7 +188,11 @@ def test_flags(scene, cube):
     flags = dict(zip(instances["name"], instances["flags"].tolist()))
     seen = 8 + 16 + 32  # by diffuse, glossy and transmission rays
     expected = {"Cube": 3, "A": 2, "B": 1, "C": 7, "D": 3, "E": 7, "F": 2}
-    assert flags == {name: flag + seen for name, flag in expected.items()}
+    assert {n: f & 0xFFFF for n, f in flags.items()} == {n: f + seen for n, f in expected.items()}
+    offsets = {name: (flag >> 16) / 65535 for name, flag in flags.items()}
+    assert offsets == pytest.approx(
+        {name: 0.5 if name == "D" else 0.1 for name in expected}, abs=1e-5
+    )
     index = dict(zip(instances["name"], instances["object_index"].tolist()))
     assert index["D"] == 7 and index["A"] == 0
 
@@ -197,7 +202,8 @@ def test_an_instancer_hides_and_holds_out_its_instances(scene, cube):
     bpy.data.objects["Place0"].visible_camera = False
     bpy.data.objects["Place1"].is_holdout = True
     snapshot, _, _ = export_probe.through_engine(scene)
-    assert snapshot["instances"]["flags"].tolist() == [2 + 56, 7 + 56, 3 + 56]
+    flags = snapshot["instances"]["flags"] & 0xFFFF
+    assert flags.tolist() == [2 + 56, 7 + 56, 3 + 56]
 
 
 def test_keys_stay_when_others_come_and_go(scene, cube):

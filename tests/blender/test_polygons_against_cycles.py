@@ -106,8 +106,7 @@ def bend_normals(mesh):
 @pytest.mark.parametrize("smooth_faces", [0, 1])
 @pytest.mark.parametrize("auto_smooth", [False, True])
 def test_flat_faces_and_split_normals(scene, render, split, smooth_faces, auto_smooth):
-    """Bent normals light no faces that turn away from the sun here, where Cycles' rays start above smooth ones: these
-    have no offset.  Faces: all flat, or every second one smooth."""
+    """Faces: all flat, or every second one smooth."""
     add_sun(scene)
     thing = add_waves(scene, 8, 0.12)
     mesh = thing.data
@@ -116,9 +115,55 @@ def test_flat_faces_and_split_normals(scene, render, split, smooth_faces, auto_s
         mesh.use_auto_smooth, mesh.auto_smooth_angle = auto_smooth, 3.0
     split(mesh)
     mesh.update()
-    thing.cycles.shadow_terminator_geometry_offset = 0.0
     scene_parts.add_camera(scene, ortho_scale=2.2)
     check(scene, render)
+
+
+def add_ball():
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=8, ring_count=6)
+
+
+def add_cylinder():
+    bpy.ops.mesh.primitive_cylinder_add(vertices=16, radius=0.7, depth=1.4)
+
+
+def add_cube():
+    bpy.ops.mesh.primitive_cube_add(size=1.2)
+
+
+def add_card():
+    """A leaf that light falls on from behind, with the normals of what it stands for."""
+    bpy.ops.mesh.primitive_plane_add(size=1.6)
+    mesh = bpy.context.object.data
+    if hasattr(mesh, "use_auto_smooth"):
+        mesh.use_auto_smooth = True
+    mesh.normals_split_custom_set(
+        [
+            (0.6 + 0.2 * x, 0.2 * y, 0.7)
+            for x, y, _ in map(tuple, (mesh.vertices[loop.vertex_index].co for loop in mesh.loops))
+        ]
+    )
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.1])
+@pytest.mark.parametrize("add", [add_ball, add_cylinder, add_cube, add_card])
+def test_where_light_ends_on_coarse_smooth_faces(scene, render, add, offset):
+    """Cycles' Geometry Offset lifts shadow rays above them; without it each face ends light by itself."""
+    add()
+    thing = bpy.context.object
+    mesh = thing.data
+    mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+    mesh.materials.append(bpy.data.materials.new("Diffuse"))
+    mesh.update()
+    thing.rotation_euler = (0.6, 0.2, 0.3)
+    scene_parts.set_terminator_offset(thing, offset)
+    add_sun(scene)
+    scene.objects["Sun"].rotation_euler = (0.0, 1.4, 0.0)
+    if add is add_card:
+        thing.rotation_euler = (0.0, 0.0, 0.0)
+        scene.objects["Sun"].rotation_euler = (0.0, 1.8, 0.0)
+    scene_parts.add_camera(scene, ortho_scale=2.6)
+    check(scene, render, rms=0.055)  # outlines against nothing
 
 
 @pytest.mark.parametrize("levels", [1, 2])

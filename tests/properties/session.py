@@ -14,7 +14,6 @@ import scene_parts
 SIZE = 32
 SAMPLES = 16
 ENGINES = ("CYCLES", "GRANITA")
-_TERMINATOR = "shadow_terminator_geometry_offset"
 
 
 @dataclass
@@ -55,10 +54,6 @@ class Session:
         scene = bpy.context.scene
         set_up(scene)
         roots = probe.build(scene)
-        for thing in bpy.data.objects:
-            # What Granita has no counterpart to, and Cycles does by itself.
-            settings = thing if hasattr(thing, _TERMINATOR) else thing.cycles
-            setattr(settings, _TERMINATOR, 0.0)
         return scene, roots
 
     def render(self, scene, engine, seed=0):

@@ -23,6 +23,7 @@ HOLDOUT = 4
 VISIBLE_DIFFUSE = 8
 VISIBLE_GLOSSY = 16
 VISIBLE_TRANSMISSION = 32
+TERMINATOR_OFFSET_SHIFT = 16
 
 
 @dataclass
@@ -122,7 +123,14 @@ def _flags(prototype, view_layer):
         flags |= VISIBLE_TRANSMISSION
     if placing.holdout_get(view_layer=view_layer):
         flags |= HOLDOUT
-    return flags
+    return flags | _terminator_offset(prototype.source) << TERMINATOR_OFFSET_SHIFT
+
+
+def _terminator_offset(thing):
+    """0 to 65535; an object's own since Blender 4.3, before of Cycles' add-on, where that is enabled."""
+    name = "shadow_terminator_geometry_offset"
+    offset = getattr(thing, name, getattr(getattr(thing, "cycles", None), name, 0.1))
+    return round(65535 * min(max(offset, 0.0), 1.0))
 
 
 def collect_materials(prototypes, override):

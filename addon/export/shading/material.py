@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Materials as node graphs (docs/scene_snapshot.md)."""
 
-from .nodes import FlatGraph
+from .nodes import FlatGraph, version
 
 
 def export_materials(materials, report, aovs=()):
@@ -37,7 +37,7 @@ def material_record(material, images, report, aovs=()):
             "type": "ShaderNodeBsdfDiffuse",
             "name": "Viewport Display",
             "inputs": {"Color": color},
-            "properties": {},
+            "properties": {"version": version()},
         }
         return {**record, "nodes": [node], "surface": (0, "BSDF")}
     owner = f"material '{material.name_full}'"

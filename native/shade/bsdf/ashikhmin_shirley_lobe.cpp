@@ -24,7 +24,7 @@ class AshikhminShirley : public LobeShape {
 
     Vec3f evaluate(const Vec3f& wo) const override {
         const float cos_o = glm::dot(m_view.normal, wo);
-        if (cos_o <= 0.0f || glm::dot(m_view.geometric_normal, wo) < 0.0f) return Vec3f(0.0f);
+        if (cos_o <= 0.0f) return Vec3f(0.0f);
         return Vec3f(pdf(wo) * cos_o / std::max({m_view.cos_wi, cos_o, 1e-6f}));
     }
     float pdf(const Vec3f& wo) const override {

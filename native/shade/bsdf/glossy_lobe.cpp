@@ -113,7 +113,7 @@ PointBsdf::MirroringFacets PointBsdf::mirroring_facets(const Prepared& lobe,
 
 Vec3f PointBsdf::evaluate_glossy(const Prepared& lobe, const Vec3f& wo) const {
     const float cos_o = glm::dot(lobe.normal, wo);
-    if (cos_o <= 0.0f || glm::dot(m_geometric_normal, wo) < 0.0f) return Vec3f(0.0f);
+    if (cos_o <= 0.0f) return Vec3f(0.0f);
     const MirroringFacets facets = mirroring_facets(lobe, wo);
     const float lambda_o = lobe.stretched
                                ? stretched_lambda(lobe.distribution, lobe.alphas, local(lobe, wo))

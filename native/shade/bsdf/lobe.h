@@ -133,6 +133,8 @@ struct ShadingPoints {
         view;  ///< [n] unit, from the point to the eye (orthographic: the constant direction)
     std::vector<Vec3f> dp_du, dp_dv;   ///< [n] change over one grid step
     std::vector<Vec3f> ray_offset;     ///< [n] as Grid::ray_offset; may be empty
+    std::vector<Vec4f> rise;           ///< [n] as Grid::rise; may be empty
+    float terminator_offset = 0.0f;    ///< as Grid::terminator_offset
     std::vector<std::uint32_t> faces;  ///< [n] as ShadingPositions::faces; may be empty
     float share = 1.0f;                ///< as Grid::point_share
     std::vector<float> shares;         ///< [n] part of that which each is due; empty: all of it

@@ -362,6 +362,8 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
                        count,
                        place,
                        exposed,
+                       points.rise.empty() ? nullptr : &points.rise[i],
+                       points.terminator_offset,
                        through_tube,
                        {}});
         lit.back().share_samples();

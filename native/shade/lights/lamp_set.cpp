@@ -2,6 +2,7 @@
 #include "shade/lights/lamp_set.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace granita {
@@ -106,9 +107,29 @@ Ray LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& dire
     return {below ? from.start_below() : from.start, direction, distance, from.time, blocker_set};
 }
 
+/// Where it would end at the faces, though normals are turned to the lamp: a triangle does not
+/// shade itself, so that a ray through it starts behind it, and coarse ones not each other, above
+/// which it starts (Cycles).
+void LampSet::bend(const LitPoint& point, const LitPlace& place, Ray& ray) {
+    const float smooth = glm::dot(point.bsdf.surface_normal(), ray.direction);
+    const float flat = glm::dot(place.normal, ray.direction), offset = point.terminator_offset;
+    if (smooth <= 0.0f || std::min(smooth, flat) >= offset) return;
+    const Vec3f whole(*point.rise);
+    if (flat < 0.0f) {
+        const float beside = glm::dot(whole, place.normal) * std::sqrt(1.0f - flat * flat);
+        if (offset == 0.0f || beside <= -flat * point.rise->w) {
+            ray.start = place.start_below();
+            return;
+        }
+    }
+    const float rise = smooth < offset ? 2.0f - (flat + smooth) / offset : 1.0f - flat / offset;
+    ray.start += std::clamp(rise, 0.0f, 1.0f) * whole;
+}
+
 Ray LampSet::ray_to(const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                     const LightSample& sample) const {
     Ray to = ray(point, place, sample.direction, sample.distance, lamp.blocker_set());
+    if (point.rise) bend(point, place, to);
     if (!lamp.is_surface()) return to;
     // Where it starts beside the point, as of strands, it would pass the surface or fall short.
     const Vec3f target = place.p + sample.direction * sample.distance;

@@ -36,6 +36,7 @@ struct LampSet {
     int samples_of(const LitPoint& point, const Lamp& lamp) const;
     Ray ray(const LitPoint& point, const LitPlace& place, const Vec3f& direction, float distance,
             int blocker_set = -1) const;
+    static void bend(const LitPoint& point, const LitPlace& place, Ray& ray);
     /// Towards what a lamp sends.
     Ray ray_to(const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                const LightSample& sample) const;

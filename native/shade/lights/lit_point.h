@@ -37,6 +37,9 @@ struct LitPoint {
     int sample_count = 1;       ///< of a soft light, of the world's image, of all lobes together
     std::uint32_t place;        ///< in the grid, along Morton's curve
     Vec2f exposed{0.0f, 1.0f};  ///< the part of the shutter's light that it is there for
+    /// As ShadingPoints::rise; nullptr: normals are those of the surface.
+    const Vec4f* rise = nullptr;
+    float terminator_offset = 0.0f;
     bool through_tube = false;  ///< light comes through what it is on, a tube
     struct LobeSamples {
         int count = 0;            ///< 0 of sharp lobes

@@ -130,16 +130,15 @@ VectorSource NodeBuilder::normal_input(const std::string& input) {
 VectorSource NodeBuilder::diffuse_normal(const std::string& input) {
     const VectorSource normal = normal_input(input);
     if (m_program.is_world || since(4, 0)) return normal;
-    return with_valid_reflection(normal, false);
+    return with_valid_reflection(normal);
 }
 
 VectorSource NodeBuilder::specular_normal(const std::string& input) {
     if (m_program.is_world || !since(4, 0)) return diffuse_normal(input);
-    const VectorSource normal = normal_input(input);
-    return linked(input) ? with_valid_reflection(normal, true) : normal;
+    return with_valid_reflection(normal_input(input));
 }
 
-VectorSource NodeBuilder::with_valid_reflection(const VectorSource& normal, bool bent_alone) {
+VectorSource NodeBuilder::with_valid_reflection(const VectorSource& normal) {
     const VectorSource out = new_source<Vec3f>();
     const Scene& frame = scene();
     add_step(
@@ -150,10 +149,9 @@ VectorSource NodeBuilder::with_valid_reflection(const VectorSource& normal, bool
                 frame.geometry_of(*run.input().instance).kind == GeometryKind::Curves;
             Vec3f* result = run.write(out);
             for (std::size_t i = 0; i < run.count(); ++i) {
-                const bool keep = is_curve || (bent_alone && normals[i] == points.normal[i]);
-                result[i] =
-                    keep ? normals[i]
-                         : valid_reflection(points.geometric_normal[i], points.view[i], normals[i]);
+                result[i] = is_curve ? normals[i]
+                                     : valid_reflection(points.geometric_normal[i], points.view[i],
+                                                        normals[i]);
             }
         },
         {normal.slot}, {out.slot});

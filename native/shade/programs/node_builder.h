@@ -154,8 +154,7 @@ class NodeBuilder {
     /// The input "Normal", or the shading normal where it is not linked.
     VectorSource normal_input(const std::string& input = "Normal");
     // Normals of shaders, about which nothing is mirrored through the surface (valid_reflection.h),
-    // but for curves: before Blender 4 all are made so, since then those of specular lobes that
-    // nodes bend.
+    // but for curves: before Blender 4 all are made so, since then those of specular lobes.
     VectorSource diffuse_normal(const std::string& input = "Normal");
     VectorSource specular_normal(const std::string& input = "Normal");
     /// Unit, from the point to the eye.
@@ -165,8 +164,7 @@ class NodeBuilder {
 
   private:
     const NodeOutput* link_source(const std::string& input, Shift shift) const;
-    /// `bent_alone`: the surface's own normal stays.
-    VectorSource with_valid_reflection(const VectorSource& normal, bool bent_alone);
+    VectorSource with_valid_reflection(const VectorSource& normal);
     /// The slot of `width` components of an attribute from `first` on; equal loads share one.
     int load(const AttributeRequest& request, Shift shift, int width, int first);
 

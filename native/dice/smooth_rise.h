@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far above a coarse face the smooth surface lies that its normals tell of.  Shadow rays that
+// start there end where that surface turns away from a light, not at each face (Hanika, "Hacking
+// the Shadow Terminator", Ray Tracing Gems II, 2021; Cycles' Geometry Offset).
+#pragma once
+
+#include "dice/frame_face.h"
+
+namespace granita {
+
+/// From a place on a smooth face, camera space; last how far the nearest side of its triangle is.
+/// @param above whether the surface is seen from where its normals point to; else the way to the
+///     surface as it is from inside.
+Vec4f smooth_rise(const FrameFace& face, const CornerWeights& weights, bool above);
+
+}  // namespace granita

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dice/smooth_rise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace granita {
+namespace {
+
+constexpr double kRadius = 3.0, kHalfAngle = 0.4;
+
+/// Two triangles of a strip around a tube: corners 0 and 3, 1 and 2 on a circle each.
+FrameFace strip(double bend) {
+    FrameFace face;
+    const double x = kRadius * std::sin(kHalfAngle), z = kRadius * std::cos(kHalfAngle);
+    const Vec3d left(-std::sin(bend), 0.0, std::cos(bend)), right(-left.x, 0.0, left.z);
+    const Vec3d corners[4] = {{-x, 0.0, z}, {-x, 9.0, z}, {x, 9.0, z}, {x, 0.0, z}};
+    const Vec3d normals[4] = {left, left, right, right};
+    for (int i = 0; i < 4; ++i) face.p[i] = corners[i], face.normal[i] = normals[i];
+    face.is_smooth = true;
+    return face;
+}
+
+CornerWeights at(double u, double v) {
+    return {PatchKind::TrianglePair, {u, v}};
+}
+
+TEST(SmoothRise, ReachesTheTubeThatNormalsTellOf) {
+    const FrameFace face = strip(kHalfAngle);
+    // In the middle of corners 0 and 3: both tangent planes are r sin^2 a above it, the tube itself
+    // r - r cos a.  The mean of the normals is cos a long.
+    const Vec4f rise = smooth_rise(face, at(0.0, 0.5), true);
+    const double plane = kRadius * std::sin(kHalfAngle) * std::sin(kHalfAngle);
+    EXPECT_NEAR(rise.x, 0.0, 1e-6);
+    EXPECT_NEAR(rise.y, 0.0, 1e-6);
+    EXPECT_NEAR(rise.z, plane * std::cos(kHalfAngle), 1e-6);
+    EXPECT_GT(rise.z, kRadius * (1.0 - std::cos(kHalfAngle)));
+    EXPECT_NEAR(rise.w, 0.0, 1e-6);
+}
+
+TEST(SmoothRise, IsNothingAtCornersAndWhereNormalsAreTheFaces) {
+    for (const double u : {0.0, 1.0})
+        for (const double v : {0.0, 1.0})
+            for (const bool above : {false, true})
+                EXPECT_NEAR(glm::length(Vec3f(smooth_rise(strip(kHalfAngle), at(u, v), above))),
+                            0.0f, 1e-6f);
+    const FrameFace flat = strip(0.0);
+    EXPECT_NEAR(glm::length(Vec3f(smooth_rise(flat, at(0.3, 0.6), true))), 0.0f, 1e-6f);
+    EXPECT_NEAR(glm::length(Vec3f(smooth_rise(flat, at(0.6, 0.3), false))), 0.0f, 1e-6f);
+}
+
+/// From inside it stands on the other side.
+TEST(SmoothRise, TurnsWithTheSideThatIsSeen) {
+    const FrameFace face = strip(kHalfAngle);
+    for (const Vec2d place : {Vec2d(0.2, 0.5), Vec2d(0.7, 0.4)}) {
+        EXPECT_GT(smooth_rise(face, at(place.x, place.y), true).z, 0.1f);
+        EXPECT_LT(smooth_rise(face, at(place.x, place.y), false).z, 0.0f);
+    }
+}
+
+TEST(SmoothRise, KnowsTheNearestSideOfItsOwnTriangle) {
+    // The crease between corners 0 and 2 is a side too.
+    const double width = 2.0 * kRadius * std::sin(kHalfAngle), crease = std::hypot(width, 9.0);
+    const double u = 0.9, v = 0.2;  // u along y, v along x
+    const double to_crease = (u - v) * width * 9.0 / crease;
+    EXPECT_NEAR(smooth_rise(strip(kHalfAngle), at(u, v), true).w,
+                std::min({to_crease, (1.0 - u) * 9.0, v * width}), 1e-5);
+}
+
+}  // namespace
+}  // namespace granita
