@@ -151,8 +151,11 @@ def _can_change_paths(update):
     nor a lamp or a camera that nothing moves.  A reading of the shutter may hold the window up, and neither a click
     nor a drag of a colour should."""
     thing, types = update.id, bpy.types
+    moved = update.is_updated_transform or update.is_updated_geometry
+    if update.is_updated_shading and not moved:
+        return False  # since Blender 4.5 what wears a material is named with it
     if isinstance(thing, (types.Scene, types.Collection)):
-        return update.is_updated_transform or update.is_updated_geometry
+        return moved
     if isinstance(thing, (types.Light, types.Camera)):
         return _is_animated(thing)
     if isinstance(thing, types.Object) and thing.type in {"LIGHT", "CAMERA"}:
