@@ -47,7 +47,7 @@ def agrees(theirs, ours, mean=0.02, block=0.05):
     """Noise of both leaves up to `block` in blocks."""
     level = theirs.mean(axis=(0, 1))
     assert level.max() > 0.01
-    assert ours.mean(axis=(0, 1)) == pytest.approx(level, rel=mean, abs=mean * level.max())
+    assert ours.mean(axis=(0, 1)) == pytest.approx(level, rel=mean, abs=mean * float(level.max()))
     assert np.sqrt(((ours - theirs) ** 2).mean(axis=(0, 1))).max() < block * level.max()
 
 
