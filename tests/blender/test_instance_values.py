@@ -224,3 +224,38 @@ def test_an_attribute_that_is_not_there_is_opaque(scene, render):
     things = _two_squares(scene)
     _shown(things, "ShaderNodeAttribute", "Alpha", attribute_name="nope")
     _agree(scene, render)
+
+
+PARTICLE = {
+    "Index": 0.03, "Random": 1.0, "Age": 0.02, "Lifetime": 0.02, "Size": 1.0,
+    "Location": 0.4, "Velocity": 0.2, "Angular Velocity": 0.5,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("output", PARTICLE)
+def test_particle_info(scene, render, output):
+    """Also of things that no particle makes."""
+    _view(scene, 4.0)
+    shape = scene_parts.add_square(scene, "Shape", 0.5, (0.0, 0.0, 1.0))
+    maker = scene_parts.add_square(scene, "Maker", 3.0)
+    maker.modifiers.new("System", "PARTICLE_SYSTEM")
+    settings = maker.particle_systems[0].settings
+    values = {
+        "count": 30, "frame_start": -20, "frame_end": 0, "lifetime": 60, "lifetime_random": 0.5,
+        "emit_from": "FACE", "normal_factor": 0.0, "factor_random": 0.8, "render_type": "OBJECT",
+        "instance_object": shape, "particle_size": 1.2, "size_random": 0.6,
+        "use_rotations": True, "angular_velocity_mode": "VELOCITY", "angular_velocity_factor": 0.7,
+    }  # fmt: skip
+    for key, value in values.items():
+        setattr(settings, key, value)
+    settings.effector_weights.gravity = 0.1
+    maker.show_instancer_for_render = False
+    for frame in range(-20, 11):
+        scene.frame_set(frame)
+    tree, node = _shown([shape], "ShaderNodeParticleInfo", output)
+    tree.emit(socket(node.outputs, output), PARTICLE[output])
+    theirs, ours = render_both(scene, render, samples=64)
+    assert theirs.std() > 0.02
+    # Edges of turned squares have the noise of both.
+    assert rmse(theirs, ours) < 0.1 * theirs.std(), rmse(theirs, ours) / theirs.std()
+    assert ours.mean() == pytest.approx(theirs.mean(), rel=0.03)

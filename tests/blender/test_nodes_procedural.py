@@ -127,6 +127,19 @@ def test_noise_types(scene, render, kind, detail):
     show(scene, render, tree, node, output, contrast=2.0 if kind == "FBM" else 1.0)
 
 
+@pytest.mark.skipif(bpy.app.version < (4, 3, 0), reason="Gabor Texture came with Blender 4.3")
+@pytest.mark.parametrize("anisotropy", [0.0, 0.7, 1.0])
+@pytest.mark.parametrize("output", ["Value", "Phase", "Intensity"])
+@pytest.mark.parametrize("kind", ["2D", "3D"])
+def test_gabor(scene, render, kind, output, anisotropy):
+    inputs = {"Scale": 3.0, "Frequency": 1.7, "Anisotropy": anisotropy}
+    inputs["Orientation" + (" 2D" if kind == "2D" else " 3D")] = (
+        0.6 if kind == "2D" else (0.3, 0.9, 0.5)
+    )
+    tree, node = textured(scene, "ShaderNodeTexGabor", inputs, gabor_type=kind)
+    show(scene, render, tree, node, output, contrast=2.0 if output == "Value" else None)
+
+
 @pytest.mark.parametrize("output", ["Value", "Color"])
 @pytest.mark.parametrize("dimensions", DIMENSIONS)
 def test_white_noise(scene, render, dimensions, output):

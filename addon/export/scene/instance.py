@@ -14,6 +14,7 @@ from .instance_values import (
     GeometryValues,
     prototype_value,
 )
+from .particle_values import PARTICLE_KEYS, particle_values
 
 # Of the largest scale to the smallest: what is less cannot be seen of points.
 _SEEN_STRETCH = 1.1
@@ -37,6 +38,7 @@ class PrototypeTable:
     slots: list  # of int32 arrays, material indices
     values: dict  # {key of instance_values: float32 [prototypes, 4]}
     geometry_values: dict  # {key: {prototype: of GeometryValues}}
+    particles: dict  # {key: {prototype: of particle_values}}
 
     def with_more(self, names):
         """A table with more prototypes at its end, of which nothing is known but names."""
@@ -52,6 +54,7 @@ class PrototypeTable:
                 for key, values in self.values.items()
             },
             geometry_values=self.geometry_values,
+            particles=self.particles,
         )
 
     def renew(self, index, prototype, view_layer):
@@ -66,12 +69,13 @@ class PrototypeTable:
         return before != (self.flags[index], self.object_index[index])
 
 
-def prototype_table(prototypes, view_layer, geometry, slots, asked, report):
+def prototype_table(prototypes, view_layer, frame, geometry, slots, asked, report):
     """Copies what is wanted of each prototype while its objects are alive.
 
     Args:
         prototypes: list of depsgraph.InstancePrototype.
         view_layer: original; holds the holdouts and the indirect-only collections.
+        frame: whole and part.
         geometry: int32 [prototypes].
         slots: of `collect_materials`.
         asked: keys of `requested_values`.
@@ -96,6 +100,10 @@ def prototype_table(prototypes, view_layer, geometry, slots, asked, report):
         },
         geometry_values={
             key: {i: made.of(p, key) for i, p in enumerate(prototypes)} for key in sorted(asked)
+        },
+        particles={
+            key: {i: particle_values(p, key, frame) for i, p in enumerate(prototypes)}
+            for key in sorted(asked.intersection(PARTICLE_KEYS.values()))
         },
     )
 
@@ -239,6 +247,12 @@ def _values(scan, chosen, table, key):
                 row = rows.get(int(scan.persistent[chosen[i], 2]))
                 if row is not None:
                     found[i] = row
+    for number, systems in table.particles.get(key, {}).items():
+        things = np.flatnonzero(prototype == number)
+        particle, system = scan.persistent[chosen[things], :2].T
+        for k, values in enumerate(systems or ()):
+            of = (system == k) & (particle >= 0) & (particle < len(values))
+            found[things[of]] = values[particle[of]]
     return found
 
 

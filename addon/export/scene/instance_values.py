@@ -2,19 +2,22 @@
 """Values that shaders find on instances: the object's colour, attributes of objects and of their instancers,
 places on an instancer.  Only what materials ask for is read.
 
-A value is four numbers; it is asked for by a key: COLOR, ON_INSTANCER_GENERATED, ON_INSTANCER_UV, or the type of
-an Attribute node and a name ("OBJECT:temperature", "INSTANCER:shade").
+A value is four numbers; it is asked for by a key: COLOR, ON_INSTANCER_GENERATED, ON_INSTANCER_UV, those of
+`particle_values`, or the type of an Attribute node and a name ("OBJECT:temperature", "INSTANCER:shade").
 """
 
 import numpy as np
 
 from ..base.find_value import find_value
 from ..geometry.attributes import attribute_values
+from .particle_values import PARTICLE_KEYS
 
 COLOR = "COLOR"
 ON_INSTANCER_GENERATED = "INSTANCER GENERATED"
 ON_INSTANCER_UV = "INSTANCER UV"
 _PLACES = (ON_INSTANCER_GENERATED, ON_INSTANCER_UV)
+# What differs between instances of a prototype.
+_OF_INSTANCES = {*_PLACES, *PARTICLE_KEYS.values()}
 _TYPES = ("OBJECT", "INSTANCER")
 _OF_COORDINATES = ("ShaderNodeTexCoord", "ShaderNodeUVMap")
 
@@ -42,6 +45,8 @@ def requested_values(materials):
             elif node["type"] == "ShaderNodeAttribute":
                 if properties.get("attribute_type") in _TYPES:
                     found.add(f"{properties['attribute_type']}:{properties['attribute_name']}")
+            elif node["type"] == "ShaderNodeParticleInfo":
+                found.update(key for name, key in PARTICLE_KEYS.items() if (index, name) in used)
             elif node["type"] in _OF_COORDINATES and properties.get("from_instancer"):
                 found.update(_PLACES)
     return found
@@ -75,7 +80,7 @@ def prototype_value(prototype, key):
         # Blender gives what is instanced its instancer's colour.
         owner = prototype.source if prototype.parent is None else prototype.parent
         return tuple(owner.color)
-    if key in _PLACES:
+    if key in _OF_INSTANCES:
         return None
     kind, name = key.split(":", 1)
     for owner in _owners(prototype, kind):

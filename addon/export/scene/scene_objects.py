@@ -82,6 +82,7 @@ def read_scene_objects(depsgraph, known, report, check_cancel):
     table = prototype_table(
         scan.prototypes,
         depsgraph.view_layer,
+        depsgraph.scene_eval.frame_current_final,
         geometry_of_prototype,
         slots,
         requested_values(materials),

@@ -83,6 +83,7 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeObjectInfo", value(build_object_info)},
         {"ShaderNodeHairInfo", value(build_hair_info)},
         {"ShaderNodePointInfo", value(build_point_info)},
+        {"ShaderNodeParticleInfo", value(build_particle_info)},
         {"ShaderNodeCameraData", value(build_camera_data)},
         {"ShaderNodeTexChecker", value(build_checker)},
         {"ShaderNodeTexGradient", value(build_gradient)},
@@ -92,6 +93,7 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeTexWave", value(build_wave_texture)},
         {"ShaderNodeTexMagic", value(build_magic_texture)},
         {"ShaderNodeTexBrick", value(build_brick_texture)},
+        {"ShaderNodeTexGabor", value(build_gabor_texture)},
         {"ShaderNodeTexWhiteNoise", value(build_white_noise_texture)},
         {"ShaderNodeTexSky", value(build_sky_texture)},
         {"ShaderNodeTexIES", value(build_ies_texture)},
@@ -109,7 +111,6 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeBevel", NodeKind{build_unbevelled, nullptr, "its normal, unbevelled"}},
         {"ShaderNodeLightFalloff", NodeKind{build_plain_falloff, nullptr, "its strength"}},
 
-        {"ShaderNodeTexGabor", flat},
         {"ShaderNodeTexPointDensity", flat},
 
         {"ShaderNodeEeveeSpecular", like_diffuse},

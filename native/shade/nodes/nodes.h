@@ -65,6 +65,8 @@ void build_rgb_to_bw(NodeBuilder&);
 void build_fresnel(NodeBuilder&);
 void build_layer_weight(NodeBuilder&);
 void build_light_path(NodeBuilder&);
+void build_particle_info(NodeBuilder&);
+void build_gabor_texture(NodeBuilder&);
 void build_object_info(NodeBuilder&);
 void build_hair_info(NodeBuilder&);
 void build_point_info(NodeBuilder&);
