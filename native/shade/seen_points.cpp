@@ -102,9 +102,9 @@ std::vector<std::uint8_t> with_neighbours(const std::vector<std::uint8_t>& seen,
 
 }  // namespace
 
-std::vector<float> seen_shares(const ShadingPoints& points, const PointPaths& paths,
-                               const GridKey& key, const RayScene& rays, const Scene& scene,
-                               const MovingEye& eye, const ShutterWarp* shutter) {
+void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
+             const RayScene& rays, const Scene& scene, const MovingEye& eye,
+             const ShutterWarp* shutter) {
     Looks looks(points, paths, key, rays, scene, eye, shutter);
     std::vector<Ray> asked;
     asked.reserve(points.count);
@@ -113,12 +113,14 @@ std::vector<float> seen_shares(const ShadingPoints& points, const PointPaths& pa
     rays.transmittances(asked, left);
     std::vector<std::uint8_t> seen(points.count);
     for (std::size_t i = 0; i < points.count; ++i) seen[i] = luminance(left[i]) > kLeastSeen;
-    seen = with_neighbours(seen, points.columns);
-    if (std::ranges::count(seen, 0) == 0) return {};
-    std::vector<float> shares(points.count);
-    std::ranges::transform(seen, shares.begin(),
-                           [](std::uint8_t is_seen) { return is_seen ? 1.0f : kUnseenShare; });
-    return shares;
+    if (std::ranges::count(seen, 0) == 0) return;
+    const std::vector<std::uint8_t> asks = with_neighbours(seen, points.columns);
+    if (std::ranges::count(asks, 0) > 0) {
+        points.shares.resize(points.count);
+        std::ranges::transform(asks, points.shares.begin(),
+                               [](std::uint8_t is_seen) { return is_seen ? 1.0f : kUnseenShare; });
+    }
+    points.seen = std::move(seen);
 }
 
 }  // namespace granita

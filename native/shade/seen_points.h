@@ -15,14 +15,14 @@
 
 namespace granita {
 
-/// [points] part of its light samples that each is due: all of them next to what is seen through
-/// some point of the lens at some time of the shutter, one of each that the point asks, else few.
-/// What a point brings stays right, it is its noise that none or few see.  The same whatever
-/// bucket asks; empty where all are seen.
+/// Fills `seen`: whether each point is through some point of the lens at some time of the shutter,
+/// one of each that it asks; and `shares`: all light samples next to what is seen, else few.  What
+/// a point brings stays right, it is its noise that none or few see.  The same whatever bucket
+/// asks; both stay empty where all is seen.
 /// @param points of the grid of `key`, lifted.
 /// @param shutter nullptr where nothing moves.
-std::vector<float> seen_shares(const ShadingPoints& points, const PointPaths& paths,
-                               const GridKey& key, const RayScene& rays, const Scene& scene,
-                               const MovingEye& eye, const ShutterWarp* shutter);
+void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
+             const RayScene& rays, const Scene& scene, const MovingEye& eye,
+             const ShutterWarp* shutter);
 
 }  // namespace granita

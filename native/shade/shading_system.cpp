@@ -391,8 +391,7 @@ struct ShadingSystem::Impl {
         if (light && lit) light->lift(points, grid.key);
         const PointPaths at = paths(grid, points);
         if (bounces && lit)
-            points.shares = seen_shares(points, at, grid.key, *light->rays(), scene, eye,
-                                        moves ? &shutter : nullptr);
+            look_at(points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr);
         std::vector<float> noise(wants_refining ? points.count : 0, 0.0f);
         std::vector<Vec3f> settled;
         shade(grid, input(grid, points), at, wants_refining ? &noise : nullptr,

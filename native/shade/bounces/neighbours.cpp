@@ -13,6 +13,9 @@ namespace {
 constexpr std::ptrdiff_t kReach = 6, kRun = 24;
 /// Most that their normals are turned away, as 1 - cosine.
 constexpr float kBend = 0.25f;
+/// Of points that nobody sees, for those that somebody does: where things stand on each other they
+/// are inside, in the dark.
+constexpr float kHidden = 1e-3f;
 /// Of the mean square way to neighbours: slopes that fewer than a line of them tell are none.
 constexpr float kRidge = 1e-3f;
 
@@ -103,7 +106,9 @@ class Sharing {
         const Vec3f near = glm::max(1.0f - glm::length(way) * by_reach, Vec3f(0.0f));
         const float bend = 1.0f - glm::dot(m_points.normal[m_at], m_points.normal[j]);
         const float asked = m_points.shares.empty() ? 1.0f : m_points.shares[j];
-        const Vec3f weight = asked * std::max(1.0f - bend / kBend, 0.0f) * near * m_noisy.told[j];
+        const float shown = m_points.seen.empty() || m_points.seen[j] ? 1.0f : kHidden;
+        const Vec3f weight =
+            asked * shown * std::max(1.0f - bend / kBend, 0.0f) * near * m_noisy.told[j];
         if (weight == Vec3f(0.0f) || !is_finite(m_noisy.values[j])) return;
         m_fit.add(weight, glm::dot(way, m_x), glm::dot(way, m_y), m_noisy.values[j]);
         for (int c = 0; c < 3; ++c) {

@@ -18,7 +18,7 @@ struct NoisyValues {
 
 /// [points] what neighbours of a grid found together.  Slopes stay: each point takes the plane that
 /// fits its neighbours best (locally weighted regression, Cleveland 1979).  Of two the nearer reach
-/// decides.  Points count for as much as they asked (ShadingPoints::shares).
+/// decides.  Points count for as much as they asked (ShadingPoints::shares), hidden ones hardly.
 std::vector<Vec3f> share(const ShadingPoints& points, const NoisyValues& noisy);
 
 }  // namespace granita

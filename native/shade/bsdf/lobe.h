@@ -138,7 +138,9 @@ struct ShadingPoints {
     std::vector<std::uint32_t> faces;  ///< [n] as ShadingPositions::faces; may be empty
     float share = 1.0f;                ///< as Grid::point_share
     std::vector<float> shares;         ///< [n] part of that which each is due; empty: all of it
-    bool round = false;                ///< of ribbons that stand for tubes, as their normals say
+    /// [n] 0: hidden from the eye, inside of something or behind it; empty: none is known to be
+    std::vector<std::uint8_t> seen;
+    bool round = false;  ///< of ribbons that stand for tubes, as their normals say
     std::vector<std::uint8_t> backfacing;  ///< [n]
     /// [n] shutter time at which each is lit, where it then is; negative, or empty: over the whole
     /// shutter.
