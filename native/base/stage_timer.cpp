@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "base/thread_clock.h"
+
 namespace granita {
 namespace {
 
@@ -21,11 +23,8 @@ double seconds(clockid_t clock) {
 double wall() {
     return seconds(CLOCK_MONOTONIC);
 }
-double processor() {
-    return seconds(CLOCK_THREAD_CPUTIME_ID);
-}
 double beside() {
-    return seconds(CLOCK_PROCESS_CPUTIME_ID) - processor();
+    return seconds(CLOCK_PROCESS_CPUTIME_ID) - thread_seconds();
 }
 
 }  // namespace
@@ -35,14 +34,15 @@ StageLedger::StageLedger(Statistics& statistics)
     if (!m_outermost) return;
     t_ledger = this;
     m_wall = wall();
-    m_processor = processor();
+    m_processor = thread_seconds();
 }
 
 StageLedger::~StageLedger() {
     if (!m_outermost) return;
     t_ledger = nullptr;
     const double passed = wall() - m_wall;
-    const double part = passed > 0.0 ? std::min(1.0, (processor() - m_processor) / passed) : 0.0;
+    const double part =
+        passed > 0.0 ? std::min(1.0, (thread_seconds() - m_processor) / passed) : 0.0;
     for (std::size_t stage = 0; stage < m_seconds.size(); ++stage)
         if (m_seconds[stage] > 0.0)
             m_statistics.add_seconds(static_cast<Stage>(stage), part * m_seconds[stage]);
@@ -52,13 +52,13 @@ StageTimer::StageTimer(Statistics& statistics, Stage stage)
     : m_statistics(statistics),
       m_stage(stage),
       m_outer(t_timer),
-      m_start(t_ledger ? wall() : processor()) {
+      m_start(t_ledger ? wall() : thread_seconds()) {
     if (m_outer) m_outer->stop(m_start);
     t_timer = this;
 }
 
 StageTimer::~StageTimer() {
-    const double now = t_ledger ? wall() : processor();
+    const double now = t_ledger ? wall() : thread_seconds();
     stop(now);
     t_timer = m_outer;
     if (m_outer) m_outer->m_start = now;
@@ -80,11 +80,11 @@ StageShare::StageShare(const StageTimer::Current& of) : m_of(of) {
     if (m_of.thread == &t_here || t_timer || t_ledger) m_of.statistics = nullptr;
     if (!m_of.statistics) return;
     m_of.statistics->add(Counter::LoopPiecesShared);
-    m_start = processor();
+    m_start = thread_seconds();
 }
 
 StageShare::~StageShare() {
-    if (m_of.statistics) m_of.statistics->add_seconds(m_of.stage, processor() - m_start);
+    if (m_of.statistics) m_of.statistics->add_seconds(m_of.stage, thread_seconds() - m_start);
 }
 
 ForeignThreads::ForeignThreads() : m_start(beside()) {}

@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/stage_timer.h"
+#include "base/thread_clock.h"
 #include "base/thread_pool.h"
 #include "render/frame.h"
 #include "render/frame_memory.h"
@@ -113,11 +114,9 @@ struct RenderJob::Impl {
             if (gl != nullptr) gl->clock().add_worker(1);
             try {
                 for (std::size_t i = next++; i < order.size(); i = next++) {
-                    const auto began = std::chrono::steady_clock::now();
+                    const double began = thread_seconds();
                     deliver(render_bucket(frame, order[i]));
-                    const std::chrono::duration<double> took =
-                        std::chrono::steady_clock::now() - began;
-                    bucket_seconds[i] = {frame.layout.pixels(order[i]), took.count()};
+                    bucket_seconds[i] = {frame.layout.pixels(order[i]), thread_seconds() - began};
                     progress.add_done(1);
                 }
             } catch (const GlError& error) {

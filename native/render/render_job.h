@@ -42,7 +42,8 @@ class RenderJob {
     /// Joins; rethrows the first failure (SceneError, GlError, Cancelled, ...).
     void finish();
 
-    /// Once the frame is finished: pixels of each bucket and the seconds that a thread took for it.
+    /// Once the frame is finished: pixels of each bucket and the processor seconds of the
+    /// thread that rendered it.
     std::vector<std::pair<Rect, double>> bucket_seconds() const;
     const Statistics& statistics() const;
     const Report& report() const;
