@@ -99,8 +99,10 @@ void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChange
 
 std::shared_ptr<const ShadedGrids> KeptVisibility::shaded_grids(const Scene& scene) const {
     const SceneChanges changes(*m_scene, scene);
-    if ((changes.parts & part::kReadByShading) != 0 || image_times(*m_scene) != m_image_times)
-        return nullptr;
+    // A lens decides which points are seen, and these get more ways (shade/seen_points.h).
+    const part::Set read =
+        part::kReadByShading | (scene.options.bounces.most > 0 ? part::kLens : 0);
+    if ((changes.parts & read) != 0 || image_times(*m_scene) != m_image_times) return nullptr;
     auto grids = std::make_shared<ShadedGrids>();
     for (const auto& bucket : m_buckets)
         for (const auto& shared : bucket->grids)

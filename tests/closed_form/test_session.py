@@ -2,6 +2,9 @@
 """A session makes again what an edit changes and nothing else, and the picture is that of a frame alone."""
 
 import copy
+import os
+import struct
+import zlib
 
 import numpy as np
 import pytest
@@ -210,6 +213,20 @@ def test_an_edit_costs_the_stages_that_read_it(name, refines):
     assert job_warnings(kept, second) == alone["warnings"]
 
 
+@pytest.mark.parametrize("edit", [slightly_other_lens, other_lens])
+def test_bounced_light_is_that_of_the_lens(edit):
+    """What the card and the cube hide of the floor depends on it: its points get other numbers of ways."""
+    first = scene()
+    first["options"].update(bounces=2, dicing_rate=2.0)
+    first["camera"].update(lens_radius=0.3)
+    kept = Kept()
+    kept.picture(first)
+    second = copy.deepcopy(first)
+    edit(second)
+    alone = s.render(second)
+    np.testing.assert_array_equal(kept.picture(second), alone["combined"])
+
+
 def job_warnings(kept, snapshot):
     job = kept.core.Render(kept.core.Scene(s.packed(snapshot), kept.session))
     job.finish()
@@ -238,6 +255,40 @@ def test_edits_in_any_order_leave_no_trace():
     for k in random.permutation(2 * len(edits)) % len(edits):
         edits[k](snapshot)
         np.testing.assert_array_equal(kept.picture(snapshot), s.render(snapshot)["combined"])
+
+
+def write_pixel(path, color, time):
+    """A PNG of one pixel of 8 bits, written at `time`, seconds."""
+
+    def chunk(kind, data):
+        return (
+            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        )
+
+    header = chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0))
+    pixels = chunk(b"IDAT", zlib.compress(b"\0" + bytes(color)))
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + header + pixels + chunk(b"IEND", b""))
+    os.utime(path, (time, time))
+
+
+@pytest.mark.parametrize("edit", [None, slightly_other_lens])
+def test_an_image_file_that_is_written_anew_is_read_anew(tmp_path, edit):
+    snapshot = scene()
+    file = tmp_path / "image.png"
+    snapshot["images"] = [{"name": "Image", "path": str(file), "colorspace": "sRGB"}]
+    image = {"type": "ShaderNodeTexImage", "properties": {"image": "Image"}, "inputs": {}}
+    nodes = [image, *snapshot["materials"][0]["nodes"]]
+    nodes[1]["inputs"]["Color"] = ("LINK", 0, "Color")
+    snapshot["materials"][0].update(nodes=nodes, surface=(1, "BSDF"))
+    kept = Kept()
+    write_pixel(file, (255, 0, 0), 1000)
+    red = kept.picture(snapshot)
+    write_pixel(file, (0, 0, 255), 2000)
+    if edit:
+        edit(snapshot)
+    blue = kept.picture(snapshot)
+    assert np.abs(blue - red).max() > 0.1
+    np.testing.assert_array_equal(blue, s.render(snapshot)["combined"])
 
 
 def test_what_is_not_there_any_more_is_forgotten():
