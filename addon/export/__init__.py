@@ -10,7 +10,7 @@ All of it is copied: no reference to anything of Blender's is kept after `export
 from dataclasses import replace
 
 from .base.report import Cancelled, ExportError, Report
-from .base.snapshot import Snapshot
+from .base.snapshot import Places, Snapshot
 from .geometry.velocity import points_by_velocity
 from .motion.adjacent_frames import read_adjacent_frames
 from .motion.appearing_instances import with_appearing_instances
@@ -39,6 +39,7 @@ def export_frame(
     persistent_state=None,
     viewpoint=None,
     moves=True,
+    tell_places=None,
 ):
     """Copies the frame at which the depsgraph stands.
 
@@ -53,6 +54,7 @@ def export_frame(
             frame to frame: only what changed is read then.
         viewpoint: of scene/viewpoint.py, a 3D view's; None: the scene's camera and its resolution.
         moves: false where the depsgraph may not be moved in time: what is at the frame stands still.
+        tell_places: called with the Places of the snapshot.
 
     Returns:
         dict for `granita_core.Scene`.
@@ -76,6 +78,7 @@ def export_frame(
         scene, view_layer, settings, viewpoint.frame, viewpoint.crop, shutter.frame_time
     )
     camera_at_frame = viewpoint.record(depsgraph, report)
+    camera_place = camera_at_frame["world_from_camera"][0]
 
     if persistent_state is not None:
         scene_objects = persistent_state.scene_objects(depsgraph, report, check_cancel)
@@ -142,6 +145,10 @@ def export_frame(
         lights=[record for _, record in lights],
         world=world,
     )
+    if tell_places is not None:
+        here = scan.matrices
+        lamps_here = [here[thing] for thing, _ in lights]
+        tell_places(Places(camera_place, here[seen.chosen], lamps_here))
     add_emitters(snapshot, lights, scan, report)
     return snapshot.as_dict()
 

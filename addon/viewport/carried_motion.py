@@ -42,33 +42,41 @@ def carried(still, times, moving, moving_times):
     }
 
 
-def corrected(moving, times, still):
+def corrected(moving, times, places, still):
     """The snapshot of a whole shutter, with what the artist has moved since it was keyed where it is now.
 
     What is evaluated at other times plays back what is keyed; at the frame the artist sees changes that are not.
     Where the two agree, the snapshot is as it was to the bit.
+
+    Args:
+        moving, times, places: snapshot, its ShutterTimes and its Places: a path of few knots is bent a little.
+        still: snapshot of the frame as the artist sees it.
     """
     before = _Before(times, times)
     found = dict(moving)
-    if not _agree(before.at_frame(moving["camera"]["world_from_camera"]), _place(still["camera"])):
+    if not _agree(places.camera, _place(still["camera"])):
         path = _matrices(_place(still["camera"]), moving["camera"]["world_from_camera"], before)
         found["camera"] = {**moving["camera"], "world_from_camera": path}
     now, then = still["instances"], moving["instances"]
     if now["name"] == then["name"] and np.array_equal(now["key"], then["key"]):
-        found["instances"] = _corrected_instances(now["world_from_object"], then, before)
+        found["instances"] = _corrected_instances(
+            now["world_from_object"], then, places.instances, before
+        )
     if [light["name"] for light in still["lights"]] == [
         light["name"] for light in moving["lights"]
     ]:
         found["lights"] = [
             light
-            if _agree(before.at_frame(light["world_from_light"]), here["world_from_light"][0])
+            if _agree(place, here["world_from_light"][0])
             else {
                 **light,
                 "world_from_light": _matrices(
                     here["world_from_light"][0], light["world_from_light"], before
                 ),
             }
-            for here, light in zip(still["lights"], moving["lights"], strict=True)
+            for here, light, place in zip(
+                still["lights"], moving["lights"], places.lights, strict=True
+            )
         ]
     return found
 
@@ -78,27 +86,22 @@ def _place(camera):
 
 
 def _agree(a, b):
-    """Of single precision, and of a frame between two knots."""
+    """Of single precision."""
     return np.allclose(a, b, rtol=1e-5, atol=1e-5)
 
 
-def _corrected_instances(places, then, before):
+def _corrected_instances(now, then, places, before):
     knots = then["knots"]
     ends = np.cumsum(knots)
-    single = knots == 1
+    count = len(places)  # lamps that are drawn as surfaces come after these
     moved = np.zeros(len(knots), dtype=bool)
-    moved[single] = ~np.isclose(
-        then["world_from_object"][ends[single] - 1], places[single], rtol=1e-5, atol=1e-5
-    ).all(axis=(1, 2))
-    for i in np.flatnonzero(~single):
-        path = then["world_from_object"][ends[i] - knots[i] : ends[i]]
-        moved[i] = not _agree(before.at_frame(path), places[i])
+    moved[:count] = ~np.isclose(places, now[:count], rtol=1e-5, atol=1e-5).all(axis=(1, 2))
     if not moved.any():
         return then
     paths = then["world_from_object"].copy()
     for i in np.flatnonzero(moved):
         part = slice(ends[i] - knots[i], ends[i])
-        path = _matrices(places[i], paths[part], before)
+        path = _matrices(now[i], paths[part], before)
         paths[part] = path  # of one knot where it has no extent at the frame: still
     return {**then, "world_from_object": paths}
 

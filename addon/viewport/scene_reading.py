@@ -30,7 +30,7 @@ def is_reading():
 
 
 def read_snapshot(scene_name, layer_name, viewpoint_of, report):
-    """The snapshot of a scene at its frame.
+    """(snapshot of a scene at its frame, its export's Places).
 
     Args:
         viewpoint_of: called with the copied scene, returns one of export/scene/viewpoint.py.
@@ -41,7 +41,16 @@ def read_snapshot(scene_name, layer_name, viewpoint_of, report):
     """
     with _copied(_scene(scene_name, layer_name), layer_name) as depsgraph:
         copy = depsgraph.scene
-        return export_frame(None, depsgraph, copy.granita, report, viewpoint=viewpoint_of(copy))
+        places = []
+        snapshot = export_frame(
+            None,
+            depsgraph,
+            copy.granita,
+            report,
+            viewpoint=viewpoint_of(copy),
+            tell_places=places.append,
+        )
+        return snapshot, places[0]
 
 
 def read_still(scene_name, layer_name, viewpoint_of, persistent_state, report):

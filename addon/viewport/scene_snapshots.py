@@ -111,13 +111,13 @@ class SceneSnapshots:
         """Reads the whole shutter; whether its picture is another than that of the last such reading."""
         before = self._moving
         self.report = Report()
-        moving = scene_reading.read_snapshot(
+        moving, places = scene_reading.read_snapshot(
             sight.scene, sight.layer, _viewpoint_of(sight), self.report
         )
         scene = bpy.data.scenes[sight.scene]
         self._complete(moving, scene, sight)
         self._moving_times = _times(scene, scene.view_layers[sight.layer])
-        moving = corrected(moving, self._moving_times, self._still)
+        moving = corrected(moving, self._moving_times, places, self._still)
         self._moving = self.snapshot = moving
         self._paths_may_differ = False
         self.is_exact = True

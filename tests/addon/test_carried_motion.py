@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from export.base.snapshot import Places
 from viewport.carried_motion import ShutterTimes, carried, corrected
 
 
@@ -89,15 +90,25 @@ def test_a_lens_that_changes_is_as_much_wider():
     np.testing.assert_allclose(found["camera"]["lens_knots"], [[0.2, 4.0], [0.2, 6.0]])
 
 
+HERE = Places(at(0), np.array([at(2)]), [])
+
+
+def test_a_path_that_is_bent_a_little_is_no_move_of_the_artist_s():
+    """Its knots are straight between; what is keyed is there at the frame all the same."""
+    still = snapshot([at(0.001)], [at(2.002)])
+    found = corrected(MOVING, HALF, Places(at(0.001), np.array([at(2.002)]), []), still)
+    assert found["instances"] is MOVING["instances"] and found["camera"] is MOVING["camera"]
+
+
 def test_what_agrees_at_the_frame_is_the_reading_of_the_shutter_itself():
     still = snapshot([at(1e-7)], [at(2 + 1e-7)])
-    found = corrected(MOVING, HALF, still)
+    found = corrected(MOVING, HALF, HERE, still)
     assert found["instances"] is MOVING["instances"] and found["camera"] is MOVING["camera"]
 
 
 def test_what_was_moved_without_a_key_moves_from_where_it_is():
     still = snapshot([at(0, 0, 3)], [at(2, 5)])
-    found = corrected(MOVING, HALF, still)
+    found = corrected(MOVING, HALF, HERE, still)
     places = found["instances"]["world_from_object"]
     np.testing.assert_allclose(places, [at(1, 5), at(2, 5), at(3, 5)])
     np.testing.assert_allclose(found["camera"]["world_from_camera"], [at(0, -1, 3), at(0, 1, 3)])

@@ -153,37 +153,7 @@ def instanced(scene):
     system.instance_object = _sphere("Bead", grey, (1.5, -1.5, 0), 0.5)
 
 
-def displaced(scene):
-    """A hilly cage below an image as the world, a card with holes before it."""
-    _room(scene)
-    scene.granita.bounces = "FAST"
-    material, nodes, links, output = parts.node_material("Subject")
-    matte, noise = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeTexNoise")
-    displacement = nodes.new("ShaderNodeDisplacement")
-    displacement.inputs["Scale"].default_value = 0.5
-    links.new(noise.outputs["Fac"], displacement.inputs["Height"])
-    links.new(noise.outputs["Color"], matte.inputs["Color"])
-    links.new(displacement.outputs[0], output.inputs["Displacement"])
-    links.new(matte.outputs[0], output.inputs["Surface"])
-    owner = material if hasattr(material, "displacement_method") else material.cycles
-    owner.displacement_method = "DISPLACEMENT"
-    _slides(_sphere("Thing", material, (-0.5, 0, 0), 1.2, levels=1), (0.3, 0.1, 0))
-    image = bpy.data.images.new("Sky", 8, 4, float_buffer=True)
-    image.pixels.foreach_set([0.1 * (k % 9) for k in range(128)])
-    tree = scene.world.node_tree
-    sky = tree.nodes.new("ShaderNodeTexEnvironment")
-    sky.image = image
-    tree.links.new(sky.outputs["Color"], tree.nodes["Background"].inputs["Color"])
-    holes, nodes, links, output = parts.node_material("Holes")
-    mix, checker = nodes.new("ShaderNodeMixShader"), nodes.new("ShaderNodeTexChecker")
-    links.new(checker.outputs["Fac"], mix.inputs["Fac"])
-    links.new(nodes.new("ShaderNodeBsdfDiffuse").outputs[0], mix.inputs[1])
-    links.new(nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[2])
-    links.new(mix.outputs[0], output.inputs["Surface"])
-    parts.add_square(scene, "Card", 1.5, (0.9, 0.3, 1.8), holes)
-
-
-SCENES = (bounced, filled, skin, strands, instanced, displaced)
+SCENES = (bounced, filled, skin, strands, instanced)
 
 
 # ---- edits ----------------------------------------------------------------------------------

@@ -79,6 +79,15 @@ class Instances:
 
 
 @dataclass
+class Places:
+    """Where things of a frame are at its time, of which knots of a path may be a pixel's part off."""
+
+    camera: np.ndarray  # float64 [4, 4]
+    instances: np.ndarray  # float64 [n, 4, 4]
+    lights: list  # of float64 [4, 4]
+
+
+@dataclass
 class Snapshot:
     """One frame, complete."""
 
