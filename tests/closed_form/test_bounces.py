@@ -267,6 +267,18 @@ def test_the_foot_of_a_wall_is_not_darker_than_what_it_sees():
     assert seen[40:60] == pytest.approx(expected, rel=0.03)
 
 
+@pytest.mark.parametrize("bounces", [0, 4])
+def test_what_bent_normals_send_into_their_own_surface_is_lost(bounces):
+    """A white square in a white world, its normals 45 degrees from its own: of their hemisphere (1 + cos 45) / 2 is before
+    the surface.  What is behind it would see the surface once more."""
+    snapshot = s.orthographic((16, 16), samples=16, bounces=bounces, light_samples=256)
+    s.constant_world(snapshot, 1.0)
+    snapshot["world"]["lights_scene"] = True
+    bent = np.tile(np.array([0.5**0.5, 0.0, 0.5**0.5], np.float32), (4, 1))
+    s.quad(snapshot, s.rectangle(-99, -99, 99, 99), diffuse(snapshot, 1.0), corner_normals=bent)
+    assert mean(snapshot) == pytest.approx((1 + 0.5**0.5) / 2, rel=0.005)
+
+
 def colored_room(**options):
     snapshot = inside(4, **options)
     room(snapshot, diffuse(snapshot, ALBEDO, EMITTED))

@@ -22,7 +22,8 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
                      const GgxAlbedo& albedo)
     : m_wi(points.view[point]),
       m_normal(points.normal[point]),
-      m_geometric_normal(points.geometric_normal[point]) {
+      m_geometric_normal(points.geometric_normal[point]),
+      m_round(points.round) {
     m_lobes.reserve(closure.lobes.size());
     float total = 0.0f;
     for (std::size_t k = 0; k < closure.lobes.size(); ++k) {
@@ -144,6 +145,15 @@ float PointBsdf::pdf(std::size_t index, const Vec3f& wo) const {
 
 bool PointBsdf::sample(std::size_t index, const Vec2f& u, Vec3f& wo) const {
     const Prepared& lobe = m_lobes[index];
+    if (!draw(lobe, u, wo)) return false;
+    // What bent normals send through the surface, or back, is lost (Cycles): it would meet the
+    // surface itself and be reflected once more.
+    if (m_round || sees_all_around(lobe.kind)) return true;
+    const float side = granita::transmits(lobe.kind) ? -1.0f : 1.0f;
+    return side * glm::dot(m_geometric_normal, wo) >= 0.0f;
+}
+
+bool PointBsdf::draw(const Prepared& lobe, const Vec2f& u, Vec3f& wo) const {
     if (lobe.shape) return lobe.shape->sample(u, wo);
     if (lobe.stretched) {
         const Vec3f h = sample_stretched(lobe.distribution, lobe.alphas, local(lobe, m_wi), u);

@@ -140,11 +140,14 @@ class PointBsdf {
     Vec3f evaluate_shape(const Prepared& lobe, const Vec3f& wo) const;
     /// Share of the light that facets send the lobe's way.
     Vec3f passed(const Prepared& lobe, float cos_half) const;
+    /// As sample(), through the surface too.
+    bool draw(const Prepared& lobe, const Vec2f& u, Vec3f& wo) const;
     /// Where a facet sends the view.
     bool turn(const Prepared& lobe, const Vec3f& half, Vec3f& wo) const;
 
     std::vector<Prepared> m_lobes;
     Vec3f m_wi, m_normal, m_geometric_normal;
+    bool m_round;  ///< as ShadingPoints::round
     bool m_transmits = false;
 };
 
