@@ -59,6 +59,7 @@ const std::map<std::string, VectorOperation>& vector_operations() {
          }},
         {"FLOOR", [](V a, V, V, F) { return glm::floor(a); }},
         {"CEIL", [](V a, V, V, F) { return glm::ceil(a); }},
+        {"ROUND", [](V a, V, V, F) { return glm::floor(a + 0.5f); }},
         {"MODULO",
          [](V a, V b, V, F) { return each([](F x, F y, F) { return safe_modulo(x, y); }, a, b); }},
         {"FRACTION", [](V a, V, V, F) { return a - glm::floor(a); }},
