@@ -10,7 +10,8 @@ import pytest
 import snapshots as s
 
 HERE = Path(__file__).resolve().parent
-# In a process of its own: what others have freed would be used first.
+# In a process of its own: what others have freed would be used first.  getrusage(2) would tell of
+# the process that began it too.
 SCRIPT = f"""
 import sys, resource
 sys.path.insert(0, {str(HERE)!r})
@@ -23,7 +24,7 @@ try:
     granita_core.render(snapshot)
 except granita_core.Error as error:
     print(type(error).__name__, error)
-print("most", resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024 - resident)
+print("most", megabytes("VmHWM") - resident)
 """
 
 

@@ -142,12 +142,17 @@ def _ngon_triangles(mesh, topology):
 
 def _material_index(mesh):
     # A mesh without this attribute has one material; asking its polygons costs .3 s a million.
-    attribute = mesh.attributes.get("material_index")
-    if attribute is None:
-        return None
-    values = np.empty(len(mesh.polygons), dtype=np.int32)
-    attribute.data.foreach_get("value", values)
+    values = _values(mesh, "material_index", np.int32)
     return values if values.any() else None
+
+
+def _values(mesh, name, dtype):
+    """[n] of an attribute of one number; none where the mesh does not have it."""
+    attribute = mesh.attributes.get(name)
+    values = np.zeros(0 if attribute is None else len(attribute.data), dtype=dtype)
+    if attribute is not None:
+        attribute.data.foreach_get("value", values)
+    return values
 
 
 def _smooth(mesh):
@@ -182,7 +187,7 @@ def _shading(mesh):
     if hasattr(mesh, "normals_domain"):
         if mesh.normals_domain == "FACE":
             return None, None
-        if mesh.has_custom_normals or _has_sharp_edges(mesh):
+        if mesh.has_custom_normals or _values(mesh, "sharp_edge", np.bool_).any():
             return _smooth(mesh), vectors(mesh.corner_normals)
         return _smooth(mesh), None
     smooth = _smooth(mesh)
@@ -193,15 +198,6 @@ def _shading(mesh):
     normals = vectors(mesh.loops, "normal")
     mesh.free_normals_split()
     return smooth, normals
-
-
-def _has_sharp_edges(mesh):
-    attribute = mesh.attributes.get("sharp_edge")
-    if attribute is None:
-        return False
-    values = np.zeros(len(mesh.edges), dtype=np.bool_)
-    attribute.data.foreach_get("value", values)
-    return bool(values.any())
 
 
 def _drop_broken_faces(geometry, report):
