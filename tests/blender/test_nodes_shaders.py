@@ -374,7 +374,7 @@ def test_unknown_node_is_told_once(scene, render):
 
     granita_core = pytest.importorskip("granita_core")
     tree = Tree(board(scene))
-    tree.emit(tree.add("ShaderNodeParticleInfo", name="Swirl").outputs["Age"])
+    tree.emit(tree.add("ShaderNodeBevel", name="Swirl").outputs["Normal"])
     snapshot = export_frame(None, bpy.context.evaluated_depsgraph_get(), scene.granita, print)
     warnings = granita_core.render(snapshot)["warnings"]
     about = [w for w in warnings if "Swirl" in w[1]]
