@@ -48,6 +48,7 @@ def main(seeds):
         heaps = [entry["heap"] for entry in entries if entry.get("heap")]
         end = entries[-1]
         row = {"seed": seed, "rc": code, "edits": sum("edit" in entry for entry in entries)}
+        row["failed"] = sorted({entry["failed"] for entry in entries if "failed" in entry})
         row |= {"same": end.get("same"), "tracebacks": said.count("Traceback"), "heap": heaps}
         print(row, end.get("error", ""))
         rows.append(row)

@@ -80,8 +80,14 @@ BucketLayout make_layout(const Options& options, const Film& film, const SampleL
         size);
 }
 
-KeptShading shading_after(KeptShading shading, const KeptVisibility* before, const Scene& scene) {
-    if (before) shading.grids = before->shaded_grids(scene);
+std::optional<SceneChanges> changes_since(const KeptVisibility* before, const Scene& scene) {
+    if (!before) return std::nullopt;
+    return SceneChanges(before->scene(), scene);
+}
+
+KeptShading shading_after(KeptShading shading, const KeptVisibility* before,
+                          const std::optional<SceneChanges>& changes) {
+    if (before) shading.grids = before->shaded_grids(*changes);
     return shading;
 }
 
@@ -96,10 +102,9 @@ std::unique_ptr<KeptVisibility> make_visibility(Frame& frame,
                                                 const std::shared_ptr<Statistics>& statistics) {
     if (frame.choice.gl || frame.levels.count() > 1 || frame.shading.displacement()) return nullptr;
     if (frame.before) {
-        const SceneChanges changes(frame.before->scene(), *scene);
-        if (frame.before->serves(changes, frame.shading, frame.film.sample_pixels())) {
+        if (frame.before->serves(*frame.changes, frame.shading, frame.film.sample_pixels())) {
             frame.sees_anew = false;
-            frame.before->renew(scene, changes, frame.shading);
+            frame.before->renew(scene, *frame.changes, frame.shading);
             frame.before->say(*frame.shading.geometries(), frame.report);
             return std::move(frame.before);
         }
@@ -120,8 +125,9 @@ Frame::Frame(const std::shared_ptr<const Scene>& frame_scene,
       report(frame_report),
       progress(frame_progress),
       before(std::move(kept.visibility)),
+      changes(changes_since(before.get(), scene)),
       shading(scene, statistics, report, progress, frame_choice.executor != Executor::Raster,
-              shading_after(std::move(kept.shading), before.get(), scene)),
+              shading_after(std::move(kept.shading), before.get(), changes)),
       view(make_view(scene, statistics, shading, filter_of(scene))),
       shared_levels(std::make_shared<const SampleLevels>(
           view, filter_of(scene), frame_choice.executor != Executor::Raster, report)),

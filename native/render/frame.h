@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "base/progress.h"
 #include "film/film.h"
@@ -35,6 +36,7 @@ struct Frame {
     Report& report;
     const Progress& progress;
     std::unique_ptr<KeptVisibility> before;  ///< whose grids lend their radiance, or nullptr
+    std::optional<SceneChanges> changes;     ///< since `before`
     ShadingSystem shading;
     View view;
     std::shared_ptr<const SampleLevels> shared_levels;

@@ -79,11 +79,12 @@ bool KeptVisibility::serves(const SceneChanges& changes, const ShadingSystem& sh
 
 void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChanges& changes,
                            const ShadingSystem& shading) {
-    bool all = (changes.parts & part::kReadByShading & ~part::kMaterials) != 0 ||
-               scene->options.bounces.most > 0;
+    // What shaded_grids() lends stays: a grid that forgot would take from itself.
+    bool all = (changes.parts & part::kReadByShading & ~part::kMaterials) != 0;
     for (std::size_t m = 0; m < m_traits.size(); ++m)
         all |= changes.materials[m] &&
-               (m_traits[m].reaches_others || shading.reaches_others(static_cast<int>(m)));
+               (scene->options.bounces.most > 0 || m_traits[m].reaches_others ||
+                shading.reaches_others(static_cast<int>(m)));
     for (const auto& bucket : m_buckets)
         for (const auto& shared : bucket->grids) {
             if (!shared) continue;
@@ -97,12 +98,9 @@ void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChange
     m_scene = std::move(scene);
 }
 
-std::shared_ptr<const ShadedGrids> KeptVisibility::shaded_grids(const Scene& scene) const {
-    const SceneChanges changes(*m_scene, scene);
-    // A lens decides which points are seen, and these get more ways (shade/seen_points.h).
-    const part::Set read =
-        part::kReadByShading | (scene.options.bounces.most > 0 ? part::kLens : 0);
-    if ((changes.parts & read) != 0 || image_times(*m_scene) != m_image_times) return nullptr;
+std::shared_ptr<const ShadedGrids> KeptVisibility::shaded_grids(const SceneChanges& changes) const {
+    if ((changes.parts & part::kReadByShading) != 0 || image_times(*m_scene) != m_image_times)
+        return nullptr;
     auto grids = std::make_shared<ShadedGrids>();
     for (const auto& bucket : m_buckets)
         for (const auto& shared : bucket->grids)

@@ -44,7 +44,7 @@ class KeptVisibility {
                const ShadingSystem& shading);
     /// Its grids for a picture that may see others, or nullptr where these are not under the same
     /// light.  It must outlive them.
-    std::shared_ptr<const ShadedGrids> shaded_grids(const Scene& scene) const;
+    std::shared_ptr<const ShadedGrids> shaded_grids(const SceneChanges& changes) const;
     /// Nothing but shaded_grids() is wanted any more.
     void forget_samples();
 

@@ -72,7 +72,10 @@ SceneChanges::SceneChanges(const Scene& before, const Scene& now)
     note(same_film(before.options, now.options), part::kFilm);
     note(same_light_samples(before.options, now.options), part::kLightSamples);
     note(with_groups_of(before.options, now.options) == now.options, part::kRest);
-    note(before.camera == now.camera, part::kLens);
+    const bool same_camera = before.camera == now.camera;
+    note(same_camera, part::kLens);
+    // A lens decides which points are seen, and these get more ways (shade/seen_points.h).
+    note(same_camera || now.options.bounces.most == 0, part::kLightSamples);
     note(with_groups_of(before.camera, now.camera) == now.camera, part::kRest);
     note(before.lights == now.lights && before.world == now.world, part::kLights);
     note(before.instance_values == now.instance_values, part::kRest);
@@ -86,8 +89,8 @@ SceneChanges::SceneChanges(const Scene& before, const Scene& now)
         note(!materials[m], part::kMaterials);
     }
     if (before.images == now.images) return;
-    // Of an image it is not known here who shows it.
-    parts |= part::kMaterials;
+    // Of an image it is not known here who shows it: the world may.
+    parts |= part::kMaterials | part::kLights;
     materials.assign(materials.size(), true);
 }
 

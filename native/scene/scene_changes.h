@@ -14,7 +14,7 @@ namespace part {
 using Set = std::uint32_t;
 inline constexpr Set kFilm = 1;          ///< pixel filter, transparency of the film
 inline constexpr Set kLens = 2;          ///< radius and focus of a lens that is still, blades
-inline constexpr Set kLightSamples = 4;  ///< light samples, bounces
+inline constexpr Set kLightSamples = 4;  ///< of lamps, and ways of bounced light
 inline constexpr Set kLights = 8;        ///< lamps and the world
 inline constexpr Set kRays = 16;         ///< who is lit by what, and seen by other than the camera
 inline constexpr Set kMaterials = 32;    ///< SceneChanges::materials, images

@@ -18,6 +18,7 @@ def test_random_edits_leave_a_picture_as_a_fresh_view_has_it(tmp_path):
     code, said = window_host.run(script, job)
     entries = [json.loads(line) for line in log.read_text().splitlines()]
     assert code == 0 and "Traceback" not in said, said
+    assert not [entry["failed"] for entry in entries if "failed" in entry]
     assert len({entry["edit"] for entry in entries if "edit" in entry}) > 15
     assert entries[-1].get("end") and entries[-1]["same"], entries[-5:]
     assert set(entries[-1]["scenes"]) <= {"Scene", "Other"}

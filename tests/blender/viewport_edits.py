@@ -336,16 +336,31 @@ EDITS = {
     **dict.fromkeys((delete, edit_mode, view, zoom, lens, film, lamp, collection), 3),
     **dict.fromkeys((shading, engine, quad, scene, no_camera, f12, play, local_view), 1),
     **dict.fromkeys((bounces, smoke, preview, compare), 1),
-    # Open: seed 7 ends in a pass that a kept grid does not hold (docs/decisions/viewport.md).
-    look: JOB.get("looks", 0),
+    look: 3,
     **dict.fromkeys((revert, again), JOB.get("heavy", 1)),
 }
 _SCENE_STAYS = {undo, redo, quad, view, zoom, shading, f12, play, revert, again}
 _SCENE_STAYS |= {look, local_view, preview, compare}
 
 
+def note_failures():
+    """What views say that they cannot show."""
+    live_view = sys.modules["granita.viewport.live_view"].LiveView
+    if hasattr(live_view.fail, "noted"):
+        return
+    fail = live_view.fail
+
+    def fail_noted(self, text):
+        note(failed=text)
+        fail(self, text)
+
+    fail_noted.noted = True
+    live_view.fail = fail_noted
+
+
 def ready():
     """Rendered shading under Granita, whatever an edit has made of it."""
+    note_failures()
     current = bpy.context.scene
     if current.render.engine != "GRANITA":
         current.render.engine = "GRANITA"

@@ -227,6 +227,19 @@ def test_bounced_light_is_that_of_the_lens(edit):
     np.testing.assert_array_equal(kept.picture(second), alone["combined"])
 
 
+@pytest.mark.parametrize("name", ["nothing", "filter", "film"])
+def test_bounced_light_stays_where_nothing_of_it_is_other(name):
+    """Of a coarse picture that shows a pass, too: one light sample, none shaded by itself."""
+    first = scene()
+    first["options"].update(bounces=2, light_samples=1, refine_samples=False, passes=["Normal"])
+    kept = Kept()
+    kept.picture(first)
+    second = copy.deepcopy(first)
+    STAGES[name][0](second)
+    np.testing.assert_array_equal(kept.picture(second), s.render(second)["combined"])
+    assert kept.statistics["grids_shaded"] == 0
+
+
 def job_warnings(kept, snapshot):
     job = kept.core.Render(kept.core.Scene(s.packed(snapshot), kept.session))
     job.finish()
@@ -289,6 +302,23 @@ def test_an_image_file_that_is_written_anew_is_read_anew(tmp_path, edit):
     blue = kept.picture(snapshot)
     assert np.abs(blue - red).max() > 0.1
     np.testing.assert_array_equal(blue, s.render(snapshot)["combined"])
+
+
+def test_another_image_of_the_world_lights_what_has_no_material(tmp_path):
+    snapshot = s.perspective((16, 16), 60.0, executor="SIMD", samples=4)
+    s.quad(snapshot, s.rectangle(-1, -1, 1, 1, 6.0), -1)
+    image = {"type": "ShaderNodeTexEnvironment", "properties": {"image": "Sky"}, "inputs": {}}
+    background = {"type": "ShaderNodeBackground", "inputs": {"Color": ("LINK", 0, "Color")}}
+    sky = {"name": "World", "nodes": [image, background], "surface": (1, "Background")}
+    snapshot["world"] = sky
+    kept, seen = Kept(), []
+    for color in ((255, 0, 0), (0, 0, 255)):
+        file = tmp_path / f"{color[0]}.png"
+        write_pixel(file, color, 1000)
+        snapshot["images"] = [{"name": "Sky", "path": str(file), "colorspace": "sRGB"}]
+        seen.append(kept.picture(snapshot))
+    assert np.abs(seen[1] - seen[0])[8, 8].max() > 0.1
+    np.testing.assert_array_equal(seen[1], s.render(snapshot)["combined"])
 
 
 def test_what_is_not_there_any_more_is_forgotten():
