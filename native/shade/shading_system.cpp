@@ -21,6 +21,7 @@
 #include "shade/nodes/node_compiler.h"
 #include "shade/nodes/surface_run.h"
 #include "shade/seen_points.h"
+#include "shade/shading_input.h"
 #include "shade/shading_points.h"
 #include "shade/shadow_transparency.h"
 #include "shade/subsurface/shared_scattering.h"
@@ -116,11 +117,14 @@ struct ShadingSystem::Impl {
             const auto shows = [this](int index) { return reflects(index); };
             return i.materials.empty() ? shows(-1) : std::ranges::any_of(i.materials, shows);
         });
+        const bool asks_rays = std::ranges::any_of(scene.materials, [](const Material& material) {
+            return granita::asks_rays(material.graph);
+        });
         if (Volumes::any(scene)) volumes = std::make_unique<Volumes>(scene, textures, report);
-        if (!any_reflects && !volumes) return;
+        if (!any_reflects && !volumes && !asks_rays) return;
         light = std::make_unique<DirectLight>(
             scene, world.evaluator(), statistics, report, progress, ray_materials(), geometries,
-            kept.rays, displacement.get(), light_patterns(scene, textures, report));
+            kept.rays, displacement.get(), light_patterns(scene, textures, report), asks_rays);
         if (scene.options.bounces.most == 0) warn_of_emission();
         if (!light->rays()) return;
         if (scene.options.bounces.most > 0) {
@@ -187,20 +191,9 @@ struct ShadingSystem::Impl {
         return index < 0 ? materials.back() : materials[index];
     }
 
-    ShadingInput input(const Grid& grid, const ShadingPoints& points) const {
-        ShadingInput in;
-        in.points = &points;
-        in.attributes = &grid.attributes;
-        in.instance = &scene.instances[grid.instance];
-        in.axes = ObjectAxes(matrix_at(in.instance->world_from_object, scene.options.frame_time));
-        return in;
-    }
-
-    ShadingInput input(const Grid& grid, const RefinedPoints& refined) const {
-        ShadingInput in = input(grid, refined.points);
-        in.attributes = &refined.attributes;
-        in.axes_at_times = refined.axes_at_times;
-        return in;
+    template <class Points>
+    ShadingInput input(const Grid& grid, const Points& points) const {
+        return shading_input(grid, points, scene, light ? light->rays() : nullptr);
     }
 
     /// Adds what surfaces send to each other: to points of a grid, whose `gathered` is filled, or

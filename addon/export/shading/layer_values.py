@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Attribute nodes of type View Layer: one value a frame, of the view layer, the scene or the world."""
+"""What nodes take of the view layer, the scene or the world: one value a frame."""
 
 import numpy as np
 
@@ -7,7 +7,8 @@ from ..base.find_value import find_value
 
 
 def set_layer_values(records, scene, view_layer):
-    """Writes the property `layer_value` (four floats) into those nodes.
+    """Writes the property `layer_value` (four floats) into Attribute nodes of type View Layer, and `world_distance`
+    (metres, how far an Ambient Occlusion looks whose Distance is 0) into those.
 
     Args:
         records: material or world records of the snapshot.
@@ -19,6 +20,8 @@ def set_layer_values(records, scene, view_layer):
             if properties.get("attribute_type") == "VIEW_LAYER":
                 value = _lookup(properties["attribute_name"], scene, view_layer)
                 properties["layer_value"] = np.array(value, dtype=np.float32)
+            elif node["type"] == "ShaderNodeAmbientOcclusion" and scene.world is not None:
+                properties["world_distance"] = float(scene.world.light_settings.distance)
 
 
 def _lookup(name, scene, view_layer):

@@ -58,6 +58,8 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
     m_input.points = &m_points;
     m_input.attributes = &m_attributes.grid();
     m_input.instance = &instance;
+    m_input.rays = &m_rays;
+    m_input.key = {instance.key};
     const bool still = first.frame != nullptr;
     if (still) {
         m_input.axes.world_from_object = first.frame->world_from_object;

@@ -48,7 +48,7 @@ struct DirectLight::Impl {
     Impl(const Scene& scene, WorldEvaluator world_evaluator, Statistics& frame_statistics,
          Report& report, const Progress& progress, RayMaterials materials,
          std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
-         const Displacement* displacement, const LightPatterns& patterns);
+         const Displacement* displacement, const LightPatterns& patterns, bool is_asked);
 
     void light_points(LitGrid& grid, const std::vector<LitPoint>& points,
                       std::size_t lobe_count) const;
@@ -76,7 +76,8 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
                         Statistics& frame_statistics, Report& report,
                         const Progress& frame_progress, RayMaterials materials,
                         std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
-                        const Displacement* displacement, const LightPatterns& patterns)
+                        const Displacement* displacement, const LightPatterns& patterns,
+                        bool is_asked)
     : scene(frame_scene),
       statistics(frame_statistics),
       progress(frame_progress),
@@ -90,7 +91,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
     const Vec3d origin = camera_origin(scene);
     std::vector<Lamp> lamps = lamps_of(scene, origin, patterns);
     const bool asks_rays =
-        world.shines() || scene.options.bounces.most > 0 ||
+        is_asked || world.shines() || scene.options.bounces.most > 0 ||
         std::ranges::any_of(lamps, [](const Lamp& lamp) { return lamp.casts_shadow(); }) ||
         std::ranges::any_of(scene.instances,
                             [&](const Instance& instance) {
@@ -253,10 +254,11 @@ void DirectLight::Impl::sample_rest(LitGrid& grid, const LitPoint& point,
 DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics,
                          Report& report, const Progress& progress, RayMaterials materials,
                          std::shared_ptr<GeometryCache> geometries, std::shared_ptr<KeptRays> rays,
-                         const Displacement* displacement, const LightPatterns& patterns)
+                         const Displacement* displacement, const LightPatterns& patterns,
+                         bool asks_rays)
     : m_impl(std::make_unique<Impl>(scene, std::move(world), statistics, report, progress,
                                     std::move(materials), std::move(geometries), std::move(rays),
-                                    displacement, patterns)) {}
+                                    displacement, patterns, asks_rays)) {}
 
 DirectLight::~DirectLight() = default;
 
@@ -305,17 +307,15 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     const bool dark = m_impl->set.lamps.empty() && !m_impl->world.shines();
     if (closure.lobes.empty() || (dark && !parts && !leaving)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
-    // Points with places of their own share the sequences of the frame.
     const bool placed = !points.places.empty();
-    LitGrid grid{
-        radiance,
-        parts,
-        {},
-        {},
-        {},
-        {},
-        grid_seed(placed ? GridKey{0, 0, 1 + points.depth} : key, m_impl->scene.options.seed),
-        m_impl->world.by_lobe()};
+    LitGrid grid{radiance,
+                 parts,
+                 {},
+                 {},
+                 {},
+                 {},
+                 sequence_seed(points, key, m_impl->scene.options.seed),
+                 m_impl->world.by_lobe()};
     grid.placed = placed;
     grid.receives = m_impl->receives(key);
     grid.balance = noise;

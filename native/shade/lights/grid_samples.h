@@ -19,6 +19,12 @@ inline std::uint64_t grid_seed(const GridKey& key, std::uint32_t frame_seed) {
     return mix_bits(mix_bits(face + 0x9e3779b97f4a7c15ULL * (frame_seed + 1ULL)) ^ key.path);
 }
 
+/// Of the sequences of points: those that have places of their own share the frame's.
+inline std::uint64_t sequence_seed(const ShadingPoints& points, const GridKey& key,
+                                   std::uint32_t frame_seed) {
+    return grid_seed(points.places.empty() ? key : GridKey{0, 0, 1 + points.depth}, frame_seed);
+}
+
 /// Neighbours share a sequence: aligned squares of points, and so the pixels that average them, are
 /// stratified as one (Ahmed and Wonka 2020, without their shuffling of squares).  Faces of a batch
 /// are in Morton order already.

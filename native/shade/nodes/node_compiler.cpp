@@ -240,6 +240,11 @@ bool told_apart(const NodeGraph& graph, const ReadOutputs& read, RayType a, RayT
 
 }  // namespace
 
+bool asks_rays(const NodeGraph& graph) {
+    return std::ranges::any_of(
+        graph.nodes, [](const Node& node) { return node.type == "ShaderNodeAmbientOcclusion"; });
+}
+
 RayType first_alike(const NodeGraph& graph, const NodeLink& root, RayType ray,
                     std::span<const RayType> rays) {
     const ReadOutputs read = read_outputs(graph, root, "", {});

@@ -86,6 +86,9 @@ struct GraphOwner {
 };
 
 /// The first of `rays`, of which `ray` is one, that the Light Path of what feeds `root` does not
+/// Whether what the graph says may depend on what is near.
+bool asks_rays(const NodeGraph& graph);
+
 /// tell apart from it.
 RayType first_alike(const NodeGraph& graph, const NodeLink& root, RayType ray,
                     std::span<const RayType> rays);

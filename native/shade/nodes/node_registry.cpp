@@ -83,6 +83,7 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeObjectInfo", value(build_object_info)},
         {"ShaderNodeHairInfo", value(build_hair_info)},
         {"ShaderNodePointInfo", value(build_point_info)},
+        {"ShaderNodeAmbientOcclusion", value(build_ambient_occlusion)},
         {"ShaderNodeParticleInfo", value(build_particle_info)},
         {"ShaderNodeCameraData", value(build_camera_data)},
         {"ShaderNodeTexChecker", value(build_checker)},
@@ -106,8 +107,6 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeBlackbody", value(build_blackbody)},
         {"ShaderNodeWavelength", value(build_wavelength)},
 
-        {"ShaderNodeAmbientOcclusion",
-         NodeKind{build_unoccluded, nullptr, "its colour, unoccluded"}},
         {"ShaderNodeBevel", NodeKind{build_unbevelled, nullptr, "its normal, unbevelled"}},
         {"ShaderNodeLightFalloff", NodeKind{build_plain_falloff, nullptr, "its strength"}},
 

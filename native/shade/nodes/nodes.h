@@ -65,6 +65,7 @@ void build_rgb_to_bw(NodeBuilder&);
 void build_fresnel(NodeBuilder&);
 void build_layer_weight(NodeBuilder&);
 void build_light_path(NodeBuilder&);
+void build_ambient_occlusion(NodeBuilder&);
 void build_particle_info(NodeBuilder&);
 void build_gabor_texture(NodeBuilder&);
 void build_object_info(NodeBuilder&);
@@ -91,7 +92,6 @@ void build_normal(NodeBuilder&);
 void build_tangent(NodeBuilder&);
 void build_blackbody(NodeBuilder&);
 void build_wavelength(NodeBuilder&);
-void build_unoccluded(NodeBuilder&);
 void build_unbevelled(NodeBuilder&);
 
 /// By a number, linear between the entries of the property `spectrum` (rgb), which lie evenly from

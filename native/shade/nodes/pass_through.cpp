@@ -5,12 +5,6 @@
 
 namespace granita {
 
-/// Nothing stands near: the colour as it is.
-void build_unoccluded(NodeBuilder& b) {
-    b.output_color("Color", b.color("Color", Vec3f(1.0f)));
-    b.output("AO", FloatSource{-1, 1.0f});
-}
-
 /// Edges are sharp.
 void build_unbevelled(NodeBuilder& b) {
     b.output_vector("Normal", b.normal_input());

@@ -59,6 +59,8 @@ class NodeBuilder {
 
     const Node& node() const { return m_node; }
     Shift shift() const { return m_shift; }
+    /// In its graph.
+    std::size_t index() const { return m_index; }
     bool is_world() const { return m_program.is_world; }
     const Scene& scene() const { return m_program.scene; }
     int material_index() const { return m_program.material_index; }

@@ -21,6 +21,8 @@
 
 namespace granita {
 
+class RayScene;
+
 /// Where a value is taken: at the point, or one grid step further along u or v.  The differences
 /// are the derivatives that textures and bumps need; they follow any node between (the chain rule
 /// by differences).
@@ -46,6 +48,8 @@ struct ShadingInput {
     std::vector<ObjectAxes> axes_at_times;  ///< [points] where these have times of their own
     float spread = 0.0f;                    ///< world: radians a direction stands for
     float ray_length = 0.0f;                ///< of shadow rays, from where they started
+    const RayScene* rays = nullptr;         ///< nullptr: none can be asked
+    GridKey key;                            ///< where they can: of what the points are on
 
     const ObjectAxes& axes_at(std::size_t point) const {
         return axes_at_times.empty() ? axes : axes_at_times[point];

@@ -31,6 +31,7 @@ struct ShadowContext {
     Vec3f start, direction;  ///< shading space: what Embree hands back is in the object's
     Vec3f left{1.0f};
     int blocker_set = -1;
+    bool all_opaque = false;
     const Ray* rays = nullptr;  ///< by their ids
     std::exception_ptr failure;
 };
@@ -96,7 +97,7 @@ void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) 
         arguments->valid[0] = 0;
         return;
     }
-    if (!instance.lets_light_through) return;
+    if (!instance.lets_light_through || context->all_opaque) return;
     try {
         context->left *=
             instance.constant
@@ -266,6 +267,19 @@ Vec3f RayScene::transmittance(const Ray& shadow) const {
     if (m_impl->materials.dim && left != Vec3f(0.0f))
         m_impl->materials.dim({&shadow, 1}, {&left, 1});
     return left;
+}
+
+bool RayScene::blocks(const Ray& shadow) const {
+    if (!shadow.is_traceable() || !m_impl->top) return false;
+    ShadowContext context{};
+    rtcInitIntersectContext(&context.embree);
+    context.scene = m_impl.get();
+    context.all_opaque = true;
+    context.rays = &shadow;
+    RTCRay ray{};
+    set_ray(ray, shadow);
+    rtcOccluded1(m_impl->top.get(), &context.embree, &ray);
+    return ray.tfar < 0.0f;
 }
 
 Vec3f RayScene::past_surfaces(const Ray& shadow) const {

@@ -100,6 +100,8 @@ class RayScene {
     /// not visible, and of times at which it is not there, do not meet it.
     void volumes(const Ray& ray, std::vector<VolumeSpan>& out) const;
 
+    /// Whether it meets anything that casts shadows, even if light passes that.
+    bool blocks(const Ray& ray) const;
     /// Share of light that passes, per channel.
     Vec3f transmittance(const Ray& ray) const;
     /// The same of many, bit by bit; fastest where neighbours in the list go the same way.
