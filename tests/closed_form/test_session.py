@@ -331,6 +331,21 @@ def test_what_is_not_there_any_more_is_forgotten():
     np.testing.assert_array_equal(kept.made(), (4, 4))
 
 
+def test_an_orbit_around_a_cage_keeps_no_shape_of_each_place():
+    """Rays meet a cage as closely as it is seen: otherwise from each place."""
+    kept = Kept()
+    snapshot = scene()
+    snapshot["options"]["dicing_rate"] = 0.5
+    taken = []
+    for k in range(12):
+        snapshot["camera"]["world_from_camera"] = s.translation(0.05 * k)[None]
+        kept.picture(snapshot)
+        taken.append(kept.statistics["peak_ray_bytes"])
+    assert kept.session.ray_shapes_made >= 14
+    # Two of those before, and the one that is made.
+    assert taken[-1] < 1.2 * max(taken[:3])
+
+
 def test_equal_geometries_of_one_name_are_each_adopted():
     snapshot = scene()
     snapshot["geometries"][1] = dict(snapshot["geometries"][0])

@@ -23,18 +23,27 @@ KeptRays::KeptRays() : m_device(rtcNewDevice(nullptr)) {
     rtcSetDeviceMemoryMonitorFunction(m_device.get(), add_bytes, &m_bytes);
 }
 
-std::shared_ptr<const KeptRayShape> KeptRays::find(const RayKey& key) const {
+std::shared_ptr<const KeptRayShape> KeptRays::find(const RayKey& key) {
     const std::lock_guard lock(m_mutex);
-    const auto [first, last] = m_shapes.equal_range(key.data.get());
-    for (auto shape = first; shape != last; ++shape)
-        if (shape->second->key == key) return shape->second;
-    return nullptr;
+    const auto shapes = m_shapes.find(key.data.get());
+    if (shapes == m_shapes.end()) return nullptr;
+    Shapes& of = shapes->second;
+    const auto found =
+        std::ranges::find_if(of, [&](const auto& shape) { return shape->key == key; });
+    if (found == of.end()) return nullptr;
+    std::rotate(of.begin(), found, found + 1);
+    return of.front();
 }
 
 void KeptRays::add(std::shared_ptr<const KeptRayShape> made) {
+    std::shared_ptr<const KeptRayShape> dropped;  // freed outside the lock
     const std::lock_guard lock(m_mutex);
-    m_shapes.emplace(made->key.data.get(), std::move(made));
+    Shapes& of = m_shapes[made->key.data.get()];
+    of.insert(of.begin(), std::move(made));
     ++m_made;
+    if (of.size() <= kMostOfOne) return;
+    dropped = std::move(of.back());
+    of.pop_back();
 }
 
 void KeptRays::keep_only(const GeometryList& geometries) {

@@ -42,7 +42,9 @@ struct KeptRayShape {
     bool is_coarsened = false;
 };
 
-/// Thread-safe.  Owns the device that all in it belong to.
+/// Thread-safe.  Owns the device that all in it belong to.  Of each geometry there are the two that
+/// were asked for last, as a view has a coarse picture and a whole one: an orbit around a
+/// subdivision surface makes another one for each place.
 class KeptRays {
   public:
     /// Throws Error where Embree does not start.
@@ -50,7 +52,7 @@ class KeptRays {
 
     RTCDevice device() const { return m_device.get(); }
     /// nullptr where it is not there.
-    std::shared_ptr<const KeptRayShape> find(const RayKey& key) const;
+    std::shared_ptr<const KeptRayShape> find(const RayKey& key);
     void add(std::shared_ptr<const KeptRayShape> made);
     /// Forgets what is made of others.
     void keep_only(const GeometryList& geometries);
@@ -60,10 +62,13 @@ class KeptRays {
     std::size_t embree_bytes() const;
 
   private:
+    static constexpr std::size_t kMostOfOne = 2;
+    using Shapes = std::vector<std::shared_ptr<const KeptRayShape>>;  ///< latest first
+
     std::atomic<long long> m_bytes{0};
     RtcHandle<RTCDevice> m_device;
-    mutable std::mutex m_mutex;
-    std::multimap<const GeometryData*, std::shared_ptr<const KeptRayShape>> m_shapes;
+    std::mutex m_mutex;
+    std::map<const GeometryData*, Shapes> m_shapes;
     std::atomic<std::uint64_t> m_made{0};
 };
 
