@@ -43,3 +43,12 @@ def test_links_lead_somewhere(document):
     targets = re.findall(r"\]\(([^)#\s]+)\)", text)
     here = (ROOT / document).parent
     assert not [t for t in targets if "://" not in t and not (here / t).exists()]
+
+
+@pytest.mark.parametrize("document", DOCUMENTS)
+def test_benches_that_a_document_names_are_run_by_dev(document):
+    text = (ROOT / document).read_text(encoding="utf-8")
+    listed = re.search(r"PYTHON_BENCHES=\(([^)]*)\)", (ROOT / "dev").read_text()).group(1).split()
+    programs = [Path(name).stem for name in FILES if re.fullmatch(r"bench/\w+\.cpp", name)]
+    named = re.findall(r"dev bench ([a-z]\w*)", text)
+    assert not [n for n in named if not any(n in bench for bench in listed + programs)]
