@@ -133,7 +133,8 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
     out.sv.resize(n);
     out.normal.resize(n);
     out.geometric_normal.resize(n);
-    out.rise.resize(rises() ? n : 0);
+    const bool has_rise = rises();
+    out.rise.resize(has_rise ? n : 0);
     for (std::size_t i = 0; i < n; ++i) {
         const Vec3d su = face.by_u(weights[i]), sv = face.by_v(weights[i]);
         const Vec3d flat = face.geometric_normal(su, sv);
@@ -141,7 +142,7 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
         out.sv[i] = Vec3f(sv);
         out.geometric_normal[i] = Vec3f(flat);
         out.normal[i] = Vec3f(face.shading_normal(weights[i], flat));
-        if (rises()) out.rise[i] = rise(face, weights[i], flat);
+        if (has_rise) out.rise[i] = rise(face, weights[i], flat);
     }
 }
 

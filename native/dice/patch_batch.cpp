@@ -251,13 +251,14 @@ void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
 void PatchBatch::add_points(const Lattice& lattice, Grid& grid) const {
     const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
     const FrameFace face = m_mesh->frame_face(lattice.patch);
+    const bool has_rise = m_mesh->rises();
     for (std::size_t v = 0; v < stencil.vertex_count(); ++v) {
         const CornerWeights& weights = stencil.weights[v];
         const Vec3d su = face.by_u(weights), sv = face.by_v(weights);
         const Vec3d flat = face.geometric_normal(su, sv);
         grid.geometric_normal.emplace_back(flat);
         grid.normal.emplace_back(face.shading_normal(weights, flat));
-        if (m_mesh->rises()) grid.rise.push_back(m_mesh->rise(face, weights, flat));
+        if (has_rise) grid.rise.push_back(m_mesh->rise(face, weights, flat));
         const Vec2d &by_u = stencil.step_u[v], &by_v = stencil.step_v[v];
         grid.dp_du.emplace_back(su * by_u.x + sv * by_u.y);
         grid.dp_dv.emplace_back(su * by_v.x + sv * by_v.y);
