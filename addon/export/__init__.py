@@ -18,7 +18,7 @@ from .motion.sample_motion import Motion, sample_motion
 from .scene.frame_scene import FrameScene
 from .scene.instance import linked, place
 from .scene.lamp_emitters import add_emitters
-from .scene.lamps import energies, place_lamps, read_lamps
+from .scene.lamps import energies, lamp_graphs, place_lamps, read_lamps
 from .scene.light_linking import link_lights
 from .scene.light_paths import report_volume_bounces
 from .scene.options import options_record, scene_crop, scene_frame
@@ -89,6 +89,7 @@ def export_frame(
     lamp_images = {}
     lamps = read_lamps(depsgraph, scene_objects.scan, scene_objects.lights(), lamp_images, report)
     scene_objects.choose(report)
+    graphs = lamp_graphs(lamps, scene_objects.scan)
     at_frame = FrameScene(
         depsgraph=depsgraph,
         viewpoint=viewpoint,
@@ -98,7 +99,8 @@ def export_frame(
         sources=scene_objects.sources,
         geometry_of_prototype=scene_objects.table.geometry,
         is_light=scene_objects.is_light,
-        energies=energies(depsgraph) if shutter.segments else {},
+        energies=energies(depsgraph, graphs) if shutter.segments else {},
+        lamp_graphs=graphs,
     )
     fps = scene.render.fps / scene.render.fps_base
     motion, points, adjacent, seen = (

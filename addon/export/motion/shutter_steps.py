@@ -144,7 +144,7 @@ class ShutterSteps:
         now = before = self._energies[self.ticks[-2]]
         if before and (updates is None or lights_changed(updates)):
             # What a handler has deleted stays as it was.
-            now = {**before, **energies(self._scene.depsgraph)}
+            now = {**before, **energies(self._scene.depsgraph, self._scene.lamp_graphs)}
         self._energies[tick] = now
 
     def _take(self, changes):

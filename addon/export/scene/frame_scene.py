@@ -21,6 +21,7 @@ class FrameScene:
     geometry_of_prototype: np.ndarray  # int32 [prototypes], -1 = none
     is_light: np.ndarray  # bool [prototypes]
     energies: dict  # of lamps.energies
+    lamp_graphs: dict  # of lamps.lamp_graphs
     again: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))  # of come_again
     _bounds: tuple = None
 

@@ -36,23 +36,34 @@ def read_lamps(depsgraph, scan, things, images, report):
     return found
 
 
-def energies(depsgraph):
+def lamp_graphs(lamps, scan):
+    """{address of an original lamp: whether its record has nodes} of what read_lamps has read."""
+    return {
+        scan.prototypes[scan.prototype[thing]].address: "nodes" in record for thing, record in lamps
+    }
+
+
+def energies(depsgraph, graphs):
     """{address of an original lamp: its energy at the depsgraph's time}, of the whole file: what is not
-    placed at the frame may be instanced at another time of the shutter."""
+    placed at the frame may be instanced at another time of the shutter.
+
+    Args:
+        depsgraph: evaluated.
+        graphs: of lamp_graphs; lamps that are not in it are added.
+    """
     import bpy
 
-    from ..shading.light import light_record
-
-    def silent(_datablock, _message):
-        """What there is to say is said of those that are placed."""
+    from ..shading.light import light_energy
 
     if len(bpy.data.lights) == 0:
         return {}
-    return {
-        thing.as_pointer(): light_record(thing.evaluated_get(depsgraph), None, silent, {})["energy"]
-        for thing in bpy.data.objects
-        if thing.type == "LIGHT"
-    }
+    found = {}
+    for thing in bpy.data.objects:
+        if thing.type == "LIGHT":
+            address = thing.as_pointer()
+            lamp = thing.evaluated_get(depsgraph)
+            found[address], graphs[address] = light_energy(lamp, graphs.get(address))
+    return found
 
 
 def place_lamps(lamps, scan, motion, report):

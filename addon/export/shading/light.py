@@ -33,15 +33,8 @@ def light_record(light_object, matrices, report, images=None):
     label = f"light '{light_object.name}'"
     graph = None if images is None else _graph(light, label, images, report)
     color, factor = ([1.0] * 3, 1.0) if graph else _emission(light, label, report)
-    energy = light.energy * factor * 2.0 ** getattr(light, "exposure", 0.0)
-    if light.type == "AREA" and bpy.app.version < (4, 0, 0):
-        energy *= math.pi / 4.0  # radiance was P / (4 A) until 4.0 made it P / (pi A)
     if getattr(light, "use_temperature", False):
         color = [c * t for c, t in zip(color, light.temperature_color)]
-    if not getattr(light, "normalize", True):
-        energy *= _area(light, light_object.matrix_world)
-    if light.type == "AREA" and _cycles(light, "is_portal", False):
-        energy = 0.0  # it guides samples to the world, which needs no guide here
     for name in ("diffuse_factor", "specular_factor"):
         if getattr(light, name, 1.0) != 1.0:
             report(label, f"{name} is EEVEE's alone and is not used")
@@ -53,7 +46,7 @@ def light_record(light_object, matrices, report, images=None):
         "kind": light.type,
         "world_from_light": matrices,
         "color": [c * x for c, x in zip(light.color, color)],
-        "energy": energy,
+        "energy": _energy(light_object, factor),
         "radius": getattr(light, "shadow_soft_size", 0.0) if light.type in ("POINT", "SPOT") else 0,
         "soft_falloff": bool(getattr(light, "use_soft_falloff", True)),
         "sun_angle": getattr(light, "angle", 0.0),
@@ -72,6 +65,37 @@ def light_record(light_object, matrices, report, images=None):
         "diffuse_factor": 1.0,
         "specular_factor": 1.0,
     }
+
+
+def light_energy(light_object, has_graph=None):
+    """(energy of its record, whether that has its nodes).
+
+    Args:
+        light_object: evaluated Object of type LIGHT.
+        has_graph: the same of another time, as links are not animated; None: not yet known.
+    """
+
+    def silent(_datablock, _message):
+        """The record tells."""
+
+    light = light_object.data
+    if has_graph is None:
+        has_graph = _graph(light, "", {}, silent) is not None
+    factor = 1.0 if has_graph else _emission(light, "", silent)[1]
+    return _energy(light_object, factor), has_graph
+
+
+def _energy(light_object, factor):
+    """Of a light whose nodes have the strength `factor`."""
+    light = light_object.data
+    energy = light.energy * factor * 2.0 ** getattr(light, "exposure", 0.0)
+    if light.type == "AREA" and bpy.app.version < (4, 0, 0):
+        energy *= math.pi / 4.0  # radiance was P / (4 A) until 4.0 made it P / (pi A)
+    if not getattr(light, "normalize", True):
+        energy *= _area(light, light_object.matrix_world)
+    if light.type == "AREA" and _cycles(light, "is_portal", False):
+        energy = 0.0  # it guides samples to the world, which needs no guide here
+    return energy
 
 
 def shadow_switch(light):
