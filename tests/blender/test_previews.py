@@ -1,16 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Previews of datablocks in a window under Xvfb: Blender's own scenes of them, rendered by Granita."""
 
-import json
-
 import window_host
 
 pytestmark = window_host.needed
 
 WATCH = """
-import bpy, json, sys
 import numpy as np
-found = {}
 bpy.context.scene.render.engine = "GRANITA"
 bpy.context.scene.view_settings.view_transform = "Standard"
 
@@ -42,29 +38,12 @@ def steps():
         middle = pixels[height // 2, width // 2]
         found[each.name] = [round(255 * v) for v in middle], [round(255 * v) for v in pixels[0, 0]]
     found["end"] = True
-
-todo = steps()
-def step():
-    try:
-        return next(todo)
-    except StopIteration:
-        pass
-    except BaseException as error:
-        found["error"] = repr(error)
-    json.dump(found, open(OUT, "w"))
-    bpy.ops.wm.quit_blender()
-bpy.app.timers.register(step, first_interval=1.0)
 """
 
 
 def test_materials_lights_and_worlds_have_previews(tmp_path):
-    out = tmp_path / "found.json"
-    script = tmp_path / "watch.py"
-    script.write_text(f"OUT = {str(out)!r}\n{WATCH}")
-    code, said = window_host.run(script)
-    assert out.exists(), said
-    found = json.loads(out.read_text())
-    assert code == 0 and "Traceback" not in said and found.get("end"), (found, said)
+    found, said = window_host.watch(WATCH, tmp_path)
+    assert found.get("end"), (found, said)
     middle, corner = found["Glow"]
     assert middle == [137, 188, 225, 255]  # sRGB of .25, .5, .75
     assert corner[3] == 0  # icons are cut out

@@ -2,8 +2,6 @@
 """Rendered shading in a window: its own pixels, an edit, an undo, other engines and back.  Under Xvfb; needs a
 Blender with windows."""
 
-import json
-
 import bpy
 import scene_parts as parts
 import window_host
@@ -11,9 +9,8 @@ import window_host
 pytestmark = window_host.needed
 
 WATCH = """
-import bpy, json, sys, time
+import sys, time
 import numpy as np
-found = {}
 window = bpy.context.window_manager.windows[0]
 area = next(a for a in window.screen.areas if a.type == "VIEW_3D")
 region = next(r for r in area.regions if r.type == "WINDOW")
@@ -107,18 +104,6 @@ def steps():
     addon_utils.disable("granita")
     yield 0.3
     found["end"] = True
-
-todo = steps()
-def step():
-    try:
-        return next(todo)
-    except StopIteration:
-        pass
-    except BaseException as error:
-        found["error"] = repr(error)
-    json.dump(found, open(OUT + ".json", "w"))
-    bpy.ops.wm.quit_blender()
-bpy.app.timers.register(step, first_interval=1.0)
 """
 
 
@@ -128,13 +113,7 @@ def test_a_window_shows_and_follows_what_is_edited(scene, tmp_path):
     scene.view_settings.view_transform = "Standard"
     blend = tmp_path / "scene.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend), copy=True)
-    out = tmp_path / "window"
-    script = tmp_path / "watch.py"
-    script.write_text(f"OUT = {str(out)!r}\n{WATCH}")
-    code, said = window_host.run(script, blend=blend)
-    assert (tmp_path / "window.json").exists(), said
-    found = json.loads((tmp_path / "window.json").read_text())
-    assert code == 0 and "Traceback" not in said, said
+    found, said = window_host.watch(WATCH, tmp_path, blend)
     glow = [137, 188, 225]  # sRGB of .25, .5, .75
     assert found == {
         "first": glow,

@@ -56,6 +56,14 @@ def _room(scene):
     return grey
 
 
+def _fill_world(scene, shader, density):
+    tree = scene.world.node_tree
+    mist = tree.nodes.new(shader)
+    mist.inputs["Density"].default_value = density
+    output = next(n for n in tree.nodes if n.type == "OUTPUT_WORLD")
+    tree.links.new(mist.outputs[0], output.inputs["Volume"])
+
+
 def bounced(scene):
     """Light from glass, a mirror, a coloured wall and a mesh that shines."""
     _room(scene)
@@ -89,11 +97,7 @@ def filled(scene):
     ball = parts.closure("Ball", "ShaderNodeBsdfDiffuse", Color=(0.1, 0.6, 0.2, 1))
     _sphere("Ball", ball, (1.3, -0.5, 0.2), 0.7)
     _lamp("SPOT", 500.0, (0, 0, 6), spot_size=0.6)
-    tree = scene.world.node_tree
-    mist = tree.nodes.new("ShaderNodeVolumeScatter")
-    mist.inputs["Density"].default_value = 0.02
-    output = next(n for n in tree.nodes if n.type == "OUTPUT_WORLD")
-    tree.links.new(mist.outputs[0], output.inputs["Volume"])
+    _fill_world(scene, "ShaderNodeVolumeScatter", 0.02)
 
 
 def skin(scene):
@@ -219,14 +223,6 @@ def _paint(scene):
         tree.links.new(sky.outputs["Color"], tree.nodes["Background"].inputs["Color"])
 
 
-def _mist(scene):
-    tree = scene.world.node_tree
-    node = tree.nodes.new("ShaderNodeVolumeAbsorption")
-    node.inputs["Density"].default_value = 0.05
-    output = next(n for n in tree.nodes if n.type == "OUTPUT_WORLD")
-    tree.links.new(node.outputs[0], output.inputs["Volume"])
-
-
 def _curve(scene):
     curve = scene.render.motion_blur_shutter_curve.curves[0]
     curve.points[0].location.y = 0.1
@@ -313,7 +309,7 @@ EDITS = {
     "dent": _dent,
     "see-through": _see_through,
     "smoke": _smoke,
-    "mist": _mist,
+    "mist": lambda s: _fill_world(s, "ShaderNodeVolumeAbsorption", 0.05),
     "added": _add,
     "duplicated": _duplicate,
     "other shader": _other_shader,

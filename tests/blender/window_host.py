@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs a script in a Blender with a window, of the kind that runs the test, under Xvfb."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -36,3 +37,36 @@ def run(script, *arguments, blend=None, size="800x600", timeout=150):
         timeout=timeout,
     )
     return done.returncode, done.stdout
+
+
+# `steps` of the watching script, from a timer: each of what it yields is waited for.
+_LOOP = """
+todo = steps()
+def step():
+    try:
+        return next(todo)
+    except StopIteration:
+        pass
+    except BaseException as error:
+        found["error"] = repr(error)
+    json.dump(found, open(OUT + ".json", "w"))
+    bpy.ops.wm.quit_blender()
+bpy.app.timers.register(step, first_interval=1.0)
+"""
+
+
+def watch(script, folder, blend=None):
+    """(what the script found, all that Blender said); Blender has ended well.
+
+    Args:
+        script: text of Python in which bpy, json and the dictionary `found` are known, and OUT, a path to which
+            endings may be added.  Defines the generator `steps`, which yields seconds to wait.
+        folder: for files.
+        blend: as of run().
+    """
+    out, file = folder / "watched", folder / "watch.py"
+    file.write_text(f"import bpy, json\nOUT = {str(out)!r}\nfound = {{}}\n{script}\n{_LOOP}")
+    code, said = run(file, blend=blend)
+    result = folder / "watched.json"
+    assert code == 0 and "Traceback" not in said and result.exists(), said
+    return json.loads(result.read_text()), said

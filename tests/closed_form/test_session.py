@@ -167,6 +167,12 @@ class Kept:
         self.statistics = job.statistics()
         return found
 
+    def follow(self, snapshot):
+        """A frame of the snapshot alone, whose picture it makes as well."""
+        alone = s.render(snapshot)
+        np.testing.assert_array_equal(self.picture(snapshot), alone["combined"])
+        return alone
+
     def made(self):
         return np.array([self.session.geometries_made, self.session.ray_shapes_made])
 
@@ -176,11 +182,11 @@ def test_an_edit_makes_again_what_it_changes(name):
     edit, geometries, rays = EDITS[name]
     kept = Kept()
     first = scene()
-    np.testing.assert_array_equal(kept.picture(first), s.render(first)["combined"])
+    kept.follow(first)
     np.testing.assert_array_equal(kept.made(), (3, 3))
     second = copy.deepcopy(first)
     edit(second)
-    np.testing.assert_array_equal(kept.picture(second), s.render(second)["combined"])
+    kept.follow(second)
     np.testing.assert_array_equal(kept.made() - 3, (geometries, rays))
 
 
@@ -200,8 +206,7 @@ def test_an_edit_costs_the_stages_that_read_it(name, refines):
     kept.picture(first)
     second = copy.deepcopy(first)
     edit(second)
-    alone = s.render(second)
-    np.testing.assert_array_equal(kept.picture(second), alone["combined"])
+    alone = kept.follow(second)
     done, whole = kept.statistics, alone["statistics"]
     buckets = whole["buckets_moving"]  # a lens is there
     found = [
@@ -223,8 +228,7 @@ def test_bounced_light_is_that_of_the_lens(edit):
     kept.picture(first)
     second = copy.deepcopy(first)
     edit(second)
-    alone = s.render(second)
-    np.testing.assert_array_equal(kept.picture(second), alone["combined"])
+    kept.follow(second)
 
 
 @pytest.mark.parametrize("name", ["nothing", "filter", "film"])
@@ -236,7 +240,7 @@ def test_bounced_light_stays_where_nothing_of_it_is_other(name):
     kept.picture(first)
     second = copy.deepcopy(first)
     STAGES[name][0](second)
-    np.testing.assert_array_equal(kept.picture(second), s.render(second)["combined"])
+    kept.follow(second)
     assert kept.statistics["grids_shaded"] == 0
 
 
@@ -254,7 +258,7 @@ def test_pictures_of_two_sizes_are_kept_side_by_side():
         kept.picture(snapshot)
     for snapshot in (coarse, whole):
         other_light(snapshot)
-        np.testing.assert_array_equal(kept.picture(snapshot), s.render(snapshot)["combined"])
+        kept.follow(snapshot)
         assert kept.statistics["grids_diced"] == 0
 
 
@@ -267,7 +271,7 @@ def test_edits_in_any_order_leave_no_trace():
     snapshot = scene()
     for k in random.permutation(2 * len(edits)) % len(edits):
         edits[k](snapshot)
-        np.testing.assert_array_equal(kept.picture(snapshot), s.render(snapshot)["combined"])
+        kept.follow(snapshot)
 
 
 def write_pixel(path, color, time):
@@ -351,7 +355,7 @@ def test_equal_geometries_of_one_name_are_each_adopted():
     snapshot["geometries"][1] = dict(snapshot["geometries"][0])
     kept = Kept()
     kept.picture(snapshot)
-    np.testing.assert_array_equal(kept.picture(snapshot), s.render(snapshot)["combined"])
+    kept.follow(snapshot)
     assert kept.session.geometries_adopted == 3
     np.testing.assert_array_equal(kept.made(), (3, 3))
 
@@ -366,7 +370,7 @@ def test_a_job_that_is_cancelled_leaves_a_session_whole():
         job = kept.core.Render(kept.core.Scene(s.packed(snapshot), kept.session))
         job.take_tiles(0.002 * k)
         job.cancel()
-    np.testing.assert_array_equal(kept.picture(snapshot), s.render(snapshot)["combined"])
+    kept.follow(snapshot)
 
 
 def test_warnings_are_those_of_a_frame_alone():
