@@ -5,19 +5,14 @@
 
 namespace granita {
 
-SurfaceId GridPool::id_end() const {
-    if (m_grids.empty()) return 0;
-    return m_bases.back() + static_cast<SurfaceId>(m_grids.back()->micropolygon_count());
-}
-
 SurfaceId GridPool::add(const Grid& grid) {
-    const SurfaceId base = id_end();
-    GRANITA_CHECK(base < kNoSurface - static_cast<SurfaceId>(grid.micropolygon_count()));
+    const SurfaceId base = m_id_end, count = static_cast<SurfaceId>(grid.micropolygon_count());
+    GRANITA_CHECK(base < kNoSurface - count);
     const auto slot = static_cast<std::uint32_t>(m_grids.size());
     m_grids.push_back(&grid);
     m_bases.push_back(base);
-    const std::size_t end = base + static_cast<std::size_t>(grid.micropolygon_count());
-    m_pages.resize((end + kPage - 1) / kPage, slot);
+    m_id_end = base + count;
+    m_pages.resize((static_cast<std::size_t>(m_id_end) + kPage - 1) / kPage, slot);
     return base;
 }
 

@@ -28,8 +28,8 @@ class GridPool {
         std::uint32_t slot;  ///< index in arrival order
         int micropolygon;
     };
-    /// The id of the grid's micropolygon 0.  The grid must outlive the pool, or what is asked of
-    /// it.
+    /// The id of the grid's micropolygon 0.  The grid must outlive what is asked of it, but not the
+    /// pool: of a picture that is kept, grids that no sample sees are gone.
     SurfaceId add(const Grid& grid);
     Place locate(SurfaceId id) const;
     /// Place::slot alone.
@@ -45,7 +45,7 @@ class GridPool {
     const OpacityBounds& opacity(SurfaceId transparent) const { return m_opacity[transparent]; }
     std::size_t size() const { return m_grids.size(); }
     /// Ids are less than this.
-    SurfaceId id_end() const;
+    SurfaceId id_end() const { return m_id_end; }
     const Grid& grid(std::uint32_t slot) const { return *m_grids[slot]; }
     /// The id of its micropolygon 0.
     SurfaceId base(std::uint32_t slot) const { return m_bases[slot]; }
@@ -53,6 +53,7 @@ class GridPool {
   private:
     std::vector<const Grid*> m_grids;
     std::vector<SurfaceId> m_bases;
+    SurfaceId m_id_end = 0;
     /// Every sample asks, so there is no search: the grid of each kPage-th id.
     static constexpr SurfaceId kPage = 8;
     std::vector<std::uint32_t> m_pages;
