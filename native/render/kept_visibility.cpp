@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "scene/channels.h"
+
 namespace granita {
 namespace {
 
@@ -40,6 +42,8 @@ KeptVisibility::KeptVisibility(std::shared_ptr<const Scene> scene,
     : m_scene(std::move(scene)),
       m_image_times(image_times(*m_scene)),
       m_traits(traits_of(*m_scene, shading)),
+      m_requests(shading.requests()),
+      m_channels(m_scene->options),
       m_sample_pixels(sample_pixels),
       m_statistics(std::move(statistics)),
       m_levels(std::move(levels)),
@@ -52,8 +56,7 @@ std::vector<KeptVisibility::Traits> KeptVisibility::traits_of(const Scene& scene
     std::vector<Traits> traits;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const auto material = static_cast<int>(m);
-        traits.push_back({shading.opacity_varies(material), shading.reaches_others(material),
-                          shading.requests()[m]});
+        traits.push_back({shading.opacity_varies(material), shading.reaches_others(material)});
     }
     return traits;
 }
@@ -67,12 +70,13 @@ bool KeptVisibility::serves(const SceneChanges& changes, const ShadingSystem& sh
                             const Rect& sample_pixels) const {
     if ((changes.parts & part::kReadByHiding) != 0 || sample_pixels != m_sample_pixels)
         return false;
-    if (image_times(*m_scene) != m_image_times) return false;
+    if (image_times(*m_scene) != m_image_times || m_requests != shading.requests()) return false;
+    const bool has_lists = std::ranges::any_of(m_traits, &Traits::opacity_varies);
+    if (has_lists && (changes.parts & part::kPasses) != 0) return false;
     for (std::size_t m = 0; m < m_traits.size(); ++m) {
         if (!changes.materials[m]) continue;
         const auto material = static_cast<int>(m);
         if (m_traits[m].opacity_varies || shading.opacity_varies(material)) return false;
-        if (m_traits[m].requests != shading.requests()[m]) return false;
     }
     return true;
 }
@@ -80,21 +84,26 @@ bool KeptVisibility::serves(const SceneChanges& changes, const ShadingSystem& sh
 void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChanges& changes,
                            const ShadingSystem& shading) {
     // What shaded_grids() lends stays: a grid that forgot would take from itself.
-    bool all = (changes.parts & part::kReadByShading & ~part::kMaterials) != 0;
+    bool all = (changes.parts & part::kReadByShading & ~part::kMaterials & ~part::kPasses) != 0;
     for (std::size_t m = 0; m < m_traits.size(); ++m)
         all |= changes.materials[m] &&
                (scene->options.bounces.most > 0 || m_traits[m].reaches_others ||
                 shading.reaches_others(static_cast<int>(m)));
+    const bool wants_channels = !ChannelSet(scene->options).empty();
+    all |= wants_channels && !same_channels(m_channels, scene->options);
     for (const auto& bucket : m_buckets)
         for (const auto& shared : bucket->grids) {
             if (!shared) continue;
             const Grid& grid = shared->grid();
             const bool is_other =
                 grid.material >= 0 && changes.materials[static_cast<std::size_t>(grid.material)];
-            if (all || is_other || grid.broken_radiance || grid.light_share == 0.0f)
+            const bool lacks_channels = wants_channels && grid.channels.empty();
+            if (all || is_other || lacks_channels || grid.broken_radiance ||
+                grid.light_share == 0.0f)
                 shared->forget_radiance();
         }
     m_traits = traits_of(*scene, shading);
+    if (wants_channels) m_channels = scene->options;
     m_scene = std::move(scene);
 }
 

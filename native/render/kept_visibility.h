@@ -74,13 +74,14 @@ class KeptVisibility {
     /// What hiding, and other surfaces, know of a material.
     struct Traits {
         bool opacity_varies, reaches_others;
-        std::vector<AttributeRequest> requests;
     };
     static std::vector<Traits> traits_of(const Scene& scene, const ShadingSystem& shading);
 
     std::shared_ptr<const Scene> m_scene;
     std::vector<std::filesystem::file_time_type> m_image_times;
-    std::vector<Traits> m_traits;  ///< [materials + 1]
+    std::vector<Traits> m_traits;                           ///< [materials]
+    std::vector<std::vector<AttributeRequest>> m_requests;  ///< [materials + 1]
+    Options m_channels;  ///< of grids that hold some: they stay while none are asked for
     Rect m_sample_pixels;
     std::shared_ptr<Statistics> m_statistics;
     std::shared_ptr<const SampleLevels> m_levels;

@@ -15,6 +15,11 @@ bool same_light_samples(const Options& a, const Options& b) {
     return a.light_samples == b.light_samples && a.bounces == b.bounces;
 }
 
+bool same_passes(const Options& a, const Options& b) {
+    return same_channels(a, b) && a.depth_pass == b.depth_pass &&
+           a.pass_alpha_threshold == b.pass_alpha_threshold;
+}
+
 /// `options`, but for what other groups than Rest name, which is that of `other`.
 Options with_groups_of(Options options, const Options& other) {
     // The number of passes of REGULAR samples goes by the filter.
@@ -25,6 +30,11 @@ Options with_groups_of(Options options, const Options& other) {
     options.film_transparent = other.film_transparent;
     options.light_samples = other.light_samples;
     options.bounces = other.bounces;
+    options.passes = other.passes;
+    options.aovs = other.aovs;
+    options.mist = other.mist;
+    options.depth_pass = other.depth_pass;
+    options.pass_alpha_threshold = other.pass_alpha_threshold;
     return options;
 }
 
@@ -66,11 +76,16 @@ part::Set changes_of(const std::vector<Instance>& before, const std::vector<Inst
 
 }  // namespace
 
+bool same_channels(const Options& a, const Options& b) {
+    return a.passes == b.passes && a.aovs == b.aovs && a.mist == b.mist;
+}
+
 SceneChanges::SceneChanges(const Scene& before, const Scene& now)
     : materials(now.materials.size(), false) {
     const auto note = [this](bool is_same, part::Set what) { parts |= is_same ? 0 : what; };
     note(same_film(before.options, now.options), part::kFilm);
     note(same_light_samples(before.options, now.options), part::kLightSamples);
+    note(same_passes(before.options, now.options), part::kPasses);
     note(with_groups_of(before.options, now.options) == now.options, part::kRest);
     const bool same_camera = before.camera == now.camera;
     note(same_camera, part::kLens);

@@ -18,13 +18,19 @@ inline constexpr Set kLightSamples = 4;  ///< of lamps, and ways of bounced ligh
 inline constexpr Set kLights = 8;        ///< lamps and the world
 inline constexpr Set kRays = 16;         ///< who is lit by what, and seen by other than the camera
 inline constexpr Set kMaterials = 32;    ///< SceneChanges::materials, images
-inline constexpr Set kRest = 64;
+inline constexpr Set kPasses = 64;       ///< those that are asked for, and their settings
+inline constexpr Set kRest = 128;
 
-/// What samples see, unless materials change opacity, displacement or attributes.
+/// What samples see, unless materials change opacity, displacement or attributes, or passes look
+/// farther through what is transparent.
 inline constexpr Set kReadByHiding = kLens | kRest;
-/// The radiance of a grid whose points are the same.
-inline constexpr Set kReadByShading = kLightSamples | kLights | kRays | kMaterials | kRest;
+/// The radiance of a grid whose points are the same, and its channels.
+inline constexpr Set kReadByShading =
+    kLightSamples | kLights | kRays | kMaterials | kPasses | kRest;
 }  // namespace part
+
+/// Whether channels of the same names hold the same.
+bool same_channels(const Options& a, const Options& b);
 
 struct SceneChanges {
     /// Geometries are told apart by address: `now` has adopted those of `before`

@@ -154,13 +154,16 @@ class Kept:
         self.core = granita_core
         self.session = granita_core.Session()
 
-    def picture(self, snapshot):
+    def picture(self, snapshot, shown=None):
+        """float32 [height, width, n] of Combined, or of the pass that is shown."""
         width, height = snapshot["options"]["width"], snapshot["options"]["height"]
         job = self.core.Render(self.core.Scene(s.packed(snapshot), self.session))
-        found = np.zeros((height, width, 4), np.float32)
+        found = None
         while not job.done():
             for tile in job.take_tiles(0.1):
-                values = tile.combined
+                values = tile.passes[shown] if shown else tile.combined
+                if found is None:
+                    found = np.zeros((height, width, values.shape[2]), np.float32)
                 y, x = tile.y, tile.x
                 found[y : y + values.shape[0], x : x + values.shape[1]] = values
         job.finish()
@@ -242,6 +245,41 @@ def test_bounced_light_stays_where_nothing_of_it_is_other(name):
     STAGES[name][0](second)
     kept.follow(second)
     assert kept.statistics["grids_shaded"] == 0
+
+
+@pytest.mark.parametrize("transparent", [False, True])
+def test_another_pass_costs_shading_at_most(transparent):
+    """What is transparent is seen anew, as passes may look behind the end of its colour."""
+    snapshot = scene()
+    snapshot["options"].update(refine_samples=False, pass_alpha_threshold=0.5)
+    if transparent:
+        see_through_card(snapshot)
+    kept, shaded, hidden = Kept(), [], []
+    for shown in (None, "Normal", None, "Normal", "Mist", None, "Normal"):
+        snapshot["options"]["passes"] = [shown] if shown else []
+        alone = s.render(snapshot)
+        expected = alone["passes"][shown] if shown else alone["combined"]
+        np.testing.assert_array_equal(kept.picture(snapshot, shown), expected)
+        done, whole = kept.statistics, alone["statistics"]
+        buckets = whole["buckets_moving"]
+        shaded.append(part(done["grids_shaded"], whole["grids_shaded"]))
+        hidden.append(part(buckets - done["buckets_seen_before"], buckets))
+    if transparent:
+        assert hidden == 7 * [ALL]
+    else:
+        assert hidden == [ALL] + 6 * [NONE]
+        assert shaded == [ALL, ALL, NONE, NONE, ALL, NONE, ALL]
+
+
+def test_a_pass_holds_after_an_edit_that_was_made_without_it():
+    kept, snapshot = Kept(), scene()
+    for edit, shown in ((None, "Normal"), (other_color, None), (None, "Normal")):
+        snapshot["options"]["passes"] = [shown] if shown else []
+        if edit:
+            edit(snapshot)
+        picture = kept.picture(snapshot, shown)
+    np.testing.assert_array_equal(picture, s.render(snapshot)["passes"]["Normal"])
+    assert 0 < kept.statistics["grids_shaded"] < s.render(snapshot)["statistics"]["grids_shaded"]
 
 
 def job_warnings(kept, snapshot):
