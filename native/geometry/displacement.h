@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,8 @@ class Displacement {
     /// The instance whose offsets this one's are, but for how finely textures are read: to rays
     /// one shape may stand for both.
     virtual std::size_t same_as(std::size_t instance) const = 0;
+    /// Shared by those of several pictures whose offsets are all the same; nullptr: by none.
+    virtual std::shared_ptr<const void> identity() const { return nullptr; }
     virtual void find(std::size_t instance, const SharedGeometry& geometry, const BasePatch& patch,
                       std::span<const Vec2d> uv, bool derivatives, Offsets& out) const = 0;
 };

@@ -6,6 +6,7 @@
 
 #include "base/stage_timer.h"
 #include "render/raster_bucket.h"
+#include "shade/material_displacement.h"
 
 namespace granita {
 namespace {
@@ -86,8 +87,10 @@ std::optional<SceneChanges> changes_since(const KeptVisibility* before, const Sc
 }
 
 KeptShading shading_after(KeptShading shading, const KeptVisibility* before,
-                          const std::optional<SceneChanges>& changes) {
-    if (before) shading.grids = before->shaded_grids(*changes);
+                          const std::optional<SceneChanges>& changes, const Scene& scene) {
+    if (!before) return shading;
+    shading.grids = before->shaded_grids(*changes);
+    if (before->displaces_alike(scene, *changes)) shading.offsets = before->offsets();
     return shading;
 }
 
@@ -95,14 +98,14 @@ PixelFilter filter_of(const Scene& scene) {
     return PixelFilter(scene.options.pixel_filter, scene.options.filter_width);
 }
 
-/// What is kept of the frame.  Displaced surfaces are not, whose materials say things while they
-/// are diced, nor what takes its samples by noise, nor what lies in a device.
+/// What is kept of the frame.  Not what takes its samples by noise, nor what lies in a device.
 std::unique_ptr<KeptVisibility> make_visibility(Frame& frame,
                                                 const std::shared_ptr<const Scene>& scene,
                                                 const std::shared_ptr<Statistics>& statistics) {
-    if (frame.choice.gl || frame.levels.count() > 1 || frame.shading.displacement()) return nullptr;
+    if (frame.choice.gl || frame.levels.count() > 1) return nullptr;
     if (frame.before) {
-        if (frame.before->serves(*frame.changes, frame.shading, frame.film.sample_pixels())) {
+        if (frame.before->serves(*scene, *frame.changes, frame.shading,
+                                 frame.film.sample_pixels())) {
             frame.sees_anew = false;
             frame.before->renew(scene, *frame.changes, frame.shading);
             frame.before->say(*frame.shading.geometries(), frame.report);
@@ -127,7 +130,7 @@ Frame::Frame(const std::shared_ptr<const Scene>& frame_scene,
       before(std::move(kept.visibility)),
       changes(changes_since(before.get(), scene)),
       shading(scene, statistics, report, progress, frame_choice.executor != Executor::Raster,
-              shading_after(std::move(kept.shading), before.get(), changes)),
+              shading_after(std::move(kept.shading), before.get(), changes, scene)),
       view(make_view(scene, statistics, shading, filter_of(scene))),
       shared_levels(std::make_shared<const SampleLevels>(
           view, filter_of(scene), frame_choice.executor != Executor::Raster, report)),
@@ -147,6 +150,8 @@ Frame::Frame(const std::shared_ptr<const Scene>& frame_scene,
 
 std::unique_ptr<KeptVisibility> Frame::take_visibility() {
     if (!visibility) return nullptr;
+    // It is to be said again.
+    if (shading.displacement() && shading.displacement()->has_said()) return nullptr;
     if (sees_anew) {
         report.add(visibility->said());
         std::vector<std::size_t> opened;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "scene/channels.h"
+#include "shade/material_displacement.h"
 
 namespace granita {
 namespace {
@@ -44,6 +45,7 @@ KeptVisibility::KeptVisibility(std::shared_ptr<const Scene> scene,
       m_traits(traits_of(*m_scene, shading)),
       m_requests(shading.requests()),
       m_channels(m_scene->options),
+      m_offsets(shading.displacement() ? shading.displacement()->kept() : nullptr),
       m_sample_pixels(sample_pixels),
       m_statistics(std::move(statistics)),
       m_levels(std::move(levels)),
@@ -66,11 +68,20 @@ bool KeptVisibility::is_of_size(const Scene& scene) const {
     return a.width == b.width && a.height == b.height && a.crop == b.crop && a.samples == b.samples;
 }
 
-bool KeptVisibility::serves(const SceneChanges& changes, const ShadingSystem& shading,
-                            const Rect& sample_pixels) const {
+bool KeptVisibility::displaces_alike(const Scene& now, const SceneChanges& changes) const {
+    if ((changes.parts & part::kRest) != 0 || image_times(*m_scene) != m_image_times) return false;
+    for (std::size_t m = 0; m < now.materials.size(); ++m)
+        if (changes.materials[m] &&
+            (m_scene->materials[m].graph.moves_surface() || now.materials[m].graph.moves_surface()))
+            return false;
+    return true;
+}
+
+bool KeptVisibility::serves(const Scene& now, const SceneChanges& changes,
+                            const ShadingSystem& shading, const Rect& sample_pixels) const {
     if ((changes.parts & part::kReadByHiding) != 0 || sample_pixels != m_sample_pixels)
         return false;
-    if (image_times(*m_scene) != m_image_times || m_requests != shading.requests()) return false;
+    if (!displaces_alike(now, changes) || m_requests != shading.requests()) return false;
     const bool has_lists = std::ranges::any_of(m_traits, &Traits::opacity_varies);
     if (has_lists && (changes.parts & part::kPasses) != 0) return false;
     for (std::size_t m = 0; m < m_traits.size(); ++m) {

@@ -37,11 +37,15 @@ class KeptVisibility {
     /// Whether it is of a picture of the same pixels and samples: what it is looked up by.
     bool is_of_size(const Scene& scene) const;
     /// Whether a picture of the scene now sees the same.
-    bool serves(const SceneChanges& changes, const ShadingSystem& shading,
+    bool serves(const Scene& now, const SceneChanges& changes, const ShadingSystem& shading,
                 const Rect& sample_pixels) const;
     /// It is the scene's from now on.  What was shaded stays where nothing of it changed.
     void renew(std::shared_ptr<const Scene> scene, const SceneChanges& changes,
                const ShadingSystem& shading);
+    /// Whether displacement in a picture of the scene moves everything as it did here.
+    bool displaces_alike(const Scene& now, const SceneChanges& changes) const;
+    /// nullptr where nothing is displaced.
+    const std::shared_ptr<KeptOffsets>& offsets() const { return m_offsets; }
     /// Its grids for a picture that may see others, or nullptr where these are not under the same
     /// light.  It must outlive them.
     std::shared_ptr<const ShadedGrids> shaded_grids(const SceneChanges& changes) const;
@@ -82,6 +86,7 @@ class KeptVisibility {
     std::vector<Traits> m_traits;                           ///< [materials]
     std::vector<std::vector<AttributeRequest>> m_requests;  ///< [materials + 1]
     Options m_channels;  ///< of grids that hold some: they stay while none are asked for
+    std::shared_ptr<KeptOffsets> m_offsets;
     Rect m_sample_pixels;
     std::shared_ptr<Statistics> m_statistics;
     std::shared_ptr<const SampleLevels> m_levels;

@@ -58,7 +58,6 @@ Instance with_groups_of(Instance instance, const Instance& other) {
     instance.visible_glossy = other.visible_glossy;
     instance.visible_transmission = other.visible_transmission;
     instance.casts_shadow = other.casts_shadow;
-    instance.terminator_offset = other.terminator_offset;
     instance.receives = other.receives;
     instance.blocks = other.blocks;
     return instance;

@@ -11,12 +11,16 @@
 
 namespace granita {
 
+struct KeptOffsets;  // shade/material_displacement.h
+
 struct KeptShading {
     std::shared_ptr<KeptGeometry> geometry = std::make_shared<KeptGeometry>();
     std::shared_ptr<KeptRays> rays;  ///< nullptr: none are kept
     /// Of an earlier picture in which nothing that shading reads was another, but for grids
     /// themselves; may be nullptr.
     std::shared_ptr<const ShadedGrids> grids;
+    /// Of an earlier picture with the same offsets, or nullptr.
+    std::shared_ptr<KeptOffsets> offsets;
 };
 
 }  // namespace granita

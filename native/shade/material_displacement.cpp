@@ -191,11 +191,12 @@ class MaterialDisplacement::Batch {
 MaterialDisplacement::MaterialDisplacement(const Scene& scene,
                                            std::vector<std::optional<DisplacementProgram>> programs,
                                            std::shared_ptr<GeometryCache> geometries,
-                                           Report& report)
+                                           Report& report, std::shared_ptr<KeptOffsets> kept)
     : m_scene(scene),
       m_programs(std::move(programs)),
       m_geometries(std::move(geometries)),
       m_report(report),
+      m_kept(kept ? std::move(kept) : std::make_shared<KeptOffsets>()),
       m_targets(scene.instances.size()) {
     if (std::ranges::none_of(m_programs, [](const auto& p) { return p.has_value(); })) return;
     const Options& options = scene.options;
@@ -295,6 +296,7 @@ void MaterialDisplacement::find(std::size_t index, const SharedGeometry& geometr
             ++beyond;
         }
     }
+    if (broken + beyond > 0) m_has_said = true;
     if (broken)
         m_report.warn(instance.name, "its displacement is no number at some points", broken);
     if (beyond)
@@ -307,8 +309,19 @@ void MaterialDisplacement::find(std::size_t index, const SharedGeometry& geometr
 float MaterialDisplacement::bound(std::size_t instance) const {
     const std::size_t source = m_targets[instance]->same_as;
     const Target& target = *m_targets[source];
-    std::call_once(target.bound_once, [&] { target.bound = find_bound(source); });
+    std::call_once(target.bound_once, [&] { target.bound = kept_bound(source); });
     return target.bound;
+}
+
+float MaterialDisplacement::kept_bound(std::size_t index) const {
+    {
+        const std::lock_guard lock(m_kept->mutex);
+        const auto known = m_kept->bounds.find(index);
+        if (known != m_kept->bounds.end()) return known->second;
+    }
+    const float found = find_bound(index);
+    const std::lock_guard lock(m_kept->mutex);
+    return m_kept->bounds.emplace(index, found).first->second;
 }
 
 float MaterialDisplacement::find_bound(std::size_t index) const {

@@ -5,7 +5,10 @@
 // depends on the place alone, and neither grids' borders nor what rays meet can be told from it.
 #pragma once
 
+#include <atomic>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -16,16 +19,28 @@
 
 namespace granita {
 
+/// Shared by pictures whose offsets are the same: their largest, by instance.
+struct KeptOffsets {
+    std::mutex mutex;
+    std::map<std::size_t, float> bounds;
+};
+
 class MaterialDisplacement final : public Displacement {
   public:
-    /// `programs` [materials]: those that move their surfaces.  All must outlive this.
+    /// `programs` [materials]: those that move their surfaces; `kept`: of a picture whose offsets
+    /// are the same, or nullptr.  All must outlive this.
     MaterialDisplacement(const Scene& scene,
                          std::vector<std::optional<DisplacementProgram>> programs,
-                         std::shared_ptr<GeometryCache> geometries, Report& report);
+                         std::shared_ptr<GeometryCache> geometries, Report& report,
+                         std::shared_ptr<KeptOffsets> kept);
     ~MaterialDisplacement() override;
 
     /// Whether any instance is displaced at all.
     bool any() const;
+    /// Whether there was something to say of an offset.
+    bool has_said() const { return m_has_said; }
+    const std::shared_ptr<KeptOffsets>& kept() const { return m_kept; }
+    std::shared_ptr<const void> identity() const override { return m_kept; }
     bool displaces(std::size_t instance) const override;
     float bound(std::size_t instance) const override;
     std::size_t same_as(std::size_t instance) const override;
@@ -38,6 +53,7 @@ class MaterialDisplacement final : public Displacement {
     const DisplacementProgram* program_of(const Instance& instance, const SharedGeometry& geometry,
                                           std::uint32_t face) const;
     const DisplacementProgram* program(std::int32_t material) const;
+    float kept_bound(std::size_t instance) const;
     float find_bound(std::size_t instance) const;
     float sampled_bound(std::size_t instance, const SharedGeometry& geometry) const;
 
@@ -45,6 +61,8 @@ class MaterialDisplacement final : public Displacement {
     std::vector<std::optional<DisplacementProgram>> m_programs;
     std::shared_ptr<GeometryCache> m_geometries;
     Report& m_report;
+    std::shared_ptr<KeptOffsets> m_kept;
+    mutable std::atomic<bool> m_has_said{false};
     std::vector<std::unique_ptr<Target>> m_targets;  ///< [instances]; nullptr: not displaced
 };
 

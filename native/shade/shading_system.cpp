@@ -109,7 +109,7 @@ struct ShadingSystem::Impl {
             compile_surface(default_material(), scene, textures, report, {"no material"}, passes));
         for (const CompiledSurface& material : materials) requests.push_back(material.requests);
         displacement = std::make_unique<MaterialDisplacement>(scene, std::move(displacements),
-                                                              geometries, report);
+                                                              geometries, report, kept.offsets);
         if (!displacement->any()) displacement.reset();
         emission = std::make_unique<MaterialEmission>(scene, textures, materials);
         const bool any_reflects = std::ranges::any_of(scene.instances, [this](const Instance& i) {
@@ -423,7 +423,7 @@ float ShadingSystem::threshold() const {
     return m_impl->threshold;
 }
 
-const Displacement* ShadingSystem::displacement() const {
+const MaterialDisplacement* ShadingSystem::displacement() const {
     return m_impl->displacement.get();
 }
 

@@ -19,6 +19,8 @@
 
 namespace granita {
 
+class MaterialDisplacement;
+
 class ShadingSystem {
   public:
     /// Compiles every material's programs (displacement, opacity, radiance: decision 6); unknown
@@ -33,7 +35,7 @@ class ShadingSystem {
     /// For View: [materials + 1], the last for "no material".
     const std::vector<std::vector<AttributeRequest>>& requests() const;
     /// nullptr: nothing is displaced.
-    const Displacement* displacement() const;
+    const MaterialDisplacement* displacement() const;
 
     /// For View: what rays and dicing know of the same geometries.
     std::shared_ptr<GeometryCache> geometries() const;

@@ -282,6 +282,70 @@ def test_a_pass_holds_after_an_edit_that_was_made_without_it():
     assert 0 < kept.statistics["grids_shaded"] < s.render(snapshot)["statistics"]["grids_shaded"]
 
 
+def displaced_cube(snapshot, height=0.3, color=(0.2, 0.5, 0.9)):
+    nodes = [
+        {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (*color, 1)}},
+        {"type": "ShaderNodeTexNoise", "inputs": {"Scale": 3.0}},
+        {
+            "type": "ShaderNodeDisplacement",
+            "inputs": {"Height": ("LINK", 1, "Fac"), "Midlevel": 0.5, "Scale": height},
+        },
+    ]
+    moved = {"displacement": (2, "Displacement"), "displacement_method": "DISPLACEMENT"}
+    snapshot["materials"][2].update(nodes=nodes, surface=(0, "BSDF"), **moved)
+
+
+# Buckets hidden, grids shaded, shapes for rays made.
+DISPLACED_STAGES = {
+    "nothing": (lambda snapshot: None, NONE, NONE, 0),
+    "light": (other_light, NONE, ALL, 0),
+    "colour of the floor": (other_color, NONE, FEWER, 0),
+    "lens": (slightly_other_lens, ALL, NONE, 0),
+    "height": (lambda snapshot: displaced_cube(snapshot, 0.2), ALL, ALL, 1),
+    "colour": (lambda snapshot: displaced_cube(snapshot, color=(1, 0, 0)), ALL, ALL, 1),
+    "view": (moved_camera, ALL, ALL, 1),
+    "place of a polygon": (moved_card, ALL, ALL, 1),
+}
+
+
+@pytest.mark.parametrize("name", DISPLACED_STAGES)
+def test_what_is_displaced_is_moved_again_where_its_offsets_may_be_others(name):
+    edit, *expected = DISPLACED_STAGES[name]
+    first, kept = scene(), Kept()
+    displaced_cube(first)
+    first["options"]["refine_samples"] = False
+    kept.picture(first)
+    made = kept.session.ray_shapes_made
+    second = copy.deepcopy(first)
+    edit(second)
+    alone = kept.follow(second)
+    done, whole = kept.statistics, alone["statistics"]
+    buckets = whole["buckets_moving"]
+    found = [
+        part(buckets - done["buckets_seen_before"], buckets),
+        part(done["grids_shaded"], whole["grids_shaded"]),
+        kept.session.ray_shapes_made - made,
+    ]
+    assert found == expected
+
+
+def test_what_there_is_to_say_of_displacement_is_said_of_each_picture():
+    snapshot, kept = scene(), Kept()
+    displaced_cube(snapshot)
+    infinite = {
+        "type": "ShaderNodeMath",
+        "inputs": {"Value": 1e30, "Value_001": 1e30},
+        "properties": {"operation": "MULTIPLY"},
+    }
+    nodes = snapshot["materials"][2]["nodes"]
+    nodes[1] = infinite
+    nodes[2]["inputs"]["Height"] = ("LINK", 1, "Value")
+    alone = s.render(snapshot)["warnings"]
+    assert any("displacement is no number" in str(warning) for warning in alone)
+    for _ in range(3):
+        assert job_warnings(kept, snapshot) == alone
+
+
 def job_warnings(kept, snapshot):
     job = kept.core.Render(kept.core.Scene(s.packed(snapshot), kept.session))
     job.finish()
@@ -386,6 +450,25 @@ def test_an_orbit_around_a_cage_keeps_no_shape_of_each_place():
     assert kept.session.ray_shapes_made >= 14
     # Two of those before, and the one that is made.
     assert taken[-1] < 1.2 * max(taken[:3])
+
+
+def test_another_geometry_offset_ends_light_elsewhere():
+    """Of a coarse smooth ball: where rays start is known to its grids."""
+    kept, snapshot = Kept(), s.perspective((24, 24), 60.0, executor="SIMD", samples=4)
+    corners = [(x, y, 5 + z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    s.mesh(snapshot, corners, faces, matte(snapshot, (1, 1, 1)), smooth=np.ones(6, np.uint8))
+    sine, cosine = np.sin(4.5), np.cos(4.5)  # it grazes
+    turn = np.array([[cosine, 0, sine, 0], [0, 1, 0, 0], [-sine, 0, cosine, 0], [0, 0, 0, 1]])
+    snapshot["lights"] = [
+        {"name": "Sun", "kind": "SUN", "world_from_light": (turn @ DOWN)[None], "energy": 3.0}
+    ]
+    seen = []
+    for offset in (0, 60000):
+        snapshot["instances"]["flags"] = [59 | offset << 16]
+        seen.append(kept.picture(snapshot))
+    assert np.abs(seen[1] - seen[0]).max() > 0.01
+    np.testing.assert_array_equal(seen[1], s.render(snapshot)["combined"])
 
 
 def test_equal_geometries_of_one_name_are_each_adopted():

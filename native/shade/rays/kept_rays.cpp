@@ -25,31 +25,33 @@ KeptRays::KeptRays() : m_device(rtcNewDevice(nullptr)) {
 
 std::shared_ptr<const KeptRayShape> KeptRays::find(const RayKey& key) {
     const std::lock_guard lock(m_mutex);
-    const auto shapes = m_shapes.find(key.data.get());
+    const auto shapes = m_shapes.find(of(key));
     if (shapes == m_shapes.end()) return nullptr;
-    Shapes& of = shapes->second;
+    Shapes& all = shapes->second;
     const auto found =
-        std::ranges::find_if(of, [&](const auto& shape) { return shape->key == key; });
-    if (found == of.end()) return nullptr;
-    std::rotate(of.begin(), found, found + 1);
-    return of.front();
+        std::ranges::find_if(all, [&](const auto& shape) { return shape->key == key; });
+    if (found == all.end()) return nullptr;
+    std::rotate(all.begin(), found, found + 1);
+    return all.front();
 }
 
 void KeptRays::add(std::shared_ptr<const KeptRayShape> made) {
     std::shared_ptr<const KeptRayShape> dropped;  // freed outside the lock
     const std::lock_guard lock(m_mutex);
-    Shapes& of = m_shapes[made->key.data.get()];
-    of.insert(of.begin(), std::move(made));
+    Shapes& all = m_shapes[of(made->key)];
+    all.insert(all.begin(), std::move(made));
     ++m_made;
-    if (of.size() <= kMostOfOne) return;
-    dropped = std::move(of.back());
-    of.pop_back();
+    if (all.size() <= kMostOfOne) return;
+    dropped = std::move(all.back());
+    all.pop_back();
 }
 
 void KeptRays::keep_only(const GeometryList& geometries) {
     const std::set<const GeometryData*> there = geometries.members();
     const std::lock_guard lock(m_mutex);
-    std::erase_if(m_shapes, [&](const auto& entry) { return !there.contains(entry.first); });
+    std::erase_if(m_shapes, [&](const auto& entry) {
+        return !there.contains(std::get<const GeometryData*>(entry.first));
+    });
 }
 
 std::size_t KeptRays::embree_bytes() const {

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -30,7 +31,9 @@ struct RayKey {
     std::shared_ptr<const GeometryData> data;
     float frame_time = 0.0f;
     std::uint8_t use = 0;   ///< by instances, of RayScene
-    std::vector<Eye> eyes;  ///< of a subdivision surface: how finely
+    std::vector<Eye> eyes;  ///< of what is subdivided or displaced: how finely
+    std::shared_ptr<const void> displacement = nullptr;  ///< Displacement::identity()
+    std::size_t displaced_as = 0;                        ///< the instance whose offsets it has
     bool operator==(const RayKey&) const = default;
 };
 
@@ -42,9 +45,9 @@ struct KeptRayShape {
     bool is_coarsened = false;
 };
 
-/// Thread-safe.  Owns the device that all in it belong to.  Of each geometry there are the two that
-/// were asked for last, as a view has a coarse picture and a whole one: an orbit around a
-/// subdivision surface makes another one for each place.
+/// Thread-safe.  Owns the device that all in it belong to.  Of each geometry, displaced as an
+/// instance is or not, there are the two that were asked for last, as a view has a coarse picture
+/// and a whole one: an orbit around a subdivision surface makes another one for each place.
 class KeptRays {
   public:
     /// Throws Error where Embree does not start.
@@ -63,12 +66,16 @@ class KeptRays {
 
   private:
     static constexpr std::size_t kMostOfOne = 2;
+    using Of = std::tuple<const GeometryData*, bool, std::size_t>;
     using Shapes = std::vector<std::shared_ptr<const KeptRayShape>>;  ///< latest first
+    static Of of(const RayKey& key) {
+        return {key.data.get(), key.displacement != nullptr, key.displaced_as};
+    }
 
     std::atomic<long long> m_bytes{0};
     RtcHandle<RTCDevice> m_device;
     std::mutex m_mutex;
-    std::map<const GeometryData*, Shapes> m_shapes;
+    std::map<Of, Shapes> m_shapes;
     std::atomic<std::uint64_t> m_made{0};
 };
 

@@ -111,23 +111,35 @@ void RayScene::Impl::build_geometry(int index, std::uint8_t use, Report& report,
                     "has so many faces near the camera that its shadows are coarser than a pixel");
 }
 
-/// Not kept for the next picture: materials may change.
 void RayScene::Impl::build_displaced(std::size_t index, std::uint8_t use, Report& report,
                                      const Progress& progress) {
     const Instance& instance = scene.instances[index];
     const auto geometry = static_cast<std::size_t>(instance.geometry);
     const auto shared = cache->shared(scene, geometry, report);
-    auto made = std::make_shared<KeptRayShape>();
-    made->key = {scene.geometries.share(geometry), scene.options.frame_time, use, {}};
-    auto shape = std::make_unique<RayDisplaced>(
-        shared, *displacement, index, detail_of(instance.geometry, shared.get()), progress);
-    if (shape->is_coarsened())
+    const RayDetail detail = detail_of(instance.geometry, shared.get());
+    const RayKey key{scene.geometries.share(geometry),
+                     scene.options.frame_time,
+                     use,
+                     detail.eyes(),
+                     displacement->identity(),
+                     index};
+    std::shared_ptr<const KeptRayShape>& shape = displaced[index];
+    shape = kept->find(key);
+    if (!shape) {
+        auto made = std::make_shared<KeptRayShape>();
+        made->key = key;
+        auto triangles =
+            std::make_unique<RayDisplaced>(shared, *displacement, index, detail, progress);
+        made->is_coarsened = triangles->is_coarsened();
+        made->shape = std::move(triangles);
+        build(*made, progress);
+        kept->add(made);
+        shape = std::move(made);
+    }
+    if (shape->is_coarsened)
         report.warn(
             instance.name,
             "is displaced so finely near the camera that its shadows are coarser than that");
-    made->shape = std::move(shape);
-    build(*made, progress);
-    displaced[index] = std::move(made);
 }
 
 void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
