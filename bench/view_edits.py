@@ -41,6 +41,15 @@ def orbit(view, k):
     view.view_rotation = Quaternion((0, 0, 1), 0.02 * (1 + k)) @ view.view_rotation
 
 
+def show_pass(scene, name):
+    areas = bpy.context.window_manager.windows[0].screen.areas
+    area = next(area for area in areas if area.type == "VIEW_3D")
+    shading = area.spaces.active.shading
+    owner = shading.granita if scene.render.engine == "GRANITA" else shading.cycles
+    owner.render_pass = name
+    area.tag_redraw()
+
+
 # edit(scene, RegionView3D, k): k counts the calls, each makes another picture.
 EDITS = {
     "shutter": lambda s, v, k: setattr(s.render, "motion_blur_shutter", 0.6 + 0.02 * k),
@@ -59,5 +68,7 @@ EDITS = {
     ),
     "frame": lambda s, v, k: s.frame_set(s.frame_current + 1),
     "orbit": lambda s, v, k: orbit(v, k),
+    "pass": lambda s, v, k: show_pass(s, "NORMAL"),
+    "back from pass": lambda s, v, k: show_pass(s, "COMBINED"),
     "to camera": lambda s, v, k: setattr(v, "view_perspective", "CAMERA"),
 }

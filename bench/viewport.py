@@ -26,6 +26,8 @@ EDITS = (
     "lamp strength",
     "lamp color",
     "material color",
+    "pass",
+    "back from pass",
     "object moved",
     "frame",
     "orbit",
