@@ -70,7 +70,9 @@ def test_inside(scene, render, local):
 def test_of_the_thing_alone(scene, render):
     things = stage(scene)
     occluded(things, "AO", 2.0, only_local=True)
-    scene.camera.location[:2] = things[2].location[:2]  # the ring, of which one side faces the other
+    scene.camera.location[:2] = things[2].location[
+        :2
+    ]  # the ring, of which one side faces the other
     scene.camera.data.ortho_scale = 2.0
     agree(scene, render, 0.04)
 
