@@ -6,6 +6,7 @@
 //   how casters use it (opacity, lifespans, sets of lights)   kept                made again
 //   view, transforms; a subdivision surface                   kept                made again
 //   view, transforms; others                                  kept                kept
+//   view, transforms, its displacement; what is displaced     kept                made again
 //   lens, lights, colours, samples, film                      kept                kept
 //
 // What samples have seen and how grids were shaded is kept by picture (kept_visibility.h); which
