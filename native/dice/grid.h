@@ -109,9 +109,10 @@ struct Grid {
     std::vector<Vec3f>
         radiance;  ///< [vertices] premultiplied by opacity, plus emission; linear, unclamped
 
-    /// [points] what diffuse lobes reflect of other surfaces' light, by albedo: samples that are
-    /// shaded by themselves take it from here.  Empty: light is not followed so far.
-    std::vector<Vec3f> gathered;
+    /// [points] what diffuse lobes reflect of other surfaces' light and of the world between them,
+    /// by albedo: samples that are shaded by themselves take it from here.  Empty: light is not
+    /// followed so far.  And of that the world's; empty where no channel tells them apart.
+    std::vector<Vec3f> gathered, gathered_world;
     /// [points] likewise what is scattered below the surface, by its weight: light of lamps and the
     /// world, and of other surfaces.
     std::vector<Vec3f> scattered, scattered_bounced;

@@ -76,6 +76,7 @@ void SharedGrid::forget_radiance() {
     m_grid->broken_radiance = false;
     m_grid->radiance.clear();
     m_grid->gathered.clear();
+    m_grid->gathered_world.clear();
     m_grid->scattered.clear();
     m_grid->scattered_bounced.clear();
     m_grid->unsettled.clear();

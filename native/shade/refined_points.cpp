@@ -120,6 +120,7 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
             to.push_back(blends[i].mean<Vec3f>([&](std::size_t point) { return from[point]; }));
     };
     take(grid.gathered, gathered);
+    take(grid.gathered_world, gathered_world);
     take(grid.scattered, scattered);
     take(grid.scattered_bounced, scattered_bounced);
     for (std::size_t i = 0; i < wanted.size(); ++i) {

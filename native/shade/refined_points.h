@@ -28,8 +28,9 @@ struct RefinedPoint {
 struct RefinedPoints {
     ShadingPoints points;  ///< their times are set only where `timed`
     std::vector<GridAttribute> attributes;
-    std::vector<ObjectAxes> axes_at_times;                      ///< as those of ShadingInput
-    std::vector<Vec3f> gathered, scattered, scattered_bounced;  ///< as those of Grid
+    std::vector<ObjectAxes> axes_at_times;  ///< as those of ShadingInput
+    /// As those of Grid.
+    std::vector<Vec3f> gathered, gathered_world, scattered, scattered_bounced;
 
     /// @param grid with its shading state, whose points do not stand for faces.
     /// @param timed whether anything of the frame moves.

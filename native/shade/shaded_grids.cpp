@@ -52,6 +52,7 @@ const Grid* ShadedGrids::find(const Grid& grid) const {
 void take_shading(const Grid& from, Grid& to) {
     to.radiance = from.radiance;
     to.gathered = from.gathered;
+    to.gathered_world = from.gathered_world;
     to.scattered = from.scattered;
     to.scattered_bounced = from.scattered_bounced;
     to.unsettled = from.unsettled;

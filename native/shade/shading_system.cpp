@@ -200,15 +200,25 @@ struct ShadingSystem::Impl {
     /// to samples in it, whose diffuse lobes take it from there.  Returns what of it is noise at
     /// single points.
     std::vector<Vec3f> add_bounces(const ShadingPoints& points, const SurfaceClosure& closure,
-                                   const LeavingRays& leaving, std::vector<Vec3f>& gathered,
-                                   ReflectionParts* parts, std::vector<Vec3f>& radiance) const {
+                                   const LeavingRays& leaving, Grid& grid, ReflectionParts* parts,
+                                   std::vector<Vec3f>& radiance) const {
         GatheredLight light = bounces->gather(leaving.rays, points.count);
-        if (leaving.diffuse) gathered = shared_light(points, closure, light);
+        if (leaving.diffuse) {
+            if (parts && !leaving.world.empty())
+                grid.gathered_world = shared_light(points, closure, leaving.world, light.nearness);
+            for (std::size_t i = 0; i < leaving.world.size(); ++i)
+                light.diffuse[i] += leaving.world[i];
+            grid.gathered = shared_light(points, closure, light.diffuse, light.nearness);
+        }
         for (std::size_t i = 0; i < points.count; ++i) {
-            const Vec3f diffuse = gathered[i] * diffuse_albedo(closure, i);
+            const Vec3f albedo = diffuse_albedo(closure, i);
+            const Vec3f diffuse = grid.gathered[i] * albedo;
             const Vec3f others = light.glossy[i] + light.mirrored[i];
             if (parts) {
-                parts->diffuse_bounced[i] = diffuse;
+                const Vec3f of_world =
+                    grid.gathered_world.empty() ? Vec3f(0.0f) : grid.gathered_world[i] * albedo;
+                parts->diffuse[i] += of_world;
+                parts->diffuse_bounced[i] = diffuse - of_world;
                 parts->glossy_bounced[i] = others - light.transmitted[i];
                 parts->transmission_bounced[i] = light.transmitted[i];
             }
@@ -257,15 +267,16 @@ struct ShadingSystem::Impl {
         const bool has_passes = !channels.empty();
         ReflectionParts parts;
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
-        LeavingRays leaving{{}, grid.gathered.empty()};
+        // How near surfaces are tells how far neighbours share, what the world sends as well.
+        LeavingRays leaving{{}, grid.gathered.empty(), scene.options.bounces.diffuse > 0, {}};
         if (light)
             radiance = light->reflect(points, closure, grid.key, has_passes ? &parts : nullptr, at,
                                       noise, bounces ? &leaving : nullptr);
         else
             parts.resize(has_passes ? points.count : 0);
         if (bounces && !closure.lobes.empty())
-            doubtful = add_bounces(points, closure, leaving, grid.gathered,
-                                   has_passes ? &parts : nullptr, radiance);
+            doubtful = add_bounces(points, closure, leaving, grid, has_passes ? &parts : nullptr,
+                                   radiance);
         if (!closure.subsurface.empty())
             add_scattered(points, closure, at, grid, has_passes ? &parts : nullptr, radiance);
         for (std::size_t i = 0; i < closure.emission.size(); ++i)
@@ -319,6 +330,7 @@ struct ShadingSystem::Impl {
         const Mat3f camera_from_world = glm::transpose(Mat3f(camera.world_from_camera));
         for (const Vec3f& p : refined.points.p) out.p.push_back(camera_from_world * p);
         out.gathered = refined.gathered;
+        out.gathered_world = refined.gathered_world;
         out.scattered = refined.scattered;
         out.scattered_bounced = refined.scattered_bounced;
         if (!grid.opacity.empty()) shade_opacity(out, input(grid, refined));

@@ -25,14 +25,15 @@ Vec3f diffuse_albedo(const SurfaceClosure& closure, std::size_t point) {
 }
 
 std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosure& closure,
-                                const GatheredLight& light) {
-    NoisyValues noisy{light.diffuse, std::vector<Vec3f>(points.count),
-                      std::vector<Vec3f>(points.count), kLeastReach};
+                                const std::vector<Vec3f>& diffuse,
+                                const std::vector<float>& nearness) {
+    NoisyValues noisy{diffuse, std::vector<Vec3f>(points.count), std::vector<Vec3f>(points.count),
+                      kLeastReach};
     for (std::size_t i = 0; i < points.count; ++i) {
         const Vec3f albedo = diffuse_albedo(closure, i);
         noisy.told[i] = Vec3f(glm::greaterThan(albedo, Vec3f(kLeastAlbedo)));
         noisy.values[i] *= noisy.told[i] / glm::max(albedo, Vec3f(kLeastAlbedo));
-        noisy.by_reach[i] = Vec3f(light.nearness[i] / kNear);
+        noisy.by_reach[i] = Vec3f(nearness[i] / kNear);
     }
     return share(points, noisy);
 }

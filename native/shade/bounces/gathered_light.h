@@ -29,10 +29,11 @@ struct GatheredLight {
 /// Weight of a point's diffuse lobes.
 Vec3f diffuse_albedo(const SurfaceClosure& closure, std::size_t point);
 
-/// [points] what diffuse lobes gathered, by albedo, shared between neighbours of a grid: light of
-/// other surfaces varies as slowly as these are far away (Ward, Rubinstein and Clear 1988, their
-/// error bound read the other way).
+/// [points] what diffuse lobes gathered, `diffuse`, by albedo, shared between neighbours of a grid:
+/// light of other surfaces, and of the world between them, varies as slowly as these are far away
+/// (Ward, Rubinstein and Clear 1988, their error bound read the other way).
 std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosure& closure,
-                                const GatheredLight& light);
+                                const std::vector<Vec3f>& diffuse,
+                                const std::vector<float>& nearness);
 
 }  // namespace granita

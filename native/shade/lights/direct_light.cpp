@@ -128,6 +128,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
                                     const LampChoice* choice) const {
     const bool meets_lamps = point.meets_lamps(lobe);
     if (!world.shines() && !meets_lamps && !grid.leaving) return;
+    if (!meets_lamps && !grid.samples_diffuse()) return;
     const LitPoint::LobeSamples& samples = point.samples[lobe];
     const SobolPoints sequence = grid.sequence(1 + point.bsdf.index(lobe), samples.first);
     for (int s = 0; s < samples.count; ++s) {
@@ -308,8 +309,11 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     if (closure.lobes.empty() || (dark && !parts && !leaving)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     const bool placed = !points.places.empty();
+    if (leaving && leaving->takes_world && leaving->diffuse)
+        leaving->world.assign(points.count, Vec3f(0.0f));
     LitGrid grid{radiance,
                  parts,
+                 {},
                  {},
                  {},
                  {},

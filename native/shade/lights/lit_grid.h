@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "math/luminance.h"
@@ -16,10 +17,10 @@ namespace granita {
 /// What a grid's points share while they are lit.
 struct LitGrid {
     std::vector<Vec3f>& radiance;
-    ReflectionParts* parts;  ///< nullptr = not asked for
-    EnvironmentSamples blurred, sharp;
-    std::vector<Vec2f> lamp_points;         ///< of the lamp and point at hand
-    std::vector<LightSample> lamp_samples;  ///< there
+    ReflectionParts* parts;                  ///< nullptr = not asked for
+    EnvironmentSamples blurred, met, sharp;  ///< by the world's density, by lobes, by mirrors
+    std::vector<Vec2f> lamp_points;          ///< of the lamp and point at hand
+    std::vector<LightSample> lamp_samples;   ///< there
     std::uint64_t seed = 0;
     bool by_lobe = false;  ///< as WorldEvaluator::by_lobe
     bool placed = false;   ///< points go by places in the frame's sequences, as samples do
@@ -67,13 +68,26 @@ struct LitGrid {
               const BsdfValue& weight, float sign) {
         if (total(weight) == Vec3f(0.0f)) return;
         samples.add(point, direction, total(weight), sign);
-        if (parts || by_lobe) samples.parts.push_back(weight);
+        if (parts || by_lobe || (&samples == &met && shares_world()))
+            samples.parts.push_back(weight);
     }
     /// Light of the world, reflected.
     void reflect_world(std::size_t point, const BsdfValue& value, float sign) {
         add(point, total(value), sign);
         add_world(point, value);
     }
+    /// The same of what samples of lobes found (LeavingRays::takes_world).
+    void reflect_met_world(std::size_t point, BsdfValue value, float sign) {
+        if (shares_world()) leaving->world[point] += std::exchange(value.diffuse, Vec3f(0.0f));
+        reflect_world(point, value, sign);
+    }
+    bool takes_world() const { return leaving && leaving->takes_world; }
+    bool shares_world() const { return takes_world() && leaving->diffuse; }
+    /// Expected samples a solid angle around `wo` of the point's lobes that are sampled.
+    float lobe_density(const LitPoint& point, const Vec3f& wo) const {
+        return samples_diffuse() ? point.all_density(wo) : point.meeting_density(wo);
+    }
+    bool samples_diffuse() const { return !takes_world() || leaving->diffuse; }
     /// Of that the passes alone.
     void add_world(std::size_t point, const BsdfValue& value) {
         if (!parts) return;

@@ -28,6 +28,10 @@ struct LeavingRays {
     std::vector<LobeRay> rays;
     /// False: what diffuse lobes reflect is known, and no part of it is looked for.
     bool diffuse = true;
+    /// What samples of lobes find of the world and diffuse lobes reflect counts as what surfaces
+    /// send: it is left out of reflect(), which fills `world` [points], unless it is known.
+    bool takes_world = false;
+    std::vector<Vec3f> world;
 };
 
 }  // namespace granita

@@ -2,8 +2,18 @@
 #include "shade/lights/world_light.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace granita {
+namespace {
+
+/// How likely lobes' samples of what diffuse lobes reflect are taken to be where these are shared
+/// with the world's own: the same at all points that share light, whatever else they reflect.
+float shared_density(const LitPoint& point, const Vec3f& wo) {
+    return std::abs(glm::dot(point.at_frame.normal, wo)) / kPi;
+}
+
+}  // namespace
 
 WorldLight::WorldLight(const World& world, WorldEvaluator evaluator, Report& report,
                        const Progress& progress)
@@ -27,14 +37,17 @@ void WorldLight::sample(const LampSet& set, LitGrid& grid, const LitPoint& point
         const Vec3f& wo = from.direction;
         const BsdfValue value = point.bsdf.evaluate(wo);
         if (total(value) == Vec3f(0.0f) || !(from.pdf > 0.0f)) continue;
-        const float density =
-            static_cast<float>(point.sample_count) * from.pdf + point.all_density(wo);
+        const auto count = static_cast<float>(point.sample_count);
+        const float density = count * from.pdf + grid.lobe_density(point, wo);
         const Vec3f seen =
             set.occlusion(grid, point, set.place_at(point, sequence.third(index)), wo);
-        const BsdfValue weight = value * (seen / density);
+        BsdfValue weight = value * (seen / density);
+        if (grid.takes_world())
+            weight.diffuse =
+                value.diffuse * seen / (count * (from.pdf + shared_density(point, wo)));
         const float sign = LitGrid::sign(s, point.sample_count);
         if (m_environment->has_radiance())
-            add_texel(grid, point, from, weight, sign);
+            grid.reflect_world(point.index, of_texel(from, weight), sign);
         else
             grid.look(grid.blurred, point.index, wo, weight, sign);
     }
@@ -43,35 +56,41 @@ void WorldLight::sample(const LampSet& set, LitGrid& grid, const LitPoint& point
 void WorldLight::meet(const LampSet& set, LitGrid& grid, const LitPoint& point,
                       const LitPlace& place, const LobeSample& sample) const {
     const Vec3f& wo = sample.wo;
+    BsdfValue weight = sample.value;
+    if (!grid.samples_diffuse()) weight.diffuse = Vec3f(0.0f);
+    if (total(weight) == Vec3f(0.0f)) return;
     const Environment::Sample at = m_environment->at(wo);
-    const float density = point.all_density(wo) + static_cast<float>(point.sample_count) * at.pdf;
-    const BsdfValue weight = sample.value * (set.occlusion(grid, point, place, wo) / density);
+    const float by_lobes = grid.lobe_density(point, wo);
+    const float density = by_lobes + static_cast<float>(point.sample_count) * at.pdf;
+    weight = weight * (set.occlusion(grid, point, place, wo) / density);
+    if (grid.shares_world() && at.pdf > 0.0f) {
+        const float shared = shared_density(point, wo);
+        weight.diffuse *= density / by_lobes * shared / (at.pdf + shared);
+    }
     if (m_environment->is_constant()) {
         const BsdfValue reflected{
             weight.diffuse * m_environment->constant_radiance(RayType::Diffuse),
             weight.glossy * m_environment->constant_radiance(RayType::Glossy),
             weight.transmission * m_environment->constant_radiance(RayType::Transmission)};
-        grid.reflect_world(point.index, reflected, sample.sign);
+        grid.reflect_met_world(point.index, reflected, sample.sign);
     } else if (m_environment->has_radiance() && !sample.is_narrow) {
-        add_texel(grid, point, at, weight, sample.sign);
+        grid.reflect_met_world(point.index, of_texel(at, weight), sample.sign);
     } else {
-        grid.look(grid.blurred, point.index, wo, weight, sample.sign);
+        grid.look(grid.met, point.index, wo, weight, sample.sign);
     }
 }
 
 /// What a texel of the world's table sends, reflected by `weight`.
-void WorldLight::add_texel(LitGrid& grid, const LitPoint& point, const Environment::Sample& from,
-                           const BsdfValue& weight, float sign) const {
-    const BsdfValue reflected{
-        weight.diffuse * m_environment->texel_radiance(from.texel, RayType::Diffuse),
-        weight.glossy * m_environment->texel_radiance(from.texel, RayType::Glossy),
-        weight.transmission * m_environment->texel_radiance(from.texel, RayType::Transmission)};
-    grid.reflect_world(point.index, reflected, sign);
+BsdfValue WorldLight::of_texel(const Environment::Sample& from, const BsdfValue& weight) const {
+    return {weight.diffuse * m_environment->texel_radiance(from.texel, RayType::Diffuse),
+            weight.glossy * m_environment->texel_radiance(from.texel, RayType::Glossy),
+            weight.transmission * m_environment->texel_radiance(from.texel, RayType::Transmission)};
 }
 
 void WorldLight::deliver(LitGrid& grid) const {
     if (!shines()) return;
     look(grid, grid.blurred, m_environment->texel_angle(), kBlurred);
+    look(grid, grid.met, m_environment->texel_angle(), kBlurred);
     // A point of its own stands for no neighbours: the mean of many does.
     look(grid, grid.sharp, grid.placed ? 0.0f : grid.sharp.spread(), kSharp);
 }
@@ -80,10 +99,16 @@ void WorldLight::look(LitGrid& grid, const EnvironmentSamples& samples, float sp
                       const PartRays& types) const {
     if (samples.directions.empty()) return;
     std::vector<Vec3f> seen;
+    const bool is_met = &samples == &grid.met;
     if (!by_lobe()) {
         m_evaluator.radiance(samples.directions, spread, types.glossy, seen);
         for (std::size_t k = 0; k < seen.size(); ++k) {
             if (!is_finite(seen[k])) continue;
+            if (is_met && grid.shares_world()) {
+                grid.reflect_met_world(samples.points[k], samples.parts[k] * seen[k],
+                                       samples.signs[k]);
+                continue;
+            }
             grid.add(samples.points[k], samples.weights[k] * seen[k], samples.signs[k]);
             if (grid.parts) grid.add_world(samples.points[k], samples.parts[k] * seen[k]);
         }
@@ -101,8 +126,12 @@ void WorldLight::look(LitGrid& grid, const EnvironmentSamples& samples, float sp
     look_by(LightPart::Glossy, types.glossy);
     look_by(LightPart::Transmission, types.transmission);
     for (std::size_t k = 0; k < values.size(); ++k)
-        if (is_finite(total(values[k])))
-            grid.reflect_world(samples.points[k], values[k], samples.signs[k]);
+        if (is_finite(total(values[k]))) {
+            if (is_met)
+                grid.reflect_met_world(samples.points[k], values[k], samples.signs[k]);
+            else
+                grid.reflect_world(samples.points[k], values[k], samples.signs[k]);
+        }
 }
 
 }  // namespace granita

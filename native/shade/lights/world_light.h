@@ -41,8 +41,7 @@ class WorldLight {
     void deliver(LitGrid& grid) const;
 
   private:
-    void add_texel(LitGrid& grid, const LitPoint& point, const Environment::Sample& from,
-                   const BsdfValue& weight, float sign) const;
+    BsdfValue of_texel(const Environment::Sample& from, const BsdfValue& weight) const;
     void look(LitGrid& grid, const EnvironmentSamples& samples, float spread,
               const PartRays& types) const;
 

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where light is followed, what the world sends between surfaces is shared by neighbours as theirs is: it stays what it
+was, in all passes, with less noise."""
+
+import numpy as np
+import pytest
+import snapshots as s
+from test_bounces import ALBEDO, diffuse, material
+from test_world_light import COORDINATES, ENVIRONMENT, background, link
+
+
+def beside_a_wall(world=1.0, **options):
+    """A floor under a sky, and a black wall 10 pixels high that ends at x = 24."""
+    snapshot = s.orthographic((64, 64), samples=16, **{"bounces": 1, **options})
+    s.constant_world(snapshot, world)
+    snapshot["world"]["lights_scene"] = True
+    s.quad(snapshot, s.rectangle(-200, -200, 264, 264, z=100.0), diffuse(snapshot, ALBEDO))
+    corners = [(x, y, z) for z in (90, 99.99) for y in (-200, 264) for x in (-200, 24)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    s.mesh(snapshot, np.array(corners, float), faces, diffuse(snapshot, 0.0))
+    return snapshot
+
+
+X = np.arange(26, 64)
+AWAY = X + 0.5 - 24
+
+
+def expected():
+    """The wall hides (1 - x / sqrt(x^2 + h^2)) / 2 of the sky at a distance x."""
+    return ALBEDO * (1 - 0.5 * (1 - AWAY / np.hypot(AWAY, 10.0)))
+
+
+def test_a_floor_beside_a_wall_sees_its_part_of_the_sky():
+    seen = s.render(beside_a_wall(light_samples=64))["combined"][:, X, 0]
+    assert seen.mean(axis=0) == pytest.approx(expected(), rel=0.02)
+
+
+def test_four_samples_of_the_sky_leave_little_noise():
+    """Deviations of the mean of 64 by 38 pixels between the wall and the open; alone each point takes its own samples."""
+    alone, shared = (
+        (s.render(beside_a_wall(light_samples=4, bounces=n))["combined"][:, X, 0] / expected()).std()
+        for n in (0, 1)
+    )
+    assert shared < 0.6 * alone
+
+
+def test_passes_tell_the_sky_from_surfaces():
+    """The wall sends nothing: all light is direct, though it was gathered together."""
+    snapshot = beside_a_wall(light_samples=16)
+    names = ["Combined", "Diffuse Direct", "Diffuse Indirect"]
+    snapshot["options"]["passes"] = names
+    made = s.render(snapshot)
+    direct, indirect = (made["passes"][name][:, X] for name in names[1:])
+    assert np.abs(indirect).max() < 1e-6
+    assert direct * ALBEDO == pytest.approx(made["combined"][:, X, :3], abs=1e-5)
+    alone = s.render(beside_a_wall(light_samples=16))["combined"]
+    assert np.array_equal(alone, made["combined"])
+
+
+def checks(bounces):
+    """A floor of white and nearly black checks of 4 pixels under a gloss, in an image that is bright on one side."""
+    snapshot = s.orthographic((32, 32), samples=64, light_samples=64, bounces=bounces)
+    level = np.full((8, 16), 0.1, np.float32)
+    level[1:3, 3:9] = 4.0
+    pixels = np.ones((8, 16, 4), np.float32)
+    pixels[..., :3] = level[..., None]
+    image = {"name": "I", "path": "", "colorspace": "Linear", "alpha_mode": "STRAIGHT"}
+    snapshot["images"] = [image | {"pixels": pixels}]
+    snapshot["world"] = {
+        "name": "World",
+        "nodes": [COORDINATES, ENVIRONMENT, background(link(1, "Color"))],
+        "surface": (2, "Background"),
+    }
+    colors = {"Color1": (0.8, 0.8, 0.8, 1.0), "Color2": (0.01, 0.01, 0.01, 1.0)}
+    nodes = [
+        {"type": "ShaderNodeNewGeometry", "inputs": {}},
+        {
+            "type": "ShaderNodeTexChecker",
+            "inputs": {"Vector": link(0, "Position"), "Scale": 0.25, **colors},
+        },
+        {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": link(1, "Color")}},
+        {
+            "type": "ShaderNodeBsdfGlossy",
+            "inputs": {"Color": (0.1, 0.1, 0.1, 1.0), "Roughness": 0.7},
+        },
+        {
+            "type": "ShaderNodeAddShader",
+            "inputs": {"Shader": link(2, "BSDF"), "Shader_001": link(3, "BSDF")},
+        },
+    ]
+    s.quad(snapshot, s.rectangle(-50, -50, 90, 90, 20.0), material(snapshot, nodes, (4, "Shader")))
+    return s.render(snapshot)["combined"][..., 0]
+
+
+def test_checks_share_no_light_with_each_other():
+    """Nothing else is there: following light changes nothing, on either kind of check."""
+    alone, followed = checks(0), checks(4)
+    white = alone > alone.mean()
+    assert 0.3 < white.mean() < 0.7
+    for kind in (white, ~white):
+        assert followed[kind].mean() == pytest.approx(alone[kind].mean(), rel=0.005)
