@@ -198,7 +198,7 @@ struct ShadingSystem::Impl {
 
     /// Adds what surfaces send to each other: to points of a grid, whose `gathered` is filled, or
     /// to samples in it, whose diffuse lobes take it from there.  Returns what of it is noise at
-    /// single points.
+    /// single points: what neighbours do not share.
     std::vector<Vec3f> add_bounces(const ShadingPoints& points, const SurfaceClosure& closure,
                                    const LeavingRays& leaving, Grid& grid, ReflectionParts* parts,
                                    std::vector<Vec3f>& radiance) const {
@@ -210,21 +210,7 @@ struct ShadingSystem::Impl {
                 light.diffuse[i] += leaving.world[i];
             grid.gathered = shared_light(points, closure, light.diffuse, light.nearness);
         }
-        for (std::size_t i = 0; i < points.count; ++i) {
-            const Vec3f albedo = diffuse_albedo(closure, i);
-            const Vec3f diffuse = grid.gathered[i] * albedo;
-            const Vec3f others = light.glossy[i] + light.mirrored[i];
-            if (parts) {
-                const Vec3f of_world =
-                    grid.gathered_world.empty() ? Vec3f(0.0f) : grid.gathered_world[i] * albedo;
-                parts->diffuse[i] += of_world;
-                parts->diffuse_bounced[i] = diffuse - of_world;
-                parts->glossy_bounced[i] = others - light.transmitted[i];
-                parts->transmission_bounced[i] = light.transmitted[i];
-            }
-            light.glossy[i] += diffuse;
-            radiance[i] += diffuse + others;
-        }
+        reflect_gathered(light, grid, closure, parts, radiance);
         return std::move(light.glossy);
     }
 

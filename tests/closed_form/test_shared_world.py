@@ -38,7 +38,9 @@ def test_a_floor_beside_a_wall_sees_its_part_of_the_sky():
 def test_four_samples_of_the_sky_leave_little_noise():
     """Deviations of the mean of 64 by 38 pixels between the wall and the open; alone each point takes its own samples."""
     alone, shared = (
-        (s.render(beside_a_wall(light_samples=4, bounces=n))["combined"][:, X, 0] / expected()).std()
+        (
+            s.render(beside_a_wall(light_samples=4, bounces=n))["combined"][:, X, 0] / expected()
+        ).std()
         for n in (0, 1)
     )
     assert shared < 0.6 * alone
@@ -53,13 +55,22 @@ def test_passes_tell_the_sky_from_surfaces():
     direct, indirect = (made["passes"][name][:, X] for name in names[1:])
     assert np.abs(indirect).max() < 1e-6
     assert direct * ALBEDO == pytest.approx(made["combined"][:, X, :3], abs=1e-5)
-    alone = s.render(beside_a_wall(light_samples=16))["combined"]
-    assert np.array_equal(alone, made["combined"])
 
 
-def checks(bounces):
-    """A floor of white and nearly black checks of 4 pixels under a gloss, in an image that is bright on one side."""
-    snapshot = s.orthographic((32, 32), samples=64, light_samples=64, bounces=bounces)
+def test_bits_do_not_depend_on_buckets_threads_and_passes():
+    whole = s.render(beside_a_wall(light_samples=4))["combined"]
+    for options in ({"bucket_size": 16}, {"threads": 1}, {"passes": ["Combined", "Normal"]}):
+        assert np.array_equal(
+            whole, s.render(beside_a_wall(light_samples=4, **options))["combined"]
+        )
+
+
+def grey_sky(snapshot):
+    s.constant_world(snapshot, 1.0)
+    snapshot["world"]["lights_scene"] = True
+
+
+def one_bright_side(snapshot):
     level = np.full((8, 16), 0.1, np.float32)
     level[1:3, 3:9] = 4.0
     pixels = np.ones((8, 16, 4), np.float32)
@@ -71,6 +82,12 @@ def checks(bounces):
         "nodes": [COORDINATES, ENVIRONMENT, background(link(1, "Color"))],
         "surface": (2, "Background"),
     }
+
+
+def checks(bounces, world):
+    """A floor of white and nearly black checks of 4 pixels under a gloss."""
+    snapshot = s.orthographic((32, 32), samples=64, light_samples=64, bounces=bounces)
+    world(snapshot)
     colors = {"Color1": (0.8, 0.8, 0.8, 1.0), "Color2": (0.01, 0.01, 0.01, 1.0)}
     nodes = [
         {"type": "ShaderNodeNewGeometry", "inputs": {}},
@@ -92,10 +109,12 @@ def checks(bounces):
     return s.render(snapshot)["combined"][..., 0]
 
 
-def test_checks_share_no_light_with_each_other():
-    """Nothing else is there: following light changes nothing, on either kind of check."""
-    alone, followed = checks(0), checks(4)
+@pytest.mark.parametrize("world", [grey_sky, one_bright_side])
+def test_checks_share_no_light_and_stay_sharp(world):
+    """Nothing else is there: following light changes nothing, on either kind of check or between them."""
+    alone, followed = checks(0, world), checks(4, world)
     white = alone > alone.mean()
     assert 0.3 < white.mean() < 0.7
     for kind in (white, ~white):
         assert followed[kind].mean() == pytest.approx(alone[kind].mean(), rel=0.005)
+    assert np.sqrt(np.mean((followed - alone) ** 2)) < 0.015 * alone.mean()

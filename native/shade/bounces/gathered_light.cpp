@@ -15,14 +15,15 @@ constexpr float kLeastReach = 2.0f;
 /// Least albedo by which light is told: of what a pure red surface gets only the red is known.
 constexpr float kLeastAlbedo = 1e-4f;
 
-}  // namespace
-
+/// Weight of a point's diffuse lobes.
 Vec3f diffuse_albedo(const SurfaceClosure& closure, std::size_t point) {
     Vec3f sum(0.0f);
     for (const Lobe& lobe : closure.lobes)
         if (part_of(lobe.kind) == LightPart::Diffuse) sum += lobe.weight[point];
     return sum;
 }
+
+}  // namespace
 
 std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosure& closure,
                                 const std::vector<Vec3f>& diffuse,
@@ -36,6 +37,24 @@ std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosur
         noisy.by_reach[i] = Vec3f(nearness[i] / kNear);
     }
     return share(points, noisy);
+}
+
+void reflect_gathered(const GatheredLight& light, const Grid& grid, const SurfaceClosure& closure,
+                      ReflectionParts* parts, std::vector<Vec3f>& radiance) {
+    for (std::size_t i = 0; i < radiance.size(); ++i) {
+        const Vec3f albedo = diffuse_albedo(closure, i);
+        const Vec3f diffuse = grid.gathered[i] * albedo;
+        const Vec3f others = light.glossy[i] + light.mirrored[i];
+        if (parts) {
+            const Vec3f of_world =
+                grid.gathered_world.empty() ? Vec3f(0.0f) : grid.gathered_world[i] * albedo;
+            parts->diffuse[i] += of_world;
+            parts->diffuse_bounced[i] = diffuse - of_world;
+            parts->glossy_bounced[i] = others - light.transmitted[i];
+            parts->transmission_bounced[i] = light.transmitted[i];
+        }
+        radiance[i] += diffuse + others;
+    }
 }
 
 }  // namespace granita

@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "dice/grid.h"
 #include "math/vec.h"
 #include "shade/bsdf/lobe.h"
+#include "shade/bsdf/reflection.h"
 
 namespace granita {
 
@@ -26,14 +28,16 @@ struct GatheredLight {
           nearness(points, 0.0f) {}
 };
 
-/// Weight of a point's diffuse lobes.
-Vec3f diffuse_albedo(const SurfaceClosure& closure, std::size_t point);
-
 /// [points] what diffuse lobes gathered, `diffuse`, by albedo, shared between neighbours of a grid:
 /// light of other surfaces, and of the world between them, varies as slowly as these are far away
 /// (Ward, Rubinstein and Clear 1988, their error bound read the other way).
 std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosure& closure,
                                 const std::vector<Vec3f>& diffuse,
                                 const std::vector<float>& nearness);
+
+/// Adds what is reflected of `light`, and of what `grid` has gathered, to `radiance` [points] and,
+/// where they are asked for, to its `parts`.
+void reflect_gathered(const GatheredLight& light, const Grid& grid, const SurfaceClosure& closure,
+                      ReflectionParts* parts, std::vector<Vec3f>& radiance);
 
 }  // namespace granita
