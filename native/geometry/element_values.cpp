@@ -35,12 +35,12 @@ double curve_intercept(const SharedElements& elements, const ElementPlace& place
            length;
 }
 
-/// In [0, 1].
-double element_random(std::uint32_t element) {
-    return hash_words(std::array<std::uint32_t, 2>{element, 0u}) / static_cast<double>(0xffffffffu);
-}
-
 }  // namespace
+
+float random_of_index(std::uint32_t index) {
+    return static_cast<float>(hash_words(std::array<std::uint32_t, 2>{index, 0u}) /
+                              static_cast<double>(0xffffffffu));
+}
 
 void element_value(const SharedElements& elements, const AttributeRequest& request,
                    const ElementPlace& place, float* out) {
@@ -63,7 +63,7 @@ void element_value(const SharedElements& elements, const AttributeRequest& reque
     } else if (is_position(request.source)) {
         set(along(position));
     } else if (request.source == AttributeSource::ElementRandom) {
-        set(Vec3d(element_random(place.element)));
+        set(Vec3d(random_of_index(place.element)));
     } else if (request.source == AttributeSource::CurveLength) {
         set(Vec3d(curve_length(elements, place.element)));
     } else if (request.source == AttributeSource::CurveIntercept) {

@@ -16,6 +16,9 @@ struct ElementPlace {
     double fraction = 0.0;
 };
 
+/// A number in [0, 1] of an index, as Cycles hashes curves, points and particles.
+float random_of_index(std::uint32_t index);
+
 /// Fills `out` [request.width]; zeros where the geometry has nothing of that name.
 void element_value(const SharedElements& elements, const AttributeRequest& request,
                    const ElementPlace& place, float* out);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hair Info (Curves Info since Blender 3.5), Point Info and Particle Info: facts about the curve or
 // point that is shaded, or the particle that an instance stands for; zeros on anything else.
-#include <array>
 #include <cmath>
 #include <cstdint>
 
-#include "math/hash.h"
+#include "geometry/element_values.h"
 #include "scene/knot_time.h"
 #include "shade/nodes/instance_value.h"
 #include "shade/nodes/nodes.h"
@@ -80,18 +79,13 @@ void build_point_info(NodeBuilder& b) {
                                     is_of_kind(b, GeometryKind::Points)));
 }
 
-/// A particle's number in [0, 1], as Cycles hashes its index.
-static float random_of_particle(float index) {
-    const std::uint32_t hash =
-        hash_words(std::array<std::uint32_t, 2>{static_cast<std::uint32_t>(index), 0u});
-    return static_cast<float>(hash / static_cast<double>(0xffffffffu));
-}
-
 void build_particle_info(NodeBuilder& b) {
     const InstanceValue particle = instance_value(b, "PARTICLE");
     const FloatSource index = b.map<float>([](const Vec3f& v) { return v.x; }, particle.color);
     b.output("Index", index);
-    b.output("Random", b.map<float>(random_of_particle, index));
+    b.output("Random",
+             b.map<float>([](float i) { return random_of_index(static_cast<std::uint32_t>(i)); },
+                          index));
     b.output("Age", b.map<float>([](const Vec3f& v) { return v.y; }, particle.color));
     b.output("Lifetime", b.map<float>([](const Vec3f& v) { return v.z; }, particle.color));
     b.output("Size", particle.alpha);
