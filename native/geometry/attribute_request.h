@@ -21,6 +21,12 @@ enum class AttributeSource {
                        ///< polygon's corners; zeros elsewhere
     Tangent,  ///< likewise, of the UV map `name` (empty: active for render), and whether it
               ///< is mirrored (tangents.h); zeros on subdivision surfaces
+    // From the point to a corner of its patch, object space, at the frame time, undisplaced; of a
+    // subdivision surface on the cage, of elements zeros:
+    ToCorner0,
+    ToCorner1,
+    ToCorner2,
+    ToCorner3,
     // Of curves and points; zeros elsewhere.
     ElementRandom,   ///< a number in [0, 1] a curve or point: a hash of its index, as in Cycles
     CurveLength,     ///< of the lines between its points, object space, at the frame time
@@ -32,6 +38,10 @@ enum class AttributeSource {
 constexpr bool is_position(AttributeSource source) {
     return source == AttributeSource::Generated || source == AttributeSource::ObjectPosition ||
            source == AttributeSource::PreviousPosition || source == AttributeSource::NextPosition;
+}
+
+constexpr bool is_to_corner(AttributeSource source) {
+    return source >= AttributeSource::ToCorner0 && source <= AttributeSource::ToCorner3;
 }
 
 /// The points of another frame that a source asks for; empty for any other, and where they are

@@ -52,6 +52,20 @@ CornerValues frame_values(const SharedGeometry& geometry, const BasePatch& patch
     return values;
 }
 
+/// From everywhere to one corner.
+CornerValues values_to_corner(const SharedGeometry& geometry, const BasePatch& patch,
+                              AttributeSource source) {
+    const auto corner =
+        static_cast<std::size_t>(source) - static_cast<std::size_t>(AttributeSource::ToCorner0);
+    const CornerValues places =
+        corner_values(geometry, patch, {AttributeSource::ObjectPosition, "", 3});
+    CornerValues values;
+    for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t c = 0; c < 3; ++c)
+            values.at[k][c] = places.at[corner][c] - places.at[k][c];
+    return values;
+}
+
 }  // namespace
 
 CornerWeights::CornerWeights(PatchKind kind, const Vec2d& uv) {
@@ -98,6 +112,7 @@ CornerValues corner_values(const SharedGeometry& geometry, const BasePatch& patc
     if (request.source == AttributeSource::CornerNormal ||
         request.source == AttributeSource::Tangent)
         return frame_values(geometry, patch, request);
+    if (is_to_corner(request.source)) return values_to_corner(geometry, patch, request.source);
     const Attribute* attribute = find_attribute(geometry.data(), request);
     const auto value = [&](std::uint32_t corner) {
         return value_at(geometry, request, attribute, patch.face, corner);

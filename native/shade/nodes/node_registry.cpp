@@ -84,6 +84,7 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeHairInfo", value(build_hair_info)},
         {"ShaderNodePointInfo", value(build_point_info)},
         {"ShaderNodeAmbientOcclusion", value(build_ambient_occlusion)},
+        {"ShaderNodeWireframe", value(build_wireframe)},
         {"ShaderNodeParticleInfo", value(build_particle_info)},
         {"ShaderNodeCameraData", value(build_camera_data)},
         {"ShaderNodeTexChecker", value(build_checker)},

@@ -66,6 +66,7 @@ void build_fresnel(NodeBuilder&);
 void build_layer_weight(NodeBuilder&);
 void build_light_path(NodeBuilder&);
 void build_ambient_occlusion(NodeBuilder&);
+void build_wireframe(NodeBuilder&);
 void build_particle_info(NodeBuilder&);
 void build_gabor_texture(NodeBuilder&);
 void build_object_info(NodeBuilder&);

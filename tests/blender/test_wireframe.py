@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Wireframe beside Cycles: both fill the same triangles."""
+
+import math
+
+import bpy
+import pytest
+import scene_parts
+from node_comparison import Tree, render_both, rmse
+
+# Triangles, squares, a concave polygon and one of six corners.
+VERTICES = [
+    (-1.8, -1.8, 0.0), (-0.2, -1.8, 0.0), (-0.2, -0.2, 0.0), (-1.8, -0.2, 0.0),
+    (0.2, -1.8, 0.0), (1.8, -1.8, 0.0), (1.8, -0.2, 0.0),
+    (-1.8, 0.2, 0.0), (-0.2, 0.2, 0.0), (-1.3, 0.7, 0.0), (-1.8, 1.8, 0.0),
+    (0.5, 0.2, 0.0), (1.5, 0.2, 0.0), (1.8, 1.0, 0.0), (1.5, 1.8, 0.0), (0.5, 1.8, 0.0), (0.2, 1.0, 0.0),
+]  # fmt: skip
+FACES = [(0, 1, 2, 3), (4, 5, 6), (7, 8, 9, 10), (11, 12, 13, 14, 15, 16)]
+
+
+def agree(scene, render, samples=64):
+    """Ends of lines have the noise of the samples of both."""
+    scene.render.resolution_x = scene.render.resolution_y = 48
+    theirs, ours = render_both(scene, render, samples)
+    assert theirs.std() > 0.1
+    assert ours.mean() == pytest.approx(theirs.mean(), rel=0.01)
+    assert rmse(theirs, ours) < 0.06 * theirs.std(), rmse(theirs, ours) / theirs.std()
+
+
+def wired(thing, size, in_pixels=False):
+    tree = Tree(thing)
+    wire = tree.add("ShaderNodeWireframe", use_pixel_size=in_pixels)
+    wire.inputs["Size"].default_value = size
+    tree.emit(wire.outputs[0])
+
+
+@pytest.mark.parametrize("turn", [0.0, 1.0])
+@pytest.mark.parametrize("in_pixels", [False, True])
+def test_polygons(scene, render, in_pixels, turn):
+    thing = scene_parts.add_mesh(scene, "Faces", VERTICES, FACES)
+    thing.scale = (1.0, 0.7, 1.0)
+    thing.rotation_euler.x = turn
+    wired(thing, 4.0 if in_pixels else 0.25, in_pixels)
+    scene_parts.add_camera(scene, (0, 0, 6), ortho_scale=4.0)
+    agree(scene, render)
+
+
+@pytest.mark.parametrize("in_pixels", [False, True])
+def test_in_perspective(scene, render, in_pixels):
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=1.2)
+    wired(bpy.context.object, 1.5 if in_pixels else 0.06, in_pixels)
+    camera = scene_parts.add_camera(scene, (0, 0, 3.0))
+    camera.data.type, camera.data.angle = "PERSP", math.radians(60)
+    agree(scene, render)
+
+
+def test_subdivision_surfaces_are_named(scene, render, capfd):
+    thing = scene_parts.add_square(scene)
+    thing.data.polygons[0].use_smooth = True
+    thing.modifiers.new("Subdivision", "SUBSURF")
+    wired(thing, 0.2)
+    scene_parts.add_camera(scene, ortho_scale=3.0)
+    render(scene)
+    assert "edges of the cage" in capfd.readouterr().out
