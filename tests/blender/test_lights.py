@@ -235,14 +235,43 @@ def test_glass_panes_let_light_through(scene, render):
     expect_alike(scene, render, DIFFUSE)
 
 
+@pytest.mark.parametrize("kind", ["POINT", "SPOT", "AREA"])
+@pytest.mark.parametrize("output", ["Quadratic", "Linear", "Constant"])
+def test_falloff_of_lamps(scene, render, kind, output):
+    set_stage(scene, lambert())
+    shape = {"size": 0.6} if kind == "AREA" else {"shadow_soft_size": 0.2}
+    tree = light_tree(add_light(scene, kind, 300.0, **shape))
+    falloff = tree.nodes.new("ShaderNodeLightFalloff")
+    falloff.inputs["Strength"].default_value = 0.6
+    falloff.inputs["Smooth"].default_value = 1.5
+    tree.links.new(falloff.outputs[output], tree.nodes["Emission"].inputs["Strength"])
+    if kind == "SPOT":
+        scene.granita.dicing_rate = SPOT_RATE
+    expect_alike(scene, render, DIFFUSE)
+
+
+@pytest.mark.parametrize("output", ["Quadratic", "Linear", "Constant"])
+def test_falloff_of_suns(scene, render, output):
+    """They are infinitely far; Cycles leaves them nothing by it, and since Blender 4.3 all."""
+    set_stage(scene, lambert())
+    tree = light_tree(add_light(scene, "SUN", 3.0, angle=0.1))
+    falloff = tree.nodes.new("ShaderNodeLightFalloff")
+    falloff.inputs["Strength"].default_value = 0.6
+    tree.links.new(falloff.outputs[output], tree.nodes["Emission"].inputs["Strength"])
+    if output == "Quadratic" or bpy.app.version >= (4, 3, 0):
+        expect_alike(scene, render, DIFFUSE)
+    else:
+        assert not any(picture.any() for picture in both(scene, render))
+
+
 def test_a_linked_strength_that_varies_is_named(scene):
     from granita.export.shading.light import light_record
 
     light = add_light(scene, "POINT", 10.0)
     light.data.use_nodes = True
     tree = light.data.node_tree
-    falloff = tree.nodes.new("ShaderNodeLightFalloff")
-    tree.links.new(falloff.outputs["Linear"], tree.nodes["Emission"].inputs["Strength"])
+    camera = tree.nodes.new("ShaderNodeCameraData")
+    tree.links.new(camera.outputs["View Distance"], tree.nodes["Emission"].inputs["Strength"])
     said = []
     light_record(light, np.eye(4)[None], lambda *words: said.append(words))
     assert said == [

@@ -147,7 +147,6 @@ def _said(capfd):
 @pytest.mark.parametrize(
     "kind, given, output",
     [
-        ("ShaderNodeLightFalloff", "Strength", "Quadratic"),
         ("ShaderNodeBevel", "Normal", "Normal"),
     ],
 )

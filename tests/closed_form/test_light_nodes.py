@@ -78,3 +78,24 @@ def test_instances_of_a_lamp_share_what_one_is():
     alone = s.render(snapshot)["combined"]
     snapshot["lights"] *= 2
     np.testing.assert_allclose(s.render(snapshot)["combined"][..., 1], 2 * alone[..., 1], rtol=1e-5)
+
+
+@pytest.mark.parametrize("output, power", [("Quadratic", 0), ("Linear", 1), ("Constant", 2)])
+@pytest.mark.parametrize("smooth", [0.0, 500.0])
+@pytest.mark.parametrize("radius", [0.0, 0.01])
+def test_falloff(output, power, smooth, radius):
+    snapshot, _ = stage(0.0, radius=radius)
+    falloff = {"Strength": 0.02, "Smooth": smooth}
+    snapshot["lights"][0] |= {
+        "nodes": [
+            {"type": "ShaderNodeLightFalloff", "inputs": falloff},
+            {"type": "ShaderNodeEmission", "inputs": {"Strength": link(0, output)}},
+        ],
+        "surface": (1, "Emission"),
+    }
+    image = s.render(snapshot)["combined"][..., 0]
+    x, y = np.meshgrid(np.arange(SIZE) + 0.5 - SIZE / 2, np.arange(SIZE) + 0.5 - SIZE / 2)
+    distance = np.sqrt(x**2 + y**2 + HEIGHT**2)
+    factor = 0.02 * distance**power * distance**2 / (distance**2 + smooth)
+    expected = ALBEDO / np.pi * POWER / (4 * np.pi) * factor * HEIGHT / distance**3
+    np.testing.assert_allclose(image, expected, rtol=0.002)

@@ -12,8 +12,8 @@ import bpy
 from .constant_nodes import as_number, constant
 from .nodes import FlatGraph
 
-# Nodes that tell places apart: of a lamp, directions alone are.
-_BY_DISTANCE = {"ShaderNodeLightFalloff", "ShaderNodeCameraData"}
+# Nodes that tell places apart: of a lamp, directions and distances alone are.
+_BY_PLACE = {"ShaderNodeCameraData"}
 _AREA_SHAPES = {"SQUARE", "RECTANGLE", "DISK", "ELLIPSE"}
 
 
@@ -142,7 +142,7 @@ def _first_shader(surface):
 
 
 def _graph(light, label, images, report):
-    """{"nodes": ..., "surface": ...} of a light whose nodes vary by direction, else None."""
+    """{"nodes": ..., "surface": ...} of a light whose nodes vary by direction or distance, else None."""
     if not light.use_nodes or light.node_tree is None or _surface(light) is None:
         return None
     node = _first_shader(_surface(light))
@@ -153,7 +153,7 @@ def _graph(light, label, images, report):
     said, shown = [], {}
     graph = FlatGraph(light.node_tree, label, shown, lambda *words: said.append(words))
     surface = graph.add(_surface(light))
-    if surface is None or any(n["type"] in _BY_DISTANCE for n in graph.nodes):
+    if surface is None or any(n["type"] in _BY_PLACE for n in graph.nodes):
         return None
     for words in said:
         report(*words)

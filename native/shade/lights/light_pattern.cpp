@@ -30,12 +30,11 @@ class PatternedLight : public LightSource {
     void sample_all(const Vec3f& p, std::span<const Vec2f> u,
                     std::span<LightSample> samples) const override {
         m_source->sample_all(p, u, samples);
-        for (LightSample& sample : samples)
-            if (sample.pdf > 0.0f) color(sample);
+        m_pattern->color(samples, m_world_from_light);
     }
     bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const override {
         if (!m_source->intersect(p, direction, sample)) return false;
-        color(sample);
+        m_pattern->color({&sample, 1}, m_world_from_light);
         return true;
     }
     bool bound(Vec3f& center, float& radius) const override {
@@ -48,10 +47,6 @@ class PatternedLight : public LightSource {
     }
 
   private:
-    void color(LightSample& sample) const {
-        sample.radiance *= m_pattern->at(-sample.direction * m_world_from_light);
-    }
-
     std::unique_ptr<LightSource> m_source;
     std::shared_ptr<const LightPattern> m_pattern;
     Mat3f m_world_from_light{1.0f};
@@ -59,7 +54,16 @@ class PatternedLight : public LightSource {
 
 }  // namespace
 
-std::vector<Vec3f> LightPattern::directions() {
+float largest_finite(std::vector<Vec3f>& values) {
+    float largest = 0.0f;
+    for (Vec3f& value : values) {
+        if (!is_finite(value)) value = Vec3f(0.0f);
+        largest = std::max(largest, mean_size(value));
+    }
+    return largest;
+}
+
+std::vector<Vec3f> DirectionTable::directions() {
     std::vector<Vec3f> found;
     found.reserve(static_cast<std::size_t>(kRows) * kColumns);
     for (int row = 0; row < kRows; ++row) {
@@ -73,14 +77,15 @@ std::vector<Vec3f> LightPattern::directions() {
     return found;
 }
 
-LightPattern::LightPattern(std::vector<Vec3f> values) : m_values(std::move(values)) {
-    for (Vec3f& value : m_values) {
-        if (!is_finite(value)) value = Vec3f(0.0f);
-        m_largest = std::max(m_largest, mean_size(value));
-    }
+DirectionTable::DirectionTable(std::vector<Vec3f> values)
+    : m_values(std::move(values)), m_largest(largest_finite(m_values)) {}
+
+void DirectionTable::color(std::span<LightSample> samples, const Mat3f& world_from_light) const {
+    for (LightSample& sample : samples)
+        if (sample.pdf > 0.0f) sample.radiance *= at(-sample.direction * world_from_light);
 }
 
-Vec3f LightPattern::at(const Vec3f& direction) const {
+Vec3f DirectionTable::at(const Vec3f& direction) const {
     const float off = std::acos(std::clamp(-direction.z, -1.0f, 1.0f));
     const float turn = std::atan2(direction.y, direction.x) / (2.0f * kPi);
     const float y = off / kPi * (kRows - 1), x = (turn - std::floor(turn)) * kColumns;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Light Path: what a program is run for.  Programs are compiled anew for each type of ray that
 // their graph tells apart, so its outputs are constants and what does not depend on them is folded
-// away.
+// away.  Light Falloff, which the length of rays alone changes, is its neighbour.
 #include "shade/nodes/light_path.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "shade/nodes/nodes.h"
 
@@ -42,6 +43,46 @@ bool told_apart(const std::set<std::string>& outputs, RayType a, RayType b) {
     });
 }
 
+bool reads_ray_length(const NodeGraph& graph) {
+    const auto is_length = [&graph](const auto& input) {
+        const NodeLink* link = std::get_if<NodeLink>(&input.second);
+        return link && link->output == kLength &&
+               graph.nodes[static_cast<std::size_t>(link->node)].type == "ShaderNodeLightPath";
+    };
+    return std::ranges::any_of(graph.nodes, [&](const Node& node) {
+        return node.type == "ShaderNodeLightFalloff" || std::ranges::any_of(node.inputs, is_length);
+    });
+}
+
+FloatSource ray_length(NodeBuilder& b) {
+    if (b.is_world() && !b.is_lamp()) return {-1, 0.0f};
+    if (b.ray_type() == RayType::Shadow)
+        return b.geometry<float>([](const ShadingInput& in, std::size_t) { return in.ray_length; });
+    return b.geometry<float>([](const ShadingInput& in, std::size_t i) {
+        const std::vector<float>& lengths = in.points->ray_lengths;
+        return lengths.empty() ? glm::length(in.points->p[i]) : lengths[i];
+    });
+}
+
+void build_light_falloff(NodeBuilder& b) {
+    const FloatSource length = ray_length(b);
+    const FloatSource strength = b.map<float>(
+        [](float x, float smooth, float t) {
+            const float t2 = t * t;
+            return smooth > 0.0f && std::isfinite(t2) ? x * t2 / (smooth + t2) : x;
+        },
+        b.number("Strength", 1.0f), b.number("Smooth"), length);
+    // Suns are as far as can be; before Blender 4.3 nothing of them is left.
+    const bool leaves_suns = b.since(4, 3);
+    const auto farther = [leaves_suns](float x, float t) {
+        return leaves_suns && !std::isfinite(t) ? x : x * t;
+    };
+    b.output("Quadratic", strength);
+    const FloatSource linear = b.map<float>(farther, strength, length);
+    b.output("Linear", linear);
+    b.output("Constant", b.map<float>(farther, linear, length));
+}
+
 void build_light_path(NodeBuilder& b) {
     for (const char* name :
          {"Is Camera Ray", "Is Shadow Ray", "Is Diffuse Ray", "Is Glossy Ray", "Is Singular Ray",
@@ -52,17 +93,7 @@ void build_light_path(NodeBuilder& b) {
     if (b.is_world())
         b.output("Ray Depth", FloatSource{-1, 1.0f + light_path_value("Ray Depth", b.ray_type())});
     if (b.is_read(kUncounted)) b.warn("Transparent Depth is not counted; it is 0");
-    if (b.is_world()) {
-        b.output(kLength, FloatSource{-1, 0.0f});
-    } else if (b.ray_type() == RayType::Shadow) {
-        b.output(kLength, b.geometry<float>(
-                              [](const ShadingInput& in, std::size_t) { return in.ray_length; }));
-    } else {
-        b.output(kLength, b.geometry<float>([](const ShadingInput& in, std::size_t i) {
-            const std::vector<float>& lengths = in.points->ray_lengths;
-            return lengths.empty() ? glm::length(in.points->p[i]) : lengths[i];
-        }));
-    }
+    b.output(kLength, ray_length(b));
 }
 
 }  // namespace granita

@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "shade/programs/node_builder.h"
 #include "shade/rays/ray_type.h"
 
 namespace granita {
@@ -14,5 +15,11 @@ float light_path_value(const std::string& output, RayType ray);
 
 /// Whether any of these outputs of Light Path differs between two types of ray.
 bool told_apart(const std::set<std::string>& outputs, RayType a, RayType b);
+
+/// Whether anything in a graph may depend on how long rays are.
+bool reads_ray_length(const NodeGraph& graph);
+
+/// From where the ray started that meets the point, metres; 0 in the world.
+FloatSource ray_length(NodeBuilder& b);
 
 }  // namespace granita

@@ -83,12 +83,13 @@ struct GraphOwner {
     std::string name;  ///< for messages: "material 'Wood'"
     bool is_world = false;
     int material_index = 0;  ///< pass_index
+    bool is_lamp = false;    ///< a world, of points that have ray_lengths
 };
 
-/// The first of `rays`, of which `ray` is one, that the Light Path of what feeds `root` does not
 /// Whether what the graph says may depend on what is near.
 bool asks_rays(const NodeGraph& graph);
 
+/// The first of `rays`, of which `ray` is one, that the Light Path of what feeds `root` does not
 /// tell apart from it.
 RayType first_alike(const NodeGraph& graph, const NodeLink& root, RayType ray,
                     std::span<const RayType> rays);

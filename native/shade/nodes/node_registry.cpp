@@ -83,6 +83,7 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeObjectInfo", value(build_object_info)},
         {"ShaderNodeHairInfo", value(build_hair_info)},
         {"ShaderNodePointInfo", value(build_point_info)},
+        {"ShaderNodeLightFalloff", value(build_light_falloff)},
         {"ShaderNodeAmbientOcclusion", value(build_ambient_occlusion)},
         {"ShaderNodeWireframe", value(build_wireframe)},
         {"ShaderNodeParticleInfo", value(build_particle_info)},
@@ -109,7 +110,6 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeWavelength", value(build_wavelength)},
 
         {"ShaderNodeBevel", NodeKind{build_unbevelled, nullptr, "its normal, unbevelled"}},
-        {"ShaderNodeLightFalloff", NodeKind{build_plain_falloff, nullptr, "its strength"}},
 
         {"ShaderNodeTexPointDensity", flat},
 

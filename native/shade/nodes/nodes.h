@@ -65,6 +65,7 @@ void build_rgb_to_bw(NodeBuilder&);
 void build_fresnel(NodeBuilder&);
 void build_layer_weight(NodeBuilder&);
 void build_light_path(NodeBuilder&);
+void build_light_falloff(NodeBuilder&);
 void build_ambient_occlusion(NodeBuilder&);
 void build_wireframe(NodeBuilder&);
 void build_particle_info(NodeBuilder&);
@@ -101,6 +102,5 @@ VectorSource spectrum_color(NodeBuilder&, const char* input);
 /// The shading normal bent by a displacement at the point and one step along u and v.
 VectorSource bumped_by_displacement(NodeBuilder&, const VectorSource& here,
                                     const VectorSource& next_u, const VectorSource& next_v);
-void build_plain_falloff(NodeBuilder&);
 
 }  // namespace granita

@@ -10,9 +10,4 @@ void build_unbevelled(NodeBuilder& b) {
     b.output_vector("Normal", b.normal_input());
 }
 
-void build_plain_falloff(NodeBuilder& b) {
-    const FloatSource strength = b.number("Strength", 1.0f);
-    for (const char* name : {"Quadratic", "Linear", "Constant"}) b.output(name, strength);
-}
-
 }  // namespace granita

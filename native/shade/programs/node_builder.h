@@ -32,6 +32,7 @@ struct ProgramBuilder {
     Report& report;
     std::string owner;  ///< for messages: "material 'Wood'"
     bool is_world = false;
+    bool is_lamp = false;  ///< a world's that has lengths of rays
     int material_index = 0;
     RayType ray_type = RayType::Camera;
     std::vector<std::set<std::string>> read{};  ///< [nodes] outputs that something reads
@@ -58,10 +59,11 @@ class NodeBuilder {
         : m_program(program), m_node(node), m_index(index), m_shift(shift) {}
 
     const Node& node() const { return m_node; }
-    Shift shift() const { return m_shift; }
     /// In its graph.
     std::size_t index() const { return m_index; }
+    Shift shift() const { return m_shift; }
     bool is_world() const { return m_program.is_world; }
+    bool is_lamp() const { return m_program.is_lamp; }
     const Scene& scene() const { return m_program.scene; }
     int material_index() const { return m_program.material_index; }
     RayType ray_type() const { return m_program.ray_type; }
