@@ -129,6 +129,23 @@ def test_the_length_of_a_shadow_ray(scene, render):
     check(theirs, ours)
 
 
+@pytest.mark.parametrize("kind", ["ORTHO", "PERSP"])
+def test_the_length_of_a_camera_ray(scene, render, kind):
+    """From its near clip plane, whatever the lens."""
+    floor = scene_parts.add_square(scene, size=6.0)
+    floor.rotation_euler.x = 0.7
+    camera = scene_parts.add_camera(scene, (0.3, 0, 5), ortho_scale=3.0)
+    camera.data.type, camera.data.clip_start = kind, 1.5
+    scene.render.resolution_x = scene.render.resolution_y = 16
+    tree = Tree(floor)
+    tree.emit(path(tree.nodes, "Ray Length"), 0.1)
+    theirs, ours = render_both(scene, render, samples=16)
+    assert 0.1 < theirs.min() < theirs.max() - 0.1
+    # Where in a pixel 16 samples lie is by chance in both: a quarter of the slope across one.
+    assert np.abs(theirs - ours).max() < 0.005
+    assert theirs.mean() == pytest.approx(ours.mean(), rel=0.001)
+
+
 @pytest.mark.parametrize("invisible", [True, False])
 def test_a_thing_for_the_camera_or_for_shadows_alone(scene, render, invisible):
     """Seen by the camera in front of a floor; the sun's shadow of it falls beside."""

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "shade/nodes/nodes.h"
+#include "shade/programs/shading_camera.h"
 
 namespace granita {
 
@@ -58,10 +59,19 @@ FloatSource ray_length(NodeBuilder& b) {
     if (b.is_world() && !b.is_lamp()) return {-1, 0.0f};
     if (b.ray_type() == RayType::Shadow)
         return b.geometry<float>([](const ShadingInput& in, std::size_t) { return in.ray_length; });
-    return b.geometry<float>([](const ShadingInput& in, std::size_t i) {
-        const std::vector<float>& lengths = in.points->ray_lengths;
-        return lengths.empty() ? glm::length(in.points->p[i]) : lengths[i];
-    });
+    // Those of the camera start at its near clip plane.
+    const Projection& projection = b.scene().camera.projection;
+    const Vec3f forward(ShadingCamera(b.scene()).world_from_camera[2]);
+    return b.geometry<float>(
+        [forward, perspective = projection.perspective,
+         near = static_cast<float>(projection.near_clip)](const ShadingInput& in, std::size_t i) {
+            const std::vector<float>& lengths = in.points->ray_lengths;
+            if (!lengths.empty()) return lengths[i];
+            const Vec3f& p = in.points->p[i];
+            const float depth = glm::dot(p, forward);
+            if (!(depth > near)) return 0.0f;
+            return (depth - near) * (perspective ? glm::length(p) / depth : 1.0f);
+        });
 }
 
 void build_light_falloff(NodeBuilder& b) {
