@@ -133,7 +133,7 @@ def export_frame(
         persistent_state.keep(scene_objects)
     lights = place_lamps(lamps, scan, motion, report)
     instances, materials = _fill_empty_slots(instances, list(seen.materials))
-    report_volume_bounces(scene, (*materials, world), report)
+    report_volume_bounces(scene, settings, (*materials, world), report)
     snapshot = Snapshot(
         options=options,
         camera=camera_at_frame,

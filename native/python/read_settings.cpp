@@ -106,6 +106,8 @@ void read_options(const Record& r, Options& o) {
     o.bounces.transmission =
         in_range(r, "transmission_bounces",
                  r.integer("transmission_bounces", o.bounces.transmission), 0, 1024);
+    o.bounces.volume =
+        in_range(r, "volume_bounces", r.integer("volume_bounces", o.bounces.volume), 0, 1024);
     o.bounces.transparent = in_range(
         r, "transparent_bounces", r.integer("transparent_bounces", o.bounces.transparent), 0, 1024);
     o.bounces.caustics = r.boolean("caustics", o.bounces.caustics);

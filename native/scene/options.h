@@ -43,6 +43,7 @@ struct Mist {
 struct Bounces {
     int most = 0;  ///< 0: surfaces are lit by lamps and the world alone
     int diffuse = 4, glossy = 4, transmission = 12;  ///< of these, by what reflects
+    int volume = 0;                                  ///< of these, in media, beside the first
     int transparent = 8;         ///< surfaces passed through unbent, which are no bounces
     bool caustics = true;        ///< glossy lobes reflect what reaches diffuse ones
     float filter_glossy = 1.0f;  ///< how much blurrier they are for ways that few take; 0 = none

@@ -41,7 +41,7 @@ void SeenVolumes::add_scattered(std::span<const ViewRay> rays, const std::vector
                                 const RayMedia& media, std::span<const float> depths,
                                 std::span<SeenMedium> out) const {
     const std::vector<LightAnchor>& anchors = m_light.anchors();
-    ScatterPoints places(0, m_scene.options.light_samples);
+    ScatterPoints places(0, m_scene.options.light_samples, m_volumes.phase_kinds());
     std::vector<std::size_t> seen_at;  // [places] the depth behind it
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const ScatterSampler sampler(ways[i], media.of(i), anchors);

@@ -23,13 +23,14 @@ def test_limits_are_those_of_cycles(scene):
     cycles.max_bounces, cycles.diffuse_bounces, cycles.glossy_bounces = 7, 3, 5
     cycles.transmission_bounces, cycles.transparent_max_bounces = 6, 2
     cycles.sample_clamp_indirect, cycles.blur_glossy = 4.0, 0.5
-    cycles.caustics_reflective = False
+    cycles.caustics_reflective, cycles.volume_bounces = False, 5
     limits = light_paths(scene, scene.granita)
     assert limits == {
         "bounces": 7,
         "diffuse_bounces": 3,
         "glossy_bounces": 5,
         "transmission_bounces": 6,
+        "volume_bounces": 5,
         "transparent_bounces": 2,
         "clamp_indirect": 4.0,
         "caustics": False,

@@ -22,15 +22,15 @@ def blocks(channels):
     return picture.reshape(rows, BLOCK, rows, BLOCK, 3).mean(axis=(1, 3))
 
 
-def both(scene, render, samples, bounces=0):
-    """(Cycles, Granita): blocks() of each; `bounces` of all kinds but in volumes."""
+def both(scene, render, samples, bounces=0, in_volumes=0):
+    """(Cycles, Granita): blocks() of each; `bounces` of all kinds but `in_volumes`."""
     scene.render.resolution_x = scene.render.resolution_y = SIZE
     cycles = scene.cycles
     cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = samples, False, False
     cycles.pixel_filter_type = "BOX"
     cycles.max_bounces = bounces
     cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
-    cycles.volume_bounces = 0
+    cycles.volume_bounces = in_volumes
     cycles.sample_clamp_indirect = 0.0
     cycles.blur_glossy = cycles.light_sampling_threshold = 0.0
     scene.granita.samples = samples
@@ -125,6 +125,54 @@ def lit_cube(scene, kind="ShaderNodeVolumeScatter", **inputs):
 def test_light_is_scattered_once(scene, render, anisotropy):
     lit_cube(scene, Anisotropy=anisotropy)
     agrees(*both(scene, render, 256))
+
+
+@pytest.mark.parametrize("limit", [1, 3, 8])
+def test_light_is_scattered_often(scene, render, limit):
+    lit_cube(scene, Color=(0.95, 0.8, 0.6, 1.0), Density=2.0)
+    agrees(*both(scene, render, 256, bounces=limit, in_volumes=limit), block=0.06)
+
+
+def test_floors_and_smoke_light_each_other(scene, render):
+    bpy.ops.mesh.primitive_plane_add(size=8.0)
+    floor = node_comparison.Tree(bpy.context.object)
+    shader = floor.add("ShaderNodeBsdfDiffuse")
+    shader.inputs["Color"].default_value = (0.8, 0.3, 0.2, 1.0)
+    floor.link(shader.outputs[0], floor.output.inputs["Surface"])
+    bpy.ops.mesh.primitive_cube_add(size=1.5, location=(0, 0, 0.9))
+    filled(bpy.context.object, "ShaderNodeVolumeScatter", Color=(0.9, 0.9, 0.9, 1.0), Density=2.0)
+    lamp(scene, "POINT", 300.0, (2.0, 1.0, 2.5), shadow_soft_size=0.1)
+    camera = scene_parts.add_camera(scene, (0, -5, 3))
+    camera.rotation_euler = (math.radians(60), 0, 0)
+    agrees(*both(scene, render, 256, bounces=4, in_volumes=4), block=0.06)
+
+
+PHASES = [
+    ("RAYLEIGH", {}),
+    ("DRAINE", {"Anisotropy": 0.5, "Alpha": 2.0}),
+    ("DRAINE", {"Anisotropy": -0.3, "Alpha": 0.5}),
+    ("FOURNIER_FORAND", {"IOR": 1.33, "Backscatter": 0.1}),
+    ("FOURNIER_FORAND", {"IOR": 1.6, "Backscatter": 0.3}),
+    ("MIE", {"Diameter": 0.05}),
+    ("MIE", {"Diameter": 1.0}),
+    ("MIE", {"Diameter": 3.0}),
+    ("MIE", {"Diameter": 20.0}),
+]
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 3, 0), reason="these came with Blender 4.3")
+@pytest.mark.parametrize("phase, inputs", PHASES)
+@pytest.mark.parametrize("height", [2.0, -2.0])
+def test_phase_functions(scene, render, phase, inputs, height):
+    """Lit from before and from behind."""
+    tree = filled(turned_cube(), "ShaderNodeVolumeScatter", Density=0.5)
+    node = tree.nodes["Volume Scatter"]
+    node.phase = phase
+    for name, value in inputs.items():
+        node.inputs[name].default_value = value
+    lamp(scene, "POINT", 3000.0, (2.0, 1.0, height), shadow_soft_size=0.3)
+    orthographic(scene)
+    agrees(*both(scene, render, 128))
 
 
 def test_principled_scatters_light_of_sun_and_world(scene, render):

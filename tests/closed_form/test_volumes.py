@@ -27,6 +27,11 @@ def scatter(density, color=1.0, anisotropy=0.0):
     }
 
 
+def both(extinction, albedo):
+    """Of what is taken from a ray, `albedo` goes on elsewhere."""
+    return scatter(extinction, albedo), absorption(extinction, albedo)
+
+
 def emitted(strength):
     return {"type": "ShaderNodeEmission", "inputs": {"Color": (1.0,) * 4, "Strength": strength}}
 
@@ -274,3 +279,63 @@ def test_steps_of_what_varies_are_an_integral():
     box(snapshot, (-1, -1, 2), (20, 20, 5), dense)
     # A step that is shifted at random is off by a part of itself: the mean over samples is not.
     assert mean(snapshot) == pytest.approx(np.exp(-3.0), rel=0.02)
+
+
+@pytest.mark.parametrize("anisotropy", [0.0, 0.7])
+@pytest.mark.parametrize("depth", [0.5, 2.0, 6.0])
+def test_a_white_furnace(depth, anisotropy):
+    """What only scatters cannot be told from a uniform world, however deep, once all light has left it: of light that
+    enters a box `depth` mean ways wide less than a thousandth is left after 64 places."""
+    snapshot = s.orthographic(
+        (16, 16), samples=256, film_transparent=False, bounces=64, volume_bounces=64
+    )
+    s.constant_world(snapshot, 0.7)
+    snapshot["world"]["lights_scene"] = True
+    box(snapshot, (3, 3, 2), (13, 13, 12), filled(snapshot, scatter(depth / 10, 1.0, anisotropy)))
+    image = s.render(snapshot)["combined"][..., 0]
+    assert image[:2] == pytest.approx(0.7, rel=1e-5)
+    # Means of 25,600 ways, of which one is off by less than .5.
+    assert image[3:13, 3:13].mean() == pytest.approx(0.7, rel=0.015)
+
+
+def test_each_place_that_light_is_scattered_at_counts():
+    """A thin slab: of light that is scattered n + 1 times at most, the powers of the albedo up to there."""
+    albedo, means = 0.6, []
+    for limit in (0, 1, 2, 16):
+        snapshot = s.orthographic(
+            (16, 16), samples=256, film_transparent=False, bounces=20, volume_bounces=limit
+        )
+        s.constant_world(snapshot, 1.0)
+        snapshot["world"]["lights_scene"] = True
+        box(snapshot, (3, 3, 2), (13, 13, 12), filled(snapshot, *both(0.3, albedo)))
+        means.append(s.render(snapshot)["combined"][3:13, 3:13, 0].mean())
+    steps = np.diff(means)
+    assert (steps > 0).all()
+    # Each order is less than the one before by the albedo, and by what gets out.
+    assert steps[1] < albedo * steps[0]
+
+
+def reflected_by_half_space(albedo, sines=200, orders=400):
+    """Of a half space that scatters evenly, seen straight on in a uniform world: 1 - H(1) sqrt(1 - albedo) with
+    Chandrasekhar's H (1960), which this iterates."""
+    x, w = np.polynomial.legendre.leggauss(sines)
+    mu, w = 0.5 * (x + 1), 0.5 * w
+    root = np.sqrt(1 - albedo)
+    h = np.ones_like(mu)
+    for _ in range(orders):
+        h = 1 / (root + 0.5 * albedo * (w * mu * h / (mu[:, None] + mu)).sum(axis=1))
+    at_one = 1 / (root + 0.5 * albedo * (w * mu * h / (1 + mu)).sum())
+    return 1 - at_one * root
+
+
+@pytest.mark.parametrize("albedo", [0.5, 0.9])
+def test_a_half_space_reflects_as_chandrasekhars(albedo):
+    snapshot = s.orthographic(
+        (8, 8), samples=1024, film_transparent=False, bounces=200, volume_bounces=200
+    )
+    s.constant_world(snapshot, 1.0)
+    snapshot["world"]["lights_scene"] = True
+    # 400 mean ways wide, 40 deep: nothing is seen of its sides.
+    box(snapshot, (-200, -200, 2), (208, 208, 42), filled(snapshot, *both(1.0, albedo)))
+    image = s.render(snapshot)["combined"][..., 0]
+    assert image.mean() == pytest.approx(reflected_by_half_space(albedo), rel=0.015)

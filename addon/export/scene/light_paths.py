@@ -7,6 +7,7 @@ LIMITS = (
     ("diffuse_bounces", "diffuse_bounces", 4),
     ("glossy_bounces", "glossy_bounces", 4),
     ("transmission_bounces", "transmission_bounces", 12),
+    ("volume_bounces", "volume_bounces", 0),
     ("transparent_max_bounces", "transparent_bounces", 8),
     ("sample_clamp_indirect", "clamp_indirect", 10.0),
     ("caustics_reflective", "caustics", True),
@@ -32,14 +33,20 @@ def light_paths(scene, settings):
     return limits
 
 
-def report_volume_bounces(scene, records, report):
-    """Names the limit that is not read, where something is filled.
+def report_volume_bounces(scene, settings, records, report):
+    """Names the limit that counts for nothing where light is not followed, if something is filled.
 
     Args:
         scene: whose settings of Cycles count.
+        settings: `scene.granita`, or None.
         records: of materials and the world.
         report: called with (datablock, message).
     """
+    if getattr(settings, "bounces", "NONE") != "NONE":
+        return
     bounces = getattr(getattr(scene, "cycles", None), "volume_bounces", 0)
     if bounces > 0 and any(record.get("volume") for record in records):
-        report("render settings", f"volumes scatter light once, not {bounces + 1} times")
+        report(
+            "render settings",
+            f"volumes scatter light once, not {bounces + 1} times, without bounces",
+        )

@@ -21,9 +21,6 @@ float chance(std::uint32_t place, int depth, int passed, std::uint64_t salt) {
     return static_cast<float>(mix_bits(mix_bits(at) + salt) >> 40) * 0x1p-24f;
 }
 
-/// Places in media that send a way on, beside the first.
-constexpr int kVolumeBounces = 0;
-
 }  // namespace
 
 /// The ways of a batch of points, a bounce at a time.
@@ -106,7 +103,7 @@ class BouncedLight::Wave {
         return path.depth <= m_limits.most + more && path.diffuse <= m_limits.diffuse + more &&
                path.glossy <= m_limits.glossy + more &&
                path.transmission <= m_limits.transmission + more &&
-               path.volume <= kVolumeBounces + more;
+               path.volume <= m_limits.volume + more;
     }
 
     /// Of surfaces that the first rays meet: what light they bring varies as these are near,
@@ -197,7 +194,8 @@ class BouncedLight::Wave {
     void shade_scattering(std::span<const Scattering> batch, int depth) {
         m_hits_shaded += batch.size();
         ScatterPoints places(static_cast<std::uint32_t>(depth),
-                             m_light.m_scene.options.light_samples);
+                             m_light.m_scene.options.light_samples,
+                             m_light.m_volumes->phase_kinds());
         for (const Scattering& one : batch)
             places.add(m_rays[one.path], one.place, m_paths[one.path].next.place, one.u);
         places.finish();

@@ -28,11 +28,17 @@ enum class LobeKind {
     // Of a tube along the tangent; more: radial roughness, offset.
     HairReflection,
     HairTransmission,
-    PrincipledHair,  ///< f0: absorption; more[2]: relative roughness of the first reflection
-    Phase,           ///< of a medium; roughness: mean cosine
+    PrincipledHair,  ///< f0: absorption; more[2]: relative roughness of the first reflection;
+                     ///< more[3] to [5]: HairForm's cells, aside and tilts_light
+    Phase,           ///< of a medium; roughness, more[0]: the two numbers of PhaseKind
 };
 /// How a Phase lobe sends light on.
-enum class PhaseKind : std::uint8_t { HenyeyGreenstein, Rayleigh };
+enum class PhaseKind : std::uint8_t {
+    HenyeyGreenstein,  ///< mean cosine, nothing
+    Rayleigh,          ///< nothing
+    Draine,            ///< as HenyeyGreenstein's, alpha
+    FournierForand,    ///< index, part of the light that goes back
+};
 
 /// What lamps, worlds and passes tell apart of the light that a surface sends on.
 enum class LightPart { Diffuse, Glossy, Transmission };

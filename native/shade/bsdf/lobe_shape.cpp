@@ -39,7 +39,7 @@ std::unique_ptr<const LobeShape> make_shape(const Lobe& lobe, std::size_t point,
             return make_principled_hair(view, form);
         }
         case LobeKind::Phase:
-            return make_phase(view, lobe.phase, lobe.roughness[point]);
+            return make_phase(view, lobe.phase, {lobe.roughness[point], lobe.more[0][point]});
         case LobeKind::Diffuse:
         case LobeKind::Glossy:
         case LobeKind::Refraction:

@@ -67,8 +67,9 @@ std::unique_ptr<const LobeShape> make_toon(const LobeView& view, bool glossy, fl
 std::unique_ptr<const LobeShape> make_hair(const LobeView& view, const HairForm& form,
                                            bool through);
 std::unique_ptr<const LobeShape> make_principled_hair(const LobeView& view, const HairForm& form);
-/// Of a medium: `wi` is where light goes on to, `g` its mean cosine.
-std::unique_ptr<const LobeShape> make_phase(const LobeView& view, PhaseKind kind, float g);
+/// Of a medium: `wi` is where light goes on to; `form` as PhaseKind says.
+std::unique_ptr<const LobeShape> make_phase(const LobeView& view, PhaseKind kind,
+                                            const Vec2f& form);
 /// Ashikhmin and Shirley 2000, "An Anisotropic Phong BRDF Model"; `x`: the direction of alpha.x.
 std::unique_ptr<const LobeShape> make_ashikhmin_shirley(const LobeView& view, const Vec3f& x,
                                                         const Vec2f& alpha);

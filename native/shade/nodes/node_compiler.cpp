@@ -293,7 +293,8 @@ VolumeProgram compile_volume(const NodeGraph& graph, const Scene& scene, Texture
     push_root(roots, compiled.sources.absorption.slot);
     for (const PhaseSource& phase : compiled.sources.phases) {
         push_root(roots, phase.scattering.slot);
-        push_root(roots, phase.anisotropy.slot);
+        push_root(roots, phase.first.slot);
+        push_root(roots, phase.second.slot);
     }
     compiled.program = Program(builder.loads, builder.steps, builder.floats_a_point, roots);
     compiled.requests = used_requests(builder.requests, {&compiled.program});

@@ -41,8 +41,8 @@ struct SubsurfaceSource {
 /// How a medium scatters light about its way.
 struct PhaseSource {
     PhaseKind kind = PhaseKind::HenyeyGreenstein;
-    VectorSource scattering;  ///< coefficient, 1 / metre
-    FloatSource anisotropy;   ///< mean cosine
+    VectorSource scattering;    ///< coefficient, 1 / metre
+    FloatSource first, second;  ///< the two numbers of PhaseKind
 };
 
 /// What is inside of a thing, per metre.

@@ -44,7 +44,8 @@ void add_values(const VolumeProgram& program, const Values& values, std::size_t 
         if (scattering == Vec3f(0.0f)) continue;
         piece.extinction += scattering;
         piece.scattering += scattering;
-        piece.phases.push_back({phase.kind, values(phase.anisotropy, i), scattering});
+        piece.phases.push_back(
+            {phase.kind, {values(phase.first, i), values(phase.second, i)}, scattering});
     }
 }
 

@@ -14,7 +14,7 @@ namespace granita {
 
 struct MediumPhase {
     PhaseKind kind = PhaseKind::HenyeyGreenstein;
-    float anisotropy = 0.0f;
+    Vec2f form{0.0f};        ///< the two numbers of PhaseKind
     Vec3f scattering{0.0f};  ///< coefficient, 1 / metre
 };
 

@@ -21,13 +21,15 @@ Vec4f scatter_numbers(std::uint32_t seed, std::uint32_t depth, std::uint32_t pla
     return {points(place_in_sequence), points.third(place_in_sequence), last};
 }
 
-ScatterPoints::ScatterPoints(std::uint32_t depth, int light_samples) {
+ScatterPoints::ScatterPoints(std::uint32_t depth, int light_samples,
+                             const std::set<PhaseKind>& kinds) {
     m_points.depth = kDepths + depth;
     m_points.share = 1.0f / static_cast<float>(std::max(light_samples, 1));
-    for (const PhaseKind kind : {PhaseKind::HenyeyGreenstein, PhaseKind::Rayleigh}) {
+    for (const PhaseKind kind : kinds) {
         Lobe& lobe = m_closure.lobes.emplace_back();
         lobe.kind = LobeKind::Phase;
         lobe.phase = kind;
+        lobe.more.emplace_back();
     }
 }
 
@@ -53,7 +55,8 @@ void ScatterPoints::add(const Ray& ray, const ScatterPlace& at, std::uint32_t pl
         lobe.weight.push_back(is_it ? taken->scattering * at.weight *
                                           (sum / mean_size(taken->scattering))
                                     : Vec3f(0.0f));
-        lobe.roughness.push_back(is_it ? taken->anisotropy : 0.0f);
+        lobe.roughness.push_back(is_it ? taken->form.x : 0.0f);
+        lobe.more[0].push_back(is_it ? taken->form.y : 0.0f);
     }
 }
 

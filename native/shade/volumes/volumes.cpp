@@ -99,7 +99,10 @@ Volumes::Programs Volumes::compile(const NodeGraph& graph, TextureStore& texture
             compile_volume(graph, m_scene, textures, warnings, owner, ray));
         report.add_new(warnings);
         m_shines |= !program->emission.is(Vec3f(0.0f));
-        m_scatters |= !program->sources.phases.empty();
+        for (const PhaseSource& phase : program->sources.phases) {
+            m_scatters = true;
+            m_phase_kinds.insert(phase.kind);
+        }
     }
     return programs;
 }

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <memory>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,8 @@ class Volumes {
     bool shines() const { return m_shines; }
     /// Whether anything scatters light.
     bool scatters() const { return m_scatters; }
+    /// Of phase functions: the two that Blender 3.4 knows, and what else is there.
+    const std::set<PhaseKind>& phase_kinds() const { return m_phase_kinds; }
 
     /// Which must outlive it.
     void set_rays(const RayScene* rays) { m_rays = rays; }
@@ -66,6 +69,7 @@ class Volumes {
     Programs m_world;
     FilledThings m_things;
     bool m_shines = false, m_scatters = false;
+    std::set<PhaseKind> m_phase_kinds{PhaseKind::HenyeyGreenstein, PhaseKind::Rayleigh};
 };
 
 }  // namespace granita
