@@ -122,8 +122,7 @@ def export_frame(
         points = {**motion.points, **points_by_velocity(seen.sources, shutter, fps)}
     scan = seen.scan
     instances = place(seen.instances, scan, seen.chosen, motion.tracks, motion.lifespans, report)
-    masks = link_lights(lamps, scan, report)
-    instances = linked(instances, scan, seen.chosen, *masks)
+    instances = linked(instances, scan, seen.chosen, link_lights(lamps, scan, report))
     if view_layer.use_pass_vector and moves:
         found = read_adjacent_frames(clock, at_frame, fps, report, check_cancel)
         camera_at_frame["adjacent"] = found.camera

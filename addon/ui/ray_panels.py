@@ -20,13 +20,14 @@ class GRANITA_OBJECT_PT_rays(_Panel, bpy.types.Panel):
     bl_context = "object"
     bl_parent_id = "OBJECT_PT_visibility"
 
-    _LIGHT = (
+    _BOTH = (
         ("visible_camera", "Camera"),
         ("visible_diffuse", "Diffuse"),
         ("visible_glossy", "Glossy"),
         ("visible_transmission", "Transmission"),
     )
-    _SURFACE = (*_LIGHT, ("visible_shadow", "Shadow"))
+    _LIGHT = (*_BOTH, ("visible_volume_scatter", "Volume Scatter"))
+    _SURFACE = (*_BOTH, ("visible_shadow", "Shadow"))
     _TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "EMPTY", "LIGHT"}
 
     @classmethod

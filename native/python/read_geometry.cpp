@@ -182,6 +182,13 @@ void read_instances(const Record& r, Scene& scene) {
     const auto lifespans = r.values<float>("lifespan", {n, 2});
     const auto receives = r.values<std::uint64_t>("receives", {n});
     const auto blocks = r.values<std::uint64_t>("blocks", {n});
+    const auto receiver_set = r.values<std::int32_t>("receiver_set", {n});
+    const auto blocker_set = r.values<std::int32_t>("blocker_set", {n});
+    for (const auto* sets : {&receiver_set, &blocker_set})
+        if (std::ranges::any_of(*sets, [](int set) { return set < -1 || set >= 64; }))
+            r.fail("'receiver_set' and 'blocker_set' must be from -1 to 63");
+    if (r.has("receives_in_volumes"))
+        scene.receives_in_volumes = py::cast<std::uint64_t>(r.get("receives_in_volumes"));
     if (n > 0 && (geometry.empty() || knots.empty() || slots.empty()))
         r.fail("'geometry', 'knots' and 'slots' are needed for every instance");
 
@@ -224,6 +231,8 @@ void read_instances(const Record& r, Scene& scene) {
         instance.key = key.empty() ? static_cast<std::uint32_t>(i) : key[i];
         if (!receives.empty()) instance.receives = receives[i];
         if (!blocks.empty()) instance.blocks = blocks[i];
+        if (!receiver_set.empty()) instance.receiver_set = receiver_set[i];
+        if (!blocker_set.empty()) instance.blocker_set = blocker_set[i];
         if (!lifespans.empty())
             instance.lifespan = lifespan(datablock, lifespans[2 * i], lifespans[2 * i + 1]);
     }

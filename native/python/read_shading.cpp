@@ -119,6 +119,7 @@ void read_light(const Record& r, Light& light) {
     light.visible_diffuse = r.boolean("visible_diffuse", true);
     light.visible_glossy = r.boolean("visible_glossy", true);
     light.visible_transmission = r.boolean("visible_transmission", true);
+    light.visible_volume = r.boolean("visible_volume", true);
     light.diffuse_factor = static_cast<float>(r.number("diffuse_factor", 1.0));
     light.specular_factor = static_cast<float>(r.number("specular_factor", 1.0));
     light.receiver_set = light_set(r, "receiver_set");

@@ -35,6 +35,7 @@ struct Light {
     float spread = 3.14159265f;
     bool casts_shadow = true;
     bool visible_diffuse = true, visible_glossy = true, visible_transmission = true;
+    bool visible_volume = true;
     float diffuse_factor = 1.0f, specular_factor = 1.0f;
     /// Light and shadow linking: which bit of Instance::receives and ::blocks counts; -1 = it
     /// lights, and is shadowed by, everything.

@@ -37,6 +37,7 @@ struct Instance {
     float random = 0.0f;
     /// By sets of lights that are linked: those that light it, and those of which it casts shadows.
     std::uint64_t receives = ~0ULL, blocks = ~0ULL;
+    int receiver_set = -1, blocker_set = -1;  ///< where it shines, as Light's
     std::uint32_t key = 0;  ///< rank of the persistent identity: orders micropolygons (decision 3)
     bool operator==(const Instance&) const = default;
 
@@ -63,6 +64,7 @@ struct Scene {
     std::vector<Image> images;
     std::vector<Light> lights;
     World world;
+    std::uint64_t receives_in_volumes = ~0ULL;  ///< as Instance::receives, of what fills things
 
     const GeometryData& geometry_of(const Instance& instance) const {
         return geometries[static_cast<std::size_t>(instance.geometry)];

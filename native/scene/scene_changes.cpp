@@ -60,6 +60,8 @@ Instance with_groups_of(Instance instance, const Instance& other) {
     instance.casts_shadow = other.casts_shadow;
     instance.receives = other.receives;
     instance.blocks = other.blocks;
+    instance.receiver_set = other.receiver_set;
+    instance.blocker_set = other.blocker_set;
     return instance;
 }
 
@@ -92,6 +94,7 @@ SceneChanges::SceneChanges(const Scene& before, const Scene& now)
     note(same_camera || now.options.bounces.most == 0, part::kLightSamples);
     note(with_groups_of(before.camera, now.camera) == now.camera, part::kRest);
     note(before.lights == now.lights && before.world == now.world, part::kLights);
+    note(before.receives_in_volumes == now.receives_in_volumes, part::kRays);
     note(before.instance_values == now.instance_values, part::kRest);
     parts |= changes_of(before.instances, now.instances);
     note(before.geometries.size() == now.geometries.size(), part::kRest);

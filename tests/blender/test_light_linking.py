@@ -122,9 +122,60 @@ def receivers_and_blockers(_):
 )
 def test_links_are_those_of_cycles(stage, render, link):
     link(stage)
+    agree(stage, render)
+
+
+def a_mesh_on_a(_):
+    linked("Glow", "receiver", A="INCLUDE")
+
+
+def a_mesh_not_on_a(_):
+    linked("Glow", "receiver", A="EXCLUDE")
+    linked("Fill", "receiver", B="EXCLUDE")
+
+
+def one_blocker_of_a_mesh(_):
+    linked("Glow", "blocker", BeforeA="INCLUDE")
+
+
+@pytest.mark.parametrize("link", [a_mesh_on_a, a_mesh_not_on_a, one_blocker_of_a_mesh])
+def test_meshes_that_shine_are_linked(stage, render, link):
+    bpy.data.lights["Key"].energy = 0.0
+    glow = parts.closure("Glow", "ShaderNodeEmission", Strength=30.0)
+    lamp = parts.add_square(stage, "Glow", 0.5, (0.0, 0.5, 3.2), glow)
+    lamp.visible_camera = False
+    link(stage)
+    agree(stage, render)
+
+
+@pytest.mark.parametrize("state", ["INCLUDE", "EXCLUDE"])
+def test_smoke_is_lit_as_what_no_collection_has(stage, render, state):
+    smoke, nodes, links, output = parts.node_material("Smoke")
+    scatter = nodes.new("ShaderNodeVolumeScatter")
+    links.new(scatter.outputs[0], output.inputs["Volume"])
+    bpy.ops.mesh.primitive_cube_add(size=1.0, location=(0.0, 0.0, 1.0))
+    bpy.context.object.data.materials.append(smoke)
+    bpy.context.object.name = "Smoke"
+    linked("Key", "receiver", A=state)
+    stage.cycles.volume_bounces = 0
+    agree(stage, render, 256)
+
+
+def test_lamps_may_be_hidden_from_smoke(stage, render):
+    smoke, nodes, links, output = parts.node_material("Smoke")
+    scatter = nodes.new("ShaderNodeVolumeScatter")
+    links.new(scatter.outputs[0], output.inputs["Volume"])
+    bpy.ops.mesh.primitive_cube_add(size=1.0, location=(0.0, 0.0, 1.0))
+    bpy.context.object.data.materials.append(smoke)
+    bpy.data.objects["Key"].visible_volume_scatter = False
+    bpy.data.objects["Fill"].visible_transmission = False
+    agree(stage, render, 256)
+
+
+def agree(stage, render, samples=64):
     ours, theirs = (
         np.stack([channels[f"ViewLayer.Combined.{c}"] for c in "RGB"])
-        for channels in parts.direct_light_of_both(stage, render, 64)
+        for channels in parts.direct_light_of_both(stage, render, samples)
     )
     # Blocks of 4 pixels: 1024 samples of theirs, whose noise in a penumbra is 1 %, and half a pixel of edges.
     error = np.abs(blocks(ours) - blocks(theirs))

@@ -132,7 +132,7 @@ def test_the_length_of_a_shadow_ray(scene, render):
 @pytest.mark.parametrize("kind", ["ORTHO", "PERSP"])
 def test_the_length_of_a_camera_ray(scene, render, kind):
     """From its near clip plane, whatever the lens."""
-    floor = scene_parts.add_square(scene, size=6.0)
+    floor = scene_parts.add_square(scene, size=12.0)
     floor.rotation_euler.x = 0.7
     camera = scene_parts.add_camera(scene, (0.3, 0, 5), ortho_scale=3.0)
     camera.data.type, camera.data.clip_start = kind, 1.5

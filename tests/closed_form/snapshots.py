@@ -200,6 +200,11 @@ def packed(snapshot):
     for name in ("receives", "blocks"):
         if name in table:
             arrays[name] = np.array([mask % 2**64 for mask in table[name]], np.uint64)
+    for name in ("receiver_set", "blocker_set"):
+        if name in table:
+            arrays[name] = np.array(table[name], np.int32)
+    if "receives_in_volumes" in table:
+        arrays["receives_in_volumes"] = table["receives_in_volumes"]
     if "adjacent" in table:
         arrays["adjacent"] = table["adjacent"]
     return {**snapshot, "instances": arrays}

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
+from test_volumes import box, filled, scatter
 
 SUN = 3.0
 RADIANCE = 0.8 * SUN / np.pi  # of the floor, where the sun stands straight above it
@@ -74,6 +75,66 @@ def test_a_light_without_set_is_shadowed_by_all():
     snapshot["instances"]["blocks"] = [1, 1, 0]
     snapshot["lights"].append({**snapshot["lights"][0], "name": "Other", "blocker_set": -1})
     np.testing.assert_allclose(quarters(snapshot), [2 * LIT, LIT, LIT, 2 * LIT], atol=1e-5)
+
+
+def glowing(sheet_shadows=True, **sets):
+    """The same under a mesh that shines (3) instead of the sun."""
+    snapshot = stage()
+    snapshot["lights"] = []
+    s.quad(snapshot, s.rectangle(6, 4, 26, 12, 2.0), s.emission(snapshot, (3.0,) * 3))
+    snapshot["instances"]["flags"] = [3, 3, 2 if sheet_shadows else 0, 8]
+    snapshot["instances"] |= {name: [-1, -1, -1, bit] for name, bit in sets.items()}
+    return snapshot
+
+
+def picture(snapshot):
+    return s.render(snapshot)["combined"][..., :3]
+
+
+@pytest.mark.parametrize("bit", [0, 63])
+def test_a_mesh_that_shines_lights_its_receivers_alone(bit):
+    everywhere = picture(glowing())
+    assert everywhere[:, 17:].mean() > 0.02
+    snapshot = glowing(receiver_set=bit)
+    snapshot["instances"]["receives"] = [1 << bit, 0, 0, 0]
+    image = picture(snapshot)
+    # A pixel on the seam is of both halves.
+    np.testing.assert_array_equal(image[:, :15], everywhere[:, :15])
+    np.testing.assert_array_equal(image[:, 17:], 0.0)
+
+
+def test_others_than_its_blockers_cast_no_shadow_of_a_mesh_that_shines():
+    snapshot = glowing(blocker_set=1)
+    snapshot["instances"]["blocks"] = [2, 2, 0, 0]
+    open_sky = picture(glowing(sheet_shadows=False))
+    # Rays ask one by one or many at once, where corners of triangles may be met or missed.
+    np.testing.assert_allclose(picture(snapshot), open_sky, rtol=1e-4)
+    assert open_sky.mean() > 1.2 * picture(glowing()).mean()
+
+
+@pytest.mark.parametrize("lit", [0, 1])
+def test_what_fills_things_is_lit_by_its_own_mask(lit):
+    def smoke(**light):
+        snapshot = stage(**light)
+        box(snapshot, (4, 4, 4), (12, 12, 8), filled(snapshot, scatter(0.1)))
+        snapshot["instances"]["flags"].append(3)
+        return snapshot
+
+    linked = smoke(receiver_set=0)
+    linked["instances"] |= {"receives": [0, 0, 0, 1 - lit], "receives_in_volumes": lit}
+    image = picture(linked)
+    assert (image[6:10, 6:10] > 0).all() == bool(lit)
+    np.testing.assert_array_equal(image[:, 20:], 0.0)
+    dark = smoke()
+    dark["materials"][0]["nodes"][0]["inputs"]["Color"] = (0.0, 0.0, 0.0, 1.0)
+    if lit:
+        np.testing.assert_allclose(image[6:10, 6:10], picture(dark)[6:10, 6:10], rtol=1e-4)
+
+
+@pytest.mark.parametrize("name", ["receiver_set", "blocker_set"])
+def test_a_set_of_a_mesh_that_no_mask_can_hold_is_refused(name):
+    with pytest.raises(Exception, match=f"'{name}'|receiver_set"):
+        s.render(glowing(**{name: 64}))
 
 
 def test_a_set_that_no_mask_can_hold_is_refused():

@@ -74,6 +74,10 @@ class Instances:
     # uint64 [n], a bit a set of linked lights; None = all:
     receives: Optional[np.ndarray] = None  # those that light it
     blocks: Optional[np.ndarray] = None  # those that it shadows
+    # int32 [n], the bit of what shines by itself; -1 or None = it lights and is shadowed by everything:
+    receiver_set: Optional[np.ndarray] = None
+    blocker_set: Optional[np.ndarray] = None
+    receives_in_volumes: int = 2**64 - 1  # as `receives`, of what fills things
     lifespan: Optional[np.ndarray] = None  # float32 [n, 2], within the shutter; None = all of it
     values: dict = field(default_factory=dict)  # {key of instance_values: float32 [n, 4]}
 

@@ -256,13 +256,20 @@ def _values(scan, chosen, table, key):
     return found
 
 
-def linked(instances, scan, chosen, receives, blocks):
-    """The same with the masks of light linking, each uint64 [prototypes] or None for everything."""
+def linked(instances, scan, chosen, links):
+    """The same with a light_linking.LightLinks."""
     prototype = scan.prototype[chosen]
+
+    def of_instances(values):
+        return None if values is None else values[prototype]
+
     return replace(
         instances,
-        receives=None if receives is None else receives[prototype],
-        blocks=None if blocks is None else blocks[prototype],
+        receives=of_instances(links.receives),
+        blocks=of_instances(links.blocks),
+        receiver_set=of_instances(links.receiver_set),
+        blocker_set=of_instances(links.blocker_set),
+        receives_in_volumes=links.receives_in_volumes,
     )
 
 

@@ -55,6 +55,8 @@ def add_emitters(snapshot, lamps, scan, report):
             adjacent=matrices[[len(matrices) // 2] * 2],
             receives=[2**64 - 1],
             blocks=[2**64 - 1],
+            receiver_set=[-1],
+            blocker_set=[-1],
             lifespan=[lamp.get("lifespan", (0.0, 1.0))],
         )
         instances.values = {

@@ -155,7 +155,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             const LampRate rate = rate_of(point, choice, index);
             const float density =
                 static_cast<float>(rate.samples) * met.pdf * rate.mean + point.meeting_density(wo);
-            const BsdfValue bsdf = lamp.apply(value);
+            const BsdfValue bsdf = lamp.apply(value, grid.in_medium);
             if (total(bsdf) == Vec3f(0.0f)) return;
             const Vec3f seen = set.shadow(grid, point, place, lamp, met);
             grid.add(point.index, total(bsdf) * met.radiance / density * seen, sign);
@@ -175,7 +175,7 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
     for (int s = 0; s < count; ++s) {
         const LitPlace place = set.place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
         set.meet(grid, place, wo, [&](std::size_t, const Lamp& lamp, const LightSample& met) {
-            const BsdfValue arriving = lamp.apply(value) * met.radiance;
+            const BsdfValue arriving = lamp.apply(value, grid.in_medium) * met.radiance;
             if (total(arriving) == Vec3f(0.0f)) return;
             const Vec3f seen = set.shadow(grid, point, place, lamp, met);
             grid.add(point.index, total(arriving) * seen, LitGrid::sign(s, count));
@@ -321,7 +321,8 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
                  sequence_seed(points, key, m_impl->scene.options.seed),
                  m_impl->world.by_lobe()};
     grid.placed = placed;
-    grid.receives = m_impl->receives(key);
+    grid.in_medium = closure.lobes.front().kind == LobeKind::Phase;
+    grid.receives = grid.in_medium ? m_impl->scene.receives_in_volumes : m_impl->receives(key);
     grid.balance = noise;
     grid.leaving = leaving;
     RayOffset ray_offset = m_impl->set.rays ? m_impl->set.rays->ray_offset(key) : RayOffset{};

@@ -31,7 +31,7 @@ void sample_lamp(const LampSet& set, LitGrid& grid, const LitPoint& point, const
     const SobolPoints sequence = grid.sequence(point, dimension, count);
     const auto add = [&](const LitPlace& place, const LightSample& sample, int s) {
         if (!(sample.pdf > 0.0f)) return;
-        const BsdfValue bsdf = lamp.apply(point.bsdf.evaluate(sample.direction));
+        const BsdfValue bsdf = lamp.apply(point.bsdf.evaluate(sample.direction), grid.in_medium);
         const Vec3f value = total(bsdf) * sample.radiance;
         if (value == Vec3f(0.0f)) return;
         float density = static_cast<float>(count) * sample.pdf * turn.rate.mean;

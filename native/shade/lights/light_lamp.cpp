@@ -29,6 +29,7 @@ Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin,
       m_diffuse(light.visible_diffuse ? light.diffuse_factor : 0.0f),
       m_glossy(light.visible_glossy ? light.specular_factor : 0.0f),
       m_transmission(light.visible_transmission ? light.specular_factor : 0.0f),
+      m_volume(light.visible_volume ? light.specular_factor : 0.0f),
       m_receiver_set(light.receiver_set),
       m_blocker_set(light.blocker_set) {
     const int places = varies_over_time(light) ? kPlaces : 1;
@@ -51,8 +52,9 @@ Lamp::Lamp(MovingTriangle triangle, const Instance& instance)
       m_diffuse(instance.visible_diffuse ? 1.0f : 0.0f),
       m_glossy(instance.visible_glossy ? 1.0f : 0.0f),
       m_transmission(m_glossy),
-      m_receiver_set(-1),
-      m_blocker_set(-1) {
+      m_volume(1.0f),
+      m_receiver_set(instance.receiver_set),
+      m_blocker_set(instance.blocker_set) {
     if (triangle.is_still())
         m_sources.push_back(std::make_unique<TriangleLight>(triangle.at(0.0f)));
     else
@@ -72,7 +74,7 @@ LightBound Lamp::bound_of(const LightSource& source) const {
     here.fall = emission.fall;
     here.near2 = emission.near2;
     here.diffuse = emission.intensity * m_diffuse;
-    here.glossy = emission.intensity * std::max(m_glossy, m_transmission);
+    here.glossy = emission.intensity * std::max({m_glossy, m_transmission, m_volume});
     here.sets = m_receiver_set < 0 ? ~0ULL : 1ULL << m_receiver_set;
     here.is_face = m_is_surface;
     return here;

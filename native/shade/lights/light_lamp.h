@@ -39,7 +39,7 @@ class Lamp {
     bool lights(std::uint64_t receives) const { return in_light_set(receives, m_receiver_set); }
     int blocker_set() const { return m_blocker_set; }
     /// Whether samples of lobes may meet it.
-    bool meets_lobes() const { return m_glossy > 0.0f || m_transmission > 0.0f; }
+    bool meets_lobes() const { return m_glossy > 0.0f || m_transmission > 0.0f || m_volume > 0.0f; }
     /// LightSource::sample_all at a time.
     void sample_all(float time, const Vec3f& p, std::span<const Vec2f> u,
                     std::span<LightSample> samples) const {
@@ -62,10 +62,10 @@ class Lamp {
     bool bound(Vec3f& center, float& radius) const { return at(0.0f).bound(center, radius); }
     /// Whether it has a place, and then a bound on it and on what it sheds over the shutter.
     bool bound(LightBound& out) const;
-    /// Light that is sent on, by the lobes that see this lamp.
-    BsdfValue apply(const BsdfValue& value) const {
+    /// Light that is sent on, by the lobes that see this lamp; `in_medium`: phase functions.
+    BsdfValue apply(const BsdfValue& value, bool in_medium) const {
         return {value.diffuse * m_diffuse, value.glossy * m_glossy,
-                value.transmission * m_transmission};
+                value.transmission * (in_medium ? m_volume : m_transmission)};
     }
 
   private:
@@ -81,7 +81,7 @@ class Lamp {
     Lifespan m_lifespan;
     bool m_hard = true, m_casts_shadow, m_is_surface = false;
     RayTarget m_target;
-    float m_diffuse, m_glossy, m_transmission;
+    float m_diffuse, m_glossy, m_transmission, m_volume;
     int m_receiver_set, m_blocker_set;
 };
 
