@@ -253,8 +253,9 @@ struct ShadingSystem::Impl {
         const bool has_passes = !channels.empty();
         ReflectionParts parts;
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
-        // How near surfaces are tells how far neighbours share, what the world sends as well.
-        LeavingRays leaving{{}, grid.gathered.empty(), scene.options.bounces.diffuse > 0, {}};
+        LeavingRays leaving;
+        leaving.diffuse = grid.gathered.empty();
+        leaving.takes_world = bounces && bounces->tells_occluders() && surface.looks_ahead();
         if (light)
             radiance = light->reflect(points, closure, grid.key, has_passes ? &parts : nullptr, at,
                                       noise, bounces ? &leaving : nullptr);

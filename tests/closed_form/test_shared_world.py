@@ -9,15 +9,15 @@ from test_bounces import ALBEDO, diffuse, material
 from test_world_light import COORDINATES, ENVIRONMENT, background, link
 
 
-def beside_a_wall(world=1.0, **options):
-    """A floor under a sky, and a black wall 10 pixels high that ends at x = 24."""
+def beside_a_wall(wall=0.0, **options):
+    """A floor under a sky, and a wall 10 pixels high, black if nothing else is said, that ends at x = 24."""
     snapshot = s.orthographic((64, 64), samples=16, **{"bounces": 1, **options})
-    s.constant_world(snapshot, world)
+    s.constant_world(snapshot, 1.0)
     snapshot["world"]["lights_scene"] = True
     s.quad(snapshot, s.rectangle(-200, -200, 264, 264, z=100.0), diffuse(snapshot, ALBEDO))
     corners = [(x, y, z) for z in (90, 99.99) for y in (-200, 264) for x in (-200, 24)]
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    s.mesh(snapshot, np.array(corners, float), faces, diffuse(snapshot, 0.0))
+    s.mesh(snapshot, np.array(corners, float), faces, diffuse(snapshot, wall))
     return snapshot
 
 
@@ -57,12 +57,35 @@ def test_passes_tell_the_sky_from_surfaces():
     assert direct * ALBEDO == pytest.approx(made["combined"][:, X, :3], abs=1e-5)
 
 
+def test_direct_and_indirect_are_all_and_neither_is_negative():
+    snapshot = beside_a_wall(wall=0.8, light_samples=4)
+    snapshot["options"]["passes"] = ["Combined", "Diffuse Direct", "Diffuse Indirect"]
+    made = s.render(snapshot)
+    direct, indirect = (made["passes"][f"Diffuse {n}"][:, X] for n in ("Direct", "Indirect"))
+    assert indirect.min() >= 0 and 0.01 < indirect.mean() < 0.2
+    assert (direct + indirect) * ALBEDO == pytest.approx(made["combined"][:, X, :3], abs=1e-5)
+
+
 def test_bits_do_not_depend_on_buckets_threads_and_passes():
     whole = s.render(beside_a_wall(light_samples=4))["combined"]
     for options in ({"bucket_size": 16}, {"threads": 1}, {"passes": ["Combined", "Normal"]}):
         assert np.array_equal(
             whole, s.render(beside_a_wall(light_samples=4, **options))["combined"]
         )
+
+
+def lower_half(snapshot):
+    """Black where the floor looks from its far side."""
+    s.constant_world(snapshot, 1.0)
+    above = {"operation": "LESS_THAN"}
+    snapshot["world"]["nodes"] = [
+        COORDINATES,
+        {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": link(0, "Generated")}},
+        {"type": "ShaderNodeMath", "inputs": {"Value": link(1, "Z")}, "properties": above},
+        background(link(2, "Value")),
+    ]
+    snapshot["world"]["nodes"][2]["inputs"]["Value_001"] = 0.0
+    snapshot["world"] |= {"surface": (3, "Background"), "lights_scene": True}
 
 
 def grey_sky(snapshot):
@@ -82,6 +105,65 @@ def one_bright_side(snapshot):
         "nodes": [COORDINATES, ENVIRONMENT, background(link(1, "Color"))],
         "surface": (2, "Background"),
     }
+
+
+def stripes(kind, bounces):
+    """Of 4 pixels, that reflect, and others that let light through, or look aside by 60 degrees, under half a sky."""
+    snapshot = s.orthographic((32, 32), samples=64, light_samples=64, bounces=bounces)
+    lower_half(snapshot)
+    white = {"Color": (1.0, 1.0, 1.0, 1.0)}
+    wave = [
+        {"type": "ShaderNodeNewGeometry", "inputs": {}},
+        {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": link(0, "Position")}},
+        {
+            "type": "ShaderNodeMath",
+            "inputs": {"Value": link(1, "X"), "Value_001": 8.0},
+            "properties": {"operation": "FLOORED_MODULO"},
+        },
+        {
+            "type": "ShaderNodeMath",
+            "inputs": {"Value": link(2, "Value"), "Value_001": 4.0},
+            "properties": {"operation": "GREATER_THAN"},
+        },
+    ]
+    if kind == "Translucent":
+        other = [{"type": "ShaderNodeBsdfTranslucent", "inputs": white}]
+    else:
+        aside = {"X": 0.75**0.5, "Y": 0.0, "Z": -0.5}
+        other = [
+            {"type": "ShaderNodeCombineXYZ", "inputs": aside},
+            {"type": "ShaderNodeBsdfDiffuse", "inputs": white | {"Normal": link(5, "Vector")}},
+        ]
+    nodes = [*wave, {"type": "ShaderNodeBsdfDiffuse", "inputs": white}, *other]
+    mix = {"Fac": link(3, "Value"), "Shader": link(4, "BSDF")}
+    mix |= {"Shader_001": link(len(nodes) - 1, "BSDF")}
+    nodes.append({"type": "ShaderNodeMixShader", "inputs": mix})
+    surface = material(snapshot, nodes, (len(nodes) - 1, "Shader"))
+    s.quad(snapshot, s.rectangle(-48, -48, 80, 80, 20.0), surface)
+    return s.render(snapshot)["combined"][..., 0].mean(axis=0)
+
+
+@pytest.mark.parametrize("kind", ["Translucent", "bent"])
+def test_lobes_that_look_elsewhere_share_no_world(kind):
+    """Nothing else is there: following light changes nothing."""
+    alone = stripes(kind, 0)
+    assert alone[1:3] == pytest.approx(1.0, rel=0.005) and alone[5:7].max() < 0.7
+    assert stripes(kind, 1) == pytest.approx(alone, abs=0.01)
+
+
+def brighter_in_gloss(snapshot):
+    """Rays that glossy lobes send see twice as much."""
+    s.constant_world(snapshot, 1.0)
+    snapshot["world"]["nodes"] = [
+        {"type": "ShaderNodeLightPath", "inputs": {}},
+        {
+            "type": "ShaderNodeMath",
+            "inputs": {"Value": link(0, "Is Glossy Ray"), "Value_001": 1.0},
+            "properties": {"operation": "ADD"},
+        },
+        background(link(1, "Value")),
+    ]
+    snapshot["world"] |= {"surface": (2, "Background"), "lights_scene": True}
 
 
 def checks(bounces, world):
@@ -109,7 +191,7 @@ def checks(bounces, world):
     return s.render(snapshot)["combined"][..., 0]
 
 
-@pytest.mark.parametrize("world", [grey_sky, one_bright_side])
+@pytest.mark.parametrize("world", [grey_sky, one_bright_side, lower_half, brighter_in_gloss])
 def test_checks_share_no_light_and_stay_sharp(world):
     """Nothing else is there: following light changes nothing, on either kind of check or between them."""
     alone, followed = checks(0, world), checks(4, world)

@@ -389,6 +389,12 @@ BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const 
       m_emission(emission),
       m_volumes(volumes),
       m_any_shines(volumes && volumes->shines()),
+      m_tells_occluders(scene.options.bounces.diffuse > 0 &&
+                        std::ranges::none_of(scene.instances,
+                                             [](const Instance& instance) {
+                                                 return instance.casts_shadow &&
+                                                        !instance.visible_diffuse;
+                                             })),
       m_statistics(statistics),
       m_progress(progress) {
     for (std::size_t i = 0; i < scene.instances.size() && !m_any_shines; ++i) {

@@ -46,8 +46,10 @@ void reflect_gathered(const GatheredLight& light, const Grid& grid, const Surfac
         const Vec3f diffuse = grid.gathered[i] * albedo;
         const Vec3f others = light.glossy[i] + light.mirrored[i];
         if (parts) {
-            const Vec3f of_world =
-                grid.gathered_world.empty() ? Vec3f(0.0f) : grid.gathered_world[i] * albedo;
+            // Planes are fitted to either: what lies on top of them is not less than nothing.
+            const Vec3f of_world = grid.gathered_world.empty()
+                                       ? Vec3f(0.0f)
+                                       : glm::min(grid.gathered_world[i] * albedo, diffuse);
             parts->diffuse[i] += of_world;
             parts->diffuse_bounced[i] = diffuse - of_world;
             parts->glossy_bounced[i] = others - light.transmitted[i];

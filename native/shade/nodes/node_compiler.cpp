@@ -326,6 +326,7 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
     if (passes) compiled.radiance.passes = pass_sources(builder, graph, aov_outputs, *passes);
     compiled.radiance.is_bumped = builder.is_bumped;
     compiled.radiance.bumped = builder.bumped;
+    compiled.radiance.bends_normals = builder.bends_normals;
     std::vector<int> roots = roots_of(compiled.radiance.sources, compiled.radiance.passes);
     if (builder.is_bumped) push_root(roots, builder.bumped.slot);
     compiled.radiance.program =

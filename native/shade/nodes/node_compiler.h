@@ -29,8 +29,16 @@ struct SurfaceProgram {
     SurfaceSources sources;
     PassSources passes;
     bool is_bumped = false;
-    VectorSource bumped;  ///< where `is_bumped`: the shading normal, bent by displacement
+    VectorSource bumped;         ///< where `is_bumped`: the shading normal, bent by displacement
+    bool bends_normals = false;  ///< nodes may give lobes others
 
+    /// Whether diffuse lobes of all points look where the surface does.
+    bool looks_ahead() const {
+        return !is_bumped && !bends_normals &&
+               std::ranges::none_of(sources.lobes, [](const LobeSource& lobe) {
+                   return lobe.kind == LobeKind::Translucent;
+               });
+    }
     bool scatters() const { return !sources.subsurface.empty(); }
     /// Whether nodes bend normals of what is scattered below the surface.
     bool bends_scattered() const {

@@ -124,7 +124,9 @@ VectorSource NodeBuilder::shading_normal() {
 }
 
 VectorSource NodeBuilder::normal_input(const std::string& input) {
-    return linked(input) ? vector(input) : shading_normal();
+    if (!linked(input)) return shading_normal();
+    m_program.bends_normals = true;
+    return vector(input);
 }
 
 VectorSource NodeBuilder::diffuse_normal(const std::string& input) {
