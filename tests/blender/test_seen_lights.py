@@ -87,6 +87,37 @@ def test_what_is_before_them_hides_them_and_they_shine(stage, render):
     assert_as_in_cycles(stage, render)
 
 
+def emission_of(lamp):
+    """(tree, Emission) of the lamp's nodes."""
+    lamp.data.use_nodes = True
+    tree = lamp.data.node_tree
+    return tree, tree.nodes["Emission"]
+
+
+@pytest.mark.parametrize(
+    "kind, output", [("AREA", "Quadratic"), ("AREA", "Linear"), ("POINT", "Quadratic")]
+)
+def test_by_what_their_nodes_make_of_the_distance(stage, render, kind, output):
+    shape = {"size": 1.5} if kind == "AREA" else {"shadow_soft_size": 0.7}
+    tree, emission = emission_of(seen_light(stage, kind, **shape))
+    falloff = tree.nodes.new("ShaderNodeLightFalloff")
+    falloff.inputs["Strength"].default_value = 3.0
+    falloff.inputs["Smooth"].default_value = 1.5
+    emission.inputs["Color"].default_value = (0.5, 1.0, 0.8, 1.0)
+    tree.links.new(falloff.outputs[output], emission.inputs["Strength"])
+    assert brightest(assert_as_in_cycles(stage, render)) > 0.8
+
+
+def test_nodes_that_tell_places_apart_are_named(scene):
+    parts.add_camera(scene)
+    tree, emission = emission_of(seen_light(scene, "AREA", size=1.5))
+    coordinates = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(coordinates.outputs["Normal"], emission.inputs["Color"])
+    _, report = export_probe.through_script()
+    (entry,) = report.entries()
+    assert entry[0] == "light 'Lamp'" and "without its nodes" in entry[1]
+
+
 def test_a_light_that_is_not_seen_changes_nothing(stage, render):
     expected = render(stage)
     seen_light(stage, "AREA", size=1.5).visible_camera = False

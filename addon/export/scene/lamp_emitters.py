@@ -12,6 +12,11 @@ import numpy as np
 from ..base.snapshot import Geometry
 from .instance import VISIBLE_CAMERA
 
+# Those whose values are the same at each place of a light and in each direction from it, from one eye.
+_PLACELESS = {
+    *("ShaderNodeLightFalloff", "ShaderNodeLightPath", "ShaderNodeValue", "ShaderNodeRGB"),
+    *("ShaderNodeMath", "ShaderNodeMixRGB", "ShaderNodeMix", "ShaderNodeBlackbody"),
+}
 _SIDES = 256  # of an ellipse: its outline is within 1e-4 of its radius
 
 
@@ -65,7 +70,8 @@ def add_emitters(snapshot, lamps, scan, report):
         }
         snapshot.geometries.append(geometry)
         radiance = np.array(lamp["color"]) * lamp["energy"] / (math.pi * area)
-        snapshot.materials.append(_material(geometry.name, radiance))
+        emission = _emission(lamp, (*map(float, radiance), 1.0), report)
+        snapshot.materials.append(_material(geometry.name, emission))
 
 
 def _glows(lamp, report):
@@ -120,36 +126,54 @@ def _area(lamp):
     return geometry, area
 
 
-def _material(name, radiance):
-    """Glows to the front, and lets everything through."""
+def _emission(lamp, radiance, report):
+    """Nodes of what it sends to the camera, the last an Emission; its own, if they tell no places apart."""
+    plain = _node("ShaderNodeEmission", Color=radiance, Strength=1.0)
+    if "nodes" not in lamp:
+        return [plain]
+    *before, own = lamp["nodes"]
+    if own["type"] != "ShaderNodeEmission" or any(n["type"] not in _PLACELESS for n in before):
+        report(f"light '{lamp['name']}'", "is drawn to the camera without its nodes")
+        return [plain]
+    tint = _node("ShaderNodeMixRGB", Fac=1.0, Color1=own["inputs"]["Color"], Color2=radiance)
+    tint["properties"]["blend_type"] = "MULTIPLY"
+    return [
+        *before,
+        tint,
+        {**own, "inputs": {**own["inputs"], "Color": _link(len(before), "Color")}},
+    ]
 
-    def link(node, socket):
-        return ("LINK", node, socket)
 
+def _material(name, emission):
+    """Glows to the front by these nodes, and lets everything through."""
+    n = len(emission)
     nodes = [
-        ("ShaderNodeEmission", {"Color": (*map(float, radiance), 1.0), "Strength": 1.0}),
-        ("ShaderNodeBsdfTransparent", {"Color": (1.0, 1.0, 1.0, 1.0)}),
-        ("ShaderNodeAddShader", {"Shader": link(0, "Emission"), "Shader_001": link(1, "BSDF")}),
-        ("ShaderNodeNewGeometry", {}),
-        (
+        *emission,
+        _node("ShaderNodeBsdfTransparent", Color=(1.0, 1.0, 1.0, 1.0)),
+        _node("ShaderNodeAddShader", Shader=_link(n - 1, "Emission"), Shader_001=_link(n, "BSDF")),
+        _node("ShaderNodeNewGeometry"),
+        _node(
             "ShaderNodeMixShader",
-            {
-                "Fac": link(3, "Backfacing"),
-                "Shader": link(2, "Shader"),
-                "Shader_001": link(1, "BSDF"),
-            },
+            Fac=_link(n + 2, "Backfacing"),
+            Shader=_link(n + 1, "Shader"),
+            Shader_001=_link(n, "BSDF"),
         ),
     ]
     return {
         "name": name,
         "index": 0,
-        "nodes": [
-            {"type": kind, "name": kind, "inputs": inputs, "properties": {}}
-            for kind, inputs in nodes
-        ],
-        "surface": (4, "Shader"),
+        "nodes": nodes,
+        "surface": (n + 3, "Shader"),
         "displacement": None,
     }
+
+
+def _node(kind, **inputs):
+    return {"type": kind, "name": kind, "inputs": inputs, "properties": {}}
+
+
+def _link(node, socket):
+    return ("LINK", node, socket)
 
 
 def _append(instances, **more):
