@@ -278,9 +278,10 @@ void FaceBatch::fill_attributes(Grid& grid, const std::vector<Face>& faces,
         };
         std::vector<float> values, du, dv, mean;
         for (const Cluster& cluster : clusters) {
-            if (request.derivatives) {
+            // A mean of faces that point this way and that would be the shape of none.
+            if (request.derivatives || is_to_corner(request.source)) {
                 values_at(cluster.center, values, du, dv);
-                for (std::size_t c = 0; c < width; ++c) {
+                for (std::size_t c = 0; request.derivatives && c < width; ++c) {
                     out.du.push_back(du[c] * cluster.stretch(faces));
                     out.dv.push_back(dv[c] * cluster.stretch(faces));
                 }

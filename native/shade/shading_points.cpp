@@ -12,6 +12,7 @@ ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
     points.count = n;
     points.share = grid.point_share;
     points.faces = grid.shading_positions.faces;
+    points.whole_faces = grid.shades_faces();
     if (!grid.disjoint)
         points.columns = static_cast<std::size_t>(grid.n_u / grid.shading_positions.step_u) + 1;
     points.p.resize(n);

@@ -332,6 +332,13 @@ struct ShadingSystem::Impl {
                scene.geometry_of(scene.instances[grid.instance]).kind == GeometryKind::Mesh;
     }
 
+    /// Whether edges of faces show: corners of micropolygons lie on them, or between two of them.
+    bool has_lines(const Grid& grid) const {
+        return std::ranges::any_of(
+            material(grid.material).requests,
+            [](const AttributeRequest& request) { return is_to_corner(request.source); });
+    }
+
     /// Whether some of the grid's micropolygons look otherwise at some time of the shutter than
     /// when it opens: all else being equal, light samples too.
     bool changes_in_time(Grid& grid) const {
@@ -397,7 +404,7 @@ struct ShadingSystem::Impl {
         // Samples would be shaded by themselves where points happen to be too bright, not too dark.
         if (!settled.empty()) settled.swap(grid.radiance);
         grid.unsettled =
-            changes_in_time(grid)
+            has_lines(grid) || changes_in_time(grid)
                 ? all_marked(grid)
                 : unsettled_micropolygons(grid, noise, threshold / (sharpness * sharpness),
                                           noise_threshold / (sharpness * sharpness));
@@ -446,12 +453,13 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
     const ShadingPoints points = shading_points(grid, m_impl->camera);
     m_impl->shade_opacity(grid, m_impl->input(grid, points));
     grid.opacity_varies =
+        (m_impl->has_lines(grid) && m_impl->can_refine(grid)) ||
         std::ranges::any_of(grid.opacity, [](const Vec3f& o) { return o != Vec3f(1.0f); });
     grid.additive = m_impl->material(grid.material).radiance.sources.additive;
     if (grid.opacity_varies && m_impl->can_refine(grid)) {
         const float sharpness = m_impl->sharpness(grid);
         grid.unsettled_opacity =
-            m_impl->opacity_changes_in_time(grid)
+            m_impl->has_lines(grid) || m_impl->opacity_changes_in_time(grid)
                 ? m_impl->all_marked(grid)
                 : unsettled_opacity(grid, m_impl->threshold / (sharpness * sharpness));
     }

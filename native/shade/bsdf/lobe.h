@@ -146,7 +146,8 @@ struct ShadingPoints {
     std::vector<float> shares;         ///< [n] part of that which each is due; empty: all of it
     /// [n] 0: hidden from the eye, inside of something or behind it; empty: none is known to be
     std::vector<std::uint8_t> seen;
-    bool round = false;  ///< of ribbons that stand for tubes, as their normals say
+    bool whole_faces = false;  ///< as Grid::shades_faces()
+    bool round = false;        ///< of ribbons that stand for tubes, as their normals say
     std::vector<std::uint8_t> backfacing;  ///< [n]
     /// [n] shutter time at which each is lit, where it then is; negative, or empty: over the whole
     /// shutter.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "shade/nodes/nodes.h"
 #include "shade/programs/shading_camera.h"
@@ -41,6 +42,27 @@ float distance2_to_edges(const std::array<Vec3f, 4>& c) {
     const Vec3f& other = in_first ? c[1] : c[3];
     return std::min({distance2_to_line(c[0], other), distance2_to_line(other, c[2]),
                      distance2_to_line(c[2], c[0])});
+}
+
+/// Of the two triangles' area, what is nearer than `half` to their edges: what lies within is a
+/// triangle like each, whose inscribed circle is smaller by that.
+float covered_part(const std::array<Vec3f, 4>& c, float half) {
+    float area = 0.0f, left = 0.0f;
+    for (const auto& [a, b] : {std::pair(c[1], c[2]), std::pair(c[2], c[3])}) {
+        const float twice = glm::length(glm::cross(a - c[0], b - c[0]));
+        if (!(twice > 0.0f)) continue;
+        const float around = glm::distance(c[0], a) + glm::distance(a, b) + glm::distance(b, c[0]);
+        const float side = std::max(1.0f - half * around / twice, 0.0f);
+        area += twice;
+        left += twice * side * side;
+    }
+    return area > 0.0f ? 1.0f - left / area : 0.0f;
+}
+
+/// 1 where points stand for whole faces, which lines cover in part.
+FloatSource whole_faces(NodeBuilder& b) {
+    return b.geometry<float>(
+        [](const ShadingInput& in, std::size_t) { return in.points->whole_faces ? 1.0f : 0.0f; });
 }
 
 /// What a pixel covers where the camera sees a surface, as Cycles reckons: a square about the
@@ -117,13 +139,14 @@ void build_wireframe(NodeBuilder& b) {
     b.output("Fac",
              b.map<float>(
                  [](const Vec3f& c0, const Vec3f& c1, const Vec3f& c2, const Vec3f& c3, float size_,
-                    float unit_) {
-                     const float half = 0.5f * size_ * unit_;
+                    float unit_, float whole) {
+                     const float half = std::abs(0.5f * size_ * unit_);
+                     if (whole != 0.0f) return covered_part({c0, c1, c2, c3}, half);
                      return distance2_to_edges({c0, c1, c2, c3}) < half * half ? 1.0f : 0.0f;
                  },
                  to_corner(b, AttributeSource::ToCorner0), to_corner(b, AttributeSource::ToCorner1),
                  to_corner(b, AttributeSource::ToCorner2), to_corner(b, AttributeSource::ToCorner3),
-                 size, unit));
+                 size, unit, whole_faces(b)));
 }
 
 }  // namespace granita
