@@ -58,7 +58,8 @@ std::vector<KeptVisibility::Traits> KeptVisibility::traits_of(const Scene& scene
     std::vector<Traits> traits;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const auto material = static_cast<int>(m);
-        traits.push_back({shading.opacity_varies(material), shading.reaches_others(material)});
+        traits.push_back({shading.opacity_varies(material), shading.opacity_asks_rays(material),
+                          shading.reaches_others(material)});
     }
     return traits;
 }
@@ -84,6 +85,8 @@ bool KeptVisibility::serves(const Scene& now, const SceneChanges& changes,
     if (!displaces_alike(now, changes) || m_requests != shading.requests()) return false;
     const bool has_lists = std::ranges::any_of(m_traits, &Traits::opacity_varies);
     if (has_lists && (changes.parts & part::kPasses) != 0) return false;
+    const bool asks_rays = std::ranges::any_of(m_traits, &Traits::opacity_asks_rays);
+    if (asks_rays && (changes.parts & part::kReadByOpacityRays) != 0) return false;
     for (std::size_t m = 0; m < m_traits.size(); ++m) {
         if (!changes.materials[m]) continue;
         const auto material = static_cast<int>(m);

@@ -77,7 +77,7 @@ class KeptVisibility {
   private:
     /// What hiding, and other surfaces, know of a material.
     struct Traits {
-        bool opacity_varies, reaches_others;
+        bool opacity_varies, opacity_asks_rays, reaches_others;
     };
     static std::vector<Traits> traits_of(const Scene& scene, const ShadingSystem& shading);
 

@@ -24,6 +24,8 @@ inline constexpr Set kRest = 128;
 /// What samples see, unless materials change opacity, displacement or attributes, or passes look
 /// farther through what is transparent.
 inline constexpr Set kReadByHiding = kLens | kRest;
+/// Opacity that asks rays, besides: how many, and what casts shadows and lets light through.
+inline constexpr Set kReadByOpacityRays = kLightSamples | kRays | kMaterials;
 /// The radiance of a grid whose points are the same, and its channels.
 inline constexpr Set kReadByShading =
     kLightSamples | kLights | kRays | kMaterials | kPasses | kRest;

@@ -441,6 +441,11 @@ bool ShadingSystem::opacity_varies(int material) const {
     return !m_impl->material(material).transparency.is(Vec3f(0.0f));
 }
 
+bool ShadingSystem::opacity_asks_rays(int material) const {
+    return material >= 0 && opacity_varies(material) &&
+           asks_rays(m_impl->scene.materials[static_cast<std::size_t>(material)].graph);
+}
+
 bool ShadingSystem::reaches_others(int material) const {
     return !m_impl->material(material).shadow.transparency.is(Vec3f(0.0f)) ||
            m_impl->emission->any(material) ||

@@ -42,6 +42,8 @@ class ShadingSystem {
 
     /// Whether opacity must run before visibility (it is not the constant 1).  -1 = no material.
     bool opacity_varies(int material) const;
+    /// Whether opacity depends on what rays of its nodes meet.
+    bool opacity_asks_rays(int material) const;
     /// Whether other surfaces' light depends on it where none bounces: it lets light through,
     /// shines, or bends the normals by which light enters a mesh.  -1 = no material.
     bool reaches_others(int material) const;

@@ -203,6 +203,48 @@ def test_what_is_displaced_is_moved_again_where_its_offsets_may_be_others(name):
     assert found == expected
 
 
+def unseen_by_shadows(snapshot):
+    snapshot["instances"]["flags"] = [59, 57, 59]
+
+
+def lets_shadow_rays_through(snapshot):
+    nodes = snapshot["materials"][1]["nodes"]
+    nodes.append({"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1, 1, 1, 1)}})
+    nodes.append({"type": "ShaderNodeLightPath", "inputs": {}})
+    links = {"Fac": (2, "Is Shadow Ray"), "Shader": (0, "BSDF"), "Shader_001": (1, "BSDF")}
+    mixed = {name: ("LINK", *link) for name, link in links.items()}
+    nodes.append({"type": "ShaderNodeMixShader", "inputs": mixed})
+    snapshot["materials"][1]["surface"] = (3, "Shader")
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        unseen_by_shadows,
+        lets_shadow_rays_through,
+        lambda snapshot: snapshot["options"].update(light_samples=5),
+    ],
+    ids=["who casts shadows", "what shadow rays pass", "light samples"],
+)
+def test_opacity_that_asks_rays_follows_what_they_meet(edit):
+    """The floor is as thin as things are near it."""
+    first = scene()
+    first["instances"]["flags"] = [59, 59, 59]
+    nodes = first["materials"][0]["nodes"]
+    nodes.append({"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1, 1, 1, 1)}})
+    nodes.append({"type": "ShaderNodeAmbientOcclusion", "inputs": {"Distance": 5.0}})
+    links = {"Fac": (2, "AO"), "Shader": (1, "BSDF"), "Shader_001": (0, "BSDF")}
+    mixed = {name: ("LINK", *link) for name, link in links.items()}
+    nodes.append({"type": "ShaderNodeMixShader", "inputs": mixed})
+    first["materials"][0]["surface"] = (3, "Shader")
+    kept = Kept()
+    before = kept.picture(first)
+    second = copy.deepcopy(first)
+    edit(second)
+    alone = kept.follow(second)
+    assert (alone["combined"][..., 3] != before[..., 3]).any()
+
+
 def test_what_there_is_to_say_of_displacement_is_said_of_each_picture():
     snapshot, kept = scene(), Kept()
     displaced_cube(snapshot)
