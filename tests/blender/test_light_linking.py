@@ -161,6 +161,17 @@ def test_smoke_is_lit_as_what_no_collection_has(stage, render, state):
     agree(stage, render, 256)
 
 
+@pytest.mark.parametrize("state", ["INCLUDE", "EXCLUDE"])
+def test_smoke_dims_lights_that_it_blocks(stage, render, state):
+    smoke, nodes, links, output = parts.node_material("Smoke")
+    links.new(nodes.new("ShaderNodeVolumeAbsorption").outputs[0], output.inputs["Volume"])
+    bpy.ops.mesh.primitive_cube_add(size=1.0, location=(0.0, 0.0, 1.0))
+    bpy.context.object.data.materials.append(smoke)
+    bpy.context.object.name = "Smoke"
+    linked("Key", "blocker", Smoke=state)
+    agree(stage, render, 256)
+
+
 def test_lamps_may_be_hidden_from_smoke(stage, render):
     smoke, nodes, links, output = parts.node_material("Smoke")
     scatter = nodes.new("ShaderNodeVolumeScatter")

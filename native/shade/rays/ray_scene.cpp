@@ -91,9 +91,7 @@ void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) 
     const float time = reinterpret_cast<const RTCRay*>(arguments->ray)->time;
     const Instance& met = scene->scene.instances[instance.index];
     const RayType type = context->rays->type;
-    const bool is_there = meets(type, met) && (type != RayType::Shadow ||
-                                               in_light_set(met.blocks, context->blocker_set));
-    if (!is_there || !met.lifespan.contains(time)) {
+    if (!meets(type, met, context->blocker_set) || !met.lifespan.contains(time)) {
         arguments->valid[0] = 0;
         return;
     }

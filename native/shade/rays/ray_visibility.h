@@ -15,4 +15,10 @@ inline bool meets(RayType ray, const Instance& instance) {
     return instance.visible_glossy || (goes_through(ray) && instance.visible_transmission);
 }
 
+/// Likewise; light of a set passes what does not block it.
+inline bool meets(RayType ray, const Instance& instance, int blocker_set) {
+    return meets(ray, instance) &&
+           (ray != RayType::Shadow || in_light_set(instance.blocks, blocker_set));
+}
+
 }  // namespace granita

@@ -29,7 +29,8 @@ void RayScene::Impl::note_crossing(const RTCFilterFunctionNArguments* arguments)
     const Instance& instance = scene.instances[index];
     const Ray& ray = context.rays[0];
     arguments->valid[0] = 0;  // goes on
-    if (!meets(ray.type, instance) || !instance.lifespan.contains(ray.time)) return;
+    if (!meets(ray.type, instance, ray.blocker_set) || !instance.lifespan.contains(ray.time))
+        return;
     std::int32_t material = instance.materials.front();
     if (instance.materials.size() > 1) {
         RayHit hit;
