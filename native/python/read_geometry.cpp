@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 #include "geometry/random_per_island.h"
 #include "python/snapshot.h"
@@ -184,9 +185,10 @@ void read_instances(const Record& r, Scene& scene) {
     const auto blocks = r.values<std::uint64_t>("blocks", {n});
     const auto receiver_set = r.values<std::int32_t>("receiver_set", {n});
     const auto blocker_set = r.values<std::int32_t>("blocker_set", {n});
-    for (const auto* sets : {&receiver_set, &blocker_set})
+    for (const auto& [name, sets] :
+         {std::pair("receiver_set", &receiver_set), std::pair("blocker_set", &blocker_set)})
         if (std::ranges::any_of(*sets, [](int set) { return set < -1 || set >= 64; }))
-            r.fail("'receiver_set' and 'blocker_set' must be from -1 to 63");
+            r.fail("'" + std::string(name) + "' must be from -1 to 63");
     if (r.has("receives_in_volumes"))
         scene.receives_in_volumes = py::cast<std::uint64_t>(r.get("receives_in_volumes"));
     if (n > 0 && (geometry.empty() || knots.empty() || slots.empty()))
