@@ -117,14 +117,13 @@ struct ShadingSystem::Impl {
             const auto shows = [this](int index) { return reflects(index); };
             return i.materials.empty() ? shows(-1) : std::ranges::any_of(i.materials, shows);
         });
-        const bool asks_rays = std::ranges::any_of(scene.materials, [](const Material& material) {
-            return granita::asks_rays(material.graph);
-        });
+        const bool nodes_ask_rays =
+            std::ranges::any_of(scene.materials, asks_rays, &Material::graph);
         if (Volumes::any(scene)) volumes = std::make_unique<Volumes>(scene, textures, report);
-        if (!any_reflects && !volumes && !asks_rays) return;
+        if (!any_reflects && !volumes && !nodes_ask_rays) return;
         light = std::make_unique<DirectLight>(
             scene, world.evaluator(), statistics, report, progress, ray_materials(), geometries,
-            kept.rays, displacement.get(), light_patterns(scene, textures, report), asks_rays);
+            kept.rays, displacement.get(), light_patterns(scene, textures, report), nodes_ask_rays);
         if (scene.options.bounces.most == 0) warn_of_emission();
         if (!light->rays()) return;
         if (scene.options.bounces.most > 0) {
@@ -203,13 +202,8 @@ struct ShadingSystem::Impl {
                                    const LeavingRays& leaving, Grid& grid, ReflectionParts* parts,
                                    std::vector<Vec3f>& radiance) const {
         GatheredLight light = bounces->gather(leaving.rays, points.count);
-        if (leaving.diffuse) {
-            if (parts && !leaving.world.empty())
-                grid.gathered_world = shared_light(points, closure, leaving.world, light.nearness);
-            for (std::size_t i = 0; i < leaving.world.size(); ++i)
-                light.diffuse[i] += leaving.world[i];
-            grid.gathered = shared_light(points, closure, light.diffuse, light.nearness);
-        }
+        if (leaving.diffuse)
+            share_gathered(points, closure, leaving.world, parts != nullptr, light, grid);
         reflect_gathered(light, grid, closure, parts, radiance);
         return std::move(light.glossy);
     }

@@ -133,17 +133,23 @@ def test_light_is_scattered_often(scene, render, limit):
     agrees(*both(scene, render, 256, bounces=limit, in_volumes=limit), block=0.06)
 
 
-def test_floors_and_smoke_light_each_other(scene, render):
+def smoke_over_a_floor(scene, size, height, density, color):
+    """Returns the floor's shader."""
     bpy.ops.mesh.primitive_plane_add(size=8.0)
     floor = node_comparison.Tree(bpy.context.object)
     shader = floor.add("ShaderNodeBsdfDiffuse")
-    shader.inputs["Color"].default_value = (0.8, 0.3, 0.2, 1.0)
     floor.link(shader.outputs[0], floor.output.inputs["Surface"])
-    bpy.ops.mesh.primitive_cube_add(size=1.5, location=(0, 0, 0.9))
-    filled(bpy.context.object, "ShaderNodeVolumeScatter", Color=(0.9, 0.9, 0.9, 1.0), Density=2.0)
+    bpy.ops.mesh.primitive_cube_add(size=size, location=(0, 0, height))
+    filled(bpy.context.object, "ShaderNodeVolumeScatter", Color=color, Density=density)
     lamp(scene, "POINT", 300.0, (2.0, 1.0, 2.5), shadow_soft_size=0.1)
     camera = scene_parts.add_camera(scene, (0, -5, 3))
     camera.rotation_euler = (math.radians(60), 0, 0)
+    return shader
+
+
+def test_floors_and_smoke_light_each_other(scene, render):
+    shader = smoke_over_a_floor(scene, 1.5, 0.9, 2.0, (0.9, 0.9, 0.9, 1.0))
+    shader.inputs["Color"].default_value = (0.8, 0.3, 0.2, 1.0)
     agrees(*both(scene, render, 256, bounces=4, in_volumes=4), block=0.06)
 
 
@@ -187,15 +193,7 @@ def test_principled_scatters_light_of_sun_and_world(scene, render):
 
 def test_volumes_shade_what_is_behind_them(scene, render):
     """A floor in the shadow of a cube of smoke: above it, as of faces in one plane Cycles meets either."""
-    bpy.ops.mesh.primitive_plane_add(size=8.0)
-    floor = node_comparison.Tree(bpy.context.object)
-    shader = floor.add("ShaderNodeBsdfDiffuse")
-    floor.link(shader.outputs[0], floor.output.inputs["Surface"])
-    bpy.ops.mesh.primitive_cube_add(size=1.0, location=(0, 0, 0.8))
-    filled(bpy.context.object, "ShaderNodeVolumeScatter", Color=(0.2, 0.5, 0.8, 1.0), Density=1.0)
-    lamp(scene, "POINT", 300.0, (2.0, 1.0, 2.5), shadow_soft_size=0.1)
-    camera = scene_parts.add_camera(scene, (0, -5, 3))
-    camera.rotation_euler = (math.radians(60), 0, 0)
+    smoke_over_a_floor(scene, 1.0, 0.8, 1.0, (0.2, 0.5, 0.8, 1.0))
     agrees(*both(scene, render, 256))
 
 

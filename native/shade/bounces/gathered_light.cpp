@@ -23,8 +23,7 @@ Vec3f diffuse_albedo(const SurfaceClosure& closure, std::size_t point) {
     return sum;
 }
 
-}  // namespace
-
+/// [points] `diffuse` by albedo, shared between neighbours.
 std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosure& closure,
                                 const std::vector<Vec3f>& diffuse,
                                 const std::vector<float>& nearness) {
@@ -37,6 +36,17 @@ std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosur
         noisy.by_reach[i] = Vec3f(nearness[i] / kNear);
     }
     return share(points, noisy);
+}
+
+}  // namespace
+
+void share_gathered(const ShadingPoints& points, const SurfaceClosure& closure,
+                    const std::vector<Vec3f>& world, bool tells_world, GatheredLight& light,
+                    Grid& grid) {
+    if (tells_world && !world.empty())
+        grid.gathered_world = shared_light(points, closure, world, light.nearness);
+    for (std::size_t i = 0; i < world.size(); ++i) light.diffuse[i] += world[i];
+    grid.gathered = shared_light(points, closure, light.diffuse, light.nearness);
 }
 
 void reflect_gathered(const GatheredLight& light, const Grid& grid, const SurfaceClosure& closure,

@@ -28,12 +28,13 @@ struct GatheredLight {
           nearness(points, 0.0f) {}
 };
 
-/// [points] what diffuse lobes gathered, `diffuse`, by albedo, shared between neighbours of a grid:
-/// light of other surfaces, and of the world between them, varies as slowly as these are far away
-/// (Ward, Rubinstein and Clear 1988, their error bound read the other way).
-std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosure& closure,
-                                const std::vector<Vec3f>& diffuse,
-                                const std::vector<float>& nearness);
+/// Fills Grid's `gathered` with what diffuse lobes gathered, by albedo, shared between neighbours,
+/// and `gathered_world` if somebody `tells_world`: light of other surfaces, and of the `world`
+/// between them (LeavingRays), varies as slowly as these are far away (Ward, Rubinstein and Clear
+/// 1988, their error bound read the other way).  Adds the world's to `light`.
+void share_gathered(const ShadingPoints& points, const SurfaceClosure& closure,
+                    const std::vector<Vec3f>& world, bool tells_world, GatheredLight& light,
+                    Grid& grid);
 
 /// Adds what is reflected of `light`, and of what `grid` has gathered, to `radiance` [points] and,
 /// where they are asked for, to its `parts`.

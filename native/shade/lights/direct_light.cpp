@@ -48,7 +48,7 @@ struct DirectLight::Impl {
     Impl(const Scene& scene, WorldEvaluator world_evaluator, Statistics& frame_statistics,
          Report& report, const Progress& progress, RayMaterials materials,
          std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
-         const Displacement* displacement, const LightPatterns& patterns, bool is_asked);
+         const Displacement* displacement, const LightPatterns& patterns, bool nodes_ask_rays);
 
     void light_points(LitGrid& grid, const std::vector<LitPoint>& points,
                       std::size_t lobe_count) const;
@@ -77,7 +77,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
                         const Progress& frame_progress, RayMaterials materials,
                         std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
                         const Displacement* displacement, const LightPatterns& patterns,
-                        bool is_asked)
+                        bool nodes_ask_rays)
     : scene(frame_scene),
       statistics(frame_statistics),
       progress(frame_progress),
@@ -91,7 +91,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
     const Vec3d origin = camera_origin(scene);
     std::vector<Lamp> lamps = lamps_of(scene, origin, patterns);
     const bool asks_rays =
-        is_asked || world.shines() || scene.options.bounces.most > 0 ||
+        nodes_ask_rays || world.shines() || scene.options.bounces.most > 0 ||
         std::ranges::any_of(lamps, [](const Lamp& lamp) { return lamp.casts_shadow(); }) ||
         std::ranges::any_of(scene.instances,
                             [&](const Instance& instance) {
@@ -256,10 +256,10 @@ DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& s
                          Report& report, const Progress& progress, RayMaterials materials,
                          std::shared_ptr<GeometryCache> geometries, std::shared_ptr<KeptRays> rays,
                          const Displacement* displacement, const LightPatterns& patterns,
-                         bool asks_rays)
+                         bool nodes_ask_rays)
     : m_impl(std::make_unique<Impl>(scene, std::move(world), statistics, report, progress,
                                     std::move(materials), std::move(geometries), std::move(rays),
-                                    displacement, patterns, asks_rays)) {}
+                                    displacement, patterns, nodes_ask_rays)) {}
 
 DirectLight::~DirectLight() = default;
 
@@ -309,22 +309,15 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     if (closure.lobes.empty() || (dark && !parts && !leaving)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     const bool placed = !points.places.empty();
-    if (leaving && leaving->takes_world && leaving->diffuse)
-        leaving->world.assign(points.count, Vec3f(0.0f));
-    LitGrid grid{radiance,
-                 parts,
-                 {},
-                 {},
-                 {},
-                 {},
-                 {},
-                 sequence_seed(points, key, m_impl->scene.options.seed),
-                 m_impl->world.by_lobe()};
+    LitGrid grid{.radiance = radiance, .parts = parts};
+    grid.seed = sequence_seed(points, key, m_impl->scene.options.seed);
+    grid.by_lobe = m_impl->world.by_lobe();
     grid.placed = placed;
     grid.in_medium = closure.lobes.front().kind == LobeKind::Phase;
     grid.receives = grid.in_medium ? m_impl->scene.receives_in_volumes : m_impl->receives(key);
     grid.balance = noise;
     grid.leaving = leaving;
+    if (grid.shares_world()) leaving->world.assign(points.count, Vec3f(0.0f));
     RayOffset ray_offset = m_impl->set.rays ? m_impl->set.rays->ray_offset(key) : RayOffset{};
     const Vec2f life_exposed = m_impl->set.shutter.exposed(paths.lifespan());
     const int sample_count = this->sample_count(points.share);

@@ -45,13 +45,13 @@ class DirectLight {
     /// this.  Without `materials` every surface casts a full shadow and none is a lamp.
     /// `geometries`: shared with dicing, if it is given; `rays`: where built geometries are looked
     /// for and left; `displacement`: of instances, if there is any; `patterns`: of lamps with
-    /// nodes; `asks_rays`: others ask rays() too.  Throws Cancelled.
+    /// nodes; `nodes_ask_rays`: others ask rays() too.  Throws Cancelled.
     DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics, Report& report,
                 const Progress& progress, RayMaterials materials = {},
                 std::shared_ptr<GeometryCache> geometries = nullptr,
                 std::shared_ptr<KeptRays> rays = nullptr,
                 const Displacement* displacement = nullptr, const LightPatterns& patterns = {},
-                bool asks_rays = false);
+                bool nodes_ask_rays = false);
     ~DirectLight();
 
     /// Lifts where rays of points start above the triangles that rays meet of a displaced surface.

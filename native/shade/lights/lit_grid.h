@@ -17,10 +17,11 @@ namespace granita {
 /// What a grid's points share while they are lit.
 struct LitGrid {
     std::vector<Vec3f>& radiance;
-    ReflectionParts* parts;                  ///< nullptr = not asked for
-    EnvironmentSamples blurred, met, sharp;  ///< by the world's density, by lobes, by mirrors
-    std::vector<Vec2f> lamp_points;          ///< of the lamp and point at hand
-    std::vector<LightSample> lamp_samples;   ///< there
+    ReflectionParts* parts = nullptr;  ///< nullptr = not asked for
+    /// By the world's density, by lobes, by mirrors.
+    EnvironmentSamples blurred{}, met{}, sharp{};
+    std::vector<Vec2f> lamp_points{};         ///< of the lamp and point at hand
+    std::vector<LightSample> lamp_samples{};  ///< there
     std::uint64_t seed = 0;
     bool by_lobe = false;  ///< as WorldEvaluator::by_lobe
     bool placed = false;   ///< points go by places in the frame's sequences, as samples do
