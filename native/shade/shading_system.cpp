@@ -294,7 +294,9 @@ struct ShadingSystem::Impl {
     }
 
     /// What interpolation misses is averaged by blur, as the noise of light samples is.
-    float sharpness(const Grid& grid) const { return light_sample_count(grid, scene, shutter); }
+    float sharpness(const Grid& grid) const {
+        return light_sample_step(light_sample_count(grid, scene, shutter));
+    }
 
     bool is_round(const Grid& grid) const {
         return scene.geometry_of(scene.instances[grid.instance]).kind == GeometryKind::Curves;

@@ -88,8 +88,6 @@ def part(count, whole):
 @pytest.mark.parametrize("name", STAGES)
 def test_an_edit_costs_the_stages_that_read_it(name, refines):
     edit, *expected = STAGES[name]
-    if name == "lens" and refines:
-        expected[2] = FEWER  # what a blur asks for is shaded finer or less
     first = scene()
     first["options"]["refine_samples"] = refines
     kept = Kept()

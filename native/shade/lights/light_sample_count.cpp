@@ -91,4 +91,8 @@ float light_sample_count(const Grid& grid, const Scene& scene, const ShutterWarp
     return static_cast<float>(std::sqrt(std::min(1.0, variance)));
 }
 
+float light_sample_step(float count) {
+    return std::exp2(std::round(4.0f * std::log2(count)) / 4.0f);
+}
+
 }  // namespace granita

@@ -23,4 +23,9 @@ namespace granita {
 /// @return in (0, 1].
 float light_sample_count(const Grid& grid, const Scene& scene, const ShutterWarp& shutter);
 
+/// The nearest of steps a fourth root of 2 apart, of which 1 is one.  A lens that is opened a
+/// little farther leaves most grids on theirs, and with it what they were shaded
+/// (shade/shaded_grids.h).
+float light_sample_step(float count);
+
 }  // namespace granita

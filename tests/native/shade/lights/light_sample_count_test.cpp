@@ -113,5 +113,13 @@ TEST(LightSampleCountTest, a_lens_blurs_both_ways) {
     EXPECT_EQ(share(moved({{0, 0}}), scene), 1.0f);
 }
 
+TEST(LightSampleCountTest, steps_are_a_fourth_root_of_two_apart) {
+    EXPECT_EQ(light_sample_step(1.0f), 1.0f);
+    for (const float step : {1.0f, 0.84089642f, 0.70710678f, 0.5f, 0.037162722f})
+        for (const float of : {1.08f, 1.0f, 0.93f})
+            EXPECT_FLOAT_EQ(light_sample_step(of * step), step) << of;
+    EXPECT_FLOAT_EQ(light_sample_step(0.9f), 0.84089642f);
+}
+
 }  // namespace
 }  // namespace granita
