@@ -1,69 +1,128 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/lamp_shader.h"
 
-#include "shade/nodes/light_path.h"
+#include <algorithm>
+
+#include "base/object_pool.h"
+#include "math/luminance.h"
 #include "shade/nodes/node_compiler.h"
 #include "shade/nodes/surface_run.h"
+#include "shade/programs/shading_camera.h"
 
 namespace granita {
 namespace {
 
-/// Emission of a lamp's program where light leaves in `directions`, its own axes, and has come as
-/// far as `distances`; empty: a metre.
-std::vector<Vec3f> emission(const SurfaceProgram& program, std::vector<Vec3f> directions,
-                            std::vector<float> distances) {
-    ShadingPoints points;
-    points.p = std::move(directions);
-    points.count = points.p.size();
-    for (Vec3f& p : points.p) p = -p;  // to who looks at it
-    points.ray_lengths = std::move(distances);
-    if (points.ray_lengths.empty()) points.ray_lengths.assign(points.count, 1.0f);
-    ShadingInput input;
-    input.points = &points;
-    Run run = program.program.prepare(input, points.count);
-    program.program.execute(run);
-    return values_of(run, program.sources.emission);
-}
+/// Who asks a lamp how bright it may be: so many around it, this far away in its own metres, each
+/// in so many samples.
+constexpr std::uint32_t kAsking = 64, kAsked = 16;
+constexpr float kFar = 10.0f;
 
-/// Run for each sample.
-class DistancePattern : public LightPattern {
+/// Memory of a run, to be used again.
+struct RunMemory {
+    ShadingPoints points;
+    std::vector<float> slots;
+    std::vector<Vec3f> factors;
+};
+
+class NodePattern : public LightPattern {
   public:
-    explicit DistancePattern(SurfaceProgram program) : m_program(std::move(program)) {
-        std::vector<Vec3f> values = emission(m_program, DirectionTable::directions(), {});
-        const float largest = largest_finite(values);
-        if (largest > 0.0f) m_largest = largest;
+    NodePattern(const Light& light, const Scene& scene, TextureStore& textures, Report& report)
+        : m_light(light) {
+        const Vec3d eye(ShadingCamera(scene).world_from_camera[3]);
+        m_eye = Vec3f(eye);
+        const GraphOwner owner{"light '" + light.name + "'", true, 0, &light};
+        m_program =
+            compile_surface(light.graph, scene, textures, report, owner, nullptr, RayType::Diffuse)
+                .radiance;
+        m_largest = estimate(light_frame(light, scene.options.frame_time, eye));
     }
 
-    void color(std::span<LightSample> samples, const Mat3f& world_from_light) const override {
-        std::vector<Vec3f> directions;
-        std::vector<float> distances;
-        for (const LightSample& sample : samples) {
-            directions.push_back(-sample.direction * world_from_light);
-            distances.push_back(sample.distance);
-        }
-        std::vector<Vec3f> factors =
-            emission(m_program, std::move(directions), std::move(distances));
-        make_finite(factors);
+    void color(std::span<const PatternSample> samples) const override {
+        auto memory = ObjectPool<RunMemory>::take();
+        evaluate(samples, memory);
         for (std::size_t i = 0; i < samples.size(); ++i)
-            if (samples[i].pdf > 0.0f) samples[i].radiance *= factors[i];
+            samples[i].sample->radiance *= memory.factors[i];
+        ObjectPool<RunMemory>::give(std::move(memory));
     }
     float largest() const override { return m_largest; }
 
   private:
+    /// What nodes make of samples: as Cycles sets up points of lamps.
+    void evaluate(std::span<const PatternSample> samples, RunMemory& memory) const;
+    float estimate(const LightFrame& frame) const;
+
+    const Light& m_light;
+    Vec3f m_eye{0.0f};  ///< world
     SurfaceProgram m_program;
-    float m_largest = 1.0f;  ///< where a metre away nothing arrives, elsewhere something may
+    float m_largest = 1.0f;
 };
 
-std::shared_ptr<const LightPattern> pattern_of(const Light& light, const Scene& scene,
-                                               TextureStore& textures, Report& report) {
-    const GraphOwner owner{"light '" + light.name + "'", true, 0, true};
-    SurfaceProgram program =
-        compile_surface(light.graph, scene, textures, report, owner, nullptr, RayType::Diffuse)
-            .radiance;
-    if (reads_ray_length(light.graph))
-        return std::make_shared<const DistancePattern>(std::move(program));
-    return std::make_shared<const DirectionTable>(
-        emission(program, DirectionTable::directions(), {}));
+void NodePattern::evaluate(std::span<const PatternSample> samples, RunMemory& memory) const {
+    const bool is_sphere = (m_light.kind == LightKind::Point || m_light.kind == LightKind::Spot) &&
+                           m_light.radius > 0.0f && !m_light.soft_falloff;
+    ShadingPoints& points = memory.points;
+    points.count = samples.size();
+    points.p.resize(points.count);
+    points.normal.resize(points.count);
+    points.view.resize(points.count);
+    points.ray_lengths.resize(points.count);
+    for (std::size_t i = 0; i < points.count; ++i) {
+        const LightFrame& frame = *samples[i].frame;
+        const LightSample& sample = *samples[i].sample;
+        points.view[i] = -sample.direction;
+        points.ray_lengths[i] = sample.distance;
+        // A sun's place is where its light goes.
+        points.p[i] = m_light.kind == LightKind::Sun
+                          ? -sample.direction - m_eye
+                          : samples[i].p + sample.distance * sample.direction;
+        points.normal[i] = m_light.kind == LightKind::Area ? frame.direction
+                           : is_sphere ? glm::normalize(points.p[i] - frame.position)
+                                       : points.view[i];
+    }
+    ShadingInput input;
+    input.points = &points;
+    input.of_lamp = samples;
+    Run run = m_program.program.prepare(input, points.count, std::move(memory.slots));
+    m_program.program.execute(run);
+    const auto factors = run.read(m_program.sources.emission);
+    memory.factors.resize(points.count);
+    for (std::size_t i = 0; i < points.count; ++i) memory.factors[i] = factors[i];
+    make_finite(memory.factors);
+    memory.slots = run.take_memory();
+}
+
+float NodePattern::estimate(const LightFrame& frame) const {
+    const auto source = make_light_source(m_light, frame);
+    const SobolPoints around(1), over(2);
+    std::vector<Vec2f> u;
+    for (std::uint32_t i = 0; i < kAsking * kAsked; ++i) u.push_back(over(i));
+    std::vector<LightSample> found(u.size());
+    std::vector<PatternSample> samples;
+    for (std::uint32_t i = 0; i < kAsking; ++i) {
+        const Vec3f local = sample_cone(around(i), 2.0f);
+        const Vec3f p = frame.position + Vec3f(frame.axes * Vec3d(kFar * local));
+        const std::span<LightSample> own(found.data() + i * kAsked, kAsked);
+        source->sample_all(p, {u.data() + i * kAsked, kAsked}, own);
+        for (LightSample& sample : own)
+            if (sample.pdf > 0.0f) samples.push_back({&frame, p, &sample});
+    }
+    RunMemory memory;
+    evaluate(samples, memory);
+    float largest = 0.0f;
+    for (const Vec3f& factor : memory.factors) largest = std::max(largest, mean_size(factor));
+    // Where none of these find light, others may.
+    return largest > 0.0f ? largest : 1.0f;
+}
+
+/// Whether nodes say the same of both, but for where they stand.
+bool are_alike(Light a, Light b) {
+    for (Light* light : {&a, &b}) {
+        light->name.clear();
+        light->world_from_light.clear();
+        light->energy_knots.clear();
+        light->energy = 0.0f;
+    }
+    return a == b;
 }
 
 }  // namespace
@@ -74,8 +133,9 @@ LightPatterns light_patterns(const Scene& scene, TextureStore& textures, Report&
         const Light& light = scene.lights[i];
         if (light.graph.surface.node < 0) continue;
         for (std::size_t j = 0; j < i && !found[i]; ++j)  // instances of one lamp share it
-            if (found[j] && scene.lights[j].graph == light.graph) found[i] = found[j];
-        if (!found[i]) found[i] = pattern_of(light, scene, textures, report);
+            if (found[j] && are_alike(scene.lights[j], light)) found[i] = found[j];
+        if (!found[i])
+            found[i] = std::make_shared<const NodePattern>(light, scene, textures, report);
     }
     return found;
 }

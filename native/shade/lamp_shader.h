@@ -8,9 +8,8 @@
 
 namespace granita {
 
-/// The nodes of the scene's lights: run over all directions once, or, where they tell distances
-/// apart, for each sample.  They see what a world's do: a direction, here in the lamp's own axes,
-/// and no place.  Scene, textures and report must outlive them.
+/// The nodes of the scene's lights, which are run for samples of them.  Scene, textures and report
+/// must outlive them.
 LightPatterns light_patterns(const Scene& scene, TextureStore& textures, Report& report);
 
 }  // namespace granita

@@ -12,8 +12,6 @@ import bpy
 from .constant_nodes import as_number, constant
 from .nodes import FlatGraph
 
-# Nodes that tell places apart: of a lamp, directions and distances alone are.
-_BY_PLACE = {"ShaderNodeCameraData"}
 _AREA_SHAPES = {"SQUARE", "RECTANGLE", "DISK", "ELLIPSE"}
 
 
@@ -143,7 +141,7 @@ def _first_shader(surface):
 
 
 def _graph(light, label, images, report):
-    """{"nodes": ..., "surface": ...} of a light whose nodes vary by direction or distance, else None."""
+    """{"nodes": ..., "surface": ...} of a light whose nodes vary, else None."""
     if not light.use_nodes or light.node_tree is None or _surface(light) is None:
         return None
     node = _first_shader(_surface(light))
@@ -154,25 +152,12 @@ def _graph(light, label, images, report):
     said, shown = [], {}
     graph = FlatGraph(light.node_tree, label, shown, lambda *words: said.append(words))
     surface = graph.add(_surface(light))
-    if surface is None or any(n["type"] in _BY_PLACE for n in graph.nodes):
+    if surface is None:
         return None
     for words in said:
         report(*words)
-    if light.type == "AREA":
-        _face_forward(graph.nodes)
-    if any(n["type"] == "ShaderNodeNewGeometry" for n in graph.nodes):
-        report(label, "a Geometry node among its nodes is read in the light's own axes")
     images.update(shown)
     return {"nodes": graph.nodes, "surface": surface}
-
-
-def _face_forward(nodes):
-    """Its normal is that of an area light's plane, wherever its light goes."""
-    for node in nodes:
-        for name, value in node["inputs"].items():
-            if isinstance(value, tuple) and value[0] == "LINK" and value[2] == "Normal":
-                if nodes[value[1]]["type"] == "ShaderNodeTexCoord":
-                    node["inputs"][name] = (0.0, 0.0, -1.0)
 
 
 def _emission(light, label, report):

@@ -6,7 +6,6 @@ import bpy
 
 from .node_links import Scope, trace
 from .node_properties import node_properties
-from .unread_outputs import report_unread
 
 # Sockets that Blender 4 renamed: {bl_idname: {old identifier: new}}.
 _PRINCIPLED = {
@@ -134,7 +133,6 @@ class FlatGraph:
 
     def _converted_link(self, origin):
         """The link, behind a conversion node where the socket types in between ask for one."""
-        report_unread(origin.node, origin.socket, self._owner, self._report)
         link = ("LINK", self._index[origin.key], output_identifier(origin.socket))
         if "VALUE" not in origin.through or origin.socket.type not in ("RGBA", "VECTOR"):
             return link

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "shade/lights/shadow_queue.h"
+
 namespace granita {
 namespace {
 
@@ -19,77 +21,134 @@ std::vector<LampTurn> by_lamp(std::size_t lamp_count, const std::vector<LampTurn
     return sorted;
 }
 
-}  // namespace
+/// Sends what lamps give to points, lamp by lamp.  What a lamp's nodes colour waits for more of its
+/// kind: they are asked about many samples at once.
+class LampSender {
+  public:
+    LampSender(const LampSet& set, LitGrid& grid)
+        : m_set(set), m_grid(grid), m_shadows(set.rays.get(), grid) {}
 
-void sample_lamp(const LampSet& set, LitGrid& grid, const LitPoint& point, const LampTurn& turn,
-                 std::size_t dimension, ShadowQueue& shadows) {
-    const Lamp& lamp = set.lamps[turn.lamp];
-    const int wanted = set.samples_of(point, lamp);
+    /// In samples of that dimension.
+    void sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension);
+    /// All of a lamp's; before the next.
+    void deliver() {
+        color();
+        m_shadows.deliver();
+    }
+
+  private:
+    struct Uncolored {
+        const LitPoint* point;
+        const Lamp* lamp;
+        LitPlace place;
+        LightSample sample;
+        float density, sign;
+    };
+    static constexpr std::size_t kEnough = 256;
+
+    void color();
+    /// `density`: of such samples, a solid angle; `sign`: as LitGrid::sign.
+    void send(const LitPoint& point, const Lamp& lamp, const LitPlace& place,
+              const LightSample& sample, float density, float sign);
+
+    const LampSet& m_set;
+    LitGrid& m_grid;
+    ShadowQueue m_shadows;
+    std::vector<Uncolored> m_uncolored;
+    std::vector<PatternSample> m_patterned;
+};
+
+void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension) {
+    const Lamp& lamp = m_set.lamps[turn.lamp];
+    if (!m_uncolored.empty() && m_uncolored.front().lamp != &lamp) color();
+    const int wanted = m_set.samples_of(point, lamp);
     const int count = std::min(wanted, turn.rate.samples);
     // One sample of many tells all where nothing varies along its ray; one of one is any time's.
-    const bool timed = set.changes(lamp) && (wanted > 1 || point.sample_count == 1);
-    const SobolPoints sequence = grid.sequence(point, dimension, count);
-    const auto add = [&](const LitPlace& place, const LightSample& sample, int s) {
-        if (!(sample.pdf > 0.0f)) return;
-        const BsdfValue bsdf = lamp.apply(point.bsdf.evaluate(sample.direction), grid.in_medium);
-        const Vec3f value = total(bsdf) * sample.radiance;
-        if (value == Vec3f(0.0f)) return;
-        float density = static_cast<float>(count) * sample.pdf * turn.rate.mean;
-        if (!lamp.is_hard() && lamp.meets_lobes())
-            density += point.meeting_density(sample.direction);
-        const BsdfValue parts = bsdf * (sample.radiance / density);
-        const float sign = turn.sign != 0.0f ? turn.sign : LitGrid::sign(s, count);
-        if (set.rays && lamp.casts_shadow())
-            shadows.send(point.index, value / density, parts, sign,
-                         set.ray_to(point, place, lamp, sample));
-        else
-            shadows.send(point.index, value / density, parts, sign);
-    };
-    grid.lamp_points.clear();
-    for (int s = 0; s < count; ++s)
-        grid.lamp_points.push_back(sequence(static_cast<std::uint32_t>(s)));
-    grid.lamp_samples.resize(grid.lamp_points.size());
+    const bool timed = m_set.changes(lamp) && (wanted > 1 || point.sample_count == 1);
+    const SobolPoints sequence = m_grid.sequence(point, dimension, count);
+    std::vector<Vec2f>& points = m_grid.lamp_points;
+    std::vector<LightSample>& samples = m_grid.lamp_samples;
+    points.clear();
+    for (int s = 0; s < count; ++s) points.push_back(sequence(static_cast<std::uint32_t>(s)));
+    samples.resize(points.size());
     if (!timed) {
-        const LitPlace& place = point.at_frame;
-        if (!lamp.exists(place.time)) return;
-        lamp.sample_all(place.time, place.p, grid.lamp_points, grid.lamp_samples);
-        for (int s = 0; s < count; ++s)
-            add(place, grid.lamp_samples[static_cast<std::size_t>(s)], s);
-        return;
+        if (!lamp.exists(point.at_frame.time)) return;
+        lamp.sample_all(point.at_frame.time, point.at_frame.p, points, samples);
     }
-    for (std::size_t s = 0; s < grid.lamp_points.size(); ++s) {
-        const LitPlace place = set.place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
-        if (!lamp.exists(place.time)) continue;
-        lamp.sample(place.time, place.p, grid.lamp_points[s], grid.lamp_samples[s]);
-        add(place, grid.lamp_samples[s], static_cast<int>(s));
+    for (int s = 0; s < count; ++s) {
+        const auto index = static_cast<std::size_t>(s);
+        LitPlace moved;
+        const LitPlace& place = timed ? moved : point.at_frame;
+        if (timed) {
+            moved = m_set.place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
+            if (!lamp.exists(place.time)) continue;
+            lamp.sample(place.time, place.p, points[index], samples[index]);
+        }
+        const LightSample& sample = samples[index];
+        if (!(sample.pdf > 0.0f)) continue;
+        const float density = static_cast<float>(count) * sample.pdf * turn.rate.mean;
+        const float sign = turn.sign != 0.0f ? turn.sign : LitGrid::sign(s, count);
+        if (lamp.pattern())
+            m_uncolored.push_back({&point, &lamp, place, sample, density, sign});
+        else
+            send(point, lamp, place, sample, density, sign);
     }
+    if (m_uncolored.size() >= kEnough) color();
 }
+
+void LampSender::color() {
+    if (m_uncolored.empty()) return;
+    const Lamp& lamp = *m_uncolored.front().lamp;
+    m_patterned.clear();
+    for (Uncolored& one : m_uncolored)
+        m_patterned.push_back({&lamp.frame(one.place.time), one.place.p, &one.sample});
+    lamp.pattern()->color(m_patterned);
+    for (const Uncolored& one : m_uncolored)
+        send(*one.point, lamp, one.place, one.sample, one.density, one.sign);
+    m_uncolored.clear();
+}
+
+void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& place,
+                      const LightSample& sample, float density, float sign) {
+    const BsdfValue bsdf = lamp.apply(point.bsdf.evaluate(sample.direction), m_grid.in_medium);
+    const Vec3f value = total(bsdf) * sample.radiance;
+    if (value == Vec3f(0.0f)) return;
+    if (!lamp.is_hard() && lamp.meets_lobes()) density += point.meeting_density(sample.direction);
+    const BsdfValue parts = bsdf * (sample.radiance / density);
+    if (m_set.rays && lamp.casts_shadow())
+        m_shadows.send(point.index, value / density, parts, sign,
+                       m_set.ray_to(point, place, lamp, sample));
+    else
+        m_shadows.send(point.index, value / density, parts, sign);
+}
+
+}  // namespace
 
 void light_by_all(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>& points,
                   std::size_t first, const Progress& progress) {
-    ShadowQueue shadows(set.rays.get(), grid);
+    LampSender sender(set, grid);
     const std::size_t count = set.tree ? set.everywhere : set.lamps.size();
     for (std::size_t l = 0; l < count; ++l) {
         if (!set.lamps[l].lights(grid.receives)) continue;
         for (const LitPoint& point : points) {
             progress.check();
             const LampTurn turn{0, static_cast<std::uint32_t>(l), {1.0f, point.sample_count}};
-            sample_lamp(set, grid, point, turn, first + l, shadows);
+            sender.sample(point, turn, first + l);
         }
-        shadows.deliver();
+        sender.deliver();
     }
 }
 
 void light_by_chosen(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>& points,
                      const std::vector<LampTurn>& turns, std::size_t first,
                      const Progress& progress) {
-    ShadowQueue shadows(set.rays.get(), grid);
+    LampSender sender(set, grid);
     for (const LampTurn& turn : by_lamp(set.lamps.size(), turns)) {
         progress.check();
         if (!set.lamps[turn.lamp].lights(grid.receives)) continue;
-        sample_lamp(set, grid, points[turn.point], turn, first + turn.lamp % kDimensions, shadows);
+        sender.sample(points[turn.point], turn, first + turn.lamp % kDimensions);
     }
-    shadows.deliver();
+    sender.deliver();
 }
 
 }  // namespace granita

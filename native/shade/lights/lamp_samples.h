@@ -6,7 +6,6 @@
 
 #include "shade/lights/lamp_choice.h"
 #include "shade/lights/lamp_set.h"
-#include "shade/lights/shadow_queue.h"
 
 namespace granita {
 
@@ -17,10 +16,6 @@ struct LampTurn {
     LampRate rate{1.0f, 1};
     float sign = 0.0f;  ///< as LitGrid::sign, of all its samples; 0: they have their own
 };
-
-/// Sends what a lamp gives to a point, in samples of that dimension.
-void sample_lamp(const LampSet& set, LitGrid& grid, const LitPoint& point, const LampTurn& turn,
-                 std::size_t dimension, ShadowQueue& shadows);
 
 /// Each lamp lights each point, lamp by lamp, so that their rays keep together.  `first`: dimension
 /// of the first lamp.

@@ -24,7 +24,6 @@ std::vector<Lamp> lamps_of(const Scene& scene, const Vec3d& origin, const LightP
     for (std::size_t l = 0; l < scene.lights.size(); ++l) {
         const Light& light = scene.lights[l];
         const auto pattern = patterns.empty() ? nullptr : patterns[l];
-        if (pattern && pattern->largest() == 0.0f) continue;
         float energy = std::abs(light.energy);
         for (const float knot : light.energy_knots) energy = std::max(energy, std::abs(knot));
         if (light.color * energy == Vec3f(0.0f) || light.lifespan.is_empty()) continue;

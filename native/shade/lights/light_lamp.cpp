@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "scene/knot_time.h"
-
 namespace granita {
 namespace {
 
@@ -24,7 +22,8 @@ bool varies_over_time(const Light& light) {
 
 Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin,
            std::shared_ptr<const LightPattern> pattern)
-    : m_lifespan(light.lifespan),
+    : m_pattern(std::move(pattern)),
+      m_lifespan(light.lifespan),
       m_casts_shadow(light.casts_shadow),
       m_diffuse(light.visible_diffuse ? light.diffuse_factor : 0.0f),
       m_glossy(light.visible_glossy ? light.specular_factor : 0.0f),
@@ -35,10 +34,9 @@ Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin,
     const int places = varies_over_time(light) ? kPlaces : 1;
     for (int k = 0; k < places; ++k) {
         const float time = places > 1 ? (static_cast<float>(k) + 0.5f) / kPlaces : frame_time;
-        m_sources.push_back(make_light_source(light, time, origin));
-        if (pattern)
-            m_sources.back() = with_pattern(std::move(m_sources.back()), pattern,
-                                            Mat3d(matrix_at(light.world_from_light, time)));
+        const LightFrame frame = light_frame(light, time, origin);
+        m_sources.push_back(make_light_source(light, frame));
+        if (m_pattern) m_frames.push_back(frame);
         m_hard = m_hard && m_sources.back()->is_hard();
     }
 }
@@ -66,7 +64,8 @@ LightBound Lamp::bound_of(const LightSource& source) const {
     Vec3f center(0.0f);
     float radius = 0.0f;
     source.bound(center, radius);
-    const LightEmission emission = source.emission();
+    LightEmission emission = source.emission();
+    if (m_pattern) emission.intensity *= m_pattern->largest();
     here.box.add(center);
     here.box.grow(radius);
     here.axis = emission.axis;

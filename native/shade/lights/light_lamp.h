@@ -40,6 +40,10 @@ class Lamp {
     int blocker_set() const { return m_blocker_set; }
     /// Whether samples of lobes may meet it.
     bool meets_lobes() const { return m_glossy > 0.0f || m_transmission > 0.0f || m_volume > 0.0f; }
+    /// Of its nodes, which colour what sample_all() gives; nullptr: there are none.
+    const LightPattern* pattern() const { return m_pattern.get(); }
+    /// Of one that has a pattern.
+    const LightFrame& frame(float time) const { return m_frames[at(time, m_frames.size())]; }
     /// LightSource::sample_all at a time.
     void sample_all(float time, const Vec3f& p, std::span<const Vec2f> u,
                     std::span<LightSample> samples) const {
@@ -52,11 +56,15 @@ class Lamp {
         sample_all(time, p, {&u, 1}, {&sample, 1});
         return sample.pdf > 0.0f;
     }
-    /// What a ray of that time meets of it: LightSource::intersect.
+    /// What a ray of that time meets of it: LightSource::intersect, coloured.
     bool meets(float time, const Vec3f& p, const Vec3f& direction, LightSample& sample) const {
         if (!exists(time)) return false;
-        return m_moving ? m_moving->at(time).intersect(p, direction, sample)
-                        : at(time).intersect(p, direction, sample);
+        if (m_moving) return m_moving->at(time).intersect(p, direction, sample);
+        if (!at(time).intersect(p, direction, sample)) return false;
+        if (!m_pattern) return true;
+        const PatternSample one{&frame(time), p, &sample};
+        m_pattern->color({&one, 1});
+        return true;
     }
     /// Of one that does not vary: LightSource::bound.
     bool bound(Vec3f& center, float& radius) const { return at(0.0f).bound(center, radius); }
@@ -69,15 +77,18 @@ class Lamp {
     }
 
   private:
-    const LightSource& at(float time) const {
-        const auto count = m_sources.size();
+    /// Of equal parts of the shutter, that which holds a time.
+    static std::size_t at(float time, std::size_t count) {
         const auto place = static_cast<std::size_t>(time * static_cast<float>(count));
-        return *m_sources[place < count ? place : count - 1];
+        return place < count ? place : count - 1;
     }
+    const LightSource& at(float time) const { return *m_sources[at(time, m_sources.size())]; }
     LightBound bound_of(const LightSource& source) const;
 
     std::vector<std::unique_ptr<LightSource>> m_sources;  ///< one, or at equal parts of the shutter
     std::unique_ptr<const MovingTriangle> m_moving;       ///< instead of these
+    std::shared_ptr<const LightPattern> m_pattern;
+    std::vector<LightFrame> m_frames;  ///< [sources] where there is a pattern
     Lifespan m_lifespan;
     bool m_hard = true, m_casts_shadow, m_is_surface = false;
     RayTarget m_target;

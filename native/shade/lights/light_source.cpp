@@ -16,8 +16,7 @@ float energy_at(const Light& light, float time) {
 
 }  // namespace
 
-std::unique_ptr<LightSource> make_light_source(const Light& light, float time,
-                                               const Vec3d& origin) {
+LightFrame light_frame(const Light& light, float time, const Vec3d& origin) {
     const Mat4d m = matrix_at(light.world_from_light, time);
     LightFrame frame;
     frame.position = Vec3f(Vec3d(m[3]) - origin);
@@ -26,6 +25,10 @@ std::unique_ptr<LightSource> make_light_source(const Light& light, float time,
     const double length = glm::length(z);
     frame.direction = length > 0.0 ? Vec3f(-z / length) : Vec3f(0.0f, 0.0f, -1.0f);
     frame.power = light.color * energy_at(light, time);
+    return frame;
+}
+
+std::unique_ptr<LightSource> make_light_source(const Light& light, const LightFrame& frame) {
     switch (light.kind) {
         case LightKind::Point:
         case LightKind::Spot:

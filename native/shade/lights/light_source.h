@@ -59,16 +59,19 @@ class LightSource {
     virtual LightEmission emission() const = 0;
 };
 
-/// `time`: shutter time at which the light stands; `origin`: the camera's world position.
-std::unique_ptr<LightSource> make_light_source(const Light& light, float time, const Vec3d& origin);
-
-// The kinds, one file each.
+/// How a light stands at a time of the shutter.
 struct LightFrame {
     Vec3f position;     ///< shading space
     Mat3d axes;         ///< world_from_light without translation, scale included
     Vec3f direction;    ///< unit, where the light shines: -z of the light
     Vec3f power{0.0f};  ///< colour times energy
 };
+/// `origin`: the camera's world position.
+LightFrame light_frame(const Light& light, float time, const Vec3d& origin);
+
+std::unique_ptr<LightSource> make_light_source(const Light& light, const LightFrame& frame);
+
+// The kinds, one file each.
 std::unique_ptr<LightSource> make_point_light(const Light& light, const LightFrame& frame);
 std::unique_ptr<LightSource> make_sun_light(const Light& light, const LightFrame& frame);
 std::unique_ptr<LightSource> make_area_light(const Light& light, const LightFrame& frame);

@@ -2,8 +2,11 @@
 // Where a point is: UV Map, Texture Coordinate, Geometry and Camera Data.
 #include "shade/nodes/coordinates.h"
 
+#include <cmath>
+
 #include "geometry/random_per_island.h"
 #include "shade/nodes/instance_value.h"
+#include "shade/nodes/lamp_coordinates.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/tangent.h"
 #include "shade/programs/shading_camera.h"
@@ -40,6 +43,11 @@ struct FrameCamera {
     }
 };
 
+VectorSource geometric_normal(NodeBuilder& b) {
+    return b.geometry<Vec3f>(
+        [](const ShadingInput& in, std::size_t i) { return in.points->geometric_normal[i]; });
+}
+
 }  // namespace
 
 VectorSource position_at(NodeBuilder& b, Shift shift) {
@@ -53,12 +61,13 @@ VectorSource position_at(NodeBuilder& b, Shift shift) {
 
 VectorSource world_position_at(NodeBuilder& b, Shift shift) {
     const VectorSource p = position_at(b, shift);
-    if (b.is_world()) return p;
+    if (!b.has_surface()) return p;
     return b.map<Vec3f>([eye = FrameCamera(b.scene()).position](const Vec3f& q) { return q + eye; },
                         p);
 }
 
 VectorSource object_normal(NodeBuilder& b) {
+    if (b.lamp()) return lamp_normal(b);
     // A world faces who looks at it.
     if (b.is_world())
         return b.map<Vec3f>([](const Vec3f& d) { return -d; }, position_at(b, Shift::None));
@@ -68,11 +77,13 @@ VectorSource object_normal(NodeBuilder& b) {
 }
 
 VectorSource generated_at(NodeBuilder& b, Shift shift) {
+    if (b.lamp()) return lamp_position(b);
     if (b.is_world()) return position_at(b, shift);
     return b.attribute_at({AttributeSource::Generated, "", 3, false}, shift);
 }
 
 VectorSource uv_at(NodeBuilder& b, const std::string& name, Shift shift) {
+    if (b.lamp() && name.empty()) return lamp_uv(b);
     const AttributeSource source =
         name.empty() ? AttributeSource::DefaultUv : AttributeSource::Named;
     return b.attribute_at({source, name, 2, false}, shift);
@@ -92,7 +103,8 @@ void build_texture_coordinate(NodeBuilder& b) {
     b.output_vector(
         "UV", on_instancer ? instance_value(b, "INSTANCER UV").color : uv_at(b, "", b.shift()));
     b.output_vector("Normal", object_normal(b));
-    b.output_vector("Object", b.is_world()
+    b.output_vector("Object", b.lamp() ? lamp_position(b)
+                              : b.is_world()
                                   ? position
                                   : b.attribute({AttributeSource::ObjectPosition, "", 3, false}));
     const std::vector<float> other = b.table("object_from_world");
@@ -109,40 +121,46 @@ void build_texture_coordinate(NodeBuilder& b) {
                                       },
                                       position));
     }
-    const VectorSource p_camera =
-        b.map<Vec3f>([camera](const Vec3f& p) { return camera.camera_from_world * p; }, position);
-    b.output_vector("Camera", p_camera);
-    b.output_vector("Window",
-                    b.map<Vec3f>([camera](const Vec3f& p) { return camera.window(p); }, p_camera));
-    b.output_vector("Reflection", b.is_world() ? object_normal(b)
-                                               : b.map<Vec3f>(
-                                                     [](const Vec3f& n, const Vec3f& view) {
-                                                         return 2.0f * glm::dot(n, view) * n - view;
-                                                     },
-                                                     b.shading_normal(), b.view()));
+    // Until lamps became objects Cycles took their places for such in the sky.
+    const bool in_sky = b.lamp() && !is_object(b);
+    const VectorSource in_camera = in_sky ? world_position_at(b, b.shift()) : position;
+    const auto turn = [camera](const Vec3f& p) { return camera.camera_from_world * p; };
+    const auto window = [camera](const Vec3f& p) { return camera.window(p); };
+    b.output_vector("Camera", b.map<Vec3f>(turn, in_camera));
+    b.output_vector("Window", b.map<Vec3f>(window, b.map<Vec3f>(turn, camera.projection.perspective
+                                                                          ? in_camera
+                                                                          : position)));
+    b.output_vector("Reflection", in_sky ? b.view()
+                                  : !b.has_surface()
+                                      ? object_normal(b)
+                                      : b.map<Vec3f>(
+                                            [](const Vec3f& n, const Vec3f& view) {
+                                                return 2.0f * glm::dot(n, view) * n - view;
+                                            },
+                                            b.shading_normal(), b.view()));
 }
 
 void build_geometry(NodeBuilder& b) {
     const VectorSource p = world_position_at(b, b.shift());
     b.output_vector("Position", p);
-    if (b.is_world()) {
+    if (!b.has_surface()) {
         b.output_vector("Incoming", b.map<Vec3f>([](const Vec3f& d) { return -d; }, p));
         b.output_vector("Normal", b.map<Vec3f>([](const Vec3f& d) { return -d; }, p));
         b.output("Backfacing", FloatSource{-1, 0.0f});
         return;
     }
     b.output_vector("Normal", b.shading_normal());
-    b.output_vector("True Normal", b.geometry<Vec3f>([](const ShadingInput& in, std::size_t i) {
-        return in.points->geometric_normal[i];
-    }));
+    b.output_vector("True Normal", b.lamp() ? b.shading_normal() : geometric_normal(b));
     b.output_vector("Incoming", b.view());
-    b.output("Backfacing", b.geometry<float>([](const ShadingInput& in, std::size_t i) {
-        return in.points->backfacing[i] ? 1.0f : 0.0f;
-    }));
-    b.output_vector("Tangent", radial_tangent(b, RadialAxis::Z));
-    // The exporter says so where a link asks for these two.
-    b.output_vector("Parametric", {-1, Vec3f(0.0f)});
+    b.output("Backfacing", b.backfacing());
+    // A lamp's is no number: Cycles divides by the length of a derivative that it has not.
+    b.output_vector("Tangent", b.lamp() ? VectorSource{-1, Vec3f(std::nanf(""))}
+                                        : radial_tangent(b, RadialAxis::Z));
+    b.output_vector("Parametric", b.lamp() ? lamp_parameters(b) : VectorSource{});
+    if (b.is_read("Parametric") && !b.lamp())
+        b.warn("its output 'Parametric' is not evaluated: 0 everywhere");
     b.output("Pointiness", FloatSource{-1, 0.5f});
+    if (b.is_read("Pointiness")) b.warn("its output 'Pointiness' is not evaluated: .5 everywhere");
     b.output("Random Per Island",
              b.attribute_component({AttributeSource::Named, kIslandAttribute, 1}, 0));
 }

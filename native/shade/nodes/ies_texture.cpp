@@ -9,6 +9,7 @@
 #include "math/normalize_or.h"
 #include "math/sampling.h"
 #include "shade/nodes/coordinates.h"
+#include "shade/nodes/lamp_coordinates.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {
@@ -100,6 +101,7 @@ class Luminaire {
 
 /// Towards who looks, in the object's axes.
 VectorSource object_view(NodeBuilder& b) {
+    if (b.lamp()) return lamp_view(b);
     if (b.is_world()) return object_normal(b);
     return b.geometry<Vec3f>([](const ShadingInput& in, std::size_t i) {
         return glm::transpose(in.axes_at(i).world_from_object) * in.points->view[i];

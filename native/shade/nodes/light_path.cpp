@@ -56,7 +56,7 @@ bool reads_ray_length(const NodeGraph& graph) {
 }
 
 FloatSource ray_length(NodeBuilder& b) {
-    if (b.is_world() && !b.is_lamp()) return {-1, 0.0f};
+    if (!b.has_surface()) return {-1, 0.0f};
     if (b.ray_type() == RayType::Shadow)
         return b.geometry<float>([](const ShadingInput& in, std::size_t) { return in.ray_length; });
     // Those of the camera start at its near clip plane.
@@ -98,10 +98,10 @@ void build_light_path(NodeBuilder& b) {
          {"Is Camera Ray", "Is Shadow Ray", "Is Diffuse Ray", "Is Glossy Ray", "Is Singular Ray",
           "Is Reflection Ray", "Is Transmission Ray", "Is Volume Scatter Ray", "Ray Depth",
           "Diffuse Depth", "Glossy Depth", "Transparent Depth", "Transmission Depth"})
-        b.output(name, FloatSource{-1, light_path_value(name, b.ray_type())});
-    // Cycles counts the world as one bounce further than what is before it.
-    if (b.is_world())
-        b.output("Ray Depth", FloatSource{-1, 1.0f + light_path_value("Ray Depth", b.ray_type())});
+        b.output(name, FloatSource{-1, b.lamp() ? 0.0f : light_path_value(name, b.ray_type())});
+    // Cycles counts lamps and the world as one bounce further than what is before them.
+    const float before = b.lamp() ? 0.0f : light_path_value("Ray Depth", b.ray_type());
+    if (b.is_world()) b.output("Ray Depth", FloatSource{-1, 1.0f + before});
     if (b.is_read(kUncounted)) b.warn("Transparent Depth is not counted; it is 0");
     b.output(kLength, ray_length(b));
 }

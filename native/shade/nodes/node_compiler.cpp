@@ -314,7 +314,7 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
                               .report = warnings,
                               .owner = owner.name,
                               .is_world = owner.is_world,
-                              .is_lamp = owner.is_lamp,
+                              .lamp = owner.lamp,
                               .material_index = owner.material_index,
                               .ray_type = type,
                               .read = read_outputs(graph, graph.surface, owner.name, aov_outputs)};

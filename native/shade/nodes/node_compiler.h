@@ -90,8 +90,8 @@ struct VolumeProgram {
 struct GraphOwner {
     std::string name;  ///< for messages: "material 'Wood'"
     bool is_world = false;
-    int material_index = 0;  ///< pass_index
-    bool is_lamp = false;    ///< a world, of points that have ray_lengths
+    int material_index = 0;       ///< pass_index
+    const Light* lamp = nullptr;  ///< that it colours; then `is_world` is set, too
 };
 
 /// Whether what the graph says may depend on what is near.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/knot_time.h"
+#include "shade/nodes/lamp_coordinates.h"
 #include "shade/nodes/nodes.h"
 #include "shade/programs/shading_camera.h"
 
@@ -37,10 +38,22 @@ struct Spaces {
     std::string from, to;
     Mat4d camera_from_world;
     double time;
+    bool lamps_are_objects;
 
-    Mat4d matrix(const Instance& instance) const {
-        const Mat4d world_from_object = matrix_at(instance.world_from_object, time);
+    /// Of a point; the world, and lamps that are no objects, have no space of their own.
+    Mat4d world_from_object(const ShadingInput& in, std::size_t i) const {
+        if (in.instance) return matrix_at(in.instance->world_from_object, time);
+        if (!lamps_are_objects || in.of_lamp.empty()) return Mat4d(1.0);
+        const LightFrame& frame = *in.of_lamp[i].frame;
+        Mat4d m(frame.axes);
+        m[3] = glm::dvec4(Vec3d(frame.position) + Vec3d(glm::inverse(camera_from_world)[3]), 1.0);
+        return m;
+    }
+    Mat4d matrix(const ShadingInput& in, std::size_t i) const {
         Mat4d m(1.0);
+        if (from != "OBJECT" && to != "OBJECT")
+            return from == "CAMERA" ? glm::inverse(camera_from_world) : camera_from_world;
+        const Mat4d world_from_object = this->world_from_object(in, i);
         if (from == "OBJECT") m = world_from_object;
         if (from == "CAMERA") m = glm::inverse(camera_from_world);
         if (to == "OBJECT") m = glm::inverse(world_from_object) * m;
@@ -84,9 +97,9 @@ void build_vector_transform(NodeBuilder& b) {
     const VectorSource vector = b.vector("Vector");
     const Spaces spaces{b.text("convert_from", "WORLD"), b.text("convert_to", "OBJECT"),
                         glm::inverse(ShadingCamera(b.scene()).world_from_camera),
-                        b.scene().options.frame_time};
+                        b.scene().options.frame_time, is_object(b)};
     const std::string type = b.text("vector_type", "VECTOR");
-    if (b.is_world() || spaces.from == spaces.to) {
+    if (spaces.from == spaces.to) {
         b.output_vector("Vector", vector);
         return;
     }
@@ -95,12 +108,19 @@ void build_vector_transform(NodeBuilder& b) {
     const VectorSource out = b.new_source<Vec3f>();
     b.add_step(
         [=](Run& run) {
-            const Mat4d m = spaces.matrix(*run.input().instance);
-            const Mat3d linear = as_normals ? glm::transpose(glm::inverse(Mat3d(m))) : Mat3d(m);
-            const Vec3d offset = type == "POINT" ? Vec3d(m[3]) : Vec3d(0.0);
+            Mat3d linear(1.0);
+            Vec3d offset(0.0);
+            const auto find = [&](std::size_t i) {
+                const Mat4d m = spaces.matrix(run.input(), i);
+                linear = as_normals ? glm::transpose(glm::inverse(Mat3d(m))) : Mat3d(m);
+                if (type == "POINT") offset = Vec3d(m[3]);
+            };
+            const bool one_frame = run.input().of_lamp.empty();
+            if (one_frame) find(0);
             const auto vectors = run.read(vector);
             Vec3f* result = run.write(out);
             for (std::size_t i = 0; i < run.count(); ++i) {
+                if (!one_frame) find(i);
                 result[i] = Vec3f(linear * Vec3d(vectors[i]) + offset);
                 if (type == "NORMAL") result[i] = unit(result[i]);
             }

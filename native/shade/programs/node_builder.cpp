@@ -117,7 +117,7 @@ FloatSource NodeBuilder::attribute_component(const AttributeRequest& request, in
 }
 
 VectorSource NodeBuilder::shading_normal() {
-    if (m_program.is_world) return {-1, Vec3f(0.0f, 0.0f, 1.0f)};
+    if (!has_surface()) return {-1, Vec3f(0.0f, 0.0f, 1.0f)};
     if (m_program.is_bumped) return m_program.bumped;
     return geometry<Vec3f>(
         [](const ShadingInput& in, std::size_t i) { return in.points->normal[i]; });
@@ -168,7 +168,7 @@ FloatSource NodeBuilder::backfacing() {
 }
 
 VectorSource NodeBuilder::view() {
-    if (m_program.is_world) return {-1, Vec3f(0.0f, 0.0f, 1.0f)};
+    if (!has_surface()) return {-1, Vec3f(0.0f, 0.0f, 1.0f)};
     return geometry<Vec3f>(
         [](const ShadingInput& in, std::size_t i) { return in.points->view[i]; });
 }

@@ -30,9 +30,9 @@ struct ProgramBuilder {
     const Scene& scene;
     TextureStore& textures;
     Report& report;
-    std::string owner;  ///< for messages: "material 'Wood'"
-    bool is_world = false;
-    bool is_lamp = false;  ///< a world's that has lengths of rays
+    std::string owner;            ///< for messages: "material 'Wood'"
+    bool is_world = false;        ///< or a lamp's: of no geometry
+    const Light* lamp = nullptr;  ///< whose it is
     int material_index = 0;
     RayType ray_type = RayType::Camera;
     std::vector<std::set<std::string>> read{};  ///< [nodes] outputs that something reads
@@ -64,7 +64,10 @@ class NodeBuilder {
     std::size_t index() const { return m_index; }
     Shift shift() const { return m_shift; }
     bool is_world() const { return m_program.is_world; }
-    bool is_lamp() const { return m_program.is_lamp; }
+    /// Whose light the program makes; nullptr: no lamp's.
+    const Light* lamp() const { return m_program.lamp; }
+    /// Whether points have a normal and are seen from somewhere.
+    bool has_surface() const { return !is_world() || lamp(); }
     const Scene& scene() const { return m_program.scene; }
     int material_index() const { return m_program.material_index; }
     RayType ray_type() const { return m_program.ray_type; }

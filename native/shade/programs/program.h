@@ -11,6 +11,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "geometry/attribute_request.h"
 #include "scene/scene.h"
 #include "shade/bsdf/lobe.h"
+#include "shade/lights/light_pattern.h"
 
 namespace granita {
 
@@ -45,11 +47,12 @@ struct ShadingInput {
     const std::vector<GridAttribute>* attributes = nullptr;  ///< nullptr = none
     const Instance* instance = nullptr;                      ///< nullptr: the world
     ObjectAxes axes;
-    std::vector<ObjectAxes> axes_at_times;  ///< [points] where these have times of their own
-    float spread = 0.0f;                    ///< world: radians a direction stands for
-    float ray_length = 0.0f;                ///< of shadow rays, from where they started
-    const RayScene* rays = nullptr;         ///< nullptr: none can be asked
-    GridKey key;                            ///< where they can: of what the points are on
+    std::vector<ObjectAxes> axes_at_times;   ///< [points] where these have times of their own
+    float spread = 0.0f;                     ///< world: radians a direction stands for
+    float ray_length = 0.0f;                 ///< of shadow rays, from where they started
+    std::span<const PatternSample> of_lamp;  ///< [points] of lamps' programs
+    const RayScene* rays = nullptr;          ///< nullptr: none can be asked
+    GridKey key;                             ///< where they can: of what the points are on
 
     const ObjectAxes& axes_at(std::size_t point) const {
         return axes_at_times.empty() ? axes : axes_at_times[point];

@@ -11,7 +11,7 @@ namespace granita {
 namespace {
 
 std::unique_ptr<LightSource> source_of(const Light& light) {
-    return make_light_source(light, 0.5f, Vec3d(0.0));
+    return make_light_source(light, light_frame(light, 0.5f, Vec3d(0.0)));
 }
 
 /// Irradiance on a surface element at `p` with normal `n`.  `count` points of a (0, m, 2)-net:
