@@ -12,12 +12,15 @@
 
 namespace granita {
 
-template <std::size_t N>
-std::uint32_t hash_words(const std::array<std::uint32_t, N>& k) {
+/// `Word`: 32 bits, or several such side by side.
+template <class Word, std::size_t N>
+Word hash_words(const std::array<Word, N>& k) {
     static_assert(N >= 1 && N <= 4);
-    using std::rotl;
-    std::uint32_t a, b, c;
-    a = b = c = 0xdeadbeefu + (static_cast<std::uint32_t>(N) << 2) + 13u;
+    const auto rotl = [](const Word& x, int bits) -> Word {
+        return (x << bits) | (x >> (32 - bits));
+    };
+    const Word start = Word{} + (0xdeadbeefu + (static_cast<std::uint32_t>(N) << 2) + 13u);
+    Word a = start, b = start, c = start;
     a += k[0];
     if constexpr (N > 1) b += k[1];
     if constexpr (N > 2) c += k[2];

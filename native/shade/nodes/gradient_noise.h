@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "math/hash.h"
 
@@ -16,29 +18,34 @@ using NoisePoint = std::array<float, N>;
 
 namespace noise_detail {
 
-inline float signed_by(float x, std::uint32_t bit) {
-    return bit ? -x : x;
+// Four corners of a cell at once.
+using Floats = float __attribute__((vector_size(16)));
+using Ints = std::int32_t __attribute__((vector_size(16)));
+using Words = std::uint32_t __attribute__((vector_size(16)));
+
+inline Floats signed_by(const Floats& x, const Words& hash, int bit) {
+    return std::bit_cast<Floats>(std::bit_cast<Words>(x) ^ ((hash >> bit) << 31));
 }
 
-/// Dot product of the corner's gradient with the offset from it.
+/// Dot product of the corners' gradients with the offsets from them.
 template <std::size_t N>
-float gradient(std::uint32_t hash, const NoisePoint<N>& d) {
+Floats gradient(const Words& hash, const std::array<Floats, N>& d) {
     if constexpr (N == 1) {
-        const std::uint32_t h = hash & 15u;
-        return signed_by(static_cast<float>(1u + (h & 7u)), h & 8u) * d[0];
+        const Ints size = std::bit_cast<Ints>(hash & 7u) + 1;
+        return signed_by(__builtin_convertvector(size, Floats), hash, 3) * d[0];
     } else if constexpr (N == 2) {
-        const std::uint32_t h = hash & 7u;
-        const float u = h < 4 ? d[0] : d[1], v = 2.0f * (h < 4 ? d[1] : d[0]);
-        return signed_by(u, h & 1u) + signed_by(v, h & 2u);
+        const Ints h = std::bit_cast<Ints>(hash & 7u);
+        const Floats u = h < 4 ? d[0] : d[1], v = 2.0f * (h < 4 ? d[1] : d[0]);
+        return signed_by(u, hash, 0) + signed_by(v, hash, 1);
     } else if constexpr (N == 3) {
-        const std::uint32_t h = hash & 15u;
-        const float u = h < 8 ? d[0] : d[1];
-        const float v = h < 4 ? d[1] : (h == 12 || h == 14 ? d[0] : d[2]);
-        return signed_by(u, h & 1u) + signed_by(v, h & 2u);
+        const Ints h = std::bit_cast<Ints>(hash & 15u);
+        const Floats u = h < 8 ? d[0] : d[1];
+        const Floats v = h < 4 ? d[1] : ((h == 12) | (h == 14)) ? d[0] : d[2];
+        return signed_by(u, hash, 0) + signed_by(v, hash, 1);
     } else {
-        const std::uint32_t h = hash & 31u;
-        const float u = h < 24 ? d[0] : d[1], v = h < 16 ? d[1] : d[2], s = h < 8 ? d[2] : d[3];
-        return signed_by(u, h & 1u) + signed_by(v, h & 2u) + signed_by(s, h & 4u);
+        const Ints h = std::bit_cast<Ints>(hash & 31u);
+        const Floats u = h < 24 ? d[0] : d[1], v = h < 16 ? d[1] : d[2], s = h < 8 ? d[2] : d[3];
+        return signed_by(u, hash, 0) + signed_by(v, hash, 1) + signed_by(s, hash, 2);
     }
 }
 
@@ -50,28 +57,32 @@ constexpr std::array<float, 4> kScales{0.25f, 0.6616f, 0.9820f, 0.8344f};
 /// In [-1, 1], 0 at the lattice points.
 template <std::size_t N>
 float signed_noise(const NoisePoint<N>& p) {
-    std::array<float, N> cell, inside, weight;
+    using namespace noise_detail;
+    std::array<float, N> inside, weight;
+    std::array<std::uint32_t, N> lattice;
     for (std::size_t c = 0; c < N; ++c) {
-        cell[c] = std::floor(p[c]);
-        inside[c] = p[c] - cell[c];
-        const float t = inside[c];
+        const float cell = std::floor(p[c]);
+        // Through 64 bits: lattice points beyond 2^31 wrap, they do not overflow.
+        lattice[c] =
+            static_cast<std::uint32_t>(static_cast<std::int64_t>(std::clamp(cell, -1e18f, 1e18f)));
+        const float t = inside[c] = p[c] - cell;
         weight[c] = t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
     }
-    std::array<float, std::size_t{1} << N> value;
-    for (std::size_t corner = 0; corner < value.size(); ++corner) {
-        std::array<std::uint32_t, N> lattice;
-        NoisePoint<N> offset;
+    constexpr std::size_t kCorners = std::size_t{1} << N, kLanes = 4;
+    std::array<float, std::max(kCorners, kLanes)> value;
+    for (std::size_t first = 0; first < kCorners; first += kLanes) {
+        std::array<Words, N> corner;
+        std::array<Floats, N> offset;
         for (std::size_t c = 0; c < N; ++c) {
-            const auto step = static_cast<std::uint32_t>(corner >> c & 1u);
-            // Through 64 bits: lattice points beyond 2^31 wrap, they do not overflow.
-            lattice[c] = static_cast<std::uint32_t>(
-                             static_cast<std::int64_t>(std::clamp(cell[c], -1e18f, 1e18f))) +
-                         step;
-            offset[c] = inside[c] - static_cast<float>(step);
+            const Words which = Words{0, 1, 2, 3} + static_cast<std::uint32_t>(first);
+            const Words step = which >> static_cast<int>(c) & 1u;
+            corner[c] = lattice[c] + step;
+            offset[c] = inside[c] - __builtin_convertvector(std::bit_cast<Ints>(step), Floats);
         }
-        value[corner] = noise_detail::gradient<N>(hash_words(lattice), offset);
+        const Floats values = gradient<N>(hash_words(corner), offset);
+        std::memcpy(&value[first], &values, sizeof(values));
     }
-    std::size_t left = value.size();
+    std::size_t left = kCorners;
     for (std::size_t c = 0; c < N; ++c) {
         left /= 2;
         for (std::size_t k = 0; k < left; ++k)
