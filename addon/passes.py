@@ -105,15 +105,17 @@ def missing(view_layer):
     return found + groups
 
 
-def requested(scene, view_layer):
-    """The snapshot's options of passes."""
+def requested(scene, view_layer, alone=None):
+    """The snapshot's options of passes: of one Pass `alone`, else of all that the view layer asks for."""
+    asked = wanted(view_layer) if alone is None else [alone]
     world = world_of(scene, view_layer)
     falloff = {"QUADRATIC": 2.0, "LINEAR": 1.0, "INVERSE_QUADRATIC": 0.5}
     options = {
-        "passes": [p.native for p in standard(view_layer)],
+        "passes": [p.native for p in asked if p in PASSES],
         "aovs": [
             {"name": p.native, "kind": "VALUE" if p.channels == 1 else "COLOR"}
-            for p in custom(view_layer)
+            for p in asked
+            if p not in PASSES
         ],
         "pass_alpha_threshold": view_layer.pass_alpha_threshold,
     }
@@ -128,6 +130,11 @@ def register(engine, scene, view_layer):
     """Every pass is registered, standard ones too: else the result holds Combined alone."""
     for p in wanted(view_layer):
         engine.register_pass(scene, view_layer, display_name(p), p.channels, p.channel_ids, p.kind)
+
+
+def is_exposed(p):
+    """Whether the film's exposure multiplies a Pass."""
+    return p in PASSES and p.native in EXPOSED
 
 
 def exposure_owner(scene):
@@ -176,7 +183,7 @@ def deliver(engine, tile, passes, layer, origin, exposure=1.0):
         render_passes = result.layers[0].passes
         for p in passes:
             values = arrays[p.native]
-            if exposure != 1.0 and p.native in EXPOSED:
+            if exposure != 1.0 and is_exposed(p):
                 values = np.array(values, dtype=np.float32)
                 values[..., :3] *= np.float32(exposure)
             _put(render_passes[display_name(p)], values, width * height, p.channels)

@@ -27,7 +27,7 @@ class GRANITA_VIEW3D_PT_preview(bpy.types.Panel):
         column.use_property_split = True
         column.use_property_decorate = False
         shown = context.space_data.shading.granita
-        column.prop(shown, "render_pass")
+        _draw_pass(column, context)
         column.prop(settings, "preview_pause")
         column.prop(settings, "preview_samples")
         column.prop(settings, "preview_moving")
@@ -63,7 +63,7 @@ class GRANITA_VIEW3D_PT_shading_pass(bpy.types.Panel):
     poll = GRANITA_VIEW3D_PT_preview.poll
 
     def draw(self, context):
-        self.layout.prop(context.space_data.shading.granita, "render_pass", text="")
+        _draw_pass(self.layout, context)
 
 
 class GRANITA_VIEW3D_PT_costs(bpy.types.Panel):
@@ -80,12 +80,27 @@ class GRANITA_VIEW3D_PT_costs(bpy.types.Panel):
         if view is None:
             column.label(text="No picture yet")
             return
-        for label, value in view.costs.lines():
-            row = column.split(factor=0.6)
-            row.label(text=label)
-            row.label(text=value)
+        _draw_lines(column, view.costs.lines())
+        if view.costs.objects:
+            column.separator()
+            column.label(text="Dearest objects, dicing and shading:")
+            _draw_lines(column, view.costs.object_lines())
         for line in view.warnings:
             column.label(text=line, icon="ERROR")
+
+
+def _draw_lines(column, lines):
+    for label, value in lines:
+        row = column.split(factor=0.6)
+        row.label(text=label)
+        row.label(text=value)
+
+
+def _draw_pass(layout, context):
+    shading = context.space_data.shading.granita
+    layout.prop(shading, "render_pass")
+    if shading.render_pass == "AOV":
+        layout.prop_search(shading, "aov_name", context.view_layer, "aovs")
 
 
 _CLASSES = (

@@ -13,6 +13,10 @@ _STAGES = (
 )
 
 
+# Objects that are named.
+DEAREST = 5
+
+
 @dataclass
 class Costs:
     frame: float = 0.0  # seconds of Blender's thread: reading the frame
@@ -21,6 +25,8 @@ class Costs:
     divisor: int = 1  # pixels of the view that one of its pixels is wide
     whole: float = 0.0  # of the picture itself
     statistics: dict = field(default_factory=dict)  # of its job
+    # [(name, seconds that threads dice and shade it, micropolygons)], dearest first
+    objects: list = field(default_factory=list)
 
     def lines(self):
         """[(label, value)]."""
@@ -39,6 +45,16 @@ class Costs:
             if name in self.statistics:
                 found.append((label, f"{self.statistics[name]:,}"))
         return found
+
+    def object_lines(self):
+        """[(name, value)] of the dearest objects."""
+        return [
+            (
+                name,
+                _seconds(seconds) + (f", {micropolygons:,} micropolygons" if micropolygons else ""),
+            )
+            for name, seconds, micropolygons in self.objects
+        ]
 
 
 def _seconds(value):

@@ -15,7 +15,7 @@ import numpy as np
 from .. import bridge, passes
 from ..export.base.report import ExportError, counted, lines
 from . import motion_paths, scene_reading
-from .costs import Costs
+from .costs import DEAREST, Costs
 from .live_picture import LivePicture, coarse_crop
 from .one_time import at_time
 from .scene_snapshots import SceneSnapshots
@@ -309,13 +309,14 @@ class LiveView:
             self._redraw()
 
     def _pixels_of(self, tile):
-        return passes.shown_pixels(tile, self._job_sight.look.shown)
+        return passes.shown_pixels(tile, self._job_sight.look.shown.native)
 
     def _settled(self, job):
         self._is_coarse = False
         self.counts["settled"] += 1
         self.costs.whole = perf_counter() - self._began
         self.costs.statistics = job.statistics()
+        self.costs.objects = job.dearest_objects(DEAREST)
         samples = self._scene.snapshot["options"]["samples"]
         self.warnings = lines(self._scene.report.entries() + job.warnings())
         text = f"Samples {samples}/{samples}"

@@ -12,6 +12,7 @@ from ..export.scene.shutter import is_blurred, scene_shutter
 from . import scene_reading
 from .carried_motion import ShutterTimes, carried, corrected
 from .same import is_same
+from .shading_settings import COMBINED
 
 # Of a snapshot, what is often the same at all times of the shutter.
 _MAY_STAND_STILL = {"options", "camera", "materials", "images", "lights", "world"}
@@ -126,14 +127,14 @@ class SceneSnapshots:
     def _complete(self, snapshot, scene, sight):
         """Of a view are its own samples, and the one pass that it shows."""
         shown = sight.look.shown
-        is_light = shown in passes.EXPOSED
-        self.exposure = passes.exposure_owner(scene).film_exposure if is_light else 1.0
+        self.exposure = (
+            passes.exposure_owner(scene).film_exposure if passes.is_exposed(shown) else 1.0
+        )
         options = snapshot["options"]
         options["samples"] = scene.granita.preview_samples
         options["depth_pass"] = False
-        if shown != "Combined":
-            options.update(passes.requested(scene, scene.view_layers[sight.layer]))
-            options.update(passes=[shown], aovs=[])
+        if shown != COMBINED:
+            options.update(passes.requested(scene, scene.view_layers[sight.layer], shown))
 
 
 def _viewpoint_of(sight):

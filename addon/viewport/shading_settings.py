@@ -3,11 +3,12 @@
 
 import bpy
 
-from ..passes import PASSES
+from .. import passes
 
 # Depth is white all over, and Vector is read of frames beside this one.
 _NOT_SHOWN = {"Depth", "Vector"}
-_SHOWN = {p.native.upper().replace(" ", "_"): p.native for p in PASSES}
+_SHOWN = {p.native.upper().replace(" ", "_"): p.native for p in passes.PASSES}
+COMBINED = passes.PASSES[0]
 
 
 class GranitaViewSettings(bpy.types.PropertyGroup):
@@ -18,8 +19,16 @@ class GranitaViewSettings(bpy.types.PropertyGroup):
             (identifier, name, f"The pass {name}", number)
             for number, (identifier, name) in enumerate(_SHOWN.items())
             if name not in _NOT_SHOWN
+        ]
+        + [
+            ("AOV", "Shader AOV", "An output of materials, which the view layer names", len(_SHOWN))
         ],
         default="COMBINED",
+        options=set(),
+    )
+    aov_name: bpy.props.StringProperty(
+        name="AOV",
+        description="Which of the view layer's shader AOVs is shown",
         options=set(),
     )
     use_time: bpy.props.BoolProperty(
@@ -45,9 +54,12 @@ class GranitaViewSettings(bpy.types.PropertyGroup):
     )
 
 
-def native_name(render_pass):
-    """Of the setting: the pass in the table of passes.py."""
-    return _SHOWN[render_pass]
+def shown_pass(settings, view_layer):
+    """The Pass that a view shows; Combined for an AOV that the view layer has not."""
+    if settings.render_pass == "AOV":
+        made = passes.custom(view_layer)
+        return next((p for p in made if p.native == settings.aov_name), COMBINED)
+    return next(p for p in passes.PASSES if p.native == _SHOWN[settings.render_pass])
 
 
 def register():

@@ -15,7 +15,8 @@ from ..export.base.transforms import from_matrix, inverse, world_from_camera
 from ..export.scene.camera import PINHOLE, Frame, window_projection
 from ..export.scene.options import border, render_border, scene_frame
 from ..export.scene.viewpoint import CameraViewpoint, StillViewpoint
-from .shading_settings import native_name
+from ..passes import Pass
+from .shading_settings import COMBINED, shown_pass
 
 _SHOW_TYPES = [
     name
@@ -29,7 +30,7 @@ class Look:
     """What of the scene this view alone shows."""
 
     hidden: frozenset = frozenset()  # addresses of original objects: local view, local collections
-    shown: str = "Combined"  # native name of a pass
+    shown: Pass = COMBINED
     time: float = None  # within the shutter; None: all of it
 
 
@@ -105,7 +106,7 @@ def read_sight(region, space, region_data, depsgraph, pixel):
 def _look(space, depsgraph):
     settings = space.shading.granita
     time = settings.time if settings.use_time else None
-    return Look(_hidden(space, depsgraph), native_name(settings.render_pass), time)
+    return Look(_hidden(space, depsgraph), shown_pass(settings, depsgraph.view_layer), time)
 
 
 def _hidden(space, depsgraph):

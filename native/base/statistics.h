@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/object_costs.h"
+
 namespace granita {
 
 enum class Counter {
@@ -59,6 +61,9 @@ enum class Stage { Open, Split, Dice, Hide, Shade, Resolve, Film, RayBuild, kCou
 /// Thread-safe, relaxed: totals are read after the frame.
 class Statistics {
   public:
+    /// `objects`: whose costs are told apart, by their index in Scene::instances.
+    explicit Statistics(std::size_t objects = 0) : m_objects(objects) {}
+
     void add(Counter counter, std::uint64_t n = 1) {
         m_counters[static_cast<int>(counter)].fetch_add(n, std::memory_order_relaxed);
     }
@@ -68,6 +73,8 @@ class Statistics {
     void add_seconds(Stage stage, double seconds);
     /// Of processors, summed over threads.
     double seconds(Stage stage) const;
+    ObjectCosts& objects() { return m_objects; }
+    const ObjectCosts& objects() const { return m_objects; }
     /// Bytes of grids that came into being; the most that lived at a time are peak_grid_bytes().
     void add_grid_bytes(std::uint64_t bytes);
     void remove_grid_bytes(std::uint64_t bytes) { m_grid_bytes.fetch_sub(bytes); }
@@ -85,6 +92,7 @@ class Statistics {
   private:
     std::array<std::atomic<std::uint64_t>, static_cast<int>(Counter::kCount)> m_counters{};
     std::array<std::atomic<std::uint64_t>, static_cast<int>(Stage::kCount)> m_nanoseconds{};
+    ObjectCosts m_objects;
     std::atomic<std::uint64_t> m_grid_bytes{0}, m_peak_grid_bytes{0};
     std::atomic<std::uint64_t> m_peak_ray_bytes{0}, m_peak_list_bytes{0};
 };

@@ -180,6 +180,16 @@ void bind_render(py::module_& module) {
         .def("bucket_seconds", &bucket_seconds,
              "[(x0, y0, x1, y1, seconds)] of each bucket's pixels, once the frame is finished.")
         .def("statistics", &statistics_dict)
+        .def(
+            "dearest_objects",
+            [](const RenderJob& job, std::size_t most) {
+                py::list list;
+                for (const DearObject& object : job.dearest_objects(most))
+                    list.append(py::make_tuple(object.name, object.seconds, object.micropolygons));
+                return list;
+            },
+            py::arg("most"),
+            "[(name, seconds of threads at its grids, micropolygons)], dearest first.")
         .def("warnings", &warning_list, "[(datablock, message, count)]");
 
     module.def("render", &render, py::arg("snapshot"),

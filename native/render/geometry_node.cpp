@@ -37,7 +37,9 @@ void SharedGrid::ensure_shading_state(Statistics& statistics) {
     std::call_once(m_has_state, [&] {
         if (!m_grid->shading_state) return;
         const StageTimer timer(statistics, Stage::Dice);
+        const Stopwatch watch;
         m_grid->shading_state(*m_grid);
+        statistics.objects().add_seconds(m_grid->instance, watch.seconds());
         m_grid->shading_state = {};
         count_bytes();
     });
@@ -56,7 +58,9 @@ void SharedGrid::ensure_opacity(const ShadingSystem& shading, Statistics& statis
     std::call_once(m_opacity, [&] {
         ensure_shading_state(statistics);
         const StageTimer timer(statistics, Stage::Shade);
+        const Stopwatch watch;
         shading.shade_opacity(*m_grid);
+        statistics.objects().add_seconds(m_grid->instance, watch.seconds());
     });
 }
 
@@ -64,7 +68,9 @@ void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& stati
     std::call_once(*m_radiance, [&] {
         ensure_shading_state(statistics);
         const StageTimer timer(statistics, Stage::Shade);
+        const Stopwatch watch;
         shading.shade_radiance(*m_grid);
+        statistics.objects().add_seconds(m_grid->instance, watch.seconds());
         if (!stays && m_grid->unsettled.empty()) drop_shading_state(*m_grid);
         count_bytes();
     });
@@ -85,8 +91,12 @@ void SharedGrid::forget_radiance() {
 
 std::shared_ptr<SharedGrid> dice_counted(const Primitive& primitive, Statistics& statistics) {
     const StageTimer timer(statistics, Stage::Dice);
+    const Stopwatch watch;
     auto grid = primitive.dice();
     if (!grid) return nullptr;
+    statistics.objects().add_seconds(grid->instance, watch.seconds());
+    statistics.objects().add_micropolygons(grid->instance,
+                                           static_cast<std::uint64_t>(grid->micropolygon_count()));
     statistics.add(Counter::GridsDiced);
     statistics.add(Counter::PointsDiced, static_cast<std::uint64_t>(grid->vertex_count()));
     return std::make_shared<SharedGrid>(std::move(grid), statistics);

@@ -176,8 +176,10 @@ std::vector<Grid> BucketRefinement::shade() {
             points.clear();
             for (std::size_t i = batches[b].begin; i < batches[b].end; ++i)
                 points.push_back(m_wanted[i].point);
-            shaded[b] =
-                m_frame.shading.refine(m_pool.grid(m_wanted[batches[b].begin].slot), points);
+            const Grid& grid = m_pool.grid(m_wanted[batches[b].begin].slot);
+            const Stopwatch watch;
+            shaded[b] = m_frame.shading.refine(grid, points);
+            m_frame.statistics.objects().add_seconds(grid.instance, watch.seconds());
         }
     });
     return shaded;

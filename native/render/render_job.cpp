@@ -26,12 +26,14 @@ namespace granita {
 
 struct RenderJob::Impl {
     explicit Impl(std::shared_ptr<const Scene> s)
-        : scene(std::move(s)), memory(scene->options, *statistics) {}
+        : scene(std::move(s)),
+          statistics(std::make_shared<Statistics>(scene->instances.size())),
+          memory(scene->options, *statistics) {}
 
     std::shared_ptr<const Scene> scene;
     gl::ContextOptions gpu;
     std::shared_ptr<Session> session;
-    std::shared_ptr<Statistics> statistics = std::make_shared<Statistics>();
+    std::shared_ptr<Statistics> statistics;
     Report reports[2];  ///< of the device that was chosen, and of the CPU in its place
     FrameMemory memory;
     std::atomic<int> attempt{0};
@@ -224,6 +226,9 @@ std::vector<std::pair<Rect, double>> RenderJob::bucket_seconds() const {
 
 const Statistics& RenderJob::statistics() const {
     return *m_impl->statistics;
+}
+std::vector<DearObject> RenderJob::dearest_objects(std::size_t most) const {
+    return granita::dearest_objects(*m_impl->scene, m_impl->statistics->objects(), most);
 }
 const Report& RenderJob::report() const {
     return m_impl->reports[m_impl->attempt];

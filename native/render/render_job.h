@@ -12,6 +12,7 @@
 #include "base/statistics.h"
 #include "film/film.h"
 #include "render/choose_executor.h"
+#include "render/dearest_objects.h"
 #include "render/session.h"
 #include "scene/scene.h"
 
@@ -46,6 +47,8 @@ class RenderJob {
     /// thread that rendered it.
     std::vector<std::pair<Rect, double>> bucket_seconds() const;
     const Statistics& statistics() const;
+    /// So far.
+    std::vector<DearObject> dearest_objects(std::size_t most) const;
     const Report& report() const;
     std::string device() const;
     /// Of the GPU, once the frame is finished; 0 where there was none.

@@ -56,6 +56,45 @@ def test_a_view_shows_a_pass_as_the_final_frame_has_it(scene, view, render, name
     np.testing.assert_array_equal(view.drawn().settle(), combined)
 
 
+@pytest.mark.parametrize("kind", ["VALUE", "COLOR"])
+def test_a_view_shows_an_output_of_materials_as_the_final_frame_has_it(scene, view, render, kind):
+    """Its name is that of a pass of light, which the film's exposure would multiply."""
+    layer = bpy.context.view_layer
+    made = layer.aovs.add()
+    made.name, made.type = "Emission", kind
+    tree = bpy.data.objects["Thing"].data.materials[0].node_tree
+    node = tree.nodes.new("ShaderNodeOutputAOV")
+    setattr(node, "name" if not hasattr(node, "aov_name") else "aov_name", "Emission")
+    node.inputs["Color"].default_value = (0.25, 0.5, 0.75, 1)
+    node.inputs["Value"].default_value = 0.625
+    if hasattr(scene, "cycles"):
+        scene.cycles.film_exposure = 0.5
+    shading = view.space.shading.granita
+    shading.render_pass, shading.aov_name = "AOV", "Emission"
+    seen = view.edited().settle().copy()
+    channels = "X" if kind == "VALUE" else "RGB"
+    planes = final(render(scene), "Emission", channels)
+    assert planes.max() == pytest.approx(0.625 if kind == "VALUE" else 0.75)
+    np.testing.assert_array_equal(seen[..., :3], np.broadcast_to(planes, (32, 48, 3)))
+    shading.aov_name = "Gone"
+    shown = view.drawn().settle().copy()
+    shading.render_pass = "COMBINED"
+    np.testing.assert_array_equal(view.drawn().settle(), shown)
+
+
+def test_a_view_names_what_is_dear_in_it(scene, view):
+    view.edited().settle()
+    costs = view.live.costs
+    names = [name for name, _, _ in costs.objects]
+    assert set(names) <= {thing.name for thing in scene.objects if thing.type == "MESH"}
+    assert "Thing" in names
+    seconds = [taken for _, taken, _ in costs.objects]
+    assert seconds == sorted(seconds, reverse=True)
+    done = costs.statistics
+    assert 0 < sum(count for _, _, count in costs.objects)
+    assert len(costs.object_lines()) == len(names) and done["grids_diced"] > 0
+
+
 def test_one_time_of_the_shutter_is_sharp_and_where_things_are_then(scene, view, render):
     """The keys are linear: through the shutter from frame 2 to 4, time .25 is frame 2.5."""
     for thing in (bpy.data.objects["Thing"], scene.camera):
