@@ -33,8 +33,6 @@
 namespace granita {
 namespace {
 
-/// Radiance of a surface that nobody misses as a light: an 8-bit step of white.
-constexpr float kDimmestEmission = 0.004f;
 /// Metres: what scatters no farther is drawn as diffuse, as in Cycles.
 constexpr float kLeastScattering = 1e-8f;
 
@@ -124,7 +122,7 @@ struct ShadingSystem::Impl {
         light = std::make_unique<DirectLight>(
             scene, world.evaluator(), statistics, report, progress, ray_materials(), geometries,
             kept.rays, displacement.get(), light_patterns(scene, textures, report), nodes_ask_rays);
-        if (scene.options.bounces.most == 0) warn_of_emission();
+        emission->warn(scene, report);
         if (!light->rays()) return;
         if (scene.options.bounces.most > 0) {
             hits = std::make_unique<HitShader>(scene, textures, report);
@@ -133,7 +131,7 @@ struct ShadingSystem::Impl {
         }
         if (volumes)
             seen_volumes = std::make_unique<SeenVolumes>(scene, *volumes, *light, bounces.get());
-        if (!any_scatters()) return;
+        if (!any([this](std::int32_t index) { return scatters(index); })) return;
         const auto bent = [this](std::int32_t index) {
             const SurfaceProgram& radiance = material(index).radiance;
             return radiance.bends_scattered() ? &material(index) : nullptr;
@@ -143,23 +141,14 @@ struct ShadingSystem::Impl {
 
     bool reflects(std::int32_t index) const { return material(index).radiance.sources.reflects(); }
     bool scatters(std::int32_t index) const { return material(index).radiance.scatters(); }
-    bool any_scatters() const {
-        return std::ranges::any_of(scene.instances, [this](const Instance& i) {
-            return std::ranges::any_of(i.materials, [this](int index) { return scatters(index); });
-        });
+    const NodeGraph& graph_of(std::int32_t index) const {
+        return scene.materials[static_cast<std::size_t>(index)].graph;
     }
-
-    /// Without bounces a surface that shines but is no lamp is seen, and sheds no light.
-    void warn_of_emission() const {
-        for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-            const auto index = static_cast<std::int32_t>(i);
-            const bool is_lamp = emission->constant(index) != Vec3f(0.0f);
-            if (is_lamp || !(emission->brightest(index) >= kDimmestEmission)) continue;
-            report.warn(
-                "material '" + scene.materials[i].name + "'",
-                "its emission varies, by place or view or kind of ray: it lights nothing without "
-                "bounces");
-        }
+    /// Whether it is so of any material of any instance.
+    bool any(const std::function<bool(std::int32_t)>& is) const {
+        return std::ranges::any_of(scene.instances, [&](const Instance& i) {
+            return std::ranges::any_of(i.materials, is);
+        });
     }
 
     void warn_of_broken(std::int32_t index, std::size_t count) const {
@@ -181,8 +170,10 @@ struct ShadingSystem::Impl {
             [this](std::int32_t index) { return constant_transparency(material(index).shadow); },
             [this](std::int32_t index) { return emission->constant(index); }};
         if (volumes) volumes->tell(asked);
-        if (any_scatters())
-            asked.is_scattering = [this](std::int32_t index) { return scatters(index); };
+        const auto asks = [this](std::int32_t index) {
+            return scatters(index) || (index >= 0 && asks_itself(graph_of(index)));
+        };
+        if (any(asks)) asked.is_met_by_itself = asks;
         return asked;
     }
 
@@ -438,8 +429,7 @@ bool ShadingSystem::opacity_varies(int material) const {
 }
 
 bool ShadingSystem::opacity_asks_rays(int material) const {
-    return material >= 0 && opacity_varies(material) &&
-           asks_rays(m_impl->scene.materials[static_cast<std::size_t>(material)].graph);
+    return material >= 0 && opacity_varies(material) && asks_rays(m_impl->graph_of(material));
 }
 
 bool ShadingSystem::reaches_others(int material) const {

@@ -92,3 +92,14 @@ def test_what_light_passes_and_what_casts_no_shadow(scene, render):
         thing.data.materials.append(glass)
     things[2].visible_shadow = False
     agree(scene, render)
+
+
+@pytest.mark.parametrize("inside", [False, True])
+def test_of_a_thing_that_casts_no_shadow(scene, render, inside):
+    """Its own rays meet it all the same."""
+    things = stage(scene)
+    occluded(things, "AO", 2.0, only_local=True, inside=inside)
+    things[2].visible_shadow = False
+    scene.camera.location[:2] = things[2].location[:2]
+    scene.camera.data.ortho_scale = 2.0
+    agree(scene, render, 0.04)

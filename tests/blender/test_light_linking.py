@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 import pytest
 import scene_parts as parts
+from test_bounces import render_bounced
 
 pytestmark = pytest.mark.skipif(
     "light_linking" not in bpy.types.Object.bl_rna.properties,
@@ -149,6 +150,24 @@ def test_meshes_that_shine_are_linked(stage, render, link):
 
 
 @pytest.mark.parametrize("state", ["INCLUDE", "EXCLUDE"])
+def test_meshes_whose_emission_varies_are_linked(stage, render, state):
+    """They are no lamps: bounces meet them."""
+    for name in ("Key", "Fill"):
+        bpy.data.lights[name].energy = 0.0
+    glow, nodes, links, output = parts.node_material("Glow")
+    emission, place = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeTexCoord")
+    emission.inputs["Strength"].default_value = 5.0
+    links.new(place.outputs["Generated"], emission.inputs["Color"])
+    links.new(emission.outputs[0], output.inputs["Surface"])
+    parts.add_square(stage, "Glow", 2.0, (0.0, 0.5, 3.2), glow).visible_camera = False
+    linked("Glow", "receiver", A=state)
+    theirs, ours = render_bounced(stage, render, 256, all_passes=True)
+    # 64 samples of lobes find the panel, 1 in 15 of them: .035 of the mean,
+    # .016 with 1024 samples; not linked it was all of it.
+    assert_alike(ours, theirs, noise=0.05)
+
+
+@pytest.mark.parametrize("state", ["INCLUDE", "EXCLUDE"])
 def test_smoke_is_lit_as_what_no_collection_has(stage, render, state):
     smoke, nodes, links, output = parts.node_material("Smoke")
     scatter = nodes.new("ShaderNodeVolumeScatter")
@@ -184,15 +203,18 @@ def test_lamps_may_be_hidden_from_smoke(stage, render):
 
 
 def agree(stage, render, samples=64):
+    assert_alike(*parts.direct_light_of_both(stage, render, samples))
+
+
+def assert_alike(*pictures, noise=0.01):
     ours, theirs = (
-        np.stack([channels[f"ViewLayer.Combined.{c}"] for c in "RGB"])
-        for channels in parts.direct_light_of_both(stage, render, samples)
+        np.stack([channels[f"ViewLayer.Combined.{c}"] for c in "RGB"]) for channels in pictures
     )
     # Blocks of 4 pixels: 1024 samples of theirs, whose noise in a penumbra is 1 %, and half a pixel of edges.
     error = np.abs(blocks(ours) - blocks(theirs))
     assert theirs.max() > 0.02
-    assert error.mean() < 0.01 * theirs.mean() + 0.001
-    assert error.max() < 0.08 * theirs.max()
+    assert error.mean() < noise * theirs.mean() + 0.001
+    assert error.max() < max(0.08, 3.0 * noise) * theirs.max()
 
 
 def blocks(picture):

@@ -242,7 +242,8 @@ class BouncedLight::Wave {
         const RayHit& hit = *batch.front().hit;
         const CompiledSurface& surface = m_light.m_hits.surface(hit.material, first.next.ray.type);
         m_points.fill(batch, surface.requests, static_cast<std::uint32_t>(first.depth));
-        const GridKey key{m_light.m_scene.instances[hit.instance].key};
+        const Instance& instance = m_light.m_scene.instances[hit.instance];
+        const GridKey key{instance.key};
         m_light.m_direct.lift(m_points.points(), key);
         SurfaceRun ran(surface.radiance, m_points.input());
         SurfaceClosure closure = ran.take_closure();
@@ -255,7 +256,8 @@ class BouncedLight::Wave {
                                              &m_leaving);
         if (!m_light.is_lamp(hit))
             for (std::size_t i = 0; i < closure.emission.size(); ++i)
-                light[i] += closure.emission[i];
+                if (in_light_set(batch[i].path->next.receives, instance.receiver_set))
+                    light[i] += closure.emission[i];
         for (std::size_t i = 0; i < batch.size(); ++i) bring(*batch[i].path, light[i]);
         go_on(batch, ran.points(), closure);
     }

@@ -95,7 +95,8 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
         std::ranges::any_of(lamps, [](const Lamp& lamp) { return lamp.casts_shadow(); }) ||
         std::ranges::any_of(scene.instances,
                             [&](const Instance& instance) {
-                                return materials.shines(instance) || materials.scatters(instance);
+                                return materials.shines(instance) ||
+                                       materials.meets_itself(instance);
                             }) ||
         materials.dim;
     if (asks_rays) {

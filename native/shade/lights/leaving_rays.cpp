@@ -31,7 +31,8 @@ void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& 
     const Vec3f whole = glm::max(weight, Vec3f(std::numeric_limits<float>::min()));
     grid.leaving->rays.push_back({ray, weight, value.diffuse / whole, value.transmission / whole,
                                   1.0f / static_cast<float>(count), pdf,
-                                  static_cast<std::uint32_t>(point.index), first + place, spread});
+                                  static_cast<std::uint32_t>(point.index), first + place, spread,
+                                  grid.receives});
 }
 
 }  // namespace granita

@@ -16,11 +16,12 @@ struct LobeRay {
     /// Of the weight, what its point's diffuse lobes reflect, and what goes through: parts of each
     /// channel.
     Vec3f diffuse{0.0f}, transmitted{0.0f};
-    float share = 1.0f;       ///< of the samples of all its point's lobes: one of so many
-    float pdf = 0.0f;         ///< of its direction, per solid angle; infinite for a mirror's
-    std::uint32_t point = 0;  ///< in the grid, or batch
-    std::uint32_t place = 0;  ///< in sequences of samples: neighbours' are neighbours
-    float spread = 0.0f;      ///< radians that it stands for
+    float share = 1.0f;              ///< of the samples of all its point's lobes: one of so many
+    float pdf = 0.0f;                ///< of its direction, per solid angle; infinite for a mirror's
+    std::uint32_t point = 0;         ///< in the grid, or batch
+    std::uint32_t place = 0;         ///< in sequences of samples: neighbours' are neighbours
+    float spread = 0.0f;             ///< radians that it stands for
+    std::uint64_t receives = ~0ULL;  ///< as Instance::receives of what it leaves
 };
 
 /// Those of the points of a grid, or batch.

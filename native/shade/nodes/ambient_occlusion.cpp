@@ -29,6 +29,7 @@ class OcclusionRays {
           m_points(*in.points),
           m_settings(settings),
           m_offset(in.rays->ray_offset(in.key)),
+          m_alone(settings.only_local && in.rays->has_body(in.key)),
           m_sequence(sequence()),
           m_count(settings.samples *
                   std::max(1, static_cast<int>(std::lround(
@@ -36,16 +37,13 @@ class OcclusionRays {
 
     /// `about`: as long as it likes.
     float unoccluded(std::size_t i, const Vec3f& about, float distance) {
-        if (!(distance > 0.0f)) return 1.0f;
+        if (!(distance > 0.0f) || (m_settings.only_local && !m_alone)) return 1.0f;
         const Vec3f normal = normalize_or(about, m_points.geometric_normal[i]);
         if (!m_points.faces.empty())
             m_offset = m_in.rays->ray_offset({m_in.key.instance, m_points.faces[i]});
         const bool timed = !m_points.times.empty() && m_points.times[i] >= 0.0f;
         const float time = timed ? m_points.times[i] : m_settings.frame_time;
-        if (m_settings.only_local) {
-            if (!m_in.rays->has_body(m_in.key)) return 1.0f;
-            if (!m_body || m_body->time != time) m_body = m_in.rays->body(m_in.key, time);
-        }
+        if (m_alone && (!m_body || m_body->time != time)) m_body = m_in.rays->body(m_in.key, time);
         const Basis basis(m_settings.inside ? -normal : normal);
         const SobolPoints sequence =
             m_sequence.from(place_in_sequence(m_points, i) * static_cast<std::uint32_t>(m_count));
@@ -78,6 +76,7 @@ class OcclusionRays {
     const ShadingPoints& m_points;
     const OcclusionSettings& m_settings;
     RayOffset m_offset;
+    bool m_alone;  ///< there is something of its own to meet
     SobolPoints m_sequence;
     int m_count;
     std::optional<RayScene::Body> m_body;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/nodes/material_emission.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -16,6 +17,8 @@ const VectorSource& emission(const CompiledSurface& surface) {
 }
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// Radiance of a surface that nobody misses as a light: an 8-bit step of white.
+constexpr float kDimmestEmission = 0.004f;
 
 }  // namespace
 
@@ -44,6 +47,24 @@ MaterialEmission::MaterialEmission(const Scene& scene, TextureStore& textures,
         if (!varies && constant && is_finite(*constant) && mean_size(*constant) > 0.0f)
             m_constant[i] = *constant;
     }
+}
+
+void MaterialEmission::warn(const Scene& scene, Report& report) const {
+    const auto is_no_lamp = [this](std::int32_t material) {
+        return constant(material) == Vec3f(0.0f) && brightest(material) >= kDimmestEmission;
+    };
+    if (scene.options.bounces.most > 0) {
+        for (const Instance& instance : scene.instances)
+            if (instance.blocker_set >= 0 && std::ranges::any_of(instance.materials, is_no_lamp))
+                report.warn(instance.name,
+                            "its emission varies, so that what blocks its light is not linked");
+        return;
+    }
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+        if (is_no_lamp(static_cast<std::int32_t>(i)))
+            report.warn("material '" + scene.materials[i].name + "'",
+                        "its emission varies, by place or view or kind of ray: it lights nothing "
+                        "without bounces");
 }
 
 }  // namespace granita

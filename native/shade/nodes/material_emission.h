@@ -24,6 +24,9 @@ class MaterialEmission {
     float brightest(std::int32_t material) const {
         return material < 0 ? 0.0f : m_brightest[static_cast<std::size_t>(material)];
     }
+    /// Names what shines but is no lamp: without bounces it is seen, and sheds no light; with them
+    /// its shadows follow no links.
+    void warn(const Scene& scene, Report& report) const;
     /// Whether it sends out any.
     bool any(std::int32_t material) const { return brightest(material) > 0.0f; }
 

@@ -57,6 +57,22 @@ ReadOutputs read_outputs(const NodeGraph& graph, const NodeLink& root, const std
     return read;
 }
 
+/// Whether anything of the surface or of a pass reads an Ambient Occlusion, `local`: one of the
+/// thing alone.
+bool occlusion_is_read(const NodeGraph& graph, bool local) {
+    const auto is_asked = [local](const Node& node) {
+        return node.type == "ShaderNodeAmbientOcclusion" && (!local || node.flag("only_local"));
+    };
+    if (std::ranges::none_of(graph.nodes, is_asked)) return false;
+    std::vector<int> passes;
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+        if (graph.nodes[i].type == kAovOutput) passes.push_back(static_cast<int>(i));
+    const ReadOutputs read = read_outputs(graph, graph.surface, "", passes);
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+        if (!read[i].empty() && is_asked(graph.nodes[i])) return true;
+    return false;
+}
+
 /// Magenta is what Cycles shows where something is missing; unknown values are neutral instead, so
 /// that one exotic node does not spoil a material.
 void warn_about_kin(NodeBuilder& b, const NodeKind* kind) {
@@ -241,8 +257,11 @@ bool told_apart(const NodeGraph& graph, const ReadOutputs& read, RayType a, RayT
 }  // namespace
 
 bool asks_rays(const NodeGraph& graph) {
-    return std::ranges::any_of(
-        graph.nodes, [](const Node& node) { return node.type == "ShaderNodeAmbientOcclusion"; });
+    return occlusion_is_read(graph, false);
+}
+
+bool asks_itself(const NodeGraph& graph) {
+    return occlusion_is_read(graph, true);
 }
 
 RayType first_alike(const NodeGraph& graph, const NodeLink& root, RayType ray,

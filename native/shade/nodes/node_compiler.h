@@ -94,8 +94,10 @@ struct GraphOwner {
     const Light* lamp = nullptr;  ///< that it colours; then `is_world` is set, too
 };
 
-/// Whether what the graph says may depend on what is near.
+/// Whether what the graph's surface says may depend on what is near.
 bool asks_rays(const NodeGraph& graph);
+/// Whether on other parts of what it is on, whatever these are to light.
+bool asks_itself(const NodeGraph& graph);
 
 /// The first of `rays`, of which `ray` is one, that the Light Path of what feeds `root` does not
 /// tell apart from it.

@@ -25,16 +25,17 @@ struct RayMaterials {
     /// What it sends to all sides and from everywhere, so that its meshes are lamps; 0: they are
     /// none.
     std::function<Vec3f(std::int32_t material)> emitted = nullptr;
-    /// Whether light is scattered below its surfaces, which rays then meet from inside.
-    std::function<bool(std::int32_t material)> is_scattering = nullptr;
+    /// Whether its surfaces are met by rays of their own, to whatever else they are hidden: from
+    /// inside, where light is scattered below them, or by nodes.
+    std::function<bool(std::int32_t material)> is_met_by_itself = nullptr;
     /// What is there inside of its surfaces, and whether these are there themselves.
     enum class Inside { Nothing, Volume, VolumeAlone };
     std::function<Inside(std::int32_t material)> inside = nullptr;
     /// Multiplies what is left of the light of shadow rays by what passes the volumes on their way.
     std::function<void(std::span<const Ray>, std::span<Vec3f> left)> dim = nullptr;
 
-    bool scatters(const Instance& instance) const {
-        return is_scattering && std::ranges::any_of(instance.materials, is_scattering);
+    bool meets_itself(const Instance& instance) const {
+        return is_met_by_itself && std::ranges::any_of(instance.materials, is_met_by_itself);
     }
     bool holds_volume(const Instance& instance) const {
         return inside && std::ranges::any_of(instance.materials, [this](std::int32_t material) {

@@ -198,8 +198,8 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
                           instance.lifespan.is_whole() && instance.blocks == ~0ULL;
     RayInstance& added = instances.emplace_back(RayInstance{
         index, transforms->scale, transforms->distance, passes, is_plain, constant_of(instance)});
-    const bool is_asked =
-        added.lets_light_through || scene.options.bounces.most > 0 || materials.scatters(instance);
+    const bool is_asked = added.lets_light_through || scene.options.bounces.most > 0 ||
+                          materials.meets_itself(instance);
     if (is_asked && instance.world_from_object.size() <= 1)
         added.still.emplace(matrix_at(instance.world_from_object, 0.0));
 }

@@ -80,7 +80,7 @@ struct RayScene::Impl {
         if (materials.is_volume_alone(instance)) return false;
         const bool seen = instance.is_seen_by_surfaces();
         return (instance.casts_shadow || (seen && scene.options.bounces.most > 0) ||
-                materials.shines(instance) || materials.scatters(instance)) &&
+                materials.shines(instance) || materials.meets_itself(instance)) &&
                !instance.lifespan.is_empty();
     }
     bool holds_volume(const Instance& instance) const {

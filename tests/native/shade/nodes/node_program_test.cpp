@@ -71,6 +71,23 @@ TEST(NodeProgram, constant_graphs_fold_to_a_constant) {
     EXPECT_TRUE(surface.radiance.sources.emission.is(Vec3f(3.0f, 1.5f, 0.0f)));
 }
 
+TEST(NodeProgram, rays_are_asked_by_what_is_read_alone) {
+    Compiler c;
+    const int occlusion = c.add("ShaderNodeAmbientOcclusion", {}, {{"only_local", 1.0}});
+    const int plain = c.add("ShaderNodeEmission", {{"Strength", constant(1)}});
+    c.graph.surface = {plain, "Emission"};
+    EXPECT_FALSE(asks_rays(c.graph));
+    const int shaded = c.add("ShaderNodeEmission", {{"Strength", link(occlusion, "AO")}});
+    c.graph.surface = {shaded, "Emission"};
+    EXPECT_TRUE(asks_rays(c.graph));
+    EXPECT_TRUE(asks_itself(c.graph));
+    c.graph.nodes[static_cast<std::size_t>(occlusion)].properties.clear();
+    EXPECT_FALSE(asks_itself(c.graph));
+    c.graph.surface = {plain, "Emission"};
+    c.add("ShaderNodeOutputAOV", {{"Value", link(occlusion, "AO")}});
+    EXPECT_TRUE(asks_rays(c.graph));
+}
+
 TEST(NodeProgram, opacity_is_one_where_nothing_is_transparent) {
     Compiler c;
     const int diffuse = c.add("ShaderNodeBsdfDiffuse", {{"Color", color(1, 1, 1)}});
