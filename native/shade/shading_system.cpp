@@ -36,12 +36,6 @@ namespace {
 /// Metres: what scatters no farther is drawn as diffuse, as in Cycles.
 constexpr float kLeastScattering = 1e-8f;
 
-/// Refined samples have one light sample each, or a few; corners have Options::light_samples, and
-/// those of their neighbours.  What moves is in doubt about its time, which only samples know.
-bool refining_spares_noise(const Options& options, bool moves) {
-    return moves || options.samples >= 3 * options.light_samples;
-}
-
 }  // namespace
 
 struct ShadingSystem::Impl {
@@ -59,9 +53,9 @@ struct ShadingSystem::Impl {
     std::unique_ptr<MaterialDisplacement> displacement;  ///< nullptr: nothing is displaced
     WorldShader world;
     bool refines;
-    bool moves;                        ///< anything of the frame
-    float threshold, noise_threshold;  ///< of unsettled_micropolygons()
-    float footprint;                   ///< of a sample, in steps of a grid
+    bool moves;  ///< anything of the frame
+    UnsettledThresholds thresholds;
+    float footprint;  ///< of a sample, in steps of a grid
     std::shared_ptr<GeometryCache> geometries;
     std::shared_ptr<const ShadedGrids> shaded;  ///< of an earlier picture, or nullptr
     std::unique_ptr<Volumes> volumes;           ///< nullptr where nothing is filled
@@ -84,9 +78,7 @@ struct ShadingSystem::Impl {
           world(s, textures, report),
           refines(refines_samples && s.options.refine_samples),
           moves(s.moves()),
-          threshold(s.options.shading_threshold * 8.0f /
-                    std::sqrt(static_cast<float>(s.options.samples))),
-          noise_threshold(refining_spares_noise(s.options, s.moves()) ? threshold : HUGE_VALF),
+          thresholds(s.options, moves),
           footprint(1.0f / std::sqrt(static_cast<float>(s.options.samples))),
           geometries(std::make_shared<GeometryCache>(kept.geometry)),
           shaded(kept.grids) {
@@ -288,6 +280,9 @@ struct ShadingSystem::Impl {
     float sharpness(const Grid& grid) const {
         return light_sample_step(light_sample_count(grid, scene, shutter));
     }
+    float edge_share(const Grid& grid) const {
+        return light_sample_step(edge_light_sample_count(grid, scene));
+    }
 
     bool is_round(const Grid& grid) const {
         return scene.geometry_of(scene.instances[grid.instance]).kind == GeometryKind::Curves;
@@ -332,7 +327,7 @@ struct ShadingSystem::Impl {
         if (!moves || (!light && are_equal(grid.radiance))) return false;
         const Grid probes = refine(grid, time_probes(grid), 1.0f);
         grid.broken_radiance |= probes.broken_radiance || probes.broken_opacity;
-        return any_changes(probes.radiance, threshold, displayed_difference);
+        return any_changes(probes.radiance, thresholds.difference, displayed_difference);
     }
 
     /// The same of its opacity: of what grazes the view, say.
@@ -343,7 +338,7 @@ struct ShadingSystem::Impl {
         out.material = grid.material;
         shade_opacity(out, input(grid, points));
         grid.broken_opacity |= out.broken_opacity;
-        return any_changes(out.opacity, threshold, opacity_difference);
+        return any_changes(out.opacity, thresholds.difference, opacity_difference);
     }
 
     std::vector<std::uint8_t> all_marked(const Grid& grid) const {
@@ -372,7 +367,8 @@ struct ShadingSystem::Impl {
     void shade_anew(Grid& grid, bool lit, float sharpness) const {
         ShadingPoints points = shading_points(grid, camera);
         const bool wants_refining = can_refine(grid);
-        points.share *= sharpness;
+        const float fewer = sharpness * edge_share(grid);
+        points.share *= fewer;
         points.round = is_round(grid);
         if (light && lit) light->lift(points, grid.key);
         const PointPaths at = paths(grid, points);
@@ -390,11 +386,11 @@ struct ShadingSystem::Impl {
         }
         // Samples would be shaded by themselves where points happen to be too bright, not too dark.
         if (!settled.empty()) settled.swap(grid.radiance);
-        grid.unsettled =
-            has_lines(grid) || changes_in_time(grid)
-                ? all_marked(grid)
-                : unsettled_micropolygons(grid, noise, threshold / (sharpness * sharpness),
-                                          noise_threshold / (sharpness * sharpness));
+        grid.unsettled = has_lines(grid) || changes_in_time(grid)
+                             ? all_marked(grid)
+                             : unsettled_micropolygons(
+                                   grid, noise, thresholds.difference / (sharpness * sharpness),
+                                   thresholds.noise / (fewer * fewer));
         if (!settled.empty()) settled.swap(grid.radiance);
         if (grid.unsettled.empty()) grid.unsettled = grid.unsettled_opacity;
         for (std::size_t m = 0; m < grid.unsettled_opacity.size(); ++m)
@@ -413,7 +409,7 @@ const std::vector<std::vector<AttributeRequest>>& ShadingSystem::requests() cons
 }
 
 float ShadingSystem::threshold() const {
-    return m_impl->threshold;
+    return m_impl->thresholds.difference;
 }
 
 const MaterialDisplacement* ShadingSystem::displacement() const {
@@ -452,7 +448,7 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
         grid.unsettled_opacity =
             m_impl->has_lines(grid) || m_impl->opacity_changes_in_time(grid)
                 ? m_impl->all_marked(grid)
-                : unsettled_opacity(grid, m_impl->threshold / (sharpness * sharpness));
+                : unsettled_opacity(grid, m_impl->thresholds.difference / (sharpness * sharpness));
     }
     m_impl->statistics.add(Counter::GridsOpacityShaded);
 }
@@ -460,7 +456,7 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 void ShadingSystem::shade_radiance(Grid& grid) const {
     const bool lit = m_impl->reflects(grid.material);
     const float sharpness = lit || m_impl->can_refine(grid) ? m_impl->sharpness(grid) : 1.0f;
-    const float share = grid.point_share * sharpness;
+    const float share = grid.point_share * sharpness * m_impl->edge_share(grid);
     if (m_impl->take_shaded(grid, share)) return;
     m_impl->shade_anew(grid, lit, sharpness);
     grid.light_share = share;

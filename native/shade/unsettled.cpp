@@ -15,6 +15,12 @@ namespace {
 /// surely: their own is sqrt(6) of it, and a micropolygon has eight.
 constexpr float kSpread = 6.0f;
 
+/// Refined samples have one light sample each, or a few; corners have Options::light_samples, and
+/// those of their neighbours.  What moves is in doubt about its time, which only samples know.
+bool refining_spares_noise(const Options& options, bool moves) {
+    return moves || options.samples >= 3 * options.light_samples;
+}
+
 using Shown = Vec3f;  ///< displayed colour
 Shown shown_color(const Vec3f& c) {
     return {displayed(c.x), displayed(c.y), displayed(c.z)};
@@ -145,6 +151,10 @@ class MicropolygonCorners {
 bool are_equal(const std::vector<Vec3f>& values) {
     return std::ranges::all_of(values, [&](const Vec3f& v) { return v == values[0]; });
 }
+
+UnsettledThresholds::UnsettledThresholds(const Options& options, bool moves)
+    : difference(options.shading_threshold * 8.0f / std::sqrt(static_cast<float>(options.samples))),
+      noise(refining_spares_noise(options, moves) ? difference : HUGE_VALF) {}
 
 float displayed_difference(const Vec3f& a, const Vec3f& b) {
     return most(shown_color(a) - shown_color(b));

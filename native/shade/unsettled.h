@@ -6,8 +6,17 @@
 #include <vector>
 
 #include "dice/grid.h"
+#include "scene/options.h"
 
 namespace granita {
+
+/// What unsettled_micropolygons() takes, of the settings of a frame.
+struct UnsettledThresholds {
+    float difference, noise;
+
+    /// @param moves anything of the frame.
+    UnsettledThresholds(const Options& options, bool moves);
+};
 
 /// The most that two colours differ by in any channel, displayed (math/displayed.h).
 float displayed_difference(const Vec3f& a, const Vec3f& b);

@@ -14,15 +14,20 @@ namespace {
 /// Side of the square whose mean keeps its noise, pixels.
 constexpr double kSquare = 4.0;
 
+/// Samples a pixel whose error at edges is that of all light samples.
+constexpr double kEdgeSamples = 650.0;
+/// Pixels across from which ribbons are surfaces.
+constexpr double kWide = 8.0;
+
 /// Of a sharp mean's variance, with a blur of `length` pixels one way.
 double share_along(double length) {
     const double ratio = length / kSquare;
     return ratio < 1.0 ? 1.0 - ratio / 3.0 : (1.0 - 1.0 / (3.0 * ratio)) / ratio;
 }
 
-class GridBlur {
+class GridOnFilm {
   public:
-    GridBlur(const Grid& grid, const Projection& projection)
+    GridOnFilm(const Grid& grid, const Projection& projection)
         : m_grid(grid), m_projection(projection) {}
 
     /// The shortest way of a vertex, pixels: twice that in the middle half of the exposure, which
@@ -47,21 +52,41 @@ class GridBlur {
     /// Square pixels that a point stands for, at least 1.
     double area() const {
         if (m_grid.disjoint) return 1.0;
-        const KnotTime first;
         double sum = 0.0;
         for (int m = 0; m < m_grid.micropolygon_count(); ++m) {
-            const Grid::Corners c = m_grid.corners(m);
-            Vec2d a, b, d, e;
-            if (!place(c.v0, first, a) || !place(c.v1, first, b) || !place(c.v2, first, d) ||
-                !place(c.v3, first, e))
-                return 1.0;
-            const Vec2d across = d - a, up = e - b;
-            sum += 0.5 * std::abs(across.x * up.y - across.y * up.x);
+            Vec2d corner[4];
+            if (!places(m, corner)) return 1.0;
+            sum += area_of(corner);
         }
         return std::max(1.0, sum / static_cast<double>(m_grid.point_count()));
     }
+    /// Pixels across, ribbons along u: their area over their length.
+    double width() const {
+        double area = 0.0, length = 0.0;
+        for (int m = 0; m < m_grid.micropolygon_count(); ++m) {
+            Vec2d corner[4];
+            if (!places(m, corner)) return kWide;
+            const double here = area_of(corner);
+            if (!(here > 0.0)) continue;  // between two of them
+            area += here;
+            length +=
+                0.5 * (glm::distance(corner[0], corner[1]) + glm::distance(corner[2], corner[3]));
+        }
+        return length > 0.0 ? area / length * m_grid.n_v : 0.0;
+    }
 
   private:
+    static double area_of(const Vec2d (&corner)[4]) {
+        const Vec2d across = corner[2] - corner[0], up = corner[3] - corner[1];
+        return 0.5 * std::abs(across.x * up.y - across.y * up.x);
+    }
+    /// At the first knot.  False where one is not before the camera.
+    bool places(int micropolygon, Vec2d (&corner)[4]) const {
+        const Grid::Corners c = m_grid.corners(micropolygon);
+        const KnotTime first;
+        return place(c.v0, first, corner[0]) && place(c.v1, first, corner[1]) &&
+               place(c.v2, first, corner[2]) && place(c.v3, first, corner[3]);
+    }
     /// False where it is not before the camera.
     bool place(int vertex, const KnotTime& time, Vec2d& out) const {
         const auto count = static_cast<std::size_t>(m_grid.vertex_count());
@@ -82,13 +107,25 @@ class GridBlur {
 
 float light_sample_count(const Grid& grid, const Scene& scene, const ShutterWarp& shutter) {
     const Projection& projection = scene.camera.projection;
-    const GridBlur blur(grid, projection);
+    const GridOnFilm blur(grid, projection);
     const double way = blur.way(shutter) * static_cast<double>(scene.options.row_exposure());
     const double side = projection.has_lens() ? std::sqrt(M_PI_4) * blur.circle() : 0.0;
     if (!(way + side > 0.0)) return 1.0f;
     const double share = share_along(std::hypot(way, side)) * share_along(side);
     const double variance = share * blur.area() + 1.0 / scene.options.samples;
     return static_cast<float>(std::sqrt(std::min(1.0, variance)));
+}
+
+float edge_light_share(int samples) {
+    return static_cast<float>(std::min(1.0, std::pow(samples / kEdgeSamples, 0.75)));
+}
+
+float edge_light_sample_count(const Grid& grid, const Scene& scene) {
+    const GeometryKind kind = scene.geometry_of(scene.instances[grid.instance]).kind;
+    if (kind != GeometryKind::Curves && kind != GeometryKind::Points) return 1.0f;
+    const double wide = GridOnFilm(grid, scene.camera.projection).width() / kWide;
+    return std::max(edge_light_share(scene.options.samples),
+                    static_cast<float>(std::min(1.0, wide * wide)));
 }
 
 float light_sample_step(float count) {

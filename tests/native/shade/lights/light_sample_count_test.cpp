@@ -113,6 +113,45 @@ TEST(LightSampleCountTest, a_lens_blurs_both_ways) {
     EXPECT_EQ(share(moved({{0, 0}}), scene), 1.0f);
 }
 
+/// Two ribbons along u, this wide and 40 pixels long in all, and what lies between them.
+Grid ribbons(float wide, int across) {
+    Grid grid;
+    grid.n_u = 5;
+    grid.n_v = across;
+    const float along[] = {0, 10, 20, 50, 60, 70};  // the third column ends the first ribbon
+    for (int j = 0; j <= across; ++j)
+        for (int i = 0; i <= 5; ++i) {
+            const bool is_end = i == 2 || i == 3;
+            const float v = wide * static_cast<float>(j) / static_cast<float>(across);
+            grid.positions.emplace_back(along[i], is_end ? 0.0f : v, 5.0f);
+        }
+    return grid;
+}
+
+Scene of_kind(GeometryKind kind, int samples) {
+    Scene scene = pixels(samples);
+    GeometryData data;
+    data.kind = kind;
+    scene.geometries.push_back(std::move(data));
+    scene.instances.emplace_back().geometry = 0;
+    return scene;
+}
+
+TEST(LightSampleCountTest, ribbons_take_less_the_fewer_samples_and_the_narrower_they_are) {
+    // Halves of the ribbons are triangles: the mean width is 3 / 4.
+    const auto count = [](float wide, int samples, int across = 1,
+                          GeometryKind kind = GeometryKind::Curves) {
+        return edge_light_sample_count(ribbons(wide, across), of_kind(kind, samples));
+    };
+    EXPECT_FLOAT_EQ(count(1.0f, 16), edge_light_share(16));
+    EXPECT_NEAR(edge_light_share(16), std::pow(16.0 / 650.0, 0.75), 1e-6);
+    EXPECT_EQ(count(1.0f, 1024), 1.0f);
+    EXPECT_NEAR(count(8.0f, 1), 0.75f * 0.75f, 0.1f);
+    EXPECT_NEAR(count(8.0f, 1, 2), count(8.0f, 1), 0.02f);  // the ends slant
+    EXPECT_EQ(count(100.0f, 16), 1.0f);
+    EXPECT_EQ(count(1.0f, 16, 1, GeometryKind::Mesh), 1.0f);
+}
+
 TEST(LightSampleCountTest, steps_are_a_fourth_root_of_two_apart) {
     EXPECT_EQ(light_sample_step(1.0f), 1.0f);
     for (const float step : {1.0f, 0.84089642f, 0.70710678f, 0.5f, 0.037162722f})
