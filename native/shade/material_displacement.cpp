@@ -8,6 +8,7 @@
 #include <mutex>
 #include <utility>
 
+#include "base/object_pool.h"
 #include "base/parallel.h"
 #include "geometry/surface_evaluator.h"
 #include "geometry/surface_frames.h"
@@ -54,25 +55,33 @@ class MaterialDisplacement::Batch {
   public:
     Batch(const Target& target, const Instance& instance, const SharedGeometry& geometry,
           const BasePatch& patch)
-        : m_target(target), m_instance(instance), m_geometry(geometry), m_patch(patch) {}
+        : m_target(target),
+          m_instance(instance),
+          m_geometry(geometry),
+          m_patch(patch),
+          m_memory(ObjectPool<Memory>::take()) {}
+    ~Batch() { ObjectPool<Memory>::give(std::move(m_memory)); }
+    Batch(const Batch&) = delete;
+    Batch& operator=(const Batch&) = delete;
 
     void run(const DisplacementProgram& program, std::span<const Vec2d> uv, bool derivatives,
              Offsets& out) {
         const std::size_t n = uv.size();
         m_uv.assign(uv.begin(), uv.end());
-        m_frames = {};
-        add_frames(m_uv);
+        find_frames(m_geometry, m_patch, uv, m_frames);
         m_steps.resize(n);
         for (std::size_t i = 0; i < n; ++i) m_steps[i] = step_at(i);
         if (derivatives) add_neighbours(n);
-        fill_points();
+        resize_points();
+        fill_points(m_frames, 0);
+        if (derivatives) fill_points(m_beside, n);
         fill_attributes(program.requests);
         ShadingInput input;
         input.points = &m_points;
         input.attributes = &m_attributes;
         input.instance = &m_instance;
         input.axes = m_target.axes;
-        Run run = program.program.prepare(input, m_uv.size());
+        Run run = program.program.prepare(input, m_uv.size(), std::move(m_memory.slots));
         program.program.execute(run);
         const auto offsets = run.read(program.offset);
         const auto in_object = [&](std::size_t i) {
@@ -88,21 +97,18 @@ class MaterialDisplacement::Batch {
             out.by_u[i] = slope(n + i, step.x);
             out.by_v[i] = slope(2 * n + i, step.y);
         }
+        m_memory.slots = run.take_memory();
     }
 
   private:
-    /// Of these places, after those that are there.
-    void add_frames(std::span<const Vec2d> uv) {
-        find_frames(m_geometry, m_patch, uv, m_found);
-        const auto append = [](std::vector<Vec3d>& to, const std::vector<Vec3d>& from) {
-            to.insert(to.end(), from.begin(), from.end());
-        };
-        append(m_frames.p, m_found.p);
-        append(m_frames.su, m_found.su);
-        append(m_frames.sv, m_found.sv);
-        append(m_frames.normal, m_found.normal);
-        append(m_frames.geometric_normal, m_found.geometric_normal);
-    }
+    /// Used again by the next batch.
+    struct Memory {
+        std::vector<Vec2d> uv, steps, differences;
+        SurfaceFrames frames, beside;
+        ShadingPoints points;
+        std::vector<GridAttribute> attributes;
+        std::vector<float> slots;
+    };
 
     double pixel_at(std::size_t i) const {
         return m_target.angle * glm::distance(m_frames.p[i], m_target.eye) + m_target.least;
@@ -138,28 +144,31 @@ class MaterialDisplacement::Batch {
             m_uv.push_back(m_uv[i] + Vec2d(0.0, m_differences[i].y));
         m_steps.resize(3 * n);
         for (std::size_t i = 0; i < 2 * n; ++i) m_steps[n + i] = m_steps[i % n];
-        add_frames(std::span(m_uv).subspan(n));
+        find_frames(m_geometry, m_patch, std::span(m_uv).subspan(n), m_beside);
     }
 
-    /// What is seen straight from above.
-    void fill_points() {
+    void resize_points() {
         const std::size_t n = m_uv.size();
-        const Mat3f turn(m_target.shading_from_object);
-        const Mat3f turn_normal = m_target.axes.world_normal_from_object();
         m_points.count = n;
         for (auto* values : {&m_points.p, &m_points.normal, &m_points.geometric_normal,
                              &m_points.view, &m_points.dp_du, &m_points.dp_dv})
             values->resize(n);
         m_points.backfacing.assign(n, 0);
-        for (std::size_t i = 0; i < n; ++i) {
-            const Vec3f flat(m_frames.geometric_normal[i]);
+    }
+
+    /// What is seen straight from above, from point `first` on.
+    void fill_points(const SurfaceFrames& frames, std::size_t first) {
+        const Mat3f turn(m_target.shading_from_object);
+        const Mat3f turn_normal = m_target.axes.world_normal_from_object();
+        for (std::size_t k = 0, i = first; k < frames.p.size(); ++k, ++i) {
+            const Vec3f flat(frames.geometric_normal[k]);
             const Vec3f geometric = normalize_or(turn_normal * flat, flat);
-            m_points.p[i] = Vec3f(transform_point(m_target.shading_from_object, m_frames.p[i]));
+            m_points.p[i] = Vec3f(transform_point(m_target.shading_from_object, frames.p[k]));
             m_points.geometric_normal[i] = geometric;
-            m_points.normal[i] = normalize_or(turn_normal * Vec3f(m_frames.normal[i]), geometric);
+            m_points.normal[i] = normalize_or(turn_normal * Vec3f(frames.normal[k]), geometric);
             m_points.view[i] = geometric;
-            m_points.dp_du[i] = turn * Vec3f(m_frames.su[i] * m_steps[i].x);
-            m_points.dp_dv[i] = turn * Vec3f(m_frames.sv[i] * m_steps[i].y);
+            m_points.dp_du[i] = turn * Vec3f(frames.su[k] * m_steps[i].x);
+            m_points.dp_dv[i] = turn * Vec3f(frames.sv[k] * m_steps[i].y);
         }
     }
 
@@ -182,10 +191,13 @@ class MaterialDisplacement::Batch {
     const Instance& m_instance;
     const SharedGeometry& m_geometry;
     const BasePatch& m_patch;
-    std::vector<Vec2d> m_uv, m_steps, m_differences;
-    SurfaceFrames m_frames, m_found;
-    ShadingPoints m_points;
-    std::vector<GridAttribute> m_attributes;
+    Memory m_memory;
+    /// [places], and where slopes are asked for, of those beside them along u and along v.
+    std::vector<Vec2d>&m_uv = m_memory.uv, &m_steps = m_memory.steps;
+    std::vector<Vec2d>& m_differences = m_memory.differences;
+    SurfaceFrames &m_frames = m_memory.frames, &m_beside = m_memory.beside;
+    ShadingPoints& m_points = m_memory.points;
+    std::vector<GridAttribute>& m_attributes = m_memory.attributes;
 };
 
 MaterialDisplacement::MaterialDisplacement(const Scene& scene,

@@ -8,6 +8,8 @@
 #include <limits>
 #include <optional>
 
+#include "shade/nodes/gradient_noise.h"
+
 namespace granita {
 namespace {
 
@@ -55,6 +57,7 @@ class Ranges {
         if (type == "ShaderNodeTexChecker") return checker(node, depth);
         if (kUnit.contains(type)) return Range{0.0f, 1.0f};
         if (type == "ShaderNodeTexImage") return image(node.text("image", ""));
+        if (type == "ShaderNodeTexNoise") return noise(node);
         if (type == "ShaderNodeRGBToBW") return of(node, "Color", 0.0f, depth);
         if (type == "ShaderNodeMath") return math(node, depth);
         return std::nullopt;
@@ -75,6 +78,16 @@ class Ranges {
             return Range{std::min(low, 0.0f), std::max(high, 1.0f)};
         }
         return std::nullopt;
+    }
+
+    /// A sum of octaves over the sum of their amplitudes.
+    static std::optional<Range> noise(const Node& node) {
+        const std::string dimensions = node.text("noise_dimensions", "3D");
+        if (node.text("noise_type", "FBM") != "FBM" || node.value("normalize", 1.0) == 0.0 ||
+            dimensions < "1D" || dimensions > "4D")
+            return std::nullopt;
+        const float most = noise_detail::kMost[static_cast<std::size_t>(dimensions[0] - '1')];
+        return Range{0.5f - 0.5f * most, 0.5f + 0.5f * most};
     }
 
     std::optional<Range> math(const Node& node, int depth) const {
