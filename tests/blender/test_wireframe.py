@@ -7,6 +7,7 @@ import bpy
 import pytest
 import scene_parts
 from node_comparison import Tree, render_both, rmse
+from test_bounces import render_bounced
 
 # Triangles, squares, a concave polygon and one of six corners.
 VERTICES = [
@@ -75,3 +76,19 @@ def test_subdivision_surfaces_are_named(scene, render, capfd):
     scene_parts.add_camera(scene, ortho_scale=3.0)
     render(scene)
     assert "edges of the cage" in capfd.readouterr().out
+
+
+def test_widths_in_pixels_in_a_mirror(scene, render):
+    """A grid beside the picture, seen in a mirror that leans."""
+    scene.render.resolution_x = scene.render.resolution_y = 96
+    scene_parts.add_camera(scene, (0.0, 0.0, 5.0))
+    mirror = scene_parts.closure("Mirror", "ShaderNodeBsdfGlossy", Roughness=0.0)
+    leaning = scene_parts.add_square(scene, "Mirror", 3.0, (0.0, 0.0, 0.0), mirror)
+    leaning.rotation_euler = (0.0, math.radians(45.0), 0.0)
+    aside = dict(location=(5.0, 0.0, 0.0), rotation=(0.0, math.radians(-90.0), 0.0))
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=6, y_subdivisions=6, size=6.0, **aside)
+    wired(bpy.context.object, 4.0, in_pixels=True)
+    theirs, ours = (picture.mean() for picture in render_bounced(scene, render, 64))
+    assert theirs > 0.2
+    # Edges of lines are found to a sample of 16.
+    assert ours == pytest.approx(theirs, rel=0.03)

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "math/normalize_or.h"
 #include "shade/nodes/nodes.h"
 #include "shade/programs/shading_camera.h"
 
@@ -74,7 +75,8 @@ class SeenPixel {
           m_perspective(scene.camera.projection.perspective),
           m_step(1.0 / scene.camera.projection.scale) {}
 
-    float width(const Vec3f& view, const Vec3f& normal, float distance) const {
+    /// `way`: from the camera, unit; `distance`: along all of it.
+    float width(const Vec3f& view, const Vec3f& normal, const Vec3f& way, float distance) const {
         const Vec3f u = glm::normalize(
             normal.x != normal.y || normal.x != normal.z
                 ? glm::cross(Vec3f(1.0f), normal)
@@ -83,13 +85,13 @@ class SeenPixel {
         const auto seen = [&](const Vec3f& side) {
             return glm::length(side - glm::dot(side, view) * view);
         };
-        return 0.5f * (seen(u) + seen(v)) * side(view, distance);
+        return 0.5f * (seen(u) + seen(v)) * side(way, distance);
     }
 
   private:
-    float side(const Vec3f& view, float distance) const {
+    float side(const Vec3f& world_way, float distance) const {
         if (!m_perspective) return 0.5f * (m_step.x + m_step.y);
-        const Vec3f way = m_camera_from_world * -view;
+        const Vec3f way = m_camera_from_world * world_way;
         const auto turn = [&](int axis) {
             return m_step[axis] * std::abs(way.z) *
                    std::sqrt(std::max(1.0f - way[axis] * way[axis], 0.0f));
@@ -105,9 +107,13 @@ class SeenPixel {
 FloatSource pixel_width(NodeBuilder& b) {
     return b.geometry<float>([pixel = SeenPixel(b.scene())](const ShadingInput& in, std::size_t i) {
         const ShadingPoints& points = *in.points;
-        const float distance =
-            points.ray_lengths.empty() ? glm::length(points.p[i]) : points.ray_lengths[i];
-        return pixel.width(points.view[i], points.geometric_normal[i], distance);
+        const Vec3f &view = points.view[i], &normal = points.geometric_normal[i];
+        if (points.ray_lengths.empty())
+            return pixel.width(view, normal, -view, glm::length(points.p[i]));
+        // As in a mirror: on from where the ray started, which the camera sees.
+        const float length = points.ray_lengths[i];
+        const Vec3f start = points.p[i] + length * view;
+        return pixel.width(view, normal, normalize_or(start, -view), glm::length(start) + length);
     });
 }
 
