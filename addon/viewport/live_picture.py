@@ -16,7 +16,7 @@ class LivePicture:
         self._sight = None  # of what is shown
         self._pixels = None  # float32 [height, width, 4] of its crop
         self._texture = None
-        self._is_drawn = True  # whether the texture holds the pixels
+        self._prepared = None  # pixels that the texture does not hold yet
         self._exposure = 1.0
 
     @property
@@ -28,9 +28,7 @@ class LivePicture:
 
     def expose(self, exposure):
         """The film's exposure from now on; whether it is another."""
-        changes = exposure != self._exposure
-        self._exposure = exposure
-        self._is_drawn &= not changes
+        changes, self._exposure = exposure != self._exposure, exposure
         return changes
 
     def replace(self, sight, pixels, divisor=1):
@@ -48,29 +46,36 @@ class LivePicture:
             pixels = np.ascontiguousarray(pixels[low : low + y1 - y0, left : left + x1 - x0])
         if self._sight is None or self._sight.crop != sight.crop:
             self._texture = None
-        self._sight, self._pixels, self._is_drawn = sight, pixels, False
+        self._sight, self._pixels = sight, pixels
 
     def paste(self, x, y, pixels):
         """Replaces a rectangle whose lower left pixel of the frame is (x, y)."""
         x, y = x - self._sight.crop[0], y - self._sight.crop[1]
         height, width = pixels.shape[:2]
         self._pixels[y : y + height, x : x + width] = pixels
-        self._is_drawn = False
+
+    def prepare(self):
+        """What has changed is drawn from now on.
+
+        Not for `draw` to do: NumPy lets other threads of Python run, and a render may begin in the middle of a drawing
+        (docs/decisions/viewport.md).
+        """
+        if self._pixels is not None:
+            self._prepared = np.clip(self.pixels, -_LARGEST_HALF, _LARGEST_HALF).reshape(-1)
 
     def draw(self):
         """Inside `view_draw` alone."""
-        if self._pixels is None:
+        if self._texture is None and self._prepared is None:
             return
         import gpu
         from gpu_extras.presets import draw_texture_2d
 
         sight = self._sight
         height, width = self._pixels.shape[:2]
-        if not self._is_drawn or self._texture is None:
-            values = np.clip(self.pixels, -_LARGEST_HALF, _LARGEST_HALF).reshape(-1)
-            buffer = gpu.types.Buffer("FLOAT", len(values), values)
+        if self._prepared is not None:
+            buffer = gpu.types.Buffer("FLOAT", len(self._prepared), self._prepared)
             self._texture = gpu.types.GPUTexture((width, height), format="RGBA16F", data=buffer)
-            self._is_drawn = True
+            self._prepared = None
         place = [sight.place[i] + sight.crop[i] * sight.pixel for i in (0, 1)]
         gpu.state.blend_set("ALPHA_PREMULT")
         try:

@@ -340,6 +340,7 @@ class LiveView:
 
     def _redraw(self):
         self._drawn = perf_counter()
+        self._picture.prepare()
         engine = self._engine()
         if engine is not None:
             engine.tag_redraw()
