@@ -88,9 +88,9 @@ class Looks {
     SobolPoints m_sequence, m_lens;
 };
 
-/// Of a lattice, those that have none beside them that is hidden.
-std::vector<std::uint8_t> off_edges(const std::vector<std::uint8_t>& seen, std::size_t columns) {
-    if (columns == 0) return seen;
+/// Of what is marked of a lattice, what has nothing beside it that is not.
+std::vector<std::uint8_t> off_edges(const std::vector<std::uint8_t>& marked, std::size_t columns) {
+    if (columns == 0) return marked;
     const auto shrunk = [](const std::vector<std::uint8_t>& from, std::size_t step,
                            std::size_t row) {
         std::vector<std::uint8_t> to = from;
@@ -101,7 +101,7 @@ std::vector<std::uint8_t> off_edges(const std::vector<std::uint8_t>& seen, std::
         }
         return to;
     };
-    return shrunk(shrunk(seen, 1, columns), columns, columns);
+    return shrunk(shrunk(marked, 1, columns), columns, columns);
 }
 
 }  // namespace
@@ -124,9 +124,12 @@ void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
         all_seen - static_cast<float>(std::ranges::count(inside, 1)) > kThicket * all_seen;
     const float edge =
         is_thicket ? std::max(kUnseenShare, edge_light_share(scene.options.samples)) : 1.0f;
+    std::vector<std::uint8_t> hidden(points.count);
+    std::ranges::transform(seen, hidden.begin(), [](std::uint8_t is_seen) { return !is_seen; });
+    const std::vector<std::uint8_t> far = off_edges(hidden, points.columns);
     points.shares.resize(points.count);
     for (std::size_t i = 0; i < points.count; ++i)
-        points.shares[i] = inside[i] ? 1.0f : seen[i] ? edge : kUnseenShare;
+        points.shares[i] = inside[i] ? 1.0f : far[i] ? kUnseenShare : edge;
     points.seen = std::move(seen);
 }
 

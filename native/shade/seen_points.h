@@ -16,9 +16,9 @@
 namespace granita {
 
 /// Fills `seen`: whether each point is through some point of the lens at some time of the shutter,
-/// one of each that it asks; and `shares`: all light samples where what is around is seen too, few
-/// out of sight and, in thickets, beside what is hidden (edge_light_share()).  What a point brings
-/// stays right, it is its noise that few see, or none among that of edges.  The same whatever
+/// one of each that it asks; and `shares`: all light samples next to what is seen, few out of
+/// sight and, in thickets, where what is seen ends (edge_light_share()).  What a point brings stays
+/// right, it is its noise that few see, or none among that of edges.  The same whatever
 /// bucket asks; both stay empty where all is seen.
 /// @param points of the grid of `key`, lifted.
 /// @param shutter nullptr where nothing moves.
