@@ -35,6 +35,7 @@ granita_static(granita_pybind11 HEADER pybind11/pybind11.h)
 
 # Builds in two places are equal, and a report of a crash names lines.  ccache may make paths relative to the build.
 file(RELATIVE_PATH source_from_build ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR})
+string(REGEX REPLACE "/+$" "" source_from_build "${source_from_build}")
 target_compile_options(granita_flags INTERFACE -gline-tables-only
   -ffile-prefix-map=${GRANITA_PORTABLE_CACHE}/=portable/ -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=
   -ffile-prefix-map=${source_from_build}/= -ffile-prefix-map=${CMAKE_BINARY_DIR}/=)
