@@ -67,10 +67,14 @@ def lamp_tree(scene, name):
     return light_tree(light)
 
 
-def assert_alike(scene, render, name):
+# Texels end abruptly: .0256 were seen with 144 samples of Cycles, .0221 with 1296, the means .1 % apart.
+TEXELS = 0.035
+
+
+def assert_alike(scene, render, name, tolerance=DIFFUSE):
     if name == "spot":
         scene.granita.dicing_rate = SPOT_RATE
-    expect_alike(scene, render, DIFFUSE)
+    expect_alike(scene, render, tolerance)
 
 
 @pytest.mark.parametrize("name", LAMPS)
@@ -125,7 +129,7 @@ def test_images(scene, render, name, linked):
         place = tree.nodes.new("ShaderNodeTexCoord")
         tree.links.new(place.outputs["Object"], texture.inputs["Vector"])
     tree.links.new(texture.outputs["Color"], tree.nodes["Emission"].inputs["Color"])
-    assert_alike(scene, render, name)
+    assert_alike(scene, render, name, TEXELS)
 
 
 @pytest.mark.parametrize("output", ["Is Camera Ray", "Is Shadow Ray", "Is Diffuse Ray"])
