@@ -18,6 +18,7 @@ class LivePicture:
         self._texture = None
         self._prepared = None  # pixels that the texture does not hold yet
         self._exposure = 1.0
+        self._changed = False  # since pixels were prepared
 
     @property
     def pixels(self):
@@ -29,6 +30,7 @@ class LivePicture:
     def expose(self, exposure):
         """The film's exposure from now on; whether it is another."""
         changes, self._exposure = exposure != self._exposure, exposure
+        self._changed |= changes and self._pixels is not None
         return changes
 
     def replace(self, sight, pixels, divisor=1):
@@ -47,12 +49,14 @@ class LivePicture:
         if self._sight is None or self._sight.crop != sight.crop:
             self._texture = None
         self._sight, self._pixels = sight, pixels
+        self._changed = True
 
     def paste(self, x, y, pixels):
         """Replaces a rectangle whose lower left pixel of the frame is (x, y)."""
         x, y = x - self._sight.crop[0], y - self._sight.crop[1]
         height, width = pixels.shape[:2]
         self._pixels[y : y + height, x : x + width] = pixels
+        self._changed = True
 
     def prepare(self):
         """What has changed is drawn from now on.
@@ -60,7 +64,8 @@ class LivePicture:
         Not for `draw` to do: NumPy lets other threads of Python run, and a render may begin in the middle of a drawing
         (docs/decisions/viewport.md).
         """
-        if self._pixels is not None:
+        if self._changed:
+            self._changed = False
             self._prepared = np.clip(self.pixels, -_LARGEST_HALF, _LARGEST_HALF).reshape(-1)
 
     def draw(self):

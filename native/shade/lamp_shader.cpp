@@ -115,8 +115,11 @@ float NodePattern::estimate(const LightFrame& frame) const {
 }
 
 /// Whether nodes say the same of both, but for where they stand.
-bool are_alike(Light a, Light b) {
+bool are_alike(const Light& one, const Light& other) {
+    if (!(one.graph == other.graph)) return false;  // a copy of each pair would be dear
+    Light a = one, b = other;
     for (Light* light : {&a, &b}) {
+        light->graph = {};
         light->name.clear();
         light->world_from_light.clear();
         light->energy_knots.clear();

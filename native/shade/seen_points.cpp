@@ -6,17 +6,12 @@
 #include "math/luminance.h"
 #include "math/sampling.h"
 #include "shade/lights/grid_samples.h"
-#include "shade/lights/light_sample_count.h"
 
 namespace granita {
 namespace {
 
-/// Of points that are not seen.  One of a pixel's 16 samples may see them after all, through an
-/// edge: their noise then counts for a 16th, as much as these ways are fewer.  Of points that are
-/// seen beside what is hidden, at least.
-constexpr float kUnseenShare = 0.125f;
-/// Part of what is seen that lies beside what is hidden, in grass, hair and leaves.  Where less
-/// does the noise along the edge of a shape before a smooth wall would show, and little be spared.
+/// Part of what is seen that lies beside what is hidden, in grass and hair.  Where less does
+/// the noise along the edge of a shape before a smooth wall would show, and little be spared.
 constexpr float kThicket = 0.33f;
 /// Light that passes what lies before a point, so that it is seen.
 constexpr float kLeastSeen = 0.02f;
@@ -108,7 +103,7 @@ std::vector<std::uint8_t> off_edges(const std::vector<std::uint8_t>& marked, std
 
 void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
              const RayScene& rays, const Scene& scene, const MovingEye& eye,
-             const ShutterWarp* shutter) {
+             const ShutterWarp* shutter, float edge) {
     Looks looks(points, paths, key, rays, scene, eye, shutter);
     std::vector<Ray> asked;
     asked.reserve(points.count);
@@ -122,8 +117,8 @@ void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
     const auto all_seen = static_cast<float>(std::ranges::count(seen, 1));
     const bool is_thicket =
         all_seen - static_cast<float>(std::ranges::count(inside, 1)) > kThicket * all_seen;
-    const float edge =
-        is_thicket ? std::max(kUnseenShare, edge_light_share(scene.options.samples)) : 1.0f;
+    constexpr float kUnseenShare = ShadingPoints::kUnseenShare;
+    edge = is_thicket ? std::max(kUnseenShare, edge) : 1.0f;
     std::vector<std::uint8_t> hidden(points.count);
     std::ranges::transform(seen, hidden.begin(), [](std::uint8_t is_seen) { return !is_seen; });
     const std::vector<std::uint8_t> far = off_edges(hidden, points.columns);

@@ -17,13 +17,14 @@ namespace granita {
 
 /// Fills `seen`: whether each point is through some point of the lens at some time of the shutter,
 /// one of each that it asks; and `shares`: all light samples next to what is seen, few out of
-/// sight and, in thickets, where what is seen ends (edge_light_share()).  What a point brings stays
-/// right, it is its noise that few see, or none among that of edges.  The same whatever
-/// bucket asks; both stay empty where all is seen.
+/// sight and, in thickets, `edge` of them where what is seen ends.  Few ways cost noise, which few
+/// see, or none among that of edges.  The same whatever bucket asks; both stay empty where all is
+/// seen.
 /// @param points of the grid of `key`, lifted.
 /// @param shutter nullptr where nothing moves.
+/// @param edge part of the light samples, at most 1 (edge_light_share()).
 void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
              const RayScene& rays, const Scene& scene, const MovingEye& eye,
-             const ShutterWarp* shutter);
+             const ShutterWarp* shutter, float edge);
 
 }  // namespace granita

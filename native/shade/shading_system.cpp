@@ -367,13 +367,14 @@ struct ShadingSystem::Impl {
     void shade_anew(Grid& grid, bool lit, float sharpness) const {
         ShadingPoints points = shading_points(grid, camera);
         const bool wants_refining = can_refine(grid);
-        const float fewer = sharpness * edge_share(grid);
+        const float narrow = edge_share(grid), fewer = sharpness * narrow;
         points.share *= fewer;
         points.round = is_round(grid);
         if (light && lit) light->lift(points, grid.key);
         const PointPaths at = paths(grid, points);
         if (bounces && lit)
-            look_at(points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr);
+            look_at(points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr,
+                    std::min(1.0f, edge_light_share(scene.options.samples) / narrow));
         std::vector<float> noise(wants_refining ? points.count : 0, 0.0f);
         std::vector<Vec3f> settled;
         shade(grid, input(grid, points), at, wants_refining ? &noise : nullptr,

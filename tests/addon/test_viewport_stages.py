@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a 3D view makes first, and how its own projection is read."""
 
+import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -55,6 +56,41 @@ def test_coarse_pixels_stand_where_they_belong():
     picture.paste(4, 2, np.full((1, 2, 4), 99, dtype=np.float32))
     expected[1, 1:3] = 99
     np.testing.assert_array_equal(picture.pixels[..., 3], expected)
+
+
+def test_pixels_go_to_the_window_once_and_when_they_have_changed(monkeypatch):
+    sent = []
+    gpu = SimpleNamespace(
+        types=SimpleNamespace(
+            Buffer=lambda kind, count, pixels: sent.append(pixels[0]),
+            GPUTexture=lambda size, format, data: object(),
+        ),
+        state=SimpleNamespace(blend_set=lambda mode: None),
+    )
+    presets = SimpleNamespace(draw_texture_2d=lambda *place: None)
+    monkeypatch.setitem(sys.modules, "gpu", gpu)
+    monkeypatch.setitem(sys.modules, "gpu_extras", SimpleNamespace(presets=presets))
+    monkeypatch.setitem(sys.modules, "gpu_extras.presets", presets)
+    picture = LivePicture()
+
+    def shown():
+        picture.prepare()
+        picture.draw()
+        return sent
+
+    assert shown() == []
+    sight = SimpleNamespace(crop=(0, 0, 2, 1), place=(0, 0), pixel=1)
+    picture.replace(sight, np.full((1, 2, 4), 1, dtype=np.float32))
+    assert shown() == [1]
+    assert shown() == [1]
+    picture.paste(0, 0, np.full((1, 1, 4), 2, dtype=np.float32))
+    picture.draw()
+    assert sent == [1]  # not ready yet
+    assert shown() == [1, 2]
+    assert picture.expose(3.0)
+    assert shown() == [1, 2, 6]
+    assert not picture.expose(3.0)
+    assert shown() == [1, 2, 6]
 
 
 def test_the_first_picture_becomes_smaller_where_it_is_slow():

@@ -176,3 +176,15 @@ def test_an_output_that_is_not_evaluated_is_named_where_it_is_linked(scene, rend
     tree.emit(node.outputs[output])
     render(scene)
     assert output in _said(capfd)
+
+
+@pytest.mark.parametrize("output", ["Pointiness", "Parametric"])
+def test_it_is_named_in_worlds_too(scene, render, capfd, output):
+    board(scene)
+    world = bpy.data.worlds.new("World")
+    scene.world, world.use_nodes = world, True
+    tree = world.node_tree
+    geometry = tree.nodes.new("ShaderNodeNewGeometry")
+    tree.links.new(geometry.outputs[output], tree.nodes["Background"].inputs["Color"])
+    render(scene)
+    assert output in _said(capfd)

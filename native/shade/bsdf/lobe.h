@@ -143,7 +143,13 @@ struct ShadingPoints {
     float terminator_offset = 0.0f;    ///< as Grid::terminator_offset
     std::vector<std::uint32_t> faces;  ///< [n] as ShadingPositions::faces; may be empty
     float share = 1.0f;                ///< as Grid::point_share
-    std::vector<float> shares;         ///< [n] part of that which each is due; empty: all of it
+    /// The least of `shares`: of points that are not seen.  One of a pixel's 16 samples may see
+    /// them after all, through an edge: their noise then counts for a 16th, as much as these ways
+    /// are fewer.
+    static constexpr float kUnseenShare = 0.125f;
+    /// [n] part of that which each is due, of at most three kinds: all, this, and one between them.
+    /// Empty: all of it.
+    std::vector<float> shares;
     /// [n] 0: hidden from the eye, inside of something or behind it; empty: none is known to be
     std::vector<std::uint8_t> seen;
     bool whole_faces = false;  ///< as Grid::shades_faces()

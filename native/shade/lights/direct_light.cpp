@@ -350,8 +350,10 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         std::uint32_t place = place_in_sequence(points, i);
         if (!points.shares.empty() && points.shares[i] != 1.0f) {
             count = this->sample_count(points.share * points.shares[i]);
-            // Behind what the others take of the sequences.
-            place += beyond(points) * static_cast<std::uint32_t>(sample_count / count + 1);
+            // Behind what the others take of the sequences: all ends at beyond * sample_count, what
+            // lies between before three times that.
+            const int ahead = points.shares[i] > ShadingPoints::kUnseenShare ? 1 : 3;
+            place += beyond(points) * static_cast<std::uint32_t>(ahead * sample_count / count + 1);
         }
         lit.push_back({i,
                        std::move(bsdf),

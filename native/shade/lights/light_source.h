@@ -33,7 +33,7 @@ struct LightSample {
 struct LightEmission {
     Vec3f axis{0.0f, 0.0f, -1.0f};
     float cone = kPi, fall = 0.5f * kPi;  ///< radians
-    float intensity = 0.0f;               ///< mean of the channels
+    float intensity = 0.0f;               ///< mean of the channels; with nodes an estimate
     float near2 = 0.0f;                   ///< square metres
 };
 
