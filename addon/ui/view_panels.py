@@ -101,6 +101,8 @@ def _draw_pass(layout, context):
     layout.prop(shading, "render_pass")
     if shading.render_pass == "AOV":
         layout.prop_search(shading, "aov_name", context.view_layer, "aovs")
+        if shading.aov_name not in context.view_layer.aovs:
+            layout.label(text="No such output: Combined is shown", icon="ERROR")
 
 
 _CLASSES = (

@@ -162,8 +162,13 @@ struct ShadingSystem::Impl {
             [this](std::int32_t index) { return constant_transparency(material(index).shadow); },
             [this](std::int32_t index) { return emission->constant(index); }};
         if (volumes) volumes->tell(asked);
-        const auto asks = [this](std::int32_t index) {
-            return scatters(index) || (index >= 0 && asks_itself(graph_of(index)));
+        // Once a material: instances may be many.
+        std::vector<std::uint8_t> alone;
+        for (std::size_t m = 0; m < scene.materials.size(); ++m)
+            alone.push_back(scatters(static_cast<std::int32_t>(m)) ||
+                            asks_itself(scene.materials[m].graph));
+        const auto asks = [alone = std::move(alone)](std::int32_t index) {
+            return index >= 0 && alone[static_cast<std::size_t>(index)] != 0;
         };
         if (any(asks)) asked.is_met_by_itself = asks;
         return asked;
