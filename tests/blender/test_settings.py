@@ -148,6 +148,8 @@ def drawn(**context):
     own = SimpleNamespace(
         bl_rna=sys.modules["granita.viewport.shading_settings"].GranitaViewSettings.bl_rna,
         use_time=True,
+        render_pass="AOV",
+        aov_name="",
     )
     space = SimpleNamespace(shading=SimpleNamespace(type="RENDERED", granita=own))
     context |= {"space_data": space, "area": SimpleNamespace(regions=())}
