@@ -130,8 +130,9 @@ bool are_alike(const Light& one, const Light& other) {
 
 }  // namespace
 
-LightPatterns light_patterns(const Scene& scene, TextureStore& textures, Report& report) {
-    LightPatterns found(scene.lights.size());
+std::vector<LightPatterns::Pattern> lamp_patterns(const Scene& scene, TextureStore& textures,
+                                                  Report& report) {
+    std::vector<LightPatterns::Pattern> found(scene.lights.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
         const Light& light = scene.lights[i];
         if (light.graph.surface.node < 0) continue;

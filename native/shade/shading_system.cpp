@@ -26,6 +26,7 @@
 #include "shade/shadow_transparency.h"
 #include "shade/subsurface/shared_scattering.h"
 #include "shade/subsurface/subsurface_light.h"
+#include "shade/surface_pattern.h"
 #include "shade/time_probes.h"
 #include "shade/unsettled.h"
 #include "shade/world_shader.h"
@@ -111,9 +112,9 @@ struct ShadingSystem::Impl {
             std::ranges::any_of(scene.materials, asks_rays, &Material::graph);
         if (Volumes::any(scene)) volumes = std::make_unique<Volumes>(scene, textures, report);
         if (!any_reflects && !volumes && !nodes_ask_rays) return;
-        light = std::make_unique<DirectLight>(
-            scene, world.evaluator(), statistics, report, progress, ray_materials(), geometries,
-            kept.rays, displacement.get(), light_patterns(scene, textures, report), nodes_ask_rays);
+        light = std::make_unique<DirectLight>(scene, world.evaluator(), statistics, report,
+                                              progress, ray_materials(), geometries, kept.rays,
+                                              displacement.get(), light_patterns(), nodes_ask_rays);
         emission->warn(scene, report);
         if (!light->rays()) return;
         if (scene.options.bounces.most > 0) {
@@ -160,7 +161,7 @@ struct ShadingSystem::Impl {
                 return shadow_transparency(material(hit.material).shadow, scene, hit);
             },
             [this](std::int32_t index) { return constant_transparency(material(index).shadow); },
-            [this](std::int32_t index) { return emission->constant(index); }};
+            [this](std::int32_t index) { return emission->emitted(index); }};
         if (volumes) volumes->tell(asked);
         // Once a material: instances may be many.
         std::vector<std::uint8_t> alone;
@@ -172,6 +173,13 @@ struct ShadingSystem::Impl {
         };
         if (any(asks)) asked.is_met_by_itself = asks;
         return asked;
+    }
+
+    LightPatterns light_patterns() {
+        return {lamp_patterns(scene, textures, report),
+                [this](std::int32_t index, const RayScene& rays) {
+                    return surface_pattern(*emission->program(index), scene, rays);
+                }};
     }
 
     const CompiledSurface& material(int index) const {

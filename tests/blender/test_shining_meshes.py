@@ -34,6 +34,30 @@ def panel(scene):
     )
 
 
+def screen(scene):
+    """Checks of two colours, one of them dark, times bands, as wide as 24 pixels show of them on the ceiling."""
+    thing = scene_parts.add_square(scene, "Screen", 0.8, (0.0, 0.95, 0.0))
+    thing.rotation_euler = (math.pi / 2, 0, 0)
+    tree = node_comparison.Tree(thing)
+    shader, checks = tree.add("ShaderNodeEmission"), tree.add("ShaderNodeTexChecker")
+    checks.inputs["Color1"].default_value = (1.0, 0.6, 0.1, 1.0)
+    checks.inputs["Color2"].default_value = (0.0, 0.1, 0.5, 1.0)
+    checks.inputs["Scale"].default_value = 2.0
+    wave = tree.add("ShaderNodeTexWave")
+    wave.inputs["Scale"].default_value = 0.5
+    strength = tree.add("ShaderNodeMath")
+    strength.operation = "MULTIPLY"
+    strength.inputs[1].default_value = 12.0
+    inside = tree.add("ShaderNodeVectorMath")  # and not on the border between two layers of checks
+    inside.inputs[1].default_value = (0.0, 0.0, 0.1)
+    tree.link(tree.add("ShaderNodeTexCoord").outputs["Generated"], inside.inputs[0])
+    tree.link(inside.outputs[0], checks.inputs["Vector"])
+    tree.link(wave.outputs["Color"], strength.inputs[0])
+    tree.link(checks.outputs["Color"], shader.inputs["Color"])
+    tree.link(strength.outputs[0], shader.inputs["Strength"])
+    tree.link(shader.outputs[0], tree.output.inputs["Surface"])
+
+
 def bulbs(scene):
     """Four instances of one ball of 80 faces, one of which goes down while the shutter is open."""
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=0.08)
@@ -53,7 +77,7 @@ def bulbs(scene):
     scene.frame_set(1)
 
 
-LAMPS = {"panel": panel, "bulbs": bulbs}
+LAMPS = {"panel": panel, "screen": screen, "bulbs": bulbs}
 
 
 @pytest.mark.parametrize("lamps", LAMPS)

@@ -208,13 +208,14 @@ def test_rays_through_a_surface_are_glossy_as_well(hidden, seen):
 
 
 def varying_emission():
-    """Of radiance 1, as no lamp is: by a texture whose colours are the same."""
-    colors = {"Color1": (1.0,) * 4, "Color2": (1.0,) * 4}
+    """Of radiance 1, as no lamp is: by a texture whose colours are the same, though rays are told apart."""
+    inputs = {"Color1": (1.0,) * 4, "Color2": (1.0,) * 4, "Scale": ("LINK", 0, "Is Glossy Ray")}
     nodes = [
-        {"type": "ShaderNodeTexChecker", "inputs": colors},
-        {"type": "ShaderNodeEmission", "inputs": {"Color": ("LINK", 0, "Color")}},
+        {"type": "ShaderNodeLightPath", "inputs": {}},
+        {"type": "ShaderNodeTexChecker", "inputs": inputs},
+        {"type": "ShaderNodeEmission", "inputs": {"Color": ("LINK", 1, "Color")}},
     ]
-    return {"name": "Shines", "nodes": nodes, "surface": (1, "Emission")}
+    return {"name": "Shines", "nodes": nodes, "surface": (2, "Emission")}
 
 
 def test_saturated_colours_keep_to_themselves():

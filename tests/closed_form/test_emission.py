@@ -13,14 +13,14 @@ def plain(snapshot):
     return len(snapshot["materials"]) - 1
 
 
-def dimmer_behind(snapshot, strength):
-    """What varies is no lamp; the camera sees it from behind."""
+def brighter_in_mirrors(snapshot, strength):
+    """What tells rays apart is no lamp."""
     nodes = [
-        {"type": "ShaderNodeNewGeometry", "inputs": {}},
+        {"type": "ShaderNodeLightPath", "inputs": {}},
         {
             "type": "ShaderNodeMath",
-            "properties": {"operation": "SUBTRACT"},
-            "inputs": {"Value": strength + 1.0, "Value_001": ("LINK", 0, "Backfacing")},
+            "properties": {"operation": "ADD"},
+            "inputs": {"Value": strength, "Value_001": ("LINK", 0, "Is Glossy Ray")},
         },
         {
             "type": "ShaderNodeEmission",
@@ -28,14 +28,14 @@ def dimmer_behind(snapshot, strength):
         },
     ]
     index = len(snapshot["materials"])
-    snapshot["materials"].append({"name": "Sided", "nodes": nodes, "surface": (2, "Emission")})
+    snapshot["materials"].append({"name": "Mirrored", "nodes": nodes, "surface": (2, "Emission")})
     return index
 
 
 def warnings_of(strength, reflecting, varying=True):
     snapshot = s.orthographic((16, 16), samples=1, executor="SIMD")
     if varying:
-        shining = dimmer_behind(snapshot, strength)
+        shining = brighter_in_mirrors(snapshot, strength)
     else:
         shining = s.emission(snapshot, color=(strength,) * 3)
     s.quad(snapshot, s.rectangle(0, 0, 8, 16), shining)
@@ -52,7 +52,7 @@ def test_nobody_misses_light_of_a_lamp_or_that_nothing_would_reflect(strength, r
 
 
 def test_an_emitting_material_that_lights_nothing_is_named_once():
-    assert warnings_of(5.0, True) == [("material 'Sided'", 1)]
+    assert warnings_of(5.0, True) == [("material 'Mirrored'", 1)]
 
 
 def test_what_is_no_number_is_left_out_and_named():

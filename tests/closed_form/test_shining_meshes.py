@@ -217,35 +217,6 @@ def test_they_light_no_more_where_light_bounces(bounces):
     assert seen(snapshot) == pytest.approx(truth, abs=0.004)
 
 
-def test_what_varies_is_met_by_chance_and_named_where_nothing_bounces():
-    """Its emission follows the view: no lamp."""
-    nodes = [
-        {"type": "ShaderNodeLayerWeight", "inputs": {"Blend": 0.5}},
-        {
-            "type": "ShaderNodeEmission",
-            "inputs": {"Color": (1.0,) * 4, "Strength": ("LINK", 0, "Facing")},
-        },
-    ]
-    snapshot = stage()
-    snapshot["materials"].append({"name": "Rim", "nodes": nodes, "surface": (1, "Emission")})
-    s.quad(snapshot, s.rectangle(10, 12, 22, 18, LAMP), 1)
-    snapshot["instances"]["flags"].append(HIDDEN_LAMP)
-    rendered = s.render(snapshot)
-    assert rendered["combined"][..., 0].max() == 0.0
-    assert [owner for owner, text, _ in rendered["warnings"] if "varies" in text] == [
-        "material 'Rim'"
-    ]
-    snapshot["options"].update(bounces=1, light_samples=256)
-    x, y = pixels()
-    truth = np.zeros(SIZE[::-1])
-    for px in 10.25 + 0.5 * np.arange(24):
-        for py in 12.25 + 0.5 * np.arange(12):
-            cosine = (FLOOR - LAMP) / np.sqrt((x - px) ** 2 + (y - py) ** 2 + (FLOOR - LAMP) ** 2)
-            truth += (1 - cosine) * 0.25 * cosine**4 / (FLOOR - LAMP) ** 2
-    truth *= ALBEDO / np.pi
-    assert seen(snapshot).mean() == pytest.approx(truth.mean(), rel=0.02)
-
-
 def test_strands_that_shine_are_named_where_nothing_bounces():
     snapshot = stage()
     curves(snapshot, np.linspace((4, 16, LAMP), (28, 16, LAMP), 5), [5], 1.0, s.emission(snapshot))
@@ -327,10 +298,10 @@ def test_no_way_goes_further_for_what_no_ray_sees():
                 {
                     "name": "Hidden",
                     "nodes": [
-                        {"type": "ShaderNodeLayerWeight", "inputs": {}},
+                        {"type": "ShaderNodeLightPath", "inputs": {}},
                         {
                             "type": "ShaderNodeEmission",
-                            "inputs": {"Strength": ("LINK", 0, "Facing")},
+                            "inputs": {"Strength": ("LINK", 0, "Is Diffuse Ray")},
                         },
                     ],
                     "surface": (1, "Emission"),

@@ -230,7 +230,7 @@ class BouncedLight::Wave {
             for (end = begin; end < m_order.size() && key(m_order[end]) == key(m_order[begin]);
                  ++end) {
                 const RayScene::Met& met = m_met[m_order[end]];
-                batch.push_back({&m_paths[met.ray], &met.hit, &met.frame()});
+                batch.push_back(met_by(m_paths[met.ray], met.hit, met.frame()));
             }
             shade(batch);
         }
@@ -254,10 +254,10 @@ class BouncedLight::Wave {
         if (is_lit(first))
             light = m_light.m_direct.reflect(ran.points(), closure, key, nullptr, {}, nullptr,
                                              &m_leaving);
-        if (!m_light.is_lamp(hit))
-            for (std::size_t i = 0; i < closure.emission.size(); ++i)
-                if (in_light_set(batch[i].path->next.receives, instance.receiver_set))
-                    light[i] += closure.emission[i];
+        for (std::size_t i = 0; i < closure.emission.size(); ++i)
+            if (!m_light.is_lamp(*batch[i].hit) &&
+                in_light_set(batch[i].path->next.receives, instance.receiver_set))
+                light[i] += closure.emission[i];
         for (std::size_t i = 0; i < batch.size(); ++i) bring(*batch[i].path, light[i]);
         go_on(batch, ran.points(), closure);
     }
@@ -402,10 +402,9 @@ BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const 
     for (std::size_t i = 0; i < scene.instances.size() && !m_any_shines; ++i) {
         const Instance& instance = scene.instances[i];
         if (!instance.is_seen_by_surfaces() || instance.lifespan.is_empty()) continue;
-        const bool is_lamp = direct.is_lamp(i);
+        const bool are_lamps = direct.lamp_faces().hold_all_of(i);
         m_any_shines = std::ranges::any_of(instance.materials, [&](std::int32_t material) {
-            return emission.any(material) &&
-                   !(is_lamp && emission.constant(material) != Vec3f(0.0f));
+            return emission.any(material) && !(are_lamps && emission.is_lamp(material));
         });
     }
 }

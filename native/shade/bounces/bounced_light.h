@@ -48,7 +48,7 @@ class BouncedLight {
 
     /// Whether what a surface emits is light that DirectLight knows.
     bool is_lamp(const RayHit& hit) const {
-        return m_direct.is_lamp(hit.instance) && m_emission.constant(hit.material) != Vec3f(0.0f);
+        return m_emission.is_lamp(hit.material) && m_direct.lamp_faces().hold(hit);
     }
 
     const Scene& m_scene;

@@ -32,11 +32,11 @@ void HitPoints::fill_mesh(std::size_t i, const MetPath& met, bool displaced,
     if (!displaced)
         m_points.normal[i] = side * Vec3f(normalize_or(frame.world_from_normal * surface.normal[0],
                                                        Vec3d(hit.normal)));
-    const float width = met.path->width + met.path->spread * hit.distance;
     const auto step = [&](const Vec3d& derivative, Vec3f& out) {
         const Vec3f along = frame.world_from_object * Vec3f(derivative);
         const float length = glm::length(along);
-        const float steps = length > width ? width / length : 1.0f;  // no further than the patch
+        const float steps =
+            length > met.width ? met.width / length : 1.0f;  // no further than the patch
         out = along * steps;
         return steps;
     };
@@ -70,15 +70,14 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
     }
     for (std::size_t i = 0; i < met.size(); ++i) {
         const RayHit& hit = *met[i].hit;
-        const BouncedPath& path = *met[i].path;
         const bool back = glm::dot(hit.normal, hit.direction) > 0.0f;
         m_points.p[i] = hit.p;
         m_points.normal[i] = m_points.geometric_normal[i] = back ? -hit.normal : hit.normal;
         m_points.view[i] = -hit.direction;
         m_points.backfacing[i] = back;
-        m_points.times[i] = path.next.ray.time;
-        m_points.places[i] = path.next.place;
-        m_points.ray_lengths[i] = path.length + hit.distance;
+        m_points.times[i] = met[i].time;
+        m_points.places[i] = met[i].place;
+        m_points.ray_lengths[i] = met[i].length;
         if (!still) {
             ObjectAxes& axes = m_input.axes_at_times.emplace_back();
             axes.world_from_object = met[i].frame->world_from_object;

@@ -13,12 +13,26 @@
 
 namespace granita {
 
-/// A way and the surface at its end.
+/// A surface that a way has met.
 struct MetPath {
-    const BouncedPath* path;
+    const BouncedPath* path;  ///< nullptr: nobody goes on from there
     const RayHit* hit;
-    const RayFrame* frame;  ///< of what was met, at the ray's time
+    const RayFrame* frame;  ///< of what was met, at `time`
+    float time;
+    float width;              ///< of the beam there, metres
+    float length;             ///< that light goes to where it was sent from, metres
+    std::uint32_t place = 0;  ///< LobeRay::place
 };
+
+inline MetPath met_by(const BouncedPath& path, const RayHit& hit, const RayFrame& frame) {
+    return {&path,
+            &hit,
+            &frame,
+            path.next.ray.time,
+            path.width + path.spread * hit.distance,
+            path.length + hit.distance,
+            path.next.place};
+}
 
 class HitPoints {
   public:

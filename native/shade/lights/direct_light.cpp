@@ -20,8 +20,8 @@
 #include "shade/lights/lit_grid.h"
 #include "shade/lights/lit_point.h"
 #include "shade/lights/lobe_runs.h"
+#include "shade/lights/met_lamps.h"
 #include "shade/lights/part_rays.h"
-#include "shade/lights/shining_faces.h"
 #include "shade/lights/world_light.h"
 
 namespace granita {
@@ -69,7 +69,7 @@ struct DirectLight::Impl {
     WorldLight world;
     std::unordered_map<std::uint32_t, std::uint64_t> linked;  ///< Instance::receives by key
     std::vector<LightAnchor> anchors;
-    std::vector<bool> shining;  ///< [instances] whose faces are lamps; empty: none's
+    LampFaces shining;
 };
 
 DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator,
@@ -104,9 +104,8 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
         auto rays = std::make_unique<RayScene>(scene, origin, materials, progress, geometries,
                                                &report, std::move(kept_rays), displacement);
         statistics.peak_ray_bytes(rays->bytes());
-        ShiningFaces found = shining_faces(scene, *rays, materials, report, progress);
-        std::ranges::move(found.lamps, std::back_inserter(lamps));
-        if (!found.lamps.empty()) shining = std::move(found.instances);
+        shining = LampFaces(scene, *rays, materials, patterns, report, progress);
+        std::ranges::move(shining.take_lamps(), std::back_inserter(lamps));
         if (!rays->empty()) set.set_casters(std::move(rays));
     }
     anchors = anchors_of(lamps);
@@ -156,11 +155,9 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             const LampRate rate = rate_of(point, choice, index);
             const float density =
                 static_cast<float>(rate.samples) * met.pdf * rate.mean + point.meeting_density(wo);
-            const BsdfValue bsdf = lamp.apply(value, grid.in_medium);
-            if (total(bsdf) == Vec3f(0.0f)) return;
-            const Vec3f seen = set.shadow(grid, point, place, lamp, met);
-            grid.add(point.index, total(bsdf) * met.radiance / density * seen, sign);
-            grid.add_lamp(point.index, bsdf * (met.radiance / density), seen);
+            const BsdfValue weight = lamp.apply(value, grid.in_medium) * Vec3f(1.0f / density);
+            if (total(weight) != Vec3f(0.0f))
+                add_met(set, grid, {&point, &lamp, place, met, weight, sign});
         });
     }
 }
@@ -176,11 +173,9 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
     for (int s = 0; s < count; ++s) {
         const LitPlace place = set.place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
         set.meet(grid, place, wo, [&](std::size_t, const Lamp& lamp, const LightSample& met) {
-            const BsdfValue arriving = lamp.apply(value, grid.in_medium) * met.radiance;
-            if (total(arriving) == Vec3f(0.0f)) return;
-            const Vec3f seen = set.shadow(grid, point, place, lamp, met);
-            grid.add(point.index, total(arriving) * seen, LitGrid::sign(s, count));
-            grid.add_lamp(point.index, arriving, seen);
+            const BsdfValue weight = lamp.apply(value, grid.in_medium);
+            if (total(weight) != Vec3f(0.0f))
+                add_met(set, grid, {&point, &lamp, place, met, weight, LitGrid::sign(s, count)});
         });
         if (grid.leaving) {
             Ray ray = set.ray(point, place, wo, kInfinity);
@@ -272,8 +267,8 @@ const std::vector<LightAnchor>& DirectLight::anchors() const {
     return m_impl->anchors;
 }
 
-bool DirectLight::is_lamp(std::size_t instance) const {
-    return !m_impl->shining.empty() && m_impl->shining[instance];
+const LampFaces& DirectLight::lamp_faces() const {
+    return m_impl->shining;
 }
 
 bool DirectLight::varies() const {
@@ -371,6 +366,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     }
     place_lobe_samples(lit, closure.lobes.size(), placed);
     m_impl->light_points(grid, lit, closure.lobes.size());
+    deliver_met(m_impl->set, grid);
     m_impl->world.deliver(grid);
     m_impl->statistics.add(Counter::RaysShadow, grid.shadow_rays);
     m_impl->statistics.add(Counter::RaysOcclusion, grid.occlusion_rays);

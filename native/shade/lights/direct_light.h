@@ -28,6 +28,7 @@
 #include "shade/bsdf/lobe.h"
 #include "shade/bsdf/reflection.h"
 #include "shade/lights/environment.h"
+#include "shade/lights/lamp_faces.h"
 #include "shade/lights/light_anchor.h"
 #include "shade/lights/light_motion.h"
 #include "shade/lights/light_pattern.h"
@@ -44,8 +45,8 @@ class DirectLight {
     /// `world` is kept and called from any thread; scene, statistics and progress must outlive
     /// this.  Without `materials` every surface casts a full shadow and none is a lamp.
     /// `geometries`: shared with dicing, if it is given; `rays`: where built geometries are looked
-    /// for and left; `displacement`: of instances, if there is any; `patterns`: of lamps with
-    /// nodes; `nodes_ask_rays`: others ask rays() too.  Throws Cancelled.
+    /// for and left; `displacement`: of instances, if there is any; `patterns`: of lamps, and
+    /// surfaces, with nodes; `nodes_ask_rays`: others ask rays() too.  Throws Cancelled.
     DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics, Report& report,
                 const Progress& progress, RayMaterials materials = {},
                 std::shared_ptr<GeometryCache> geometries = nullptr,
@@ -71,9 +72,9 @@ class DirectLight {
                                const PointPaths& paths = {}, std::vector<float>* noise = nullptr,
                                LeavingRays* leaving = nullptr) const;
 
-    /// Whether what RayMaterials::emitted tells of an instance is among the light that reflect()
-    /// knows, so that ways which meet it bring none.
-    bool is_lamp(std::size_t instance) const;
+    /// Those that are among the light that reflect() knows, so that ways which meet them bring
+    /// none.
+    const LampFaces& lamp_faces() const;
     /// Light samples of a point for ShadingPoints::share.
     int sample_count(float share) const;
 

@@ -60,7 +60,7 @@ class LampSender {
 
 void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension) {
     const Lamp& lamp = m_set.lamps[turn.lamp];
-    if (!m_uncolored.empty() && m_uncolored.front().lamp != &lamp) color();
+    if (!m_uncolored.empty() && m_uncolored.front().lamp->pattern() != lamp.pattern()) color();
     const int wanted = m_set.samples_of(point, lamp);
     const int count = std::min(wanted, turn.rate.samples);
     // One sample of many tells all where nothing varies along its ray; one of one is any time's.
@@ -98,13 +98,12 @@ void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t
 
 void LampSender::color() {
     if (m_uncolored.empty()) return;
-    const Lamp& lamp = *m_uncolored.front().lamp;
     m_patterned.clear();
     for (Uncolored& one : m_uncolored)
-        m_patterned.push_back({&lamp.frame(one.place.time), one.place.p, &one.sample});
-    lamp.pattern()->color(m_patterned);
+        m_patterned.push_back(one.lamp->patterned(one.place.time, one.place.p, one.sample));
+    m_uncolored.front().lamp->pattern()->color(m_patterned);
     for (const Uncolored& one : m_uncolored)
-        send(*one.point, lamp, one.place, one.sample, one.density, one.sign);
+        send(*one.point, *one.lamp, one.place, one.sample, one.density, one.sign);
     m_uncolored.clear();
 }
 

@@ -41,15 +41,17 @@ Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin,
     }
 }
 
-Lamp::Lamp(MovingTriangle triangle, const Instance& instance)
-    : m_lifespan(instance.lifespan),
+Lamp::Lamp(MovingTriangle triangle, const Instance& instance,
+           std::shared_ptr<const LightPattern> pattern)
+    : m_pattern(std::move(pattern)),
+      m_lifespan(instance.lifespan),
       m_hard(false),
       m_casts_shadow(true),
       m_is_surface(true),
       m_target(triangle.target),
       m_diffuse(instance.visible_diffuse ? 1.0f : 0.0f),
       m_glossy(instance.visible_glossy ? 1.0f : 0.0f),
-      m_transmission(m_glossy),
+      m_transmission(instance.visible_glossy || instance.visible_transmission ? 1.0f : 0.0f),
       m_volume(1.0f),
       m_receiver_set(instance.receiver_set),
       m_blocker_set(instance.blocker_set) {

@@ -22,7 +22,9 @@ class Lamp {
     Lamp(const Light& light, float frame_time, const Vec3d& origin,
          std::shared_ptr<const LightPattern> pattern = nullptr);
     /// A triangle of an instance that shines.
-    Lamp(MovingTriangle triangle, const Instance& instance);
+    /// `pattern`: where its light varies; the triangle's own is then a mean.
+    Lamp(MovingTriangle triangle, const Instance& instance,
+         std::shared_ptr<const LightPattern> pattern = nullptr);
 
     /// Whether its place or its strength changes within the shutter.
     bool varies() const { return m_moving || m_sources.size() > 1 || !m_lifespan.is_whole(); }
@@ -40,10 +42,13 @@ class Lamp {
     int blocker_set() const { return m_blocker_set; }
     /// Whether samples of lobes may meet it.
     bool meets_lobes() const { return m_glossy > 0.0f || m_transmission > 0.0f || m_volume > 0.0f; }
-    /// Of its nodes, which colour what sample_all() gives; nullptr: there are none.
+    /// Of its nodes, which colour what sample_all() and meets() give; nullptr: there are none.
     const LightPattern* pattern() const { return m_pattern.get(); }
-    /// Of one that has a pattern.
-    const LightFrame& frame(float time) const { return m_frames[at(time, m_frames.size())]; }
+    /// For the pattern: its sample that goes to `p`.
+    PatternSample patterned(float time, const Vec3f& p, LightSample& sample) const {
+        const LightFrame* frame = m_is_surface ? nullptr : &m_frames[at(time, m_frames.size())];
+        return {frame, p, &sample, time, m_target, kFootprint * sample.distance};
+    }
     /// LightSource::sample_all at a time.
     void sample_all(float time, const Vec3f& p, std::span<const Vec2f> u,
                     std::span<LightSample> samples) const {
@@ -56,15 +61,11 @@ class Lamp {
         sample_all(time, p, {&u, 1}, {&sample, 1});
         return sample.pdf > 0.0f;
     }
-    /// What a ray of that time meets of it: LightSource::intersect, coloured.
+    /// What a ray of that time meets of it: LightSource::intersect.
     bool meets(float time, const Vec3f& p, const Vec3f& direction, LightSample& sample) const {
         if (!exists(time)) return false;
-        if (m_moving) return m_moving->at(time).intersect(p, direction, sample);
-        if (!at(time).intersect(p, direction, sample)) return false;
-        if (!m_pattern) return true;
-        const PatternSample one{&frame(time), p, &sample};
-        m_pattern->color({&one, 1});
-        return true;
+        return m_moving ? m_moving->at(time).intersect(p, direction, sample)
+                        : at(time).intersect(p, direction, sample);
     }
     /// Of one that does not vary: LightSource::bound.
     bool bound(Vec3f& center, float& radius) const { return at(0.0f).bound(center, radius); }
@@ -77,6 +78,10 @@ class Lamp {
     }
 
   private:
+    /// Of what a sample sees of a surface, radians: texels that are no smaller are interpolated, as
+    /// in Cycles, and not averaged.
+    static constexpr float kFootprint = 1.0f / 4096.0f;
+
     /// Of equal parts of the shutter, that which holds a time.
     static std::size_t at(float time, std::size_t count) {
         const auto place = static_cast<std::size_t>(time * static_cast<float>(count));
@@ -88,7 +93,7 @@ class Lamp {
     std::vector<std::unique_ptr<LightSource>> m_sources;  ///< one, or at equal parts of the shutter
     std::unique_ptr<const MovingTriangle> m_moving;       ///< instead of these
     std::shared_ptr<const LightPattern> m_pattern;
-    std::vector<LightFrame> m_frames;  ///< [sources] where there is a pattern
+    std::vector<LightFrame> m_frames;  ///< [sources] of a lamp that has a pattern
     Lifespan m_lifespan;
     bool m_hard = true, m_casts_shadow, m_is_surface = false;
     RayTarget m_target;

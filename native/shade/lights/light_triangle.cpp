@@ -18,7 +18,7 @@ constexpr float kFar = 1e-3f;
 /// Of single precision.
 constexpr float kRounding = 0x1p-20f;
 
-TriangleLight::Corners placed(TriangleLight::Corners corners, const Mat4d& matrix) {
+TriangleLight::Corners place(TriangleLight::Corners corners, const Mat4d& matrix) {
     for (Vec3f& corner : corners) corner = Vec3f(transform_point(matrix, Vec3d(corner)));
     return corners;
 }
@@ -125,18 +125,18 @@ LightEmission TriangleLight::emission() const {
     return out;  // to both sides
 }
 
-TriangleLight MovingTriangle::at(float time) const {
+TriangleLight::Corners MovingTriangle::placed(float time) const {
     const KnotTime t = knot_time(static_cast<double>(time), static_cast<int>(corners.size()));
     TriangleLight::Corners now = corners[t.knot];
     if (t.fraction > 0.0)
         for (std::size_t i = 0; i < 3; ++i)
             now[i] += static_cast<float>(t.fraction) * (corners[t.knot + 1][i] - now[i]);
-    return {placed(now, matrix_at(*from_object, static_cast<double>(time))), radiance};
+    return place(now, matrix_at(*from_object, static_cast<double>(time)));
 }
 
 void MovingTriangle::at_knots(const std::function<void(const TriangleLight&)>& visit) const {
     for (const Mat4d& matrix : *from_object)
-        for (const TriangleLight::Corners& knot : corners) visit({placed(knot, matrix), radiance});
+        for (const TriangleLight::Corners& knot : corners) visit({place(knot, matrix), radiance});
 }
 
 }  // namespace granita

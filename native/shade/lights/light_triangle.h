@@ -49,7 +49,9 @@ struct MovingTriangle {
     RayTarget target;  ///< what rays meet of it
 
     bool is_still() const { return corners.size() == 1 && from_object->size() == 1; }
-    TriangleLight at(float time) const;
+    /// Shading space.
+    TriangleLight::Corners placed(float time) const;
+    TriangleLight at(float time) const { return {placed(time), radiance}; }
     /// Where each knot of the transform has each of the corners: what lies between is in their
     /// hull.
     void at_knots(const std::function<void(const TriangleLight&)>& visit) const;

@@ -14,6 +14,18 @@
 
 namespace granita {
 
+class Lamp;
+
+/// A lamp that a sample of a lobe has met.
+struct MetLamp {
+    const LitPoint* point;
+    const Lamp* lamp;
+    LitPlace place;
+    LightSample sample;
+    BsdfValue weight;  ///< of the sample's radiance, were nothing between
+    float sign;        ///< as LitGrid::sign
+};
+
 /// What a grid's points share while they are lit.
 struct LitGrid {
     std::vector<Vec3f>& radiance;
@@ -22,6 +34,7 @@ struct LitGrid {
     EnvironmentSamples blurred{}, met{}, sharp{};
     std::vector<Vec2f> lamp_points{};         ///< of the lamp and point at hand
     std::vector<LightSample> lamp_samples{};  ///< there
+    std::vector<MetLamp> met_lamps{};         ///< whose nodes are still to be asked
     std::uint64_t seed = 0;
     bool by_lobe = false;  ///< as WorldEvaluator::by_lobe
     bool placed = false;   ///< points go by places in the frame's sequences, as samples do

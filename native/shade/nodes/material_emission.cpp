@@ -24,11 +24,14 @@ constexpr float kDimmestEmission = 0.004f;
 
 MaterialEmission::MaterialEmission(const Scene& scene, TextureStore& textures,
                                    const std::vector<CompiledSurface>& seen)
-    : m_constant(scene.materials.size(), Vec3f(0.0f)), m_brightest(scene.materials.size(), 0.0f) {
+    : m_constant(scene.materials.size(), Vec3f(0.0f)),
+      m_programs(scene.materials.size()),
+      m_brightest(scene.materials.size(), 0.0f) {
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         std::optional<Vec3f> constant;
         bool varies = false;
+        std::optional<EmissionProgram> program;
         for (const RayType ray : kLightRays) {
             if (first_alike(material.graph, ray, kLightRays) != ray) continue;
             std::optional<CompiledSurface> own;
@@ -37,7 +40,13 @@ MaterialEmission::MaterialEmission(const Scene& scene, TextureStore& textures,
                 own = compile_surface(material.graph, scene, textures, said_already,
                                       {"material '" + material.name + "'", false, material.index},
                                       nullptr, ray);
-            const VectorSource& sent = emission(own ? *own : seen[i]);
+            const CompiledSurface& surface = own ? *own : seen[i];
+            const VectorSource& sent = emission(surface);
+            // Where rays are told apart, there are several.
+            const bool is_only = ray == kLightRays.front();
+            program.reset();
+            if (is_only && !sent.is_constant())
+                program = {surface.requests, surface.radiance.program.part({sent.slot}), sent};
             const float seen_of_it = sent.is_constant() ? luminance(sent.constant) : kInfinity;
             if (!(seen_of_it <= m_brightest[i])) m_brightest[i] = seen_of_it;
             varies =
@@ -46,25 +55,26 @@ MaterialEmission::MaterialEmission(const Scene& scene, TextureStore& textures,
         }
         if (!varies && constant && is_finite(*constant) && mean_size(*constant) > 0.0f)
             m_constant[i] = *constant;
+        m_programs[i] = std::move(program);
     }
 }
 
 void MaterialEmission::warn(const Scene& scene, Report& report) const {
     const auto is_no_lamp = [this](std::int32_t material) {
-        return constant(material) == Vec3f(0.0f) && brightest(material) >= kDimmestEmission;
+        return !is_lamp(material) && brightest(material) >= kDimmestEmission;
     };
     if (scene.options.bounces.most > 0) {
         for (const Instance& instance : scene.instances)
             if (instance.blocker_set >= 0 && std::ranges::any_of(instance.materials, is_no_lamp))
                 report.warn(instance.name,
-                            "its emission varies, so that what blocks its light is not linked");
+                            "its emission varies by kind of ray, so that what blocks its light is "
+                            "not linked");
         return;
     }
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
         if (is_no_lamp(static_cast<std::int32_t>(i)))
             report.warn("material '" + scene.materials[i].name + "'",
-                        "its emission varies, by place or view or kind of ray: it lights nothing "
-                        "without bounces");
+                        "its emission varies by kind of ray: it lights nothing without bounces");
 }
 
 }  // namespace granita

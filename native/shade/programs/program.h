@@ -128,6 +128,10 @@ class Program {
             const std::vector<int>& roots);
     Program() = default;
 
+    /// What the slots `roots` need of it.
+    Program part(const std::vector<int>& roots) const {
+        return {m_loads, m_steps, m_floats_a_point, roots};
+    }
     /// Runs everything; results are read from the Run.
     void execute(Run& run) const;
     Run prepare(const ShadingInput& input, std::size_t count,

@@ -7,6 +7,7 @@
 #include "geometry/element_values.h"
 #include "geometry/shared_geometry.h"
 #include "math/vec.h"
+#include "shade/rays/ray.h"
 
 namespace granita {
 
@@ -32,6 +33,7 @@ struct RayHit {
     Vec3f direction{0.0f};                     ///< unit, of the ray
     float distance = 0.0f;                     ///< along the ray, from where it started
     const RayFrame* frame = nullptr;           ///< of the instance at the ray's time
+    RayTarget target;                          ///< what was met
 };
 
 }  // namespace granita

@@ -22,9 +22,9 @@ struct RayMaterials {
     std::function<Vec3f(const RayHit&)> transparency;
     /// The same of a material where it is one everywhere: places are then not looked up.
     std::function<std::optional<Vec3f>(std::int32_t material)> constant = nullptr;
-    /// What it sends to all sides and from everywhere, so that its meshes are lamps; 0: they are
-    /// none.
-    std::function<Vec3f(std::int32_t material)> emitted = nullptr;
+    /// What it sends to all sides and from everywhere, so that its meshes are lamps; nullopt: they
+    /// are, but it varies; 0: they are none.
+    std::function<std::optional<Vec3f>(std::int32_t material)> emitted = nullptr;
     /// Whether its surfaces are met by rays of their own, to whatever else they are hidden: from
     /// inside, where light is scattered below them, or by nodes.
     std::function<bool(std::int32_t material)> is_met_by_itself = nullptr;

@@ -40,6 +40,7 @@ void RayScene::Impl::locate(const RTCRay& traced, const RTCHit& at, std::uint32_
                             const Vec3f& start, const Vec3f& direction, RayHit& hit) const {
     const Instance& source = scene.instances[instance];
     hit.instance = instance;
+    hit.target = {at.instID[0], at.geomID, at.primID};
     shape_of(instance).shape->locate(at.geomID, at.primID, at.u, at.v, hit);
     hit.material = source.material(hit.slot);
     hit.direction = direction;

@@ -74,6 +74,10 @@ class RayScene {
     /// which meet none, are left out.
     void nearest(std::span<const Ray> rays, std::vector<Met>& out) const;
 
+    /// The places where rays end on their targets, meshes of instances that they meet: a hit for
+    /// each ray.
+    void ends(std::span<const Ray> rays, std::vector<Met>& out) const;
+
     /// Shading space from an instance's own at equal steps of the shutter, as rays know it; none
     /// of what they do not meet.
     std::vector<Mat4d> transforms(std::size_t instance) const;

@@ -8,6 +8,7 @@
 
 #include "math/vec.h"
 #include "shade/rays/ray.h"
+#include "shade/rays/ray_primitives.h"
 
 namespace granita {
 
@@ -19,6 +20,13 @@ struct RayTriangle {
     RayTarget target;
     std::span<const std::array<Vec3f, 3>> corners;  ///< [knots] object space
 };
+
+/// The corners of a primitive at a time, and how many these are.
+struct RayCorners {
+    std::array<Vec3f, 4> points;
+    std::uint32_t count;
+};
+RayCorners corners_at(const RayPart& part, std::uint32_t primitive, float time);
 
 /// None of curves and points.  `instance`: Embree's number of it.
 void for_each_triangle(const KeptRayShape& of, std::uint32_t instance,

@@ -191,7 +191,7 @@ class SubsurfaceLight::Batch {
         std::vector<MetPath> met;
         met.reserve(batch.size());
         for (const std::uint32_t k : batch)
-            met.push_back({&m_ways[k], &m_exits[k].hit, &m_exits[k].frame()});
+            met.push_back(met_by(m_ways[k], m_exits[k].hit, m_exits[k].frame()));
         HitPoints ends(m_light.m_scene, m_rays);
         static const std::vector<AttributeRequest> kNone;
         ends.fill(met, surface ? surface->requests : kNone, kDepth);
