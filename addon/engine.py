@@ -19,6 +19,7 @@ from . import (
     frame_statistics,
     passes,
     preview_render,
+    turn_of_python,
     written_frames,
 )
 from .event_log import EventLog
@@ -56,6 +57,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
 
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **kwargs)
+        turn_of_python.await_start()  # a preview's: no handler tells of these
         self.frame_statistics = frame_statistics.FrameStatistics()
         self.log = EventLog()
         self.persistent_state = PersistentState()
@@ -70,6 +72,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
             self.report({"ERROR"}, escaped(f"passes: {fault.traced(error)}"))
 
     def render(self, depsgraph):
+        turn_of_python.started()
         try:
             if self.is_preview:
                 preview_render.render_preview(self, depsgraph)
@@ -144,10 +147,12 @@ _add_handlers, _remove_handlers = registration(("render_init", forget_images))
 def register():
     bpy.utils.register_class(GranitaRenderEngine)
     _add_handlers()
+    turn_of_python.register()
     loop.register()
 
 
 def unregister():
     loop.unregister()
+    turn_of_python.unregister()
     _remove_handlers()
     bpy.utils.unregister_class(GranitaRenderEngine)

@@ -16,7 +16,7 @@ class _OfView:
     @classmethod
     def poll(cls, context):
         view = _view(context)
-        return view is not None and view.is_settled and view.picture.pixels is not None
+        return view is not None and view.is_settled and view.picture.is_there
 
 
 class GRANITA_OT_keep_picture(_OfView, bpy.types.Operator):

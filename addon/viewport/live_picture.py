@@ -21,6 +21,10 @@ class LivePicture:
         self._changed = False  # since pixels were prepared
 
     @property
+    def is_there(self):
+        return self._pixels is not None
+
+    @property
     def pixels(self):
         """What is drawn; None where there is nothing yet."""
         if self._exposure == 1.0 or self._pixels is None:

@@ -14,9 +14,10 @@ import numpy as np
 
 from .. import bridge, passes
 from ..export.base.report import ExportError, counted, lines
-from . import motion_paths, scene_reading
+from . import scene_reading
 from .costs import DEAREST, Costs
 from .live_picture import LivePicture, coarse_crop
+from .motion_paths import DrawnPaths
 from .one_time import at_time
 from .scene_snapshots import SceneSnapshots
 from .sight import read_sight
@@ -45,7 +46,7 @@ class LiveView:
         self._scene = SceneSnapshots()
         self._picture = LivePicture()
         self._shown = None  # snapshot and sight of the picture that is being made
-        self._paths = self._paths_of = None  # and the snapshot whose they are
+        self._paths = DrawnPaths()  # over it
         self._sight = None  # as the view stands now
         self._is_stale = False  # the scene may be other than what was read
         self._has_moved = False  # the view is another
@@ -82,7 +83,12 @@ class LiveView:
 
     @property
     def is_settled(self):
-        return not (self._is_edited or self._is_unread or self._is_coarse or self._job)
+        is_made = not (self._is_edited or self._is_unread or self._is_coarse or self._job)
+        return is_made and self._has_its_paths
+
+    @property
+    def _has_its_paths(self):
+        return self._shown is None or self._paths.are_of(*self._shown)
 
     @property
     def _is_edited(self):
@@ -103,14 +109,8 @@ class LiveView:
         if not scene_reading.is_reading():
             self._look(context, depsgraph)
         self._picture.draw()
-        if context.space_data.shading.granita.use_paths and self._shown is not None:
-            self._draw_paths()
-
-    def _draw_paths(self):
-        snapshot, sight = self._shown
-        if self._paths_of is not snapshot:
-            self._paths, self._paths_of = motion_paths.motion_paths(snapshot), snapshot
-        motion_paths.draw(self._paths, sight.place, sight.pixel)
+        self._paths.wanted = context.space_data.shading.granita.use_paths
+        self._paths.draw()
 
     def _look(self, context, depsgraph):
         self.region, self.looked = context.region.as_pointer(), perf_counter()
@@ -143,6 +143,8 @@ class LiveView:
 
     def _step(self):
         self._dying = [job for job in self._dying if not job.done()]
+        if not self._has_its_paths:
+            self._redraw()
         if bpy.app.is_job_running("RENDER"):
             return self._make_way()
         self._waits = False
@@ -341,6 +343,8 @@ class LiveView:
     def _redraw(self):
         self._drawn = perf_counter()
         self._picture.prepare()
+        if self._shown is not None:
+            self._paths.prepare(*self._shown)
         engine = self._engine()
         if engine is not None:
             engine.tag_redraw()

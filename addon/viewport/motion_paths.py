@@ -46,31 +46,43 @@ def _middles(geometry, times):
     return path_at(middle, times)
 
 
-def draw(paths, place, pixel):
-    """Inside `view_draw` alone.
+class DrawnPaths:
+    """Those of a view's picture.  Made between two events, for the same reason as its pixels (live_picture.py)."""
 
-    Args:
-        paths: of `motion_paths`.
-        place: region pixel of the frame's lower left corner.
-        pixel: region pixels a pixel of the frame is wide.
-    """
-    if len(paths) == 0:
-        return
-    import bpy
-    import gpu
-    from gpu_extras.batch import batch_for_shader
+    def __init__(self):
+        self.wanted = False
+        self._snapshot = self._sight = None  # whose they are
+        self._lines = self._ends = ()  # float32 [n, 2 or 3], region pixels
 
-    places = paths * pixel + np.array(place)
-    lines = np.stack([places[:, :-1], places[:, 1:]], axis=2).reshape(-1, 2)
-    shader = gpu.shader.from_builtin(
-        "UNIFORM_COLOR" if bpy.app.version >= (4, 0, 0) else "2D_UNIFORM_COLOR"
-    )
-    shader.bind()
-    shader.uniform_float("color", _COLOR)
-    batch_for_shader(shader, "LINES", {"pos": _corners(lines)}).draw(shader)
-    # Where they are when it closes.
-    gpu.state.point_size_set(5.0)
-    batch_for_shader(shader, "POINTS", {"pos": _corners(places[:, -1])}).draw(shader)
+    def are_of(self, snapshot, sight):
+        """Whether they can be drawn over that picture; no matter where they are not wanted."""
+        return not self.wanted or (self._snapshot is snapshot and self._sight is sight)
+
+    def prepare(self, snapshot, sight):
+        if self.are_of(snapshot, sight):
+            self._snapshot = snapshot if self.wanted else None  # else nothing is kept for them
+            return
+        self._snapshot, self._sight = snapshot, sight
+        places = motion_paths(snapshot) * sight.pixel + np.array(sight.place)
+        self._lines = _corners(np.stack([places[:, :-1], places[:, 1:]], axis=2).reshape(-1, 2))
+        self._ends = _corners(places[:, -1])  # where things are when the shutter closes
+
+    def draw(self):
+        """Inside `view_draw` alone."""
+        if not self.wanted or len(self._ends) == 0:
+            return
+        import bpy
+        import gpu
+        from gpu_extras.batch import batch_for_shader
+
+        shader = gpu.shader.from_builtin(
+            "UNIFORM_COLOR" if bpy.app.version >= (4, 0, 0) else "2D_UNIFORM_COLOR"
+        )
+        shader.bind()
+        shader.uniform_float("color", _COLOR)
+        batch_for_shader(shader, "LINES", {"pos": self._lines}).draw(shader)
+        gpu.state.point_size_set(5.0)
+        batch_for_shader(shader, "POINTS", {"pos": self._ends}).draw(shader)
 
 
 def _corners(places):

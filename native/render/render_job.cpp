@@ -47,6 +47,7 @@ struct RenderJob::Impl {
     std::vector<std::pair<Rect, double>> bucket_seconds;  ///< each written by who renders it
     std::exception_ptr failure;
     bool finished = false;
+    bool given_up = false;  ///< nobody takes tiles any more
     std::thread driver;
 
     void fail(std::exception_ptr error) {
@@ -69,6 +70,7 @@ struct RenderJob::Impl {
     void deliver(std::vector<Tile> ready) {
         if (ready.empty()) return;
         const std::lock_guard lock(mutex);
+        if (given_up) return;
         for (Tile& tile : ready) tiles.push_back(std::move(tile));
         changed.notify_all();
     }
@@ -212,6 +214,9 @@ long RenderJob::buckets_total() const {
 }
 void RenderJob::cancel() {
     m_impl->progress.cancel();
+    const std::lock_guard lock(m_impl->mutex);
+    m_impl->given_up = true;
+    m_impl->tiles.clear();
 }
 
 void RenderJob::finish() {

@@ -39,6 +39,7 @@ class RenderJob {
     /// Buckets done and in all, for "Sample k/n".
     long buckets_done() const;
     long buckets_total() const;
+    /// Ends soon, and delivers no tile any more.
     void cancel();
     /// Joins; rethrows the first failure (SceneError, GlError, Cancelled, ...).
     void finish();

@@ -3,8 +3,10 @@
 // (`./dev test --sanitize thread`); without it these are tests of equality.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstring>
+#include <thread>
 
 #include "no_new_threads.h"
 #include "render/render_job.h"
@@ -208,6 +210,19 @@ TEST(FrameThreads, a_cancelled_frame_ends_on_all_of_them) {
     for (int round = 0; round < 3; ++round) {
         RenderJob job(make_scene(5));
         job.take_tiles(0.05);
+    }
+}
+TEST(FrameThreads, a_cancelled_frame_is_done_though_nobody_takes_its_tiles) {
+    for (int milliseconds = 0; milliseconds < 60; milliseconds += 6) {
+        RenderJob job(make_scene(5));
+        std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+        job.cancel();
+        try {
+            job.finish();
+        } catch (const Cancelled&) {
+        }
+        EXPECT_TRUE(job.done());
+        EXPECT_TRUE(job.take_tiles(0.0).empty());
     }
 }
 
