@@ -11,15 +11,17 @@
 namespace granita {
 namespace {
 
-float longest_edge(RTCScene built, unsigned geometry, unsigned triangle) {
-    RTCGeometry of = rtcGetGeometry(built, geometry);
-    const auto* corners = static_cast<const std::array<std::uint32_t, 3>*>(
+/// Of the half of a quad that was hit: (0, 1, 3), or (2, 3, 1) from u + v = 1 on.
+float longest_edge(RTCScene built, const RTCHit& hit) {
+    RTCGeometry of = rtcGetGeometry(built, hit.geomID);
+    const auto* corners = static_cast<const std::array<std::uint32_t, 4>*>(
         rtcGetGeometryBufferData(of, RTC_BUFFER_TYPE_INDEX, 0));
     const auto* points =
         static_cast<const Vec3f*>(rtcGetGeometryBufferData(of, RTC_BUFFER_TYPE_VERTEX, 0));
-    const auto& [a, b, c] = corners[triangle];
-    return std::max({glm::distance(points[a], points[b]), glm::distance(points[b], points[c]),
-                     glm::distance(points[c], points[a])});
+    const auto& quad = corners[hit.primID];
+    const Vec3f &a = points[quad[hit.u + hit.v > 1.0f ? 2 : 0]], &b = points[quad[1]],
+                &c = points[quad[3]];
+    return std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
 }
 
 }  // namespace
@@ -37,8 +39,7 @@ float covering_distance(RTCScene built, const Ray& from, bool from_behind) {
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return kNone;
     const Vec3f across(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
     const bool leaves = (glm::dot(across, from.direction) > 0.0f) != from_behind;
-    if (!leaves || ray.ray.tfar > kFarthest * longest_edge(built, ray.hit.geomID, ray.hit.primID))
-        return kNone;
+    if (!leaves || ray.ray.tfar > kFarthest * longest_edge(built, ray.hit)) return kNone;
     return ray.ray.tfar;
 }
 

@@ -48,21 +48,19 @@ class Cells {
         for (int j = 0; j <= m_rows; ++j)
             for (int i = 0; i <= (m_triangle ? m_cells - j : m_cells); ++i) act(i, j);
     }
-    /// Each with the lattice's corners (i, j) of a triangle.  Cells are cut as pairs of triangles
-    /// are, along the crease; those of a triangle along its own third side.
+    /// Each with its corners (i, j) as Embree takes them, which cuts a quad between its second and
+    /// its fourth: along the crease as pairs of triangles are, in a triangle along its own third
+    /// side, where cells are halves.
     template <class Act>
-    void for_triangles(Act act) const {
+    void for_quads(Act act) const {
         using Corner = std::array<int, 2>;
         for (int j = 0; j < m_rows; ++j)
             for (int i = 0; i < (m_triangle ? m_cells - j : m_cells); ++i) {
                 const Corner a{i, j}, b{i + 1, j}, c{i + 1, j + 1}, d{i, j + 1};
-                if (!m_triangle) {
-                    act(a, b, c);
-                    act(a, c, d);
-                    continue;
-                }
-                act(a, b, d);
-                if (i + j + 1 < m_cells) act(b, c, d);
+                if (m_triangle)
+                    act(a, b, i + j + 1 < m_cells ? c : d, d);
+                else
+                    act(b, c, d, a);
             }
     }
     /// Where step i of a side is, sides running around the patch.
@@ -194,23 +192,24 @@ std::size_t RayDisplaced::point_count(std::size_t k) const {
     return n * ((std::size_t{1} << m_levels[k].v) + 1);
 }
 
-std::size_t RayDisplaced::triangle_count(std::size_t k) const {
-    const std::size_t cells = std::size_t{1} << (m_levels[k].u + m_levels[k].v);
-    return m_shared->patches()[k].kind == PatchKind::Triangle ? cells : 2 * cells;
+std::size_t RayDisplaced::quad_count(std::size_t k) const {
+    const std::size_t n = std::size_t{1} << m_levels[k].u;
+    if (m_shared->patches()[k].kind == PatchKind::Triangle) return n * (n + 1) / 2;
+    return n << m_levels[k].v;
 }
 
 void RayDisplaced::number() {
     const auto& patches = m_shared->patches();
-    std::size_t points = 0, triangles = 0;
+    std::size_t points = 0, quads = 0;
     for (std::size_t k = 0; k < patches.size(); ++k) {
         m_first_point.push_back(static_cast<std::uint32_t>(points));
-        m_first_triangle.push_back(static_cast<std::uint32_t>(triangles));
+        m_first_quad.push_back(static_cast<std::uint32_t>(quads));
         points += point_count(k);
-        triangles += triangle_count(k);
+        quads += quad_count(k);
     }
-    m_first_triangle.push_back(static_cast<std::uint32_t>(triangles));
+    m_first_quad.push_back(static_cast<std::uint32_t>(quads));
     m_primitives.points.resize(points * static_cast<std::size_t>(m_primitives.knots));
-    m_primitives.indices.resize(triangles);
+    m_primitives.indices.resize(quads);
 }
 
 /// The nearest of the points that the edge has.
@@ -264,54 +263,39 @@ void RayDisplaced::place(std::size_t k, const Displacement& displacement, std::s
                         positions[knot * uv.size() + i] + offsets.offset[i];
         }
     });
-    std::size_t triangle = m_first_triangle[k];
+    std::size_t quad = m_first_quad[k];
     const auto number_of = [&](const std::array<int, 2>& at) {
         return m_first_point[k] + cells.index(at[0], at[1]);
     };
-    cells.for_triangles([&](const auto& a, const auto& b, const auto& c) {
-        m_primitives.indices[triangle++] = {number_of(a), number_of(b), number_of(c)};
-    });
+    cells.for_quads(
+        [&](const auto&... corners) { m_primitives.indices[quad++] = {number_of(corners)...}; });
 }
 
 std::string RayDisplaced::size() const {
-    return std::to_string(m_first_triangle.back()) + " triangles, displaced";
+    return std::to_string(m_first_quad.back()) + " quads, displaced";
 }
 
-void RayDisplaced::locate(std::uint32_t geometry, std::uint32_t triangle, float u, float v,
+void RayDisplaced::locate(std::uint32_t geometry, std::uint32_t quad, float u, float v,
                           RayHit& hit) const {
-    triangle = m_primitives.original(geometry, triangle);
-    const auto after = std::ranges::upper_bound(m_first_triangle, triangle);
-    const auto k = static_cast<std::size_t>(after - m_first_triangle.begin()) - 1;
+    quad = m_primitives.original(geometry, quad);
+    const auto after = std::ranges::upper_bound(m_first_quad, quad);
+    const auto k = static_cast<std::size_t>(after - m_first_quad.begin()) - 1;
     locate_on(k, hit);
     const int n = 1 << m_levels[k].u;
     const Vec2d steps(n, 1 << m_levels[k].v);
-    std::uint32_t left = triangle - m_first_triangle[k];
-    const auto place = [&](int i, int j, bool second) {
-        const Vec2d a(i, j), b(i + 1, j), c(i + 1, j + 1), d(i, j + 1);
-        const bool is_triangle = hit.patch->kind == PatchKind::Triangle;
-        const Vec2d p0 = is_triangle && second ? b : a;
-        const Vec2d p1 = second ? c : b;
-        const Vec2d p2 = is_triangle ? d : (second ? d : c);
-        const double w1 = static_cast<double>(u), w2 = static_cast<double>(v);
-        hit.uv = (p0 * (1.0 - w1 - w2) + p1 * w1 + p2 * w2) / steps;
-    };
+    int cell = static_cast<int>(quad - m_first_quad[k]), row = 0;
     if (hit.patch->kind != PatchKind::Triangle) {
-        const auto cell = static_cast<int>(left / 2);
-        place(cell % n, cell / n, left % 2 != 0);
+        // Embree's corners are the cell's second, third, fourth and first.
+        hit.uv = (Vec2d(cell % n, cell / n) + Vec2d(1.0 - v, u)) / steps;
         return;
     }
-    // A row of n - j cells has 2 (n - j) - 1 triangles.
-    int j = 0;
-    while (left >= static_cast<std::uint32_t>(2 * (n - j) - 1)) {
-        left -= static_cast<std::uint32_t>(2 * (n - j) - 1);
-        ++j;
-    }
-    place(static_cast<int>(left / 2), j, left % 2 != 0);
+    for (; cell >= n - row; ++row) cell -= n - row;
+    hit.uv = (Vec2d(cell, row) + Vec2d(u, v)) / steps;
 }
 
 std::size_t RayDisplaced::bytes() const {
     return sizeof(*this) + bytes_of_faces() + sizeof(Levels) * m_levels.size() +
-           m_edge_levels.size() + 4 * (m_first_point.size() + m_first_triangle.size());
+           m_edge_levels.size() + 4 * (m_first_point.size() + m_first_quad.size());
 }
 
 }  // namespace granita

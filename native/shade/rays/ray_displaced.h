@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A displaced mesh as triangles for rays: points of the same surface that is diced, at a rate of
-// its own.  Borders have the points of the coarser neighbour, each where its owner puts it: no ray
+// A displaced mesh as quads for rays: points of the same surface that is diced, at a rate of its
+// own.  Borders have the points of the coarser neighbour, each where its owner puts it: no ray
 // passes between two patches.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace granita {
 
-class RayDisplaced final : public RayFaces<3> {
+class RayDisplaced final : public RayFaces<4> {
   public:
     /// `instance`: whose displacement it is.  Throws Cancelled.
     RayDisplaced(std::shared_ptr<const SharedGeometry> shared, const Displacement& displacement,
@@ -27,12 +27,12 @@ class RayDisplaced final : public RayFaces<3> {
     std::string size() const override;
     /// Not known: rays start where RayScene::heights_over() says.
     float error(std::uint32_t) const override { return 0.0f; }
-    void locate(std::uint32_t geometry, std::uint32_t triangle, float u, float v,
+    void locate(std::uint32_t geometry, std::uint32_t quad, float u, float v,
                 RayHit& hit) const override;
     std::size_t bytes() const override;
 
   private:
-    /// log2 of the cells along u and v, alike in a triangle.
+    /// log2 of the cells along u and v, alike in a triangular patch.
     struct Levels {
         std::uint8_t u = 0, v = 0;
         /// Of a side of the patch.
@@ -44,16 +44,16 @@ class RayDisplaced final : public RayFaces<3> {
     void number();
     void place(std::size_t patch, const Displacement& displacement, std::size_t instance);
     std::size_t point_count(std::size_t patch) const;
-    std::size_t triangle_count(std::size_t patch) const;
+    std::size_t quad_count(std::size_t patch) const;
     /// Of the whole edge, for a side of a patch with `level`.
     int edge_level(const PatchBorders::Side& side, int level) const;
     SurfacePlace border_place(const PatchBorders::Side& side, int i, int cells) const;
 
     const PatchBorders& m_borders;
-    std::vector<Levels> m_levels;                 ///< [patches]
-    std::vector<std::uint8_t> m_edge_levels;      ///< [edges]
-    std::vector<std::uint32_t> m_first_point;     ///< [patches]
-    std::vector<std::uint32_t> m_first_triangle;  ///< [patches + 1]
+    std::vector<Levels> m_levels;              ///< [patches]
+    std::vector<std::uint8_t> m_edge_levels;   ///< [edges]
+    std::vector<std::uint32_t> m_first_point;  ///< [patches]
+    std::vector<std::uint32_t> m_first_quad;   ///< [patches + 1]
     bool m_coarsened = false;
 };
 
