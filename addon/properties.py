@@ -164,10 +164,14 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
     bounces: _choice(
         "Bounces",
         "How far light is followed from surface to surface: reflections, light off walls",
-        "NONE",
+        "FULL",
         ("NONE", "None", "Lamps, meshes that shine and the world alone light surfaces: fastest"),
         ("FAST", "Fast", "Two bounces at most, within Cycles' limits"),
-        ("FULL", "Full", "As many as Cycles' Light Paths allow"),
+        (
+            "FULL",
+            "Full",
+            "As many as Cycles' Light Paths allow: the picture that the file has there",
+        ),
     )
     shading_threshold: _real(
         "Shading Threshold",

@@ -63,7 +63,7 @@ def moving_scene(folder, frames):
     scene = with_shutter(bpy.context.scene)
     scene.render.engine = "GRANITA"
     scene.render.resolution_x, scene.render.resolution_y = 96, 64
-    scene.granita.samples = 16
+    scene.granita.samples, scene.granita.bounces = 16, "NONE"
     square = scene_parts.add_square(scene, material=scene_parts.emission("Glow", (1.0, 0.5, 0.2)))
     drive(square, "rotation_euler", "frame", 2)
     drive(shape_key(square), "value", "frame / 300")

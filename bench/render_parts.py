@@ -40,7 +40,7 @@ def main():
     render.resolution_x, render.resolution_y = job["size"]
     render.resolution_percentage = 100
     render.threads_mode, render.threads = "FIXED", 1
-    scene.granita.samples = job["samples"]
+    scene.granita.samples, scene.granita.bounces = job["samples"], "NONE"
     scene.granita.device = "CPU"
     scene.frame_set(int(frame))
     folder = Path(job["folder"])

@@ -70,6 +70,7 @@ def make_scene(values):
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.image_settings.color_depth = "32"
     scene.cycles.samples = scene.granita.samples = 64
+    scene.granita.bounces = "NONE"
     scene.cycles.use_denoising = False
     return scene, scale
 

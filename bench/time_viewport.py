@@ -31,7 +31,7 @@ def build(name):
     render.engine, render.threads_mode = "GRANITA", "AUTO"
     render.resolution_x, render.resolution_y = SIZE
     render.use_motion_blur = True
-    scene.granita.preview_samples = 64
+    scene.granita.preview_samples, scene.granita.bounces = 64, "NONE"
     view_edits.open_lens(scene.camera.data)
     return scene
 

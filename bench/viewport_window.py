@@ -34,7 +34,7 @@ def build():
     scene.render.engine = JOB["engine"]
     scene.render.threads_mode = "AUTO"
     scene.render.use_motion_blur = JOB.get("blur", True)
-    scene.granita.preview_samples = JOB["samples"]
+    scene.granita.preview_samples, scene.granita.bounces = JOB["samples"], "NONE"
     scene.cycles.preview_samples = JOB["samples"]
     scene.cycles.use_preview_adaptive_sampling = False
     scene.cycles.max_bounces = 0

@@ -10,7 +10,7 @@ import scene_parts
 
 @pytest.fixture
 def scene():
-    """An empty scene of factory settings, 64 by 48 pixels, rendered by Granita."""
+    """An empty scene of factory settings, 64 by 48 pixels, rendered by Granita without bounces."""
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     scene = bpy.context.scene
     scene.render.engine = "GRANITA"
@@ -18,6 +18,7 @@ def scene():
     scene.render.resolution_y = 48
     scene.granita.samples = 4
     scene.granita.device = "CPU"
+    scene.granita.bounces = "NONE"
     yield scene
     # A scene left to the engine would keep its class from being unregistered.
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)

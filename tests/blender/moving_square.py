@@ -18,7 +18,7 @@ def save(file, width, samples, frames):
     scene = bpy.context.scene
     scene.render.engine = "GRANITA"
     scene.render.resolution_x, scene.render.resolution_y = width, width * 3 // 4
-    scene.granita.samples = samples
+    scene.granita.samples, scene.granita.bounces = samples, "NONE"
     scene.frame_end = frames
     scene_parts.add_camera(scene, ortho_scale=4.0)
     glow = scene_parts.emission("Glow", (0.25, 0.5, 0.75))

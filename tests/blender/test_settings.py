@@ -35,7 +35,7 @@ DEFAULTS = {
     "light_samples": 16,
     "shading_threshold": 0.1,
     "film_exposure": 1.0,
-    "bounces": "NONE",
+    "bounces": "FULL",
 }
 
 NUMBERS = {

@@ -72,7 +72,12 @@ def set_bounces(scene, most):
 
 def set_granita(scene, samples, **settings):
     scene.render.engine = "GRANITA"
-    values = {"pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5, "opacity_threshold": 1.0}
+    values = {
+        "pixel_filter": "BLACKMAN_HARRIS",
+        "filter_width": 1.5,
+        "opacity_threshold": 1.0,
+        "bounces": "NONE",
+    }
     for name, value in {**values, "samples": samples, **settings}.items():
         setattr(scene.granita, name, value)
 

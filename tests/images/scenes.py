@@ -172,7 +172,7 @@ def render(name, engine, out, samples, light_samples, dicing_rate):
         )
     else:
         scene.granita.samples, scene.granita.light_samples = samples, light_samples
-        scene.granita.dicing_rate = dicing_rate
+        scene.granita.dicing_rate, scene.granita.bounces = dicing_rate, "NONE"
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.image_settings.color_depth = "32"
     scene.render.image_settings.exr_codec = "NONE"

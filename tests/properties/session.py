@@ -96,7 +96,7 @@ def set_up(scene):
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 0
     cycles.transmission_bounces = cycles.volume_bounces = 0
     cycles.pixel_filter_type = granita.pixel_filter = "BOX"
-    granita.filter_width = 1.0
+    granita.filter_width, granita.bounces = 1.0, "NONE"
     cycles.blur_glossy = cycles.light_sampling_threshold = 0.0
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
     granita.light_samples = 16
