@@ -2,6 +2,7 @@
 #include "shade/lamp_shader.h"
 
 #include <algorithm>
+#include <map>
 
 #include "base/object_pool.h"
 #include "math/luminance.h"
@@ -13,8 +14,8 @@ namespace granita {
 namespace {
 
 /// Who asks a lamp how bright it may be: so many around it, this far away in its own metres, each
-/// in so many samples.
-constexpr std::uint32_t kAsking = 64, kAsked = 16;
+/// in so many samples.  Of many that share their nodes each is asked by fewer.
+constexpr std::uint32_t kMostAsking = 64, kFewestAsking = 8, kAllAsking = 8192, kAsked = 16;
 constexpr float kFar = 10.0f;
 
 /// Memory of a run, to be used again.
@@ -34,7 +35,6 @@ class NodePattern : public LightPattern {
         m_program =
             compile_surface(light.graph, scene, textures, report, owner, nullptr, RayType::Diffuse)
                 .radiance;
-        m_largest = estimate(light_frame(light, scene.options.frame_time, eye));
     }
 
     void color(std::span<const PatternSample> samples) const override {
@@ -44,17 +44,16 @@ class NodePattern : public LightPattern {
             samples[i].sample->radiance *= memory.factors[i];
         ObjectPool<RunMemory>::give(std::move(memory));
     }
-    float largest() const override { return m_largest; }
+    /// LampPattern::largest, of one that stands as `frame` does and is asked from so many places.
+    float largest(const LightFrame& frame, std::uint32_t asking) const;
 
   private:
     /// What nodes make of samples: as Cycles sets up points of lamps.
     void evaluate(std::span<const PatternSample> samples, RunMemory& memory) const;
-    float estimate(const LightFrame& frame) const;
 
     const Light& m_light;
     Vec3f m_eye{0.0f};  ///< world
     SurfaceProgram m_program;
-    float m_largest = 1.0f;
 };
 
 void NodePattern::evaluate(std::span<const PatternSample> samples, RunMemory& memory) const {
@@ -91,14 +90,14 @@ void NodePattern::evaluate(std::span<const PatternSample> samples, RunMemory& me
     memory.slots = run.take_memory();
 }
 
-float NodePattern::estimate(const LightFrame& frame) const {
+float NodePattern::largest(const LightFrame& frame, std::uint32_t asking) const {
     const auto source = make_light_source(m_light, frame);
     const SobolPoints around(1), over(2);
     std::vector<Vec2f> u;
-    for (std::uint32_t i = 0; i < kAsking * kAsked; ++i) u.push_back(over(i));
+    for (std::uint32_t i = 0; i < asking * kAsked; ++i) u.push_back(over(i));
     std::vector<LightSample> found(u.size());
     std::vector<PatternSample> samples;
-    for (std::uint32_t i = 0; i < kAsking; ++i) {
+    for (std::uint32_t i = 0; i < asking; ++i) {
         const Vec3f local = sample_cone(around(i), 2.0f);
         const Vec3f p = frame.position + Vec3f(frame.axes * Vec3d(kFar * local));
         const std::span<LightSample> own(found.data() + i * kAsked, kAsked);
@@ -130,9 +129,10 @@ bool are_alike(const Light& one, const Light& other) {
 
 }  // namespace
 
-std::vector<LightPatterns::Pattern> lamp_patterns(const Scene& scene, TextureStore& textures,
-                                                  Report& report) {
-    std::vector<LightPatterns::Pattern> found(scene.lights.size());
+std::vector<LampPattern> lamp_patterns(const Scene& scene, TextureStore& textures, Report& report) {
+    const Vec3d eye(ShadingCamera(scene).world_from_camera[3]);
+    std::vector<std::shared_ptr<const NodePattern>> found(scene.lights.size());
+    std::map<const NodePattern*, std::uint32_t> sharing;
     for (std::size_t i = 0; i < found.size(); ++i) {
         const Light& light = scene.lights[i];
         if (light.graph.surface.node < 0) continue;
@@ -140,8 +140,17 @@ std::vector<LightPatterns::Pattern> lamp_patterns(const Scene& scene, TextureSto
             if (found[j] && are_alike(scene.lights[j], light)) found[i] = found[j];
         if (!found[i])
             found[i] = std::make_shared<const NodePattern>(light, scene, textures, report);
+        ++sharing[found[i].get()];
     }
-    return found;
+    std::vector<LampPattern> patterns(found.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (!found[i]) continue;
+        const std::uint32_t asking =
+            std::clamp(kAllAsking / sharing[found[i].get()], kFewestAsking, kMostAsking);
+        const LightFrame frame = light_frame(scene.lights[i], scene.options.frame_time, eye);
+        patterns[i] = {found[i], found[i]->largest(frame, asking)};
+    }
+    return patterns;
 }
 
 }  // namespace granita

@@ -12,7 +12,6 @@ namespace granita {
 
 /// The nodes of the scene's lights, which are run for samples of them: LightPatterns::of_lights.
 /// Scene, textures and report must outlive them.
-std::vector<LightPatterns::Pattern> lamp_patterns(const Scene& scene, TextureStore& textures,
-                                                  Report& report);
+std::vector<LampPattern> lamp_patterns(const Scene& scene, TextureStore& textures, Report& report);
 
 }  // namespace granita

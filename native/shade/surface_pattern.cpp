@@ -16,7 +16,6 @@ class SurfacePattern : public LightPattern {
         : m_program(program), m_scene(scene), m_rays(rays) {}
 
     void color(std::span<const PatternSample> samples) const override;
-    float largest() const override { return 1.0f; }
 
   private:
     const EmissionProgram& m_program;
@@ -61,8 +60,8 @@ void SurfacePattern::color(std::span<const PatternSample> samples) const {
 
 }  // namespace
 
-LightPatterns::Pattern surface_pattern(const EmissionProgram& program, const Scene& scene,
-                                       const RayScene& rays) {
+std::shared_ptr<const LightPattern> surface_pattern(const EmissionProgram& program,
+                                                    const Scene& scene, const RayScene& rays) {
     return std::make_shared<const SurfacePattern>(program, scene, rays);
 }
 

@@ -8,7 +8,7 @@
 namespace granita {
 
 /// What surfaces send out by a program, where samples of them end.  All must outlive it.
-LightPatterns::Pattern surface_pattern(const EmissionProgram& program, const Scene& scene,
-                                       const RayScene& rays);
+std::shared_ptr<const LightPattern> surface_pattern(const EmissionProgram& program,
+                                                    const Scene& scene, const RayScene& rays);
 
 }  // namespace granita

@@ -67,10 +67,6 @@ def lamp_tree(scene, name):
     return light_tree(light)
 
 
-# Texels end abruptly: .0256 were seen with 144 samples of Cycles, .0221 with 1296, the means .1 % apart.
-TEXELS = 0.035
-
-
 def assert_alike(scene, render, name, tolerance=DIFFUSE):
     if name == "spot":
         scene.granita.dicing_rate = SPOT_RATE
@@ -118,8 +114,10 @@ def test_transforms(scene, render, name, kind, spaces):
 @pytest.mark.parametrize("name", LAMPS)
 @pytest.mark.parametrize("linked", [False, True], ids=["its own vector", "Object"])
 def test_images(scene, render, name, linked):
-    """Of a few texels, with an edge between black and white: lamps' textures are not blurred."""
+    """Of a few texels, with an edge between black and white: lamps' textures are not blurred.  Such edges are narrower
+    than a pixel, as a spot's rim: of a rectangle .021 are seen where it is shaded once a pixel, .012 from here on."""
     set_stage(scene, lambert())
+    scene.granita.dicing_rate = SPOT_RATE
     tree = lamp_tree(scene, name)
     texture = tree.nodes.new("ShaderNodeTexImage")
     texels = np.random.default_rng(1).random((6, 8, 4))
@@ -129,7 +127,21 @@ def test_images(scene, render, name, linked):
         place = tree.nodes.new("ShaderNodeTexCoord")
         tree.links.new(place.outputs["Object"], texture.inputs["Vector"])
     tree.links.new(texture.outputs["Color"], tree.nodes["Emission"].inputs["Color"])
-    assert_alike(scene, render, name, TEXELS)
+    assert_alike(scene, render, name)
+
+
+@pytest.mark.parametrize("name", LAMPS)
+@pytest.mark.parametrize("output", ["Generated", "Object", "Normal"])
+def test_uneven_scales(scene, render, name, output):
+    """Of each axis another, one of them mirrored."""
+    if bpy.app.version < (4, 0, 0) and output == "Normal" and tree_is_of_area(name):
+        pytest.skip("this Cycles tells lamps' normals that rays of lobes meet in the world's axes")
+    set_stage(scene, lambert())
+    tree = lamp_tree(scene, name)
+    lamp = next(thing for thing in scene.objects if thing.type == "LIGHT")
+    lamp.scale = (0.8, -1.6, 1.2)
+    waves(tree, tree.nodes.new("ShaderNodeTexCoord").outputs[output])
+    assert_alike(scene, render, name)
 
 
 @pytest.mark.parametrize("output", ["Is Camera Ray", "Is Shadow Ray", "Is Diffuse Ray"])

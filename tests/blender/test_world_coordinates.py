@@ -18,8 +18,8 @@ OUTPUTS = [
 ]
 
 
-@pytest.mark.parametrize("node, output", OUTPUTS)
-def test_places_and_directions(scene, render, node, output):
+def world_tree(scene):
+    """(tree, the vector that it shows)"""
     camera = scene_parts.add_camera(scene)
     camera.data.type, camera.data.lens = "PERSP", 18.0
     camera.rotation_euler = (0.7, 0.2, 0.4)
@@ -31,9 +31,32 @@ def test_places_and_directions(scene, render, node, output):
     shown = nodes.new("ShaderNodeVectorMath")
     shown.operation = "MULTIPLY_ADD"
     shown.inputs[1].default_value = shown.inputs[2].default_value = (0.5, 0.5, 0.5)
-    links.new(nodes.new(node).outputs[output], shown.inputs[0])
     background = next(n for n in nodes if n.type == "BACKGROUND")
     links.new(shown.outputs[0], background.inputs["Color"])
+    return world.node_tree, shown.inputs[0]
+
+
+def expect_alike(scene, render):
     theirs, ours = node_comparison.render_both(scene, render, samples=64)
     # A pixel spans up to .06 of a unit of these; its mean of 64 samples is 1/64 of that off.
     assert np.abs(theirs - ours).max() < 0.004
+
+
+@pytest.mark.parametrize("node, output", OUTPUTS)
+def test_places_and_directions(scene, render, node, output):
+    tree, shown = world_tree(scene)
+    tree.links.new(tree.nodes.new(node).outputs[output], shown)
+    expect_alike(scene, render)
+
+
+@pytest.mark.parametrize("kind", ["POINT", "VECTOR", "NORMAL"])
+@pytest.mark.parametrize("convert_from", ["WORLD", "OBJECT", "CAMERA"])
+@pytest.mark.parametrize("convert_to", ["WORLD", "OBJECT", "CAMERA"])
+def test_transforms(scene, render, kind, convert_from, convert_to):
+    """A world is no object: its own space is the world's."""
+    tree, shown = world_tree(scene)
+    turn = tree.nodes.new("ShaderNodeVectorTransform")
+    turn.vector_type, turn.convert_from, turn.convert_to = kind, convert_from, convert_to
+    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Generated"], turn.inputs[0])
+    tree.links.new(turn.outputs[0], shown)
+    expect_alike(scene, render)

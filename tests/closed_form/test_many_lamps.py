@@ -207,3 +207,33 @@ def test_the_bits_do_not_depend_on(options):
     image = s.render(snapshot)["combined"]
     snapshot["options"].update(options)
     np.testing.assert_array_equal(s.render(snapshot)["combined"], image)
+
+
+def test_lamps_that_share_nodes_are_asked_by_what_each_sends():
+    """All have the same nodes, which let one of three shine a thousand times as bright as the rest."""
+    bright = np.arange(300) % 3 == 2
+    spots = [
+        (x, y, 4.0 if lit else 8.0) for (x, y, _), lit in zip(places(300, 4), bright, strict=True)
+    ]
+    nodes = [
+        {"type": "ShaderNodeNewGeometry", "inputs": {}},
+        {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": ("LINK", 0, "Position")}},
+        {
+            "type": "ShaderNodeMath",
+            "inputs": {"Value": ("LINK", 1, "Z"), "Value_001": 6.0},
+            "properties": {"operation": "LESS_THAN"},
+        },
+        {
+            "type": "ShaderNodeMath",
+            "inputs": {"Value": ("LINK", 2, "Value"), "Value_001": 1e-3},
+            "properties": {"operation": "ADD"},
+        },
+        {"type": "ShaderNodeEmission", "inputs": {"Strength": ("LINK", 3, "Value")}},
+    ]
+    more = {"nodes": nodes, "surface": (4, "Emission")}
+    image = s.render(floor([lamp(p, 400.0, **more) for p in spots]))["combined"][..., 0]
+    lamps = [(p, 400.0 * (lit + 1e-3)) for p, lit in zip(spots, bright, strict=True)]
+    truth = expected(lamps)
+    image = oriented(image, truth)
+    # .085 was seen where all were taken for as bright as the first.
+    checked(image, truth, 0.02)

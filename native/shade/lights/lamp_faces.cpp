@@ -73,7 +73,7 @@ class LampFaces::Collector {
     };
     /// Of a material whose light varies.
     struct Uneven {
-        LightPatterns::Pattern pattern;
+        std::shared_ptr<const LightPattern> pattern;
         double power = 0.0, area = 0.0;
         std::vector<LightSample> asked;
         std::vector<PatternSample> samples;
@@ -223,7 +223,7 @@ class LampFaces::Collector {
                 if (!taken) lost[triangle.instance] += static_cast<double>(face.power);
             }
             if (!taken || !(area_of(triangle.shape) > 0.0f)) return;
-            LightPatterns::Pattern pattern;
+            std::shared_ptr<const LightPattern> pattern;
             if (triangle.is_uneven) {
                 const Uneven& uneven = m_uneven[triangle.material];
                 pattern = uneven.pattern;

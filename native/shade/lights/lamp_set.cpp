@@ -23,7 +23,8 @@ std::vector<Lamp> lamps_of(const Scene& scene, const Vec3d& origin, const LightP
     std::vector<Lamp> lamps;
     for (std::size_t l = 0; l < scene.lights.size(); ++l) {
         const Light& light = scene.lights[l];
-        const auto pattern = patterns.of_lights.empty() ? nullptr : patterns.of_lights[l];
+        const LampPattern pattern =
+            patterns.of_lights.empty() ? LampPattern{} : patterns.of_lights[l];
         float energy = std::abs(light.energy);
         for (const float knot : light.energy_knots) energy = std::max(energy, std::abs(knot));
         if (light.color * energy == Vec3f(0.0f) || light.lifespan.is_empty()) continue;

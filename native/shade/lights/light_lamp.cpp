@@ -20,8 +20,7 @@ bool varies_over_time(const Light& light) {
 
 }  // namespace
 
-Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin,
-           std::shared_ptr<const LightPattern> pattern)
+Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin, LampPattern pattern)
     : m_pattern(std::move(pattern)),
       m_lifespan(light.lifespan),
       m_casts_shadow(light.casts_shadow),
@@ -36,14 +35,14 @@ Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin,
         const float time = places > 1 ? (static_cast<float>(k) + 0.5f) / kPlaces : frame_time;
         const LightFrame frame = light_frame(light, time, origin);
         m_sources.push_back(make_light_source(light, frame));
-        if (m_pattern) m_frames.push_back(frame);
+        if (m_pattern.pattern) m_frames.push_back(frame);
         m_hard = m_hard && m_sources.back()->is_hard();
     }
 }
 
 Lamp::Lamp(MovingTriangle triangle, const Instance& instance,
            std::shared_ptr<const LightPattern> pattern)
-    : m_pattern(std::move(pattern)),
+    : m_pattern{std::move(pattern)},
       m_lifespan(instance.lifespan),
       m_hard(false),
       m_casts_shadow(true),
@@ -67,7 +66,7 @@ LightBound Lamp::bound_of(const LightSource& source) const {
     float radius = 0.0f;
     source.bound(center, radius);
     LightEmission emission = source.emission();
-    if (m_pattern) emission.intensity *= m_pattern->largest();
+    emission.intensity *= m_pattern.largest;
     here.box.add(center);
     here.box.grow(radius);
     here.axis = emission.axis;

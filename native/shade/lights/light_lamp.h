@@ -18,9 +18,7 @@ namespace granita {
 class Lamp {
   public:
     /// `origin`: the camera's world position at the frame time.
-    /// `pattern`: of its nodes, or nullptr.
-    Lamp(const Light& light, float frame_time, const Vec3d& origin,
-         std::shared_ptr<const LightPattern> pattern = nullptr);
+    Lamp(const Light& light, float frame_time, const Vec3d& origin, LampPattern pattern = {});
     /// A triangle of an instance that shines.
     /// `pattern`: where its light varies; the triangle's own is then a mean.
     Lamp(MovingTriangle triangle, const Instance& instance,
@@ -43,7 +41,7 @@ class Lamp {
     /// Whether samples of lobes may meet it.
     bool meets_lobes() const { return m_glossy > 0.0f || m_transmission > 0.0f || m_volume > 0.0f; }
     /// Of its nodes, which colour what sample_all() and meets() give; nullptr: there are none.
-    const LightPattern* pattern() const { return m_pattern.get(); }
+    const LightPattern* pattern() const { return m_pattern.pattern.get(); }
     /// For the pattern: its sample that goes to `p`.
     PatternSample patterned(float time, const Vec3f& p, LightSample& sample) const {
         const LightFrame* frame = m_is_surface ? nullptr : &m_frames[at(time, m_frames.size())];
@@ -92,7 +90,7 @@ class Lamp {
 
     std::vector<std::unique_ptr<LightSource>> m_sources;  ///< one, or at equal parts of the shutter
     std::unique_ptr<const MovingTriangle> m_moving;       ///< instead of these
-    std::shared_ptr<const LightPattern> m_pattern;
+    LampPattern m_pattern;
     std::vector<LightFrame> m_frames;  ///< [sources] of a lamp that has a pattern
     Lifespan m_lifespan;
     bool m_hard = true, m_casts_shadow, m_is_surface = false;

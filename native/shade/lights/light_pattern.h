@@ -28,18 +28,23 @@ class LightPattern {
     virtual ~LightPattern() = default;
     /// Multiplies their radiance; that of surfaces, which it tells itself, it sets.
     virtual void color(std::span<const PatternSample> samples) const = 0;
+};
+
+/// Of a lamp.
+struct LampPattern {
+    std::shared_ptr<const LightPattern> pattern;  ///< shared by lamps; nullptr: there are no nodes
     /// Mean of the channels of what it multiplies by, where that is largest; an estimate.
-    virtual float largest() const = 0;
+    float largest = 1.0f;
 };
 
 class RayScene;
 
 /// Of the nodes of a scene.
 struct LightPatterns {
-    using Pattern = std::shared_ptr<const LightPattern>;
-    std::vector<Pattern> of_lights;  ///< [lights], nullptr where there are none; empty: nowhere
+    std::vector<LampPattern> of_lights;  ///< [lights], or empty: none has nodes
     /// Of surfaces whose RayMaterials::emitted varies; the rays outlive what is made.
-    std::function<Pattern(std::int32_t material, const RayScene& rays)> of_surface;
+    std::function<std::shared_ptr<const LightPattern>(std::int32_t material, const RayScene& rays)>
+        of_surface;
 };
 
 }  // namespace granita
