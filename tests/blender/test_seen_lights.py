@@ -108,11 +108,48 @@ def test_by_what_their_nodes_make_of_the_distance(stage, render, kind, output):
     assert brightest(assert_as_in_cycles(stage, render)) > 0.8
 
 
-def test_nodes_that_tell_places_apart_are_named(scene):
+@pytest.mark.parametrize("shape", ["SQUARE", "ELLIPSE"])
+@pytest.mark.parametrize(
+    "coordinates",
+    ["TexCoord Generated", "TexCoord UV", "TexCoord Object", "NewGeometry Position"]
+    + ["NewGeometry Normal", "NewGeometry Incoming", "NewGeometry Parametric"],
+)
+def test_area_lights_by_what_their_nodes_make_of_places(stage, render, shape, coordinates):
+    node, output = coordinates.split()
+    lamp = seen_light(stage, "AREA", shape=shape, size=1.5, size_y=0.8)
+    lamp.scale = (1.0, 1.5, 1.0)
+    tree, emission = emission_of(lamp)
+    shown = tree.nodes.new("ShaderNodeVectorMath")
+    shown.operation = "MULTIPLY_ADD"
+    shown.inputs[1].default_value = shown.inputs[2].default_value = (0.5, 0.5, 0.5)
+    tree.links.new(tree.nodes.new(f"ShaderNode{node}").outputs[output], shown.inputs[0])
+    tree.links.new(shown.outputs[0], emission.inputs["Color"])
+    _, report = export_probe.through_script()
+    assert report.entries() == []
+    assert_as_in_cycles(stage, render)
+
+
+@pytest.mark.parametrize("kind", ["TexImage", "TexNoise"])
+def test_textures_of_area_lights_have_the_coordinates_of_these(stage, render, kind):
+    """Without a link to their vectors; an image of eight by six colours."""
+    tree, emission = emission_of(seen_light(stage, "AREA", size=1.5))
+    texture = tree.nodes.new(f"ShaderNode{kind}")
+    if kind == "TexImage":
+        texture.image = bpy.data.images.new("Slide", 8, 6, float_buffer=True)
+        texels = np.random.default_rng(1).random((6, 8, 4), dtype=np.float32)
+        texture.image.pixels.foreach_set(texels.ravel())
+        texture.image.update()
+    tree.links.new(texture.outputs["Color"], emission.inputs["Color"])
+    assert_as_in_cycles(stage, render)
+
+
+@pytest.mark.parametrize("kind, output", [("AREA", "Normal"), ("POINT", "Generated")])
+def test_other_nodes_that_tell_places_apart_are_named(scene, kind, output):
     parts.add_camera(scene)
-    tree, emission = emission_of(seen_light(scene, "AREA", size=1.5))
+    shape = {"size": 1.5} if kind == "AREA" else {"shadow_soft_size": 0.7}
+    tree, emission = emission_of(seen_light(scene, kind, **shape))
     coordinates = tree.nodes.new("ShaderNodeTexCoord")
-    tree.links.new(coordinates.outputs["Normal"], emission.inputs["Color"])
+    tree.links.new(coordinates.outputs[output], emission.inputs["Color"])
     _, report = export_probe.through_script()
     (entry,) = report.entries()
     assert entry[0] == "light 'Lamp'" and "without its nodes" in entry[1]

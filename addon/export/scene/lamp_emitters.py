@@ -10,13 +10,9 @@ import math
 import numpy as np
 
 from ..base.snapshot import Geometry
+from .emitter_nodes import area_coordinates, emission_nodes, link, node
 from .instance import VISIBLE_CAMERA
 
-# Those whose values are the same at each place of a light and in each direction from it, from one eye.
-_PLACELESS = {
-    *("ShaderNodeLightFalloff", "ShaderNodeLightPath", "ShaderNodeValue", "ShaderNodeRGB"),
-    *("ShaderNodeMath", "ShaderNodeMixRGB", "ShaderNodeMix", "ShaderNodeBlackbody"),
-}
 _SIDES = 256  # of an ellipse: its outline is within 1e-4 of its radius
 
 
@@ -45,6 +41,10 @@ def add_emitters(snapshot, lamps, scan, report):
         matrices = np.array(lamp["world_from_light"])
         if lamp["kind"] == "POINT":
             matrices[:, :3, :3] = np.eye(3)
+        radiance = np.array(lamp["color"]) * lamp["energy"] / (math.pi * area)
+        emission, tells_places = emission_nodes(lamp, (*map(float, radiance), 1.0), report)
+        if tells_places:
+            matrices = area_coordinates(lamp, geometry, matrices)
         _append(
             instances,
             name=[lamp["name"]],
@@ -69,8 +69,6 @@ def add_emitters(snapshot, lamps, scan, report):
             for key, rows in instances.values.items()
         }
         snapshot.geometries.append(geometry)
-        radiance = np.array(lamp["color"]) * lamp["energy"] / (math.pi * area)
-        emission = _emission(lamp, (*map(float, radiance), 1.0), report)
         snapshot.materials.append(_material(geometry.name, emission))
 
 
@@ -126,37 +124,19 @@ def _area(lamp):
     return geometry, area
 
 
-def _emission(lamp, radiance, report):
-    """Nodes of what it sends to the camera, the last an Emission; its own, if they tell no places apart."""
-    plain = _node("ShaderNodeEmission", Color=radiance, Strength=1.0)
-    if "nodes" not in lamp:
-        return [plain]
-    *before, own = lamp["nodes"]
-    if own["type"] != "ShaderNodeEmission" or any(n["type"] not in _PLACELESS for n in before):
-        report(f"light '{lamp['name']}'", "is drawn to the camera without its nodes")
-        return [plain]
-    tint = _node("ShaderNodeMixRGB", Fac=1.0, Color1=own["inputs"]["Color"], Color2=radiance)
-    tint["properties"]["blend_type"] = "MULTIPLY"
-    return [
-        *before,
-        tint,
-        {**own, "inputs": {**own["inputs"], "Color": _link(len(before), "Color")}},
-    ]
-
-
 def _material(name, emission):
     """Glows to the front by these nodes, and lets everything through."""
     n = len(emission)
     nodes = [
         *emission,
-        _node("ShaderNodeBsdfTransparent", Color=(1.0, 1.0, 1.0, 1.0)),
-        _node("ShaderNodeAddShader", Shader=_link(n - 1, "Emission"), Shader_001=_link(n, "BSDF")),
-        _node("ShaderNodeNewGeometry"),
-        _node(
+        node("ShaderNodeBsdfTransparent", Color=(1.0, 1.0, 1.0, 1.0)),
+        node("ShaderNodeAddShader", Shader=link(n - 1, "Emission"), Shader_001=link(n, "BSDF")),
+        node("ShaderNodeNewGeometry"),
+        node(
             "ShaderNodeMixShader",
-            Fac=_link(n + 2, "Backfacing"),
-            Shader=_link(n + 1, "Shader"),
-            Shader_001=_link(n, "BSDF"),
+            Fac=link(n + 2, "Backfacing"),
+            Shader=link(n + 1, "Shader"),
+            Shader_001=link(n, "BSDF"),
         ),
     ]
     return {
@@ -166,14 +146,6 @@ def _material(name, emission):
         "surface": (n + 3, "Shader"),
         "displacement": None,
     }
-
-
-def _node(kind, **inputs):
-    return {"type": kind, "name": kind, "inputs": inputs, "properties": {}}
-
-
-def _link(node, socket):
-    return ("LINK", node, socket)
 
 
 def _append(instances, **more):
