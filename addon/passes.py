@@ -9,8 +9,8 @@ import numpy as np
 from .export.shading.world import world_of
 
 # `native`: the name in the snapshot and in the native tile; Blender's own since version 5.
-# `short`: Blender's name before.  `wanted`: the view layer's property that asks for the pass (None:
-# always there).
+# `short`: Blender's name before.  `wanted`: the property of the view layer, or of Cycles' settings of
+# it, that asks for the pass (None: always there).
 Pass = namedtuple("Pass", "native short channels channel_ids kind wanted")
 
 PASSES = (
@@ -35,9 +35,17 @@ PASSES = (
     Pass("Emission", "Emit", 3, "RGB", "COLOR", "use_pass_emit"),
     Pass("Environment", "Env", 3, "RGB", "COLOR", "use_pass_environment"),
     Pass("Shadow", "Shadow", 3, "RGB", "COLOR", "use_pass_shadow"),
+    *(
+        Pass(name, name, *shape, "denoising_store_passes")
+        for name, shape in (
+            ("Denoising Normal", (3, "XYZ", "VECTOR")),
+            ("Denoising Albedo", (3, "RGB", "COLOR")),
+            ("Denoising Depth", (1, "Z", "VALUE")),
+        )
+    ),
 )
 
-# The view layer's properties that ask for them.
+# The properties that ask for them.
 SERVED = frozenset(p.wanted for p in PASSES)
 
 # Passes of light, which the film's exposure multiplies.
@@ -53,6 +61,9 @@ EXPOSED = {
     "Environment",
 }
 
+# Passes that show another's numbers.
+_SOURCES = {"Denoising Depth": "Depth"}
+
 # Blender's depth where there is no surface.
 NO_SURFACE_DEPTH = 1e10
 
@@ -64,7 +75,12 @@ def display_name(p):
 
 def standard(view_layer):
     """Passes of the table that the view layer asks for."""
-    return [p for p in PASSES if p.wanted is None or getattr(view_layer, p.wanted, False)]
+    owners = (view_layer, getattr(view_layer, "cycles", None))
+    return [
+        p
+        for p in PASSES
+        if p.wanted is None or any(getattr(owner, p.wanted, False) for owner in owners)
+    ]
 
 
 def custom(view_layer):
@@ -87,7 +103,7 @@ def wanted(view_layer):
 # Not passes of their own: the beauty, and how exact Cryptomatte is.
 _NO_PASSES = {"use_pass_combined", "use_pass_cryptomatte_accurate"}
 # Passes of Cycles' add-on that are not named so.
-_OF_CYCLES = {"pass_debug_sample_count", "pass_render_time", "denoising_store_passes"}
+_OF_CYCLES = {"pass_debug_sample_count", "pass_render_time"}
 
 
 def missing(view_layer):
@@ -111,7 +127,7 @@ def requested(scene, view_layer, alone=None):
     world = world_of(scene, view_layer)
     falloff = {"QUADRATIC": 2.0, "LINEAR": 1.0, "INVERSE_QUADRATIC": 0.5}
     options = {
-        "passes": [p.native for p in asked if p in PASSES],
+        "passes": [_SOURCES.get(p.native, p.native) for p in asked if p in PASSES],
         "aovs": [
             {"name": p.native, "kind": "VALUE" if p.channels == 1 else "COLOR"}
             for p in asked
@@ -149,6 +165,7 @@ def tile_arrays(tile):
     arrays = {"Combined": tile.combined, **tile.passes}
     if tile.depth is not None:
         arrays["Depth"] = np.where(np.isfinite(tile.depth), tile.depth, NO_SURFACE_DEPTH)
+        arrays |= {name: arrays[source] for name, source in _SOURCES.items()}
     return arrays
 
 

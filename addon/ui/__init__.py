@@ -3,6 +3,7 @@
 
 from . import (
     compare_operators,
+    denoise_operator,
     light_panels,
     linking_panels,
     material_panels,
@@ -27,6 +28,7 @@ _PARTS = (
     view_layer_panels,
     pass_panels,
     compare_operators,
+    denoise_operator,
     view_panels,
     stock_panels,
 )

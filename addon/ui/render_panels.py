@@ -58,6 +58,7 @@ class GRANITA_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         row = column.row(align=True)
         row.prop(settings, "seed")
         row.prop(settings, "animate_seed", text="", icon="TIME")
+        column.operator("scene.granita_denoise")
 
 
 class GRANITA_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):

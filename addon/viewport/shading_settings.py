@@ -7,7 +7,12 @@ from .. import passes
 
 # Depth is white all over, and Vector is read of frames beside this one.
 _NOT_SHOWN = {"Depth", "Vector"}
-_SHOWN = {p.native.upper().replace(" ", "_"): p.native for p in passes.PASSES}
+# Denoising Data repeats others.
+_SHOWN = {
+    p.native.upper().replace(" ", "_"): p.native
+    for p in passes.PASSES
+    if p.wanted != "denoising_store_passes"
+}
 COMBINED = passes.PASSES[0]
 
 

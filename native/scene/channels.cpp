@@ -31,6 +31,8 @@ const PassKind kPasses[] = {
     {"Transmission Indirect", Quantity::TransmissionIndirect, Merge::Layers, 3,
      Quantity::TransmissionColor},
     {"Transmission Color", Quantity::TransmissionColor, Merge::Layers, 3},
+    {"Denoising Albedo", Quantity::Albedo, Merge::Layers, 3},
+    {"Denoising Normal", Quantity::Normal, Merge::First, 3},
     {"Emission", Quantity::Emission, Merge::Layers, 3},
     {"Environment", Quantity::Environment, Merge::Layers, 3},
     {"Shadow", Quantity::LampsArriving, Merge::Layers, 3, Quantity::LampsUnblocked},

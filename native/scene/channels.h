@@ -26,6 +26,7 @@ enum class Quantity {
     TransmissionDirect,
     TransmissionIndirect,
     TransmissionColor,
+    Albedo,  ///< the three colours together, which denoisers ask for
     Emission,
     LampsArriving,   ///< radiance reflected of lamps
     LampsUnblocked,  ///< the same without shadows

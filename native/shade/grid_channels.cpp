@@ -97,6 +97,12 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
             case Quantity::TransmissionColor:
                 copy(shaded.parts.transmission_color);
                 break;
+            case Quantity::Albedo:
+                fill([&](std::size_t i) {
+                    return shaded.parts.diffuse_color[i] + shaded.parts.glossy_color[i] +
+                           shaded.parts.transmission_color[i];
+                });
+                break;
             case Quantity::LampsArriving:
                 copy(shaded.parts.arriving);
                 break;

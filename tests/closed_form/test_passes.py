@@ -189,6 +189,16 @@ def test_parts_sum_to_the_picture(executor):
     assert np.abs(parts - combined).max() < ROUNDING * combined.max()
 
 
+def test_the_albedo_for_denoisers_is_that_of_all_lobes(executor):
+    snapshot = snapshots.orthographic((48, 32), executor=executor)
+    everything(snapshot)
+    p = passes(snapshot, [*ALL, "Denoising Albedo", "Denoising Normal"])["passes"]
+    colors = p["Diffuse Color"] + p["Glossy Color"] + p["Transmission Color"]
+    assert np.ptp(colors) > 0.5
+    assert np.abs(p["Denoising Albedo"] - colors).max() < ROUNDING
+    assert np.array_equal(p["Denoising Normal"], p["Normal"])
+
+
 def test_transparency_weighs_colours_and_passes_through_what_the_threshold_excludes(executor):
     """A pane of opacity 1/4 at z = 2 over an opaque wall at z = 4."""
     snapshot = snapshots.orthographic((8, 8), executor=executor)
