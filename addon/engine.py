@@ -6,6 +6,9 @@ crash while saving a float file.  `report({'ERROR'})` alone makes `blender -b` s
 and exit with 1; `error_set` adds the banner in the window.
 """
 
+import gc
+import time
+import weakref
 from contextlib import contextmanager
 
 import bpy
@@ -44,6 +47,10 @@ _EXPLAINED = (
     frame_statistics.StatisticsFileError,
     PartError,
 )
+# Seconds for which the add-on's end waits for renders.
+_PATIENCE = 10.0
+_rendering = weakref.WeakSet()  # engines, until Blender has freed them
+_ends = False  # with the add-on
 
 
 class GranitaRenderEngine(bpy.types.RenderEngine):
@@ -57,7 +64,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
 
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **kwargs)
-        turn_of_python.await_start()  # a preview's: no handler tells of these
+        turn_of_python.await_turn()  # a preview's: no handler tells of these
         self.frame_statistics = frame_statistics.FrameStatistics()
         self.log = EventLog()
         self.persistent_state = PersistentState()
@@ -71,9 +78,23 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
         except Exception as error:
             self.report({"ERROR"}, escaped(f"passes: {fault.traced(error)}"))
 
+    def is_cancelled(self):
+        return _ends or self.test_break()
+
     def render(self, depsgraph):
         turn_of_python.started()
+        stays = not self.is_preview and depsgraph.scene.render.use_persistent_data
+        _rendering.add(self)
         try:
+            self._render(depsgraph)
+        finally:
+            if stays:
+                _rendering.discard(self)
+
+    def _render(self, depsgraph):
+        try:
+            if self.is_preview and turn_of_python.interrupts_drawing():
+                return  # the icon stays empty until its datablock changes
             if self.is_preview:
                 preview_render.render_preview(self, depsgraph)
                 return
@@ -91,7 +112,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
             )
         except Cancelled:
             self.frame_statistics.discard()
-            if not self.test_break():
+            if not self.is_cancelled():
                 self._fail("the render stopped without being asked to")
         except _EXPLAINED as error:
             self._fail(str(error))
@@ -144,6 +165,17 @@ def _told(engine):
 _add_handlers, _remove_handlers = registration(("render_init", forget_images))
 
 
+def _end_renders():
+    """Blender forgets an engine's class with the add-on, also where one renders in another thread, a preview."""
+    global _ends
+    _ends = True
+    gc.collect()  # what a failure may hold
+    end = time.monotonic() + _PATIENCE
+    while len(_rendering) and time.monotonic() < end:
+        time.sleep(0.005)
+    _ends = False
+
+
 def register():
     bpy.utils.register_class(GranitaRenderEngine)
     _add_handlers()
@@ -155,4 +187,5 @@ def unregister():
     loop.unregister()
     turn_of_python.unregister()
     _remove_handlers()
+    _end_renders()
     bpy.utils.unregister_class(GranitaRenderEngine)

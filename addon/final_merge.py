@@ -41,7 +41,7 @@ class FinalMerge:
             [(p.native, p.channels) for p in self.passes],
         )
         for number, part in enumerate(parts, 1):
-            if self.engine.test_break():
+            if self.engine.is_cancelled():
                 raise Cancelled
             passes.deliver(
                 self.engine, _tile(part), self.passes, self.layer, crop[:2], self.exposure

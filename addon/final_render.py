@@ -150,7 +150,7 @@ class FinalRender:
 
     def _exporting(self):
         """Called often by the export."""
-        if self.engine.test_break():
+        if self.engine.is_cancelled():
             raise Cancelled
         if self.options.memory is not None:
             self._check_memory(self.options.memory)
@@ -175,7 +175,7 @@ class FinalRender:
                 self.seconds["scene"] = perf_counter() - started
                 while not job.done():
                     deliver(job.take_tiles(POLL_SECONDS))
-                    if self.engine.test_break():
+                    if self.engine.is_cancelled():
                         raise Cancelled
                     self.engine.update_progress(job.fraction)
                     self.status.rendering(job)

@@ -26,13 +26,13 @@ def render_preview(engine, depsgraph):
         Cancelled, ExportError, and what bridge.rendering raises.
     """
     layer = depsgraph.view_layer.name
-    snapshot = export_frame(engine, depsgraph, _Settings, Report(), engine.test_break)
+    snapshot = export_frame(engine, depsgraph, _Settings, Report(), engine.is_cancelled)
     combined = passes.PASSES[:1]
     origin = [int(pixel) for pixel in snapshot["options"]["crop"][:2]]
     with bridge.rendering(snapshot, "a preview") as job:
         while not job.done():
             _deliver(engine, job.take_tiles(POLL_SECONDS), combined, layer, origin)
-            if engine.test_break():
+            if engine.is_cancelled():
                 raise Cancelled
         _deliver(engine, job.take_tiles(0.0), combined, layer, origin)
 

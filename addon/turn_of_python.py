@@ -4,7 +4,7 @@
 Blender keeps in one place for all threads whether scripts may write now (`rna_disallow_writes`).  Each call of a class
 puts that back, at its end, as it found it.  A render that began while a panel or a view was drawn, which may not write,
 and ended later left it so: no timer and no handler could write any more until Blender ended.  So its thread waits where
-no class is called: in handlers, and where an engine is made.
+no class is called, in a handler; a preview, which has none, is given up where it would do that.
 """
 
 import sys
@@ -16,18 +16,38 @@ from .handlers import registration
 _INTERVAL = sys.getswitchinterval()
 # Seconds: for longer no call is waited for.  So long is none that draws.
 _PATIENCE = 10.0
+# How functions that draw are called, and what Blender asks while it draws.
+_MAY_NOT_WRITE = ("draw", "view_draw", "poll", "filter_items")
 
 
 def await_start():
-    """In the render's thread, before Blender calls it: until the window's own is not within Python.  From now on a
-    thread gets its turn when another one has ended its call."""
+    """In the render's thread, before Blender calls it: until the window's own is not within Python."""
+    await_turn()
+    end = time.monotonic() + _PATIENCE
+    while _frame_of_window() is not None and time.monotonic() < end:
+        time.sleep(0.0005)  # which lets it go on
+
+
+def await_turn():
+    """From now on the render's thread gets its turn when the window's has ended its call."""
+    if threading.current_thread() is not threading.main_thread():
+        sys.setswitchinterval(_PATIENCE)
+
+
+def interrupts_drawing():
+    """Whether the window's thread is in the middle of a call that may not write."""
+    frame = _frame_of_window()
+    while frame is not None and frame.f_back is not None:
+        frame = frame.f_back
+    return frame is not None and frame.f_code.co_name.startswith(_MAY_NOT_WRITE)
+
+
+def _frame_of_window():
+    """Of what it runs of Python; None where that is nothing, or where it is this thread itself."""
     window = threading.main_thread()
     if threading.current_thread() is window:
-        return
-    sys.setswitchinterval(_PATIENCE)
-    end = time.monotonic() + _PATIENCE
-    while window.ident in sys._current_frames() and time.monotonic() < end:
-        time.sleep(0.0005)  # which lets it go on
+        return None
+    return sys._current_frames().get(window.ident)
 
 
 def started(*_):
