@@ -112,8 +112,9 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
             )
         except Cancelled:
             self.frame_statistics.discard()
-            if not self.is_cancelled():
-                self._fail("the render stopped without being asked to")
+            if not self.test_break():  # else Blender would keep an empty frame and go on
+                ended = "the add-on was switched off"
+                self._fail(ended if _ends else "the render stopped without being asked to")
         except _EXPLAINED as error:
             self._fail(str(error))
         except KeyboardInterrupt:
@@ -188,4 +189,5 @@ def unregister():
     turn_of_python.unregister()
     _remove_handlers()
     _end_renders()
+    turn_of_python.started()  # nobody else tells any more that they have
     bpy.utils.unregister_class(GranitaRenderEngine)

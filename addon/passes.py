@@ -164,8 +164,9 @@ def tile_arrays(tile):
     """{native name: pixels} of all passes of a tile."""
     arrays = {"Combined": tile.combined, **tile.passes}
     if tile.depth is not None:
-        arrays["Depth"] = np.where(np.isfinite(tile.depth), tile.depth, NO_SURFACE_DEPTH)
-        arrays |= {name: arrays[source] for name, source in _SOURCES.items()}
+        depth = np.where(np.isfinite(tile.depth), tile.depth, NO_SURFACE_DEPTH)
+        for name in ("Depth", *_SOURCES):
+            arrays.setdefault(name, depth)  # an AOV may have the name of what is not asked for
     return arrays
 
 

@@ -112,9 +112,13 @@ struct ShadingSystem::Impl {
             std::ranges::any_of(scene.materials, asks_rays, &Material::graph);
         if (Volumes::any(scene)) volumes = std::make_unique<Volumes>(scene, textures, report);
         if (!any_reflects && !volumes && !nodes_ask_rays) return;
-        light = std::make_unique<DirectLight>(scene, world.evaluator(), statistics, report,
-                                              progress, ray_materials(), geometries, kept.rays,
-                                              displacement.get(), light_patterns(), nodes_ask_rays);
+        const auto of_surface = [this](std::int32_t index, const RayScene& rays) {
+            return surface_pattern(*emission->program(index), scene, rays);
+        };
+        light = std::make_unique<DirectLight>(
+            scene, world.evaluator(), statistics, report, progress, ray_materials(), geometries,
+            kept.rays, displacement.get(),
+            LightPatterns{lamp_patterns(scene, textures, report), of_surface}, nodes_ask_rays);
         emission->warn(scene, report);
         if (!light->rays()) return;
         if (scene.options.bounces.most > 0) {
@@ -173,13 +177,6 @@ struct ShadingSystem::Impl {
         };
         if (any(asks)) asked.is_met_by_itself = asks;
         return asked;
-    }
-
-    LightPatterns light_patterns() {
-        return {lamp_patterns(scene, textures, report),
-                [this](std::int32_t index, const RayScene& rays) {
-                    return surface_pattern(*emission->program(index), scene, rays);
-                }};
     }
 
     const CompiledSurface& material(int index) const {

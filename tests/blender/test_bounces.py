@@ -13,7 +13,7 @@ from granita.export.scene.light_paths import light_paths
 
 
 def test_no_limits_are_handed_over_where_light_is_not_followed(scene):
-    assert scene.granita.bounces == "NONE"
+    scene.granita.bounces = "NONE"
     assert light_paths(scene, scene.granita) == {}
 
 

@@ -45,8 +45,7 @@ def denoised(tree):
     return [node for node in tree.nodes if node.bl_idname == DENOISE]
 
 
-def test_denoising_data_is_what_cycles_calls_so(room, render):
-    """The albedo is that of all lobes, the normal of unit length where something is."""
+def test_denoising_data_are_colours_normal_and_depth(room, render):
     room.view_layers[0].cycles.denoising_store_passes = True
     room.view_layers[0].use_pass_normal = room.view_layers[0].use_pass_z = True
     made = render(room)
@@ -66,6 +65,23 @@ def test_the_node_stands_between_the_layers_and_what_took_them(room):
     assert [link.to_node.bl_idname for link in node.outputs["Image"].links]
     # Nothing is done twice.
     assert denoised(set_up(room)) == [node]
+
+
+def test_a_node_that_is_there_gets_what_it_has_not(room):
+    tree = set_up(room)
+    (node,) = denoised(tree)
+    node.mute = True
+    for name in ("Normal", "Albedo"):
+        tree.links.remove(node.inputs[name].links[0])
+    room.view_layers[0].cycles.denoising_store_passes = False
+    assert denoised(set_up(room)) == [node]
+    assert not node.mute and all(node.inputs[name].is_linked for name in ("Normal", "Albedo"))
+    assert room.view_layers[0].cycles.denoising_store_passes
+
+
+def test_other_engines_have_their_own(room):
+    room.render.engine = "CYCLES"
+    assert not bpy.ops.scene.granita_denoise.poll()
 
 
 def test_an_artists_own_nodes_take_the_denoised_image(room):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes whose emission varies light what is around them without a bounce: by place, view, side, picture and motion."""
 
+import re
+
 import numpy as np
 import pytest
 import snapshots as s
@@ -69,6 +71,25 @@ def test_half_of_a_square_lights_by_its_form_factor(executor, bounces):
     assert rendered["warnings"] == []
     assert image == pytest.approx(truth, abs=0.008)
     assert image.mean() == pytest.approx(truth.mean(), rel=0.004)
+
+
+def test_so_many_faces_that_every_other_is_asked():
+    """1,065,800 triangles, of which half are dark: no more is left out than is named."""
+    n = 730
+    snapshot = stage(light_samples=64)
+    j, i = np.mgrid[: n + 1, : n + 1] / n
+    points = np.stack([10 + 12 * i, 12 + 6 * j, np.full_like(i, LAMP)], axis=-1).reshape(-1, 3)
+    first = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    corners = np.stack([first, first + 1, first + n + 2, first + n + 1], axis=-1)
+    if np.cross(*np.diff(s.rectangle(10, 12, 22, 18, LAMP)[:3], axis=0))[2] < 0:
+        corners = corners[:, ::-1]
+    shining(snapshot, points, right_half(snapshot), corners.tolist())
+    truth = ALBEDO * form_factor(16, 12, 22, 18, FLOOR - LAMP, *pixels())
+    rendered = s.render(snapshot)
+    (warning,) = rendered["warnings"]
+    lost = float(re.search(r"(\d+) %", str(warning))[1]) / 100
+    assert 0.1 < lost < 0.6
+    assert 0.97 * (1 - lost) < rendered["combined"][..., 0].mean() / truth.mean() < 1.01
 
 
 def test_by_the_view():

@@ -20,7 +20,9 @@ namespace {
 constexpr std::size_t kMostFaces = std::size_t{1} << 19;
 /// Places at which faces whose light varies are asked for it: of all, and of one triangle.
 constexpr std::size_t kPlaces = std::size_t{1} << 20, kFewestPlaces = 8, kMostPlaces = 256;
-/// Of these, asked at once.
+/// Of more such triangles every so many are asked, and others send what their material's do.
+constexpr std::size_t kMostAsked = std::size_t{1} << 20;
+/// Places that are asked at once.
 constexpr std::size_t kBatch = 4096;
 /// Of a material's mean, for which each of its faces counts beside what it was found to send: some
 /// of that is missed.
@@ -79,9 +81,8 @@ class LampFaces::Collector {
         std::vector<PatternSample> samples;
         std::vector<std::size_t> faces;  ///< [samples]
 
-        float missed() const {
-            return area > 0.0 ? kMissed * static_cast<float>(power / area) : 0.0f;
-        }
+        float mean() const { return area > 0.0 ? static_cast<float>(power / area) : 0.0f; }
+        float missed() const { return kMissed * mean(); }
     };
 
     void find(std::uint32_t index) {
@@ -99,11 +100,12 @@ class LampFaces::Collector {
     /// Those of materials that shine.
     void visit(const std::function<void(Triangle&)>& visitor) const {
         RayTarget last;
-        std::size_t faces = 0;
+        std::size_t faces = 0, triangles = 0;
         for (const auto& [index, matrices] : m_instances) {
             m_progress.check();
             const Instance& instance = m_scene.instances[index];
             const auto one = [&, index = index, matrices = matrices](const RayTriangle& from) {
+                if (++triangles % kBatch == 0) m_progress.check();
                 const std::int32_t material = instance.material(from.slot);
                 const auto emitted = m_materials.emitted(material);
                 if (emitted == Vec3f(0.0f)) return;
@@ -126,18 +128,27 @@ class LampFaces::Collector {
     void measure() {
         std::size_t uneven = 0;
         visit([&uneven](const Triangle& triangle) { uneven += triangle.is_uneven ? 1 : 0; });
+        const std::size_t every = uneven / kMostAsked + 1;
+        std::size_t number = 0;
         m_places = static_cast<std::uint32_t>(
             std::clamp(kPlaces / std::max<std::size_t>(uneven, 1), kFewestPlaces, kMostPlaces));
-        visit([this](const Triangle& triangle) {
+        visit([this, every, &number](const Triangle& triangle) {
             if (triangle.face == m_faces.size()) m_faces.emplace_back();
             Face& face = m_faces.back();
             const float area = area_of(triangle.shape);
             face.area += area;
             face.power += area * mean_size(triangle.shape.radiance);
             ++face.triangles;
-            if (triangle.is_uneven) ask(triangle);
+            if (triangle.is_uneven && number++ % every == 0) ask(triangle);
         });
         for (auto& [material, of] : m_uneven) deliver(of);
+        number = 0;
+        if (every == 1) return;
+        visit([this, every, &number](const Triangle& triangle) {
+            if (triangle.is_uneven && number++ % every != 0)
+                m_faces[triangle.face].power +=
+                    area_of(triangle.shape) * m_uneven[triangle.material].mean();
+        });
     }
 
     /// From all around before it and behind it in turns, textures filtered so far that nothing lies
@@ -170,6 +181,7 @@ class LampFaces::Collector {
     }
 
     void deliver(Uneven& uneven) {
+        m_progress.check();
         for (std::size_t i = 0; i < uneven.faces.size(); ++i)
             uneven.samples[i].sample = &uneven.asked[i];
         uneven.pattern->color(uneven.samples);
