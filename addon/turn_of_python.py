@@ -11,6 +11,8 @@ import sys
 import threading
 import time
 
+import bpy
+
 from .handlers import registration
 
 _INTERVAL = sys.getswitchinterval()
@@ -22,6 +24,8 @@ _MAY_NOT_WRITE = ("draw", "view_draw", "poll", "filter_items")
 
 def await_start():
     """In the render's thread, before Blender calls it: until the window's own is not within Python."""
+    if bpy.app.background:
+        return  # nothing draws
     await_turn()
     end = time.monotonic() + _PATIENCE
     while _frame_of_window() is not None and time.monotonic() < end:
@@ -30,7 +34,7 @@ def await_start():
 
 def await_turn():
     """From now on the render's thread gets its turn when the window's has ended its call."""
-    if threading.current_thread() is not threading.main_thread():
+    if not bpy.app.background and threading.current_thread() is not threading.main_thread():
         sys.setswitchinterval(_PATIENCE)
 
 
