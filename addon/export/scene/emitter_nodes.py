@@ -86,7 +86,7 @@ def _links(nodes):
     """(index, input, index of its source, output) of each link."""
     for index, one in enumerate(nodes):
         for name, value in one["inputs"].items():
-            if isinstance(value, tuple) and value and value[0] == "LINK":
+            if _is_link(value):
                 yield index, name, value[1], value[2]
 
 
@@ -107,9 +107,11 @@ def _with_parametric(nodes):
 
 
 def _later(value):
-    if isinstance(value, tuple) and value and value[0] == "LINK":
-        return link(value[1] + 1, value[2])
-    return value
+    return link(value[1] + 1, value[2]) if _is_link(value) else value
+
+
+def _is_link(value):
+    return isinstance(value, tuple) and value[:1] == ("LINK",)
 
 
 def node(kind, **inputs):

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kMostFaces = std::size_t{1} << 19;
 /// Places at which faces whose light varies are asked for it: of all, and of one triangle.
 constexpr std::size_t kPlaces = std::size_t{1} << 20, kFewestPlaces = 8, kMostPlaces = 256;
-/// Of more such triangles every so many are asked, and others send what their material's do.
+/// Of more such triangles every so many of a material are asked; others send what these do.
 constexpr std::size_t kMostAsked = std::size_t{1} << 20;
 /// Places that are asked at once.
 constexpr std::size_t kBatch = 4096;
@@ -77,6 +77,7 @@ class LampFaces::Collector {
     struct Uneven {
         std::shared_ptr<const LightPattern> pattern;
         double power = 0.0, area = 0.0;
+        std::size_t seen = 0;  ///< triangles that a visit has come by
         std::vector<LightSample> asked;
         std::vector<PatternSample> samples;
         std::vector<std::size_t> faces;  ///< [samples]
@@ -129,25 +130,28 @@ class LampFaces::Collector {
         std::size_t uneven = 0;
         visit([&uneven](const Triangle& triangle) { uneven += triangle.is_uneven ? 1 : 0; });
         const std::size_t every = uneven / kMostAsked + 1;
-        std::size_t number = 0;
         m_places = static_cast<std::uint32_t>(
             std::clamp(kPlaces / std::max<std::size_t>(uneven, 1), kFewestPlaces, kMostPlaces));
-        visit([this, every, &number](const Triangle& triangle) {
+        visit([this, every](const Triangle& triangle) {
             if (triangle.face == m_faces.size()) m_faces.emplace_back();
             Face& face = m_faces.back();
             const float area = area_of(triangle.shape);
             face.area += area;
             face.power += area * mean_size(triangle.shape.radiance);
             ++face.triangles;
-            if (triangle.is_uneven && number++ % every == 0) ask(triangle);
+            if (triangle.is_uneven && m_uneven[triangle.material].seen++ % every == 0)
+                ask(triangle);
         });
-        for (auto& [material, of] : m_uneven) deliver(of);
-        number = 0;
+        for (auto& [material, of] : m_uneven) {
+            deliver(of);
+            of.seen = 0;
+        }
         if (every == 1) return;
-        visit([this, every, &number](const Triangle& triangle) {
-            if (triangle.is_uneven && number++ % every != 0)
-                m_faces[triangle.face].power +=
-                    area_of(triangle.shape) * m_uneven[triangle.material].mean();
+        visit([this, every](const Triangle& triangle) {
+            if (!triangle.is_uneven) return;
+            Uneven& of = m_uneven[triangle.material];
+            if (of.seen++ % every != 0)
+                m_faces[triangle.face].power += area_of(triangle.shape) * of.mean();
         });
     }
 
@@ -182,6 +186,7 @@ class LampFaces::Collector {
 
     void deliver(Uneven& uneven) {
         m_progress.check();
+        if (uneven.samples.empty()) return;
         for (std::size_t i = 0; i < uneven.faces.size(); ++i)
             uneven.samples[i].sample = &uneven.asked[i];
         uneven.pattern->color(uneven.samples);
