@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/surface_pattern.h"
 
-#include <algorithm>
-#include <numeric>
-
+#include "base/sorted_runs.h"
 #include "shade/bounces/hit_points.h"
 #include "shade/nodes/surface_run.h"
 
@@ -33,17 +31,14 @@ void SurfacePattern::color(std::span<const PatternSample> samples) const {
                         .target = one.target});
     std::vector<RayScene::Met> ends;
     m_rays.ends(rays, ends);
-    std::vector<std::uint32_t> order(ends.size());
-    std::iota(order.begin(), order.end(), 0u);
     const auto instance = [&](std::uint32_t i) { return ends[i].hit.instance; };
-    std::ranges::stable_sort(order, {}, instance);
+    std::vector<std::uint32_t> order;
     HitPoints points(m_scene, m_rays);
     std::vector<MetPath> batch;
-    for (std::size_t begin = 0, end; begin < order.size(); begin = end) {
+    for_sorted_runs(order, ends.size(), instance, [&](std::span<const std::uint32_t> of) {
         batch.clear();
-        for (end = begin; end < order.size() && instance(order[end]) == instance(order[begin]);
-             ++end) {
-            const RayScene::Met& met = ends[order[end]];
+        for (const std::uint32_t i : of) {
+            const RayScene::Met& met = ends[i];
             const PatternSample& sample = samples[met.ray];
             batch.push_back(
                 {nullptr, &met.hit, &met.frame(), sample.time, sample.width, met.hit.distance});
@@ -53,9 +48,8 @@ void SurfacePattern::color(std::span<const PatternSample> samples) const {
         m_program.program.execute(run);
         std::vector<Vec3f> sent = values_of(run, m_program.emission);
         make_finite(sent);
-        for (std::size_t i = 0; i < batch.size(); ++i)
-            samples[order[begin + i]].sample->radiance = sent[i];
-    }
+        for (std::size_t i = 0; i < batch.size(); ++i) samples[of[i]].sample->radiance = sent[i];
+    });
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/sorted_runs.h"
 #include "math/luminance.h"
 #include "math/sampling.h"
 #include "shade/nodes/surface_run.h"
@@ -215,25 +216,19 @@ class BouncedLight::Wave {
     /// Surfaces by program and instance.  The order of a point's own ways does not depend on what
     /// else is in the batch.
     void shade() {
-        m_order.resize(m_met.size());
-        for (std::uint32_t i = 0; i < m_order.size(); ++i) m_order[i] = i;
         const auto key = [&](std::uint32_t i) {
             const BouncedPath& path = m_paths[m_met[i].ray];
             return std::tuple(m_met[i].hit.instance, m_met[i].hit.material,
                               static_cast<int>(path.next.ray.type), path.depth, is_lit(path),
                               path.diffuse > 0);
         };
-        std::ranges::stable_sort(m_order, {}, key);
         std::vector<MetPath> batch;
-        for (std::size_t begin = 0, end; begin < m_order.size(); begin = end) {
+        for_sorted_runs(m_order, m_met.size(), key, [&](std::span<const std::uint32_t> run) {
             batch.clear();
-            for (end = begin; end < m_order.size() && key(m_order[end]) == key(m_order[begin]);
-                 ++end) {
-                const RayScene::Met& met = m_met[m_order[end]];
-                batch.push_back(met_by(m_paths[met.ray], met.hit, met.frame()));
-            }
+            for (const std::uint32_t i : run)
+                batch.push_back(met_by(m_paths[m_met[i].ray], m_met[i].hit, m_met[i].frame()));
             shade(batch);
-        }
+        });
     }
 
     void shade(const std::vector<MetPath>& batch) {

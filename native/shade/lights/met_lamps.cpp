@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/lights/met_lamps.h"
 
-#include <algorithm>
-#include <functional>
-#include <numeric>
+#include "base/sorted_runs.h"
 
 namespace granita {
 namespace {
@@ -28,20 +26,17 @@ void add_met(const LampSet& set, LitGrid& grid, const MetLamp& met) {
 /// Light arrives at each point in the order of its samples, whatever else was met.
 void deliver_met(const LampSet& set, LitGrid& grid) {
     std::vector<MetLamp>& later = grid.met_lamps;
-    std::vector<std::uint32_t> order(later.size());
-    std::iota(order.begin(), order.end(), 0u);
     const auto pattern = [&](std::uint32_t i) { return later[i].lamp->pattern(); };
-    std::ranges::stable_sort(order, std::less<>(), pattern);
+    std::vector<std::uint32_t> order;
     std::vector<PatternSample> samples;
-    for (std::size_t begin = 0, end; begin < order.size(); begin = end) {
+    for_sorted_runs(order, later.size(), pattern, [&](std::span<const std::uint32_t> run) {
         samples.clear();
-        for (end = begin; end < order.size() && pattern(order[end]) == pattern(order[begin]);
-             ++end) {
-            MetLamp& met = later[order[end]];
+        for (const std::uint32_t i : run) {
+            MetLamp& met = later[i];
             samples.push_back(met.lamp->patterned(met.place.time, met.place.p, met.sample));
         }
-        pattern(order[begin])->color(samples);
-    }
+        pattern(run[0])->color(samples);
+    });
     for (const MetLamp& met : later) add(set, grid, met);
     later.clear();
 }
