@@ -126,6 +126,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
         try:
             if not self.is_preview:
                 self.frame_statistics.write()
+                written_frames.is_rendered()
         except _EXPLAINED as error:
             self._fail(str(error))
 

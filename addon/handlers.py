@@ -5,11 +5,12 @@ import bpy
 
 
 def registration(*handlers):
-    """(register, unregister) of pairs (event, function): in this order, and whatever file is loaded meanwhile."""
+    """(register, unregister) of pairs (event, function): in this order, before those of others that are there, and
+    whatever file is loaded meanwhile."""
 
     def register():
-        for event, function in handlers:
-            getattr(bpy.app.handlers, event).append(bpy.app.handlers.persistent(function))
+        for event, function in reversed(handlers):
+            getattr(bpy.app.handlers, event).insert(0, bpy.app.handlers.persistent(function))
 
     def unregister():
         for event, function in handlers:

@@ -3,7 +3,7 @@
 
 On a full disk Blender's own writer of OpenEXR leaves half a file, says "Saved" and ends with exit code 0 (measured in
 3.4, with every engine), and that of PNG leaves half a file beside its error.  Such a file is taken away, and the
-process of a farm ends with 1.
+process of a farm ends with 1.  What is whole gets the frame's name (`unfinished_file.py`).
 """
 
 import os
@@ -14,6 +14,7 @@ from pathlib import Path
 
 import bpy
 
+from . import unfinished_file
 from .event_log import EventLog
 from .export.base.report import escaped
 from .handlers import registration
@@ -25,6 +26,7 @@ class _Frame:
 
     began = 0.0
     number = 0  # a cancelled animation has gone back to its scene's own
+    scene = ""
     problem = ""
 
 
@@ -38,7 +40,16 @@ def _render_begins(*_):
 
 
 def _frame_begins(scene, *_):
+    unfinished_file.put_back(scene)
     _Frame.began, _Frame.number = time.time(), scene.frame_current
+    _Frame.scene = scene.name
+
+
+def is_rendered():
+    """Once a frame's engines are done: what is left is the compositor and the saving."""
+    scene = bpy.data.scenes.get(_Frame.scene)
+    if scene and scene.render.engine == "GRANITA":
+        unfinished_file.set_aside(scene)
 
 
 def _look_at_written(scene, *_):
@@ -63,10 +74,18 @@ def _look_at_cancelled(scene, *_):
 
 
 def _take_away(scene):
-    """Removes those files of the frame that this render began and did not end; returns them."""
+    """Removes those files of the frame that this render began and did not end; returns their names."""
     if scene.render.is_movie_format:
         return []
     taken = []
+    if (aside := unfinished_file.put_back(scene)) and aside[0].exists():
+        file, final = aside
+        if is_whole(file):
+            os.replace(file, final)
+            print(f"Saved: '{escaped(str(final))}'", flush=True)
+        else:
+            file.unlink()
+            taken.append(final)
     for path in _paths(scene):
         try:
             # The clock of a network's file system may be a little behind.
@@ -92,6 +111,6 @@ def _paths(scene):
 register, unregister = registration(
     ("render_init", _render_begins),
     ("render_pre", _frame_begins),
-    ("render_write", _look_at_written),
+    ("render_post", _look_at_written),
     ("render_cancel", _look_at_cancelled),
 )

@@ -20,6 +20,28 @@ FORMATS = [
     ("OPEN_EXR_MULTILAYER", "ZIP", {"use_exr_interleave": True}),
     ("OPEN_EXR_MULTILAYER", "ZIP", {"use_exr_interleave": False}),
 ]
+# A signal ends the process where Blender writes, at the first byte beyond a thousand, as SIGKILL may.
+KILLED = """
+import resource, signal
+import bpy
+signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
+bpy.context.scene.render.resolution_x = bpy.context.scene.render.resolution_y = 256
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, resource.RLIM_INFINITY))
+"""
+# What others see of the output path, and of the file, at each event.
+WATCHED = """
+import os
+import bpy
+
+def tell(event):
+    def told(scene, *_):
+        path = scene.render.frame_path()
+        print("at", event, os.path.basename(path), os.path.exists(path))
+    getattr(bpy.app.handlers, event).append(told)
+
+for event in ("render_pre", "render_post", "render_write"):
+    tell(event)
+"""
 LIMIT = """
 import resource, signal
 import bpy
@@ -79,3 +101,59 @@ def test_whole_files_stay(blend, tmp_path):
     assert outcome.code == 0
     assert [path.name for path in outcome.files] == ["frame_0001.exr", "frame_0002.exr"]
     assert all(map(whole_file.is_whole, outcome.files))
+
+
+def test_what_ends_within_the_writing_leaves_nothing_under_the_frames_name(blend, tmp_path):
+    outcome = render_host.run(blend, tmp_path / "out", KILLED)
+    assert outcome.code not in (0, 1), outcome.output
+    (left,) = outcome.files
+    assert left.name.startswith(".unfinished-") and left.name.endswith("frame_0001.exr")
+    assert not whole_file.is_whole(left)
+
+
+def test_a_frame_is_under_its_name_when_others_hear_of_it(blend, tmp_path):
+    outcome = render_host.run(blend, tmp_path / "out", WATCHED, last=2)
+    told = [line for line in outcome.output.splitlines() if line.startswith("at render_")]
+    assert told == [
+        f"at {event} frame_000{frame}.exr {there}"
+        for frame in (1, 2)
+        for event, there in (("render_pre", False), ("render_post", True), ("render_write", True))
+    ]
+    assert [path.name for path in outcome.files] == ["frame_0001.exr", "frame_0002.exr"]
+    assert f"Saved: '{outcome.files[1]}'" in outcome.output
+
+
+def test_frames_that_are_there_and_placeholders_are_blenders_affair(blend, tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "frame_0001.exr").write_bytes(b"another's")
+    kept = (
+        "import bpy; r = bpy.context.scene.render; r.use_overwrite, r.use_placeholder = False, True"
+    )
+    outcome = render_host.run(blend, out, kept, last=2)
+    assert outcome.code == 0, outcome.output
+    assert [path.name for path in outcome.files] == ["frame_0001.exr", "frame_0002.exr"]
+    assert outcome.files[0].read_bytes() == b"another's"
+    assert whole_file.is_whole(outcome.files[1])
+
+
+def test_a_link_stays_a_link(blend, tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "frame_0001.exr").symlink_to(tmp_path / "elsewhere.exr")
+    render_host.run(blend, out)
+    assert (out / "frame_0001.exr").is_symlink()
+    assert whole_file.is_whole(tmp_path / "elsewhere.exr")
+
+
+def test_an_output_path_that_another_changes_is_theirs(blend, tmp_path):
+    """As a script does that gives each frame a name of its own when its render has begun."""
+    changes = f"""
+import bpy
+scene = bpy.context.scene
+bpy.app.handlers.render_stats.append(
+    lambda *_: setattr(scene.render, "filepath", {str(tmp_path / "other_####")!r}))
+"""
+    outcome = render_host.run(blend, tmp_path / "out", changes)
+    assert outcome.code == 0, outcome.output
+    assert whole_file.is_whole(tmp_path / "other_0001.exr")
