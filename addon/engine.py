@@ -90,6 +90,8 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
         finally:
             if stays:
                 _rendering.discard(self)
+            if not self.is_preview:
+                turn_of_python.ended()
 
     def _render(self, depsgraph):
         try:

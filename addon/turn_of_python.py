@@ -4,7 +4,8 @@
 Blender keeps in one place for all threads whether scripts may write now (`rna_disallow_writes`).  Each call of a class
 puts that back, at its end, as it found it.  A render that began while a panel or a view was drawn, which may not write,
 and ended later left it so: no timer and no handler could write any more until Blender ended.  So its thread waits where
-no class is called, in a handler; a preview, which has none, is given up where it would do that.
+no class is called, in a handler: of the frame, and, for view layers after the first, of the evaluation that goes before
+each.  A preview, which has none, is given up where it would do that.
 """
 
 import sys
@@ -20,6 +21,7 @@ _INTERVAL = sys.getswitchinterval()
 _PATIENCE = 10.0
 # How functions that draw are called, and what Blender asks while it draws.
 _MAY_NOT_WRITE = ("draw", "view_draw", "poll", "filter_items")
+_between_layers = False
 
 
 def await_start():
@@ -56,7 +58,15 @@ def _frame_of_window():
 
 def started(*_):
     """The render has been called, or will not be: turns are as short as ever."""
+    global _between_layers
+    _between_layers = False
     sys.setswitchinterval(_INTERVAL)
+
+
+def ended():
+    """The call of a view layer's render ends; that of another may follow."""
+    global _between_layers
+    _between_layers = True
 
 
 def _frame_begins(scene, *_):
@@ -64,8 +74,15 @@ def _frame_begins(scene, *_):
         await_start()
 
 
+def _layer_begins(*_):
+    """Not at frames that the window goes to, nor at those that an export looks at within the call."""
+    if _between_layers and threading.current_thread() is not threading.main_thread():
+        await_start()
+
+
 register, unregister = registration(
     ("render_pre", _frame_begins),
+    ("frame_change_post", _layer_begins),
     ("render_post", started),
     ("render_cancel", started),
     ("render_complete", started),

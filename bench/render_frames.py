@@ -3,9 +3,9 @@
 
     blender -b --factory-startup --addons granita --python bench/render_frames.py -- JOB.json
 
-JOB: {"module": "scenes", "lit_scenes", "lamp_scenes", "bounced_scenes", "hero_scene", "moving_files", "opened_files" (the scene is a path) or "demo", "scene", "variant" (of moving_files), "folder", "file", "runs", "seed" (of
+JOB: {"module": "scenes", "lit_scenes", "lamp_scenes", "bounced_scenes", "hero_scene", "moving_files", "walk_scene", "opened_files" (the scene is a path) or "demo", "scene", "variant" (of moving_files; frames of walk_scene), "folder", "file", "runs", "seed" (of
 Cycles), "size" (width and height, the scene's own without), "settings": [{"engine": "CYCLES" or "GRANITA", "samples",
-"shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), "bounces" (light is followed so far; none without), other
+"shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), "frame" (a still at this one), "bounces" (light is followed so far; none without), other
 properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FILE lists for each setting its runs as [wall, processor] seconds
 of the whole frame, export included.
 """
@@ -44,6 +44,10 @@ def build(job):
         import opened_files
 
         return opened_files.build(job["scene"])
+    if job["module"] == "walk_scene":
+        import walk_scene
+
+        return walk_scene.build(job["scene"], job["variant"]), 1, 0.0
     import moving_files
 
     return moving_files.build(job["scene"], job["variant"])
@@ -87,6 +91,7 @@ def main():
             open_for = setting.pop("shutter", shutter)
             at, bounces = setting.pop("at", None), setting.pop("bounces", 0)
             begins, open_for = (opens, open_for) if at is None else (opens + at * open_for, 0.0)
+            begins = setting.pop("frame", begins)
             if engine == "CYCLES":
                 engines.set_cycles(scene, samples, job.get("seed", 0))
             else:
