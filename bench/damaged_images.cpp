@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Damaged images of every format that is read, by the ten thousands: granita_damaged_images [COUNT
-// a format].
+// Damaged images of every format that is read, by the hundred thousands: granita_damaged_images
+// [COUNT of each kind] [SUFFIX, .png say: only of this format] [FIRST: the number of the first].
+// A disk takes longer than decoding does: TMPDIR=/dev/shm.
 //
 // Each is opened, decoded and looked at in a process of its own kind, which a fault would end; what
 // ended any is printed and kept, and the exit code is 1.  Tests run a few of each
@@ -68,13 +69,13 @@ void write(const std::string& path, const Bytes& bytes) {
                static_cast<std::streamsize>(bytes.size()));
 }
 
-void run(const Bytes& seed, const std::string& path, int first, int count, Shared& shared) {
+void run(const Bytes& seed, const std::string& path, int first, int end, Shared& shared) {
 #if !defined(__SANITIZE_ADDRESS__)  // whose shadow memory alone is more; it has a limit of its own
     const rlimit limit{kMostMemory, kMostMemory};
     setrlimit(RLIMIT_AS, &limit);
 #endif
     if (!std::freopen("/dev/null", "w", stderr)) std::_Exit(2);
-    for (int number = first; number < count; ++number) {
+    for (int number = first; number < end; ++number) {
         shared.current = number;
         alarm(kMostSeconds);
         write(path, mutation(seed, number));
@@ -94,11 +95,14 @@ extern "C" __attribute__((visibility("default"))) const char* __asan_default_opt
 
 int main(int argc, char** argv) {
     const int count = argc > 1 ? std::atoi(argv[1]) : 5000;
+    const std::string wanted = argc > 2 ? argv[2] : "";
+    const int begin_at = argc > 3 ? std::atoi(argv[3]) : 0;
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("granita-damaged-" + std::to_string(getpid()));
     std::filesystem::create_directories(folder);
     int faults = 0;
     for (const SeedFormat& format : kSeedFormats) {
+        if (!wanted.empty() && wanted != format.suffix) continue;
         const std::string path = (folder / "seed").string() + format.suffix;
         // In a process of its own as well: readers' and writers' threads do not outlive a fork.
         const pid_t writer = fork();
@@ -114,9 +118,9 @@ int main(int argc, char** argv) {
         auto& shared = *static_cast<Shared*>(mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE,
                                                   MAP_SHARED | MAP_ANONYMOUS, -1, 0));
         const auto begin = std::chrono::steady_clock::now();
-        for (int first = 0; first < count; first = shared.current + 1) {
+        for (int first = begin_at; first < begin_at + count; first = shared.current + 1) {
             const pid_t child = fork();
-            if (child == 0) run(seed, path, first, count, shared);
+            if (child == 0) run(seed, path, first, begin_at + count, shared);
             int status = 0;
             if (child < 0 || waitpid(child, &status, 0) < 0) return 2;
             if (WIFEXITED(status) && WEXITSTATUS(status) == 0) break;

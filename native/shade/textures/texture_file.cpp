@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "shade/textures/image_format.h"
+#include "shade/textures/openexr_header.h"
 
 namespace granita {
 
@@ -58,6 +59,10 @@ bool TextureFile::open(const Image& image) {
     const ImageFormat format = image_format(image.path);
     m_header.error = format.error;
     if (!format.reader) return false;
+    if (std::string_view(format.reader) == "openexr" && !openexr_header_fits(image.path)) {
+        m_header.error = "its header is damaged";
+        return false;
+    }
     m_space = find_color_space(image.colorspace).value_or(*find_color_space("sRGB"));
     m_opaque = image.alpha_mode == "NONE";
     m_input = OIIO::ImageInput::create(format.reader);
@@ -147,8 +152,13 @@ void TextureFile::find_levels() {
         m_levels = std::move(levels);
 }
 
+/// As it is stored where that is known: for anything else OpenImageIO takes 16 MiB a call.
 OIIO::TypeDesc TextureFile::raw_type() const {
-    return m_raw_type == TexelType::Byte   ? OIIO::TypeUInt8
+    const bool is_stored = m_spec.channelformats.empty() &&
+                           (m_spec.format == OIIO::TypeUInt8 || m_spec.format == OIIO::TypeHalf ||
+                            m_spec.format == OIIO::TypeFloat);
+    return is_stored                       ? OIIO::TypeUnknown
+           : m_raw_type == TexelType::Byte ? OIIO::TypeUInt8
            : m_raw_type == TexelType::Half ? OIIO::TypeHalf
                                            : OIIO::TypeFloat;
 }

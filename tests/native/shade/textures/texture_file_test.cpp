@@ -126,6 +126,19 @@ TEST(TextureFile, headers_of_impossible_sizes_end_in_a_warning) {
     }
 }
 
+TEST(TextureFile, no_attribute_of_openexr_takes_more_than_its_file_has) {
+    // A comment of 2 GiB, of which the file has nothing.
+    const std::string_view header("\x76\x2f\x31\x01\x02\0\0\0comments\0string\0\xff\xff\xff\x7f",
+                                  28);
+    ImageFile file(".exr");
+    file.write({header.begin(), header.end()});
+    rusage before{}, after{};
+    getrusage(RUSAGE_SELF, &before);
+    EXPECT_EQ(read_texture_header(file.image()).error, "its header is damaged");
+    getrusage(RUSAGE_SELF, &after);
+    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 100 * 1024);  // KiB
+}
+
 /// Of 32-bit floats, whose tiles are all at the same place: their data are not there.
 Bytes tiff_of(std::uint32_t width, std::uint32_t height, std::uint32_t tile,
               std::uint16_t channels) {
