@@ -424,7 +424,8 @@ TEST(RayScene, broken_faces_and_flat_transforms_neither_cast_nor_harm) {
 }
 
 // Half a millimetre under a lid, on a mesh that goes on for ten kilometres.
-TEST(RayScene, a_small_detail_of_a_huge_mesh_keeps_its_contact_shadow) {
+/// Whose limit, where it is subdivided, is flat and holds what is asked of its faces.
+void expect_contact_shadow_of_a_detail(bool is_subdivision) {
     Scene scene = empty_scene();
     GeometryData data = quads("mesh 'Land'", {{-1e4f, -1e4f, -50},
                                               {1e4f, -1e4f, -50},
@@ -438,6 +439,7 @@ TEST(RayScene, a_small_detail_of_a_huge_mesh_keeps_its_contact_shadow) {
                                               {6, 5, 1.0005f},
                                               {6, 6, 1.0005f},
                                               {5, 6, 1.0005f}});
+    data.is_subdivision = is_subdivision;
     add_instance(scene, std::move(data), at({0, 0, 0}));
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), {}, progress);
@@ -445,16 +447,24 @@ TEST(RayScene, a_small_detail_of_a_huge_mesh_keeps_its_contact_shadow) {
     for (std::uint32_t i = 0; i < 1024; ++i) {
         const Vec2f u = points(i);
         const Vec3f direction = glm::normalize(Vec3f(u.x - 0.5f, u.y - 0.5f, 1.0f));
-        const Vec3f below(5.1f + 0.8f * u.y, 5.1f + 0.8f * u.x, 1.0f);
+        const Vec3f below(5.3f + 0.4f * u.y, 5.3f + 0.4f * u.x, 1.0f);
         const Vec3f start = rays.ray_offset({0, 1, 1})(below, kUp);
         EXPECT_EQ(rays.transmittance({start, direction, kInfinity}), Vec3f(0.0f));
         // Neither lid nor land shades itself.
         const Vec3f above = rays.ray_offset({0, 2, 1})(Vec3f(below.x, below.y, 1.0005f), kUp);
         EXPECT_EQ(rays.transmittance({above, direction, kInfinity}), Vec3f(1.0f));
-        const Vec3f far_away(9000.0f * u.x + 100.0f, 9000.0f * u.y + 100.0f, -50.0f);
+        const Vec3f far_away(5000.0f * u.x + 100.0f, 5000.0f * u.y + 100.0f, -50.0f);
         const Vec3f land = rays.ray_offset({0, 0, 1})(far_away, kUp);
         EXPECT_EQ(rays.transmittance({land, direction, kInfinity}), Vec3f(1.0f));
     }
+}
+
+TEST(RayScene, a_small_detail_of_a_huge_mesh_keeps_its_contact_shadow) {
+    expect_contact_shadow_of_a_detail(false);
+}
+
+TEST(RayScene, a_small_detail_of_a_huge_subdivided_mesh_keeps_its_contact_shadow) {
+    expect_contact_shadow_of_a_detail(true);
 }
 
 }  // namespace
