@@ -32,6 +32,8 @@ PASSES = (
     Pass("Transmission Direct", "TransDir", 3, "RGB", "COLOR", "use_pass_transmission_direct"),
     Pass("Transmission Indirect", "TransInd", 3, "RGB", "COLOR", "use_pass_transmission_indirect"),
     Pass("Transmission Color", "TransCol", 3, "RGB", "COLOR", "use_pass_transmission_color"),
+    Pass("Volume Direct", "VolumeDir", 3, "RGB", "COLOR", "use_pass_volume_direct"),
+    Pass("Volume Indirect", "VolumeInd", 3, "RGB", "COLOR", "use_pass_volume_indirect"),
     Pass("Emission", "Emit", 3, "RGB", "COLOR", "use_pass_emit"),
     Pass("Environment", "Env", 3, "RGB", "COLOR", "use_pass_environment"),
     Pass("Shadow", "Shadow", 3, "RGB", "COLOR", "use_pass_shadow"),
@@ -57,6 +59,8 @@ EXPOSED = {
     "Glossy Indirect",
     "Transmission Direct",
     "Transmission Indirect",
+    "Volume Direct",
+    "Volume Indirect",
     "Emission",
     "Environment",
 }

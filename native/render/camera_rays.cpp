@@ -44,10 +44,12 @@ CameraRays::Seen CameraRays::ray(std::size_t i, const Vec3d& origin, float frame
     if (!p.perspective) start += Vec3d((raster - p.center) / p.scale, 0.0);
     const Vec3d way = slope(p, raster, seen);
     const double length = glm::length(way);
+    start += way * p.near_clip;
     return {{Vec3f(transform_point(world_from_camera, start) - origin),
              Vec3f(glm::normalize(Mat3d(world_from_camera) * way)),
              std::numeric_limits<float>::infinity(), time, -1, RayType::Camera},
-            static_cast<float>(length)};
+            static_cast<float>(length),
+            static_cast<float>(p.near_clip)};
 }
 
 }  // namespace granita

@@ -41,8 +41,12 @@ class CameraRays {
     }
 
     struct Seen {
-        Ray ray;        ///< of a sample, without end
+        Ray ray;        ///< of a sample, from the near plane on, without end
         float stretch;  ///< metres along it a metre of depth
+        float near;     ///< depth of its start
+
+        /// How far away on it something of a depth is.
+        float distance(float depth) const { return stretch * (depth - near); }
     };
     /// `origin`: of shading space, in the world.
     Seen ray(std::size_t i, const Vec3d& origin, float frame_time) const;

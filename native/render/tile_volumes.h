@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <vector>
-
 #include "hider/resolve/composite.h"
 #include "render/frame.h"
 
@@ -15,8 +13,8 @@ struct TileVolumes {
     TileVolumes(Frame& frame, const SampleTable& table, const TileStore& store,
                 const GridPool& pool, const RefinedSamples& refined);
 
-    RefinedSamples refined;             ///< and what is seen of layers through volumes
-    std::vector<SampleVolume> samples;  ///< [256 * samples]
+    RefinedSamples refined;  ///< and what is seen of layers through volumes
+    SampleVolumes samples;
 };
 
 }  // namespace granita

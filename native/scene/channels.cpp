@@ -31,6 +31,8 @@ const PassKind kPasses[] = {
     {"Transmission Indirect", Quantity::TransmissionIndirect, Merge::Layers, 3,
      Quantity::TransmissionColor},
     {"Transmission Color", Quantity::TransmissionColor, Merge::Layers, 3},
+    {"Volume Direct", Quantity::VolumeDirect, Merge::Layers, 3},
+    {"Volume Indirect", Quantity::VolumeIndirect, Merge::Layers, 3},
     {"Denoising Albedo", Quantity::Albedo, Merge::Layers, 3},
     {"Denoising Normal", Quantity::Normal, Merge::First, 3},
     {"Emission", Quantity::Emission, Merge::Layers, 3},

@@ -26,8 +26,10 @@ enum class Quantity {
     TransmissionDirect,
     TransmissionIndirect,
     TransmissionColor,
-    Albedo,  ///< the three colours together, which denoisers ask for
-    Emission,
+    Albedo,        ///< the three colours together, which denoisers ask for
+    VolumeDirect,  ///< light that media scatter; surfaces have none
+    VolumeIndirect,
+    Emission,        ///< of surfaces and media
     LampsArriving,   ///< radiance reflected of lamps
     LampsUnblocked,  ///< the same without shadows
     Clarity,         ///< (1 - mist) opacity

@@ -168,6 +168,8 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                 fill([&](std::size_t) { return static_cast<float>(index); });
                 break;
             }
+            case Quantity::VolumeDirect:
+            case Quantity::VolumeIndirect:
             case Quantity::Environment:
                 break;
         }

@@ -29,7 +29,7 @@ void SeenVolumes::see(std::span<const ViewRay> rays, std::span<const float> dept
     for (std::size_t i = 0; i < rays.size(); ++i) {
         MediumWalk walk(media.of(i));
         for (; next < rays[i].end; ++next) {
-            out[next].light = walk.advance(depths[next]);
+            out[next].emitted = walk.advance(depths[next]);
             out[next].transmittance = walk.transmittance();
         }
     }
@@ -59,11 +59,15 @@ void SeenVolumes::add_scattered(std::span<const ViewRay> rays, const std::vector
     const std::vector<Vec3f> direct =
         m_light.reflect(places.points(), places.closure(), {}, nullptr, {}, nullptr,
                         m_bounces ? &leaving : nullptr);
-    for (std::size_t k = 0; k < seen_at.size(); ++k) out[seen_at[k]].light += direct[k];
+    for (std::size_t k = 0; k < seen_at.size(); ++k) out[seen_at[k]].direct = direct[k];
     if (!m_bounces) return;
     const GatheredLight light = m_bounces->gather_scattered(leaving.rays, seen_at.size());
-    for (std::size_t k = 0; k < seen_at.size(); ++k)
-        out[seen_at[k]].light += light.glossy[k] + light.mirrored[k];
+    for (std::size_t k = 0; k < seen_at.size(); ++k) {
+        SeenMedium& seen = out[seen_at[k]];
+        seen.direct += light.emitted[k];
+        seen.indirect =
+            glm::max(light.glossy[k] + light.mirrored[k] - light.emitted[k], Vec3f(0.0f));
+    }
 }
 
 }  // namespace granita

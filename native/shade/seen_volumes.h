@@ -27,7 +27,10 @@ struct ViewRay {
 /// At a depth of a ray.
 struct SeenMedium {
     Vec3f transmittance{1.0f};  ///< from there to the camera
-    Vec3f light{0.0f};          ///< that reaches the camera from between the depth before and this
+    // Light that reaches the camera from between the depth before and this.
+    Vec3f emitted{0.0f};
+    Vec3f direct{0.0f};    ///< scattered, of what sends it there
+    Vec3f indirect{0.0f};  ///< scattered, by way of surfaces and other places
 };
 
 class SeenVolumes {

@@ -125,7 +125,7 @@ def test_the_camera_may_be_inside():
     snapshot = view()
     wall(snapshot)
     box(snapshot, (-1, -1, -4), (20, 20, 5), filled(snapshot, absorption()))
-    assert mean(snapshot) == pytest.approx(np.exp(-5 * SIGMA), rel=1e-5)
+    assert mean(snapshot) == pytest.approx(np.exp(-(5 - 0.01) * SIGMA), rel=1e-5)
 
 
 def test_surfaces_stand_inside():
@@ -176,13 +176,29 @@ def world_of(snapshot, *nodes, background=1.0):
     snapshot["world"]["volume"] = (1, "Volume" if "Volume" in nodes[0]["type"] else "Emission")
 
 
-def test_a_world_that_is_filled_hides_its_background():
+@pytest.mark.parametrize("near", [0.01, 1.5])
+def test_a_world_that_is_filled_hides_its_background(near):
+    """From the near plane on, as in Cycles."""
     snapshot = view()
+    snapshot["camera"]["clip"] = (near, 1e4)
     world_of(snapshot, absorption())
     s.quad(snapshot, s.rectangle(0, 0, 8, 16, 4.0), s.emission(snapshot))
     image = s.render(snapshot)["combined"][..., 0]
-    assert image[:, :7] == pytest.approx(np.exp(-4 * SIGMA), rel=1e-5)
+    assert image[:, :7] == pytest.approx(np.exp(-(4 - near) * SIGMA), rel=1e-5)
     assert image[:, 9:] == pytest.approx(0.0)
+
+
+def test_rays_through_the_lens_begin_at_the_near_plane():
+    """In perspective, at the picture's corner too, whatever point of the lens they leave."""
+    snapshot = s.perspective((32, 32), 32.0, samples=64, clip=(1.0, 1e4))
+    snapshot["camera"].update(lens_radius=0.05, focus_distance=3.0)
+    world_of(snapshot, absorption())
+    wall(snapshot, 3.0)
+    image = s.render(snapshot)["combined"][..., 0]
+    x = (np.arange(32) + 0.5 - 16) / 32
+    stretch = np.sqrt(1 + x[:, None] ** 2 + x**2)
+    # The lens turns rays by up to .05 / 3, of which the mean is 0: what is left is of second order.
+    assert np.abs(image / np.exp(-2 * SIGMA * stretch) - 1).max() < 2e-3
 
 
 LAMP = {

@@ -77,6 +77,21 @@ void ChannelLayers::set_first(std::uint32_t sample, const SurfacePoint& at) {
         center[k] = k < m_interpolated_center ? mix(surface + k) : mix.a[surface + k];
 }
 
+void ChannelLayers::add_volume(std::uint32_t sample, const SampleVolume& volume,
+                               const Vec3d& transmission) {
+    float* const row =
+        m_out.filtered.data() + static_cast<std::size_t>(sample) * m_channels.sample_width();
+    const auto add = [&](Quantity quantity, const Vec3f& light) {
+        const Channel* const channel = m_channels.find(quantity);
+        if (!channel) return;
+        for (int c = 0; c < 3; ++c)
+            row[channel->first + c] += static_cast<float>(transmission[c] * light[c]);
+    };
+    add(Quantity::Emission, volume.emitted);
+    add(Quantity::VolumeDirect, volume.direct);
+    add(Quantity::VolumeIndirect, volume.indirect);
+}
+
 void ChannelLayers::add_environment(std::uint32_t sample, const Vec3f& radiance,
                                     const Vec3d& transmission) {
     if (!m_channels.has_environment()) return;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hider/resolve/sample_channels.h"
+#include "hider/resolve/sample_volumes.h"
 #include "hider/resolve/surface_interpolator.h"
 
 namespace granita {
@@ -17,6 +18,8 @@ class ChannelLayers {
     void add(std::uint32_t sample, const SurfacePoint& at, const Vec3d& transmission);
     /// The layer that stands for the sample where nothing is mixed.
     void set_first(std::uint32_t sample, const SurfacePoint& at);
+    /// The light that it sends.
+    void add_volume(std::uint32_t sample, const SampleVolume& volume, const Vec3d& transmission);
     void add_environment(std::uint32_t sample, const Vec3f& radiance, const Vec3d& transmission);
 
   private:

@@ -62,7 +62,7 @@ class TileComposite {
     TileComposite(const TileStore& store, const TileSamples& samples, LayerTable& table,
                   std::span<const Vec3f> background, const CompositeSettings& settings,
                   ChannelLayers* channels, const RefinedSamples& refined,
-                  std::span<const SampleVolume> volumes, SampleColors& colors)
+                  const SampleVolumes& volumes, SampleColors& colors)
         : m_store(store),
           m_samples(samples),
           m_table(table),
@@ -121,10 +121,10 @@ class TileComposite {
 
     void put_volumes_over() {
         for (std::uint32_t sample = 0; sample < m_store.key.size(); ++sample) {
-            const SampleVolume& volume = m_volumes[sample];
+            const SampleVolume& volume = m_volumes.behind(sample);
             SampleColor color = m_colors[sample];
             const Vec3f& left = volume.transmittance;
-            color.color = volume.light + left * color.color;
+            color.color = volume.light() + left * color.color;
             color.alpha = static_cast<float>(1.0 - channel_mean(left.x, left.y, left.z) *
                                                        (1.0 - color.alpha));
             m_colors.set(sample, color);
@@ -175,6 +175,7 @@ class TileComposite {
             const int i = std::countr_zero(rest);
             const std::uint32_t sample = first + static_cast<std::uint32_t>(i);
             const bool listed = !m_listed.empty() && m_listed[sample];
+            if (m_channels && !listed) add_light_of_volumes(sample, Vec3d(1.0));
             if (m_store.id[sample] == kNoSurface) {
                 m_colors.set(sample, nothing(sample));
                 if (m_channels && !listed) add_environment(sample, Vec3d(1.0));
@@ -185,7 +186,7 @@ class TileComposite {
             m_colors.set(sample, opaque(sample, point));
             if (!m_channels || listed) continue;
             m_channels->set_first(sample, point);
-            if (!point.grid->holdout) m_channels->add(sample, point, Vec3d(1.0));
+            add_behind(sample, point, Vec3d(1.0));
         }
     }
 
@@ -216,10 +217,25 @@ class TileComposite {
         return color;
     }
 
+    // Of what is behind a sample's list; `transmission` of the list.
+
+    /// Of light that is behind as well.
+    Vec3d through_volumes(std::uint32_t sample, const Vec3d& transmission) const {
+        if (m_volumes.empty()) return transmission;
+        return transmission * Vec3d(m_volumes.behind(sample).transmittance);
+    }
+    void add_light_of_volumes(std::uint32_t sample, const Vec3d& transmission) {
+        if (!m_volumes.empty())
+            m_channels->add_volume(sample, m_volumes.behind(sample), transmission);
+    }
     void add_environment(std::uint32_t sample, const Vec3d& transmission) {
         if (m_background.empty()) return;
         m_channels->add_environment(sample, m_background[m_background.size() == 1 ? 0 : sample],
-                                    transmission);
+                                    through_volumes(sample, transmission));
+    }
+    void add_behind(std::uint32_t sample, const SurfacePoint& point, const Vec3d& transmission) {
+        if (!point.grid->holdout)
+            m_channels->add(sample, point, through_volumes(sample, transmission));
     }
 
     void add_lists(std::size_t packet) {
@@ -228,7 +244,7 @@ class TileComposite {
         const std::uint32_t* const counts = lists.counts() + first;
         if (std::all_of(counts, counts + kPacket, [](std::uint32_t n) { return n == 0; })) return;
         std::optional<ListChannels> visitor;
-        if (m_channels) visitor.emplace(lists, m_table.pool(), m_refined, *m_channels);
+        if (m_channels) visitor.emplace(lists, m_table.pool(), m_refined, m_volumes, *m_channels);
         PacketLayers layers;
         composite_packet(lists, packet, m_table, m_refined, m_settings.end,
                          visitor ? &*visitor : nullptr, layers);
@@ -261,6 +277,7 @@ class TileComposite {
 
     void put_channels_over(std::uint32_t sample, const Vec3d& transmission, bool found,
                            bool ended) {
+        if (!ended) add_light_of_volumes(sample, transmission);
         const SurfaceId id = m_store.id[sample];
         if (id == kNoSurface || (ended && found)) {
             if (!ended) add_environment(sample, transmission);
@@ -268,29 +285,41 @@ class TileComposite {
         }
         const SurfacePoint point = meet(sample);
         if (!found) m_channels->set_first(sample, point);
-        if (ended) return;
-        if (!point.grid->holdout) m_channels->add(sample, point, transmission);
+        if (!ended) add_behind(sample, point, transmission);
     }
 
     /// Hands layers to the channels.
     class ListChannels : public LayerVisitor {
       public:
         ListChannels(const FragmentLists& lists, const GridPool& pool,
-                     const RefinedSamples& refined, ChannelLayers& channels)
-            : m_lists(lists), m_pool(pool), m_refined(refined), m_channels(channels) {}
+                     const RefinedSamples& refined, const SampleVolumes& volumes,
+                     ChannelLayers& channels)
+            : m_lists(lists),
+              m_pool(pool),
+              m_refined(refined),
+              m_volumes(volumes),
+              m_channels(channels) {}
         void layer(std::uint32_t slot, std::uint32_t k, const Fragment& fragment, bool first,
                    bool adds, const Vec3d& transmission) override {
             const SurfacePoint* const refined = m_refined.layer_point(slot, k);
             const SurfacePoint point = refined ? *refined : point_of(fragment, m_pool);
             const std::uint32_t sample = m_lists.sample(slot);
             if (first) m_channels.set_first(sample, point);
-            if (adds) m_channels.add(sample, point, transmission);
+            if (!adds) return;
+            Vec3d through = transmission;
+            if (!m_volumes.empty()) {
+                const SampleVolume& volume = m_volumes.before_layer(sample, k);
+                m_channels.add_volume(sample, volume, transmission);
+                through *= Vec3d(volume.transmittance);
+            }
+            if (!point.grid->holdout) m_channels.add(sample, point, through);
         }
 
       private:
         const FragmentLists& m_lists;
         const GridPool& m_pool;
         const RefinedSamples& m_refined;
+        const SampleVolumes& m_volumes;
         ChannelLayers& m_channels;
     };
 
@@ -301,7 +330,7 @@ class TileComposite {
     const CompositeSettings& m_settings;
     ChannelLayers* m_channels;
     const RefinedSamples& m_refined;
-    std::span<const SampleVolume> m_volumes;
+    const SampleVolumes& m_volumes;
     SampleColors& m_colors;
     bool m_blurred;
     std::vector<std::uint8_t> m_done;  ///< [samples] 1 = has its colour; empty: none has
@@ -315,7 +344,7 @@ class TileComposite {
 void composite_tile(const TileStore& store, const TileSamples& samples, LayerTable& table,
                     std::span<const Vec3f> background, const CompositeSettings& settings,
                     SampleColors& colors, SampleChannels* channels, const RefinedSamples& refined,
-                    std::span<const SampleVolume> volumes) {
+                    const SampleVolumes& volumes) {
     const std::size_t count = store.key.size();
     const bool has_channels = settings.channels && !settings.channels->empty();
     GRANITA_CHECK(!has_channels || channels);

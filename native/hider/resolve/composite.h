@@ -10,6 +10,7 @@
 #include "hider/resolve/layer_table.h"
 #include "hider/resolve/refined_samples.h"
 #include "hider/resolve/sample_channels.h"
+#include "hider/resolve/sample_volumes.h"
 #include "hider/sample_store.h"
 #include "hider/samples/sample_table.h"
 #include "math/projection.h"
@@ -24,12 +25,6 @@ struct CompositeSettings {
     bool depth = true;                     ///< whether SampleColors::depth is wanted
 };
 
-/// What lies between a sample's list and what is behind it, or the layer before that.
-struct SampleVolume {
-    Vec3f transmittance{1.0f};  ///< from what is behind to the camera
-    Vec3f light{0.0f};          ///< that it sends to the camera, but for the layers before it
-};
-
 /// Fills [256 * samples] colours in sample order.  `background`: premultiplied radiance behind
 /// everything: one value, or one a sample; read where the film is not transparent or channels have
 /// the environment.  `table`: of the hider's pool.
@@ -41,10 +36,10 @@ struct SampleVolume {
 /// is 1 less what holdouts cut out.  Depth is that of the first layer, or
 /// anything where it is not wanted.  Fills `channels` where
 /// settings.channels asks for some; holdouts take part in Merge::First and Center alone.
-/// `volumes` [256 * samples], or empty: not seen by channels.
+/// Layers of `refined` look as they do through `volumes`, their channels as without.
 void composite_tile(const TileStore& store, const TileSamples& samples, LayerTable& table,
                     std::span<const Vec3f> background, const CompositeSettings& settings,
                     SampleColors& colors, SampleChannels* channels = nullptr,
-                    const RefinedSamples& refined = {}, std::span<const SampleVolume> volumes = {});
+                    const RefinedSamples& refined = {}, const SampleVolumes& volumes = {});
 
 }  // namespace granita

@@ -114,7 +114,7 @@ class PacketCompositor {
         if (HWY_UNLIKELY(!m_colored && layer.colored)) spread();
         const std::uint32_t first = find_first(layer, fragments, lanes);
         const std::uint32_t adding = lanes & ~(m_out.ended >> m_part);
-        if (HWY_UNLIKELY(m_visitor != nullptr)) visit(k, layer, lanes, first, adding);
+        if (HWY_UNLIKELY(m_visitor != nullptr)) visit(k, lanes, first, adding);
         const M adds = mask_of(adding);
         m_colored ? accumulate<true>(layer, adds) : accumulate<false>(layer, adds);
         if (m_end.opacity_threshold < 1.0f) {
@@ -226,9 +226,8 @@ class PacketCompositor {
         return hn::Gt(hn::Load(kTag, enough), set(0.0f));
     }
 
-    HWY_NOINLINE void visit(std::uint32_t k, const Layer& layer, std::uint32_t lanes,
-                            std::uint32_t first, std::uint32_t adding) const {
-        const std::uint32_t adds = adding & ~bits_of(layer.holdout);
+    HWY_NOINLINE void visit(std::uint32_t k, std::uint32_t lanes, std::uint32_t first,
+                            std::uint32_t adds) const {
         for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
             const int lane = __builtin_ctz(rest), i = m_part + lane;
             const Vec3d transmission(m_out.transmission[0][i],

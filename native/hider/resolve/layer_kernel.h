@@ -27,7 +27,7 @@ class LayerVisitor {
   public:
     virtual ~LayerVisitor() = default;
     /// Layer k of a slot.  `first`: it is the one that stands for the sample.  `adds`: it is in
-    /// front of the list's end and no holdout.  `transmission`: in front of it.
+    /// front of the list's end.  `transmission`: in front of it.
     virtual void layer(std::uint32_t slot, std::uint32_t k, const Fragment& fragment, bool first,
                        bool adds, const Vec3d& transmission) = 0;
 };

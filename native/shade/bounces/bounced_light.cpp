@@ -142,7 +142,7 @@ class BouncedLight::Wave {
             BouncedPath& path = m_paths[i];
             MediumWalk walk(m_media.of(i));
             const Vec3f emitted = walk.advance(m_rays[i].distance);
-            if (emitted != Vec3f(0.0f)) bring(path, emitted);
+            if (emitted != Vec3f(0.0f)) bring(path, Vec3f(0.0f), emitted);
             const bool has_met = met_by[i] != kNothing;
             const float scattered = scatter(path, i, has_met ? mean_size(walk.transmittance()) : 0);
             if (!has_met) continue;
@@ -203,7 +203,8 @@ class BouncedLight::Wave {
         m_leaving.rays.clear();
         const std::vector<Vec3f> light = m_light.m_direct.reflect(
             places.points(), places.closure(), {}, nullptr, {}, nullptr, &m_leaving);
-        for (std::size_t k = 0; k < batch.size(); ++k) bring(m_paths[batch[k].path], light[k]);
+        for (std::size_t k = 0; k < batch.size(); ++k)
+            bring(m_paths[batch[k].path], light[k], Vec3f(0.0f));
         std::ranges::stable_sort(m_leaving.rays, {}, &LobeRay::point);
         auto candidate = m_leaving.rays.begin();
         for (std::uint32_t k = 0; k < batch.size(); ++k) {
@@ -244,7 +245,7 @@ class BouncedLight::Wave {
         SurfaceClosure closure = ran.take_closure();
         draw_as_diffuse(closure, std::numeric_limits<float>::infinity());
         tame(batch, closure);
-        std::vector<Vec3f> light(batch.size(), Vec3f(0.0f));
+        std::vector<Vec3f> light(batch.size(), Vec3f(0.0f)), emitted = light;
         m_leaving.rays.clear();
         if (is_lit(first))
             light = m_light.m_direct.reflect(ran.points(), closure, key, nullptr, {}, nullptr,
@@ -252,8 +253,8 @@ class BouncedLight::Wave {
         for (std::size_t i = 0; i < closure.emission.size(); ++i)
             if (!m_light.is_lamp(*batch[i].hit) &&
                 in_light_set(batch[i].path->next.receives, instance.receiver_set))
-                light[i] += closure.emission[i];
-        for (std::size_t i = 0; i < batch.size(); ++i) bring(*batch[i].path, light[i]);
+                emitted[i] = closure.emission[i];
+        for (std::size_t i = 0; i < batch.size(); ++i) bring(*batch[i].path, light[i], emitted[i]);
         go_on(batch, ran.points(), closure);
     }
 
@@ -277,17 +278,22 @@ class BouncedLight::Wave {
         }
     }
 
-    void bring(const BouncedPath& path, const Vec3f& light) {
+    /// What a place sends on and what it emits.
+    void bring(const BouncedPath& path, const Vec3f& light, const Vec3f& emitted) {
         const LobeRay& ray = path.next;
-        Vec3f brought = ray.weight * light;
-        if (!is_finite(brought)) return;
-        const float sum = (brought.x + brought.y + brought.z) / ray.share;
-        if (m_limits.clamp > 0.0f && sum > m_limits.clamp) brought *= m_limits.clamp / sum;
+        Vec3f weight = ray.weight;
+        const Vec3f bright = weight * (light + emitted);
+        if (!is_finite(bright)) return;
+        const float sum = (bright.x + bright.y + bright.z) / ray.share;
+        if (m_limits.clamp > 0.0f && sum > m_limits.clamp) weight *= m_limits.clamp / sum;
+        const Vec3f brought = weight * (light + emitted);
         const Vec3f diffuse = brought * path.diffuse_part;
         const bool is_mirrored = path.kind == BouncedPath::Kind::Mirrored;
         m_gathered.diffuse[ray.point] += diffuse;
         (is_mirrored ? m_gathered.mirrored : m_gathered.glossy)[ray.point] += brought - diffuse;
         m_gathered.transmitted[ray.point] += brought * path.transmitted;
+        if (path.depth == 1 && !m_gathered.emitted.empty())
+            m_gathered.emitted[ray.point] += weight * emitted;
     }
 
     /// One way out of each point.
@@ -413,6 +419,7 @@ GatheredLight BouncedLight::gather(const std::vector<LobeRay>& leaving, std::siz
 GatheredLight BouncedLight::gather_scattered(const std::vector<LobeRay>& leaving,
                                              std::size_t points) const {
     GatheredLight light(points);
+    light.emitted.resize(points, Vec3f(0.0f));
     if (!leaving.empty()) Wave(*this, leaving, true, light).run();
     return light;
 }

@@ -17,6 +17,8 @@ struct GatheredLight {
     std::vector<Vec3f> glossy;       ///< that others do, but for
     std::vector<Vec3f> mirrored;     ///< what mirrors alone bring, which is in no doubt
     std::vector<Vec3f> transmitted;  ///< of these two, what goes through
+    /// Of all that, what the first things that are met emit themselves; empty: nobody asks.
+    std::vector<Vec3f> emitted;
     /// Mean of 1 / distance of what these meet: how fast its light changes from place to place.
     std::vector<float> nearness;
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "math/sampling.h"
-#include "scene/channels.h"
 #include "scene/knot_time.h"
 
 namespace granita {
@@ -55,10 +54,6 @@ Volumes::Volumes(const Scene& scene, TextureStore& textures, Report& report) : m
         m_world = compile(scene.world.graph, textures, report,
                           {"world '" + scene.world.name + "'", true});
     measure();
-    if (!ChannelSet(scene.options).empty())
-        report.warn("render settings",
-                    "passes beside Combined are those of surfaces, as if nothing were before them: "
-                    "volumes are not in them");
 }
 
 /// Steps are a tenth of a thing's mean extent, as Cycles has them where there are no voxels.
