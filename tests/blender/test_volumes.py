@@ -304,3 +304,23 @@ def test_what_is_not_read_of_smoke_is_named(scene):
     assert "once, not 4 times" in named["render settings"]
     assert snapshot["materials"][0]["surface"] is None
     assert snapshot["materials"][0]["volume"] is not None
+
+
+def test_what_is_hidden_from_volumes_is_named(scene):
+    """Lamps are not: theirs is read.  Nothing is said where nothing is filled."""
+    things = [turned_cube(location=(x, 0, 0)) for x in (0.0, 3.0)]
+    lamp(scene, "SUN", 3.0)
+    for hidden in (things[0], bpy.data.objects["Lamp"]):
+        hidden.visible_volume_scatter = False
+    scene.world = bpy.data.worlds.new("World")
+    if hasattr(scene.world, "cycles_visibility"):
+        scene.world.cycles_visibility.scatter = False
+    scene_parts.add_camera(scene)
+
+    def named():
+        entries = export_probe.through_engine(scene)[1].entries()
+        return {datablock for datablock, message, _ in entries if "Volume Scatter" in message}
+
+    assert named() == set()
+    filled(things[1], "ShaderNodeVolumeScatter")
+    assert named() == {f"object '{things[0].name}'", "world 'World'"}
