@@ -66,6 +66,8 @@ class BouncedLight::Wave {
 
   private:
     static constexpr std::uint32_t kNothing = ~0u;
+    /// Weights from which ways of mirrors are followed surely: at one place, and all the way.
+    static constexpr float kMost = 0.5f, kMuch = 0.02f;
     /// Where a way is, from which it goes on: on a surface, or in a medium, where there is no hit.
     struct End {
         const RayHit* hit;
@@ -296,7 +298,7 @@ class BouncedLight::Wave {
             m_gathered.emitted[ray.point] += weight * emitted;
     }
 
-    /// One way out of each point.
+    /// One way out of each point, but for mirrors'.
     void go_on(const std::vector<MetPath>& batch, const ShadingPoints& points,
                const SurfaceClosure& closure) {
         std::ranges::stable_sort(m_leaving.rays, {}, &LobeRay::point);
@@ -321,8 +323,15 @@ class BouncedLight::Wave {
 
     void choose(std::span<const LobeRay> ways, const Vec3f& through, const BouncedPath& path,
                 const End& end) {
-        float sum = largest(through);
-        for (const LobeRay& way : ways) sum += largest(way.weight);
+        const bool passes_surely = is_sure(path, through);
+        if (passes_surely) pass(path, through, end);
+        float sum = passes_surely ? 0.0f : largest(through);
+        for (const LobeRay& way : ways) {
+            if (is_sure(path, way))
+                send(path, way, way.weight, end);
+            else
+                sum += largest(way.weight);
+        }
         if (!(sum > 0.0f)) return;
         // Ends more surely the less it can bring: as Cycles, by the root of that.
         const float goes_on =
@@ -330,41 +339,64 @@ class BouncedLight::Wave {
         float u = chance(path.next.place, path.depth, path.passed, m_salt) / goes_on;
         if (!(u < 1.0f)) return;
         u *= sum;
-        BouncedPath next = path;
-        next.width = path.width + path.spread * end.distance;
-        if (u < largest(through)) {
-            next.next.weight = path.next.weight * through * (sum / (largest(through) * goes_on));
-            ++next.passed;
-            next.length = path.length + end.distance;
-            pass(next, *end.hit, *end.points, end.point);
-            return;
+        BouncedPath doubtful = path;
+        if (path.kind == BouncedPath::Kind::Mirrored) doubtful.kind = BouncedPath::Kind::Glossy;
+        if (!passes_surely) {
+            if (u < largest(through)) {
+                pass(doubtful, through * (sum / (largest(through) * goes_on)), end);
+                return;
+            }
+            u -= largest(through);
         }
-        u -= largest(through);
-        const LobeRay* taken = ways.data();
+        const LobeRay* taken = nullptr;
         for (const LobeRay& way : ways) {
+            if (is_sure(path, way)) continue;
             taken = &way;
             if (u < largest(way.weight)) break;
             u -= largest(way.weight);
         }
-        next.next = *taken;
-        next.next.weight =
-            path.next.weight * taken->weight * (sum / (largest(taken->weight) * goes_on));
+        if (!taken) return;
+        send(doubtful, *taken, taken->weight * (sum / (largest(taken->weight) * goes_on)), end);
+    }
+
+    /// Whether a way is followed without chance.  Mirrors and glass show edges, which are found
+    /// only in what is in no doubt; and points that happen to show what is improbable would alone
+    /// be shaded again.
+    static bool is_sure(const BouncedPath& path, const Vec3f& weight) {
+        return path.kind == BouncedPath::Kind::Mirrored &&
+               (largest(weight) >= kMost || largest(path.next.weight * weight) >= kMuch);
+    }
+    static bool is_sure(const BouncedPath& path, const LobeRay& way) {
+        return is_sharp(way.ray.type) && is_sure(path, way.weight);
+    }
+
+    void send(const BouncedPath& path, const LobeRay& way, const Vec3f& weight, const End& end) {
+        BouncedPath next = path;
+        next.width = path.width + path.spread * end.distance;
+        next.next = way;
+        next.next.weight = path.next.weight * weight;
         next.next.share = path.next.share;
         next.next.point = path.next.point;
         next.next.place = path.next.place;
-        next.spread = std::max(path.spread, taken->spread);
-        next.least_pdf = std::min(path.least_pdf, taken->pdf);
+        next.spread = std::max(path.spread, way.spread);
+        next.least_pdf = std::min(path.least_pdf, way.pdf);
         next.length = 0.0f;
         ++next.depth;
         follow(next, end.hit == nullptr);
     }
 
     /// Straight on, from behind the surface.
-    void pass(BouncedPath& next, const RayHit& hit, const ShadingPoints& points, std::size_t i) {
-        const std::uint32_t face = points.faces.empty() ? 0 : points.faces[i];
+    void pass(const BouncedPath& path, const Vec3f& weight, const End& end) {
+        const ShadingPoints& points = *end.points;
+        const std::uint32_t face = points.faces.empty() ? 0 : points.faces[end.point];
         const RayOffset offset = m_light.m_direct.rays()->ray_offset(
-            {m_light.m_scene.instances[hit.instance].key, face});
-        next.next.ray.start = offset(hit.p, -points.geometric_normal[i]);
+            {m_light.m_scene.instances[end.hit->instance].key, face});
+        BouncedPath next = path;
+        next.width = path.width + path.spread * end.distance;
+        next.next.weight = path.next.weight * weight;
+        next.next.ray.start = offset(end.hit->p, -points.geometric_normal[end.point]);
+        ++next.passed;
+        next.length = path.length + end.distance;
         m_next.push_back(next);
     }
 
