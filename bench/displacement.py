@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A displaced sheet against the same sheet with as many micropolygons that is not, on three graphs.
 
-    PYTHONPATH=<folder of granita_core> python bench/displacement.py [--rounds 5]
+    ./dev bench displacement [--rounds 5]
 
 Prints one JSON line a case: medians of the processor seconds of whole frames, taken in turns, by stage, and their
 ratio to the sheet that is smooth.

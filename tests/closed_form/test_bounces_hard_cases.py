@@ -182,3 +182,30 @@ def test_an_endless_plane_under_a_sky():
     assert sky == pytest.approx(1.0, abs=1e-5)
     # World light is found by samples and by rays, whose shares add up to all but a fiftieth.
     assert ground == pytest.approx(ALBEDO, rel=0.02)
+
+
+def test_half_mirrors_facing_each_other_end():
+    """Four behind each other in a world of 1: each place sends on two ways, of which the light of a point has as many
+    as bring a fiftieth of it, not two to the power of the meetings."""
+    snapshot = inside(64, transparent_bounces=64)
+    white_world(snapshot)
+    nodes = [
+        {"type": "ShaderNodeBsdfGlossy", "inputs": {"Color": (1.0,) * 4, "Roughness": 0.0}},
+        {"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1.0,) * 4}},
+        {
+            "type": "ShaderNodeMixShader",
+            "inputs": {
+                "Fac": 0.5,
+                "Shader": ("LINK", 0, "BSDF"),
+                "Shader_001": ("LINK", 1, "BSDF"),
+            },
+        },
+    ]
+    half = material(snapshot, nodes, (2, "Shader"))
+    for i in range(4):
+        s.quad(snapshot, s.rectangle(-900, -900, 900, 900, 2.0 + i), half)
+    rendered = s.render(snapshot)
+    # Pixels deviate by .13.
+    assert rendered["combined"][..., 0].mean() == pytest.approx(1.0, abs=4 * 0.13 / 32)
+    statistics = rendered["statistics"]
+    assert statistics["rays_bounce"] <= 50 * statistics["points_shaded"]

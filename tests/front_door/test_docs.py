@@ -45,7 +45,9 @@ def test_links_lead_somewhere(document):
     assert not [t for t in targets if "://" not in t and not (here / t).exists()]
 
 
-@pytest.mark.parametrize("document", DOCUMENTS)
+@pytest.mark.parametrize(
+    "document", DOCUMENTS + [name for name in FILES if re.fullmatch(r"bench/\w+\.py", name)]
+)
 def test_benches_that_a_document_names_are_run_by_dev(document):
     text = (ROOT / document).read_text(encoding="utf-8")
     listed = re.search(r"PYTHON_BENCHES=\(([^)]*)\)", (ROOT / "dev").read_text()).group(1).split()

@@ -323,11 +323,13 @@ class BouncedLight::Wave {
 
     void choose(std::span<const LobeRay> ways, const Vec3f& through, const BouncedPath& path,
                 const End& end) {
-        const bool passes_surely = is_sure(path, through);
+        float all = largest(through);
+        for (const LobeRay& way : ways) all += largest(way.weight);
+        const bool passes_surely = is_sure(path, through, all);
         if (passes_surely) pass(path, through, end);
         float sum = passes_surely ? 0.0f : largest(through);
         for (const LobeRay& way : ways) {
-            if (is_sure(path, way))
+            if (is_sure(path, way, all))
                 send(path, way, way.weight, end);
             else
                 sum += largest(way.weight);
@@ -350,7 +352,7 @@ class BouncedLight::Wave {
         }
         const LobeRay* taken = nullptr;
         for (const LobeRay& way : ways) {
-            if (is_sure(path, way)) continue;
+            if (is_sure(path, way, all)) continue;
             taken = &way;
             if (u < largest(way.weight)) break;
             u -= largest(way.weight);
@@ -359,15 +361,18 @@ class BouncedLight::Wave {
         send(doubtful, *taken, taken->weight * (sum / (largest(taken->weight) * goes_on)), end);
     }
 
-    /// Whether a way is followed without chance.  Mirrors and glass show edges, which are found
-    /// only in what is in no doubt; and points that happen to show what is improbable would alone
-    /// be shaded again.
-    static bool is_sure(const BouncedPath& path, const Vec3f& weight) {
-        return path.kind == BouncedPath::Kind::Mirrored &&
-               (largest(weight) >= kMost || largest(path.next.weight * weight) >= kMuch);
+    /// Whether a way is followed without chance; `all`: what the ways from its place weigh
+    /// together. Mirrors and glass show edges, which are found only in what is in no doubt; and
+    /// points that happen to show what is improbable would alone be shaded again.  Of a place's
+    /// ways one at most is followed for its part of them: half mirrors that face each other would
+    /// double the rays of a point at each meeting.
+    static bool is_sure(const BouncedPath& path, const Vec3f& weight, float all) {
+        if (path.kind != BouncedPath::Kind::Mirrored) return false;
+        const float most = largest(weight);
+        return (most >= kMost && most > 0.5f * all) || largest(path.next.weight * weight) >= kMuch;
     }
-    static bool is_sure(const BouncedPath& path, const LobeRay& way) {
-        return is_sharp(way.ray.type) && is_sure(path, way.weight);
+    static bool is_sure(const BouncedPath& path, const LobeRay& way, float all) {
+        return is_sharp(way.ray.type) && is_sure(path, way.weight, all);
     }
 
     void send(const BouncedPath& path, const LobeRay& way, const Vec3f& weight, const End& end) {
