@@ -90,8 +90,8 @@ def test_an_eye_within_glass():
         for j in range(64)
     ]
     s.mesh(snapshot, points.reshape(-1, 3), faces, glass)
-    # The poles of the ball are open: the view does not reach them.
-    assert mean(snapshot) == pytest.approx(1.0, abs=1e-3)
+    # The poles of the ball are open: the view does not reach them.  Seeds deviate by 1e-4.
+    assert mean(snapshot) == pytest.approx(1.0, abs=4e-4)
 
 
 def integral_over(square, height, place, steps=200):
@@ -184,16 +184,16 @@ def test_an_endless_plane_under_a_sky():
     assert ground == pytest.approx(ALBEDO, rel=0.02)
 
 
-def test_half_mirrors_facing_each_other_end():
-    """Four behind each other in a world of 1: each place sends on two ways, of which the light of a point has as many
-    as bring a fiftieth of it, not two to the power of the meetings."""
-    snapshot = inside(64, transparent_bounces=64)
+def panes(count, combine, bounces):
+    """One behind the other in a world of 1, of sharp Glossy and Transparent, for rays in at most 50 ways a point: those
+    that bring a fiftieth of its light, not two to the power of the meetings.  Returns the picture."""
+    snapshot = inside(bounces, transparent_bounces=64)
     white_world(snapshot)
     nodes = [
         {"type": "ShaderNodeBsdfGlossy", "inputs": {"Color": (1.0,) * 4, "Roughness": 0.0}},
         {"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1.0,) * 4}},
         {
-            "type": "ShaderNodeMixShader",
+            "type": combine,
             "inputs": {
                 "Fac": 0.5,
                 "Shader": ("LINK", 0, "BSDF"),
@@ -202,10 +202,22 @@ def test_half_mirrors_facing_each_other_end():
         },
     ]
     half = material(snapshot, nodes, (2, "Shader"))
-    for i in range(4):
+    for i in range(count):
         s.quad(snapshot, s.rectangle(-900, -900, 900, 900, 2.0 + i), half)
     rendered = s.render(snapshot)
-    # Pixels deviate by .13.
-    assert rendered["combined"][..., 0].mean() == pytest.approx(1.0, abs=4 * 0.13 / 32)
     statistics = rendered["statistics"]
     assert statistics["rays_bounce"] <= 50 * statistics["points_shaded"]
+    return rendered["combined"][..., 0]
+
+
+def test_half_mirrors_facing_each_other_end():
+    seen = panes(4, "ShaderNodeMixShader", 64)
+    # Pixels deviate by .13.
+    assert seen.mean() == pytest.approx(1.0, abs=4 * 0.13 / 32)
+
+
+def test_mirrors_added_to_what_is_clear_end():
+    """Each sends on twice what comes: of 3 panes and 12 meetings, 761 rays a point if all were followed."""
+    panes(3, "ShaderNodeAddShader", 12)
+    # Of one, the world behind and the one before.
+    assert panes(1, "ShaderNodeAddShader", 1) == pytest.approx(2.0, abs=1e-5)

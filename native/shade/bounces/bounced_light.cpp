@@ -41,6 +41,7 @@ class BouncedLight::Wave {
             path.transmitted = ray.transmitted;
             path.spread = ray.spread;
             path.least_pdf = ray.pdf;
+            path.sure_part = std::min(1.0f, largest(ray.weight));
             path.kind = ray.ray.type == RayType::Diffuse ? BouncedPath::Kind::Diffuse
                         : is_sharp(ray.ray.type)         ? BouncedPath::Kind::Mirrored
                                                          : BouncedPath::Kind::Glossy;
@@ -325,14 +326,20 @@ class BouncedLight::Wave {
                 const End& end) {
         float all = largest(through);
         for (const LobeRay& way : ways) all += largest(way.weight);
+        BouncedPath sure = path;
         const bool passes_surely = is_sure(path, through, all);
-        if (passes_surely) pass(path, through, end);
+        if (passes_surely) {
+            sure.sure_part = part(path, through, all);
+            pass(sure, through, end);
+        }
         float sum = passes_surely ? 0.0f : largest(through);
         for (const LobeRay& way : ways) {
-            if (is_sure(path, way, all))
-                send(path, way, way.weight, end);
-            else
+            if (!is_sure(path, way, all)) {
                 sum += largest(way.weight);
+                continue;
+            }
+            sure.sure_part = part(path, way.weight, all);
+            send(sure, way, way.weight, end);
         }
         if (!(sum > 0.0f)) return;
         // Ends more surely the less it can bring: as Cycles, by the root of that.
@@ -364,15 +371,19 @@ class BouncedLight::Wave {
     /// Whether a way is followed without chance; `all`: what the ways from its place weigh
     /// together. Mirrors and glass show edges, which are found only in what is in no doubt; and
     /// points that happen to show what is improbable would alone be shaded again.  Of a place's
-    /// ways one at most is followed for its part of them: half mirrors that face each other would
-    /// double the rays of a point at each meeting.
+    /// ways one at most is followed for its part of them, the others for theirs of the whole point:
+    /// half mirrors that face each other, or what adds a mirror to what is clear, would double the
+    /// rays of a point at each meeting.
     static bool is_sure(const BouncedPath& path, const Vec3f& weight, float all) {
         if (path.kind != BouncedPath::Kind::Mirrored) return false;
         const float most = largest(weight);
-        return (most >= kMost && most > 0.5f * all) || largest(path.next.weight * weight) >= kMuch;
+        return (most >= kMost && most > 0.5f * all) || part(path, weight, all) >= kMuch;
     }
     static bool is_sure(const BouncedPath& path, const LobeRay& way, float all) {
         return is_sharp(way.ray.type) && is_sure(path, way.weight, all);
+    }
+    static float part(const BouncedPath& path, const Vec3f& weight, float all) {
+        return path.sure_part * largest(weight) / std::max(1.0f, all);
     }
 
     void send(const BouncedPath& path, const LobeRay& way, const Vec3f& weight, const End& end) {

@@ -17,6 +17,9 @@ struct BouncedPath {
     Vec3f diffuse_part{0.0f}, transmitted{0.0f};
     /// What sent it from there.
     enum class Kind { Diffuse, Glossy, Mirrored } kind = Kind::Diffuse;
+    /// Part of its point that it was followed for while no chance chose it: those of a point's ways
+    /// after as many meetings sum up to 1 at most.
+    float sure_part = 0.0f;
     int passed = 0;          ///< surfaces that let it through
     float least_pdf = 0.0f;  ///< of its directions: how few ways go like it
     float width = 0.0f;      ///< of the beam where the ray starts, metres
