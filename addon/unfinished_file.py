@@ -3,17 +3,20 @@
 
 Blender opens a picture under its own name and fills it.  In background the output path has therefore a prefix, from
 the end of a frame's render until it is saved; then the file is renamed, which is done whole or not at all.  Whether
-a frame is there already, Blender asks before that, and movies and the compositor's files are not concerned.
+a frame is there already, Blender asks before that, and movies and the compositor's files are not concerned; nor are
+frames that other files are named after: the previews of OpenEXR, the drawings of Freestyle's exporter.
 """
 
 import os
 import platform
+import secrets
+import shutil
 from pathlib import Path
 
 import bpy
 
-# Of two machines that render the same frame neither may fill the other's file.
-_PREFIX = f".unfinished-{platform.node()}-{os.getpid()}-"
+# Of two machines that render the same frame neither may fill the other's file; containers share names and numbers.
+_PREFIX = f".unfinished-{platform.node()}-{os.getpid()}-{secrets.token_hex(3)}-"
 _LONGEST = 255  # bytes of a file's name
 
 
@@ -30,16 +33,27 @@ def set_aside(scene):
     """The frame that `scene` saves next will lie beside its place.  Nothing is changed where it can be seen."""
     put_back(scene)
     render = scene.render
-    if not bpy.app.background or render.is_movie_format or render.use_multiview:
+    names_others = render.image_settings.use_preview or render.use_freestyle
+    if not bpy.app.background or render.is_movie_format or render.use_multiview or names_others:
         return
     folder, name = os.path.split(render.filepath)
     final, prefixed = Path(render.frame_path()), os.path.join(folder, _PREFIX + name)
-    # Links stay links.
-    if len(os.fsencode(_PREFIX + final.name)) > _LONGEST or final.is_symlink():
+    # Links stay links, and what cannot be looked at Blender may try.
+    if len(os.fsencode(_PREFIX + final.name)) > _LONGEST or os.path.islink(final):
         return
-    _Renamed.scene, _Renamed.filepath, _Renamed.prefixed = scene.name, render.filepath, prefixed
+    _Renamed.scene, _Renamed.filepath = scene.name, render.filepath
     render.filepath = prefixed
+    _Renamed.prefixed = render.filepath  # Blender cuts off what is too long
     _Renamed.file, _Renamed.final = Path(render.frame_path()), final
+
+
+def take_name(file, final):
+    """Where a file of others may be filled but not replaced, `final` is filled.  Raises OSError."""
+    try:
+        os.replace(file, final)
+    except OSError:
+        shutil.copyfile(file, final)
+        file.unlink()
 
 
 def put_back(scene):

@@ -52,15 +52,17 @@ def is_rendered():
         unfinished_file.set_aside(scene)
 
 
+def _is_saved(scene, *_):
+    """Of what nobody saved there is no file; of other files nothing is known here."""
+    if scene.render.engine == "GRANITA" and (lost := _name_it(scene)):
+        _tell(lost)
+
+
 def _look_at_written(scene, *_):
     if scene.render.engine != "GRANITA":
         return
     for path in _take_away(scene):
-        text = f"'{path}' was not written whole and is removed: the disk may be full"
-        _Frame.problem = text
-        EventLog(None, _Frame.number).error(text)
-        # A frame that was written is no longer the engine's: it cannot fail any more.
-        print(f"Error: Granita: {escaped(text)}", file=sys.stderr, flush=True)
+        _tell(f"'{path}' was not written whole and is removed: the disk may be full")
     if _Frame.problem and bpy.app.background and bpy.app.binary_path:
         shutil.rmtree(bpy.app.tempdir, ignore_errors=True)
         sys.stdout.flush()
@@ -68,25 +70,43 @@ def _look_at_written(scene, *_):
 
 
 def _look_at_cancelled(scene, *_):
-    if scene.render.engine == "GRANITA":
-        for path in _take_away(scene):
-            print(f"Granita: removed '{escaped(str(path))}', half of a file", flush=True)
+    if scene.render.engine != "GRANITA":
+        return
+    if lost := _name_it(scene):
+        print(f"Granita: {escaped(lost)}", flush=True)
+    # In a window nothing was begun: what lies there without an end is another's.
+    for path in _take_away(scene) if bpy.app.background else ():
+        print(f"Granita: removed '{escaped(str(path))}', half of a file", flush=True)
+
+
+def _tell(text):
+    _Frame.problem = text
+    EventLog(None, _Frame.number).error(text)
+    # A frame that was written is no longer the engine's: it cannot fail any more.
+    print(f"Error: Granita: {escaped(text)}", file=sys.stderr, flush=True)
+
+
+def _name_it(scene):
+    """Gives a whole file the frame's name; returns what is wrong."""
+    if not (aside := unfinished_file.put_back(scene)) or not aside[0].exists():
+        return ""
+    file, final = aside
+    try:
+        if is_whole(file):
+            unfinished_file.take_name(file, final)
+            print(f"Saved: '{escaped(str(final))}'", flush=True)
+            return ""
+        file.unlink()
+    except OSError as error:
+        return f"'{final}' could not be written: {error.strerror}; the frame is in '{file}'"
+    left = "; the one that was there before is left" if final.exists() else ""
+    return f"'{final}' was not written whole and is removed: the disk may be full{left}"
 
 
 def _take_away(scene):
     """Removes those files of the frame that this render began and did not end; returns their names."""
-    if scene.render.is_movie_format:
-        return []
     taken = []
-    if (aside := unfinished_file.put_back(scene)) and aside[0].exists():
-        file, final = aside
-        if is_whole(file):
-            os.replace(file, final)
-            print(f"Saved: '{escaped(str(final))}'", flush=True)
-        else:
-            file.unlink()
-            taken.append(final)
-    for path in _paths(scene):
+    for path in [] if scene.render.is_movie_format else _paths(scene):
         try:
             # The clock of a network's file system may be a little behind.
             if path.stat().st_mtime >= _Frame.began - 2.0 and not is_whole(path):
@@ -111,6 +131,7 @@ def _paths(scene):
 register, unregister = registration(
     ("render_init", _render_begins),
     ("render_pre", _frame_begins),
-    ("render_post", _look_at_written),
+    ("render_post", _is_saved),
+    ("render_write", _look_at_written),
     ("render_cancel", _look_at_cancelled),
 )

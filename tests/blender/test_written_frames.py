@@ -96,6 +96,50 @@ def test_a_full_disk_leaves_no_half_file(blend, tmp_path, kind, codec):
     assert "removed" in outcome.output
 
 
+def test_a_full_disk_leaves_the_earlier_file(blend, tmp_path):
+    earlier = render_host.run(blend, tmp_path / "out").files[0].read_bytes()
+    outcome = render_host.run(blend, tmp_path / "out", LIMIT.format("OPEN_EXR", "ZIP"))
+    assert outcome.code == 1, outcome.output
+    assert "the one that was there before is left" in outcome.output
+    assert [path.read_bytes() for path in outcome.files] == [earlier]
+
+
+def test_what_cannot_take_its_name_is_told(blend, tmp_path):
+    (tmp_path / "out" / "frame_0001.exr" / "in the way").mkdir(parents=True)
+    outcome = render_host.run(blend, tmp_path / "out", last=2)
+    assert outcome.code == 1, outcome.output
+    left, in_the_way = outcome.files
+    assert left.name.startswith(".unfinished-") and whole_file.is_whole(left)
+    assert in_the_way.is_dir() and "frame_0002" not in outcome.output
+    errors = [line for line in outcome.output.splitlines() if line.startswith("Error:")]
+    assert len(errors) == 1 and str(left) in errors[0] and str(in_the_way) in errors[0]
+
+
+def test_previews_lie_beside_their_frames(blend, tmp_path):
+    preview = "import bpy; bpy.context.scene.render.image_settings.use_preview = True"
+    outcome = render_host.run(blend, tmp_path / "out", preview)
+    assert outcome.code == 0, outcome.output
+    assert [path.name for path in outcome.files] == ["frame_0001.exr", "frame_0001.jpg"]
+
+
+def test_a_render_that_saves_nothing_removes_nothing(blend, tmp_path):
+    """What another began to write under its frame's name meanwhile."""
+    render = f"""
+import bpy, pathlib
+other = pathlib.Path({str(tmp_path)!r}) / "other_0001.exr"
+render = bpy.context.scene.render
+ours, render.filepath = render.filepath, str(other.with_name("other_####"))
+other.touch()
+bpy.ops.render.render()
+print("others:", other.exists())
+render.filepath = ours
+"""
+    outcome = render_host.run(blend, tmp_path / "out", render)
+    assert outcome.code == 0, outcome.output
+    assert "others: True" in outcome.output
+    assert [path.name for path in outcome.files] == ["frame_0001.exr"]
+
+
 def test_whole_files_stay(blend, tmp_path):
     outcome = render_host.run(blend, tmp_path / "out", last=2)
     assert outcome.code == 0
