@@ -6,7 +6,7 @@
 namespace granita {
 
 ShadingInput shading_input(const Grid& grid, const ShadingPoints& points, const Scene& scene,
-                           const RayScene* rays) {
+                           const RayScene* rays, const Progress& progress) {
     ShadingInput in;
     in.points = &points;
     in.attributes = &grid.attributes;
@@ -14,12 +14,13 @@ ShadingInput shading_input(const Grid& grid, const ShadingPoints& points, const 
     in.axes = ObjectAxes(matrix_at(in.instance->world_from_object, scene.options.frame_time));
     in.rays = rays;
     in.key = grid.key;
+    in.progress = &progress;
     return in;
 }
 
 ShadingInput shading_input(const Grid& grid, const RefinedPoints& refined, const Scene& scene,
-                           const RayScene* rays) {
-    ShadingInput in = shading_input(grid, refined.points, scene, rays);
+                           const RayScene* rays, const Progress& progress) {
+    ShadingInput in = shading_input(grid, refined.points, scene, rays, progress);
     in.attributes = &refined.attributes;
     in.axes_at_times = refined.axes_at_times;
     return in;

@@ -11,9 +11,9 @@ namespace granita {
 
 /// At `points` of the grid; `rays` that nodes may ask, or nullptr.
 ShadingInput shading_input(const Grid& grid, const ShadingPoints& points, const Scene& scene,
-                           const RayScene* rays);
+                           const RayScene* rays, const Progress& progress);
 /// Between its vertices.
 ShadingInput shading_input(const Grid& grid, const RefinedPoints& refined, const Scene& scene,
-                           const RayScene* rays);
+                           const RayScene* rays, const Progress& progress);
 
 }  // namespace granita

@@ -43,6 +43,7 @@ struct ShadingSystem::Impl {
     const Scene& scene;
     Statistics& statistics;
     Report& report;
+    const Progress& progress;
     TextureStore textures;
     ShadingCamera camera;
     MovingEye eye;
@@ -66,11 +67,12 @@ struct ShadingSystem::Impl {
     std::unique_ptr<BouncedLight> bounces;
     std::unique_ptr<SubsurfaceLight> below;  ///< where light is scattered below surfaces
 
-    Impl(const Scene& s, Statistics& stats, Report& warnings, const Progress& progress,
+    Impl(const Scene& s, Statistics& stats, Report& warnings, const Progress& p,
          bool refines_samples, const KeptShading& kept)
         : scene(s),
           statistics(stats),
           report(warnings),
+          progress(p),
           textures(s, stats, report),
           camera(s),
           eye(s, camera),
@@ -185,7 +187,7 @@ struct ShadingSystem::Impl {
 
     template <class Points>
     ShadingInput input(const Grid& grid, const Points& points) const {
-        return shading_input(grid, points, scene, light ? light->rays() : nullptr);
+        return shading_input(grid, points, scene, light ? light->rays() : nullptr, progress);
     }
 
     /// Adds what surfaces send to each other: to points of a grid, whose `gathered` is filled, or

@@ -33,7 +33,7 @@ class BouncedLight::Wave {
           m_limits(light.m_scene.options.bounces),
           m_salt(mix_bits(light.m_scene.options.seed + 1ULL)),
           m_gathered(gathered),
-          m_points(light.m_scene, *light.m_direct.rays()) {
+          m_points(light.m_scene, *light.m_direct.rays(), &light.m_progress) {
         for (const LobeRay& ray : leaving) {
             BouncedPath path;
             path.next = ray;
@@ -67,6 +67,8 @@ class BouncedLight::Wave {
 
   private:
     static constexpr std::uint32_t kNothing = ~0u;
+    /// Hits that are shaded at once: a step of a program over more would be too long for a cancel.
+    static constexpr std::size_t kBatch = 1024;
     /// Weights from which ways of mirrors are followed surely: at one place, and all the way.
     static constexpr float kMost = 0.5f, kMuch = 0.02f;
     /// Where a way is, from which it goes on: on a surface, or in a medium, where there is no hit.
@@ -227,12 +229,13 @@ class BouncedLight::Wave {
                               path.diffuse > 0);
         };
         std::vector<MetPath> batch;
-        for_sorted_runs(m_order, m_met.size(), key, [&](std::span<const std::uint32_t> run) {
+        const auto shade_run = [&](std::span<const std::uint32_t> run) {
             batch.clear();
             for (const std::uint32_t i : run)
                 batch.push_back(met_by(m_paths[m_met[i].ray], m_met[i].hit, m_met[i].frame()));
             shade(batch);
-        });
+        };
+        for_sorted_runs(m_order, m_met.size(), key, shade_run, kBatch);
     }
 
     void shade(const std::vector<MetPath>& batch) {

@@ -60,6 +60,7 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
     m_input.instance = &instance;
     m_input.rays = &m_rays;
     m_input.key = {instance.key};
+    m_input.progress = m_progress;
     const bool still = first.frame != nullptr;
     if (still) {
         m_input.axes.world_from_object = first.frame->world_from_object;

@@ -36,7 +36,9 @@ inline MetPath met_by(const BouncedPath& path, const RayHit& hit, const RayFrame
 
 class HitPoints {
   public:
-    HitPoints(const Scene& scene, const RayScene& rays) : m_scene(scene), m_rays(rays) {}
+    /// `progress`: asked while programs run over input(); may be absent.
+    HitPoints(const Scene& scene, const RayScene& rays, const Progress* progress = nullptr)
+        : m_scene(scene), m_rays(rays), m_progress(progress) {}
 
     /// `met`: of one instance and material, after `depth` surfaces.  Textures are filtered by the
     /// width of each beam (Christensen et al. 2003).
@@ -54,6 +56,7 @@ class HitPoints {
 
     const Scene& m_scene;
     const RayScene& m_rays;
+    const Progress* m_progress;
     ShadingPoints m_points;
     HitAttributes m_attributes;
     ShadingInput m_input;

@@ -109,7 +109,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
         if (!rays->empty()) set.set_casters(std::move(rays));
     }
     anchors = anchors_of(lamps);
-    set.set_lamps(std::move(lamps));
+    set.set_lamps(std::move(lamps), progress);
 }
 
 std::uint64_t DirectLight::Impl::receives(const GridKey& key) const {

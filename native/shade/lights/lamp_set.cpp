@@ -33,7 +33,7 @@ std::vector<Lamp> lamps_of(const Scene& scene, const Vec3d& origin, const LightP
     return lamps;
 }
 
-void LampSet::set_lamps(std::vector<Lamp> made) {
+void LampSet::set_lamps(std::vector<Lamp> made, const Progress& progress) {
     lamps = std::move(made);
     for (const Lamp& lamp : lamps) varies = varies || lamp.varies();
     const auto has_place = [](const Lamp& lamp) {
@@ -49,10 +49,11 @@ void LampSet::set_lamps(std::vector<Lamp> made) {
     everywhere = static_cast<std::size_t>(chosen - lamps.begin());
     asked = many_lamps ? kAsked : kAskedOfFaces;
     const std::size_t in_tree = lamps.size() - everywhere;
+    progress.check();
     std::vector<LightBound> bounds(in_tree);
     for (std::size_t l = 0; l < in_tree; ++l) lamps[everywhere + l].bound(bounds[l]);
     std::vector<std::uint32_t> order;
-    tree = std::make_unique<LightTree>(bounds, order);
+    tree = std::make_unique<LightTree>(bounds, order, &progress);
     std::vector<Lamp> ordered;
     ordered.reserve(lamps.size());
     for (std::size_t l = 0; l < everywhere; ++l) ordered.push_back(std::move(lamps[l]));

@@ -19,8 +19,9 @@ namespace granita {
 struct LampSet {
     /// `curve`: Options::shutter_curve.
     explicit LampSet(const std::vector<float>& curve) : shutter(curve) {}
-    /// Once, before light is asked for: where there are many, they are put in a tree.
-    void set_lamps(std::vector<Lamp> made);
+    /// Once, before light is asked for: where there are many, they are put in a tree.  Throws
+    /// Cancelled.
+    void set_lamps(std::vector<Lamp> made, const Progress& progress);
     /// Traces shadows from now on.
     void set_casters(std::unique_ptr<RayScene> casters);
 

@@ -17,10 +17,11 @@ constexpr float kNearest = 0.1f;
 
 }  // namespace
 
-LightTree::LightTree(const std::vector<LightBound>& lamps, std::vector<std::uint32_t>& order) {
+LightTree::LightTree(const std::vector<LightBound>& lamps, std::vector<std::uint32_t>& order,
+                     const Progress* progress) {
     order.resize(lamps.size());
     std::iota(order.begin(), order.end(), 0u);
-    add_node(lamps, order.data(), order.data() + order.size(), kNoSlot);
+    add_node(lamps, order.data(), order.data() + order.size(), kNoSlot, progress);
 }
 
 std::size_t LightTree::bytes() const {
@@ -29,7 +30,8 @@ std::size_t LightTree::bytes() const {
 }
 
 std::uint32_t LightTree::add_node(const std::vector<LightBound>& lamps, std::uint32_t* first,
-                                  std::uint32_t* last, Slot parent) {
+                                  std::uint32_t* last, Slot parent, const Progress* progress) {
+    if (progress) progress->check();
     const auto index = static_cast<std::uint32_t>(m_nodes.size());
     m_nodes.emplace_back();
     m_slot_of_node.push_back(parent);
@@ -45,7 +47,7 @@ std::uint32_t LightTree::add_node(const std::vector<LightBound>& lamps, std::uin
             m_slot_of_lamp.push_back(slot);
             m_is_face.push_back(lamps[*group.first].is_face);
         } else {
-            const std::uint32_t below = add_node(lamps, group.first, group.last, slot);
+            const std::uint32_t below = add_node(lamps, group.first, group.last, slot, progress);
             m_nodes[index].child[i] = below;
         }
     }

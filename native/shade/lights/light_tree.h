@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/progress.h"
 #include "shade/lights/light_bound.h"
 #include "shade/lights/light_node.h"
 
@@ -19,7 +20,8 @@ class LightTree {
 
     /// Numbers the lamps anew, so that neighbours are near each other: lamp i here is `order`[i] of
     /// those that were given.
-    LightTree(const std::vector<LightBound>& lamps, std::vector<std::uint32_t>& order);
+    LightTree(const std::vector<LightBound>& lamps, std::vector<std::uint32_t>& order,
+              const Progress* progress = nullptr);
 
     std::size_t node_count() const { return m_nodes.size(); }
     std::size_t bytes() const;
@@ -47,7 +49,7 @@ class LightTree {
 
     std::uint32_t child(Slot slot) const { return m_nodes[slot / kWidth].child[slot % kWidth]; }
     std::uint32_t add_node(const std::vector<LightBound>& lamps, std::uint32_t* first,
-                           std::uint32_t* last, Slot parent);
+                           std::uint32_t* last, Slot parent, const Progress* progress);
     void set_child(std::uint32_t node, std::uint32_t i, const LightBound& bound);
     /// Bits of children that a ray passes.
     std::uint32_t passed(const LightNode& node, const Vec3f& p, const Vec3f& inverse) const;

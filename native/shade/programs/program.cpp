@@ -60,7 +60,11 @@ Program::Program(const std::vector<Load>& loads, const std::vector<Step>& steps,
 
 void Program::execute(Run& run) const {
     for (const Load& load : m_loads) run_load(load, run);
-    for (const Step& step : m_steps) step.run(run);
+    const Progress* const progress = run.input().progress;
+    for (const Step& step : m_steps) {
+        if (progress) progress->check();
+        step.run(run);
+    }
 }
 
 void Program::renumber_requests(const std::vector<int>& request) {

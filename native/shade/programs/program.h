@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/progress.h"
 #include "dice/grid.h"
 #include "geometry/attribute_request.h"
 #include "scene/scene.h"
@@ -53,6 +54,7 @@ struct ShadingInput {
     std::span<const PatternSample> of_lamp;  ///< [points] of lamps' programs
     const RayScene* rays = nullptr;          ///< nullptr: none can be asked
     GridKey key;                             ///< where they can: of what the points are on
+    const Progress* progress = nullptr;      ///< asked before each step; may be absent
 
     const ObjectAxes& axes_at(std::size_t point) const {
         return axes_at_times.empty() ? axes : axes_at_times[point];
@@ -132,7 +134,7 @@ class Program {
     Program part(const std::vector<int>& roots) const {
         return {m_loads, m_steps, m_floats_a_point, roots};
     }
-    /// Runs everything; results are read from the Run.
+    /// Runs everything; results are read from the Run.  Throws Cancelled.
     void execute(Run& run) const;
     Run prepare(const ShadingInput& input, std::size_t count,
                 std::vector<float> memory = {}) const {

@@ -364,5 +364,14 @@ TEST(LampChoice, one_point_compares_few_nodes_of_many) {
     EXPECT_LE(seen[1], 3 * seen[0]);  // of 40 times as many lamps
 }
 
+TEST(LightTree, is_not_made_after_a_cancel) {
+    Progress progress;
+    std::vector<std::uint32_t> order;
+    const std::vector<LightBound> lamps(3);
+    EXPECT_NO_THROW(LightTree(lamps, order, &progress));
+    progress.cancel();
+    EXPECT_THROW(LightTree(lamps, order, &progress), Cancelled);
+}
+
 }  // namespace
 }  // namespace granita

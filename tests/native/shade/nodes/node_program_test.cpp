@@ -242,5 +242,25 @@ TEST(NodeProgram, ten_thousand_nodes_in_a_row_need_no_stack) {
     EXPECT_TRUE(c.compile(emission, "Emission").radiance.sources.emission.is(Vec3f(10000.0f)));
 }
 
+TEST(NodeProgram, no_step_runs_after_a_cancel) {
+    Progress progress;
+    int ran = 0;
+    const auto step = [&](int slot, bool cancels) {
+        return Step{[&ran, &progress, cancels](granita::Run&) {
+                        ++ran;
+                        if (cancels) progress.cancel();
+                    },
+                    {},
+                    {slot}};
+    };
+    const std::vector<Step> steps{step(0, false), step(1, true), step(2, false)};
+    const Program program(std::vector<Load>{}, steps, 3, {0, 1, 2});
+    ShadingInput input;
+    input.progress = &progress;
+    granita::Run run = program.prepare(input, 1);
+    EXPECT_THROW(program.execute(run), Cancelled);
+    EXPECT_EQ(ran, 2);
+}
+
 }  // namespace
 }  // namespace granita
