@@ -7,6 +7,7 @@ and exit with 1; `error_set` adds the banner in the window.
 """
 
 import gc
+import threading
 import time
 import weakref
 from contextlib import contextmanager
@@ -69,6 +70,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
         self.log = EventLog()
         self.persistent_state = PersistentState()
         self.live_view = None  # of the engine of a 3D view
+        self.thread = None  # that it renders in
 
     def update_render_passes(self, scene=None, renderlayer=None):
         """Blender calls it at any change of the view layer, without a net: what goes wrong is told, and
@@ -84,6 +86,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
     def render(self, depsgraph):
         turn_of_python.started()
         stays = not self.is_preview and depsgraph.scene.render.use_persistent_data
+        self.thread = threading.get_ident()
         _rendering.add(self)
         try:
             self._render(depsgraph)
@@ -170,12 +173,14 @@ _add_handlers, _remove_handlers = registration(("render_init", forget_images))
 
 
 def _end_renders():
-    """Blender forgets an engine's class with the add-on, also where one renders in another thread, a preview."""
+    """Blender forgets an engine's class with the add-on, also where one renders in another thread, a preview.
+    One of this thread, in a handler of which the add-on is taken away, ends after it: waiting would be in vain."""
     global _ends
     _ends = True
     gc.collect()  # what a failure may hold
     end = time.monotonic() + _PATIENCE
-    while len(_rendering) and time.monotonic() < end:
+    own = threading.get_ident()
+    while any(engine.thread != own for engine in _rendering) and time.monotonic() < end:
         time.sleep(0.005)
     _ends = False
 

@@ -82,6 +82,7 @@ def set_stage():
     scene.view_settings.view_transform = "Standard"
     scene.granita.samples = 256
     scene.granita.device = "CPU"
+    scene.granita.bounces = "FULL"
     scene.render.use_motion_blur = True
     scene.render.motion_blur_shutter = 0.5
     corners = [(-9, -9, -0.5), (9, -9, -0.5), (9, 9, -0.5), (-9, 9, -0.5)]

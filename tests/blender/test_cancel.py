@@ -4,6 +4,7 @@
 import os
 import signal
 import subprocess
+import threading
 import time
 
 import bpy
@@ -122,3 +123,32 @@ def test_interrupt(scene, tmp_path, make, stage, delay):
         if seconds < PROMISED_SECONDS:
             break
     assert seconds < PROMISED_SECONDS, text
+
+
+class _Rendering:
+    """Stands for an engine that renders in a thread."""
+
+    def __init__(self, thread):
+        self.thread = thread
+
+
+def test_the_add_ons_end_does_not_wait_for_the_render_that_it_comes_from():
+    from granita import engine
+
+    own = _Rendering(threading.get_ident())
+    engine._rendering.add(own)
+    began = time.monotonic()
+    engine._end_renders()
+    # Ten seconds otherwise: for itself.
+    assert time.monotonic() - began < 5.0
+
+
+def test_the_add_ons_end_waits_for_renders_of_other_threads():
+    from granita import engine
+
+    held = [_Rendering(-1)]
+    engine._rendering.add(held[0])
+    threading.Timer(0.3, held.clear).start()
+    began = time.monotonic()
+    engine._end_renders()
+    assert 0.2 < time.monotonic() - began < 9.0
