@@ -19,6 +19,9 @@ from .handlers import registration
 _INTERVAL = sys.getswitchinterval()
 # Seconds: for longer no call is waited for.  So long is none that draws.
 _PATIENCE = 10.0
+# Seconds for which a thread keeps Python: more than a call that draws takes, and for no longer do threads of others stand
+# still.
+_TURN = 1.0
 # How functions that draw are called, and what Blender asks while it draws.
 _MAY_NOT_WRITE = ("draw", "view_draw", "poll", "filter_items")
 _between_layers = False
@@ -37,7 +40,7 @@ def await_start():
 def await_turn():
     """From now on the render's thread gets its turn when the window's has ended its call."""
     if not bpy.app.background and threading.current_thread() is not threading.main_thread():
-        sys.setswitchinterval(_PATIENCE)
+        sys.setswitchinterval(_TURN)
 
 
 def interrupts_drawing():

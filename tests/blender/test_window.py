@@ -181,6 +181,7 @@ def begins(*_):
     found["amidst"] += state["draws"]
     state["awaited"] = False
 def long(self, depsgraph):
+    found["turn"] = max(found["turn"], sys.getswitchinterval())
     rendered(self, depsgraph)
     time.sleep(0.8)
     state["left"] = depsgraph.view_layer.name
@@ -199,7 +200,7 @@ def draw(self, context):
     wait(lambda: False, 0.3, rest=lambda: None)
     state["draws"] = False
 bpy.types.VIEW3D_HT_header.append(draw)
-found["amidst"] = 0
+found["amidst"] = found["turn"] = 0
 def steps():
     scene = bpy.context.scene
     scene.render.engine = "GRANITA"
@@ -229,3 +230,5 @@ def test_scripts_may_write_after_a_render_that_began_while_a_panel_was_drawn(tmp
     found, said = window_host.watch(AMIDST, tmp_path)
     assert "error" not in found and found["width"] == 19, found
     assert found["amidst"] == 6, found
+    # Longer than a call that draws, and no longer: other threads of Python stand still for so long.
+    assert 0.5 < found["turn"] <= 1.0, found
