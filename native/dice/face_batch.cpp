@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dice/face_triangles.h"
 #include "dice/grid_attributes.h"
 #include "dice/motion_bounds.h"
 #include "dice/raster_bound.h"
@@ -99,7 +100,21 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
     }
     motion_bounds(*grid, m_mesh->view().projection);
     grid->shading_state = [batch = *this](Grid& of) { batch.fill_shading_state(of); };
+    grid->triangles = [batch = *this](const Grid& of, std::span<const GridTriangle> wanted) {
+        return batch.triangles(of, wanted);
+    };
     return grid;
+}
+
+Grid FaceBatch::triangles(const Grid& grid, std::span<const GridTriangle> wanted) const {
+    std::vector<FaceTriangle> of_faces;
+    of_faces.reserve(wanted.size());
+    for (const GridTriangle& triangle : wanted) {
+        const BasePatch& whole = patch(triangle.micropolygon);
+        const bool is_pair = whole.kind == PatchKind::TrianglePair;
+        of_faces.push_back({triangle, is_pair ? whole.half(triangle.second) : whole});
+    }
+    return face_triangles(*m_mesh, grid, of_faces);
 }
 
 void FaceBatch::fill_shading_state(Grid& grid) const {

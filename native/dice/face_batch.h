@@ -2,7 +2,8 @@
 // Small faces of one material as one grid of separate micropolygons (Grid::disjoint), each the
 // micropolygon that its patch would be.  The two triangles of a bent quad are shaded as two faces.
 //
-// Shading: neighbours are gathered into clusters of about the shading rate's area, each shaded once
+// What is lit is left to samples, which ask for the triangles that they see (Grid::triangles).
+// Else: neighbours are gathered into clusters of about the shading rate's area, each shaded once
 // and of one colour all over.  A cluster's point is the mean of its faces by the area that is seen
 // of them, and so are its normal and what does not ask for derivatives; what does (textures) is
 // looked up at the face in its middle, with the footprint of the cluster.  A colour so moves by
@@ -42,6 +43,7 @@ class FaceBatch : public Primitive {
     struct Face;
     struct Cluster;
     void fill_shading_state(Grid& grid) const;
+    Grid triangles(const Grid& grid, std::span<const GridTriangle> wanted) const;
     Face face(const Grid& grid, std::size_t i, const BasePatch& part) const;
     std::vector<Cluster> clusters(Grid& grid, const std::vector<Face>& faces) const;
     static void find_center(Cluster& cluster, const std::vector<Face>& faces);

@@ -24,6 +24,7 @@
 #include <compare>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "math/bounds.h"
@@ -38,6 +39,13 @@ struct GridKey {
     std::uint32_t face = 0;
     std::uint64_t path = 1;  ///< split path: 1 then one bit a split
     auto operator<=>(const GridKey&) const = default;
+};
+
+/// One of the two that a micropolygon is: corners 0, 1, 2 or 0, 2, 3.
+struct GridTriangle {
+    std::uint32_t micropolygon = 0;
+    bool second = false;
+    auto operator<=>(const GridTriangle&) const = default;
 };
 
 /// A primitive variable at the grid's shading points.
@@ -74,6 +82,10 @@ struct Grid {
     /// Fills in the shading state and the attributes of a grid of dice() before its first shading:
     /// many grids are hidden and never shaded.  Outlives the primitive.  Empty: nothing is missing.
     std::function<void(Grid&)> shading_state;
+    /// Of small faces: makes a grid of some of the triangles of this one, with the shading state of
+    /// their own corners, of which the last repeats.  Samples that are shaded by themselves need no
+    /// other; this grid's own shading points would stand for whole faces.
+    std::function<Grid(const Grid&, std::span<const GridTriangle>)> triangles;
     /// Shading state at the frame time, camera space of the frame time.
     ShadingPositions shading_positions;
     std::vector<Vec3f> p;  ///< [points]; empty when knots == 1 and vertices are points: positions

@@ -66,7 +66,7 @@ void SharedGrid::ensure_opacity(const ShadingSystem& shading, Statistics& statis
 
 void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& statistics, bool stays) {
     std::call_once(*m_radiance, [&] {
-        ensure_shading_state(statistics);
+        if (!shading.leaves_to_samples(*m_grid)) ensure_shading_state(statistics);
         const StageTimer timer(statistics, Stage::Shade);
         const Stopwatch watch;
         shading.shade_radiance(*m_grid);

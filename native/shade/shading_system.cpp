@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "base/crash_report.h"
 #include "base/stage_timer.h"
 #include "shade/bounces/bounced_light.h"
 #include "shade/bounces/hit_shader.h"
+#include "shade/compiled_materials.h"
 #include "shade/grid_channels.h"
 #include "shade/interpolated_points.h"
 #include "shade/lamp_shader.h"
@@ -16,11 +16,11 @@
 #include "shade/lights/light_sample_count.h"
 #include "shade/material_displacement.h"
 #include "shade/moving_eye.h"
-#include "shade/nodes/default_material.h"
 #include "shade/nodes/material_emission.h"
 #include "shade/nodes/node_compiler.h"
 #include "shade/nodes/surface_run.h"
 #include "shade/seen_points.h"
+#include "shade/seen_triangles.h"
 #include "shade/shading_input.h"
 #include "shade/shading_points.h"
 #include "shade/shadow_transparency.h"
@@ -87,22 +87,11 @@ struct ShadingSystem::Impl {
           shaded(kept.grids) {
         const StageTimer timer(stats, Stage::Shade);
         const ChannelSet* passes = channels.empty() ? nullptr : &channels;
-        std::vector<std::optional<DisplacementProgram>> displacements;
-        for (const Material& material : scene.materials) {
-            progress.check();
-            const std::string owner = "material '" + material.name + "'";
-            materials.push_back(compile_surface(material.graph, scene, textures, report,
-                                                {owner, false, material.index}, passes));
-            std::optional<DisplacementProgram>& moved = displacements.emplace_back();
-            if (material.graph.moves_surface())
-                moved = compile_displacement(material.graph, scene, textures, report,
-                                             {owner, false, material.index});
-        }
-        materials.push_back(
-            compile_surface(default_material(), scene, textures, report, {"no material"}, passes));
+        CompiledMaterials compiled = compile_materials(scene, textures, report, progress, passes);
+        materials = std::move(compiled.surfaces);
         for (const CompiledSurface& material : materials) requests.push_back(material.requests);
-        displacement = std::make_unique<MaterialDisplacement>(scene, std::move(displacements),
-                                                              geometries, report, kept.offsets);
+        displacement = std::make_unique<MaterialDisplacement>(
+            scene, std::move(compiled.displacements), geometries, report, kept.offsets);
         if (!displacement->any()) displacement.reset();
         emission = std::make_unique<MaterialEmission>(scene, textures, materials);
         const bool any_reflects = std::ranges::any_of(scene.instances, [this](const Instance& i) {
@@ -301,6 +290,10 @@ struct ShadingSystem::Impl {
     }
 
     Grid refine(const Grid& grid, std::span<const RefinedPoint> wanted, float point_size) const {
+        if (grid.triangles) {
+            const SeenTriangles seen(grid, wanted);
+            return refine(seen.grid, seen.points, point_size);
+        }
         RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
         if (light) light->lift(refined.points, grid.key);
         Grid out;
@@ -353,10 +346,6 @@ struct ShadingSystem::Impl {
         return any_changes(out.opacity, thresholds.difference, opacity_difference);
     }
 
-    std::vector<std::uint8_t> all_marked(const Grid& grid) const {
-        return std::vector<std::uint8_t>(static_cast<std::size_t>(grid.micropolygon_count()), 1);
-    }
-
     /// Takes radiance from an equal grid of an earlier picture, shaded with as many light samples;
     /// false where there is none.
     bool take_shaded(Grid& grid, float share) const {
@@ -400,7 +389,7 @@ struct ShadingSystem::Impl {
         // Samples would be shaded by themselves where points happen to be too bright, not too dark.
         if (!settled.empty()) settled.swap(grid.radiance);
         grid.unsettled = has_lines(grid) || changes_in_time(grid)
-                             ? all_marked(grid)
+                             ? all_micropolygons(grid)
                              : unsettled_micropolygons(
                                    grid, noise, thresholds.difference / (sharpness * sharpness),
                                    thresholds.noise / (fewer * fewer));
@@ -460,13 +449,19 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
         const float sharpness = m_impl->sharpness(grid);
         grid.unsettled_opacity =
             m_impl->has_lines(grid) || m_impl->opacity_changes_in_time(grid)
-                ? m_impl->all_marked(grid)
+                ? all_micropolygons(grid)
                 : unsettled_opacity(grid, m_impl->thresholds.difference / (sharpness * sharpness));
     }
     m_impl->statistics.add(Counter::GridsOpacityShaded);
 }
 
+bool ShadingSystem::leaves_to_samples(const Grid& grid) const {
+    return grid.triangles && m_impl->refines && m_impl->reflects(grid.material) &&
+           !grid.opacity_varies && !grid.holdout;
+}
+
 void ShadingSystem::shade_radiance(Grid& grid) const {
+    if (leaves_to_samples(grid)) return leave_to_samples(grid, m_impl->channels.vertex_width());
     const bool lit = m_impl->reflects(grid.material);
     const float sharpness = lit || m_impl->can_refine(grid) ? m_impl->sharpness(grid) : 1.0f;
     const float share = grid.point_share * sharpness * m_impl->edge_share(grid);

@@ -188,4 +188,15 @@ std::vector<std::uint8_t> unsettled_opacity(const Grid& grid, float threshold) {
         shown, [&](const std::array<Corner, 4>&, float bend) { return bend > threshold; });
 }
 
+std::vector<std::uint8_t> all_micropolygons(const Grid& grid) {
+    return std::vector<std::uint8_t>(static_cast<std::size_t>(grid.micropolygon_count()), 1);
+}
+
+void leave_to_samples(Grid& grid, int channels) {
+    const auto count = static_cast<std::size_t>(grid.vertex_count());
+    grid.radiance.assign(count, Vec3f(0.0f));
+    grid.channels.assign(count * static_cast<std::size_t>(channels), 0.0f);
+    grid.unsettled = all_micropolygons(grid);
+}
+
 }  // namespace granita

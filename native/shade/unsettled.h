@@ -37,4 +37,11 @@ std::vector<std::uint8_t> unsettled_micropolygons(const Grid& grid, std::span<co
 /// The same of the grid's opacity, in any channel as it is: edges of cut-outs.
 std::vector<std::uint8_t> unsettled_opacity(const Grid& grid, float threshold);
 
+/// Marks them all.
+std::vector<std::uint8_t> all_micropolygons(const Grid& grid);
+
+/// Gives the grid no radiance: every sample that meets it is to be shaded by itself.
+/// @param channels floats that a vertex has besides.
+void leave_to_samples(Grid& grid, int channels);
+
 }  // namespace granita

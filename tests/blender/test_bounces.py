@@ -90,7 +90,7 @@ def room(scene):
 
 
 def render_bounced(
-    scene, render, cycles_samples, blur_glossy=0.0, bounces="FULL", all_passes=False
+    scene, render, cycles_samples, blur_glossy=0.0, bounces="FULL", all_passes=False, samples=16
 ):
     """(Cycles, Granita) with four bounces or none, without clamps: float32 [h, w, 3], or all passes by name."""
     cycles, settings = scene.cycles, scene.granita
@@ -102,7 +102,7 @@ def render_bounced(
     cycles.use_denoising = cycles.use_adaptive_sampling = False
     cycles.max_bounces = 4 if bounces == "FULL" else 0
     cycles.pixel_filter_type = "BOX"
-    settings.samples, settings.pixel_filter, settings.filter_width = 16, "BOX", 1.0
+    settings.samples, settings.pixel_filter, settings.filter_width = samples, "BOX", 1.0
     made = []
     for engine in ("CYCLES", "GRANITA"):
         scene.render.engine = engine
@@ -158,7 +158,8 @@ def test_a_room_is_as_bright_as_in_cycles(scene, render, kind, rough):
     scene.cycles.caustics_reflective = True
     inputs = {} if rough is None else {"Roughness": rough}
     surface(room(scene), f"ShaderNodeBsdf{kind}", (0.7, 0.7, 0.7), **inputs)
-    theirs, ours = render_bounced(scene, render, 512)
+    # The lamp in the mirror is a hundredth of a pixel, and as bright as three.
+    theirs, ours = render_bounced(scene, render, 512, samples=64 if rough == 0.0 else 16)
     assert ours.mean(axis=(0, 1)) == pytest.approx(theirs.mean(axis=(0, 1)), rel=0.03)
     blocks = [p.reshape(6, 4, 6, 4, 3).mean(axis=(1, 3)) for p in (theirs, ours)]
     off = np.abs(blocks[1] - blocks[0]) / theirs.mean()
