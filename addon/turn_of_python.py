@@ -77,13 +77,31 @@ def _frame_begins(scene, *_):
         await_start()
 
 
-def _layer_begins(*_):
+def _layer_begins(scene, *_):
     """Not at frames that the window goes to, nor at those that an export looks at within the call."""
-    if _between_layers and threading.current_thread() is not threading.main_thread():
+    if threading.current_thread() is threading.main_thread():
+        return
+    if scene.render.engine != "GRANITA":
+        started()  # a scene of the compositor's, whose engine does not tell
+    elif _between_layers:
         await_start()
 
 
+def _go_last(*_):
+    """Handlers of others that were added meanwhile run with turns as short as ever."""
+    for event, function in (("render_pre", _frame_begins), ("frame_change_post", _layer_begins)):
+        handlers = getattr(bpy.app.handlers, event)
+        if handlers[-1] is not function:
+            handlers.remove(function)
+            handlers.append(function)
+
+
 register, unregister = registration(
+    ("render_init", _go_last),
+    (
+        "render_pre",
+        started,
+    ),  # until those of others are done: an engine that is made asks for its turn
     ("render_pre", _frame_begins),
     ("frame_change_post", _layer_begins),
     ("render_post", started),

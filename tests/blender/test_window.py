@@ -8,6 +8,7 @@ from pathlib import Path
 import bpy
 import exr
 import numpy as np
+import pytest
 import scene_parts as parts
 import window_host
 from mathutils import Matrix
@@ -232,3 +233,48 @@ def test_scripts_may_write_after_a_render_that_began_while_a_panel_was_drawn(tmp
     assert found["amidst"] == 6, found
     # Longer than a call that draws, and no longer: other threads of Python stand still for so long.
     assert 0.5 < found["turn"] <= 1.0, found
+
+
+# The compositor asks for a scene of another engine after Granita's.
+OTHERS = """
+import sys
+class Other(bpy.types.RenderEngine):
+    bl_idname, bl_label = "OTHER", "Other"
+    def render(self, depsgraph):
+        found["other's turn"] = sys.getswitchinterval()
+bpy.utils.register_class(Other)
+def begins(*_):
+    found["handler's turn"] = sys.getswitchinterval()
+bpy.app.handlers.render_pre.append(begins)
+found["usual"] = sys.getswitchinterval()
+def steps():
+    scene = bpy.context.scene
+    scene.render.engine = "GRANITA"
+    scene.render.resolution_x = scene.render.resolution_y = 16
+    bpy.context.preferences.view.render_display_type = "NONE"
+    second = bpy.data.scenes.new("Second")
+    second.render.engine = "OTHER"
+    second.camera = scene.camera
+    scene.use_nodes = True
+    layers = scene.node_tree.nodes.new("CompositorNodeRLayers")
+    layers.scene = second
+    composite = next(node for node in scene.node_tree.nodes if node.type == "COMPOSITE")
+    scene.node_tree.links.new(layers.outputs[0], composite.inputs[0])
+    if ALONE:
+        scene.node_tree.nodes.remove(scene.node_tree.nodes["Render Layers"])
+    window = bpy.context.window_manager.windows[0]
+    with bpy.context.temp_override(window=window, screen=window.screen):
+        bpy.ops.render.render("INVOKE_DEFAULT")
+    while bpy.app.is_job_running("RENDER"):
+        yield 0.01
+    found["turn after"] = sys.getswitchinterval()
+"""
+
+
+@pytest.mark.parametrize("alone", [False, True])
+def test_other_engines_and_handlers_have_turns_as_short_as_ever(tmp_path, alone):
+    """`alone`: of all scenes the compositor asks for theirs only."""
+    found, said = window_host.watch(f"ALONE = {alone}\n{OTHERS}", tmp_path)
+    assert "error" not in found, (found, said)
+    usual = found.pop("usual")
+    assert found == dict.fromkeys(("other's turn", "handler's turn", "turn after"), usual)
