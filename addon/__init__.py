@@ -22,14 +22,14 @@ def _parts():
     from .parts import part_output
     from .viewport import shading_settings
 
-    # What was written is looked at before its path is put back.
+    # Of the handlers those of the last come first: what was written is looked at before its path is put back.
     return (
         properties,
         shading_settings,
         preferences,
         ui,
-        written_frames,
         part_output,
+        written_frames,
         engine,
     )
 

@@ -8,15 +8,13 @@ frames that other files are named after: the previews of OpenEXR, the drawings o
 """
 
 import os
-import platform
-import secrets
 import shutil
 from pathlib import Path
 
 import bpy
 
-# Of two machines that render the same frame neither may fill the other's file; containers share names and numbers.
-_PREFIX = f".unfinished-{platform.node()}-{os.getpid()}-{secrets.token_hex(3)}-"
+from .leftover_files import PREFIX
+
 _LONGEST = 255  # bytes of a file's name
 
 
@@ -30,21 +28,23 @@ class _Renamed:
 
 
 def set_aside(scene):
-    """The frame that `scene` saves next will lie beside its place.  Nothing is changed where it can be seen."""
+    """The frame that `scene` saves next will lie beside its place; returns whether.  Nothing is changed where it can be
+    seen."""
     put_back(scene)
     render = scene.render
     names_others = render.image_settings.use_preview or render.use_freestyle
     if not bpy.app.background or render.is_movie_format or render.use_multiview or names_others:
-        return
+        return False
     folder, name = os.path.split(render.filepath)
-    final, prefixed = Path(render.frame_path()), os.path.join(folder, _PREFIX + name)
+    final, prefixed = Path(render.frame_path()), os.path.join(folder, PREFIX + name)
     # Links stay links, and what cannot be looked at Blender may try.
-    if len(os.fsencode(_PREFIX + final.name)) > _LONGEST or os.path.islink(final):
-        return
+    if len(os.fsencode(PREFIX + final.name)) > _LONGEST or os.path.islink(final):
+        return False
     _Renamed.scene, _Renamed.filepath = scene.name, render.filepath
     render.filepath = prefixed
     _Renamed.prefixed = render.filepath  # Blender cuts off what is too long
     _Renamed.file, _Renamed.final = Path(render.frame_path()), final
+    return True
 
 
 def take_name(file, final):

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import bpy
 
-from . import unfinished_file
+from . import leftover_files, unfinished_file
 from .event_log import EventLog
 from .export.base.report import escaped
 from .handlers import registration
@@ -28,6 +28,7 @@ class _Frame:
     number = 0  # a cancelled animation has gone back to its scene's own
     scene = ""
     problem = ""
+    swept = None  # the folder that was looked through last
 
 
 def problem():
@@ -36,7 +37,7 @@ def problem():
 
 
 def _render_begins(*_):
-    _Frame.problem = ""
+    _Frame.problem, _Frame.swept = "", None
 
 
 def _frame_begins(scene, *_):
@@ -48,8 +49,20 @@ def _frame_begins(scene, *_):
 def is_rendered():
     """Once a frame's engines are done: what is left is the compositor and the saving."""
     scene = bpy.data.scenes.get(_Frame.scene)
-    if scene and scene.render.engine == "GRANITA":
-        unfinished_file.set_aside(scene)
+    if scene and scene.render.engine == "GRANITA" and unfinished_file.set_aside(scene):
+        _sweep(Path(scene.render.frame_path()).parent)
+
+
+def _sweep(folder):
+    """Once for all frames of a render: a farm's folder may hold a hundred thousand."""
+    if folder == _Frame.swept:
+        return
+    _Frame.swept = folder
+    for path in leftover_files.sweep(folder):
+        print(
+            f"Granita: removed '{escaped(path)}', half a file of a render that was ended",
+            flush=True,
+        )
 
 
 def _is_saved(scene, *_):

@@ -4,6 +4,8 @@
 A limit on the size of files stands for the disk: writing fails in the same places.
 """
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 import pytest
@@ -201,3 +203,34 @@ bpy.app.handlers.render_stats.append(
     outcome = render_host.run(blend, tmp_path / "out", changes)
     assert outcome.code == 0, outcome.output
     assert whole_file.is_whole(tmp_path / "other_0001.exr")
+
+
+def test_the_next_render_removes_what_a_killed_one_left(blend, tmp_path):
+    (left,) = render_host.run(blend, tmp_path / "out", KILLED).files
+    outcome = render_host.run(blend, tmp_path / "out")
+    assert outcome.code == 0, outcome.output
+    assert [path.name for path in outcome.files] == ["frame_0001.exr"]
+    assert f"removed '{left}'" in outcome.output
+
+
+def test_a_cancelled_part_leaves_the_frames_own_file_to_whoever_writes_it(
+    scene, tmp_path, monkeypatch
+):
+    words = ["blender", "--", f"--granita-parts={tmp_path / 'parts'}", "--granita-part=1/2"]
+    monkeypatch.setattr("sys.argv", words)
+    scene.render.filepath = str(tmp_path / "frame_####")
+
+    def happens(event):
+        for handler in list(getattr(bpy.app.handlers, event)):
+            handler(scene, None)
+
+    happens("render_init")
+    happens("render_pre")
+    of_part, of_frame = Path(scene.render.frame_path()), tmp_path / "frame_0001.png"
+    assert of_part == tmp_path / "parts" / "part_1-of-2_0001.png"
+    of_part.parent.mkdir()
+    for path in (of_part, of_frame):
+        path.write_bytes(b"\x89PNG\r\n\x1a\n begun")
+    happens("render_cancel")
+    assert scene.render.filepath == str(tmp_path / "frame_####")
+    assert (of_part.exists(), of_frame.exists()) == (False, True)
