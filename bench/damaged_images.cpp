@@ -118,12 +118,14 @@ int main(int argc, char** argv) {
         auto& shared = *static_cast<Shared*>(mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE,
                                                   MAP_SHARED | MAP_ANONYMOUS, -1, 0));
         const auto begin = std::chrono::steady_clock::now();
+        shared.current = begin_at - 1;
         for (int first = begin_at; first < begin_at + count; first = shared.current + 1) {
             const pid_t child = fork();
             if (child == 0) run(seed, path, first, begin_at + count, shared);
             int status = 0;
             if (child < 0 || waitpid(child, &status, 0) < 0) return 2;
             if (WIFEXITED(status) && WEXITSTATUS(status) == 0) break;
+            if (shared.current < first) return 2;  // ended before it began with any
             const std::string kept = "damaged-" + std::to_string(++faults) + format.suffix;
             write(kept, mutation(seed, shared.current));
             std::printf("%s, mutation %d: signal %d, kept as %s\n", format.suffix,

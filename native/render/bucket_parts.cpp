@@ -5,6 +5,7 @@
 #include "hider/compute/compute_hider.h"
 #include "render/refine_samples.h"
 #include "render/tile_colors.h"
+#include "render/tile_volumes.h"
 
 namespace granita {
 namespace {
@@ -34,7 +35,8 @@ class TileParts {
             const StageTimer timer(m_frame.statistics, Stage::Hide);
             stores = &hider->finish();
         }
-        if (hider->overflowed()) return add_halves(pixels);
+        if (hider->overflowed() || (!is_pixel && !volumes_fit(m_frame, *stores)))
+            return add_halves(pixels);
         const std::vector<bool> seen = shade_seen(m_frame, *hider, hidden);
         const BucketRefinement refinement(m_frame, *hider, *stores, seen);
         LayerTable layers(hider->pool(), seen);

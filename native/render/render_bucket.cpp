@@ -7,6 +7,7 @@
 #include "render/refine_samples.h"
 #include "render/resolved_tile.h"
 #include "render/tile_colors.h"
+#include "render/tile_volumes.h"
 #include "render/visit_geometry.h"
 
 namespace granita {
@@ -69,11 +70,11 @@ std::vector<ResolvedTile> resolve(Frame& frame, Hider& hider, const std::vector<
     return resolved;
 }
 
-/// Whether the lists did fit.
+/// Whether the lists did fit, and what lies between their layers.
 bool finish(Frame& frame, Hider& hider) {
     const StageTimer timer(frame.statistics, Stage::Hide);
-    hider.finish();
-    return !hider.overflowed();
+    const std::vector<TileStore>& stores = hider.finish();
+    return !hider.overflowed() && volumes_fit(frame, stores);
 }
 
 /// These tiles of the bucket, seen with the samples of one level.

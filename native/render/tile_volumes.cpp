@@ -15,6 +15,10 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Samples that are looked along at once.
 constexpr std::size_t kBatch = 1024;
 
+SampleVolume volume_of(const SeenMedium& medium) {
+    return {medium.transmittance, medium.emitted, medium.direct, medium.indirect};
+}
+
 /// A layer as it is seen without volumes, and behind one.
 LayerLook look_behind(const SurfacePoint& at, const LayerLook* refined,
                       const SampleVolume& volume) {
@@ -29,7 +33,25 @@ LayerLook look_behind(const SurfacePoint& at, const LayerLook* refined,
     return look;
 }
 
+/// What volumes keep of a tile.
+std::uint64_t bytes_of(const TileStore& store, bool has_channels) {
+    const std::uint64_t layer = sizeof(LayerLook) + sizeof(std::uint32_t),
+                        channels = sizeof(SampleVolume) + sizeof(SurfacePoint);
+    return store.key.size() * (sizeof(SampleVolume) + sizeof(std::uint32_t)) +
+           store.lists.total() * (layer + (has_channels ? channels : 0));
+}
+
 }  // namespace
+
+bool volumes_fit(const Frame& frame, const std::vector<TileStore>& stores) {
+    if (!frame.shading.volumes()) return true;
+    std::uint64_t lists = 0, most = 0;
+    for (const TileStore& store : stores) {
+        lists += store.lists.total() * sizeof(Fragment);
+        most = std::max(most, bytes_of(store, !frame.film.channels().empty()));
+    }
+    return lists + most <= frame.hider.list_bytes;
+}
 
 TileVolumes::TileVolumes(Frame& frame, const SampleTable& table, const TileStore& store,
                          const GridPool& pool, const RefinedSamples& already)
@@ -44,6 +66,8 @@ TileVolumes::TileVolumes(Frame& frame, const SampleTable& table, const TileStore
     const Vec3d origin(matrix_at(scene.camera.world_from_camera, frame_time)[3]);
     const FragmentLists& lists = store.lists;
     const std::size_t count = store.id.size();
+    refined.reserve_layers(lists.total(), has_channels);
+    samples.reserve(count, has_channels ? lists.total() : 0);
     std::vector<std::uint32_t> slot_of(count, ~0u);
     for (std::uint32_t slot = 0; slot < lists.slots() && !lists.empty(); ++slot)
         if (lists.counts()[slot] > 0) slot_of[lists.sample(slot)] = slot;
@@ -70,24 +94,22 @@ TileVolumes::TileVolumes(Frame& frame, const SampleTable& table, const TileStore
         }
         media.assign(depths.size(), {});
         frame.shading.volumes()->see(seen, depths, media);
-        const auto add = [&](const SeenMedium& medium) {
-            const SampleVolume volume{medium.transmittance, medium.emitted, medium.direct,
-                                      medium.indirect};
-            samples.add(volume);
-            return volume;
-        };
         for (std::size_t s = first, next = 0; s < end; ++s, ++next) {
             if (const std::uint32_t slot = slot_of[s]; slot != ~0u)
                 for (std::uint32_t k = 0; k < lists.counts()[slot]; ++k, ++next) {
                     const Fragment fragment = lists.at(slot, k);
                     const SurfacePoint at = point_of(fragment, pool);
-                    const LayerLook look = look_behind(at, refined.look(slot, k), add(media[next]));
+                    const SampleVolume before = volume_of(media[next]);
+                    if (has_channels) samples.add(before);
+                    const LayerLook look = look_behind(at, refined.look(slot, k), before);
                     refined.change_layer(lists, slot, k, look, has_channels ? &at : nullptr);
                 }
-            add(media[next]);
+            samples.add(volume_of(media[next]));
             samples.end_sample();
         }
     }
+    frame.statistics.note_list_bytes(lists.total() * sizeof(Fragment) + samples.bytes() +
+                                     refined.bytes_of_layers());
 }
 
 }  // namespace granita

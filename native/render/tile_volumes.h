@@ -17,4 +17,8 @@ struct TileVolumes {
     SampleVolumes samples;
 };
 
+/// Whether what this takes of one tile after the other has room beside the lists of them all
+/// (HiderFrame::list_bytes).
+bool volumes_fit(const Frame& frame, const std::vector<TileStore>& stores);
+
 }  // namespace granita

@@ -41,6 +41,12 @@ class RefinedSamples {
         m_looks.push_back(look);
         if (grid) m_layer_points.push_back(point_at(*grid, vertex));
     }
+    /// Before change_layer() of so many.
+    void reserve_layers(std::size_t count, bool has_channels) {
+        m_layers.reserve(count);
+        m_looks.reserve(count);
+        if (has_channels) m_layer_points.reserve(count);
+    }
     /// Layer k of the list in a slot then looks like this, wherever it is met; as add_layer().
     void change_layer(const FragmentLists& lists, std::uint32_t slot, std::uint32_t k,
                       const LayerLook& look, const SurfacePoint* channels) {
@@ -50,6 +56,11 @@ class RefinedSamples {
         }
         add_layer(lists, slot, k, look, nullptr, 0);
         if (channels) m_layer_points.push_back(*channels);
+    }
+    std::uint64_t bytes_of_layers() const {
+        return m_layers.capacity() * sizeof(std::uint32_t) +
+               m_looks.capacity() * sizeof(LayerLook) +
+               m_layer_points.capacity() * sizeof(SurfacePoint);
     }
     bool any_layers() const { return !m_looks.empty(); }
     /// What such a layer looks like; nullptr: as its micropolygon does.

@@ -20,14 +20,24 @@ struct SampleVolume {
     Vec3f light() const { return emitted + direct + indirect; }
 };
 
-/// Of all samples of a tile, or empty: nothing is filled.
+/// Of all samples of a tile, or empty: nothing is filled.  What is before their layers is there for
+/// channels alone: colours have it in the looks of the layers.
 class SampleVolumes {
   public:
     bool empty() const { return m_ends.empty(); }
-    /// Of the sample after those that are there: before each layer, then before what is behind.
+    void reserve(std::size_t samples, std::size_t layers) {
+        m_volumes.reserve(samples + layers);
+        m_ends.reserve(samples);
+    }
+    /// Of the sample after those that are there: before each layer or none, then before what is
+    /// behind.
     void add(const SampleVolume& volume) { m_volumes.push_back(volume); }
     void end_sample() { m_ends.push_back(static_cast<std::uint32_t>(m_volumes.size())); }
 
+    std::uint64_t bytes() const {
+        return m_volumes.capacity() * sizeof(SampleVolume) +
+               m_ends.capacity() * sizeof(std::uint32_t);
+    }
     const SampleVolume& before_layer(std::uint32_t sample, std::uint32_t k) const {
         return m_volumes[(sample == 0 ? 0 : m_ends[sample - 1]) + k];
     }

@@ -195,6 +195,7 @@ struct Picture {
     std::vector<Vec4f> combined = std::vector<Vec4f>(kSize * kSize);
     std::vector<Warning> warnings;
     std::uint64_t pieces_shared = 0;
+    std::uint64_t peak_list_bytes = 0;
 };
 
 /// `session`: whose scene it is, or none.
@@ -214,6 +215,7 @@ inline Picture render(const std::shared_ptr<Scene>& scene,
     job.finish();
     picture.warnings = job.report().warnings();
     picture.pieces_shared = job.statistics().get(Counter::LoopPiecesShared);
+    picture.peak_list_bytes = job.statistics().peak_list_bytes();
     return picture;
 }
 
