@@ -83,7 +83,8 @@ class Statistics {
     /// Bytes of the structure that rays trace, its triangles included.
     void peak_ray_bytes(std::uint64_t bytes) { m_peak_ray_bytes.store(bytes); }
     std::uint64_t peak_ray_bytes() const { return m_peak_ray_bytes.load(); }
-    /// Bytes of a bucket's transparent lists, and what volumes keep of their layers; the most that any had are peak_list_bytes().
+    /// Bytes of a bucket's transparent lists, and what volumes keep of their layers; the most that
+    /// any had are peak_list_bytes().
     void note_list_bytes(std::uint64_t bytes);
     std::uint64_t peak_list_bytes() const { return m_peak_list_bytes.load(); }
     /// Name and value of everything above, seconds as "seconds_<stage>".
