@@ -73,7 +73,7 @@ struct ShadingSystem::Impl {
           statistics(stats),
           report(warnings),
           progress(p),
-          textures(s, stats, report),
+          textures(s, stats, report, &p),
           camera(s),
           eye(s, camera),
           shutter(s.options.shutter_curve),

@@ -40,20 +40,21 @@ class ImageTexture final : public Texture {
   public:
     ImageTexture(const Image& image, const TextureHeader& header,
                  const std::shared_ptr<TileCache>& cache, const std::shared_ptr<OpenFiles>& files,
-                 Statistics& statistics, Report& report)
+                 Statistics& statistics, Report& report, const Progress* progress)
         : m_image(image),
           m_has_alpha(header.has_alpha),
           m_plain(image, header, false, cache, files),
           m_divided(image, header, true, cache, files),
           m_statistics(statistics),
-          m_report(report) {}
+          m_report(report),
+          m_progress(progress) {}
 
     void look_up(const TextureMode& mode, const std::vector<TexturePlace>& places,
                  std::vector<Vec4f>& out) const override {
         TiledImage& tiled = mode.unassociate && m_has_alpha ? m_divided : m_plain;
         out.resize(places.size());
         m_statistics.add(Counter::TextureLookups, places.size());
-        if (!tiled.make_ready()) {
+        if (!tiled.make_ready(m_progress)) {
             out.assign(places.size(), kMagenta);
             warn("cannot be read, shown magenta: ", tiled.error());
             return;
@@ -82,6 +83,7 @@ class ImageTexture final : public Texture {
     mutable TiledImage m_plain, m_divided;
     Statistics& m_statistics;
     Report& m_report;
+    const Progress* m_progress;
 };
 
 }  // namespace
@@ -90,19 +92,22 @@ struct TextureStore::Impl {
     const Scene& scene;
     Statistics& statistics;
     Report& report;
+    const Progress* progress;
     std::shared_ptr<TileCache> cache;
     std::shared_ptr<OpenFiles> files = std::make_shared<OpenFiles>(kOpenFiles);
     std::map<std::string, std::shared_ptr<const Texture>> textures;
 
-    Impl(const Scene& s, Statistics& stats, Report& r)
+    Impl(const Scene& s, Statistics& stats, Report& r, const Progress* p)
         : scene(s),
           statistics(stats),
           report(r),
+          progress(p),
           cache(std::make_shared<TileCache>(memory_of(s.options), r)) {}
 };
 
-TextureStore::TextureStore(const Scene& scene, Statistics& statistics, Report& report)
-    : m_impl(std::make_unique<Impl>(scene, statistics, report)) {}
+TextureStore::TextureStore(const Scene& scene, Statistics& statistics, Report& report,
+                           const Progress* progress)
+    : m_impl(std::make_unique<Impl>(scene, statistics, report, progress)) {}
 
 TextureStore::~TextureStore() = default;
 
@@ -137,7 +142,7 @@ std::shared_ptr<const Texture> TextureStore::find(const std::string& name,
     if (image->pixels.empty() && !find_color_space(image->colorspace))
         m_impl->report.warn(owner, "its colour space '" + image->colorspace + "' is read as sRGB");
     texture = std::make_shared<ImageTexture>(*image, header, m_impl->cache, m_impl->files,
-                                             m_impl->statistics, m_impl->report);
+                                             m_impl->statistics, m_impl->report, m_impl->progress);
     return texture;
 }
 

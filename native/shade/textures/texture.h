@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.h"
 #include "base/report.h"
 #include "base/statistics.h"
 #include "scene/scene.h"
@@ -39,7 +40,9 @@ class Texture {
 
 class TextureStore {
   public:
-    TextureStore(const Scene& scene, Statistics& statistics, Report& report);
+    /// What is given outlives it.  `progress`, which may be absent: asked while images are decoded.
+    TextureStore(const Scene& scene, Statistics& statistics, Report& report,
+                 const Progress* progress = nullptr);
     ~TextureStore();
 
     /// Scene::images by name.  A name that is not there is reported with `user` and is magenta.

@@ -72,27 +72,29 @@ TiledImage::~TiledImage() {
     m_files->forget(m_entry);
 }
 
-bool TiledImage::make_ready() {
-    std::call_once(m_once, [this] {
+bool TiledImage::make_ready(const Progress* progress) {
+    std::call_once(m_once, [this, progress] {
         try {
-            decode();
+            decode(progress);
         } catch (const std::exception& failure) {  // no memory for it, say
             m_error = failure.what();
             if (m_error.empty()) m_error = "it cannot be read";
         }
     });
-    return m_error.empty();
+    if (m_error.empty()) return true;
+    if (progress) progress->check();  // what was not decoded for that is no damaged image
+    return false;
 }
 
-void TiledImage::decode() {
+void TiledImage::decode(const Progress* progress) {
     if (!m_image.pixels.empty()) {
-        decode_pixels();
+        decode_pixels(progress);
     } else {
-        decode_file();
+        decode_file(progress);
     }
 }
 
-void TiledImage::decode_file() {
+void TiledImage::decode_file(const Progress* progress) {
     auto file = std::make_unique<TextureFile>(m_image);
     m_error = file->error();
     if (!m_error.empty()) return;
@@ -118,6 +120,7 @@ void TiledImage::decode_file() {
     std::vector<std::byte> strip(byte_size(m_header.type) * m_header.width *
                                  std::min(rows, m_header.height));
     for (int y = 0; y < m_header.height; y += rows) {
+        if (progress) progress->check();
         const int count = std::min(rows, m_header.height - y);
         if (!file->read_rows(y, count, strip.data())) {
             m_error = file->error();
@@ -128,12 +131,13 @@ void TiledImage::decode_file() {
 }
 
 /// Pixels come with their lowest row first.
-void TiledImage::decode_pixels() {
+void TiledImage::decode_pixels(const Progress* progress) {
     m_levels = make_levels(m_header.width, m_header.height, m_header.type);
     LevelWriter writer(m_levels, m_decoder, *m_cache);
     const std::size_t texel = byte_size(m_header.type);
     std::vector<std::byte> row(texel * m_header.width);
     for (int y = m_header.height - 1; y >= 0; --y) {
+        if (progress) progress->check();
         const float* c = m_image.pixels.data() + static_cast<std::size_t>(y) * m_header.width * 4;
         for (int x = 0; x < m_header.width; ++x, c += 4) {
             Vec4f color(c[0], c[1], c[2], m_image.alpha_mode == "NONE" ? 1.0f : c[3]);

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <string>
 
+#include "base/progress.h"
 #include "scene/node_graph.h"
 #include "shade/textures/texture_file.h"
 #include "shade/textures/texture_levels.h"
@@ -45,8 +46,10 @@ class TiledImage {
 
     /// Makes its levels unless they are there; other threads wait meanwhile.  Not inside a
     /// ReadScope.
+    /// @param progress  Asked meanwhile, and whoever finds it cancelled throws; it is then not to
+    ///     be read later either.  May be absent.
     /// @return false: it cannot be read, and `error` says why.
-    bool make_ready();
+    bool make_ready(const Progress* progress = nullptr);
     const std::string& error() const { return m_error; }
 
     const TextureHeader& header() const { return m_header; }
@@ -67,9 +70,9 @@ class TiledImage {
     bool is_damaged() const { return m_is_damaged; }
 
   private:
-    void decode();
-    void decode_file();
-    void decode_pixels();
+    void decode(const Progress* progress);
+    void decode_file(const Progress* progress);
+    void decode_pixels(const Progress* progress);
     const Tile* reload(int level, int across, int down);
     std::unique_ptr<Tile> read_tile(int level, int across, int down);
     bool read_stored_tile(int level, int across, int down, std::byte* out);

@@ -165,5 +165,27 @@ TEST(TileCache, many_threads_in_little_memory_see_every_texel_as_it_is) {
     EXPECT_TRUE(report.warnings().empty());
 }
 
+TEST(TileCache, images_that_a_cancelled_frame_wants_are_not_decoded) {
+    Report report;
+    Statistics statistics;
+    Progress progress;
+    progress.cancel();
+    ImageFile file(".exr");
+    ASSERT_TRUE(write_image(
+        file, 128, [](int, int, int) { return 0.5f; }, 0, false));
+    Scene scene;
+    scene.images = {file.image("Non-Color"), image_of_bytes(128, 128, random_blocks(128, 4, 1))};
+    scene.images[0].name = "File";
+    TextureStore store(scene, statistics, report, &progress);
+    std::vector<Vec4f> out;
+    for (const Image& image : scene.images) {
+        const auto texture = store.find(image.name, "material 'M'");
+        for (int reader = 0; reader < 2; ++reader)
+            EXPECT_THROW(texture->look_up({}, {{{0.5f, 0.5f}, {}, {}}}, out), Cancelled);
+    }
+    EXPECT_EQ(store.byte_count(), 0u);
+    EXPECT_TRUE(report.warnings().empty());
+}
+
 }  // namespace
 }  // namespace granita
