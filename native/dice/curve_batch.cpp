@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dice/opened_mesh.h"
+#include "dice/triangle_grid.h"
 #include "math/normalize_or.h"
 
 namespace granita {
@@ -156,6 +157,59 @@ std::unique_ptr<Grid> CurveBatch::dice() const {
         place_row(*grid, j, row, control);
     });
     finish(*grid);
+    if (m_across == 1)
+        grid->triangles = [batch = copy()](const Grid& of, std::span<const GridPlace> wanted) {
+            return static_cast<const CurveBatch&>(*batch).triangles(of, wanted);
+        };
+    return grid;
+}
+
+/// Each is a tube, on which a place has the normal of how far out it lies.
+Grid CurveBatch::triangles(const Grid& from, std::span<const GridPlace> wanted) const {
+    Grid grid =
+        triangle_grid(from, m_elements->knots(), wanted.size(),
+                      [&](std::size_t i) -> const GridTriangle& { return wanted[i].triangle; });
+    std::vector<Vec3f> normals, fronts, along, across, offsets;
+    std::vector<ElementPlace> places, steps;
+    CurveControl control;
+    std::uint32_t gathered = ~0u;
+    for (const GridPlace& place : wanted) {
+        // Corners 0 and 1 lie on the left, the others on the right.
+        const float* w = place.weight;
+        const bool second = place.triangle.second;
+        const double ahead = second ? w[1] : w[1] + w[2];
+        const double u = 2.0 * (second ? w[1] + w[2] : w[2]) - 1.0;
+        const Row &row = m_rows[place.triangle.micropolygon],
+                  &next = m_rows[place.triangle.micropolygon + 1];
+        if (gathered != row.curve) control.gather(*m_elements, row.curve, start(), end(row.curve));
+        gathered = row.curve;
+        const double t = row.t + ahead * (next.t - row.t);
+        const Side side = side_at(control, t);
+        const Vec3d normal = side.normal_at(u);
+        normals.push_back(Vec3f(normal));
+        fronts.push_back(Vec3f(side.front));
+        // As high as where points start, beside the place that is seen: what hides neither hides it
+        // from a light behind the eye.
+        const double height = std::sqrt(std::max(1.0 - u * u, 0.0)) * drawn_in(1);
+        offsets.push_back(Vec3f(side.front * (glm::length(side.half) * height)));
+        across.push_back(Vec3f(2.0 * side.half));
+        const std::size_t i = normals.size() - 1, n = wanted.size();
+        const std::vector<Vec3f>& p = grid.shading_p();
+        along.push_back(p[i + n] - p[second ? i + 3 * n : i]);
+        places.push_back(control.place(t));
+        steps.push_back(control.place(next.t));
+    }
+    const auto repeat = [](const std::vector<Vec3f>& values, std::vector<Vec3f>& out) {
+        for (int run = 0; run < 4; ++run) out.insert(out.end(), values.begin(), values.end());
+    };
+    repeat(normals, grid.normal);
+    repeat(fronts, grid.geometric_normal);
+    repeat(along, grid.dp_du);
+    repeat(across, grid.dp_dv);
+    repeat(offsets, grid.ray_offset);
+    // They are no whole faces.
+    grid.shading_positions.faces.assign(4 * wanted.size(), grid.key.face);
+    m_elements->fill_attributes(grid, places, steps);
     return grid;
 }
 
@@ -188,31 +242,41 @@ void CurveBatch::place_row(Grid& grid, int j, const Row& row, const CurveControl
     }
 }
 
-void CurveBatch::shade_row(Grid& grid, int j, const Row& row, const CurveControl& control) const {
-    Vec3d side(0.0), facing(0.0), half(0.0);
+/// What a curve is like at the frame time.
+CurveBatch::Side CurveBatch::side_at(const CurveControl& control, double t) const {
+    Side at;
+    Vec3d facing(0.0);
     for (int k = 0; k < m_elements->knot_count(); ++k) {
         const double weight = m_elements->frame_weight(k);
         if (weight == 0.0) continue;
-        const RibbonRow ribbon = control.row(k, row.t, true);
-        side += ribbon.side * weight;
+        const RibbonRow ribbon = control.row(k, t, true);
+        at.side += ribbon.side * weight;
         facing += ribbon.facing * weight;
-        half += ribbon.across * weight;
+        at.half += ribbon.across * weight;
     }
+    at.front = normalize_or(facing, Vec3d(0.0, 0.0, -1.0));
+    return at;
+}
+
+Vec3d CurveBatch::Side::normal_at(double sine) const {
+    return normalize_or(side * sine + front * std::sqrt(std::max(1.0 - sine * sine, 0.0)), front);
+}
+
+void CurveBatch::shade_row(Grid& grid, int j, const Row& row, const CurveControl& control) const {
+    const Side at = side_at(control, row.t);
     const double drawn = drawn_in(m_across);
-    const Vec3d front = normalize_or(facing, Vec3d(0.0, 0.0, -1.0));
     for (int i = 0; i <= m_across; ++i) {
         const double u = 2.0 * i / m_across - 1.0;
         const double sine = m_thin ? place_across(i == 0, (j + row.curve) % 2 == 1) : u * drawn;
-        const Vec3d normal =
-            normalize_or(side * sine + front * std::sqrt(std::max(1.0 - sine * sine, 0.0)), front);
+        const Vec3d normal = at.normal_at(sine);
         const std::size_t v = vertex(grid, i, j);
         grid.normal[v] = Vec3f(normal);
-        grid.geometric_normal[v] = Vec3f(front);
+        grid.geometric_normal[v] = Vec3f(at.front);
         // Rays start off the axis along the normal: an element that faces them is met only where
         // the normal turns away.  No farther than normals are drawn in: hairs lie in one another,
         // and rays that start beyond their neighbours miss them (docs/decisions/curves.md).
         grid.ray_offset[v] =
-            Vec3f(normal * (glm::length(half) * drawn) - half * (row.shrunk ? -1.0 : u));
+            Vec3f(normal * (glm::length(at.half) * drawn) - at.half * (row.shrunk ? -1.0 : u));
     }
 }
 

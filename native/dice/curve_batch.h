@@ -61,6 +61,14 @@ class CurveBatch final : public ElementBatch {
     void for_each_row(Visit visit) const;
     void place_row(Grid& grid, int j, const Row& row, const CurveControl& control) const;
     void shade_row(Grid& grid, int j, const Row& row, const CurveControl& control) const;
+    /// Camera space; `front` is unit, towards the eye, `half` leads from the axis to the edge.
+    struct Side {
+        Vec3d side{0.0}, front{0.0}, half{0.0};
+        /// Of a tube, so far out to the edge.
+        Vec3d normal_at(double sine) const;
+    };
+    Side side_at(const CurveControl& control, double t) const;
+    Grid triangles(const Grid& from, std::span<const GridPlace> wanted) const;
 
     /// Of the curves of the batch that this one was cut from, made once for all that are cut.
     std::shared_ptr<const std::vector<Measures>> m_measures;

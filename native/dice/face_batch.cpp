@@ -100,19 +100,19 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
     }
     motion_bounds(*grid, m_mesh->view().projection);
     grid->shading_state = [batch = *this](Grid& of) { batch.fill_shading_state(of); };
-    grid->triangles = [batch = *this](const Grid& of, std::span<const GridTriangle> wanted) {
+    grid->triangles = [batch = *this](const Grid& of, std::span<const GridPlace> wanted) {
         return batch.triangles(of, wanted);
     };
     return grid;
 }
 
-Grid FaceBatch::triangles(const Grid& grid, std::span<const GridTriangle> wanted) const {
+Grid FaceBatch::triangles(const Grid& grid, std::span<const GridPlace> wanted) const {
     std::vector<FaceTriangle> of_faces;
     of_faces.reserve(wanted.size());
-    for (const GridTriangle& triangle : wanted) {
-        const BasePatch& whole = patch(triangle.micropolygon);
+    for (const GridPlace& place : wanted) {
+        const BasePatch& whole = patch(place.triangle.micropolygon);
         const bool is_pair = whole.kind == PatchKind::TrianglePair;
-        of_faces.push_back({triangle, is_pair ? whole.half(triangle.second) : whole});
+        of_faces.push_back({place.triangle, is_pair ? whole.half(place.triangle.second) : whole});
     }
     return face_triangles(*m_mesh, grid, of_faces);
 }

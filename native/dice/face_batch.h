@@ -43,7 +43,7 @@ class FaceBatch : public Primitive {
     struct Face;
     struct Cluster;
     void fill_shading_state(Grid& grid) const;
-    Grid triangles(const Grid& grid, std::span<const GridTriangle> wanted) const;
+    Grid triangles(const Grid& grid, std::span<const GridPlace> wanted) const;
     Face face(const Grid& grid, std::size_t i, const BasePatch& part) const;
     std::vector<Cluster> clusters(Grid& grid, const std::vector<Face>& faces) const;
     static void find_center(Cluster& cluster, const std::vector<Face>& faces);

@@ -5,43 +5,16 @@
 #include <array>
 
 #include "dice/grid_attributes.h"
-#include "dice/motion_bounds.h"
+#include "dice/triangle_grid.h"
 #include "geometry/limit_vertices.h"
 
 namespace granita {
 namespace {
 
-/// Of the corner in each of a grid's four runs of vertices: the last one repeats.
-constexpr std::size_t kCornerOfRun[4] = {0, 1, 2, 2};
-
 std::array<Vec2d, 3> corner_places(const FaceTriangle& triangle) {
     const Vec2d a(0.0, 0.0), b(1.0, 0.0), c(1.0, 1.0), d(0.0, 1.0);
     if (triangle.patch.kind == PatchKind::Triangle) return {a, b, d};
     return triangle.of.second ? std::array{a, c, d} : std::array{a, b, c};
-}
-
-/// [4 n] from [n]: values of a triangle's corners as vertices of the grid.
-template <class Value>
-void spread(std::size_t count, std::size_t width, const std::vector<Value>& of_corners,
-            std::vector<Value>& out) {
-    out.reserve(4 * count * width);
-    for (const std::size_t corner : kCornerOfRun)
-        for (std::size_t t = 0; t < count; ++t)
-            for (std::size_t c = 0; c < width; ++c)
-                out.push_back(of_corners[(3 * t + corner) * width + c]);
-}
-
-void place(const Grid& batch, std::span<const FaceTriangle> wanted, Grid& grid) {
-    const auto stride = static_cast<std::size_t>(batch.vertex_count());
-    grid.positions.reserve(4 * wanted.size() * static_cast<std::size_t>(grid.knots));
-    for (std::size_t k = 0; k < static_cast<std::size_t>(grid.knots); ++k)
-        for (const std::size_t corner : kCornerOfRun)
-            for (const FaceTriangle& triangle : wanted) {
-                const Grid::Corners c = batch.corners(static_cast<int>(triangle.of.micropolygon));
-                const int first[3] = {c.v0, c.v1, c.v2}, second[3] = {c.v0, c.v2, c.v3};
-                const int v = (triangle.of.second ? second : first)[corner];
-                grid.positions.push_back(batch.positions[k * stride + static_cast<std::size_t>(v)]);
-            }
 }
 
 /// How many times further a neighbour at the dicing rate would be than the face is long.
@@ -67,20 +40,9 @@ struct CornerState {
 Grid face_triangles(const OpenedMesh& mesh, const Grid& batch,
                     std::span<const FaceTriangle> wanted) {
     const std::size_t count = wanted.size();
-    Grid grid;
-    grid.key = batch.key;
-    grid.instance = batch.instance;
-    grid.material = batch.material;
-    grid.holdout = batch.holdout;
-    grid.lifespan = batch.lifespan;
-    grid.disjoint = true;
-    grid.n_u = static_cast<int>(count);
-    grid.n_v = 1;
-    grid.knots = batch.knots;
-    grid.motion = batch.motion;
+    Grid grid = triangle_grid(batch, mesh.knots(), count,
+                              [&](std::size_t t) -> const GridTriangle& { return wanted[t].of; });
     grid.terminator_offset = mesh.instance().terminator_offset;
-    place(batch, wanted, grid);
-    set_frame_positions(grid, mesh.knots());
     CornerState at;
     std::vector<float> stretches;
     for (std::size_t t = 0; t < count; ++t) {
@@ -106,12 +68,12 @@ Grid face_triangles(const OpenedMesh& mesh, const Grid& batch,
             at.ray_offset.push_back(up * (height * mesh.frame_scale()));
         }
     }
-    spread(count, 1, at.normal, grid.normal);
-    spread(count, 1, at.geometric_normal, grid.geometric_normal);
-    spread(count, 1, at.dp_du, grid.dp_du);
-    spread(count, 1, at.dp_dv, grid.dp_dv);
-    if (!at.rise.empty()) spread(count, 1, at.rise, grid.rise);
-    if (!at.ray_offset.empty()) spread(count, 1, at.ray_offset, grid.ray_offset);
+    spread_corners(1, at.normal, grid.normal);
+    spread_corners(1, at.geometric_normal, grid.geometric_normal);
+    spread_corners(1, at.dp_du, grid.dp_du);
+    spread_corners(1, at.dp_dv, grid.dp_dv);
+    if (!at.rise.empty()) spread_corners(1, at.rise, grid.rise);
+    if (!at.ray_offset.empty()) spread_corners(1, at.ray_offset, grid.ray_offset);
     for (int run = 0; run < 4; ++run)
         for (const FaceTriangle& triangle : wanted)
             grid.shading_positions.faces.push_back(triangle.patch.face);
@@ -127,10 +89,10 @@ Grid face_triangles(const OpenedMesh& mesh, const Grid& batch,
             for (const float step : du) all_du.push_back(step * stretches[t]);
             for (const float step : dv) all_dv.push_back(step * stretches[t]);
         }
-        spread(count, width, all, out.values);
+        spread_corners(width, all, out.values);
         if (!request.derivatives) return;
-        spread(count, width, all_du, out.du);
-        spread(count, width, all_dv, out.dv);
+        spread_corners(width, all_du, out.du);
+        spread_corners(width, all_dv, out.dv);
     };
     make_attributes(grid, mesh.view().requests_of(grid.material), fill);
     return grid;

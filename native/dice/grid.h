@@ -48,6 +48,12 @@ struct GridTriangle {
     auto operator<=>(const GridTriangle&) const = default;
 };
 
+/// A place in a triangle, by weights of its corners.
+struct GridPlace {
+    GridTriangle triangle;
+    float weight[3] = {1.0f, 0.0f, 0.0f};
+};
+
 /// A primitive variable at the grid's shading points.
 struct GridAttribute {
     int attribute = 0;  ///< index in the material's list of requested attributes
@@ -82,10 +88,11 @@ struct Grid {
     /// Fills in the shading state and the attributes of a grid of dice() before its first shading:
     /// many grids are hidden and never shaded.  Outlives the primitive.  Empty: nothing is missing.
     std::function<void(Grid&)> shading_state;
-    /// Of small faces: makes a grid of some of the triangles of this one, with the shading state of
-    /// their own corners, of which the last repeats.  Samples that are shaded by themselves need no
-    /// other; this grid's own shading points would stand for whole faces.
-    std::function<Grid(const Grid&, std::span<const GridTriangle>)> triangles;
+    /// Of small faces and narrow ribbons: makes a grid of the triangles of some places, one each,
+    /// with the shading state of their corners, the last of which repeats; of ribbons that at the
+    /// place. Samples that are shaded by themselves need no other: this grid's own shading points
+    /// would stand for whole faces, or for most of a pixel of hair.
+    std::function<Grid(const Grid&, std::span<const GridPlace>)> triangles;
     /// Shading state at the frame time, camera space of the frame time.
     ShadingPositions shading_positions;
     std::vector<Vec3f> p;  ///< [points]; empty when knots == 1 and vertices are points: positions
@@ -164,6 +171,11 @@ struct Grid {
     /// The four vertex indices of a micropolygon.
     struct Corners {
         int v0, v1, v2, v3;
+        /// Of a triangle's corner 0, 1 or 2.
+        int of(const GridTriangle& triangle, std::size_t corner) const {
+            const int first[3] = {v0, v1, v2}, second[3] = {v0, v2, v3};
+            return triangle.second ? second[corner] : first[corner];
+        }
     };
     Corners corners(int micropolygon) const {
         const int i = micropolygon % n_u, j = micropolygon / n_u;

@@ -198,4 +198,26 @@ void OpenedElements::finish_attributes(Grid& grid, std::span<const ElementPlace>
     make_attributes(grid, m_view->requests_of(grid.material), fill);
 }
 
+void OpenedElements::fill_attributes(Grid& grid, std::span<const ElementPlace> places,
+                                     std::span<const ElementPlace> next) const {
+    const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
+        const auto width = static_cast<std::size_t>(out.width);
+        std::vector<float> values(places.size() * width), steps;
+        for (std::size_t i = 0; i < places.size(); ++i)
+            element_value(*m_shared, request, places[i], &values[i * width]);
+        const auto repeat = [](const std::vector<float>& from, std::vector<float>& to) {
+            for (int run = 0; run < 4; ++run) to.insert(to.end(), from.begin(), from.end());
+        };
+        repeat(values, out.values);
+        if (!request.derivatives) return;
+        steps.resize(values.size());
+        for (std::size_t i = 0; i < places.size(); ++i)
+            element_value(*m_shared, request, next[i], &steps[i * width]);
+        for (std::size_t c = 0; c < steps.size(); ++c) steps[c] -= values[c];
+        repeat(steps, out.du);
+        out.dv.assign(out.du.size(), 0.0f);
+    };
+    make_attributes(grid, m_view->requests_of(grid.material), fill);
+}
+
 }  // namespace granita

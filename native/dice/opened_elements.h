@@ -80,6 +80,10 @@ class OpenedElements final : public OpenedInstance,
     /// Once these are set: share, derivatives and attributes.  `places` [n_u + 1]; those of one
     /// element follow each other.
     void finish_shading(Grid& grid, std::span<const ElementPlace> places) const;
+    /// Of a grid of triangles, one for each of `places`; `next` [places]: to which their
+    /// derivatives lead.
+    void fill_attributes(Grid& grid, std::span<const ElementPlace> places,
+                         std::span<const ElementPlace> next) const;
     /// How much a knot counts at the frame time.
     double frame_weight(int knot) const {
         return knot == m_knots.frame_knot       ? 1.0 - m_knots.frame_fraction

@@ -9,13 +9,14 @@
 
 namespace granita {
 
-/// The triangles of a grid of small faces in which points lie, each once, and the points in them.
+/// The triangles of a grid of small faces or narrow ribbons in which points lie, and the points in
+/// them.
 struct SeenTriangles {
     Grid grid;
     std::vector<RefinedPoint> points;
 
-    /// @param faces a grid that has Grid::triangles.
-    SeenTriangles(const Grid& faces, std::span<const RefinedPoint> wanted);
+    /// @param from a grid that has Grid::triangles.
+    SeenTriangles(const Grid& from, std::span<const RefinedPoint> wanted);
 };
 
 }  // namespace granita

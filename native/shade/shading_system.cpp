@@ -295,6 +295,7 @@ struct ShadingSystem::Impl {
             return refine(seen.grid, seen.points, point_size);
         }
         RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
+        refined.points.round = is_round(grid);
         if (light) light->lift(refined.points, grid.key);
         Grid out;
         out.key = grid.key;
