@@ -113,7 +113,7 @@ std::unique_ptr<KeptVisibility> make_visibility(Frame& frame,
         }
         frame.before->forget_samples();
     }
-    return std::make_unique<KeptVisibility>(scene, statistics, frame.shading,
+    return std::make_unique<KeptVisibility>(scene, frame.shared_view, statistics, frame.shading,
                                             frame.film.sample_pixels(), frame.layout.count(),
                                             frame.shared_levels);
 }
@@ -131,7 +131,9 @@ Frame::Frame(const std::shared_ptr<const Scene>& frame_scene,
       changes(changes_since(before.get(), scene)),
       shading(scene, statistics, report, progress, frame_choice.executor != Executor::Raster,
               shading_after(std::move(kept.shading), before.get(), changes, scene)),
-      view(make_view(scene, statistics, shading, filter_of(scene))),
+      shared_view(
+          std::make_shared<const View>(make_view(scene, statistics, shading, filter_of(scene)))),
+      view(*shared_view),
       shared_levels(std::make_shared<const SampleLevels>(
           view, filter_of(scene), frame_choice.executor != Executor::Raster, report)),
       levels(*shared_levels),

@@ -36,11 +36,13 @@ std::uint64_t bytes_of(const KeptVisibility::Bucket& bucket) {
 
 }  // namespace
 
-KeptVisibility::KeptVisibility(std::shared_ptr<const Scene> scene,
+KeptVisibility::KeptVisibility(std::shared_ptr<const Scene> scene, std::shared_ptr<const View> view,
                                std::shared_ptr<Statistics> statistics, const ShadingSystem& shading,
                                const Rect& sample_pixels, int buckets,
                                std::shared_ptr<const SampleLevels> levels)
     : m_scene(std::move(scene)),
+      m_diced_scene(m_scene),
+      m_view(std::move(view)),
       m_image_times(image_times(*m_scene)),
       m_traits(traits_of(*m_scene, shading)),
       m_requests(shading.requests()),

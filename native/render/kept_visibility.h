@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/report.h"
+#include "dice/view.h"
 #include "geometry/attribute_request.h"
 #include "hider/hider.h"
 #include "render/geometry_node.h"
@@ -29,8 +30,9 @@ class KeptVisibility {
     };
 
     /// `statistics`: in which the grids' memory is counted; `levels`: whose samples they are.
-    KeptVisibility(std::shared_ptr<const Scene> scene, std::shared_ptr<Statistics> statistics,
-                   const ShadingSystem& shading, const Rect& sample_pixels, int buckets,
+    KeptVisibility(std::shared_ptr<const Scene> scene, std::shared_ptr<const View> view,
+                   std::shared_ptr<Statistics> statistics, const ShadingSystem& shading,
+                   const Rect& sample_pixels, int buckets,
                    std::shared_ptr<const SampleLevels> levels);
     ~KeptVisibility();
 
@@ -82,6 +84,10 @@ class KeptVisibility {
     static std::vector<Traits> traits_of(const Scene& scene, const ShadingSystem& shading);
 
     std::shared_ptr<const Scene> m_scene;
+    /// By which its grids were diced: what makes their triangles (Grid::triangles) reads them
+    /// still.
+    std::shared_ptr<const Scene> m_diced_scene;
+    std::shared_ptr<const View> m_view;
     std::vector<std::filesystem::file_time_type> m_image_times;
     std::vector<Traits> m_traits;                           ///< [materials]
     std::vector<std::vector<AttributeRequest>> m_requests;  ///< [materials + 1]
