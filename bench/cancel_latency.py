@@ -4,8 +4,8 @@
     ./dev bench cancel_latency [--moments 200] [--scenes lit feathers demo] [--seed 1] [--bounces 4]
         [--within 6]
 
-480x270, light followed over so many bounces, both as a final frame and as an edited view's picture, whose session keeps what it can; at moments of the first
-seconds, `--within`, of what takes longer.  Prints the median, the
+480x270, light followed over so many bounces, both as a final frame and as an edited view's picture, whose session keeps
+what it can; at moments of the first seconds, `--within`, of what takes longer.  Prints the median, the
 .99 quantile and the worst, the processor seconds of all threads likewise (a busy machine makes the others longer), and of
 the worst when they were cancelled and how many buckets were done.
 """

@@ -156,9 +156,9 @@ std::unique_ptr<Grid> CurveBatch::dice() const {
     for_each_row([&](int j, const Row& row, const CurveControl& control) {
         place_row(*grid, j, row, control);
     });
-    finish(*grid);
+    const auto kept = finish(*grid);
     if (m_across == 1)
-        grid->triangles = [batch = copy()](const Grid& of, std::span<const GridPlace> wanted) {
+        grid->triangles = [batch = kept](const Grid& of, std::span<const GridPlace> wanted) {
             return static_cast<const CurveBatch&>(*batch).triangles(of, wanted);
         };
     return grid;
@@ -199,14 +199,11 @@ Grid CurveBatch::triangles(const Grid& from, std::span<const GridPlace> wanted) 
         places.push_back(control.place(t));
         steps.push_back(control.place(next.t));
     }
-    const auto repeat = [](const std::vector<Vec3f>& values, std::vector<Vec3f>& out) {
-        for (int run = 0; run < 4; ++run) out.insert(out.end(), values.begin(), values.end());
-    };
-    repeat(normals, grid.normal);
-    repeat(fronts, grid.geometric_normal);
-    repeat(along, grid.dp_du);
-    repeat(across, grid.dp_dv);
-    repeat(offsets, grid.ray_offset);
+    repeat_runs(normals, grid.normal);
+    repeat_runs(fronts, grid.geometric_normal);
+    repeat_runs(along, grid.dp_du);
+    repeat_runs(across, grid.dp_dv);
+    repeat_runs(offsets, grid.ray_offset);
     // They are no whole faces.
     grid.shading_positions.faces.assign(4 * wanted.size(), grid.key.face);
     m_elements->fill_attributes(grid, places, steps);

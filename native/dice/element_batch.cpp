@@ -32,9 +32,11 @@ void ElementBatch::own(std::shared_ptr<const OpenedElements> elements) {
     measure();
 }
 
-void ElementBatch::finish(Grid& grid) const {
+std::shared_ptr<const ElementBatch> ElementBatch::finish(Grid& grid) const {
     motion_bounds(grid, m_elements->view().projection);
-    grid.shading_state = [batch = copy()](Grid& of) { batch->fill_shading_state(of); };
+    std::shared_ptr<const ElementBatch> kept = copy();
+    grid.shading_state = [kept](Grid& of) { kept->fill_shading_state(of); };
+    return kept;
 }
 
 std::vector<std::unique_ptr<Primitive>> ElementBatch::split() const {

@@ -19,7 +19,8 @@ class ElementBatch : public Primitive {
   protected:
     /// Bounds, and what makes the shading state, of a grid whose positions are set: a million hairs
     /// are diced for those; shading state, three times the bytes, is made of hairs that are seen.
-    void finish(Grid& grid) const;
+    /// @return the copy() that makes it.
+    std::shared_ptr<const ElementBatch> finish(Grid& grid) const;
     /// Whole batch.
     ElementBatch(const OpenedElements& elements, std::size_t batch)
         : m_elements(&elements), m_batch(batch), m_count(elements.shared().batch(batch).size()) {}

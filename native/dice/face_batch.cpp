@@ -161,8 +161,7 @@ void FaceBatch::add_point(Grid& grid, const std::vector<Face>& faces, const Clus
     grid.dp_du.push_back(center.su * cluster.stretch(faces));
     grid.dp_dv.push_back(center.sv * cluster.stretch(faces));
     // Rays start above all of the cluster, on the side that is seen.
-    const Vec3f view = m_mesh->view().projection.perspective ? p : Vec3f(0.0f, 0.0f, 1.0f);
-    const Vec3f up = glm::dot(outward, view) > 0.0f ? -outward : outward;
+    const Vec3f up = m_mesh->seen_side(p, outward);
     float height = 0.0f;
     for (std::size_t i = cluster.first; i < cluster.end; ++i)
         for (const int v : faces[i].vertices)

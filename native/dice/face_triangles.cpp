@@ -61,11 +61,8 @@ Grid face_triangles(const OpenedMesh& mesh, const Grid& batch,
             if (mesh.rises()) at.rise.push_back(mesh.rise(face, weights, flat));
             if (!mesh.shared().subdivision()) continue;
             // The limit, which rays meet, may stand above the micropolygon.
-            const Vec3f view = mesh.view().projection.perspective ? p : Vec3f(0.0f, 0.0f, 1.0f);
-            const Vec3f outward(flat);
-            const Vec3f up = glm::dot(outward, view) > 0.0f ? -outward : outward;
             const float height = mesh.shared().limit()->heights[triangle.patch.face];
-            at.ray_offset.push_back(up * (height * mesh.frame_scale()));
+            at.ray_offset.push_back(mesh.seen_side(p, Vec3f(flat)) * (height * mesh.frame_scale()));
         }
     }
     spread_corners(1, at.normal, grid.normal);
@@ -74,9 +71,9 @@ Grid face_triangles(const OpenedMesh& mesh, const Grid& batch,
     spread_corners(1, at.dp_dv, grid.dp_dv);
     if (!at.rise.empty()) spread_corners(1, at.rise, grid.rise);
     if (!at.ray_offset.empty()) spread_corners(1, at.ray_offset, grid.ray_offset);
-    for (int run = 0; run < 4; ++run)
-        for (const FaceTriangle& triangle : wanted)
-            grid.shading_positions.faces.push_back(triangle.patch.face);
+    std::vector<std::uint32_t> faces;
+    for (const FaceTriangle& triangle : wanted) faces.push_back(triangle.patch.face);
+    repeat_runs(faces, grid.shading_positions.faces);
 
     const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
         const auto width = static_cast<std::size_t>(out.width);

@@ -8,6 +8,7 @@
 #include "dice/grid_attributes.h"
 #include "dice/motion_bounds.h"
 #include "dice/point_batch.h"
+#include "dice/triangle_grid.h"
 #include "dice/visible_area.h"
 
 namespace granita {
@@ -169,6 +170,15 @@ void OpenedElements::finish_derivatives(Grid& grid, std::span<const ElementPlace
     }
 }
 
+std::vector<float> OpenedElements::values_at(const AttributeRequest& request,
+                                             std::span<const ElementPlace> places) const {
+    const auto width = static_cast<std::size_t>(request.width);
+    std::vector<float> values(places.size() * width);
+    for (std::size_t i = 0; i < places.size(); ++i)
+        element_value(*m_shared, request, places[i], &values[i * width]);
+    return values;
+}
+
 void OpenedElements::finish_attributes(Grid& grid, std::span<const ElementPlace> places) const {
     const std::size_t lines = static_cast<std::size_t>(grid.n_v) + 1;
     const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
@@ -181,9 +191,7 @@ void OpenedElements::finish_attributes(Grid& grid, std::span<const ElementPlace>
                 values.insert(values.end(), values.begin(),
                               values.begin() + static_cast<std::ptrdiff_t>(line));
         };
-        out.values.resize(line);
-        for (std::size_t i = 0; i < places.size(); ++i)
-            element_value(*m_shared, request, places[i], &out.values[i * width]);
+        out.values = values_at(request, places);
         if (request.derivatives) {
             out.du.assign(line, 0.0f);
             for (std::size_t i = 0; i + 1 < places.size(); ++i)
@@ -201,20 +209,12 @@ void OpenedElements::finish_attributes(Grid& grid, std::span<const ElementPlace>
 void OpenedElements::fill_attributes(Grid& grid, std::span<const ElementPlace> places,
                                      std::span<const ElementPlace> next) const {
     const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
-        const auto width = static_cast<std::size_t>(out.width);
-        std::vector<float> values(places.size() * width), steps;
-        for (std::size_t i = 0; i < places.size(); ++i)
-            element_value(*m_shared, request, places[i], &values[i * width]);
-        const auto repeat = [](const std::vector<float>& from, std::vector<float>& to) {
-            for (int run = 0; run < 4; ++run) to.insert(to.end(), from.begin(), from.end());
-        };
-        repeat(values, out.values);
+        const std::vector<float> values = values_at(request, places);
+        repeat_runs(values, out.values);
         if (!request.derivatives) return;
-        steps.resize(values.size());
-        for (std::size_t i = 0; i < places.size(); ++i)
-            element_value(*m_shared, request, next[i], &steps[i * width]);
+        std::vector<float> steps = values_at(request, next);
         for (std::size_t c = 0; c < steps.size(); ++c) steps[c] -= values[c];
-        repeat(steps, out.du);
+        repeat_runs(steps, out.du);
         out.dv.assign(out.du.size(), 0.0f);
     };
     make_attributes(grid, m_view->requests_of(grid.material), fill);

@@ -94,6 +94,9 @@ class OpenedElements final : public OpenedInstance,
   private:
     int material(std::size_t batch) const;
     void finish_derivatives(Grid& grid, std::span<const ElementPlace> places) const;
+    /// [places][request.width]
+    std::vector<float> values_at(const AttributeRequest& request,
+                                 std::span<const ElementPlace> places) const;
     void finish_attributes(Grid& grid, std::span<const ElementPlace> places) const;
 
     const View* m_view;

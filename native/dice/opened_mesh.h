@@ -101,6 +101,11 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     }
     /// Grid::rise where the face itself has the normal `flat`.
     Vec4f rise(const FrameFace& face, const CornerWeights& weights, const Vec3d& flat) const;
+    /// A normal of what is seen at `p`, camera space, turned to the side that is.
+    Vec3f seen_side(const Vec3f& p, const Vec3f& outward) const {
+        const Vec3f along = view().projection.perspective ? p : Vec3f(0.0f, 0.0f, 1.0f);
+        return glm::dot(outward, along) > 0.0f ? -outward : outward;
+    }
     /// Any material of the instance displaces.
     bool displaced() const { return m_displaced; }
     /// The longest way that displacement may move a point at any knot, metres.

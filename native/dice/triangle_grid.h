@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <iterator>
 #include <vector>
 
 #include "dice/grid.h"
@@ -22,6 +23,14 @@ void spread_corners(std::size_t width, const std::vector<Value>& of_corners,
         for (std::size_t t = 0; t < count; ++t)
             for (std::size_t c = 0; c < width; ++c)
                 out.push_back(of_corners[(3 * t + corner) * width + c]);
+}
+
+/// [4 n] from [n]: what is the same at all corners of a triangle.
+template <class Value>
+void repeat_runs(const std::vector<Value>& of_triangles, std::vector<Value>& out) {
+    out.reserve(std::size(kCornerOfRun) * of_triangles.size());
+    for (std::size_t run = 0; run < std::size(kCornerOfRun); ++run)
+        out.insert(out.end(), of_triangles.begin(), of_triangles.end());
 }
 
 /// A grid of `count` triangles of another one, `triangle_at(i)`, in place at every knot.

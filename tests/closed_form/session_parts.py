@@ -20,6 +20,12 @@ def matte(snapshot, color, alpha=None):
     return len(snapshot["materials"]) - 1
 
 
+def sun(snapshot, world_from_light=DOWN, **extra):
+    """The scene's only lamp, straight above it."""
+    lamp = {"name": "Sun", "kind": "SUN", "world_from_light": world_from_light[None], "energy": 3.0}
+    snapshot["lights"] = [{**lamp, **extra}]
+
+
 def scene():
     """A floor, a moving card, a subdivided cube, and a strand before them, under a sun with a lens."""
     snapshot = s.perspective((48, 32), 60.0, executor="SIMD", samples=4)
@@ -32,9 +38,7 @@ def scene():
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     cage = {"subdivision": {"scheme": "CATMULL_CLARK"}, "smooth": np.ones(6, np.uint8)}
     s.mesh(snapshot, corners, faces, matte(snapshot, (0.2, 0.5, 0.9)), **cage)
-    snapshot["lights"] = [
-        {"name": "Sun", "kind": "SUN", "world_from_light": DOWN[None], "energy": 3.0}
-    ]
+    sun(snapshot)
     return snapshot
 
 

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+import session_parts
 import snapshots as s
 
 import granita_core
@@ -84,16 +85,12 @@ def test_lit_hair_of_which_little_is_seen_costs_what_sees_it(angle, samples):
     y, z = numbers.uniform(-2, 34, count), numbers.uniform(20, 50, count)
     x = np.linspace(-4, 36, 5)
     points = [np.broadcast_to(v, (count, 5)) for v in (x, y[:, None], z[:, None])]
-    nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.8, 0.8, 0.8, 1)}}]
-    snapshot["materials"].append({"name": "Matte", "nodes": nodes, "surface": (0, "BSDF")})
-    curves(snapshot, np.stack(points, -1).reshape(-1, 3), [5] * count, 0.1, 0)
+    matte = session_parts.matte(snapshot, (0.8, 0.8, 0.8))
+    curves(snapshot, np.stack(points, -1).reshape(-1, 3), [5] * count, 0.1, matte)
     cos, sin = np.cos(angle), np.sin(angle)
-    sun = np.eye(4)
-    sun[:3, :3] = [[1, 0, 0], [0, -cos, sin], [0, -sin, -cos]]
-    snapshot["lights"] = [
-        {"name": "Sun", "kind": "SUN", "world_from_light": sun[None], "energy": 3.0}
-    ]
-    snapshot["lights"][0]["casts_shadow"] = angle == 0.0
+    turned = np.eye(4)
+    turned[:3, :3] = [[1, 0, 0], [0, -cos, sin], [0, -sin, -cos]]
+    session_parts.sun(snapshot, turned, casts_shadow=angle == 0.0)
     result = s.render(snapshot)
     picture = result["combined"]
     across = np.linspace(-1, 1, 200001)

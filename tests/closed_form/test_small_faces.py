@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+import session_parts
 import snapshots as s
 
 
@@ -184,14 +185,10 @@ def test_a_ball_that_turns_does_not_shadow_itself(frame_time):
         turns = [s.translation(8, 8, 20) for _ in range(9)]
         for turn, a in zip(turns, angle * (np.linspace(0, 1, 9) - frame_time)):
             turn[:2, :2] = [[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]]
-        nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.8, 0.8, 0.8, 1)}}]
-        snapshot["materials"].append({"name": "Matte", "nodes": nodes, "surface": (0, "BSDF")})
-        s.mesh(snapshot, *ball(6.0), 0, transforms=turns)
+        s.mesh(snapshot, *ball(6.0), matte(snapshot), transforms=turns)
         tilt = np.eye(4)
         tilt[:3, :3] = [[0.8, 0, -0.6], [0, -1, 0], [-0.6, 0, -0.8]]  # shines along (.6, 0, .8)
-        snapshot["lights"] = [
-            {"name": "Sun", "kind": "SUN", "world_from_light": tilt[None], "energy": 3.0}
-        ]
+        session_parts.sun(snapshot, tilt)
         return s.render(snapshot)["combined"][5:11, 5:11, 0]
 
     still, turning = render(0.0), render(0.7)
@@ -200,9 +197,7 @@ def test_a_ball_that_turns_does_not_shadow_itself(frame_time):
 
 
 def matte(snapshot):
-    nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.8, 0.8, 0.8, 1)}}]
-    snapshot["materials"].append({"name": "Matte", "nodes": nodes, "surface": (0, "BSDF")})
-    return len(snapshot["materials"]) - 1
+    return session_parts.matte(snapshot, (0.8, 0.8, 0.8))
 
 
 def area_lamp(place, axis, size, **extra):
@@ -259,10 +254,7 @@ def test_lit_faces_have_the_colours_of_their_corners(shape):
     snapshot["materials"].append({"name": "Place", "nodes": nodes, "surface": (1, "BSDF")})
     larger = np.diag([24.0, 24.0, 24.0, 1.0])
     s.mesh(snapshot, points, faces, 0, transforms=[larger])
-    along_z = np.diag([1.0, -1.0, -1.0, 1.0])
-    snapshot["lights"] = [
-        {"name": "Sun", "kind": "SUN", "world_from_light": along_z[None], "energy": np.pi}
-    ]
+    session_parts.sun(snapshot, energy=np.pi)
     result = s.render(snapshot)
     assert result["statistics"]["points_refined"] >= 24 * 16 * 64
     x, y = np.meshgrid((np.arange(24) + 0.5) / 24, (np.arange(16) + 0.5) / 24)
@@ -291,10 +283,7 @@ def test_lit_faces_of_which_few_are_seen_cost_what_sees_them(samples):
     and cost 14 points a pixel with 4 samples."""
     snapshot = s.orthographic((48, 32), executor="SIMD", samples=samples, light_samples=4)
     s.mesh(snapshot, *confetti(48 * 32 * 100, 0.3, 48, 32, 40), matte(snapshot))
-    along_z = np.diag([1.0, -1.0, -1.0, 1.0])
-    snapshot["lights"] = [
-        {"name": "Sun", "kind": "SUN", "world_from_light": along_z[None], "energy": 3.0}
-    ]
+    session_parts.sun(snapshot)
     result = s.render(snapshot)
     radiance, alpha = result["combined"][..., 0], result["combined"][..., 3]
     assert alpha.mean() > 0.98
