@@ -20,7 +20,7 @@ from .scene.instance import linked, place
 from .scene.lamp_emitters import add_emitters
 from .scene.lamps import energies, lamp_graphs, place_lamps, read_lamps
 from .scene.light_linking import link_lights
-from .scene.light_paths import report_hidden_from_volumes, report_volume_bounces
+from .scene.light_paths import report_volume_bounces
 from .scene.options import options_record, scene_crop, scene_frame
 from .scene.persistent_state import PersistentState
 from .scene.scene_objects import read_scene_objects
@@ -133,7 +133,6 @@ def export_frame(
     lights = place_lamps(lamps, scan, motion, report)
     instances, materials = _fill_empty_slots(instances, list(seen.materials))
     report_volume_bounces(scene, settings, (*materials, world), report)
-    report_hidden_from_volumes(scene, view_layer, scan, (*materials, world), report)
     snapshot = Snapshot(
         options=options,
         camera=camera_at_frame,

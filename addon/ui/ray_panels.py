@@ -25,8 +25,8 @@ class GRANITA_OBJECT_PT_rays(_Panel, bpy.types.Panel):
         ("visible_diffuse", "Diffuse"),
         ("visible_glossy", "Glossy"),
         ("visible_transmission", "Transmission"),
+        ("visible_volume_scatter", "Volume Scatter"),
     )
-    _LIGHT = (*_BOTH, ("visible_volume_scatter", "Volume Scatter"))
     _SURFACE = (*_BOTH, ("visible_shadow", "Shadow"))
     _TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "EMPTY", "LIGHT"}
 
@@ -37,7 +37,7 @@ class GRANITA_OBJECT_PT_rays(_Panel, bpy.types.Panel):
     def draw(self, context):
         column = self.layout.column()
         column.use_property_split = True
-        for name, text in self._LIGHT if context.object.type == "LIGHT" else self._SURFACE:
+        for name, text in self._BOTH if context.object.type == "LIGHT" else self._SURFACE:
             column.prop(context.object, name, text=text)
 
 

@@ -220,13 +220,14 @@ void read_instances(const Record& r, Scene& scene) {
                 fail("names a material that does not exist");
             instance.materials.push_back(material);
         }
-        const std::uint32_t f = flags.empty() ? 59u : flags[i];
+        const std::uint32_t f = flags.empty() ? 123u : flags[i];
         instance.visible_camera = f & 1u;
         instance.casts_shadow = f & 2u;
         instance.holdout = f & 4u;
         instance.visible_diffuse = f & 8u;
         instance.visible_glossy = f & 16u;
         instance.visible_transmission = f & 32u;
+        instance.visible_volume = f & 64u;
         instance.terminator_offset = static_cast<float>(f >> 16) / 65535.0f;
         instance.object_index = object_index.empty() ? 0 : object_index[i];
         instance.random = random.empty() ? 0.0f : random[i];

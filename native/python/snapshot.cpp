@@ -217,6 +217,7 @@ std::shared_ptr<Scene> read_scene(const py::dict& snapshot) {
         scene->world.visible_diffuse = world.boolean("visible_diffuse", true);
         scene->world.visible_glossy = world.boolean("visible_glossy", true);
         scene->world.visible_transmission = world.boolean("visible_transmission", true);
+        scene->world.visible_volume = world.boolean("visible_volume", true);
         read_graph(world, scene->world.graph);
     }
     if (root.has("instances")) read_instances(root.record("instances"), *scene);

@@ -55,7 +55,7 @@ struct World {
     bool lights_scene = true;  ///< false where the view layer drops the world (use_sky off)
     /// Whether rays of a type see it; to the others it is black.
     bool visible_camera = true, visible_diffuse = true, visible_glossy = true,
-         visible_transmission = true;
+         visible_transmission = true, visible_volume = true;
     bool operator==(const World&) const = default;
 };
 

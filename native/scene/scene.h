@@ -29,6 +29,7 @@ struct Instance {
     bool visible_camera = true;
     /// To rays from other surfaces, by what sends them.
     bool visible_diffuse = true, visible_glossy = true, visible_transmission = true;
+    bool visible_volume = true;  ///< to rays from what fills things
     bool casts_shadow = true;
     bool holdout = false;
     /// Cosine to smooth faces below which rays to lamps start above them (dice/smooth_rise.h).
@@ -41,8 +42,8 @@ struct Instance {
     std::uint32_t key = 0;  ///< rank of the persistent identity: orders micropolygons (decision 3)
     bool operator==(const Instance&) const = default;
 
-    bool is_seen_by_surfaces() const {
-        return visible_diffuse || visible_glossy || visible_transmission;
+    bool is_seen_by_light() const {
+        return visible_diffuse || visible_glossy || visible_transmission || visible_volume;
     }
     /// Index in Scene::materials, -1 = none.  An element may keep the slot of a material that is
     /// gone: Blender takes the last one there is.

@@ -57,6 +57,7 @@ Instance with_groups_of(Instance instance, const Instance& other) {
     instance.visible_diffuse = other.visible_diffuse;
     instance.visible_glossy = other.visible_glossy;
     instance.visible_transmission = other.visible_transmission;
+    instance.visible_volume = other.visible_volume;
     instance.casts_shadow = other.casts_shadow;
     instance.receives = other.receives;
     instance.blocks = other.blocks;

@@ -30,6 +30,8 @@ bool is_visible(const World& world, RayType ray) {
         case RayType::Transmission:
         case RayType::Clear:
             return world.visible_transmission;
+        case RayType::Scattered:
+            return world.visible_volume;
         default:
             return world.visible_glossy;
     }

@@ -186,7 +186,7 @@ def test_flags(scene, cube):
     snapshot, _, _ = export_probe.through_engine(scene)
     instances = snapshot["instances"]
     flags = dict(zip(instances["name"], instances["flags"].tolist()))
-    seen = 8 + 16 + 32  # by diffuse, glossy and transmission rays
+    seen = 8 + 16 + 32 + 64  # by diffuse, glossy, transmission and volume scatter rays
     expected = {"Cube": 3, "A": 2, "B": 1, "C": 7, "D": 3, "E": 7, "F": 2}
     assert {n: f & 0xFFFF for n, f in flags.items()} == {n: f + seen for n, f in expected.items()}
     offsets = {name: (flag >> 16) / 65535 for name, flag in flags.items()}
@@ -203,7 +203,7 @@ def test_an_instancer_hides_and_holds_out_its_instances(scene, cube):
     bpy.data.objects["Place1"].is_holdout = True
     snapshot, _, _ = export_probe.through_engine(scene)
     flags = snapshot["instances"]["flags"] & 0xFFFF
-    assert flags.tolist() == [2 + 56, 7 + 56, 3 + 56]
+    assert flags.tolist() == [2 + 120, 7 + 120, 3 + 120]
 
 
 def test_keys_stay_when_others_come_and_go(scene, cube):

@@ -24,6 +24,7 @@ HOLDOUT = 4
 VISIBLE_DIFFUSE = 8
 VISIBLE_GLOSSY = 16
 VISIBLE_TRANSMISSION = 32
+VISIBLE_VOLUME = 64
 TERMINATOR_OFFSET_SHIFT = 16
 
 
@@ -129,6 +130,8 @@ def _flags(prototype, view_layer):
         flags |= VISIBLE_GLOSSY
     if all(owner.visible_transmission for owner in owners):
         flags |= VISIBLE_TRANSMISSION
+    if all(owner.visible_volume_scatter for owner in owners):
+        flags |= VISIBLE_VOLUME
     if placing.holdout_get(view_layer=view_layer):
         flags |= HOLDOUT
     return flags | _terminator_offset(prototype.source) << TERMINATOR_OFFSET_SHIFT

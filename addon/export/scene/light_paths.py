@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Limits of light's ways from surface to surface: `scene.granita.bounces` and those that Cycles has."""
 
-from ..base.updates import originals
-
 # Cycles' property, the snapshot's option, Cycles' default: taken where its add-on is not enabled.
 LIMITS = (
     ("max_bounces", "bounces", 12),
@@ -52,28 +50,3 @@ def report_volume_bounces(scene, settings, records, report):
             "render settings",
             f"volumes scatter light once, not {bounces + 1} times, without bounces",
         )
-
-
-def report_hidden_from_volumes(scene, view_layer, scan, records, report):
-    """Names what light that is scattered sees, though it is hidden from it.
-
-    Args:
-        scene, view_layer: whose World counts.
-        scan: depsgraph.Visit.
-        records: of materials and the world.
-        report: called with (datablock, message).
-    """
-    from ..shading.world import world_of
-
-    if not any(record.get("volume") for record in records):
-        return
-    message = "volumes scatter its light all the same: its Volume Scatter visibility is not read"
-    everything = originals()
-    for prototype in scan.prototypes:
-        thing = everything.get(prototype.address)
-        if thing is None or thing.type == "LIGHT" or thing.visible_volume_scatter:
-            continue
-        report(f"object '{prototype.name}'", message)
-    world = world_of(scene, view_layer)
-    if not getattr(getattr(world, "cycles_visibility", None), "scatter", True):
-        report(f"world '{world.name_full}'", message)

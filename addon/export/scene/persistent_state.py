@@ -94,7 +94,8 @@ def _shown(thing):
     """What can be animated and is no change of place or shape."""
     visible = thing.visible_camera, thing.visible_shadow, thing.is_holdout
     to_surfaces = thing.visible_diffuse, thing.visible_glossy, thing.visible_transmission
-    return thing.hide_render, thing.pass_index, *visible, *to_surfaces
+    to_light = *to_surfaces, thing.visible_volume_scatter
+    return thing.hide_render, thing.pass_index, *visible, *to_light
 
 
 def _renew(scene_objects, touched, depsgraph, report, check_cancel):

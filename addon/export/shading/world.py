@@ -9,14 +9,15 @@ def world_of(scene, view_layer):
     return getattr(view_layer, "world_override", None) or scene.world
 
 
-# The types of rays that a World can be hidden from.  Scattered ones are not traced.
-RAY_TYPES = ("camera", "diffuse", "glossy", "transmission")
+# The types of rays that a World can be hidden from.
+RAY_TYPES = ("camera", "diffuse", "glossy", "transmission", "scatter")
 
 
 def ray_visibility(world):
     """{"visible_camera": bool, ...}: to which rays a World shows itself.  Cycles' add-on brings the switches."""
     visibility = getattr(world, "cycles_visibility", None)
-    return {f"visible_{name}": bool(getattr(visibility, name, True)) for name in RAY_TYPES}
+    seen = {f"visible_{name}": bool(getattr(visibility, name, True)) for name in RAY_TYPES}
+    return {**seen, "visible_volume": seen.pop("visible_scatter")}
 
 
 def export_world(scene, view_layer, report, images=None):

@@ -453,7 +453,7 @@ BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const 
       m_progress(progress) {
     for (std::size_t i = 0; i < scene.instances.size() && !m_any_shines; ++i) {
         const Instance& instance = scene.instances[i];
-        if (!instance.is_seen_by_surfaces() || instance.lifespan.is_empty()) continue;
+        if (!instance.is_seen_by_light() || instance.lifespan.is_empty()) continue;
         const bool are_lamps = direct.lamp_faces().hold_all_of(i);
         m_any_shines = std::ranges::any_of(instance.materials, [&](std::int32_t material) {
             return emission.any(material) && !(are_lamps && emission.is_lamp(material));

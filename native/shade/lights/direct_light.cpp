@@ -141,7 +141,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         const float sign = LitGrid::sign(s, samples.count);
         if (grid.leaving && (grid.leaving->diffuse || meets_lamps)) {
             Ray ray = set.ray(point, place, wo, kInfinity);
-            ray.type = kBlurred.of(point.bsdf.part(lobe));
+            ray.type = grid.blurred_rays().of(point.bsdf.part(lobe));
             BsdfValue sent = value;
             if (!grid.leaving->diffuse) sent.diffuse = Vec3f(0.0f);
             const float density =

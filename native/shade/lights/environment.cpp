@@ -117,7 +117,7 @@ std::vector<float> Environment::bake(const WorldEvaluator& world, const Progress
     std::vector<float> found(width * static_cast<std::size_t>(m_height));
     if (world.is_image) {
         m_texels_apart = world.by_lobe ? found.size() : 0;
-        m_radiance.resize(found.size() + 2 * m_texels_apart);
+        m_radiance.resize(found.size() + (kBlurredRays.size() - 1) * m_texels_apart);
     }
     std::atomic<std::size_t> broken = 0;
     parallel_for(static_cast<std::size_t>(m_height), 1, [&](std::size_t begin, std::size_t end) {
@@ -126,13 +126,11 @@ std::vector<float> Environment::bake(const WorldEvaluator& world, const Progress
             TexelRow row(static_cast<int>(y), m_width, m_height, side);
             float* texels = found.data() + width * y;
             Vec3f* const seen = m_radiance.empty() ? nullptr : m_radiance.data() + width * y;
-            broken += row.add(world, spread, RayType::Diffuse, texels, seen);
-            if (!world.by_lobe) continue;
             // One density for all: it is large where any is.
-            broken += row.add(world, spread, RayType::Glossy, texels,
-                              seen ? seen + m_texels_apart : nullptr);
-            broken += row.add(world, spread, RayType::Transmission, texels,
-                              seen ? seen + 2 * m_texels_apart : nullptr);
+            const std::size_t kinds = world.by_lobe ? kBlurredRays.size() : 1;
+            for (std::size_t kind = 0; kind != kinds; ++kind)
+                broken += row.add(world, spread, kBlurredRays[kind], texels,
+                                  seen ? seen + kind * m_texels_apart : nullptr);
         }
     });
     m_broken = broken;
@@ -146,8 +144,7 @@ Environment::Environment(const WorldEvaluator& world, const Progress& progress, 
         return;
     }
     m_black = true;
-    for (const RayType ray : {RayType::Diffuse, RayType::Glossy, RayType::Singular,
-                              RayType::Transmission, RayType::Clear}) {
+    for (const RayType ray : kLightRays) {
         std::vector<Vec3f> seen;
         world.radiance({Vec3f(0.0f, 0.0f, 1.0f)}, 0.0f, ray, seen);
         if (!is_finite(seen[0])) {

@@ -4,6 +4,7 @@
 // angle.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -63,10 +64,11 @@ class Environment {
     /// Whether texel_radiance() says what sample() stands for: of images, whose lookups are most of
     /// what lighting by a world costs.  A program may hold what is between a texel's places.
     bool has_radiance() const { return !m_radiance.empty(); }
-    /// The mean over a texel, as diffuse, glossy or transmitted rays see it.
+    /// The mean over a texel, as kBlurredRays see it.
     const Vec3f& texel_radiance(std::size_t texel, RayType ray) const {
-        const std::size_t world = ray == RayType::Diffuse ? 0 : ray == RayType::Glossy ? 1 : 2;
-        return m_radiance[world * m_texels_apart + texel];
+        const auto* const world = std::ranges::find(kBlurredRays, ray);
+        return m_radiance[static_cast<std::size_t>(world - kBlurredRays.begin()) * m_texels_apart +
+                          texel];
     }
 
     /// Angle between neighbouring directions of the table: what sample() stands for.
@@ -74,6 +76,10 @@ class Environment {
     std::size_t bytes() const;
 
   private:
+    /// The types of rays that lobes send that are not sharp.
+    static constexpr std::array kBlurredRays{RayType::Diffuse, RayType::Glossy,
+                                             RayType::Transmission, RayType::Scattered};
+
     /// [height][width] luminance
     std::vector<float> bake(const WorldEvaluator& world, const Progress& progress);
     void build_distribution(const std::vector<float>& luminance);

@@ -11,6 +11,7 @@
 #include "shade/lights/light_source.h"
 #include "shade/lights/lit_point.h"
 #include "shade/lights/lobe_ray.h"
+#include "shade/lights/part_rays.h"
 
 namespace granita {
 
@@ -47,6 +48,9 @@ struct LitGrid {
     /// sum is in doubt.  nullptr: not asked for.
     std::vector<float>* balance = nullptr;
     LeavingRays* leaving = nullptr;  ///< to other surfaces; nullptr: not asked for
+
+    /// The types of ray that its lobes send, but for sharp ones.
+    const PartRays& blurred_rays() const { return in_medium ? kScattered : kBlurred; }
 
     /// Of sample `s` of `count` which the point takes alike; one alone is in no doubt.
     static float sign(int s, int count) { return count < 2 ? 0.0f : s % 2 == 0 ? 1.0f : -1.0f; }

@@ -18,5 +18,7 @@ struct PartRays {
 };
 constexpr PartRays kBlurred{RayType::Diffuse, RayType::Glossy, RayType::Transmission};
 constexpr PartRays kSharp{RayType::Diffuse, RayType::Singular, RayType::Clear};
+/// Of phase functions, whose light is all transmitted.
+constexpr PartRays kScattered{RayType::Scattered, RayType::Scattered, RayType::Scattered};
 
 }  // namespace granita

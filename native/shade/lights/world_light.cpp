@@ -47,7 +47,7 @@ void WorldLight::sample(const LampSet& set, LitGrid& grid, const LitPoint& point
                 value.diffuse * seen / (count * (from.pdf + shared_density(point, wo)));
         const float sign = LitGrid::sign(s, point.sample_count);
         if (m_environment->has_radiance())
-            grid.reflect_world(point.index, of_texel(from, weight), sign);
+            grid.reflect_world(point.index, of_texel(from, weight, grid.blurred_rays()), sign);
         else
             grid.look(grid.blurred, point.index, wo, weight, sign);
     }
@@ -68,29 +68,31 @@ void WorldLight::meet(const LampSet& set, LitGrid& grid, const LitPoint& point,
         weight.diffuse *= density / by_lobes * shared / (at.pdf + shared);
     }
     if (m_environment->is_constant()) {
+        const PartRays& types = grid.blurred_rays();
         const BsdfValue reflected{
-            weight.diffuse * m_environment->constant_radiance(RayType::Diffuse),
-            weight.glossy * m_environment->constant_radiance(RayType::Glossy),
-            weight.transmission * m_environment->constant_radiance(RayType::Transmission)};
+            weight.diffuse * m_environment->constant_radiance(types.diffuse),
+            weight.glossy * m_environment->constant_radiance(types.glossy),
+            weight.transmission * m_environment->constant_radiance(types.transmission)};
         grid.reflect_met_world(point.index, reflected, sample.sign);
     } else if (m_environment->has_radiance() && !sample.is_narrow) {
-        grid.reflect_met_world(point.index, of_texel(at, weight), sample.sign);
+        grid.reflect_met_world(point.index, of_texel(at, weight, grid.blurred_rays()), sample.sign);
     } else {
         grid.look(grid.met, point.index, wo, weight, sample.sign);
     }
 }
 
 /// What a texel of the world's table sends, reflected by `weight`.
-BsdfValue WorldLight::of_texel(const Environment::Sample& from, const BsdfValue& weight) const {
-    return {weight.diffuse * m_environment->texel_radiance(from.texel, RayType::Diffuse),
-            weight.glossy * m_environment->texel_radiance(from.texel, RayType::Glossy),
-            weight.transmission * m_environment->texel_radiance(from.texel, RayType::Transmission)};
+BsdfValue WorldLight::of_texel(const Environment::Sample& from, const BsdfValue& weight,
+                               const PartRays& types) const {
+    return {weight.diffuse * m_environment->texel_radiance(from.texel, types.diffuse),
+            weight.glossy * m_environment->texel_radiance(from.texel, types.glossy),
+            weight.transmission * m_environment->texel_radiance(from.texel, types.transmission)};
 }
 
 void WorldLight::deliver(LitGrid& grid) const {
     if (!shines()) return;
-    look(grid, grid.blurred, m_environment->texel_angle(), kBlurred);
-    look(grid, grid.met, m_environment->texel_angle(), kBlurred);
+    look(grid, grid.blurred, m_environment->texel_angle(), grid.blurred_rays());
+    look(grid, grid.met, m_environment->texel_angle(), grid.blurred_rays());
     // A point of its own stands for no neighbours: the mean of many does.
     look(grid, grid.sharp, grid.placed ? 0.0f : grid.sharp.spread(), kSharp);
 }

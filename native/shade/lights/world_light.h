@@ -41,7 +41,8 @@ class WorldLight {
     void deliver(LitGrid& grid) const;
 
   private:
-    BsdfValue of_texel(const Environment::Sample& from, const BsdfValue& weight) const;
+    BsdfValue of_texel(const Environment::Sample& from, const BsdfValue& weight,
+                       const PartRays& types) const;
     void look(LitGrid& grid, const EnvironmentSamples& samples, float spread,
               const PartRays& types) const;
 

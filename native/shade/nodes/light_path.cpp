@@ -29,6 +29,7 @@ float light_path_value(const std::string& output, RayType ray) {
     const bool yes =
         (is("Is Camera Ray") && ray == RayType::Camera) ||
         (is("Is Shadow Ray") && ray == RayType::Shadow) ||
+        (is("Is Volume Scatter Ray") && ray == RayType::Scattered) ||
         (is("Is Singular Ray") && (ray == RayType::Singular || ray == RayType::Clear)) ||
         ((is("Is Transmission Ray") || is("Transmission Depth")) && transmitted) ||
         (is("Is Reflection Ray") && reflected) || (is("Ray Depth") && ray != RayType::Camera) ||

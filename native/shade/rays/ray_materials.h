@@ -51,7 +51,7 @@ struct RayMaterials {
     }
     /// Whether meshes of the instance are lamps, and what rays leave the lamps light.
     bool shines(const Instance& instance) const {
-        if (!emitted || !instance.is_seen_by_surfaces()) return false;
+        if (!emitted || !instance.is_seen_by_light()) return false;
         return std::ranges::any_of(instance.materials, [this](std::int32_t material) {
             return emitted(material) != Vec3f(0.0f);
         });

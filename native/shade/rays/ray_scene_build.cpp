@@ -249,9 +249,10 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materia
         if (instance.blocks != ~0ULL) use |= kIsLinked;
         if (impl.materials.shines(instance)) use |= kShines;
         if (impl.holds_volume(instance)) use |= kBounds;
-        const bool hidden = scene.options.bounces.most > 0 &&
-                            !(instance.visible_camera && instance.visible_diffuse &&
-                              instance.visible_glossy && instance.visible_transmission);
+        const bool hidden =
+            scene.options.bounces.most > 0 &&
+            !(instance.visible_camera && instance.visible_diffuse && instance.visible_glossy &&
+              instance.visible_transmission && instance.visible_volume);
         if (hidden || !instance.casts_shadow) use |= kIsHidden;
     }
     if (displaced.empty() &&

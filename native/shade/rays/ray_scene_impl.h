@@ -78,7 +78,7 @@ struct RayScene::Impl {
     void add_instance(std::uint32_t index, const Vec3d& origin);
     bool is_met(const Instance& instance) const {
         if (materials.is_volume_alone(instance)) return false;
-        const bool seen = instance.is_seen_by_surfaces();
+        const bool seen = instance.is_seen_by_light();
         return (instance.casts_shadow || (seen && scene.options.bounces.most > 0) ||
                 materials.shines(instance) || materials.meets_itself(instance)) &&
                !instance.lifespan.is_empty();

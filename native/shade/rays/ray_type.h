@@ -8,15 +8,16 @@ namespace granita {
 
 /// What a ray is traced for: materials and worlds tell it by the node Light Path.  Light of the
 /// world is asked for by the lobe that sends it on, Singular by mirrors, Clear by what is as sharp
-/// and transmits.
-enum class RayType { Camera, Shadow, Diffuse, Glossy, Singular, Transmission, Clear };
-constexpr std::size_t kRayTypes = 7;
+/// and transmits, Scattered by what fills things.
+enum class RayType { Camera, Shadow, Diffuse, Glossy, Singular, Transmission, Clear, Scattered };
+constexpr std::size_t kRayTypes = 8;
 /// Those that bring light: all but shadow rays, which ask what lets it through.
 inline constexpr std::array kSeeingRays{RayType::Camera,   RayType::Diffuse,      RayType::Glossy,
-                                        RayType::Singular, RayType::Transmission, RayType::Clear};
+                                        RayType::Singular, RayType::Transmission, RayType::Clear,
+                                        RayType::Scattered};
 /// Of these, those that lobes send.
-inline constexpr std::array kLightRays{RayType::Diffuse, RayType::Glossy, RayType::Singular,
-                                       RayType::Transmission, RayType::Clear};
+inline constexpr std::array kLightRays{RayType::Diffuse,      RayType::Glossy, RayType::Singular,
+                                       RayType::Transmission, RayType::Clear,  RayType::Scattered};
 
 /// Of lobes that send light through the surface.
 constexpr bool goes_through(RayType ray) {

@@ -12,6 +12,7 @@ inline bool meets(RayType ray, const Instance& instance) {
     if (ray == RayType::Camera) return instance.visible_camera;
     if (ray == RayType::Shadow) return instance.casts_shadow;
     if (ray == RayType::Diffuse) return instance.visible_diffuse;
+    if (ray == RayType::Scattered) return instance.visible_volume;
     return instance.visible_glossy || (goes_through(ray) && instance.visible_transmission);
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array kRays{RayType::Camera, RayType::Shadow,   RayType::Diffuse,
                            RayType::Glossy, RayType::Singular, RayType::Transmission,
-                           RayType::Clear};
+                           RayType::Clear,  RayType::Scattered};
 static_assert(kRays.size() == kRayTypes);
 
 /// In [0, 1), of where a ray goes.
