@@ -200,6 +200,22 @@ def test_cloth_toon_and_translucent(scene, render, turn):
     check(report, _SHEEN)
 
 
+@pytest.mark.skipif(_SINCE_4, reason="since Blender 4 tints are colours")
+def test_tints_by_the_base_colour(scene, render):
+    """Saturated ones, by whose luminance they are divided."""
+    kinds = {}
+    for color in ((0.8, 0.1, 0.1, 1.0), (0.1, 0.8, 0.1, 1.0), (0.1, 0.1, 0.8, 1.0)):
+        values = {"Base Color": color, "Roughness": ("B", 0.5, 0.3)}
+        for name, more in {
+            "Specular": {"Specular": 1.0, "Specular Tint": "C"},
+            "Sheen": {"Specular": 0.0, "Sheen": 1.0, "Sheen Tint": "C"},
+        }.items():
+            kinds[f"{name} of {color}"] = lambda tree, v={**values, **more}: node(
+                tree, "ShaderNodeBsdfPrincipled", v, distribution="GGX"
+            )
+    check(compare(scene, render, kinds, BEFORE, tilt=0.8))
+
+
 def _brushed():
     values = {"Color": "A", "Roughness": ("B", 0.6, 0.2), "Anisotropy": ("C", 1.6, -0.9)}
     principled = {

@@ -98,6 +98,12 @@ void add_first_glass(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
     surface.add_lobe(sent);
 }
 
+/// What tints take of a colour.  The first generation knows its luminance by Disney's weights.
+Vec3f first_hue(const Vec3f& color) {
+    const float light = glm::dot(color, Vec3f(0.3f, 0.6f, 0.1f));
+    return light > 0.0f ? color / light : kOne;
+}
+
 /// Cloth that shines where it grazes the light.
 void add_first_sheen(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
                      const LobeSource& diffuse) {
@@ -110,9 +116,7 @@ void add_first_sheen(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
     lobe.roughness = FloatSource{-1, 0.0f};
     const VectorSource color = b.map<Vec3f>(
         [](const Vec3f& base, float tint) {
-            const float light = luminance(base);
-            const Vec3f hue = light > 0.0f ? base / light : kOne;
-            return kOne * (1.0f - tint) + hue * tint;
+            return kOne * (1.0f - tint) + first_hue(base) * tint;
         },
         c.base_color, b.number("Sheen Tint", 0.5f));
     const FloatSource share = b.map<float>(
@@ -233,9 +237,7 @@ void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common&
         c.specular);
     specular.f0 = b.map<Vec3f>(
         [](const Vec3f& base, float m, float s, float t) {
-            const float light = luminance(base);
-            const Vec3f hue = light > 0.0f ? base / light : kOne;
-            const Vec3f tinted = kOne * (1.0f - t) + hue * t;
+            const Vec3f tinted = kOne * (1.0f - t) + first_hue(base) * t;
             return std::max(s, 0.0f) * 0.08f * tinted * (1.0f - m) + base * m;
         },
         c.base_color, c.metallic, c.specular, tint);
