@@ -115,9 +115,7 @@ void add_first_sheen(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
     lobe.normal = diffuse.normal;
     lobe.roughness = FloatSource{-1, 0.0f};
     const VectorSource color = b.map<Vec3f>(
-        [](const Vec3f& base, float tint) {
-            return kOne * (1.0f - tint) + first_hue(base) * tint;
-        },
+        [](const Vec3f& base, float tint) { return kOne * (1.0f - tint) + first_hue(base) * tint; },
         c.base_color, b.number("Sheen Tint", 0.5f));
     const FloatSource share = b.map<float>(
         [](float s, float m, float t) { return std::max(s, 0.0f) * (1.0f - m) * (1.0f - t); },
