@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 import pytest
-from node_comparison import check
+from node_comparison import Tree, board, check
 from test_nodes_textures import saved_image, smooth_image, textured
 
 SAMPLES = 64
@@ -110,6 +110,67 @@ def test_a_movie_is_reported(scene, tmp_path):
     tree.emit(node.outputs["Color"])
     _, warnings = exported(scene)
     assert any(name == f"image '{image.name}'" and "movie" in text for name, text in warnings)
+
+
+def udim(tmp_path, tiles=(1001, 1002, 1011, 1022), pattern="<UDIM>"):
+    """An image of a turned copy of smooth_image() each."""
+    for number in tiles:
+        tile = smooth_image("Tile")
+        pixels = np.float32(tile.pixels[:]).reshape(16, 16, 4)
+        turned = np.rot90(pixels, number % 10) * (0.5 if number > 1010 else 1.0)
+        tile.pixels.foreach_set(np.ascontiguousarray(turned).ravel())
+        u, v = (number - 1001) % 10 + 1, (number - 1001) // 10 + 1
+        place = {"<UDIM>": str(number), "<UVTILE>": f"u{u}_v{v}"}[pattern]
+        tile.filepath_raw = str(tmp_path / f"Image.{place}.png")
+        tile.file_format = "PNG"
+        tile.save()
+        bpy.data.images.remove(tile)
+    first = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}[pattern]
+    image = bpy.data.images.load(str(tmp_path / f"Image.{first}.png"))
+    image.source = "TILED"
+    image.filepath = str(tmp_path / f"Image.{pattern}.png")
+    known = {tile.number for tile in image.tiles}
+    for number in tiles:
+        if number not in known:
+            image.tiles.new(number)
+    return image
+
+
+@pytest.mark.parametrize("pattern", ["<UDIM>", "<UVTILE>"])
+@pytest.mark.parametrize("projection", ["FLAT", "BOX", "SPHERE"])
+def test_tiles(scene, render, tmp_path, projection, pattern):
+    """A place a square, before the first tile, in one each, and where there is none."""
+    image = udim(tmp_path, pattern=pattern)
+    tree, node = textured(scene, image, projection=projection, interpolation="Closest")
+    place = tree.add("ShaderNodeVectorMath", operation="MULTIPLY_ADD")
+    tree.link(tree.attribute("A", "Vector"), place.inputs[0])
+    place.inputs[1].default_value = (3.2, 3.2, 3.2)
+    place.inputs[2].default_value = (-0.6, -0.6, -0.6)
+    tree.link(place.outputs[0], node.inputs["Vector"])
+    tree.emit(node.outputs["Color"])
+    check(scene, render)
+    assert not exported(scene)[1]
+
+
+def test_tiles_that_are_packed(scene, render, tmp_path):
+    image = udim(tmp_path)
+    image.pack()
+    for file in tmp_path.iterdir():
+        file.unlink()
+    tree, node = textured(scene, image)
+    place = tree.add("ShaderNodeVectorMath", operation="SCALE")
+    tree.link(tree.attribute("A", "Vector"), place.inputs[0])
+    place.inputs["Scale"].default_value = 2.0
+    tree.link(place.outputs[0], node.inputs["Vector"])
+    tree.emit(node.outputs["Color"])
+    check(scene, render)
+
+
+def test_tiles_of_an_environment_are_named(scene, tmp_path):
+    tree = Tree(board(scene))
+    node = tree.add("ShaderNodeTexEnvironment", image=udim(tmp_path))
+    tree.emit(node.outputs["Color"])
+    assert any("only its tile 1001" in text for _, text in exported(scene)[1])
 
 
 def test_packed_bytes_are_looked_at_once_a_job(scene, tmp_path, monkeypatch):

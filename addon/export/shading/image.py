@@ -51,6 +51,25 @@ def image_name(image, image_user, images, report):
     return name
 
 
+def image_tiles(image, images, report):
+    """Adds the tiles of an image (UDIM) to the records, once.
+
+    Returns:
+        {number: the record's name}, the names that of the image and the number; {} where it has no tiles, or
+        is in no file.
+    """
+    if image.source != "TILED" or not _is_in_a_file(image):
+        return {}
+    names = {tile.number: f"{image.name_full} {tile.number}" for tile in image.tiles}
+    packed = {file.tile_number: file.packed_file for file in image.packed_files}
+    for number, name in names.items():
+        if name not in images:
+            record = _empty_record(image, name)
+            path = _packed_file(image, packed.get(number)) or _tile_path(image, number)
+            images[name] = {**record, "path": path}
+    return names
+
+
 def _sequence_path(image, image_user):
     """The file of the current frame; None where the image is no sequence."""
     if image.source != "SEQUENCE":
@@ -58,16 +77,20 @@ def _sequence_path(image, image_user):
     return image.filepath_from_user(image_user=image_user)
 
 
+def _empty_record(image, name):
+    space = image.colorspace_settings.name
+    return {"name": name, "path": "", "colorspace": space, "alpha_mode": image.alpha_mode}
+
+
 def _record(image, name, path, report):
     label = f"image '{image.name_full}'"
-    space = image.colorspace_settings.name
-    record = {"name": name, "path": "", "colorspace": space, "alpha_mode": image.alpha_mode}
+    record = _empty_record(image, name)
     if image.source == "MOVIE":
         report(label, "is a movie, of which one frame is shown throughout: use an image sequence")
     if path is not None:
         record["path"] = path
     elif _is_in_a_file(image):
-        record["path"] = _packed_file(image) or _file_path(image, label, report)
+        record["path"] = _packed_file(image, image.packed_file) or _file_path(image, label, report)
         if _is_for_blender(record["path"]) and (pixels := _pixels(image)) is not None:
             record["path"] = ""
             _hand_over(record, pixels, image, label, report)
@@ -98,13 +121,17 @@ def _is_in_a_file(image):
 
 
 def _file_path(image, label, report):
-    path = bpy.path.abspath(image.filepath, library=image.library)
     if image.source == "TILED":
         tile = image.tiles[0].number if len(image.tiles) else 1001
         report(label, f"only its tile {tile} is shown")
-        u, v = (tile - 1001) % 10 + 1, (tile - 1001) // 10 + 1
-        path = path.replace("<UDIM>", str(tile)).replace("<UVTILE>", f"u{u}_v{v}")
-    return path
+        return _tile_path(image, tile)
+    return bpy.path.abspath(image.filepath, library=image.library)
+
+
+def _tile_path(image, tile):
+    path = bpy.path.abspath(image.filepath, library=image.library)
+    u, v = (tile - 1001) % 10 + 1, (tile - 1001) // 10 + 1
+    return path.replace("<UDIM>", str(tile)).replace("<UVTILE>", f"u{u}_v{v}")
 
 
 def _is_packed_hdr(image):
@@ -113,13 +140,12 @@ def _is_packed_hdr(image):
     return image.packed_file is not None and image.file_format == "HDR"
 
 
-def _packed_file(image):
+def _packed_file(image, packed):
     """Writes packed bytes where a file reader can open them; None where nothing is packed.
 
     Blender deletes its own temporary folder when it ends.  The name follows from the content: frames
     of an animation share the file.
     """
-    packed = image.packed_file
     if packed is None:
         return None
     # The bytes are copied by looking at them: once a job.

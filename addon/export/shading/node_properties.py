@@ -4,7 +4,7 @@
 import numpy as np
 
 from .ies import ies_table
-from .image import image_name
+from .image import image_name, image_tiles
 from .spectrum import TEMPERATURES, WAVELENGTHS, blackbody, monochromatic
 
 # Cycles tabulates ramps and curves with as many entries; steps then fall on the same places.
@@ -132,10 +132,20 @@ def _curves(node, *_):
     return {"curves": table.ravel(), "low": float(low), "high": float(high)}
 
 
+# The node that shows more than the first tile of an image.
+_TILED = "ShaderNodeTexImage"
+
+
 def _image_texture(node, owner, images, report):
     if node.image is None:
         return {}
-    found = {"image": image_name(node.image, node.image_user, images, report)}
+    tiles = image_tiles(node.image, images, report) if node.bl_idname == _TILED else {}
+    if tiles:
+        first = tiles.get(1001, tiles[min(tiles)])
+        numbers = np.array(sorted(tiles), dtype=np.float32)
+        found = {"image": first, "tiles_of": node.image.name_full, "tiles": numbers}
+    else:
+        found = {"image": image_name(node.image, node.image_user, images, report)}
     # Cycles divides the colour by alpha only where the node's alpha is used as well.
     record = images[found["image"]]
     alpha = next((socket for socket in node.outputs if socket.identifier == "Alpha"), None)

@@ -56,7 +56,7 @@ class Ranges {
         const std::string& type = node.type;
         if (type == "ShaderNodeTexChecker") return checker(node, depth);
         if (kUnit.contains(type)) return Range{0.0f, 1.0f};
-        if (type == "ShaderNodeTexImage") return image(node.text("image", ""));
+        if (type == "ShaderNodeTexImage") return image(node);
         if (type == "ShaderNodeTexNoise") return noise(node);
         if (type == "ShaderNodeRGBToBW") return of(node, "Color", 0.0f, depth);
         if (type == "ShaderNodeMath") return math(node, depth);
@@ -69,7 +69,10 @@ class Ranges {
         return spanned({a->low, a->high, b->low, b->high, 0.0f, 1.0f});  // the last two: of Fac
     }
 
-    std::optional<Range> image(const std::string& name) const {
+    std::optional<Range> image(const Node& node) const {
+        // What one tile holds tells nothing of the others.
+        if (node.properties.contains("tiles")) return std::nullopt;
+        const std::string name = node.text("image", "");
         for (const Image& image : m_images) {
             if (image.name != name) continue;
             if (image.pixels.empty())

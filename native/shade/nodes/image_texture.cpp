@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image Texture: projections flat, box, sphere and tube; footprints from the shifted vectors.
+// Image Texture: projections flat, box, sphere and tube, tiles; footprints from the shifted
+// vectors.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <string>
 #include <utility>
 
 #include "base/object_pool.h"
@@ -9,6 +13,7 @@
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/texture_mode.h"
+#include "shade/textures/udim_texture.h"
 
 namespace granita {
 
@@ -84,6 +89,20 @@ TextureMode texture_mode(NodeBuilder& b) {
     return mode;
 }
 
+/// `image` is the first of its tiles, of which a box sees no other.
+std::shared_ptr<const Texture> find_texture(NodeBuilder& b, const std::string& image, bool all) {
+    const std::string user = "node '" + b.node().name + "'";
+    const std::vector<float> numbers = b.table("tiles");
+    if (numbers.empty() || !all) return b.textures().find(image, user);
+    std::map<int, std::shared_ptr<const Texture>> tiles;
+    for (const float number : numbers) {
+        const int tile = static_cast<int>(number);
+        const std::string name = b.text("tiles_of") + " " + std::to_string(tile);
+        tiles[tile] = b.textures().find(name, user);
+    }
+    return std::make_shared<UdimTexture>(std::move(tiles));
+}
+
 /// Where the texture is read, and the point with its neighbours, whose differences are the edges of
 /// the area that one read stands for: the same at each shift, or a bump would take differences of
 /// filters for slopes.
@@ -113,9 +132,9 @@ void build_image_texture(NodeBuilder& b) {
         b.output("Alpha", FloatSource{-1, 1.0f});
         return;
     }
-    const auto texture = b.textures().find(image, "node '" + b.node().name + "'");
     const TextureMode mode = texture_mode(b);
     const std::string projection = b.text("projection", "FLAT");
+    const auto texture = find_texture(b, image, projection != "BOX");
     const Footprint print = footprint(b);
     const VectorSource color = b.new_source<Vec3f>();
     const FloatSource alpha = b.new_source<float>();
