@@ -91,11 +91,19 @@ def test_attributes_that_materials_ask_for(scene, cube, kind, member, domain, co
     assert "unwanted" not in [a["name"] for a in geometry["attributes"]]
 
 
-def test_an_attribute_on_edges_is_reported(scene, cube):
-    cube.data.attributes.new("wanted", "FLOAT", "EDGE")
+def test_an_attribute_on_edges_comes_as_its_means_at_vertices(scene, cube):
+    edges = cube.data.attributes.new("wanted", "FLOAT", "EDGE")
+    edges.data.foreach_set("value", np.arange(12, dtype=np.float32))
+    cube.data.vertices.add(1)
     cube.data.materials.append(shading("wanted"))
-    _, report = export_probe.through_script()
-    assert [(d, "wanted" in m) for d, m, _ in report.entries()] == [("mesh 'Cube'", True)]
+    snapshot, report, *_ = export_probe.through_script()
+    found = attribute_of(geometry_of(snapshot, "Cube"), "wanted")
+    means = [
+        [edge.index for edge in cube.data.edges if vertex in edge.vertices] or [0]
+        for vertex in range(9)
+    ]
+    assert found["domain"] == "POINT" and not report.entries()
+    assert found["values"][:, 0].tolist() == pytest.approx([sum(m) / len(m) for m in means])
 
 
 def test_plain_smooth_and_flat_need_no_corner_normals(scene, cube):

@@ -120,18 +120,21 @@ def test_attributes_of_what_instances(scene, render, kind):
 
 
 @pytest.mark.skipif(bpy.app.version < (4, 5, 0), reason="Blender hands them out since 4.5")
+@pytest.mark.parametrize("numbered", [False, True], ids=["in order", "with numbers"])
 @pytest.mark.parametrize("kind", ["FLOAT", "FLOAT_VECTOR", "FLOAT_COLOR"])
-def test_attributes_that_geometry_nodes_give_instances(scene, render, kind):
+def test_attributes_that_geometry_nodes_give_instances(scene, render, kind, numbered):
     _view(scene)
     square = scene_parts.add_square(scene, "Square", 0.5)
     _shown(
         [square], "ShaderNodeAttribute", "Color", attribute_type="INSTANCER", attribute_name="shade"
     )
-    _instances_with_attribute(scene, square, kind)
+    _instances_with_attribute(scene, square, kind, numbered)
     _agree(scene, render)
 
 
-def _instances_with_attribute(scene, part, kind):
+def _instances_with_attribute(scene, part, kind, numbered=False):
+    """`numbered`: as Distribute Points on Faces does, by what single precision does not tell apart."""
+
     def build(nodes, links, geometry):
         line, info = nodes.new("GeometryNodeMeshLine"), nodes.new("GeometryNodeObjectInfo")
         line.inputs["Count"].default_value = 3
@@ -154,6 +157,13 @@ def _instances_with_attribute(scene, part, kind):
         value = next(s for s in store.inputs if s.name == "Value" and s.enabled)
         links.new(scaled.outputs[0], value)
         links.new(place.outputs[0], store.inputs["Geometry"])
+        if numbered:
+            number, great = nodes.new("GeometryNodeSetID"), nodes.new("FunctionNodeIntegerMath")
+            great.inputs[1].default_value = 10**9 + 1
+            links.new(index.outputs[0], great.inputs[0])
+            links.new(great.outputs[0], number.inputs["ID"])
+            links.new(line.outputs["Mesh"], number.inputs["Geometry"])
+            links.new(number.outputs[0], place.inputs["Points"])
         return store.outputs[0]
 
     node_parts.with_nodes(scene_parts.add_square(scene, "Host"), build)

@@ -123,6 +123,8 @@ def shadable(data, names, domains, label, report):
         if attribute is None:
             continue
         values, domain = attribute_values(attribute), domains.get(attribute.domain)
+        if values is not None and attribute.domain == "EDGE":
+            values, domain = _means_at_vertices(data, values), "POINT"
         if values is None or domain is None:
             report(
                 label,
@@ -130,6 +132,18 @@ def shadable(data, names, domains, label, report):
             )
             continue
         yield attribute, domain, values
+
+
+def _means_at_vertices(mesh, values):
+    """Of the edges there, as in Cycles; 0 where there are none."""
+    edges = np.empty((len(mesh.edges), 2), dtype=np.int32)
+    mesh.edges.foreach_get("vertices", edges.reshape(-1))
+    count = len(mesh.vertices)
+    ends = edges.reshape(-1)
+    met = np.bincount(ends, minlength=count).clip(1)
+    by_end = np.repeat(values, 2, axis=0)
+    sums = [np.bincount(ends, column, minlength=count) for column in by_end.T]
+    return (np.stack(sums, axis=1) / met[:, None]).astype(np.float32)
 
 
 def finite_attributes(attributes, label, report):

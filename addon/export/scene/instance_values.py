@@ -147,4 +147,7 @@ def _read(parent, name):
     ids = points.attributes.get("id")
     if ids is None:
         return dict(enumerate(rgba))
-    return dict(zip(attribute_values(ids)[:, 0].astype(int).tolist(), rgba))
+    # Whole: points on faces have numbers that single precision does not tell apart.
+    numbers = np.empty(len(ids.data), dtype=np.int32)
+    ids.data.foreach_get("value", numbers)
+    return dict(zip(numbers.tolist(), rgba))
