@@ -166,8 +166,28 @@ def test_a_node_that_is_not_evaluated_hands_on_what_it_would_change(
     assert all(np.array_equal(through[name], plain[name]) for name in plain)
 
 
-@pytest.mark.parametrize("output", ["Pointiness", "Parametric"])
-def test_an_output_that_is_not_evaluated_is_named_where_it_is_linked(scene, render, capfd, output):
+@pytest.mark.parametrize("modifier", [None, "SUBSURF", "EDGE_SPLIT"])
+def test_pointiness(scene, render, modifier):
+    """Of what Blender's vertices make, of a subdivision surface too, and of places that are split."""
+    bpy.ops.mesh.primitive_monkey_add(size=1.6)
+    thing = bpy.context.object
+    if modifier:
+        made = thing.modifiers.new("Modifier", modifier)
+        if modifier == "SUBSURF":
+            made.levels = made.render_levels = 2
+    tree = Tree(thing)
+    seen = tree.add("ShaderNodeMath", operation="MULTIPLY_ADD")
+    seen.inputs[1].default_value, seen.inputs[2].default_value = 4.0, -1.5
+    tree.link(tree.add("ShaderNodeNewGeometry").outputs["Pointiness"], seen.inputs[0])
+    tree.emit(seen.outputs[0])
+    scene_parts.add_camera(scene, ortho_scale=2.0)
+    scene.render.resolution_x = scene.render.resolution_y = 64
+    # Faces are a pixel wide: what varies within is sampled.
+    check(scene, render, 64, limit=0.006)
+
+
+def test_an_output_that_is_not_evaluated_is_named_where_it_is_linked(scene, render, capfd):
+    output = "Parametric"
     tree = Tree(board(scene))
     node = tree.add("ShaderNodeNewGeometry")
     tree.emit(node.outputs["Backfacing"])

@@ -25,6 +25,8 @@ _NAMING_PROPERTIES = {"attribute_name", "layer_name", "uv_map"}
 _DOMAINS = {"POINT": "POINT", "FACE": "FACE", "CORNER": "CORNER"}
 # In place of a name: Geometry > Random Per Island, which the native side makes of edges.
 ISLANDS = ".random_per_island"
+# Geometry > Pointiness, by this name: Blender's own begin with a dot.
+POINTINESS = ".pointiness"
 # Inputs of shaders that ask for a tangent, by default around the z axis of Generated.
 _STRETCHES = ("Anisotropic", "Anisotropy")
 # Stands among the names for Blender's Generated coordinates, which are no attribute.
@@ -56,8 +58,10 @@ def requested_names(materials):
         for key, name in node.get("properties", {}).items()
         if key in _NAMING_PROPERTIES and name
     }
-    if any(map(_asks_for_islands, nodes)):
+    if any("Random Per Island" in _linked(node).values() for node in nodes):
         names.add(ISLANDS)
+    if any("Pointiness" in _linked(node).values() for node in nodes):
+        names.add(POINTINESS)
     if any(map(_asks_for_generated, nodes)):
         names.add(GENERATED)
     return names
@@ -70,10 +74,6 @@ def _linked(node):
         for name, value in node.get("inputs", {}).items()
         if isinstance(value, tuple) and value[0] == "LINK"
     }
-
-
-def _asks_for_islands(node):
-    return "Random Per Island" in _linked(node).values()
 
 
 def _asks_for_generated(node):

@@ -12,7 +12,8 @@ import numpy as np
 
 from ..base.report import counted, poll
 from ..base.snapshot import Geometry
-from .attributes import ISLANDS, mesh_attributes, vectors
+from .attributes import ISLANDS, POINTINESS, Attribute, finite_attributes, mesh_attributes, vectors
+from .pointiness import pointiness
 
 
 @dataclass(frozen=True)
@@ -112,7 +113,13 @@ def read_geometry(mesh, label, requested, report, check_cancel, subdivision=None
     poll(check_cancel)
     geometry.attributes = mesh_attributes(mesh, label, requested, report)
     if ISLANDS in requested:
-        geometry.edges = unsigned(mesh.edges, "vertices", 2).reshape(-1, 2)
+        geometry.edges = _edges(mesh)
+    if POINTINESS in requested:
+        normals = vectors(mesh.vertices, "normal")
+        values = pointiness(geometry.points[0], normals, _edges(mesh))
+        found = Attribute(POINTINESS, "POINT", "GENERIC", values[:, None])
+        finite_attributes([found], label, report)
+        geometry.attributes.append(found)
     poll(check_cancel)
     if subdivision is None:
         geometry.ngon_triangles = _ngon_triangles(mesh, topology)
@@ -125,6 +132,10 @@ def read_geometry(mesh, label, requested, report, check_cancel, subdivision=None
     poll(check_cancel)
     _drop_broken_faces(geometry, report)
     return (geometry, topology) if len(geometry.face_sizes) else None
+
+
+def _edges(mesh):
+    return unsigned(mesh.edges, "vertices", 2).reshape(-1, 2)
 
 
 def _ngon_triangles(mesh, topology):

@@ -23,6 +23,7 @@ from ..base.identity import combine, name_hash
 from ..base.report import poll
 from ..base.transforms import has_area
 from ..geometry.hair import hair_material, hair_systems
+from ..geometry.pointiness import asks_for_pointiness
 from ..geometry.subdivision import find_cage, simplify_level
 from .instance_prototype import InstancePrototype, hidden_owners
 from .instance_values import place_on_instancer, takes_place_on_instancer
@@ -206,7 +207,7 @@ class _Walk:
         self._hair = {}
         self._at_frame = cages is None
         self._override = depsgraph.view_layer_eval.material_override
-        self._takers = {}
+        self._answers = {}
         self.cages = dict(cages or {})
 
     def prototypes_of(self, instance, duplicate):
@@ -285,26 +286,33 @@ class _Walk:
     def _cage(self, source):
         pointer = source.as_pointer()
         if pointer not in self.cages:
-            self.cages[pointer] = (
-                find_cage(source, self._mode, self._simplify) if source.type == "MESH" else None
-            )
+            self.cages[pointer] = self._find_cage(source) if source.type == "MESH" else None
         return self.cages[pointer]
+
+    def _find_cage(self, source):
+        cage = find_cage(source, self._mode, self._simplify)
+        # Of vertices that Blender makes, which a cage has not.
+        if cage is None or not self._asks(
+            asks_for_pointiness, [slot.material for slot in source.material_slots]
+        ):
+            return cage
+        return None
 
     @staticmethod
     def _may_make_instances(source):
         return any(modifier.type == "NODES" for modifier in source.modifiers)
 
-    def _takes_place(self, materials):
-        key = tuple(m.as_pointer() for m in (*materials, self._override) if m is not None)
-        if key not in self._takers:
-            self._takers[key] = takes_place_on_instancer((*materials, self._override))
-        return self._takers[key]
+    def _asks(self, question, materials):
+        key = question, *(m.as_pointer() for m in (*materials, self._override) if m is not None)
+        if key not in self._answers:
+            self._answers[key] = question((*materials, self._override))
+        return self._answers[key]
 
     def _look_closer(self, prototype, materials):
         """What does not change within the shutter."""
         prototype.materials = materials
-        prototype.takes_place_on_instancer = prototype.parent is not None and self._takes_place(
-            materials
+        prototype.takes_place_on_instancer = prototype.parent is not None and self._asks(
+            takes_place_on_instancer, materials
         )
         prototype.material_addresses = tuple(m.original.as_pointer() if m else 0 for m in materials)
         owners = (

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.find_value import find_value
 from ..geometry.attributes import attribute_values
+from ..shading.used_nodes import any_node
 from .particle_values import PARTICLE_KEYS
 
 COLOR = "COLOR"
@@ -54,19 +55,9 @@ def requested_values(materials):
 
 def takes_place_on_instancer(materials):
     """Whether nodes of evaluated Materials, or of groups in them, ask for it."""
-    pending = [m.node_tree for m in materials if m is not None and m.use_nodes and m.node_tree]
-    entered = set()
-    while pending:
-        tree = pending.pop()
-        if tree.as_pointer() in entered:
-            continue
-        entered.add(tree.as_pointer())
-        for node in tree.nodes:
-            if node.bl_idname in _OF_COORDINATES and node.from_instancer:
-                return True
-            if node.type == "GROUP" and node.node_tree is not None:
-                pending.append(node.node_tree)
-    return False
+    return any_node(
+        materials, lambda node: node.bl_idname in _OF_COORDINATES and node.from_instancer
+    )
 
 
 def place_on_instancer(instance):

@@ -145,8 +145,8 @@ void build_geometry(NodeBuilder& b) {
     b.output_vector("Position", p);
     if (b.is_read("Parametric") && !b.lamp())
         b.warn("its output 'Parametric' is not evaluated: 0 everywhere");
-    if (b.is_read("Pointiness")) b.warn("its output 'Pointiness' is not evaluated: .5 everywhere");
     if (!b.has_surface()) {
+        if (b.is_read("Pointiness")) b.warn("its output 'Pointiness' is not evaluated: 0");
         b.output_vector("Incoming", b.map<Vec3f>([](const Vec3f& d) { return -d; }, p));
         b.output_vector("Normal", b.map<Vec3f>([](const Vec3f& d) { return -d; }, p));
         b.output("Backfacing", FloatSource{-1, 0.0f});
@@ -160,7 +160,8 @@ void build_geometry(NodeBuilder& b) {
     b.output_vector("Tangent", b.lamp() ? VectorSource{-1, Vec3f(std::nanf(""))}
                                         : radial_tangent(b, RadialAxis::Z));
     b.output_vector("Parametric", b.lamp() ? lamp_parameters(b) : VectorSource{});
-    b.output("Pointiness", FloatSource{-1, 0.5f});
+    // The exporter finds it, of whole meshes.
+    b.output("Pointiness", b.attribute_component({AttributeSource::Named, ".pointiness", 1}, 0));
     b.output("Random Per Island",
              b.attribute_component({AttributeSource::Named, kIslandAttribute, 1}, 0));
 }
