@@ -65,6 +65,7 @@ void SeenVolumes::add_scattered(std::span<const ViewRay> rays, const std::vector
     for (std::size_t k = 0; k < seen_at.size(); ++k) {
         SeenMedium& seen = out[seen_at[k]];
         seen.direct += light.emitted[k];
+        if (!light.world.empty()) seen.direct += total(light.world[k]);
         seen.indirect =
             glm::max(light.glossy[k] + light.mirrored[k] - light.emitted[k], Vec3f(0.0f));
     }

@@ -184,10 +184,11 @@ struct ShadingSystem::Impl {
     /// single points: what neighbours do not share.
     std::vector<Vec3f> add_bounces(const ShadingPoints& points, const SurfaceClosure& closure,
                                    const LeavingRays& leaving, Grid& grid, ReflectionParts* parts,
-                                   std::vector<Vec3f>& radiance) const {
+                                   std::vector<float>* noise, std::vector<Vec3f>& radiance) const {
         GatheredLight light = bounces->gather(leaving.rays, points.count);
         if (leaving.diffuse)
-            share_gathered(points, closure, leaving.world, parts != nullptr, light, grid);
+            share_gathered(points, closure, leaving.takes_world, parts != nullptr, light, grid);
+        reflect_world(light, parts, noise, radiance);
         reflect_gathered(light, grid, closure, parts, radiance);
         return std::move(light.glossy);
     }
@@ -233,7 +234,7 @@ struct ShadingSystem::Impl {
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
         LeavingRays leaving;
         leaving.diffuse = grid.gathered.empty();
-        leaving.takes_world = bounces && bounces->tells_occluders() && surface.looks_ahead();
+        leaving.takes_world = bounces && scene.options.bounces.diffuse > 0 && surface.looks_ahead();
         if (light)
             radiance = light->reflect(points, closure, grid.key, has_passes ? &parts : nullptr, at,
                                       noise, bounces ? &leaving : nullptr);
@@ -241,7 +242,7 @@ struct ShadingSystem::Impl {
             parts.resize(has_passes ? points.count : 0);
         if (bounces && !closure.lobes.empty())
             doubtful = add_bounces(points, closure, leaving, grid, has_passes ? &parts : nullptr,
-                                   radiance);
+                                   noise, radiance);
         if (!closure.subsurface.empty())
             add_scattered(points, closure, at, grid, has_passes ? &parts : nullptr, radiance);
         for (std::size_t i = 0; i < closure.emission.size(); ++i)

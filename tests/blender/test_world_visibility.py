@@ -66,3 +66,24 @@ def test_a_world_that_varies_is_hidden_too(scene, render, hidden):
     assert np.abs(np.subtract(*by_strip)).max() < 0.036
     black = {"camera": 3, "diffuse": 0, "glossy": slice(1, 3)}[hidden]
     assert not ours[:, np.r_[0:16].reshape(4, 4)[black].ravel()].any()
+
+
+@pytest.mark.parametrize("hidden", [None, "diffuse", "shadow"])
+def test_a_card_hides_a_constant_world_from_the_rays_that_meet_it(scene, render, hidden):
+    """No lamp sends this light: rays of diffuse lobes find it, so that what casts a shadow alone casts none."""
+    scene_parts.add_square(scene, "Floor", 50.0, (0.0, 0.0, 0.0))
+    card = scene_parts.add_square(scene, "Card", 2.0, (0.0, 0.0, 1.0))
+    card.visible_camera = False
+    if hidden:
+        setattr(card, f"visible_{hidden}", False)
+    for thing, color in ((scene.objects["Floor"], 0.8), (card, 0.0)):
+        tree = node_comparison.Tree(thing)
+        shader = tree.add("ShaderNodeBsdfDiffuse")
+        shader.inputs["Color"].default_value = (color, color, color, 1.0)
+        tree.link(shader.outputs[0], tree.output.inputs["Surface"])
+    sky(scene, varies=False)
+    scene_parts.add_camera(scene, ortho_scale=2.0)
+    scene.render.resolution_x, scene.render.resolution_y = 8, 8
+    theirs, ours = node_comparison.render_both(scene, render, samples=256)
+    # 16,384 samples of .5 to 1 of the world, in either: 1 % is three times their noise.
+    assert np.abs(theirs.mean((0, 1)) / ours.mean((0, 1)) - 1).max() < 0.01

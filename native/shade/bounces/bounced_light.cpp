@@ -9,18 +9,15 @@
 #include "base/sorted_runs.h"
 #include "math/luminance.h"
 #include "math/sampling.h"
+#include "shade/bounces/way_choice.h"
 #include "shade/nodes/surface_run.h"
 #include "shade/volumes/scatter_points.h"
 
 namespace granita {
 namespace {
 
-/// Uniform in [0, 1), of a way's place among the samples and how far it has come.
-float chance(std::uint32_t place, int depth, int passed, std::uint64_t salt) {
-    const auto at =
-        static_cast<std::uint64_t>(depth) << 48 | static_cast<std::uint64_t>(passed) << 32 | place;
-    return static_cast<float>(mix_bits(mix_bits(at) + salt) >> 40) * 0x1p-24f;
-}
+/// What chances decide about.
+enum Decision : std::uint64_t { kWay = 1, kGoesOn = 2 };
 
 }  // namespace
 
@@ -31,9 +28,12 @@ class BouncedLight::Wave {
          GatheredLight& gathered)
         : m_light(light),
           m_limits(light.m_scene.options.bounces),
-          m_salt(mix_bits(light.m_scene.options.seed + 1ULL)),
           m_gathered(gathered),
           m_points(light.m_scene, *light.m_direct.rays(), &light.m_progress) {
+        const bool sees_world =
+            std::ranges::any_of(leaving, [](const LobeRay& ray) { return ray.world.shines(); });
+        m_gathered.world.resize(sees_world ? gathered.diffuse.size() : 0);
+        m_gathered.world_balance.resize(m_gathered.world.size(), Vec2f(0.0f));
         for (const LobeRay& ray : leaving) {
             BouncedPath path;
             path.next = ray;
@@ -56,6 +56,8 @@ class BouncedLight::Wave {
             m_light.m_progress.check();
             trace();
             if (m_light.m_volumes) pass_volumes();
+            see_world();
+            weigh_met();
             if (std::exchange(is_first, false)) note_near();
             shade();
             m_paths.swap(m_next);
@@ -69,8 +71,6 @@ class BouncedLight::Wave {
     static constexpr std::uint32_t kNothing = ~0u;
     /// Hits that are shaded at once: a step of a program over more would be too long for a cancel.
     static constexpr std::size_t kBatch = 1024;
-    /// Weights from which ways of mirrors are followed surely: at one place, and all the way.
-    static constexpr float kMost = 0.5f, kMuch = 0.02f;
     /// Where a way is, from which it goes on: on a surface, or in a medium, where there is no hit.
     struct End {
         const RayHit* hit;
@@ -84,6 +84,14 @@ class BouncedLight::Wave {
         ScatterPlace place;
         float u;
     };
+
+    /// Uniform in [0, 1), of a way's place among the samples and how far it has come.
+    float chance(const BouncedPath& path, Decision of) const {
+        const auto at = static_cast<std::uint64_t>(path.depth) << 48 |
+                        static_cast<std::uint64_t>(path.passed) << 32 | path.next.place;
+        const std::uint64_t salt = mix_bits(m_light.m_scene.options.seed + of);
+        return static_cast<float>(mix_bits(mix_bits(at) + salt) >> 40) * 0x1p-24f;
+    }
 
     /// Keeps the way for the next wave, unless it may go no further.
     void follow(BouncedPath& path, bool is_scattered) {
@@ -100,9 +108,9 @@ class BouncedLight::Wave {
         if (is_within_limits(path)) m_next.push_back(path);
     }
 
-    /// Surfaces one further than the limits are asked for what they emit alone.
+    /// Rays one further than the limits bring the world, and what surfaces emit, alone.
     bool is_within_limits(const BouncedPath& path) const {
-        return is_within(path, m_light.m_any_shines ? 1 : 0);
+        return is_within(path, m_light.m_any_shines || path.next.world.shines() ? 1 : 0);
     }
     bool is_lit(const BouncedPath& path) const { return is_within(path, 0); }
     bool is_within(const BouncedPath& path, int more) const {
@@ -131,6 +139,66 @@ class BouncedLight::Wave {
         for (const BouncedPath& path : m_paths) m_rays.push_back(path.next.ray);
         m_rays_traced += m_rays.size();
         m_light.m_direct.rays()->nearest(m_rays, m_met);
+        m_sees_world.assign(m_paths.size(), 1);
+        for (const RayScene::Met& one : m_met) m_sees_world[one.ray] = 0;
+    }
+
+    /// Where nothing was met.  The world is asked for many directions at once.
+    void see_world() {
+        for (const RayType type : kLightRays) {
+            m_asking.clear();
+            m_directions.clear();
+            for (std::uint32_t i = 0; i < m_paths.size(); ++i) {
+                const LobeRay& ray = m_paths[i].next;
+                if (!m_sees_world[i] || ray.ray.type != type || !ray.world.shines()) continue;
+                if (!ray.world.asks()) {
+                    bring_world(m_paths[i], Vec3f(0.0f));
+                    continue;
+                }
+                m_asking.push_back(i);
+                m_directions.push_back(ray.ray.direction);
+            }
+            if (m_asking.empty()) continue;
+            m_light.m_direct.world_radiance(m_directions, type, m_seen);
+            for (std::size_t k = 0; k < m_asking.size(); ++k)
+                bring_world(m_paths[m_asking[k]], m_seen[k]);
+        }
+    }
+
+    /// @param seen what the world says along the ray, if it is asked.
+    void bring_world(const BouncedPath& path, const Vec3f& seen) {
+        const LobeRay& ray = path.next;
+        const Vec3f by_others = ray.world.asked_by_others * seen;
+        BsdfValue light = ray.world.radiance;
+        light += {ray.world.asked_by_diffuse * seen, by_others, by_others};
+        light.diffuse *= ray.diffuse;
+        light.transmission *= ray.transmitted;
+        light.glossy *= glm::max(Vec3f(1.0f) - ray.diffuse - ray.transmitted, Vec3f(0.0f));
+        if (path.depth > 1) {
+            bring(path, total(light), Vec3f(0.0f));
+            return;
+        }
+        light = light * ray.weight;
+        if (!is_finite(total(light))) return;
+        m_gathered.world[ray.point] += light;
+        m_gathered.world_balance[ray.point] +=
+            ray.world.sign *
+            Vec2f(luminance(light.diffuse), luminance(light.glossy + light.transmission));
+    }
+
+    /// Leaves what chance has not chosen, and what would bring nothing, unshaded.
+    void weigh_met() {
+        std::erase_if(m_met, [&](const RayScene::Met& one) {
+            BouncedPath& path = m_paths[one.ray];
+            path.next.weight *= path.met_weight;
+            const bool brings = is_lit(path) || m_light.m_any_shines || passes(one.hit, path);
+            return path.met_weight == 0.0f || !brings;
+        });
+    }
+
+    bool passes(const RayHit& hit, const BouncedPath& path) const {
+        return !m_light.m_hits.surface(hit.material, path.next.ray.type)
+                    .transparency.is(Vec3f(0.0f));
     }
 
     /// Light of what fills the ways to the surfaces that were met, and what passes it.  Of a
@@ -149,12 +217,15 @@ class BouncedLight::Wave {
             const Vec3f emitted = walk.advance(m_rays[i].distance);
             if (emitted != Vec3f(0.0f)) bring(path, Vec3f(0.0f), emitted);
             const bool has_met = met_by[i] != kNothing;
-            const float scattered = scatter(path, i, has_met ? mean_size(walk.transmittance()) : 0);
-            if (!has_met) continue;
-            if (scattered == 1.0f)
-                is_left[met_by[i]] = 0;
-            else
+            if (!has_met && !path.next.world.shines()) m_sees_world[i] = 0;
+            const bool has_end = has_met || m_sees_world[i];
+            const float scattered = scatter(path, i, has_end ? mean_size(walk.transmittance()) : 0);
+            if (scattered < 1.0f) {
                 path.next.weight *= walk.transmittance() / (1.0f - scattered);
+                continue;
+            }
+            m_sees_world[i] = 0;
+            if (has_met) is_left[met_by[i]] = 0;
         }
         std::size_t left = 0;
         for (std::size_t k = 0; k < m_met.size(); ++k)
@@ -166,7 +237,7 @@ class BouncedLight::Wave {
     /// 1 where the way is gone on with at a place that scatters light, else how likely that was;
     /// `passing`: mean of what passes to a surface that is met.
     float scatter(const BouncedPath& path, std::uint32_t i, float passing) {
-        if (!m_light.m_volumes->scatters() || !is_lit(path)) return 0.0f;
+        if (!m_light.m_volumes->scatters() || !is_lit(path) || path.met_weight == 0.0f) return 0.0f;
         const ScatterSampler sampler(m_rays[i], m_media.of(i), {});
         const float chance = sampler.scattered() / (sampler.scattered() + passing);
         if (!(chance > 0.0f)) return 0.0f;
@@ -176,7 +247,7 @@ class BouncedLight::Wave {
         if (!(u.z < chance)) return chance;
         Scattering made{i, {}, u.w};
         if (sampler.sample(Vec3f(u), made.place)) {
-            made.place.weight /= chance;
+            made.place.weight *= path.met_weight / chance;
             m_scattering.push_back(made);
         }
         return 1.0f;
@@ -325,68 +396,24 @@ class BouncedLight::Wave {
         choose(ways, Vec3f(0.0f), path, {nullptr, nullptr, 0, distance});
     }
 
+    /// Chance chooses among the ways, then whether what is met brings anything: a ray that meets
+    /// nothing brings the world's light anyway.
     void choose(std::span<const LobeRay> ways, const Vec3f& through, const BouncedPath& path,
                 const End& end) {
-        float all = largest(through);
-        for (const LobeRay& way : ways) all += largest(way.weight);
-        BouncedPath sure = path;
-        const bool passes_surely = is_sure(path, through, all);
-        if (passes_surely) {
-            sure.sure_part = part(path, through, all);
-            pass(sure, through, end);
+        choose_ways(path, ways, through, chance(path, kWay), m_chosen);
+        for (const ChosenWay& way : m_chosen) {
+            BouncedPath next = path;
+            next.sure_part = way.sure_part;
+            if (!way.is_sure && path.kind == BouncedPath::Kind::Mirrored)
+                next.kind = BouncedPath::Kind::Glossy;
+            const WorldAhead& world = way.ray ? way.ray->world : path.next.world;
+            next.met_weight = chance(path, kGoesOn) < way.goes_on ? 1.0f / way.goes_on : 0.0f;
+            if (next.met_weight == 0.0f && !world.shines()) continue;
+            if (way.ray)
+                send(next, *way.ray, way.weight, end);
+            else
+                pass(next, way.weight, end);
         }
-        float sum = passes_surely ? 0.0f : largest(through);
-        for (const LobeRay& way : ways) {
-            if (!is_sure(path, way, all)) {
-                sum += largest(way.weight);
-                continue;
-            }
-            sure.sure_part = part(path, way.weight, all);
-            send(sure, way, way.weight, end);
-        }
-        if (!(sum > 0.0f)) return;
-        // Ends more surely the less it can bring: as Cycles, by the root of that.
-        const float goes_on =
-            std::min(1.0f, std::sqrt(std::max(largest(path.throughput()) * sum, 0.0f)));
-        float u = chance(path.next.place, path.depth, path.passed, m_salt) / goes_on;
-        if (!(u < 1.0f)) return;
-        u *= sum;
-        BouncedPath doubtful = path;
-        if (path.kind == BouncedPath::Kind::Mirrored) doubtful.kind = BouncedPath::Kind::Glossy;
-        if (!passes_surely) {
-            if (u < largest(through)) {
-                pass(doubtful, through * (sum / (largest(through) * goes_on)), end);
-                return;
-            }
-            u -= largest(through);
-        }
-        const LobeRay* taken = nullptr;
-        for (const LobeRay& way : ways) {
-            if (is_sure(path, way, all)) continue;
-            taken = &way;
-            if (u < largest(way.weight)) break;
-            u -= largest(way.weight);
-        }
-        if (!taken) return;
-        send(doubtful, *taken, taken->weight * (sum / (largest(taken->weight) * goes_on)), end);
-    }
-
-    /// Whether a way is followed without chance; `all`: what the ways from its place weigh
-    /// together. Mirrors and glass show edges, which are found only in what is in no doubt; and
-    /// points that happen to show what is improbable would alone be shaded again.  Of a place's
-    /// ways one at most is followed for its part of them, the others for theirs of the whole point:
-    /// half mirrors that face each other, or what adds a mirror to what is clear, would double the
-    /// rays of a point at each meeting.
-    static bool is_sure(const BouncedPath& path, const Vec3f& weight, float all) {
-        if (path.kind != BouncedPath::Kind::Mirrored) return false;
-        const float most = largest(weight);
-        return (most >= kMost && most > 0.5f * all) || part(path, weight, all) >= kMuch;
-    }
-    static bool is_sure(const BouncedPath& path, const LobeRay& way, float all) {
-        return is_sharp(way.ray.type) && is_sure(path, way.weight, all);
-    }
-    static float part(const BouncedPath& path, const Vec3f& weight, float all) {
-        return path.sure_part * largest(weight) / std::max(1.0f, all);
     }
 
     void send(const BouncedPath& path, const LobeRay& way, const Vec3f& weight, const End& end) {
@@ -421,14 +448,17 @@ class BouncedLight::Wave {
 
     const BouncedLight& m_light;
     const Bounces& m_limits;
-    std::uint64_t m_salt;
     GatheredLight& m_gathered;
     HitPoints m_points;
     std::vector<BouncedPath> m_paths, m_next;
     std::vector<Ray> m_rays;
     std::vector<RayScene::Met> m_met;
+    std::vector<std::uint8_t> m_sees_world;  ///< [paths] whose rays meet nothing
+    std::vector<std::uint32_t> m_asking;     ///< paths that ask the world's program
+    std::vector<Vec3f> m_directions, m_seen;
     std::vector<std::uint32_t> m_order;
     LeavingRays m_leaving;
+    std::vector<ChosenWay> m_chosen;
     RayMedia m_media;
     std::vector<Scattering> m_scattering;
     std::uint64_t m_rays_traced = 0, m_hits_shaded = 0;
@@ -443,12 +473,6 @@ BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const 
       m_emission(emission),
       m_volumes(volumes),
       m_any_shines(volumes && volumes->shines()),
-      m_tells_occluders(scene.options.bounces.diffuse > 0 &&
-                        std::ranges::none_of(scene.instances,
-                                             [](const Instance& instance) {
-                                                 return instance.casts_shadow &&
-                                                        !instance.visible_diffuse;
-                                             })),
       m_statistics(statistics),
       m_progress(progress) {
     for (std::size_t i = 0; i < scene.instances.size() && !m_any_shines; ++i) {

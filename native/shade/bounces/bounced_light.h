@@ -36,8 +36,6 @@ class BouncedLight {
                  const MaterialEmission& emission, const Volumes* volumes, Statistics& statistics,
                  const Progress& progress);
 
-    /// Whether rays of diffuse lobes tell how near all is that hides the world.
-    bool tells_occluders() const { return m_tells_occluders; }
     /// What comes along the rays that leave `points`.
     GatheredLight gather(const std::vector<LobeRay>& leaving, std::size_t points) const;
     /// The same of points where a medium scatters light (ScatterPoints).
@@ -57,7 +55,6 @@ class BouncedLight {
     const MaterialEmission& m_emission;
     const Volumes* m_volumes;
     bool m_any_shines = false;  ///< of surfaces that are no lamps
-    bool m_tells_occluders;
     Statistics& m_statistics;
     const Progress& m_progress;
 };

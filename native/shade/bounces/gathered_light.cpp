@@ -2,6 +2,7 @@
 #include "shade/bounces/gathered_light.h"
 
 #include <cmath>
+#include <utility>
 
 #include "shade/bounces/neighbours.h"
 
@@ -40,13 +41,31 @@ std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosur
 
 }  // namespace
 
-void share_gathered(const ShadingPoints& points, const SurfaceClosure& closure,
-                    const std::vector<Vec3f>& world, bool tells_world, GatheredLight& light,
-                    Grid& grid) {
-    if (tells_world && !world.empty())
-        grid.gathered_world = shared_light(points, closure, world, light.nearness);
-    for (std::size_t i = 0; i < world.size(); ++i) light.diffuse[i] += world[i];
+void share_gathered(const ShadingPoints& points, const SurfaceClosure& closure, bool takes_world,
+                    bool tells_world, GatheredLight& light, Grid& grid) {
+    if (takes_world && !light.world.empty()) {
+        std::vector<Vec3f> world;
+        for (std::size_t i = 0; i < light.world.size(); ++i) {
+            world.push_back(std::exchange(light.world[i].diffuse, Vec3f(0.0f)));
+            light.diffuse[i] += world[i];
+            light.world_balance[i].x = 0.0f;
+        }
+        if (tells_world) grid.gathered_world = shared_light(points, closure, world, light.nearness);
+    }
     grid.gathered = shared_light(points, closure, light.diffuse, light.nearness);
+}
+
+void reflect_world(const GatheredLight& light, ReflectionParts* parts, std::vector<float>* noise,
+                   std::vector<Vec3f>& radiance) {
+    for (std::size_t i = 0; i < light.world.size(); ++i) {
+        const BsdfValue& world = light.world[i];
+        radiance[i] += total(world);
+        if (noise) (*noise)[i] += light.world_balance[i].x + light.world_balance[i].y;
+        if (!parts) continue;
+        parts->diffuse[i] += world.diffuse;
+        parts->glossy[i] += world.glossy;
+        parts->transmission[i] += world.transmission;
+    }
 }
 
 void reflect_gathered(const GatheredLight& light, const Grid& grid, const SurfaceClosure& closure,

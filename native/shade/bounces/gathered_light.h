@@ -6,6 +6,7 @@
 
 #include "dice/grid.h"
 #include "math/vec.h"
+#include "shade/bsdf/bsdf.h"
 #include "shade/bsdf/lobe.h"
 #include "shade/bsdf/reflection.h"
 
@@ -19,6 +20,10 @@ struct GatheredLight {
     std::vector<Vec3f> transmitted;  ///< of these two, what goes through
     /// Of all that, what the first things that are met emit themselves; empty: nobody asks.
     std::vector<Vec3f> emitted;
+    /// What rays that meet nothing bring of the world (WorldAhead), by what reflects it, and how
+    /// far it is in doubt: of diffuse lobes, and of others.  Empty: they bring none.
+    std::vector<BsdfValue> world;
+    std::vector<Vec2f> world_balance;
     /// Mean of 1 / distance of what these meet: how fast its light changes from place to place.
     std::vector<float> nearness;
 
@@ -31,12 +36,16 @@ struct GatheredLight {
 };
 
 /// Fills Grid's `gathered` with what diffuse lobes gathered, by albedo, shared between neighbours,
-/// and `gathered_world` if somebody `tells_world`: light of other surfaces, and of the `world`
-/// between them (LeavingRays), varies as slowly as these are far away (Ward, Rubinstein and Clear
-/// 1988, their error bound read the other way).  Adds the world's to `light`.
-void share_gathered(const ShadingPoints& points, const SurfaceClosure& closure,
-                    const std::vector<Vec3f>& world, bool tells_world, GatheredLight& light,
-                    Grid& grid);
+/// and `gathered_world` if somebody `tells_world`: light of other surfaces, and of the world
+/// between them, if it `takes_world`, varies as slowly as these are far away (Ward, Rubinstein and
+/// Clear 1988, their error bound read the other way).  Takes the world's to `light`.diffuse.
+void share_gathered(const ShadingPoints& points, const SurfaceClosure& closure, bool takes_world,
+                    bool tells_world, GatheredLight& light, Grid& grid);
+
+/// Adds what `light` has of the world to `radiance`, and where they are asked for, to `parts` and
+/// the `noise` of points (DirectLight::reflect()).
+void reflect_world(const GatheredLight& light, ReflectionParts* parts, std::vector<float>* noise,
+                   std::vector<Vec3f>& radiance);
 
 /// Adds what is reflected of `light`, and of what `grid` has gathered, to `radiance` [points] and,
 /// where they are asked for, to its `parts`.

@@ -40,6 +40,13 @@ inline BsdfValue operator*(const BsdfValue& value, const Vec3f& factor) {
     return {value.diffuse * factor, value.glossy * factor, value.transmission * factor};
 }
 
+inline BsdfValue& operator+=(BsdfValue& sum, const BsdfValue& value) {
+    sum.diffuse += value.diffuse;
+    sum.glossy += value.glossy;
+    sum.transmission += value.transmission;
+    return sum;
+}
+
 class PointBsdf {
   public:
     /// `albedo` is read only for lobes with `multiscatter`.

@@ -127,6 +127,7 @@ LampRate DirectLight::Impl::rate_of(const LitPoint& point, const LampChoice* cho
 void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
                                     const LampChoice* choice) const {
     const bool meets_lamps = point.meets_lamps(lobe);
+    const RayType type = grid.blurred_rays().of(point.bsdf.part(lobe));
     if (!world.shines() && !meets_lamps && !grid.leaving) return;
     if (!meets_lamps && !grid.samples_diffuse()) return;
     const LitPoint::LobeSamples& samples = point.samples[lobe];
@@ -141,15 +142,20 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         const float sign = LitGrid::sign(s, samples.count);
         if (grid.leaving && (grid.leaving->diffuse || meets_lamps)) {
             Ray ray = set.ray(point, place, wo, kInfinity);
-            ray.type = grid.blurred_rays().of(point.bsdf.part(lobe));
+            ray.type = type;
             BsdfValue sent = value;
             if (!grid.leaving->diffuse) sent.diffuse = Vec3f(0.0f);
             const float density =
                 grid.leaving->diffuse ? point.all_density(wo) : point.meeting_density(wo);
+            const WorldAhead ahead =
+                grid.carries_world() ? world.ahead(grid, point, {wo, sent, sign, type, meets_lamps})
+                                     : WorldAhead();
             leave(set, grid, point, ray, sent * Vec3f(1.0f / density),
-                  density / static_cast<float>(point.lobe_samples(0)), samples.first + index);
+                  density / static_cast<float>(point.lobe_samples(0)), samples.first + index,
+                  ahead);
         }
-        if (world.shines()) world.meet(set, grid, point, place, {wo, value, sign, meets_lamps});
+        if (world.shines() && !grid.carries_world())
+            world.meet(set, grid, point, place, {wo, value, sign, type, meets_lamps});
         if (!meets_lamps) continue;
         set.meet(grid, place, wo, [&](std::size_t index, const Lamp& lamp, const LightSample& met) {
             const LampRate rate = rate_of(point, choice, index);
@@ -169,6 +175,9 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
     BsdfValue value;
     value.part(point.bsdf.part(lobe)) = share / static_cast<float>(count);
     const SobolPoints sequence = grid.sequence(point, 1 + point.bsdf.index(lobe), count);
+    const RayType type = kSharp.of(point.bsdf.part(lobe));
+    // What neighbours see in a mirror is filtered together.
+    const bool carries_world = grid.placed && grid.carries_world();
     Vec3f open(0.0f);
     for (int s = 0; s < count; ++s) {
         const LitPlace place = set.place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
@@ -179,11 +188,12 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
         });
         if (grid.leaving) {
             Ray ray = set.ray(point, place, wo, kInfinity);
-            ray.type = kSharp.of(point.bsdf.part(lobe));
+            ray.type = type;
             leave(set, grid, point, ray, value, kInfinity,
-                  point.place * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(s));
+                  point.place * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(s),
+                  carries_world ? world.ahead_of_mirror() : WorldAhead());
         }
-        if (world.shines()) open += set.occlusion(grid, point, place, wo);
+        if (world.shines() && !carries_world) open += set.occlusion(grid, point, place, wo, type);
     }
     grid.look(grid.sharp, point.index, wo, value * open, 0.0f);
 }
@@ -267,6 +277,11 @@ const std::vector<LightAnchor>& DirectLight::anchors() const {
     return m_impl->anchors;
 }
 
+void DirectLight::world_radiance(const std::vector<Vec3f>& directions, RayType type,
+                                 std::vector<Vec3f>& out) const {
+    m_impl->world.radiance(directions, type, out);
+}
+
 const LampFaces& DirectLight::lamp_faces() const {
     return m_impl->shining;
 }
@@ -313,7 +328,6 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     grid.receives = grid.in_medium ? m_impl->scene.receives_in_volumes : m_impl->receives(key);
     grid.balance = noise;
     grid.leaving = leaving;
-    if (grid.shares_world()) leaving->world.assign(points.count, Vec3f(0.0f));
     RayOffset ray_offset = m_impl->set.rays ? m_impl->set.rays->ray_offset(key) : RayOffset{};
     const Vec2f life_exposed = m_impl->set.shutter.exposed(paths.lifespan());
     const int sample_count = this->sample_count(points.share);

@@ -75,6 +75,9 @@ class DirectLight {
     /// Those that are among the light that reflect() knows, so that ways which meet them bring
     /// none.
     const LampFaces& lamp_faces() const;
+    /// What WorldAhead asks of it: radiance along `directions` of rays of a `type`.
+    void world_radiance(const std::vector<Vec3f>& directions, RayType type,
+                        std::vector<Vec3f>& out) const;
     /// Light samples of a point for ShadingPoints::share.
     int sample_count(float share) const;
 

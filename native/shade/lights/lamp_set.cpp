@@ -151,11 +151,12 @@ Vec3f LampSet::shadow(LitGrid& grid, const LitPoint& point, const LitPlace& plac
 }
 
 Vec3f LampSet::occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
-                         const Vec3f& direction) const {
+                         const Vec3f& direction, RayType type) const {
     if (!rays) return Vec3f(1.0f);
     ++grid.occlusion_rays;
-    return rays->transmittance(
-        ray(point, place, direction, std::numeric_limits<float>::infinity()));
+    Ray asked = ray(point, place, direction, std::numeric_limits<float>::infinity());
+    asked.type = type;
+    return rays->transmittance(asked);
 }
 
 }  // namespace granita

@@ -43,9 +43,9 @@ struct LampSet {
                const LightSample& sample) const;
     Vec3f shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                  const LightSample& sample) const;
-    /// What of the world's light passes what comes before it.
+    /// What of the world's light passes what comes before it, along a ray of a type.
     Vec3f occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
-                    const Vec3f& direction) const;
+                    const Vec3f& direction, RayType type) const;
 
     /// Calls `met(index, lamp, sample)` for lamps that samples of the grid's lobes meet along a
     /// direction.

@@ -18,7 +18,7 @@ Vec3f inwards(const ShadingPoints& points, std::size_t i) {
 }
 
 void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& ray,
-           const BsdfValue& value, float pdf, std::uint32_t place) {
+           const BsdfValue& value, float pdf, std::uint32_t place, const WorldAhead& world) {
     const Vec3f weight = total(value);
     if (weight == Vec3f(0.0f) || !is_finite(weight)) return;
     // A sample's part of the hemisphere, for rays that diffuse lobes send.
@@ -32,7 +32,7 @@ void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& 
     grid.leaving->rays.push_back({ray, weight, value.diffuse / whole, value.transmission / whole,
                                   1.0f / static_cast<float>(count), pdf,
                                   static_cast<std::uint32_t>(point.index), first + place, spread,
-                                  grid.receives});
+                                  grid.receives, world});
 }
 
 }  // namespace granita

@@ -15,6 +15,6 @@ Vec3f inwards(const ShadingPoints& points, std::size_t i);
 /// @param pdf of its direction, per solid angle; infinite for a mirror's.
 /// @param place in the sequence of its lobe.
 void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& ray,
-           const BsdfValue& value, float pdf, std::uint32_t place);
+           const BsdfValue& value, float pdf, std::uint32_t place, const WorldAhead& world);
 
 }  // namespace granita

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "math/luminance.h"
@@ -87,19 +86,14 @@ struct LitGrid {
               const BsdfValue& weight, float sign) {
         if (total(weight) == Vec3f(0.0f)) return;
         samples.add(point, direction, total(weight), sign);
-        if (parts || by_lobe || (&samples == &met && shares_world()))
-            samples.parts.push_back(weight);
+        if (parts || by_lobe) samples.parts.push_back(weight);
     }
     /// Light of the world, reflected.
     void reflect_world(std::size_t point, const BsdfValue& value, float sign) {
         add(point, total(value), sign);
         add_world(point, value);
     }
-    /// The same of what samples of lobes found (LeavingRays::takes_world).
-    void reflect_met_world(std::size_t point, BsdfValue value, float sign) {
-        if (shares_world()) leaving->world[point] += std::exchange(value.diffuse, Vec3f(0.0f));
-        reflect_world(point, value, sign);
-    }
+    bool carries_world() const { return leaving && leaving->carries_world(); }
     bool takes_world() const { return leaving && leaving->takes_world; }
     bool shares_world() const { return takes_world() && leaving->diffuse; }
     /// Expected samples a solid angle around `wo` of the point's lobes that are sampled.

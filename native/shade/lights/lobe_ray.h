@@ -5,9 +5,22 @@
 #include <vector>
 
 #include "math/vec.h"
+#include "shade/bsdf/bsdf.h"
 #include "shade/rays/ray.h"
 
 namespace granita {
+
+/// What a ray brings of the world if it meets nothing: the part that the world's own samples do not
+/// tell.
+struct WorldAhead {
+    BsdfValue radiance{};  ///< as far as it is known, that parts of the ray's weight reflect
+    /// How much more of what the world says along the ray: that diffuse lobes reflect, and others.
+    float asked_by_diffuse = 0.0f, asked_by_others = 0.0f;
+    float sign = 0.0f;  ///< as LitGrid::sign
+
+    bool asks() const { return asked_by_diffuse > 0.0f || asked_by_others > 0.0f; }
+    bool shines() const { return asks() || total(radiance) != Vec3f(0.0f); }
+};
 
 /// A way from which a lobe of a point would reflect light: towards other surfaces.
 struct LobeRay {
@@ -22,6 +35,7 @@ struct LobeRay {
     std::uint32_t place = 0;         ///< in sequences of samples: neighbours' are neighbours
     float spread = 0.0f;             ///< radians that it stands for
     std::uint64_t receives = ~0ULL;  ///< as Instance::receives of what it leaves
+    WorldAhead world;
 };
 
 /// Those of the points of a grid, or batch.
@@ -29,10 +43,11 @@ struct LeavingRays {
     std::vector<LobeRay> rays;
     /// False: what diffuse lobes reflect is known, and no part of it is looked for.
     bool diffuse = true;
-    /// What samples of lobes find of the world and diffuse lobes reflect counts as what surfaces
-    /// send: it is left out of reflect(), which fills `world` [points], unless it is known.
+    /// What diffuse lobes reflect of the world counts as what surfaces send: neighbours share it.
     bool takes_world = false;
-    std::vector<Vec3f> world;
+    /// What samples of lobes would find of the world goes along with their rays and is left out of
+    /// reflect(): one ray tells whether anything is met, and what.
+    bool carries_world() const { return diffuse || takes_world; }
 };
 
 }  // namespace granita

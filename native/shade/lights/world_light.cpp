@@ -39,8 +39,8 @@ void WorldLight::sample(const LampSet& set, LitGrid& grid, const LitPoint& point
         if (total(value) == Vec3f(0.0f) || !(from.pdf > 0.0f)) continue;
         const auto count = static_cast<float>(point.sample_count);
         const float density = count * from.pdf + grid.lobe_density(point, wo);
-        const Vec3f seen =
-            set.occlusion(grid, point, set.place_at(point, sequence.third(index)), wo);
+        const Vec3f seen = set.occlusion(grid, point, set.place_at(point, sequence.third(index)),
+                                         wo, RayType::Shadow);
         BsdfValue weight = value * (seen / density);
         if (grid.takes_world())
             weight.diffuse =
@@ -62,23 +62,50 @@ void WorldLight::meet(const LampSet& set, LitGrid& grid, const LitPoint& point,
     const Environment::Sample at = m_environment->at(wo);
     const float by_lobes = grid.lobe_density(point, wo);
     const float density = by_lobes + static_cast<float>(point.sample_count) * at.pdf;
-    weight = weight * (set.occlusion(grid, point, place, wo) / density);
-    if (grid.shares_world() && at.pdf > 0.0f) {
-        const float shared = shared_density(point, wo);
-        weight.diffuse *= density / by_lobes * shared / (at.pdf + shared);
-    }
+    weight = weight * (set.occlusion(grid, point, place, wo, sample.type) / density);
     if (m_environment->is_constant()) {
-        const PartRays& types = grid.blurred_rays();
-        const BsdfValue reflected{
-            weight.diffuse * m_environment->constant_radiance(types.diffuse),
-            weight.glossy * m_environment->constant_radiance(types.glossy),
-            weight.transmission * m_environment->constant_radiance(types.transmission)};
-        grid.reflect_met_world(point.index, reflected, sample.sign);
+        grid.reflect_world(point.index, of_constant(weight, grid.blurred_rays()), sample.sign);
     } else if (m_environment->has_radiance() && !sample.is_narrow) {
-        grid.reflect_met_world(point.index, of_texel(at, weight, grid.blurred_rays()), sample.sign);
+        grid.reflect_world(point.index, of_texel(at, weight, grid.blurred_rays()), sample.sign);
     } else {
         grid.look(grid.met, point.index, wo, weight, sample.sign);
     }
+}
+
+WorldAhead WorldLight::ahead(const LitGrid& grid, const LitPoint& point,
+                             const LobeSample& sample) const {
+    if (!shines()) return {};
+    const Environment::Sample at = m_environment->at(sample.wo);
+    const float by_lobes = grid.lobe_density(point, sample.wo);
+    const float of_lobes = by_lobes / (by_lobes + static_cast<float>(point.sample_count) * at.pdf);
+    float of_diffuse = of_lobes;
+    if (grid.shares_world() && at.pdf > 0.0f) {
+        const float shared = shared_density(point, sample.wo);
+        of_diffuse = shared / (at.pdf + shared);
+    }
+    const BsdfValue weight{Vec3f(of_diffuse), Vec3f(of_lobes), Vec3f(of_lobes)};
+    if (m_environment->is_constant())
+        return {of_constant(weight, grid.blurred_rays()), 0.0f, 0.0f, sample.sign};
+    if (!m_environment->has_radiance() || sample.is_narrow)
+        return {{}, of_diffuse, of_lobes, sample.sign};
+    return {of_texel(at, weight, grid.blurred_rays()), 0.0f, 0.0f, sample.sign};
+}
+
+WorldAhead WorldLight::ahead_of_mirror() const {
+    if (!shines()) return {};
+    return {.asked_by_diffuse = 1.0f, .asked_by_others = 1.0f};
+}
+
+void WorldLight::radiance(const std::vector<Vec3f>& directions, RayType type,
+                          std::vector<Vec3f>& out) const {
+    m_evaluator.radiance(directions, is_sharp(type) ? 0.0f : m_environment->texel_angle(), type,
+                         out);
+}
+
+BsdfValue WorldLight::of_constant(const BsdfValue& weight, const PartRays& types) const {
+    return {weight.diffuse * m_environment->constant_radiance(types.diffuse),
+            weight.glossy * m_environment->constant_radiance(types.glossy),
+            weight.transmission * m_environment->constant_radiance(types.transmission)};
 }
 
 /// What a texel of the world's table sends, reflected by `weight`.
@@ -101,16 +128,10 @@ void WorldLight::look(LitGrid& grid, const EnvironmentSamples& samples, float sp
                       const PartRays& types) const {
     if (samples.directions.empty()) return;
     std::vector<Vec3f> seen;
-    const bool is_met = &samples == &grid.met;
     if (!by_lobe()) {
         m_evaluator.radiance(samples.directions, spread, types.glossy, seen);
         for (std::size_t k = 0; k < seen.size(); ++k) {
             if (!is_finite(seen[k])) continue;
-            if (is_met && grid.shares_world()) {
-                grid.reflect_met_world(samples.points[k], samples.parts[k] * seen[k],
-                                       samples.signs[k]);
-                continue;
-            }
             grid.add(samples.points[k], samples.weights[k] * seen[k], samples.signs[k]);
             if (grid.parts) grid.add_world(samples.points[k], samples.parts[k] * seen[k]);
         }
@@ -128,12 +149,8 @@ void WorldLight::look(LitGrid& grid, const EnvironmentSamples& samples, float sp
     look_by(LightPart::Glossy, types.glossy);
     look_by(LightPart::Transmission, types.transmission);
     for (std::size_t k = 0; k < values.size(); ++k)
-        if (is_finite(total(values[k]))) {
-            if (is_met)
-                grid.reflect_met_world(samples.points[k], values[k], samples.signs[k]);
-            else
-                grid.reflect_world(samples.points[k], values[k], samples.signs[k]);
-        }
+        if (is_finite(total(values[k])))
+            grid.reflect_world(samples.points[k], values[k], samples.signs[k]);
 }
 
 }  // namespace granita

@@ -31,16 +31,25 @@ class WorldLight {
         Vec3f wo;
         BsdfValue value;  ///< of all lobes
         float sign;       ///< as LitGrid::sign
-        bool is_narrow;   ///< its lobe may be narrower than the world's texels
+        RayType type;
+        bool is_narrow;  ///< its lobe may be narrower than the world's texels
     };
     /// What the sample sees of a world that shines.
     void meet(const LampSet& set, LitGrid& grid, const LitPoint& point, const LitPlace& place,
               const LobeSample& sample) const;
 
+    /// What comes of it along the sample's ray, of a `type`, if that meets nothing.
+    WorldAhead ahead(const LitGrid& grid, const LitPoint& point, const LobeSample& sample) const;
+    WorldAhead ahead_of_mirror() const;
+    /// What WorldAhead asks for: radiance along directions of rays of a `type`.
+    void radiance(const std::vector<Vec3f>& directions, RayType type,
+                  std::vector<Vec3f>& out) const;
+
     /// Brings what waits for the world's radiance (LitGrid::look).
     void deliver(LitGrid& grid) const;
 
   private:
+    BsdfValue of_constant(const BsdfValue& weight, const PartRays& types) const;
     BsdfValue of_texel(const Environment::Sample& from, const BsdfValue& weight,
                        const PartRays& types) const;
     void look(LitGrid& grid, const EnvironmentSamples& samples, float spread,

@@ -10,6 +10,7 @@
 #include "shade/rays/ray_scene_impl.h"
 #include "shade/rays/ray_subdivision.h"
 #include "shade/rays/ray_transforms.h"
+#include "shade/rays/ray_visibility.h"
 
 namespace granita {
 namespace {
@@ -194,8 +195,8 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     rtcReleaseGeometry(node);
     by_key[instance.key] = static_cast<std::uint32_t>(instances.size());
     const bool passes = lets_light_through(instance);
-    const bool is_plain = instance.casts_shadow && instance.visible_camera && !passes &&
-                          instance.lifespan.is_whole() && instance.blocks == ~0ULL;
+    const bool is_plain =
+        meets_all(instance) && !passes && instance.lifespan.is_whole() && instance.blocks == ~0ULL;
     RayInstance& added = instances.emplace_back(RayInstance{
         index, transforms->scale, transforms->distance, passes, is_plain, constant_of(instance)});
     const bool is_asked = added.lets_light_through || scene.options.bounces.most > 0 ||
@@ -249,11 +250,7 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materia
         if (instance.blocks != ~0ULL) use |= kIsLinked;
         if (impl.materials.shines(instance)) use |= kShines;
         if (impl.holds_volume(instance)) use |= kBounds;
-        const bool hidden =
-            scene.options.bounces.most > 0 &&
-            !(instance.visible_camera && instance.visible_diffuse && instance.visible_glossy &&
-              instance.visible_transmission && instance.visible_volume);
-        if (hidden || !instance.casts_shadow) use |= kIsHidden;
+        if (!meets_all(instance)) use |= kIsHidden;
     }
     if (displaced.empty() &&
         std::all_of(uses.begin(), uses.end(), [](std::uint8_t use) { return use == 0; }))

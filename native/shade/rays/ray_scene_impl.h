@@ -78,8 +78,8 @@ struct RayScene::Impl {
     void add_instance(std::uint32_t index, const Vec3d& origin);
     bool is_met(const Instance& instance) const {
         if (materials.is_volume_alone(instance)) return false;
-        const bool seen = instance.is_seen_by_light();
-        return (instance.casts_shadow || (seen && scene.options.bounces.most > 0) ||
+        const bool any_looks = scene.options.bounces.most > 0 || scene.world.lights_scene;
+        return (instance.casts_shadow || (any_looks && instance.is_seen_by_light()) ||
                 materials.shines(instance) || materials.meets_itself(instance)) &&
                !instance.lifespan.is_empty();
     }

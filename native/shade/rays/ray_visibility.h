@@ -16,6 +16,12 @@ inline bool meets(RayType ray, const Instance& instance) {
     return instance.visible_glossy || (goes_through(ray) && instance.visible_transmission);
 }
 
+/// Whether there is no ray that it is hidden from.
+inline bool meets_all(const Instance& instance) {
+    return instance.visible_camera && instance.casts_shadow && instance.visible_diffuse &&
+           instance.visible_glossy && instance.visible_transmission && instance.visible_volume;
+}
+
 /// Likewise; light of a set passes what does not block it.
 inline bool meets(RayType ray, const Instance& instance, int blocker_set) {
     return meets(ray, instance) &&

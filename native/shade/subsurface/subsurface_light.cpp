@@ -71,8 +71,11 @@ class SubsurfaceLight::Batch {
     /// Not by weight, nor shared yet.
     ScatteredLight finish() {
         ScatteredLight light{std::move(m_direct), {}};
-        if (m_light.m_bounces)
-            light.bounced = m_light.m_bounces->gather(m_leaving, m_points.count).diffuse;
+        if (!m_light.m_bounces) return light;
+        GatheredLight gathered = m_light.m_bounces->gather(m_leaving, m_points.count);
+        for (std::size_t i = 0; i < gathered.world.size(); ++i)
+            light.direct[i] += total(gathered.world[i]);
+        light.bounced = std::move(gathered.diffuse);
         return light;
     }
 

@@ -108,7 +108,15 @@ TEST(RayScene, instances_that_cast_no_shadow_are_not_in_it) {
     Scene scene = empty_scene();
     scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].casts_shadow = false;
     const Progress progress;
+    scene.world.lights_scene = false;
     EXPECT_TRUE(RayScene(scene, Vec3d(0.0), {}, progress).empty());
+    // But rays that diffuse lobes send to the world meet them.
+    scene.world.lights_scene = true;
+    const RayScene rays(scene, Vec3d(0.0), {}, progress);
+    Ray ray{{0.1f, 0.1f, 0.0f}, {0, 0, 1}, 2.0f};
+    EXPECT_EQ(rays.transmittance(ray), Vec3f(1.0f));
+    ray.type = RayType::Diffuse;
+    EXPECT_EQ(rays.transmittance(ray), Vec3f(0.0f));
 }
 
 TEST(RayScene, stands_at_the_frame_time_between_knots) {

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/bounces/way_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/luminance.h"
+
+namespace granita {
+namespace {
+
+/// Weights from which ways of mirrors are followed surely: at one place, and all the way.
+constexpr float kMost = 0.5f, kMuch = 0.02f;
+
+/// Of its place's ways, which weigh `all` together.
+float part(const BouncedPath& path, const Vec3f& weight, float all) {
+    return path.sure_part * largest(weight) / std::max(1.0f, all);
+}
+
+/// Whether a way is followed without chance; `all`: what the ways from its place weigh together.
+/// Mirrors and glass show edges, which are found only in what is in no doubt; and points that
+/// happen to show what is improbable would alone be shaded again.  Of a place's ways one at most is
+/// followed for its part of them, the others for theirs of the whole point: half mirrors that face
+/// each other, or what adds a mirror to what is clear, would double the rays of a point at each
+/// meeting.
+bool is_sure(const BouncedPath& path, const Vec3f& weight, float all) {
+    if (path.kind != BouncedPath::Kind::Mirrored) return false;
+    const float most = largest(weight);
+    return (most >= kMost && most > 0.5f * all) || part(path, weight, all) >= kMuch;
+}
+
+bool is_sure(const BouncedPath& path, const LobeRay& way, float all) {
+    return is_sharp(way.ray.type) && is_sure(path, way.weight, all);
+}
+
+}  // namespace
+
+void choose_ways(const BouncedPath& path, std::span<const LobeRay> ways, const Vec3f& through,
+                 float uniform, std::vector<ChosenWay>& out) {
+    out.clear();
+    float all = largest(through), in_doubt = 0.0f;
+    for (const LobeRay& way : ways) all += largest(way.weight);
+    const auto consider = [&](const LobeRay* ray, const Vec3f& weight, bool surely) {
+        if (surely)
+            out.push_back({ray, weight, part(path, weight, all), true, 1.0f});
+        else
+            in_doubt += largest(weight);
+    };
+    const bool passes_surely = is_sure(path, through, all);
+    consider(nullptr, through, passes_surely);
+    for (const LobeRay& way : ways) consider(&way, way.weight, is_sure(path, way, all));
+    if (!(in_doubt > 0.0f)) return;
+    // Ends more surely the less it can bring: as Cycles, by the root of that.
+    const float goes_on =
+        std::min(1.0f, std::sqrt(std::max(largest(path.throughput()) * in_doubt, 0.0f)));
+    float u = uniform * in_doubt;
+    const auto take = [&](const LobeRay* ray, const Vec3f& weight) {
+        out.push_back({ray, weight * (in_doubt / largest(weight)), path.sure_part, false, goes_on});
+    };
+    if (!passes_surely) {
+        if (u < largest(through)) return take(nullptr, through);
+        u -= largest(through);
+    }
+    const LobeRay* taken = nullptr;
+    for (const LobeRay& way : ways) {
+        if (is_sure(path, way, all)) continue;
+        taken = &way;
+        if (u < largest(way.weight)) break;
+        u -= largest(way.weight);
+    }
+    if (taken) take(taken, taken->weight);
+}
+
+}  // namespace granita
