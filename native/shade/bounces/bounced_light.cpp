@@ -9,6 +9,7 @@
 #include "base/sorted_runs.h"
 #include "math/luminance.h"
 #include "math/sampling.h"
+#include "shade/bounces/seen_world.h"
 #include "shade/bounces/way_choice.h"
 #include "shade/nodes/surface_run.h"
 #include "shade/volumes/scatter_points.h"
@@ -139,51 +140,29 @@ class BouncedLight::Wave {
         for (const BouncedPath& path : m_paths) m_rays.push_back(path.next.ray);
         m_rays_traced += m_rays.size();
         m_light.m_direct.rays()->nearest(m_rays, m_met);
-        m_sees_world.assign(m_paths.size(), 1);
-        for (const RayScene::Met& one : m_met) m_sees_world[one.ray] = 0;
+        m_meets_nothing.assign(m_paths.size(), 1);
+        for (const RayScene::Met& one : m_met) m_meets_nothing[one.ray] = 0;
     }
 
-    /// Where nothing was met.  The world is asked for many directions at once.
+    /// Light of the world where nothing was met: of the first rays it is what reaches the points
+    /// straight, not over other surfaces.
     void see_world() {
-        for (const RayType type : kLightRays) {
-            m_asking.clear();
-            m_directions.clear();
-            for (std::uint32_t i = 0; i < m_paths.size(); ++i) {
-                const LobeRay& ray = m_paths[i].next;
-                if (!m_sees_world[i] || ray.ray.type != type || !ray.world.shines()) continue;
-                if (!ray.world.asks()) {
-                    bring_world(m_paths[i], Vec3f(0.0f));
-                    continue;
-                }
-                m_asking.push_back(i);
-                m_directions.push_back(ray.ray.direction);
+        const std::vector<BsdfValue> seen = seen_world(m_light.m_direct, m_paths, m_meets_nothing);
+        for (std::size_t i = 0; i < m_paths.size(); ++i) {
+            const BouncedPath& path = m_paths[i];
+            if (total(seen[i]) == Vec3f(0.0f)) continue;
+            if (path.depth > 1) {
+                bring(path, total(seen[i]), Vec3f(0.0f));
+                continue;
             }
-            if (m_asking.empty()) continue;
-            m_light.m_direct.world_radiance(m_directions, type, m_seen);
-            for (std::size_t k = 0; k < m_asking.size(); ++k)
-                bring_world(m_paths[m_asking[k]], m_seen[k]);
+            const LobeRay& ray = path.next;
+            const BsdfValue light = seen[i] * ray.weight;
+            if (!is_finite(total(light))) continue;
+            m_gathered.world[ray.point] += light;
+            m_gathered.world_balance[ray.point] +=
+                ray.world.sign *
+                Vec2f(luminance(light.diffuse), luminance(light.glossy + light.transmission));
         }
-    }
-
-    /// @param seen what the world says along the ray, if it is asked.
-    void bring_world(const BouncedPath& path, const Vec3f& seen) {
-        const LobeRay& ray = path.next;
-        const Vec3f by_others = ray.world.asked_by_others * seen;
-        BsdfValue light = ray.world.radiance;
-        light += {ray.world.asked_by_diffuse * seen, by_others, by_others};
-        light.diffuse *= ray.diffuse;
-        light.transmission *= ray.transmitted;
-        light.glossy *= glm::max(Vec3f(1.0f) - ray.diffuse - ray.transmitted, Vec3f(0.0f));
-        if (path.depth > 1) {
-            bring(path, total(light), Vec3f(0.0f));
-            return;
-        }
-        light = light * ray.weight;
-        if (!is_finite(total(light))) return;
-        m_gathered.world[ray.point] += light;
-        m_gathered.world_balance[ray.point] +=
-            ray.world.sign *
-            Vec2f(luminance(light.diffuse), luminance(light.glossy + light.transmission));
     }
 
     /// Leaves what chance has not chosen, and what would bring nothing, unshaded.
@@ -217,14 +196,14 @@ class BouncedLight::Wave {
             const Vec3f emitted = walk.advance(m_rays[i].distance);
             if (emitted != Vec3f(0.0f)) bring(path, Vec3f(0.0f), emitted);
             const bool has_met = met_by[i] != kNothing;
-            if (!has_met && !path.next.world.shines()) m_sees_world[i] = 0;
-            const bool has_end = has_met || m_sees_world[i];
+            if (!has_met && !path.next.world.shines()) m_meets_nothing[i] = 0;
+            const bool has_end = has_met || m_meets_nothing[i];
             const float scattered = scatter(path, i, has_end ? mean_size(walk.transmittance()) : 0);
             if (scattered < 1.0f) {
                 path.next.weight *= walk.transmittance() / (1.0f - scattered);
                 continue;
             }
-            m_sees_world[i] = 0;
+            m_meets_nothing[i] = 0;
             if (has_met) is_left[met_by[i]] = 0;
         }
         std::size_t left = 0;
@@ -453,9 +432,7 @@ class BouncedLight::Wave {
     std::vector<BouncedPath> m_paths, m_next;
     std::vector<Ray> m_rays;
     std::vector<RayScene::Met> m_met;
-    std::vector<std::uint8_t> m_sees_world;  ///< [paths] whose rays meet nothing
-    std::vector<std::uint32_t> m_asking;     ///< paths that ask the world's program
-    std::vector<Vec3f> m_directions, m_seen;
+    std::vector<std::uint8_t> m_meets_nothing;  ///< [paths] whose rays meet nothing
     std::vector<std::uint32_t> m_order;
     LeavingRays m_leaving;
     std::vector<ChosenWay> m_chosen;

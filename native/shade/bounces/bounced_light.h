@@ -8,7 +8,8 @@
 // Each surface that is met adds what it emits, unless it is a lamp, and what of lamps and the world
 // it reflects; one of its lobes' samples, or the way through it, is followed further by a choice
 // after their weights; what fills the way before it adds what it emits, or scatters light itself.
-// Ways end by Cycles' limits, or by Russian roulette (Arvo and Kirk 1990).
+// Rays that meet nothing bring the world.  Ways end by Cycles' limits, or by Russian roulette (Arvo
+// and Kirk 1990) where they meet something.
 //
 // What a way brings depends on itself alone: pictures are the same to the bit however points are
 // put together.

@@ -20,8 +20,8 @@ struct BouncedPath {
     /// Part of its point that it was followed for while no chance chose it: those of a point's ways
     /// after as many meetings sum up to 1 at most.
     float sure_part = 0.0f;
-    /// By which chance weighs what its ray meets; of what it finds of the world none has been
-    /// chosen.
+    /// Weight of what its ray meets, 0 where chance has ended it; what it finds of the world is in
+    /// no such doubt.
     float met_weight = 1.0f;
     int passed = 0;          ///< surfaces that let it through
     float least_pdf = 0.0f;  ///< of its directions: how few ways go like it
