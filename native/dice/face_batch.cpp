@@ -76,7 +76,7 @@ std::unique_ptr<Grid> FaceBatch::make_grid(std::size_t micropolygons) const {
     grid->key = key();
     grid->instance = static_cast<std::uint32_t>(m_mesh->instance_index());
     grid->material = m_mesh->material(patch(0).face);
-    grid->holdout = m_mesh->instance().holdout;
+    grid->holdout = m_mesh->holds_out(grid->material);
     grid->lifespan = m_mesh->instance().lifespan;
     grid->disjoint = true;
     grid->n_u = static_cast<int>(micropolygons);

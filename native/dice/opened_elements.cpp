@@ -125,7 +125,7 @@ std::unique_ptr<Grid> OpenedElements::make_grid(std::size_t batch, std::uint64_t
     grid->n_u = along;
     grid->n_v = across;
     grid->knots = m_knots.count;
-    grid->holdout = m_instance->holdout;
+    grid->holdout = m_view->scene->holds_out(*m_instance, grid->material);
     grid->lifespan = m_instance->lifespan;
     const std::size_t count = static_cast<std::size_t>(grid->vertex_count());
     grid->positions.resize(count * static_cast<std::size_t>(m_knots.count));

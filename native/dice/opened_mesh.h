@@ -94,6 +94,8 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     float frame_scale() const;
     /// Index in Scene::materials, -1 = none.
     int material(std::uint32_t face) const;
+    /// Whether what has a material cuts out of the picture.
+    bool holds_out(int material) const { return m_view->scene->holds_out(*m_instance, material); }
     /// Normals of its own tell of a smoother surface.
     bool rises() const {
         return !m_displaced && !m_shared->subdivision() &&

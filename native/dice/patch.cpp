@@ -193,7 +193,7 @@ std::unique_ptr<Grid> Patch::dice() const {
     grid->key = key();
     grid->instance = static_cast<std::uint32_t>(m_mesh->instance_index());
     grid->material = m_mesh->material(m_patch.face);
-    grid->holdout = m_mesh->instance().holdout;
+    grid->holdout = m_mesh->holds_out(grid->material);
     grid->lifespan = m_mesh->instance().lifespan;
     dice_lattice(*m_mesh, m_patch, {m_corner_uv, m_sides, 1 << m_rates.u, 1 << m_rates.v}, *grid);
     const Projection& projection = m_mesh->view().projection;

@@ -205,6 +205,7 @@ std::shared_ptr<Scene> read_scene(const py::dict& snapshot) {
     read_list("geometries", "mesh", scene->geometries, read_geometry);
     read_list("materials", "material", scene->materials, [](const Record& r, Material& m) {
         m.index = r.integer("index", 0);
+        m.holdout = r.boolean("holdout", false);
         read_graph(r, m.graph);
     });
     read_list("images", "image", scene->images, read_image);

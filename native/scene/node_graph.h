@@ -75,7 +75,8 @@ struct NodeGraph {
 
 struct Material {
     std::string name;
-    int index = 0;  ///< pass_index
+    int index = 0;         ///< pass_index
+    bool holdout = false;  ///< cuts out of the picture what it does not let through
     NodeGraph graph;
     bool operator==(const Material&) const = default;
 };

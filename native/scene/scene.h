@@ -70,6 +70,11 @@ struct Scene {
     const GeometryData& geometry_of(const Instance& instance) const {
         return geometries[static_cast<std::size_t>(instance.geometry)];
     }
+    /// Whether what has a material (-1 = none) of an instance cuts out of the picture.
+    bool holds_out(const Instance& instance, int material) const {
+        return instance.holdout ||
+               (material >= 0 && materials[static_cast<std::size_t>(material)].holdout);
+    }
     /// Whether camera or geometry has more than one knot, or something appears or vanishes.
     bool moves() const;
     /// Whether some instance does not exist throughout the shutter.

@@ -105,6 +105,7 @@ SceneChanges::SceneChanges(const Scene& before, const Scene& now)
     for (std::size_t m = 0; m < std::min(before.materials.size(), now.materials.size()); ++m) {
         materials[m] = before.materials[m] != now.materials[m];
         note(!materials[m], part::kMaterials);
+        note(before.materials[m].holdout == now.materials[m].holdout, part::kRest);
     }
     if (before.images == now.images) return;
     // Of an image it is not known here who shows it: the world may.

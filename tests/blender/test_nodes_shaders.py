@@ -54,6 +54,42 @@ def test_a_shader_that_two_mixes_share(scene, render):
     check(scene, render)
 
 
+def _held_out(tree, clear):
+    """By B of each square; `clear`: what else there is lets all light through."""
+    mix, other = tree.add("ShaderNodeMixShader"), tree.add("ShaderNodeBsdfTransparent")
+    if not clear:
+        other = tree.add("ShaderNodeEmission")
+    tree.link(tree.attribute("B", "Fac"), mix.inputs[0])
+    tree.link(other.outputs[0], mix.inputs[1])
+    tree.link(tree.add("ShaderNodeHoldout").outputs[0], mix.inputs[2])
+    shown(tree, mix)
+
+
+@pytest.mark.parametrize("transparent", [False, True])
+def test_holdout(scene, render, transparent):
+    """Whole and mixed with what is transparent, by turns, before a glowing wall that is smaller."""
+    thing = board(scene, 0, 1)
+    whole = Tree(thing, "Whole")
+    shown(whole, whole.add("ShaderNodeHoldout"))
+    _held_out(Tree(thing, "Mixed"), clear=True)
+    which = np.arange(len(thing.data.polygons)) % 3 // 2
+    thing.data.polygons.foreach_set("material_index", which.astype(np.int32))
+    wall = scene_parts.add_square(scene, "Wall", 1.0, (0.3, 0.0, -1.0))
+    tree = Tree(wall, "Wall")
+    shown(tree, tree.add("ShaderNodeEmission"))
+    scene.render.film_transparent = transparent
+    theirs, ours = render_both(scene, render, 64, channels="RGBA")
+    assert theirs[..., 3].std() > 0.1
+    assert rmse(theirs, ours) < LIMIT
+
+
+def test_holdout_among_other_shaders_is_named(scene, render, capfd):
+    _held_out(Tree(board(scene, 0, 1), "Mixed"), clear=False)
+    render(scene)
+    said = capfd.readouterr().out
+    assert "'Mixed'" in said and "Holdout is black" in said
+
+
 def test_transparent(scene, render):
     """In front of a glowing wall: what passes is the wall's light."""
     thing = board(scene, 0, 1)

@@ -201,6 +201,15 @@ def test_what_is_displaced_is_moved_again_where_its_offsets_may_be_others(name):
     assert found == expected
 
 
+def test_a_material_that_comes_to_hold_out_is_hidden_anew():
+    first, second = scene(), scene()
+    second["materials"][1]["holdout"] = True
+    kept = Kept()
+    before, after = kept.picture(first), kept.picture(second)
+    assert np.array_equal(after, Kept().picture(second))
+    assert (after[..., 3] < before[..., 3]).any()
+
+
 def unseen_by_shadows(snapshot):
     snapshot["instances"]["flags"] = [59, 57, 59]
 

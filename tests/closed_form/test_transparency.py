@@ -271,6 +271,32 @@ def test_passes_see_no_world_behind_the_end_of_a_list(executor):
         assert np.abs(result["combined"][..., :3] - emission).max() <= 1e-6
 
 
+@pytest.mark.parametrize("world", [None, 1.0])
+def test_a_material_cuts_what_it_does_not_let_through(executor, world):
+    """A holdout of .25 over a wall and over nothing, beside a sheet that is none."""
+    snapshot = s.orthographic((16, 16), samples=4, executor=executor)
+    if world:
+        s.constant_world(snapshot, world)
+    s.quad(snapshot, s.rectangle(0, 0, 8, 8, 1), s.emission(snapshot, (9, 9, 9), alpha=0.25))
+    snapshot["materials"][-1]["holdout"] = True
+    s.quad(snapshot, s.rectangle(8, 8, 16, 16, 1), s.emission(snapshot, (0, 0, 0), alpha=0.25))
+    s.quad(snapshot, s.rectangle(0, 0, 16, 4, 2), s.emission(snapshot, (2, 2, 2)))
+    image = s.render(snapshot)["combined"]
+    behind = world or 0.0
+    covered = 1.0 if world else 0.0
+    corners = {
+        "both": (image[1:3, 1:7], 0.75 * 2, 0.75),
+        "holdout": (image[5:7, 1:7], 0.75 * behind, 0.75 * covered),
+        "wall": (image[1:3, 9:15], 2.0, 1.0),
+        "sheet": (image[9:15, 9:15], 0.75 * behind, covered or 0.25),
+    }
+    if image[14, 1, 3] != covered:
+        corners = {name: (part[::-1], *rest) for name, (part, *rest) in corners.items()}
+    for name, (part, light, alpha) in corners.items():
+        assert part[..., :3] == pytest.approx(light, abs=1e-5), name
+        assert part[..., 3] == pytest.approx(alpha, abs=1e-5), name
+
+
 def test_opaque_pictures_keep_no_lists():
     """A bucket without transparency stores no fragment and asks for no opacity."""
     snapshot = s.orthographic((64, 64), samples=16, executor="SIMD")

@@ -50,4 +50,35 @@ def material_record(material, images, report, aovs=()):
         record["displacement_method"] = displacement_method(material)
         record["volume"] = graph.add(output.inputs["Volume"])
     graph.add_aov_outputs(aovs)
+    record["holdout"] = surface is not None and _cuts(graph.nodes, surface[0])
+    if not record["holdout"] and any(node["type"] == _HOLDOUT for node in graph.nodes):
+        report(owner, "Holdout is black where it is mixed with others than Transparent BSDF")
+    if record["holdout"] and any(map(_tints, graph.nodes)):
+        report(owner, "what its Transparent BSDF takes of light is held out as well")
     return {**record, "nodes": graph.nodes, "surface": surface}
+
+
+_HOLDOUT = "ShaderNodeHoldout"
+_MIXES = {"ShaderNodeMixShader", "ShaderNodeAddShader"}
+
+
+def _tints(node):
+    if node["type"] != "ShaderNodeBsdfTransparent":
+        return False
+    color = node["inputs"].get("Color", (1.0, 1.0, 1.0, 1.0))
+    return color[0] == "LINK" or any(channel != 1.0 for channel in color[:3])
+
+
+def _cuts(nodes, index):
+    """Whether a shader is Holdout, mixed with nothing but what is transparent."""
+    kinds, pending = set(), [index]
+    while pending:
+        node = nodes[pending.pop()]
+        if node["type"] not in _MIXES:
+            kinds.add(node["type"])
+            continue
+        shaders = [node["inputs"].get(name) for name in ("Shader", "Shader_001")]
+        if not all(isinstance(shader, tuple) and shader[0] == "LINK" for shader in shaders):
+            return False
+        pending += [shader[1] for shader in shaders]
+    return _HOLDOUT in kinds and kinds <= {_HOLDOUT, "ShaderNodeBsdfTransparent"}

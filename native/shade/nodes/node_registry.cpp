@@ -34,6 +34,7 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeBsdfGlass", closure(build_glass)},
         {"ShaderNodeBsdfRefraction", closure(build_refraction)},
         {"ShaderNodeBsdfTransparent", closure(build_transparent)},
+        {"ShaderNodeHoldout", closure(build_holdout)},
         {"ShaderNodeMixShader", closure(build_mix_shader)},
         {"ShaderNodeAddShader", closure(build_add_shader)},
 

@@ -16,6 +16,7 @@ void build_subsurface(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_translucent(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_sheen(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_velvet(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
+void build_holdout(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_toon(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_hair(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);
 void build_principled_hair(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight);

@@ -116,6 +116,9 @@ void build_toon(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weig
     surface.add_lobe(lobe);
 }
 
+/// Black, and lets nothing through: that it cuts, the whole material does (Material::holdout).
+void build_holdout(NodeBuilder&, SurfaceBuilder&, const FloatSource&) {}
+
 void build_transparent(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& weight) {
     surface.add_transparency(b, scaled(b, b.color("Color", Vec3f(1.0f)), weight));
 }

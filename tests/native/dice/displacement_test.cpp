@@ -73,6 +73,7 @@ TEST(Displacement, closed_surfaces_stay_closed) {
             data.material_index = {0, 1, 0, 1, 2, 0};
             DiceScene s(data, rate, 64);
             s.scene.instances[0].materials = {0, 1, -1};
+            s.scene.materials.resize(2);
             // Three materials that move by different amounts meet at every corner.
             const ByMaterial displaced(s, {3.0f, -1.0f, 0.0f}, 3.0f);
             Mat4d turn(1.0);
