@@ -8,6 +8,7 @@
 #include "base/stage_timer.h"
 #include "shade/bounces/bounced_light.h"
 #include "shade/bounces/hit_shader.h"
+#include "shade/bounces/way_choice.h"
 #include "shade/compiled_materials.h"
 #include "shade/grid_channels.h"
 #include "shade/interpolated_points.h"
@@ -183,8 +184,10 @@ struct ShadingSystem::Impl {
     /// to samples in it, whose diffuse lobes take it from there.  Returns what of it is noise at
     /// single points: what neighbours do not share.
     std::vector<Vec3f> add_bounces(const ShadingPoints& points, const SurfaceClosure& closure,
-                                   const LeavingRays& leaving, Grid& grid, ReflectionParts* parts,
+                                   LeavingRays& leaving, Grid& grid, ReflectionParts* parts,
                                    std::vector<float>* noise, std::vector<Vec3f>& radiance) const {
+        const float due = points.share * static_cast<float>(scene.options.light_samples);
+        if (!points.places.empty() && due < 1.0f) thin_out(leaving.rays, scene.options.seed);
         GatheredLight light = bounces->gather(leaving.rays, points.count);
         if (leaving.diffuse)
             share_gathered(points, closure, leaving.takes_world, parts != nullptr, light, grid);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "math/luminance.h"
+#include "math/sampling.h"
 
 namespace granita {
 namespace {
@@ -31,6 +32,11 @@ bool is_sure(const BouncedPath& path, const Vec3f& weight, float all) {
 
 bool is_sure(const BouncedPath& path, const LobeRay& way, float all) {
     return is_sharp(way.ray.type) && is_sure(path, way.weight, all);
+}
+
+/// In [0, 1), of random bits.
+float uniform(std::uint64_t bits) {
+    return static_cast<float>(mix_bits(bits) >> 40) * 0x1p-24f;
 }
 
 }  // namespace
@@ -69,6 +75,29 @@ void choose_ways(const BouncedPath& path, std::span<const LobeRay> ways, const V
         u -= largest(way.weight);
     }
     if (taken) take(taken, taken->weight);
+}
+
+void thin_out(std::vector<LobeRay>& ways, std::uint32_t seed) {
+    const auto is_thinned = [](const LobeRay& way) {
+        return way.ray.type == RayType::Glossy || way.ray.type == RayType::Transmission;
+    };
+    auto kept = ways.begin();
+    for (auto begin = ways.begin(), end = begin; begin != ways.end(); begin = end) {
+        float most = 0.0f;
+        for (end = begin; end != ways.end() && end->point == begin->point; ++end)
+            most = std::max(most, largest(end->weight));
+        std::uint64_t bits = mix_bits(begin->place) + mix_bits(seed);
+        for (auto way = begin; way != end; ++way) {
+            const float part = largest(way->weight) / most;
+            if (is_thinned(*way) && part < 1.0f) {
+                bits = mix_bits(bits);
+                if (!(uniform(bits) < part)) continue;
+                way->weight /= part;
+            }
+            *kept++ = *way;
+        }
+    }
+    ways.erase(kept, ways.end());
 }
 
 }  // namespace granita

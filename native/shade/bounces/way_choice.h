@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -25,5 +26,9 @@ struct ChosenWay {
 /// @param out is filled.
 void choose_ways(const BouncedPath& path, std::span<const LobeRay> ways, const Vec3f& through,
                  float uniform, std::vector<ChosenWay>& out);
+
+/// Drops ways of gloss that bring little: each is kept as likely as it weighs less than the
+/// heaviest of its point, and counts as much more.  `ways` of a point lie together.
+void thin_out(std::vector<LobeRay>& ways, std::uint32_t seed);
 
 }  // namespace granita
