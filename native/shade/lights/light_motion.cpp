@@ -77,6 +77,8 @@ PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints
         }
         if (grid.shades_faces()) rise(grid, places, m_places.size() - m_count);
     }
+    for (std::size_t i = 0; paths.is_bent() && i + m_count < m_places.size(); ++i)
+        m_bends.push_back(paths.bend(i / m_count, m_places[i].p, m_places[i + m_count].p));
 }
 
 /// Starts of rays above all of the faces that a point stands for, as these are at a knot.
@@ -101,6 +103,12 @@ PointPaths::Place PointPaths::at(std::size_t point, float time) const {
     };
     Place place{mix(before.p, after.p), mix(before.start, after.start),
                 mix(before.normal, after.normal)};
+    if (!m_bends.empty()) {
+        const auto f = static_cast<float>(t.fraction);
+        const Vec3f off = m_bends[t.knot * m_count + point] * (f * (1.0f - f));
+        place.p += off;
+        place.start += off;
+    }
     const float length = glm::length(place.normal);
     place.normal = length > 0.0f ? place.normal / length : m_places[point].normal;
     return place;

@@ -38,6 +38,7 @@ class PointPaths {
     int m_knots = 1;
     std::size_t m_count = 0;
     std::vector<Place> m_places;  ///< [knots][points]
+    std::vector<Vec3f> m_bends;   ///< [knots - 1][points], VertexPaths::bend(); empty: straight
 };
 
 }  // namespace granita

@@ -44,6 +44,30 @@ VertexPaths::VertexPaths(const Grid& grid, const Scene& scene)
             matrix_at(camera, static_cast<double>(knot) / static_cast<double>(knots() - 1));
         m_cameras[knot] = {Mat3f(Mat3d(m)), Vec3f(Vec3d(m[3]) - origin)};
     }
+    const Instance& instance = scene.instances[grid.instance];
+    if (scene.geometry_of(instance).knots > 1 && !is_static(instance.world_from_object))
+        add_turns(instance, origin);
+}
+
+void VertexPaths::add_turns(const Instance& instance, const Vec3d& origin) {
+    for (std::size_t knot = 0; knot < knots(); ++knot) {
+        Mat4d m = matrix_at(instance.world_from_object,
+                            static_cast<double>(knot) / static_cast<double>(knots() - 1));
+        m[3] -= glm::dvec4(origin, 0.0);
+        if (glm::determinant(Mat3d(m)) == 0.0) {
+            m_turns.clear();
+            return;
+        }
+        m_turns.push_back({Mat3d(m), glm::inverse(m)});
+    }
+}
+
+Vec3f VertexPaths::bend(std::size_t knot, const Vec3f& before, const Vec3f& after) const {
+    if (m_turns.empty()) return Vec3f(0.0f);
+    const Turn &from = m_turns[knot], &to = m_turns[knot + 1];
+    const Vec3d deformed = transform_point(to.object_from_shading, Vec3d(after)) -
+                           transform_point(from.object_from_shading, Vec3d(before));
+    return Vec3f((from.axes - to.axes) * deformed);
 }
 
 Vec3f VertexPaths::at_frame(std::size_t vertex) const {
@@ -62,7 +86,10 @@ Vec3f VertexPaths::at(std::size_t vertex, float time) const {
     const KnotTime t = knot_time(static_cast<double>(time), static_cast<int>(knots()));
     const Vec3f before = at_knot(vertex, t.knot);
     if (t.fraction == 0.0) return before;
-    return before + (at_knot(vertex, t.knot + 1) - before) * static_cast<float>(t.fraction);
+    const Vec3f after = at_knot(vertex, t.knot + 1);
+    const auto f = static_cast<float>(t.fraction);
+    const Vec3f straight = before + (after - before) * f;
+    return is_bent() ? straight + bend(t.knot, before, after) * (f * (1.0f - f)) : straight;
 }
 
 }  // namespace granita
