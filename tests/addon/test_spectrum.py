@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from export.shading.observer import WAVELENGTHS, xyz
 from export.shading.spectrum import blackbody, monochromatic
 
 # Of linear Rec. 709, D65 (ITU-R BT.709).
@@ -21,10 +22,16 @@ XYZ_FROM_RGB = np.array(
     [(2856.0, 0.44757, 0.40745), (4000.0, 0.3805, 0.3768), (6500.0, 0.3135, 0.3237)],
 )
 def test_black_bodies_have_their_published_chromaticity(temperature, x, y):
-    xyz = XYZ_FROM_RGB @ blackbody(temperature)
-    # The closed form of the matching functions is within 1 %.
-    assert xyz[:2] / xyz.sum() == pytest.approx([x, y], abs=0.004)
-    assert xyz[1] == pytest.approx(1.0, abs=0.001)
+    seen = XYZ_FROM_RGB @ blackbody(temperature)
+    # As many digits as are published.
+    assert seen[:2] / seen.sum() == pytest.approx([x, y], abs=3e-4)
+    assert seen[1] == pytest.approx(1.0, abs=0.001)
+
+
+def test_even_light_is_seen_as_white():
+    """The functions enclose the same area (CIE 15: 106.86 nm each)."""
+    areas = 5.0 * xyz(WAVELENGTHS).sum(axis=1)
+    assert areas == pytest.approx([106.86] * 3, rel=1e-4)
 
 
 def test_beyond_the_ends_colors_stay():

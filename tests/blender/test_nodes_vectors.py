@@ -10,10 +10,6 @@ import pytest
 import scene_parts
 from node_comparison import LIMIT, Tree, board, check, enum_values, render_both, rmse, socket
 
-# The colour matching functions' closed form is within 1 % of the tables that Cycles' polynomials follow,
-# and those are within 1 % again; colours here are up to 5.
-SPECTRUM = 0.05
-
 
 @pytest.mark.parametrize("invert", [False, True])
 @pytest.mark.parametrize("kind", enum_values("ShaderNodeVectorRotate", "rotation_type"))
@@ -99,7 +95,7 @@ def test_spectra(scene, render, kind, span, lowest):
     scaled.inputs[1].default_value, scaled.inputs[2].default_value = span, lowest
     tree.link(scaled.outputs[0], node.inputs[0])
     tree.emit(node.outputs[0])
-    check(scene, render, limit=SPECTRUM)
+    check(scene, render, limit=LIMIT)
 
 
 def test_a_lamp_is_as_warm_as_its_blackbody(scene, render):
@@ -116,7 +112,7 @@ def test_a_lamp_is_as_warm_as_its_blackbody(scene, render):
     scene_parts.add_object(scene, "Sun", light)
     theirs, ours = render_both(scene, render)
     assert theirs.mean() > 0.1
-    assert np.allclose(ours.mean(axis=(0, 1)), theirs.mean(axis=(0, 1)), rtol=0.05, atol=0.01)
+    assert np.allclose(ours.mean(axis=(0, 1)), theirs.mean(axis=(0, 1)), rtol=0.002, atol=0.001)
 
 
 @pytest.mark.parametrize("axis", ["X", "Y", "Z", "UV_MAP", "Geometry"])
