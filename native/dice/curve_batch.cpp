@@ -178,15 +178,20 @@ Grid CurveBatch::triangles(const Grid& from, std::span<const GridPlace> wanted) 
         const float* w = place.weight;
         const bool second = place.triangle.second;
         const double ahead = second ? w[1] : w[1] + w[2];
-        const double u = 2.0 * (second ? w[1] + w[2] : w[2]) - 1.0;
         const Row &row = m_rows[place.triangle.micropolygon],
                   &next = m_rows[place.triangle.micropolygon + 1];
         if (gathered != row.curve) control.gather(*m_elements, row.curve, start(), end(row.curve));
         gathered = row.curve;
         const double t = row.t + ahead * (next.t - row.t);
         const Side side = side_at(control, t);
-        const Vec3d normal = side.normal_at(u);
-        normals.push_back(Vec3f(normal));
+        // Where a ribbon tapers, the triangle with the wide end holds more of its own side.
+        const Grid::Corners c = from.corners(static_cast<int>(place.triangle.micropolygon));
+        const double at_row = glm::distance(from.positions[c.v0], from.positions[c.v3]);
+        const double at_next = glm::distance(from.positions[c.v1], from.positions[c.v2]);
+        const double width = std::max(at_row + ahead * (at_next - at_row), 1e-30);
+        const double from_edge = 2.0 * (second ? w[0] * at_row : w[2] * at_next) / width;
+        const double u = second ? 1.0 - from_edge : from_edge - 1.0;
+        normals.push_back(Vec3f(side.normal_at(u)));
         fronts.push_back(Vec3f(side.front));
         // As high as where points start, beside the place that is seen: what hides neither hides it
         // from a light behind the eye.

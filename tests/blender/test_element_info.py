@@ -50,14 +50,17 @@ def test_hair_of_particles(scene, render, output):
     compare(scene, render)
 
 
-@pytest.mark.parametrize("output", [*HAIR, "Tangent Normal"])
-def test_curves(scene, render, output):
+OF_CURVES = [("ShaderNodeHairInfo", output) for output in [*HAIR, "Tangent Normal"]]
+
+
+@pytest.mark.parametrize(("kind", "output"), [*OF_CURVES, ("ShaderNodeNewGeometry", "Tangent")])
+def test_curves(scene, render, kind, output):
     for place in range(4):
         x = -0.75 + 0.5 * place
         path = [(x, y, 0.3 * np.sin(2 * y + place)) for y in np.linspace(-1.1, place / 3, 9)]
         thing = curve_through(scene, path, 0.05 + 0.04 * place, f"Tube {place}")
         tree = Tree(thing, f"Tube {place}")
-        glow(tree, "ShaderNodeHairInfo", output, HAIR.get(output, 1.0))
+        glow(tree, kind, output, HAIR.get(output, 1.0))
         give_material(thing, tree.material)
     scene_parts.add_camera(scene, (0, -3, 3), ortho_scale=2.4).rotation_euler.x = 0.7
     compare(scene, render)

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "geometry/random_per_island.h"
+#include "shade/nodes/anisotropy.h"
 #include "shade/nodes/instance_value.h"
 #include "shade/nodes/lamp_coordinates.h"
 #include "shade/nodes/nodes.h"
-#include "shade/nodes/tangent.h"
 #include "shade/programs/shading_camera.h"
 
 namespace granita {
@@ -157,8 +157,8 @@ void build_geometry(NodeBuilder& b) {
     b.output_vector("Incoming", b.view());
     b.output("Backfacing", b.backfacing());
     // A lamp's is no number: Cycles divides by the length of a derivative that it has not.
-    b.output_vector("Tangent", b.lamp() ? VectorSource{-1, Vec3f(std::nanf(""))}
-                                        : radial_tangent(b, RadialAxis::Z));
+    b.output_vector("Tangent",
+                    b.lamp() ? VectorSource{-1, Vec3f(std::nanf(""))} : default_tangent(b));
     b.output_vector("Parametric", b.lamp() ? lamp_parameters(b) : VectorSource{});
     // The exporter finds it, of whole meshes.
     b.output("Pointiness", b.attribute_component({AttributeSource::Named, ".pointiness", 1}, 0));
