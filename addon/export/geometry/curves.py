@@ -42,6 +42,9 @@ def read_curves(data, label, requested, report):
 
 
 def _read(_thing, data):
+    if not len(data.curves):
+        # Blender holds one offset then and takes none.
+        return np.empty((0, 4), dtype=np.float32), np.empty(0, dtype=np.int32)
     attribute = data.attributes.get("position")
     points = vectors(attribute.data if attribute else data.position_data)
     offsets = np.empty(len(data.curve_offset_data), dtype=np.int32)

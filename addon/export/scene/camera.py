@@ -145,7 +145,7 @@ def camera_record(camera, frame, depsgraph, report):
     kind = _KINDS[data.type]
     matrix = camera_matrix(camera, depsgraph)
     if matrix is None:
-        raise ExportError(name, "its scale is zero or not finite")
+        raise ExportError(name, "its scale is zero, or its transform not finite")
     found = _projection(data, kind, frame)
     if found is None:
         raise ExportError(name, "sees nothing: its focal length or its scale is not usable")
