@@ -88,6 +88,23 @@ def test_straight_alpha_of_painted_bytes(scene, render):
     check(scene, render, SAMPLES)
 
 
+@pytest.mark.parametrize("strip", [1, 40, 1 << 14])  # pixels: a part of a row, some rows, all
+def test_every_painted_byte_is_decoded_as_srgb(scene, monkeypatch, strip):
+    from granita.export.shading import image as images
+
+    monkeypatch.setattr(images, "_STRIP", strip)
+    encoded = np.repeat(np.arange(256) / 255, 4).reshape(-1, 4)
+    encoded[:, 3] = 1
+    image = bpy.data.images.new("Image", 16, 16)
+    image.pixels.foreach_set(encoded.astype(np.float32).ravel())
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    found = exported(scene)[0][0]["pixels"].reshape(-1, 4)
+    # IEC 61966-2-1
+    curve = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    assert np.abs(found - curve).max() < 1e-6
+
+
 def test_formats_that_blender_reads_come_as_pixels(scene, tmp_path):
     made = smooth_image("Made")
     path = str(tmp_path / "Image.dpx")

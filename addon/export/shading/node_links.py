@@ -23,6 +23,20 @@ class Scope:
         self.group_node = group_node
         self.parent = parent
         self._children = {}
+        self._links = None
+
+    def link(self, socket):
+        """The link that feeds an input socket of this tree, or None.
+
+        Blender's own list of a socket's links is a walk over all links of the tree, and every socket of it is
+        asked for.
+        """
+        if self._links is None:
+            self._links = {}
+            for link in self.tree.links:
+                if link.is_valid and not link.is_muted:
+                    self._links.setdefault(link.to_socket.as_pointer(), link)
+        return self._links.get(socket.as_pointer())
 
     def inside(self, group_node):
         """The scope of a group node's tree; the same object every time."""
@@ -63,7 +77,7 @@ def trace(scope, socket):
     own = Source(scope, None, socket)
     passed, muted = [], False
     while True:
-        link = next((link for link in socket.links if _is_live(link)), None)
+        link = scope.link(socket)
         if link is not None and _is_undefined(link.from_node):
             scope.undefined[link.from_node.name] = None
             link = None
@@ -97,10 +111,6 @@ def trace(scope, socket):
         else:
             return Source(scope, node, output, _types(passed))
         passed.append(socket)
-
-
-def _is_live(link):
-    return link.is_valid and not link.is_muted
 
 
 def _is_undefined(node):
