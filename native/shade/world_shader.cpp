@@ -5,6 +5,8 @@
 #include <iterator>
 #include <string_view>
 
+#include "shade/nodes/surface_run.h"
+
 namespace granita {
 namespace {
 
@@ -63,6 +65,12 @@ WorldShader::WorldShader(const Scene& scene, TextureStore& textures, Report& rep
         return node.type == "ShaderNodeTexEnvironment" || node.type == "ShaderNodeTexImage";
     });
     m_is_smooth = std::ranges::all_of(graph.nodes, is_smooth);
+    // One that varies is tabled where it lights, and what is not finite found there.
+    const auto is_broken = [&](RayType ray) {
+        return is_constant(ray) && !is_finite(emission(ray).constant);
+    };
+    if (std::ranges::any_of(seeing, is_broken))
+        report.warn(owner.name, "is not finite: it is black");
 }
 
 const SurfaceProgram& WorldShader::program(RayType ray) const {
@@ -74,6 +82,7 @@ void WorldShader::radiance(const std::vector<Vec3f>& directions, float spread, R
     const VectorSource& source = emission(ray);
     if (source.is_constant()) {
         out.assign(directions.size(), source.constant);
+        if (ray == RayType::Camera) make_finite(out);
         return;
     }
     ShadingPoints points;
@@ -88,6 +97,8 @@ void WorldShader::radiance(const std::vector<Vec3f>& directions, float spread, R
     const Column<Vec3f> values = run.read(source);
     out.resize(points.count);
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = values[i];
+    // Those of light are counted where they are tabled (lights/environment.h).
+    if (ray == RayType::Camera) make_finite(out);
 }
 
 WorldEvaluator WorldShader::evaluator() const {

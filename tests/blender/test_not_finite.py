@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials whose values are no numbers at some points spoil no other, and are named."""
+"""Materials and worlds whose values are no numbers at some points spoil no other, and are named."""
 
 import bpy
 import numpy as np
@@ -71,3 +71,20 @@ def test_values_that_are_no_numbers(scene, render, build):
     theirs, ours = render_both(scene, render)
     assert np.isfinite(ours).all()
     assert np.abs(theirs - ours).max() < 1e-5
+
+
+@pytest.mark.parametrize("lights", [False, True])
+def test_worlds_that_are_no_numbers_are_black(scene, render, capfd, lights):
+    world = scene.world = bpy.data.worlds.new("Bad")
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Strength"].default_value = float("nan")
+    for ray in ("diffuse", "glossy", "transmission", "scatter"):
+        setattr(world.cycles_visibility, ray, lights)
+    wall = scene_parts.emission("Wall", (0.5, 0.5, 0.5))
+    scene_parts.add_square(scene, "Wall", 1.0, (0.0, 0.0, -1.0), wall)
+    scene_parts.add_camera(scene, ortho_scale=2.0)
+    scene.render.resolution_x = scene.render.resolution_y = 20
+    found = render(scene)["ViewLayer.Combined.R"]
+    assert "world 'Bad': is not finite" in capfd.readouterr().out
+    assert np.abs(found[8:12, 8:12] - 0.5).max() < 1e-6
+    assert (found[[0, 0, -1, -1], [0, -1, 0, -1]] == 0.0).all()

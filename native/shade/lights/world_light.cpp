@@ -20,10 +20,9 @@ WorldLight::WorldLight(const World& world, WorldEvaluator evaluator, Report& rep
     : m_evaluator(std::move(evaluator)) {
     if (!world.lights_scene || !m_evaluator.radiance) return;
     m_environment = std::make_unique<Environment>(m_evaluator, progress);
-    if (m_environment->broken() > 0)
+    if (m_environment->broken() > 0 && !m_evaluator.is_constant)
         report.warn("world '" + world.name + "'",
-                    "is not finite in some directions, which light as black",
-                    m_environment->broken());
+                    "is not finite in some directions, which are black", m_environment->broken());
     if (m_environment->is_black()) m_environment.reset();
 }
 
