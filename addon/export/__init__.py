@@ -75,7 +75,13 @@ def export_frame(
     if not moves:
         shutter = replace(shutter, segments=0)
     options = options_record(
-        scene, view_layer, settings, viewpoint.frame, viewpoint.crop, shutter.frame_time
+        scene,
+        view_layer,
+        settings,
+        viewpoint.frame,
+        viewpoint.crop,
+        shutter.frame_time,
+        in_view=depsgraph.mode == "VIEWPORT",
     )
     camera_at_frame = viewpoint.record(depsgraph, report)
     camera_place = camera_at_frame["world_from_camera"][0]

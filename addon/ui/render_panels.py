@@ -75,6 +75,33 @@ class GRANITA_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
             column.prop(cycles, name)
 
 
+class GRANITA_RENDER_PT_fast_gi(RenderPanel, bpy.types.Panel):
+    bl_label = "Fast GI Approximation"
+    bl_parent_id = "GRANITA_RENDER_PT_light_paths"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        scene = context.scene
+        follows = scene.granita.bounces != "NONE" and getattr(scene, "cycles", None) is not None
+        return super().poll(context) and follows
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.cycles, "use_fast_gi", text="")
+
+    def draw(self, context):
+        scene = context.scene
+        column = self.column()
+        column.active = scene.cycles.use_fast_gi
+        column.prop(scene.cycles, "fast_gi_method", text="Method")
+        if scene.world is not None:
+            column.prop(scene.world.light_settings, "ao_factor", text="AO Factor")
+            column.prop(scene.world.light_settings, "distance", text="AO Distance")
+        if scene.cycles.fast_gi_method == "REPLACE":
+            column.prop(scene.cycles, "ao_bounces", text="Viewport Bounces")
+            column.prop(scene.cycles, "ao_bounces_render", text="Render Bounces")
+
+
 class GRANITA_RENDER_PT_geometry(RenderPanel, bpy.types.Panel):
     bl_label = "Geometry"
 
@@ -162,6 +189,7 @@ _CLASSES = (
     GRANITA_RENDER_PT_device,
     GRANITA_RENDER_PT_sampling,
     GRANITA_RENDER_PT_light_paths,
+    GRANITA_RENDER_PT_fast_gi,
     GRANITA_RENDER_PT_geometry,
     GRANITA_RENDER_PT_motion_blur,
     GRANITA_RENDER_PT_shutter_curve,

@@ -115,6 +115,12 @@ void read_options(const Record& r, Options& o) {
         at_least(r, "filter_glossy", r.number("filter_glossy", o.bounces.filter_glossy), 0.0);
     o.bounces.clamp =
         at_least(r, "clamp_indirect", r.number("clamp_indirect", o.bounces.clamp), 0.0);
+    o.bounces.occluded_from =
+        in_range(r, "occluded_from", r.integer("occluded_from", o.bounces.occluded_from), 0, 1024);
+    o.bounces.occlusion_distance = at_least(
+        r, "occlusion_distance", r.number("occlusion_distance", o.bounces.occlusion_distance), 0.0);
+    o.bounces.occlusion_factor = at_least(
+        r, "occlusion_factor", r.number("occlusion_factor", o.bounces.occlusion_factor), 0.0);
     o.refine_samples = r.boolean("refine_samples", o.refine_samples);
     o.shading_threshold =
         at_least(r, "shading_threshold", r.number("shading_threshold", o.shading_threshold), 0.0);

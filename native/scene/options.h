@@ -48,6 +48,11 @@ struct Bounces {
     bool caustics = true;        ///< glossy lobes reflect what reaches diffuse ones
     float filter_glossy = 1.0f;  ///< how much blurrier they are for ways that few take; 0 = none
     float clamp = 10.0f;  ///< most that a path brings, red, green and blue summed; 0 = no end
+    /// As Cycles' Fast GI, Replace: from this one on what bounces is the world's light, as far as
+    /// nothing within `occlusion_distance` metres hides it; 0 = never.
+    int occluded_from = 0;
+    float occlusion_distance = 10.0f;
+    float occlusion_factor = 1.0f;  ///< how much of the world's light then
     bool operator==(const Bounces&) const = default;
 };
 

@@ -16,12 +16,13 @@ LIMITS = (
 _FAST = 2  # bounces
 
 
-def light_paths(scene, settings):
+def light_paths(scene, settings, in_view=False):
     """The options of bounces; none where light is not followed.
 
     Args:
-        scene: whose settings of Cycles count.
+        scene: whose settings of Cycles count, and whose world's of Ambient Occlusion.
         settings: `scene.granita`, or None.
+        in_view: for a 3D view, for which Fast GI has a number of its own.
     """
     preset = getattr(settings, "bounces", "NONE")
     if preset == "NONE":
@@ -30,7 +31,19 @@ def light_paths(scene, settings):
     limits = {option: getattr(cycles, name, default) for name, option, default in LIMITS}
     if preset == "FAST":
         limits["bounces"] = min(limits["bounces"], _FAST)
-    return limits
+    return {**limits, **_fast_gi(cycles, scene.world, in_view)}
+
+
+def _fast_gi(cycles, world, in_view):
+    if world is None or not getattr(cycles, "use_fast_gi", False):
+        return {}
+    if cycles.fast_gi_method != "REPLACE" or world.light_settings.ao_factor == 0.0:
+        return {}
+    return {
+        "occluded_from": cycles.ao_bounces if in_view else cycles.ao_bounces_render,
+        "occlusion_distance": world.light_settings.distance,
+        "occlusion_factor": world.light_settings.ao_factor,
+    }
 
 
 def report_volume_bounces(scene, settings, records, report):

@@ -111,7 +111,7 @@ def scene_crop(scene, frame):
     return crop
 
 
-def options_record(scene, view_layer, settings, frame, crop, frame_time):
+def options_record(scene, view_layer, settings, frame, crop, frame_time, in_view=False):
     """The snapshot's options.
 
     Args:
@@ -121,6 +121,7 @@ def options_record(scene, view_layer, settings, frame, crop, frame_time):
         frame: Frame.
         crop: pixels of it that are made, (x0, y0, x1, y1).
         frame_time: place of Blender's frame in the shutter, 0 to 1.
+        in_view: for a 3D view.
     """
     render = scene.render
     seed = int(getattr(settings, "seed", 0)) & 0x7FFFFFFF
@@ -143,6 +144,6 @@ def options_record(scene, view_layer, settings, frame, crop, frame_time):
         frame_time=frame_time,
         shutter_curve=shutter_curve(render),
         rolling_shutter=rolling_shutter(scene, view_layer),
-        **light_paths(scene, settings),
+        **light_paths(scene, settings, in_view),
     )
     return record

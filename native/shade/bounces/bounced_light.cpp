@@ -113,7 +113,13 @@ class BouncedLight::Wave {
     bool is_within_limits(const BouncedPath& path) const {
         return is_within(path, m_light.m_any_shines || path.next.world.shines() ? 1 : 0);
     }
-    bool is_lit(const BouncedPath& path) const { return is_within(path, 0); }
+    bool is_lit(const BouncedPath& path) const { return is_within(path, 0) && !is_occlusion(path); }
+    /// Whether what it meets only hides the world.  Passing through things does not count, and
+    /// being mirrored once, as in Cycles.
+    bool is_occlusion(const BouncedPath& path) const {
+        const int counted = path.depth - path.transmission - (path.glossy > 0 ? 1 : 0);
+        return m_limits.occluded_from > 0 && counted >= m_limits.occluded_from;
+    }
     bool is_within(const BouncedPath& path, int more) const {
         return path.depth <= m_limits.most + more && path.diffuse <= m_limits.diffuse + more &&
                path.glossy <= m_limits.glossy + more &&
@@ -133,11 +139,20 @@ class BouncedLight::Wave {
         }
         for (std::size_t i = 0; i < met.size(); ++i)
             if (met[i] > 0.0f) m_gathered.nearness[i] /= met[i];
+        // What lies just out of these rays' sight may darken the next point.
+        const float least = 1.0f / std::max(m_limits.occlusion_distance, 1e-30f);
+        for (const BouncedPath& path : m_paths)
+            if (is_occlusion(path))
+                m_gathered.nearness[path.next.point] =
+                    std::max(m_gathered.nearness[path.next.point], least);
     }
 
     void trace() {
         m_rays.clear();
-        for (const BouncedPath& path : m_paths) m_rays.push_back(path.next.ray);
+        for (const BouncedPath& path : m_paths) {
+            m_rays.push_back(path.next.ray);
+            if (is_occlusion(path)) m_rays.back().distance = m_limits.occlusion_distance;
+        }
         m_rays_traced += m_rays.size();
         m_light.m_direct.rays()->nearest(m_rays, m_met);
         m_meets_nothing.assign(m_paths.size(), 1);
@@ -147,9 +162,10 @@ class BouncedLight::Wave {
     /// Light of the world where nothing was met: of the first rays it is what reaches the points
     /// straight, not over other surfaces.
     void see_world() {
-        const std::vector<BsdfValue> seen = seen_world(m_light.m_direct, m_paths, m_meets_nothing);
+        std::vector<BsdfValue> seen = seen_world(m_light.m_direct, m_paths, m_meets_nothing);
         for (std::size_t i = 0; i < m_paths.size(); ++i) {
             const BouncedPath& path = m_paths[i];
+            if (is_occlusion(path)) seen[i] = seen[i] * Vec3f(m_limits.occlusion_factor);
             if (total(seen[i]) == Vec3f(0.0f)) continue;
             if (path.depth > 1) {
                 bring(path, total(seen[i]), Vec3f(0.0f));

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cycles' Fast GI, Replace: after some bounces things near hide the world and send nothing, against closed forms."""
+
+import numpy as np
+import pytest
+import snapshots as s
+from test_bounces import ALBEDO, diffuse, mirror
+
+HEIGHT = 101.0
+FACTOR = 0.7
+
+
+def below_a_ceiling(floor, **options):
+    """A floor that fills the frame, `HEIGHT` below an endless ceiling behind the camera; a world of 1."""
+    snapshot = s.orthographic(
+        (16, 16),
+        samples=16,
+        light_samples=256,
+        bounces=4,
+        diffuse_bounces=4,
+        clamp_indirect=0.0,
+        filter_glossy=0.0,
+        occlusion_factor=FACTOR,
+        **options,
+    )
+    s.quad(snapshot, s.rectangle(-1e5, -1e5, 1e5, 1e5, z=HEIGHT - 1.0), floor(snapshot))
+    s.quad(snapshot, s.rectangle(-1e5, -1e5, 1e5, 1e5, z=-1.0), diffuse(snapshot, ALBEDO))
+    s.constant_world(snapshot, 1.0)
+    snapshot["world"]["lights_scene"] = True
+    return s.render(snapshot)
+
+
+@pytest.mark.parametrize("reach", [0.9, 1.5, 3.0])
+@pytest.mark.parametrize("bounce", [1, 2, 3])
+def test_what_is_near_hides_the_world(bounce, reach):
+    """A ray leaves the ceiling out where it is longer than the reach: where its cosine is below 1 / reach, so that the
+    world brings 1 / reach^2 of itself.  Bounces before that see nothing but the other plane."""
+    rendered = below_a_ceiling(
+        lambda snapshot: diffuse(snapshot, ALBEDO),
+        occluded_from=bounce,
+        occlusion_distance=reach * HEIGHT,
+    )
+    due = ALBEDO**bounce * FACTOR * min(1.0, reach**-2)
+    # Of 256 pixels' 256 samples, shared by neighbours: a part in a hundred is six times their noise.
+    assert rendered["combined"][..., 0].mean() == pytest.approx(due, rel=0.01)
+    # What hides is not shaded.
+    assert (rendered["statistics"]["hits_shaded"] == 0) == (bounce == 1)
+
+
+def test_a_mirror_does_not_count():
+    """It shows the ceiling, which the world lights."""
+    rendered = below_a_ceiling(mirror, occluded_from=1, occlusion_distance=1.5 * HEIGHT)
+    due = ALBEDO * FACTOR / 1.5**2
+    assert rendered["combined"][..., 0].mean() == pytest.approx(due, rel=0.01)
+
+
+def test_nothing_is_left_out_without_it():
+    """No ray between endless planes finds the world."""
+    rendered = below_a_ceiling(lambda snapshot: diffuse(snapshot, ALBEDO))
+    assert np.all(rendered["combined"][..., :3] < 0.002)
