@@ -5,6 +5,7 @@ In camera view the frame is the camera's, as the region shows it.  Where that is
 the final frame, to the bit.
 """
 
+import math
 from dataclasses import dataclass
 
 import bpy
@@ -140,7 +141,9 @@ def own_view(region, space, region_data, pixel):
 def _through_camera(names, region, region_data, camera, depsgraph, pixel, look):
     scene = depsgraph.scene
     render = scene.render
-    (x0, y0), (x1, y1) = _camera_frame(region, region_data, camera, depsgraph)
+    corners = _camera_frame(region, region_data, camera, depsgraph)
+    # A camera that sees nothing is named where the scene is read.
+    (x0, y0), (x1, y1) = corners or ((0, 0), (region.width, region.height))
     place = (round(x0), round(y0))
     frame = Frame(max(round((x1 - x0) / pixel), 1), max(round((y1 - y0) / pixel), 1))
     final = scene_frame(render)
@@ -158,12 +161,15 @@ def _through_camera(names, region, region_data, camera, depsgraph, pixel, look):
 
 
 def _camera_frame(region, region_data, camera, depsgraph):
-    """Region pixels of the lower left and upper right corner of the camera's frame."""
+    """Region pixels of the lower left and upper right corner of the camera's frame; None where it has none, of a
+    scale of 0, say."""
     evaluated = camera.evaluated_get(depsgraph)
     to_world = evaluated.matrix_world.normalized()
     corners = evaluated.data.view_frame(scene=depsgraph.scene)
     found = []
     for corner in corners:
         x, y, _, w = region_data.perspective_matrix @ Vector((*(to_world @ corner), 1.0))
+        if not (w and math.isfinite(x / w) and math.isfinite(y / w)):
+            return None
         found.append(((x / w + 1.0) * region.width / 2.0, (y / w + 1.0) * region.height / 2.0))
     return tuple(map(min, *found)), tuple(map(max, *found))

@@ -256,6 +256,22 @@ def test_a_fault_of_the_scene_is_said_in_the_view(moving, view):
     np.testing.assert_array_equal(view.edited().settle(), before)
 
 
+@pytest.mark.parametrize("what", ["scale", "place"])
+def test_a_camera_that_sees_nothing_is_named_in_the_view(moving, view, what):
+    camera = moving.camera
+    camera.data.type = "ORTHO"
+    before = view.edited().settle().copy()
+    scale, x = camera.data.ortho_scale, camera.location.x
+    if what == "scale":
+        camera.data.ortho_scale = 0.0
+    else:
+        camera.location.x = float("nan")
+    view.edited().settle()
+    assert f"camera '{camera.name}'" in view.engine.texts[-1]
+    camera.data.ortho_scale, camera.location.x = scale, x
+    np.testing.assert_array_equal(view.edited().settle(), before)
+
+
 # Up to 4.2 at least `Scene.copy` and its removal leave a user more on what lies in the scene's own collection, until
 # the file is loaded again (docs/decisions/viewport.md).
 @pytest.mark.skipif(bpy.app.version < (4, 5, 0), reason="Blender's own fault, mended since")
