@@ -90,6 +90,21 @@ def test_holdout_among_other_shaders_is_named(scene, render, capfd):
     assert "'Mixed'" in said and "Holdout is black" in said
 
 
+def test_mixes_of_mixes_of_the_same_are_looked_at_once(scene, render):
+    """Forty of them have 2^40 ways to the one that cuts."""
+    tree = Tree(board(scene, 0, 1), "Ladder")
+    last = tree.add("ShaderNodeHoldout")
+    for _ in range(40):
+        mix = tree.add("ShaderNodeMixShader")
+        tree.link(last.outputs[0], mix.inputs[1])
+        tree.link(last.outputs[0], mix.inputs[2])
+        last = mix
+    shown(tree, last)
+    scene.render.film_transparent = True
+    combined = next(v for k, v in render(scene, "GRANITA").items() if k.endswith("Combined.A"))
+    assert combined.min() == 0.0
+
+
 def test_transparent(scene, render):
     """In front of a glowing wall: what passes is the wall's light."""
     thing = board(scene, 0, 1)

@@ -71,9 +71,13 @@ def _tints(node):
 
 def _cuts(nodes, index):
     """Whether a shader is Holdout, mixed with nothing but what is transparent."""
-    kinds, pending = set(), [index]
+    kinds, pending, seen = set(), [index], set()
     while pending:
-        node = nodes[pending.pop()]
+        number = pending.pop()
+        if number in seen:  # mixes of mixes of the same: ways double with each
+            continue
+        seen.add(number)
+        node = nodes[number]
         if node["type"] not in _MIXES:
             kinds.add(node["type"])
             continue

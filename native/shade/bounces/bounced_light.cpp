@@ -210,7 +210,7 @@ class BouncedLight::Wave {
             BouncedPath& path = m_paths[i];
             MediumWalk walk(m_media.of(i));
             const Vec3f emitted = walk.advance(m_rays[i].distance);
-            if (emitted != Vec3f(0.0f)) bring(path, Vec3f(0.0f), emitted);
+            if (emitted != Vec3f(0.0f)) bring(path, Vec3f(0.0f), emitted * path.met_weight);
             const bool has_met = met_by[i] != kNothing;
             if (!has_met && !path.next.world.shines()) m_meets_nothing[i] = 0;
             const bool has_end = has_met || m_meets_nothing[i];
