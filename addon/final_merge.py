@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from . import passes
 from .event_log import EventLog
 from .export.base.report import Cancelled
-from .export.scene.options import scene_crop, scene_frame
+from .export.scene.options import rendered_frame, scene_crop
 from .parts.joined_parts import read_parts
 from .parts.part_output import folder_of
 from .properties import TILE_PIXELS
@@ -29,7 +29,7 @@ class FinalMerge:
         self.exposure = passes.exposure_owner(depsgraph.scene_eval).film_exposure
 
     def run(self):
-        crop = scene_crop(self.scene, scene_frame(self.scene.render))
+        crop = scene_crop(self.scene, rendered_frame(self.engine, self.scene.render))
         count = self.options.merge
         parts = read_parts(
             folder_of(self.options, self.scene.render.filepath),

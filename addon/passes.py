@@ -195,6 +195,8 @@ def deliver(engine, tile, passes, layer, origin, exposure=1.0):
     height, width = tile.combined.shape[:2]
     arrays = tile_arrays(tile)
     result = engine.begin_result(tile.x - origin[0], tile.y - origin[1], width, height, layer=layer)
+    if result is None:
+        raise ValueError(f"tile ({tile.x}, {tile.y}) lies outside of the result")
     complete = False
     try:
         if (result.resolution_x, result.resolution_y) != (width, height):

@@ -21,7 +21,7 @@ from .scene.lamp_emitters import add_emitters
 from .scene.lamps import energies, lamp_graphs, place_lamps, read_lamps
 from .scene.light_linking import link_lights
 from .scene.light_paths import report_volume_bounces
-from .scene.options import options_record, scene_crop, scene_frame
+from .scene.options import options_record, rendered_frame, scene_crop
 from .scene.persistent_state import PersistentState
 from .scene.scene_objects import read_scene_objects
 from .scene.shutter import Clock, scene_shutter
@@ -69,7 +69,7 @@ def export_frame(
         clock.after = lambda: persistent_state.note(depsgraph)
     if viewpoint is None:
         # Taken once: past a camera marker within the shutter Blender changes it.
-        frame = scene_frame(scene.render)
+        frame = rendered_frame(engine, scene.render)
         viewpoint = CameraViewpoint(_render_camera(engine, scene), frame, scene_crop(scene, frame))
     shutter = scene_shutter(scene, view_layer, settings)
     if not moves:

@@ -72,6 +72,27 @@ def test_resolution_percentage(busy, render):
     assert render(busy)["ViewLayer.Combined.R"].shape == (33, 50)
 
 
+@pytest.mark.parametrize("border", [False, True])
+def test_a_handler_sets_the_resolution_of_the_next_frame(busy, render, border):
+    """As in Cycles: the render has its size by then."""
+    busy.render.use_border = busy.render.use_crop_to_border = border
+    busy.render.border_min_x, busy.render.border_max_x = 0.25, 0.75
+    width, height = busy.render.resolution_x, busy.render.resolution_y
+    expected = render(busy)
+
+    def halve(scene, _depsgraph=None):
+        scene.render.resolution_x, scene.render.resolution_y = width // 2, height // 2
+
+    bpy.app.handlers.render_pre.append(halve)
+    try:
+        found = render(busy)
+    finally:
+        bpy.app.handlers.render_pre.remove(halve)
+    for name, plane in expected.items():
+        np.testing.assert_array_equal(found[name], plane)
+    assert render(busy)["ViewLayer.Combined.R"].shape[0] == height // 2
+
+
 def test_view_layers_have_their_own_pixels(busy, render):
     hidden = bpy.data.collections.new("Hidden")
     busy.collection.children.link(hidden)

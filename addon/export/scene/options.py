@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Render settings -> the snapshot's options: Blender's own properties, then `scene.granita`."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..base.report import ExportError
@@ -43,6 +45,20 @@ def scene_frame(render):
         render.pixel_aspect_x,
         render.pixel_aspect_y,
     )
+
+
+def rendered_frame(engine, render):
+    """The full frame as the render under way began it: a handler may have set another resolution since, which is
+    that of the next frame.
+
+    Args:
+        engine: RenderEngine; None in scripts.
+        render: RenderSettings.
+    """
+    frame = scene_frame(render)
+    if engine is None or not engine.resolution_x:
+        return frame
+    return replace(frame, width=engine.resolution_x, height=engine.resolution_y)
 
 
 def border(frame, min_x, min_y, max_x, max_y):
