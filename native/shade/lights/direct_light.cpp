@@ -277,9 +277,9 @@ const std::vector<LightAnchor>& DirectLight::anchors() const {
     return m_impl->anchors;
 }
 
-void DirectLight::world_radiance(const std::vector<Vec3f>& directions, RayType type,
-                                 std::vector<Vec3f>& out) const {
-    m_impl->world.radiance(directions, type, out);
+void DirectLight::world_radiance(const std::vector<Vec3f>& directions, const PartRays& types,
+                                 std::vector<BsdfValue>& out) const {
+    m_impl->world.radiance(directions, types, out);
 }
 
 const LampFaces& DirectLight::lamp_faces() const {

@@ -33,6 +33,7 @@
 #include "shade/lights/light_motion.h"
 #include "shade/lights/light_pattern.h"
 #include "shade/lights/lobe_ray.h"
+#include "shade/lights/part_rays.h"
 #include "shade/rays/kept_rays.h"
 #include "shade/rays/ray_materials.h"
 #include "shade/rays/ray_scene.h"
@@ -75,9 +76,9 @@ class DirectLight {
     /// Those that are among the light that reflect() knows, so that ways which meet them bring
     /// none.
     const LampFaces& lamp_faces() const;
-    /// What WorldAhead asks of it: radiance along `directions` of rays of a `type`.
-    void world_radiance(const std::vector<Vec3f>& directions, RayType type,
-                        std::vector<Vec3f>& out) const;
+    /// What WorldAhead asks of it: radiance along `directions`, as the parts of light see it.
+    void world_radiance(const std::vector<Vec3f>& directions, const PartRays& types,
+                        std::vector<BsdfValue>& out) const;
     /// Light samples of a point for ShadingPoints::share.
     int sample_count(float share) const;
 

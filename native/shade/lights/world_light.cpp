@@ -95,10 +95,16 @@ WorldAhead WorldLight::ahead_of_mirror() const {
     return {.asked_by_diffuse = 1.0f, .asked_by_others = 1.0f};
 }
 
-void WorldLight::radiance(const std::vector<Vec3f>& directions, RayType type,
-                          std::vector<Vec3f>& out) const {
-    m_evaluator.radiance(directions, is_sharp(type) ? 0.0f : m_environment->texel_angle(), type,
-                         out);
+void WorldLight::radiance(const std::vector<Vec3f>& directions, const PartRays& types,
+                          std::vector<BsdfValue>& out) const {
+    const float spread = is_sharp(types.glossy) ? 0.0f : m_environment->texel_angle();
+    std::vector<Vec3f> seen;
+    out.resize(directions.size());
+    for (const LightPart part : {LightPart::Glossy, LightPart::Transmission, LightPart::Diffuse}) {
+        if (seen.empty() || by_lobe())
+            m_evaluator.radiance(directions, spread, types.of(part), seen);
+        for (std::size_t k = 0; k < seen.size(); ++k) out[k].part(part) = seen[k];
+    }
 }
 
 BsdfValue WorldLight::of_constant(const BsdfValue& weight, const PartRays& types) const {

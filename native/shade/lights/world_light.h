@@ -41,9 +41,9 @@ class WorldLight {
     /// What comes of it along the sample's ray, of a `type`, if that meets nothing.
     WorldAhead ahead(const LitGrid& grid, const LitPoint& point, const LobeSample& sample) const;
     WorldAhead ahead_of_mirror() const;
-    /// What WorldAhead asks for: radiance along directions of rays of a `type`.
-    void radiance(const std::vector<Vec3f>& directions, RayType type,
-                  std::vector<Vec3f>& out) const;
+    /// What WorldAhead asks for: radiance along directions, as the parts of light see it.
+    void radiance(const std::vector<Vec3f>& directions, const PartRays& types,
+                  std::vector<BsdfValue>& out) const;
 
     /// Brings what waits for the world's radiance (LitGrid::look).
     void deliver(LitGrid& grid) const;
