@@ -224,7 +224,7 @@ class LiveView:
             self.costs.frame = perf_counter() - began
             if self._picture.expose(self._scene.exposure):
                 self._redraw()
-            self._is_unread = not self._scene.is_exact
+            self._is_unread = not (self._scene.is_exact and self._scene.is_current)
             if not (shows or moved):
                 return  # something else was edited, or selected: a running job goes on
         if self._job is not None and not self._stage.is_last:
@@ -245,10 +245,13 @@ class LiveView:
             return
         if self._is_unread:
             self._is_unread = False
-            self.counts["shutters read"] += 1
-            began = perf_counter()
-            self._is_coarse |= self._scene.read_shutter(self._sight)
-            self.costs.shutter = perf_counter() - began
+            if not self._scene.is_current:
+                self._is_coarse |= self._scene.read_frame(self._sight, looks_at_paintings=True)
+            if not self._scene.is_exact:
+                self.counts["shutters read"] += 1
+                began = perf_counter()
+                self._is_coarse |= self._scene.read_shutter(self._sight)
+                self.costs.shutter = perf_counter() - began
         if self._is_coarse:
             self._start(Stage(1))
 

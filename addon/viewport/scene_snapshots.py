@@ -9,6 +9,7 @@ from .. import passes
 from ..export import PersistentState
 from ..export.base.report import ExportError, Report
 from ..export.scene.shutter import is_blurred, scene_shutter
+from ..export.shading.image import PaintedPixels
 from . import scene_reading
 from .carried_motion import ShutterTimes, carried, corrected
 from .same import is_same
@@ -32,12 +33,13 @@ class SceneSnapshots:
     Attributes:
         snapshot: what a picture of the state that was read last shows.
         is_exact: whether it holds the motion of that state, not one that was carried over and may be another.
+        is_current: whether what scripts may have painted since, without a word, was looked at.
         report: export's Report of the reading.
         exposure: of the film.
     """
 
     def __init__(self):
-        self.snapshot, self.is_exact = None, False
+        self.snapshot, self.is_exact, self.is_current = None, False, True
         self.report = Report()
         self.exposure = 1.0
         self._state = PersistentState()
@@ -46,28 +48,39 @@ class SceneSnapshots:
         self._paths_may_differ = True  # since then
         self._clock = None
         self._image_times = []
+        self._painted = PaintedPixels()
 
     def note(self, depsgraph):
         """What Blender tells of an edit, before the next reading."""
         self._state.note(depsgraph)
+        if depsgraph.id_type_updated("IMAGE"):
+            self._painted.forget()
         self._paths_may_differ |= any(_can_change_paths(update) for update in depsgraph.updates)
 
     def forget(self):
         """Addresses may mean something else now."""
         self._state = PersistentState()
+        self._painted.forget()
         self._paths_may_differ = True
 
-    def read_frame(self, sight):
+    def read_frame(self, sight, looks_at_paintings=False):
         """Reads what changed at the frame; whether it shows.
+
+        Args:
+            looks_at_paintings: also those of which Blender has told nothing, .9 s for 4096 x 4096 pixels.
 
         Raises:
             ExportError: and nothing is known any more.
         """
+        if looks_at_paintings:
+            self._painted.forget()
         before, self._still, self.snapshot = self._still, None, None
         self.report = Report()
-        still = scene_reading.read_still(
-            sight.scene, sight.layer, _viewpoint_of(sight), self._state, self.report
-        )
+        with self._painted.in_use():
+            still = scene_reading.read_still(
+                sight.scene, sight.layer, _viewpoint_of(sight), self._state, self.report
+            )
+        self.is_current = not self._painted.was_taken
         scene = bpy.data.scenes[sight.scene]
         layer = scene.view_layers[sight.layer]
         self._complete(still, scene, sight)
@@ -112,9 +125,10 @@ class SceneSnapshots:
         """Reads the whole shutter; whether its picture is another than that of the last such reading."""
         before = self._moving
         self.report = Report()
-        moving, places = scene_reading.read_snapshot(
-            sight.scene, sight.layer, _viewpoint_of(sight), self.report
-        )
+        with self._painted.in_use():
+            moving, places = scene_reading.read_snapshot(
+                sight.scene, sight.layer, _viewpoint_of(sight), self.report
+            )
         scene = bpy.data.scenes[sight.scene]
         self._complete(moving, scene, sight)
         self._moving_times = _times(scene, scene.view_layers[sight.layer])

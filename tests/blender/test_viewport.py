@@ -256,6 +256,36 @@ def test_a_fault_of_the_scene_is_said_in_the_view(moving, view):
     np.testing.assert_array_equal(view.edited().settle(), before)
 
 
+@pytest.mark.parametrize("blurs", [False, True])
+def test_a_painted_image_is_looked_at_once_edits_rest(moving, view, render, monkeypatch, blurs):
+    """Not at each step of a drag of something else; but what a script has painted is in the settled picture."""
+    from granita.export.shading import image as images
+
+    moving.render.use_motion_blur = blurs
+    image = bpy.data.images.new("Painted", 8, 8)
+    image.pixels.foreach_set(np.full(8 * 8 * 4, 0.5, dtype=np.float32))
+    tree = bpy.data.materials["Glow"].node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = image
+    glow = next(n for n in tree.nodes if n.type == "EMISSION")
+    tree.links.new(node.outputs["Color"], glow.inputs["Color"])
+    before = view.edited().settle().copy()
+    read = images._pixels
+    readings = []
+    monkeypatch.setattr(images, "_pixels", lambda image: readings.append(1) or read(image))
+    lamp = next(iter(bpy.data.lights))
+    for strength in (2.0, 3.0):
+        lamp.energy = strength
+        view.edited().step()
+    assert not readings
+    lamp.energy = 1.0
+    np.testing.assert_array_equal(view.edited().settle(), before)
+    assert len(readings) == 1
+    image.pixels.foreach_set(np.full(8 * 8 * 4, 0.75, dtype=np.float32))
+    lamp.energy = 2.0
+    np.testing.assert_array_equal(view.edited().settle(), combined(render, moving))
+
+
 @pytest.mark.parametrize("what", ["scale", "place"])
 def test_a_camera_that_sees_nothing_is_named_in_the_view(moving, view, what):
     camera = moving.camera

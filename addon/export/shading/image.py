@@ -3,6 +3,7 @@
 texture cache reads it in tiles), pixels for what exists in memory alone."""
 
 import hashlib
+from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
@@ -26,6 +27,7 @@ _STRIP = 1 << 14
 # Files with the bytes of packed images, and pixels of generated ones, of the render job that is under way:
 # {what an image shows: path or pixels}.
 _of_this_job = {}
+_painted = None  # PaintedPixels of the view that reads
 
 
 def forget_images(*_):
@@ -174,10 +176,45 @@ def _is_for_blender(path):
         return False
 
 
+class PaintedPixels:
+    """What was painted or set by a script, as a 3D view has read it: an edit of something else changes none of it.
+
+    Attributes:
+        was_taken: whether the last reading took what an earlier one had read.
+    """
+
+    def __init__(self):
+        self._pixels = {}
+        self.was_taken = False
+
+    def forget(self):
+        self._pixels.clear()
+
+    @contextmanager
+    def in_use(self):
+        """Readings take what is known, and leave what they read."""
+        global _painted
+        self.was_taken = False
+        before, _painted = _painted, self
+        try:
+            yield
+        finally:
+            _painted = before
+
+    def of(self, image):
+        space, alpha = image.colorspace_settings.name, image.alpha_mode
+        key = image.name_full, space, alpha, image.is_float, *image.size
+        if key in self._pixels:
+            self.was_taken = True
+        else:
+            self._pixels[key] = _pixels(image)
+        return self._pixels[key]
+
+
 def _generated_pixels(image):
-    """What was painted or set by a script is read each time: nothing tells of its changes."""
+    """What was painted or set by a script is read each time, but by views: nothing tells of its changes."""
     if image.source != "GENERATED" or image.is_dirty:
-        return _pixels(image)
+        return _pixels(image) if _painted is None else _painted.of(image)
     settings = image.generated_type, *image.generated_color, *image.size, image.is_float
     key = (image.as_pointer(), image.colorspace_settings.name, *settings)
     if key not in _of_this_job:
