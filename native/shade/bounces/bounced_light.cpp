@@ -130,21 +130,16 @@ class BouncedLight::Wave {
     /// Of surfaces that the first rays meet: what light they bring varies as these are near,
     /// however few they are.
     void note_near() {
-        std::vector<float> met(m_gathered.nearness.size(), 0.0f);
-        for (const RayScene::Met& one : m_met) {
-            const BouncedPath& path = m_paths[one.ray];
-            if (path.kind != BouncedPath::Kind::Diffuse) continue;
-            m_gathered.nearness[path.next.point] += 1.0f / std::max(one.hit.distance, 1e-30f);
-            ++met[path.next.point];
-        }
-        for (std::size_t i = 0; i < met.size(); ++i)
-            if (met[i] > 0.0f) m_gathered.nearness[i] /= met[i];
+        const auto note = [&](const BouncedPath& path, float distance) {
+            if (path.kind != BouncedPath::Kind::Diffuse) return;
+            m_gathered.nearness[path.next.point] += 1.0f / std::max(distance, 1e-30f);
+            ++m_gathered.met[path.next.point];
+        };
+        for (const RayScene::Met& one : m_met) note(m_paths[one.ray], one.hit.distance);
         // What lies just out of these rays' sight may darken the next point.
-        const float least = 1.0f / std::max(m_limits.occlusion_distance, 1e-30f);
-        for (const BouncedPath& path : m_paths)
-            if (is_occlusion(path))
-                m_gathered.nearness[path.next.point] =
-                    std::max(m_gathered.nearness[path.next.point], least);
+        for (std::size_t i = 0; i < m_paths.size(); ++i)
+            if (m_meets_nothing[i] && is_occlusion(m_paths[i]))
+                note(m_paths[i], m_limits.occlusion_distance);
     }
 
     void trace() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/bounces/gathered_light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -15,6 +16,9 @@ constexpr float kNear = 0.25f;
 constexpr float kLeastReach = 2.0f;
 /// Least albedo by which light is told: of what a pure red surface gets only the red is known.
 constexpr float kLeastAlbedo = 1e-4f;
+/// Points of a lattice to each side, and of separate ones in their order, whose rays tell together
+/// how near other surfaces are.
+constexpr std::size_t kAround = 2, kAroundRun = 8;
 
 /// Weight of a point's diffuse lobes.
 Vec3f diffuse_albedo(const SurfaceClosure& closure, std::size_t point) {
@@ -22,6 +26,29 @@ Vec3f diffuse_albedo(const SurfaceClosure& closure, std::size_t point) {
     for (const Lobe& lobe : closure.lobes)
         if (part_of(lobe.kind) == LightPart::Diffuse) sum += lobe.weight[point];
     return sum;
+}
+
+/// [points] mean of 1 / distance of what the rays of a point and of those around it meet.  Its own
+/// alone would say how far it shares by what it has found: points whose few rays meet nothing are
+/// bright, and would tell more neighbours than those whose rays are hidden.
+std::vector<float> mean_nearness(const ShadingPoints& points, const GatheredLight& light) {
+    const std::size_t count = points.count, columns = points.columns ? points.columns : count;
+    const std::size_t across = points.columns ? kAround : kAroundRun,
+                      down = points.columns ? kAround : 0;
+    const std::size_t rows = count / std::max<std::size_t>(columns, 1);
+    std::vector<float> means(count, 0.0f);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t x = i % columns, y = i / columns;
+        float sum = 0.0f, met = 0.0f;
+        for (std::size_t v = y - std::min(y, down); v <= std::min(y + down, rows - 1); ++v)
+            for (std::size_t u = x - std::min(x, across); u <= std::min(x + across, columns - 1);
+                 ++u) {
+                sum += light.nearness[v * columns + u];
+                met += light.met[v * columns + u];
+            }
+        if (met > 0.0f) means[i] = sum / met;
+    }
+    return means;
 }
 
 /// [points] `diffuse` by albedo, shared between neighbours.
@@ -43,6 +70,7 @@ std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosur
 
 void share_gathered(const ShadingPoints& points, const SurfaceClosure& closure, bool takes_world,
                     bool tells_world, GatheredLight& light, Grid& grid) {
+    const std::vector<float> nearness = mean_nearness(points, light);
     if (takes_world && !light.world.empty()) {
         std::vector<Vec3f> world;
         for (std::size_t i = 0; i < light.world.size(); ++i) {
@@ -50,9 +78,9 @@ void share_gathered(const ShadingPoints& points, const SurfaceClosure& closure, 
             light.diffuse[i] += world[i];
             light.world_balance[i].x = 0.0f;
         }
-        if (tells_world) grid.gathered_world = shared_light(points, closure, world, light.nearness);
+        if (tells_world) grid.gathered_world = shared_light(points, closure, world, nearness);
     }
-    grid.gathered = shared_light(points, closure, light.diffuse, light.nearness);
+    grid.gathered = shared_light(points, closure, light.diffuse, nearness);
 }
 
 void reflect_world(const GatheredLight& light, ReflectionParts* parts, std::vector<float>* noise,

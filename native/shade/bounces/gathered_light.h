@@ -24,15 +24,17 @@ struct GatheredLight {
     /// far it is in doubt: of diffuse lobes, and of others.  Empty: they bring none.
     std::vector<BsdfValue> world;
     std::vector<Vec2f> world_balance;
-    /// Mean of 1 / distance of what these meet: how fast its light changes from place to place.
-    std::vector<float> nearness;
+    /// Sum of 1 / distance of what diffuse lobes' rays meet, and how many do: how fast its light
+    /// changes from place to place.
+    std::vector<float> nearness, met;
 
     explicit GatheredLight(std::size_t points)
         : diffuse(points, Vec3f(0.0f)),
           glossy(points, Vec3f(0.0f)),
           mirrored(points, Vec3f(0.0f)),
           transmitted(points, Vec3f(0.0f)),
-          nearness(points, 0.0f) {}
+          nearness(points, 0.0f),
+          met(points, 0.0f) {}
 };
 
 /// Fills Grid's `gathered` with what diffuse lobes gathered, by albedo, shared between neighbours,
