@@ -52,6 +52,8 @@ class Source:
     that enters a group by a number socket is a number from there on.
     """
 
+    __slots__ = ("node", "scope", "socket", "through")
+
     def __init__(self, scope, node, socket, through=()):
         self.scope = scope
         self.node = node
@@ -75,6 +77,9 @@ def trace(scope, socket):
         does one from a node whose type Blender does not know (its add-on is gone), as in Cycles.
     """
     own = Source(scope, None, socket)
+    link = scope.link(socket)
+    if link is None:  # most sockets, of which a file has ten thousands
+        return own
     passed, muted = [], False
     while True:
         link = scope.link(socket)

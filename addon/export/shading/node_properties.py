@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is set on a node beside its sockets: enums, numbers, ramps, curves, images."""
 
+from functools import cache
+
 import numpy as np
 
 from .ies import ies_table
@@ -52,19 +54,28 @@ def _is_mapped(node):
 
 def _plain_properties(node):
     """Every number and enum that the node's type adds to those of all nodes."""
-    common = set(node.bl_rna.base.properties.keys())
     found = {}
-    for rna in node.bl_rna.properties:
+    for name, is_number, is_array in _own_properties(type(node)):
+        value = getattr(node, name, None)
+        if value is None:  # one of an add-on's that is gone since
+            continue
+        if is_array:
+            value = np.array(value, dtype=np.float32).ravel()
+        found[name] = float(value) if is_number and not is_array else value
+    return found
+
+
+@cache
+def _own_properties(node_type):
+    """[(name, is it a number, is it an array of them)]; the same for all nodes of a type, and slow to ask for."""
+    common = set(node_type.bl_rna.base.properties.keys())
+    found = []
+    for rna in node_type.bl_rna.properties:
         if rna.identifier in common:
             continue
-        if rna.type in ("BOOLEAN", "INT", "FLOAT"):
-            value = getattr(node, rna.identifier)
-            if getattr(rna, "is_array", False):
-                found[rna.identifier] = np.array(value, dtype=np.float32).ravel()
-            else:
-                found[rna.identifier] = float(value)
-        elif rna.type == "STRING" or (rna.type == "ENUM" and not rna.is_enum_flag):
-            found[rna.identifier] = getattr(node, rna.identifier)
+        is_number = rna.type in ("BOOLEAN", "INT", "FLOAT")
+        if is_number or rna.type == "STRING" or (rna.type == "ENUM" and not rna.is_enum_flag):
+            found.append((rna.identifier, is_number, is_number and getattr(rna, "is_array", False)))
     return found
 
 
