@@ -121,6 +121,8 @@ void read_options(const Record& r, Options& o) {
         r, "occlusion_distance", r.number("occlusion_distance", o.bounces.occlusion_distance), 0.0);
     o.bounces.occlusion_factor = at_least(
         r, "occlusion_factor", r.number("occlusion_factor", o.bounces.occlusion_factor), 0.0);
+    o.bounces.occlusion_added =
+        at_least(r, "occlusion_added", r.number("occlusion_added", o.bounces.occlusion_added), 0.0);
     o.refine_samples = r.boolean("refine_samples", o.refine_samples);
     o.shading_threshold =
         at_least(r, "shading_threshold", r.number("shading_threshold", o.shading_threshold), 0.0);

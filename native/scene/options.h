@@ -53,6 +53,9 @@ struct Bounces {
     int occluded_from = 0;
     float occlusion_distance = 10.0f;
     float occlusion_factor = 1.0f;  ///< how much of the world's light then
+    /// As Fast GI, Add: what diffuse lobes reflect as well of white light of this radiance, as far
+    /// as nothing within that distance hides it.
+    float occlusion_added = 0.0f;
     bool operator==(const Bounces&) const = default;
 };
 

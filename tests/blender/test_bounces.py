@@ -40,8 +40,8 @@ def test_limits_are_those_of_cycles(scene):
     assert light_paths(scene, scene.granita) == {**limits, "bounces": 2}
 
 
-def test_fast_gi_is_read_where_it_replaces(scene):
-    """With a number for renders and one for views; where it adds, or there is no world, it is not."""
+def test_fast_gi_is_read(scene):
+    """Replace with a number for renders and one for views; where there is no world neither is."""
     scene.granita.bounces = "FULL"
     cycles = scene.cycles
     without = light_paths(scene, scene.granita)
@@ -56,7 +56,8 @@ def test_fast_gi_is_read_where_it_replaces(scene):
     read["occluded_from"] = 3
     assert light_paths(scene, scene.granita, in_view=True) == {**without, **read}
     cycles.fast_gi_method = "ADD"
-    assert light_paths(scene, scene.granita) == without
+    added = {"occlusion_added": 0.5, "occlusion_distance": 4.0}
+    assert light_paths(scene, scene.granita) == {**without, **added}
 
 
 def surface(thing, kind, color, **inputs):
@@ -218,8 +219,11 @@ def test_caustics_are_as_cycles_filters_them(scene, render):
         assert np.percentile(np.abs(blocks[1] - blocks[0]), 95) < 0.08 * theirs.mean()
 
 
-@pytest.mark.parametrize(("bounces", "distance"), [(1, 0.6), (2, 0.6), (1, 10.0)])
-def test_fast_gi_is_as_in_cycles(scene, render, bounces, distance):
+@pytest.mark.parametrize(
+    ("method", "bounces", "distance"),
+    [("REPLACE", 1, 0.6), ("REPLACE", 2, 0.6), ("REPLACE", 1, 10.0), ("ADD", 1, 0.6)],
+)
+def test_fast_gi_is_as_in_cycles(scene, render, method, bounces, distance):
     """A room and a glossy ball in it, lit by a grey world and a lamp.  The mean was within .5 %; blocks along corners, on
     a pixel in which two walls meet, differ by 4 % as they do without it."""
     surface(room(scene), "ShaderNodeBsdfGlossy", (0.7, 0.7, 0.7), Roughness=0.3)
@@ -227,7 +231,7 @@ def test_fast_gi_is_as_in_cycles(scene, render, bounces, distance):
     scene.world.use_nodes = True
     scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.5, 0.6, 0.8, 1.0)
     scene.world.light_settings.distance, scene.world.light_settings.ao_factor = distance, 0.8
-    scene.cycles.use_fast_gi, scene.cycles.fast_gi_method = True, "REPLACE"
+    scene.cycles.use_fast_gi, scene.cycles.fast_gi_method = True, method
     scene.cycles.ao_bounces_render = bounces
     theirs, ours = render_bounced(scene, render, 512)
     blocks = [p.reshape(6, 4, 6, 4, 3).mean(axis=(1, 3)) for p in (theirs, ours)]

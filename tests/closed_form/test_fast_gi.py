@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cycles' Fast GI, Replace: after some bounces things near hide the world and send nothing, against closed forms."""
+"""Cycles' Fast GI against closed forms.  Replace: after some bounces things near hide the world and send nothing; Add:
+white light comes from all around, hidden by what is near."""
 
 import numpy as np
 import pytest
@@ -16,12 +17,9 @@ def below_a_ceiling(floor, **options):
         (16, 16),
         samples=16,
         light_samples=256,
-        bounces=4,
-        diffuse_bounces=4,
         clamp_indirect=0.0,
         filter_glossy=0.0,
-        occlusion_factor=FACTOR,
-        **options,
+        **{"bounces": 4, "occlusion_factor": FACTOR, **options},
     )
     s.quad(snapshot, s.rectangle(-1e5, -1e5, 1e5, 1e5, z=HEIGHT - 1.0), floor(snapshot))
     s.quad(snapshot, s.rectangle(-1e5, -1e5, 1e5, 1e5, z=-1.0), diffuse(snapshot, ALBEDO))
@@ -51,6 +49,20 @@ def test_a_mirror_does_not_count():
     """It shows the ceiling, which the world lights."""
     rendered = below_a_ceiling(mirror, occluded_from=1, occlusion_distance=1.5 * HEIGHT)
     due = ALBEDO * FACTOR / 1.5**2
+    assert rendered["combined"][..., 0].mean() == pytest.approx(due, rel=0.01)
+
+
+@pytest.mark.parametrize("bounces", [1, 3])
+@pytest.mark.parametrize("reach", [0.9, 1.5])
+def test_white_light_is_added_at_every_surface(bounces, reach):
+    """Planes light each other with as much as reaches the floor."""
+    rendered = below_a_ceiling(
+        lambda snapshot: diffuse(snapshot, ALBEDO),
+        occlusion_added=FACTOR,
+        occlusion_distance=reach * HEIGHT,
+        bounces=bounces,
+    )
+    due = FACTOR * min(1.0, reach**-2) * sum(ALBEDO ** (k + 1) for k in range(bounces + 1))
     assert rendered["combined"][..., 0].mean() == pytest.approx(due, rel=0.01)
 
 

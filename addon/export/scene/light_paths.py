@@ -37,12 +37,15 @@ def light_paths(scene, settings, in_view=False):
 def _fast_gi(cycles, world, in_view):
     if world is None or not getattr(cycles, "use_fast_gi", False):
         return {}
-    if cycles.fast_gi_method != "REPLACE" or world.light_settings.ao_factor == 0.0:
+    factor, distance = world.light_settings.ao_factor, world.light_settings.distance
+    if factor == 0.0:
         return {}
+    if cycles.fast_gi_method == "ADD":
+        return {"occlusion_added": factor, "occlusion_distance": distance}
     return {
         "occluded_from": cycles.ao_bounces if in_view else cycles.ao_bounces_render,
-        "occlusion_distance": world.light_settings.distance,
-        "occlusion_factor": world.light_settings.ao_factor,
+        "occlusion_distance": distance,
+        "occlusion_factor": factor,
     }
 
 

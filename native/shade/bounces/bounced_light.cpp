@@ -111,20 +111,10 @@ class BouncedLight::Wave {
 
     /// Rays one further than the limits bring the world, and what surfaces emit, alone.
     bool is_within_limits(const BouncedPath& path) const {
-        return is_within(path, m_light.m_any_shines || path.next.world.shines() ? 1 : 0);
+        return path.is_within(m_limits, m_light.m_any_shines || path.next.world.shines() ? 1 : 0);
     }
-    bool is_lit(const BouncedPath& path) const { return is_within(path, 0) && !is_occlusion(path); }
-    /// Whether what it meets only hides the world.  Passing through things does not count, and
-    /// being mirrored once, as in Cycles.
-    bool is_occlusion(const BouncedPath& path) const {
-        const int counted = path.depth - path.transmission - (path.glossy > 0 ? 1 : 0);
-        return m_limits.occluded_from > 0 && counted >= m_limits.occluded_from;
-    }
-    bool is_within(const BouncedPath& path, int more) const {
-        return path.depth <= m_limits.most + more && path.diffuse <= m_limits.diffuse + more &&
-               path.glossy <= m_limits.glossy + more &&
-               path.transmission <= m_limits.transmission + more &&
-               path.volume <= m_limits.volume + more;
+    bool is_lit(const BouncedPath& path) const {
+        return path.is_within(m_limits, 0) && !path.is_occlusion(m_limits);
     }
 
     /// Of surfaces that the first rays meet: what light they bring varies as these are near,
@@ -138,7 +128,7 @@ class BouncedLight::Wave {
         for (const RayScene::Met& one : m_met) note(m_paths[one.ray], one.hit.distance);
         // What lies just out of these rays' sight may darken the next point.
         for (std::size_t i = 0; i < m_paths.size(); ++i)
-            if (m_meets_nothing[i] && is_occlusion(m_paths[i]))
+            if (m_meets_nothing[i] && m_paths[i].is_occlusion(m_limits))
                 note(m_paths[i], m_limits.occlusion_distance);
     }
 
@@ -146,12 +136,27 @@ class BouncedLight::Wave {
         m_rays.clear();
         for (const BouncedPath& path : m_paths) {
             m_rays.push_back(path.next.ray);
-            if (is_occlusion(path)) m_rays.back().distance = m_limits.occlusion_distance;
+            if (path.is_occlusion(m_limits)) m_rays.back().distance = m_limits.occlusion_distance;
         }
         m_rays_traced += m_rays.size();
         m_light.m_direct.rays()->nearest(m_rays, m_met);
         m_meets_nothing.assign(m_paths.size(), 1);
+        if (m_limits.occlusion_added > 0.0f) add_occlusion();
         for (const RayScene::Met& one : m_met) m_meets_nothing[one.ray] = 0;
+    }
+
+    /// Of the white light around everything.
+    void add_occlusion() {
+        std::vector<float> open(m_paths.size(), m_limits.occlusion_added);
+        for (const RayScene::Met& one : m_met)
+            if (one.hit.distance < m_limits.occlusion_distance) open[one.ray] = 0.0f;
+        for (std::size_t i = 0; i < m_paths.size(); ++i) {
+            const LobeRay& ray = m_paths[i].next;
+            if (m_paths[i].depth == 1)
+                m_gathered.diffuse[ray.point] += ray.weight * ray.diffuse * open[i];
+            else
+                bring(m_paths[i], ray.diffuse * open[i], Vec3f(0.0f));
+        }
     }
 
     /// Light of the world where nothing was met: of the first rays it is what reaches the points
@@ -160,7 +165,7 @@ class BouncedLight::Wave {
         std::vector<BsdfValue> seen = seen_world(m_light.m_direct, m_paths, m_meets_nothing);
         for (std::size_t i = 0; i < m_paths.size(); ++i) {
             const BouncedPath& path = m_paths[i];
-            if (is_occlusion(path)) seen[i] = seen[i] * Vec3f(m_limits.occlusion_factor);
+            if (path.is_occlusion(m_limits)) seen[i] = seen[i] * Vec3f(m_limits.occlusion_factor);
             if (total(seen[i]) == Vec3f(0.0f)) continue;
             if (path.depth > 1) {
                 bring(path, total(seen[i]), Vec3f(0.0f));
@@ -398,7 +403,8 @@ class BouncedLight::Wave {
                 next.kind = BouncedPath::Kind::Glossy;
             const WorldAhead& world = way.ray ? way.ray->world : path.next.world;
             next.met_weight = chance(path, kGoesOn) < way.goes_on ? 1.0f / way.goes_on : 0.0f;
-            if (next.met_weight == 0.0f && !world.shines()) continue;
+            const bool is_asked = world.shines() || m_limits.occlusion_added > 0.0f;
+            if (next.met_weight == 0.0f && !is_asked) continue;
             if (way.ray)
                 send(next, *way.ray, way.weight, end);
             else
@@ -460,7 +466,7 @@ BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const 
       m_hits(hits),
       m_emission(emission),
       m_volumes(volumes),
-      m_any_shines(volumes && volumes->shines()),
+      m_any_shines((volumes && volumes->shines()) || scene.options.bounces.occlusion_added > 0.0f),
       m_statistics(statistics),
       m_progress(progress) {
     for (std::size_t i = 0; i < scene.instances.size() && !m_any_shines; ++i) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "scene/options.h"
 #include "shade/lights/lobe_ray.h"
 
 namespace granita {
@@ -31,6 +32,18 @@ struct BouncedPath {
 
     /// Its weight, were it its point's only one.
     Vec3f throughput() const { return next.weight / next.share; }
+
+    bool is_within(const Bounces& limits, int more) const {
+        return depth <= limits.most + more && diffuse <= limits.diffuse + more &&
+               glossy <= limits.glossy + more && transmission <= limits.transmission + more &&
+               volume <= limits.volume + more;
+    }
+    /// Whether what it meets only hides the world.  Passing through things does not count, and
+    /// being mirrored once, as in Cycles.
+    bool is_occlusion(const Bounces& limits) const {
+        const int counted = depth - transmission - (glossy > 0 ? 1 : 0);
+        return limits.occluded_from > 0 && counted >= limits.occluded_from;
+    }
 };
 
 }  // namespace granita
