@@ -152,10 +152,11 @@ class BouncedLight::Wave {
             if (one.hit.distance < m_limits.occlusion_distance) open[one.ray] = 0.0f;
         for (std::size_t i = 0; i < m_paths.size(); ++i) {
             const LobeRay& ray = m_paths[i].next;
-            if (m_paths[i].depth == 1)
-                m_gathered.diffuse[ray.point] += ray.weight * ray.diffuse * open[i];
-            else
-                bring(m_paths[i], ray.diffuse * open[i], Vec3f(0.0f));
+            const Vec3f light = ray.diffuse * open[i];
+            if (m_paths[i].depth > 1)
+                bring(m_paths[i], light, Vec3f(0.0f));
+            else if (is_finite(ray.weight * light))
+                m_gathered.diffuse[ray.point] += ray.weight * light;
         }
     }
 
