@@ -108,6 +108,7 @@ void read_light(const Record& r, Light& light) {
     light.radius = static_cast<float>(r.number("radius", 0.0));
     light.soft_falloff = r.boolean("soft_falloff", true);
     light.sun_angle = static_cast<float>(r.number("sun_angle", 0.0));
+    light.sun_flat = r.boolean("sun_flat", false);
     light.spot_size = static_cast<float>(r.number("spot_size", 0.0));
     light.spot_blend = static_cast<float>(r.number("spot_blend", 0.0));
     light.spot_cosine = r.boolean("spot_cosine", false);

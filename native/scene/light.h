@@ -26,7 +26,9 @@ struct Light {
     float radius = 0.0f;              ///< point, spot: metres
     bool soft_falloff = true;  ///< a radius means a disc that faces the point; false: a sphere
     float sun_angle = 0.0f;    ///< radians, full angle
-    float spot_size = 0.0f;    ///< radians, full cone
+    bool sun_flat = false;     ///< as Cycles before Blender 4: a disc that shines alike at each of
+    ///< its places on a plane across its axis
+    float spot_size = 0.0f;  ///< radians, full cone
     float spot_blend = 0.0f;
     bool spot_cosine = false;  ///< as Cycles before Blender 3.5: dimmed by the cosine to the axis,
     ///< the cone ignores the light's scale

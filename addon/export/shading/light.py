@@ -48,6 +48,8 @@ def light_record(light_object, matrices, report, images=None):
         "radius": getattr(light, "shadow_soft_size", 0.0) if light.type in ("POINT", "SPOT") else 0,
         "soft_falloff": bool(getattr(light, "use_soft_falloff", True)),
         "sun_angle": getattr(light, "angle", 0.0),
+        # Before 4.0 a wide sun was dimmer, and brightest at its rim.
+        "sun_flat": bpy.app.version < (4, 0, 0),
         "spot_size": getattr(light, "spot_size", 0.0),
         "spot_blend": getattr(light, "spot_blend", 0.0),
         # Until 3.4 a spot was dimmed by the cosine to its axis and its cone ignored the scale.

@@ -74,6 +74,18 @@ TEST(SunLight, irradiance_is_its_strength_whatever_its_angle) {
     }
 }
 
+TEST(SunLight, flat_one_shines_alike_from_each_place_of_its_disc) {
+    // The mean over a disc of radius r a metre away of the cosine 1 / sqrt(1 + rho^2).
+    for (const double angle : {0.0, 0.00918, 0.6, 1.57, 2.5}) {
+        Light light = light_of(LightKind::Sun, 3.0f, aimed({0, 0, 9}, {0, 0, -1}));
+        light.sun_angle = static_cast<float>(angle);
+        light.sun_flat = true;
+        const double r2 = std::pow(std::tan(angle / 2), 2);
+        const double expected = r2 > 1e-6 ? 3.0 * 2 * (std::sqrt(1 + r2) - 1) / r2 : 3.0;
+        EXPECT_NEAR(irradiance(*source_of(light), Vec3f(5, 4, 0), kUp), expected, 3e-3) << angle;
+    }
+}
+
 TEST(SpotLight, is_a_point_light_inside_its_cone_and_dark_outside) {
     Light light = light_of(LightKind::Spot, 100.0f, aimed({0, 0, 2}, {0, 0, -1}));
     light.spot_size = 2.0f * std::atan(0.5f);  // reaches 1 m from the foot
