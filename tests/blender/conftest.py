@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fixtures of the tests that run inside Blender (run_in_blender.py)."""
 
+import signal
+
 import bpy
 import exr
 import film_parts
@@ -54,3 +56,20 @@ def blend(scene, tmp_path):
     path = tmp_path / "scene.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
     return path
+
+
+@pytest.fixture
+def impatient():
+    """A test that waits for what never comes fails."""
+    waited = []
+
+    def gives_up(*_):
+        waited.append(True)
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, gives_up)
+    signal.alarm(20)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
+    assert not waited

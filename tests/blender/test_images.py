@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Images as they come from Blender: colour spaces against Cycles, what is copied, and what is said of movies."""
 
+import os
+
 import bpy
 import numpy as np
 import pytest
@@ -118,6 +120,17 @@ def test_formats_that_blender_reads_come_as_pixels(scene, tmp_path):
     assert "pixels" in records[0] and not warnings
     before = np.float32(image.pixels[:]).reshape(*image.size, 4)
     assert records[0]["pixels"] == pytest.approx(before, abs=1e-6)
+
+
+def test_an_image_that_is_a_pipe_is_left_out_by_name(scene, render, tmp_path, capfd, impatient):
+    image = saved_image(tmp_path, "Image")
+    os.remove(tmp_path / "Image.png")
+    os.mkfifo(tmp_path / "Image.png")
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    render(scene)
+    said = capfd.readouterr().out
+    assert f"image '{image.name}'" in said and "it is no file" in said
 
 
 def test_a_movie_is_reported(scene, tmp_path):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Procedural textures against Cycles' own output: all types, all dimensions, all outputs."""
 
+import os
+
 import bpy
 import numpy as np
 import pytest
@@ -391,3 +393,13 @@ def test_photometric_files_on_disk(scene, render, tmp_path, text):
     tree.link(tree.attribute("B", "Fac"), node.inputs["Strength"])
     tree.emit(node.outputs["Fac"], strength=0.02)
     check(scene, render)
+
+
+def test_a_photometric_file_that_is_a_pipe_is_named(scene, render, tmp_path, capfd, impatient):
+    os.mkfifo(tmp_path / "luminaire.ies")
+    tree = Tree(board(scene, -1.0, 1.0))
+    path = str(tmp_path / "luminaire.ies")
+    node = tree.add("ShaderNodeTexIES", mode="EXTERNAL", filepath=path)
+    tree.emit(node.outputs["Fac"])
+    render(scene)
+    assert "has no photometric file that can be read" in capfd.readouterr().out

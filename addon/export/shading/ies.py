@@ -5,6 +5,8 @@ has, angles become those of type C, around the axis and from straight down upwar
 import bpy
 import numpy as np
 
+from ..base.regular_file import open_regular_file
+
 # Watts of Cycles' lamps a candela: 4 pi over the 177.83 lm / W of illuminant D65.
 _WATTS = 0.0706650768394
 _TYPE_C, _TYPE_B, _TYPE_A = 1, 2, 3
@@ -28,7 +30,7 @@ def ies_table(node):
 def _text(node):
     if node.mode == "INTERNAL":
         return node.ies.as_string() if node.ies is not None else ""
-    with open(bpy.path.abspath(node.filepath), encoding="latin-1") as file:
+    with open_regular_file(bpy.path.abspath(node.filepath), encoding="latin-1") as file:
         return file.read()
 
 

@@ -9,6 +9,8 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+from ..base.regular_file import open_regular_file
+
 # What files begin with that Blender reads and Granita's readers do not: DPX, Cineon, SGI, Photoshop, DDS.
 _BLENDERS_OWN = (
     b"SDPX",
@@ -170,7 +172,7 @@ def _packed_file(image, packed):
 
 def _is_for_blender(path):
     try:
-        with open(path, "rb") as file:
+        with open_regular_file(path, "rb") as file:
             return file.read(4).startswith(_BLENDERS_OWN)
     except OSError:
         return False
