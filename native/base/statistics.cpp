@@ -19,10 +19,11 @@ constexpr std::array kCounterNames = {
     "buckets_moving",      "buckets_transparent",
     "buckets_seen_before", "gl_primitives",
     "gl_passes",           "gl_dispatches",
-    "rays_shadow",         "rays_occlusion",
-    "rays_bounce",         "hits_shaded",
-    "lamps_chosen",        "light_nodes",
-    "texture_lookups",     "loop_pieces_shared",
+    "rays_opening",        "rays_shadow",
+    "rays_occlusion",      "rays_bounce",
+    "hits_shaded",         "lamps_chosen",
+    "light_nodes",         "texture_lookups",
+    "loop_pieces_shared",
 };
 static_assert(kCounterNames.size() == static_cast<std::size_t>(Counter::kCount));
 

@@ -45,6 +45,7 @@ enum class Counter {
     GlPrimitives,       ///< triangles drawn by the raster executor
     GlPasses,
     GlDispatches,  ///< of the compute executor
+    RaysOpening,   ///< of samples, for the faces that they meet of what has many more
     RaysShadow,
     RaysOcclusion,
     RaysBounce,   ///< from surface to surface

@@ -95,8 +95,7 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
         Vec3f* const to = &grid->positions[4 * count * static_cast<std::size_t>(k)];
         for (std::size_t i = 0; i < count; ++i)
             for (std::size_t c = 0; c < 4; ++c)
-                to[kPlane[c] * count + i] = points[static_cast<std::size_t>(
-                    m_mesh->data().corner_verts[patch(i).corner[c]])];
+                to[kPlane[c] * count + i] = points[m_mesh->place_of(patch(i).corner[c])];
     }
     motion_bounds(*grid, m_mesh->view().projection);
     grid->shading_state = [batch = *this](Grid& of) { batch.fill_shading_state(of); };

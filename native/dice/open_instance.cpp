@@ -37,6 +37,18 @@ void add_transformed(Bounds3f& sum, const Mat4d& m, const Bounds3f& box) {
 /// reach a little further than 1.25).
 constexpr float kWidest = 1.26f;
 
+/// What is displaced is opened as a whole, and what deforms and is carried at a time: between knots
+/// rays would meet it elsewhere than samples do.
+MeshPart opened_part(const View& view, std::size_t instance,
+                     const std::shared_ptr<const SharedGeometry>& shared, const Knots& knots) {
+    const bool displaced = view.displacement && view.displacement->displaces(instance);
+    const bool goes_alike = shared->is_static() || is_static(knots.camera_from_object);
+    if (view.sampled_faces && goes_alike && !displaced)
+        if (auto met = view.sampled_faces->of(instance, shared, knots))
+            return MeshPart(*shared, std::move(*met));
+    return MeshPart(*shared);
+}
+
 class Nothing final : public OpenedInstance {
   public:
     std::size_t primitive_count() const override { return 0; }
@@ -106,8 +118,9 @@ std::shared_ptr<const OpenedInstance> open_instance(const View& view, std::size_
     if (shared->subdivision())
         return std::make_shared<OpenedSubdivision>(view, index, std::move(shared), std::move(knots),
                                                    report);
-    return std::make_shared<OpenedPolygons>(view, index, std::move(shared), std::move(knots),
-                                            report);
+    MeshPart part = opened_part(view, index, shared, knots);
+    return std::make_shared<OpenedPolygons>(view, index, std::move(shared), std::move(part),
+                                            std::move(knots), report);
 }
 
 }  // namespace granita

@@ -27,7 +27,8 @@ double orientation_of(const Mat4d& m) {
 }  // namespace
 
 OpenedMesh::OpenedMesh(const View& view, std::size_t instance,
-                       std::shared_ptr<const SharedGeometry> shared, Knots knots, Report& report)
+                       std::shared_ptr<const SharedGeometry> shared, MeshPart part, Knots knots,
+                       Report& report)
     : m_view(&view),
       m_instance(&view.scene->instances[instance]),
       m_instance_index(instance),
@@ -35,7 +36,7 @@ OpenedMesh::OpenedMesh(const View& view, std::size_t instance,
       m_knots(std::move(knots)),
       m_report(&report),
       m_rate(view),
-      m_vertex_count(data().vertex_count()) {
+      m_part(std::move(part)) {
     transform_points();
     m_frame_orientation = orientation_of(m_knots.frame_camera_from_object);
     // The cofactor matrix times the orientation is the inverse transpose up to a positive factor,
@@ -49,34 +50,36 @@ OpenedMesh::OpenedMesh(const View& view, std::size_t instance,
 
 void OpenedMesh::transform_points() {
     const int geometry_knots = m_shared->is_static() ? 1 : data().knots;
-    m_points.resize(static_cast<std::size_t>(m_knots.count) * m_vertex_count);
+    const std::size_t vertex_count = m_part.vertex_count();
+    m_points.resize(static_cast<std::size_t>(m_knots.count) * vertex_count);
     for (int k = 0; k < m_knots.count; ++k) {
         const Mat4d& m = m_knots.camera_from_object[static_cast<std::size_t>(k)];
         const KnotTime t = knot_time(k, m_knots.count - 1, geometry_knots);
         const Vec3f* from = m_shared->surface_points(static_cast<int>(t.knot)).data();
         const Vec3f* next =
             t.fraction > 0.0 ? m_shared->surface_points(static_cast<int>(t.knot) + 1).data() : from;
-        Vec3f* to = &m_points[static_cast<std::size_t>(k) * m_vertex_count];
-        parallel_for(m_vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t v = begin; v < end; ++v) {
+        Vec3f* to = m_points.data() + static_cast<std::size_t>(k) * vertex_count;
+        parallel_for(vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::size_t v = m_part.vertex(i);
                 const Vec3d p = t.fraction > 0.0 ? Vec3d(from[v]) * (1.0 - t.fraction) +
                                                        Vec3d(next[v]) * t.fraction
                                                  : Vec3d(from[v]);
-                to[v] = Vec3f(transform_point(m, p));
+                to[i] = Vec3f(transform_point(m, p));
             }
         });
     }
     // Knots that all came out equal, such as a thing parented to the moving camera, cost nothing.
     for (int k = 1; k < m_knots.count; ++k)
         if (!std::equal(m_points.begin(),
-                        m_points.begin() + static_cast<std::ptrdiff_t>(m_vertex_count),
-                        m_points.begin() + static_cast<std::ptrdiff_t>(m_vertex_count) * k))
+                        m_points.begin() + static_cast<std::ptrdiff_t>(vertex_count),
+                        m_points.begin() + static_cast<std::ptrdiff_t>(vertex_count) * k))
             return;
     m_knots.count = 1;
     m_knots.frame_knot = 0;
     m_knots.frame_fraction = 0.0;
     m_knots.camera_from_object.resize(1);
-    m_points.resize(m_vertex_count);
+    m_points.resize(vertex_count);
     m_points.shrink_to_fit();
 }
 
@@ -171,7 +174,7 @@ std::unique_ptr<Primitive> OpenedMesh::primitive(std::size_t primitive) const {
 }
 
 std::uint64_t OpenedMesh::bytes() const {
-    return sizeof(*this) + sizeof(Vec3f) * m_points.size() + m_small.bytes();
+    return sizeof(*this) + sizeof(Vec3f) * m_points.size() + m_part.bytes() + m_small.bytes();
 }
 
 }  // namespace granita

@@ -9,6 +9,7 @@
 #include "dice/edge_rate.h"
 #include "dice/frame_face.h"
 #include "dice/knots.h"
+#include "dice/mesh_part.h"
 #include "dice/patch_edge.h"
 #include "dice/primitive.h"
 #include "dice/small_faces.h"
@@ -35,7 +36,7 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     };
 
     OpenedMesh(const View& view, std::size_t instance, std::shared_ptr<const SharedGeometry> shared,
-               Knots knots, Report& report);
+               MeshPart part, Knots knots, Report& report);
 
     std::size_t primitive_count() const override {
         return m_small.others().size() + m_small.batch_count();
@@ -80,9 +81,16 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     const GeometryData& data() const { return m_shared->data(); }
     const Knots& knots() const { return m_knots; }
     int knot_count() const { return m_knots.count; }
-    /// [V] camera space, where vertices lie on the surface.
+    /// What of the geometry there is here: primitives are of nothing else.
+    const MeshPart& part() const { return m_part; }
+    /// [part().vertex_count()] camera space, where vertices lie on the surface.
     std::span<const Vec3f> points(int knot) const {
-        return {&m_points[static_cast<std::size_t>(knot) * m_vertex_count], m_vertex_count};
+        const std::size_t count = m_part.vertex_count();
+        return {m_points.data() + static_cast<std::size_t>(knot) * count, count};
+    }
+    /// Place in points() of a corner's vertex.
+    std::size_t place_of(std::uint32_t corner) const {
+        return m_part.place(static_cast<std::size_t>(data().corner_verts[corner]));
     }
     const EdgeRate& rate() const { return m_rate; }
     /// -1 where the frame's matrix mirrors (camera space itself is left-handed): turns cross
@@ -126,7 +134,7 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     /// Places and orientation of a patch's corners at the frame time, without normals.
     FrameFace frame_corners(const BasePatch& patch) const;
     const Vec3f& point(int knot, std::size_t vertex) const {
-        return m_points[static_cast<std::size_t>(knot) * m_vertex_count + vertex];
+        return points(knot)[m_part.place(vertex)];
     }
     std::int32_t vertex_of(std::uint32_t corner) const { return data().corner_verts[corner]; }
     /// From a knot's values to the frame time.
@@ -147,8 +155,8 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     Knots m_knots;
     Report* m_report;
     EdgeRate m_rate;
-    std::size_t m_vertex_count;
-    std::vector<Vec3f> m_points;  ///< [knots][V] camera space
+    MeshPart m_part;
+    std::vector<Vec3f> m_points;  ///< [knots][vertices of the part] camera space
     double m_frame_orientation = 1.0;
     Mat3d m_camera_from_object_normal{1.0};
     bool m_displaced = false;

@@ -17,9 +17,9 @@ Vec3d blend(const Vec3d* p, const std::array<double, 4>& w) {
 }  // namespace
 
 OpenedPolygons::OpenedPolygons(const View& view, std::size_t instance,
-                               std::shared_ptr<const SharedGeometry> shared, Knots knots,
-                               Report& report)
-    : OpenedMesh(view, instance, std::move(shared), std::move(knots), report) {
+                               std::shared_ptr<const SharedGeometry> shared, MeshPart part,
+                               Knots knots, Report& report)
+    : OpenedMesh(view, instance, std::move(shared), std::move(part), std::move(knots), report) {
     find_small_faces();
 }
 

@@ -9,7 +9,8 @@ namespace granita {
 class OpenedPolygons final : public OpenedMesh {
   public:
     OpenedPolygons(const View& view, std::size_t instance,
-                   std::shared_ptr<const SharedGeometry> shared, Knots knots, Report& report);
+                   std::shared_ptr<const SharedGeometry> shared, MeshPart part, Knots knots,
+                   Report& report);
 
     Start start(const BasePatch& patch, int budget) const override;
     bool straight_edges() const override { return true; }

@@ -17,9 +17,9 @@ const Vec3d kTowardsCamera(0.0, 0.0, -1.0);
 }  // namespace
 
 OpenedSubdivision::OpenedSubdivision(const View& view, std::size_t instance,
-                                     std::shared_ptr<const SharedGeometry> shared, Knots knots,
-                                     Report& report)
-    : OpenedMesh(view, instance, std::move(shared), std::move(knots), report) {
+                                     const std::shared_ptr<const SharedGeometry>& shared,
+                                     Knots knots, Report& report)
+    : OpenedMesh(view, instance, shared, MeshPart(*shared), std::move(knots), report) {
     for (int k = 0; k < knot_count(); ++k)
         m_times.push_back(knot_time(k, knot_count() - 1, this->shared().surface().knots()));
     if (!displaced()) m_whole = whole_edges(*this);

@@ -14,7 +14,8 @@ namespace granita {
 class OpenedSubdivision final : public OpenedMesh {
   public:
     OpenedSubdivision(const View& view, std::size_t instance,
-                      std::shared_ptr<const SharedGeometry> shared, Knots knots, Report& report);
+                      const std::shared_ptr<const SharedGeometry>& shared, Knots knots,
+                      Report& report);
 
     Start start(const BasePatch& patch, int budget) const override;
     bool straight_edges() const override { return false; }

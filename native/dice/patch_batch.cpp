@@ -72,8 +72,8 @@ int PatchBatch::levels(std::uint32_t a, std::uint32_t b, const BasePatch& face) 
     const int knots = m_mesh->knot_count();
     for (int k = 0; k < knots; ++k) {
         const std::span<const Vec3f> points = m_mesh->points(k);
-        start[k] = points[a];
-        end[k] = points[b];
+        start[k] = points[m_mesh->part().place(a)];
+        end[k] = points[m_mesh->part().place(b)];
     }
     const int sure = m_mesh->rate().sure_levels(start, end, knots);
     if (sure != EdgeRate::kUnsure) return sure;
@@ -189,8 +189,7 @@ RasterBounds PatchBatch::corner_bounds() const {
         const std::span<const Vec3f> points = m_mesh->points(k);
         for (std::size_t i = 0; i < face_count(); ++i)
             for (const std::uint32_t corner : patch(i).corner)
-                corners.push_back(
-                    points[static_cast<std::size_t>(m_mesh->data().corner_verts[corner])]);
+                corners.push_back(points[m_mesh->place_of(corner)]);
     }
     return raster_bound(m_mesh->view().projection, corners);
 }

@@ -10,14 +10,14 @@
 
 namespace granita {
 
-/// Vertices as the camera sees them; not a number where it does not.
+/// An opened mesh's vertices as the camera sees them; not a number where it does not.
 class ScreenPoints {
   public:
     explicit ScreenPoints(const OpenedMesh& mesh)
         : m_projection(mesh.view().projection),
           m_width(static_cast<float>(mesh.view().scene->options.width)),
           m_height(static_cast<float>(mesh.view().scene->options.height)),
-          m_swept(mesh.data().vertex_count()) {}
+          m_swept(mesh.part().vertex_count()) {}
 
     void project(std::span<const Vec3f> points) {
         const float near = static_cast<float>(m_projection.near_clip);

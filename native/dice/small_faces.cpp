@@ -24,15 +24,15 @@ constexpr float kStepsAPixel = 4.0f;
 /// Faces that are looked at in a piece of a loop.
 constexpr std::size_t kGrain = 1 << 12;
 
+/// Places in OpenedMesh::points().
 struct Corners {
-    std::uint32_t v[4];
+    std::size_t v[4];
     int count;
 };
 
 Corners corners_of(const OpenedMesh& mesh, const BasePatch& patch) {
     Corners corners{};
-    for (int i = 0; i < 4; ++i)
-        corners.v[i] = static_cast<std::uint32_t>(mesh.data().corner_verts[patch.corner[i]]);
+    for (int i = 0; i < 4; ++i) corners.v[i] = mesh.place_of(patch.corner[i]);
     corners.count = patch.kind == PatchKind::Triangle ? 3 : 4;
     return corners;
 }
@@ -55,23 +55,27 @@ int most_levels(const OpenedMesh& mesh) {
     return most;
 }
 
-/// [patches] what the sides need at any knot; kLarge: more than a small face may, or some do not
-/// meet the frame.
+/// [patches of the part] what the sides need at any knot; kLarge: more than a small face may, or
+/// some do not meet the frame.
 std::vector<Levels> find_levels(const OpenedMesh& mesh, ScreenPoints& screen) {
-    const auto& patches = mesh.shared().patches();
+    const MeshPart& part = mesh.part();
+    const auto patch = [&](std::size_t p) -> const BasePatch& {
+        return mesh.shared().patches()[part.patch(p)];
+    };
     // A thousandth less than EdgeRate's own limit: this is single precision.
     const float longest = static_cast<float>(0.999 * M_SQRT2 * mesh.rate().rate());
     const int most = most_levels(mesh);
     float limit2[LatticeStencil::kMostLevels + 1];  // of each level
     for (int i = 0; i <= most; ++i) limit2[i] = std::ldexp(longest * longest, 2 * i);
-    std::vector<Vec2f> length2(patches.size(), Vec2f(0.0f));  // of the longer side along u, along v
+    std::vector<Vec2f> length2(part.patch_count(),
+                               Vec2f(0.0f));  // of the longer side along u, along v
     const auto is_small = [&](const Vec2f& l) { return std::max(l.x, l.y) <= limit2[most]; };
-    std::atomic<std::size_t> left = patches.size();
+    std::atomic<std::size_t> left = part.patch_count();
     for (int k = 0; k < mesh.knot_count() && left > 0; ++k) {
         screen.project(mesh.points(k));
         const auto measure = [&](std::size_t p) {
             if (!is_small(length2[p])) return std::size_t{0};
-            const Corners c = corners_of(mesh, patches[p]);
+            const Corners c = corners_of(mesh, patch(p));
             float side2[4] = {};
             for (int i = 0; i < c.count; ++i) {
                 const Vec2f side = screen[c.v[i + 1 < c.count ? i + 1 : 0]] - screen[c.v[i]];
@@ -84,38 +88,39 @@ std::vector<Levels> find_levels(const OpenedMesh& mesh, ScreenPoints& screen) {
                 length2[p] = Vec2f(INFINITY);
             return is_small(length2[p]) ? std::size_t{0} : std::size_t{1};
         };
-        parallel_for(patches.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        parallel_for(part.patch_count(), kGrain, [&](std::size_t begin, std::size_t end) {
             std::size_t large = 0;
             for (std::size_t p = begin; p < end; ++p) large += measure(p);
             left -= large;
         });
     }
-    std::vector<Levels> levels(patches.size(), kLarge);
+    std::vector<Levels> levels(part.patch_count(), kLarge);
     const auto find = [&](std::size_t p) {
         if (!is_small(length2[p])) return;
-        const Corners c = corners_of(mesh, patches[p]);
+        const Corners c = corners_of(mesh, patch(p));
         bool met = true;
         for (int i = 0; i < c.count; ++i)
             met &= screen.met_frame(c.v[i]) || screen.met_frame(c.v[i + 1 < c.count ? i + 1 : 0]);
-        if (!met || !mesh.may_be_small(patches[p])) return;
+        if (!met || !mesh.may_be_small(patch(p))) return;
         levels[p] = {};
         while (length2[p].x > limit2[levels[p].u]) ++levels[p].u;
         while (length2[p].y > limit2[levels[p].v]) ++levels[p].v;
     };
-    parallel_for(left > 0 ? patches.size() : 0, kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p) find(p);
-    });
+    parallel_for(left > 0 ? part.patch_count() : 0, kGrain,
+                 [&](std::size_t begin, std::size_t end) {
+                     for (std::size_t p = begin; p < end; ++p) find(p);
+                 });
     return levels;
 }
 
 /// A small face among its neighbours.
 struct Member {
-    std::uint32_t patch;
-    Vec3f place;  ///< x, y, depth in pixels
-    std::int32_t material;
-    Levels levels;
-    bool back;
-    bool bent;
+    std::uint32_t patch = 0;
+    Levels levels = {};
+    Vec3f place{0.0f};  ///< x, y, depth in pixels
+    std::int32_t material = -1;
+    bool back = false;
+    bool bent = false;
     /// Both triangles of a bent quad are lattices of as many as it would be.
     int micropolygons() const { return levels.micropolygons() * (bent && !levels.whole() ? 2 : 1); }
     bool goes_with(const Member& other) const {
@@ -124,30 +129,28 @@ struct Member {
     }
 };
 
-Member member_of(const OpenedMesh& mesh, std::uint32_t index, const ScreenPoints& screen,
-                 std::span<const Vec3f> points) {
-    const BasePatch& patch = mesh.shared().patches()[index];
+/// All but what of the patch is known.
+void find_place(Member& member, const OpenedMesh& mesh, const ScreenPoints& screen,
+                std::span<const Vec3f> points) {
+    const BasePatch& patch = mesh.shared().patches()[member.patch];
     const Corners c = corners_of(mesh, patch);
     const Vec2f at = 0.5f * (screen[c.v[0]] + screen[c.v[2]]);
     const Vec3f a = points[c.v[2]] - points[c.v[0]], b = points[c.v[3]] - points[c.v[1]];
     const Vec3f middle = 0.5f * (points[c.v[0]] + points[c.v[2]]);
     const Vec3f view = mesh.view().projection.perspective ? middle : Vec3f(0.0f, 0.0f, 1.0f);
-    Member member{};
-    member.patch = index;
     member.place = Vec3f(at, screen.depth(middle.z));
     member.material = mesh.material(patch.face);
     member.bent = patch.bent;
     member.back = glm::dot(glm::cross(a, b), view) > 0.0f;
-    return member;
 }
 
 }  // namespace
 
 SmallFaces::SmallFaces(const OpenedMesh& mesh) {
     ScreenPoints screen(mesh);
-    const std::vector<Levels> levels =
-        mesh.displaced() ? std::vector<Levels>(mesh.shared().patches().size(), kLarge)
-                         : find_levels(mesh, screen);
+    const std::vector<Levels> levels = mesh.displaced()
+                                           ? std::vector<Levels>(mesh.part().patch_count(), kLarge)
+                                           : find_levels(mesh, screen);
     const auto count = static_cast<std::size_t>(std::count_if(
         levels.begin(), levels.end(), [](const Levels& l) { return l.u != kLarge.u; }));
     if (count > 0) screen.project(mesh.points(mesh.knots().frame_knot));
@@ -156,16 +159,13 @@ SmallFaces::SmallFaces(const OpenedMesh& mesh) {
     std::size_t member = 0;
     for (std::uint32_t p = 0; p < levels.size(); ++p)
         if (levels[p].u == kLarge.u)
-            m_others.push_back(p);
+            m_others.push_back(mesh.part().patch(p));
         else
-            members[member++].patch = p;
+            members[member++] = {.patch = mesh.part().patch(p), .levels = levels[p]};
     if (members.empty()) return;
     parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t p = members[i].patch;
-            members[i] = member_of(mesh, p, screen, mesh.points(mesh.knots().frame_knot));
-            members[i].levels = levels[p];
-        }
+        for (std::size_t i = begin; i < end; ++i)
+            find_place(members[i], mesh, screen, mesh.points(mesh.knots().frame_knot));
     });
     Vec3f lowest(INFINITY);
     for (const Member& m : members) lowest = glm::min(lowest, m.place);
@@ -214,7 +214,7 @@ SmallFaces::SmallFaces(const OpenedMesh& mesh) {
             Bounds3f& box = m_boxes[i];
             for (const std::uint32_t face : batch(i / knots))
                 for (const std::uint32_t corner : mesh.shared().patches()[face].corner)
-                    box.add(points[static_cast<std::size_t>(mesh.data().corner_verts[corner])]);
+                    box.add(points[mesh.place_of(corner)]);
             box.grow_relative(1e-6f);  // of what lies between the corners
         }
     });

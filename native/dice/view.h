@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/statistics.h"
+#include "dice/sampled_faces.h"
 #include "geometry/attribute_request.h"
 #include "geometry/displacement.h"
 #include "geometry/geometry_cache.h"
@@ -22,6 +23,7 @@ struct View {
     std::vector<std::vector<AttributeRequest>>
         requests;                                ///< [materials + 1], the last for material -1
     const Displacement* displacement = nullptr;  ///< nullptr: nothing is displaced
+    std::shared_ptr<const SampledFaces> sampled_faces;  ///< nullptr: all faces are opened
 
     /// The rectangle that samples can reach through the filter.  Rates do not read it: outside
     /// Options::width and height they coarsen, whatever the crop and the filter.

@@ -18,20 +18,27 @@ Vec3d slope(const Projection& p, Vec2d raster, const Look& look) {
 
 }  // namespace
 
+Look look_of(const TileSamples& samples, std::size_t i, const Projection& projection) {
+    Look look;
+    if (!samples.t.empty()) look.t = samples.t[i];
+    if (!samples.u.empty()) {
+        look.lens = {samples.u[i], samples.v[i]};
+        look.inverse_focus =
+            samples.inverse_focus.empty() ? 1.0 / projection.focus : samples.inverse_focus[i];
+    }
+    return look;
+}
+
+CameraLine camera_line(const Projection& projection, Vec2d raster, const Look& look) {
+    Vec3d start(look.lens * projection.lens_radius, 0.0);
+    if (!projection.perspective)
+        start += Vec3d((raster - projection.center) / projection.scale, 0.0);
+    return {start, slope(projection, raster, look)};
+}
+
 Vec3f world_direction(const Camera& camera, Vec2d raster, const Look& look) {
     const Mat3d world_from_camera(matrix_at(camera.world_from_camera, look.t));
     return Vec3f(glm::normalize(world_from_camera * slope(camera.projection, raster, look)));
-}
-
-Look CameraRays::look(std::size_t i) const {
-    Look look;
-    if (!m_samples.t.empty()) look.t = m_samples.t[i];
-    if (!m_samples.u.empty()) {
-        look.lens = {m_samples.u[i], m_samples.v[i]};
-        look.inverse_focus = m_samples.inverse_focus.empty() ? 1.0 / m_camera.projection.focus
-                                                             : m_samples.inverse_focus[i];
-    }
-    return look;
 }
 
 CameraRays::Seen CameraRays::ray(std::size_t i, const Vec3d& origin, float frame_time) const {
@@ -40,13 +47,10 @@ CameraRays::Seen CameraRays::ray(std::size_t i, const Vec3d& origin, float frame
     const Vec2d raster = m_origin + Vec2d(m_samples.x[i], m_samples.y[i]);
     const float time = m_samples.t.empty() ? frame_time : m_samples.t[i];
     const Mat4d world_from_camera = matrix_at(m_camera.world_from_camera, time);
-    Vec3d start(seen.lens * p.lens_radius, 0.0);
-    if (!p.perspective) start += Vec3d((raster - p.center) / p.scale, 0.0);
-    const Vec3d way = slope(p, raster, seen);
-    const double length = glm::length(way);
-    start += way * p.near_clip;
-    return {{Vec3f(transform_point(world_from_camera, start) - origin),
-             Vec3f(glm::normalize(Mat3d(world_from_camera) * way)),
+    const CameraLine line = camera_line(p, raster, seen);
+    const double length = glm::length(line.way);
+    return {{Vec3f(transform_point(world_from_camera, line.at(p.near_clip)) - origin),
+             Vec3f(glm::normalize(Mat3d(world_from_camera) * line.way)),
              std::numeric_limits<float>::infinity(), time, -1, RayType::Camera},
             static_cast<float>(length),
             static_cast<float>(p.near_clip)};

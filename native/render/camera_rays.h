@@ -16,6 +16,16 @@ struct Look {
     double inverse_focus = 0.0;
 };
 
+/// Of one of a tile's.
+Look look_of(const TileSamples& samples, std::size_t i, const Projection& projection);
+
+/// What a sample sees, in camera space: where depth is 0, and the way of a metre of depth.
+struct CameraLine {
+    Vec3d start, way;
+    Vec3d at(double depth) const { return start + way * depth; }
+};
+CameraLine camera_line(const Projection& projection, Vec2d raster, const Look& look);
+
 /// World direction through a raster position (pixels): a point at infinity obeys X = cx + sx (slope
 /// + lx / focus) (math/projection.h with z -> infinity).
 Vec3f world_direction(const Camera& camera, Vec2d raster, const Look& look);
@@ -52,7 +62,7 @@ class CameraRays {
     Seen ray(std::size_t i, const Vec3d& origin, float frame_time) const;
 
   private:
-    Look look(std::size_t i) const;
+    Look look(std::size_t i) const { return look_of(m_samples, i, m_camera.projection); }
 
     const Camera& m_camera;
     const TileSamples& m_samples;

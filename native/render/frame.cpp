@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "base/stage_timer.h"
+#include "render/faces_of_samples.h"
 #include "render/raster_bucket.h"
 #include "shade/material_displacement.h"
 
@@ -130,9 +131,8 @@ Frame::Frame(const std::shared_ptr<const Scene>& frame_scene,
       before(std::move(kept.visibility)),
       changes(changes_since(before.get(), scene)),
       shading(scene, statistics, report, progress, frame_choice.executor != Executor::Raster,
-              shading_after(std::move(kept.shading), before.get(), changes, scene)),
-      shared_view(
-          std::make_shared<const View>(make_view(scene, statistics, shading, filter_of(scene)))),
+              shading_after(kept.shading, before.get(), changes, scene)),
+      shared_view(std::make_shared<View>(make_view(scene, statistics, shading, filter_of(scene)))),
       view(*shared_view),
       shared_levels(std::make_shared<const SampleLevels>(
           view, filter_of(scene), frame_choice.executor != Executor::Raster, report)),
@@ -148,7 +148,12 @@ Frame::Frame(const std::shared_ptr<const Scene>& frame_scene,
       layout(make_layout(scene.options, film, levels, choice.executor)),
       visibility(kept.is_kept ? make_visibility(*this, frame_scene, frame_statistics) : nullptr),
       hider(make_hider_frame(*this)),
-      geometry(view, layout, report, said(), levels.count() > 1) {}
+      geometry(view, layout, report, said(), levels.count() > 1) {
+    // The raster executor's samples are its device's.
+    if (choice.executor != Executor::Raster)
+        shared_view->sampled_faces = std::make_shared<const FacesOfSamples>(
+            view, shared_levels, shading, std::move(kept.shading.rays), progress);
+}
 
 std::unique_ptr<KeptVisibility> Frame::take_visibility() {
     if (!visibility) return nullptr;

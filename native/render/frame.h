@@ -38,7 +38,7 @@ struct Frame {
     std::unique_ptr<KeptVisibility> before;  ///< whose grids lend their radiance, or nullptr
     std::optional<SceneChanges> changes;     ///< since `before`
     ShadingSystem shading;
-    std::shared_ptr<const View> shared_view;
+    std::shared_ptr<View> shared_view;
     const View& view;
     std::shared_ptr<const SampleLevels> shared_levels;
     const SampleLevels& levels;

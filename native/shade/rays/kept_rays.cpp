@@ -35,6 +35,12 @@ std::shared_ptr<const KeptRayShape> KeptRays::find(const RayKey& key) {
     return all.front();
 }
 
+std::shared_ptr<const KeptRayShape> KeptRays::find_mesh(const GeometryData* data) {
+    const std::lock_guard lock(m_mutex);
+    const auto shapes = m_shapes.find({data, false, 0});
+    return shapes == m_shapes.end() ? nullptr : shapes->second.front();
+}
+
 void KeptRays::add(std::shared_ptr<const KeptRayShape> made) {
     std::shared_ptr<const KeptRayShape> dropped;  // freed outside the lock
     const std::lock_guard lock(m_mutex);

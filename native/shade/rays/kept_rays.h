@@ -56,6 +56,8 @@ class KeptRays {
     RTCDevice device() const { return m_device.get(); }
     /// nullptr where it is not there.
     std::shared_ptr<const KeptRayShape> find(const RayKey& key);
+    /// Of what is not displaced, whatever its instances use it for; nullptr where there is none.
+    std::shared_ptr<const KeptRayShape> find_mesh(const GeometryData* data);
     void add(std::shared_ptr<const KeptRayShape> made);
     /// Forgets what is made of others.
     void keep_only(const GeometryList& geometries);

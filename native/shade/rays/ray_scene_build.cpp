@@ -4,6 +4,7 @@
 
 #include "base/stage_timer.h"
 #include "scene/knot_time.h"
+#include "shade/rays/build_shape.h"
 #include "shade/rays/ray_displaced.h"
 #include "shade/rays/ray_elements.h"
 #include "shade/rays/ray_mesh.h"
@@ -14,10 +15,6 @@
 
 namespace granita {
 namespace {
-
-bool goes_on(void* user, double) {
-    return !static_cast<const Progress*>(user)->cancelled();
-}
 
 Bounds3f box_of(RTCScene geometry) {
     RTCBounds box;
@@ -38,15 +35,6 @@ enum Use : std::uint8_t {
 };
 
 }  // namespace
-
-void RayScene::Impl::check(const std::string& what, const Progress& progress) const {
-    progress.check();
-    const RTCError error = rtcGetDeviceError(kept->device());
-    if (error == RTC_ERROR_NONE) return;
-    if (error == RTC_ERROR_OUT_OF_MEMORY)
-        throw SceneError(what, "not enough memory for its shadow rays");
-    throw SceneError(what, "Embree failed with error " + std::to_string(error));
-}
 
 bool RayScene::Impl::lets_light_through(const Instance& instance) const {
     if (!materials.is_transparent) return false;
@@ -144,30 +132,10 @@ void RayScene::Impl::build_displaced(std::size_t index, std::uint8_t use, Report
 }
 
 void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
-    const std::string what = made.key.data->name + " of " + made.shape->size();
-    made.built.reset(rtcNewScene(kept->device()));
-    RTCScene built = made.built.get();
-    rtcSetSceneFlags(built, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(built, RTC_BUILD_QUALITY_MEDIUM);
-    rtcSetSceneProgressMonitorFunction(built, goes_on, const_cast<Progress*>(&progress));
-    made.parts = made.shape->hand_over(kept->device());
-    for (const RayPart& part : made.parts) {
-        RTCGeometry handed = part.geometry;
-        if (made.key.use & ~(kCasts | kIsShaded))
-            rtcSetGeometryOccludedFilterFunction(handed, pass_through);
-        if (made.key.use & (kAppears | kIsHidden | kBounds))
-            rtcSetGeometryIntersectFilterFunction(handed, skip_absent);
-        rtcCommitGeometry(handed);
-        rtcAttachGeometry(built, handed);
-        rtcReleaseGeometry(handed);
-    }
-    {
-        const ForeignThreads embree;
-        rtcCommitScene(built);
-    }
-    check(what, progress);
-    // Embree keeps the pointer, and the geometry may outlive the frame.
-    rtcSetSceneProgressMonitorFunction(built, nullptr, nullptr);
+    RayFilters filters;
+    if (made.key.use & ~(kCasts | kIsShaded)) filters.occluded = pass_through;
+    if (made.key.use & (kAppears | kIsHidden | kBounds)) filters.intersected = skip_absent;
+    build_shape(made, kept->device(), filters, progress);
 }
 
 RTCGeometry RayScene::Impl::instance_node(std::uint32_t index,
@@ -267,7 +235,8 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materia
     }
     impl.top.reset(rtcNewScene(impl.kept->device()));
     rtcSetSceneFlags(impl.top.get(), RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneProgressMonitorFunction(impl.top.get(), goes_on, const_cast<Progress*>(&progress));
+    rtcSetSceneProgressMonitorFunction(impl.top.get(), embree_goes_on,
+                                       const_cast<Progress*>(&progress));
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
         if (impl.is_met(scene.instances[i])) impl.add_instance(i, origin);
     {
@@ -275,7 +244,8 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materia
         rtcCommitScene(impl.top.get());
     }
     impl.add_volumes();
-    impl.check("scene of " + std::to_string(impl.instances.size()) + " instances", progress);
+    check_embree(impl.kept->device(),
+                 "scene of " + std::to_string(impl.instances.size()) + " instances", progress);
     // Embree keeps the pointer; the frame's progress may die before the scene does.
     rtcSetSceneProgressMonitorFunction(impl.top.get(), nullptr, nullptr);
 }

@@ -59,7 +59,6 @@ struct RayScene::Impl {
           displacement(moved),
           origin(camera) {}
 
-    void check(const std::string& what, const Progress& progress) const;
     RayDetail detail_of(int geometry, const SharedGeometry* shared) const;
     void make_shape(KeptRayShape& made, const std::shared_ptr<const SharedGeometry>& shared,
                     const RayDetail& detail, const Progress& progress) const;

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/faces_of_samples.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "base/object_pool.h"
+#include "base/parallel.h"
+#include "base/parallel_sort.h"
+#include "dice/open_instance.h"
+#include "dice/raster_bound.h"
+#include "render/camera_rays.h"
+#include "render/tile_cache.h"
+
+namespace granita {
+namespace {
+
+/// Faces that are opened in the time of a ray and of what it meets: .4 to 3 take the same within
+/// noise.
+constexpr double kFacesARay = 1.0;
+/// Times as much for a ray that goes on behind what it meets.
+constexpr double kThrough = 4.0;
+
+/// Pixels of the frame, and those around it whose samples count, in a bound.
+Rect pixels_in(const RasterBounds& bounds, const View& view) {
+    const auto from = [](float at, float least) {
+        return static_cast<int>(std::floor(std::max(at, least)));
+    };
+    const auto to = [](float at, float most) {
+        return static_cast<int>(std::ceil(std::min(at, most)));
+    };
+    if (!bounds.visible) return {};
+    return {from(bounds.x0, view.raster_x0), from(bounds.y0, view.raster_y0),
+            to(bounds.x1, view.raster_x1), to(bounds.y1, view.raster_y1)};
+}
+
+Rect tiles_of(const Rect& pixels) {
+    const auto tile = [](int pixel) {
+        return static_cast<int>(std::floor(static_cast<double>(pixel) / kTileSize));
+    };
+    return {tile(pixels.x0), tile(pixels.y0), tile(pixels.x1 - 1) + 1, tile(pixels.y1 - 1) + 1};
+}
+
+bool is_finite(const Mat4d& m) {
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            if (!std::isfinite(m[column][row])) return false;
+    return true;
+}
+
+}  // namespace
+
+/// One that is looked for.
+struct FacesOfSamples::Mesh {
+    const MeshRays& rays;
+    const Knots& knots;
+    Mat4d object_from_camera;  ///< of what stands still
+    double nearest;            ///< no depth of it is less
+};
+
+FacesOfSamples::FacesOfSamples(const View& view, std::shared_ptr<const SampleLevels> levels,
+                               const ShadingSystem& shading, std::shared_ptr<KeptRays> rays,
+                               const Progress& progress)
+    : m_view(view),
+      m_levels(std::move(levels)),
+      m_shading(shading),
+      m_rays(*view.scene, std::move(rays), progress) {
+    static std::atomic<std::uint64_t> count{0};
+    m_number = ++count;
+}
+
+bool FacesOfSamples::lets_through(const Instance& instance) const {
+    if (instance.materials.empty()) return m_shading.opacity_varies(-1);
+    return std::ranges::any_of(instance.materials, [&](std::int32_t material) {
+        return m_shading.opacity_varies(material);
+    });
+}
+
+std::optional<std::vector<std::uint32_t>> FacesOfSamples::of(
+    std::size_t index, const std::shared_ptr<const SharedGeometry>& shared,
+    const Knots& knots) const {
+    const Instance& instance = m_view.scene->instances[index];
+    const std::vector<Bounds3f> boxes = instance_boxes(m_view, index);
+    const Rect pixels = pixels_in(raster_bound_of(m_view.projection, boxes), m_view);
+    if (pixels.empty()) return std::nullopt;
+    double rays = 0.0;
+    for (int level = 0; level < m_levels->count(); ++level)
+        rays += static_cast<double>(pixels.width()) * pixels.height() *
+                m_levels->table(level).samples();
+    const bool goes_on = lets_through(instance);
+    if (rays * kFacesARay * (goes_on ? kThrough : 1.0) >
+        static_cast<double>(shared->patches().size()))
+        return std::nullopt;
+
+    Bounds3f box;
+    for (const Bounds3f& b : boxes) box.add(b);
+    const auto material_of = [&](std::uint32_t face) {
+        return instance.material(shared->data().slot(face));
+    };
+    std::function<bool(std::uint32_t)> passes;
+    if (goes_on)
+        passes = [&](std::uint32_t face) { return m_shading.opacity_varies(material_of(face)); };
+    const MeshRays mesh_rays(
+        m_rays.shape(static_cast<std::size_t>(instance.geometry), shared, goes_on), *shared,
+        passes);
+    const Mesh mesh{mesh_rays, knots, glm::inverse(knots.camera_from_object[0]),
+                    std::max(m_view.projection.near_clip, static_cast<double>(box.lo.z))};
+    if (!is_finite(mesh.object_from_camera)) return std::nullopt;
+
+    std::vector<std::uint32_t> patches;
+    std::mutex mutex;
+    const Rect tiles = tiles_of(pixels);
+    const auto tile_count = static_cast<std::size_t>(tiles.width()) * tiles.height();
+    constexpr std::size_t kGrain = 4;
+    parallel_for(tile_count, kGrain, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> met;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec2i tile(tiles.x0 + static_cast<int>(i) % tiles.width(),
+                             tiles.y0 + static_cast<int>(i) / tiles.width());
+            for (int level = 0; level < m_levels->count(); ++level)
+                look(mesh, m_levels->table(level), tile, pixels, met);
+        }
+        const std::lock_guard lock(mutex);
+        patches.insert(patches.end(), met.begin(), met.end());
+    });
+    parallel_sort(patches);
+    patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+    m_view.statistics->add(Counter::RaysOpening, static_cast<std::uint64_t>(rays));
+    return patches;
+}
+
+void FacesOfSamples::look(const Mesh& mesh, const SampleTable& table, Vec2i tile,
+                          const Rect& pixels, std::vector<std::uint32_t>& patches) const {
+    auto cache = ObjectPool<TileCache>::take();
+    const TileSamples& samples = cache.samples(m_number, table, tile);
+    const Rect here = pixels.intersect({tile.x * kTileSize, tile.y * kTileSize,
+                                        (tile.x + 1) * kTileSize, (tile.y + 1) * kTileSize});
+    const Vec2d corner(tile * kTileSize);
+    const auto count = static_cast<std::size_t>(samples.samples);
+    const Projection& projection = m_view.projection;
+    const bool moves = !is_static(mesh.knots.camera_from_object);
+    MeshRays::Work work;
+    for (int y = here.y0; y < here.y1; ++y)
+        for (int x = here.x0; x < here.x1; ++x) {
+            const auto pixel = static_cast<std::size_t>((y - tile.y * kTileSize) * kTileSize + x -
+                                                        tile.x * kTileSize);
+            for (std::size_t i = pixel * count; i < (pixel + 1) * count; ++i) {
+                const Look at = look_of(samples, i, projection);
+                const CameraLine line =
+                    camera_line(projection, corner + Vec2d(samples.x[i], samples.y[i]), at);
+                const Mat4d into =
+                    moves ? glm::inverse(matrix_at(mesh.knots.camera_from_object, at.t))
+                          : mesh.object_from_camera;
+                // From close by: what is far away would be rounded more than faces are large.
+                mesh.rays.meet({Vec3f(transform_point(into, line.at(mesh.nearest))),
+                                Vec3f(Mat3d(into) * line.way),
+                                std::numeric_limits<float>::infinity(), static_cast<float>(at.t)},
+                               patches, work);
+            }
+        }
+    ObjectPool<TileCache>::give(std::move(cache));
+}
+
+}  // namespace granita

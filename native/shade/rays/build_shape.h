@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "base/progress.h"
+#include "shade/rays/kept_rays.h"
+
+namespace granita {
+
+/// What looks at each hit on a geometry; nullptr: nothing does.
+struct RayFilters {
+    RTCFilterFunctionN occluded = nullptr, intersected = nullptr;
+    bool of_rays = false;  ///< rays may bring one of their own
+};
+
+/// Makes KeptRayShape::built and parts of its shape.
+/// Throws Cancelled, or SceneError naming the geometry that Embree could not take.
+void build_shape(KeptRayShape& made, RTCDevice device, const RayFilters& filters,
+                 const Progress& progress);
+
+/// Throws Cancelled, or SceneError naming `what` where Embree has failed.
+void check_embree(RTCDevice device, const std::string& what, const Progress& progress);
+
+/// For rtcSetSceneProgressMonitorFunction, with a `const Progress*`.
+bool embree_goes_on(void* progress, double);
+
+}  // namespace granita

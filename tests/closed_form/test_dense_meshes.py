@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes that have many more faces than samples: opened are the faces that samples meet, and nothing is lost."""
+
+import numpy as np
+import pytest
+import session_parts
+import snapshots as s
+
+SIZE = (32, 24)
+RADIUS = 6.0
+CENTER = np.array([15.3, 12.2, 40.0])
+SAMPLES = 16
+
+
+def ball(rings=200, radius=RADIUS, center=(0.0, 0.0, 0.0)):
+    """Points and faces of a sphere: 4 rings^2 of them, as flat as a ring's 2 rings corners are close."""
+    polar = np.linspace(0, np.pi, rings + 1)[1:-1, None]
+    around = np.arange(4 * rings) * 2 * np.pi / (4 * rings)
+    x, y = np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around)
+    z = np.broadcast_to(np.cos(polar), x.shape)
+    points = np.stack([x, y, z], -1).reshape(-1, 3)
+    points = np.concatenate([points, [[0, 0, 1], [0, 0, -1]]]) * radius + np.asarray(center)
+    n = 4 * rings
+    i, j = np.arange(rings - 2)[:, None] * n, np.arange(n)
+    k = (j + 1) % n
+    quads = np.stack([i + j, i + k, i + k + n, i + j + n], -1).reshape(-1, 4).tolist()
+    top, bottom = len(points) - 2, len(points) - 1
+    last = (rings - 2) * n
+    quads += [(top, b, a) for a, b in zip(j.tolist(), k.tolist(), strict=True)]
+    quads += [(bottom, last + a, last + b) for a, b in zip(j.tolist(), k.tolist(), strict=True)]
+    return points, quads
+
+
+POINTS, FACES = ball()
+
+
+def far_from_outline(margin, radius=RADIUS):
+    """Pixels wholly inside of the ball's disc, and wholly outside."""
+    x, y = np.meshgrid(np.arange(SIZE[0]) + 0.5, np.arange(SIZE[1]) + 0.5)
+    distance = np.hypot(x - CENTER[0], y - CENTER[1])
+    return distance < radius - margin, distance > radius + margin
+
+
+def scene(executor="SIMD", alpha=None, **options):
+    snapshot = s.orthographic(
+        SIZE, executor=executor, samples=SAMPLES, film_transparent=False, **options
+    )
+    color = s.emission(snapshot, (1, 1, 1), alpha)
+    s.mesh(snapshot, POINTS, FACES, color, transforms=[s.translation(*CENTER)])
+    return snapshot
+
+
+def turned(x, y):
+    """Rotations by these angles around x and y."""
+    around_x = [[1, 0, 0], [0, np.cos(x), -np.sin(x)], [0, np.sin(x), np.cos(x)]]
+    around_y = [[np.cos(y), 0, np.sin(y)], [0, 1, 0], [-np.sin(y), 0, np.cos(y)]]
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array(around_x) @ around_y
+    return matrix
+
+
+def test_few_of_a_ball_s_faces_are_opened_and_none_is_missing(executor):
+    """Before a world ten thousand times as bright a crack between two faces would be seen: without the rays beside
+    those that come close to an edge, some samples on it look through one."""
+    samples, away, focal = 256, 4e4, 4e4
+    place = s.translation(0, 0, away) @ turned(0.3, 0.5)
+    snapshot = s.perspective(
+        SIZE, focal, tuple(CENTER[:2]), executor=executor, samples=samples, film_transparent=False
+    )
+    s.mesh(snapshot, POINTS, FACES, s.emission(snapshot), transforms=[place])
+    s.constant_world(snapshot, 1e4)
+    rendered = s.render(snapshot)
+    inside, outside = far_from_outline(0.75)
+    assert np.all(rendered["combined"][inside][:, :3] == 1.0)
+    assert np.all(rendered["combined"][outside][:, 0] == np.float32(1e4))
+    covered = np.mean((1e4 - rendered["combined"][..., 0]) / (1e4 - 1)) * SIZE[0] * SIZE[1]
+    assert covered == pytest.approx(np.pi * RADIUS**2, rel=1e-3)
+    counts = rendered["statistics"]
+    assert 0 < counts["rays_opening"] <= (3.5 * RADIUS) ** 2 * samples
+    # Of 160,000 faces half look the other way.
+    assert counts["points_diced"] <= 4 * 0.55 * len(FACES)
+
+
+def test_what_shows_what_lies_behind_it_has_both_its_sides(executor):
+    snapshot = scene(executor, alpha=0.5)
+    s.constant_world(snapshot, 16.0)
+    rendered = s.render(snapshot)
+    inside, _ = far_from_outline(0.75)
+    assert rendered["statistics"]["rays_opening"] > 0
+    expected = 0.5 + 0.5 * 0.5 + 0.25 * 16.0
+    assert np.abs(rendered["combined"][inside][:, 0] - expected).max() < 1e-5
+
+
+def test_two_materials_are_seen_through_where_one_is_not(executor):
+    """The half towards the camera lets half of the light through, the other none."""
+    snapshot = scene(executor, alpha=0.5)
+    green = s.emission(snapshot, (0, 1, 0))
+    middle = POINTS[[f[0] for f in FACES], 2] + POINTS[[f[2] for f in FACES], 2]
+    snapshot["geometries"][0]["material_index"] = (middle > 0).astype(np.int32)
+    snapshot["instances"]["slots"] = [2]
+    snapshot["instances"]["materials"] = [0, green]
+    s.constant_world(snapshot, 16.0)
+    rendered = s.render(snapshot)
+    inside, _ = far_from_outline(1.0)
+    assert rendered["statistics"]["rays_opening"] > 0
+    assert np.abs(rendered["combined"][inside][:, :2] - [0.5, 1.0]).max() < 1e-5
+
+
+def blurred(**options):
+    """It moves and turns before a lens, and a wall behind it is not of many faces."""
+    snapshot = s.perspective(SIZE, 40.0, center=(0, 0), executor="SIMD", samples=SAMPLES, **options)
+    snapshot["camera"].update(lens_radius=0.4, focus_distance=30.0)
+    turned = np.diag([1.0, 0.8, 1.2, 1.0])
+    ways = [s.translation(14, 12, 40.0) @ turned, s.translation(18, 10, 43.0)]
+    s.mesh(snapshot, POINTS, FACES, s.emission(snapshot, (1, 0.5, 0)), transforms=ways)
+    s.quad(snapshot, s.rectangle(-100, -100, 200, 200, 90.0), s.emission(snapshot, (0.1, 0.2, 0.3)))
+    return snapshot
+
+
+@pytest.mark.parametrize(
+    "change", [{"bucket_size": 16}, {"bucket_size": 128}, {"threads": 1}, {"threads": 3}], ids=str
+)
+def test_buckets_and_threads_change_no_bit(change):
+    base = s.render(blurred())
+    assert base["statistics"]["rays_opening"] > 0
+    assert np.array_equal(base["combined"], s.render(blurred(**change))["combined"])
+
+
+@pytest.mark.parametrize("crop", [(12, 9, 13, 10), (0, 10, 32, 14)])
+def test_crop_changes_no_bit(crop):
+    whole = s.render(blurred())["combined"]
+    part = s.render(blurred(crop=np.array(crop, np.int32)))["combined"]
+    assert np.array_equal(whole[crop[1] : crop[3], crop[0] : crop[2]], part)
+
+
+def test_all_numbers_of_samples_that_a_tile_may_take_are_looked_for():
+    """A tile that takes all samples is what it is without a threshold; one that takes few has no holes."""
+    options = {"min_samples": 1, "noise_threshold": 1e-7}
+    rendered = s.render(blurred(**options))
+    assert rendered["statistics"]["rays_opening"] > 0
+    assert np.array_equal(rendered["combined"], s.render(blurred())["combined"])
+    snapshot = scene(min_samples=1, noise_threshold=1000.0)
+    s.constant_world(snapshot, 1e4)
+    inside, _ = far_from_outline(0.75)
+    assert np.all(s.render(snapshot)["combined"][inside][:, :3] == 1.0)
+
+
+def test_executors_see_the_same():
+    pictures = []
+    for executor in ("REFERENCE", "SIMD", "COMPUTE"):
+        snapshot = blurred()
+        snapshot["options"]["executor"] = executor
+        pictures.append(s.render(snapshot)["combined"])
+    assert np.array_equal(pictures[0], pictures[1])
+    assert np.abs(pictures[2] - pictures[1]).max() < 1e-5
+
+
+def test_a_thing_of_no_thickness_and_what_cannot_be_placed_end_no_frame():
+    for matrix in (np.diag([1.0, 1.0, 0.0, 1.0]), np.diag([0.0, 0.0, 0.0, 1.0])):
+        snapshot = scene()
+        snapshot["instances"]["world_from_object"] = [s.translation(*CENTER) @ matrix]
+        s.constant_world(snapshot, 16.0)
+        picture = s.render(snapshot)["combined"]
+        assert np.all(np.isfinite(picture))
+        assert np.any(picture[..., 0] == 1.0) == bool(matrix.any() and matrix[0, 0] > 0)
+
+
+def test_later_pictures_of_a_session_are_those_of_frames_alone():
+    """With other samples and from elsewhere other faces are met; with another colour none is looked for."""
+    kept = session_parts.Kept()
+    snapshot = blurred()
+    assert kept.follow(snapshot)["statistics"]["rays_opening"] > 0
+    snapshot["options"]["samples"] = 4
+    kept.follow(snapshot)
+    snapshot["camera"]["world_from_camera"] = s.translation(0.2)[None]
+    kept.follow(snapshot)
+    snapshot["materials"][0]["nodes"][0]["inputs"]["Color"] = (0, 0, 1, 1)
+    kept.follow(snapshot)
+    assert kept.statistics["rays_opening"] == 0
