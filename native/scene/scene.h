@@ -65,7 +65,7 @@ struct Scene {
     std::vector<Image> images;
     std::vector<Light> lights;
     World world;
-    std::uint64_t receives_in_volumes = ~0ULL;  ///< as Instance::receives, of what fills things
+    std::uint64_t receives_in_volumes = ~0ULL;  ///< as Instance::receives, of what fills the world
 
     const GeometryData& geometry_of(const Instance& instance) const {
         return geometries[static_cast<std::size_t>(instance.geometry)];

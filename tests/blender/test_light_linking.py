@@ -181,6 +181,19 @@ def test_smoke_is_lit_as_what_no_collection_has(stage, render, state):
 
 
 @pytest.mark.parametrize("state", ["INCLUDE", "EXCLUDE"])
+def test_smoke_of_a_collection_is_lit_as_its_thing(stage, render, state):
+    smoke, nodes, links, output = parts.node_material("Smoke")
+    scatter = nodes.new("ShaderNodeVolumeScatter")
+    links.new(scatter.outputs[0], output.inputs["Volume"])
+    bpy.ops.mesh.primitive_cube_add(size=1.0, location=(0.0, 0.0, 1.0))
+    bpy.context.object.data.materials.append(smoke)
+    bpy.context.object.name = "Smoke"
+    linked("Key", "receiver", Smoke=state)
+    stage.cycles.volume_bounces = 0
+    agree(stage, render, 256)
+
+
+@pytest.mark.parametrize("state", ["INCLUDE", "EXCLUDE"])
 def test_smoke_dims_lights_that_it_blocks(stage, render, state):
     smoke, nodes, links, output = parts.node_material("Smoke")
     links.new(nodes.new("ShaderNodeVolumeAbsorption").outputs[0], output.inputs["Volume"])

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
-from test_volumes import absorption, box, filled, scatter
+from test_volumes import absorption, box, filled, lamp, scatter, world_of
 
 SUN = 3.0
 RADIANCE = 0.8 * SUN / np.pi  # of the floor, where the sun stands straight above it
@@ -121,7 +121,7 @@ def test_what_fills_things_is_lit_by_its_own_mask(lit):
         return snapshot
 
     linked = smoke(receiver_set=0)
-    linked["instances"] |= {"receives": [0, 0, 0, 1 - lit], "receives_in_volumes": lit}
+    linked["instances"] |= {"receives": [0, 0, 0, lit], "receives_in_volumes": 1 - lit}
     image = picture(linked)
     assert (image[6:10, 6:10] > 0).all() == bool(lit)
     np.testing.assert_array_equal(image[:, 20:], 0.0)
@@ -129,6 +129,34 @@ def test_what_fills_things_is_lit_by_its_own_mask(lit):
     dark["materials"][0]["nodes"][0]["inputs"]["Color"] = (0.0, 0.0, 0.0, 1.0)
     if lit:
         np.testing.assert_allclose(image[6:10, 6:10], picture(dark)[6:10, 6:10], rtol=1e-4)
+
+
+@pytest.mark.parametrize("lit", [0, 1])
+def test_what_fills_the_world_is_lit_by_a_mask_of_its_own(lit):
+    """A lamp in what fills all, above a floor that it does not light."""
+    foggy = stage()
+    foggy["lights"] = []
+    lamp(foggy, (4.0, 8.0, 5.0), receiver_set=0)
+    world_of(foggy, scatter(0.05), background=0.0)
+    foggy["instances"] |= {"receives": [0, 0, 0], "receives_in_volumes": lit}
+    image = picture(foggy)
+    # The sheet hides the lamp from what is behind it.
+    assert (image[:, :6] > 0).all() == bool(lit)
+    assert lit or (image == 0).all()
+
+
+def test_things_that_overlap_are_lit_each_by_its_own_mask():
+    """Two of half the density in one place, one of them linked: half the light that both would scatter."""
+
+    def smoke(receives):
+        snapshot = stage(receiver_set=0)
+        for _ in range(2):
+            box(snapshot, (4, 4, 4), (12, 12, 8), filled(snapshot, scatter(0.1)))
+        snapshot["instances"]["flags"] += [3, 3]
+        snapshot["instances"]["receives"] = [0, 0, 0, *receives]
+        return picture(snapshot)[6:10, 6:10].mean()
+
+    assert smoke([1, 0]) == pytest.approx(smoke([1, 1]) / 2, rel=0.03)
 
 
 @pytest.mark.parametrize("blocks", [0, 1])

@@ -77,7 +77,7 @@ class Instances:
     # int32 [n], the bit of what shines by itself; -1 or None = it lights and is shadowed by everything:
     receiver_set: Optional[np.ndarray] = None
     blocker_set: Optional[np.ndarray] = None
-    receives_in_volumes: int = 2**64 - 1  # as `receives`, of what fills things
+    receives_in_volumes: int = 2**64 - 1  # as `receives`, of what fills the world
     lifespan: Optional[np.ndarray] = None  # float32 [n, 2], within the shutter; None = all of it
     values: dict = field(default_factory=dict)  # {key of instance_values: float32 [n, 4]}
 

@@ -27,7 +27,7 @@ class LightLinks:
     # int32 [prototypes], the sets of its own light; -1 = everything:
     receiver_set: Optional[np.ndarray] = None
     blocker_set: Optional[np.ndarray] = None
-    receives_in_volumes: int = ALL_SETS  # these are no object: lit as one that no collection has
+    receives_in_volumes: int = ALL_SETS  # of the world, lit as what no collection has
 
 
 def link_lights(lamps, scan, report):

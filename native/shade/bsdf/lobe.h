@@ -163,6 +163,8 @@ struct ShadingPoints {
     std::uint32_t depth = 0;  ///< how many surfaces lie between them and the camera
     /// [n] in the sample sequences of the frame; empty: in those of the grid, by row and column.
     std::vector<std::uint32_t> places;
+    /// [n] as Instance::receives, where points of a batch differ; empty: as the instance has it.
+    std::vector<std::uint64_t> receives;
 };
 
 }  // namespace granita

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <unordered_map>
 
@@ -325,15 +326,15 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     grid.by_lobe = m_impl->world.by_lobe();
     grid.placed = placed;
     grid.in_medium = closure.lobes.front().kind == LobeKind::Phase;
-    grid.receives = grid.in_medium ? m_impl->scene.receives_in_volumes : m_impl->receives(key);
     grid.balance = noise;
     grid.leaving = leaving;
     RayOffset ray_offset = m_impl->set.rays ? m_impl->set.rays->ray_offset(key) : RayOffset{};
     const Vec2f life_exposed = m_impl->set.shutter.exposed(paths.lifespan());
     const int sample_count = this->sample_count(points.share);
     const bool meets_surfaces = leaving || !m_impl->shining.empty();
-    std::vector<LitPoint> lit;
-    lit.reserve(dark && !leaving ? 0 : points.count);
+    std::map<std::uint64_t, std::vector<LitPoint>> sets;  // of one mask together
+    std::vector<LitPoint>& all = sets[m_impl->receives(key)];
+    all.reserve((dark && !leaving) || !points.receives.empty() ? 0 : points.count);
     for (std::size_t i = 0; i < points.count; ++i) {
         PointBsdf bsdf(closure, points, i, albedo);
         if (bsdf.lobe_count() == 0) continue;
@@ -364,6 +365,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
             const int ahead = points.shares[i] > ShadingPoints::kUnseenShare ? 1 : 3;
             place += beyond(points) * static_cast<std::uint32_t>(ahead * sample_count / count + 1);
         }
+        std::vector<LitPoint>& lit = points.receives.empty() ? all : sets[points.receives[i]];
         lit.push_back({i,
                        std::move(bsdf),
                        paths,
@@ -378,8 +380,11 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
                        {}});
         lit.back().share_samples();
     }
-    place_lobe_samples(lit, closure.lobes.size(), placed);
-    m_impl->light_points(grid, lit, closure.lobes.size());
+    for (auto& [receives, lit] : sets) {
+        grid.receives = receives;
+        place_lobe_samples(lit, closure.lobes.size(), placed);
+        m_impl->light_points(grid, lit, closure.lobes.size());
+    }
     deliver_met(m_impl->set, grid);
     m_impl->world.deliver(grid);
     m_impl->statistics.add(Counter::RaysShadow, grid.shadow_rays);

@@ -36,7 +36,7 @@ Vec3f positive(const Vec3f& v) {
 }
 
 void add_values(const VolumeProgram& program, const Values& values, std::size_t i,
-                MediumPiece& piece) {
+                std::uint64_t receives, MediumPiece& piece) {
     piece.extinction += positive(values(program.sources.absorption, i));
     piece.emission += positive(values(program.emission, i));
     for (const PhaseSource& phase : program.sources.phases) {
@@ -45,7 +45,7 @@ void add_values(const VolumeProgram& program, const Values& values, std::size_t 
         piece.extinction += scattering;
         piece.scattering += scattering;
         piece.phases.push_back(
-            {phase.kind, {values(phase.first, i), values(phase.second, i)}, scattering});
+            {phase.kind, {values(phase.first, i), values(phase.second, i)}, scattering, receives});
     }
 }
 
@@ -66,6 +66,11 @@ void MediaFiller::add_ray(const Ray& ray, float shift, std::span<const FilledSpa
         if (!m_there.empty()) add_pieces(ray, shift, m_ends[i], m_ends[i + 1], m_there);
     }
     m_media.end_ray();
+}
+
+std::uint64_t MediaFiller::receives(std::uint32_t instance) const {
+    return instance == FilledThings::kWorld ? m_scene.receives_in_volumes
+                                            : m_scene.instances[instance].receives;
 }
 
 /// Of a part in which the same things are there all along.
@@ -92,7 +97,7 @@ void MediaFiller::add_pieces(const Ray& ray, float shift, float begin, float end
         const float at = piece.begin + (own - std::floor(own)) * (piece.end - piece.begin);
         for (const FilledSpan& span : there) {
             if (span.program->is_homogeneous()) {
-                add_values(*span.program, Values(nullptr), 0, piece);
+                add_values(*span.program, Values(nullptr), 0, receives(span.instance), piece);
                 continue;
             }
             Asked& asked = m_asked[{span.instance, span.material, ray.type}];
@@ -159,7 +164,7 @@ void MediaFiller::fill(std::uint32_t instance, const VolumeProgram& program,
     Run run = program.program.prepare(input, places.size());
     program.program.execute(run);
     for (std::size_t i = 0; i < places.size(); ++i)
-        add_values(program, Values(&run), i, m_media.pieces[places[i].piece]);
+        add_values(program, Values(&run), i, receives(instance), m_media.pieces[places[i].piece]);
 }
 
 }  // namespace granita

@@ -56,6 +56,7 @@ class MediaFiller {
     };
     void add_pieces(const Ray& ray, float shift, float begin, float end,
                     std::span<const FilledSpan> there);
+    std::uint64_t receives(std::uint32_t instance) const;
     void fill(std::uint32_t instance, const VolumeProgram& program, std::span<const Place> places);
 
     const Scene& m_scene;

@@ -14,8 +14,9 @@ namespace granita {
 
 struct MediumPhase {
     PhaseKind kind = PhaseKind::HenyeyGreenstein;
-    Vec2f form{0.0f};        ///< the two numbers of PhaseKind
-    Vec3f scattering{0.0f};  ///< coefficient, 1 / metre
+    Vec2f form{0.0f};                ///< the two numbers of PhaseKind
+    Vec3f scattering{0.0f};          ///< coefficient, 1 / metre
+    std::uint64_t receives = ~0ULL;  ///< as Instance::receives, of what it fills
 };
 
 struct MediumPiece {

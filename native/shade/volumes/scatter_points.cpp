@@ -50,6 +50,7 @@ void ScatterPoints::add(const Ray& ray, const ScatterPlace& at, std::uint32_t pl
         if (rest < mean_size(phase.scattering)) break;
         rest -= mean_size(phase.scattering);
     }
+    m_points.receives.push_back(taken ? taken->receives : ~0ULL);
     for (Lobe& lobe : m_closure.lobes) {
         const bool is_it = taken && lobe.phase == taken->kind;
         lobe.weight.push_back(is_it ? taken->scattering * at.weight *
