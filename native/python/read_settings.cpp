@@ -123,6 +123,11 @@ void read_options(const Record& r, Options& o) {
         r, "occlusion_factor", r.number("occlusion_factor", o.bounces.occlusion_factor), 0.0);
     o.bounces.occlusion_added =
         at_least(r, "occlusion_added", r.number("occlusion_added", o.bounces.occlusion_added), 0.0);
+    // It is found by rays, though they may go no further.
+    if (o.bounces.occlusion_added > 0.0f && o.bounces.most == 0) {
+        o.bounces.most = 1;
+        o.bounces.diffuse = o.bounces.glossy = o.bounces.transmission = o.bounces.volume = 0;
+    }
     o.refine_samples = r.boolean("refine_samples", o.refine_samples);
     o.shading_threshold =
         at_least(r, "shading_threshold", r.number("shading_threshold", o.shading_threshold), 0.0);

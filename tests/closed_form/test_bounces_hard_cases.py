@@ -260,3 +260,19 @@ def test_one_ray_tells_of_the_world_and_what_hides_it():
     result = under_a_card(123, bounces=4)
     assert result["statistics"]["rays_occlusion"] == 0
     assert result["statistics"]["rays_bounce"] > 0
+
+
+@pytest.mark.parametrize("bounces", [0, 3])
+@pytest.mark.parametrize("light_samples", [1, 16])
+def test_colours_below_nothing_reflect_nothing(bounces, light_samples):
+    """As in Cycles.  A ray's part of a lobe was a quotient of nearly nothing: - 1e36 in every pixel."""
+    snapshot = s.orthographic(
+        (8, 8), samples=16, bounces=bounces, light_samples=light_samples, clamp_indirect=0.0
+    )
+    nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.4, -0.2, 0.1, 1.0)}}]
+    snapshot["materials"].append({"name": "Odd", "nodes": nodes, "surface": (0, "BSDF")})
+    s.quad(snapshot, s.rectangle(-9, -9, 99, 99), 0)
+    s.constant_world(snapshot, 1.0)
+    snapshot["world"]["lights_scene"] = True
+    picture = s.render(snapshot)["combined"][..., :3]
+    assert np.abs(picture - [0.4, 0.0, 0.1]).max() < 1e-5

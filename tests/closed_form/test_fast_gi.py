@@ -5,14 +5,21 @@ white light comes from all around, hidden by what is near."""
 import numpy as np
 import pytest
 import snapshots as s
-from test_bounces import ALBEDO, diffuse, mirror
+from test_bounces import ALBEDO, diffuse, material, mirror
 
 HEIGHT = 101.0
 FACTOR = 0.7
 
 
-def below_a_ceiling(floor, **options):
-    """A floor that fills the frame, `HEIGHT` below an endless ceiling behind the camera; a world of 1."""
+def pane(snapshot, color):
+    """Shows what lies behind it, unbent."""
+    nodes = [{"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (color,) * 3 + (1.0,)}}]
+    return material(snapshot, nodes, (0, "BSDF"))
+
+
+def below_a_ceiling(floor, ceiling=None, panes=(), **options):
+    """A floor that fills the frame, `HEIGHT` below an endless ceiling behind the camera; a world of 1.  `panes`: how far
+    below the ceiling, behind the camera too, and of which colour each."""
     snapshot = s.orthographic(
         (16, 16),
         samples=16,
@@ -22,7 +29,10 @@ def below_a_ceiling(floor, **options):
         **{"bounces": 4, "occlusion_factor": FACTOR, **options},
     )
     s.quad(snapshot, s.rectangle(-1e5, -1e5, 1e5, 1e5, z=HEIGHT - 1.0), floor(snapshot))
-    s.quad(snapshot, s.rectangle(-1e5, -1e5, 1e5, 1e5, z=-1.0), diffuse(snapshot, ALBEDO))
+    above = ceiling(snapshot) if ceiling else diffuse(snapshot, ALBEDO)
+    s.quad(snapshot, s.rectangle(-1e5, -1e5, 1e5, 1e5, z=-1.0), above)
+    for below, color in panes:
+        s.quad(snapshot, s.rectangle(-1e5, -1e5, 1e5, 1e5, z=below - 1.0), pane(snapshot, color))
     s.constant_world(snapshot, 1.0)
     snapshot["world"]["lights_scene"] = True
     return s.render(snapshot)
@@ -52,7 +62,7 @@ def test_a_mirror_does_not_count():
     assert rendered["combined"][..., 0].mean() == pytest.approx(due, rel=0.01)
 
 
-@pytest.mark.parametrize("bounces", [1, 3])
+@pytest.mark.parametrize("bounces", [0, 1, 3])
 @pytest.mark.parametrize("reach", [0.9, 1.5])
 def test_white_light_is_added_at_every_surface(bounces, reach):
     """Planes light each other with as much as reaches the floor."""
@@ -63,6 +73,36 @@ def test_white_light_is_added_at_every_surface(bounces, reach):
         bounces=bounces,
     )
     due = FACTOR * min(1.0, reach**-2) * sum(ALBEDO ** (k + 1) for k in range(bounces + 1))
+    assert rendered["combined"][..., 0].mean() == pytest.approx(due, rel=0.01)
+
+
+@pytest.mark.parametrize("reach", [0.9, 1.5])
+def test_white_light_is_added_once_however_many_panes_there_are(reach):
+    """A pane that lets half of the light through instead of the ceiling, and a clear one below it: both pass on the
+    world as well."""
+    rendered = below_a_ceiling(
+        lambda snapshot: diffuse(snapshot, ALBEDO),
+        lambda snapshot: pane(snapshot, 0.5),
+        panes=[(0.5, 1.0)],
+        occlusion_added=FACTOR,
+        occlusion_distance=reach * HEIGHT,
+        bounces=1,
+    )
+    beyond = min(
+        1.0, reach**-2
+    )  # of the light: what comes from beyond the reach without meeting a pane
+    due = ALBEDO * (0.5 + FACTOR * (beyond + 0.5 * (1 - beyond)))
+    assert rendered["combined"][..., 0].mean() == pytest.approx(due, rel=0.01)
+
+
+def test_a_pane_does_not_begin_the_distance_anew():
+    rendered = below_a_ceiling(
+        lambda snapshot: diffuse(snapshot, ALBEDO),
+        panes=[(0.9, 1.0)],
+        occluded_from=1,
+        occlusion_distance=1.5 * HEIGHT,
+    )
+    due = ALBEDO * FACTOR / 1.5**2
     assert rendered["combined"][..., 0].mean() == pytest.approx(due, rel=0.01)
 
 

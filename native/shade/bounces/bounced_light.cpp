@@ -11,6 +11,7 @@
 #include "math/sampling.h"
 #include "shade/bounces/seen_world.h"
 #include "shade/bounces/way_choice.h"
+#include "shade/bounces/white_light.h"
 #include "shade/nodes/surface_run.h"
 #include "shade/volumes/scatter_points.h"
 
@@ -136,7 +137,8 @@ class BouncedLight::Wave {
         m_rays.clear();
         for (const BouncedPath& path : m_paths) {
             m_rays.push_back(path.next.ray);
-            if (path.is_occlusion(m_limits)) m_rays.back().distance = m_limits.occlusion_distance;
+            if (path.is_occlusion(m_limits))
+                m_rays.back().distance = std::max(m_limits.occlusion_distance - path.length, 0.0f);
         }
         m_rays_traced += m_rays.size();
         m_light.m_direct.rays()->nearest(m_rays, m_met);
@@ -145,18 +147,15 @@ class BouncedLight::Wave {
         for (const RayScene::Met& one : m_met) m_meets_nothing[one.ray] = 0;
     }
 
-    /// Of the white light around everything.
     void add_occlusion() {
-        std::vector<float> open(m_paths.size(), m_limits.occlusion_added);
-        for (const RayScene::Met& one : m_met)
-            if (one.hit.distance < m_limits.occlusion_distance) open[one.ray] = 0.0f;
+        const std::vector<Vec3f> light =
+            white_light(*m_light.m_direct.rays(), m_paths, m_rays, m_limits);
         for (std::size_t i = 0; i < m_paths.size(); ++i) {
             const LobeRay& ray = m_paths[i].next;
-            const Vec3f light = ray.diffuse * open[i];
             if (m_paths[i].depth > 1)
-                bring(m_paths[i], light, Vec3f(0.0f));
-            else if (is_finite(ray.weight * light))
-                m_gathered.diffuse[ray.point] += ray.weight * light;
+                bring(m_paths[i], light[i], Vec3f(0.0f));
+            else if (is_finite(ray.weight * light[i]))
+                m_gathered.diffuse[ray.point] += ray.weight * light[i];
         }
     }
 

@@ -19,7 +19,7 @@ class SunLight : public LightSource {
         m_one_minus_cos = 2.0f * s * s;
         if (is_hard()) return;
         if (light.sun_flat) {
-            m_radius = std::tan(half);
+            m_radius = std::abs(std::tan(half));  // pi / 2 is a little more in single precision
             m_pdf = 1.0f / (kPi * m_radius * m_radius);
             m_radiance *= m_pdf;
             return;

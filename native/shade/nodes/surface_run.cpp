@@ -4,6 +4,11 @@
 namespace granita {
 namespace {
 
+/// Lobes reflect no less than nothing, as in Cycles; what shines may.
+void make_positive(std::vector<Vec3f>& weights) {
+    for (Vec3f& weight : weights) weight = glm::max(weight, Vec3f(0.0f));
+}
+
 SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::size_t& broken) {
     SurfaceClosure closure;
     for (const LobeSource& from : sources.lobes) {
@@ -18,6 +23,7 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::si
         lobe.cosine_bumps = from.cosine_bumps;
         lobe.weight = values_of(run, from.weight);
         broken += make_finite(lobe.weight);
+        make_positive(lobe.weight);
         lobe.normal = values_of(run, from.normal);
         lobe.roughness = values_of(run, from.roughness);
         if (from.is_stretched) {
@@ -40,6 +46,7 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::si
         lobe.entry = from.entry;
         lobe.weight = values_of(run, from.weight);
         broken += make_finite(lobe.weight);
+        make_positive(lobe.weight);
         lobe.normal = values_of(run, from.normal);
         lobe.albedo = values_of(run, from.albedo);
         lobe.radius = values_of(run, from.radius);

@@ -76,7 +76,7 @@ TEST(SunLight, irradiance_is_its_strength_whatever_its_angle) {
 
 TEST(SunLight, flat_one_shines_alike_from_each_place_of_its_disc) {
     // The mean over a disc of radius r a metre away of the cosine 1 / sqrt(1 + rho^2).
-    for (const double angle : {0.0, 0.00918, 0.6, 1.57, 2.5}) {
+    for (const double angle : {0.0, 0.00918, 0.6, 1.57, 2.5, M_PI}) {
         Light light = light_of(LightKind::Sun, 3.0f, aimed({0, 0, 9}, {0, 0, -1}));
         light.sun_angle = static_cast<float>(angle);
         light.sun_flat = true;
