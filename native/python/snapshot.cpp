@@ -140,6 +140,8 @@ template std::vector<std::uint64_t> Record::values(const char*,
                                                    const std::vector<py::ssize_t>&) const;
 template std::vector<std::uint8_t> Record::values(const char*,
                                                   const std::vector<py::ssize_t>&) const;
+template py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast> Record::array(
+    const char*, const std::vector<py::ssize_t>&) const;
 template py::array_t<float, py::array::c_style | py::array::forcecast> Record::array(
     const char*, const std::vector<py::ssize_t>&) const;
 template py::array_t<double, py::array::c_style | py::array::forcecast> Record::array(

@@ -82,14 +82,16 @@ struct Material {
 };
 
 /// An image that nodes refer to by name.  Either a file (OpenImageIO reads it, tiled and cached) or
-/// pixels.
+/// pixels, as numbers or as bytes.
 struct Image {
     std::string name;
-    std::string path;                 ///< absolute; empty when pixels are given
+    std::string path;                 ///< absolute; empty where there is no file
     std::string colorspace = "sRGB";  ///< Blender's colorspace_settings.name
     std::string alpha_mode = "STRAIGHT";
     int width = 0, height = 0;
     std::vector<float> pixels;  ///< [height][width][4], lower-left first, scene-linear, or empty
+    std::vector<std::uint8_t> bytes;  ///< the same, colour encoded as sRGB, or empty
+    bool is_file() const { return pixels.empty() && bytes.empty(); }
     bool operator==(const Image&) const = default;
 };
 

@@ -91,20 +91,43 @@ def test_straight_alpha_of_painted_bytes(scene, render):
 
 
 @pytest.mark.parametrize("strip", [1, 40, 1 << 14])  # pixels: a part of a row, some rows, all
-def test_every_painted_byte_is_decoded_as_srgb(scene, monkeypatch, strip):
+def test_every_painted_byte_is_handed_over_as_it_is(scene, monkeypatch, strip):
     from granita.export.shading import image as images
 
     monkeypatch.setattr(images, "_STRIP", strip)
-    encoded = np.repeat(np.arange(256) / 255, 4).reshape(-1, 4)
-    encoded[:, 3] = 1
+    record = exported_bytes(scene, every_byte(), "sRGB")
+    assert record["colorspace"] == "sRGB" and "pixels" not in record
+    assert record["bytes"].dtype == np.uint8
+    assert (record["bytes"].reshape(-1, 4) == every_byte()).all()
+
+
+@pytest.mark.parametrize("strip", [1, 40, 1 << 14])
+def test_bytes_of_a_space_that_is_not_known_are_decoded_as_srgb(scene, monkeypatch, strip):
+    from granita.export.shading import image as images
+
+    monkeypatch.setattr(images, "_STRIP", strip)
+    found = exported_bytes(scene, every_byte(), "Filmic sRGB")["pixels"].reshape(-1, 4)
+    # IEC 61966-2-1
+    x = every_byte() / 255
+    curve = np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4)
+    assert np.abs(found - curve).max() < 1e-6
+
+
+def every_byte():
+    """[256, 4], opaque."""
+    values = np.repeat(np.arange(256), 4).reshape(-1, 4)
+    values[:, 3] = 255
+    return values
+
+
+def exported_bytes(scene, values, space):
+    """The record of a painted image of 16 by 16 pixels."""
     image = bpy.data.images.new("Image", 16, 16)
-    image.pixels.foreach_set(encoded.astype(np.float32).ravel())
+    image.colorspace_settings.name = space
+    image.pixels.foreach_set((values / 255).astype(np.float32).ravel())
     tree, node = textured(scene, image)
     tree.emit(node.outputs["Color"])
-    found = exported(scene)[0][0]["pixels"].reshape(-1, 4)
-    # IEC 61966-2-1
-    curve = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-    assert np.abs(found - curve).max() < 1e-6
+    return exported(scene)[0][0]
 
 
 def test_formats_that_blender_reads_come_as_pixels(scene, tmp_path):
@@ -244,10 +267,10 @@ def test_generated_pixels_are_read_once_and_painted_ones_each_time(scene):
     tree.emit(node.outputs["Color"])
     first, _ = exported(scene)
     again, _ = exported(scene)
-    assert first[0]["pixels"] is again[0]["pixels"]
+    assert first[0]["bytes"] is again[0]["bytes"]
     image.generated_color = (1, 0, 0, 1)
-    assert exported(scene)[0][0]["pixels"][0, 0].tolist() == [1, 0, 0, 1]
+    assert exported(scene)[0][0]["bytes"][0, 0].tolist() == [255, 0, 0, 255]
     image.pixels.foreach_set(np.ones(8 * 8 * 4, dtype=np.float32))
-    assert exported(scene)[0][0]["pixels"][0, 0].tolist() == [1, 1, 1, 1]
+    assert exported(scene)[0][0]["bytes"][0, 0].tolist() == [255, 255, 255, 255]
     image.pixels.foreach_set(np.zeros(8 * 8 * 4, dtype=np.float32))
-    assert exported(scene)[0][0]["pixels"][0, 0].tolist() == [0, 0, 0, 0]
+    assert exported(scene)[0][0]["bytes"][0, 0].tolist() == [0, 0, 0, 0]

@@ -116,7 +116,7 @@ def _hand_over(record, pixels, image, label, report):
         record["colorspace"] = "scene_linear"
     elif space != "sRGB" and space not in _LINEAR_SPACES:
         report(label, f"its colour space '{space}' is read as sRGB")
-    record["pixels"] = pixels
+    record["pixels" if pixels.dtype == np.float32 else "bytes"] = pixels
 
 
 def _is_in_a_file(image):
@@ -225,7 +225,9 @@ def _generated_pixels(image):
 
 
 def _pixels(image):
-    """float32 [h, w, 4], lower left first, scene-linear, alpha associated; None where Blender has none."""
+    """float32 [h, w, 4], lower left first, scene-linear, alpha associated, or uint8, colour encoded as sRGB: a
+    quarter of the memory, and nothing is decoded to be encoded again.  None where Blender has none.
+    """
     width, height = image.size
     if width == 0 or height == 0:
         return None
@@ -234,8 +236,12 @@ def _pixels(image):
     image.pixels.foreach_get(pixels.reshape(-1))
     if count != 4:
         pixels = _with_four_channels(pixels)
-    if not image.is_float:
-        _decode_bytes(pixels, image.colorspace_settings.name, image.alpha_mode)
+    if image.is_float:
+        return pixels
+    space = image.colorspace_settings.name
+    if space == "sRGB":
+        return _bytes(pixels, _associates(space, image.alpha_mode))
+    _decode_bytes(pixels, space, image.alpha_mode)
     return pixels
 
 
@@ -248,25 +254,49 @@ def _with_four_channels(values):
     return pixels
 
 
-def _decode_bytes(pixels, space, alpha_mode):
-    """Blender gives the pixels of 8-bit images in their own space, alpha straight; of others as we want them.
+def _associates(space, alpha_mode):
+    return space not in ("Non-Color", "Raw") and alpha_mode not in ("CHANNEL_PACKED", "NONE")
 
-    By a table, and by rows that stay in the processor's cache: an artist waits for it at each frame.
-    """
-    associates = space not in ("Non-Color", "Raw") and alpha_mode not in ("CHANNEL_PACKED", "NONE")
+
+def _strips(pixels):
+    """Rows that stay in the processor's cache: an artist waits for what is done to them at each frame."""
+    rows = max(1, _STRIP // pixels.shape[1])
+    return (slice(begin, begin + rows) for begin in range(0, len(pixels), rows))
+
+
+def _associate(color, alpha):
+    """Colour times 255 by alpha, in whole bytes, cut off, as in Cycles."""
+    color *= alpha
+    color += np.float32(1e-3)
+
+
+def _bytes(pixels, associates):
+    """The bytes that Blender's numbers were, alpha straight there."""
+    found = np.empty(pixels.shape, dtype=np.uint8)
+    for rows in _strips(pixels):
+        strip = pixels[rows] * np.float32(255)
+        if associates:
+            _associate(strip[..., :3], pixels[rows, :, 3:])
+            strip[..., 3] += np.float32(0.5)
+        else:
+            strip += np.float32(0.5)
+        found[rows] = strip
+    return found
+
+
+def _decode_bytes(pixels, space, alpha_mode):
+    """Blender gives the pixels of 8-bit images in their own space, alpha straight; of others as we want them."""
+    associates = _associates(space, alpha_mode)
     if space in _LINEAR_SPACES and not associates:
         return
     decoded = np.arange(256, dtype=np.float32) / 255
     if space not in _LINEAR_SPACES:
         decoded = _linear_from_srgb(decoded)
-    rows = max(1, _STRIP // pixels.shape[1])
-    for begin in range(0, len(pixels), rows):
-        strip = pixels[begin : begin + rows]
+    for rows in _strips(pixels):
+        strip = pixels[rows]
         color = strip[..., :3] * np.float32(255)
         if associates:
-            # In whole bytes, cut off, as in Cycles.
-            color *= strip[..., 3:]
-            color += np.float32(1e-3)
+            _associate(color, strip[..., 3:])
         else:
             color += np.float32(0.5)
         strip[..., :3] = decoded.take(color.astype(np.uint8))

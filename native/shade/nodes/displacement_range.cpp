@@ -75,7 +75,8 @@ class Ranges {
         const std::string name = node.text("image", "");
         for (const Image& image : m_images) {
             if (image.name != name) continue;
-            if (image.pixels.empty())
+            if (!image.bytes.empty()) return Range{0.0f, 1.0f};
+            if (image.is_file())
                 return is_unit_file(image.path) ? std::optional(Range{0.0f, 1.0f}) : std::nullopt;
             const auto [low, high] = std::ranges::minmax(image.pixels);
             return Range{std::min(low, 0.0f), std::max(high, 1.0f)};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -50,12 +51,13 @@ void OpenFiles::forget(Entry& entry) {
 }
 
 TextureHeader read_texture_header(const Image& image) {
-    if (image.pixels.empty()) return TextureFile(image).header();
+    if (image.is_file()) return TextureFile(image).header();
     TextureHeader header;
     header.width = image.width;
     header.height = image.height;
     header.has_alpha = image.alpha_mode != "NONE";
-    header.encoded = image.colorspace == "sRGB" && are_bytes(image.pixels);
+    header.encoded =
+        !image.bytes.empty() || (image.colorspace == "sRGB" && are_bytes(image.pixels));
     header.type = header.encoded ? TexelType::Byte : TexelType::Float;
     return header;
 }
@@ -87,10 +89,12 @@ bool TiledImage::make_ready(const Progress* progress) {
 }
 
 void TiledImage::decode(const Progress* progress) {
-    if (!m_image.pixels.empty()) {
+    if (m_image.is_file()) {
+        decode_file(progress);
+    } else if (m_image.bytes.empty()) {
         decode_pixels(progress);
     } else {
-        decode_file(progress);
+        decode_bytes(progress);
     }
 }
 
@@ -148,6 +152,22 @@ void TiledImage::decode_pixels(const Progress* progress) {
             store_texel(color, row.data() + x * texel, m_header.type);
         }
         writer.push(row.data(), 1);
+    }
+}
+
+/// As they are, their lowest row first.
+void TiledImage::decode_bytes(const Progress* progress) {
+    m_levels = make_levels(m_header.width, m_header.height, m_header.type);
+    LevelWriter writer(m_levels, m_decoder, *m_cache);
+    const std::size_t length = byte_size(TexelType::Byte) * m_header.width;
+    std::vector<std::uint8_t> row(length);
+    for (int y = m_header.height - 1; y >= 0; --y) {
+        if (progress) progress->check();
+        std::copy_n(m_image.bytes.data() + static_cast<std::size_t>(y) * length, length,
+                    row.data());
+        for (std::size_t alpha = 3; !m_header.has_alpha && alpha < length; alpha += 4)
+            row[alpha] = 255;
+        writer.push(std::as_bytes(std::span(row)).data(), 1);
     }
 }
 

@@ -73,6 +73,7 @@ class TiledImage {
     void decode(const Progress* progress);
     void decode_file(const Progress* progress);
     void decode_pixels(const Progress* progress);
+    void decode_bytes(const Progress* progress);
     const Tile* reload(int level, int across, int down);
     std::unique_ptr<Tile> read_tile(int level, int across, int down);
     bool read_stored_tile(int level, int across, int down, std::byte* out);

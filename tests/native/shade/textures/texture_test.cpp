@@ -131,6 +131,41 @@ TEST(Texture, divided_by_alpha_a_half_covered_texel_keeps_its_colour) {
     EXPECT_NEAR(far.w, 0.5f, 1e-6);
 }
 
+// Each texel is the light of its bytes, as floats of the same light are.
+TEST(Texture, bytes_are_decoded_as_srgb_and_their_alpha_is_not) {
+    Image image;
+    image.name = "Image";
+    image.width = 256;
+    image.height = 2;
+    for (int i = 0; i < 512; ++i) {
+        const auto c = static_cast<std::uint8_t>(i % 256);
+        const auto alpha = static_cast<std::uint8_t>(i < 256 ? 255 : 51);
+        image.bytes.insert(image.bytes.end(), {c, c, c, alpha});
+    }
+    for (const char* mode : {"STRAIGHT", "NONE"}) {
+        image.alpha_mode = mode;
+        Look look(image);
+        for (int i = 0; i < 512; ++i) {
+            const Vec2f centre((float(i % 256) + 0.5f) / 256, (float(i / 256) + 0.5f) / 2);
+            const Vec4f found = look.at(centre, 0.0f);
+            EXPECT_NEAR(found.x, linear_from_srgb(float(i % 256) / 255), 1e-5) << i;
+            const bool covered = i < 256 || image.alpha_mode == "NONE";
+            EXPECT_NEAR(found.w, covered ? 1.0f : 0.2f, 1e-6) << i;
+        }
+    }
+}
+
+TEST(Texture, bytes_of_stripes_are_a_mean_of_their_light_from_far) {
+    Image image;
+    image.name = "Image";
+    image.width = image.height = 64;
+    for (int i = 0; i < 64 * 64; ++i) {
+        const std::uint8_t c = i % 2 ? 255 : 0;
+        image.bytes.insert(image.bytes.end(), {c, c, c, 255});
+    }
+    EXPECT_NEAR(Look(image).at({0.3f, 0.7f}, 1.0f).x, 0.5f, 1e-6);
+}
+
 TEST(Texture, the_rim_is_wrapped_as_asked) {
     const Image image = image_of(4, 1, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, "Non-Color");
     const auto at = [&](TextureExtension extension, float x) {
