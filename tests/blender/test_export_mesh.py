@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What arrives of a mesh: faces, normals, attributes, materials."""
 
+import math
+
 import bpy
 import export_probe
 import numpy as np
@@ -104,6 +106,29 @@ def test_an_attribute_on_edges_comes_as_its_means_at_vertices(scene, cube):
     ]
     assert found["domain"] == "POINT" and not report.entries()
     assert found["values"][:, 0].tolist() == pytest.approx([sum(m) / len(m) for m in means])
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 0, 0), reason="means then, as of any numbers")
+@pytest.mark.parametrize(
+    "data_type, of_vertex",
+    [
+        ("BOOLEAN", any),
+        # Blender rounds means of whole numbers, halves away from 0.
+        ("INT", lambda met: math.floor(abs(sum(met) / len(met)) + 0.5) * (-1) ** (sum(met) < 0)),
+    ],
+)
+def test_whole_numbers_on_edges_stay_whole_numbers(scene, cube, data_type, of_vertex):
+    edges = cube.data.attributes.new("wanted", data_type, "EDGE")
+    values = [i in (0, 7) for i in range(12)] if data_type == "BOOLEAN" else list(range(-6, 6))
+    edges.data.foreach_set("value", values)
+    cube.data.materials.append(shading("wanted"))
+    found = attribute_of(geometry_of(export_probe.through_script()[0], "Cube"), "wanted")
+    of_vertices = [
+        of_vertex([v for v, edge in zip(values, cube.data.edges) if vertex in edge.vertices])
+        for vertex in range(8)
+    ]
+    assert len(set(of_vertices)) > 1
+    assert found["values"][:, 0].tolist() == of_vertices
 
 
 def test_plain_smooth_and_flat_need_no_corner_normals(scene, cube):

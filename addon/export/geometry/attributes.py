@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Values that a mesh carries on its points, faces and corners: UV maps, colours, named attributes."""
 
+import bpy
 import numpy as np
 
 from ..base.snapshot import Attribute
@@ -124,7 +125,7 @@ def shadable(data, names, domains, label, report):
             continue
         values, domain = attribute_values(attribute), domains.get(attribute.domain)
         if values is not None and attribute.domain == "EDGE":
-            values, domain = _means_at_vertices(data, values), "POINT"
+            values, domain = _at_vertices(data, values, attribute.data_type), "POINT"
         if values is None or domain is None:
             report(
                 label,
@@ -134,8 +135,9 @@ def shadable(data, names, domains, label, report):
         yield attribute, domain, values
 
 
-def _means_at_vertices(mesh, values):
-    """Of the edges there, as in Cycles; 0 where there are none."""
+def _at_vertices(mesh, values, data_type):
+    """Means of the edges there, as in Cycles; 0 where there are none.  Since Blender 4 whole numbers have whole
+    means, and a boolean is true where it is of any edge."""
     edges = np.empty((len(mesh.edges), 2), dtype=np.int32)
     mesh.edges.foreach_get("vertices", edges.reshape(-1))
     count = len(mesh.vertices)
@@ -143,7 +145,14 @@ def _means_at_vertices(mesh, values):
     met = np.bincount(ends, minlength=count).clip(1)
     by_end = np.repeat(values, 2, axis=0)
     sums = [np.bincount(ends, column, minlength=count) for column in by_end.T]
-    return (np.stack(sums, axis=1) / met[:, None]).astype(np.float32)
+    means = np.stack(sums, axis=1) / met[:, None]
+    if bpy.app.version < (4, 0, 0):
+        return means.astype(np.float32)
+    if data_type == "BOOLEAN":
+        means = np.where(means > 0.0, 1.0, 0.0)
+    elif data_type.startswith("INT"):
+        means = np.copysign(np.floor(np.abs(means) + 0.5), means)  # halves away from 0
+    return means.astype(np.float32)
 
 
 def finite_attributes(attributes, label, report):
