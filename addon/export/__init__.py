@@ -20,7 +20,7 @@ from .scene.instance import linked, place
 from .scene.lamp_emitters import add_emitters
 from .scene.lamps import energies, lamp_graphs, place_lamps, read_lamps
 from .scene.light_linking import link_lights
-from .scene.light_paths import report_volume_bounces
+from .scene.light_paths import report_transparent_glass, report_volume_bounces
 from .scene.options import options_record, rendered_frame, scene_crop
 from .scene.persistent_state import PersistentState
 from .scene.scene_objects import read_scene_objects
@@ -138,6 +138,7 @@ def export_frame(
         persistent_state.keep(scene_objects)
     lights = place_lamps(lamps, scan, motion, report)
     instances, materials = _fill_empty_slots(instances, list(seen.materials))
+    report_transparent_glass(scene, report)
     report_volume_bounces(scene, settings, (*materials, world), report)
     snapshot = Snapshot(
         options=options,

@@ -49,6 +49,18 @@ def _fast_gi(cycles, world, in_view):
     }
 
 
+def report_transparent_glass(scene, report):
+    """Names Cycles' Transparent Glass, where it would show.
+
+    Args:
+        scene: whose film counts.
+        report: called with (datablock, message).
+    """
+    cycles = getattr(scene, "cycles", None)
+    if scene.render.film_transparent and getattr(cycles, "film_transparent_glass", False):
+        report("render settings", "Transparent Glass is not used: glass is as opaque as anything")
+
+
 def report_volume_bounces(scene, settings, records, report):
     """Names the limit that counts for nothing where light is not followed, if something is filled.
 
