@@ -47,6 +47,9 @@ def _draw_light(layout, light):
         sizes.prop(light, "size", text="Size X")
         sizes.prop(light, "size_y", text="Y")
     layout.column().prop(*shadow_switch(light), text="Cast Shadow")
+    cycles = getattr(light, "cycles", None)
+    if hasattr(cycles, "max_bounces"):
+        layout.column().prop(cycles, "max_bounces")
 
 
 class GRANITA_LIGHT_PT_light(_LightPanel, bpy.types.Panel):

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Node graphs, images and lights of the snapshot.
+#include <algorithm>
+
 #include "python/snapshot.h"
 
 namespace granita::python {
@@ -128,6 +130,8 @@ void read_light(const Record& r, Light& light) {
     light.visible_volume = r.boolean("visible_volume", true);
     light.diffuse_factor = static_cast<float>(r.number("diffuse_factor", 1.0));
     light.specular_factor = static_cast<float>(r.number("specular_factor", 1.0));
+    light.most_bounces = static_cast<int>(
+        std::clamp(r.number("most_bounces", Light::kAnyBounces), 0.0, double{Light::kAnyBounces}));
     light.receiver_set = light_set(r, "receiver_set");
     light.blocker_set = light_set(r, "blocker_set");
     if (r.has("nodes")) read_graph(r, light.graph);

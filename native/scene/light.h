@@ -16,6 +16,7 @@ enum class AreaShape { Square, Rectangle, Disk, Ellipse };
 
 /// Units are Blender's: point, spot and area in watts of radiant flux, sun in W/m^2.
 struct Light {
+    static constexpr int kAnyBounces = 1 << 15;
     std::string name;
     LightKind kind = LightKind::Point;
     std::vector<Mat4d> world_from_light;  ///< [K] Blender's light space: shines along -z
@@ -42,6 +43,7 @@ struct Light {
     /// Light and shadow linking: which bit of Instance::receives and ::blocks counts; -1 = it
     /// lights, and is shadowed by, everything.
     int receiver_set = -1, blocker_set = -1;
+    int most_bounces = kAnyBounces;  ///< of surfaces between the camera and what it lights
     NodeGraph graph;  ///< surface: an Emission that multiplies its light; node -1 = none
     bool operator==(const Light&) const = default;
 };

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scene_parts
 
-from granita.export.scene.light_paths import light_paths
+from granita.export.scene.light_paths import light_paths, report_transparent_glass
 
 
 def test_no_limits_are_handed_over_where_light_is_not_followed(scene):
@@ -38,6 +38,15 @@ def test_limits_are_those_of_cycles(scene):
     }
     scene.granita.bounces = "FAST"
     assert light_paths(scene, scene.granita) == {**limits, "bounces": 2}
+
+
+@pytest.mark.parametrize("transparent", [False, True])
+@pytest.mark.parametrize("glass", [False, True])
+def test_transparent_glass_is_named_where_it_would_show(scene, transparent, glass):
+    scene.render.film_transparent, scene.cycles.film_transparent_glass = transparent, glass
+    named = []
+    report_transparent_glass(scene, lambda *words: named.append(words))
+    assert [what for what, _ in named] == ["render settings"] * (transparent and glass)
 
 
 def test_fast_gi_is_read(scene):
@@ -185,6 +194,15 @@ def test_a_room_is_as_bright_as_in_cycles(scene, render, kind, rough):
     off = np.abs(blocks[1] - blocks[0]) / theirs.mean()
     assert np.median(off) < (0.03 if rough == 0.0 else 0.015)
     assert np.percentile(off, 95) < (0.25 if rough == 0.0 else 0.12)
+
+
+@pytest.mark.parametrize("bounces", [0, 1])
+def test_max_bounces_of_a_lamp(scene, render, bounces):
+    surface(room(scene), "ShaderNodeBsdfDiffuse", (0.7, 0.7, 0.7))
+    bpy.data.lights["Lamp"].cycles.max_bounces = bounces
+    theirs, ours = render_bounced(scene, render, 512)
+    # .6 and .86 of the light come after so few bounces; noise of .002.
+    assert ours.mean(axis=(0, 1)) == pytest.approx(theirs.mean(axis=(0, 1)), rel=0.02)
 
 
 @pytest.mark.parametrize("hidden", ["visible_diffuse", "visible_glossy"])

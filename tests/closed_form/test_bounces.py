@@ -83,6 +83,24 @@ def test_limits_of_diffuse_and_glossy_bounces_are_their_own():
     assert mean(snapshot) == 0.0
 
 
+@pytest.mark.parametrize("bounces", [0, 1, 3])
+def test_a_lamp_may_light_what_is_seen_after_few_bounces_alone(bounces):
+    """A lamp's own limit is that of all ways where it alone shines."""
+
+    def lit(limit, **own):
+        snapshot = inside(limit)
+        room(snapshot, diffuse(snapshot, ALBEDO))
+        place = np.eye(4)
+        place[:3, 3] = (0.0, 0.3, 0.2)
+        lamp = {"name": "Lamp", "kind": "POINT", "color": (1, 1, 1), "energy": 100.0}
+        snapshot["lights"] = [{**lamp, "world_from_light": place[None], **own}]
+        return mean(snapshot)
+
+    limited = lit(bounces)
+    assert lit(8, most_bounces=bounces) == pytest.approx(limited, rel=0.005)
+    assert lit(8) > 1.05 * limited
+
+
 def test_most_that_a_way_brings():
     """The walls are lamps to each other: 2.5.  Each way then brings half of that in three colours, 3.75: a clamp to .75
     leaves .25 of 1.25, whatever noise there is."""

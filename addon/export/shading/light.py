@@ -63,6 +63,7 @@ def light_record(light_object, matrices, report, images=None):
         "visible_glossy": bool(light_object.visible_glossy),
         "visible_transmission": bool(light_object.visible_transmission),
         "visible_volume": bool(light_object.visible_volume_scatter),
+        "most_bounces": _cycles(light, "max_bounces", 1024),
         "diffuse_factor": 1.0,
         "specular_factor": 1.0,
     }

@@ -160,7 +160,10 @@ struct ShadingPoints {
     std::vector<float> times;
     /// [n] of the rays that see them, metres; empty: from the camera
     std::vector<float> ray_lengths;
-    std::uint32_t depth = 0;  ///< how many surfaces lie between them and the camera
+    /// How many surfaces, and places in media, lie between them and the camera; of places in media
+    /// beyond kDepths, as these share no sequences with what they lie before.
+    std::uint32_t depth = 0;
+    static constexpr std::uint32_t kDepths = 1u << 16;
     /// [n] in the sample sequences of the frame; empty: in those of the grid, by row and column.
     std::vector<std::uint32_t> places;
     /// [n] as Instance::receives, where points of a batch differ; empty: as the instance has it.

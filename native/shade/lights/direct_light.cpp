@@ -326,6 +326,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     grid.by_lobe = m_impl->world.by_lobe();
     grid.placed = placed;
     grid.in_medium = closure.lobes.front().kind == LobeKind::Phase;
+    grid.depth = static_cast<int>(points.depth % ShadingPoints::kDepths);
     grid.balance = noise;
     grid.leaving = leaving;
     RayOffset ray_offset = m_impl->set.rays ? m_impl->set.rays->ray_offset(key) : RayOffset{};

@@ -28,6 +28,7 @@ Lamp::Lamp(const Light& light, float frame_time, const Vec3d& origin, LampPatter
       m_glossy(light.visible_glossy ? light.specular_factor : 0.0f),
       m_transmission(light.visible_transmission ? light.specular_factor : 0.0f),
       m_volume(light.visible_volume ? light.specular_factor : 0.0f),
+      m_most_bounces(light.most_bounces),
       m_receiver_set(light.receiver_set),
       m_blocker_set(light.blocker_set) {
     const int places = varies_over_time(light) ? kPlaces : 1;

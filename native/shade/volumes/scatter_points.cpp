@@ -9,8 +9,7 @@
 namespace granita {
 namespace {
 
-/// Beyond the depths of surfaces: these share no sequences with what they lie before.
-constexpr std::uint32_t kDepths = 1u << 16;
+constexpr std::uint32_t kDepths = ShadingPoints::kDepths;
 
 }  // namespace
 
