@@ -44,12 +44,20 @@ Rect tiles_of(const Rect& pixels) {
     return {tile(pixels.x0), tile(pixels.y0), tile(pixels.x1 - 1) + 1, tile(pixels.y1 - 1) + 1};
 }
 
-bool is_finite(const Mat4d& m) {
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
+bool is_finite(const Mat3d& m) {
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
             if (!std::isfinite(m[column][row])) return false;
     return true;
 }
+
+/// From camera to object space.
+struct Into {
+    explicit Into(const Mat4d& camera_from_object)
+        : origin(camera_from_object[3]), turn(glm::inverse(Mat3d(camera_from_object))) {}
+    Vec3d origin;
+    Mat3d turn;
+};
 
 }  // namespace
 
@@ -57,8 +65,8 @@ bool is_finite(const Mat4d& m) {
 struct FacesOfSamples::Mesh {
     const MeshRays& rays;
     const Knots& knots;
-    Mat4d object_from_camera;  ///< of what stands still
-    double nearest;            ///< no depth of it is less
+    Into still;      ///< of what stands still
+    double nearest;  ///< no depth of it is less
 };
 
 FacesOfSamples::FacesOfSamples(const View& view, std::shared_ptr<const SampleLevels> levels,
@@ -67,6 +75,7 @@ FacesOfSamples::FacesOfSamples(const View& view, std::shared_ptr<const SampleLev
     : m_view(view),
       m_levels(std::move(levels)),
       m_shading(shading),
+      m_progress(progress),
       m_rays(*view.scene, std::move(rays), progress) {
     static std::atomic<std::uint64_t> count{0};
     m_number = ++count;
@@ -106,9 +115,9 @@ std::optional<std::vector<std::uint32_t>> FacesOfSamples::of(
     const MeshRays mesh_rays(
         m_rays.shape(static_cast<std::size_t>(instance.geometry), shared, goes_on), *shared,
         passes);
-    const Mesh mesh{mesh_rays, knots, glm::inverse(knots.camera_from_object[0]),
+    const Mesh mesh{mesh_rays, knots, Into(knots.camera_from_object[0]),
                     std::max(m_view.projection.near_clip, static_cast<double>(box.lo.z))};
-    if (!is_finite(mesh.object_from_camera)) return std::nullopt;
+    if (!is_finite(mesh.still.turn)) return std::nullopt;
 
     std::vector<std::uint32_t> patches;
     std::mutex mutex;
@@ -143,7 +152,8 @@ void FacesOfSamples::look(const Mesh& mesh, const SampleTable& table, Vec2i tile
     const Projection& projection = m_view.projection;
     const bool moves = !is_static(mesh.knots.camera_from_object);
     MeshRays::Work work;
-    for (int y = here.y0; y < here.y1; ++y)
+    for (int y = here.y0; y < here.y1; ++y) {
+        m_progress.check();
         for (int x = here.x0; x < here.x1; ++x) {
             const auto pixel = static_cast<std::size_t>((y - tile.y * kTileSize) * kTileSize + x -
                                                         tile.x * kTileSize);
@@ -151,16 +161,16 @@ void FacesOfSamples::look(const Mesh& mesh, const SampleTable& table, Vec2i tile
                 const Look at = look_of(samples, i, projection);
                 const CameraLine line =
                     camera_line(projection, corner + Vec2d(samples.x[i], samples.y[i]), at);
-                const Mat4d into =
-                    moves ? glm::inverse(matrix_at(mesh.knots.camera_from_object, at.t))
-                          : mesh.object_from_camera;
+                const Into into =
+                    moves ? Into(matrix_at(mesh.knots.camera_from_object, at.t)) : mesh.still;
                 // From close by: what is far away would be rounded more than faces are large.
-                mesh.rays.meet({Vec3f(transform_point(into, line.at(mesh.nearest))),
-                                Vec3f(Mat3d(into) * line.way),
-                                std::numeric_limits<float>::infinity(), static_cast<float>(at.t)},
+                mesh.rays.meet({Vec3f(into.turn * (line.at(mesh.nearest) - into.origin)),
+                                Vec3f(into.turn * line.way), std::numeric_limits<float>::infinity(),
+                                static_cast<float>(at.t)},
                                patches, work);
             }
         }
+    }
     ObjectPool<TileCache>::give(std::move(cache));
 }
 

@@ -35,6 +35,7 @@ class FacesOfSamples final : public SampledFaces {
     const View& m_view;
     std::shared_ptr<const SampleLevels> m_levels;
     const ShadingSystem& m_shading;
+    const Progress& m_progress;
     mutable MeshRayStore m_rays;
     std::uint64_t m_number;  ///< of all that there were
 };
