@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Values that a mesh carries on its points, faces and corners: UV maps, colours, named attributes."""
 
-import bpy
 import numpy as np
 
 from ..base.snapshot import Attribute
@@ -138,6 +137,8 @@ def shadable(data, names, domains, label, report):
 def _at_vertices(mesh, values, data_type):
     """Means of the edges there, as in Cycles; 0 where there are none.  Since Blender 4 whole numbers have whole
     means, and a boolean is true where it is of any edge."""
+    import bpy
+
     edges = np.empty((len(mesh.edges), 2), dtype=np.int32)
     mesh.edges.foreach_get("vertices", edges.reshape(-1))
     count = len(mesh.vertices)
