@@ -20,7 +20,7 @@ from .scene.instance import linked, place
 from .scene.lamp_emitters import add_emitters
 from .scene.lamps import energies, lamp_graphs, place_lamps, read_lamps
 from .scene.light_linking import link_lights
-from .scene.light_paths import report_transparent_glass, report_volume_bounces
+from .scene.light_paths import report_occlusion, report_transparent_glass, report_volume_bounces
 from .scene.options import options_record, rendered_frame, scene_crop
 from .scene.persistent_state import PersistentState
 from .scene.scene_objects import read_scene_objects
@@ -82,6 +82,7 @@ def export_frame(
         viewpoint.crop,
         shutter.frame_time,
         in_view=depsgraph.mode == "VIEWPORT",
+        world=_evaluated_world(depsgraph),
     )
     camera_at_frame = viewpoint.record(depsgraph, report)
     camera_place = camera_at_frame["world_from_camera"][0]
@@ -138,6 +139,7 @@ def export_frame(
         persistent_state.keep(scene_objects)
     lights = place_lamps(lamps, scan, motion, report)
     instances, materials = _fill_empty_slots(instances, list(seen.materials))
+    report_occlusion(scene, _evaluated_world(depsgraph), report)
     report_transparent_glass(scene, report)
     report_volume_bounces(scene, settings, (*materials, world), report)
     snapshot = Snapshot(
@@ -177,6 +179,12 @@ def _fill_empty_slots(instances, materials):
     from .shading.default_material import fill_empty_slots
 
     return fill_empty_slots(instances, materials)
+
+
+def _evaluated_world(depsgraph):
+    from .shading.world import world_of
+
+    return world_of(depsgraph.scene_eval, depsgraph.view_layer_eval)
 
 
 def _world(depsgraph, report):

@@ -5,6 +5,7 @@ import bpy
 
 from .. import bridge, passes
 from ..export.scene.light_paths import LIMITS
+from ..export.shading.world import world_of
 from .engine_panel import EnginePanel
 from .problem import draw_problem
 from .sampling_presets import GRANITA_RENDER_PT_sampling_presets
@@ -94,9 +95,10 @@ class GRANITA_RENDER_PT_fast_gi(RenderPanel, bpy.types.Panel):
         column = self.column()
         column.active = scene.cycles.use_fast_gi
         column.prop(scene.cycles, "fast_gi_method", text="Method")
-        if scene.world is not None:
-            column.prop(scene.world.light_settings, "ao_factor", text="AO Factor")
-            column.prop(scene.world.light_settings, "distance", text="AO Distance")
+        world = world_of(scene, context.view_layer)
+        if world is not None:
+            column.prop(world.light_settings, "ao_factor", text="AO Factor")
+            column.prop(world.light_settings, "distance", text="AO Distance")
         if scene.cycles.fast_gi_method == "REPLACE":
             column.prop(scene.cycles, "ao_bounces", text="Viewport Bounces")
             column.prop(scene.cycles, "ao_bounces_render", text="Render Bounces")

@@ -2,14 +2,20 @@
 """Light from surface to surface in Blender: whose limits count, and a room beside Cycles in the same Blender."""
 
 import math
+from types import SimpleNamespace
 
 import bpy
+import exr
 import node_comparison
 import numpy as np
 import pytest
 import scene_parts
 
-from granita.export.scene.light_paths import light_paths, report_transparent_glass
+from granita.export.scene.light_paths import (
+    light_paths,
+    report_occlusion,
+    report_transparent_glass,
+)
 
 
 def test_no_limits_are_handed_over_where_light_is_not_followed(scene):
@@ -235,6 +241,70 @@ def test_caustics_are_as_cycles_filters_them(scene, render):
         blocks = [p.reshape(6, 4, 6, 4, 3).mean(axis=(1, 3)) for p in (theirs, ours)]
         # Of noise: .067 were seen with 64 light samples, .049 with 256.
         assert np.percentile(np.abs(blocks[1] - blocks[0]), 95) < 0.08 * theirs.mean()
+
+
+def dark_world(name, factor):
+    world = bpy.data.worlds.new(name)
+    world.use_nodes = True
+    world.node_tree.nodes.clear()
+    world.light_settings.ao_factor = factor
+    return world
+
+
+def open_floor(scene):
+    """Of an albedo of a half: with nothing above it Fast GI adds half of its factor."""
+    floor = scene_parts.add_square(scene, "Floor", 4.0)
+    surface(floor, "ShaderNodeBsdfDiffuse", (0.5, 0.5, 0.5))
+    scene_parts.add_camera(scene, (0.0, 0.0, 0.5), ortho_scale=1.0)
+    scene.render.resolution_x = scene.render.resolution_y = 8
+    scene.granita.bounces = "FULL"
+    scene.cycles.use_fast_gi, scene.cycles.fast_gi_method = True, "ADD"
+
+
+def added(scene, render):
+    return render(scene)["ViewLayer.Combined.R"].mean()
+
+
+def test_fast_gi_follows_an_animated_world(scene, tmp_path):
+    """In an animation, of which the file's own world is told nothing."""
+    open_floor(scene)
+    scene.world = dark_world("World", 0.0)
+    factors = {1: 0.2, 2: 0.9, 3: 0.4}
+    for frame, factor in factors.items():
+        scene.world.light_settings.ao_factor = factor
+        scene.world.light_settings.keyframe_insert("ao_factor", frame=frame)
+    scene.frame_start, scene.frame_end = 1, 3
+    scene_parts.multilayer_exr(scene)
+    scene.render.filepath = str(tmp_path / "frame")
+    bpy.ops.render.render(animation=True)
+    for frame, factor in factors.items():
+        picture = exr.read(str(tmp_path / f"frame{frame:04d}.exr"))
+        assert picture["ViewLayer.Combined.R"].mean() == pytest.approx(0.5 * factor, rel=1e-3)
+
+
+@pytest.mark.skipif(
+    "world_override" not in bpy.types.ViewLayer.bl_rna.properties, reason="from Blender 4.2 on"
+)
+@pytest.mark.parametrize("own", [True, False])
+def test_fast_gi_follows_the_world_of_a_view_layer(scene, render, own):
+    open_floor(scene)
+    scene.world = dark_world("World", 0.2) if own else None
+    scene.view_layers[0].world_override = dark_world("Override", 0.8)
+    assert added(scene, render) == pytest.approx(0.4, rel=1e-3)
+
+
+def test_an_ambient_occlusion_of_no_number_is_named(scene):
+    scene.cycles.use_fast_gi, scene.granita.bounces = True, "FULL"
+    world = dark_world("Odd", 0.5)
+    named = []
+    report_occlusion(scene, world, lambda *words: named.append(words))
+    assert not named
+    settings = SimpleNamespace(ao_factor=float("nan"), distance=1.0)
+    odd = SimpleNamespace(name_full="Odd", light_settings=settings)
+    report_occlusion(scene, odd, lambda *words: named.append(words))
+    assert [what for what, _ in named] == ["world 'Odd'"]
+    assert "occlusion_added" not in light_paths(scene, scene.granita, world=odd)
+    assert "occluded_from" not in light_paths(scene, scene.granita, world=odd)
 
 
 @pytest.mark.parametrize(

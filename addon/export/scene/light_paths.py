@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Limits of light's ways from surface to surface: `scene.granita.bounces` and those that Cycles has."""
 
+from math import isfinite
+
 # Cycles' property, the snapshot's option, Cycles' default: taken where its add-on is not enabled.
 LIMITS = (
     ("max_bounces", "bounces", 12),
@@ -16,13 +18,14 @@ LIMITS = (
 _FAST = 2  # bounces
 
 
-def light_paths(scene, settings, in_view=False):
+def light_paths(scene, settings, in_view=False, world=None):
     """The options of bounces; none where light is not followed.
 
     Args:
-        scene: whose settings of Cycles count, and whose world's of Ambient Occlusion.
+        scene: whose settings of Cycles count.
         settings: `scene.granita`, or None.
         in_view: for a 3D view, for which Fast GI has a number of its own.
+        world: evaluated, whose settings of Ambient Occlusion count; None: the scene's.
     """
     preset = getattr(settings, "bounces", "NONE")
     if preset == "NONE":
@@ -31,14 +34,14 @@ def light_paths(scene, settings, in_view=False):
     limits = {option: getattr(cycles, name, default) for name, option, default in LIMITS}
     if preset == "FAST":
         limits["bounces"] = min(limits["bounces"], _FAST)
-    return {**limits, **_fast_gi(cycles, scene.world, in_view)}
+    return {**limits, **_fast_gi(cycles, world or scene.world, in_view)}
 
 
 def _fast_gi(cycles, world, in_view):
     if world is None or not getattr(cycles, "use_fast_gi", False):
         return {}
     factor, distance = world.light_settings.ao_factor, world.light_settings.distance
-    if factor == 0.0:
+    if factor == 0.0 or not (isfinite(factor) and isfinite(distance)):
         return {}
     if cycles.fast_gi_method == "ADD":
         return {"occlusion_added": factor, "occlusion_distance": distance}
@@ -47,6 +50,24 @@ def _fast_gi(cycles, world, in_view):
         "occlusion_distance": distance,
         "occlusion_factor": factor,
     }
+
+
+def report_occlusion(scene, world, report):
+    """Names a world whose Ambient Occlusion is no number, if Fast GI asks for it.
+
+    Args:
+        scene: whose settings of Cycles count.
+        world: evaluated, or None.
+        report: called with (datablock, message).
+    """
+    if world is None or not getattr(getattr(scene, "cycles", None), "use_fast_gi", False):
+        return
+    settings = world.light_settings
+    if not (isfinite(settings.ao_factor) and isfinite(settings.distance)):
+        report(
+            f"world '{world.name_full}'",
+            "its Ambient Occlusion is no finite number: Fast GI is not used",
+        )
 
 
 def report_transparent_glass(scene, report):

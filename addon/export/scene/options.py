@@ -127,7 +127,7 @@ def scene_crop(scene, frame):
     return crop
 
 
-def options_record(scene, view_layer, settings, frame, crop, frame_time, in_view=False):
+def options_record(scene, view_layer, settings, frame, crop, frame_time, in_view=False, world=None):
     """The snapshot's options.
 
     Args:
@@ -138,6 +138,7 @@ def options_record(scene, view_layer, settings, frame, crop, frame_time, in_view
         crop: pixels of it that are made, (x0, y0, x1, y1).
         frame_time: place of Blender's frame in the shutter, 0 to 1.
         in_view: for a 3D view.
+        world: as of light_paths.
     """
     render = scene.render
     seed = int(getattr(settings, "seed", 0)) & 0x7FFFFFFF
@@ -160,6 +161,6 @@ def options_record(scene, view_layer, settings, frame, crop, frame_time, in_view
         frame_time=frame_time,
         shutter_curve=shutter_curve(render),
         rolling_shutter=rolling_shutter(scene, view_layer),
-        **light_paths(scene, settings, in_view),
+        **light_paths(scene, settings, in_view, world),
     )
     return record

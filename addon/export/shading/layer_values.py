@@ -4,6 +4,7 @@
 import numpy as np
 
 from ..base.find_value import find_value
+from .world import world_of
 
 
 def set_layer_values(records, scene, view_layer):
@@ -14,14 +15,15 @@ def set_layer_values(records, scene, view_layer):
         records: material or world records of the snapshot.
         scene, view_layer: evaluated.
     """
+    world = world_of(scene, view_layer)
     for record in records:
         for node in record["nodes"]:
             properties = node["properties"]
             if properties.get("attribute_type") == "VIEW_LAYER":
                 value = _lookup(properties["attribute_name"], scene, view_layer)
                 properties["layer_value"] = np.array(value, dtype=np.float32)
-            elif node["type"] == "ShaderNodeAmbientOcclusion" and scene.world is not None:
-                properties["world_distance"] = float(scene.world.light_settings.distance)
+            elif node["type"] == "ShaderNodeAmbientOcclusion" and world is not None:
+                properties["world_distance"] = float(world.light_settings.distance)
 
 
 def _lookup(name, scene, view_layer):
