@@ -219,6 +219,25 @@ def test_tiles_that_are_packed(scene, render, tmp_path):
     check(scene, render)
 
 
+@pytest.mark.parametrize("name", ["Tiled 1001", "Tiled/1001", "Tiled/"])
+@pytest.mark.parametrize("is_first", [True, False])
+def test_no_image_takes_the_name_of_anothers_tile(scene, render, tmp_path, name, is_first):
+    tiled, plain = udim(tmp_path), smooth_image("Other")
+    tiled.name, plain.name = "Tiled", name
+    tree, node = textured(scene, tiled)
+    other = tree.add("ShaderNodeTexImage", image=plain)
+    for shown in (node, other):
+        shown.interpolation = "Closest"
+        tree.link(tree.attribute("A", "Vector"), shown.inputs["Vector"])
+    mix = tree.add("ShaderNodeMixRGB", blend_type="DIFFERENCE")
+    mix.inputs["Fac"].default_value = 1.0
+    order = (other, node) if is_first else (node, other)
+    for socket, shown in zip(mix.inputs[1:], order, strict=True):
+        tree.link(shown.outputs["Color"], socket)
+    tree.emit(mix.outputs["Color"])
+    check(scene, render)
+
+
 def test_tiles_of_an_environment_are_named(scene, tmp_path):
     tree = Tree(board(scene))
     node = tree.add("ShaderNodeTexEnvironment", image=udim(tmp_path))

@@ -51,7 +51,7 @@ def image_name(image, image_user, images, report):
         the record's name.
     """
     path = _sequence_path(image, image_user)
-    name = image.name_full if path is None else f"{image.name_full} {Path(path).name}"
+    name = _name(image) if path is None else _name_of_part(image, Path(path).name)
     if name not in images:
         images[name] = _record(image, name, path, report)
     return name
@@ -61,12 +61,12 @@ def image_tiles(image, images, report):
     """Adds the tiles of an image (UDIM) to the records, once.
 
     Returns:
-        {number: the record's name}, the names that of the image and the number; {} where it has no tiles, or
-        is in no file.
+        {number: the record's name}, the names that of the image, a slash and the number; {} where it has no
+        tiles, or is in no file.
     """
     if image.source != "TILED" or not _is_in_a_file(image):
         return {}
-    names = {tile.number: f"{image.name_full} {tile.number}" for tile in image.tiles}
+    names = {tile.number: _name_of_part(image, tile.number) for tile in image.tiles}
     packed = {file.tile_number: file.packed_file for file in image.packed_files}
     for number, name in names.items():
         if name not in images:
@@ -74,6 +74,15 @@ def image_tiles(image, images, report):
             path = _packed_file(image, packed.get(number)) or _tile_path(image, number)
             images[name] = {**record, "path": path}
     return names
+
+
+def _name_of_part(image, part):
+    """Of a tile, or a picture of a sequence: no datablock's record is named so, whatever it is called."""
+    return f"{image.name_full}/{part}"
+
+
+def _name(image):
+    return image.name_full if "/" not in image.name_full else _name_of_part(image, "")
 
 
 def _sequence_path(image, image_user):

@@ -97,7 +97,7 @@ std::shared_ptr<const Texture> find_texture(NodeBuilder& b, const std::string& i
     std::map<int, std::shared_ptr<const Texture>> tiles;
     for (const float number : numbers) {
         const int tile = static_cast<int>(number);
-        const std::string name = b.text("tiles_of") + " " + std::to_string(tile);
+        const std::string name = b.text("tiles_of") + "/" + std::to_string(tile);
         tiles[tile] = b.textures().find(name, user);
     }
     return std::make_shared<UdimTexture>(std::move(tiles));
