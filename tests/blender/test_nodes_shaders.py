@@ -83,6 +83,23 @@ def test_holdout(scene, render, transparent):
     assert rmse(theirs, ours) < LIMIT
 
 
+@pytest.mark.parametrize("socket", [0, 1])
+def test_nothing_added_to_a_holdout(scene, render, socket):
+    """Squares that glow by B beside others that cut, though a socket of their Add Shader is empty."""
+    thing = board(scene, 0, 1)
+    cut, glow = Tree(thing, "Cut"), Tree(thing, "Glow")
+    add = cut.add("ShaderNodeAddShader")
+    cut.link(cut.add("ShaderNodeHoldout").outputs[0], add.inputs[socket])
+    shown(cut, add)
+    shown(glow, emission(glow, "B"))
+    which = np.arange(len(thing.data.polygons)) % 2
+    thing.data.polygons.foreach_set("material_index", which.astype(np.int32))
+    scene.render.film_transparent = True
+    theirs, ours = render_both(scene, render, channels="RGBA")
+    assert theirs[..., 3].std() > 0.1
+    assert rmse(theirs, ours) < LIMIT
+
+
 def test_holdout_among_other_shaders_is_named(scene, render, capfd):
     _held_out(Tree(board(scene, 0, 1), "Mixed"), clear=False)
     render(scene)

@@ -82,7 +82,9 @@ def _cuts(nodes, index):
             kinds.add(node["type"])
             continue
         shaders = [node["inputs"].get(name) for name in ("Shader", "Shader_001")]
-        if not all(isinstance(shader, tuple) and shader[0] == "LINK" for shader in shaders):
+        linked = [shader[1] for shader in shaders if shader is not None and shader[0] == "LINK"]
+        # An empty socket adds nothing, but takes its part of a mix.
+        if len(linked) < 2 and node["type"] == "ShaderNodeMixShader":
             return False
-        pending += [shader[1] for shader in shaders]
+        pending += linked
     return _HOLDOUT in kinds and kinds <= {_HOLDOUT, "ShaderNodeBsdfTransparent"}
