@@ -22,8 +22,9 @@ constexpr std::size_t kReach = 6, kRun = 24;
 /// Most that their normals are turned away, as 1 - cosine.
 constexpr float kBend = 0.25f;
 /// Of points that nobody sees, for those that somebody does: where things stand on each other they
-/// are inside, in the dark.
-constexpr float kHidden = 1e-3f;
+/// are inside, in the dark.  Far less than kRidge, or slopes towards them would be told by them: a
+/// floor's last pixel before a wall was up to 17 % too dark.
+constexpr float kHidden = 1e-6f;
 /// Of the mean square way to neighbours: slopes that fewer than a line of them tell are none.
 constexpr float kRidge = 1e-3f;
 
