@@ -2,6 +2,7 @@
 #include "shade/seen_points.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "math/luminance.h"
 #include "math/sampling.h"
@@ -15,6 +16,8 @@ namespace {
 constexpr float kThicket = 0.33f;
 /// Light that passes what lies before a point, so that it is seen.
 constexpr float kLeastSeen = 0.02f;
+/// At a point that something moving may hide for a part of the shutter.
+constexpr int kLooks = 8;
 
 class Looks {
   public:
@@ -33,11 +36,11 @@ class Looks {
           m_sequence(mix_bits(grid_seed(key, scene.options.seed))),
           m_lens(mix_bits(mix_bits(grid_seed(key, scene.options.seed)))) {}
 
-    /// From the point to the eye.
-    Ray from(std::size_t i) {
+    /// From the point to the eye, at one of kLooks times that are spread over its life.
+    Ray from(std::size_t i, int look) {
         const std::uint32_t place = place_in_sequence(m_points, i);
         const float frame_time = m_scene.options.frame_time;
-        const float time = m_shutter ? m_shutter->time(m_sequence(place).x) : frame_time;
+        const float time = m_shutter ? this->time(m_sequence(place).x, look) : frame_time;
         const Mat4d at = m_shutter ? m_eye.place(time) : m_at_frame;
         Vec3f p = m_points.p[i], normal = m_points.geometric_normal[i];
         if (m_paths.moves()) {
@@ -70,7 +73,18 @@ class Looks {
         return ray;
     }
 
+    /// Whether its next looks may find something else before it.
+    bool may_vary(const Ray& ray) const {
+        return m_paths.moves() || m_rays.varies(ray.start, ray.direction, ray.distance);
+    }
+
   private:
+    float time(float uniform, int look) const {
+        const float turned = uniform + static_cast<float>(look) / kLooks;
+        const Vec2f exposed = m_shutter->exposed(m_paths.lifespan());
+        return m_shutter->time(exposed.x + (turned - std::floor(turned)) * (exposed.y - exposed.x));
+    }
+
     const ShadingPoints& m_points;
     const PointPaths& m_paths;
     const RayScene& m_rays;
@@ -99,6 +113,40 @@ std::vector<std::uint8_t> off_edges(const std::vector<std::uint8_t>& marked, std
     return shrunk(shrunk(marked, 1, columns), columns, columns);
 }
 
+/// [rays] whether enough light comes through.
+std::vector<std::uint8_t> are_clear(const RayScene& rays, std::vector<Ray>& asked) {
+    std::vector<Vec3f> left(asked.size());
+    rays.transmittances(asked, left);
+    std::vector<std::uint8_t> clear(asked.size());
+    for (std::size_t i = 0; i < asked.size(); ++i) clear[i] = luminance(left[i]) > kLeastSeen;
+    return clear;
+}
+
+/// At points before which something moves: those that are seen for a part of the shutter are lit as
+/// they are then.  Light of the rest is that of places inside of things, which went into the mean.
+void look_again(ShadingPoints& points, Looks& looks, const RayScene& rays,
+                const std::vector<Ray>& first, std::vector<std::uint8_t>& seen) {
+    std::vector<std::size_t> doubtful;
+    std::vector<Ray> asked;
+    for (std::size_t i = 0; i < points.count; ++i) {
+        if (!looks.may_vary(first[i])) continue;
+        doubtful.push_back(i);
+        for (int look = 1; look < kLooks; ++look) asked.push_back(looks.from(i, look));
+    }
+    const std::vector<std::uint8_t> clear = are_clear(rays, asked);
+    for (std::size_t k = 0; k < doubtful.size(); ++k) {
+        const std::size_t i = doubtful[k];
+        std::vector<float> times;
+        if (seen[i]) times.push_back(first[i].time);
+        for (std::size_t at = k * (kLooks - 1); at < (k + 1) * (kLooks - 1); ++at)
+            if (clear[at]) times.push_back(asked[at].time);
+        seen[i] = !times.empty();
+        if (times.empty() || times.size() == kLooks) continue;
+        points.seen_times.resize(points.count);
+        points.seen_times[i] = std::move(times);
+    }
+}
+
 }  // namespace
 
 void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
@@ -107,11 +155,9 @@ void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
     Looks looks(points, paths, key, rays, scene, eye, shutter);
     std::vector<Ray> asked;
     asked.reserve(points.count);
-    for (std::size_t i = 0; i < points.count; ++i) asked.push_back(looks.from(i));
-    std::vector<Vec3f> left(points.count);
-    rays.transmittances(asked, left);
-    std::vector<std::uint8_t> seen(points.count);
-    for (std::size_t i = 0; i < points.count; ++i) seen[i] = luminance(left[i]) > kLeastSeen;
+    for (std::size_t i = 0; i < points.count; ++i) asked.push_back(looks.from(i, 0));
+    std::vector<std::uint8_t> seen = are_clear(rays, asked);
+    if (shutter) look_again(points, looks, rays, asked, seen);
     if (std::ranges::count(seen, 0) == 0) return;
     const std::vector<std::uint8_t> inside = off_edges(seen, points.columns);
     const auto all_seen = static_cast<float>(std::ranges::count(seen, 1));

@@ -16,9 +16,10 @@
 namespace granita {
 
 /// Fills `seen`: whether each point is through some point of the lens at some time of the shutter,
-/// one of each that it asks; and `shares`: all light samples next to what is seen, few out of
+/// one of each that it asks, or eight times where something moves before it; `seen_times`: which of
+/// these; and `shares`: all light samples next to what is seen, few out of
 /// sight and, in thickets, `edge` of them where what is seen ends.  Few ways cost noise, which few
-/// see, or none among that of edges.  The same whatever bucket asks; both stay empty where all is
+/// see, or none among that of edges.  The same whatever bucket asks; all stay empty where all is
 /// seen.
 /// @param points of the grid of `key`, lifted.
 /// @param shutter nullptr where nothing moves.

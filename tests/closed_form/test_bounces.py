@@ -291,6 +291,30 @@ def test_the_foot_of_a_wall_is_not_darker_than_what_it_sees(dicing_rate, side):
     assert seen[40:60] == pytest.approx(expected, rel=0.03 * dicing_rate)
 
 
+def test_the_foot_of_a_wall_that_moves():
+    """The same wall, WIDTH wide, moves over the floor: what it uncovers is lit as it is while the wall is elsewhere, not
+    as inside of it."""
+    height, width, begin, way = 10.0, 12.0, 16.0, 24.0
+    snapshot = s.orthographic((64, 64), samples=64, bounces=1, light_samples=64)
+    snapshot["materials"].append(varying_emission())
+    shining = len(snapshot["materials"]) - 1
+    s.quad(snapshot, s.rectangle(-3000, -3000, 3000, 3000, z=-50.0), shining)
+    s.quad(snapshot, s.rectangle(-200, -200, 264, 264, z=100.0), diffuse(snapshot, ALBEDO))
+    corners = [(x, y, z) for z in (100 - height, 101) for y in (-200, 264) for x in (0, width)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    moved = [s.translation(begin), s.translation(begin + way)]
+    s.mesh(snapshot, np.array(corners, float), faces, diffuse(snapshot, 0.0), transforms=moved)
+    seen = s.render(snapshot)["combined"][16:48, :, 0].mean(axis=0)
+    times = (np.arange(4096) + 0.5) / 4096
+    left = begin + way * times
+    x = np.arange(8, 60)[:, None] + 0.5
+    away = np.maximum(left - x, x - left - width)
+    expected = (away > 0) * ALBEDO * (0.5 + 0.5 * away / np.hypot(away, height))
+    # Without a pixel in which its sides stand at the shutter's ends.
+    ends = np.isin(x[:, 0], [15.5, 16.5, 27.5, 28.5, 39.5, 40.5, 51.5, 52.5])
+    assert seen[8:60][~ends] == pytest.approx(expected.mean(axis=1)[~ends], rel=0.03)
+
+
 @pytest.mark.parametrize("bounces", [0, 4])
 def test_what_bent_normals_send_into_their_own_surface_is_lost(bounces):
     """A white square in a white world, its normals 45 degrees from its own: of their hemisphere (1 + cos 45) / 2 is before

@@ -152,6 +152,9 @@ struct ShadingPoints {
     std::vector<float> shares;
     /// [n] 0: hidden from the eye, inside of something or behind it; empty: none is known to be
     std::vector<std::uint8_t> seen;
+    /// [n] where what moves hides it for a part of the shutter: times at which it does not.  Empty
+    /// vectors, or none at all: any time of its life will do.
+    std::vector<std::vector<float>> seen_times;
     bool whole_faces = false;  ///< as Grid::shades_faces()
     bool round = false;        ///< of ribbons that stand for tubes, as their normals say
     std::vector<std::uint8_t> backfacing;  ///< [n]

@@ -375,6 +375,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
                        count,
                        place,
                        exposed,
+                       points.seen_times.empty() ? std::span<const float>() : points.seen_times[i],
                        points.rise.empty() ? nullptr : &points.rise[i],
                        points.terminator_offset,
                        through_tube,

@@ -70,7 +70,7 @@ void LampSet::set_casters(std::unique_ptr<RayScene> casters) {
 LitPlace LampSet::place_at(const LitPoint& point, float uniform) const {
     LitPlace place = point.at_frame;
     if (!varies) return place;
-    place.time = shutter.time(point.exposed.x + uniform * (point.exposed.y - point.exposed.x));
+    place.time = point.time(shutter, uniform);
     if (!point.paths.moves()) return place;
     const PointPaths::Place on_path = point.paths.at(point.index, place.time);
     place.p = on_path.p;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "math/sampling.h"
+#include "scene/shutter_warp.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/lights/light_motion.h"
 #include "shade/rays/ray_scene.h"
@@ -37,6 +39,7 @@ struct LitPoint {
     int sample_count = 1;       ///< of a soft light, of the world's image, of all lobes together
     std::uint32_t place;        ///< in the grid, along Morton's curve
     Vec2f exposed{0.0f, 1.0f};  ///< the part of the shutter's light that it is there for
+    std::span<const float> seen_times;  ///< as ShadingPoints' own; empty: any time of those
     /// As ShadingPoints::rise; nullptr: normals are those of the surface.
     const Vec4f* rise = nullptr;
     float terminator_offset = 0.0f;
@@ -52,6 +55,12 @@ struct LitPoint {
         Bounds3f box = paths.reach(index);
         box.add(at_frame.p);
         return box;
+    }
+    /// One of the times that it is lit for, by a number in [0, 1).
+    float time(const ShutterWarp& shutter, float uniform) const {
+        if (seen_times.empty()) return shutter.time(exposed.x + uniform * (exposed.y - exposed.x));
+        const auto count = static_cast<float>(seen_times.size());
+        return seen_times[static_cast<std::size_t>(uniform * count) % seen_times.size()];
     }
     void share_samples() {
         samples.resize(bsdf.lobe_count());
