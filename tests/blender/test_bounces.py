@@ -46,6 +46,24 @@ def test_limits_are_those_of_cycles(scene):
     assert light_paths(scene, scene.granita) == {**limits, "bounces": 2}
 
 
+def test_what_shines_inside_lights_a_floor_without_bounces(scene, render):
+    """Max Bounces 0: a volume's emission is met all the same, as in Cycles."""
+    floor = scene_parts.add_square(scene, "Floor", 6.0)
+    surface(floor, "ShaderNodeBsdfDiffuse", (0.8, 0.8, 0.8))
+    material, nodes, links, output = scene_parts.node_material("Shines")
+    links.new(nodes.new("ShaderNodeEmission").outputs[0], output.inputs["Volume"])
+    corners = [(x, y, z) for z in (0.2, 1.0) for y in (-0.5, 0.5) for x in (-0.5, 0.5)]
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    scene_parts.add_mesh(scene, "Box", corners, faces, material=material)
+    scene_parts.add_camera(scene, ortho_scale=3.0)
+    scene.render.resolution_x = scene.render.resolution_y = 24
+    theirs, ours = render_bounced(scene, render, 1024, limit=0)
+    beside = np.ones((24, 24), bool)
+    beside[7:17, 7:17] = False
+    assert theirs[beside].mean() > 0.03
+    assert ours[beside].mean() == pytest.approx(theirs[beside].mean(), rel=0.02)
+
+
 @pytest.mark.parametrize("transparent", [False, True])
 @pytest.mark.parametrize("glass", [False, True])
 def test_transparent_glass_is_named_where_it_would_show(scene, transparent, glass):
@@ -125,9 +143,16 @@ def room(scene):
 
 
 def render_bounced(
-    scene, render, cycles_samples, blur_glossy=0.0, bounces="FULL", all_passes=False, samples=16
+    scene,
+    render,
+    cycles_samples,
+    blur_glossy=0.0,
+    bounces="FULL",
+    all_passes=False,
+    samples=16,
+    limit=4,
 ):
-    """(Cycles, Granita) with four bounces or none, without clamps: float32 [h, w, 3], or all passes by name."""
+    """(Cycles, Granita) with `limit` bounces or none, without clamps: float32 [h, w, 3], or all passes by name."""
     cycles, settings = scene.cycles, scene.granita
     settings.bounces, settings.light_samples = bounces, 64
     cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 4
@@ -135,7 +160,7 @@ def render_bounced(
     scene.view_settings.view_transform = "Raw"
     cycles.samples = cycles_samples
     cycles.use_denoising = cycles.use_adaptive_sampling = False
-    cycles.max_bounces = 4 if bounces == "FULL" else 0
+    cycles.max_bounces = limit if bounces == "FULL" else 0
     cycles.pixel_filter_type = "BOX"
     settings.samples, settings.pixel_filter, settings.filter_width = samples, "BOX", 1.0
     made = []

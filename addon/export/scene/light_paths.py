@@ -16,6 +16,7 @@ LIMITS = (
     ("blur_glossy", "filter_glossy", 1.0),
 )
 _FAST = 2  # bounces
+_KINDS = ("diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces")
 
 
 def light_paths(scene, settings, in_view=False, world=None):
@@ -34,6 +35,9 @@ def light_paths(scene, settings, in_view=False, world=None):
     limits = {option: getattr(cycles, name, default) for name, option, default in LIMITS}
     if preset == "FAST":
         limits["bounces"] = min(limits["bounces"], _FAST)
+    if limits["bounces"] == 0:
+        # Surfaces are still lit by what shines without being a lamp: what fills things.
+        limits |= {"bounces": 1, **dict.fromkeys(_KINDS, 0)}
     return {**limits, **_fast_gi(cycles, world or scene.world, in_view)}
 
 
