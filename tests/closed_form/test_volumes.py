@@ -372,3 +372,24 @@ def test_what_fills_a_closed_ball_lights_its_wall(albedo):
     due = 1.0 - near + albedo / (1 - albedo) * 4 / 3
     # Flat faces leave .2 % of the ball out; noise is less.
     assert mean(snapshot) == pytest.approx(due, rel=0.005)
+
+
+def test_a_floor_near_what_shines_inside():
+    """A cube that shines, over a floor: each small part of it sends its power evenly around.  Nothing else is near, and
+    what neighbours share of its light varies as fast as it is near."""
+    strength, albedo, low, high, floor = 0.05, 0.8, (20, 20, 88), (30, 30, 98), 100.0
+    snapshot = s.orthographic((48, 48), samples=16, bounces=1, light_samples=256)
+    box(snapshot, low, high, filled(snapshot, emitted(strength)))
+    s.quad(snapshot, s.rectangle(-64, -64, 128, 128, z=floor), diffuse(snapshot, albedo))
+    columns, rows = np.arange(31, 42), np.arange(22, 28)
+    seen = s.render(snapshot)["combined"][rows[0] : rows[-1] + 1, columns, 0].mean(axis=0)
+    parts = [np.arange(a + 0.1, b, 0.2) for a, b in zip(low, high, strict=True)]
+    x, y, z = np.meshgrid(*parts, indexing="ij")
+    above = floor - z
+    expected = [
+        np.mean(
+            [np.sum(above / ((x - c) ** 2 + (y - r) ** 2 + above**2) ** 1.5) for r in rows + 0.5]
+        )
+        for c in columns + 0.5
+    ]
+    assert seen == pytest.approx(strength * albedo / np.pi * 0.2**3 * np.array(expected), rel=0.04)

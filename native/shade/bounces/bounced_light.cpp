@@ -118,19 +118,21 @@ class BouncedLight::Wave {
         return path.is_within(m_limits, 0) && !path.is_occlusion(m_limits);
     }
 
-    /// Of surfaces that the first rays meet: what light they bring varies as these are near,
-    /// however few they are.
+    /// Of what the first rays meet: the light it brings varies as it is near, however little it is.
     void note_near() {
-        const auto note = [&](const BouncedPath& path, float distance) {
-            if (path.kind != BouncedPath::Kind::Diffuse) return;
-            m_gathered.nearness[path.next.point] += 1.0f / std::max(distance, 1e-30f);
+        std::vector<float> near(m_paths.size(), std::numeric_limits<float>::infinity());
+        for (const RayScene::Met& one : m_met) near[one.ray] = one.hit.distance;
+        for (std::size_t i = 0; i < m_paths.size(); ++i) {
+            const BouncedPath& path = m_paths[i];
+            if (path.kind != BouncedPath::Kind::Diffuse) continue;
+            // What lies just out of these rays' sight may darken the next point.
+            if (m_meets_nothing[i] && path.is_occlusion(m_limits))
+                near[i] = m_limits.occlusion_distance;
+            if (m_light.m_volumes) near[i] = std::min(near[i], first_light(m_media.of(i)));
+            if (std::isinf(near[i])) continue;
+            m_gathered.nearness[path.next.point] += 1.0f / std::max(near[i], 1e-30f);
             ++m_gathered.met[path.next.point];
-        };
-        for (const RayScene::Met& one : m_met) note(m_paths[one.ray], one.hit.distance);
-        // What lies just out of these rays' sight may darken the next point.
-        for (std::size_t i = 0; i < m_paths.size(); ++i)
-            if (m_meets_nothing[i] && m_paths[i].is_occlusion(m_limits))
-                note(m_paths[i], m_limits.occlusion_distance);
+        }
     }
 
     void trace() {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace granita {
 namespace {
@@ -21,6 +22,13 @@ Vec3f passed(const MediumPiece& piece, float length) {
     for (int c = 0; c < 3; ++c)
         if (piece.extinction[c] > 0.0f) left[c] = std::exp(-piece.extinction[c] * length);
     return left;
+}
+
+float first_light(std::span<const MediumPiece> pieces) {
+    for (const MediumPiece& piece : pieces)
+        if (piece.emission != Vec3f(0.0f) || piece.scattering != Vec3f(0.0f))
+            return piece.begin > 0.0f ? piece.begin : piece.end;
+    return std::numeric_limits<float>::infinity();
 }
 
 Vec3f MediumWalk::advance(float distance) {

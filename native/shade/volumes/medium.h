@@ -49,6 +49,10 @@ class RayMedia {
 /// Share of light that passes so many metres of a piece.
 Vec3f passed(const MediumPiece& piece, float length);
 
+/// Where a ray begins to pass what shines or scatters light, or, where that is at its start, where
+/// it leaves it; infinite where there is nothing such, or no end.
+float first_light(std::span<const MediumPiece> pieces);
+
 /// Along a ray, from where it starts.
 class MediumWalk {
   public:
