@@ -12,6 +12,7 @@
 #include "base/parallel_sort.h"
 #include "dice/open_instance.h"
 #include "dice/raster_bound.h"
+#include "math/largest_stretch.h"
 #include "render/camera_rays.h"
 #include "render/tile_cache.h"
 
@@ -21,8 +22,16 @@ namespace {
 /// Faces that are opened in the time of a ray and of what it meets: .4 to 3 take the same within
 /// noise.
 constexpr double kFacesARay = 1.0;
-/// Times as much for a ray that goes on behind what it meets.
+/// Times as much for a ray that goes on behind what it meets, and as often again as it does.
 constexpr double kThrough = 4.0;
+/// Faces that are opened in the time that rays' tree takes for one (1.6 us and .33, measured).
+constexpr double kFacesOfTree = 5.0;
+/// Share of faces beside which some may be missed, from which on all are opened.
+constexpr double kUnsure = 1.0 / 64;
+
+/// Of what single precision rounds, four times its last bit's half: as coordinates go through a few
+/// steps.
+constexpr double kRounding = 0x1p-22;
 
 /// Pixels of the frame, and those around it whose samples count, in a bound.
 Rect pixels_in(const RasterBounds& bounds, const View& view) {
@@ -44,11 +53,39 @@ Rect tiles_of(const Rect& pixels) {
     return {tile(pixels.x0), tile(pixels.y0), tile(pixels.x1 - 1) + 1, tile(pixels.y1 - 1) + 1};
 }
 
-bool is_finite(const Mat3d& m) {
+/// Whether rays can be turned by it and back.
+bool is_usable(const Mat4d& camera_from_object) {
+    constexpr double kMost = 1e15;
+    const Mat3d turn = glm::inverse(Mat3d(camera_from_object));
     for (int column = 0; column < 3; ++column)
         for (int row = 0; row < 3; ++row)
-            if (!std::isfinite(m[column][row])) return false;
+            if (!(std::abs(turn[column][row]) < kMost &&
+                  std::abs(camera_from_object[column][row]) < kMost))
+                return false;
     return true;
+}
+
+double largest(const Vec3f& lo, const Vec3f& hi, int axis) {
+    return std::max(std::abs(static_cast<double>(lo[axis])),
+                    std::abs(static_cast<double>(hi[axis])));
+}
+
+/// How far apart a mesh's points are seen by hiders, who round them in camera space and in pixels,
+/// and by rays, which are rounded in its own; metres of camera space.
+double rounding_of(const View& view, const Knots& knots, const SharedGeometry& shared,
+                   const Bounds3f& box, const Rect& pixels) {
+    const Projection& projection = view.projection;
+    const double to = box.hi.z, from = std::max(projection.near_clip, double{box.lo.z});
+    const double aside = std::max(largest(box.lo, box.hi, 0), largest(box.lo, box.hi, 1)) +
+                         std::max(projection.lens_reach(from), projection.lens_reach(to));
+    double stretch = 0.0, own = 0.0;
+    for (const Mat4d& m : knots.camera_from_object) stretch = std::max(stretch, largest_stretch(m));
+    const Bounds3f& object = shared.frame_box();
+    for (int axis = 0; axis < 3; ++axis) own = std::max(own, largest(object.lo, object.hi, axis));
+    const double across = std::max(pixels.width(), pixels.height()) + kTileSize;
+    const double pixel = (projection.perspective ? to : 1.0) /
+                         std::min(std::abs(projection.scale.x), std::abs(projection.scale.y));
+    return kRounding * (aside + stretch * own + (to - from) + across * pixel);
 }
 
 /// From camera to object space.
@@ -67,6 +104,7 @@ struct FacesOfSamples::Mesh {
     const Knots& knots;
     Into still;      ///< of what stands still
     double nearest;  ///< no depth of it is less
+    float rounding;  ///< metres
 };
 
 FacesOfSamples::FacesOfSamples(const View& view, std::shared_ptr<const SampleLevels> levels,
@@ -79,6 +117,9 @@ FacesOfSamples::FacesOfSamples(const View& view, std::shared_ptr<const SampleLev
       m_rays(*view.scene, std::move(rays), progress) {
     static std::atomic<std::uint64_t> count{0};
     m_number = ++count;
+    m_instances.resize(view.scene->geometries.size());
+    for (const Instance& instance : view.scene->instances)
+        if (instance.visible_camera) ++m_instances[static_cast<std::size_t>(instance.geometry)];
 }
 
 bool FacesOfSamples::lets_through(const Instance& instance) const {
@@ -86,6 +127,17 @@ bool FacesOfSamples::lets_through(const Instance& instance) const {
     return std::ranges::any_of(instance.materials, [&](std::int32_t material) {
         return m_shading.opacity_varies(material);
     });
+}
+
+bool FacesOfSamples::pays(double rays, const SharedGeometry& shared, const Instance& instance,
+                          bool goes_on) const {
+    const auto geometry = static_cast<std::size_t>(instance.geometry);
+    const auto faces = static_cast<double>(shared.patches().size());
+    double cost = rays * kFacesARay;
+    if (!m_rays.was_there(geometry, goes_on)) cost += kFacesOfTree * faces / m_instances[geometry];
+    if (goes_on && cost <= faces)
+        cost += rays * kFacesARay * (kThrough - 1.0 + m_rays.layers(geometry, shared));
+    return cost <= faces;
 }
 
 std::optional<std::vector<std::uint32_t>> FacesOfSamples::of(
@@ -100,9 +152,8 @@ std::optional<std::vector<std::uint32_t>> FacesOfSamples::of(
         rays += static_cast<double>(pixels.width()) * pixels.height() *
                 m_levels->table(level).samples();
     const bool goes_on = lets_through(instance);
-    if (rays * kFacesARay * (goes_on ? kThrough : 1.0) >
-        static_cast<double>(shared->patches().size()))
-        return std::nullopt;
+    if (!pays(rays, *shared, instance, goes_on)) return std::nullopt;
+    if (!std::ranges::all_of(knots.camera_from_object, is_usable)) return std::nullopt;
 
     Bounds3f box;
     for (const Bounds3f& b : boxes) box.add(b);
@@ -113,36 +164,46 @@ std::optional<std::vector<std::uint32_t>> FacesOfSamples::of(
     if (goes_on)
         passes = [&](std::uint32_t face) { return m_shading.opacity_varies(material_of(face)); };
     const MeshRays mesh_rays(
-        m_rays.shape(static_cast<std::size_t>(instance.geometry), shared, goes_on), *shared,
-        passes);
+        m_rays.mesh(static_cast<std::size_t>(instance.geometry), shared, goes_on), *shared, passes);
     const Mesh mesh{mesh_rays, knots, Into(knots.camera_from_object[0]),
-                    std::max(m_view.projection.near_clip, static_cast<double>(box.lo.z))};
-    if (!is_finite(mesh.still.turn)) return std::nullopt;
+                    std::max(m_view.projection.near_clip, static_cast<double>(box.lo.z)),
+                    static_cast<float>(rounding_of(m_view, knots, *shared, box, pixels))};
+    auto patches = met(mesh, pixels);
+    m_view.statistics->add(Counter::RaysOpening, static_cast<std::uint64_t>(rays));
+    return patches;
+}
 
+std::optional<std::vector<std::uint32_t>> FacesOfSamples::met(const Mesh& mesh,
+                                                              const Rect& pixels) const {
     std::vector<std::uint32_t> patches;
+    std::uint64_t all = 0, unsure = 0;
     std::mutex mutex;
     const Rect tiles = tiles_of(pixels);
     const auto tile_count = static_cast<std::size_t>(tiles.width()) * tiles.height();
     constexpr std::size_t kGrain = 4;
     parallel_for(tile_count, kGrain, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::uint32_t> met;
+        std::vector<std::uint32_t> found;
+        MeshRays::Work work;
         for (std::size_t i = begin; i < end; ++i) {
             const Vec2i tile(tiles.x0 + static_cast<int>(i) % tiles.width(),
                              tiles.y0 + static_cast<int>(i) / tiles.width());
             for (int level = 0; level < m_levels->count(); ++level)
-                look(mesh, m_levels->table(level), tile, pixels, met);
+                look(mesh, m_levels->table(level), tile, pixels, found, work);
         }
         const std::lock_guard lock(mutex);
-        patches.insert(patches.end(), met.begin(), met.end());
+        patches.insert(patches.end(), found.begin(), found.end());
+        all += work.met;
+        unsure += work.unsure;
     });
+    if (static_cast<double>(unsure) > kUnsure * static_cast<double>(all)) return std::nullopt;
     parallel_sort(patches);
     patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
-    m_view.statistics->add(Counter::RaysOpening, static_cast<std::uint64_t>(rays));
     return patches;
 }
 
 void FacesOfSamples::look(const Mesh& mesh, const SampleTable& table, Vec2i tile,
-                          const Rect& pixels, std::vector<std::uint32_t>& patches) const {
+                          const Rect& pixels, std::vector<std::uint32_t>& patches,
+                          MeshRays::Work& work) const {
     auto cache = ObjectPool<TileCache>::take();
     const TileSamples& samples = cache.samples(m_number, table, tile);
     const Rect here = pixels.intersect({tile.x * kTileSize, tile.y * kTileSize,
@@ -151,7 +212,7 @@ void FacesOfSamples::look(const Mesh& mesh, const SampleTable& table, Vec2i tile
     const auto count = static_cast<std::size_t>(samples.samples);
     const Projection& projection = m_view.projection;
     const bool moves = !is_static(mesh.knots.camera_from_object);
-    MeshRays::Work work;
+    Rounding rounding{Mat3f(mesh.knots.camera_from_object[0]), mesh.rounding};
     for (int y = here.y0; y < here.y1; ++y) {
         m_progress.check();
         for (int x = here.x0; x < here.x1; ++x) {
@@ -161,13 +222,17 @@ void FacesOfSamples::look(const Mesh& mesh, const SampleTable& table, Vec2i tile
                 const Look at = look_of(samples, i, projection);
                 const CameraLine line =
                     camera_line(projection, corner + Vec2d(samples.x[i], samples.y[i]), at);
-                const Into into =
-                    moves ? Into(matrix_at(mesh.knots.camera_from_object, at.t)) : mesh.still;
+                Into into = mesh.still;
+                if (moves) {
+                    const Mat4d m = matrix_at(mesh.knots.camera_from_object, at.t);
+                    into = Into(m);
+                    rounding.to_measured = Mat3f(m);
+                }
                 // From close by: what is far away would be rounded more than faces are large.
                 mesh.rays.meet({Vec3f(into.turn * (line.at(mesh.nearest) - into.origin)),
                                 Vec3f(into.turn * line.way), std::numeric_limits<float>::infinity(),
                                 static_cast<float>(at.t)},
-                               patches, work);
+                               rounding, patches, work);
             }
         }
     }

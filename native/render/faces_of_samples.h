@@ -17,7 +17,7 @@ namespace granita {
 class FacesOfSamples final : public SampledFaces {
   public:
     /// `view`, whose own this may be, `shading` and `progress` must live while instances are
-    /// opened; `rays`: where meshes that rays meet are looked for and left, or nullptr.
+    /// opened; `rays`: where meshes that rays meet are looked for and left.
     FacesOfSamples(const View& view, std::shared_ptr<const SampleLevels> levels,
                    const ShadingSystem& shading, std::shared_ptr<KeptRays> rays,
                    const Progress& progress);
@@ -29,15 +29,20 @@ class FacesOfSamples final : public SampledFaces {
   private:
     struct Mesh;
     bool lets_through(const Instance& instance) const;
+    /// Whether rays are fewer than what they spare.
+    bool pays(double rays, const SharedGeometry& shared, const Instance& instance,
+              bool goes_on) const;
+    std::optional<std::vector<std::uint32_t>> met(const Mesh& mesh, const Rect& pixels) const;
     void look(const Mesh& mesh, const SampleTable& table, Vec2i tile, const Rect& pixels,
-              std::vector<std::uint32_t>& patches) const;
+              std::vector<std::uint32_t>& patches, MeshRays::Work& work) const;
 
     const View& m_view;
     std::shared_ptr<const SampleLevels> m_levels;
     const ShadingSystem& m_shading;
     const Progress& m_progress;
     mutable MeshRayStore m_rays;
-    std::uint64_t m_number;  ///< of all that there were
+    std::vector<std::uint32_t> m_instances;  ///< [geometries] that the camera may see
+    std::uint64_t m_number;                  ///< of all that there were
 };
 
 }  // namespace granita

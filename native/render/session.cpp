@@ -6,10 +6,6 @@
 
 namespace granita {
 
-Session::Session() {
-    m_shading.rays = std::make_shared<KeptRays>();
-}
-
 void Session::adopt(Scene& scene) {
     const std::lock_guard lock(m_mutex);
     std::multimap<std::string, std::size_t> by_name;

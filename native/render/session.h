@@ -31,9 +31,6 @@ namespace granita {
 /// begun.
 class Session {
   public:
-    /// Throws Error where Embree does not start.
-    Session();
-
     /// Before the scene is rendered: geometries that are the same in every byte as one of the scene
     /// before become that one; what is made of others is forgotten.
     void adopt(Scene& scene);

@@ -15,7 +15,7 @@ struct KeptOffsets;  // shade/material_displacement.h
 
 struct KeptShading {
     std::shared_ptr<KeptGeometry> geometry = std::make_shared<KeptGeometry>();
-    std::shared_ptr<KeptRays> rays;  ///< nullptr: none are kept
+    std::shared_ptr<KeptRays> rays = std::make_shared<KeptRays>();
     /// Of an earlier picture in which nothing that shading reads was another, but for grids
     /// themselves; may be nullptr.
     std::shared_ptr<const ShadedGrids> grids;

@@ -41,12 +41,20 @@ def far_from_outline(margin, radius=RADIUS):
     return distance < radius - margin, distance > radius + margin
 
 
+def place(snapshot, points, faces, material, transforms, **extra):
+    """Adds a mesh; twenty more of it, which no sample sees, pay for what its rays meet."""
+    geometry = s.mesh(snapshot, points, faces, material, transforms=transforms, **extra)
+    for number in range(20):
+        s.instance(snapshot, geometry, material, transforms=[s.translation(1e6, number, 40.0)])
+    return geometry
+
+
 def scene(executor="SIMD", alpha=None, **options):
     snapshot = s.orthographic(
         SIZE, executor=executor, samples=SAMPLES, film_transparent=False, **options
     )
     color = s.emission(snapshot, (1, 1, 1), alpha)
-    s.mesh(snapshot, POINTS, FACES, color, transforms=[s.translation(*CENTER)])
+    place(snapshot, POINTS, FACES, color, [s.translation(*CENTER)])
     return snapshot
 
 
@@ -63,11 +71,11 @@ def test_few_of_a_ball_s_faces_are_opened_and_none_is_missing(executor):
     """Before a world ten thousand times as bright a crack between two faces would be seen: without the rays beside
     those that come close to an edge, some samples on it look through one."""
     samples, away, focal = 256, 4e4, 4e4
-    place = s.translation(0, 0, away) @ turned(0.3, 0.5)
+    turn = s.translation(0, 0, away) @ turned(0.3, 0.5)
     snapshot = s.perspective(
         SIZE, focal, tuple(CENTER[:2]), executor=executor, samples=samples, film_transparent=False
     )
-    s.mesh(snapshot, POINTS, FACES, s.emission(snapshot), transforms=[place])
+    place(snapshot, POINTS, FACES, s.emission(snapshot), [turn])
     s.constant_world(snapshot, 1e4)
     rendered = s.render(snapshot)
     inside, outside = far_from_outline(0.75)
@@ -97,8 +105,9 @@ def test_two_materials_are_seen_through_where_one_is_not(executor):
     green = s.emission(snapshot, (0, 1, 0))
     middle = POINTS[[f[0] for f in FACES], 2] + POINTS[[f[2] for f in FACES], 2]
     snapshot["geometries"][0]["material_index"] = (middle > 0).astype(np.int32)
-    snapshot["instances"]["slots"] = [2]
-    snapshot["instances"]["materials"] = [0, green]
+    count = len(snapshot["instances"]["slots"])
+    snapshot["instances"]["slots"] = [2] * count
+    snapshot["instances"]["materials"] = [0, green] * count
     s.constant_world(snapshot, 16.0)
     rendered = s.render(snapshot)
     inside, _ = far_from_outline(1.0)
@@ -112,7 +121,7 @@ def blurred(**options):
     snapshot["camera"].update(lens_radius=0.4, focus_distance=30.0)
     turned = np.diag([1.0, 0.8, 1.2, 1.0])
     ways = [s.translation(14, 12, 40.0) @ turned, s.translation(18, 10, 43.0)]
-    s.mesh(snapshot, POINTS, FACES, s.emission(snapshot, (1, 0.5, 0)), transforms=ways)
+    place(snapshot, POINTS, FACES, s.emission(snapshot, (1, 0.5, 0)), ways)
     s.quad(snapshot, s.rectangle(-100, -100, 200, 200, 90.0), s.emission(snapshot, (0.1, 0.2, 0.3)))
     return snapshot
 
@@ -156,13 +165,110 @@ def test_executors_see_the_same():
 
 
 def test_a_thing_of_no_thickness_and_what_cannot_be_placed_end_no_frame():
-    for matrix in (np.diag([1.0, 1.0, 0.0, 1.0]), np.diag([0.0, 0.0, 0.0, 1.0])):
+    for sizes in ((1.0, 1.0, 0.0), (1.0, 1.0, 1e-20), (0.0, 0.0, 0.0)):
         snapshot = scene()
-        snapshot["instances"]["world_from_object"] = [s.translation(*CENTER) @ matrix]
+        matrix = s.translation(*CENTER) @ np.diag([*sizes, 1.0])
+        snapshot["instances"]["world_from_object"][0] = matrix
         s.constant_world(snapshot, 16.0)
         picture = s.render(snapshot)["combined"]
         assert np.all(np.isfinite(picture))
-        assert np.any(picture[..., 0] == 1.0) == bool(matrix.any() and matrix[0, 0] > 0)
+        assert np.any(picture[..., 0] == 1.0) == (sizes[0] > 0)
+
+
+def holes(snapshot):
+    """Pixels wholly inside of the ball's disc in which some sample sees the world behind it; the frame's statistics."""
+    s.constant_world(snapshot, 1e4)
+    rendered = s.render(snapshot)
+    inside, _ = far_from_outline(0.75)
+    return np.count_nonzero(rendered["combined"][inside][:, 0] != 1.0), rendered["statistics"]
+
+
+def seen_from_afar(center=CENTER[:2], samples=256, **options):
+    """By a camera whose single precision is a fiftieth of a face, which those of meshes' points need not be."""
+    options = {"executor": "SIMD", "film_transparent": False, "samples": samples, **options}
+    return s.perspective(SIZE, 4e4, tuple(center), **options)
+
+
+@pytest.mark.parametrize("aside", [1e3, 1e4])
+def test_what_lies_far_beside_the_camera_s_axis_has_no_holes(aside):
+    """There the points that samples meet are rounded by more than in the mesh's own space."""
+    snapshot = seen_from_afar(CENTER[:2] - [aside, 0.0], clip=(0.1, 1e6))
+    where = s.translation(aside, 0, 4e4) @ turned(0.3, 0.5)
+    place(snapshot, POINTS, FACES, s.emission(snapshot), [where])
+    assert holes(snapshot)[0] == 0
+
+
+@pytest.mark.parametrize("away", [1e3, 1e4, 1e6])
+def test_what_lies_far_from_its_own_origin_has_no_holes(away):
+    snapshot = seen_from_afar()
+    where = s.translation(-away, 0, 4e4)
+    place(snapshot, POINTS + [away, 0, 0], FACES, s.emission(snapshot), [where])
+    assert holes(snapshot)[0] == 0
+
+
+def test_what_turns_by_its_knots_has_no_holes():
+    """Half a turn around the camera's axis: edges are elsewhere at each time."""
+    snapshot = seen_from_afar(frame_time=0.5)
+    tilted = POINTS @ turned(0.3, 0.5)[:3, :3].T
+    angles = np.linspace(0, np.pi, 9)
+    knots = []
+    for c, sin in zip(np.cos(angles), np.sin(angles), strict=True):
+        knots.append(tilted @ np.array([[c, sin, 0], [-sin, c, 0], [0, 0, 1]]))
+    place(snapshot, np.array(knots), FACES, s.emission(snapshot), [s.translation(0, 0, 4e4)])
+    missing, counts = holes(snapshot)
+    assert counts["rays_opening"] > 0
+    assert missing == 0
+
+
+def test_faces_that_lie_on_each_other_are_those_of_the_first():
+    """A part that was duplicated and joined: whichever a ray ends at, the picture is the one of all faces."""
+    snapshot = scene()
+    green = s.emission(snapshot, (0, 1, 0))
+    mesh = snapshot["geometries"][0]
+    count, vertices = len(FACES), len(POINTS)
+    mesh["points"] = np.concatenate([mesh["points"]] * 2, axis=1)
+    mesh["corner_verts"] = np.concatenate([mesh["corner_verts"], mesh["corner_verts"] + vertices])
+    mesh["face_sizes"] = np.concatenate([mesh["face_sizes"]] * 2)
+    mesh["material_index"] = np.repeat(np.array([0, 1], np.int32), count)
+    instances = len(snapshot["instances"]["slots"])
+    snapshot["instances"]["slots"] = [2] * instances
+    snapshot["instances"]["materials"] = [0, green] * instances
+    rendered = s.render(snapshot)
+    assert rendered["statistics"]["rays_opening"] > 0
+    inside, _ = far_from_outline(0.75)
+    assert np.all(rendered["combined"][inside][:, :3] == 1.0)
+
+
+def test_rays_are_asked_only_where_that_spares_more_than_it_costs():
+    """One mesh alone would wait for its rays' tree; where a sun's shadows need that, it is there."""
+    alone = s.orthographic(SIZE, executor="SIMD", samples=SAMPLES)
+    s.mesh(alone, POINTS, FACES, s.emission(alone), transforms=[s.translation(*CENTER)])
+    assert s.render(alone)["statistics"]["rays_opening"] == 0
+    lit = s.orthographic(SIZE, executor="SIMD", samples=SAMPLES)
+    matte = session_parts.matte(lit, (0.8, 0.8, 0.8))
+    s.mesh(lit, POINTS, FACES, matte, transforms=[s.translation(*CENTER)])
+    session_parts.sun(lit)
+    counts = s.render(lit)["statistics"]
+    assert counts["rays_opening"] > 0
+    assert counts["points_diced"] <= 4 * 0.55 * len(FACES)
+
+
+def test_what_is_deep_and_lets_light_through_is_opened_as_a_whole():
+    """A ray through five hundred sheets costs more than their faces."""
+    snapshot = s.orthographic(SIZE, executor="SIMD", samples=SAMPLES)
+    half = s.emission(snapshot, alpha=0.5)
+    z = np.linspace(0, 1, 500)
+    corners = np.array([[0, 0], [4, 0], [4, 4], [0, 4]], float)
+    tiles = [
+        np.column_stack([corners / 8 + [i / 2, j / 2], np.full(4, depth)])
+        for depth in z
+        for i in range(8)
+        for j in range(8)
+    ]
+    points = np.concatenate(tiles)
+    faces = np.arange(len(points)).reshape(-1, 4).tolist()
+    place(snapshot, points, faces, half, [s.translation(8, 8, 40.0)])
+    assert s.render(snapshot)["statistics"]["rays_opening"] == 0
 
 
 def test_later_pictures_of_a_session_are_those_of_frames_alone():
@@ -171,6 +277,9 @@ def test_later_pictures_of_a_session_are_those_of_frames_alone():
     snapshot = blurred()
     assert kept.follow(snapshot)["statistics"]["rays_opening"] > 0
     snapshot["options"]["samples"] = 4
+    kept.follow(snapshot)
+    # Another place in the shutter cuts the mesh into triangles anew.
+    snapshot["options"]["frame_time"] = 0.0
     kept.follow(snapshot)
     snapshot["camera"]["world_from_camera"] = s.translation(0.2)[None]
     kept.follow(snapshot)

@@ -17,10 +17,14 @@ bool add_bytes(void* user, ssize_t bytes, bool) {
 
 }  // namespace
 
-KeptRays::KeptRays() : m_device(rtcNewDevice(nullptr)) {
-    if (!m_device)
-        throw Error("Embree cannot start: error " + std::to_string(rtcGetDeviceError(nullptr)));
-    rtcSetDeviceMemoryMonitorFunction(m_device.get(), add_bytes, &m_bytes);
+RTCDevice KeptRays::device() {
+    std::call_once(m_started, [&] {
+        m_device.reset(rtcNewDevice(nullptr));
+        if (!m_device)
+            throw Error("Embree cannot start: error " + std::to_string(rtcGetDeviceError(nullptr)));
+        rtcSetDeviceMemoryMonitorFunction(m_device.get(), add_bytes, &m_bytes);
+    });
+    return m_device.get();
 }
 
 std::shared_ptr<const KeptRayShape> KeptRays::find(const RayKey& key) {
@@ -35,10 +39,14 @@ std::shared_ptr<const KeptRayShape> KeptRays::find(const RayKey& key) {
     return all.front();
 }
 
-std::shared_ptr<const KeptRayShape> KeptRays::find_mesh(const GeometryData* data) {
+std::shared_ptr<const KeptRayShape> KeptRays::find_mesh(const GeometryData* data,
+                                                        float frame_time) {
     const std::lock_guard lock(m_mutex);
     const auto shapes = m_shapes.find({data, false, 0});
-    return shapes == m_shapes.end() ? nullptr : shapes->second.front();
+    if (shapes == m_shapes.end()) return nullptr;
+    const auto found = std::ranges::find_if(
+        shapes->second, [&](const auto& shape) { return shape->key.frame_time == frame_time; });
+    return found == shapes->second.end() ? nullptr : *found;
 }
 
 void KeptRays::add(std::shared_ptr<const KeptRayShape> made) {

@@ -50,14 +50,12 @@ struct KeptRayShape {
 /// and a whole one: an orbit around a subdivision surface makes another one for each place.
 class KeptRays {
   public:
-    /// Throws Error where Embree does not start.
-    KeptRays();
-
-    RTCDevice device() const { return m_device.get(); }
+    /// Starts Embree when first asked for; throws Error where it does not start.
+    RTCDevice device();
     /// nullptr where it is not there.
     std::shared_ptr<const KeptRayShape> find(const RayKey& key);
     /// Of what is not displaced, whatever its instances use it for; nullptr where there is none.
-    std::shared_ptr<const KeptRayShape> find_mesh(const GeometryData* data);
+    std::shared_ptr<const KeptRayShape> find_mesh(const GeometryData* data, float frame_time);
     void add(std::shared_ptr<const KeptRayShape> made);
     /// Forgets what is made of others.
     void keep_only(const GeometryList& geometries);
@@ -75,6 +73,7 @@ class KeptRays {
     }
 
     std::atomic<long long> m_bytes{0};
+    std::once_flag m_started;
     RtcHandle<RTCDevice> m_device;
     std::mutex m_mutex;
     std::map<Of, Shapes> m_shapes;

@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "geometry/coincident_patches.h"
 #include "geometry/shared_geometry.h"
 #include "scene/scene.h"
 #include "shade/rays/kept_rays.h"
@@ -18,61 +19,87 @@
 
 namespace granita {
 
+/// A mesh as rays meet it.
+struct MeetableMesh {
+    std::shared_ptr<const KeptRayShape> shape;
+    std::shared_ptr<const CoincidentPatches> coincident;
+};
+
+/// By how much places on a mesh are rounded by who asks the patches that rays name.
+struct Rounding {
+    Mat3f to_measured{1.0f};  ///< from the mesh's own space to that of the distance
+    float distance = 0.0f;
+};
+
 /// Rays meet one mesh; thread-safe.
 class MeshRays {
   public:
-    /// @param shape as of MeshRayStore
     /// @param lets_through whether something behind a face may be seen through it; empty: of none.
-    MeshRays(std::shared_ptr<const KeptRayShape> shape, const SharedGeometry& shared,
+    MeshRays(MeetableMesh mesh, const SharedGeometry& shared,
              std::function<bool(std::uint32_t face)> lets_through);
 
-    /// Adds the patches along a ray up to the first that lets nothing through.  Close to an edge
-    /// what lies beyond it is added too, so that who asks the patches themselves finds no crack
-    /// between them.
-    /// `work`: kept by the caller for its memory.
     struct Hit {
-        const BasePatch* patch;
+        std::uint32_t patch;
+        BasePatch at;
         Vec2d uv;
     };
+    /// Kept by the caller for its memory and its counts.
     struct Work {
         std::vector<Hit> hits;
         std::vector<Ray> beside;
+        std::uint64_t met = 0;     ///< faces
+        std::uint64_t unsure = 0;  ///< of these, so small that neighbours may have been missed
     };
-    void meet(const Ray& ray, std::vector<std::uint32_t>& patches, Work& work) const;
+    /// Adds the patches along a ray up to the first that lets nothing through, and what lies on
+    /// them.  Within rounding of an edge or a corner what lies beyond it is added too, so that who
+    /// asks the patches themselves finds no crack between them.
+    void meet(const Ray& ray, const Rounding& rounding, std::vector<std::uint32_t>& patches,
+              Work& work) const;
 
   private:
     struct Passing;
     static void note_passing(const RTCFilterFunctionNArguments* arguments);
+    Hit located(const RTCHit& at) const;
     void trace(const Ray& ray, std::vector<Hit>& hits) const;
-    void add_beside(const Ray& ray, const Hit& hit, std::vector<Ray>& rays) const;
+    void add_beside(const Ray& ray, const Hit& hit, const Rounding& rounding, Work& work) const;
+    Vec3f point_at(std::size_t vertex, float time) const;
 
-    std::shared_ptr<const KeptRayShape> m_shape;
+    MeetableMesh m_mesh;
     const SharedGeometry& m_shared;
     std::function<bool(std::uint32_t)> m_lets_through;
-    float m_extent;  ///< largest coordinate: rays round by it
 };
 
 /// Meshes as rays meet them, built when first asked for; those of shadows and bounces are taken
 /// where there are such.  Thread-safe.
 class MeshRayStore {
   public:
-    /// What is given must outlive this.
+    /// `scene` and `progress` must outlive this.
     MeshRayStore(const Scene& scene, std::shared_ptr<KeptRays> kept, const Progress& progress);
     /// @param goes_on whether rays pass what they meet.
-    std::shared_ptr<const KeptRayShape> shape(std::size_t geometry,
-                                              const std::shared_ptr<const SharedGeometry>& shared,
-                                              bool goes_on);
+    MeetableMesh mesh(std::size_t geometry, const std::shared_ptr<const SharedGeometry>& shared,
+                      bool goes_on);
+    /// Surfaces that a ray through its bounds meets, about.
+    double layers(std::size_t geometry, const SharedGeometry& shared);
+    /// Whether it was there before this was made.
+    bool was_there(std::size_t geometry, bool goes_on) const {
+        return m_was_there[goes_on][geometry];
+    }
 
   private:
+    RayKey key(std::size_t geometry, bool goes_on) const;
+    std::shared_ptr<const KeptRayShape> find(std::size_t geometry, bool goes_on) const;
+
     const Scene& m_scene;
     const Progress& m_progress;
     std::shared_ptr<KeptRays> m_kept;
+    std::vector<bool> m_was_there[2];
     std::mutex m_mutex;
     struct Entry {
         SharedOnce once;
-        std::shared_ptr<const KeptRayShape> shape;
+        MeetableMesh mesh;
     };
     std::map<std::pair<std::size_t, bool>, Entry> m_entries;  ///< by geometry and `goes_on`
+    std::map<std::size_t, double> m_layers;
 };
 
 }  // namespace granita

@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <set>
+
 #include "geometry/geometry_cache.h"
 
 namespace granita {
@@ -41,11 +44,12 @@ struct Meshes {
         : scene(std::move(of)),
           shared(cache.shared(*scene, 0, report)),
           store(*scene, nullptr, progress),
-          rays(store.shape(0, shared, passes != nullptr), *shared, passes) {}
-    std::vector<std::uint32_t> at(float x, float y) const {
+          rays(store.mesh(0, shared, passes != nullptr), *shared, passes) {}
+    std::vector<std::uint32_t> at(float x, float y, const Rounding& rounding = {Mat3f(1), 1e-3f},
+                                  float time = 0.5f) const {
         std::vector<std::uint32_t> patches;
         MeshRays::Work work;
-        rays.meet({{x, y, 10.0f}, {0.0f, 0.0f, -1.0f}, INFINITY}, patches, work);
+        rays.meet({{x, y, 10.0f}, {0.0f, 0.0f, -1.0f}, INFINITY, time}, rounding, patches, work);
         return patches;
     }
     std::shared_ptr<Scene> scene;
@@ -69,12 +73,68 @@ TEST(MeshRays, a_face_is_met_alone_but_close_to_an_edge_with_its_neighbour) {
     EXPECT_THAT(mesh.at(-0.0002f, 0.4f), IsEmpty());
 }
 
-/// There rays are rounded by more than a thousandth of a face.
-TEST(MeshRays, far_from_the_origin_close_is_farther) {
-    constexpr float kFar = 60000.0f;
-    const Meshes mesh(squares(3, kFar, {0.0f}));
-    EXPECT_THAT(mesh.at(kFar + 1.03125f, 0.4f), ElementsAre(1, 0));
-    EXPECT_THAT(mesh.at(kFar + 1.3125f, 0.4f), ElementsAre(1));
+TEST(MeshRays, close_is_what_rounding_is_where_it_is_measured) {
+    const Meshes mesh(squares(3, 0.0f, {0.0f}));
+    EXPECT_THAT(mesh.at(1.03f, 0.4f, {Mat3f(1.0f), 0.05f}), ElementsAre(1, 0));
+    EXPECT_THAT(mesh.at(1.03f, 0.4f, {Mat3f(2.0f), 0.05f}), ElementsAre(1));
+    EXPECT_THAT(mesh.at(1.02f, 0.4f, {Mat3f(2.0f), 0.05f}), ElementsAre(1, 0));
+}
+
+/// A fan of `count` thin triangles around the origin, one metre long.
+std::shared_ptr<Scene> fan(int count) {
+    auto scene = std::make_shared<Scene>();
+    GeometryData data;
+    data.name = "mesh 'Fan'";
+    data.points.emplace_back(0.0f);
+    for (int i = 0; i < count; ++i) {
+        const float angle = 2.0f * 3.14159265f * static_cast<float>(i) / static_cast<float>(count);
+        data.points.emplace_back(std::cos(angle), std::sin(angle), 0.0f);
+        for (const int corner : {0, i + 1, (i + 1) % count + 1})
+            data.corner_verts.push_back(corner);
+    }
+    data.face_sizes.assign(static_cast<std::size_t>(count), 3);
+    data.smooth.assign(static_cast<std::size_t>(count), 0);
+    scene->geometries.push_back(std::move(data));
+    return scene;
+}
+
+TEST(MeshRays, at_a_corner_all_that_meet_there_are_met) {
+    const auto met = Meshes(fan(8)).at(4e-4f, 1e-4f, {Mat3f(1.0f), 1e-3f});
+    EXPECT_THAT(std::set<std::uint32_t>(met.begin(), met.end()).size(), 8u);
+    EXPECT_THAT(Meshes(fan(8)).at(0.1f, 0.02f, {Mat3f(1.0f), 1e-3f}), ElementsAre(0));
+}
+
+TEST(MeshRays, faces_smaller_than_rounding_are_told) {
+    const Meshes mesh(squares(3, 0.0f, {0.0f}));
+    std::vector<std::uint32_t> patches;
+    MeshRays::Work work;
+    const Ray down{{1.3f, 0.4f, 10.0f}, {0.0f, 0.0f, -1.0f}, INFINITY};
+    mesh.rays.meet(down, {Mat3f(1.0f), 0.01f}, patches, work);
+    EXPECT_EQ(work.met, 1u);
+    EXPECT_EQ(work.unsure, 0u);
+    mesh.rays.meet(down, {Mat3f(1.0f), 0.2f}, patches, work);
+    EXPECT_EQ(work.met, 2u);
+    EXPECT_EQ(work.unsure, 1u);
+}
+
+TEST(MeshRays, edges_are_where_they_are_at_the_ray_s_time) {
+    auto scene = squares(3, 0.0f, {0.0f});
+    GeometryData moving = scene->geometries[0];
+    moving.knots = 2;
+    for (std::size_t i = 0, n = moving.points.size(); i < n; ++i)
+        moving.points.push_back(moving.points[i] + Vec3f(0.5f, 0.0f, 0.0f));
+    scene->geometries = {};
+    scene->geometries.push_back(std::move(moving));
+    const Meshes mesh(scene);
+    EXPECT_THAT(mesh.at(1.0002f, 0.4f, {Mat3f(1.0f), 1e-3f}, 0.0f), ElementsAre(1, 0));
+    EXPECT_THAT(mesh.at(1.2502f, 0.4f, {Mat3f(1.0f), 1e-3f}, 0.5f), ElementsAre(1, 0));
+    EXPECT_THAT(mesh.at(1.5002f, 0.4f, {Mat3f(1.0f), 1e-3f}, 1.0f), ElementsAre(1, 0));
+}
+
+TEST(MeshRays, faces_on_each_other_are_met_together) {
+    const std::vector<float> heights{1.0f, 1.0f, 0.0f};
+    EXPECT_THAT(Meshes(squares(1, 0.0f, heights)).at(0.3f, 0.4f),
+                ::testing::IsSupersetOf({0u, 1u}));
 }
 
 TEST(MeshRays, what_lies_behind_is_met_where_light_comes_through) {
@@ -90,6 +150,19 @@ TEST(MeshRays, what_lies_behind_is_met_where_light_comes_through) {
     EXPECT_THAT(close, ::testing::IsSupersetOf({0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u}));
 }
 
+TEST(MeshRayStore, layers_are_what_a_ray_meets_on_its_way) {
+    const auto layers = [](std::shared_ptr<Scene> scene) {
+        Meshes mesh(std::move(scene));
+        return mesh.store.layers(0, *mesh.shared);
+    };
+    // A square seen from anywhere: half of its area, of which its bounds show as much.
+    EXPECT_DOUBLE_EQ(layers(squares(1, 0.0f, {0.0f})), 1.0);
+    // A hundred of them within a cube: 100 squares show 50 square metres, the cube 1.5.
+    std::vector<float> heights;
+    for (int i = 0; i < 100; ++i) heights.push_back(static_cast<float>(i) / 99.0f);
+    EXPECT_NEAR(layers(squares(1, 0.0f, heights)), 100.0 / 3.0, 1e-4);
+}
+
 TEST(MeshRays, one_mesh_serves_rays_that_end_and_rays_that_go_on) {
     auto kept = std::make_shared<KeptRays>();
     const auto scene = squares(1, 0.0f, {1.0f, 0.0f});
@@ -98,12 +171,18 @@ TEST(MeshRays, one_mesh_serves_rays_that_end_and_rays_that_go_on) {
     GeometryCache cache;
     const auto shared = cache.shared(*scene, 0, report);
     MeshRayStore store(*scene, kept, progress), later(*scene, kept, progress);
-    const auto ends = store.shape(0, shared, false), goes_on = store.shape(0, shared, true);
+    EXPECT_FALSE(store.was_there(0, false));
+    const auto ends = store.mesh(0, shared, false).shape,
+               goes_on = store.mesh(0, shared, true).shape;
     EXPECT_NE(ends, goes_on);  // Embree asks to be told that rays bring filters
     EXPECT_EQ(kept->made(), 2u);
-    EXPECT_EQ(later.shape(0, shared, true), goes_on);
-    EXPECT_THAT(later.shape(0, shared, false), ::testing::AnyOf(ends, goes_on));
+    EXPECT_EQ(later.mesh(0, shared, true).shape, goes_on);
+    EXPECT_THAT(later.mesh(0, shared, false).shape, ::testing::AnyOf(ends, goes_on));
     EXPECT_EQ(kept->made(), 2u);
+    EXPECT_TRUE(MeshRayStore(*scene, kept, progress).was_there(0, true));
+    // At another time of the shutter the same mesh may be cut into other triangles.
+    scene->options.frame_time += 0.25f;
+    EXPECT_FALSE(MeshRayStore(*scene, kept, progress).was_there(0, false));
 }
 
 }  // namespace
