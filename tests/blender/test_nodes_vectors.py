@@ -182,6 +182,22 @@ def test_pointiness(scene, render, modifier):
     check(scene, render, 64, limit=0.006)
 
 
+def test_values_on_edges_of_what_blender_subdivides(scene, render):
+    """Edges that it makes between those of the cage have none: 0, in means at vertices too."""
+    vertices = [(x / 2, y / 2, 0.0) for y in (-2, -1, 0, 1, 2) for x in (-2, -1, 0, 1, 2)]
+    faces = [(i, i + 1, i + 6, i + 5) for i in range(19) if i % 5 < 4]
+    thing = scene_parts.add_mesh(scene, "Grid", vertices, faces)
+    scene_parts.add_subsurf(thing)
+    values = thing.data.attributes.new("Wanted", "FLOAT", "EDGE").data
+    values.foreach_set("value", np.linspace(0.0, 2.0, len(values), dtype=np.float32))
+    tree = Tree(thing)
+    tree.emit(tree.attribute("Wanted", "Fac"))
+    scene_parts.add_camera(scene, ortho_scale=1.5)
+    scene.render.resolution_x = scene.render.resolution_y = 48
+    # What varies within a pixel is sampled.
+    check(scene, render, 64, limit=0.01)
+
+
 def test_an_output_that_is_not_evaluated_is_named_where_it_is_linked(scene, render, capfd):
     output = "Parametric"
     tree = Tree(board(scene))

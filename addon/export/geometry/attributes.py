@@ -4,6 +4,7 @@
 import numpy as np
 
 from ..base.snapshot import Attribute
+from ..shading.used_nodes import any_node
 
 # Blender's data type -> (member of an element, components, dtype that `foreach_get` copies fastest)
 _LAYOUT = {
@@ -89,6 +90,14 @@ def _is_stretched(node):
     """Whether its highlights are longer one way."""
     inputs = node.get("inputs", {})
     return any(inputs.get(name, 0.0) != 0.0 for name in _STRETCHES)
+
+
+def asks_on_edges(mesh, materials):
+    """Whether nodes of evaluated Materials show values that an evaluated Mesh has on its edges."""
+    names = {attribute.name for attribute in mesh.attributes if attribute.domain == "EDGE"}
+    return bool(names) and any_node(
+        materials, lambda node: getattr(node, "attribute_name", None) in names
+    )
 
 
 def mesh_attributes(mesh, label, requested, report):

@@ -22,6 +22,7 @@ from ..base.blur_settings import blurs, fewest_segments
 from ..base.identity import combine, name_hash
 from ..base.report import poll
 from ..base.transforms import has_area
+from ..geometry.attributes import asks_on_edges
 from ..geometry.hair import hair_material, hair_systems
 from ..geometry.pointiness import asks_for_pointiness
 from ..geometry.subdivision import find_cage, simplify_level
@@ -291,12 +292,11 @@ class _Walk:
 
     def _find_cage(self, source):
         cage = find_cage(source, self._mode, self._simplify)
-        # Of vertices that Blender makes, which a cage has not.
-        if cage is None or not self._asks(
-            asks_for_pointiness, [slot.material for slot in source.material_slots]
-        ):
-            return cage
-        return None
+        materials = [slot.material for slot in source.material_slots]
+        # Of vertices and edges that Blender makes, which a cage has not.
+        if cage is None or self._asks(asks_for_pointiness, materials):
+            return None
+        return None if asks_on_edges(source.data, (*materials, self._override)) else cage
 
     @staticmethod
     def _may_make_instances(source):
