@@ -32,6 +32,8 @@ bool is_visible(const World& world, RayType ray) {
         case RayType::Transmission:
         case RayType::Clear:
             return world.visible_transmission;
+        case RayType::Translucent:  // as Cycles: hidden from it by either
+            return world.visible_diffuse && world.visible_transmission;
         case RayType::Scattered:
             return world.visible_volume;
         default:

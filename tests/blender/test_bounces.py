@@ -46,6 +46,28 @@ def test_limits_are_those_of_cycles(scene):
     assert light_paths(scene, scene.granita) == {**limits, "bounces": 2}
 
 
+@pytest.mark.parametrize("diffuse, transmission", [(4, 12), (1, 12), (4, 0)])
+def test_light_through_leaves_is_transmitted(scene, render, diffuse, transmission):
+    """Four sheets, half of each translucent: what goes through has the limit of what is transmitted."""
+    material, nodes, links, output = scene_parts.node_material("Leaf")
+    mix = nodes.new("ShaderNodeMixShader")
+    for i, kind in enumerate(("ShaderNodeBsdfTranslucent", "ShaderNodeBsdfDiffuse"), 1):
+        shader = nodes.new(kind)
+        shader.inputs["Color"].default_value = (0.8, 0.8, 0.8, 1.0)
+        links.new(shader.outputs[0], mix.inputs[i])
+    links.new(mix.outputs[0], output.inputs["Surface"])
+    for i in range(4):
+        scene_parts.add_square(scene, f"Sheet {i}", 20.0, (0.0, 0.0, -0.5 * i), material)
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.color = (1.0, 1.0, 1.0)
+    scene_parts.add_camera(scene, ortho_scale=1.0)
+    scene.render.resolution_x = scene.render.resolution_y = 8
+    limits = {"diffuse_bounces": diffuse, "transmission_bounces": transmission}
+    theirs, ours = render_bounced(scene, render, 2048, limit=12, **limits)
+    assert theirs.mean() > 0.3
+    assert ours.mean() == pytest.approx(theirs.mean(), rel=0.015)
+
+
 def test_what_shines_inside_lights_a_floor_without_bounces(scene, render):
     """Max Bounces 0: a volume's emission is met all the same, as in Cycles."""
     floor = scene_parts.add_square(scene, "Floor", 6.0)
@@ -151,11 +173,14 @@ def render_bounced(
     all_passes=False,
     samples=16,
     limit=4,
+    **limits,
 ):
     """(Cycles, Granita) with `limit` bounces or none, without clamps: float32 [h, w, 3], or all passes by name."""
     cycles, settings = scene.cycles, scene.granita
     settings.bounces, settings.light_samples = bounces, 64
     cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 4
+    for name, value in limits.items():
+        setattr(cycles, name, value)
     cycles.sample_clamp_indirect, cycles.blur_glossy = 0.0, blur_glossy
     scene.view_settings.view_transform = "Raw"
     cycles.samples = cycles_samples

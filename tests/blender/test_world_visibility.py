@@ -55,6 +55,20 @@ def test_rays_see_the_world_or_not(scene, render, hidden, transparent):
     assert np.abs(theirs - ours).max() < 1e-3
 
 
+@pytest.mark.parametrize("hidden", ["diffuse", "glossy", "transmission"])
+@pytest.mark.parametrize("bounces", ["NONE", "FULL"])
+def test_translucent_sees_what_neither_kind_is_shut_out_of(scene, render, hidden, bounces):
+    """Its rays are diffuse and transmitted at once."""
+    strips(scene, [("ShaderNodeBsdfTranslucent", None)] * 4)
+    sky(scene, varies=False)
+    setattr(scene.world.cycles_visibility, hidden, False)
+    scene.granita.bounces = bounces
+    theirs, ours = node_comparison.render_both(scene, render, 256)
+    assert (theirs.max() > 0.2) == (hidden == "glossy")
+    # The mean of 64 pixels: Cycles' have noise.
+    assert ours.mean() == pytest.approx(theirs.mean(), rel=0.01)
+
+
 @pytest.mark.parametrize("hidden", ["camera", "diffuse", "glossy"])
 def test_a_world_that_varies_is_hidden_too(scene, render, hidden):
     strips(scene)

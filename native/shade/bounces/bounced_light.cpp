@@ -44,9 +44,9 @@ class BouncedLight::Wave {
             path.spread = ray.spread;
             path.least_pdf = ray.pdf;
             path.sure_part = std::min(1.0f, largest(ray.weight));
-            path.kind = ray.ray.type == RayType::Diffuse ? BouncedPath::Kind::Diffuse
-                        : is_sharp(ray.ray.type)         ? BouncedPath::Kind::Mirrored
-                                                         : BouncedPath::Kind::Glossy;
+            path.kind = is_diffuse(ray.ray.type) ? BouncedPath::Kind::Diffuse
+                        : is_sharp(ray.ray.type) ? BouncedPath::Kind::Mirrored
+                                                 : BouncedPath::Kind::Glossy;
             follow(path, is_scattered);
         }
         m_paths.swap(m_next);
@@ -97,6 +97,7 @@ class BouncedLight::Wave {
 
     /// Keeps the way for the next wave, unless it may go no further.
     void follow(BouncedPath& path, bool is_scattered) {
+        path.was_diffuse |= is_diffuse(path.next.ray.type);
         if (is_scattered)
             ++path.volume;
         else if (path.next.ray.type == RayType::Diffuse)
@@ -294,7 +295,7 @@ class BouncedLight::Wave {
             const BouncedPath& path = m_paths[m_met[i].ray];
             return std::tuple(m_met[i].hit.instance, m_met[i].hit.material,
                               static_cast<int>(path.next.ray.type), path.depth, is_lit(path),
-                              path.diffuse > 0);
+                              path.was_diffuse);
         };
         std::vector<MetPath> batch;
         const auto shade_run = [&](std::span<const std::uint32_t> run) {
@@ -338,7 +339,7 @@ class BouncedLight::Wave {
         const auto is_glossy = [](const Lobe& lobe) {
             return part_of(lobe.kind) != LightPart::Diffuse;
         };
-        if (!m_limits.caustics && batch.front().path->diffuse > 0)
+        if (!m_limits.caustics && batch.front().path->was_diffuse)
             std::erase_if(closure.lobes, is_glossy);
         if (m_limits.filter_glossy == 0.0f) return;
         for (Lobe& lobe : closure.lobes) {

@@ -13,7 +13,8 @@ struct BouncedPath {
     LobeRay next;   ///< its weight: of the whole way; its point: of the grid
     int depth = 1;  ///< surfaces that send it on, the grid's among them
     int diffuse = 0, glossy = 0, transmission = 0;  ///< of these, by how
-    int volume = 0;                                 ///< of these, places in media that scatter
+    bool was_diffuse = false;  ///< one of them sent it on from a diffuse lobe, to either side
+    int volume = 0;            ///< of these, places in media that scatter
     /// As LobeRay's, of the lobes of the grid's own point.
     Vec3f diffuse_part{0.0f}, transmitted{0.0f};
     /// What sent it from there.

@@ -7,7 +7,9 @@ namespace {
 /// A diffuse lobe's ray brings light to the gloss that it is mixed with as well: each is shown what
 /// its own rays may see, whichever of them were sent.
 const PartRays& types_of(RayType ray) {
-    return is_sharp(ray) ? kSharp : ray == RayType::Scattered ? kScattered : kBlurred;
+    if (is_sharp(ray)) return kSharp;
+    if (ray == RayType::Scattered) return kScattered;
+    return goes_through(ray) ? kBlurredThrough : kBlurred;
 }
 
 /// @param seen what the world says along the ray, if it is asked.
@@ -29,7 +31,7 @@ std::vector<BsdfValue> seen_world(const DirectLight& direct, std::span<const Bou
     std::vector<std::size_t> asking;
     std::vector<Vec3f> directions;
     std::vector<BsdfValue> seen;
-    for (const PartRays* types : {&kBlurred, &kSharp, &kScattered}) {
+    for (const PartRays* types : {&kBlurred, &kBlurredThrough, &kSharp, &kScattered}) {
         asking.clear();
         directions.clear();
         for (std::size_t i = 0; i < paths.size(); ++i) {

@@ -128,7 +128,6 @@ LampRate DirectLight::Impl::rate_of(const LitPoint& point, const LampChoice* cho
 void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
                                     const LampChoice* choice) const {
     const bool meets_lamps = point.meets_lamps(lobe);
-    const RayType type = grid.blurred_rays().of(point.bsdf.part(lobe));
     if (!world.shines() && !meets_lamps && !grid.leaving) return;
     if (!meets_lamps && !grid.samples_diffuse()) return;
     const LitPoint::LobeSamples& samples = point.samples[lobe];
@@ -139,6 +138,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         if (!point.bsdf.sample(lobe, sequence(index), wo)) continue;
         const BsdfValue value = point.bsdf.evaluate(wo);
         if (total(value) == Vec3f(0.0f)) continue;
+        const RayType type = grid.blurred_rays(point.is_through(wo)).of(point.bsdf.part(lobe));
         const LitPlace place = set.place_at(point, sequence.third(index));
         const float sign = LitGrid::sign(s, samples.count);
         if (grid.leaving && (grid.leaving->diffuse || meets_lamps)) {

@@ -78,7 +78,8 @@ class Environment {
   private:
     /// The types of rays that lobes send that are not sharp.
     static constexpr std::array kBlurredRays{RayType::Diffuse, RayType::Glossy,
-                                             RayType::Transmission, RayType::Scattered};
+                                             RayType::Transmission, RayType::Translucent,
+                                             RayType::Scattered};
 
     /// [height][width] luminance
     std::vector<float> bake(const WorldEvaluator& world, const Progress& progress);

@@ -22,7 +22,7 @@ void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& 
     const Vec3f weight = total(value);
     if (weight == Vec3f(0.0f) || !is_finite(weight)) return;
     // A sample's part of the hemisphere, for rays that diffuse lobes send.
-    const float spread = ray.type == RayType::Diffuse
+    const float spread = is_diffuse(ray.type)
                              ? std::sqrt(2.0f * kPi / static_cast<float>(point.sample_count))
                              : 0.0f;
     const int count = point.lobe_samples(set.varies ? point.sample_count : 1);

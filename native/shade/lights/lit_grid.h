@@ -31,7 +31,7 @@ struct LitGrid {
     std::vector<Vec3f>& radiance;
     ReflectionParts* parts = nullptr;  ///< nullptr = not asked for
     /// By the world's density, by lobes, by mirrors.
-    EnvironmentSamples blurred{}, met{}, sharp{};
+    EnvironmentSamples blurred{}, met{}, through{}, sharp{};
     std::vector<Vec2f> lamp_points{};         ///< of the lamp and point at hand
     std::vector<LightSample> lamp_samples{};  ///< there
     std::vector<MetLamp> met_lamps{};         ///< whose nodes are still to be asked
@@ -49,8 +49,11 @@ struct LitGrid {
     std::vector<float>* balance = nullptr;
     LeavingRays* leaving = nullptr;  ///< to other surfaces; nullptr: not asked for
 
-    /// The types of ray that its lobes send, but for sharp ones.
-    const PartRays& blurred_rays() const { return in_medium ? kScattered : kBlurred; }
+    /// The types of ray that its lobes send, but for sharp ones, to a point's own side of the
+    /// surface or through it.
+    const PartRays& blurred_rays(bool goes_through) const {
+        return in_medium ? kScattered : goes_through ? kBlurredThrough : kBlurred;
+    }
 
     /// Of sample `s` of `count` which the point takes alike; one alone is in no doubt.
     static float sign(int s, int count) { return count < 2 ? 0.0f : s % 2 == 0 ? 1.0f : -1.0f; }

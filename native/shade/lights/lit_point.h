@@ -50,6 +50,9 @@ struct LitPoint {
     };
     std::vector<LobeSamples> samples;  ///< [lobes]
 
+    bool is_through(const Vec3f& direction) const {
+        return bsdf.transmits() && glm::dot(at_frame.normal, direction) < 0.0f;
+    }
     /// Where it is over the shutter.
     Bounds3f reach() const {
         Bounds3f box = paths.reach(index);

@@ -17,6 +17,8 @@ struct PartRays {
     }
 };
 constexpr PartRays kBlurred{RayType::Diffuse, RayType::Glossy, RayType::Transmission};
+/// Likewise, to the other side of a surface.
+constexpr PartRays kBlurredThrough{RayType::Translucent, RayType::Glossy, RayType::Transmission};
 constexpr PartRays kSharp{RayType::Diffuse, RayType::Singular, RayType::Clear};
 /// Of phase functions, whose light is all transmitted.
 constexpr PartRays kScattered{RayType::Scattered, RayType::Scattered, RayType::Scattered};

@@ -46,15 +46,18 @@ void WorldLight::sample(const LampSet& set, LitGrid& grid, const LitPoint& point
                 value.diffuse * seen / (count * (from.pdf + shared_density(point, wo)));
         const float sign = LitGrid::sign(s, point.sample_count);
         if (m_environment->has_radiance())
-            grid.reflect_world(point.index, of_texel(from, weight, grid.blurred_rays()), sign);
+            grid.reflect_world(
+                point.index, of_texel(from, weight, grid.blurred_rays(point.is_through(wo))), sign);
         else
-            grid.look(grid.blurred, point.index, wo, weight, sign);
+            grid.look(grid.by_lobe && point.is_through(wo) ? grid.through : grid.blurred,
+                      point.index, wo, weight, sign);
     }
 }
 
 void WorldLight::meet(const LampSet& set, LitGrid& grid, const LitPoint& point,
                       const LitPlace& place, const LobeSample& sample) const {
     const Vec3f& wo = sample.wo;
+    const PartRays& types = grid.blurred_rays(point.is_through(wo));
     BsdfValue weight = sample.value;
     if (!grid.samples_diffuse()) weight.diffuse = Vec3f(0.0f);
     if (total(weight) == Vec3f(0.0f)) return;
@@ -63,17 +66,19 @@ void WorldLight::meet(const LampSet& set, LitGrid& grid, const LitPoint& point,
     const float density = by_lobes + static_cast<float>(point.sample_count) * at.pdf;
     weight = weight * (set.occlusion(grid, point, place, wo, sample.type) / density);
     if (m_environment->is_constant()) {
-        grid.reflect_world(point.index, of_constant(weight, grid.blurred_rays()), sample.sign);
+        grid.reflect_world(point.index, of_constant(weight, types), sample.sign);
     } else if (m_environment->has_radiance() && !sample.is_narrow) {
-        grid.reflect_world(point.index, of_texel(at, weight, grid.blurred_rays()), sample.sign);
+        grid.reflect_world(point.index, of_texel(at, weight, types), sample.sign);
     } else {
-        grid.look(grid.met, point.index, wo, weight, sample.sign);
+        grid.look(grid.by_lobe && point.is_through(wo) ? grid.through : grid.met, point.index, wo,
+                  weight, sample.sign);
     }
 }
 
 WorldAhead WorldLight::ahead(const LitGrid& grid, const LitPoint& point,
                              const LobeSample& sample) const {
     if (!shines()) return {};
+    const PartRays& types = grid.blurred_rays(point.is_through(sample.wo));
     const Environment::Sample at = m_environment->at(sample.wo);
     const float by_lobes = grid.lobe_density(point, sample.wo);
     const float of_lobes = by_lobes / (by_lobes + static_cast<float>(point.sample_count) * at.pdf);
@@ -83,11 +88,10 @@ WorldAhead WorldLight::ahead(const LitGrid& grid, const LitPoint& point,
         of_diffuse = shared / (at.pdf + shared);
     }
     const BsdfValue weight{Vec3f(of_diffuse), Vec3f(of_lobes), Vec3f(of_lobes)};
-    if (m_environment->is_constant())
-        return {of_constant(weight, grid.blurred_rays()), 0.0f, 0.0f, sample.sign};
+    if (m_environment->is_constant()) return {of_constant(weight, types), 0.0f, 0.0f, sample.sign};
     if (!m_environment->has_radiance() || sample.is_narrow)
         return {{}, of_diffuse, of_lobes, sample.sign};
-    return {of_texel(at, weight, grid.blurred_rays()), 0.0f, 0.0f, sample.sign};
+    return {of_texel(at, weight, types), 0.0f, 0.0f, sample.sign};
 }
 
 WorldAhead WorldLight::ahead_of_mirror() const {
@@ -123,8 +127,9 @@ BsdfValue WorldLight::of_texel(const Environment::Sample& from, const BsdfValue&
 
 void WorldLight::deliver(LitGrid& grid) const {
     if (!shines()) return;
-    look(grid, grid.blurred, m_environment->texel_angle(), grid.blurred_rays());
-    look(grid, grid.met, m_environment->texel_angle(), grid.blurred_rays());
+    look(grid, grid.blurred, m_environment->texel_angle(), grid.blurred_rays(false));
+    look(grid, grid.met, m_environment->texel_angle(), grid.blurred_rays(false));
+    look(grid, grid.through, m_environment->texel_angle(), grid.blurred_rays(true));
     // A point of its own stands for no neighbours: the mean of many does.
     look(grid, grid.sharp, grid.placed ? 0.0f : grid.sharp.spread(), kSharp);
 }

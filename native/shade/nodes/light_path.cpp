@@ -24,16 +24,16 @@ float light_path_value(const std::string& output, RayType ray) {
     const bool reflected =
         ray == RayType::Diffuse || ray == RayType::Glossy || ray == RayType::Singular;
     const bool glossy = reflected && ray != RayType::Diffuse;
-    const bool transmitted = ray == RayType::Transmission || ray == RayType::Clear;
     const auto is = [&output](const char* name) { return output == name; };
     const bool yes =
         (is("Is Camera Ray") && ray == RayType::Camera) ||
         (is("Is Shadow Ray") && ray == RayType::Shadow) ||
         (is("Is Volume Scatter Ray") && ray == RayType::Scattered) ||
         (is("Is Singular Ray") && (ray == RayType::Singular || ray == RayType::Clear)) ||
-        ((is("Is Transmission Ray") || is("Transmission Depth")) && transmitted) ||
+        ((is("Is Transmission Ray") || is("Transmission Depth")) && goes_through(ray)) ||
         (is("Is Reflection Ray") && reflected) || (is("Ray Depth") && ray != RayType::Camera) ||
-        ((is("Is Diffuse Ray") || is("Diffuse Depth")) && ray == RayType::Diffuse) ||
+        (is("Is Diffuse Ray") && is_diffuse(ray)) ||
+        (is("Diffuse Depth") && ray == RayType::Diffuse) ||
         ((is("Is Glossy Ray") || is("Glossy Depth")) && glossy);
     return yes ? 1.0f : 0.0f;
 }

@@ -6,12 +6,14 @@
 
 namespace granita {
 
-/// Whether such rays can meet the instance.  Those that go through a surface are glossy as well
-/// (Cycles).
+/// Whether such rays can meet the instance.  Those that go through a surface are glossy or
+/// diffuse as well (Cycles).
 inline bool meets(RayType ray, const Instance& instance) {
     if (ray == RayType::Camera) return instance.visible_camera;
     if (ray == RayType::Shadow) return instance.casts_shadow;
     if (ray == RayType::Diffuse) return instance.visible_diffuse;
+    if (ray == RayType::Translucent)
+        return instance.visible_diffuse || instance.visible_transmission;
     if (ray == RayType::Scattered) return instance.visible_volume;
     return instance.visible_glossy || (goes_through(ray) && instance.visible_transmission);
 }

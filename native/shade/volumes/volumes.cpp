@@ -11,9 +11,9 @@
 namespace granita {
 namespace {
 
-constexpr std::array kRays{RayType::Camera, RayType::Shadow,   RayType::Diffuse,
-                           RayType::Glossy, RayType::Singular, RayType::Transmission,
-                           RayType::Clear,  RayType::Scattered};
+constexpr std::array kRays{RayType::Camera, RayType::Shadow,      RayType::Diffuse,
+                           RayType::Glossy, RayType::Singular,    RayType::Transmission,
+                           RayType::Clear,  RayType::Translucent, RayType::Scattered};
 static_assert(kRays.size() == kRayTypes);
 
 /// In [0, 1), of where a ray goes.

@@ -61,7 +61,7 @@ TEST(Environment, its_density_covers_what_any_kind_of_lobe_sees) {
     WorldEvaluator world{[](const std::vector<Vec3f>& directions, float, RayType ray,
                             std::vector<Vec3f>& out) {
         out.clear();
-        const bool sees_all = ray == RayType::Transmission || ray == RayType::Scattered;
+        const bool sees_all = goes_through(ray) || ray == RayType::Scattered;
         for (const Vec3f& d : directions)
             out.emplace_back(sees_all || (ray == RayType::Glossy) == (d.z > 0.0f) ? 1.0f : 0.0f);
     }};
