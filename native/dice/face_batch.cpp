@@ -217,16 +217,19 @@ FaceBatch::Face FaceBatch::face(const Grid& grid, std::size_t i, const BasePatch
     return face;
 }
 
-/// Neighbours follow each other in the batch.
+/// Neighbours follow each other in the batch.  Of faces that were opened because samples meet them
+/// each has a point of its own: between them lie others, above what their mean would be, and which
+/// they are must not tell where points lie.
 std::vector<FaceBatch::Cluster> FaceBatch::clusters(Grid& grid,
                                                     const std::vector<Face>& faces) const {
     const auto rate = static_cast<float>(m_mesh->rate().shading_rate());
+    const bool gather = m_mesh->part().is_whole();
     std::vector<Cluster> clusters;
     std::vector<std::uint32_t> point_of;  // [faces]
     Vec2f lo(0.0f), hi(0.0f);             // of the last cluster
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const Face& face = faces[i];
-        if (!clusters.empty()) {
+        if (gather && !clusters.empty()) {
             Cluster& last = clusters.back();
             const Vec2f low = glm::min(lo, face.place), high = glm::max(hi, face.place);
             const Vec2f size = high - low;

@@ -286,3 +286,59 @@ def test_later_pictures_of_a_session_are_those_of_frames_alone():
     snapshot["materials"][0]["nodes"][0]["inputs"]["Color"] = (0, 0, 1, 1)
     kept.follow(snapshot)
     assert kept.statistics["rays_opening"] == 0
+
+
+def shaded(nodes, surface, **options):
+    """A ball with a material of these nodes, seen by few samples; light's rays have built its tree."""
+    snapshot = s.orthographic(SIZE, executor="SIMD", film_transparent=False, **options)
+    material = {"name": "Ball", "nodes": nodes, "surface": surface}
+    snapshot["materials"].append(material)
+    points, faces = ball(100)
+    where = s.translation(*CENTER) @ turned(0.3, 0.5)
+    smooth = {"smooth": np.ones(len(faces), np.uint8)}
+    s.mesh(snapshot, points, faces, 0, transforms=[where], **smooth)
+    return snapshot
+
+
+def test_points_lie_on_the_surface_whose_faces_are_not_opened():
+    """Nothing occludes a convex ball; a mean of faces that are far apart lies inside of it."""
+    occlusion = {"Color": (1, 1, 1, 1), "Distance": 3.0}
+    glow = {"Color": ("LINK", 0, "Color"), "Strength": 1.0}
+    nodes = [
+        {"type": "ShaderNodeAmbientOcclusion", "inputs": occlusion},
+        {"type": "ShaderNodeEmission", "inputs": glow},
+    ]
+    rendered = s.render(shaded(nodes, (1, "Emission"), samples=4))
+    assert rendered["statistics"]["rays_opening"] > 0
+    inside, _ = far_from_outline(0.75)
+    assert rendered["combined"][inside][:, 0].mean() == pytest.approx(1.0, abs=2e-3)
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_a_coarse_picture_is_as_bright_as_the_ball(samples):
+    """Lambert's law, of a sun behind the camera, where samples are not shaded by themselves (a view's first pictures)."""
+    diffuse = {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.8, 0.8, 0.8, 1)}}
+    snapshot = shaded([diffuse], (0, "BSDF"), samples=samples, refine_samples=False)
+    session_parts.sun(snapshot)
+    rendered = s.render(snapshot)
+    assert rendered["statistics"]["rays_opening"] > 0
+    inside, _ = far_from_outline(0.75)
+    x, y = np.meshgrid(np.arange(SIZE[0]) + 0.5, np.arange(SIZE[1]) + 0.5)
+    squared = ((x - CENTER[0]) ** 2 + (y - CENTER[1]) ** 2)[inside] / RADIUS**2
+    expected = 0.8 / np.pi * 3.0 * np.sqrt(1 - squared)
+    # One sample a pixel lies elsewhere than in its middle.
+    assert rendered["combined"][inside][:, 0].mean() == pytest.approx(expected.mean(), rel=0.02)
+
+
+def test_a_pattern_is_the_same_with_a_threshold_at_which_all_samples_are_taken():
+    """Which faces a threshold's fewer samples meet must not move the points of those that all of them meet."""
+    nodes = [
+        {"type": "ShaderNodeTexCoord", "inputs": {}},
+        {"type": "ShaderNodeTexChecker", "inputs": {"Vector": ("LINK", 0, "Object"), "Scale": 0.7}},
+        {"type": "ShaderNodeEmission", "inputs": {"Color": ("LINK", 1, "Color"), "Strength": 1.0}},
+    ]
+    pictures = [
+        s.render(shaded(nodes, (2, "Emission"), samples=SAMPLES, **options))["combined"]
+        for options in ({}, {"min_samples": 1, "noise_threshold": 1e-7})
+    ]
+    assert np.array_equal(*pictures)
