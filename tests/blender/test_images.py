@@ -113,6 +113,36 @@ def test_bytes_of_a_space_that_is_not_known_are_decoded_as_srgb(scene, monkeypat
     assert np.abs(found - curve).max() < 1e-6
 
 
+@pytest.mark.parametrize("kept", ["set", "packed", "file"])
+@pytest.mark.parametrize("is_float", [False, True])
+@pytest.mark.parametrize("alpha_mode", ["STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"])
+@pytest.mark.parametrize("names", [("sRGB",), ("Non-Color",), ("Linear", "Linear Rec.709")])
+def test_colour_beside_alpha(scene, render, tmp_path, names, alpha_mode, is_float, kept):
+    """Both at random; data are no colour, that alpha belongs to."""
+    image = bpy.data.images.new("Image", 16, 16, alpha=True, float_buffer=is_float)
+    space = next(name for name in names if name in spaces(image))
+    image.colorspace_settings.name, image.alpha_mode = space, alpha_mode
+    values = np.random.default_rng(1).uniform(0.1, 1.0, (256, 4)).astype(np.float32)
+    image.pixels.foreach_set(values.ravel())
+    image.update()
+    if kept == "packed":
+        image.pack()
+    elif kept == "file":
+        suffix, image.file_format = ("exr", "OPEN_EXR") if is_float else ("png", "PNG")
+        image.filepath_raw = str(tmp_path / f"Image.{suffix}")
+        image.save()
+        image = bpy.data.images.load(image.filepath_raw)
+        image.colorspace_settings.name, image.alpha_mode = space, alpha_mode
+    tree, node = textured(scene, image)
+    node.interpolation = "Closest"
+    mix = tree.add("ShaderNodeMixRGB")
+    tree.link(node.outputs["Color"], mix.inputs["Color1"])
+    tree.link(node.outputs["Alpha"], mix.inputs["Color2"])
+    tree.emit(mix.outputs["Color"], 2.0)
+    # Pixels that hold borders of texels: up to .019 of noise where they hardly vary.  Data divided by alpha: 6.
+    check(scene, render, SAMPLES, limit=0.025)
+
+
 def every_byte():
     """[256, 4], opaque."""
     values = np.repeat(np.arange(256), 4).reshape(-1, 4)
@@ -154,6 +184,17 @@ def test_an_image_that_is_a_pipe_is_left_out_by_name(scene, render, tmp_path, ca
     render(scene)
     said = capfd.readouterr().out
     assert f"image '{image.name}'" in said and "it is no file" in said
+
+
+def test_a_movie_that_is_a_pipe_is_left_out_by_name(scene, render, tmp_path, capfd, impatient):
+    os.mkfifo(tmp_path / "Movie.mp4")
+    image = bpy.data.images.new("Movie", 4, 4)
+    image.source, image.filepath = "MOVIE", str(tmp_path / "Movie.mp4")
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    render(scene)
+    said = capfd.readouterr().out
+    assert "image 'Movie'" in said and "it is no file" in said
 
 
 def test_a_movie_is_reported(scene, tmp_path):

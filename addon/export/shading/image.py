@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ..base.regular_file import open_regular_file
+from ..base.regular_file import is_no_file, open_regular_file
 
 # What files begin with that Blender reads and Granita's readers do not: DPX, Cineon, SGI, Photoshop, DDS.
 _BLENDERS_OWN = (
@@ -23,6 +23,8 @@ _BLENDERS_OWN = (
 )
 # Byte images in these are handed over as they are, in others decoded from sRGB.
 _LINEAR_SPACES = {"Non-Color", "Raw", "Linear", "Linear Rec.709", "Linear BT.709"}
+# What is in these is no colour: alpha counts for nothing.
+_DATA_SPACES = {"Non-Color", "Raw"}
 # Pixels that are decoded at a time.
 _STRIP = 1 << 14
 
@@ -101,6 +103,9 @@ def _record(image, name, path, report):
     label = f"image '{image.name_full}'"
     record = _empty_record(image, name)
     if image.source == "MOVIE":
+        file = bpy.path.abspath(image.filepath, library=image.library)
+        if is_no_file(file):  # Blender would open a pipe, and wait
+            return {**record, "path": file}
         report(label, "is a movie, of which one frame is shown throughout: use an image sequence")
     if path is not None:
         record["path"] = path
@@ -122,7 +127,8 @@ def _record(image, name, path, report):
 def _hand_over(record, pixels, image, label, report):
     space = record["colorspace"]
     if image.is_float:
-        record["colorspace"] = "scene_linear"
+        if space not in _DATA_SPACES:
+            record["colorspace"] = "scene_linear"
     elif space != "sRGB" and space not in _LINEAR_SPACES:
         report(label, f"its colour space '{space}' is read as sRGB")
     record["pixels" if pixels.dtype == np.float32 else "bytes"] = pixels
@@ -130,7 +136,7 @@ def _hand_over(record, pixels, image, label, report):
 
 def _is_in_a_file(image):
     """Tiled images that were never saved have neither file nor bytes, and are not dirty."""
-    if image.source not in ("FILE", "TILED") or image.is_dirty or _is_packed_hdr(image):
+    if image.source not in ("FILE", "TILED") or image.is_dirty or _is_packed_float(image):
         return False
     return bool(image.filepath or image.packed_file)
 
@@ -149,10 +155,11 @@ def _tile_path(image, tile):
     return path.replace("<UDIM>", str(tile)).replace("<UVTILE>", f"u{u}_v{v}")
 
 
-def _is_packed_hdr(image):
-    """Of packed images Cycles takes what Blender decoded, and of Radiance's format Blender makes
-    .3 % more light than OpenImageIO does from a file: it adds half a step to each mantissa."""
-    return image.packed_file is not None and image.file_format == "HDR"
+def _is_packed_float(image):
+    """Of packed images Cycles takes what Blender has: of Radiance's format it makes .3 % more light than OpenImageIO
+    does from a file, as it adds half a step to each mantissa, and what was packed since it was loaded is linear,
+    whatever its colour space says."""
+    return image.packed_file is not None and image.is_float
 
 
 def _packed_file(image, packed):
@@ -264,7 +271,7 @@ def _with_four_channels(values):
 
 
 def _associates(space, alpha_mode):
-    return space not in ("Non-Color", "Raw") and alpha_mode not in ("CHANNEL_PACKED", "NONE")
+    return space not in _DATA_SPACES and alpha_mode not in ("CHANNEL_PACKED", "NONE")
 
 
 def _strips(pixels):
