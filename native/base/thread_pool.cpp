@@ -2,6 +2,7 @@
 #include "base/thread_pool.h"
 
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
@@ -16,9 +17,20 @@ namespace {
 
 /// A thread that waits, and works while it waits, until `gate` goes.
 struct Helper {
-    tbb::task_group group;
-    tbb::task_handle gate = group.defer([] {});
+    std::unique_ptr<tbb::task_group> group = std::make_unique<tbb::task_group>();
+    tbb::task_handle gate = shut(group);
     std::thread thread;
+
+    /// A group whose defer() found no memory counts a task that is not there: whoever ends it waits
+    /// for that, and the process ends.  It is left behind instead.
+    static tbb::task_handle shut(std::unique_ptr<tbb::task_group>& group) {
+        try {
+            return group->defer([] {});
+        } catch (...) {
+            static_cast<void>(group.release());
+            throw;
+        }
+    }
 };
 
 /// Whether so many threads more can be made: where oneTBB cannot make one it fails a build.
@@ -40,7 +52,7 @@ struct ThreadPool::Impl {
 
     bool add_helper() {
         auto helper = std::make_unique<Helper>();
-        const auto help = [this, group = &helper->group] {
+        const auto help = [this, group = helper->group.get()] {
             arena.execute([group] { group->wait(); });
         };
         try {
@@ -79,10 +91,9 @@ void ThreadPool::run(const std::function<void()>& work) {
 }
 
 void ThreadPool::call_on_all(void (*call)(const void*), const void* calls) {
-    tbb::task_group group;
-    for (int i = 1; i < size(); ++i) group.run([=] { call(calls); });
-    call(calls);
-    group.wait();
+    // Not a task_group: where there is no memory for one of its tasks it waits for ever.
+    tbb::parallel_for(
+        0, size(), [=](int) { call(calls); }, tbb::simple_partitioner());
 }
 
 }  // namespace granita

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/rays/build_shape.h"
 
+#include <new>
+
 #include "base/error.h"
 #include "base/stage_timer.h"
 
@@ -10,8 +12,7 @@ void check_embree(RTCDevice device, const std::string& what, const Progress& pro
     progress.check();
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_NONE) return;
-    if (error == RTC_ERROR_OUT_OF_MEMORY)
-        throw SceneError(what, "not enough memory for its shadow rays");
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     throw SceneError(what, "Embree failed with error " + std::to_string(error));
 }
 

@@ -15,11 +15,12 @@ struct RayFilters {
 };
 
 /// Makes KeptRayShape::built and parts of its shape.
-/// Throws Cancelled, or SceneError naming the geometry that Embree could not take.
+/// Throws Cancelled, std::bad_alloc, or SceneError naming the geometry that Embree could not take.
 void build_shape(KeptRayShape& made, RTCDevice device, const RayFilters& filters,
                  const Progress& progress);
 
-/// Throws Cancelled, or SceneError naming `what` where Embree has failed.
+/// Throws Cancelled, std::bad_alloc where the system gives no more, or SceneError naming `what`
+/// where Embree has failed otherwise.
 void check_embree(RTCDevice device, const std::string& what, const Progress& progress);
 
 /// For rtcSetSceneProgressMonitorFunction, with a `const Progress*`.

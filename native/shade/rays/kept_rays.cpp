@@ -2,6 +2,7 @@
 #include "shade/rays/kept_rays.h"
 
 #include <algorithm>
+#include <new>
 #include <set>
 #include <string>
 
@@ -20,8 +21,11 @@ bool add_bytes(void* user, ssize_t bytes, bool) {
 RTCDevice KeptRays::device() {
     std::call_once(m_started, [&] {
         m_device.reset(rtcNewDevice(nullptr));
-        if (!m_device)
-            throw Error("Embree cannot start: error " + std::to_string(rtcGetDeviceError(nullptr)));
+        if (!m_device) {
+            const RTCError error = rtcGetDeviceError(nullptr);
+            if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+            throw Error("Embree cannot start: error " + std::to_string(error));
+        }
         rtcSetDeviceMemoryMonitorFunction(m_device.get(), add_bytes, &m_bytes);
     });
     return m_device.get();
