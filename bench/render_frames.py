@@ -3,15 +3,16 @@
 
     blender -b --factory-startup --addons granita --python bench/render_frames.py -- JOB.json
 
-JOB: {"module": "scenes", "lit_scenes", "lamp_scenes", "bounced_scenes", "crowd_scenes", "hero_scene", "moving_files", "walk_scene", "opened_files" (the scene is a path) or "demo", "scene", "variant" (of moving_files; frames of walk_scene), "folder", "file", "runs", "seed" (of
+JOB: {"module": "scenes", "lit_scenes", "lamp_scenes", "bounced_scenes", "crowd_scenes", "limit_scenes", "hero_scene", "moving_files", "walk_scene", "opened_files" (the scene is a path) or "demo", "scene", "variant" (of moving_files; frames of walk_scene), "folder", "file", "runs", "seed" (of
 Cycles), "size" (width and height, the scene's own without), "settings": [{"engine": "CYCLES" or "GRANITA", "samples",
 "shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), "frame" (a still at this one), "bounces" (light is followed so far; none without), other
-properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FILE lists for each setting its runs as [wall, processor] seconds
-of the whole frame, export included.
+properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FILE lists for each setting its runs as [wall, processor,
+bytes]: seconds of the whole frame, export included, and the most that the process has held until then.
 """
 
 import importlib
 import json
+import resource
 import sys
 import time
 from pathlib import Path
@@ -22,6 +23,9 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "tests" / "images")]
 import engines  # noqa: E402
 
+# Modules whose SCENES are frames 0 to 2, blurred as those of scenes.py.
+BUILT = ("lit_scenes", "lamp_scenes", "bounced_scenes", "crowd_scenes", "limit_scenes")
+
 
 def build(job):
     """(scene, frame at which the shutter opens, frames that it stays open)"""
@@ -29,7 +33,7 @@ def build(job):
         import scenes
 
         return scenes.SCENES[job["scene"]](), 1, scenes.SHUTTER
-    if job["module"] in ("lit_scenes", "lamp_scenes", "bounced_scenes", "crowd_scenes"):
+    if job["module"] in BUILT:
         import scenes
 
         return importlib.import_module(job["module"]).SCENES[job["scene"]](), 1, scenes.SHUTTER
@@ -102,7 +106,9 @@ def main():
             bpy.context.view_layer.update()
             processor = time.process_time()
             wall = engines.render(scene, Path(job["folder"]) / f"{index}.exr")
-            seconds[index].append([wall, time.process_time() - processor])
+            taken = time.process_time() - processor
+            most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+            seconds[index].append([wall, taken, most])
     Path(job["file"]).write_text(json.dumps(seconds))
 
 
