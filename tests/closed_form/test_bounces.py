@@ -101,6 +101,26 @@ def test_a_lamp_may_light_what_is_seen_after_few_bounces_alone(bounces):
     assert lit(8) > 1.05 * limited
 
 
+@pytest.mark.parametrize("most", [0, 1])
+def test_mirrors_show_a_lamp_after_any_bounces(most):
+    """All walls are mirrors around a ball that shines: what meets it is the lamp's surface, which asks for no sample."""
+
+    def seen(**own):
+        snapshot = inside(8)
+        room(snapshot, mirror(snapshot))
+        place = np.eye(4)
+        place[:3, 3] = (0.0, 0.3, 0.2)
+        lamp = {"name": "Lamp", "kind": "POINT", "color": (1, 1, 1), "energy": 100.0}
+        lamp |= {"radius": 0.2, "soft_falloff": False}
+        snapshot["lights"] = [{**lamp, "world_from_light": place[None], **own}]
+        return mean(snapshot)
+
+    unlimited = seen()
+    assert unlimited > 0.0
+    # No sample is another for the limit: what a mirror meets is not weighed.
+    assert seen(most_bounces=most) == pytest.approx(unlimited, rel=1e-6)
+
+
 def test_most_that_a_way_brings():
     """The walls are lamps to each other: 2.5.  Each way then brings half of that in three colours, 3.75: a clamp to .75
     leaves .25 of 1.25, whatever noise there is."""

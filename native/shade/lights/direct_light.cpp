@@ -128,7 +128,8 @@ LampRate DirectLight::Impl::rate_of(const LitPoint& point, const LampChoice* cho
 void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
                                     const LampChoice* choice) const {
     const bool meets_lamps = point.meets_lamps(lobe);
-    if (!world.shines() && !meets_lamps && !grid.leaving) return;
+    const bool any_unasked = grid.depth > set.asked_by_all;
+    if (!world.shines() && !meets_lamps && !any_unasked && !grid.leaving) return;
     if (!meets_lamps && !grid.samples_diffuse()) return;
     const LitPoint::LobeSamples& samples = point.samples[lobe];
     const SobolPoints sequence = grid.sequence(1 + point.bsdf.index(lobe), samples.first);
@@ -157,12 +158,20 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         }
         if (world.shines() && !grid.carries_world())
             world.meet(set, grid, point, place, {wo, value, sign, type, meets_lamps});
-        if (!meets_lamps) continue;
+        if (!meets_lamps && !any_unasked) continue;
         set.meet(grid, place, wo, [&](std::size_t index, const Lamp& lamp, const LightSample& met) {
-            const LampRate rate = rate_of(point, choice, index);
-            const float density =
-                static_cast<float>(rate.samples) * met.pdf * rate.mean + point.meeting_density(wo);
-            const BsdfValue weight = lamp.apply(value, grid.in_medium) * Vec3f(1.0f / density);
+            float share = 0.0f;  // of the reflected light, this sample's
+            if (lamp.is_asked(grid.depth)) {
+                if (!meets_lamps) return;
+                const LampRate rate = rate_of(point, choice, index);
+                share = 1.0f / (static_cast<float>(rate.samples) * met.pdf * rate.mean +
+                                point.meeting_density(wo));
+            } else {
+                // Cycles asks one of all lamps each time, a world that varies among them.
+                const float lamps = set.places + (world.has_density() ? 1.0f : 0.0f);
+                share = point.left_to_lobes(wo, met.pdf / lamps) / point.all_density(wo);
+            }
+            const BsdfValue weight = lamp.apply(value, grid.in_medium) * Vec3f(share);
             if (total(weight) != Vec3f(0.0f))
                 add_met(set, grid, {&point, &lamp, place, met, weight, sign});
         });

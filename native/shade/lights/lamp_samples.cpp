@@ -128,7 +128,8 @@ void light_by_all(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>
     LampSender sender(set, grid);
     const std::size_t count = set.tree ? set.everywhere : set.lamps.size();
     for (std::size_t l = 0; l < count; ++l) {
-        if (!set.lamps[l].lights(grid.receives, grid.depth)) continue;
+        const Lamp& lamp = set.lamps[l];
+        if (!lamp.lights(grid.receives) || !lamp.is_asked(grid.depth)) continue;
         for (const LitPoint& point : points) {
             progress.check();
             const LampTurn turn{0, static_cast<std::uint32_t>(l), {1.0f, point.sample_count}};
@@ -144,7 +145,8 @@ void light_by_chosen(const LampSet& set, LitGrid& grid, const std::vector<LitPoi
     LampSender sender(set, grid);
     for (const LampTurn& turn : by_lamp(set.lamps.size(), turns)) {
         progress.check();
-        if (!set.lamps[turn.lamp].lights(grid.receives, grid.depth)) continue;
+        const Lamp& lamp = set.lamps[turn.lamp];
+        if (!lamp.lights(grid.receives) || !lamp.is_asked(grid.depth)) continue;
         sender.sample(points[turn.point], turn, first + turn.lamp % kDimensions);
     }
     sender.deliver();

@@ -35,7 +35,11 @@ std::vector<Lamp> lamps_of(const Scene& scene, const Vec3d& origin, const LightP
 
 void LampSet::set_lamps(std::vector<Lamp> made, const Progress& progress) {
     lamps = std::move(made);
-    for (const Lamp& lamp : lamps) varies = varies || lamp.varies();
+    for (const Lamp& lamp : lamps) {
+        varies = varies || lamp.varies();
+        asked_by_all = std::min(asked_by_all, lamp.most_bounces());
+        places += lamp.is_surface() ? 0.0f : 1.0f;
+    }
     const auto has_place = [](const Lamp& lamp) {
         LightBound bound;
         return !lamp.is_surface() && lamp.bound(bound);

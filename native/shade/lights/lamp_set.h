@@ -55,7 +55,7 @@ struct LampSet {
         const auto ask = [&](std::size_t index) {
             const Lamp& lamp = lamps[index];
             LightSample sample;
-            if (lamp.lights(grid.receives, grid.depth) && lamp.meets_lobes() &&
+            if (lamp.lights(grid.receives) && lamp.meets_lobes() &&
                 lamp.meets(place.time, place.p, direction, sample))
                 met(index, lamp, sample);
         };
@@ -74,7 +74,9 @@ struct LampSet {
     float asked = 0.0f;               ///< of these, for each light sample of few
     std::unique_ptr<RayScene> rays;   ///< nullptr where nothing can cast a shadow
     bool casters_move = false;
-    bool varies = false;  ///< casters or lamps do
+    bool varies = false;                    ///< casters or lamps do
+    int asked_by_all = Light::kAnyBounces;  ///< bounces after which every lamp is still asked
+    float places = 0.0f;                    ///< lamps that are no surfaces
 };
 
 /// Those of a scene that shine.  `origin`: the camera's world position at the frame time.

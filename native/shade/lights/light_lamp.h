@@ -35,10 +35,11 @@ class Lamp {
     bool is_surface() const { return m_is_surface; }
     /// Of a surface: what rays meet of it.
     const RayTarget& target() const { return m_target; }
-    /// Whether it lights an instance of that mask (Instance::receives) after so many bounces.
-    bool lights(std::uint64_t receives, int depth) const {
-        return depth <= m_most_bounces && in_light_set(receives, m_receiver_set);
-    }
+    /// Whether it lights an instance of that mask (Instance::receives).
+    bool lights(std::uint64_t receives) const { return in_light_set(receives, m_receiver_set); }
+    /// Whether points ask it after so many bounces.  Samples of lobes meet it after any (Cycles).
+    bool is_asked(int depth) const { return depth <= m_most_bounces; }
+    int most_bounces() const { return m_most_bounces; }
     int blocker_set() const { return m_blocker_set; }
     /// Whether samples of lobes may meet it.
     bool meets_lobes() const { return m_glossy > 0.0f || m_transmission > 0.0f || m_volume > 0.0f; }

@@ -95,6 +95,19 @@ struct LitPoint {
     float meeting_density(const Vec3f& wo) const {
         return lobe_density(wo, [&](std::size_t k) { return meets_lamps(k); });
     }
+    /// Of one sample that chance takes of all lobes, a solid angle, sharp ones left out.
+    float chance_density(const Vec3f& wo) const {
+        float sum = 0.0f;
+        for (std::size_t k = 0; k < samples.size(); ++k)
+            if (samples[k].count > 0) sum += bsdf.importance(k) * bsdf.pdf(k, wo);
+        return sum;
+    }
+    /// Of lobes' samples, what is left of light that is also sampled by `pdf` where those samples
+    /// are not taken: Cycles weighs as if they were, by squares of the densities.
+    float left_to_lobes(const Vec3f& wo, float pdf) const {
+        const float own = chance_density(wo);
+        return own > 0.0f ? own * own / (own * own + pdf * pdf) : 0.0f;
+    }
     float all_density(const Vec3f& wo) const {
         return lobe_density(wo, [](std::size_t) { return true; });
     }

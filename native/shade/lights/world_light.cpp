@@ -28,7 +28,7 @@ WorldLight::WorldLight(const World& world, WorldEvaluator evaluator, Report& rep
 
 void WorldLight::sample(const LampSet& set, LitGrid& grid, const LitPoint& point) const {
     // A constant world needs no table: the lobes themselves are its best samples.
-    if (!shines() || !m_environment->has_density()) return;
+    if (!has_density()) return;
     const SobolPoints sequence = grid.sequence(point, 0, point.sample_count);
     for (int s = 0; s < point.sample_count; ++s) {
         const auto index = static_cast<std::uint32_t>(s);

@@ -20,6 +20,8 @@ class WorldLight {
                const Progress& progress);
 
     bool shines() const { return m_environment != nullptr; }
+    /// Whether sample() takes any.
+    bool has_density() const { return shines() && m_environment->has_density(); }
     /// As WorldEvaluator::by_lobe.
     bool by_lobe() const { return m_evaluator.by_lobe; }
 

@@ -252,7 +252,7 @@ TEST(LightTree, lamps_that_light_others_have_no_part) {
     LampChoice choice(*placed.tree);
     choice.aim(receiver, 16, 10.0f, 10.0f);
     for (std::uint32_t l = 0; l < 100; ++l)
-        EXPECT_EQ(choice.rate_of(l).mean > 0.0f, placed.lamps[l].lights(0b010, 0)) << l;
+        EXPECT_EQ(choice.rate_of(l).mean > 0.0f, placed.lamps[l].lights(0b010)) << l;
 }
 
 TEST(LightTree, a_ray_meets_all_lamps_on_its_way) {
