@@ -2,6 +2,7 @@
 #include "shade/textures/texture.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -43,6 +44,7 @@ class ImageTexture final : public Texture {
                  Statistics& statistics, Report& report, const Progress* progress)
         : m_image(image),
           m_has_alpha(header.has_alpha),
+          m_size(header.width, header.height),
           m_plain(image, header, false, cache, files),
           m_divided(image, header, true, cache, files),
           m_statistics(statistics),
@@ -54,7 +56,7 @@ class ImageTexture final : public Texture {
         TiledImage& tiled = mode.unassociate && m_has_alpha ? m_divided : m_plain;
         out.resize(places.size());
         m_statistics.add(Counter::TextureLookups, places.size());
-        if (!tiled.make_ready(m_progress)) {
+        if (!tiled.make_ready(finest_of(tiled, mode, places), m_progress)) {
             out.assign(places.size(), kMagenta);
             warn("cannot be read, shown magenta: ", tiled.error());
             return;
@@ -72,6 +74,16 @@ class ImageTexture final : public Texture {
     }
 
   private:
+    /// Of the levels that these places read.
+    int finest_of(const TiledImage& tiled, const TextureMode& mode,
+                  const std::vector<TexturePlace>& places) const {
+        if (tiled.is_whole()) return 0;
+        int finest = INT_MAX;
+        for (const TexturePlace& place : places)
+            finest = std::min(finest, finest_level(m_size, mode, place));
+        return finest;
+    }
+
     void warn(const std::string& what, const std::string& why) const {
         const std::string reason = why.empty() ? std::string() : " (" + why + ")";
         m_report.warn("image '" + m_image.name + "'", what + m_image.path + reason);
@@ -79,6 +91,7 @@ class ImageTexture final : public Texture {
 
     const Image& m_image;
     bool m_has_alpha;
+    Vec2f m_size;  ///< texels
     /// Means of light, and of what is divided by alpha: not the same image.
     mutable TiledImage m_plain, m_divided;
     Statistics& m_statistics;

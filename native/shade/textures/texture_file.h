@@ -21,6 +21,8 @@ struct TextureHeader {
     bool encoded = false;    ///< numbers of sRGB, which are interpolated as they are
     bool has_alpha = false;  ///< that is not 1 everywhere by declaration
     std::string error;       ///< not empty: cannot be read, in words for the artist
+
+    bool operator==(const TextureHeader&) const = default;
 };
 
 /// Not thread-safe.  An object is one reader of one file.

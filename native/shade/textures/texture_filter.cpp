@@ -144,9 +144,9 @@ Vec4f light_over(TiledImage& image, const TextureMode& mode, Vec2f center,
         return decoder.light(at, type);
     };
     const Vec2f size(image.level(0).width, image.level(0).height);
-    const float shorter = std::max({print.shorter, print.longer / kMostAnisotropy, 1.0f});
+    const float shorter = print.probe();
     const float last = static_cast<float>(image.level_count() - 1);
-    const float depth = std::min(std::log2(shorter), last);
+    const float depth = std::min(print.depth(), last);
     const int finer = static_cast<int>(depth);
     const float blend = depth - static_cast<float>(finer);
     const Probes probes(print.longer, shorter);
@@ -192,7 +192,26 @@ TexturePlace kept_to_image(TexturePlace place) {
     return place;
 }
 
+TextureFootprint footprint_of(const Vec2f& size, const TextureMode& mode,
+                              const TexturePlace& asked) {
+    const TexturePlace place =
+        mode.extension == TextureExtension::Extend ? kept_to_image(asked) : asked;
+    return TextureFootprint::of(place.along_u, place.along_v, size);
+}
+
 }  // namespace
+
+float TextureFootprint::probe() const {
+    return std::max({shorter, longer / kMostAnisotropy, 1.0f});
+}
+
+float TextureFootprint::depth() const {
+    return std::log2(probe());
+}
+
+int finest_level(const Vec2f& size, const TextureMode& mode, const TexturePlace& place) {
+    return static_cast<int>(footprint_of(size, mode, place).depth());
+}
 
 TextureFootprint TextureFootprint::of(const Vec2f& along_u, const Vec2f& along_v,
                                       const Vec2f& size) {
@@ -214,11 +233,9 @@ TextureFootprint TextureFootprint::of(const Vec2f& along_u, const Vec2f& along_v
     return print;
 }
 
-Vec4f filtered(TiledImage& image, const TextureMode& mode, const TexturePlace& asked) {
-    const TexturePlace place =
-        mode.extension == TextureExtension::Extend ? kept_to_image(asked) : asked;
+Vec4f filtered(TiledImage& image, const TextureMode& mode, const TexturePlace& place) {
     const Vec2f size(image.level(0).width, image.level(0).height);
-    const TextureFootprint print = TextureFootprint::of(place.along_u, place.along_v, size);
+    const TextureFootprint print = footprint_of(size, mode, place);
     // Rows run downward.
     const Vec2f center(place.center.x, 1.0f - place.center.y);
     TextureFootprint down = print;

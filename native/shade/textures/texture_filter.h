@@ -20,7 +20,15 @@ struct TextureFootprint {
     /// Of the parallelogram with these edges, [0,1]^2 over an image of `size` texels: its singular
     /// values.
     static TextureFootprint of(const Vec2f& along_u, const Vec2f& along_v, const Vec2f& size);
+
+    /// The level of which a probe is a texel wide, between two of them mostly; without an end.
+    float depth() const;
+    float probe() const;  ///< its width, texels
 };
+
+/// The finest level that filtered() reads for a place, in an image of `size` texels that has enough
+/// of them.
+int finest_level(const Vec2f& size, const TextureMode& mode, const TexturePlace& place);
 
 /// Colour as it is seen, and alpha.  Inside a ReadScope of the image's cache.
 Vec4f filtered(TiledImage& image, const TextureMode& mode, const TexturePlace& place);

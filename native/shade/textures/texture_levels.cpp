@@ -30,6 +30,13 @@ TileShape TextureLevel::shape(int across, int down) const {
             std::min(height - (down << tile_rows), 1 << tile_rows)};
 }
 
+std::uint64_t byte_count_from(const TextureLevels& levels, std::size_t begin) {
+    std::uint64_t sum = 0;
+    for (std::size_t k = begin; k < levels.size(); ++k)
+        sum += TileShape{levels[k].type, levels[k].width, levels[k].height}.byte_count();
+    return sum;
+}
+
 TextureLevels make_levels(int width, int height, TexelType type) {
     TextureLevels levels;
     levels.emplace_back(width, height, type);
@@ -41,13 +48,18 @@ TextureLevels make_levels(int width, int height, TexelType type) {
     return levels;
 }
 
-LevelWriter::LevelWriter(const TextureLevels& levels, const TexelDecoder& decoder, TileCache& cache)
-    : m_levels(levels), m_decoder(decoder), m_cache(cache), m_parts(levels.size()) {
-    for (std::size_t k = 0; k < levels.size(); ++k) {
+LevelWriter::LevelWriter(const TextureLevels& levels, const TexelDecoder& decoder, TileCache& cache,
+                         LevelRange stored)
+    : m_levels(levels),
+      m_decoder(decoder),
+      m_cache(cache),
+      m_stored{stored.begin, std::min(stored.end, levels.size())},
+      m_parts(m_stored.end) {
+    for (std::size_t k = 0; k < m_parts.size(); ++k) {
         Part& part = m_parts[k];
         const auto width = static_cast<std::size_t>(levels[k].width);
         const int rows = std::min(levels[k].height, 1 << levels[k].tile_rows);
-        part.strip.resize(width * rows * byte_size(levels[k].type));
+        if (k >= m_stored.begin) part.strip.resize(width * rows * byte_size(levels[k].type));
         part.light.resize(width);
         if (k == 0) continue;
         part.mean.assign(width, Vec4f(0.0f));
@@ -77,7 +89,7 @@ void LevelWriter::push(const std::byte* rows, int count) {
     const TextureLevel& level = m_levels.front();
     const std::size_t texel = byte_size(level.type), row = texel * level.width;
     for (int y = 0; y < count; ++y, rows += row) {
-        if (m_levels.size() > 1) {
+        if (m_parts.size() > 1) {
             std::vector<Vec4f>& light = m_parts[0].light;
             for (int x = 0; x < level.width; ++x)
                 light[x] = m_decoder.light(rows + x * texel, level.type);
@@ -91,11 +103,13 @@ void LevelWriter::store_row(std::size_t k, const std::byte* stored) {
     const TextureLevel& level = m_levels[k];
     Part& part = m_parts[k];
     const int mask = (1 << level.tile_rows) - 1;
-    const std::size_t row = byte_size(level.type) * level.width;
-    std::memcpy(part.strip.data() + row * (part.row & mask), stored, row);
-    ++part.row;
-    if ((part.row & mask) == 0 || part.row == level.height) write_tiles(k);
-    if (k + 1 < m_levels.size()) pass_on(k);
+    const int at = part.row++ & mask;
+    if (k >= m_stored.begin) {
+        const std::size_t row = byte_size(level.type) * level.width;
+        std::memcpy(part.strip.data() + row * at, stored, row);
+        if (at == mask || part.row == level.height) write_tiles(k);
+    }
+    if (k + 1 < m_parts.size()) pass_on(k);
 }
 
 /// The newest row of a level, to the one or two of the next that it is part of.
@@ -129,12 +143,13 @@ void LevelWriter::finish_row(std::size_t k) {
     Part& part = m_parts[k];
     const TextureLevel& level = m_levels[k];
     const std::size_t texel = byte_size(level.type);
-    std::vector<std::byte> stored(texel * level.width);
     part.light.swap(part.mean);
     part.mean.swap(part.later);
     std::fill(part.later.begin(), part.later.end(), Vec4f(0.0f));
-    for (int x = 0; x < level.width; ++x)
-        store_texel(part.light[x], stored.data() + x * texel, level.type);
+    std::vector<std::byte> stored;
+    if (k >= m_stored.begin) stored.resize(texel * level.width);
+    for (std::size_t at = 0; at < stored.size(); at += texel)
+        store_texel(part.light[at / texel], stored.data() + at, level.type);
     store_row(k, stored.data());
 }
 

@@ -6,6 +6,7 @@
 // its brightness.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -30,14 +31,24 @@ struct TextureLevel {
 
 using TextureLevels = std::vector<TextureLevel>;
 
+/// Of all texels from that level on.
+std::uint64_t byte_count_from(const TextureLevels& levels, std::size_t begin);
+
 /// Down to one texel, empty.
 TextureLevels make_levels(int width, int height, TexelType type);
+
+/// Levels from `begin` to before `end`, which is not 0.
+struct LevelRange {
+    std::size_t begin = 0, end = SIZE_MAX;
+};
 
 /// Fills levels from the rows of the finest, top row first.  Only as much is held as a row of tiles
 /// of each level.
 class LevelWriter {
   public:
-    LevelWriter(const TextureLevels& levels, const TexelDecoder& decoder, TileCache& cache);
+    /// @param stored  Levels that are filled; what they hold does not depend on it.
+    LevelWriter(const TextureLevels& levels, const TexelDecoder& decoder, TileCache& cache,
+                LevelRange stored = {});
     /// @param rows  [count][width] texels of level 0's type.
     void push(const std::byte* rows, int count);
 
@@ -64,7 +75,8 @@ class LevelWriter {
     const TextureLevels& m_levels;
     TexelDecoder m_decoder;
     TileCache& m_cache;
-    std::vector<Part> m_parts;  ///< [levels]
+    LevelRange m_stored;
+    std::vector<Part> m_parts;  ///< [m_stored.end]
 };
 
 }  // namespace granita

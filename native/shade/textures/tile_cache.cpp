@@ -114,6 +114,12 @@ void TileCache::set_limit(std::uint64_t bytes) {
     free_retired();
 }
 
+bool TileCache::has_plenty_for(std::uint64_t bytes) const {
+    const std::lock_guard lock(m_mutex);
+    const std::uint64_t held = m_bytes + m_retired_bytes;
+    return held < m_limit && bytes <= (m_limit - held) / 4;
+}
+
 std::uint64_t TileCache::byte_count() const {
     const std::lock_guard lock(m_mutex);
     return m_bytes + m_retired_bytes;

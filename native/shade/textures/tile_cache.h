@@ -103,6 +103,8 @@ class TileCache {
 
     /// Of all tiles in memory, those included that wait for their last readers.
     std::uint64_t byte_count() const;
+    /// Whether so much more is little beside what there is room for.
+    bool has_plenty_for(std::uint64_t bytes) const;
 
   private:
     /// More threads at once than this wait for each other.

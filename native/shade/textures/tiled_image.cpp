@@ -74,36 +74,61 @@ TiledImage::~TiledImage() {
     m_files->forget(m_entry);
 }
 
-bool TiledImage::make_ready(const Progress* progress) {
-    std::call_once(m_once, [this, progress] {
+bool TiledImage::make_ready(int finest, const Progress* progress) {
+    if (finest >= m_finest.load(std::memory_order_acquire)) return true;
+    const std::lock_guard lock(m_decoding);
+    if (finest >= m_finest.load(std::memory_order_relaxed)) return true;
+    if (m_error.empty()) {
         try {
-            decode(progress);
+            decode(finest, progress);
         } catch (const std::exception& failure) {  // no memory for it, say
             m_error = failure.what();
             if (m_error.empty()) m_error = "it cannot be read";
         }
-    });
+        if (m_error.empty()) m_finest.store(m_being_made, std::memory_order_release);
+    }
     if (m_error.empty()) return true;
     if (progress) progress->check();  // what was not decoded for that is no damaged image
     return false;
 }
 
-void TiledImage::decode(const Progress* progress) {
+void TiledImage::decode(int finest, const Progress* progress) {
     if (m_image.is_file()) {
-        decode_file(progress);
+        decode_file(finest, progress);
     } else if (m_image.bytes.empty()) {
-        decode_pixels(progress);
+        decode_pixels(finest, progress);
     } else {
-        decode_bytes(progress);
+        decode_bytes(finest, progress);
     }
 }
 
-void TiledImage::decode_file(const Progress* progress) {
+/// Of the levels that are to be made now.
+LevelWriter TiledImage::writer_for(int finest) {
+    LevelRange stored;
+    if (m_levels.empty()) {
+        m_levels = make_levels(m_header.width, m_header.height, m_header.type);
+        if (!m_cache->has_plenty_for(byte_count_from(m_levels, 0)))
+            stored.begin = static_cast<std::size_t>(std::clamp(finest - 1, 0, level_count() - 1));
+    } else {
+        stored.end = static_cast<std::size_t>(m_finest.load(std::memory_order_relaxed));
+    }
+    m_being_made = static_cast<int>(stored.begin);
+    return LevelWriter(m_levels, m_decoder, *m_cache, stored);
+}
+
+void TiledImage::decode_file(int finest, const Progress* progress) {
     auto file = std::make_unique<TextureFile>(m_image);
     m_error = file->error();
     if (!m_error.empty()) return;
-    m_header = file->header();
-    m_decoder.encoded = m_header.encoded;
+    if (m_levels.empty()) {
+        // What is asked for was reckoned from the header that was seen first.
+        if (!(file->header() == m_header)) finest = 0;
+        m_header = file->header();
+        m_decoder.encoded = m_header.encoded;
+    } else if (!(file->header() == m_header) || !file->tiled_levels().empty()) {
+        m_error = "it has changed meanwhile";
+        return;
+    }
     if (!file->tiled_levels().empty()) {
         // Bytes of coarser levels become light when their tiles are read.
         const TexelType coarser =
@@ -118,8 +143,7 @@ void TiledImage::decode_file(const Progress* progress) {
         }
         return;
     }
-    m_levels = make_levels(m_header.width, m_header.height, m_header.type);
-    LevelWriter writer(m_levels, m_decoder, *m_cache);
+    LevelWriter writer = writer_for(finest);
     const int rows = (kRows + file->strip_rows() - 1) / file->strip_rows() * file->strip_rows();
     std::vector<std::byte> strip(byte_size(m_header.type) * m_header.width *
                                  std::min(rows, m_header.height));
@@ -135,9 +159,8 @@ void TiledImage::decode_file(const Progress* progress) {
 }
 
 /// Pixels come with their lowest row first.
-void TiledImage::decode_pixels(const Progress* progress) {
-    m_levels = make_levels(m_header.width, m_header.height, m_header.type);
-    LevelWriter writer(m_levels, m_decoder, *m_cache);
+void TiledImage::decode_pixels(int finest, const Progress* progress) {
+    LevelWriter writer = writer_for(finest);
     const std::size_t texel = byte_size(m_header.type);
     std::vector<std::byte> row(texel * m_header.width);
     for (int y = m_header.height - 1; y >= 0; --y) {
@@ -156,9 +179,8 @@ void TiledImage::decode_pixels(const Progress* progress) {
 }
 
 /// As they are, their lowest row first.
-void TiledImage::decode_bytes(const Progress* progress) {
-    m_levels = make_levels(m_header.width, m_header.height, m_header.type);
-    LevelWriter writer(m_levels, m_decoder, *m_cache);
+void TiledImage::decode_bytes(int finest, const Progress* progress) {
+    LevelWriter writer = writer_for(finest);
     const std::size_t length = byte_size(TexelType::Byte) * m_header.width;
     std::vector<std::uint8_t> row(length);
     for (int y = m_header.height - 1; y >= 0; --y) {

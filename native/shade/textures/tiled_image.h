@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <climits>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -44,19 +45,23 @@ class TiledImage {
     TiledImage(const TiledImage&) = delete;
     TiledImage& operator=(const TiledImage&) = delete;
 
-    /// Makes its levels unless they are there; other threads wait meanwhile.  Not inside a
-    /// ReadScope.
+    /// Makes its levels from `finest` on unless they are there; other threads that want them wait
+    /// meanwhile.  Not inside a ReadScope.  Where the cache has plenty of room all are made, else
+    /// `finest` and one finer: 40 images of 4096 x 4096 through 1 GiB spent their time writing
+    /// levels to disk that nobody read.  What is asked for beyond that has the file decoded once
+    /// more, for all the rest.
     /// @param progress  Asked meanwhile, and whoever finds it cancelled throws; it is then not to
     ///     be read later either.  May be absent.
     /// @return false: it cannot be read, and `error` says why.
-    bool make_ready(const Progress* progress = nullptr);
+    bool make_ready(int finest = 0, const Progress* progress = nullptr);
     const std::string& error() const { return m_error; }
+    bool is_whole() const { return m_finest.load(std::memory_order_acquire) == 0; }
 
     const TextureHeader& header() const { return m_header; }
     const TexelDecoder& decoder() const { return m_decoder; }
     TileCache& cache() { return *m_cache; }
 
-    // Once it is ready:
+    // Once it is ready, of the levels from `finest` on:
     int level_count() const { return static_cast<int>(m_levels.size()); }
     const TextureLevel& level(int k) const { return m_levels[static_cast<std::size_t>(k)]; }
     /// Inside a ReadScope.
@@ -70,10 +75,11 @@ class TiledImage {
     bool is_damaged() const { return m_is_damaged; }
 
   private:
-    void decode(const Progress* progress);
-    void decode_file(const Progress* progress);
-    void decode_pixels(const Progress* progress);
-    void decode_bytes(const Progress* progress);
+    void decode(int finest, const Progress* progress);
+    void decode_file(int finest, const Progress* progress);
+    void decode_pixels(int finest, const Progress* progress);
+    void decode_bytes(int finest, const Progress* progress);
+    LevelWriter writer_for(int finest);
     const Tile* reload(int level, int across, int down);
     std::unique_ptr<Tile> read_tile(int level, int across, int down);
     bool read_stored_tile(int level, int across, int down, std::byte* out);
@@ -83,9 +89,11 @@ class TiledImage {
     TexelDecoder m_decoder;
     std::shared_ptr<TileCache> m_cache;
     std::shared_ptr<OpenFiles> m_files;
-    std::once_flag m_once;
-    TextureLevels m_levels;
-    std::string m_error;
+    std::mutex m_decoding;
+    std::atomic<int> m_finest{INT_MAX};  ///< of the levels that are there
+    int m_being_made = 0;                ///< the finest of them
+    TextureLevels m_levels;              ///< all of them from the first decoding on
+    std::string m_error;                 ///< of the last decoding; there is none after it
     OpenFiles::Entry m_entry;
     std::atomic<bool> m_is_damaged{false};
 };

@@ -97,6 +97,39 @@ TEST(TextureLevels, every_texel_is_the_mean_of_what_it_covers) {
     }
 }
 
+/// Whether any texel of a level is there.
+bool is_stored(const TextureLevel& level) {
+    for (int i = 0; i < level.tiles_across * level.tiles_down; ++i)
+        if (level.slots[i].look()) return true;
+    return false;
+}
+
+// Coarse levels first, the rest by a second pass over the rows: as all by one.
+TEST(TextureLevels, levels_made_apart_are_those_made_together) {
+    std::mt19937 random(9);
+    for (const auto& [width, height] : {std::pair{1, 1}, {5, 7}, {130, 65}, {128, 256}}) {
+        std::vector<std::byte> rows(byte_size(TexelType::Byte) * width * height);
+        for (std::byte& b : rows) b = std::byte(random() % 256);
+        const TexelDecoder decoder{true, false};
+        const Made whole(width, height, TexelType::Byte, decoder, rows);
+        for (std::size_t first = 0; first < whole.levels.size(); ++first) {
+            Report report;
+            TileCache cache(1u << 30, report);
+            const TextureLevels levels = make_levels(width, height, TexelType::Byte);
+            LevelWriter(levels, decoder, cache, {first}).push(rows.data(), height);
+            for (std::size_t k = 0; k < levels.size(); ++k)
+                ASSERT_EQ(is_stored(levels[k]), k >= first);
+            EXPECT_EQ(cache.byte_count(), byte_count_from(levels, first));
+            if (first > 0)
+                LevelWriter(levels, decoder, cache, {0, first}).push(rows.data(), height);
+            EXPECT_EQ(cache.byte_count(), byte_count_from(levels, 0));
+            for (std::size_t k = 0; k < levels.size(); ++k)
+                ASSERT_EQ(texels_of(levels[k]), texels_of(whole.levels[k]))
+                    << width << " x " << height << ", level " << k << ", first " << first;
+        }
+    }
+}
+
 TEST(TextureLevels, half_floats_are_rounded_to_the_nearest) {
     for (std::uint32_t h = 0; h < 0x7c00u; ++h) {
         const float exact = float_from_half(static_cast<std::uint16_t>(h));

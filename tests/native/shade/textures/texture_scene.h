@@ -115,8 +115,10 @@ bool write_image(const ImageFile& file, int size, const Value& value, int tile =
 /// One image in a scene of its own.
 class Look {
   public:
-    explicit Look(const Image& image) {
+    /// @param memory  As Options::memory, MiB; textures are given a quarter of it.  0: any.
+    explicit Look(const Image& image, int memory = 0) {
         m_scene.images = {image};
+        m_scene.options.memory = memory;
         m_store = std::make_unique<TextureStore>(m_scene, m_statistics, m_report);
     }
     std::vector<Vec4f> at(const std::vector<TexturePlace>& places, const TextureMode& mode = {}) {
@@ -129,6 +131,7 @@ class Look {
         return at({TexturePlace{center, Vec2f(size, 0), Vec2f(0, size)}}, mode)[0];
     }
     std::vector<Warning> warnings() const { return m_report.warnings(); }
+    std::uint64_t byte_count() const { return m_store->byte_count(); }
 
   private:
     Scene m_scene;

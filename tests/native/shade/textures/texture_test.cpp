@@ -192,6 +192,59 @@ TEST(Texture, places_that_are_no_numbers_are_black_and_footprints_that_are_none_
         EXPECT_NEAR(Look(image).at({0.2f, 0.5f}, size).x, 1.5f, 1e-5) << size;
 }
 
+// Where memory is short levels are made as they are asked for.  Kinds of footprints and of rims,
+// coarse ones first: each sees what it sees where all levels are there, and the file is decoded
+// twice at most.
+TEST(Texture, where_memory_is_short_look_ups_are_the_same) {
+    constexpr int kSize = 512, kShort = 4;
+    ImageFile file(".tif");
+    ASSERT_TRUE(
+        write_image(file, kSize, [](int, int x, int y) { return float((x * 7 + y * 13) % 256); }));
+    const Image image = file.image("Non-Color");
+    for (const TextureExtension extension :
+         {TextureExtension::Repeat, TextureExtension::Extend, TextureExtension::Clip}) {
+        ASSERT_TRUE(std::filesystem::exists(file.path()));
+        Look all(image), few(image, kShort);
+        TextureMode mode;
+        mode.extension = extension;
+        bool is_first = true;
+        for (const float texels : {300.0f, 100.0f, 64.0f, 17.0f, 4.0f, 1.0f, 0.2f})
+            for (const float ratio : {1.0f, 3.0f, 50.0f}) {
+                auto places = places_all_over(8, kSize, texels, texels / ratio, 0.5f);
+                for (TexturePlace& place : places) place.center = place.center * 1.5f - 0.25f;
+                ASSERT_EQ(few.at(places, mode), all.at(places, mode))
+                    << texels << " texels a pixel, " << ratio;
+                // The first asks for level 8 where its footprint is not cut at the rim; one finer
+                // is made with it: 4 x 4, 2 x 2 and 1 texels of four floats.
+                if (is_first && extension != TextureExtension::Extend) {
+                    EXPECT_EQ(few.byte_count(), (16u + 4u + 1u) * 16u);
+                }
+                is_first = false;
+            }
+        EXPECT_GT(all.byte_count(), 4u << 20);
+        EXPECT_TRUE(few.warnings().empty());
+    }
+}
+
+TEST(Texture, a_file_that_went_while_memory_was_short_keeps_what_was_read_of_it) {
+    constexpr int kSize = 512, kShort = 4;
+    for (const bool asked_finely : {false, true}) {
+        ImageFile file(".tif");
+        ASSERT_TRUE(write_image(file, kSize, [](int, int, int) { return 0.5f; }));
+        Look look(file.image("Non-Color"), kShort);
+        const Vec4f grey(0.5f, 0.5f, 0.5f, 1.0f);
+        EXPECT_EQ(look.at({0.3f, 0.6f}, 0.25f), grey);
+        if (asked_finely) {
+            EXPECT_EQ(look.at({0.3f, 0.6f}, 0.0f), grey);
+        }
+        std::filesystem::remove(file.path());
+        EXPECT_EQ(look.at({0.7f, 0.2f}, 0.25f), grey);
+        EXPECT_EQ(look.at({0.7f, 0.2f}, 0.0f), asked_finely ? grey : Vec4f(1, 0, 1, 1));
+        EXPECT_EQ(look.at({0.7f, 0.2f}, 0.25f), grey);
+        EXPECT_EQ(look.warnings().size(), asked_finely ? 0u : 1u);
+    }
+}
+
 TEST(Texture, missing_file_is_magenta_and_named) {
     Image image;
     image.name = "Image";
