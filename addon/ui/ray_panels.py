@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What rays see: switches that the export reads and that Blender shows to Cycles alone."""
+"""What rays see, and after how many bounces: settings that the export reads and that Blender shows to Cycles alone."""
 
 import bpy
 
@@ -57,6 +57,20 @@ class GRANITA_WORLD_PT_rays(_Panel, bpy.types.Panel):
             column.prop(context.world.cycles_visibility, name)
 
 
-_CLASSES = (GRANITA_OBJECT_PT_rays, GRANITA_WORLD_PT_rays)
+class GRANITA_WORLD_PT_settings(_Panel, bpy.types.Panel):
+    bl_label = "Settings"
+    bl_context = "world"
+
+    @classmethod
+    def concerns(cls, context):
+        return hasattr(getattr(context.world, "cycles", None), "max_bounces")
+
+    def draw(self, context):
+        column = self.layout.column()
+        column.use_property_split = True
+        column.prop(context.world.cycles, "max_bounces")
+
+
+_CLASSES = (GRANITA_OBJECT_PT_rays, GRANITA_WORLD_PT_rays, GRANITA_WORLD_PT_settings)
 
 register, unregister = bpy.utils.register_classes_factory(_CLASSES)

@@ -101,6 +101,11 @@ int light_set(const Record& r, const char* name) {
 
 }  // namespace
 
+int read_most_bounces(const Record& r) {
+    const double most = r.number("most_bounces", Light::kAnyBounces);
+    return static_cast<int>(std::clamp(most, 0.0, double{Light::kAnyBounces}));
+}
+
 void read_light(const Record& r, Light& light) {
     light.kind =
         static_cast<LightKind>(choice(r, "kind", r.text("kind"), {"POINT", "SUN", "SPOT", "AREA"}));
@@ -130,8 +135,7 @@ void read_light(const Record& r, Light& light) {
     light.visible_volume = r.boolean("visible_volume", true);
     light.diffuse_factor = static_cast<float>(r.number("diffuse_factor", 1.0));
     light.specular_factor = static_cast<float>(r.number("specular_factor", 1.0));
-    light.most_bounces = static_cast<int>(
-        std::clamp(r.number("most_bounces", Light::kAnyBounces), 0.0, double{Light::kAnyBounces}));
+    light.most_bounces = read_most_bounces(r);
     light.receiver_set = light_set(r, "receiver_set");
     light.blocker_set = light_set(r, "blocker_set");
     if (r.has("nodes")) read_graph(r, light.graph);

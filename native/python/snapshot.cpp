@@ -221,6 +221,7 @@ std::shared_ptr<Scene> read_scene(const py::dict& snapshot) {
         scene->world.visible_glossy = world.boolean("visible_glossy", true);
         scene->world.visible_transmission = world.boolean("visible_transmission", true);
         scene->world.visible_volume = world.boolean("visible_volume", true);
+        scene->world.most_bounces = read_most_bounces(world);
         read_graph(world, scene->world.graph);
     }
     if (root.has("instances")) read_instances(root.record("instances"), *scene);

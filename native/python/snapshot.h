@@ -72,6 +72,8 @@ void read_geometry(const Record& record, GeometryData& geometry);
 void read_instances(const Record& record, Scene& scene);
 void read_graph(const Record& record, NodeGraph& graph);
 void read_light(const Record& record, Light& light);
+/// Light::most_bounces, of a world too.
+int read_most_bounces(const Record& record);
 void read_image(const Record& record, Image& image);
 std::shared_ptr<Scene> read_scene(const py::dict& snapshot);
 

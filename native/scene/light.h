@@ -60,6 +60,7 @@ struct World {
     /// Whether rays of a type see it; to the others it is black.
     bool visible_camera = true, visible_diffuse = true, visible_glossy = true,
          visible_transmission = true, visible_volume = true;
+    int most_bounces = Light::kAnyBounces;  ///< as Light::most_bounces
     bool operator==(const World&) const = default;
 };
 

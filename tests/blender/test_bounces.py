@@ -286,6 +286,47 @@ def test_lobes_meet_a_lamp_after_more_bounces_than_its_own(scene, render, kind, 
     assert ours.mean() == pytest.approx(theirs.mean(), rel=0.012)
 
 
+@pytest.mark.parametrize("bounces", [0, 1])
+@pytest.mark.parametrize("rough", [None, 0.6])
+def test_max_bounces_of_a_world(scene, render, rough, bounces):
+    """A small bright part of the sky lights a wall that a mirror shows: with 0 the wall's own rays alone meet it."""
+    mirror = scene_parts.add_square(scene, "Mirror", 0.6)
+    surface(mirror, "ShaderNodeBsdfGlossy", (1.0, 1.0, 1.0), Roughness=0.0)
+    wall = scene_parts.add_square(scene, "Wall", 1.0, (0.0, 0.0, 1.0))
+    inputs = {} if rough is None else {"Roughness": rough}
+    lobe = "ShaderNodeBsdfDiffuse" if rough is None else "ShaderNodeBsdfGlossy"
+    surface(wall, lobe, (0.8, 0.8, 0.8), **inputs)
+    wall.visible_camera = False
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.use_nodes = True
+    scene.world.cycles.max_bounces = bounces
+    tree = scene.world.node_tree
+    around = tree.nodes.new("ShaderNodeVectorMath")
+    around.operation = "DOT_PRODUCT"
+    around.inputs[1].default_value = (0.5**0.5, 0.0, -(0.5**0.5))
+    inside = tree.nodes.new("ShaderNodeMath")
+    inside.operation = "GREATER_THAN"
+    inside.inputs[1].default_value = 0.97
+    strength = tree.nodes.new("ShaderNodeMath")
+    strength.operation = "MULTIPLY_ADD"
+    strength.inputs[1].default_value, strength.inputs[2].default_value = 20.0, 0.2
+    sky = next(node for node in tree.nodes if node.type == "BACKGROUND")
+    coordinates = tree.nodes.new("ShaderNodeTexCoord")
+    for a, b in (
+        (coordinates.outputs["Generated"], around.inputs[0]),
+        (around.outputs["Value"], inside.inputs[0]),
+        (inside.outputs[0], strength.inputs[0]),
+        (strength.outputs[0], sky.inputs["Strength"]),
+    ):
+        tree.links.new(a, b)
+    scene_parts.add_camera(scene, (0.0, 0.0, 3.0), ortho_scale=0.5)
+    scene.render.resolution_x = scene.render.resolution_y = 48
+    scene.cycles.caustics_reflective = True
+    theirs, ours = render_bounced(scene, render, 512)
+    # .6 % was seen.  With 0 a sixth of the light is left, with 1 of it 95 %.
+    assert ours.mean() == pytest.approx(theirs.mean(), rel=0.015)
+
+
 @pytest.mark.parametrize("hidden", ["visible_diffuse", "visible_glossy"])
 def test_what_is_hidden_from_a_type_of_ray(scene, render, hidden):
     """A lit square hangs before a mirror or a wall, out of the camera's sight."""

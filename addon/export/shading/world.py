@@ -40,6 +40,7 @@ def export_world(scene, view_layer, report, images=None):
     record["name"] = world.name_full
     owner = f"world '{world.name_full}'"
     record.update(ray_visibility(world))
+    record["most_bounces"] = getattr(getattr(world, "cycles", None), "max_bounces", 1024)
     if not world.use_nodes or world.node_tree is None:
         node = {
             "type": "ShaderNodeBackground",

@@ -150,8 +150,9 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             const float density =
                 grid.leaving->diffuse ? point.all_density(wo) : point.meeting_density(wo);
             const WorldAhead ahead =
-                grid.carries_world() ? world.ahead(grid, point, {wo, sent, sign, type, meets_lamps})
-                                     : WorldAhead();
+                grid.carries_world()
+                    ? world.ahead(set, grid, point, {wo, sent, sign, type, meets_lamps})
+                    : WorldAhead();
             leave(set, grid, point, ray, sent * Vec3f(1.0f / density),
                   density / static_cast<float>(point.lobe_samples(0)), samples.first + index,
                   ahead);

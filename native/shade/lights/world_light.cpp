@@ -17,7 +17,7 @@ float shared_density(const LitPoint& point, const Vec3f& wo) {
 
 WorldLight::WorldLight(const World& world, WorldEvaluator evaluator, Report& report,
                        const Progress& progress)
-    : m_evaluator(std::move(evaluator)) {
+    : m_evaluator(std::move(evaluator)), m_most_bounces(world.most_bounces) {
     if (!world.lights_scene || !m_evaluator.radiance) return;
     m_environment = std::make_unique<Environment>(m_evaluator, progress);
     if (m_environment->broken() > 0 && !m_evaluator.is_constant)
@@ -28,7 +28,7 @@ WorldLight::WorldLight(const World& world, WorldEvaluator evaluator, Report& rep
 
 void WorldLight::sample(const LampSet& set, LitGrid& grid, const LitPoint& point) const {
     // A constant world needs no table: the lobes themselves are its best samples.
-    if (!has_density()) return;
+    if (!has_density() || !is_asked(grid.depth)) return;
     const SobolPoints sequence = grid.sequence(point, 0, point.sample_count);
     for (int s = 0; s < point.sample_count; ++s) {
         const auto index = static_cast<std::uint32_t>(s);
@@ -62,9 +62,8 @@ void WorldLight::meet(const LampSet& set, LitGrid& grid, const LitPoint& point,
     if (!grid.samples_diffuse()) weight.diffuse = Vec3f(0.0f);
     if (total(weight) == Vec3f(0.0f)) return;
     const Environment::Sample at = m_environment->at(wo);
-    const float by_lobes = grid.lobe_density(point, wo);
-    const float density = by_lobes + static_cast<float>(point.sample_count) * at.pdf;
-    weight = weight * (set.occlusion(grid, point, place, wo, sample.type) / density);
+    const float share = share_of_lobes(set, grid, point, wo, at.pdf) / grid.lobe_density(point, wo);
+    weight = weight * (set.occlusion(grid, point, place, wo, sample.type) * share);
     if (m_environment->is_constant()) {
         grid.reflect_world(point.index, of_constant(weight, types), sample.sign);
     } else if (m_environment->has_radiance() && !sample.is_narrow) {
@@ -75,13 +74,19 @@ void WorldLight::meet(const LampSet& set, LitGrid& grid, const LitPoint& point,
     }
 }
 
-WorldAhead WorldLight::ahead(const LitGrid& grid, const LitPoint& point,
+float WorldLight::share_of_lobes(const LampSet& set, const LitGrid& grid, const LitPoint& point,
+                                 const Vec3f& wo, float pdf) const {
+    if (!is_asked(grid.depth)) return point.left_to_lobes(wo, pdf / (set.places + 1.0f));
+    const float by_lobes = grid.lobe_density(point, wo);
+    return by_lobes / (by_lobes + static_cast<float>(point.sample_count) * pdf);
+}
+
+WorldAhead WorldLight::ahead(const LampSet& set, const LitGrid& grid, const LitPoint& point,
                              const LobeSample& sample) const {
     if (!shines()) return {};
     const PartRays& types = grid.blurred_rays(point.is_through(sample.wo));
     const Environment::Sample at = m_environment->at(sample.wo);
-    const float by_lobes = grid.lobe_density(point, sample.wo);
-    const float of_lobes = by_lobes / (by_lobes + static_cast<float>(point.sample_count) * at.pdf);
+    const float of_lobes = share_of_lobes(set, grid, point, sample.wo, at.pdf);
     float of_diffuse = of_lobes;
     if (grid.shares_world() && at.pdf > 0.0f) {
         const float shared = shared_density(point, sample.wo);

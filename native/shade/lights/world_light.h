@@ -41,7 +41,8 @@ class WorldLight {
               const LobeSample& sample) const;
 
     /// What comes of it along the sample's ray, of a `type`, if that meets nothing.
-    WorldAhead ahead(const LitGrid& grid, const LitPoint& point, const LobeSample& sample) const;
+    WorldAhead ahead(const LampSet& set, const LitGrid& grid, const LitPoint& point,
+                     const LobeSample& sample) const;
     WorldAhead ahead_of_mirror() const;
     /// What WorldAhead asks for: radiance along directions, as the parts of light see it.
     void radiance(const std::vector<Vec3f>& directions, const PartRays& types,
@@ -51,6 +52,11 @@ class WorldLight {
     void deliver(LitGrid& grid) const;
 
   private:
+    bool is_asked(int depth) const { return depth <= m_most_bounces; }
+    /// Of what comes along `wo`, where `pdf` is the world's density, that which lobes' samples
+    /// bring.
+    float share_of_lobes(const LampSet& set, const LitGrid& grid, const LitPoint& point,
+                         const Vec3f& wo, float pdf) const;
     BsdfValue of_constant(const BsdfValue& weight, const PartRays& types) const;
     BsdfValue of_texel(const Environment::Sample& from, const BsdfValue& weight,
                        const PartRays& types) const;
@@ -58,6 +64,7 @@ class WorldLight {
               const PartRays& types) const;
 
     WorldEvaluator m_evaluator;
+    int m_most_bounces;
     std::unique_ptr<Environment> m_environment;  ///< nullptr where the world sheds no light
 };
 
