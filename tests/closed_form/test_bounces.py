@@ -121,6 +121,27 @@ def test_mirrors_show_a_lamp_after_any_bounces(most):
     assert seen(most_bounces=most) == pytest.approx(unlimited, rel=1e-6)
 
 
+def test_a_lamp_that_diffuse_rays_alone_see_is_met_by_them_after_its_bounces():
+    """A mirror shows a wall beside a panel, which no other ray could meet: what else sees it makes no difference."""
+
+    def seen(**own):
+        snapshot = s.orthographic((16, 16), bounces=1)
+        s.quad(snapshot, s.rectangle(-50, -50, 66, 66, 20.0), mirror(snapshot))
+        s.quad(snapshot, s.rectangle(-50, -50, 66, 66, -100.0), diffuse(snapshot, ALBEDO))
+        place = np.eye(4)
+        place[:3, 3] = (58.0, 8.0, -70.0)
+        lamp = {"name": "Lamp", "kind": "AREA", "color": (1, 1, 1), "energy": 1e6}
+        lamp |= {"shape": "SQUARE", "size": (40.0, 40.0), "world_from_light": place[None]}
+        snapshot["lights"] = [{**lamp, "most_bounces": 0, **own}]
+        return mean(snapshot)
+
+    hidden = ("visible_glossy", "visible_transmission", "visible_volume")
+    everyone = seen()
+    assert everyone > 0.0
+    assert seen(**dict.fromkeys(hidden, False)) == everyone
+    assert seen(visible_diffuse=False) == 0.0
+
+
 def test_most_that_a_way_brings():
     """The walls are lamps to each other: 2.5.  Each way then brings half of that in three colours, 3.75: a clamp to .75
     leaves .25 of 1.25, whatever noise there is."""

@@ -112,7 +112,8 @@ void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& p
     const BsdfValue bsdf = lamp.apply(point.bsdf.evaluate(sample.direction), m_grid.in_medium);
     const Vec3f value = total(bsdf) * sample.radiance;
     if (value == Vec3f(0.0f)) return;
-    if (!lamp.is_hard() && lamp.meets_lobes()) density += point.meeting_density(sample.direction);
+    if (!lamp.is_hard() && lamp.meets_lobes(m_grid.depth))
+        density += point.meeting_density(sample.direction);
     const BsdfValue parts = bsdf * (sample.radiance / density);
     if (m_set.rays && lamp.casts_shadow())
         m_shadows.send(point.index, value / density, parts, sign,

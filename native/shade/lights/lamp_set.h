@@ -55,7 +55,7 @@ struct LampSet {
         const auto ask = [&](std::size_t index) {
             const Lamp& lamp = lamps[index];
             LightSample sample;
-            if (lamp.lights(grid.receives) && lamp.meets_lobes() &&
+            if (lamp.lights(grid.receives) && lamp.meets_lobes(grid.depth) &&
                 lamp.meets(place.time, place.p, direction, sample))
                 met(index, lamp, sample);
         };

@@ -41,8 +41,10 @@ class Lamp {
     bool is_asked(int depth) const { return depth <= m_most_bounces; }
     int most_bounces() const { return m_most_bounces; }
     int blocker_set() const { return m_blocker_set; }
-    /// Whether samples of lobes may meet it.
-    bool meets_lobes() const { return m_glossy > 0.0f || m_transmission > 0.0f || m_volume > 0.0f; }
+    /// Whether samples of lobes may meet it: diffuse ones where it is not asked.
+    bool meets_lobes(int depth) const {
+        return m_glossy > 0.0f || m_transmission > 0.0f || m_volume > 0.0f || !is_asked(depth);
+    }
     /// Of its nodes, which colour what sample_all() and meets() give; nullptr: there are none.
     const LightPattern* pattern() const { return m_pattern.pattern.get(); }
     /// For the pattern: its sample that goes to `p`.
