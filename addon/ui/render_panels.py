@@ -83,9 +83,7 @@ class GRANITA_RENDER_PT_fast_gi(RenderPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        scene = context.scene
-        follows = scene.granita.bounces != "NONE" and getattr(scene, "cycles", None) is not None
-        return super().poll(context) and follows
+        return super().poll(context) and getattr(context.scene, "cycles", None) is not None
 
     def draw_header(self, context):
         self.layout.prop(context.scene.cycles, "use_fast_gi", text="")

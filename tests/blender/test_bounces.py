@@ -113,6 +113,12 @@ def test_fast_gi_is_read(scene):
     cycles.fast_gi_method = "ADD"
     added = {"occlusion_added": 0.5, "occlusion_distance": 4.0}
     assert light_paths(scene, scene.granita) == {**without, **added}
+    scene.granita.bounces = "NONE"  # it stands for all of them
+    alone = light_paths(scene, scene.granita)
+    assert added.items() <= alone.items()
+    assert alone["bounces"] == 1 and alone["diffuse_bounces"] == alone["volume_bounces"] == 0
+    cycles.use_fast_gi = False
+    assert light_paths(scene, scene.granita) == {}
 
 
 def surface(thing, kind, color, **inputs):
@@ -424,10 +430,18 @@ def test_an_ambient_occlusion_of_no_number_is_named(scene):
 
 
 @pytest.mark.parametrize(
-    ("method", "bounces", "distance"),
-    [("REPLACE", 1, 0.6), ("REPLACE", 2, 0.6), ("REPLACE", 1, 10.0), ("ADD", 1, 0.6)],
+    ("method", "bounces", "distance", "followed"),
+    [
+        ("REPLACE", 1, 0.6, "FULL"),
+        ("REPLACE", 2, 0.6, "FULL"),
+        ("REPLACE", 1, 10.0, "FULL"),
+        ("ADD", 1, 0.6, "FULL"),
+        ("REPLACE", 1, 0.6, "NONE"),
+        ("REPLACE", 2, 0.6, "NONE"),
+        ("ADD", 1, 0.6, "NONE"),
+    ],
 )
-def test_fast_gi_is_as_in_cycles(scene, render, method, bounces, distance):
+def test_fast_gi_is_as_in_cycles(scene, render, method, bounces, distance, followed):
     """A room and a glossy ball in it, lit by a grey world and a lamp.  The mean was within .5 %; blocks along corners, on
     a pixel in which two walls meet, differ by 4 % as they do without it."""
     surface(room(scene), "ShaderNodeBsdfGlossy", (0.7, 0.7, 0.7), Roughness=0.3)
@@ -437,7 +451,7 @@ def test_fast_gi_is_as_in_cycles(scene, render, method, bounces, distance):
     scene.world.light_settings.distance, scene.world.light_settings.ao_factor = distance, 0.8
     scene.cycles.use_fast_gi, scene.cycles.fast_gi_method = True, method
     scene.cycles.ao_bounces_render = bounces
-    theirs, ours = render_bounced(scene, render, 512)
+    theirs, ours = render_bounced(scene, render, 512, bounces=followed)
     blocks = [p.reshape(6, 4, 6, 4, 3).mean(axis=(1, 3)) for p in (theirs, ours)]
     assert ours.mean(axis=(0, 1)) == pytest.approx(theirs.mean(axis=(0, 1)), rel=0.01)
     assert np.percentile(np.abs(blocks[1] - blocks[0]), 95) < 0.05 * theirs.mean()

@@ -15,12 +15,12 @@ LIMITS = (
     ("caustics_reflective", "caustics", True),
     ("blur_glossy", "filter_glossy", 1.0),
 )
-_FAST = 2  # bounces
+_MOST = {"NONE": 0, "FAST": 2, "FULL": 1024}  # bounces
 _KINDS = ("diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces")
 
 
 def light_paths(scene, settings, in_view=False, world=None):
-    """The options of bounces; none where light is not followed.
+    """The options of bounces; none where light is not followed and Fast GI does not stand for it either.
 
     Args:
         scene: whose settings of Cycles count.
@@ -29,16 +29,16 @@ def light_paths(scene, settings, in_view=False, world=None):
         world: evaluated, whose settings of Ambient Occlusion count; None: the scene's.
     """
     preset = getattr(settings, "bounces", "NONE")
-    if preset == "NONE":
-        return {}
     cycles = getattr(scene, "cycles", None)
+    fast_gi = _fast_gi(cycles, world or scene.world, in_view)
+    if preset == "NONE" and not fast_gi:
+        return {}
     limits = {option: getattr(cycles, name, default) for name, option, default in LIMITS}
-    if preset == "FAST":
-        limits["bounces"] = min(limits["bounces"], _FAST)
+    limits["bounces"] = min(limits["bounces"], _MOST[preset])
     if limits["bounces"] == 0:
         # Surfaces are still lit by what shines without being a lamp: what fills things.
         limits |= {"bounces": 1, **dict.fromkeys(_KINDS, 0)}
-    return {**limits, **_fast_gi(cycles, world or scene.world, in_view)}
+    return {**limits, **fast_gi}
 
 
 def _fast_gi(cycles, world, in_view):
