@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rooms lit by what bounces, seconds against error beside Cycles, on the scenes of bounced_scenes.py.
+"""Rooms and places lit by what bounces, seconds against error beside Cycles: bounced_scenes.py, bounced_places.py.
 
     ./dev bench bounces [--scenes still metal ...] [--reference 1024]
 
@@ -14,7 +14,9 @@ import argparse
 import frames
 from measure import save
 
-SCENES = ("still", "metal", "mirror", "moving", "shining")
+# Scene to the module that builds it.
+SCENES = dict.fromkeys(("still", "metal", "mirror", "moving", "shining"), "bounced_scenes")
+SCENES |= dict.fromkeys(("window", "still_life", "forest", "head"), "bounced_places")
 BOUNCES = 4
 CYCLES_SAMPLES = 32
 SETTINGS = [
@@ -27,11 +29,11 @@ SETTINGS = [
 
 def job_of(scene, settings):
     bounced = [{**setting, "bounces": BOUNCES} for setting in settings]
-    return {"module": "bounced_scenes", "scene": scene, "runs": 1, "settings": bounced}
+    return {"module": SCENES[scene], "scene": scene, "runs": 1, "settings": bounced}
 
 
 def reference(scene, samples):
-    files = ("bounced_scenes.py", "lit_scenes.py", "scenes.py")
+    files = (f"{SCENES[scene]}.py", "lit_scenes.py", "scenes.py")
     job = job_of(scene, [{"engine": "CYCLES"}])
     return frames.reference_of_halves(f"bounced-{scene}", job, samples, files)
 
@@ -57,7 +59,7 @@ def measure(scene, options):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--scenes", nargs="+", default=SCENES, choices=SCENES)
+    parser.add_argument("--scenes", nargs="+", default=tuple(SCENES), choices=SCENES)
     parser.add_argument("--reference", type=int, default=1024)
     options = parser.parse_args()
     print(

@@ -18,7 +18,7 @@ using V = hn::Vec<decltype(kTag)>;
 
 /// Neighbours to each side that a point of a lattice shares with; of separate faces, which lie in
 /// Morton order, those before and after.
-constexpr std::size_t kReach = 6, kRun = 24;
+constexpr std::size_t kReach = 8, kRun = 64;
 /// Most that their normals are turned away, as 1 - cosine.
 constexpr float kBend = 0.25f;
 /// Of points that nobody sees, for those that somebody does: where things stand on each other they
@@ -57,11 +57,12 @@ struct Column {
 
 /// Where neighbours lie around a point, by weight.
 struct Spread {
-    V w = set(0), x = w, y = w, xx = w, xy = w, yy = w;
+    V w = set(0), ww = w, x = w, y = w, xx = w, xy = w, yy = w;
 
     void add(V weight, V at_x, V at_y) {
         const V wx = weight * at_x, wy = weight * at_y;
         w += weight;
+        ww += weight * weight;
         x += wx;
         y += wy;
         xx += wx * at_x;
@@ -72,12 +73,13 @@ struct Spread {
 
 /// What they say of a channel.
 struct Heights {
-    V v = set(0), xv = v, yv = v;
+    V v = set(0), vv = v, xv = v, yv = v;
     V least = set(std::numeric_limits<float>::max()), most = v;
 
     void add(V weight, V at_x, V at_y, V value) {
         const V weighed = weight * value;
         v += weighed;
+        vv += weighed * value;
         xv += weighed * at_x;
         yv += weighed * at_y;
         const auto counts = hn::Gt(weight, set(0));
@@ -96,9 +98,16 @@ struct Heights {
         const float xy = sum(spread.xy) - x * sum_y;
         const float along_x = sum(xv) - sum_x * mean, along_y = sum(yv) - sum_y * mean;
         const float determinant = xx * yy - xy * xy;
-        const float height =
-            mean -
-            (x * (yy * along_x - xy * along_y) + y * (xx * along_y - xy * along_x)) / determinant;
+        const float slope_x = (yy * along_x - xy * along_y) / determinant;
+        const float slope_y = (xx * along_y - xy * along_x) / determinant;
+        // Noise has slopes too, and where neighbours lie to one side a plane's end has seven times
+        // the variance of their mean.  What is left of the slopes is as much as noise alone would
+        // not explain (an empirical Bayes estimate: Efron and Morris 1975).
+        const float explained = slope_x * along_x + slope_y * along_y;
+        const float noise = std::max(sum(vv) - w * mean * mean - explained, 0.0f) / w;
+        const float by_noise = 2.0f * noise * sum(spread.ww) / w;
+        const float kept = explained > by_noise ? 1.0f - by_noise / explained : 0.0f;
+        const float height = mean - kept * (x * slope_x + y * slope_y);
         if (!std::isfinite(height)) return height;
         return std::clamp(height, std::ranges::min(lanes(least)), std::ranges::max(lanes(most)));
     }
@@ -133,9 +142,10 @@ class Sharing {
                 take(before(i, kRun), std::min(i + kRun + 1, count));
             } else {
                 const std::size_t x = i % columns, y = i / columns, rows = count / columns;
-                for (std::size_t v = before(y, kReach); v < std::min(y + kReach + 1, rows); ++v)
-                    take(v * columns + before(x, kReach),
-                         v * columns + std::min(x + kReach + 1, columns));
+                const auto [top, bottom] = window(y, rows);
+                const auto [left, right] = window(x, columns);
+                for (std::size_t v = top; v < bottom; ++v)
+                    take(v * columns + left, v * columns + right);
             }
             for (std::size_t c = 0; c < 3; ++c) {
                 const float height = m_heights[c].fit(m_spreads[c * m_channels_apart]);
@@ -154,6 +164,12 @@ class Sharing {
                           [&, c](std::size_t i) { return is_finite(of[i]) ? of[i][c] : 0.0f; });
         };
         return {channel(0), channel(1), channel(2)};
+    }
+    /// As many on each line of a lattice: at its end those of the one side.
+    static std::pair<std::size_t, std::size_t> window(std::size_t at, std::size_t count) {
+        const std::size_t size = std::min(2 * kReach + 1, count);
+        const std::size_t first = std::min(at - std::min(at, kReach), count - size);
+        return {first, first + size};
     }
     static V dot(const std::array<V, 3>& a, const Vec3f& b) {
         return a[0] * set(b.x) + a[1] * set(b.y) + a[2] * set(b.z);
