@@ -56,6 +56,20 @@ def pictures(scene, render):
     ]
 
 
+def test_a_vector_that_is_not_linked_displaces(scene, render):
+    """Blender hides its value, Cycles reads it: it was taken for one that stands for something else."""
+    hills(scene, "DISPLACEMENT", True)
+    tree = bpy.context.object.active_material.node_tree
+    node = next(n for n in tree.nodes if n.type == "VECTOR_DISPLACEMENT")
+    tree.links.remove(node.inputs["Vector"].links[0])
+    node.inputs["Vector"].default_value = (1.0, 0.2, 2.0, 1.0)
+    granita, cycles = pictures(scene, render)
+    # Moved by a fifth of the picture, a plain sheet: borders apart both are the same.
+    assert np.abs(granita - cycles).mean() < 0.005
+    node.inputs["Vector"].default_value = (0.5, 0.5, 0.5, 1.0)
+    assert np.abs(pictures(scene, render)[1] - cycles).mean() > 0.05
+
+
 @pytest.mark.parametrize(
     ("method", "vector", "limit"),
     [

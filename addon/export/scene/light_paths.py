@@ -15,6 +15,8 @@ LIMITS = (
     ("caustics_reflective", "caustics", True),
     ("blur_glossy", "filter_glossy", 1.0),
 )
+# Cycles holds three times its clamp against the sum of the channels.
+_CLAMPED_SUM = 3.0
 _MOST = {"NONE": 0, "FAST": 2, "FULL": 1024}  # bounces
 _KINDS = ("diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces")
 
@@ -34,6 +36,7 @@ def light_paths(scene, settings, in_view=False, world=None):
     if preset == "NONE" and not fast_gi:
         return {}
     limits = {option: getattr(cycles, name, default) for name, option, default in LIMITS}
+    limits["clamp_indirect"] *= _CLAMPED_SUM
     limits["bounces"] = min(limits["bounces"], _MOST[preset])
     if limits["bounces"] == 0:
         # Surfaces are still lit by what shines without being a lamp: what fills things.

@@ -175,7 +175,9 @@ def _traced_inputs(source):
 
 def _constant(socket):
     """A float, a tuple of floats, or None for sockets whose default is not a constant."""
-    if socket.hide_value or not hasattr(socket, "default_value"):
+    # A vector that is not shown stands for the normal, say; a colour is what it is.
+    hidden = socket.hide_value and socket.type != "RGBA"
+    if hidden or not hasattr(socket, "default_value"):
         return None
     value = socket.default_value
     if isinstance(value, (int, float)):

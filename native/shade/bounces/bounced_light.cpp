@@ -359,11 +359,12 @@ class BouncedLight::Wave {
         Vec3f weight = ray.weight;
         const Vec3f bright = weight * (light + emitted);
         if (!is_finite(bright)) return;
+        const bool is_mirrored = path.kind == BouncedPath::Kind::Mirrored;
         const float sum = (bright.x + bright.y + bright.z) / ray.share;
-        if (m_limits.clamp > 0.0f && sum > m_limits.clamp) weight *= m_limits.clamp / sum;
+        const float clamp = m_limits.clamp * (is_mirrored ? path.sure_part : 1.0f);
+        if (clamp > 0.0f && sum > clamp) weight *= clamp / sum;
         const Vec3f brought = weight * (light + emitted);
         const Vec3f diffuse = brought * path.diffuse_part;
-        const bool is_mirrored = path.kind == BouncedPath::Kind::Mirrored;
         m_gathered.diffuse[ray.point] += diffuse;
         (is_mirrored ? m_gathered.mirrored : m_gathered.glossy)[ray.point] += brought - diffuse;
         m_gathered.transmitted[ray.point] += brought * path.transmitted;

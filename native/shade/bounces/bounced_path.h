@@ -20,7 +20,8 @@ struct BouncedPath {
     /// What sent it from there.
     enum class Kind { Diffuse, Glossy, Mirrored } kind = Kind::Diffuse;
     /// Part of its point that it was followed for while no chance chose it: those of a point's ways
-    /// after as many meetings sum up to 1 at most.
+    /// after as many meetings sum up to 1 at most.  Cycles takes one of them by chance, and clamps
+    /// what that brings for all.
     float sure_part = 0.0f;
     /// Weight of what its ray meets, 0 where chance has ended it; what it finds of the world is in
     /// no such doubt.
