@@ -346,9 +346,7 @@ class BouncedLight::Wave {
             if (!is_glossy(lobe) || lobe.distribution == Distribution::Sharp) continue;
             for (std::size_t i = 0; i < batch.size(); ++i) {
                 const float known = batch[i].path->least_pdf / m_limits.filter_glossy;
-                if (!(known < 1.0f)) continue;
-                const float alpha = 0.5f * std::sqrt(1.0f - known);
-                lobe.roughness[i] = std::max(lobe.roughness[i], std::sqrt(alpha));
+                if (known < 1.0f) lobe.roughen(i, 0.5f * std::sqrt(1.0f - known));
             }
         }
     }

@@ -5,6 +5,8 @@
 // opacity.  Directions and normals: world axes.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -117,6 +119,21 @@ struct Lobe {
                                  ///< or the lobe's colour, which energy compensation saturates
     std::vector<float> ior;  ///< [n] Dielectric and refractions: of the far side relative to the
                              ///< viewer's
+
+    /// Makes a point's facets at least as rough as `least`, an alpha, along the tangent and
+    /// across.
+    void roughen(std::size_t point, float least) {
+        float& value = roughness[point];
+        if (aspect.empty()) {
+            value = std::max(value, std::sqrt(least));
+            return;
+        }
+        const float alpha = value * value;
+        const float along = std::max(std::min(alpha / aspect[point], 1.0f), least);
+        const float across = std::max(std::min(alpha * aspect[point], 1.0f), least);
+        value = std::sqrt(std::sqrt(along * across));
+        aspect[point] = std::sqrt(across / std::max(along, 1e-30f));
+    }
 };
 
 struct SurfaceClosure {
