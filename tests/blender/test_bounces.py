@@ -296,10 +296,11 @@ def test_lobes_meet_a_lamp_after_more_bounces_than_its_own(scene, render, kind, 
     assert ours.mean() == pytest.approx(theirs.mean(), rel=0.012)
 
 
-@pytest.mark.parametrize("bounces", [0, 1])
+@pytest.mark.parametrize("bounces, sampling", [(0, "AUTOMATIC"), (1, "AUTOMATIC"), (0, "NONE")])
 @pytest.mark.parametrize("rough", [None, 0.6])
-def test_max_bounces_of_a_world(scene, render, rough, bounces):
-    """A small bright part of the sky lights a wall that a mirror shows: with 0 the wall's own rays alone meet it."""
+def test_max_bounces_of_a_world(scene, render, rough, bounces, sampling):
+    """A small bright part of the sky lights a wall that a mirror shows: with 0 the wall's own rays alone meet it, which lose
+    nothing where the world is not sampled."""
     mirror = scene_parts.add_square(scene, "Mirror", 0.6)
     surface(mirror, "ShaderNodeBsdfGlossy", (1.0, 1.0, 1.0), Roughness=0.0)
     wall = scene_parts.add_square(scene, "Wall", 1.0, (0.0, 0.0, 1.0))
@@ -309,7 +310,7 @@ def test_max_bounces_of_a_world(scene, render, rough, bounces):
     wall.visible_camera = False
     scene.world = bpy.data.worlds.new("World")
     scene.world.use_nodes = True
-    scene.world.cycles.max_bounces = bounces
+    scene.world.cycles.max_bounces, scene.world.cycles.sampling_method = bounces, sampling
     tree = scene.world.node_tree
     around = tree.nodes.new("ShaderNodeVectorMath")
     around.operation = "DOT_PRODUCT"

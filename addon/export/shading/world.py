@@ -40,7 +40,10 @@ def export_world(scene, view_layer, report, images=None):
     record["name"] = world.name_full
     owner = f"world '{world.name_full}'"
     record.update(ray_visibility(world))
-    record["most_bounces"] = getattr(getattr(world, "cycles", None), "max_bounces", 1024)
+    cycles = getattr(world, "cycles", None)
+    # What Cycles does not sample its limit does not end: it is met by rays alone.
+    is_sampled = getattr(cycles, "sampling_method", "AUTOMATIC") != "NONE"
+    record["most_bounces"] = getattr(cycles, "max_bounces", 1024) if is_sampled else 1024
     if not world.use_nodes or world.node_tree is None:
         node = {
             "type": "ShaderNodeBackground",
