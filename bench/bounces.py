@@ -33,7 +33,10 @@ def job_of(scene, settings):
 
 
 def reference(scene, samples):
-    files = (f"{SCENES[scene]}.py", "lit_scenes.py", "scenes.py")
+    # bounced_places.py is built of bounced_scenes.py.
+    files = dict.fromkeys(
+        (f"{SCENES[scene]}.py", "bounced_scenes.py", "lit_scenes.py", "scenes.py")
+    )
     job = job_of(scene, [{"engine": "CYCLES"}])
     return frames.reference_of_halves(f"bounced-{scene}", job, samples, files)
 

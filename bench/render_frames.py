@@ -25,8 +25,12 @@ import engines  # noqa: E402
 
 # Modules whose SCENES are frames 0 to 2, blurred as those of scenes.py.
 BUILT = (
-    *("lit_scenes", "lamp_scenes", "bounced_scenes", "bounced_places"),
-    *("crowd_scenes", "limit_scenes"),
+    "lit_scenes",
+    "lamp_scenes",
+    "bounced_scenes",
+    "bounced_places",
+    "crowd_scenes",
+    "limit_scenes",
 )
 
 

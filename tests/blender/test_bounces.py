@@ -31,20 +31,18 @@ def test_limits_are_those_of_cycles(scene):
     cycles.sample_clamp_indirect, cycles.blur_glossy = 4.0, 0.5
     cycles.caustics_reflective, cycles.volume_bounces = False, 5
     limits = light_paths(scene, scene.granita)
-    assert (
-        limits
-        == {
-            "bounces": 7,
-            "diffuse_bounces": 3,
-            "glossy_bounces": 5,
-            "transmission_bounces": 6,
-            "volume_bounces": 5,
-            "transparent_bounces": 2,
-            "clamp_indirect": 12.0,  # Cycles compares the sum of the channels with three times its number
-            "caustics": False,
-            "filter_glossy": 0.5,
-        }
-    )
+    # Cycles compares the sum of the channels with three times its clamp.
+    assert limits == {
+        "bounces": 7,
+        "diffuse_bounces": 3,
+        "glossy_bounces": 5,
+        "transmission_bounces": 6,
+        "volume_bounces": 5,
+        "transparent_bounces": 2,
+        "clamp_indirect": 12.0,
+        "caustics": False,
+        "filter_glossy": 0.5,
+    }
     scene.granita.bounces = "FAST"
     assert light_paths(scene, scene.granita) == {**limits, "bounces": 2}
 

@@ -47,7 +47,7 @@ def test_clamp_indirect_is_that_of_cycles(scene, render, kind, clamp, worst):
 )
 def test_brushed_metal_is_filtered_along_and_across(scene, render):
     """A box on brushed metal: what of it is smoother than Filter Glossy asks for is made as rough, along and across.  As
-    stretched as before, blocks of the box were a third off."""
+    stretched as before, a block of the box was a tenth off."""
 
     def metal(name, anisotropic):
         made = scene_parts.closure(name, "ShaderNodeBsdfPrincipled", Metallic=1.0, Roughness=0.25)
