@@ -8,6 +8,7 @@
 #include <mutex>
 #include <vector>
 
+#include "base/once.h"
 #include "base/report.h"
 #include "geometry/kept_geometry.h"
 #include "math/bounds.h"
@@ -34,10 +35,10 @@ class GeometryCache {
   private:
     struct Entry {
         std::shared_ptr<GeometryParts> parts;
-        std::once_flag said;
+        Once said;
 
         void say(Report& report) {
-            std::call_once(said, [&] { report.add(parts->said()); });
+            said.call([&] { report.add(parts->said()); });
         }
     };
     Entry& entry(const Scene& scene, std::size_t geometry);

@@ -11,28 +11,25 @@
 namespace granita {
 
 std::shared_ptr<const std::vector<Bounds3f>> GeometryParts::boxes() {
-    std::call_once(m_boxes_once, [&] {
-        m_boxes = std::make_shared<std::vector<Bounds3f>>(element_boxes(*m_data));
-    });
+    m_boxes_once.call(
+        [&] { m_boxes = std::make_shared<std::vector<Bounds3f>>(element_boxes(*m_data)); });
     return m_boxes;
 }
 
 std::shared_ptr<const SharedGeometry> GeometryParts::shared() {
-    std::call_once(m_shared_once, [&] {
-        m_shared = std::make_shared<SharedGeometry>(*m_data, m_frame_time, m_said);
-    });
+    m_shared_once.call(
+        [&] { m_shared = std::make_shared<SharedGeometry>(*m_data, m_frame_time, m_said); });
     return m_shared;
 }
 
 std::shared_ptr<const SharedElements> GeometryParts::elements() {
-    std::call_once(m_elements_once, [&] {
-        m_elements = std::make_shared<SharedElements>(*m_data, m_frame_time, m_said);
-    });
+    m_elements_once.call(
+        [&] { m_elements = std::make_shared<SharedElements>(*m_data, m_frame_time, m_said); });
     return m_elements;
 }
 
 float GeometryParts::largest_radius() {
-    std::call_once(m_radius_once, [&] {
+    m_radius_once.call([&] {
         for (const float radius : m_data->radius)
             if (std::isfinite(radius)) m_largest_radius = std::max(m_largest_radius, radius);
     });

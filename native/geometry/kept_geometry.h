@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/once.h"
 #include "base/report.h"
 #include "math/bounds.h"
 #include "scene/geometry_list.h"
@@ -41,7 +42,7 @@ class GeometryParts {
     std::shared_ptr<const GeometryData> m_data;
     float m_frame_time;
     Report m_said;
-    std::once_flag m_boxes_once, m_shared_once, m_elements_once, m_radius_once;
+    Once m_boxes_once, m_shared_once, m_elements_once, m_radius_once;
     std::shared_ptr<const std::vector<Bounds3f>> m_boxes;
     std::shared_ptr<const SharedGeometry> m_shared;
     std::shared_ptr<const SharedElements> m_elements;

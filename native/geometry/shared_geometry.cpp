@@ -100,7 +100,7 @@ std::uint32_t SharedGeometry::face_of(std::uint32_t corner) const {
 }
 
 const PatchBorders& SharedGeometry::borders() const {
-    std::call_once(m_borders_once, [this] { m_borders = std::make_unique<PatchBorders>(*this); });
+    m_borders_once.call([this] { m_borders = std::make_unique<PatchBorders>(*this); });
     return *m_borders;
 }
 

@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <shared_mutex>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "base/once.h"
 #include "base/report.h"
 #include "geometry/attribute_request.h"
 #include "math/bounds.h"
@@ -114,7 +114,7 @@ class SharedGeometry {
     std::unique_ptr<SubdivisionTopology> m_subdivision;
     std::unique_ptr<const LimitVertices> m_limit;
     std::unique_ptr<const SurfaceEvaluator> m_surface;
-    mutable std::once_flag m_borders_once;
+    mutable Once m_borders_once;
     mutable std::unique_ptr<const PatchBorders> m_borders;
     mutable std::shared_mutex m_tangent_mutex;
     mutable std::map<std::string, std::vector<Vec4f>> m_tangents;  ///< [patches][4] by UV map

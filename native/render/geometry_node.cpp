@@ -34,7 +34,7 @@ void SharedGrid::count_bytes() {
 }
 
 void SharedGrid::ensure_shading_state(Statistics& statistics) {
-    std::call_once(m_has_state, [&] {
+    m_has_state.call([&] {
         if (!m_grid->shading_state) return;
         const StageTimer timer(statistics, Stage::Dice);
         const Stopwatch watch;
@@ -46,7 +46,7 @@ void SharedGrid::ensure_shading_state(Statistics& statistics) {
 }
 
 const GridSweep& SharedGrid::sweep(const Projection& projection, const LensShape& lens) {
-    std::call_once(m_has_sweep, [&] {
+    m_has_sweep.call([&] {
         m_sweep.emplace(*m_grid, projection, lens);
         m_statistics.add(Counter::GridsSwept);
         m_statistics.add_grid_bytes(m_sweep->bytes());
@@ -55,7 +55,7 @@ const GridSweep& SharedGrid::sweep(const Projection& projection, const LensShape
 }
 
 void SharedGrid::ensure_opacity(const ShadingSystem& shading, Statistics& statistics) {
-    std::call_once(m_opacity, [&] {
+    m_opacity.call([&] {
         ensure_shading_state(statistics);
         const StageTimer timer(statistics, Stage::Shade);
         const Stopwatch watch;
@@ -65,7 +65,7 @@ void SharedGrid::ensure_opacity(const ShadingSystem& shading, Statistics& statis
 }
 
 void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& statistics, bool stays) {
-    std::call_once(*m_radiance, [&] {
+    m_radiance.call([&] {
         if (!shading.leaves_to_samples(*m_grid)) ensure_shading_state(statistics);
         const StageTimer timer(statistics, Stage::Shade);
         const Stopwatch watch;
@@ -77,7 +77,7 @@ void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& stati
 }
 
 void SharedGrid::forget_radiance() {
-    m_radiance.emplace();
+    m_radiance.reset();
     m_grid->light_share = 0.0f;
     m_grid->broken_radiance = false;
     m_grid->radiance.clear();

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/once.h"
 #include "base/statistics.h"
 #include "dice/primitive.h"
 #include "hider/grid_sweep.h"
@@ -40,8 +41,7 @@ class SharedGrid {
     Statistics& m_statistics;
     std::uint64_t m_bytes = 0;
     std::optional<GridSweep> m_sweep;
-    std::once_flag m_has_state, m_opacity, m_has_sweep;
-    std::optional<std::once_flag> m_radiance{std::in_place};
+    Once m_has_state, m_opacity, m_has_sweep, m_radiance;
 };
 
 using HiddenGrids = std::vector<std::shared_ptr<SharedGrid>>;  ///< in a hider's arrival order

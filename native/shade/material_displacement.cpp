@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/object_pool.h"
+#include "base/once.h"
 #include "base/parallel.h"
 #include "geometry/surface_evaluator.h"
 #include "geometry/surface_frames.h"
@@ -46,7 +47,7 @@ struct MaterialDisplacement::Target {
     // `least`.
     Vec3d eye{0.0};
     double angle = 0.0, least = 0.0;
-    mutable std::once_flag bound_once;
+    mutable Once bound_once;
     mutable float bound = 0.0f;
 };
 
@@ -321,7 +322,7 @@ void MaterialDisplacement::find(std::size_t index, const SharedGeometry& geometr
 float MaterialDisplacement::bound(std::size_t instance) const {
     const std::size_t source = m_targets[instance]->same_as;
     const Target& target = *m_targets[source];
-    std::call_once(target.bound_once, [&] { target.bound = kept_bound(source); });
+    target.bound_once.call([&] { target.bound = kept_bound(source); });
     return target.bound;
 }
 

@@ -19,7 +19,7 @@ bool add_bytes(void* user, ssize_t bytes, bool) {
 }  // namespace
 
 RTCDevice KeptRays::device() {
-    std::call_once(m_started, [&] {
+    m_started.call([&] {
         m_device.reset(rtcNewDevice(nullptr));
         if (!m_device) {
             const RTCError error = rtcGetDeviceError(nullptr);

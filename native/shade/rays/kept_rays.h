@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/once.h"
 #include "scene/geometry_list.h"
 #include "shade/rays/ray_detail.h"
 #include "shade/rays/ray_shape.h"
@@ -73,7 +74,7 @@ class KeptRays {
     }
 
     std::atomic<long long> m_bytes{0};
-    std::once_flag m_started;
+    Once m_started;
     RtcHandle<RTCDevice> m_device;
     std::mutex m_mutex;
     std::map<Of, Shapes> m_shapes;
