@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 import pytest
 import scene_parts
+from bounced_parts import look_at_stage, render_bounced, worst_block
 from node_comparison import Tree
 
 
@@ -68,6 +69,40 @@ def test_a_vector_that_is_not_linked_displaces(scene, render):
     assert np.abs(granita - cycles).mean() < 0.005
     node.inputs["Vector"].default_value = (0.5, 0.5, 0.5, 1.0)
     assert np.abs(pictures(scene, render)[1] - cycles).mean() > 0.05
+
+
+def test_faces_of_a_pixel_do_not_shade_themselves(scene, render):
+    """A displaced ball of faces that need no dicing, under bounces: rays that start beside a face's border started below
+    the hollow ones, unlit specks that took 3 % of the light and a third of a block."""
+    bpy.ops.mesh.primitive_uv_sphere_add(
+        segments=128, ring_count=64, radius=1.1, location=(0, 0, 1)
+    )
+    bpy.ops.object.shade_smooth()
+    tree = Tree(bpy.context.object)
+    owner = tree.material if hasattr(tree.material, "displacement_method") else tree.material.cycles
+    owner.displacement_method = "DISPLACEMENT"
+    noise = tree.add("ShaderNodeTexNoise")
+    noise.inputs["Scale"].default_value = 2.0
+    displacement = tree.add("ShaderNodeDisplacement")
+    displacement.inputs["Scale"].default_value = 0.6
+    tree.links.new(noise.outputs["Fac"], displacement.inputs["Height"])
+    tree.links.new(displacement.outputs[0], tree.output.inputs["Displacement"])
+    matte = tree.add("ShaderNodeBsdfDiffuse")
+    tree.links.new(matte.outputs[0], tree.output.inputs["Surface"])
+    lamp = bpy.data.lights.new("Lamp", "AREA")
+    lamp.energy = 400.0
+    lamp = scene_parts.add_object(scene, "Lamp", lamp, (3.0, -3.0, 5.0))
+    lamp.rotation_euler = lamp.location.to_track_quat("Z", "Y").to_euler()
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.color = (0.3, 0.3, 0.3)
+    look_at_stage(scene, 3.0, 1.0)
+    scene.render.resolution_percentage = 200
+    theirs, ours = (
+        image.reshape(48, 2, 64, 2, 3).mean(axis=(1, 3))
+        for image in render_bounced(scene, render, 192, limit=1)
+    )
+    assert ours.mean() == pytest.approx(theirs.mean(), rel=0.006)
+    assert worst_block((theirs, ours)) < 0.06
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 import scene_parts as parts
-from test_bounces import render_bounced
+from bounced_parts import render_bounced
 
 pytestmark = pytest.mark.skipif(
     "light_linking" not in bpy.types.Object.bl_rna.properties,

@@ -8,7 +8,7 @@ import node_comparison
 import numpy as np
 import pytest
 import scene_parts
-from test_bounces import render_bounced, room, surface
+from bounced_parts import render_bounced, room, surface
 
 
 def shines(thing, strength, color=(1.0, 0.9, 0.7)):

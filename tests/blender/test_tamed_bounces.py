@@ -2,25 +2,9 @@
 """Settings that tame the noise of bounces, beside Cycles in the same Blender: Clamp Indirect, Filter Glossy."""
 
 import bpy
-import numpy as np
 import pytest
 import scene_parts
-from mathutils import Vector
-from test_bounces import render_bounced, surface
-
-
-def look_at_stage(scene, height, target):
-    """A camera before it, black around; 64 x 48 pixels."""
-    camera = scene_parts.add_camera(scene, (0.0, -5.0, height))
-    way = Vector((0.0, 0.0, target)) - camera.location
-    camera.rotation_euler = way.to_track_quat("-Z", "Y").to_euler()
-    scene.render.resolution_x, scene.render.resolution_y = 64, 48
-
-
-def worst_block(both):
-    """Of 4 x 4 pixels, how far Granita's mean is from Cycles', of that and a bit of the picture's."""
-    theirs, ours = (image.reshape(12, 4, 16, 4, 3).mean(axis=(1, 3, 4)) for image in both)
-    return np.max(np.abs(ours - theirs) / (theirs + 0.15 * theirs.mean()))
+from bounced_parts import look_at_stage, render_bounced, surface, worst_block
 
 
 @pytest.mark.parametrize("kind, clamp, worst", [("Diffuse", 0.3, 0.1), ("Glass", 10.0, 0.8)])

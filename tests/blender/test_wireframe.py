@@ -6,8 +6,8 @@ import math
 import bpy
 import pytest
 import scene_parts
+from bounced_parts import render_bounced
 from node_comparison import Tree, render_both, rmse
-from test_bounces import render_bounced
 
 # Triangles, squares, a concave polygon and one of six corners.
 VERTICES = [

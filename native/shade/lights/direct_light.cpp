@@ -310,14 +310,23 @@ int DirectLight::sample_count(float share) const {
 void DirectLight::lift(ShadingPoints& points, const GridKey& key) const {
     const RayScene* rays = m_impl->set.rays.get();
     if (!rays || !rays->is_displaced(key)) return;
-    const std::vector<float> heights = rays->heights_over(
-        key, {points.p, points.geometric_normal, points.backfacing, points.times});
     points.ray_offset.resize(points.count, Vec3f(0.0f));
-    for (std::size_t i = 0; i < points.count; ++i) {
-        const float lifted = glm::dot(points.ray_offset[i], points.geometric_normal[i]);
-        if (heights[i] > lifted)
-            points.ray_offset[i] += (heights[i] - lifted) * points.geometric_normal[i];
-    }
+    const auto clear = [&](const std::vector<Vec3f>& places) {
+        const std::vector<float> heights = rays->heights_over(
+            key, {places, points.geometric_normal, points.backfacing, points.times});
+        for (std::size_t i = 0; i < points.count; ++i) {
+            const float lifted = glm::dot(points.ray_offset[i], points.geometric_normal[i]);
+            if (heights[i] > lifted)
+                points.ray_offset[i] += (heights[i] - lifted) * points.geometric_normal[i];
+        }
+    };
+    clear(points.p);
+    if (points.columns == 0) return;
+    // Rays that look for surfaces start beside the border: a step along the tangent, which leads
+    // below what is hollow.
+    std::vector<Vec3f> beside(points.count);
+    for (std::size_t i = 0; i < points.count; ++i) beside[i] = points.p[i] + inwards(points, i);
+    clear(beside);
 }
 
 std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const SurfaceClosure& closure,
