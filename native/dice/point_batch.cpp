@@ -210,7 +210,6 @@ void PointBatch::place_row(Grid& grid, int j, const Row& row) const {
 }
 
 void PointBatch::shade_row(Grid& grid, int j, const Row& row) const {
-    const bool flat = m_longitudes == 1;
     // Colours go linearly between vertices: normals are drawn in so far that the mean over the
     // outline is right for any quadratic (half of the area's radius where the sphere is flat).
     const double drawn_in =
@@ -230,8 +229,7 @@ void PointBatch::shade_row(Grid& grid, int j, const Row& row) const {
             // Rays start on the sphere where it has this normal: they meet it only where that
             // turns away from them.
             offset += (here * sphere.radius - sphere.offset(drawn.x, drawn.y)) * weight;
-            const Vec3d surface = flat ? sphere.to_eye : sphere.offset(on_sphere.x, on_sphere.y);
-            geometric_normal += normalize_or(surface, sphere.to_eye) * weight;
+            geometric_normal += here * weight;
         }
         const std::size_t at = vertex(grid, i, j);
         grid.normal[at] = Vec3f(normalize_or(normal, towards));

@@ -15,6 +15,7 @@ ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
     points.whole_faces = grid.shades_faces();
     if (!grid.disjoint)
         points.columns = static_cast<std::size_t>(grid.n_u / grid.shading_positions.step_u) + 1;
+    points.edges = points.columns > 0 && grid.ray_offset.empty();
     points.p.resize(n);
     points.normal.resize(n);
     points.geometric_normal.resize(n);

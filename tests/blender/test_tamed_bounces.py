@@ -5,6 +5,7 @@ import bpy
 import pytest
 import scene_parts
 from bounced_parts import look_at_stage, render_bounced, surface, worst_block
+from mathutils import Vector
 
 
 @pytest.mark.parametrize("kind, clamp, worst", [("Diffuse", 0.3, 0.1), ("Glass", 10.0, 0.8)])

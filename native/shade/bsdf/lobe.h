@@ -173,7 +173,9 @@ struct ShadingPoints {
     /// vectors, or none at all: any time of its life will do.
     std::vector<std::vector<float>> seen_times;
     bool whole_faces = false;  ///< as Grid::shades_faces()
-    bool round = false;        ///< of ribbons that stand for tubes, as their normals say
+    /// The border may be an edge in which surfaces meet: not that of spheres and hair.
+    bool edges = false;
+    bool round = false;  ///< of ribbons that stand for tubes, as their normals say
     std::vector<std::uint8_t> backfacing;  ///< [n]
     /// [n] shutter time at which each is lit, where it then is; negative, or empty: over the whole
     /// shutter.

@@ -321,7 +321,7 @@ void DirectLight::lift(ShadingPoints& points, const GridKey& key) const {
         }
     };
     clear(points.p);
-    if (points.columns == 0) return;
+    if (!points.edges) return;
     // Rays that look for surfaces start beside the border: a step along the tangent, which leads
     // below what is hollow.
     std::vector<Vec3f> beside(points.count);

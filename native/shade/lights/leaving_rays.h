@@ -7,7 +7,8 @@
 namespace granita {
 
 /// From the border of a grid a little into it.  Where surfaces meet in an edge, points of it lie
-/// on both: half of their rays would start behind the other.
+/// on both: half of their rays would start behind the other.  Spheres have no such edges, and a
+/// step along their tangents' chords would lead into them.
 Vec3f inwards(const ShadingPoints& points, std::size_t i);
 
 /// Puts the way of a sample into LitGrid::leaving, which is asked for.

@@ -49,7 +49,8 @@ void RayScene::Impl::locate(const RTCRay& traced, const RTCHit& at, std::uint32_
 }
 
 Vec3f RayScene::Impl::normal_of(const RTCHit& at, const RayHit& hit, const RayFrame& frame) {
-    if (hit.elements) return -hit.direction;  // they face the ray
+    const bool is_hair = hit.elements && hit.elements->data().kind == GeometryKind::Curves;
+    if (is_hair) return -hit.direction;  // ribbons face the ray
     return Vec3f(normalize_or(frame.world_from_normal * Vec3d(at.Ng_x, at.Ng_y, at.Ng_z),
                               -Vec3d(hit.direction)));
 }
