@@ -10,7 +10,7 @@
 #include "dice/patch.h"
 #include "dice/patch_batch.h"
 #include "dice/raster_bound.h"
-#include "dice/smooth_rise.h"
+#include "geometry/smooth_rise.h"
 #include "geometry/surface_evaluator.h"
 #include "math/largest_stretch.h"
 
@@ -146,7 +146,7 @@ Vec4f OpenedMesh::rise(const FrameFace& face, const CornerWeights& weights,
     if (!face.is_smooth) return Vec4f(0.0f);
     const Vec3d from_eye =
         view().projection.perspective ? FrameFace::blend(face.p, weights.w) : Vec3d(0.0, 0.0, 1.0);
-    return smooth_rise(face, weights, glm::dot(flat, from_eye) < 0.0);
+    return smooth_rise(face.p, face.normal, weights, glm::dot(flat, from_eye) < 0.0);
 }
 
 std::vector<Bounds3f> OpenedMesh::primitive_boxes(std::size_t primitive) const {

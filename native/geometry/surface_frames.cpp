@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/surface_frames.h"
 
+#include <algorithm>
+
 #include "geometry/corner_values.h"
 #include "geometry/surface_evaluator.h"
 #include "math/normalize_or.h"
@@ -29,6 +31,18 @@ bool is_smooth(const SharedGeometry& geometry, std::uint32_t face) {
     return !data.smooth.empty() && data.smooth[face] && !geometry.vertex_normals().empty();
 }
 
+std::array<Vec3d, 4> corner_normals(const SharedGeometry& geometry, const BasePatch& patch) {
+    const GeometryData& data = geometry.data();
+    std::array<Vec3d, 4> normals;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const std::uint32_t corner = patch.corner[i];
+        const auto vertex = static_cast<std::size_t>(data.corner_verts[corner]);
+        normals[i] = data.corner_normals.empty() ? geometry.vertex_normals()[vertex]
+                                                 : data.corner_normals[corner];
+    }
+    return normals;
+}
+
 void resize(SurfaceFrames& out, std::size_t n) {
     for (auto* values : {&out.p, &out.su, &out.sv, &out.normal, &out.geometric_normal})
         values->resize(n);
@@ -39,13 +53,7 @@ void polygon_frames(const SharedGeometry& geometry, const BasePatch& patch,
     const std::array<Vec3d, 4> at = corners(geometry, patch, geometry.frame_points());
     const bool smooth = is_smooth(geometry, patch.face);
     std::array<Vec3d, 4> normals{};
-    for (std::size_t i = 0; i < 4 && smooth; ++i) {
-        const std::uint32_t corner = patch.corner[i];
-        const auto vertex = static_cast<std::size_t>(geometry.data().corner_verts[corner]);
-        normals[i] = geometry.data().corner_normals.empty()
-                         ? geometry.vertex_normals()[vertex]
-                         : geometry.data().corner_normals[corner];
-    }
+    if (smooth) normals = corner_normals(geometry, patch);
     const Vec3d across = normalize_or(glm::cross(at[2] - at[0], at[3] - at[1]), kUp);
     for (std::size_t i = 0; i < uv.size(); ++i) {
         const CornerWeights weights(patch.kind, uv[i]);
@@ -98,6 +106,13 @@ void find_frames(const SharedGeometry& geometry, const BasePatch& patch, std::sp
         limit_frames(geometry, patch, uv, out);
     else
         polygon_frames(geometry, patch, uv, out);
+}
+
+bool find_smooth_face(const SharedGeometry& geometry, const BasePatch& patch, SmoothFace& out) {
+    if (geometry.subdivision() || !is_smooth(geometry, patch.face)) return false;
+    std::ranges::copy(corners(geometry, patch, geometry.frame_points()), out.p);
+    std::ranges::copy(corner_normals(geometry, patch), out.normal);
+    return true;
 }
 
 void find_positions(const SharedGeometry& geometry, const BasePatch& patch,

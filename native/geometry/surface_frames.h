@@ -19,6 +19,14 @@ struct SurfaceFrames {
 void find_frames(const SharedGeometry& geometry, const BasePatch& patch, std::span<const Vec2d> uv,
                  SurfaceFrames& out);
 
+/// Where shading normals are not the face's own.
+struct SmoothFace {
+    Vec3d p[4], normal[4];  ///< of the corners at the frame time, object space; normals unit
+};
+
+/// False: the face has no normals but its own.  Of polygons; not of what is subdivided.
+bool find_smooth_face(const SharedGeometry& geometry, const BasePatch& patch, SmoothFace& out);
+
 /// [surface_knots()][n]
 void find_positions(const SharedGeometry& geometry, const BasePatch& patch,
                     std::span<const Vec2d> uv, std::vector<Vec3f>& out);

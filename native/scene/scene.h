@@ -32,7 +32,7 @@ struct Instance {
     bool visible_volume = true;  ///< to rays from what fills things
     bool casts_shadow = true;
     bool holdout = false;
-    /// Cosine to smooth faces below which rays to lamps start above them (dice/smooth_rise.h).
+    /// Cosine to smooth faces below which rays to lamps start above them (geometry/smooth_rise.h).
     float terminator_offset = 0.0f;
     int object_index = 0;  ///< pass_index
     float random = 0.0f;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geometry/smooth_rise.h"
 #include "geometry/surface_frames.h"
 #include "math/normalize_or.h"
 
@@ -45,6 +46,19 @@ void HitPoints::fill_mesh(std::size_t i, const MetPath& met, bool displaced,
     m_attributes.fill(i, hit, requests, Vec2f(step_u, step_v));
 }
 
+/// As OpenedMesh::rise(), in the world.
+void HitPoints::rise(std::size_t i, const MetPath& met) {
+    SmoothFace face;
+    if (!find_smooth_face(*met.hit->geometry, *met.hit->patch, face)) return;
+    for (int k = 0; k < 4; ++k) {
+        face.p[k] = Mat3d(met.frame->world_from_object) * face.p[k];
+        face.normal[k] =
+            normalize_or(met.frame->world_from_normal * face.normal[k], Vec3d(met.hit->normal));
+    }
+    const CornerWeights weights(met.hit->patch->kind, met.hit->uv);
+    m_points.rise[i] = smooth_rise(face.p, face.normal, weights, !m_points.backfacing[i]);
+}
+
 void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRequest>& requests,
                      std::uint32_t depth) {
     resize(met.size(), requests);
@@ -54,6 +68,9 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
     m_points.share = 1.0f / static_cast<float>(std::max(m_scene.options.light_samples, 1));
     if (!first.elements) m_points.faces.resize(met.size());
     const bool displaced = m_rays.is_displaced({instance.key});
+    m_points.terminator_offset = instance.terminator_offset;
+    const bool rises = !first.elements && !displaced;
+    if (rises) m_points.rise.assign(met.size(), Vec4f(0.0f));
     m_input = {};
     m_input.points = &m_points;
     m_input.attributes = &m_attributes.grid();
@@ -90,6 +107,7 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
         }
         m_points.faces[i] = hit.patch->face;
         fill_mesh(i, met[i], displaced, requests);
+        if (rises) rise(i, met[i]);
     }
 }
 

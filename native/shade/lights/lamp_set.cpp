@@ -134,13 +134,18 @@ void LampSet::bend(const LitPoint& point, const LitPlace& place, Ray& ray) {
 Ray LampSet::ray_to(const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                     const LightSample& sample) const {
     Ray to = ray(point, place, sample.direction, sample.distance, lamp.blocker_set());
+    const Vec3f unbent = to.start;
     if (point.rise) bend(point, place, to);
-    if (!lamp.is_surface()) return to;
-    // Where it starts beside the point, as of strands, it would pass the surface or fall short.
+    const bool is_near = sample.distance < std::numeric_limits<float>::infinity();
+    if (!lamp.is_surface() && (to.start == unbent || !is_near)) return to;
+    // Where it starts beside the point, as of strands and above coarse faces, it would pass the
+    // surface or fall short.
     const Vec3f target = place.p + sample.direction * sample.distance;
     const Vec3f way = target - to.start;
     const float length = glm::length(way);
     if (length > 0.0f) to.direction = way / length;
+    to.distance = length;
+    if (!lamp.is_surface()) return to;
     const Vec3f size = glm::max(glm::abs(to.start), glm::abs(target));
     to.distance = std::max(0.0f, length - kRounding * std::max({length, size.x, size.y, size.z}));
     to.target = lamp.target();

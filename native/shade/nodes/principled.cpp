@@ -33,7 +33,7 @@ struct Common {
     FloatSource weight;     ///< alpha applied
     VectorSource emission;  ///< weighted
     VectorSource base_color, normal;
-    VectorSource specular_normal;  ///< of glossy lobes
+    VectorSource specular_normal;  ///< of glossy lobes, of which subsurface is one in Cycles
     FloatSource metallic, roughness, transmission, specular, ior;
     bool multiscatter = false;
     FilmSource film;
@@ -160,7 +160,7 @@ FloatSource add_second_sheen(NodeBuilder& b, SurfaceBuilder& surface, const Comm
 /// Sockets under their names of Blender 4; the exporter renames older ones.
 SubsurfaceSource subsurface_of(NodeBuilder& b, const Common& c, const FloatSource& scale) {
     SubsurfaceSource lobe;
-    lobe.normal = c.normal;
+    lobe.normal = c.specular_normal;
     lobe.radius = scaled(b, b.vector("Subsurface Radius", Vec3f(1.0f, 0.2f, 0.1f)), scale);
     lobe.roughness = c.roughness;
     lobe.anisotropy = b.number("Subsurface Anisotropy");

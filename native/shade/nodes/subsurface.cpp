@@ -38,7 +38,7 @@ void build_subsurface(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource
     lobe.albedo = b.map<Vec3f>([](const Vec3f& c) { return glm::max(c, Vec3f(0.0f)); },
                                b.color("Color", Vec3f(0.8f)));
     lobe.weight = scaled(b, lobe.albedo, weight);
-    lobe.normal = b.diffuse_normal();
+    lobe.normal = b.specular_normal();
     lobe.radius = scaled(b, b.vector("Radius", Vec3f(1.0f, 0.2f, 0.1f)), b.number("Scale", 1.0f));
     lobe.roughness = b.map<float>(saturate, b.number("Roughness", 1.0f));
     lobe.ior = b.number("IOR", 1.4f);

@@ -4,13 +4,15 @@
 // the Shadow Terminator", Ray Tracing Gems II, 2021; Cycles' Geometry Offset).
 #pragma once
 
-#include "dice/frame_face.h"
+#include "geometry/corner_values.h"
 
 namespace granita {
 
-/// From a place on a smooth face, camera space; last how far the nearest side of its triangle is.
+/// From a place on a smooth face with these corners, at which its normals are unit; last how far
+/// the nearest side of its triangle is.
 /// @param above whether the surface is seen from where its normals point to; else the way to the
 ///     surface as it is from inside.
-Vec4f smooth_rise(const FrameFace& face, const CornerWeights& weights, bool above);
+Vec4f smooth_rise(const Vec3d (&p)[4], const Vec3d (&normals)[4], const CornerWeights& weights,
+                  bool above);
 
 }  // namespace granita

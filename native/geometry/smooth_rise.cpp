@@ -1,39 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "dice/smooth_rise.h"
+#include "geometry/smooth_rise.h"
 
 #include <algorithm>
 #include <limits>
 
 namespace granita {
 
-Vec4f smooth_rise(const FrameFace& face, const CornerWeights& weights, bool above) {
+Vec4f smooth_rise(const Vec3d (&p)[4], const Vec3d (&normals)[4], const CornerWeights& weights,
+                  bool above) {
     // Of the pair's triangles the one that the place is on.
     const std::size_t second = weights.w[3] > 0.0 ? 2 : 1;
     const std::size_t corner[3] = {0, second, second + 1};
     const double side = above ? 1.0 : -1.0;
-    const Vec3d place = FrameFace::blend(face.p, weights.w);
+    const auto blend = [&](const Vec3d(&values)[4]) {
+        return values[0] * weights.w[0] + values[1] * weights.w[1] + values[2] * weights.w[2] +
+               values[3] * weights.w[3];
+    };
+    const Vec3d place = blend(p);
     double curved = 0.0;  // height of the parabola through the corners, doubled
     double lowest = std::numeric_limits<double>::infinity();  // of the corners' tangent planes
     double to_side = lowest;
-    const double area = glm::length(glm::cross(face.p[corner[1]] - face.p[0],
-                                               face.p[corner[2]] - face.p[0]));  // doubled
+    const double area = glm::length(glm::cross(p[corner[1]] - p[0],
+                                               p[corner[2]] - p[0]));  // doubled
     for (int i = 0; i < 3; ++i) {
-        const Vec3d &p = face.p[corner[i]], &normal = face.normal[corner[i]];
-        const double opposite =
-            glm::distance(face.p[corner[(i + 1) % 3]], face.p[corner[(i + 2) % 3]]);
+        const Vec3d &at = p[corner[i]], &normal = normals[corner[i]];
+        const double opposite = glm::distance(p[corner[(i + 1) % 3]], p[corner[(i + 2) % 3]]);
         if (opposite > 0.0) to_side = std::min(to_side, weights.w[corner[i]] * area / opposite);
         double reach = 0.0;  // what stands above the plane
         for (int k = 0; k < 3; ++k) {
-            const Vec3d way = face.p[corner[k]] - p;
+            const Vec3d way = p[corner[k]] - at;
             reach = std::max(reach, side * glm::dot(way, normal));
             if (k > i)
                 curved += weights.w[corner[i]] * weights.w[corner[k]] *
-                          glm::dot(face.normal[corner[k]] - normal, way);
+                          glm::dot(normals[corner[k]] - normal, way);
         }
-        lowest = std::min(lowest, std::max(side * glm::dot(p - place, normal) + reach, 0.0));
+        lowest = std::min(lowest, std::max(side * glm::dot(at - place, normal) + reach, 0.0));
     }
-    const Vec3d rise =
-        FrameFace::blend(face.normal, weights.w) * (side * std::max(lowest, 0.5 * side * curved));
+    const Vec3d rise = blend(normals) * (side * std::max(lowest, 0.5 * side * curved));
     return {Vec3f(rise), static_cast<float>(to_side)};
 }
 

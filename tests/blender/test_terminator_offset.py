@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where light ends on coarse smooth faces beside Cycles in the same Blender: with things that hide a near lamp, in mirrors, and
+where light leaves that was scattered below.  Suns alone: test_polygons_against_cycles.py."""
+
+import math
+
+import bpy
+import pytest
+import scene_parts
+from bounced_parts import look_at_stage, render_bounced, surface, worst_block
+
+
+def cube(scene, shader, color=(0.8, 0.8, 0.8), **inputs):
+    """Smooth and of six faces, in front of a dim world, a square lamp on its right."""
+    bpy.ops.mesh.primitive_cube_add(size=1.5, location=(0.0, 0.0, 1.0), rotation=(0.0, 0.0, 0.5))
+    bpy.ops.object.shade_smooth()
+    surface(bpy.context.object, shader, color, **inputs)
+    lamp = bpy.data.lights.new("Lamp", "AREA")
+    lamp.energy = 500.0
+    lamp = scene_parts.add_object(scene, "Lamp", lamp, (3.0, -3.0, 5.0))
+    lamp.rotation_euler = lamp.location.to_track_quat("Z", "Y").to_euler()
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.color = (0.1, 0.1, 0.1)
+
+
+def check(scene, render, limit, worst, mean=0.005):
+    theirs, ours = render_bounced(scene, render, 512, limit=limit)
+    assert ours.mean() == pytest.approx(theirs.mean(), rel=mean)
+    assert worst_block((theirs, ours)) < worst
+
+
+def test_what_hides_a_near_lamp(scene, render):
+    """From above a face the lamp is seen past another side of the wall, a third of a metre along it: 23 % of a block."""
+    cube(scene, "ShaderNodeBsdfDiffuse")
+    wall = scene_parts.add_square(scene, "Wall", 6.0, (0.0, -2.4, 1.0))
+    wall.rotation_euler = (math.pi / 2, 0.0, 0.0)
+    surface(wall, "ShaderNodeBsdfDiffuse", (0.0, 0.0, 0.0))
+    wall.visible_camera = False
+    look_at_stage(scene, 1.5, 1.0)
+    check(scene, render, limit=0, worst=0.05)
+
+
+def test_a_mirror_shows_no_faces(scene, render):
+    """64 % of a block."""
+    cube(scene, "ShaderNodeBsdfDiffuse")
+    mirror = scene_parts.add_square(scene, "Mirror", 6.0, (0.0, -2.4, 1.0))
+    mirror.rotation_euler = (math.pi / 2, 0.0, 0.0)
+    surface(mirror, "ShaderNodeBsdfGlossy", (1.0, 1.0, 1.0), Roughness=0.0)
+    mirror.visible_diffuse = mirror.visible_shadow = False
+    scene.objects["Cube"].visible_camera = False
+    look_at_stage(scene, 1.5, 1.5)
+    scene.camera.location.y, scene.camera.rotation_euler.z = 1.0, math.pi
+    check(scene, render, limit=1, worst=0.08)
+
+
+def test_light_that_leaves_shows_no_faces(scene, render):
+    """72 % of a block."""
+    cube(scene, "ShaderNodeSubsurfaceScattering", Scale=1.0, Radius=(0.2, 0.2, 0.2))
+    look_at_stage(scene, 3.0, 0.8)
+    check(scene, render, limit=4, worst=0.06, mean=0.015)
