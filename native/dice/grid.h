@@ -105,8 +105,8 @@ struct Grid {
     /// as something flat.  Empty: at p.
     std::vector<Vec3f> ray_offset;
     /// [points] from p to the smooth surface that normals of a mesh tell of, on the side that is
-    /// seen, and how far the nearest side of its triangle is (geometry/smooth_rise.h).  Empty: the surface
-    /// has no normals but its own.
+    /// seen, and how far the nearest side of its triangle is (geometry/smooth_rise.h).  Empty: the
+    /// surface has no normals but its own.
     std::vector<Vec4f> rise;
     /// Cosine to its faces below which rays to lamps start there.
     float terminator_offset = 0.0f;

@@ -56,6 +56,11 @@ struct Bounces {
     /// As Fast GI, Add: what diffuse lobes reflect as well of white light of this radiance, as far
     /// as nothing within that distance hides it.
     float occlusion_added = 0.0f;
+    /// Whether rays that leave a surface bring more than what shines where they end.
+    bool goes_on() const {
+        const bool any_kind = diffuse > 0 || glossy > 0 || transmission > 0 || volume > 0;
+        return most > 0 && (any_kind || occluded_from > 0 || occlusion_added > 0.0f);
+    }
     bool operator==(const Bounces&) const = default;
 };
 

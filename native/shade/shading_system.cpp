@@ -8,6 +8,7 @@
 #include "base/stage_timer.h"
 #include "shade/bounces/bounced_light.h"
 #include "shade/bounces/hit_shader.h"
+#include "shade/bounces/meets_light.h"
 #include "shade/bounces/way_choice.h"
 #include "shade/compiled_materials.h"
 #include "shade/grid_channels.h"
@@ -113,7 +114,7 @@ struct ShadingSystem::Impl {
             LightPatterns{lamp_patterns(scene, textures, report), of_surface}, nodes_ask_rays);
         emission->warn(scene, report);
         if (!light->rays()) return;
-        if (scene.options.bounces.most > 0) {
+        if (meets_light(scene, light->lamp_faces(), *emission)) {
             hits = std::make_unique<HitShader>(scene, textures, report);
             bounces = std::make_unique<BouncedLight>(scene, *light, *hits, *emission, volumes.get(),
                                                      statistics, progress);
@@ -238,11 +239,10 @@ struct ShadingSystem::Impl {
         LeavingRays leaving;
         leaving.diffuse = grid.gathered.empty();
         leaving.takes_world = bounces && scene.options.bounces.diffuse > 0 && surface.looks_ahead();
+        if (has_passes) parts.resize(points.count);
         if (light)
             radiance = light->reflect(points, closure, grid.key, has_passes ? &parts : nullptr, at,
                                       noise, bounces ? &leaving : nullptr);
-        else
-            parts.resize(has_passes ? points.count : 0);
         if (bounces && !closure.lobes.empty())
             doubtful = add_bounces(points, closure, leaving, grid, has_passes ? &parts : nullptr,
                                    noise, radiance);

@@ -6,6 +6,7 @@ import pytest
 import snapshots as s
 from test_bounces import ALBEDO, diffuse, inside, material, mean, mirror, room
 from test_displacement import onto_a_ball
+from test_elements import cloud
 
 BLACK = 0.0
 
@@ -276,3 +277,27 @@ def test_colours_below_nothing_reflect_nothing(bounces, light_samples):
     snapshot["world"]["lights_scene"] = True
     picture = s.render(snapshot)["combined"][..., :3]
     assert np.abs(picture - [0.4, 0.0, 0.1]).max() < 1e-5
+
+
+NONE_GOES_ON = dict.fromkeys(("diffuse_bounces", "glossy_bounces", "transmission_bounces"), 0)
+
+
+def test_limits_of_no_bounce_cost_nothing():
+    """As Max Bounces 0 is handed over: where all that shines is a lamp no ray looks for more, and the picture is that of
+    no bounces to the bit."""
+    pictures = []
+    for limits in ({"bounces": 1, **NONE_GOES_ON}, {"bounces": 0}):
+        snapshot = inside(**limits)
+        room(snapshot, diffuse(snapshot, ALBEDO, 1.0))
+        rendered = s.render(snapshot)
+        assert rendered["statistics"]["rays_bounce"] == 0
+        pictures.append(rendered["combined"])
+    assert np.array_equal(*pictures)
+
+
+def test_limits_of_no_bounce_leave_what_shines_and_is_no_lamp():
+    """A sphere of a point cloud brings the square of its radius over its distance."""
+    snapshot = s.orthographic((16, 16), samples=16, bounces=1, light_samples=256, **NONE_GOES_ON)
+    s.quad(snapshot, s.rectangle(-50, -50, 66, 66, 20.0), diffuse(snapshot, ALBEDO))
+    cloud(snapshot, [(8.0, 8.0, -180.0)], 100.0, s.emission(snapshot))
+    assert mean(snapshot) == pytest.approx(0.25 * ALBEDO, rel=0.02)
