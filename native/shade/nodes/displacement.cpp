@@ -33,12 +33,14 @@ Tangents tangents(const ObjectAxes& axes, const Vec3f& normal, const Vec3f& of_c
         return {along, sign * normalize_or(glm::cross(normal, along), Vec3f(0.0f))};
     }
     const float determinant = by_u.x * by_v.y - by_u.y * by_v.x;
+    const Vec3f u = axes.object_from_world * dp_du, v = axes.object_from_world * dp_dv;
     const float side = determinant < 0.0f ? -1.0f : 1.0f;
-    Vec3f along = axes.object_from_world * dp_du;
-    if (determinant != 0.0f)
-        along = axes.object_from_world * ((dp_du * by_v.y - dp_dv * by_u.y) * side);
+    Vec3f along = u;
+    if (determinant != 0.0f) along = (u * by_v.y - v * by_u.y) * side;
     along = normalize_or(along - normal * glm::dot(normal, along), Vec3f(0.0f));
-    return {along, side * glm::cross(normal, along)};
+    // At a patch's far sides steps go back: then they turn the other way about the normal.
+    const float turn = glm::dot(glm::cross(u, v), normal) < 0.0f ? -1.0f : 1.0f;
+    return {along, side * turn * glm::cross(normal, along)};
 }
 
 }  // namespace
