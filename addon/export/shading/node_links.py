@@ -64,6 +64,11 @@ class Source:
     def key(self):
         return id(self.scope), self.node.name
 
+    @property
+    def has_value(self):
+        """Of a constant: whether it is what its socket holds, as what groups hide is."""
+        return bool(self.through) or _has_constant(self.socket)
+
 
 def trace(scope, socket):
     """Follows an input socket to its source.
@@ -89,9 +94,12 @@ def trace(scope, socket):
         if link is None:
             # Boundaries of groups hand on their own constants, muted nodes nothing: 0, as in Cycles, and
             # from Blender 5 on as if there were no link.
-            if muted and _has_constant(own.socket):
+            if not _has_constant(own.socket) or not hasattr(socket, "default_value"):
+                return own
+            if muted:
                 return own if bpy.app.version >= (5, 0, 0) else Source(scope, None, NOTHING)
-            return Source(scope, None, socket, _types(passed)) if _has_constant(socket) else own
+            # Groups may hide what their sockets hold, which it is all the same.
+            return Source(scope, None, socket, _types(passed))
         node, output = link.from_node, link.from_socket
         muted = node.mute and node.type != "REROUTE"
         if node.type == "REROUTE":
@@ -128,7 +136,8 @@ def _types(passed):
 
 
 def _has_constant(socket):
-    return hasattr(socket, "default_value") and not socket.hide_value
+    # One that a node does not show stands for something else, as Normal does; but a colour is what it is.
+    return hasattr(socket, "default_value") and (not socket.hide_value or socket.type == "RGBA")
 
 
 def _group_result(group_node, output):

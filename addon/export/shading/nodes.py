@@ -122,7 +122,7 @@ class FlatGraph:
 
     def _add_input(self, inputs, name, origin, node):
         if origin.node is None:
-            value = _constant(origin.socket)
+            value = _constant(origin.socket) if origin.has_value else None
         elif origin.key in self._index:
             value = self._converted_link(origin)
         else:
@@ -175,10 +175,6 @@ def _traced_inputs(source):
 
 def _constant(socket):
     """A float, a tuple of floats, or None for sockets whose default is not a constant."""
-    # A vector that is not shown stands for the normal, say; a colour is what it is.
-    hidden = socket.hide_value and socket.type != "RGBA"
-    if hidden or not hasattr(socket, "default_value"):
-        return None
     value = socket.default_value
     if isinstance(value, (int, float)):
         return float(value)

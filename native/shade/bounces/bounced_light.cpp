@@ -343,7 +343,7 @@ class BouncedLight::Wave {
             std::erase_if(closure.lobes, is_glossy);
         if (m_limits.filter_glossy == 0.0f) return;
         for (Lobe& lobe : closure.lobes) {
-            if (!is_glossy(lobe) || lobe.distribution == Distribution::Sharp) continue;
+            if (!is_blurred(lobe.kind) || lobe.distribution == Distribution::Sharp) continue;
             for (std::size_t i = 0; i < batch.size(); ++i) {
                 const float known = batch[i].path->least_pdf / m_limits.filter_glossy;
                 if (known < 1.0f) lobe.roughen(i, 0.5f * std::sqrt(1.0f - known));
@@ -359,7 +359,7 @@ class BouncedLight::Wave {
         if (!is_finite(bright)) return;
         const bool is_mirrored = path.kind == BouncedPath::Kind::Mirrored;
         const float sum = (bright.x + bright.y + bright.z) / ray.share;
-        const float clamp = m_limits.clamp * (is_mirrored ? path.sure_part : 1.0f);
+        const float clamp = m_limits.clamp * path.chance;
         if (clamp > 0.0f && sum > clamp) weight *= clamp / sum;
         const Vec3f brought = weight * (light + emitted);
         const Vec3f diffuse = brought * path.diffuse_part;
@@ -401,6 +401,7 @@ class BouncedLight::Wave {
         for (const ChosenWay& way : m_chosen) {
             BouncedPath next = path;
             next.sure_part = way.sure_part;
+            next.chance = way.chance;
             if (!way.is_sure && path.kind == BouncedPath::Kind::Mirrored)
                 next.kind = BouncedPath::Kind::Glossy;
             const WorldAhead& world = way.ray ? way.ray->world : path.next.world;

@@ -20,9 +20,11 @@ struct BouncedPath {
     /// What sent it from there.
     enum class Kind { Diffuse, Glossy, Mirrored } kind = Kind::Diffuse;
     /// Part of its point that it was followed for while no chance chose it: those of a point's ways
-    /// after as many meetings sum up to 1 at most.  Cycles takes one of them by chance, and clamps
-    /// what that brings for all.
+    /// after as many meetings sum up to 1 at most.
     float sure_part = 0.0f;
+    /// How likely it is one of its point's ways where it and others were followed: Cycles takes one
+    /// by chance, and clamps what that brings for all.
+    float chance = 1.0f;
     /// Weight of what its ray meets, 0 where chance has ended it; what it finds of the world is in
     /// no such doubt.
     float met_weight = 1.0f;

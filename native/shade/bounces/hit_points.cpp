@@ -30,7 +30,7 @@ void HitPoints::fill_mesh(std::size_t i, const MetPath& met, bool displaced,
     const std::span<const Vec2d> uv(&hit.uv, 1);
     find_frames(*hit.geometry, *hit.patch, uv, surface);
     const float side = m_points.backfacing[i] ? -1.0f : 1.0f;
-    if (!displaced)
+    if (!displaced && !fill_smooth(i, met))
         m_points.normal[i] = side * Vec3f(normalize_or(frame.world_from_normal * surface.normal[0],
                                                        Vec3d(hit.normal)));
     const auto step = [&](const Vec3d& derivative, Vec3f& out) {
@@ -46,10 +46,11 @@ void HitPoints::fill_mesh(std::size_t i, const MetPath& met, bool displaced,
     m_attributes.fill(i, hit, requests, Vec2f(step_u, step_v));
 }
 
-/// As OpenedMesh::rise(), in the world.
-void HitPoints::rise(std::size_t i, const MetPath& met) {
+/// As FrameFace and OpenedMesh::rise(), in the world, where corners' normals are blended: uneven
+/// scale bends them.
+bool HitPoints::fill_smooth(std::size_t i, const MetPath& met) {
     SmoothFace face;
-    if (!find_smooth_face(*met.hit->geometry, *met.hit->patch, face)) return;
+    if (!find_smooth_face(*met.hit->geometry, *met.hit->patch, face)) return false;
     for (int k = 0; k < 4; ++k) {
         face.p[k] = Mat3d(met.frame->world_from_object) * face.p[k];
         face.normal[k] =
@@ -57,6 +58,11 @@ void HitPoints::rise(std::size_t i, const MetPath& met) {
     }
     const CornerWeights weights(met.hit->patch->kind, met.hit->uv);
     m_points.rise[i] = smooth_rise(face.p, face.normal, weights, !m_points.backfacing[i]);
+    Vec3d normal(0.0);
+    for (int k = 0; k < 4; ++k) normal += weights.w[k] * face.normal[k];
+    const float side = m_points.backfacing[i] ? -1.0f : 1.0f;
+    m_points.normal[i] = side * Vec3f(normalize_or(normal, Vec3d(met.hit->normal)));
+    return true;
 }
 
 void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRequest>& requests,
@@ -69,8 +75,7 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
     if (!first.elements) m_points.faces.resize(met.size());
     const bool displaced = m_rays.is_displaced({instance.key});
     m_points.terminator_offset = instance.terminator_offset;
-    const bool rises = !first.elements && !displaced;
-    if (rises) m_points.rise.assign(met.size(), Vec4f(0.0f));
+    if (!first.elements && !displaced) m_points.rise.assign(met.size(), Vec4f(0.0f));
     m_input = {};
     m_input.points = &m_points;
     m_input.attributes = &m_attributes.grid();
@@ -107,7 +112,6 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
         }
         m_points.faces[i] = hit.patch->face;
         fill_mesh(i, met[i], displaced, requests);
-        if (rises) rise(i, met[i]);
     }
 }
 

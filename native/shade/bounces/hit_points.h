@@ -53,7 +53,7 @@ class HitPoints {
     void resize(std::size_t n, const std::vector<AttributeRequest>& requests);
     void fill_mesh(std::size_t i, const MetPath& met, bool displaced,
                    const std::vector<AttributeRequest>& requests);
-    void rise(std::size_t i, const MetPath& met);
+    bool fill_smooth(std::size_t i, const MetPath& met);
 
     const Scene& m_scene;
     const RayScene& m_rays;

@@ -48,7 +48,8 @@ void choose_ways(const BouncedPath& path, std::span<const LobeRay> ways, const V
     for (const LobeRay& way : ways) all += largest(way.weight);
     const auto consider = [&](const LobeRay* ray, const Vec3f& weight, bool surely) {
         if (surely)
-            out.push_back({ray, weight, part(path, weight, all), true, 1.0f});
+            out.push_back({ray, weight, part(path, weight, all),
+                           path.chance * largest(weight) / all, true, 1.0f});
         else
             in_doubt += largest(weight);
     };
@@ -61,7 +62,8 @@ void choose_ways(const BouncedPath& path, std::span<const LobeRay> ways, const V
         std::min(1.0f, std::sqrt(std::max(largest(path.throughput()) * in_doubt, 0.0f)));
     float u = uniform * in_doubt;
     const auto take = [&](const LobeRay* ray, const Vec3f& weight) {
-        out.push_back({ray, weight * (in_doubt / largest(weight)), path.sure_part, false, goes_on});
+        out.push_back({ray, weight * (in_doubt / largest(weight)), path.sure_part,
+                       path.chance * in_doubt / all, false, goes_on});
     };
     if (!passes_surely) {
         if (u < largest(through)) return take(nullptr, through);

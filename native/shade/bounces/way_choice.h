@@ -11,10 +11,10 @@ namespace granita {
 
 /// A way by which a path goes on from a place.
 struct ChosenWay {
-    const LobeRay* ray;  ///< nullptr: straight on, through the surface
-    Vec3f weight;        ///< of the light that comes along it
-    float sure_part;     ///< BouncedPath's
-    bool is_sure;        ///< no chance chose it
+    const LobeRay* ray;       ///< nullptr: straight on, through the surface
+    Vec3f weight;             ///< of the light that comes along it
+    float sure_part, chance;  ///< BouncedPath's
+    bool is_sure;             ///< no chance chose it
     /// How likely it is to be worth following: what it meets counts as much more.
     float goes_on;
 };

@@ -132,7 +132,8 @@ class PointBsdf {
     };
     MirroringFacets mirroring_facets(const Prepared& lobe, const Vec3f& wo) const;
     Vec3f local(const Prepared& lobe, const Vec3f& v) const;
-    void compensate(Prepared& lobe, const GgxAlbedo& albedo) const;
+    /// `made`: the roughness of which what is lost is made up for.
+    void compensate(Prepared& lobe, float made, const GgxAlbedo& albedo) const;
     Vec3f fresnel(const Prepared& lobe, float cos_half) const;
     Vec3f film_fresnel(const Prepared& lobe, float cos_half) const;
     Vec3f evaluate_glossy(const Prepared& lobe, const Vec3f& wo) const;

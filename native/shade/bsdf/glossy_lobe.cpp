@@ -38,14 +38,13 @@ void PointBsdf::prepare_microfacets(Prepared& lobe, float roughness) const {
     if (lobe.fresnel == FresnelKind::F82Tint) lobe.dip = f82_dip(lobe.f0, lobe.f90);
 }
 
-void PointBsdf::compensate(Prepared& lobe, const GgxAlbedo& albedo) const {
+void PointBsdf::compensate(Prepared& lobe, float made, const GgxAlbedo& albedo) const {
     if (lobe.sharp) return;
-    const float roughness = std::sqrt(lobe.alpha);
+    lobe.directional_albedo = albedo.directional(std::sqrt(lobe.alpha), lobe.cos_wi);
     // Kulla and Conty 2017: scale by 1 / E, then darken by what Fresnel takes at each extra bounce.
-    const float e = albedo.directional(roughness, lobe.cos_wi);
-    const float e_mean = albedo.average(roughness);
+    const float e = albedo.directional(made, lobe.cos_wi);
+    const float e_mean = albedo.average(made);
     const float missing = (1.0f - e) / e;
-    lobe.directional_albedo = e;
     Vec3f fss = lobe.f0;
     if (lobe.fresnel == FresnelKind::Schlick) fss = mix(lobe.f0, lobe.f90, 1.0f / 21.0f);
     if (lobe.fresnel == FresnelKind::F82Tint) fss = f82_mean(lobe.f0, lobe.dip);

@@ -54,6 +54,11 @@ constexpr bool transmits(LobeKind kind) {
 constexpr bool sees_all_around(LobeKind kind) {
     return kind == LobeKind::PrincipledHair || kind == LobeKind::Phase;
 }
+/// Lobes that Filter Glossy blurs: of microfacets, and hair's.
+constexpr bool is_blurred(LobeKind kind) {
+    return kind == LobeKind::Glossy || kind == LobeKind::Refraction ||
+           kind == LobeKind::PrincipledHair;
+}
 /// Of lobe_shape.h.
 constexpr bool is_shaped(LobeKind kind) {
     return kind > LobeKind::Refraction;
@@ -110,6 +115,8 @@ struct Lobe {
     std::vector<Vec3f> normal;     ///< [n] unit, facing the viewer as Cycles ensures
     std::vector<float> roughness;  ///< [n] diffuse: Oren-Nayar sigma socket; glossy: the socket's
                                    ///< value (alpha = roughness^2)
+    std::vector<float> made;       ///< [n] of multiscatter: the roughness before roughen(), where
+                                   ///< that loses energy; empty: as it is
     std::vector<Vec3f> tangent;    ///< [n] glossy, where alpha differs along it, and of hairs
     std::vector<float> aspect;     ///< [n] alpha / aspect along it, alpha * aspect across
     std::vector<std::vector<float>> more;  ///< [][n] what its kind asks for beside; of microfacets
@@ -121,8 +128,9 @@ struct Lobe {
                              ///< viewer's
 
     /// Makes a point's facets at least as rough as `least`, an alpha, along the tangent and
-    /// across.
+    /// across.  Cycles makes up for the energy of lobes before it blurs them, since Blender 4.
     void roughen(std::size_t point, float least) {
+        if (multiscatter && !separable_masking && made.empty()) made = roughness;
         float& value = roughness[point];
         if (aspect.empty()) {
             value = std::max(value, std::sqrt(least));

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/lights/leaving_rays.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "math/luminance.h"
 
 namespace granita {
 
@@ -25,14 +28,19 @@ void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& 
     const float spread = is_diffuse(ray.type)
                              ? std::sqrt(2.0f * kPi / static_cast<float>(point.sample_count))
                              : 0.0f;
-    const int count = point.lobe_samples(set.varies ? point.sample_count : 1);
+    const int mirrored = set.varies ? point.sample_count : 1;
+    float share = 1.0f / static_cast<float>(point.lobe_samples(mirrored));
+    // All that a mirror brings comes along its ways, and stands for what else there is as often as
+    // chance would have chosen it.
+    if (is_sharp(ray.type))
+        share = std::min(1.0f / static_cast<float>(mirrored),
+                         mean_size(weight) / mean_size(total(point.bsdf.albedo())));
     // Each grid has a part of the sequences to itself, as samples that are shaded alone have.
     const auto first = grid.placed ? 0u : static_cast<std::uint32_t>(grid.seed) << 14;
     const Vec3f whole = glm::max(weight, Vec3f(std::numeric_limits<float>::min()));
     grid.leaving->rays.push_back({ray, weight, value.diffuse / whole, value.transmission / whole,
-                                  1.0f / static_cast<float>(count), pdf,
-                                  static_cast<std::uint32_t>(point.index), first + place, spread,
-                                  grid.receives, world});
+                                  share, pdf, static_cast<std::uint32_t>(point.index),
+                                  first + place, spread, grid.receives, world});
 }
 
 }  // namespace granita

@@ -29,7 +29,7 @@ struct LobeRay {
     /// Of the weight, what its point's diffuse lobes reflect, and what goes through: parts of each
     /// channel.
     Vec3f diffuse{0.0f}, transmitted{0.0f};
-    float share = 1.0f;              ///< of the samples of all its point's lobes: one of so many
+    float share = 1.0f;              ///< of all ways of its point: how likely chance takes it
     float pdf = 0.0f;                ///< of its direction, per solid angle; infinite for a mirror's
     std::uint32_t point = 0;         ///< in the grid, or batch
     std::uint32_t place = 0;         ///< in sequences of samples: neighbours' are neighbours

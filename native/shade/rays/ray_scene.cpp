@@ -12,6 +12,7 @@
 #include "shade/rays/ray_transforms.h"
 #include "shade/rays/ray_visibility.h"
 #include "shade/rays/set_ray.h"
+#include "shade/rays/sphere_fronts.h"
 
 namespace granita {
 namespace {
@@ -120,7 +121,9 @@ void RayScene::Impl::skip_absent(const RTCFilterFunctionNArguments* arguments) {
     if (context.crossings) return scene->note_crossing(arguments);
     const Ray& ray = context.rays[reinterpret_cast<const RTCRay*>(arguments->ray)->id];
     const Instance& met = scene->scene.instances[scene->instances[id].index];
-    if (!meets(ray.type, met) || !met.lifespan.contains(ray.time)) arguments->valid[0] = 0;
+    const bool of_points = scene->scene.geometry_of(met).kind == GeometryKind::Points;
+    const bool is_there = meets(ray.type, met) && met.lifespan.contains(ray.time);
+    if (!is_there || (of_points && leaves(arguments, 0))) arguments->valid[0] = 0;
 }
 
 RayScene::~RayScene() = default;

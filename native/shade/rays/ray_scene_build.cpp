@@ -12,6 +12,7 @@
 #include "shade/rays/ray_subdivision.h"
 #include "shade/rays/ray_transforms.h"
 #include "shade/rays/ray_visibility.h"
+#include "shade/rays/sphere_fronts.h"
 
 namespace granita {
 namespace {
@@ -133,8 +134,12 @@ void RayScene::Impl::build_displaced(std::size_t index, std::uint8_t use, Report
 
 void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
     RayFilters filters;
-    if (made.key.use & ~(kCasts | kIsShaded)) filters.occluded = pass_through;
-    if (made.key.use & (kAppears | kIsHidden | kBounds)) filters.intersected = skip_absent;
+    const bool of_points = made.key.data->kind == GeometryKind::Points;
+    const bool looks_at_shadows = made.key.use & ~(kCasts | kIsShaded);
+    const bool looks_at_met = made.key.use & (kAppears | kIsHidden | kBounds);
+    if (of_points) filters.occluded = looks_at_shadows ? meet_fronts<pass_through> : meet_fronts<>;
+    if (!of_points && looks_at_shadows) filters.occluded = pass_through;
+    if (of_points || looks_at_met) filters.intersected = skip_absent;
     build_shape(made, kept->device(), filters, progress);
 }
 
