@@ -26,10 +26,6 @@ def test_clamp_indirect_is_that_of_cycles(scene, render, kind, clamp, worst):
     assert worst_block(both) < worst
 
 
-@pytest.mark.skipif(
-    bpy.app.version >= (4, 0, 0),
-    reason="a block of this scene is .08 off there whatever the filter does, for a reason that is not found",
-)
 def test_brushed_metal_is_filtered_along_and_across(scene, render):
     """A box on brushed metal: what of it is smoother than Filter Glossy asks for is made as rough, along and across.  As
     stretched as before, a block of the box was a tenth off."""
@@ -53,3 +49,81 @@ def test_brushed_metal_is_filtered_along_and_across(scene, render):
     look_at_stage(scene, 2.5, 0.9)
     both = render_bounced(scene, render, 512, blur_glossy=1.0)
     assert worst_block(both) < 0.07
+
+
+def lit_wall_over(scene, floor):
+    """A bright wall behind a floor, under a lamp that the floor does not show."""
+    plane = scene_parts.add_square(scene, "Floor", 8.0)
+    floor(plane)
+    wall = scene_parts.add_square(scene, "Wall", 4.0, (0.0, 3.0, 1.6))
+    wall.rotation_euler.x = 1.57
+    surface(wall, "ShaderNodeBsdfDiffuse", (0.9, 0.9, 0.9))
+    lamp = bpy.data.lights.new("Lamp", "AREA")
+    lamp.energy = 3000.0
+    lamp = scene_parts.add_object(scene, "Lamp", lamp, (0.0, 1.5, 3.0))
+    lamp.rotation_euler = Vector((0.0, -1.5, 2.0)).to_track_quat("Z", "Y").to_euler()
+    lamp.visible_glossy = False
+    look_at_stage(scene, 3.0, 0.5)
+
+
+@pytest.mark.parametrize("color", [0.5, 0.2])
+def test_a_mirror_is_clamped_by_what_it_shows(scene, render, color):
+    """Cycles, which takes one lobe by chance, takes a dark mirror as surely as a white one where there is no other: it was
+    held to its part of the clamp, - 50 and - 76 % of a block."""
+    lit_wall_over(
+        scene, lambda floor: surface(floor, "ShaderNodeBsdfGlossy", (color,) * 3, Roughness=0.0)
+    )
+    both = render_bounced(scene, render, 512, limit=1, clamp=0.5)
+    assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.01)
+    assert worst_block(both) < 0.1
+
+
+def test_a_weak_mirror_over_paint_is_clamped_as_seldom_as_it_is_chosen(scene, render):
+    """Of Principled, whose mirror of .04 chance takes every third time over a dark paint: 67 % of a block."""
+
+    def paint(floor):
+        made = scene_parts.closure("Paint", "ShaderNodeBsdfPrincipled", Roughness=0.0)
+        node = next(n for n in made.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
+        node.inputs["Base Color"].default_value = (0.1, 0.1, 0.1, 1.0)
+        floor.data.materials.append(made)
+
+    lit_wall_over(scene, paint)
+    both = render_bounced(scene, render, 1024, limit=4, clamp=1.0)
+    assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.015)
+    assert worst_block(both) < 0.15
+
+
+def test_filter_glossy_leaves_cloth_alone(scene, render):
+    """It blurs facets that mirror: a box of velvet lit a floor 19 % too far in a block."""
+    floor = scene_parts.add_square(scene, "Floor", 8.0)
+    surface(floor, "ShaderNodeBsdfDiffuse", (0.8, 0.8, 0.8))
+    bpy.ops.mesh.primitive_cube_add(size=2.0, location=(0.0, 1.0, 1.0))
+    kind = "ShaderNodeBsdfVelvet" if hasattr(bpy.types, "ShaderNodeBsdfVelvet") else None
+    if kind is None:
+        pytest.skip("Blender 4 has no velvet")
+    surface(bpy.context.object, kind, (0.9, 0.9, 0.9), Sigma=0.2)
+    sun = bpy.data.lights.new("Sun", "SUN")
+    sun.energy, sun.angle = 3.0, 0.1
+    light = scene_parts.add_object(scene, "Sun", sun)
+    light.rotation_euler = Vector((1.0, -3.0, 4.0)).to_track_quat("Z", "Y").to_euler()
+    look_at_stage(scene, 3.0, 0.5)
+    both = render_bounced(scene, render, 512, limit=2, blur_glossy=1.0)
+    assert worst_block(both) < 0.05
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 0, 0), reason="made up for after the blur, as in Cycles")
+def test_what_the_filter_blurs_keeps_the_energy_that_it_was_made_with(scene, render):
+    """Metal under a diffuse wall: blurred lobes lose energy in Cycles since Blender 4, which is made up for before.  The
+    wall was 2 to 4 % too bright."""
+    floor = scene_parts.add_square(scene, "Floor", 6.0)
+    metal = scene_parts.closure("Metal", "ShaderNodeBsdfPrincipled", Metallic=1.0, Roughness=0.05)
+    floor.data.materials.append(metal)
+    wall = scene_parts.add_square(scene, "Wall", 4.0, (0.0, 1.5, 2.0))
+    wall.rotation_euler.x = 1.57
+    surface(wall, "ShaderNodeBsdfDiffuse", (0.8, 0.1, 0.1))
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.color = (0.5, 0.5, 0.5)
+    look_at_stage(scene, 2.0, 1.5)
+    theirs, ours = render_bounced(scene, render, 1024, limit=4, blur_glossy=1.0)
+    inner = (slice(20, 36), slice(24, 40))  # of the wall
+    assert ours[inner].mean() == pytest.approx(theirs[inner].mean(), rel=0.007)
