@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
-from test_bounces import diffuse, mirror
+from test_bounces import diffuse, material, mirror
 from test_elements import cloud
 
 ALBEDO = 0.8
@@ -48,3 +48,30 @@ def test_a_mirror_shows_a_sphere_of_which_the_sun_lights_a_part(angle):
     assert s.render(snapshot)["combined"][..., 0].sum() == pytest.approx(
         expected, rel=0.01, abs=0.01
     )
+
+
+def clear(snapshot, passed):
+    inputs = {"Color": (passed,) * 3 + (1.0,)}
+    nodes = [{"type": "ShaderNodeBsdfTransparent", "inputs": inputs}]
+    return material(snapshot, nodes, (0, "BSDF"))
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_what_passes_a_point_passes_one_layer(mirrored):
+    """Its front, as the camera sees it and as in Cycles: .6 of a sun's light in its shadow, and in a mirror."""
+    passed, bounces = 0.6, 1 if mirrored else 0
+    snapshot = s.orthographic((64, 64), samples=16, bounces=bounces, light_samples=16)
+    shines = s.emission(snapshot)
+    if mirrored:
+        across = np.array([(-8, -8, 100), (72, -8, 100), (72, 72, 100), (-8, 72, 100)], float)
+        s.mesh(snapshot, across, [(0, 1, 2, 3)], mirror(snapshot))
+        s.quad(snapshot, s.rectangle(-8, -8, 72, 72, -80.0), shines)
+    else:
+        s.quad(snapshot, s.rectangle(-8, -8, 72, 72, 60.0), diffuse(snapshot, 1.0))
+        down = np.diag([1.0, -1.0, -1.0, 1.0])
+        sun = {"name": "Sun", "kind": "SUN", "world_from_light": down[None], "energy": np.pi}
+        snapshot["lights"] = [sun]
+    # Out of the camera's sight, between it and what it sees.
+    cloud(snapshot, [(32.0, 32.0, -50.0 if mirrored else -30.0)], 16.0, clear(snapshot, passed))
+    seen = s.render(snapshot)["combined"][..., 0]
+    assert seen[28:36, 28:36].mean() == pytest.approx(passed * seen[2, 2], rel=0.01)
