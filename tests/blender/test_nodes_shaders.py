@@ -311,17 +311,20 @@ def _lit(scene, render, kind, values, **properties):
     check(scene, render)
 
 
-def nested(tree, depth):
-    """`depth` groups in one another; the innermost inverts what comes in."""
+def nested(tree, depth, hide_value=False):
+    """`depth` groups in one another; the innermost inverts what comes in, which sockets may not show."""
     inner = None
     for level in range(depth):
         group = bpy.data.node_groups.new(f"Level {level}", "ShaderNodeTree")
         if hasattr(group, "interface"):
-            for name, way in (("In", "INPUT"), ("Out", "OUTPUT")):
+            sockets = [
                 group.interface.new_socket(name, in_out=way, socket_type="NodeSocketColor")
+                for name, way in (("In", "INPUT"), ("Out", "OUTPUT"))
+            ]
         else:
-            group.inputs.new("NodeSocketColor", "In")
+            sockets = [group.inputs.new("NodeSocketColor", "In")]
             group.outputs.new("NodeSocketColor", "Out")
+        sockets[0].hide_value = hide_value
         start, end = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
         if inner is None:
             node = group.nodes.new("ShaderNodeInvert")
@@ -338,10 +341,11 @@ def nested(tree, depth):
     return node
 
 
+@pytest.mark.parametrize("hide_value", [False, True])
 @pytest.mark.parametrize("linked", [False, True])
-def test_groups(scene, render, linked):
+def test_groups(scene, render, linked, hide_value):
     tree = Tree(board(scene))
-    group, mix = nested(tree, 3), tree.add("ShaderNodeMixRGB", blend_type="MULTIPLY")
+    group, mix = nested(tree, 3, hide_value), tree.add("ShaderNodeMixRGB", blend_type="MULTIPLY")
     group.inputs[0].default_value = (0.1, 0.4, 0.7, 1.0)
     if linked:
         tree.link(tree.attribute("A"), group.inputs[0])

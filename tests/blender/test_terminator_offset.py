@@ -10,17 +10,21 @@ import scene_parts
 from bounced_parts import look_at_stage, render_bounced, surface, worst_block
 
 
-def cube(scene, shader, color=(0.8, 0.8, 0.8), **inputs):
-    """Smooth and of six faces, in front of a dim world, a square lamp on its right."""
-    bpy.ops.mesh.primitive_cube_add(size=1.5, location=(0.0, 0.0, 1.0), rotation=(0.0, 0.0, 0.5))
-    bpy.ops.object.shade_smooth()
-    surface(bpy.context.object, shader, color, **inputs)
+def lamp_and_world(scene):
     lamp = bpy.data.lights.new("Lamp", "AREA")
     lamp.energy = 500.0
     lamp = scene_parts.add_object(scene, "Lamp", lamp, (3.0, -3.0, 5.0))
     lamp.rotation_euler = lamp.location.to_track_quat("Z", "Y").to_euler()
     scene.world = bpy.data.worlds.new("World")
     scene.world.color = (0.1, 0.1, 0.1)
+
+
+def cube(scene, shader, color=(0.8, 0.8, 0.8), **inputs):
+    """Smooth and of six faces, in front of a dim world, a square lamp on its right."""
+    bpy.ops.mesh.primitive_cube_add(size=1.5, location=(0.0, 0.0, 1.0), rotation=(0.0, 0.0, 0.5))
+    bpy.ops.object.shade_smooth()
+    surface(bpy.context.object, shader, color, **inputs)
+    lamp_and_world(scene)
 
 
 def check(scene, render, limit, worst, mean=0.005):
@@ -43,14 +47,30 @@ def test_what_hides_a_near_lamp(scene, render):
 def test_a_mirror_shows_no_faces(scene, render):
     """64 % of a block."""
     cube(scene, "ShaderNodeBsdfDiffuse")
+    show_in_mirror(scene, scene.objects["Cube"])
+    check(scene, render, limit=1, worst=0.08)
+
+
+def test_a_mirror_shows_normals_that_uneven_scale_bends(scene, render):
+    """Of corners, between which they are blended, as where the camera sees them: 23 % of a block."""
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=0.9, location=(0.0, 0.0, 1.0))
+    bpy.ops.object.shade_smooth()
+    thing = bpy.context.object
+    thing.scale = (0.4, 1.3, 0.8)
+    surface(thing, "ShaderNodeBsdfDiffuse", (0.8, 0.8, 0.8))
+    lamp_and_world(scene)
+    show_in_mirror(scene, thing)
+    check(scene, render, limit=1, worst=0.08)
+
+
+def show_in_mirror(scene, thing):
     mirror = scene_parts.add_square(scene, "Mirror", 6.0, (0.0, -2.4, 1.0))
     mirror.rotation_euler = (math.pi / 2, 0.0, 0.0)
     surface(mirror, "ShaderNodeBsdfGlossy", (1.0, 1.0, 1.0), Roughness=0.0)
     mirror.visible_diffuse = mirror.visible_shadow = False
-    scene.objects["Cube"].visible_camera = False
+    thing.visible_camera = False
     look_at_stage(scene, 1.5, 1.5)
     scene.camera.location.y, scene.camera.rotation_euler.z = 1.0, math.pi
-    check(scene, render, limit=1, worst=0.08)
 
 
 def test_light_that_leaves_shows_no_faces(scene, render):
