@@ -103,8 +103,12 @@ Ray LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& dire
                  float distance, int blocker_set) const {
     const float there = glm::dot(place.normal, direction);
     const float at_frame = glm::dot(point.at_frame.normal, direction);
-    const bool below = point.bsdf.transmits() && at_frame < 0.0f;
-    const bool turned_away = below ? there >= 0.0f : there <= 0.0f && at_frame > 0.0f;
+    const bool transmits = point.bsdf.transmits();
+    const bool turned_away =
+        transmits && at_frame < 0.0f ? there >= 0.0f : there <= 0.0f && at_frame > 0.0f;
+    // Lobes go by the smooth surface: light that they let through comes from below, be it above the
+    // face itself.
+    const bool below = transmits && glm::dot(point.bsdf.surface_normal(), direction) < 0.0f;
     const LitPlace& from = turned_away ? point.at_frame : place;
     if (point.through_tube)
         return {from.start_around(point.bsdf.surface_normal(), direction), direction, distance,
