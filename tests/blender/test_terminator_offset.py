@@ -75,7 +75,7 @@ def show_in_mirror(scene, thing):
 
 def test_what_lets_light_through_is_lit_as_its_smooth_side_says(scene, render):
     """A closed body lets a lamp through where its smooth normals turn from it: from inside, where it is dark, though the
-    face itself is turned to the lamp.  Three times as bright in the mean."""
+    face itself is turned to the lamp: nearly three times as bright where such a face fills the picture."""
     cube(scene, "ShaderNodeBsdfTranslucent")
     look_at_stage(scene, 3.0, 0.8)
     # It is black but for a world behind it: at its edges single samples bring .0015.
