@@ -371,3 +371,23 @@ def test_fast_gi_is_as_in_cycles(scene, render, method, bounces, distance, follo
     blocks = [p.reshape(6, 4, 6, 4, 3).mean(axis=(1, 3)) for p in (theirs, ours)]
     assert ours.mean(axis=(0, 1)) == pytest.approx(theirs.mean(axis=(0, 1)), rel=0.01)
     assert np.percentile(np.abs(blocks[1] - blocks[0]), 95) < 0.05 * theirs.mean()
+
+
+@pytest.mark.parametrize("diffuse", [1, 4])
+def test_limits_count_what_chance_would_have_taken(scene, render, diffuse):
+    """A room of Principled, whose mirror chance takes once in twenty times: a way along which both lobes reflect counts as
+    glossy as seldom.  Where each lobe's sample counted as its own, half of the light had the limits of gloss: + 8 % with one
+    Diffuse Bounce, + 4 % with Blender's four."""
+    room(scene)
+    for thing in scene.objects:
+        if thing.type != "MESH":
+            continue
+        color = (0.8, 0.75, 0.7, 1.0) if thing.name != "Ball" else (0.5, 0.5, 0.5, 1.0)
+        made = scene_parts.closure(thing.name, "ShaderNodeBsdfPrincipled", Roughness=0.5)
+        node = next(n for n in made.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
+        node.inputs["Base Color"].default_value = color
+        thing.data.materials.clear()
+        thing.data.materials.append(made)
+    limits = {"diffuse_bounces": diffuse, "glossy_bounces": 4, "limit": 12}
+    theirs, ours = render_bounced(scene, render, 1024, **limits)
+    assert ours.mean() == pytest.approx(theirs.mean(), rel=0.015)

@@ -145,6 +145,11 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         if (grid.leaving && (grid.leaving->diffuse || meets_lamps)) {
             Ray ray = set.ray(point, place, wo, kInfinity);
             ray.type = type;
+            if (grid.leaving->diffuse) {
+                const float chance = grid.chance(samples.first + index, point.bsdf.index(lobe));
+                const LightPart part = point.bsdf.part(point.counted_as(lobe, wo, chance));
+                ray.type = grid.blurred_rays(point.is_through(wo)).of(part);
+            }
             BsdfValue sent = value;
             if (!grid.leaving->diffuse) sent.diffuse = Vec3f(0.0f);
             const float density =

@@ -76,6 +76,11 @@ struct LitGrid {
     SobolPoints sequence(const LitPoint& point, std::size_t dimension, int count) {
         return sequence(dimension, point.place * static_cast<std::uint32_t>(count));
     }
+    /// In [0, 1), of a place in a lobe's sequence.
+    float chance(std::uint32_t place, std::size_t lobe) const {
+        const std::uint64_t at = static_cast<std::uint64_t>(lobe) << 32 | place;
+        return static_cast<float>(mix_bits(mix_bits(at) + seed) >> 40) * 0x1p-24f;
+    }
     /// Light of a lamp: `value` reflected without shadow.
     void add_lamp(std::size_t point, const BsdfValue& value, const Vec3f& shadow) {
         if (!parts) return;

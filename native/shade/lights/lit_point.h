@@ -102,6 +102,18 @@ struct LitPoint {
             if (samples[k].count > 0) sum += bsdf.importance(k) * bsdf.pdf(k, wo);
         return sum;
     }
+    /// One of the lobes that a sample along `wo`, drawn from `lobe`, may count as, by a number in
+    /// [0, 1): as often as chance had drawn it from each.  Each lobe has a sample at least, however
+    /// seldom chance would take it, and light that others reflect along it as well.
+    std::size_t counted_as(std::size_t lobe, const Vec3f& wo, float uniform) const {
+        float left = uniform * chance_density(wo);
+        for (std::size_t k = 0; k < samples.size(); ++k) {
+            if (samples[k].count == 0) continue;
+            left -= bsdf.importance(k) * bsdf.pdf(k, wo);
+            if (left < 0.0f) return k;
+        }
+        return lobe;
+    }
     /// Of lobes' samples, what is left of light that is also sampled by `pdf` where those samples
     /// are not taken: Cycles weighs as if they were, by squares of the densities.
     float left_to_lobes(const Vec3f& wo, float pdf) const {
