@@ -146,3 +146,19 @@ def test_hills_are_those_of_cycles(scene, render, method, vector, limit):
     # their own and take heights a whole pixel apart).
     assert np.sqrt(np.mean((granita - cycles) ** 2)) < limit * cycles.max()
     assert granita.mean() == pytest.approx(cycles.mean(), rel=0.01)
+
+
+@pytest.mark.parametrize("method", ["DISPLACEMENT", "BOTH"])
+def test_a_normal_map_bends_what_displacement_has_made(scene, render, method):
+    """A map that bends nothing shows the relief, as none does: it showed the normals of the mesh, a third of a block.  With
+    Both, and in Blender 5, Cycles' maps bend the mesh's own."""
+    lit_ball(scene, 128, "ShaderNodeDisplacement", "OBJECT", "Fac", "Height")
+    material = bpy.context.object.active_material
+    owner = material if hasattr(material, "displacement_method") else material.cycles
+    owner.displacement_method = method
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    bent = nodes.new("ShaderNodeNormalMap")
+    bent.inputs["Color"].default_value = (0.5, 0.5, 1.0, 1.0)
+    matte = next(node for node in nodes if node.type == "BSDF_DIFFUSE")
+    links.new(bent.outputs[0], matte.inputs["Normal"])
+    check_ball(scene, render, worst=0.08)

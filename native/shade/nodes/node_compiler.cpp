@@ -327,6 +327,9 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
     if (passes)
         for (const Aov& aov : scene.options.aovs)
             aov_outputs.push_back(find_aov_output(graph, aov.name));
+    // Cycles makes vertices' normals anew where displacement alone tells of the relief.
+    const bool has_moved_normals =
+        graph.moves_surface() && graph.displacement_method == DisplacementMethod::Displacement;
     const auto builder_for = [&](RayType type, Report& warnings) {
         return ProgramBuilder{.scene = scene,
                               .textures = textures,
@@ -335,6 +338,7 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
                               .is_world = owner.is_world,
                               .lamp = owner.lamp,
                               .material_index = owner.material_index,
+                              .has_moved_normals = has_moved_normals,
                               .ray_type = type,
                               .read = read_outputs(graph, graph.surface, owner.name, aov_outputs)};
     };

@@ -55,6 +55,8 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
     const FloatSource sign = b.attribute_component(of_corners, 3, Shift::None);
     // Since Blender 4 strength scales the map's slopes, before it blended the resulting normals.
     const bool scales_slopes = b.since(4, 0), has_unit_normals = b.since(5, 1);
+    // Of what is displaced Blender 5 takes the normals as modelled, unless nothing bends them.
+    const bool is_moved = b.has_moved_normals(), takes_modelled = b.since(5, 0);
     b.add_step(
         [=](Run& run) {
             const auto colors = run.read(color), uvs = run.read(uv), us = run.read(uv_u),
@@ -69,7 +71,11 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
                 const bool has_tangent = tangents[i] != Vec3f(0.0f);
                 TangentFrame frame;
                 if (has_tangent) {
-                    const Vec3f& smooth = corner_normals[i];
+                    const ObjectAxes& axes = run.input().axes_at(i);
+                    const Vec3f smooth =
+                        is_moved && (!takes_modelled || !(strengths[i] > 0.0f))
+                            ? normalize_or(glm::transpose(axes.world_from_object) * normal, normal)
+                            : corner_normals[i];
                     const Vec3f up = has_unit_normals ? normalize_or(smooth, smooth) : smooth;
                     frame = {up, tangents[i], signs[i] * glm::cross(up, tangents[i]), true};
                 } else {

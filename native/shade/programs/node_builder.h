@@ -34,6 +34,7 @@ struct ProgramBuilder {
     bool is_world = false;        ///< or a lamp's: of no geometry
     const Light* lamp = nullptr;  ///< whose it is
     int material_index = 0;
+    bool has_moved_normals = false;  ///< a mesh's own, which maps bend, are those of its relief
     RayType ray_type = RayType::Camera;
     std::vector<std::set<std::string>> read{};  ///< [nodes] outputs that something reads
     std::vector<Load> loads{};
@@ -157,6 +158,7 @@ class NodeBuilder {
         m_program.steps.push_back({std::move(run), std::move(reads), std::move(writes)});
     }
 
+    bool has_moved_normals() const { return m_program.has_moved_normals; }
     /// The shading normal, faced to the viewer.
     VectorSource shading_normal();
     /// The input "Normal", or the shading normal where it is not linked.
