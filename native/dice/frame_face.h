@@ -38,10 +38,6 @@ struct FrameFace {
         return is_smooth ? normalize_or(blend(normal, weights.w), geometric_normal)
                          : geometric_normal;
     }
-
-    static Vec3d blend(const Vec3d* values, const std::array<double, 4>& w) {
-        return values[0] * w[0] + values[1] * w[1] + values[2] * w[2] + values[3] * w[3];
-    }
 };
 
 }  // namespace granita

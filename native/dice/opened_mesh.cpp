@@ -145,7 +145,7 @@ Vec4f OpenedMesh::rise(const FrameFace& face, const CornerWeights& weights,
                        const Vec3d& flat) const {
     if (!face.is_smooth) return Vec4f(0.0f);
     const Vec3d from_eye =
-        view().projection.perspective ? FrameFace::blend(face.p, weights.w) : Vec3d(0.0, 0.0, 1.0);
+        view().projection.perspective ? blend(face.p, weights.w) : Vec3d(0.0, 0.0, 1.0);
     return smooth_rise(face.p, face.normal, weights, glm::dot(flat, from_eye) < 0.0);
 }
 

@@ -8,13 +8,6 @@
 #include "math/normalize_or.h"
 
 namespace granita {
-namespace {
-
-Vec3d blend(const Vec3d* p, const std::array<double, 4>& w) {
-    return FrameFace::blend(p, w);
-}
-
-}  // namespace
 
 OpenedPolygons::OpenedPolygons(const View& view, std::size_t instance,
                                std::shared_ptr<const SharedGeometry> shared, MeshPart part,

@@ -167,7 +167,7 @@ void PatchBatch::place(Grid& grid, const Parts& parts) const {
             const OpenedMesh::Corners corners = m_mesh->corners(lattice.patch, k);
             Vec3f at[LatticeStencil::kMostVertices];
             for (std::size_t v = 0; v < stencil.vertex_count(); ++v)
-                at[v] = Vec3f(FrameFace::blend(corners.p, stencil.weights[v].w));
+                at[v] = Vec3f(blend(corners.p, stencil.weights[v].w));
             slot.spread(to, [&](std::size_t v) { return at[v]; });
         };
         const auto place_piece = [&](const Piece& piece, const Slot& slot) {

@@ -18,6 +18,12 @@ struct CornerWeights {
     std::array<double, 4> w, du, dv;
 };
 
+/// Sum of the corners' vectors by their weights.
+template <class Corners>
+Vec3d blend(const Corners& at, const std::array<double, 4>& w) {
+    return Vec3d(at[0]) * w[0] + Vec3d(at[1]) * w[1] + Vec3d(at[2]) * w[2] + Vec3d(at[3]) * w[3];
+}
+
 /// [4][width] at the corners (0,0), (1,0), (1,1), (0,1); a triangle's are (0,0), (1,0), (0,1).
 struct CornerValues {
     std::array<std::array<double, 4>, 4> at{};

@@ -12,11 +12,7 @@ Vec4f smooth_rise(const Vec3d (&p)[4], const Vec3d (&normals)[4], const CornerWe
     const std::size_t second = weights.w[3] > 0.0 ? 2 : 1;
     const std::size_t corner[3] = {0, second, second + 1};
     const double side = above ? 1.0 : -1.0;
-    const auto blend = [&](const Vec3d(&values)[4]) {
-        return values[0] * weights.w[0] + values[1] * weights.w[1] + values[2] * weights.w[2] +
-               values[3] * weights.w[3];
-    };
-    const Vec3d place = blend(p);
+    const Vec3d place = blend(p, weights.w);
     double curved = 0.0;  // height of the parabola through the corners, doubled
     double lowest = std::numeric_limits<double>::infinity();  // of the corners' tangent planes
     double to_side = lowest;
@@ -36,7 +32,7 @@ Vec4f smooth_rise(const Vec3d (&p)[4], const Vec3d (&normals)[4], const CornerWe
         }
         lowest = std::min(lowest, std::max(side * glm::dot(at - place, normal) + reach, 0.0));
     }
-    const Vec3d rise = blend(normals) * (side * std::max(lowest, 0.5 * side * curved));
+    const Vec3d rise = blend(normals, weights.w) * (side * std::max(lowest, 0.5 * side * curved));
     return {Vec3f(rise), static_cast<float>(to_side)};
 }
 

@@ -12,11 +12,6 @@ namespace {
 
 const Vec3d kUp(0.0, 0.0, 1.0);
 
-template <class T>
-Vec3d blend(const T& at, const std::array<double, 4>& w) {
-    return Vec3d(at[0]) * w[0] + Vec3d(at[1]) * w[1] + Vec3d(at[2]) * w[2] + Vec3d(at[3]) * w[3];
-}
-
 std::array<Vec3d, 4> corners(const SharedGeometry& geometry, const BasePatch& patch,
                              std::span<const Vec3f> points) {
     std::array<Vec3d, 4> at;

@@ -23,6 +23,11 @@ inline std::uint64_t mix_bits(std::uint64_t x) {
     return x ^ (x >> 33);
 }
 
+/// In [0, 1), by the highest of random bits.
+inline float unit_float(std::uint64_t bits) {
+    return static_cast<float>(bits >> 40) * 0x1p-24f;
+}
+
 /// The bits of x and y interleaved: places along Morton's curve, which visits aligned squares
 /// whole.
 inline std::uint32_t morton_index(std::uint32_t x, std::uint32_t y) {

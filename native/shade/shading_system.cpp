@@ -233,21 +233,19 @@ struct ShadingSystem::Impl {
             const bool has_body = below && light->rays()->has_body(grid.key);
             draw_as_diffuse(closure, has_body ? kLeastScattering : HUGE_VALF);
         }
-        const bool has_passes = !channels.empty();
-        ReflectionParts parts;
+        ReflectionParts parts, *asked = channels.empty() ? nullptr : &parts;
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
         LeavingRays leaving;
         leaving.diffuse = grid.gathered.empty();
         leaving.takes_world = bounces && scene.options.bounces.diffuse > 0 && surface.looks_ahead();
-        if (has_passes) parts.resize(points.count);
         if (light)
-            radiance = light->reflect(points, closure, grid.key, has_passes ? &parts : nullptr, at,
-                                      noise, bounces ? &leaving : nullptr);
+            radiance = light->reflect(points, closure, grid.key, asked, at, noise,
+                                      bounces ? &leaving : nullptr);
+        else if (asked)
+            parts.resize(points.count);
         if (bounces && !closure.lobes.empty())
-            doubtful = add_bounces(points, closure, leaving, grid, has_passes ? &parts : nullptr,
-                                   noise, radiance);
-        if (!closure.subsurface.empty())
-            add_scattered(points, closure, at, grid, has_passes ? &parts : nullptr, radiance);
+            doubtful = add_bounces(points, closure, leaving, grid, asked, noise, radiance);
+        if (!closure.subsurface.empty()) add_scattered(points, closure, at, grid, asked, radiance);
         for (std::size_t i = 0; i < closure.emission.size(); ++i)
             radiance[i] += closure.emission[i];
         const std::size_t broken = ran.broken() + make_finite(radiance);
@@ -261,7 +259,7 @@ struct ShadingSystem::Impl {
         }
         interpolate_points(grid, 1, radiance);
         grid.radiance = std::move(radiance);
-        if (has_passes)
+        if (asked)
             fill_channels(grid, channels, scene, camera,
                           {points, closure, parts, ran.run(), surface.passes});
         statistics.add(Counter::PointsShaded, points.count);

@@ -59,6 +59,16 @@ def room(scene):
     return ball
 
 
+def light_stage(scene, energy, grey):
+    """A square lamp on the right of what stands at the origin, a grey sky."""
+    lamp = bpy.data.lights.new("Lamp", "AREA")
+    lamp.energy = energy
+    lamp = scene_parts.add_object(scene, "Lamp", lamp, (3.0, -3.0, 5.0))
+    lamp.rotation_euler = lamp.location.to_track_quat("Z", "Y").to_euler()
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.color = (grey, grey, grey)
+
+
 def look_at_stage(scene, height, target):
     """A camera before it, black around; 64 x 48 pixels."""
     camera = scene_parts.add_camera(scene, (0.0, -5.0, height))

@@ -7,8 +7,13 @@ import bpy
 import numpy as np
 import pytest
 import scene_parts
-from bounced_parts import look_at_stage, render_bounced, worst_block
+from bounced_parts import light_stage, look_at_stage, render_bounced, worst_block
 from node_comparison import Tree
+
+
+def displace_by(material, method):
+    owner = material if hasattr(material, "displacement_method") else material.cycles
+    owner.displacement_method = method
 
 
 def hills(scene, method, vector=False):
@@ -22,9 +27,7 @@ def hills(scene, method, vector=False):
     sheet.rotation_euler = (0.0, 0.0, 0.3) if is_bump else (0.2, -0.1, 0.3)
     sheet.scale = (1.0, 1.0, 1.5)
     tree = Tree(sheet)
-    material = tree.material
-    owner = material if hasattr(material, "displacement_method") else material.cycles
-    owner.displacement_method = method
+    displace_by(tree.material, method)
     place = tree.add("ShaderNodeTexCoord")
     noise = tree.add("ShaderNodeTexNoise")
     noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 3.0, 0.0
@@ -79,8 +82,7 @@ def lit_ball(scene, segments, kind, space, source, target):
     )
     bpy.ops.object.shade_smooth()
     tree = Tree(bpy.context.object)
-    owner = tree.material if hasattr(tree.material, "displacement_method") else tree.material.cycles
-    owner.displacement_method = "DISPLACEMENT"
+    displace_by(tree.material, "DISPLACEMENT")
     noise = tree.add("ShaderNodeTexNoise")
     noise.inputs["Scale"].default_value = 2.0
     displacement = tree.add(kind)
@@ -91,12 +93,7 @@ def lit_ball(scene, segments, kind, space, source, target):
     tree.links.new(displacement.outputs[0], tree.output.inputs["Displacement"])
     matte = tree.add("ShaderNodeBsdfDiffuse")
     tree.links.new(matte.outputs[0], tree.output.inputs["Surface"])
-    lamp = bpy.data.lights.new("Lamp", "AREA")
-    lamp.energy = 400.0
-    lamp = scene_parts.add_object(scene, "Lamp", lamp, (3.0, -3.0, 5.0))
-    lamp.rotation_euler = lamp.location.to_track_quat("Z", "Y").to_euler()
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.color = (0.3, 0.3, 0.3)
+    light_stage(scene, 400.0, 0.3)
     look_at_stage(scene, 3.0, 1.0)
     scene.render.resolution_percentage = 200
     return bpy.context.object
@@ -154,8 +151,7 @@ def test_a_normal_map_bends_what_displacement_has_made(scene, render, method):
     Both, and in Blender 5, Cycles' maps bend the mesh's own."""
     lit_ball(scene, 128, "ShaderNodeDisplacement", "OBJECT", "Fac", "Height")
     material = bpy.context.object.active_material
-    owner = material if hasattr(material, "displacement_method") else material.cycles
-    owner.displacement_method = method
+    displace_by(material, method)
     nodes, links = material.node_tree.nodes, material.node_tree.links
     bent = nodes.new("ShaderNodeNormalMap")
     bent.inputs["Color"].default_value = (0.5, 0.5, 1.0, 1.0)

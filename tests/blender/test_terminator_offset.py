@@ -7,16 +7,7 @@ import math
 import bpy
 import pytest
 import scene_parts
-from bounced_parts import look_at_stage, render_bounced, surface, worst_block
-
-
-def lamp_and_world(scene):
-    lamp = bpy.data.lights.new("Lamp", "AREA")
-    lamp.energy = 500.0
-    lamp = scene_parts.add_object(scene, "Lamp", lamp, (3.0, -3.0, 5.0))
-    lamp.rotation_euler = lamp.location.to_track_quat("Z", "Y").to_euler()
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.color = (0.1, 0.1, 0.1)
+from bounced_parts import light_stage, look_at_stage, render_bounced, surface, worst_block
 
 
 def cube(scene, shader, color=(0.8, 0.8, 0.8), **inputs):
@@ -24,7 +15,7 @@ def cube(scene, shader, color=(0.8, 0.8, 0.8), **inputs):
     bpy.ops.mesh.primitive_cube_add(size=1.5, location=(0.0, 0.0, 1.0), rotation=(0.0, 0.0, 0.5))
     bpy.ops.object.shade_smooth()
     surface(bpy.context.object, shader, color, **inputs)
-    lamp_and_world(scene)
+    light_stage(scene, 500.0, 0.1)
 
 
 def check(scene, render, limit, worst, mean=0.005):
@@ -58,7 +49,7 @@ def test_a_mirror_shows_normals_that_uneven_scale_bends(scene, render):
     thing = bpy.context.object
     thing.scale = (0.4, 1.3, 0.8)
     surface(thing, "ShaderNodeBsdfDiffuse", (0.8, 0.8, 0.8))
-    lamp_and_world(scene)
+    light_stage(scene, 500.0, 0.1)
     show_in_mirror(scene, thing)
     check(scene, render, limit=1, worst=0.08)
 

@@ -92,7 +92,7 @@ class BouncedLight::Wave {
         const auto at = static_cast<std::uint64_t>(path.depth) << 48 |
                         static_cast<std::uint64_t>(path.passed) << 32 | path.next.place;
         const std::uint64_t salt = mix_bits(m_light.m_scene.options.seed + of);
-        return static_cast<float>(mix_bits(mix_bits(at) + salt) >> 40) * 0x1p-24f;
+        return unit_float(mix_bits(mix_bits(at) + salt));
     }
 
     /// Keeps the way for the next wave, unless it may go no further.

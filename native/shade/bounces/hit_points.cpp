@@ -58,8 +58,7 @@ bool HitPoints::fill_smooth(std::size_t i, const MetPath& met) {
     }
     const CornerWeights weights(met.hit->patch->kind, met.hit->uv);
     m_points.rise[i] = smooth_rise(face.p, face.normal, weights, !m_points.backfacing[i]);
-    Vec3d normal(0.0);
-    for (int k = 0; k < 4; ++k) normal += weights.w[k] * face.normal[k];
+    const Vec3d normal = blend(face.normal, weights.w);
     const float side = m_points.backfacing[i] ? -1.0f : 1.0f;
     m_points.normal[i] = side * Vec3f(normalize_or(normal, Vec3d(met.hit->normal)));
     return true;

@@ -34,11 +34,6 @@ bool is_sure(const BouncedPath& path, const LobeRay& way, float all) {
     return is_sharp(way.ray.type) && is_sure(path, way.weight, all);
 }
 
-/// In [0, 1), of random bits.
-float uniform(std::uint64_t bits) {
-    return static_cast<float>(mix_bits(bits) >> 40) * 0x1p-24f;
-}
-
 }  // namespace
 
 void choose_ways(const BouncedPath& path, std::span<const LobeRay> ways, const Vec3f& through,
@@ -93,7 +88,7 @@ void thin_out(std::vector<LobeRay>& ways, std::uint32_t seed) {
             const float part = largest(way->weight) / most;
             if (is_thinned(*way) && part < 1.0f) {
                 bits = mix_bits(bits);
-                if (!(uniform(bits) < part)) continue;
+                if (!(unit_float(mix_bits(bits)) < part)) continue;
                 way->weight /= part;
             }
             *kept++ = *way;

@@ -40,9 +40,11 @@ void PointBsdf::prepare_microfacets(Prepared& lobe, float roughness) const {
 
 void PointBsdf::compensate(Prepared& lobe, float made, const GgxAlbedo& albedo) const {
     if (lobe.sharp) return;
-    lobe.directional_albedo = albedo.directional(std::sqrt(lobe.alpha), lobe.cos_wi);
+    const float roughness = std::sqrt(lobe.alpha);
+    lobe.directional_albedo = albedo.directional(roughness, lobe.cos_wi);
     // Kulla and Conty 2017: scale by 1 / E, then darken by what Fresnel takes at each extra bounce.
-    const float e = albedo.directional(made, lobe.cos_wi);
+    const float e =
+        made == roughness ? lobe.directional_albedo : albedo.directional(made, lobe.cos_wi);
     const float e_mean = albedo.average(made);
     const float missing = (1.0f - e) / e;
     Vec3f fss = lobe.f0;

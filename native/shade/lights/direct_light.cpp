@@ -329,8 +329,11 @@ void DirectLight::lift(ShadingPoints& points, const GridKey& key) const {
     if (!points.edges) return;
     // Rays that look for surfaces start beside the border: a step along the tangent, which leads
     // below what is hollow.
-    std::vector<Vec3f> beside(points.count);
-    for (std::size_t i = 0; i < points.count; ++i) beside[i] = points.p[i] + inwards(points, i);
+    std::vector<Vec3f> beside(points.count, Vec3f(NAN));  // as yet none: not traced
+    for (std::size_t i = 0; i < points.count; ++i) {
+        const Vec3f step = inwards(points, i);
+        if (step != Vec3f(0.0f)) beside[i] = points.p[i] + step;
+    }
     clear(beside);
 }
 

@@ -79,7 +79,7 @@ struct LitGrid {
     /// In [0, 1), of a place in a lobe's sequence.
     float chance(std::uint32_t place, std::size_t lobe) const {
         const std::uint64_t at = static_cast<std::uint64_t>(lobe) << 32 | place;
-        return static_cast<float>(mix_bits(mix_bits(at) + seed) >> 40) * 0x1p-24f;
+        return unit_float(mix_bits(mix_bits(at) + seed));
     }
     /// Light of a lamp: `value` reflected without shadow.
     void add_lamp(std::size_t point, const BsdfValue& value, const Vec3f& shadow) {

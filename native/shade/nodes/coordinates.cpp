@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/random_per_island.h"
+#include "math/normalize_or.h"
 #include "shade/nodes/anisotropy.h"
 #include "shade/nodes/instance_value.h"
 #include "shade/nodes/lamp_coordinates.h"
@@ -14,11 +15,6 @@
 namespace granita {
 
 namespace {
-
-Vec3f unit(const Vec3f& v) {
-    const float length = glm::length(v);
-    return length > 0.0f ? v / length : v;
-}
 
 /// The camera of the frame as a lambda may hold it.
 struct FrameCamera {
@@ -72,7 +68,7 @@ VectorSource object_normal(NodeBuilder& b) {
     if (b.is_world())
         return b.map<Vec3f>([](const Vec3f& d) { return -d; }, position_at(b, Shift::None));
     return b.geometry<Vec3f>([](const ShadingInput& in, std::size_t i) {
-        return unit(glm::transpose(in.axes_at(i).world_from_object) * in.points->normal[i]);
+        return in.axes_at(i).object_normal_of(in.points->normal[i]);
     });
 }
 
@@ -171,7 +167,8 @@ void build_camera_data(NodeBuilder& b) {
     const VectorSource p =
         b.map<Vec3f>([camera](const Vec3f& q) { return camera.camera_from_world * q; },
                      position_at(b, b.shift()));
-    b.output_vector("View Vector", b.map<Vec3f>(unit, p));
+    b.output_vector("View Vector",
+                    b.map<Vec3f>([](const Vec3f& q) { return normalize_or(q, q); }, p));
     b.output("View Z Depth", b.map<float>([](const Vec3f& q) { return q.z; }, p));
     b.output("View Distance", b.map<float>([](const Vec3f& q) { return glm::length(q); }, p));
 }

@@ -9,11 +9,6 @@
 namespace granita {
 namespace {
 
-/// A world normal in object space, unit.
-Vec3f object_normal_of(const ObjectAxes& axes, const Vec3f& normal) {
-    return normalize_or(glm::transpose(axes.world_from_object) * normal, normal);
-}
-
 /// UV maps' tangents at the corners of polygons, as a Normal Map reads them; where there are none,
 /// along growing u of the map, or of the surface.
 struct TangentSources {
@@ -60,7 +55,7 @@ void build_displacement(NodeBuilder& b) {
                 const float amount = (heights[i] - levels[i]) * scales[i];
                 const ObjectAxes& axes = run.input().axes_at(i);
                 result[i] = in_object ? axes.world_from_object *
-                                            (amount * object_normal_of(axes, normals[i]))
+                                            (amount * axes.object_normal_of(normals[i]))
                                       : amount * normals[i];
             }
         },
@@ -94,7 +89,7 @@ void build_vector_displacement(NodeBuilder& b) {
                 Vec3f way = (vectors[i] - levels[i]) * scales[i];
                 const ObjectAxes& axes = run.input().axes_at(i);
                 if (tangent) {
-                    const Vec3f n = object_normal_of(axes, points.normal[i]);
+                    const Vec3f n = axes.object_normal_of(points.normal[i]);
                     const Tangents t =
                         tangents(axes, n, corners[i], signs[i], points.dp_du[i], points.dp_dv[i],
                                  Vec2f(us[i] - uvs[i]), Vec2f(vs[i] - uvs[i]));

@@ -72,10 +72,9 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
                 TangentFrame frame;
                 if (has_tangent) {
                     const ObjectAxes& axes = run.input().axes_at(i);
-                    const Vec3f smooth =
-                        is_moved && (!takes_modelled || !(strengths[i] > 0.0f))
-                            ? normalize_or(glm::transpose(axes.world_from_object) * normal, normal)
-                            : corner_normals[i];
+                    const Vec3f smooth = is_moved && (!takes_modelled || !(strengths[i] > 0.0f))
+                                             ? axes.object_normal_of(normal)
+                                             : corner_normals[i];
                     const Vec3f up = has_unit_normals ? normalize_or(smooth, smooth) : smooth;
                     frame = {up, tangents[i], signs[i] * glm::cross(up, tangents[i]), true};
                 } else {

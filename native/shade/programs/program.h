@@ -18,6 +18,7 @@
 #include "base/progress.h"
 #include "dice/grid.h"
 #include "geometry/attribute_request.h"
+#include "math/normalize_or.h"
 #include "scene/scene.h"
 #include "shade/bsdf/lobe.h"
 #include "shade/lights/light_pattern.h"
@@ -40,6 +41,10 @@ struct ObjectAxes {
         : world_from_object(Mat3d(from_object)),
           object_from_world(glm::inverse(Mat3d(from_object))) {}
     Mat3f world_normal_from_object() const { return glm::transpose(object_from_world); }
+    /// A world normal in object space, unit.
+    Vec3f object_normal_of(const Vec3f& normal) const {
+        return normalize_or(glm::transpose(world_from_object) * normal, normal);
+    }
 };
 
 /// What a program runs over.

@@ -74,7 +74,7 @@ Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& r
 
 /// Called for hits on geometry that may let light through, not exist or not be in the light's set:
 /// goes on while light is left. Without spatial splits (medium quality) Embree meets a triangle
-/// once.
+/// once.  Spheres of points are met from outside alone.
 void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) {
     auto* context = reinterpret_cast<ShadowContext*>(arguments->context);
     const auto* scene = static_cast<const Impl*>(context->scene);
@@ -85,7 +85,7 @@ void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) 
         const Ray& ray = context->rays[RTCRayN_id(arguments->ray, arguments->N, i)];
         const RayTarget met{id, RTCHitN_geomID(arguments->hit, arguments->N, i),
                             RTCHitN_primID(arguments->hit, arguments->N, i)};
-        if (met == ray.target)
+        if (met == ray.target || (instance.of_points && leaves(arguments, i)))
             arguments->valid[i] = 0;
         else if (context->looked_at != nullptr && !instance.is_plain)
             context->looked_at[RTCRayN_id(arguments->ray, arguments->N, i)] = true;
@@ -120,10 +120,10 @@ void RayScene::Impl::skip_absent(const RTCFilterFunctionNArguments* arguments) {
     const auto* scene = static_cast<const Impl*>(context.scene);
     if (context.crossings) return scene->note_crossing(arguments);
     const Ray& ray = context.rays[reinterpret_cast<const RTCRay*>(arguments->ray)->id];
-    const Instance& met = scene->scene.instances[scene->instances[id].index];
-    const bool of_points = scene->scene.geometry_of(met).kind == GeometryKind::Points;
+    const RayInstance& instance = scene->instances[id];
+    const Instance& met = scene->scene.instances[instance.index];
     const bool is_there = meets(ray.type, met) && met.lifespan.contains(ray.time);
-    if (!is_there || (of_points && leaves(arguments, 0))) arguments->valid[0] = 0;
+    if (!is_there || (instance.of_points && leaves(arguments, 0))) arguments->valid[0] = 0;
 }
 
 RayScene::~RayScene() = default;

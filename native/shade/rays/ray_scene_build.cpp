@@ -12,7 +12,6 @@
 #include "shade/rays/ray_subdivision.h"
 #include "shade/rays/ray_transforms.h"
 #include "shade/rays/ray_visibility.h"
-#include "shade/rays/sphere_fronts.h"
 
 namespace granita {
 namespace {
@@ -137,8 +136,7 @@ void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
     const bool of_points = made.key.data->kind == GeometryKind::Points;
     const bool looks_at_shadows = made.key.use & ~(kCasts | kIsShaded);
     const bool looks_at_met = made.key.use & (kAppears | kIsHidden | kBounds);
-    if (of_points) filters.occluded = looks_at_shadows ? meet_fronts<pass_through> : meet_fronts<>;
-    if (!of_points && looks_at_shadows) filters.occluded = pass_through;
+    if (of_points || looks_at_shadows) filters.occluded = pass_through;
     if (of_points || looks_at_met) filters.intersected = skip_absent;
     build_shape(made, kept->device(), filters, progress);
 }
@@ -170,8 +168,14 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     const bool passes = lets_light_through(instance);
     const bool is_plain =
         meets_all(instance) && !passes && instance.lifespan.is_whole() && instance.blocks == ~0ULL;
-    RayInstance& added = instances.emplace_back(RayInstance{
-        index, transforms->scale, transforms->distance, passes, is_plain, constant_of(instance)});
+    RayInstance& added = instances.emplace_back();
+    added.index = index;
+    added.scale = transforms->scale;
+    added.distance = transforms->distance;
+    added.lets_light_through = passes;
+    added.of_points = kept_shape.key.data->kind == GeometryKind::Points;
+    added.is_plain = is_plain;
+    added.constant = constant_of(instance);
     const bool is_asked = added.lets_light_through || scene.options.bounces.most > 0 ||
                           materials.meets_itself(instance);
     if (is_asked && instance.world_from_object.size() <= 1)

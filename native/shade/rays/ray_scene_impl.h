@@ -23,6 +23,7 @@ struct RayInstance {
     float scale = 1.0f;       ///< largest stretch of the transform at any knot
     float distance = 0.0f;    ///< of its origin at any knot from that of shading space, metres
     bool lets_light_through = false;
+    bool of_points = false;
     bool is_plain = false;  ///< hides, everywhere and throughout, and casts shadows of all lights
     /// What passes, where it is the same all over.
     std::optional<Vec3f> constant = {};

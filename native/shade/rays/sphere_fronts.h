@@ -10,6 +10,7 @@
 
 namespace granita {
 
+/// Whether the ray goes out where it hits.
 inline bool leaves(const RTCFilterFunctionNArguments* arguments, unsigned i) {
     const unsigned n = arguments->N;
     const Vec3f across(RTCHitN_Ng_x(arguments->hit, n, i), RTCHitN_Ng_y(arguments->hit, n, i),
@@ -17,18 +18,6 @@ inline bool leaves(const RTCFilterFunctionNArguments* arguments, unsigned i) {
     const Vec3f along(RTCRayN_dir_x(arguments->ray, n, i), RTCRayN_dir_y(arguments->ray, n, i),
                       RTCRayN_dir_z(arguments->ray, n, i));
     return glm::dot(across, along) > 0.0f;
-}
-
-/// `then`: what else looks at a hit.
-template <RTCFilterFunctionN then = nullptr>
-void meet_fronts(const RTCFilterFunctionNArguments* arguments) {
-    bool any = false;
-    for (unsigned i = 0; i < arguments->N; ++i) {
-        if (arguments->valid[i] == -1 && leaves(arguments, i)) arguments->valid[i] = 0;
-        any |= arguments->valid[i] == -1;
-    }
-    if constexpr (then != nullptr)
-        if (any) then(arguments);
 }
 
 }  // namespace granita

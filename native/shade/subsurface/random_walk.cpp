@@ -19,7 +19,7 @@ class Numbers {
     /// In [0, 1).
     float next() {
         m_state += 0x9e3779b97f4a7c15ULL;
-        return static_cast<float>(mix_bits(m_state) >> 40) * 0x1p-24f;
+        return unit_float(mix_bits(m_state));
     }
 
   private:

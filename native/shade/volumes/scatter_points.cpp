@@ -16,7 +16,7 @@ constexpr std::uint32_t kDepths = ShadingPoints::kDepths;
 Vec4f scatter_numbers(std::uint32_t seed, std::uint32_t depth, std::uint32_t place_in_sequence) {
     const std::uint64_t own = mix_bits(seed + (std::uint64_t{kDepths + depth} << 32));
     const SobolPoints points = SobolPoints(own).shuffled(own);
-    const auto last = static_cast<float>(mix_bits(own + place_in_sequence) >> 40) * 0x1p-24f;
+    const float last = unit_float(mix_bits(own + place_in_sequence));
     return {points(place_in_sequence), points.third(place_in_sequence), last};
 }
 

@@ -22,7 +22,7 @@ float shift_of(const Ray& ray) {
     for (int axis = 0; axis < 3; ++axis)
         bits = mix_bits(bits ^ std::bit_cast<std::uint32_t>(ray.start[axis]) ^
                         std::uint64_t{std::bit_cast<std::uint32_t>(ray.direction[axis])} << 32);
-    return static_cast<float>(bits >> 40) * 0x1p-24f;
+    return unit_float(bits);
 }
 
 /// Of a thing's mean extent.
