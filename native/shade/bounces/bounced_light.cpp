@@ -41,6 +41,7 @@ class BouncedLight::Wave {
             path.next = ray;
             path.diffuse_part = ray.diffuse;
             path.transmitted = ray.transmitted;
+            path.width = ray.width;
             path.spread = ray.spread;
             path.least_pdf = ray.pdf;
             path.sure_part = std::min(1.0f, largest(ray.weight));

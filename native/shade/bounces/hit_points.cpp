@@ -3,11 +3,22 @@
 
 #include <algorithm>
 
+#include "geometry/curve_section.h"
 #include "geometry/smooth_rise.h"
 #include "geometry/surface_frames.h"
 #include "math/normalize_or.h"
 
 namespace granita {
+
+namespace {
+
+/// What was scattered in media starts as a line, in which no bump would show.
+float beam_width(const MetPath& met) {
+    constexpr float kLeast = 1e-4f;  // of the way
+    return std::max(met.width, kLeast * met.hit->distance);
+}
+
+}  // namespace
 
 void HitPoints::resize(std::size_t n, const std::vector<AttributeRequest>& requests) {
     ShadingPoints& p = m_points;
@@ -25,6 +36,7 @@ void HitPoints::resize(std::size_t n, const std::vector<AttributeRequest>& reque
 void HitPoints::fill_mesh(std::size_t i, const MetPath& met, bool displaced,
                           const std::vector<AttributeRequest>& requests) {
     static thread_local SurfaceFrames surface;
+    const float width = beam_width(met);
     const RayHit& hit = *met.hit;
     const RayFrame& frame = *met.frame;
     const std::span<const Vec2d> uv(&hit.uv, 1);
@@ -36,8 +48,7 @@ void HitPoints::fill_mesh(std::size_t i, const MetPath& met, bool displaced,
     const auto step = [&](const Vec3d& derivative, Vec3f& out) {
         const Vec3f along = frame.world_from_object * Vec3f(derivative);
         const float length = glm::length(along);
-        const float steps =
-            length > met.width ? met.width / length : 1.0f;  // no further than the patch
+        const float steps = length > width ? width / length : 1.0f;  // no further than the patch
         out = along * steps;
         return steps;
     };
@@ -64,6 +75,31 @@ bool HitPoints::fill_smooth(std::size_t i, const MetPath& met) {
     return true;
 }
 
+/// As CurveBatch::shade_row(), facing the ray.
+void HitPoints::fill_ribbon(std::size_t i, const MetPath& met) {
+    const RayHit& hit = *met.hit;
+    const Mat3d world_from_object(met.frame->world_from_object);
+    const Vec3d direction(hit.direction);
+    const CurveSection at = curve_section(*hit.elements, hit.place, met.time);
+    const Vec3d flat = glm::cross(Mat3d(met.frame->object_from_world) * direction, at.along);
+    const Vec3d edge = world_from_object * (normalize_or(flat, Vec3d(0.0)) * at.radius);
+    const Vec3d along = world_from_object * at.along;
+    const double radius = glm::length(edge), length = glm::length(along);
+    if (!(radius > 0.0 && length > 0.0)) return;  // seen along, or nothing: as it is
+    const Vec3d side = edge / radius;
+    Vec3d front = normalize_or(glm::cross(along, side), -direction);
+    if (glm::dot(front, direction) > 0.0) front = -front;
+    const double sine = std::clamp(hit.uv.y, -1.0, 1.0);
+    const Vec3d normal = side * sine + front * std::sqrt(1.0 - sine * sine);
+    m_points.normal[i] = Vec3f(normal);
+    m_points.geometric_normal[i] = Vec3f(front);
+    constexpr double kDrawnIn = 0.57735;
+    m_points.ray_offset[i] = Vec3f(normal * (radius * kDrawnIn) - edge * sine);
+    const double width = beam_width(met);
+    m_points.dp_du[i] = Vec3f(along * std::min(width / length, 1.0));
+    m_points.dp_dv[i] = Vec3f(side * std::min(width, 2.0 * radius));
+}
+
 void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRequest>& requests,
                      std::uint32_t depth) {
     resize(met.size(), requests);
@@ -72,6 +108,8 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
     m_points.depth = depth;
     m_points.share = 1.0f / static_cast<float>(std::max(m_scene.options.light_samples, 1));
     if (!first.elements) m_points.faces.resize(met.size());
+    m_points.round = first.elements && first.elements->data().kind == GeometryKind::Curves;
+    if (m_points.round) m_points.ray_offset.assign(met.size(), Vec3f(0.0f));
     const bool displaced = m_rays.is_displaced({instance.key});
     m_points.terminator_offset = instance.terminator_offset;
     if (!first.elements && !displaced) m_points.rise.assign(met.size(), Vec4f(0.0f));
@@ -107,6 +145,7 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
         }
         if (hit.elements) {
             m_attributes.fill(i, hit, requests);
+            if (m_points.round) fill_ribbon(i, met[i]);
             continue;
         }
         m_points.faces[i] = hit.patch->face;

@@ -54,6 +54,7 @@ class HitPoints {
     void fill_mesh(std::size_t i, const MetPath& met, bool displaced,
                    const std::vector<AttributeRequest>& requests);
     bool fill_smooth(std::size_t i, const MetPath& met);
+    void fill_ribbon(std::size_t i, const MetPath& met);
 
     const Scene& m_scene;
     const RayScene& m_rays;

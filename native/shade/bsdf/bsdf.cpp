@@ -89,12 +89,12 @@ Vec3f PointBsdf::passed(const Prepared& lobe, float cos_half) const {
                                              : fresnel(lobe, cos_half);
 }
 
-BsdfValue PointBsdf::evaluate(const Vec3f& wo) const {
+BsdfValue PointBsdf::evaluate(const Vec3f& wo, bool is_drawn) const {
     BsdfValue value;
     for (const Prepared& lobe : m_lobes) {
         if (lobe.sharp) continue;
         if (lobe.shape)
-            value.part(part_of(lobe.kind)) += evaluate_shape(lobe, wo);
+            value.part(part_of(lobe.kind)) += evaluate_shape(lobe, wo, is_drawn);
         else if (lobe.kind == LobeKind::Diffuse)
             value.diffuse += evaluate_diffuse(lobe, wo);
         else if (lobe.kind == LobeKind::Refraction)
@@ -105,8 +105,9 @@ BsdfValue PointBsdf::evaluate(const Vec3f& wo) const {
     return value;
 }
 
-Vec3f PointBsdf::evaluate_shape(const Prepared& lobe, const Vec3f& wo) const {
-    const Vec3f value = lobe.weight * lobe.shape->evaluate(wo);
+Vec3f PointBsdf::evaluate_shape(const Prepared& lobe, const Vec3f& wo, bool is_drawn) const {
+    const LobeShape& shape = *lobe.shape;
+    const Vec3f value = lobe.weight * (is_drawn ? shape.evaluate_drawn(wo) : shape.evaluate(wo));
     if (value == Vec3f(0.0f) || part_of(lobe.kind) != LightPart::Diffuse) return value;
     return value * unshadowed(lobe, wo);
 }
@@ -142,6 +143,14 @@ float PointBsdf::pdf(std::size_t index, const Vec3f& wo) const {
     const float cos_o = glm::dot(lobe.normal, wo);
     if (cos_o <= 0.0f) return 0.0f;
     return lobe.kind == LobeKind::Diffuse ? cos_o * kInversePi : pdf_glossy(lobe, wo);
+}
+
+/// Hair mirrors light, and lets it through (Cycles counts the latter as transmission).
+LightPart PointBsdf::counted_as(std::size_t index, const Vec3f& wo, float uniform) const {
+    const Prepared& lobe = m_lobes[index];
+    const bool is_either = lobe.kind == LobeKind::PrincipledHair;
+    return is_either && uniform >= lobe.shape->mirrored_part(wo) ? LightPart::Transmission
+                                                                 : part_of(lobe.kind);
 }
 
 bool PointBsdf::sample(std::size_t index, const Vec2f& u, Vec3f& wo) const {

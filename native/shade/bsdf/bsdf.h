@@ -77,9 +77,12 @@ class PointBsdf {
     /// Bounds of the lobes that are not sharp.
     void reaches(std::vector<LobeReach>& out) const;
     /// Sum over all lobes that are not sharp.
-    BsdfValue evaluate(const Vec3f& wo) const;
+    /// `is_drawn`: by sample(), which knows of directions that lamps are not asked for.
+    BsdfValue evaluate(const Vec3f& wo, bool is_drawn = false) const;
     /// Density of sample(), per solid angle; 0 for sharp lobes.
     float pdf(std::size_t lobe, const Vec3f& wo) const;
+    /// What a sample of the lobe along `wo` counts as, by a number in [0, 1).
+    LightPart counted_as(std::size_t lobe, const Vec3f& wo, float uniform) const;
     /// False when the sampled direction leaves on the wrong side of the surface.
     bool sample(std::size_t lobe, const Vec2f& u, Vec3f& wo) const;
     /// Sharp lobes: the mirrored or refracted direction, and the share of the light there that
@@ -145,7 +148,7 @@ class PointBsdf {
     Vec3f evaluate_refraction(const Prepared& lobe, const Vec3f& wo) const;
     float pdf_refraction(const Prepared& lobe, const Vec3f& wo) const;
     void reach_refraction(const Prepared& lobe, LobeReach& reach) const;  // lobe_reach.cpp
-    Vec3f evaluate_shape(const Prepared& lobe, const Vec3f& wo) const;
+    Vec3f evaluate_shape(const Prepared& lobe, const Vec3f& wo, bool is_drawn) const;
     /// Share of the light that facets send the lobe's way.
     Vec3f passed(const Prepared& lobe, float cos_half) const;
     /// As sample(), through the surface too.

@@ -33,17 +33,15 @@ class HairLobe : public LobeShape {
         m_around = 2.0f * std::atan(kHalfPi / m_radial);
     }
 
-    Vec3f evaluate(const Vec3f& wo) const override { return Vec3f(pdf(wo)); }
+    /// Lamps are asked for one side alone, as in Cycles, whose own directions go to all.
+    Vec3f evaluate(const Vec3f& wo) const override {
+        const bool is_behind = glm::dot(m_normal, wo) < 0.0f;
+        const bool is_beyond = !m_through && glm::dot(m_y, wo) < 0.0f;
+        return Vec3f(is_behind != m_through || is_beyond ? 0.0f : density(wo));
+    }
+    Vec3f evaluate_drawn(const Vec3f& wo) const override { return Vec3f(pdf(wo)); }
     float pdf(const Vec3f& wo) const override {
-        if ((glm::dot(m_normal, wo) < 0.0f) != m_through) return 0.0f;
-        const float sine = std::clamp(glm::dot(m_x, wo), -1.0f, 1.0f), theta = std::asin(sine);
-        if (kHalfPi - std::abs(theta) < kLeastFromAxis) return 0.0f;
-        const float cos_phi =
-            std::clamp(glm::dot(glm::normalize(wo - sine * m_x), m_y), -1.0f, 1.0f);
-        const float t = 0.5f * (theta + m_theta) - m_offset;
-        const float of_theta =
-            m_roughness / (2.0f * (t * t + m_roughness * m_roughness) * m_width * std::cos(theta));
-        return of_theta * of_azimuth(std::acos(cos_phi));
+        return m_through && glm::dot(m_y, wo) > 0.0f ? 0.0f : density(wo);
     }
     bool sample(const Vec2f& u, Vec3f& wo) const override {
         const float t = m_roughness * std::tan(u.x * m_width + m_first);
@@ -60,11 +58,18 @@ class HairLobe : public LobeShape {
     }
 
   private:
+    float density(const Vec3f& wo) const {
+        const float sine = std::clamp(glm::dot(m_x, wo), -1.0f, 1.0f), theta = std::asin(sine);
+        if (kHalfPi - std::abs(theta) < kLeastFromAxis) return 0.0f;
+        const float cos_phi =
+            std::clamp(glm::dot(glm::normalize(wo - sine * m_x), m_y), -1.0f, 1.0f);
+        const float t = 0.5f * (theta + m_theta) - m_offset;
+        const float of_theta =
+            m_roughness / (2.0f * (t * t + m_roughness * m_roughness) * m_width * std::cos(theta));
+        return of_theta * of_azimuth(std::acos(cos_phi));
+    }
     float of_azimuth(float phi) const {
-        if (!m_through)
-            return phi > kHalfPi
-                       ? 0.0f
-                       : 0.25f * std::cos(0.5f * std::min(phi / m_radial, kPi)) / m_radial;
+        if (!m_through) return 0.25f * std::cos(0.5f * std::min(phi / m_radial, kPi)) / m_radial;
         const float behind = kPi - phi;
         return m_radial / (m_around * (behind * behind + m_radial * m_radial));
     }

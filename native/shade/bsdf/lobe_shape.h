@@ -21,13 +21,17 @@ struct LobeView {
 class LobeShape {
   public:
     virtual ~LobeShape() = default;
-    /// BSDF times cosine, of weight 1.
+    /// BSDF times cosine, of weight 1, for light that is known to come from there.
     virtual Vec3f evaluate(const Vec3f& wo) const = 0;
+    /// Where sample() found the direction.
+    virtual Vec3f evaluate_drawn(const Vec3f& wo) const { return evaluate(wo); }
     virtual float pdf(const Vec3f& wo) const = 0;
     /// False when the direction leaves on the wrong side of the lobe's normal.
     virtual bool sample(const Vec2f& u, Vec3f& wo) const = 0;
     /// Share of white light from all sides that leaves along the view, roughly.
     virtual Vec3f albedo() const { return Vec3f(1.0f); }
+    /// Of what is drawn along `wo` the part that is mirrored at once; the rest came through.
+    virtual float mirrored_part(const Vec3f&) const { return 1.0f; }
     /// Of evaluate() over the cosine, roughly.
     virtual float peak() const { return kInversePi; }
 };

@@ -130,6 +130,10 @@ class PrincipledHair : public LobeShape {
         return true;
     }
     Vec3f albedo() const override { return m_albedo; }
+    float mirrored_part(const Vec3f& wo) const override {
+        const float all = pdf(wo);
+        return all > 0.0f ? sum_of<float>(wo, &Crossing::shares, 1) / all : 1.0f;
+    }
     float peak() const override {
         return 1.0f / (2.0f * kPi * std::sqrt(2.0f * kPi * m_variance[1]));
     }
@@ -213,9 +217,10 @@ class PrincipledHair : public LobeShape {
         return {std::abs(inclination.x * angle.x - inclination.y * s),
                 inclination.y * angle.x + inclination.x * s};
     }
-    /// Densities of all ways through the hair, by `factors` of these.
+    /// Densities of the first `count` ways through the hair, by `factors` of these.
     template <class T>
-    T sum_of(const Vec3f& wo, std::array<T, kPaths> Crossing::*factors) const {
+    T sum_of(const Vec3f& wo, std::array<T, kPaths> Crossing::*factors,
+             std::size_t count = kPaths) const {
         const float sine = std::clamp(glm::dot(wo, m_x), -1.0f, 1.0f), cosine = cosine_of(sine);
         const float phi = std::atan2(glm::dot(wo, m_z), glm::dot(wo, m_y)) - m_phi_o;
         std::array<T, kPaths> around{};
@@ -228,7 +233,7 @@ class PrincipledHair : public LobeShape {
             around[kPaths - 1] += factor[kPaths - 1] * (crossing.weight * 0.5f * kInversePi);
         }
         T sum(0.0f);
-        for (std::size_t p = 0; p < kPaths; ++p) {
+        for (std::size_t p = 0; p < count; ++p) {
             const Vec2f light = tilted({cosine, sine}, m_light_tilt[p], -1.0f);
             sum += around[p] *
                    longitudinal(light.y, light.x, m_cones[p].y, m_cones[p].x, m_variance[p]);

@@ -137,7 +137,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         const auto index = static_cast<std::uint32_t>(s);
         Vec3f wo;
         if (!point.bsdf.sample(lobe, sequence(index), wo)) continue;
-        const BsdfValue value = point.bsdf.evaluate(wo);
+        const BsdfValue value = point.bsdf.evaluate(wo, true);
         if (total(value) == Vec3f(0.0f)) continue;
         const RayType type = grid.blurred_rays(point.is_through(wo)).of(point.bsdf.part(lobe));
         const LitPlace place = set.place_at(point, sequence.third(index));
@@ -147,7 +147,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             ray.type = type;
             if (grid.leaving->diffuse) {
                 const float chance = grid.chance(samples.first + index, point.bsdf.index(lobe));
-                const LightPart part = point.bsdf.part(point.counted_as(lobe, wo, chance));
+                const LightPart part = point.counted_as(lobe, wo, chance);
                 ray.type = grid.blurred_rays(point.is_through(wo)).of(part);
             }
             BsdfValue sent = value;
@@ -383,7 +383,6 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         const float time = timed ? points.times[i] : m_impl->scene.options.frame_time;
         const LitPlace at_frame{time, p, normal, start};
         const Vec2f exposed = timed ? Vec2f(m_impl->set.shutter.uniform(time)) : life_exposed;
-        const bool through_tube = points.round && bsdf.transmits();
         int count = sample_count;
         std::uint32_t place = place_in_sequence(points, i);
         if (!points.shares.empty() && points.shares[i] != 1.0f) {
@@ -405,7 +404,8 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
                        points.seen_times.empty() ? std::span<const float>() : points.seen_times[i],
                        points.rise.empty() ? nullptr : &points.rise[i],
                        points.terminator_offset,
-                       through_tube,
+                       width_of(points, i),
+                       points.round,
                        {}});
         lit.back().share_samples();
     }

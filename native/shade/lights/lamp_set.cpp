@@ -110,9 +110,9 @@ Ray LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& dire
     // face itself.
     const bool below = transmits && glm::dot(point.bsdf.surface_normal(), direction) < 0.0f;
     const LitPlace& from = turned_away ? point.at_frame : place;
-    if (point.through_tube)
-        return {from.start_around(point.bsdf.surface_normal(), direction), direction, distance,
-                from.time, blocker_set};
+    const Vec3f& outward = point.bsdf.surface_normal();
+    if (point.round && (transmits || glm::dot(outward, direction) < 0.0f))
+        return {from.start_around(outward, direction), direction, distance, from.time, blocker_set};
     return {below ? from.start_below() : from.start, direction, distance, from.time, blocker_set};
 }
 

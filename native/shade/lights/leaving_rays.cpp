@@ -20,14 +20,21 @@ Vec3f inwards(const ShadingPoints& points, std::size_t i) {
            towards(row, points.count / points.columns - 1) * points.dp_dv[i];
 }
 
+float width_of(const ShadingPoints& points, std::size_t i) {
+    return std::max(glm::length(points.dp_du[i]), glm::length(points.dp_dv[i]));
+}
+
 void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& ray,
            const BsdfValue& value, float pdf, std::uint32_t place, const WorldAhead& world) {
     const Vec3f weight = total(value);
     if (weight == Vec3f(0.0f) || !is_finite(weight)) return;
-    // A sample's part of the hemisphere, for rays that diffuse lobes send.
+    // A sample's part of the hemisphere, for rays that diffuse lobes send; else what a point of the
+    // picture is seen in: bumps and textures in mirrors are as fine as those beside them.
+    const float distance = glm::length(point.at_frame.p);
+    const float seen = grid.depth == 0 && distance > 0.0f ? point.width / distance : 0.0f;
     const float spread = is_diffuse(ray.type)
                              ? std::sqrt(2.0f * kPi / static_cast<float>(point.sample_count))
-                             : 0.0f;
+                             : seen;
     const int mirrored = set.varies ? point.sample_count : 1;
     float share = 1.0f / static_cast<float>(point.lobe_samples(mirrored));
     // All that a mirror brings comes along its ways, and stands for what else there is as often as
@@ -40,7 +47,7 @@ void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& 
     const Vec3f whole = glm::max(weight, Vec3f(std::numeric_limits<float>::min()));
     grid.leaving->rays.push_back({ray, weight, value.diffuse / whole, value.transmission / whole,
                                   share, pdf, static_cast<std::uint32_t>(point.index),
-                                  first + place, spread, grid.receives, world});
+                                  first + place, point.width, spread, grid.receives, world});
 }
 
 }  // namespace granita

@@ -11,6 +11,9 @@ namespace granita {
 /// step along their tangents' chords would lead into them.
 Vec3f inwards(const ShadingPoints& points, std::size_t i);
 
+/// Metres from a point to its neighbours.
+float width_of(const ShadingPoints& points, std::size_t i);
+
 /// Puts the way of a sample into LitGrid::leaving, which is asked for.
 /// @param value reflected radiance per radiance that comes along `ray`.
 /// @param pdf of its direction, per solid angle; infinite for a mirror's.

@@ -43,7 +43,8 @@ struct LitPoint {
     /// As ShadingPoints::rise; nullptr: normals are those of the surface.
     const Vec4f* rise = nullptr;
     float terminator_offset = 0.0f;
-    bool through_tube = false;  ///< light comes through what it is on, a tube
+    float width = 0.0f;  ///< of what it stands for, metres
+    bool round = false;  ///< on a tube, as ShadingPoints::round
     struct LobeSamples {
         int count = 0;            ///< 0 of sharp lobes
         std::uint32_t first = 0;  ///< in the sequence of the lobe
@@ -102,17 +103,18 @@ struct LitPoint {
             if (samples[k].count > 0) sum += bsdf.importance(k) * bsdf.pdf(k, wo);
         return sum;
     }
-    /// One of the lobes that a sample along `wo`, drawn from `lobe`, may count as, by a number in
-    /// [0, 1): as often as chance had drawn it from each.  Each lobe has a sample at least, however
-    /// seldom chance would take it, and light that others reflect along it as well.
-    std::size_t counted_as(std::size_t lobe, const Vec3f& wo, float uniform) const {
+    /// What a sample along `wo`, drawn from `lobe`, may count as, by a number in [0, 1): as often
+    /// as chance had drawn it from each lobe.  Each has a sample at least, however seldom chance
+    /// would take it, and light that others reflect along it as well.
+    LightPart counted_as(std::size_t lobe, const Vec3f& wo, float uniform) const {
         float left = uniform * chance_density(wo);
         for (std::size_t k = 0; k < samples.size(); ++k) {
             if (samples[k].count == 0) continue;
-            left -= bsdf.importance(k) * bsdf.pdf(k, wo);
-            if (left < 0.0f) return k;
+            const float own = bsdf.importance(k) * bsdf.pdf(k, wo);
+            if (left < own) return bsdf.counted_as(k, wo, left / own);
+            left -= own;
         }
-        return lobe;
+        return bsdf.part(lobe);
     }
     /// Of lobes' samples, what is left of light that is also sampled by `pdf` where those samples
     /// are not taken: Cycles weighs as if they were, by squares of the densities.

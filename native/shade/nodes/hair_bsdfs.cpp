@@ -32,13 +32,14 @@ VectorSource hair_axis(NodeBuilder& b, bool mesh_by_v) {
     return out;
 }
 
-/// Of a ribbon how many rows of its points, less one, lie side by side; where rays meet one it is
-/// known as a whole.
+/// Of a ribbon how many rows of its points, less one, lie side by side; 0 where rays meet one,
+/// which know how far out.
 FloatSource cells_across(NodeBuilder& b) {
     return b.geometry<float>([](const ShadingInput& in, std::size_t) {
         const ShadingPoints& points = *in.points;
-        return points.columns == 0 ? 1.0f
-                                   : static_cast<float>(points.count / points.columns) - 1.0f;
+        if (points.depth > 0) return 0.0f;
+        const std::size_t rows = points.columns == 0 ? 2 : points.count / points.columns;
+        return static_cast<float>(rows) - 1.0f;
     });
 }
 
@@ -47,9 +48,8 @@ FloatSource cell_aside(NodeBuilder& b) {
     return b.geometry<float>([](const ShadingInput& in, std::size_t i) {
         const ShadingPoints& points = *in.points;
         if (points.columns == 0 || points.count == points.columns) return 0.0f;
-        const auto row = static_cast<float>(i / points.columns);
-        const auto last = static_cast<float>(points.count / points.columns - 1);
-        return std::abs(2.0f * row / last - 1.0f);
+        const std::size_t row = i / points.columns, last = points.count / points.columns - 1;
+        return std::abs(2.0f * static_cast<float>(row) / static_cast<float>(last) - 1.0f);
     });
 }
 

@@ -98,7 +98,7 @@ std::vector<RayPart> RayElements::hand_over(RTCDevice device) {
     return {};
 }
 
-void RayElements::locate(std::uint32_t, std::uint32_t primitive, float u, float,
+void RayElements::locate(std::uint32_t, std::uint32_t primitive, float u, float v,
                          RayHit& hit) const {
     hit.elements = m_shared.get();
     if (m_curves.empty()) {
@@ -111,6 +111,7 @@ void RayElements::locate(std::uint32_t, std::uint32_t primitive, float u, float,
     const std::uint32_t curve = m_curves[c];
     const std::size_t point = m_shared->first_point(curve) + primitive - m_first_segment[c];
     hit.place = {curve, point, point + 1, u};
+    hit.uv = {u, v};
     hit.slot = m_shared->slot(curve);
 }
 

@@ -25,7 +25,8 @@ struct RayHit {
     std::int32_t slot = 0;                     ///< of the material
     const SharedGeometry* geometry = nullptr;  ///< of a mesh
     const BasePatch* patch = nullptr;          ///< one of its patches
-    Vec2d uv{0.0};                             ///< on the patch (PatchKind)
+    Vec2d uv{0.0};                             ///< on the patch (PatchKind); of ribbons u, and how
+                                               ///< far out, [-1, 1]
     const SharedElements* elements = nullptr;  ///< of curves and points
     ElementPlace place;                        ///< on one of them
     Vec3f p{0.0f};                             ///< world axes, origin at the camera
