@@ -43,12 +43,16 @@ Word hash_words(const std::array<Word, N>& k) {
     return c;
 }
 
-/// In [0, 1], of the bits of floats.
+/// Of the bits of floats.
+template <class... Floats>
+std::uint32_t hash_bits(Floats... x) {
+    return hash_words(std::array<std::uint32_t, sizeof...(x)>{std::bit_cast<std::uint32_t>(x)...});
+}
+
+/// The same in [0, 1].
 template <class... Floats>
 float hash_floats(Floats... x) {
-    const std::uint32_t h =
-        hash_words(std::array<std::uint32_t, sizeof...(x)>{std::bit_cast<std::uint32_t>(x)...});
-    return static_cast<float>(h) / static_cast<float>(0xffffffffu);
+    return static_cast<float>(hash_bits(x...)) / static_cast<float>(0xffffffffu);
 }
 
 /// Three independent values, of a place of one to four coordinates.

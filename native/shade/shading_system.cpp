@@ -150,15 +150,15 @@ struct ShadingSystem::Impl {
     }
 
     RayMaterials ray_materials() const {
-        RayMaterials asked{
-            [this](std::int32_t index) {
-                return !material(index).shadow.transparency.is(Vec3f(0.0f));
-            },
-            [this](const RayHit& hit) {
-                return shadow_transparency(material(hit.material).shadow, scene, hit);
-            },
-            [this](std::int32_t index) { return constant_transparency(material(index).shadow); },
-            [this](std::int32_t index) { return emission->emitted(index); }};
+        RayMaterials asked;
+        tell_transparency(
+            asked, scene,
+            [this](std::int32_t index) -> const CompiledSurface& { return material(index); },
+            [this](std::int32_t index, RayType ray) -> const OpacityProgram& {
+                const bool is_shadow = ray == RayType::Shadow || !hits;
+                return is_shadow ? material(index).shadow : hits->surface(index, ray).passing;
+            });
+        asked.emitted = [this](std::int32_t index) { return emission->emitted(index); };
         if (volumes) volumes->tell(asked);
         // Once a material: instances may be many.
         std::vector<std::uint8_t> alone;

@@ -36,8 +36,6 @@ Vec3f clamped(const Vec3f& c) {
     return is_finite(c) ? glm::clamp(c, Vec3f(0.0f), Vec3f(1.0f)) : Vec3f(0.0f);
 }
 
-}  // namespace
-
 std::optional<Vec3f> constant_transparency(const OpacityProgram& material) {
     if (!material.transparency.is_constant()) return std::nullopt;
     return clamped(material.transparency.constant);
@@ -63,6 +61,24 @@ Vec3f shadow_transparency(const OpacityProgram& material, const Scene& scene, co
     scratch->memory = run.take_memory();
     ObjectPool<std::unique_ptr<Scratch>>::give(std::move(scratch));
     return passed;
+}
+
+}  // namespace
+
+void tell_transparency(
+    RayMaterials& asked, const Scene& scene,
+    const std::function<const CompiledSurface&(std::int32_t material)>& surface,
+    std::function<const OpacityProgram&(std::int32_t material, RayType ray)> opacity) {
+    asked.is_transparent = [surface](std::int32_t index) {
+        return surface(index).is_told_apart || !surface(index).shadow.transparency.is(Vec3f(0.0f));
+    };
+    asked.constant = [surface](std::int32_t index) {
+        return surface(index).is_told_apart ? std::nullopt
+                                            : constant_transparency(surface(index).shadow);
+    };
+    asked.transparency = [opacity = std::move(opacity), &scene](const RayHit& hit, RayType ray) {
+        return shadow_transparency(opacity(hit.material, ray), scene, hit);
+    };
 }
 
 }  // namespace granita

@@ -2,11 +2,18 @@
 #include "shade/surface_pattern.h"
 
 #include "base/sorted_runs.h"
+#include "math/hash.h"
 #include "shade/bounces/hit_points.h"
 #include "shade/nodes/surface_run.h"
 
 namespace granita {
 namespace {
+
+/// In sequences of samples: any, of its own.  Where all had one, nodes that look around (Ambient
+/// Occlusion) looked along the same few directions everywhere, which no number of samples averages.
+std::uint32_t place_of(const Vec3f& p) {
+    return hash_bits(p.x, p.y, p.z);
+}
 
 class SurfacePattern : public LightPattern {
   public:
@@ -40,8 +47,8 @@ void SurfacePattern::color(std::span<const PatternSample> samples) const {
         for (const std::uint32_t i : of) {
             const RayScene::Met& met = ends[i];
             const PatternSample& sample = samples[met.ray];
-            batch.push_back(
-                {nullptr, &met.hit, &met.frame(), sample.time, sample.width, met.hit.distance});
+            batch.push_back({nullptr, &met.hit, &met.frame(), sample.time, sample.width,
+                             met.hit.distance, place_of(met.hit.p)});
         }
         points.fill(batch, m_program.requests, 1);
         Run run = m_program.program.prepare(points.input(), batch.size());

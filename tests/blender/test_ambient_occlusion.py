@@ -2,8 +2,10 @@
 """Ambient Occlusion beside Cycles, as emission."""
 
 import bpy
+import numpy as np
 import pytest
 import scene_parts
+from bounced_parts import render_bounced, surface
 from node_comparison import Tree, render_both, rmse
 
 SIZE, BLOCK = 48, 6
@@ -103,3 +105,23 @@ def test_of_a_thing_that_casts_no_shadow(scene, render, inside):
     scene.camera.location[:2] = things[2].location[:2]
     scene.camera.data.ortho_scale = 2.0
     agree(scene, render, 0.04)
+
+
+def test_in_a_mirror(scene, render):
+    """What shines by it is a lamp, and all of that was asked about the same 16 directions: sharp copies of things'
+    outlines (.25 of the deviation)."""
+    things = stage(scene)
+    occluded(things, "AO", 2.0)
+    for thing in things:
+        thing.location.z -= 8.0
+    bpy.ops.mesh.primitive_plane_add(size=8.0, rotation=(np.pi, 0.0, 0.0), location=(0.0, 0.0, 4.0))
+    surface(bpy.context.object, "ShaderNodeBsdfGlossy", (1.0, 1.0, 1.0), Roughness=0.0)
+    bpy.context.object.visible_shadow = False
+    scene.camera.location.z = 3.0
+    scene.camera.rotation_euler = (np.pi, 0.0, 0.0)
+    scene.cycles.max_bounces = 1
+    scene.render.resolution_x = scene.render.resolution_y = SIZE
+    theirs, ours = (blocks(p) for p in render_bounced(scene, render, 64, limit=1, samples=64))
+    assert theirs.std() > 0.05
+    # Borders in mirrors are a grid's corner wide.
+    assert rmse(theirs, ours) < 0.06 * theirs.std(), rmse(theirs, ours) / theirs.std()

@@ -23,6 +23,7 @@
 #include "shade/lights/lobe_runs.h"
 #include "shade/lights/met_lamps.h"
 #include "shade/lights/part_rays.h"
+#include "shade/lights/power_heuristic.h"
 #include "shade/lights/world_light.h"
 
 namespace granita {
@@ -170,8 +171,9 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             if (lamp.is_asked(grid.depth)) {
                 if (!meets_lamps) return;
                 const LampRate rate = rate_of(point, choice, index);
-                share = 1.0f / (static_cast<float>(rate.samples) * met.pdf * rate.mean +
-                                point.meeting_density(wo));
+                const float own = point.meeting_density(wo);
+                share =
+                    power_share(own, static_cast<float>(rate.samples) * met.pdf * rate.mean) / own;
             } else {
                 // Cycles asks one of all lamps each time, a world that varies among them.
                 const float lamps = set.places + (world.has_density() ? 1.0f : 0.0f);
@@ -179,7 +181,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             }
             const BsdfValue weight = lamp.apply(value, grid.in_medium) * Vec3f(share);
             if (total(weight) != Vec3f(0.0f))
-                add_met(set, grid, {&point, &lamp, place, met, weight, sign});
+                add_met(set, grid, {&point, &lamp, place, met, weight, type, sign});
         });
     }
 }
@@ -200,7 +202,8 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
         set.meet(grid, place, wo, [&](std::size_t, const Lamp& lamp, const LightSample& met) {
             const BsdfValue weight = lamp.apply(value, grid.in_medium);
             if (total(weight) != Vec3f(0.0f))
-                add_met(set, grid, {&point, &lamp, place, met, weight, LitGrid::sign(s, count)});
+                add_met(set, grid,
+                        {&point, &lamp, place, met, weight, type, LitGrid::sign(s, count)});
         });
         if (grid.leaving) {
             Ray ray = set.ray(point, place, wo, kInfinity);

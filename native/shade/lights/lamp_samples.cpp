@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "shade/lights/power_heuristic.h"
 #include "shade/lights/shadow_queue.h"
 
 namespace granita {
@@ -113,7 +114,7 @@ void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& p
     const Vec3f value = total(bsdf) * sample.radiance;
     if (value == Vec3f(0.0f)) return;
     if (!lamp.is_hard() && lamp.meets_lobes(m_grid.depth))
-        density += point.meeting_density(sample.direction);
+        density = power_density(density, point.meeting_density(sample.direction));
     const BsdfValue parts = bsdf * (sample.radiance / density);
     if (m_set.rays && lamp.casts_shadow())
         m_shadows.send(point.index, value / density, parts, sign,

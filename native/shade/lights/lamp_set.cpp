@@ -156,11 +156,13 @@ Ray LampSet::ray_to(const LitPoint& point, const LitPlace& place, const Lamp& la
     return to;
 }
 
-Vec3f LampSet::shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
-                      const LightSample& sample) const {
-    if (!rays || !lamp.casts_shadow()) return Vec3f(1.0f);
+Vec3f LampSet::passed(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
+                      const LightSample& sample, RayType type) const {
+    if (!rays) return Vec3f(1.0f);
     ++grid.shadow_rays;
-    return rays->transmittance(ray_to(point, place, lamp, sample));
+    Ray asked = ray_to(point, place, lamp, sample);
+    asked.type = type;
+    return rays->transmittance(asked);
 }
 
 Vec3f LampSet::occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,

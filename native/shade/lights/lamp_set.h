@@ -41,8 +41,9 @@ struct LampSet {
     /// Towards what a lamp sends.
     Ray ray_to(const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                const LightSample& sample) const;
-    Vec3f shadow(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
-                 const LightSample& sample) const;
+    /// What of a lamp's light, met by a ray of a lobe's, passes what such rays meet.
+    Vec3f passed(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
+                 const LightSample& sample, RayType type) const;
     /// What of the world's light passes what comes before it, along a ray of a type.
     Vec3f occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
                     const Vec3f& direction, RayType type) const;

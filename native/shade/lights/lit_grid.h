@@ -23,6 +23,7 @@ struct MetLamp {
     LitPlace place;
     LightSample sample;
     BsdfValue weight;  ///< of the sample's radiance, were nothing between
+    RayType ray;       ///< that the lobe sends there
     float sign;        ///< as LitGrid::sign
 };
 

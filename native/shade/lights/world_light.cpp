@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shade/lights/power_heuristic.h"
+
 namespace granita {
 namespace {
 
@@ -37,13 +39,13 @@ void WorldLight::sample(const LampSet& set, LitGrid& grid, const LitPoint& point
         const BsdfValue value = point.bsdf.evaluate(wo);
         if (total(value) == Vec3f(0.0f) || !(from.pdf > 0.0f)) continue;
         const auto count = static_cast<float>(point.sample_count);
-        const float density = count * from.pdf + grid.lobe_density(point, wo);
+        const float density = power_density(count * from.pdf, grid.lobe_density(point, wo));
         const Vec3f seen = set.occlusion(grid, point, set.place_at(point, sequence.third(index)),
                                          wo, RayType::Shadow);
         BsdfValue weight = value * (seen / density);
         if (grid.takes_world())
             weight.diffuse =
-                value.diffuse * seen / (count * (from.pdf + shared_density(point, wo)));
+                value.diffuse * seen / (count * power_density(from.pdf, shared_density(point, wo)));
         const float sign = LitGrid::sign(s, point.sample_count);
         if (m_environment->has_radiance())
             grid.reflect_world(
@@ -77,8 +79,7 @@ void WorldLight::meet(const LampSet& set, LitGrid& grid, const LitPoint& point,
 float WorldLight::share_of_lobes(const LampSet& set, const LitGrid& grid, const LitPoint& point,
                                  const Vec3f& wo, float pdf) const {
     if (!is_asked(grid.depth)) return point.left_to_lobes(wo, pdf / (set.places + 1.0f));
-    const float by_lobes = grid.lobe_density(point, wo);
-    return by_lobes / (by_lobes + static_cast<float>(point.sample_count) * pdf);
+    return power_share(grid.lobe_density(point, wo), static_cast<float>(point.sample_count) * pdf);
 }
 
 WorldAhead WorldLight::ahead(const LampSet& set, const LitGrid& grid, const LitPoint& point,
@@ -88,10 +89,8 @@ WorldAhead WorldLight::ahead(const LampSet& set, const LitGrid& grid, const LitP
     const Environment::Sample at = m_environment->at(sample.wo);
     const float of_lobes = share_of_lobes(set, grid, point, sample.wo, at.pdf);
     float of_diffuse = of_lobes;
-    if (grid.shares_world() && at.pdf > 0.0f) {
-        const float shared = shared_density(point, sample.wo);
-        of_diffuse = shared / (at.pdf + shared);
-    }
+    if (grid.shares_world() && at.pdf > 0.0f)
+        of_diffuse = power_share(shared_density(point, sample.wo), at.pdf);
     const BsdfValue weight{Vec3f(of_diffuse), Vec3f(of_lobes), Vec3f(of_lobes)};
     if (m_environment->is_constant()) return {of_constant(weight, types), 0.0f, 0.0f, sample.sign};
     if (!m_environment->has_radiance() || sample.is_narrow)

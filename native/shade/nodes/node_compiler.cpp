@@ -242,10 +242,10 @@ Program opacity_program(const ProgramBuilder& builder, const VectorSource& trans
     return Program(builder.loads, builder.steps, builder.floats_a_point, roots);
 }
 
-OpacityProgram shadow_program(const ProgramBuilder& builder, const VectorSource& transparency) {
-    OpacityProgram shadow{{}, opacity_program(builder, transparency), transparency};
-    shadow.requests = used_requests(builder.requests, {&shadow.program});
-    return shadow;
+OpacityProgram passing_program(const ProgramBuilder& builder, const VectorSource& transparency) {
+    OpacityProgram passing{{}, opacity_program(builder, transparency), transparency};
+    passing.requests = used_requests(builder.requests, {&passing.program});
+    return passing;
 }
 
 bool told_apart(const NodeGraph& graph, const ReadOutputs& read, RayType a, RayType b) {
@@ -356,13 +356,17 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
         Program(builder.loads, builder.steps, builder.floats_a_point, roots);
     compiled.transparency = compiled.radiance.sources.transparency;
     compiled.opacity_program = opacity_program(builder, compiled.transparency);
+    compiled.passing = passing_program(builder, compiled.transparency);
+    compiled.is_told_apart = std::ranges::any_of(kLightRays, [&](RayType light) {
+        return told_apart(graph, builder.read, light, RayType::Shadow);
+    });
     if (told_apart(graph, builder.read, ray, RayType::Shadow)) {
         Report said_already;
         ProgramBuilder shadow = builder_for(RayType::Shadow, said_already);
         const VectorSource transparency = build_graph(shadow, graph).transparency;
-        compiled.shadow = shadow_program(shadow, transparency);
+        compiled.shadow = passing_program(shadow, transparency);
     } else {
-        compiled.shadow = shadow_program(builder, compiled.transparency);
+        compiled.shadow = compiled.passing;
     }
     compiled.requests =
         used_requests(builder.requests, {&compiled.radiance.program, &compiled.opacity_program});

@@ -59,7 +59,9 @@ struct CompiledSurface {
     Program opacity_program;
     VectorSource transparency;  ///< of opacity_program
     SurfaceProgram radiance;
-    OpacityProgram shadow;  ///< as shadow rays meet it
+    OpacityProgram passing;      ///< opacity_program for single places that rays meet
+    OpacityProgram shadow;       ///< the same as shadow rays meet them
+    bool is_told_apart = false;  ///< by shadow rays and such as bring light
 };
 
 /// Where the points of a surface go.

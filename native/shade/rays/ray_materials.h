@@ -17,10 +17,12 @@ namespace granita {
 
 /// Called from any thread; any may be missing, of the first two both.
 struct RayMaterials {
+    /// To rays of some type.
     std::function<bool(std::int32_t material)> is_transparent;
     /// What passes the surface: 0 = opaque, 1 = nothing there.
-    std::function<Vec3f(const RayHit&)> transparency;
-    /// The same of a material where it is one everywhere: places are then not looked up.
+    std::function<Vec3f(const RayHit&, RayType)> transparency;
+    /// The same of a material where it is one everywhere, to all types: places are then not looked
+    /// up.
     std::function<std::optional<Vec3f>(std::int32_t material)> constant = nullptr;
     /// What it sends to all sides and from everywhere, so that its meshes are lamps; nullopt: they
     /// are, but it varies; 0: they are none.

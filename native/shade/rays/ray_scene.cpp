@@ -69,7 +69,7 @@ Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& r
     std::optional<RayFrame> moved;
     if (!hit.frame) hit.frame = &moved.emplace(frame_at(hit.instance, ray.time));
     hit.normal = normal_of(at, hit, *hit.frame);
-    return materials.transparency(hit);
+    return materials.transparency(hit, context.rays->type);
 }
 
 /// Called for hits on geometry that may let light through, not exist or not be in the light's set:

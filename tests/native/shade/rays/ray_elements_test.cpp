@@ -118,7 +118,7 @@ TEST(RayElements, transparent_ones_tell_where_they_were_met) {
     RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
     int curves = 0, points = 0;
-    opacity.transparency = [&](const RayHit& hit) {
+    opacity.transparency = [&](const RayHit& hit, RayType) {
         EXPECT_EQ(hit.place.element, 1u);
         EXPECT_EQ(hit.direction, kUp);
         if (hit.elements->data().kind == GeometryKind::Points) {

@@ -236,7 +236,7 @@ TEST(RayScene, transparent_materials_multiply_and_opaque_ones_end) {
         scene.instances[add_instance(scene, square(1), at({0, 0, layer}))].materials = {0};
     RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t material) { return material == 0; };
-    opacity.transparency = [](const RayHit& hit) {
+    opacity.transparency = [](const RayHit& hit, RayType) {
         // A cut-out: a hole where the first coordinate is positive, tinted glass elsewhere.
         EXPECT_EQ(hit.material, 0);
         EXPECT_NEAR(hit.normal.z, 1.0f, 1e-6f);
@@ -265,7 +265,7 @@ TEST(RayScene, rays_together_pass_what_each_passes_alone) {
     scene.instances[add_instance(scene, square(0.4f), at({1, 0, 1}))].materials = {1};
     RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t material) { return material == 0; };
-    opacity.transparency = [](const RayHit& hit) { return Vec3f(0.25f + 0.5f * hit.p.x); };
+    opacity.transparency = [](const RayHit& hit, RayType) { return Vec3f(0.25f + 0.5f * hit.p.x); };
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
     std::vector<Ray> asked;
@@ -290,11 +290,38 @@ TEST(RayScene, places_are_not_looked_up_where_the_same_passes_everywhere) {
     scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].materials = {0, 0};
     RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
-    opacity.transparency = [](const RayHit&) -> Vec3f { throw SceneError("place", "asked"); };
+    opacity.transparency = [](const RayHit&, RayType) -> Vec3f {
+        throw SceneError("place", "asked");
+    };
     opacity.constant = [](std::int32_t) { return Vec3f(0.5f, 0.25f, 1.0f); };
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
     EXPECT_EQ(rays.transmittance({{0.3f, 0.1f, 0}, kUp, kInfinity}), Vec3f(0.5f, 0.25f, 1.0f));
+}
+
+TEST(RayScene, materials_and_visibility_go_by_the_kind_of_ray) {
+    // One that is clear to shadow rays alone, behind it one that gloss does not see.
+    Scene scene = empty_scene();
+    scene.options.bounces.most = 1;
+    scene.materials.resize(1);
+    const std::size_t pane = add_instance(scene, square(1), at({0, 0, 1}));
+    scene.instances[pane].materials = {0};
+    scene.instances[add_instance(scene, square(1), at({0, 0, 2}))].visible_glossy = false;
+    RayMaterials opacity;
+    opacity.is_transparent = [](std::int32_t material) { return material == 0; };
+    opacity.transparency = [](const RayHit&, RayType ray) {
+        return Vec3f(ray == RayType::Shadow ? 1.0f : 0.25f);
+    };
+    const Progress progress;
+    const RayScene rays(scene, Vec3d(0.0), opacity, progress);
+    const auto left = [&](RayType type, float distance) {
+        return rays.transmittance({{0.3f, 0.2f, 0}, kUp, distance, 0.5f, -1, type});
+    };
+    EXPECT_EQ(left(RayType::Shadow, 1.5f), Vec3f(1.0f));
+    EXPECT_EQ(left(RayType::Shadow, 3.0f), Vec3f(0.0f));
+    for (const RayType type : {RayType::Glossy, RayType::Singular})
+        EXPECT_EQ(left(type, 3.0f), Vec3f(0.25f));
+    EXPECT_EQ(left(RayType::Diffuse, 3.0f), Vec3f(0.0f));
 }
 
 TEST(RayScene, casters_are_there_for_their_part_of_the_shutter) {
@@ -312,7 +339,7 @@ TEST(RayScene, casters_are_there_for_their_part_of_the_shutter) {
     scene.instances[add_instance(scene, square(1), at({0, 0, 1}))].lifespan = {0.0f, 0.1f};
     RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t material) { return material == 0; };
-    opacity.transparency = [](const RayHit&) { return Vec3f(0.5f); };
+    opacity.transparency = [](const RayHit&, RayType) { return Vec3f(0.5f); };
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
     const auto left = [&](float time, float distance) {
@@ -346,7 +373,7 @@ TEST(RayScene, hits_on_a_limit_surface_name_the_patch_and_the_place_on_it) {
     std::vector<Vec3f> seen;
     RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
-    opacity.transparency = [&](const RayHit& hit) {
+    opacity.transparency = [&](const RayHit& hit, RayType) {
         const Vec3f p = object_position(hit);
         EXPECT_LT(glm::length(p - hit.p), 1e-4f);
         seen.push_back(p);
@@ -380,7 +407,7 @@ TEST(RayScene, hits_on_what_moves_and_what_stands_still_of_a_mesh_name_their_fac
     float height = 0.0f;
     RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
-    opacity.transparency = [&](const RayHit& hit) {
+    opacity.transparency = [&](const RayHit& hit, RayType) {
         face = hit.patch->face;
         height = hit.p.z;
         EXPECT_EQ(hit.direction, -kUp);
@@ -404,7 +431,9 @@ TEST(RayScene, an_error_inside_a_material_comes_out_of_the_ray) {
     scene.materials.resize(1);
     RayMaterials opacity;
     opacity.is_transparent = [](std::int32_t) { return true; };
-    opacity.transparency = [](const RayHit&) -> Vec3f { throw SceneError("material 'M'", "x"); };
+    opacity.transparency = [](const RayHit&, RayType) -> Vec3f {
+        throw SceneError("material 'M'", "x");
+    };
     const Progress progress;
     const RayScene rays(scene, Vec3d(0.0), opacity, progress);
     EXPECT_THROW(rays.transmittance({{0, 0, 0}, kUp, kInfinity}), SceneError);
