@@ -174,4 +174,8 @@ void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
     points.seen = std::move(seen);
 }
 
+bool is_mostly_hidden(const ShadingPoints& points) {
+    return 2 * static_cast<std::size_t>(std::ranges::count(points.seen, 1)) < points.seen.size();
+}
+
 }  // namespace granita

@@ -28,4 +28,8 @@ void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
              const RayScene& rays, const Scene& scene, const MovingEye& eye,
              const ShutterWarp* shutter, float edge);
 
+/// Of points that were looked at: in thickets the samples that see something of them are fewer than
+/// they, and right.
+bool is_mostly_hidden(const ShadingPoints& points);
+
 }  // namespace granita

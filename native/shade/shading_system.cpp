@@ -298,6 +298,7 @@ struct ShadingSystem::Impl {
         }
         RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
         refined.points.round = is_round(grid);
+        refined.points.alone = !grid.radiance.empty();  // else triangles, made for samples
         if (light) light->lift(refined.points, grid.key);
         Grid out;
         out.key = grid.key;
@@ -322,11 +323,9 @@ struct ShadingSystem::Impl {
                scene.geometry_of(scene.instances[grid.instance]).kind == GeometryKind::Mesh;
     }
 
-    /// Whether edges of faces show: corners of micropolygons lie on them, or between two of them.
-    bool has_lines(const Grid& grid) const {
-        return std::ranges::any_of(
-            material(grid.material).requests,
-            [](const AttributeRequest& request) { return is_to_corner(request.source); });
+    /// Whether each sample may say all of what it sees of the grid.
+    bool may_leave(const Grid& grid) const {
+        return refines && reflects(grid.material) && !grid.opacity_varies && !grid.holdout;
     }
 
     /// Whether some of the grid's micropolygons look otherwise at some time of the shutter than
@@ -379,6 +378,9 @@ struct ShadingSystem::Impl {
         if (bounces && lit)
             look_at(points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr,
                     std::min(1.0f, edge_light_share(scene.options.samples) / narrow));
+        if (grid.disjoint && wants_refining && may_leave(grid) && is_mostly_hidden(points) &&
+            !scatters(grid.material))
+            return leave_to_samples(grid, channels.vertex_width());
         std::vector<float> noise(wants_refining ? points.count : 0, 0.0f);
         std::vector<Vec3f> settled;
         shade(grid, input(grid, points), at, wants_refining ? &noise : nullptr,
@@ -391,7 +393,7 @@ struct ShadingSystem::Impl {
         }
         // Samples would be shaded by themselves where points happen to be too bright, not too dark.
         if (!settled.empty()) settled.swap(grid.radiance);
-        grid.unsettled = has_lines(grid) || changes_in_time(grid)
+        grid.unsettled = material(grid.material).has_lines() || changes_in_time(grid)
                              ? all_micropolygons(grid)
                              : unsettled_micropolygons(
                                    grid, noise, thresholds.difference / (sharpness * sharpness),
@@ -445,13 +447,13 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
     const ShadingPoints points = shading_points(grid, m_impl->camera);
     m_impl->shade_opacity(grid, m_impl->input(grid, points));
     grid.opacity_varies =
-        (m_impl->has_lines(grid) && m_impl->can_refine(grid)) ||
+        (m_impl->material(grid.material).has_lines() && m_impl->can_refine(grid)) ||
         std::ranges::any_of(grid.opacity, [](const Vec3f& o) { return o != Vec3f(1.0f); });
     grid.additive = m_impl->material(grid.material).radiance.sources.additive;
     if (grid.opacity_varies && m_impl->can_refine(grid)) {
         const float sharpness = m_impl->sharpness(grid);
         grid.unsettled_opacity =
-            m_impl->has_lines(grid) || m_impl->opacity_changes_in_time(grid)
+            m_impl->material(grid.material).has_lines() || m_impl->opacity_changes_in_time(grid)
                 ? all_micropolygons(grid)
                 : unsettled_opacity(grid, m_impl->thresholds.difference / (sharpness * sharpness));
     }
@@ -459,8 +461,7 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 }
 
 bool ShadingSystem::leaves_to_samples(const Grid& grid) const {
-    return grid.triangles && m_impl->refines && m_impl->reflects(grid.material) &&
-           !grid.opacity_varies && !grid.holdout;
+    return grid.triangles && m_impl->may_leave(grid);
 }
 
 void ShadingSystem::shade_radiance(Grid& grid) const {

@@ -63,7 +63,7 @@ std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosur
         noisy.values[i] *= noisy.told[i] / glm::max(albedo, Vec3f(kLeastAlbedo));
         noisy.by_reach[i] = Vec3f(nearness[i] / kNear);
     }
-    return share(points, noisy);
+    return points.alone ? std::move(noisy.values) : share(points, noisy);
 }
 
 }  // namespace

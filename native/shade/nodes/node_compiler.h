@@ -62,6 +62,12 @@ struct CompiledSurface {
     OpacityProgram passing;      ///< opacity_program for single places that rays meet
     OpacityProgram shadow;       ///< the same as shadow rays meet them
     bool is_told_apart = false;  ///< by shadow rays and such as bring light
+
+    /// Whether edges of faces show: corners of micropolygons lie on them, or between two of them.
+    bool has_lines() const {
+        return std::ranges::any_of(
+            requests, [](const AttributeRequest& request) { return is_to_corner(request.source); });
+    }
 };
 
 /// Where the points of a surface go.
