@@ -104,8 +104,7 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
     const MovingEye eye(scene, camera);
     points.count = wanted.size();
     points.terminator_offset = around.terminator_offset;
-    // Corners have the light samples of their neighbours too, which interpolation averages.
-    points.share = around.share * std::min(1.0f, 2.0f * point_size * point_size);
+    points.share = around.share * refined_light_share(point_size * point_size);
     for (auto* values : {&points.p, &points.normal, &points.geometric_normal, &points.view,
                          &points.dp_du, &points.dp_dv})
         values->reserve(wanted.size());

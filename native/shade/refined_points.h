@@ -3,6 +3,7 @@
 // is shaded there and then, where the mean over the shutter at the corners does not tell it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,6 +25,13 @@ struct RefinedPoint {
     float time;           ///< of the shutter; kAnyTime: lit over all of it
     std::uint32_t place;  ///< in the sample sequences of the frame
 };
+
+/// Light samples of such a point for each of a grid's: corners have those of their neighbours too,
+/// which interpolation averages.
+/// @param area that it stands for, in micropolygons.
+inline float refined_light_share(float area) {
+    return std::min(1.0f, 2.0f * area);
+}
 
 struct RefinedPoints {
     ShadingPoints points;  ///< their times are set only where `timed`

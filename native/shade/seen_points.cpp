@@ -161,10 +161,10 @@ void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
     if (std::ranges::count(seen, 0) == 0) return;
     const std::vector<std::uint8_t> inside = off_edges(seen, points.columns);
     const auto all_seen = static_cast<float>(std::ranges::count(seen, 1));
-    const bool is_thicket =
+    points.thicket =
         all_seen - static_cast<float>(std::ranges::count(inside, 1)) > kThicket * all_seen;
     constexpr float kUnseenShare = ShadingPoints::kUnseenShare;
-    edge = is_thicket ? std::max(kUnseenShare, edge) : 1.0f;
+    edge = points.thicket ? std::max(kUnseenShare, edge) : 1.0f;
     std::vector<std::uint8_t> hidden(points.count);
     std::ranges::transform(seen, hidden.begin(), [](std::uint8_t is_seen) { return !is_seen; });
     const std::vector<std::uint8_t> far = off_edges(hidden, points.columns);
@@ -172,10 +172,6 @@ void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
     for (std::size_t i = 0; i < points.count; ++i)
         points.shares[i] = inside[i] ? 1.0f : far[i] ? kUnseenShare : edge;
     points.seen = std::move(seen);
-}
-
-bool is_mostly_hidden(const ShadingPoints& points) {
-    return 2 * static_cast<std::size_t>(std::ranges::count(points.seen, 1)) < points.seen.size();
 }
 
 }  // namespace granita

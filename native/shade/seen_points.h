@@ -19,17 +19,13 @@ namespace granita {
 /// one of each that it asks, or eight times where something moves before it; `seen_times`: which of
 /// these; and `shares`: all light samples next to what is seen, few out of
 /// sight and, in thickets, `edge` of them where what is seen ends.  Few ways cost noise, which few
-/// see, or none among that of edges.  The same whatever bucket asks; all stay empty where all is
-/// seen.
+/// see, or none among that of edges; and `thicket`.  The same whatever bucket asks; all stay empty
+/// where all is seen.
 /// @param points of the grid of `key`, lifted.
 /// @param shutter nullptr where nothing moves.
 /// @param edge part of the light samples, at most 1 (edge_light_share()).
 void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
              const RayScene& rays, const Scene& scene, const MovingEye& eye,
              const ShutterWarp* shutter, float edge);
-
-/// Of points that were looked at: in thickets the samples that see something of them are fewer than
-/// they, and right.
-bool is_mostly_hidden(const ShadingPoints& points);
 
 }  // namespace granita

@@ -14,6 +14,7 @@
 #include "shade/grid_channels.h"
 #include "shade/interpolated_points.h"
 #include "shade/lamp_shader.h"
+#include "shade/left_to_samples.h"
 #include "shade/lights/direct_light.h"
 #include "shade/lights/light_sample_count.h"
 #include "shade/material_displacement.h"
@@ -378,8 +379,8 @@ struct ShadingSystem::Impl {
         if (bounces && lit)
             look_at(points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr,
                     std::min(1.0f, edge_light_share(scene.options.samples) / narrow));
-        if (grid.disjoint && wants_refining && may_leave(grid) && is_mostly_hidden(points) &&
-            !scatters(grid.material))
+        if (wants_refining && may_leave(grid) && !scatters(grid.material) &&
+            pays_by_samples(grid, points, scene, *light))
             return leave_to_samples(grid, channels.vertex_width());
         std::vector<float> noise(wants_refining ? points.count : 0, 0.0f);
         std::vector<Vec3f> settled;

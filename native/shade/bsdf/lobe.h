@@ -177,6 +177,7 @@ struct ShadingPoints {
     std::vector<float> shares;
     /// [n] 0: hidden from the eye, inside of something or behind it; empty: none is known to be
     std::vector<std::uint8_t> seen;
+    bool thicket = false;  ///< much of what is seen lies beside what is hidden
     /// [n] where what moves hides it for a part of the shutter: times at which it does not.  Empty
     /// vectors, or none at all: any time of its life will do.
     std::vector<std::vector<float>> seen_times;

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/left_to_samples.h"
+
+#include <algorithm>
+
+#include "dice/visible_area.h"
+#include "shade/refined_points.h"
+
+namespace granita {
+namespace {
+
+/// Ways of samples for each of a grid's points.  In thickets edges outweigh the noise of light, and
+/// corners out of sight the seconds; where less is hidden, points share what their ways find, which
+/// samples do not (docs/decisions/bounces.md has what was measured).
+constexpr double kOfThickets = 2.0;
+constexpr double kOfOthers = 0.5;
+/// Part of the points that is seen above which nothing much hides a grid.
+constexpr double kNearlyAll = 0.9;
+
+/// Ways that all samples of a lattice would send for each that its points would.
+double ways_of_samples(const Grid& grid, const ShadingPoints& points, double seen,
+                       const Scene& scene, const DirectLight& light) {
+    const std::span<const Vec3f> corners(grid.positions.data(),
+                                         static_cast<std::size_t>(grid.vertex_count()));
+    const double area = visible_area(grid, corners, scene.camera.projection);
+    const float footprint = 1.0f / static_cast<float>(scene.options.samples);
+    const int each = light.sample_count(grid.point_share * refined_light_share(footprint));
+    double ways = 0.0;
+    for (const float share : points.shares) ways += light.sample_count(points.share * share);
+    return seen * area * scene.options.samples * each / ways;
+}
+
+}  // namespace
+
+bool pays_by_samples(const Grid& grid, const ShadingPoints& points, const Scene& scene,
+                     const DirectLight& light) {
+    if (points.seen.empty()) return false;
+    const double seen = static_cast<double>(std::ranges::count(points.seen, 1)) /
+                        static_cast<double>(points.seen.size());
+    // Points of small faces are as many as these.
+    if (grid.disjoint) return seen < 0.5;
+    if (!points.thicket && seen > kNearlyAll) return false;
+    return ways_of_samples(grid, points, seen, scene, light) <
+           (points.thicket ? kOfThickets : kOfOthers);
+}
+
+}  // namespace granita
