@@ -23,8 +23,10 @@ Vec3f PointBsdf::transmittance(const Prepared& lobe, float cos_half) const {
     return Vec3f(fresnel_dielectric(cos_half, lobe.ior) < 1.0f ? 1.0f : 0.0f);
 }
 
-/// Walter et al., equation 16: the normal of the facets that refract wi to wo.  False where none
-/// does that.
+/// Walter et al., equation 16: the normal of the facets that refract wi to wo.  Where none can, as
+/// what they would have to turn light by is too much for the index, Cycles takes the same formula
+/// without regard to signs: under lamps frosted glass is mostly that, so it is taken here too
+/// (docs/decisions/shading.md).  No sample of the lobe goes there.
 bool PointBsdf::refracting_facets(const Prepared& lobe, const Vec3f& wo,
                                   RefractingFacets& out) const {
     if (glm::dot(lobe.normal, wo) >= 0.0f || glm::dot(m_geometric_normal, wo) >= 0.0f) return false;
@@ -32,10 +34,8 @@ bool PointBsdf::refracting_facets(const Prepared& lobe, const Vec3f& wo,
     const float length2 = glm::dot(between, between);
     if (length2 <= 0.0f) return false;
     out.half = between * ((lobe.ior > 1.0f ? -1.0f : 1.0f) / std::sqrt(length2));
-    out.half_wi = glm::dot(out.half, m_wi);
-    const float half_wo = glm::dot(out.half, wo);
-    if (out.half_wi <= 0.0f || half_wo >= 0.0f || glm::dot(out.half, lobe.normal) <= 0.0f)
-        return false;
+    out.half_wi = std::abs(glm::dot(out.half, m_wi));
+    const float half_wo = -std::abs(glm::dot(out.half, wo));
     out.density = density_of(lobe.distribution, lobe.alpha, squared_sine(lobe.normal, out.half));
     out.jacobian = lobe.ior * lobe.ior * -half_wo / length2;
     return true;
