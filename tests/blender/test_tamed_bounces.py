@@ -26,6 +26,50 @@ def test_clamp_indirect_is_that_of_cycles(scene, render, kind, clamp, worst):
     assert worst_block(both) < worst
 
 
+@pytest.mark.parametrize("roughness", [0.3, 0.5])
+def test_lamps_behind_frosted_glass_are_clamped_a_way_at_a_time(scene, render, roughness):
+    """Light samples and what lobes meet are contributions of their own: together a ball before a lamp was 12 and 16 % too
+    dark."""
+    frosted = scene_parts.closure(
+        "Frosted", "ShaderNodeBsdfGlass", Color=(1.0, 0.9, 0.8, 1.0), Roughness=roughness, IOR=1.45
+    )
+    bpy.ops.mesh.primitive_uv_sphere_add(
+        segments=48, ring_count=24, radius=0.9, location=(0.0, 0.0, 0.5)
+    )
+    bpy.ops.object.shade_smooth()
+    bpy.context.object.data.materials.append(frosted)
+    lamp = bpy.data.lights.new("Lamp", "AREA")
+    lamp.energy, lamp.size = 1500.0, 3.0
+    light = scene_parts.add_object(scene, "Lamp", lamp, (-2.0, 6.0, 4.0))
+    light.rotation_euler = (-light.location).to_track_quat("-Z", "Y").to_euler()
+    look_at_stage(scene, 2.5, 0.5)
+    both = render_bounced(scene, render, 1024, limit=2, clamp=10.0)
+    assert both[0].mean() > 0.02
+    assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.05)
+
+
+@pytest.mark.parametrize("roughness", [0.0, 0.4])
+def test_what_shines_in_first_reflections_is_not_indirect(scene, render, roughness):
+    """A bright wall that is no lamp: a clamp of a 30th of what it brings took 97 % of its reflection away."""
+    floor = scene_parts.add_square(scene, "Floor", 8.0)
+    surface(floor, "ShaderNodeBsdfGlossy", (0.9, 0.9, 0.9), Roughness=roughness)
+    shining = scene_parts.emission("Shining", (30.0, 30.0, 30.0), 1.0)
+    tree = shining.node_tree
+    kind = tree.nodes.new("ShaderNodeLightPath")  # what varies by it is met by chance alone
+    node = next(n for n in tree.nodes if n.type == "EMISSION")
+    tree.links.new(kind.outputs["Is Glossy Ray"], node.inputs["Strength"])
+    if hasattr(shining.cycles, "emission_sampling"):
+        shining.cycles.emission_sampling = "NONE"
+    else:
+        shining.cycles.sample_as_light = False
+    wall = scene_parts.add_square(scene, "Wall", 4.0, (0.0, 3.0, 1.6), shining)
+    wall.rotation_euler.x = 1.57
+    look_at_stage(scene, 3.0, 0.5)
+    both = render_bounced(scene, render, 512, limit=1, clamp=1.0)
+    assert both[0].mean() > 1.0
+    assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.02)
+
+
 def test_brushed_metal_is_filtered_along_and_across(scene, render):
     """A box on brushed metal: what of it is smoother than Filter Glossy asks for is made as rough, along and across.  As
     stretched as before, a block of the box was a tenth off."""

@@ -279,7 +279,7 @@ class BouncedLight::Wave {
         const std::vector<Vec3f> light = m_light.m_direct.reflect(
             places.points(), places.closure(), {}, nullptr, {}, nullptr, &m_leaving);
         for (std::size_t k = 0; k < batch.size(); ++k)
-            bring(m_paths[batch[k].path], light[k], Vec3f(0.0f));
+            bring(m_paths[batch[k].path], light[k], Vec3f(0.0f), m_leaving.met[k]);
         std::ranges::stable_sort(m_leaving.rays, {}, &LobeRay::point);
         auto candidate = m_leaving.rays.begin();
         for (std::uint32_t k = 0; k < batch.size(); ++k) {
@@ -323,6 +323,7 @@ class BouncedLight::Wave {
         tame(batch, closure);
         std::vector<Vec3f> light(batch.size(), Vec3f(0.0f)), emitted = light;
         m_leaving.rays.clear();
+        m_leaving.met.assign(batch.size(), {});
         if (is_lit(first))
             light = m_light.m_direct.reflect(ran.points(), closure, key, nullptr, {}, nullptr,
                                              &m_leaving);
@@ -330,7 +331,8 @@ class BouncedLight::Wave {
             if (!m_light.is_lamp(*batch[i].hit) &&
                 in_light_set(batch[i].path->next.receives, instance.receiver_set))
                 emitted[i] = closure.emission[i];
-        for (std::size_t i = 0; i < batch.size(); ++i) bring(*batch[i].path, light[i], emitted[i]);
+        for (std::size_t i = 0; i < batch.size(); ++i)
+            bring(*batch[i].path, light[i], emitted[i], m_leaving.met[i]);
         go_on(batch, ran.points(), closure);
     }
 
@@ -352,23 +354,21 @@ class BouncedLight::Wave {
         }
     }
 
-    /// What a place sends on and what it emits.
-    void bring(const BouncedPath& path, const Vec3f& light, const Vec3f& emitted) {
+    /// `emitted` by what is met first is no indirect light, and not clamped as such (Cycles).
+    void bring(const BouncedPath& path, const Vec3f& light, const Vec3f& emitted,
+               const MetLight& met = {}) {
         const LobeRay& ray = path.next;
-        Vec3f weight = ray.weight;
-        const Vec3f bright = weight * (light + emitted);
-        if (!is_finite(bright)) return;
         const bool is_mirrored = path.kind == BouncedPath::Kind::Mirrored;
-        const float sum = (bright.x + bright.y + bright.z) / ray.share;
-        const float clamp = m_limits.clamp * path.chance;
-        if (clamp > 0.0f && sum > clamp) weight *= clamp / sum;
-        const Vec3f brought = weight * (light + emitted);
+        const float clamp = m_limits.clamp;
+        const Vec3f shining = path.held(path.depth > 1 ? clamp : 0.0f, emitted);
+        const Vec3f brought =
+            path.held(clamp, light) + shining + path.held(clamp, met.light, met.times());
         const Vec3f diffuse = brought * path.diffuse_part;
         m_gathered.diffuse[ray.point] += diffuse;
         (is_mirrored ? m_gathered.mirrored : m_gathered.glossy)[ray.point] += brought - diffuse;
         m_gathered.transmitted[ray.point] += brought * path.transmitted;
         if (path.depth == 1 && !m_gathered.emitted.empty())
-            m_gathered.emitted[ray.point] += weight * emitted;
+            m_gathered.emitted[ray.point] += shining;
     }
 
     /// One way out of each point, but for mirrors'.
@@ -455,7 +455,7 @@ class BouncedLight::Wave {
     std::vector<RayScene::Met> m_met;
     std::vector<std::uint8_t> m_meets_nothing;  ///< [paths] whose rays meet nothing
     std::vector<std::uint32_t> m_order;
-    LeavingRays m_leaving;
+    LeavingRays m_leaving{.rays = {}, .tells_met = true, .met = {}};
     std::vector<ChosenWay> m_chosen;
     RayMedia m_media;
     std::vector<Scattering> m_scattering;

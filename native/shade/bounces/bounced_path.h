@@ -37,6 +37,18 @@ struct BouncedPath {
     /// Its weight, were it its point's only one.
     Vec3f throughput() const { return next.weight / next.share; }
 
+    /// What it brings of `light`, held to a clamp as Cycles does: each contribution by itself, as
+    /// bright as chance had made it (BouncedPath::chance).  0 where that is not finite.
+    /// @param clamp of the sum of the channels; 0: none.
+    /// @param whole how many times as much chance would bring, as seldom.
+    Vec3f held(float clamp, const Vec3f& light, float whole = 1.0f) const {
+        const Vec3f brought = next.weight * light;
+        if (!is_finite(brought)) return Vec3f(0.0f);
+        const float sum = (brought.x + brought.y + brought.z) * whole / next.share;
+        const float most = clamp * chance;
+        return most > 0.0f && sum > most ? brought * (most / sum) : brought;
+    }
+
     bool is_within(const Bounces& limits, int more) const {
         return depth <= limits.most + more && diffuse <= limits.diffuse + more &&
                glossy <= limits.glossy + more && transmission <= limits.transmission + more &&

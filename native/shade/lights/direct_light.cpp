@@ -168,20 +168,23 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         if (!meets_lamps && !any_unasked) continue;
         set.meet(grid, place, wo, [&](std::size_t index, const Lamp& lamp, const LightSample& met) {
             float share = 0.0f;  // of the reflected light, this sample's
+            float density = point.all_density(wo);
             if (lamp.is_asked(grid.depth)) {
                 if (!meets_lamps) return;
                 const LampRate rate = rate_of(point, choice, index);
-                const float own = point.meeting_density(wo);
-                share =
-                    power_share(own, static_cast<float>(rate.samples) * met.pdf * rate.mean) / own;
+                density = point.meeting_density(wo);
+                const float sampled = static_cast<float>(rate.samples) * met.pdf * rate.mean;
+                share = power_share(density, sampled) / density;
             } else {
                 // Cycles asks one of all lamps each time, a world that varies among them.
                 const float lamps = set.places + (world.has_density() ? 1.0f : 0.0f);
-                share = point.left_to_lobes(wo, met.pdf / lamps) / point.all_density(wo);
+                share = point.left_to_lobes(wo, met.pdf / lamps) / density;
             }
             const BsdfValue weight = lamp.apply(value, grid.in_medium) * Vec3f(share);
             if (total(weight) != Vec3f(0.0f))
-                add_met(set, grid, {&point, &lamp, place, met, weight, type, sign});
+                add_met(set, grid,
+                        {&point, &lamp, place, met, weight, type, sign,
+                         density / point.chance_density(wo)});
         });
     }
 }
@@ -203,7 +206,8 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
             const BsdfValue weight = lamp.apply(value, grid.in_medium);
             if (total(weight) != Vec3f(0.0f))
                 add_met(set, grid,
-                        {&point, &lamp, place, met, weight, type, LitGrid::sign(s, count)});
+                        {&point, &lamp, place, met, weight, type, LitGrid::sign(s, count),
+                         1.0f / point.bsdf.importance(lobe)});
         });
         if (grid.leaving) {
             Ray ray = set.ray(point, place, wo, kInfinity);
@@ -347,6 +351,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
     if (noise) noise->assign(points.count, 0.0f);
     if (parts) parts->resize(points.count);
+    if (leaving && leaving->tells_met) leaving->met.assign(points.count, {});
     const bool dark = m_impl->set.lamps.empty() && !m_impl->world.shines();
     if (closure.lobes.empty() || (dark && !parts && !leaving)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();

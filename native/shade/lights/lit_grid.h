@@ -25,6 +25,7 @@ struct MetLamp {
     BsdfValue weight;  ///< of the sample's radiance, were nothing between
     RayType ray;       ///< that the lobe sends there
     float sign;        ///< as LitGrid::sign
+    float whole;  ///< how many times as much a sample of all lobes, taken by chance, would have
 };
 
 /// What a grid's points share while they are lit.
@@ -61,6 +62,12 @@ struct LitGrid {
     void add(std::size_t point, const Vec3f& light, float sign) {
         radiance[point] += light;
         if (balance) (*balance)[point] += sign * luminance(light);
+    }
+    /// Of a lamp that a lobe has met; `whole`: as MetLamp's.
+    void add_met(std::size_t point, const Vec3f& light, float sign, float whole) {
+        if (!leaving || !leaving->tells_met) return add(point, light, sign);
+        leaving->met[point].light += light;
+        leaving->met[point].whole += whole * luminance(light);
     }
 
     /// A sequence that the grid shares, from its sample `first` on.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "math/luminance.h"
 #include "math/vec.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/rays/ray.h"
@@ -39,9 +40,24 @@ struct LobeRay {
     WorldAhead world;
 };
 
+/// Light of lamps that samples of a point's lobes have met.
+struct MetLight {
+    Vec3f light{0.0f};
+    /// Its luminance, had chance taken one sample of all lobes, which stands for all: Cycles holds
+    /// that to its clamp.
+    float whole = 0.0f;
+    float times() const {
+        const float now = luminance(light);
+        return now > 0.0f ? whole / now : 1.0f;
+    }
+};
+
 /// Those of the points of a grid, or batch.
 struct LeavingRays {
     std::vector<LobeRay> rays;
+    /// True: what lobes meet of lamps is left out of reflect() and told by itself, [points].
+    bool tells_met = false;
+    std::vector<MetLight> met;
     /// False: what diffuse lobes reflect is known, and no part of it is looked for.
     bool diffuse = true;
     /// What diffuse lobes reflect of the world counts as what surfaces send: neighbours share it.

@@ -10,7 +10,7 @@ void add(const LampSet& set, LitGrid& grid, const MetLamp& met) {
     const BsdfValue arriving = met.weight * met.sample.radiance;
     if (total(arriving) == Vec3f(0.0f)) return;
     const Vec3f seen = set.passed(grid, *met.point, met.place, *met.lamp, met.sample, met.ray);
-    grid.add(met.point->index, total(arriving) * seen, met.sign);
+    grid.add_met(met.point->index, total(arriving) * seen, met.sign, met.whole);
     grid.add_lamp(met.point->index, arriving, seen);
 }
 
