@@ -137,6 +137,29 @@ def test_a_weak_mirror_over_paint_is_clamped_as_seldom_as_it_is_chosen(scene, re
     assert worst_block(both) < 0.15
 
 
+def half_clear(floor):
+    made = scene_parts.closure("Half clear", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.8, 0.8, 1.0))
+    tree = made.node_tree
+    diffuse = next(n for n in tree.nodes if n.type == "BSDF_DIFFUSE")
+    output = next(n for n in tree.nodes if n.type == "OUTPUT_MATERIAL")
+    mix, clear = (
+        tree.nodes.new(f"Shader{kind}") for kind in ("NodeMixShader", "NodeBsdfTransparent")
+    )
+    tree.links.new(diffuse.outputs[0], mix.inputs[1])
+    tree.links.new(clear.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    floor.data.materials.append(made)
+
+
+def test_what_is_half_clear_is_clamped_twice_as_much(scene, render):
+    """Chance takes what it reflects every second time, and clamps what that brings for both: light that bounced was 37 % too bright."""
+    lit_wall_over(scene, half_clear)
+    bpy.data.objects["Wall"].visible_camera = False
+    both = render_bounced(scene, render, 512, limit=1, clamp=3.0)
+    assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.02)
+    assert worst_block(both) < 0.1
+
+
 def test_filter_glossy_leaves_cloth_alone(scene, render):
     """It blurs facets that mirror: a box of velvet lit a floor 19 % too far in a block."""
     floor = scene_parts.add_square(scene, "Floor", 8.0)

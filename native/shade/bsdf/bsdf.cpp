@@ -79,6 +79,8 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
         total += lobe.importance;
         m_lobes.push_back(lobe);
     }
+    if (!closure.transparency.empty() && total > 0.0f)
+        m_part_of_all = total / (total + std::abs(average(closure.transparency[point])));
     for (Prepared& lobe : m_lobes)
         lobe.importance =
             total > 0.0f ? lobe.importance / total : 1.0f / static_cast<float>(m_lobes.size());

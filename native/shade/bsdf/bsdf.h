@@ -68,6 +68,8 @@ class PointBsdf {
     bool is_sharp(std::size_t lobe) const { return m_lobes[lobe].sharp; }
     /// Share of this lobe in the reflected energy, roughly; sums to 1 over the lobes.
     float importance(std::size_t lobe) const { return m_lobes[lobe].importance; }
+    /// How likely chance takes a lobe, not what passes straight through.
+    float part_of_all() const { return m_part_of_all; }
 
     /// Share of white light from all sides that leaves along the view, weights included.  Fresnel
     /// is taken at the view's own angle.
@@ -159,6 +161,7 @@ class PointBsdf {
     std::vector<Prepared> m_lobes;
     Vec3f m_wi, m_normal, m_geometric_normal;
     bool m_round;  ///< as ShadingPoints::round
+    float m_part_of_all = 1.0f;
     bool m_transmits = false;
 };
 

@@ -45,6 +45,8 @@ void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& 
     // Each grid has a part of the sequences to itself, as samples that are shaded alone have.
     const auto first = grid.placed ? 0u : static_cast<std::uint32_t>(grid.seed) << 14;
     const Vec3f whole = glm::max(weight, Vec3f(std::numeric_limits<float>::min()));
+    share *= point.bsdf.part_of_all();
+    pdf *= point.bsdf.part_of_all();
     grid.leaving->rays.push_back({ray, weight, value.diffuse / whole, value.transmission / whole,
                                   share, pdf, static_cast<std::uint32_t>(point.index),
                                   first + place, point.width, spread, grid.receives, world});
