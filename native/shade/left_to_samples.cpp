@@ -23,8 +23,8 @@ double ways_of_samples(const Grid& grid, const ShadingPoints& points, double see
     const std::span<const Vec3f> corners(grid.positions.data(),
                                          static_cast<std::size_t>(grid.vertex_count()));
     const double area = visible_area(grid, corners, scene.camera.projection);
-    const float footprint = 1.0f / static_cast<float>(scene.options.samples);
-    const int each = light.sample_count(grid.point_share * refined_light_share(footprint));
+    const float sampled = 1.0f / static_cast<float>(scene.options.samples);  // of a pixel, by one
+    const int each = light.sample_count(grid.point_share * refined_light_share(sampled));
     double ways = 0.0;
     for (const float share : points.shares) ways += light.sample_count(points.share * share);
     return seen * area * scene.options.samples * each / ways;

@@ -42,7 +42,7 @@ def test_leaves_in_a_furnace_are_not_seen(count, side):
 
 @pytest.mark.parametrize(("count", "side"), [(12000, SMALL), (2400, LATTICE)])
 def test_what_nobody_sees_is_not_shaded(count, side):
-    """No more points than samples; they were more by a half and by a third, and more the more leaves."""
+    """No more points than samples; they were more by a half and by a quarter, and more the more leaves."""
     statistics = s.render(in_a_furnace(count, side))["statistics"]
     assert statistics["points_shaded"] < 16 * SIZE**2
     assert statistics["points_refined"] > 0.8 * statistics["points_shaded"]

@@ -455,7 +455,7 @@ class BouncedLight::Wave {
     std::vector<RayScene::Met> m_met;
     std::vector<std::uint8_t> m_meets_nothing;  ///< [paths] whose rays meet nothing
     std::vector<std::uint32_t> m_order;
-    LeavingRays m_leaving{.rays = {}, .tells_met = true, .met = {}};
+    LeavingRays m_leaving{.tells_met = true};
     std::vector<ChosenWay> m_chosen;
     RayMedia m_media;
     std::vector<Scattering> m_scattering;

@@ -117,8 +117,8 @@ class PointBsdf {
 
     /// The facets that send light from one direction to the view.
     struct RefractingFacets {
-        Vec3f half;
-        float half_wi, density;
+        float half_wi, half_normal;  ///< cosines of their normal to the view and to the lobe's
+        float density;
         float jacobian;  ///< solid angle of half vectors per that of directions
     };
 

@@ -33,11 +33,11 @@ bool PointBsdf::refracting_facets(const Prepared& lobe, const Vec3f& wo,
     const Vec3f between = lobe.ior * wo + m_wi;
     const float length2 = glm::dot(between, between);
     if (length2 <= 0.0f) return false;
-    out.half = between * ((lobe.ior > 1.0f ? -1.0f : 1.0f) / std::sqrt(length2));
-    out.half_wi = std::abs(glm::dot(out.half, m_wi));
-    const float half_wo = -std::abs(glm::dot(out.half, wo));
-    out.density = density_of(lobe.distribution, lobe.alpha, squared_sine(lobe.normal, out.half));
-    out.jacobian = lobe.ior * lobe.ior * -half_wo / length2;
+    const Vec3f half = between / std::sqrt(length2);
+    out.half_wi = std::abs(glm::dot(half, m_wi));
+    out.half_normal = std::abs(glm::dot(half, lobe.normal));
+    out.density = density_of(lobe.distribution, lobe.alpha, squared_sine(lobe.normal, half));
+    out.jacobian = lobe.ior * lobe.ior * std::abs(glm::dot(half, wo)) / length2;
     return true;
 }
 
@@ -56,7 +56,7 @@ float PointBsdf::pdf_refraction(const Prepared& lobe, const Vec3f& wo) const {
     RefractingFacets facets;
     if (!refracting_facets(lobe, wo, facets)) return 0.0f;
     if (lobe.distribution != Distribution::Ggx)
-        return facets.density * glm::dot(facets.half, lobe.normal) * facets.jacobian;
+        return facets.density * facets.half_normal * facets.jacobian;
     return facets.density * facets.half_wi * facets.jacobian /
            (lobe.cos_wi * (1.0f + ggx_lambda(lobe.alpha, lobe.cos_wi)));
 }

@@ -168,7 +168,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         if (!meets_lamps && !any_unasked) continue;
         set.meet(grid, place, wo, [&](std::size_t index, const Lamp& lamp, const LightSample& met) {
             float share = 0.0f;  // of the reflected light, this sample's
-            float density = point.all_density(wo);
+            float density = 0.0f;
             if (lamp.is_asked(grid.depth)) {
                 if (!meets_lamps) return;
                 const LampRate rate = rate_of(point, choice, index);
@@ -178,13 +178,14 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             } else {
                 // Cycles asks one of all lamps each time, a world that varies among them.
                 const float lamps = set.places + (world.has_density() ? 1.0f : 0.0f);
+                density = point.all_density(wo);
                 share = point.left_to_lobes(wo, met.pdf / lamps) / density;
             }
             const BsdfValue weight = lamp.apply(value, grid.in_medium) * Vec3f(share);
             if (total(weight) != Vec3f(0.0f))
                 add_met(set, grid,
                         {&point, &lamp, place, met, weight, type, sign,
-                         density / point.chance_density(wo)});
+                         grid.tells_met() ? density / point.chance_density(wo) : 1.0f});
         });
     }
 }

@@ -65,7 +65,7 @@ struct LitGrid {
     }
     /// Of a lamp that a lobe has met; `whole`: as MetLamp's.
     void add_met(std::size_t point, const Vec3f& light, float sign, float whole) {
-        if (!leaving || !leaving->tells_met) return add(point, light, sign);
+        if (!tells_met()) return add(point, light, sign);
         leaving->met[point].light += light;
         leaving->met[point].whole += whole * luminance(light);
     }
@@ -110,6 +110,7 @@ struct LitGrid {
         add(point, total(value), sign);
         add_world(point, value);
     }
+    bool tells_met() const { return leaving && leaving->tells_met; }
     bool carries_world() const { return leaving && leaving->carries_world(); }
     bool takes_world() const { return leaving && leaving->takes_world; }
     bool shares_world() const { return takes_world() && leaving->diffuse; }

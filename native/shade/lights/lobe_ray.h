@@ -54,10 +54,10 @@ struct MetLight {
 
 /// Those of the points of a grid, or batch.
 struct LeavingRays {
-    std::vector<LobeRay> rays;
+    std::vector<LobeRay> rays{};
     /// True: what lobes meet of lamps is left out of reflect() and told by itself, [points].
     bool tells_met = false;
-    std::vector<MetLight> met;
+    std::vector<MetLight> met{};
     /// False: what diffuse lobes reflect is known, and no part of it is looked for.
     bool diffuse = true;
     /// What diffuse lobes reflect of the world counts as what surfaces send: neighbours share it.

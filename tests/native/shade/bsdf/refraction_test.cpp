@@ -41,10 +41,8 @@ Lobe with_fresnel(Lobe lobe, float ior) {
 
 /// Whether light from wo can be refracted to the view by a facet that faces up.
 bool some_facet_refracts(const Vec3f& view, const Vec3f& wo, float ior) {
-    Vec3f half = ior * wo + view;
-    if (half.z < 0.0f) half = -half;
-    return glm::dot(half, view) > 0.0f && glm::dot(half, wo) < 0.0f && (half.z > 0.0f) &&
-           (ior > 1.0f) == (glm::dot(half, ior * wo + view) < 0.0f);
+    const Vec3f half = (ior > 1.0f ? -1.0f : 1.0f) * (ior * wo + view);
+    return half.z > 0.0f && glm::dot(half, view) > 0.0f && glm::dot(half, wo) < 0.0f;
 }
 
 /// Integral over the sphere by mid-points in both angles: no sampling involved.
@@ -146,6 +144,17 @@ TEST_P(RoughRefractions, its_density_integrates_to_the_share_of_samples_that_lea
     }
     EXPECT_GT(valid, count / 8);
     EXPECT_NEAR(integral, static_cast<double>(valid) / count, 0.006);
+}
+
+TEST_P(RoughRefractions, its_density_is_nowhere_negative) {
+    const PointBsdf glass = bsdf();
+    double least = 0.0;
+    sphere_integral([&](const Vec3f& wo) {
+        const float density = glass.pdf(0, wo);
+        least = std::min<double>(least, density);
+        return density;
+    });
+    EXPECT_EQ(least, 0.0);
 }
 
 TEST_P(RoughRefractions, sampling_estimates_what_quadrature_integrates) {
