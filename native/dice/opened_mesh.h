@@ -104,9 +104,9 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     int material(std::uint32_t face) const;
     /// Whether what has a material cuts out of the picture.
     bool holds_out(int material) const { return m_view->scene->holds_out(*m_instance, material); }
-    /// Normals of its own tell of a smoother surface.
+    /// Normals of its own tell of a smoother surface, and there is light to ask for it.
     bool rises() const {
-        return !m_displaced && !m_shared->subdivision() &&
+        return m_view->has_light && !m_displaced && !m_shared->subdivision() &&
                (!data().corner_normals.empty() || !m_shared->vertex_normals().empty());
     }
     /// Grid::rise where the face itself has the normal `flat`.

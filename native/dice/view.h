@@ -23,6 +23,7 @@ struct View {
     std::vector<std::vector<AttributeRequest>>
         requests;                                ///< [materials + 1], the last for material -1
     const Displacement* displacement = nullptr;  ///< nullptr: nothing is displaced
+    bool has_light = true;                       ///< else grids carry nothing for it alone
     std::shared_ptr<const SampledFaces> sampled_faces;  ///< nullptr: all faces are opened
 
     /// The rectangle that samples can reach through the filter.  Rates do not read it: outside

@@ -20,6 +20,7 @@ View make_view(const Scene& scene, Statistics& statistics, const ShadingSystem& 
     view.projection = scene.camera.projection;
     view.requests = shading.requests();
     view.displacement = shading.displacement();
+    view.has_light = shading.has_light();
     view.geometries = shading.geometries();
     const float margin = filter.radius();
     view.raster_x0 = view.raster_y0 = -margin;

@@ -85,6 +85,7 @@ bool KeptVisibility::serves(const Scene& now, const SceneChanges& changes,
     if ((changes.parts & part::kReadByHiding) != 0 || sample_pixels != m_sample_pixels)
         return false;
     if (!displaces_alike(now, changes) || m_requests != shading.requests()) return false;
+    if (shading.has_light() && !m_view->has_light) return false;
     const bool has_lists = std::ranges::any_of(m_traits, &Traits::opacity_varies);
     if (has_lists && (changes.parts & part::kPasses) != 0) return false;
     const bool asks_rays = std::ranges::any_of(m_traits, &Traits::opacity_asks_rays);

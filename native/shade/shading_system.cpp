@@ -156,6 +156,7 @@ struct ShadingSystem::Impl {
             asked, scene,
             [this](std::int32_t index) -> const CompiledSurface& { return material(index); },
             [this](std::int32_t index, RayType ray) -> const OpacityProgram& {
+                if (ray == RayType::Camera) return material(index).passing;
                 const bool is_shadow = ray == RayType::Shadow || !hits;
                 return is_shadow ? material(index).shadow : hits->surface(index, ray).passing;
             });
@@ -288,17 +289,12 @@ struct ShadingSystem::Impl {
         return light_sample_step(edge_light_sample_count(grid, scene));
     }
 
-    bool is_round(const Grid& grid) const {
-        return scene.geometry_of(scene.instances[grid.instance]).kind == GeometryKind::Curves;
-    }
-
     Grid refine(const Grid& grid, std::span<const RefinedPoint> wanted, float point_size) const {
         if (grid.triangles) {
             const SeenTriangles seen(grid, wanted);
             return refine(seen.grid, seen.points, point_size);
         }
         RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
-        refined.points.round = is_round(grid);
         refined.points.alone = !grid.radiance.empty();  // else triangles, made for samples
         if (light) light->lift(refined.points, grid.key);
         Grid out;
@@ -373,7 +369,8 @@ struct ShadingSystem::Impl {
         const bool wants_refining = can_refine(grid);
         const float narrow = edge_share(grid), fewer = sharpness * narrow;
         points.share *= fewer;
-        points.round = is_round(grid);
+        points.round =
+            scene.geometry_of(scene.instances[grid.instance]).kind == GeometryKind::Curves;
         if (light && lit) light->lift(points, grid.key);
         const PointPaths at = paths(grid, points);
         if (bounces && lit)
@@ -388,10 +385,8 @@ struct ShadingSystem::Impl {
               wants_refining ? &settled : nullptr);
         statistics.add(Counter::GridsShaded);
         if (!wants_refining) return;
-        if (grid.holdout) {
-            grid.unsettled = grid.unsettled_opacity;
-            return;
-        }
+        grid.unsettled = grid.unsettled_opacity;
+        if (grid.holdout) return;
         // Samples would be shaded by themselves where points happen to be too bright, not too dark.
         if (!settled.empty()) settled.swap(grid.radiance);
         grid.unsettled = material(grid.material).has_lines() || changes_in_time(grid)
@@ -422,6 +417,10 @@ float ShadingSystem::threshold() const {
 
 const MaterialDisplacement* ShadingSystem::displacement() const {
     return m_impl->displacement.get();
+}
+
+bool ShadingSystem::has_light() const {
+    return m_impl->light != nullptr;
 }
 
 std::shared_ptr<GeometryCache> ShadingSystem::geometries() const {

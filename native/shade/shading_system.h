@@ -36,6 +36,8 @@ class ShadingSystem {
     const std::vector<std::vector<AttributeRequest>>& requests() const;
     /// nullptr: nothing is displaced.
     const MaterialDisplacement* displacement() const;
+    /// For View: whether anything that is seen asks for light.
+    bool has_light() const;
 
     /// For View: what rays and dicing know of the same geometries.
     std::shared_ptr<GeometryCache> geometries() const;

@@ -171,9 +171,10 @@ def test_tangents_of_coarse_meshes(scene, render, case, smooth):
     assert np.percentile(np.abs(theirs - ours).max(axis=-1), 95) < 0.004
 
 
-@pytest.mark.parametrize("roughness", [0.0, 0.1])
-def test_a_mirror_shows_bumps(scene, render, roughness):
-    """As wide apart as where they are seen: beams of mirrors had no width, and what they met was smooth, 110 % of a block."""
+@pytest.mark.parametrize(("roughness", "distance"), [(0.0, 7.0), (0.1, 7.0), (0.0, 0.5)])
+def test_a_mirror_shows_bumps(scene, render, roughness, distance):
+    """As wide apart as where they are seen: beams of mirrors had no width, and what they met was smooth, 110 % of a block.
+    Parallel ones keep it, wherever their camera stands."""
     bpy.ops.mesh.primitive_uv_sphere_add(
         segments=64, ring_count=32, radius=1.2, location=(0, -2, 1)
     )
@@ -193,7 +194,7 @@ def test_a_mirror_shows_bumps(scene, render, roughness):
     sun = bpy.data.lights.new("Sun", "SUN")
     sun.energy = 3.0
     scene_parts.add_object(scene, "Sun", sun).rotation_euler = (-0.15, 1.2, 0.0)
-    camera = scene_parts.add_camera(scene, (0.0, -5.0, 1.0), ortho_scale=3.0)
+    camera = scene_parts.add_camera(scene, (0.0, 2.0 - distance, 1.0), ortho_scale=3.0)
     camera.rotation_euler.x = np.pi / 2
     scene.render.resolution_x, scene.render.resolution_y = 64, 48
     theirs, ours = render_bounced(scene, render, 256, limit=1)

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
-from test_bounces import ALBEDO, diffuse, inside, room
+from test_bounces import ALBEDO, diffuse, inside, material, room
 
 SEEN, CAMERA = 59, 1  # an instance's flags: by all rays, by the camera
 
@@ -70,3 +70,40 @@ def test_bits_do_not_depend_on_buckets_and_threads():
     assert np.array_equal(whole, s.render(barred(threads=1))["combined"])
     part = s.render(barred(crop=np.int32([4, 8, 20, 24])))["combined"]
     assert np.array_equal(whole[8:24, 4:20], part)
+
+
+def test_what_shows_through_holes_is_seen():
+    """Each way passes the pane, and counts twice there.  Rays from the eye took the first material's opacity for the pane's:
+    the wall behind it was left to samples, as what is mostly hidden, at 2.8 times the ways."""
+
+    def sent(has_pane):
+        snapshot = inside(1, light_samples=64)
+        room(snapshot, s.emission(snapshot))
+        s.quad(snapshot, s.rectangle(-0.9, -0.9, 0.9, 0.9, z=0.9), diffuse(snapshot, ALBEDO))
+        nodes = [
+            {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (1.0,) * 4}},
+            {"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1.0,) * 4}},
+            {"type": "ShaderNodeNewGeometry", "inputs": {}},
+            {
+                "type": "ShaderNodeMath",
+                "properties": {"operation": "LESS_THAN"},  # than 2: all of it
+                "inputs": {"Value": ("LINK", 2, "Backfacing"), "Value_001": 2.0},
+            },
+            {
+                "type": "ShaderNodeMixShader",
+                "inputs": {
+                    "Fac": ("LINK", 3, "Value"),
+                    "Shader": ("LINK", 0, "BSDF"),
+                    "Shader_001": ("LINK", 1, "BSDF"),
+                },
+            },
+        ]
+        pane = material(snapshot, nodes, (4, "Shader"))
+        corners = s.rectangle(-0.85, -0.85, 0.85, 0.85, z=0.8)
+        if has_pane:
+            s.quad(snapshot, corners, pane)
+        found = s.render(snapshot)
+        assert found["combined"][8:24, 8:24, 0].mean() == pytest.approx(ALBEDO, rel=0.05)
+        return found["statistics"]["rays_bounce"]
+
+    assert sent(True) < 2.0 * sent(False)

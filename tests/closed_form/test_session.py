@@ -26,6 +26,7 @@ from session_parts import (
     see_through_card,
     shining_cube,
     slightly_other_lens,
+    sun,
     unlit_card,
     without_cube,
 )
@@ -208,6 +209,25 @@ def test_a_material_that_comes_to_hold_out_is_hidden_anew():
     before, after = kept.picture(first), kept.picture(second)
     assert np.array_equal(after, Kept().picture(second))
     assert (after[..., 3] < before[..., 3]).any()
+
+
+def test_what_comes_to_be_lit_is_diced_anew():
+    """Grids of a picture that nothing lights do not know how far their smooth faces rise."""
+    snapshot = s.perspective((48, 32), 60.0, executor="SIMD", samples=4)
+    turns = np.arange(8) * np.pi / 4
+    corners = [(0.7 * np.sin(t), y, 6 - 0.7 * np.cos(t)) for y in (-1, 1) for t in turns]
+    faces = [(i, (i + 1) % 8, 8 + (i + 1) % 8, 8 + i) for i in range(8)]
+    s.mesh(snapshot, corners, faces, s.emission(snapshot), smooth=np.ones(8, np.uint8))
+    sun(snapshot)
+    kept = Kept()
+    kept.follow(snapshot)
+    lit = copy.deepcopy(snapshot)
+    lit["materials"] = [lit["materials"][matte(lit, (0.8, 0.8, 0.8))]]
+    kept.follow(lit)
+    assert kept.statistics["grids_diced"] > 0
+    lit["lights"][0]["energy"] = 2.0
+    kept.follow(lit)
+    assert kept.statistics["grids_diced"] == 0
 
 
 def unseen_by_shadows(snapshot):

@@ -70,8 +70,8 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
                                            lobe.stretched ? lobe.alphas : Vec2f(lobe.alpha));
                 lobe.sharp = false;
             } else if (source.multiscatter && source.distribution == Distribution::Ggx) {
-                compensate(lobe, source.made.empty() ? std::sqrt(lobe.alpha) : source.made[point],
-                           albedo);
+                const bool is_blurred = !source.made.empty() && source.made[point] >= 0.0f;
+                compensate(lobe, is_blurred ? source.made[point] : std::sqrt(lobe.alpha), albedo);
             }
             lobe.importance = std::abs(average(lobe.weight * passed(lobe, lobe.cos_wi)));
         }

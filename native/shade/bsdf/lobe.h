@@ -115,8 +115,8 @@ struct Lobe {
     std::vector<Vec3f> normal;     ///< [n] unit, facing the viewer as Cycles ensures
     std::vector<float> roughness;  ///< [n] diffuse: Oren-Nayar sigma socket; glossy: the socket's
                                    ///< value (alpha = roughness^2)
-    std::vector<float> made;       ///< [n] of multiscatter: the roughness before roughen(), where
-                                   ///< that loses energy; empty: as it is
+    std::vector<float> made;       ///< [n] of multiscatter: the roughness before roughen(), by
+                                   ///< which energy is lost; empty or -1: as it is
     std::vector<Vec3f> tangent;    ///< [n] glossy, where alpha differs along it, and of hairs
     std::vector<float> aspect;     ///< [n] alpha / aspect along it, alpha * aspect across
     std::vector<std::vector<float>> more;  ///< [][n] what its kind asks for beside; of microfacets
@@ -130,17 +130,20 @@ struct Lobe {
     /// Makes a point's facets at least as rough as `least`, an alpha, along the tangent and
     /// across.  Cycles makes up for the energy of lobes before it blurs them, since Blender 4.
     void roughen(std::size_t point, float least) {
-        if (multiscatter && !separable_masking && made.empty()) made = roughness;
         float& value = roughness[point];
+        const float alpha = value * value, ratio = aspect.empty() ? 1.0f : aspect[point];
+        const float along = std::min(alpha / ratio, 1.0f), across = std::min(alpha * ratio, 1.0f);
+        if (multiscatter && !separable_masking) {
+            made.resize(roughness.size(), -1.0f);
+            if (made[point] < 0.0f) made[point] = std::sqrt(std::sqrt(along * across));
+        }
         if (aspect.empty()) {
             value = std::max(value, std::sqrt(least));
             return;
         }
-        const float alpha = value * value;
-        const float along = std::max(std::min(alpha / aspect[point], 1.0f), least);
-        const float across = std::max(std::min(alpha * aspect[point], 1.0f), least);
-        value = std::sqrt(std::sqrt(along * across));
-        aspect[point] = std::sqrt(across / std::max(along, 1e-30f));
+        const float long_way = std::max(along, least), cross_way = std::max(across, least);
+        value = std::sqrt(std::sqrt(long_way * cross_way));
+        aspect[point] = std::sqrt(cross_way / std::max(long_way, 1e-30f));
     }
 };
 

@@ -90,6 +90,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
       world(scene.world, std::move(world_evaluator), report, progress) {
     for (const Instance& instance : scene.instances)
         if (instance.receives != ~0ULL) linked[instance.key] = instance.receives;
+    set.parallel_view = !scene.camera.projection.perspective;
     const Vec3d origin = camera_origin(scene);
     std::vector<Lamp> lamps = lamps_of(scene, origin, patterns);
     const bool asks_rays =
@@ -181,6 +182,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
                 density = point.all_density(wo);
                 share = point.left_to_lobes(wo, met.pdf / lamps) / density;
             }
+            if (!(density > 0.0f)) return;  // by rounding, at a lobe's rim
             const BsdfValue weight = lamp.apply(value, grid.in_medium) * Vec3f(share);
             if (total(weight) != Vec3f(0.0f))
                 add_met(set, grid,

@@ -74,6 +74,7 @@ struct LampSet {
     std::unique_ptr<LightTree> tree;  ///< of the others; nullptr: few, each is asked
     float asked = 0.0f;               ///< of these, for each light sample of few
     std::unique_ptr<RayScene> rays;   ///< nullptr where nothing can cast a shadow
+    bool parallel_view = false;       ///< beams that the camera sees do not widen
     bool casters_move = false;
     bool varies = false;                    ///< casters or lamps do
     int asked_by_all = Light::kAnyBounces;  ///< bounces after which every lamp is still asked

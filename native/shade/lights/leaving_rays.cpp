@@ -31,7 +31,8 @@ void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& 
     // A sample's part of the hemisphere, for rays that diffuse lobes send; else what a point of the
     // picture is seen in: bumps and textures in mirrors are as fine as those beside them.
     const float distance = glm::length(point.at_frame.p);
-    const float seen = grid.depth == 0 && distance > 0.0f ? point.width / distance : 0.0f;
+    const bool widens = grid.depth == 0 && !set.parallel_view && distance > 0.0f;
+    const float seen = widens ? point.width / distance : 0.0f;
     const float spread = is_diffuse(ray.type)
                              ? std::sqrt(2.0f * kPi / static_cast<float>(point.sample_count))
                              : seen;

@@ -102,6 +102,22 @@ TEST(Glossy, coloured_multiscatter_darkens_less_than_linearly) {
     EXPECT_LT(multi, 0.5);
 }
 
+TEST(Glossy, what_is_blurred_beside_a_point_does_not_change_it) {
+    // Both axes reach the longest that there is: the roughness asked for is not the facets'.
+    ShadingPoints points = points_facing_up({Vec3f(0), Vec3f(1, 0, 0)});
+    Lobe lobe = glossy(points, 1.0f);
+    lobe.multiscatter = true;
+    lobe.f0.assign(2, Vec3f(0.5f));
+    lobe.tangent.assign(2, Vec3f(1, 0, 0));
+    lobe.aspect.assign(2, 0.5f);
+    SurfaceClosure closure;
+    closure.lobes = {lobe};
+    const Vec3f wo = glm::normalize(Vec3f(0.3f, -0.2f, 0.8f));
+    const Vec3f alone = total(PointBsdf(closure, points, 1, GgxAlbedo::shared()).evaluate(wo));
+    closure.lobes[0].roughen(0, 0.9f);
+    EXPECT_EQ(total(PointBsdf(closure, points, 1, GgxAlbedo::shared()).evaluate(wo)), alone);
+}
+
 TEST(Glossy, is_reciprocal) {
     for (const Distribution distribution :
          {Distribution::Ggx, Distribution::Beckmann, Distribution::Gtr1})
