@@ -2,10 +2,16 @@
 #pragma once
 
 #include "dice/grid.h"
+#include "scene/scene.h"
 #include "shade/bsdf/lobe.h"
 #include "shade/programs/shading_camera.h"
 
 namespace granita {
+
+/// Of what the grid is a part of.
+inline GeometryKind kind_of(const Grid& grid, const Scene& scene) {
+    return scene.geometry_of(scene.instances[grid.instance]).kind;
+}
 
 /// A grid's shading points in shading space.
 ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera);

@@ -316,8 +316,7 @@ struct ShadingSystem::Impl {
     /// Whether samples of the grid can be shaded by themselves.  Strands and spheres are drawn as
     /// something flat, whose places say little of their shadows.
     bool can_refine(const Grid& grid) const {
-        return refines && !grid.shades_faces() &&
-               scene.geometry_of(scene.instances[grid.instance]).kind == GeometryKind::Mesh;
+        return refines && !grid.shades_faces() && kind_of(grid, scene) == GeometryKind::Mesh;
     }
 
     /// Whether each sample may say all of what it sees of the grid.
@@ -369,8 +368,7 @@ struct ShadingSystem::Impl {
         const bool wants_refining = can_refine(grid);
         const float narrow = edge_share(grid), fewer = sharpness * narrow;
         points.share *= fewer;
-        points.round =
-            scene.geometry_of(scene.instances[grid.instance]).kind == GeometryKind::Curves;
+        points.round = kind_of(grid, scene) == GeometryKind::Curves;
         if (light && lit) light->lift(points, grid.key);
         const PointPaths at = paths(grid, points);
         if (bounces && lit)
@@ -385,8 +383,10 @@ struct ShadingSystem::Impl {
               wants_refining ? &settled : nullptr);
         statistics.add(Counter::GridsShaded);
         if (!wants_refining) return;
-        grid.unsettled = grid.unsettled_opacity;
-        if (grid.holdout) return;
+        if (grid.holdout) {
+            grid.unsettled = grid.unsettled_opacity;
+            return;
+        }
         // Samples would be shaded by themselves where points happen to be too bright, not too dark.
         if (!settled.empty()) settled.swap(grid.radiance);
         grid.unsettled = material(grid.material).has_lines() || changes_in_time(grid)
