@@ -205,6 +205,19 @@ def test_map_range(scene, render, kind):
     check(scene, render)
 
 
+@pytest.mark.parametrize("kind", enum_values("ShaderNodeMapRange", "interpolation_type"))
+def test_map_range_of_vectors(scene, render, kind):
+    tree = Tree(board(scene))
+    node = tree.add("ShaderNodeMapRange", interpolation_type=kind, data_type="FLOAT_VECTOR")
+    inputs = {socket.identifier: socket for socket in node.inputs}
+    tree.link(tree.attribute("A"), inputs["Vector"])
+    tree.link(tree.attribute("B"), inputs["To_Min_FLOAT3"])
+    inputs["From_Min_FLOAT3"].default_value = (-0.4, 0.2, 1.0)  # the last without length
+    inputs["Steps_FLOAT3"].default_value = (3.0, 0.0, 5.0)
+    tree.emit(next(socket for socket in node.outputs if socket.identifier == "Vector"))
+    check(scene, render)
+
+
 @pytest.mark.parametrize("kind", enum_values("ShaderNodeClamp", "clamp_type"))
 def test_clamp(scene, render, kind):
     tree = Tree(board(scene))

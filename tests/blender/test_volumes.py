@@ -119,6 +119,22 @@ def test_what_absorbs_and_emits(scene, render, kind, inputs):
     agrees(*both(scene, render, 16), mean=0.01, block=0.02)
 
 
+@pytest.mark.parametrize(
+    "kind, into",
+    [("ShaderNodeVolumePrincipled", "Surface"), ("ShaderNodeBsdfPrincipled", "Volume")],
+)
+def test_what_is_in_the_wrong_socket_does_not_shine(scene, render, kind, into):
+    checkered_wall(scene)
+    tree = node_comparison.Tree(turned_cube())
+    node = tree.add(kind)
+    node.inputs["Emission Strength"].default_value = 1.0
+    color = node.inputs.get("Emission Color") or node.inputs["Emission"]
+    color.default_value = (0.8, 0.5, 0.3, 1.0)
+    tree.link(node.outputs[0], tree.output.inputs[into])
+    orthographic(scene)
+    agrees(*both(scene, render, 16), mean=0.01, block=0.02)
+
+
 def lit_cube(scene, kind="ShaderNodeVolumeScatter", **inputs):
     inputs = {"Color": (0.8, 0.6, 0.4, 1.0), "Density": 0.7, **inputs}
     filled(turned_cube(), kind, **inputs)

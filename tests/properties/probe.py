@@ -16,4 +16,5 @@ class Probe:
         default_factory=dict
     )  # {name: function(roots)}: changes that are no properties
     left_out: frozenset = frozenset()  # names of properties that are not flipped here
+    sockets: frozenset = None  # places of the inputs of what is walked: these alone are flipped
     node: bool = False  # it is about one shader node: what is said of that node holds for all of it

@@ -6,6 +6,7 @@ import numpy as np
 import scene_parts
 import stage
 from probe import Probe
+from walk import UNREAD_PROPERTIES, can_be_flipped
 
 # What is no node of a material, or needs a file or a language of its own.
 _LEFT_OUT = {
@@ -54,7 +55,9 @@ def _is_closure(node):
     return any(socket.type == "SHADER" for socket in node.outputs)
 
 
-def _build(name, rich=False):
+def _build(name, rich=False, mode=None):
+    """`mode`: (property, item) that the node is set to."""
+
     def build(scene):
         stage.set_world(scene)
         stage.top_camera(scene)
@@ -68,6 +71,8 @@ def _build(name, rich=False):
             return {}
         if hasattr(node, "image"):
             node.image = picture()
+        if mode:
+            setattr(node, *mode)
         _fill_vectors(node)
         for identifier, value in _RICH.get(name, {}).items() if rich else ():
             socket = next((s for s in node.inputs if s.identifier == identifier), None)
@@ -175,6 +180,38 @@ def _mute(roots):
     roots["node"].mute = True
 
 
+def _modes(name):
+    """{(property, item): places of inputs}: items of enums that enable inputs which neither a new node nor an
+    earlier item has."""
+    tree = bpy.data.materials.new("Look")
+    tree.use_nodes = True
+    found = {}
+    try:
+        node = tree.node_tree.nodes.new(name)
+        seen = _open_inputs(node)
+        for rna in node.bl_rna.properties:
+            if rna.type != "ENUM" or rna.is_readonly or rna.is_enum_flag:
+                continue
+            if rna.identifier in UNREAD_PROPERTIES:
+                continue
+            before = getattr(node, rna.identifier)
+            for item in rna.enum_items:
+                setattr(node, rna.identifier, item.identifier)
+                opened = _open_inputs(node) - seen
+                if opened:
+                    found[rna.identifier, item.identifier] = opened
+                    seen |= opened
+            setattr(node, rna.identifier, before)
+    except RuntimeError:
+        pass
+    bpy.data.materials.remove(tree)
+    return found
+
+
+def _open_inputs(node):
+    return {place for place, socket in enumerate(node.inputs) if can_be_flipped(socket)}
+
+
 _LEFT = frozenset(
     {"image", "mute", "bytecode", "bytecode_hash", "filepath", "script", "use_auto_update"}
 )
@@ -188,5 +225,12 @@ def probes():
         if name in _RICH:
             found.append(
                 Probe(f"{name}, rich", _build(name, True), ("node",), {}, _LEFT, node=True)
+            )
+        for mode, opened in _modes(name).items():
+            label = f"{name}, {mode[1]}"
+            found.append(
+                Probe(
+                    label, _build(name, mode=mode), ("node",), sockets=frozenset(opened), node=True
+                )
             )
     return found

@@ -122,7 +122,9 @@ def flips(probe, roots):
     """All flips of a probe whose scene stands."""
     found = []
     for name in probe.walked:
-        if name in roots:
+        if name in roots and probe.sockets is not None:
+            found += _socket_flips(probe, (name,), roots[name])
+        elif name in roots:
             found += _struct_flips(probe, (name,), roots[name], set())
     for name in probe.deeds:
         found.append(Flip(probe.name, name, "done", (), name))
@@ -174,10 +176,14 @@ def _part_flips(probe, path, struct, rna, seen):
     return _struct_flips(probe, (*path, rna.identifier), part, seen | {rna.identifier})
 
 
+def can_be_flipped(socket):
+    return socket.enabled and not socket.hide_value and hasattr(socket, "default_value")
+
+
 def _socket_flips(probe, path, node):
     found = []
     for place, socket in enumerate(node.inputs):
-        if not socket.enabled or socket.hide_value or not hasattr(socket, "default_value"):
+        if not can_be_flipped(socket) or probe.sockets is not None and place not in probe.sockets:
             continue
         rna = socket.bl_rna.properties["default_value"]
         key = f"{node.bl_idname}[{socket.identifier}]"

@@ -199,9 +199,10 @@ void bend_normals(ProgramBuilder& builder, const NodeGraph& graph) {
 
 /// Values and closures of all nodes that are read.
 SurfaceBuilder build_closures(ProgramBuilder& builder, const NodeGraph& graph,
-                              const NodeLink& link) {
+                              SurfaceBuilder::Socket socket) {
+    const NodeLink& link = socket == SurfaceBuilder::Socket::Surface ? graph.surface : graph.volume;
     build_values(builder, graph);
-    SurfaceBuilder surface(graph.nodes.size());
+    SurfaceBuilder surface(graph.nodes.size(), socket);
     if (link.node >= 0) {
         const auto root = static_cast<std::size_t>(link.node);
         NodeBuilder b(builder, graph.nodes[root], root, Shift::None);
@@ -231,7 +232,8 @@ SurfaceBuilder build_closures(ProgramBuilder& builder, const NodeGraph& graph,
 
 SurfaceSources build_graph(ProgramBuilder& builder, const NodeGraph& graph) {
     if (graph.bends_normals()) bend_normals(builder, graph);
-    SurfaceSources sources = build_closures(builder, graph, graph.surface).sources();
+    SurfaceSources sources =
+        build_closures(builder, graph, SurfaceBuilder::Socket::Surface).sources();
     if (graph.has_only_volume()) sources.transparency = {-1, Vec3f(1.0f)};
     return sources;
 }
@@ -303,7 +305,7 @@ VolumeProgram compile_volume(const NodeGraph& graph, const Scene& scene, Texture
                            .material_index = owner.material_index,
                            .ray_type = ray,
                            .read = read_outputs(graph, graph.volume, owner.name, {})};
-    const SurfaceBuilder built = build_closures(builder, graph, graph.volume);
+    const SurfaceBuilder built = build_closures(builder, graph, SurfaceBuilder::Socket::Volume);
     VolumeProgram compiled;
     compiled.sources = built.volume();
     compiled.emission = built.sources().emission;

@@ -292,7 +292,7 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
     c.weight = product(b, c.weight, below_sheen);
     c.emission = scaled(b, c.emission, below_sheen);
     const VectorSource coated = add_coat(b, surface, c.weight);
-    surface.add_emission(b, product(b, c.emission, coated));
+    surface.add_emission_in(SurfaceBuilder::Socket::Surface, b, product(b, c.emission, coated));
 
     const VectorSource tint = b.color("Specular Tint", kOne);
     if (!c.metallic.is(0.0f)) add_metal(b, surface, c, coated, tint);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vector Math, Map Range (of numbers) and Clamp.
+// Vector Math, Map Range and Clamp.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -92,6 +92,31 @@ float smootherstep(float t) {
     return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
 }
 
+/// Numbers from one range to another, as a Map Range node is set.
+class Range {
+  public:
+    explicit Range(const NodeBuilder& b) {
+        const std::string kind = b.text("interpolation_type", "LINEAR");
+        m_steps = kind == "STEPPED";
+        m_smooth = kind == "SMOOTHSTEP";
+        m_smoother = kind == "SMOOTHERSTEP";
+        m_clamps = b.value("clamp", 1.0) != 0.0;
+    }
+
+    /// A range without length is as if `x` lay at its begin.
+    float operator()(float x, float from0, float from1, float to0, float to1, float steps) const {
+        float t = safe_divide(x - from0, from1 - from0);
+        if (m_steps) t = steps > 0.0f ? std::floor(t * (steps + 1.0f)) / steps : 0.0f;
+        if (m_smooth) t = smoothstep(std::clamp(t, 0.0f, 1.0f));
+        if (m_smoother) t = smootherstep(std::clamp(t, 0.0f, 1.0f));
+        const float out = to0 + t * (to1 - to0);
+        return m_clamps ? std::clamp(out, std::min(to0, to1), std::max(to0, to1)) : out;
+    }
+
+  private:
+    bool m_steps, m_smooth, m_smoother, m_clamps;
+};
+
 }  // namespace
 
 void build_vector_math(NodeBuilder& b) {
@@ -112,28 +137,27 @@ void build_vector_math(NodeBuilder& b) {
 }
 
 void build_map_range(NodeBuilder& b) {
-    const std::string kind = b.text("interpolation_type", "LINEAR");
-    if (b.text("data_type", "FLOAT") != "FLOAT")
-        b.warn("ranges of vectors are not supported; rendered as numbers");
-    const bool clamp = b.value("clamp", 1.0) != 0.0;
-    const bool smooth = kind == "SMOOTHSTEP", smoother = kind == "SMOOTHERSTEP";
-    const FloatSource steps = kind == "STEPPED" ? b.number("Steps", 4.0f) : FloatSource{-1, -1.0f};
-    b.output("Result",
-             b.map<float>(
-                 [=](float x, float from0, float from1, float to0, float to1, float n) {
-                     if (from0 == from1) return 0.0f;
-                     float t = (x - from0) / (from1 - from0);
-                     if (n >= 0.0f) t = n > 0.0f ? std::floor(t * (n + 1.0f)) / n : 0.0f;
-                     if (smooth || smoother) {
-                         t = std::clamp(t, 0.0f, 1.0f);
-                         t = smooth ? smoothstep(t) : smootherstep(t);
-                     }
-                     const float out = to0 + t * (to1 - to0);
-                     const bool limited = clamp && !smooth && !smoother;
-                     return limited ? std::clamp(out, std::min(to0, to1), std::max(to0, to1)) : out;
-                 },
-                 b.number("Value"), b.number("From Min"), b.number("From Max", 1.0f),
-                 b.number("To Min"), b.number("To Max", 1.0f), steps));
+    const Range range(b);
+    if (b.text("data_type", "FLOAT") == "FLOAT") {
+        const auto mapped = [range](float x, float from0, float from1, float to0, float to1,
+                                    float n) {
+            return from0 == from1 ? 0.0f : range(x, from0, from1, to0, to1, n);
+        };
+        b.output("Result", b.map<float>(mapped, b.number("Value"), b.number("From Min"),
+                                        b.number("From Max", 1.0f), b.number("To Min"),
+                                        b.number("To Max", 1.0f), b.number("Steps", 4.0f)));
+        return;
+    }
+    const auto mapped = [range](V x, V from0, V from1, V to0, V to1, V n) {
+        Vec3f out;
+        for (int i = 0; i < 3; ++i) out[i] = range(x[i], from0[i], from1[i], to0[i], to1[i], n[i]);
+        return out;
+    };
+    b.output_vector(
+        "Vector", b.map<Vec3f>(mapped, b.vector("Vector"), b.vector("From_Min_FLOAT3"),
+                               b.vector("From_Max_FLOAT3", Vec3f(1.0f)), b.vector("To_Min_FLOAT3"),
+                               b.vector("To_Max_FLOAT3", Vec3f(1.0f)),
+                               b.vector("Steps_FLOAT3", Vec3f(4.0f))));
 }
 
 void build_clamp(NodeBuilder& b) {

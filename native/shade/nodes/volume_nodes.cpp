@@ -103,7 +103,8 @@ void build_volume_coefficients(NodeBuilder& b, SurfaceBuilder& volume, const Flo
     };
     volume.add_absorption(b, coefficients("Absorption Coefficients"));
     add_phase(b, volume, coefficients("Scatter Coefficients"));
-    volume.add_emission(b, coefficients("Emission Coefficients"));
+    volume.add_emission_in(SurfaceBuilder::Socket::Volume, b,
+                           coefficients("Emission Coefficients"));
 }
 
 void build_principled_volume(NodeBuilder& b, SurfaceBuilder& volume, const FloatSource& weight) {
@@ -117,7 +118,8 @@ void build_principled_volume(NodeBuilder& b, SurfaceBuilder& volume, const Float
     volume.add_absorption(
         b, scaled(b, b.map<Vec3f>(absorbed, color, b.color("Absorption Color")), dense));
     const FloatSource strength = product(b, b.number("Emission Strength"), weight);
-    volume.add_emission(b, scaled(b, b.color("Emission Color", Vec3f(1.0f)), strength));
+    volume.add_emission_in(SurfaceBuilder::Socket::Volume, b,
+                           scaled(b, b.color("Emission Color", Vec3f(1.0f)), strength));
     const FloatSource blackbody = b.number("Blackbody Intensity");
     if (blackbody.is(0.0f)) return;
     // Stefan and Boltzmann's law, in millions.
@@ -130,7 +132,7 @@ void build_principled_volume(NodeBuilder& b, SurfaceBuilder& volume, const Float
         b.map<float>(power, blackbody, b.number("Temperature", 1000.0f), weight);
     const VectorSource tinted =
         product(b, b.color("Blackbody Tint", Vec3f(1.0f)), spectrum_color(b, "Temperature"));
-    volume.add_emission(b, scaled(b, tinted, shed));
+    volume.add_emission_in(SurfaceBuilder::Socket::Volume, b, scaled(b, tinted, shed));
 }
 
 }  // namespace granita

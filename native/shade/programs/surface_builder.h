@@ -62,8 +62,10 @@ struct SurfaceSources {
 
 class SurfaceBuilder {
   public:
-    explicit SurfaceBuilder(std::size_t node_count)
-        : m_weights(node_count, FloatSource{-1, 0.0f}), m_outputs(node_count) {}
+    /// Of a material: which one leads to the closures.
+    enum class Socket { Surface, Volume };
+    SurfaceBuilder(std::size_t node_count, Socket socket)
+        : m_socket(socket), m_weights(node_count, FloatSource{-1, 0.0f}), m_outputs(node_count) {}
 
     /// The weight that has reached a node; the constant 0 = none.
     const FloatSource& weight(std::size_t node) const { return m_weights[node]; }
@@ -75,6 +77,10 @@ class SurfaceBuilder {
 
     // Contributions of a closure node; zero ones are left out.
     void add_emission(NodeBuilder& b, const VectorSource& radiance);
+    /// Of what shines in one of the sockets alone.
+    void add_emission_in(Socket socket, NodeBuilder& b, const VectorSource& radiance) {
+        if (socket == m_socket) add_emission(b, radiance);
+    }
     void add_transparency(NodeBuilder& b, const VectorSource& weight);
     void add_lobe(const LobeSource& lobe);
     void add_subsurface(const SubsurfaceSource& lobe);
@@ -87,6 +93,7 @@ class SurfaceBuilder {
     const VolumeSources& volume() const { return m_volume; }
 
   private:
+    Socket m_socket;
     std::vector<FloatSource> m_weights;
     std::vector<std::string> m_outputs;
     SurfaceSources m_sources;
