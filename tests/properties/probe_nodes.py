@@ -196,7 +196,10 @@ def _modes(name):
                 continue
             before = getattr(node, rna.identifier)
             for item in rna.enum_items:
-                setattr(node, rna.identifier, item.identifier)
+                try:
+                    setattr(node, rna.identifier, item.identifier)
+                except TypeError:  # an item of other kinds of trees
+                    continue
                 opened = _open_inputs(node) - seen
                 if opened:
                     found[rna.identifier, item.identifier] = opened
