@@ -226,26 +226,20 @@ class ClusterFinder {
     HWY_INLINE void add(RowVector& row, int segment, const SegmentPart<kMoving>& during,
                         TilePaths& blocks, SweptBounds<kMoving, kLens>& all) {
         SweptBounds<kMoving, kLens> own(hn::FirstN(kTag, kPacket));
-        Extent sum, difference;
-        for_each_corner(m_grid, segment, row.vertex, [&](std::size_t i) HWY_ATTR {
-            const Corner<V> begin = load_corner(m_grid, i);
-            Corner<V> delta = begin;
-            if constexpr (kMoving)
-                delta = from_to(begin,
-                                load_corner(m_grid, i + static_cast<std::size_t>(m_grid.vertices)));
-            own.add(m_grid, begin, delta, during.ends);
-            for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
-                sum.add(own.last_x[e] + own.last_y[e], e);
-                difference.add(own.last_x[e] - own.last_y[e], e);
+        Extent sum[2], difference[2];
+        m_paths.add_corners(segment, row.vertex, during, own, [&]() HWY_ATTR {
+            for (int e = 0; e < kEnds<kMoving>; ++e) {
+                sum[e].add(own.last_x[e] + own.last_y[e]);
+                difference[e].add(own.last_x[e] - own.last_y[e]);
             }
         });
         if constexpr (!kMoving) row.touched &= bits_of(m_paths.find_touching(own, blocks));
         m_bits |= std::uint64_t{row.touched} << row.bin;
-        const Extent* const extents[kDirections] = {&own.x, &own.y, &sum, &difference};
+        const Extent* const extents[kDirections] = {own.x, own.y, sum, difference};
         for (int d = 0; d < kDirections; ++d)
-            for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
-                hn::StoreU(extents[d]->lo[e], kTag, m_extents[e].lo[d] + row.bin);
-                hn::StoreU(extents[d]->hi[e], kTag, m_extents[e].hi[d] + row.bin);
+            for (int e = 0; e < kEnds<kMoving>; ++e) {
+                hn::StoreU(extents[d][e].lo, kTag, m_extents[e].lo[d] + row.bin);
+                hn::StoreU(extents[d][e].hi, kTag, m_extents[e].hi[d] + row.bin);
             }
         all.merge(own, row.lanes());
     }
@@ -261,7 +255,7 @@ class ClusterFinder {
         const V slack[kDirections] = {slack_x, slack_y, slack_x + slack_y, slack_x + slack_y};
         const V ends[2] = {during.time0, during.time1};
         V at[2][kDirections];
-        for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
+        for (int e = 0; e < kEnds<kMoving>; ++e) {
             const V x = set(paths.x.place[0]) + set(paths.x.speed[0]) * ends[e];
             const V y = set(paths.y.place[0]) + set(paths.y.speed[0]) * ends[e];
             at[e][0] = x;

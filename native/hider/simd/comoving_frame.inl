@@ -16,7 +16,7 @@ struct ComovingFrame {
 };
 
 /// How far from a common path, lane 0, something may be on one axis beyond what it is at the ends.
-HWY_INLINE V path_slack(V margin, V bend, V lens_rest, const TilePaths::Axis& path,
+HWY_INLINE V path_slack(V margin, V bend, V lens_rest, const StraightPaths& path,
                         float lens_extent) {
     return margin + bend + lens_rest * set(lens_extent) +
            set((std::fabs(path.place[0]) + std::fabs(path.speed[0])) * 0x1p-20f);
@@ -57,7 +57,7 @@ class PartFinder {
             Corner<V> delta = begin;
             if constexpr (kMoving) delta = from_to(begin, corner(1, k));
             extents.add(m_grid, begin, delta, during.ends);
-            for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
+            for (int e = 0; e < kEnds<kMoving>; ++e) {
                 hn::StoreU(extents.last_x[e], kTag, m_at_x[e] + k);
                 hn::StoreU(extents.last_y[e], kTag, m_at_y[e] + k);
             }
@@ -139,25 +139,24 @@ class PartFinder {
                     const SegmentPart<kMoving>& during, PartPath& out) const {
         const int right = part.n_u, above = part.n_v * (part.n_u + 1);
         float right_x = 0, right_y = 0, up_x = 0, up_y = 0;
-        constexpr int kEnds = kMoving ? 2 : 1;
-        for (int e = 0; e < kEnds; ++e) {
+        for (int e = 0; e < kEnds<kMoving>; ++e) {
             const float *x = m_at_x[e], *y = m_at_y[e];
             right_x += x[right] - x[0] + (x[above + right] - x[above]);
             right_y += y[right] - y[0] + (y[above + right] - y[above]);
             up_x += x[above] - x[0] + (x[above + right] - x[right]);
             up_y += y[above] - y[0] + (y[above + right] - y[right]);
         }
-        const float scale = 2.0f * kEnds / (right_x * up_y - right_y * up_x);
+        const float scale = 2.0f * kEnds<kMoving> / (right_x * up_y - right_y * up_x);
         ComovingFrame::Axis& u = out.frame.u;
         ComovingFrame::Axis& v = out.frame.v;
         u.x = up_y * scale * static_cast<float>(part.n_u);
         u.y = -up_x * scale * static_cast<float>(part.n_u);
         v.x = -right_y * scale * static_cast<float>(part.n_v);
         v.y = right_x * scale * static_cast<float>(part.n_v);
-        const TilePaths::Axis &path_x = out.paths.x, &path_y = out.paths.y;
+        const StraightPaths &path_x = out.paths.x, &path_y = out.paths.y;
         const float end[2] = {hn::GetLane(during.time0), hn::GetLane(during.time1)};
         V u_lo = set(INFINITY), u_hi = set(-INFINITY), v_lo = u_lo, v_hi = u_hi;
-        for (int e = 0; e < kEnds; ++e) {
+        for (int e = 0; e < kEnds<kMoving>; ++e) {
             const V x0 = set(path_x.place[0] + path_x.speed[0] * end[e]);
             const V y0 = set(path_y.place[0] + path_y.speed[0] * end[e]);
             for_each_vector([&](int k) HWY_ATTR {

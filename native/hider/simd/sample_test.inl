@@ -30,7 +30,8 @@ class SampleTest {
         const Offset<V> d2 = offset<kLens>(corner_at<kMoving>(shape, 2, local), at);
         const Offset<V> d3 = offset<kLens>(corner_at<kMoving>(shape, 3, local), at);
         const PairEdges e = edges_of(d0, d1, d2, d3);
-        const Side a = first_of(shape, e), b = second_of(shape, e);
+        const Side a = within(shape.lanes_with(kTriangleA), first_side(e));
+        const Side b = within(shape.lanes_with(kTriangleB), second_side(e));
         M touched = hn::And(valid, hn::Or(a.in, b.in));
         if (hn::AllFalse(kTag, touched)) return touched;
         if (kMoving && m_grid.segments > 1) {
@@ -96,29 +97,9 @@ class SampleTest {
         return at_time(begin, shape.delta_of(k), local);
     }
 
-    static HWY_INLINE Side within(M lanes, Side side) {
+    static HWY_INLINE Side within(M lanes, const Side& side) {
         return {hn::And(lanes, side.in), hn::And(lanes, side.strict)};
     }
-    static HWY_INLINE Side first_of(const Shape& shape, const PairEdges& e) {
-        const M never = hn::MaskFromVec(set(0.0f));
-        Side side{never, never};
-        if (shape.kind & kTriangleA) side = first_side(e);
-        return side;
-    }
-    static HWY_INLINE Side second_of(const Shape& shape, const PairEdges& e) {
-        const M never = hn::MaskFromVec(set(0.0f));
-        Side side{never, never};
-        if (shape.kind & kTriangleB) side = second_side(e);
-        return side;
-    }
-    static HWY_INLINE Side first_of(const ShapeVector& shapes, const PairEdges& e) {
-        return within(shapes.lanes_with(kTriangleA), first_side(e));
-    }
-    static HWY_INLINE Side second_of(const ShapeVector& shapes, const PairEdges& e) {
-        return within(shapes.lanes_with(kTriangleB), second_side(e));
-    }
-    static int kind_of(const Shape& shape, int) { return shape.kind; }
-    static int kind_of(const ShapeVector& shapes, int lane) { return shapes.kind(lane); }
 
     template <Lens kLens>
     HWY_INLINE Offset<V> offset(const Corner<V>& c, const Samples& at) const {
@@ -154,7 +135,7 @@ class SampleTest {
                 corner[k] = {0.0, 0.0, values[k][2][lane], values[k][3][lane]};
             }
             const SurfaceHit hit = hit_micropolygon(
-                corner, offset, static_cast<std::uint8_t>(kind_of(shape, lane)), m_grid.range);
+                corner, offset, static_cast<std::uint8_t>(shape.kind(lane)), m_grid.range);
             const Fragment fragment = fragment_of(hit, m_target.id);
             exact.key[lane] = fragment.key;
             exact.hit[lane] = hit.hit ? 1.0f : 0.0f;

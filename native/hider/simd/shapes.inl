@@ -9,9 +9,11 @@ HWY_INLINE Corner<V> from_to(const Corner<V>& a, const Corner<V>& b) {
 /// A micropolygon during one segment of its motion.
 struct Shape {
     Corner<float> begin[4], delta[4];
-    int kind;    ///< SimdGrid::classes
+    int kinds;   ///< SimdGrid::classes
     int number;  ///< of the segment
 
+    int kind(int) const { return kinds; }
+    HWY_INLINE M lanes_with(int bit) const { return hn::FirstN(kTag, kinds & bit ? kPacket : 0); }
     HWY_INLINE V segment() const { return set(static_cast<float>(number)); }
     HWY_INLINE Corner<V> begin_of(int k) const { return broadcast(begin[k]); }
     HWY_INLINE Corner<V> delta_of(int k) const { return broadcast(delta[k]); }
@@ -31,7 +33,7 @@ inline Shape load_shape(const SimdGrid& grid, int segment, int vertex, int kind)
     const int corner[4] = {vertex, vertex + grid.right, vertex + grid.right + grid.up,
                            vertex + grid.up};
     Shape shape;
-    shape.kind = kind;
+    shape.kinds = kind;
     shape.number = segment;
     for (int k = 0; k < 4; ++k) {
         const Corner<float> a = shape.begin[k] = load(corner[k], segment);

@@ -3,41 +3,42 @@
 // once a SIMD target inside its namespace, after tile_bounds.inl.  Lanes are intervals of one
 // micropolygon, or micropolygons with an interval each.
 
-/// Least and most at the begin and the end of the intervals.
-struct Extent {
-    V lo[2], hi[2];
+/// Of an interval of time: what is still is the same at both.
+template <bool kMoving>
+constexpr int kEnds = kMoving ? 2 : 1;
 
-    HWY_INLINE Extent() {
-        lo[0] = lo[1] = set(INFINITY);
-        hi[0] = hi[1] = set(-INFINITY);
-    }
-    HWY_INLINE void add(V value, int end) {
-        lo[end] = hn::Min(lo[end], value);
-        hi[end] = hn::Max(hi[end], value);
+/// Least and most.
+struct Extent {
+    V lo, hi;
+
+    HWY_INLINE Extent() : lo(set(INFINITY)), hi(set(-INFINITY)) {}
+    HWY_INLINE void add(V value) {
+        lo = hn::Min(lo, value);
+        hi = hn::Max(hi, value);
     }
     /// Also what another has in the lanes of the mask.
     HWY_INLINE void merge(const Extent& other, M mask) {
-        for (int end = 0; end < 2; ++end) {
-            lo[end] = hn::Min(lo[end], hn::IfThenElse(mask, other.lo[end], lo[end]));
-            hi[end] = hn::Max(hi[end], hn::IfThenElse(mask, other.hi[end], hi[end]));
-        }
+        lo = hn::Min(lo, hn::IfThenElse(mask, other.lo, lo));
+        hi = hn::Max(hi, hn::IfThenElse(mask, other.hi, hi));
     }
     /// All lanes are of one thing.
     HWY_INLINE void reduce() {
-        for (V& value : lo) value = hn::MinOfLanes(kTag, value);
-        for (V& value : hi) value = hn::MaxOfLanes(kTag, value);
+        lo = hn::MinOfLanes(kTag, lo);
+        hi = hn::MaxOfLanes(kTag, hi);
     }
 };
 
 /// Along one axis something stays within `reach` of place + speed t.
 struct StraightPath {
     V place, speed, reach;
+
+    HWY_INLINE V at(V time) const { return place + speed * time; }
 };
 
-/// Of (z / focus - 1) / w at both ends together: a still lens has `shear`; where samples have a
-/// focus each it is `depth` / focus - `reciprocal`, of which perspective leaves depth = 1.
+/// At both ends together: a lens point u shifts by u (depth / focus - reciprocal), of which
+/// perspective leaves depth = 1.
 struct LensExtents {
-    Extent shear, depth, reciprocal;
+    Extent depth, reciprocal;
     HWY_INLINE LensExtents() {}  // the implicit one is of no target
 };
 
@@ -46,7 +47,7 @@ struct LensExtents {
 /// 2011): its extremes are at the ends.
 template <bool kMoving, Lens kLens>
 struct SweptBounds {
-    Extent x, y;
+    Extent x[2], y[2];  ///< at the begin and the end of the intervals
     LensExtents lens;
     V z_lo;
     V margin;                ///< more than rounding and the exact test need
@@ -64,8 +65,8 @@ struct SweptBounds {
                         const V ends[2]) {
         const V rounding = rounding_of(grid, c, d);
         Step was;
-        for (int e = 0; e < (kMoving ? 2 : 1); ++e) {
-            const Step now = step(grid, kMoving ? at_time(c, d, ends[e]) : c, rounding);
+        for (int e = 0; e < kEnds<kMoving>; ++e) {
+            const Step now = step(kMoving ? at_time(c, d, ends[e]) : c, rounding);
             if (e == 1) {
                 bend_x = hn::Max(bend_x, bend(was.x, now.x, was, now));
                 bend_y = hn::Max(bend_y, bend(was.y, now.y, was, now));
@@ -77,9 +78,10 @@ struct SweptBounds {
 
     /// Also what others have in the lanes of the mask.
     HWY_INLINE void merge(const SweptBounds& other, M mask) {
-        x.merge(other.x, mask);
-        y.merge(other.y, mask);
-        lens.shear.merge(other.lens.shear, mask);
+        for (int e = 0; e < kEnds<kMoving>; ++e) {
+            x[e].merge(other.x[e], mask);
+            y[e].merge(other.y[e], mask);
+        }
         lens.depth.merge(other.lens.depth, mask);
         lens.reciprocal.merge(other.lens.reciprocal, mask);
         z_lo = hn::Min(z_lo, hn::IfThenElse(mask, other.z_lo, z_lo));
@@ -91,9 +93,10 @@ struct SweptBounds {
 
     /// All lanes are of one thing.
     HWY_INLINE void reduce() {
-        x.reduce();
-        y.reduce();
-        lens.shear.reduce();
+        for (int e = 0; e < kEnds<kMoving>; ++e) {
+            x[e].reduce();
+            y[e].reduce();
+        }
         lens.depth.reduce();
         lens.reciprocal.reduce();
         z_lo = hn::MinOfLanes(kTag, z_lo);
@@ -113,26 +116,31 @@ struct SweptBounds {
 
     /// Where it is at the ends, without lens.
     HWY_INLINE Box box() const {
-        Box box{x.lo[0], x.hi[0], y.lo[0], y.hi[0]};
+        Box box{x[0].lo, x[0].hi, y[0].lo, y[0].hi};
         if constexpr (kMoving)
-            box = {hn::Min(box.x_lo, x.lo[1]), hn::Max(box.x_hi, x.hi[1]),
-                   hn::Min(box.y_lo, y.lo[1]), hn::Max(box.y_hi, y.hi[1])};
+            box = {hn::Min(box.x_lo, x[1].lo), hn::Max(box.x_hi, x[1].hi),
+                   hn::Min(box.y_lo, y[1].lo), hn::Max(box.y_hi, y[1].hi)};
         return {box.x_lo - margin, box.x_hi + margin, box.y_lo - margin, box.y_hi + margin};
     }
 
-    /// `time0`, `time1`: the ends, times of the shutter.  Without lens and margin.
-    HWY_INLINE static StraightPath straight(const Extent& at, V bend, V time0, V time1) {
-        const V half = set(0.5f), begin = (at.lo[0] + at.hi[0]) * half;
-        StraightPath path{begin, set(0.0f), (at.hi[0] - at.lo[0]) * half};
+    /// Of `at`, x or y, between the times of the ends.  Without lens; takes from `fit` those that
+    /// bend by more than `most_bend` or are too large for a number.
+    HWY_INLINE StraightPath straight(const Extent (&at)[2], V bend, V time0, V time1,
+                                     float most_bend, M& fit) const {
+        const V half = set(0.5f), begin = (at[0].lo + at[0].hi) * half;
+        StraightPath path{begin, set(0.0f), (at[0].hi - at[0].lo) * half};
         if constexpr (kMoving) {
-            const V end = (at.lo[1] + at.hi[1]) * half, span = time1 - time0;
-            const V reach = hn::Max(path.reach, (at.hi[1] - at.lo[1]) * half) + bend;
+            const V end = (at[1].lo + at[1].hi) * half, span = time1 - time0;
+            const V reach = hn::Max(path.reach, (at[1].hi - at[1].lo) * half) + bend;
             const M long_enough = hn::Gt(span, set(1e-6f));
             path.speed = hn::IfThenElseZero(long_enough, (end - begin) / span);
             path.reach = hn::IfThenElse(long_enough, reach, reach + hn::Abs(end - begin));
             path.place = begin - path.speed * time0;
             path.reach = path.reach + (hn::Abs(path.place) + hn::Abs(path.speed)) * set(0x1p-20f);
         }
+        path.reach = path.reach + margin;
+        fit = hn::And(fit, hn::And(hn::Le(bend, set(most_bend)),
+                                   hn::Lt(hn::Abs(path.place) + path.reach, set(1e15f))));
         return path;
     }
 
@@ -144,7 +152,7 @@ struct SweptBounds {
     };
 
     /// Adds all but where it is.
-    HWY_INLINE Step step(const SimdGrid& grid, const Corner<V>& at, V rounding) {
+    HWY_INLINE Step step(const Corner<V>& at, V rounding) {
         const V one = set(1.0f);
         Step now;
         now.w = at.w;
@@ -152,11 +160,9 @@ struct SweptBounds {
         now.inverse = one / at.w;
         now.x = at.x * now.inverse;
         now.y = at.y * now.inverse;
-        if constexpr (kLens == Lens::Still)
-            lens.shear.add((at.z * set(grid.inverse_focus) - one) * now.inverse, 0);
-        if constexpr (kLens == Lens::Refocused) {
-            lens.depth.add(at.z * now.inverse, 0);
-            lens.reciprocal.add(now.inverse, 0);
+        if constexpr (kLens != Lens::None) {
+            lens.depth.add(at.z * now.inverse);
+            lens.reciprocal.add(now.inverse);
         }
         z_lo = hn::Min(z_lo, at.z);
         margin = hn::Max(margin, rounding * now.inverse);
@@ -167,8 +173,8 @@ struct SweptBounds {
     HWY_INLINE void add_end(const Step& at, int end) {
         last_x[end] = at.x;
         last_y[end] = at.y;
-        x.add(at.x, end);
-        y.add(at.y, end);
+        x[end].add(at.x);
+        y[end].add(at.y);
     }
 
     /// A path in perspective leaves its chord, from p to q, by at most |chord| |dw| / (4 w).

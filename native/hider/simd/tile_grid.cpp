@@ -2,7 +2,6 @@
 #include "hider/simd/tile_grid.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "hider/simd/project_vertices.h"
@@ -51,32 +50,22 @@ void TileGrid::load(const GridSweep& sweep) {
         m_corners.resize(4 * (count + kLanePadding));
         out.corners = m_corners.data();
     }
-    m_needed.resize((count / kLanePadding + 64) / 64);
+    m_needed.resize(count / kLanePadding + 1);
 }
 
 void TileGrid::need(std::size_t first, std::size_t count) {
-    constexpr std::size_t kVector = kLanePadding;
-    for (std::size_t v = first / kVector; v <= (first + count - 1) / kVector; ++v)
-        m_needed[v / 64] |= std::uint64_t{1} << (v % 64);
+    const std::size_t end = (first + count - 1) / kLanePadding + 1;
+    for (std::size_t v = first / kLanePadding; v < end; ++v) m_needed[v] = 1;
 }
 
 template <class Visit>
 void TileGrid::for_each_needed(Visit visit) const {
-    constexpr std::size_t kVector = kLanePadding;
-    const std::size_t end = m_needed.size() * 64;
-    const auto find = [&](std::size_t v, bool needed) {
-        while (v < end) {
-            const std::uint64_t word = m_needed[v / 64];
-            const std::uint64_t rest = (needed ? word : ~word) >> (v % 64);
-            if (rest != 0) return v + static_cast<std::size_t>(std::countr_zero(rest));
-            v = (v / 64 + 1) * 64;
-        }
-        return end;
-    };
-    for (std::size_t first = find(0, true); first < end;) {
-        const std::size_t last = find(first, false);
-        visit(first * kVector, (last - first) * kVector);
-        first = find(last, true);
+    const auto begin = m_needed.begin(), end = m_needed.end();
+    for (auto first = std::find(begin, end, 1); first != end;) {
+        const auto last = std::find(first, end, 0);
+        visit(static_cast<std::size_t>(first - begin) * kLanePadding,
+              static_cast<std::size_t>(last - first) * kLanePadding);
+        first = std::find(last, end, 1);
     }
 }
 

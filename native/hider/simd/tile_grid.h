@@ -35,8 +35,8 @@ class TileGrid {
     const GridSweep* m_sweep = nullptr;
     std::vector<float> m_px, m_py, m_z;  ///< camera space; padded like the following
     std::vector<float> m_x, m_y, m_w, m_corners;
-    std::vector<PartSegment> m_over;      ///< the tile
-    std::vector<std::uint64_t> m_needed;  ///< a bit for each vector of vertices of all knots
+    std::vector<PartSegment> m_over;     ///< the tile
+    std::vector<std::uint8_t> m_needed;  ///< [vectors of vertices of all knots]
     SimdGrid m_simd;
 };
 

@@ -50,18 +50,20 @@ void WorkingTile::arrange(const TileSamples& samples, const OrderShape& shape) {
 
 void WorkingTile::reorder(const TileSamples& samples, const OrderShape& shape) {
     const SampleOrder before = m_order;
-    const std::vector<float> key = std::move(m_key);
-    const std::vector<SurfaceId> id = std::move(m_id);
+    TileStore seen;
+    seen.key.resize(samples.x.size());
+    seen.id.resize(samples.x.size());
+    store_surfaces(seen);
     arrange(samples, shape);
     std::vector<std::uint32_t> slot(samples.x.size(), 0);  // by index in the table
-    for (std::uint32_t i = 0; i < m_order.slots(); ++i)
-        if (m_order.index(i) != SampleOrder::kNone) slot[m_order.index(i)] = i;
     m_key.assign(m_order.slots(), INFINITY);
     m_id.assign(m_order.slots(), kNoSurface);
-    for (std::size_t i = 0; i < before.slots(); ++i) {
-        if (before.index(i) == SampleOrder::kNone) continue;
-        m_key[slot[before.index(i)]] = key[i];
-        m_id[slot[before.index(i)]] = id[i];
+    for (std::uint32_t i = 0; i < m_order.slots(); ++i) {
+        const std::uint32_t index = m_order.index(i);
+        if (index == SampleOrder::kNone) continue;
+        slot[index] = i;
+        m_key[i] = seen.key[index];
+        m_id[i] = seen.id[index];
     }
     FragmentLists from;
     std::swap(lists, from);
