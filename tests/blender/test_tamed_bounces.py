@@ -60,6 +60,35 @@ def test_lamps_behind_frosted_glass_are_clamped_a_way_at_a_time(
     assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.05)
 
 
+def lamp_towards(scene, place, target, energy, size):
+    lamp = bpy.data.lights.new("Lamp", "AREA")
+    lamp.energy, lamp.size = energy, size
+    light = scene_parts.add_object(scene, "Lamp", lamp, place)
+    way = Vector(target) - light.location
+    light.rotation_euler = way.to_track_quat("-Z", "Y").to_euler()
+    return light
+
+
+def test_what_two_lobes_meet_of_a_lamp_is_clamped_apart(scene, render):
+    """Two glossy lobes in a mirror, each of which shows the lamp brighter than the clamp: together they were held to one, - 25 %."""
+    mirror = scene_parts.add_square(scene, "Mirror", 8.0)
+    surface(mirror, "ShaderNodeBsdfGlossy", (1.0, 1.0, 1.0), Roughness=0.0)
+    wall = scene_parts.add_square(scene, "Wall", 4.0, (0.0, 3.0, 1.6))
+    wall.rotation_euler.x = 1.57
+    wall.visible_camera = False
+    tree = Tree(wall)
+    mix = tree.add("ShaderNodeMixShader")
+    for socket, roughness in zip(mix.inputs[1:], (0.1, 0.15), strict=True):
+        node = tree.add("ShaderNodeBsdfGlossy")
+        node.inputs["Roughness"].default_value = roughness
+        tree.link(node.outputs[0], socket)
+    tree.link(mix.outputs[0], tree.output.inputs["Surface"])
+    lamp_towards(scene, (0.0, 0.5, 2.5), (0.0, 3.0, 1.6), 3000.0, 3.0)
+    look_at_stage(scene, 3.0, 0.5)
+    both = render_bounced(scene, render, 512, limit=2, clamp=1.0)
+    assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.02)
+
+
 @pytest.mark.parametrize("roughness", [0.0, 0.4])
 def test_what_shines_in_first_reflections_is_not_indirect(scene, render, roughness):
     """A bright wall that is no lamp: a clamp of a 30th of what it brings took 95 % of its reflection away."""

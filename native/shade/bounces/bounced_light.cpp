@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/sorted_runs.h"
 #include "math/luminance.h"
 #include "math/sampling.h"
+#include "shade/bounces/passed_media.h"
 #include "shade/bounces/seen_world.h"
 #include "shade/bounces/way_choice.h"
 #include "shade/bounces/white_light.h"
@@ -32,6 +34,8 @@ class BouncedLight::Wave {
           m_limits(light.m_scene.options.bounces),
           m_gathered(gathered),
           m_points(light.m_scene, *light.m_direct.rays(), &light.m_progress) {
+        if (light.m_volumes)
+            m_media.emplace(*light.m_volumes, m_limits, light.m_scene.options.seed);
         const bool sees_world =
             std::ranges::any_of(leaving, [](const LobeRay& ray) { return ray.world.shines(); });
         m_gathered.world.resize(sees_world ? gathered.diffuse.size() : 0);
@@ -58,7 +62,7 @@ class BouncedLight::Wave {
         while (!m_paths.empty()) {
             m_light.m_progress.check();
             trace();
-            if (m_light.m_volumes) pass_volumes();
+            if (m_media) pass_media();
             see_world();
             weigh_met();
             if (std::exchange(is_first, false)) note_near();
@@ -71,7 +75,6 @@ class BouncedLight::Wave {
     }
 
   private:
-    static constexpr std::uint32_t kNothing = ~0u;
     /// Hits that are shaded at once: a step of a program over more would be too long for a cancel.
     static constexpr std::size_t kBatch = 1024;
     /// Where a way is, from which it goes on: on a surface, or in a medium, where there is no hit.
@@ -81,12 +84,7 @@ class BouncedLight::Wave {
         std::size_t point;
         float distance;
     };
-    /// A place in a medium that a way is scattered at.
-    struct Scattering {
-        std::uint32_t path;
-        ScatterPlace place;
-        float u;
-    };
+    using Scattering = PassedMedia::Scattering;
 
     /// Uniform in [0, 1), of a way's place among the samples and how far it has come.
     float chance(const BouncedPath& path, Decision of) const {
@@ -116,9 +114,7 @@ class BouncedLight::Wave {
     bool is_within_limits(const BouncedPath& path) const {
         return path.is_within(m_limits, m_light.m_any_shines || path.next.world.shines() ? 1 : 0);
     }
-    bool is_lit(const BouncedPath& path) const {
-        return path.is_within(m_limits, 0) && !path.is_occlusion(m_limits);
-    }
+    bool is_lit(const BouncedPath& path) const { return path.is_lit(m_limits); }
 
     /// Of what the first rays meet: the light it brings varies as it is near, however little it is.
     void note_near() {
@@ -130,7 +126,7 @@ class BouncedLight::Wave {
             // What lies just out of these rays' sight may darken the next point.
             if (m_meets_nothing[i] && path.is_occlusion(m_limits))
                 near[i] = m_limits.occlusion_distance;
-            if (m_light.m_volumes) near[i] = std::min(near[i], first_light(m_media.of(i)));
+            if (m_media) near[i] = std::min(near[i], m_media->first_light(i));
             if (std::isinf(near[i])) continue;
             m_gathered.nearness[path.next.point] += 1.0f / std::max(near[i], 1e-30f);
             ++m_gathered.met[path.next.point];
@@ -200,70 +196,25 @@ class BouncedLight::Wave {
                     .transparency.is(Vec3f(0.0f));
     }
 
-    /// Light of what fills the ways to the surfaces that were met, and what passes it.  Of a
-    /// surface and a place before it that scatters light, one is gone on with.
-    void pass_volumes() {
-        std::vector<std::uint32_t> met_by(m_paths.size(), kNothing);
-        for (std::uint32_t k = 0; k < m_met.size(); ++k) met_by[m_met[k].ray] = k;
-        for (std::size_t i = 0; i < m_paths.size(); ++i)
-            if (met_by[i] != kNothing) m_rays[i].distance = m_met[met_by[i]].hit.distance;
-        m_light.m_volumes->find(m_rays, m_media);
-        m_scattering.clear();
-        std::vector<std::uint8_t> is_left(m_met.size(), 1);
-        for (std::uint32_t i = 0; i < m_paths.size(); ++i) {
-            BouncedPath& path = m_paths[i];
-            MediumWalk walk(m_media.of(i));
-            const Vec3f emitted = walk.advance(m_rays[i].distance);
-            if (emitted != Vec3f(0.0f)) bring(path, Vec3f(0.0f), emitted * path.met_weight);
-            const bool has_met = met_by[i] != kNothing;
-            if (!has_met && !path.next.world.shines()) m_meets_nothing[i] = 0;
-            const bool has_end = has_met || m_meets_nothing[i];
-            const float scattered = scatter(path, i, has_end ? mean_size(walk.transmittance()) : 0);
-            if (scattered < 1.0f) {
-                path.next.weight *= walk.transmittance() / (1.0f - scattered);
-                continue;
-            }
-            m_meets_nothing[i] = 0;
-            if (has_met) is_left[met_by[i]] = 0;
+    /// Of what fills the ways to the surfaces that were met.
+    void pass_media() {
+        m_media->find(m_met, m_rays);
+        for (std::size_t i = 0; i < m_paths.size(); ++i) {
+            const Vec3f& emitted = m_media->emitted()[i];
+            if (emitted != Vec3f(0.0f))
+                bring(m_paths[i], Vec3f(0.0f), emitted * m_paths[i].met_weight);
         }
-        std::size_t left = 0;
-        for (std::size_t k = 0; k < m_met.size(); ++k)
-            if (is_left[k]) m_met[left++] = m_met[k];
-        m_met.erase(m_met.begin() + static_cast<std::ptrdiff_t>(left), m_met.end());
+        m_media->pass(m_rays, m_paths, m_met, m_meets_nothing);
         shade_scattering();
-    }
-
-    /// 1 where the way is gone on with at a place that scatters light, else how likely that was;
-    /// `passing`: mean of what passes to a surface that is met.
-    float scatter(const BouncedPath& path, std::uint32_t i, float passing) {
-        if (!m_light.m_volumes->scatters() || !is_lit(path) || path.met_weight == 0.0f) return 0.0f;
-        const ScatterSampler sampler(m_rays[i], m_media.of(i), {});
-        const float chance = sampler.scattered() / (sampler.scattered() + passing);
-        if (!(chance > 0.0f)) return 0.0f;
-        const auto step = static_cast<std::uint32_t>(path.depth + 256 * path.passed);
-        const std::uint32_t seed = m_light.m_scene.options.seed;
-        const Vec4f u = scatter_numbers(seed, step, path.next.place);
-        if (!(u.z < chance)) return chance;
-        Scattering made{i, {}, u.w};
-        if (sampler.sample(Vec3f(u), made.place)) {
-            made.place.weight *= path.met_weight / chance;
-            m_scattering.push_back(made);
-        }
-        return 1.0f;
     }
 
     /// Ways after as many surfaces together.
     void shade_scattering() {
-        std::ranges::stable_sort(m_scattering, {},
-                                 [&](const Scattering& s) { return m_paths[s.path].depth; });
-        for (std::size_t begin = 0, end; begin < m_scattering.size(); begin = end) {
-            const int depth = m_paths[m_scattering[begin].path].depth;
-            for (end = begin;
-                 end < m_scattering.size() && m_paths[m_scattering[end].path].depth == depth;)
-                ++end;
-            shade_scattering({m_scattering.begin() + static_cast<std::ptrdiff_t>(begin),
-                              m_scattering.begin() + static_cast<std::ptrdiff_t>(end)},
-                             depth);
+        const std::span<const Scattering> all = m_media->scattering();
+        for (std::size_t begin = 0, end; begin < all.size(); begin = end) {
+            const int depth = m_paths[all[begin].path].depth;
+            for (end = begin; end < all.size() && m_paths[all[end].path].depth == depth;) ++end;
+            shade_scattering(all.subspan(begin, end - begin), depth);
         }
     }
 
@@ -278,8 +229,10 @@ class BouncedLight::Wave {
         m_leaving.rays.clear();
         const std::vector<Vec3f> light = m_light.m_direct.reflect(
             places.points(), places.closure(), {}, nullptr, {}, nullptr, &m_leaving);
+        const std::vector<Vec3f> met = held_met(
+            batch.size(), [&](std::size_t k) -> const auto& { return m_paths[batch[k].path]; });
         for (std::size_t k = 0; k < batch.size(); ++k)
-            bring(m_paths[batch[k].path], light[k], Vec3f(0.0f), m_leaving.met[k]);
+            bring(m_paths[batch[k].path], light[k], Vec3f(0.0f), met[k]);
         std::ranges::stable_sort(m_leaving.rays, {}, &LobeRay::point);
         auto candidate = m_leaving.rays.begin();
         for (std::uint32_t k = 0; k < batch.size(); ++k) {
@@ -323,7 +276,7 @@ class BouncedLight::Wave {
         tame(batch, closure);
         std::vector<Vec3f> light(batch.size(), Vec3f(0.0f)), emitted = light;
         m_leaving.rays.clear();
-        m_leaving.met.assign(batch.size(), {});
+        m_leaving.met.clear();
         if (is_lit(first))
             light = m_light.m_direct.reflect(ran.points(), closure, key, nullptr, {}, nullptr,
                                              &m_leaving);
@@ -331,8 +284,10 @@ class BouncedLight::Wave {
             if (!m_light.is_lamp(*batch[i].hit) &&
                 in_light_set(batch[i].path->next.receives, instance.receiver_set))
                 emitted[i] = closure.emission[i];
+        const std::vector<Vec3f> met = held_met(
+            batch.size(), [&](std::size_t i) -> const auto& { return *batch[i].path; });
         for (std::size_t i = 0; i < batch.size(); ++i)
-            bring(*batch[i].path, light[i], emitted[i], m_leaving.met[i]);
+            bring(*batch[i].path, light[i], emitted[i], met[i]);
         go_on(batch, ran.points(), closure);
     }
 
@@ -354,15 +309,24 @@ class BouncedLight::Wave {
         }
     }
 
-    /// `emitted` by what is met first is no indirect light, and not clamped as such (Cycles).
+    /// What lobes have met of lamps, [count] ways, path_of(i) each.
+    template <class PathOf>
+    std::vector<Vec3f> held_met(std::size_t count, PathOf path_of) const {
+        std::vector<Vec3f> held(count, Vec3f(0.0f));
+        for (const MetLight& met : m_leaving.met)
+            held[met.point] += path_of(met.point).held(m_limits.clamp, met.light, met.whole);
+        return held;
+    }
+
+    /// `met`: held_met().  `emitted` by what is met first is no indirect light, and not clamped as
+    /// such (Cycles).
     void bring(const BouncedPath& path, const Vec3f& light, const Vec3f& emitted,
-               const MetLight& met = {}) {
+               const Vec3f& met = Vec3f(0.0f)) {
         const LobeRay& ray = path.next;
         const bool is_mirrored = path.kind == BouncedPath::Kind::Mirrored;
         const float clamp = m_limits.clamp;
         const Vec3f shining = path.held(path.depth > 1 ? clamp : 0.0f, emitted);
-        const Vec3f brought =
-            path.held(clamp, light) + shining + path.held(clamp, met.light, met.times());
+        const Vec3f brought = path.held(clamp, light) + shining + met;
         const Vec3f diffuse = brought * path.diffuse_part;
         m_gathered.diffuse[ray.point] += diffuse;
         (is_mirrored ? m_gathered.mirrored : m_gathered.glossy)[ray.point] += brought - diffuse;
@@ -457,8 +421,7 @@ class BouncedLight::Wave {
     std::vector<std::uint32_t> m_order;
     LeavingRays m_leaving{.tells_met = true};
     std::vector<ChosenWay> m_chosen;
-    RayMedia m_media;
-    std::vector<Scattering> m_scattering;
+    std::optional<PassedMedia> m_media;  ///< where there are any
     std::uint64_t m_rays_traced = 0, m_hits_shaded = 0;
 };
 

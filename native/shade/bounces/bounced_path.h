@@ -54,6 +54,10 @@ struct BouncedPath {
                glossy <= limits.glossy + more && transmission <= limits.transmission + more &&
                volume <= limits.volume + more;
     }
+    /// Whether lamps light what it meets.
+    bool is_lit(const Bounces& limits) const {
+        return is_within(limits, 0) && !is_occlusion(limits);
+    }
     /// Whether what it meets only hides the world.  Passing through things does not count, and
     /// being mirrored once, as in Cycles.
     bool is_occlusion(const Bounces& limits) const {

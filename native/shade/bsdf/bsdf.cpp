@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/bsdf/bsdf.h"
 
+#include "math/luminance.h"
 #include "math/sampling.h"
 #include "shade/bsdf/bsdf_albedo.h"
 #include "shade/bsdf/microfacet.h"
@@ -12,10 +13,6 @@ namespace {
 /// What Burley's diffuse lobe reflects back, of all of it: most where it grazes the view.
 constexpr float kRetro = 0.1f;
 
-float average(const Vec3f& c) {
-    return (c.x + c.y + c.z) * (1.0f / 3.0f);
-}
-
 }  // namespace
 
 PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points, std::size_t point,
@@ -25,7 +22,6 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
       m_geometric_normal(points.geometric_normal[point]),
       m_round(points.round) {
     m_lobes.reserve(closure.lobes.size());
-    float total = 0.0f;
     for (std::size_t k = 0; k < closure.lobes.size(); ++k) {
         const Lobe& source = closure.lobes[k];
         Prepared lobe;
@@ -50,11 +46,11 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
                 lobe.burley = roughness;
             else
                 prepare_diffuse(lobe, source.f0.empty() ? nullptr : &source.f0[point], roughness);
-            lobe.importance = std::abs(average(lobe.weight)) * (lobe.retro_alone ? kRetro : 1.0f);
+            lobe.importance = mean_size(lobe.weight) * (lobe.retro_alone ? kRetro : 1.0f);
         } else if (is_shaped(lobe.kind)) {
             lobe.shape = make_shape(source, point, view);
             if (!lobe.shape) continue;
-            lobe.importance = std::abs(average(lobe.weight * lobe.shape->albedo()));
+            lobe.importance = mean_size(lobe.weight * lobe.shape->albedo());
         } else {
             if (lobe.cos_wi <= 0.0f) continue;  // seen from below: reflects nothing
             if (lobe.fresnel == FresnelKind::None && source.f0.empty()) lobe.f0 = Vec3f(1.0f);
@@ -73,17 +69,17 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
                 const bool is_blurred = !source.made.empty() && source.made[point] >= 0.0f;
                 compensate(lobe, is_blurred ? source.made[point] : std::sqrt(lobe.alpha), albedo);
             }
-            lobe.importance = std::abs(average(lobe.weight * passed(lobe, lobe.cos_wi)));
+            lobe.importance = mean_size(lobe.weight * passed(lobe, lobe.cos_wi));
         }
         m_transmits = m_transmits || granita::transmits(lobe.kind);
-        total += lobe.importance;
+        m_importance += lobe.importance;
         m_lobes.push_back(lobe);
     }
-    if (!closure.transparency.empty() && total > 0.0f)
-        m_part_of_all = total / (total + std::abs(average(closure.transparency[point])));
+    if (!closure.transparency.empty() && m_importance > 0.0f)
+        m_part_of_all = m_importance / (m_importance + mean_size(closure.transparency[point]));
     for (Prepared& lobe : m_lobes)
-        lobe.importance =
-            total > 0.0f ? lobe.importance / total : 1.0f / static_cast<float>(m_lobes.size());
+        lobe.importance = m_importance > 0.0f ? lobe.importance / m_importance
+                                              : 1.0f / static_cast<float>(m_lobes.size());
 }
 
 Vec3f PointBsdf::passed(const Prepared& lobe, float cos_half) const {
@@ -145,6 +141,13 @@ float PointBsdf::pdf(std::size_t index, const Vec3f& wo) const {
     const float cos_o = glm::dot(lobe.normal, wo);
     if (cos_o <= 0.0f) return 0.0f;
     return lobe.kind == LobeKind::Diffuse ? cos_o * kInversePi : pdf_glossy(lobe, wo);
+}
+
+float PointBsdf::chance(std::size_t index, const Vec3f& wo) const {
+    const Prepared& lobe = m_lobes[index];
+    return lobe.kind == LobeKind::Refraction && !lobe.sharp && m_importance > 0.0f
+               ? chance_of_refraction(lobe, wo) / m_importance
+               : lobe.importance * pdf(index, wo);
 }
 
 /// Hair mirrors light, and lets it through (Cycles counts the latter as transmission).

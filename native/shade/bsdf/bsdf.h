@@ -83,6 +83,10 @@ class PointBsdf {
     BsdfValue evaluate(const Vec3f& wo, bool is_drawn = false) const;
     /// Density of sample(), per solid angle; 0 for sharp lobes.
     float pdf(std::size_t lobe, const Vec3f& wo) const;
+    /// The same, were one sample taken of all lobes: by their importance, but of what refracts by
+    /// what the facets let pass that send it there (Cycles), as where glass mirrors the whole view
+    /// at its own angle.
+    float chance(std::size_t lobe, const Vec3f& wo) const;
     /// What a sample of the lobe along `wo` counts as, by a number in [0, 1).
     LightPart counted_as(std::size_t lobe, const Vec3f& wo, float uniform) const;
     /// False when the sampled direction leaves on the wrong side of the surface.
@@ -147,8 +151,10 @@ class PointBsdf {
     void prepare_refraction(Prepared& lobe) const;
     Vec3f transmittance(const Prepared& lobe, float cos_half) const;
     bool refracting_facets(const Prepared& lobe, const Vec3f& wo, RefractingFacets& out) const;
+    float density_of_refraction(const Prepared& lobe, const RefractingFacets& facets) const;
     Vec3f evaluate_refraction(const Prepared& lobe, const Vec3f& wo) const;
     float pdf_refraction(const Prepared& lobe, const Vec3f& wo) const;
+    float chance_of_refraction(const Prepared& lobe, const Vec3f& wo) const;
     void reach_refraction(const Prepared& lobe, LobeReach& reach) const;  // lobe_reach.cpp
     Vec3f evaluate_shape(const Prepared& lobe, const Vec3f& wo, bool is_drawn) const;
     /// Share of the light that facets send the lobe's way.
@@ -160,8 +166,8 @@ class PointBsdf {
 
     std::vector<Prepared> m_lobes;
     Vec3f m_wi, m_normal, m_geometric_normal;
-    bool m_round;  ///< as ShadingPoints::round
-    float m_part_of_all = 1.0f;
+    bool m_round;                                     ///< as ShadingPoints::round
+    float m_part_of_all = 1.0f, m_importance = 0.0f;  ///< of all lobes
     bool m_transmits = false;
 };
 

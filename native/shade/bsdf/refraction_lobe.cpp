@@ -2,6 +2,7 @@
 // Microfacets that refract: Walter, Marschner, Li and Torrance 2007, "Microfacet Models for
 // Refraction through Rough Surfaces".  Light is not gathered where it enters a denser body: as in
 // Cycles radiance, not radiance over the squared index, is kept along a path.
+#include "math/luminance.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/bsdf/fresnel.h"
 #include "shade/bsdf/microfacet.h"
@@ -54,7 +55,17 @@ Vec3f PointBsdf::evaluate_refraction(const Prepared& lobe, const Vec3f& wo) cons
 
 float PointBsdf::pdf_refraction(const Prepared& lobe, const Vec3f& wo) const {
     RefractingFacets facets;
+    return refracting_facets(lobe, wo, facets) ? density_of_refraction(lobe, facets) : 0.0f;
+}
+
+float PointBsdf::chance_of_refraction(const Prepared& lobe, const Vec3f& wo) const {
+    RefractingFacets facets;
     if (!refracting_facets(lobe, wo, facets)) return 0.0f;
+    return mean_size(lobe.weight * transmittance(lobe, facets.half_wi)) *
+           density_of_refraction(lobe, facets);
+}
+
+float PointBsdf::density_of_refraction(const Prepared& lobe, const RefractingFacets& facets) const {
     if (lobe.distribution != Distribution::Ggx)
         return facets.density * facets.half_normal * facets.jacobian;
     return facets.density * facets.half_wi * facets.jacobian /

@@ -145,8 +145,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         const LitPlace place = set.place_at(point, sequence.third(index));
         const float sign = LitGrid::sign(s, samples.count);
         if (grid.leaving && (grid.leaving->diffuse || meets_lamps)) {
-            Ray ray = set.ray(point, place, wo, kInfinity);
-            ray.type = type;
+            Ray ray = set.ray(point, place, wo, kInfinity, type);
             if (grid.leaving->diffuse) {
                 const float chance = grid.chance(samples.first + index, point.bsdf.index(lobe));
                 const LightPart part = point.counted_as(lobe, wo, chance);
@@ -160,9 +159,9 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
                 grid.carries_world()
                     ? world.ahead(set, grid, point, {wo, sent, sign, type, meets_lamps})
                     : WorldAhead();
-            leave(set, grid, point, ray, sent * Vec3f(1.0f / density),
-                  density / static_cast<float>(point.lobe_samples(0)), samples.first + index,
-                  ahead);
+            const float chosen = point.chance_density(wo);
+            leave(set, grid, point, ray, sent * Vec3f(1.0f / density), {chosen / density, chosen},
+                  samples.first + index, ahead);
         }
         if (world.shines() && !grid.carries_world())
             world.meet(set, grid, point, place, {wo, value, sign, type, meets_lamps});
@@ -196,6 +195,7 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
     Vec3f wo, share;
     if (!point.bsdf.deflect(lobe, wo, share)) return;
     const int count = set.varies ? point.sample_count : 1;
+    const float chance = point.bsdf.importance(lobe);
     BsdfValue value;
     value.part(point.bsdf.part(lobe)) = share / static_cast<float>(count);
     const SobolPoints sequence = grid.sequence(point, 1 + point.bsdf.index(lobe), count);
@@ -210,12 +210,11 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
             if (total(weight) != Vec3f(0.0f))
                 add_met(set, grid,
                         {&point, &lamp, place, met, weight, type, LitGrid::sign(s, count),
-                         1.0f / point.bsdf.importance(lobe)});
+                         1.0f / chance});
         });
         if (grid.leaving) {
-            Ray ray = set.ray(point, place, wo, kInfinity);
-            ray.type = type;
-            leave(set, grid, point, ray, value, kInfinity,
+            leave(set, grid, point, set.ray(point, place, wo, kInfinity, type), value,
+                  {chance / static_cast<float>(count), kInfinity},
                   point.place * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(s),
                   carries_world ? world.ahead_of_mirror() : WorldAhead());
         }
@@ -354,7 +353,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
     if (noise) noise->assign(points.count, 0.0f);
     if (parts) parts->resize(points.count);
-    if (leaving && leaving->tells_met) leaving->met.assign(points.count, {});
+    if (leaving) leaving->met.clear();
     const bool dark = m_impl->set.lamps.empty() && !m_impl->world.shines();
     if (closure.lobes.empty() || (dark && !parts && !leaving)) return radiance;
     const GgxAlbedo& albedo = GgxAlbedo::shared();

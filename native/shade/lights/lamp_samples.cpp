@@ -118,7 +118,7 @@ void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& p
     const BsdfValue parts = bsdf * (sample.radiance / density);
     if (m_set.rays && lamp.casts_shadow())
         m_shadows.send(point.index, value / density, parts, sign,
-                       m_set.ray_to(point, place, lamp, sample));
+                       m_set.ray_to(point, place, lamp, sample, RayType::Shadow));
     else
         m_shadows.send(point.index, value / density, parts, sign);
 }

@@ -100,20 +100,23 @@ int LampSet::samples_of(const LitPoint& point, const Lamp& lamp) const {
 }
 
 Ray LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& direction,
-                 float distance, int blocker_set) const {
+                 float distance, RayType type, int blocker_set) const {
     const float there = glm::dot(place.normal, direction);
     const float at_frame = glm::dot(point.at_frame.normal, direction);
     const bool transmits = point.bsdf.transmits();
     const bool turned_away =
         transmits && at_frame < 0.0f ? there >= 0.0f : there <= 0.0f && at_frame > 0.0f;
-    // Lobes go by the smooth surface: light that they let through comes from below, be it above the
-    // face itself.
-    const bool below = transmits && glm::dot(point.bsdf.surface_normal(), direction) < 0.0f;
     const LitPlace& from = turned_away ? point.at_frame : place;
     const Vec3f& outward = point.bsdf.surface_normal();
-    if (point.round && (transmits || glm::dot(outward, direction) < 0.0f))
-        return {from.start_around(outward, direction), direction, distance, from.time, blocker_set};
-    return {below ? from.start_below() : from.start, direction, distance, from.time, blocker_set};
+    // Lobes go by the smooth surface: light that they let through comes from below, be it above the
+    // face itself.
+    const Vec3f& up = type == RayType::Shadow ? outward : from.normal;
+    const bool below = transmits && glm::dot(up, direction) < 0.0f;
+    const bool around = point.round && (transmits || glm::dot(outward, direction) < 0.0f);
+    const Vec3f start = around  ? from.start_around(outward, direction)
+                        : below ? from.start_below()
+                                : from.start;
+    return {start, direction, distance, from.time, blocker_set, type};
 }
 
 /// Where it would end at the faces, though normals are turned to the lamp: a triangle does not
@@ -136,10 +139,10 @@ void LampSet::bend(const LitPoint& point, const LitPlace& place, Ray& ray) {
 }
 
 Ray LampSet::ray_to(const LitPoint& point, const LitPlace& place, const Lamp& lamp,
-                    const LightSample& sample) const {
-    Ray to = ray(point, place, sample.direction, sample.distance, lamp.blocker_set());
+                    const LightSample& sample, RayType type) const {
+    Ray to = ray(point, place, sample.direction, sample.distance, type, lamp.blocker_set());
     const Vec3f unbent = to.start;
-    if (point.rise) bend(point, place, to);
+    if (point.rise && type == RayType::Shadow) bend(point, place, to);
     const bool is_near = sample.distance < std::numeric_limits<float>::infinity();
     if (!lamp.is_surface() && (to.start == unbent || !is_near)) return to;
     // Where it starts beside the point, as of strands and above coarse faces, it would pass the
@@ -160,18 +163,15 @@ Vec3f LampSet::passed(LitGrid& grid, const LitPoint& point, const LitPlace& plac
                       const LightSample& sample, RayType type) const {
     if (!rays) return Vec3f(1.0f);
     ++grid.shadow_rays;
-    Ray asked = ray_to(point, place, lamp, sample);
-    asked.type = type;
-    return rays->transmittance(asked);
+    return rays->transmittance(ray_to(point, place, lamp, sample, type));
 }
 
 Vec3f LampSet::occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
                          const Vec3f& direction, RayType type) const {
     if (!rays) return Vec3f(1.0f);
     ++grid.occlusion_rays;
-    Ray asked = ray(point, place, direction, std::numeric_limits<float>::infinity());
-    asked.type = type;
-    return rays->transmittance(asked);
+    return rays->transmittance(
+        ray(point, place, direction, std::numeric_limits<float>::infinity(), type));
 }
 
 }  // namespace granita

@@ -35,12 +35,14 @@ struct LampSet {
     /// None of a lamp below the horizon; one tells all about a lamp without size that nothing
     /// moving can come before.
     int samples_of(const LitPoint& point, const Lamp& lamp) const;
+    /// Of a lobe's sample, which lies to a side of the face, or RayType::Shadow: to light, which
+    /// may come from a side of the smooth surface alone.
     Ray ray(const LitPoint& point, const LitPlace& place, const Vec3f& direction, float distance,
-            int blocker_set = -1) const;
+            RayType type, int blocker_set = -1) const;
     static void bend(const LitPoint& point, const LitPlace& place, Ray& ray);
-    /// Towards what a lamp sends.
+    /// Towards what a lamp sends; likewise.
     Ray ray_to(const LitPoint& point, const LitPlace& place, const Lamp& lamp,
-               const LightSample& sample) const;
+               const LightSample& sample, RayType type) const;
     /// What of a lamp's light, met by a ray of a lobe's, passes what such rays meet.
     Vec3f passed(LitGrid& grid, const LitPoint& point, const LitPlace& place, const Lamp& lamp,
                  const LightSample& sample, RayType type) const;

@@ -25,7 +25,8 @@ float width_of(const ShadingPoints& points, std::size_t i) {
 }
 
 void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& ray,
-           const BsdfValue& value, float pdf, std::uint32_t place, const WorldAhead& world) {
+           const BsdfValue& value, const WayChance& chance, std::uint32_t place,
+           const WorldAhead& world) {
     const Vec3f weight = total(value);
     if (weight == Vec3f(0.0f) || !is_finite(weight)) return;
     // A sample's part of the hemisphere, for rays that diffuse lobes send; else what a point of the
@@ -36,21 +37,14 @@ void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& 
     const float spread = is_diffuse(ray.type)
                              ? std::sqrt(2.0f * kPi / static_cast<float>(point.sample_count))
                              : seen;
-    const int mirrored = set.varies ? point.sample_count : 1;
-    float share = 1.0f / static_cast<float>(point.lobe_samples(mirrored));
-    // All that a mirror brings comes along its ways, and stands for what else there is as often as
-    // chance would have chosen it.
-    if (is_sharp(ray.type))
-        share = std::min(1.0f / static_cast<float>(mirrored),
-                         mean_size(weight) / mean_size(total(point.bsdf.albedo())));
     // Each grid has a part of the sequences to itself, as samples that are shaded alone have.
     const auto first = grid.placed ? 0u : static_cast<std::uint32_t>(grid.seed) << 14;
     const Vec3f whole = glm::max(weight, Vec3f(std::numeric_limits<float>::min()));
-    share *= point.bsdf.part_of_all();
-    pdf *= point.bsdf.part_of_all();
+    const float of_all = point.bsdf.part_of_all();
     grid.leaving->rays.push_back({ray, weight, value.diffuse / whole, value.transmission / whole,
-                                  share, pdf, static_cast<std::uint32_t>(point.index),
-                                  first + place, point.width, spread, grid.receives, world});
+                                  of_all * chance.share, of_all * chance.pdf,
+                                  static_cast<std::uint32_t>(point.index), first + place,
+                                  point.width, spread, grid.receives, world});
 }
 
 }  // namespace granita

@@ -14,11 +14,17 @@ Vec3f inwards(const ShadingPoints& points, std::size_t i);
 /// Metres from a point to its neighbours.
 float width_of(const ShadingPoints& points, std::size_t i);
 
+/// How likely chance takes a way.
+struct WayChance {
+    float share;  ///< as LobeRay::share, of what does not pass straight through
+    float pdf;    ///< of its direction, per solid angle; infinite for a mirror's
+};
+
 /// Puts the way of a sample into LitGrid::leaving, which is asked for.
 /// @param value reflected radiance per radiance that comes along `ray`.
-/// @param pdf of its direction, per solid angle; infinite for a mirror's.
 /// @param place in the sequence of its lobe.
 void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& ray,
-           const BsdfValue& value, float pdf, std::uint32_t place, const WorldAhead& world);
+           const BsdfValue& value, const WayChance& chance, std::uint32_t place,
+           const WorldAhead& world);
 
 }  // namespace granita

@@ -66,8 +66,7 @@ struct LitGrid {
     /// Of a lamp that a lobe has met; `whole`: as MetLamp's.
     void add_met(std::size_t point, const Vec3f& light, float sign, float whole) {
         if (!tells_met()) return add(point, light, sign);
-        leaving->met[point].light += light;
-        leaving->met[point].whole += whole * luminance(light);
+        leaving->met.push_back({static_cast<std::uint32_t>(point), light, whole});
     }
 
     /// A sequence that the grid shares, from its sample `first` on.

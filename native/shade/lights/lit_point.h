@@ -74,13 +74,6 @@ struct LitPoint {
             samples[k].count = std::max(1, static_cast<int>(std::lround(share)));
         }
     }
-    /// Samples of all lobes; a mirror's ways are counted as `mirrored`.
-    int lobe_samples(int mirrored) const {
-        int sum = 0;
-        for (std::size_t k = 0; k < samples.size(); ++k)
-            sum += bsdf.is_sharp(k) ? mirrored : samples[k].count;
-        return sum;
-    }
     /// Expected samples a solid angle around `wo` over the lobes that `which` accepts.
     template <class Which>
     float lobe_density(const Vec3f& wo, Which which) const {
@@ -100,7 +93,7 @@ struct LitPoint {
     float chance_density(const Vec3f& wo) const {
         float sum = 0.0f;
         for (std::size_t k = 0; k < samples.size(); ++k)
-            if (samples[k].count > 0) sum += bsdf.importance(k) * bsdf.pdf(k, wo);
+            if (samples[k].count > 0) sum += bsdf.chance(k, wo);
         return sum;
     }
     /// What a sample along `wo`, drawn from `lobe`, may count as, by a number in [0, 1): as often
@@ -110,7 +103,7 @@ struct LitPoint {
         float left = uniform * chance_density(wo);
         for (std::size_t k = 0; k < samples.size(); ++k) {
             if (samples[k].count == 0) continue;
-            const float own = bsdf.importance(k) * bsdf.pdf(k, wo);
+            const float own = bsdf.chance(k, wo);
             if (left < own) return bsdf.counted_as(k, wo, left / own);
             left -= own;
         }

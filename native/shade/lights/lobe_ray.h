@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "math/luminance.h"
 #include "math/vec.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/rays/ray.h"
@@ -40,22 +39,20 @@ struct LobeRay {
     WorldAhead world;
 };
 
-/// Light of lamps that samples of a point's lobes have met.
+/// Light of a lamp that a sample of a point's lobes has met.
 struct MetLight {
-    Vec3f light{0.0f};
-    /// Its luminance, had chance taken one sample of all lobes, which stands for all: Cycles holds
-    /// that to its clamp.
-    float whole = 0.0f;
-    float times() const {
-        const float now = luminance(light);
-        return now > 0.0f ? whole / now : 1.0f;
-    }
+    std::uint32_t point;  ///< in the grid, or batch
+    Vec3f light;
+    /// How many times as much it were, had chance taken one sample of all lobes, which stands for
+    /// all: Cycles holds that to its clamp.
+    float whole;
 };
 
 /// Those of the points of a grid, or batch.
 struct LeavingRays {
     std::vector<LobeRay> rays{};
-    /// True: what lobes meet of lamps is left out of reflect() and told by itself, [points].
+    /// True: what lobes meet of lamps is left out of reflect() and told by itself, a point's in
+    /// the order of its samples.
     bool tells_met = false;
     std::vector<MetLight> met{};
     /// False: what diffuse lobes reflect is known, and no part of it is looked for.

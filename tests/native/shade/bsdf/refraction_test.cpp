@@ -58,6 +58,34 @@ double sphere_integral(Value value, int steps = 700) {
     return sum * kPi * kPi / (static_cast<double>(steps) * steps);
 }
 
+// Seen from within at 50 degrees, beyond the 42 of total reflection: the view's own angle lets
+// nothing pass, tilted facets do.  Cycles takes a way out of the glass as often as they let it
+// pass.
+TEST(RoughRefraction, is_as_likely_as_its_facets_let_pass_beyond_total_reflection) {
+    const Vec3f wi = at_cosine(0.643f);
+    const ShadingPoints points = seen_from(wi);
+    constexpr float kIor = 1.0f / kGlass;
+    SurfaceClosure closure = closure_of(with_fresnel(glossy(points, 0.5f), kIor));
+    closure.lobes.push_back(with_fresnel(refraction(points, 0.5f, kIor), kIor));
+    const PointBsdf bsdf(closure, points, 0, GgxAlbedo::shared());
+    ASSERT_EQ(bsdf.importance(1), 0.0f);
+    int passing = 0;
+    for (const Vec3f& wo :
+         {Vec3f(-0.9f, 0, -0.4f), Vec3f(-0.6f, 0.2f, -0.7f), Vec3f(-0.99f, 0.1f, -0.1f)}) {
+        const Vec3f out = glm::normalize(wo);
+        if (!some_facet_refracts(wi, out, kIor)) continue;
+        ++passing;
+        // Fresnel's equations at the facet, of both polarisations.
+        const Vec3f half = glm::normalize(kIor * out + wi);
+        const double c = std::abs(glm::dot(half, wi)), t = std::abs(glm::dot(half, out));
+        const double s = (c - kIor * t) / (c + kIor * t), p = (t - kIor * c) / (t + kIor * c);
+        const double passed = 1.0 - 0.5 * (s * s + p * p);
+        EXPECT_NEAR(bsdf.chance(1, out), bsdf.pdf(1, out) * passed, 1e-4 * bsdf.pdf(1, out));
+        EXPECT_GT(bsdf.chance(1, out), 0.0f);
+    }
+    EXPECT_GE(passing, 2);
+}
+
 // A stick in water: 60 degrees in air is asin(sin 60 / 1.5) in glass, 35.264 degrees.
 TEST(SharpRefraction, obeys_snell_and_passes_what_is_not_reflected) {
     const ShadingPoints points = seen_from(at_cosine(0.5f));
