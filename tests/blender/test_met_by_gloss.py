@@ -80,8 +80,9 @@ def test_a_lamp_without_shadows_is_hidden_in_a_mirror(scene, render):
     agree(render_bounced(scene, render, 64, limit=1, samples=64))
 
 
+@pytest.mark.parametrize("limit", [0, 3])
 @pytest.mark.parametrize("roughness", [0.0, 0.3])
-def test_a_window_that_is_clear_to_shadow_rays_alone(scene, render, roughness):
+def test_a_window_that_is_clear_to_shadow_rays_alone(scene, render, roughness, limit):
     """As those are made whose panes would darken rooms: gloss saw lamps through the pane as if it were not there, and
     through the glass once more."""
     wall(scene, roughness)
@@ -95,4 +96,4 @@ def test_a_window_that_is_clear_to_shadow_rays_alone(scene, render, roughness):
     tree.link(tree.add("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[2])
     tree.link(mix.outputs[0], tree.output.inputs["Surface"])
     lamp_over(scene, 6.0)
-    agree(render_bounced(scene, render, 256, limit=3))
+    agree(render_bounced(scene, render, 256, limit=limit))

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "shade/lights/leaving_rays.h"
+
 namespace granita {
 namespace {
 
@@ -185,7 +187,7 @@ class Sharing {
         m_at = i;
         m_spreads = {};
         m_heights = {};
-        const float step = std::max(glm::length(m_points.dp_du[i]), glm::length(m_points.dp_dv[i]));
+        const float step = width_of(m_points, i);
         m_most_by_reach = 1.0f / (m_noisy.least_reach * std::max(step, 1e-30f));
         const Vec3f& normal = m_points.normal[i];
         const Vec3f other = std::abs(normal.x) < 0.7f ? Vec3f(1, 0, 0) : Vec3f(0, 1, 0);

@@ -110,7 +110,7 @@ class SubsurfaceLight::Batch {
         m_p += inwards(m_points, i);
         const std::uint32_t face = m_points.faces.empty() ? m_key.face : m_points.faces[i];
         m_offset = m_rays.ray_offset({m_key.instance, face});
-        const float step = std::max(glm::length(m_points.dp_du[i]), glm::length(m_points.dp_dv[i]));
+        const float step = width_of(m_points, i);
         const float height = step + glm::length(m_offset(m_p, m_normal) - m_p);
         const Ray down{m_p + height * m_normal, -m_normal, 2.0f * height, m_body.time};
         if (RayScene::Met met{}; m_rays.nearest(m_body, down, met)) {
@@ -158,8 +158,7 @@ class SubsurfaceLight::Batch {
         exit.hit.distance = 0.0f;
         m_exits.push_back(exit);
         BouncedPath& way = m_ways.emplace_back();
-        way.width =
-            std::max(glm::length(m_points.dp_du[point]), glm::length(m_points.dp_dv[point]));
+        way.width = width_of(m_points, point);
         way.next.ray.time = m_body.time;
         way.next.weight = weight;
         way.next.point = static_cast<std::uint32_t>(point);
