@@ -115,12 +115,12 @@ void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& p
     if (value == Vec3f(0.0f)) return;
     if (!lamp.is_hard() && lamp.meets_lobes(m_grid.depth))
         density = power_density(density, point.meeting_density(sample.direction));
-    const BsdfValue parts = bsdf * (sample.radiance / density);
+    const Vec3f radiance = sample.radiance / density;
     if (m_set.rays && lamp.casts_shadow())
-        m_shadows.send(point.index, value / density, parts, sign,
+        m_shadows.send(point.index, value / density, bsdf, radiance, sign,
                        m_set.ray_to(point, place, lamp, sample, RayType::Shadow));
     else
-        m_shadows.send(point.index, value / density, parts, sign);
+        m_shadows.send(point.index, value / density, bsdf, radiance, sign);
 }
 
 }  // namespace

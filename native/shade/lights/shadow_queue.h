@@ -18,18 +18,25 @@ class ShadowQueue {
     /// `rays` nullptr: nothing casts shadows.
     ShadowQueue(const RayScene* rays, LitGrid& grid) : m_rays(rays), m_grid(grid) {}
 
-    /// `light`: reflected by the point where nothing is in between; `parts`: the same, diffuse and
-    /// glossy apart; `sign`: as LitGrid::sign.
-    void send(std::size_t point, const Vec3f& light, const BsdfValue& parts, float sign,
-              const Ray& ray) {
+    /// `light`: reflected by the point where nothing is in between; `bsdf` by `radiance`: the same
+    /// by its parts, of which a grid without passes wants nothing; `sign`: as LitGrid::sign.
+    void send(std::size_t point, const Vec3f& light, const BsdfValue& bsdf, const Vec3f& radiance,
+              float sign, const Ray& ray) {
         if (m_waiting.size() == kMost) deliver();
-        m_waiting.push_back({point, light, parts, sign});
+        // Field by field: a structure that was just put together is read in other pieces than it
+        // was written in, and each such read waits (half the time of sending, without parts).
+        Light& waiting = m_waiting.emplace_back();
+        waiting.point = point;
+        waiting.light = light;
+        waiting.sign = sign;
+        if (m_grid.parts) waiting.parts = bsdf * radiance;
         m_rays_waiting.push_back(ray);
     }
     /// The same where no ray is needed.
-    void send(std::size_t point, const Vec3f& light, const BsdfValue& parts, float sign) {
+    void send(std::size_t point, const Vec3f& light, const BsdfValue& bsdf, const Vec3f& radiance,
+              float sign) {
         deliver();
-        arrive({point, light, parts, sign}, Vec3f(1.0f));
+        arrive({point, light, bsdf * radiance, sign}, Vec3f(1.0f));
     }
     /// All that is on its way.
     void deliver() {
