@@ -66,7 +66,7 @@ struct ShadingSystem::Impl {
     std::unique_ptr<Volumes> volumes;           ///< nullptr where nothing is filled
     std::unique_ptr<SeenVolumes> seen_volumes;  ///< likewise
     std::unique_ptr<DirectLight> light;         ///< nullptr where nothing that is seen reflects any
-    std::unique_ptr<HitShader> hits;            ///< where rays of lobes meet anything, else nullptr
+    std::unique_ptr<HitShader> hits;            ///< where light is followed or its rays told apart
     std::unique_ptr<BouncedLight> bounces;
     std::unique_ptr<SubsurfaceLight> below;  ///< where light is scattered below surfaces
 
@@ -116,7 +116,7 @@ struct ShadingSystem::Impl {
         emission->warn(scene, report);
         if (!light->rays()) return;
         const bool follows = meets_light(scene, light->lamp_faces(), *emission);
-        if (follows || std::ranges::any_of(materials, &CompiledSurface::is_told_apart))
+        if (follows || any([this](std::int32_t index) { return material(index).is_told_apart; }))
             hits = std::make_unique<HitShader>(scene, textures, report);
         if (follows)
             bounces = std::make_unique<BouncedLight>(scene, *light, *hits, *emission, volumes.get(),

@@ -205,10 +205,12 @@ def test_map_range(scene, render, kind):
     check(scene, render)
 
 
+@pytest.mark.parametrize("clamp", [True, False])
 @pytest.mark.parametrize("kind", enum_values("ShaderNodeMapRange", "interpolation_type"))
-def test_map_range_of_vectors(scene, render, kind):
+def test_map_range_of_vectors(scene, render, kind, clamp):
     tree = Tree(board(scene))
     node = tree.add("ShaderNodeMapRange", interpolation_type=kind, data_type="FLOAT_VECTOR")
+    node.clamp = clamp
     inputs = {socket.identifier: socket for socket in node.inputs}
     tree.link(tree.attribute("A"), inputs["Vector"])
     tree.link(tree.attribute("B"), inputs["To_Min_FLOAT3"])

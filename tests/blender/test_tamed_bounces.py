@@ -86,6 +86,7 @@ def test_what_two_lobes_meet_of_a_lamp_is_clamped_apart(scene, render):
     lamp_towards(scene, (0.0, 0.5, 2.5), (0.0, 3.0, 1.6), 3000.0, 3.0)
     look_at_stage(scene, 3.0, 0.5)
     both = render_bounced(scene, render, 512, limit=2, clamp=1.0)
+    assert 0.1 < both[0].mean() < 0.5  # of what is about ten times as bright
     assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.02)
 
 
@@ -178,11 +179,11 @@ def test_a_weak_mirror_over_paint_is_clamped_as_seldom_as_it_is_chosen(scene, re
     assert worst_block(both) < 0.15
 
 
-def half_clear(floor):
+def half_clear(floor, kind="Diffuse"):
     tree = Tree(floor)
     mix = tree.add("ShaderNodeMixShader")
-    for socket, kind in zip(mix.inputs[1:], ("Diffuse", "Transparent"), strict=True):
-        tree.link(tree.add(f"ShaderNodeBsdf{kind}").outputs[0], socket)
+    for socket, one in zip(mix.inputs[1:], (kind, "Transparent"), strict=True):
+        tree.link(tree.add(f"ShaderNodeBsdf{one}").outputs[0], socket)
     tree.link(mix.outputs[0], tree.output.inputs["Surface"])
 
 
@@ -193,6 +194,24 @@ def test_what_is_half_clear_is_clamped_twice_as_much(scene, render):
     both = render_bounced(scene, render, 512, limit=1, clamp=3.0)
     assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.02)
     assert worst_block(both) < 0.1
+
+
+def test_what_is_half_clear_shows_lamps_clamped_twice_as_much(scene, render):
+    """The same of a lamp that its gloss meets, in a mirror: 65 % too bright."""
+    mirror = scene_parts.add_square(scene, "Mirror", 8.0)
+    surface(mirror, "ShaderNodeBsdfGlossy", (1.0, 1.0, 1.0), Roughness=0.0)
+    wall = scene_parts.add_square(scene, "Wall", 4.0, (0.0, 3.0, 1.6))
+    wall.rotation_euler.x = 1.57
+    wall.visible_camera = False
+    half_clear(wall, "Glossy")
+    next(n for n in wall.active_material.node_tree.nodes if n.type == "BSDF_GLOSSY").inputs[
+        "Roughness"
+    ].default_value = 0.1
+    lamp_towards(scene, (0.0, 0.5, 2.5), (0.0, 3.0, 1.6), 3000.0, 3.0)
+    look_at_stage(scene, 3.0, 0.5)
+    both = render_bounced(scene, render, 512, limit=2, clamp=1.0)
+    assert 0.05 < both[0].mean() < 0.5
+    assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.02)
 
 
 def test_filter_glossy_leaves_cloth_alone(scene, render):

@@ -123,7 +123,7 @@ def test_what_absorbs_and_emits(scene, render, kind, inputs):
     "kind, into",
     [("ShaderNodeVolumePrincipled", "Surface"), ("ShaderNodeBsdfPrincipled", "Volume")],
 )
-def test_what_is_in_the_wrong_socket_does_not_shine(scene, render, kind, into):
+def test_what_is_in_the_other_socket_shines_as_in_cycles(scene, render, kind, into):
     checkered_wall(scene)
     tree = node_comparison.Tree(turned_cube())
     node = tree.add(kind)

@@ -185,30 +185,34 @@ def _modes(name):
     earlier item has."""
     tree = bpy.data.materials.new("Look")
     tree.use_nodes = True
-    found = {}
     try:
         node = tree.node_tree.nodes.new(name)
-        seen = _open_inputs(node)
-        for rna in node.bl_rna.properties:
-            if rna.type != "ENUM" or rna.is_readonly or rna.is_enum_flag:
-                continue
-            if rna.identifier in UNREAD_PROPERTIES:
-                continue
-            before = getattr(node, rna.identifier)
-            for item in rna.enum_items:
-                try:
-                    setattr(node, rna.identifier, item.identifier)
-                except TypeError:  # an item of other kinds of trees
-                    continue
-                opened = _open_inputs(node) - seen
-                if opened:
-                    found[rna.identifier, item.identifier] = opened
-                    seen |= opened
-            setattr(node, rna.identifier, before)
     except RuntimeError:
-        pass
+        found = {}
+    else:
+        found = dict(_opening_modes(node))
     bpy.data.materials.remove(tree)
     return found
+
+
+def _opening_modes(node):
+    seen = _open_inputs(node)
+    for rna in node.bl_rna.properties:
+        if rna.type != "ENUM" or rna.is_readonly or rna.is_enum_flag:
+            continue
+        if rna.identifier in UNREAD_PROPERTIES:
+            continue
+        before = getattr(node, rna.identifier)
+        for item in rna.enum_items:
+            try:
+                setattr(node, rna.identifier, item.identifier)
+            except TypeError:  # an item of other kinds of trees
+                continue
+            opened = _open_inputs(node) - seen
+            if opened:
+                yield (rna.identifier, item.identifier), opened
+                seen |= opened
+        setattr(node, rna.identifier, before)
 
 
 def _open_inputs(node):

@@ -153,9 +153,11 @@ class StratumPathFinder {
             lens.reciprocal.hi = set(paths.reciprocal_hi[lane]);
         }
         const M present = looking<kMoving>(segment, first);
+        const V times[2] = {stratum(m_tile.bounds->t_lo, first),
+                            stratum(m_tile.bounds->t_hi, first)};
         const V nearest = set(paths.nearest[lane]);
-        return look<kMoving, kLens, kSquares>(paths.x.of(lane), paths.y.of(lane), lens, nearest,
-                                              present, first, cull, out);
+        return look<kMoving, kLens, kSquares>(paths.x.of(lane), paths.y.of(lane), times, lens,
+                                              nearest, present, first, cull, out);
     }
 
     /// The same by where the micropolygon is during each of the strata: for paths that are bent.
@@ -188,8 +190,10 @@ class StratumPathFinder {
                 known(extent->hi, 0.0f);
             }
         const V nearest = extents.nearest_key(m_grid.range.perspective);
-        return look<kMoving, kLens, kFewSquares>(x, y, extents.lens, nearest, present, first, cull,
-                                                 out);
+        const V times[2] = {during.time0,
+                            during.time1};  // not beyond the segment, where it bends on
+        return look<kMoving, kLens, kFewSquares>(x, y, times, extents.lens, nearest, present, first,
+                                                 cull, out);
     }
 
     /// Strata [first, end) may look while the micropolygon of this lane is over the tile.
@@ -245,11 +249,12 @@ class StratumPathFinder {
                                         hn::Le(t_lo * knots - start, set(1.0f))));
     }
 
-    /// What is on these paths while the samples of the strata look that are `present`, and which
-    /// of those have any that do not see something nearer.
+    /// What is on these paths while the samples of the strata look that are `present`, from
+    /// times[0] to times[1], and which of those have any that do not see something nearer.
     template <bool kMoving, Lens kLens, int kSquares>
-    HWY_INLINE M look(const StraightPath& x, const StraightPath& y, const LensExtents& lens,
-                      V nearest, M present, int first, bool cull, StratumPaths& out) const {
+    HWY_INLINE M look(const StraightPath& x, const StraightPath& y, const V (&times)[2],
+                      const LensExtents& lens, V nearest, M present, int first, bool cull,
+                      StratumPaths& out) const {
         const StratumBounds& bounds = *m_tile.bounds;
         Shear shear;
         if constexpr (kLens == Lens::Still)
@@ -262,8 +267,8 @@ class StratumPathFinder {
                               V& hi) HWY_ATTR {
             V a = path.place, b = a;
             if constexpr (kMoving) {
-                a = path.at(stratum(bounds.t_lo, first));
-                b = path.at(stratum(bounds.t_hi, first));
+                a = path.at(times[0]);
+                b = path.at(times[1]);
             }
             lo = hn::Min(a, b) - path.reach;
             hi = hn::Max(a, b) + path.reach;

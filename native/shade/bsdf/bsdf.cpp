@@ -69,7 +69,11 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
                 const bool is_blurred = !source.made.empty() && source.made[point] >= 0.0f;
                 compensate(lobe, is_blurred ? source.made[point] : std::sqrt(lobe.alpha), albedo);
             }
-            lobe.importance = mean_size(lobe.weight * passed(lobe, lobe.cos_wi));
+            // What has no Fresnel of its own Cycles takes as often where none of it passes.
+            const bool is_open =
+                lobe.kind == LobeKind::Refraction && lobe.fresnel == FresnelKind::None;
+            lobe.importance =
+                mean_size(is_open ? lobe.weight : lobe.weight * passed(lobe, lobe.cos_wi));
         }
         m_transmits = m_transmits || granita::transmits(lobe.kind);
         m_importance += lobe.importance;
@@ -145,9 +149,10 @@ float PointBsdf::pdf(std::size_t index, const Vec3f& wo) const {
 
 float PointBsdf::chance(std::size_t index, const Vec3f& wo) const {
     const Prepared& lobe = m_lobes[index];
-    return lobe.kind == LobeKind::Refraction && !lobe.sharp && m_importance > 0.0f
-               ? chance_of_refraction(lobe, wo) / m_importance
-               : lobe.importance * pdf(index, wo);
+    const bool by_facets = lobe.kind == LobeKind::Refraction && !lobe.sharp &&
+                           lobe.fresnel != FresnelKind::None && m_importance > 0.0f;
+    return by_facets ? chance_of_refraction(lobe, wo) / m_importance
+                     : lobe.importance * pdf(index, wo);
 }
 
 /// Hair mirrors light, and lets it through (Cycles counts the latter as transmission).

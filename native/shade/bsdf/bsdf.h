@@ -83,9 +83,9 @@ class PointBsdf {
     BsdfValue evaluate(const Vec3f& wo, bool is_drawn = false) const;
     /// Density of sample(), per solid angle; 0 for sharp lobes.
     float pdf(std::size_t lobe, const Vec3f& wo) const;
-    /// The same, were one sample taken of all lobes: by their importance, but of what refracts by
-    /// what the facets let pass that send it there (Cycles), as where glass mirrors the whole view
-    /// at its own angle.
+    /// The same, were one sample taken of all lobes: by their importance, but of glass by what the
+    /// facets let pass that send it there (Cycles, if it is white), as at angles at which it
+    /// mirrors all of the view.
     float chance(std::size_t lobe, const Vec3f& wo) const;
     /// What a sample of the lobe along `wo` counts as, by a number in [0, 1).
     LightPart counted_as(std::size_t lobe, const Vec3f& wo, float uniform) const;

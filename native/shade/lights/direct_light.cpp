@@ -159,9 +159,12 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
                 grid.carries_world()
                     ? world.ahead(set, grid, point, {wo, sent, sign, type, meets_lamps})
                     : WorldAhead();
-            const float chosen = point.chance_density(wo);
-            leave(set, grid, point, ray, sent * Vec3f(1.0f / density), {chosen / density, chosen},
-                  samples.first + index, ahead);
+            const float chosen =
+                grid.leaving->diffuse
+                    ? point.chance_density(wo)
+                    : point.chance_density(wo, [&](std::size_t k) { return point.meets_lamps(k); });
+            leave(set, grid, point, ray, sent * Vec3f(1.0f / density),
+                  {chosen / density, point.chance_density(wo)}, samples.first + index, ahead);
         }
         if (world.shines() && !grid.carries_world())
             world.meet(set, grid, point, place, {wo, value, sign, type, meets_lamps});
@@ -195,7 +198,7 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
     Vec3f wo, share;
     if (!point.bsdf.deflect(lobe, wo, share)) return;
     const int count = set.varies ? point.sample_count : 1;
-    const float chance = point.bsdf.importance(lobe);
+    const float chance = point.chance(lobe) / static_cast<float>(count);  // of one of them
     BsdfValue value;
     value.part(point.bsdf.part(lobe)) = share / static_cast<float>(count);
     const SobolPoints sequence = grid.sequence(point, 1 + point.bsdf.index(lobe), count);
@@ -214,7 +217,7 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
         });
         if (grid.leaving) {
             leave(set, grid, point, set.ray(point, place, wo, kInfinity, type), value,
-                  {chance / static_cast<float>(count), kInfinity},
+                  {chance, kInfinity},
                   point.place * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(s),
                   carries_world ? world.ahead_of_mirror() : WorldAhead());
         }

@@ -108,8 +108,8 @@ Ray LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& dire
         transmits && at_frame < 0.0f ? there >= 0.0f : there <= 0.0f && at_frame > 0.0f;
     const LitPlace& from = turned_away ? point.at_frame : place;
     const Vec3f& outward = point.bsdf.surface_normal();
-    // Lobes go by the smooth surface: light that they let through comes from below, be it above the
-    // face itself.
+    // Lobes go by the smooth surface: light of lamps that they let through comes from below, be it
+    // above the face itself.  Their own samples lie to a side of the face (PointBsdf::sample).
     const Vec3f& up = type == RayType::Shadow ? outward : from.normal;
     const bool below = transmits && glm::dot(up, direction) < 0.0f;
     const bool around = point.round && (transmits || glm::dot(outward, direction) < 0.0f);

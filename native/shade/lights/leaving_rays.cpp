@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "math/luminance.h"
-
 namespace granita {
 
 Vec3f inwards(const ShadingPoints& points, std::size_t i) {
@@ -40,11 +38,9 @@ void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& 
     // Each grid has a part of the sequences to itself, as samples that are shaded alone have.
     const auto first = grid.placed ? 0u : static_cast<std::uint32_t>(grid.seed) << 14;
     const Vec3f whole = glm::max(weight, Vec3f(std::numeric_limits<float>::min()));
-    const float of_all = point.bsdf.part_of_all();
     grid.leaving->rays.push_back({ray, weight, value.diffuse / whole, value.transmission / whole,
-                                  of_all * chance.share, of_all * chance.pdf,
-                                  static_cast<std::uint32_t>(point.index), first + place,
-                                  point.width, spread, grid.receives, world});
+                                  chance.share, chance.pdf, static_cast<std::uint32_t>(point.index),
+                                  first + place, point.width, spread, grid.receives, world});
 }
 
 }  // namespace granita

@@ -16,7 +16,7 @@ float width_of(const ShadingPoints& points, std::size_t i);
 
 /// How likely chance takes a way.
 struct WayChance {
-    float share;  ///< as LobeRay::share, of what does not pass straight through
+    float share;  ///< as LobeRay::share
     float pdf;    ///< of its direction, per solid angle; infinite for a mirror's
 };
 

@@ -89,13 +89,20 @@ struct LitPoint {
     float meeting_density(const Vec3f& wo) const {
         return lobe_density(wo, [&](std::size_t k) { return meets_lamps(k); });
     }
-    /// Of one sample that chance takes of all lobes, a solid angle, sharp ones left out.
-    float chance_density(const Vec3f& wo) const {
+    /// Of one sample that chance takes of all lobes and what passes straight through, a solid
+    /// angle, over the lobes that `which` accepts and are not sharp.
+    template <class Which>
+    float chance_density(const Vec3f& wo, Which which) const {
         float sum = 0.0f;
         for (std::size_t k = 0; k < samples.size(); ++k)
-            if (samples[k].count > 0) sum += bsdf.chance(k, wo);
-        return sum;
+            if (samples[k].count > 0 && which(k)) sum += bsdf.chance(k, wo);
+        return sum * bsdf.part_of_all();
     }
+    float chance_density(const Vec3f& wo) const {
+        return chance_density(wo, [](std::size_t) { return true; });
+    }
+    /// Of a sharp lobe.
+    float chance(std::size_t lobe) const { return bsdf.importance(lobe) * bsdf.part_of_all(); }
     /// What a sample along `wo`, drawn from `lobe`, may count as, by a number in [0, 1): as often
     /// as chance had drawn it from each lobe.  Each has a sample at least, however seldom chance
     /// would take it, and light that others reflect along it as well.
@@ -103,7 +110,7 @@ struct LitPoint {
         float left = uniform * chance_density(wo);
         for (std::size_t k = 0; k < samples.size(); ++k) {
             if (samples[k].count == 0) continue;
-            const float own = bsdf.chance(k, wo);
+            const float own = bsdf.chance(k, wo) * bsdf.part_of_all();
             if (left < own) return bsdf.counted_as(k, wo, left / own);
             left -= own;
         }

@@ -210,7 +210,7 @@ FloatSource add_second_subsurface(NodeBuilder& b, SurfaceBuilder& surface, const
 }
 
 void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
-    surface.add_emission(b, c.emission);
+    surface.add_emission(b, c.emission);  // a node of its own in Cycles: in either socket
     LobeSource diffuse;
     diffuse.kind = LobeKind::Diffuse;
     diffuse.burley = true;

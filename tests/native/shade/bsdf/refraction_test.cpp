@@ -86,6 +86,21 @@ TEST(RoughRefraction, is_as_likely_as_its_facets_let_pass_beyond_total_reflectio
     EXPECT_GE(passing, 2);
 }
 
+// The same without Fresnel, beside a mirror nine times as dark: Cycles takes the refraction in nine
+// of ten, wherever it goes.
+TEST(RoughRefraction, is_as_likely_as_its_weight_without_fresnel) {
+    const Vec3f wi = at_cosine(0.643f);
+    const ShadingPoints points = seen_from(wi);
+    SurfaceClosure closure = closure_of(refraction(points, 0.5f, 1.0f / kGlass));
+    closure.lobes[0].weight.assign(1, Vec3f(0.9f));
+    closure.lobes.push_back(glossy(points, 0.5f));
+    closure.lobes[1].weight.assign(1, Vec3f(0.1f));
+    const PointBsdf bsdf(closure, points, 0, GgxAlbedo::shared());
+    const Vec3f out = glm::normalize(Vec3f(-0.6f, 0.2f, -0.7f));
+    ASSERT_GT(bsdf.pdf(0, out), 0.0f);
+    EXPECT_NEAR(bsdf.chance(0, out), 0.9f * bsdf.pdf(0, out), 1e-5f * bsdf.pdf(0, out));
+}
+
 // A stick in water: 60 degrees in air is asin(sin 60 / 1.5) in glass, 35.264 degrees.
 TEST(SharpRefraction, obeys_snell_and_passes_what_is_not_reflected) {
     const ShadingPoints points = seen_from(at_cosine(0.5f));
