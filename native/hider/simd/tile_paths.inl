@@ -190,8 +190,8 @@ class StratumPathFinder {
                 known(extent->hi, 0.0f);
             }
         const V nearest = extents.nearest_key(m_grid.range.perspective);
-        const V times[2] = {during.time0,
-                            during.time1};  // not beyond the segment, where it bends on
+        // Not beyond the segment, where it bends on.
+        const V times[2] = {during.time0, during.time1};
         return look<kMoving, kLens, kFewSquares>(x, y, times, extents.lens, nearest, present, first,
                                                  cull, out);
     }
