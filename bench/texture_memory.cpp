@@ -101,19 +101,18 @@ int main(int argc, char** argv) {
     }
     std::printf("%d images of %d x %d, %d MiB decoded, through %d MiB\n", count, side, side,
                 textures, memory);
-    double room[3], tight[3], same[2];
+    double times[3], same[2];
     std::uint64_t held[2];
     for (int k = 0; k < 3; ++k) {
-        room[k] = frame(files, UINT64_MAX, same[0], held[0]);
-        tight[k] = frame(files, std::uint64_t(memory) << 20, same[1], held[1]);
+        const double room = frame(files, UINT64_MAX, same[0], held[0]);
+        const double tight = frame(files, std::uint64_t(memory) << 20, same[1], held[1]);
+        times[k] = tight / room;
         std::printf("all in memory %.2f s (%.0f MiB), limited %.2f s (%.0f MiB): %.2f times; %s\n",
-                    room[k], held[0] / 1048576.0, tight[k], held[1] / 1048576.0, tight[k] / room[k],
+                    room, held[0] / 1048576.0, tight, held[1] / 1048576.0, times[k],
                     same[0] == same[1] ? "the same numbers" : "OTHER NUMBERS");
         std::fflush(stdout);
     }
     std::filesystem::remove_all(folder);
-    double times[3];
-    for (int k = 0; k < 3; ++k) times[k] = tight[k] / room[k];
     std::sort(times, times + 3);
     return same[0] != same[1] || times[1] > kMostTimes;
 }

@@ -9,6 +9,38 @@ from mathutils import Vector
 from node_comparison import Tree
 
 
+def lamp_towards(scene, place, target, energy, size):
+    lamp = bpy.data.lights.new("Lamp", "AREA")
+    lamp.energy, lamp.size = energy, size
+    light = scene_parts.add_object(scene, "Lamp", lamp, place)
+    way = Vector(target) - light.location
+    light.rotation_euler = way.to_track_quat("-Z", "Y").to_euler()
+
+
+def mirrored_wall(scene, material_of):
+    """A mirror shows a wall that a large lamp stands before, brighter by far than a clamp of 1."""
+    mirror = scene_parts.add_square(scene, "Mirror", 8.0)
+    surface(mirror, "ShaderNodeBsdfGlossy", (1.0, 1.0, 1.0), Roughness=0.0)
+    wall = scene_parts.add_square(scene, "Wall", 4.0, (0.0, 3.0, 1.6))
+    wall.rotation_euler.x = 1.57
+    wall.visible_camera = False
+    material_of(wall)
+    lamp_towards(scene, (0.0, 0.5, 2.5), (0.0, 3.0, 1.6), 3000.0, 3.0)
+    look_at_stage(scene, 3.0, 0.5)
+
+
+def mixed(thing, *closures):
+    """Half and half of two closures, each (kind, {input: value})."""
+    tree = Tree(thing)
+    mix = tree.add("ShaderNodeMixShader")
+    for socket, (kind, inputs) in zip(mix.inputs[1:], closures, strict=True):
+        node = tree.add(f"ShaderNodeBsdf{kind}")
+        for name, value in inputs.items():
+            node.inputs[name].default_value = value
+        tree.link(node.outputs[0], socket)
+    tree.link(mix.outputs[0], tree.output.inputs["Surface"])
+
+
 @pytest.mark.parametrize("kind, clamp, worst", [("Diffuse", 0.3, 0.1), ("Glass", 10.0, 0.8)])
 def test_clamp_indirect_is_that_of_cycles(scene, render, kind, clamp, worst):
     """A ball before a bright square, on a floor: its number is three times as much of the channels' sum, and ways in glass,
@@ -49,42 +81,17 @@ def test_lamps_behind_frosted_glass_are_clamped_a_way_at_a_time(
     )
     bpy.ops.object.shade_smooth()
     bpy.context.object.data.materials.append(frosted)
-    lamp = bpy.data.lights.new("Lamp", "AREA")
-    lamp.energy, lamp.size = energy, 3.0
-    light = scene_parts.add_object(scene, "Lamp", lamp, place)
-    way = Vector((0.0, 0.0, 0.5)) - light.location
-    light.rotation_euler = way.to_track_quat("-Z", "Y").to_euler()
+    lamp_towards(scene, place, (0.0, 0.0, 0.5), energy, 3.0)
     look_at_stage(scene, 2.5, 0.5)
     both = render_bounced(scene, render, 1024, limit=2, clamp=10.0)
     assert both[0].mean() > 0.02
     assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.05)
 
 
-def lamp_towards(scene, place, target, energy, size):
-    lamp = bpy.data.lights.new("Lamp", "AREA")
-    lamp.energy, lamp.size = energy, size
-    light = scene_parts.add_object(scene, "Lamp", lamp, place)
-    way = Vector(target) - light.location
-    light.rotation_euler = way.to_track_quat("-Z", "Y").to_euler()
-    return light
-
-
 def test_what_two_lobes_meet_of_a_lamp_is_clamped_apart(scene, render):
     """Two glossy lobes in a mirror, each of which shows the lamp brighter than the clamp: together they were held to one, - 25 %."""
-    mirror = scene_parts.add_square(scene, "Mirror", 8.0)
-    surface(mirror, "ShaderNodeBsdfGlossy", (1.0, 1.0, 1.0), Roughness=0.0)
-    wall = scene_parts.add_square(scene, "Wall", 4.0, (0.0, 3.0, 1.6))
-    wall.rotation_euler.x = 1.57
-    wall.visible_camera = False
-    tree = Tree(wall)
-    mix = tree.add("ShaderNodeMixShader")
-    for socket, roughness in zip(mix.inputs[1:], (0.1, 0.15), strict=True):
-        node = tree.add("ShaderNodeBsdfGlossy")
-        node.inputs["Roughness"].default_value = roughness
-        tree.link(node.outputs[0], socket)
-    tree.link(mix.outputs[0], tree.output.inputs["Surface"])
-    lamp_towards(scene, (0.0, 0.5, 2.5), (0.0, 3.0, 1.6), 3000.0, 3.0)
-    look_at_stage(scene, 3.0, 0.5)
+    lobes = [("Glossy", {"Roughness": roughness}) for roughness in (0.1, 0.15)]
+    mirrored_wall(scene, lambda wall: mixed(wall, *lobes))
     both = render_bounced(scene, render, 512, limit=2, clamp=1.0)
     assert 0.1 < both[0].mean() < 0.5  # of what is about ten times as bright
     assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.02)
@@ -179,12 +186,8 @@ def test_a_weak_mirror_over_paint_is_clamped_as_seldom_as_it_is_chosen(scene, re
     assert worst_block(both) < 0.15
 
 
-def half_clear(floor, kind="Diffuse"):
-    tree = Tree(floor)
-    mix = tree.add("ShaderNodeMixShader")
-    for socket, one in zip(mix.inputs[1:], (kind, "Transparent"), strict=True):
-        tree.link(tree.add(f"ShaderNodeBsdf{one}").outputs[0], socket)
-    tree.link(mix.outputs[0], tree.output.inputs["Surface"])
+def half_clear(thing, kind="Diffuse", **inputs):
+    mixed(thing, (kind, inputs), ("Transparent", {}))
 
 
 def test_what_is_half_clear_is_clamped_twice_as_much(scene, render):
@@ -198,17 +201,7 @@ def test_what_is_half_clear_is_clamped_twice_as_much(scene, render):
 
 def test_what_is_half_clear_shows_lamps_clamped_twice_as_much(scene, render):
     """The same of a lamp that its gloss meets, in a mirror: 65 % too bright."""
-    mirror = scene_parts.add_square(scene, "Mirror", 8.0)
-    surface(mirror, "ShaderNodeBsdfGlossy", (1.0, 1.0, 1.0), Roughness=0.0)
-    wall = scene_parts.add_square(scene, "Wall", 4.0, (0.0, 3.0, 1.6))
-    wall.rotation_euler.x = 1.57
-    wall.visible_camera = False
-    half_clear(wall, "Glossy")
-    next(n for n in wall.active_material.node_tree.nodes if n.type == "BSDF_GLOSSY").inputs[
-        "Roughness"
-    ].default_value = 0.1
-    lamp_towards(scene, (0.0, 0.5, 2.5), (0.0, 3.0, 1.6), 3000.0, 3.0)
-    look_at_stage(scene, 3.0, 0.5)
+    mirrored_wall(scene, lambda wall: half_clear(wall, "Glossy", Roughness=0.1))
     both = render_bounced(scene, render, 512, limit=2, clamp=1.0)
     assert 0.05 < both[0].mean() < 0.5
     assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.02)

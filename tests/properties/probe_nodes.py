@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every shader node: each output, each socket, each property."""
 
+import contextlib
+
 import bpy
 import numpy as np
 import scene_parts
@@ -146,21 +148,28 @@ def picture(name="Picture", size=8):
     return image
 
 
+@contextlib.contextmanager
+def _alone(name):
+    """A new node in a tree of its own; None where this Blender does not make it."""
+    material = bpy.data.materials.new("Look")
+    material.use_nodes = True
+    try:
+        node = material.node_tree.nodes.new(name)
+    except RuntimeError:
+        node = None
+    yield node
+    bpy.data.materials.remove(material)
+
+
 def _outputs(name):
     """One deed an output: it alone is shown."""
-    tree = bpy.data.materials.new("Look")
-    tree.use_nodes = True
-    found = {}
-    try:
-        node = tree.node_tree.nodes.new(name)
-        if not _is_closure(node):
-            for place, socket in enumerate(node.outputs):
-                found[f"output {socket.identifier}"] = _show(place)
-            found["is muted"] = _mute
-    except RuntimeError:
-        pass
-    bpy.data.materials.remove(tree)
-    return found
+    with _alone(name) as node:
+        if node is None:
+            return {}
+        shown = [] if _is_closure(node) else node.outputs
+        found = {f"output {s.identifier}": _show(place) for place, s in enumerate(shown)}
+        found["is muted"] = _mute
+        return found
 
 
 def _show(place):
@@ -183,16 +192,8 @@ def _mute(roots):
 def _modes(name):
     """{(property, item): places of inputs}: items of enums that enable inputs which neither a new node nor an
     earlier item has."""
-    tree = bpy.data.materials.new("Look")
-    tree.use_nodes = True
-    try:
-        node = tree.node_tree.nodes.new(name)
-    except RuntimeError:
-        found = {}
-    else:
-        found = dict(_opening_modes(node))
-    bpy.data.materials.remove(tree)
-    return found
+    with _alone(name) as node:
+        return {} if node is None else dict(_opening_modes(node))
 
 
 def _opening_modes(node):

@@ -114,13 +114,10 @@ struct SweptBounds {
         return key + hn::Abs(key) * set(0x1p-18f);
     }
 
-    /// Where it is at the ends, without lens.
+    /// Where it is, of what is still, without lens.
     HWY_INLINE Box box() const {
-        Box box{x[0].lo, x[0].hi, y[0].lo, y[0].hi};
-        if constexpr (kMoving)
-            box = {hn::Min(box.x_lo, x[1].lo), hn::Max(box.x_hi, x[1].hi),
-                   hn::Min(box.y_lo, y[1].lo), hn::Max(box.y_hi, y[1].hi)};
-        return {box.x_lo - margin, box.x_hi + margin, box.y_lo - margin, box.y_hi + margin};
+        static_assert(!kMoving);
+        return {x[0].lo - margin, x[0].hi + margin, y[0].lo - margin, y[0].hi + margin};
     }
 
     /// Of `at`, x or y, between the times of the ends.  Without lens; takes from `fit` those that

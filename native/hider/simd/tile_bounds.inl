@@ -7,8 +7,8 @@ struct Box {
     V x_lo, x_hi, y_lo, y_hi;
 };
 
-/// Boxes that are not `sane` or too large for a number become all of the raster; which are neither.
-HWY_INLINE M widen_unknown(M sane, Box& box) {
+/// Boxes that are not `sane` or too large for a number become all of the raster.
+HWY_INLINE void widen_unknown(M sane, Box& box) {
     const V never = set(INFINITY);
     const V reach = hn::Abs(box.x_lo) + hn::Abs(box.x_hi) + hn::Abs(box.y_lo) + hn::Abs(box.y_hi);
     const M known = hn::And(sane, hn::Lt(reach, set(1e15f)));
@@ -16,7 +16,6 @@ HWY_INLINE M widen_unknown(M sane, Box& box) {
     box.x_hi = hn::IfThenElse(known, box.x_hi, never);
     box.y_lo = hn::IfThenElse(known, box.y_lo, hn::Neg(never));
     box.y_hi = hn::IfThenElse(known, box.y_hi, never);
-    return known;
 }
 
 /// The blocks of the tile that boxes touch, inclusive; which touch any.

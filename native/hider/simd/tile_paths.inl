@@ -101,13 +101,14 @@ class StratumPathFinder {
             hn::StoreU(first, kTag, out.t0);
             hn::StoreU(last, kTag, out.t1);
             return present;
+        } else {
+            return hn::And(present, find_touching(extents, out));
         }
-        return hn::And(present, find_touching(extents, out));
     }
 
     /// Which of those that do not move touch the tile, and which blocks.
-    template <bool kMoving, Lens kLens, class Out>
-    HWY_INLINE M find_touching(const SweptBounds<kMoving, kLens>& extents, Out& out) const {
+    template <Lens kLens, class Out>
+    HWY_INLINE M find_touching(const SweptBounds<false, kLens>& extents, Out& out) const {
         Box box = extents.box();
         if constexpr (kLens != Lens::None) {
             const Shear shear = shear_of<kLens>(extents.lens, set(m_grid.inverse_farthest),

@@ -144,6 +144,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         const RayType type = grid.blurred_rays(point.is_through(wo)).of(point.bsdf.part(lobe));
         const LitPlace place = set.place_at(point, sequence.third(index));
         const float sign = LitGrid::sign(s, samples.count);
+        const float likely = grid.leaving ? point.chance_density(wo) : 0.0f;
         if (grid.leaving && (grid.leaving->diffuse || meets_lamps)) {
             Ray ray = set.ray(point, place, wo, kInfinity, type);
             if (grid.leaving->diffuse) {
@@ -161,10 +162,10 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
                     : WorldAhead();
             const float chosen =
                 grid.leaving->diffuse
-                    ? point.chance_density(wo)
+                    ? likely
                     : point.chance_density(wo, [&](std::size_t k) { return point.meets_lamps(k); });
-            leave(set, grid, point, ray, sent * Vec3f(1.0f / density),
-                  {chosen / density, point.chance_density(wo)}, samples.first + index, ahead);
+            leave(set, grid, point, ray, sent * Vec3f(1.0f / density), {chosen / density, likely},
+                  samples.first + index, ahead);
         }
         if (world.shines() && !grid.carries_world())
             world.meet(set, grid, point, place, {wo, value, sign, type, meets_lamps});
@@ -189,7 +190,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             if (total(weight) != Vec3f(0.0f))
                 add_met(set, grid,
                         {&point, &lamp, place, met, weight, type, sign,
-                         grid.tells_met() ? density / point.chance_density(wo) : 1.0f});
+                         grid.tells_met() ? density / likely : 1.0f});
         });
     }
 }
