@@ -17,10 +17,11 @@ GLuint create() {
 
 }  // namespace
 
-Buffer::Buffer(std::size_t size, const void* data) : m_handle(create()), m_size(size) {
+Buffer::Buffer(std::size_t size, const void* data, GLbitfield access)
+    : m_handle(create()), m_size(size) {
     // Storage of no bytes is an error in OpenGL; an empty list is none for us.
     const auto bytes = static_cast<GLsizeiptr>(std::max<std::size_t>(size, 4));
-    glNamedBufferStorage(name(), bytes, size == 0 ? nullptr : data, 0);
+    glNamedBufferStorage(name(), bytes, size == 0 ? nullptr : data, access);
     check("making a buffer of " + std::to_string(size) + " bytes");
 }
 

@@ -12,8 +12,9 @@ namespace granita::gl {
 class Buffer {
   public:
     Buffer() = default;
-    /// Copies `size` bytes from `data`; nullptr leaves them undefined.
-    Buffer(std::size_t size, const void* data);
+    /// Copies `size` bytes from `data`; nullptr leaves them undefined.  `access`: how the CPU may
+    /// get at them, bits of glNamedBufferStorage.
+    Buffer(std::size_t size, const void* data, GLbitfield access = 0);
 
     template <class T>
     static Buffer of(const std::vector<T>& values) {

@@ -45,6 +45,7 @@ class Texture {
     }
 
   private:
+    friend class Readback;
     void read_texels(const TexelRect& rect, int layer, GLenum components, GLenum type,
                      std::size_t bytes, void* out) const;
     static void destroy(GLuint name) { glDeleteTextures(1, &name); }

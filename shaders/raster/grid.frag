@@ -47,6 +47,10 @@ void main() {
 #endif
 #if HAS_RADIANCE
     f.radiance = finite(radiance_here, radiance_corner);
+#if OUTPUT == RADIANCE
+    // Opaque: 1, or 0 of a holdout, which some devices interpolate to a unit in the last place less.
+    f.radiance.w = radiance_corner.w;
+#endif
 #endif
 #if HAS_OPACITY
     f.opacity = finite(opacity_here, opacity_corner);

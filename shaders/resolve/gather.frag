@@ -2,24 +2,23 @@
 // The pixel filter over samples that lie anywhere: sum(w c) / sum(w) with w = f(dx) f(dy), as film/
 // does it on the CPU (Film).  One pass: weights depend on both coordinates' own samples.
 //
-// Defines: FACTOR, a list of FACTOR_COUNT + 1 floats, f at equal steps from 0 to RADIUS; IS_BOX 0 or
-// 1; MARGIN, pixels.
+// Defines: FACTOR_COUNT, steps of the table of f from 0 to the radius; IS_BOX 0 or 1; MARGIN, pixels.
 #include "raster/samples.glsl"
 
+layout(std430, binding = FILTER_TABLE) readonly buffer Table { float f[]; };
 layout(binding = FILTER_SOURCE) uniform sampler2D source;
 layout(location = FILTER_ORIGIN) uniform ivec2 origin;  // the source's pixel of the target's (0, 0)
+layout(location = FILTER_RADIUS) uniform float radius;  // pixels
 layout(location = 0) out vec4 filtered;
-
-const float kFactor[FACTOR_COUNT + 1] = float[](FACTOR);
 
 float factor(float d) {
 #if IS_BOX
-    return d >= -RADIUS && d < RADIUS ? kFactor[0] : 0.0;
+    return d >= -radius && d < radius ? f[0] : 0.0;
 #else
-    const float place = abs(d) * (float(FACTOR_COUNT) / RADIUS);
+    const float place = abs(d) * (float(FACTOR_COUNT) / radius);
     if (place >= float(FACTOR_COUNT)) return 0.0;
     const int i = int(place);
-    return mix(kFactor[i], kFactor[i + 1], place - float(i));
+    return mix(f[i], f[i + 1], place - float(i));
 #endif
 }
 

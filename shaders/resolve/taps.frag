@@ -12,7 +12,7 @@ struct Tap {
     float unused;
 };
 
-layout(std430, binding = FILTER_TAPS) readonly buffer Taps { Tap taps[]; };
+layout(std430, binding = FILTER_TABLE) readonly buffer Taps { Tap taps[]; };
 layout(binding = FILTER_SOURCE) uniform sampler2D source;
 layout(location = FILTER_ORIGIN) uniform ivec2 origin;  // the cell's pixel of the target's (0, 0)
 layout(location = 0) out vec4 filtered;

@@ -59,9 +59,10 @@
 #define RASTER_BACKGROUND_CONSTANT 5
 #define RASTER_FLAGS 6
 
-// Uniform location, texture unit and storage block of the filters of resolve/.
+// Uniform locations, texture unit and storage block of the filters of resolve/.
 #define FILTER_ORIGIN 0
+#define FILTER_RADIUS 1
 #define FILTER_SOURCE 0
-#define FILTER_TAPS 0
+#define FILTER_TABLE 0
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hider/compute/compute_hider.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -13,6 +14,8 @@ namespace {
 
 constexpr int kBlockSide = 4, kBlocks = kTileSize / kBlockSide;
 
+using Copies = std::vector<gl::Readback>;
+
 /// Tiles that share buffers, and what is on its way to them.
 struct TileGroup {
     TileGroup(std::size_t first_tile, std::size_t tile_count, const ComputeLimits& limits)
@@ -20,6 +23,7 @@ struct TileGroup {
     std::size_t first, count;
     ComputeBatch batch;
     std::optional<ComputeTiles> device;  ///< made with the first batch
+    Copies copies;                       ///< of the last fetch()
 };
 
 class ComputeHider : public Hider {
@@ -77,11 +81,17 @@ class ComputeHider : public Hider {
 
     std::vector<TileStore>& finish() override {
         for (TileGroup& group : m_groups) {
-            if (!group.batch.empty()) run(group);
+            if (!group.batch.empty()) stage(group);
             if (!group.device) continue;
+            fetch(group, [&](ComputeTiles& device, Copies& copies) {
+                if (!group.batch.empty()) device.hide();
+                copies.push_back(device.seen(group.first, group.count));
+            });
+            group.device->collect();
+            group.device->take(group.copies.front(), group.first);
+            group.batch.clear();
             m_device.thread().run([&] {
-                for (std::size_t i = 0; i < group.count; ++i)
-                    group.device->read_back(group.first + i);
+                group.copies.clear();
                 group.device.reset();
             });
         }
@@ -120,30 +130,61 @@ class ComputeHider : public Hider {
         return grown;
     }
 
-    void run(TileGroup& group) {
-        m_tiles.check_cancelled();
-        std::vector<std::size_t> grown;
-        std::vector<float> farthest = m_device.thread().run([&] {
-            if (!group.device)
-                group.device.emplace(m_device, m_tiles, m_frame, group.first, group.count);
-            group.device->hide(group.batch);
-            grown = grown_lists(group);
-            for (const std::size_t i : grown) group.device->read_back(i);
-            return group.device->farthest();
+    /// Runs `begin` on the device's thread, which leaves copies on their way, and waits for them in
+    /// a job of their own: between the two the device works for other buckets.
+    template <class Begin>
+    void fetch(TileGroup& group, const Begin& begin) {
+        m_device.thread().run([&] {
+            group.copies.clear();
+            begin(*group.device, group.copies);
         });
-        // z-batches: what is behind the end of a list is dropped, and hidden as behind opaque
-        // surfaces.  Sorted on the bucket's own thread.
-        for (const std::size_t i : grown) m_tiles.cut_lists(i, m_frame.list_end);
-        if (!grown.empty())
-            farthest = m_device.thread().run([&] {
-                for (const std::size_t i : grown) group.device->write_back(i);
-                return group.device->farthest();
-            });
-        std::copy(
-            farthest.begin(), farthest.end(),
-            m_farthest.begin() + static_cast<std::ptrdiff_t>(group.first * kBlocks * kBlocks));
+        m_device.thread().run([&] {
+            for (const gl::Readback& copy : group.copies) copy.wait();
+        });
+    }
+
+    void stage(TileGroup& group) {
+        m_tiles.check_cancelled();
+        if (!group.device)
+            group.device.emplace(m_device, m_tiles, m_frame, group.first, group.count);
+        group.device->stage(group.batch);
+    }
+
+    void run(TileGroup& group) {
+        stage(group);
+        fetch(group, [](ComputeTiles& device, Copies& copies) {
+            device.hide();
+            copies.push_back(device.farthest());
+        });
+        keep_farthest(group);
+        group.device->collect();
+        if (const std::vector<std::size_t> grown = grown_lists(group); !grown.empty())
+            cut_lists(group, grown);
         group.batch.clear();
         if (m_tiles.limit_lists()) m_tiles.clear_lists();
+    }
+
+    /// z-batches: what is behind the end of a list is dropped, and hidden as behind opaque
+    /// surfaces.
+    void cut_lists(TileGroup& group, const std::vector<std::size_t>& tiles) {
+        fetch(group, [&](ComputeTiles& device, Copies& copies) {
+            for (const std::size_t i : tiles) copies.push_back(device.seen(i, 1));
+        });
+        for (std::size_t k = 0; k < tiles.size(); ++k) {
+            group.device->take(group.copies[k], tiles[k]);
+            m_tiles.cut_lists(tiles[k], m_frame.list_end);
+        }
+        fetch(group, [&](ComputeTiles& device, Copies& copies) {
+            for (const std::size_t i : tiles) device.write_back(i);
+            copies.push_back(device.farthest());
+        });
+        keep_farthest(group);
+    }
+
+    void keep_farthest(const TileGroup& group) {
+        std::ranges::copy(
+            group.copies.front().values<float>(),
+            m_farthest.begin() + static_cast<std::ptrdiff_t>(group.first * kBlocks * kBlocks));
     }
 
     /// Whether the last batch left nothing of the tile that is farther than the bounds.  Keys only

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "gl/gl_check.h"
@@ -15,24 +16,33 @@ namespace {
 
 constexpr std::size_t kPixels = kTileSize * kTileSize;
 constexpr std::size_t kSampleBytes = 6 * sizeof(float);  ///< x, y, t, u, v, 1 / focus
-/// As hide.comp writes it.
-struct DeviceFragment {
-    float key;
-    std::uint32_t sample;
-    SurfaceId id;
-};
-constexpr std::size_t kFragmentBytes = sizeof(DeviceFragment);
-static_assert(kFragmentBytes == 12);
+static_assert(sizeof(DeviceFragment) == 12);
 constexpr std::uint32_t kSkip = ~std::uint32_t{0};
-
-struct GridOrder {
-    std::uint32_t base, key[4];
-};
 
 struct Seen {
     float key;
     SurfaceId id;
 };
+
+/// Of every block the pixels that count, for farthest.comp.
+std::vector<ComputeBlock> blocks_of(const BucketTiles& bucket, std::size_t first,
+                                    std::size_t count) {
+    std::vector<ComputeBlock> blocks;
+    for (std::uint32_t tile = 0; tile < count; ++tile) {
+        const Rect pixels = bucket.local_pixels(first + tile);
+        for (std::uint32_t block = 0; block < 16; ++block) {
+            std::uint32_t counting = 0;
+            for (std::uint32_t p = 0; p < 16; ++p) {
+                const int x = static_cast<int>(block % 4 * 4 + p % 4);
+                const int y = static_cast<int>(block / 4 * 4 + p / 4);
+                if (x >= pixels.x0 && x < pixels.x1 && y >= pixels.y0 && y < pixels.y1)
+                    counting |= 1u << p;
+            }
+            blocks.push_back({tile, block, counting, 0});
+        }
+    }
+    return blocks;
+}
 
 }  // namespace
 
@@ -55,16 +65,15 @@ ComputeTiles::ComputeTiles(ComputeDevice& device, BucketTiles& bucket, const Hid
       m_count(count),
       m_samples_a_pixel(static_cast<std::uint32_t>(bucket.samples(first).samples)),
       m_stride(static_cast<std::uint32_t>(count * kPixels) * m_samples_a_pixel),
-      m_seen(m_stride * sizeof(Seen), nullptr) {
-    const std::uint32_t nothing[2] = {std::bit_cast<std::uint32_t>(-INFINITY), kNoSurface};
-    glClearNamedBufferData(m_seen.name(), GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, nothing);
-    upload_samples(false);
+      m_all_blocks(blocks_of(bucket, first, count)) {
+    stage_samples(false);
 }
 
-void ComputeTiles::upload_samples(bool time) {
+void ComputeTiles::stage_samples(bool time) {
     const Projection& projection = m_frame.projection;
     const Vec2f lens(projection.lens_radius * projection.scale);
-    std::vector<float> values;
+    std::vector<float>& values = m_sample_values;
+    values.clear();
     values.reserve(static_cast<std::size_t>(m_stride) * 6);
     const auto append = [&](std::vector<float> TileSamples::*dimension, float factor) {
         for (std::size_t i = m_first; i < m_first + m_count; ++i)
@@ -83,14 +92,14 @@ void ComputeTiles::upload_samples(bool time) {
         for (std::size_t i = m_first; i < m_first + m_count; ++i) m_bucket.need_time(i);
         append(&TileSamples::t, 1.0f);
     }
-    m_samples = gl::Buffer::of(values);
     m_has_time = time;
 }
 
 // The whole pool each time: ties with surfaces of earlier batches need their grids.
-void ComputeTiles::upload_grids() {
+void ComputeTiles::stage_grids() {
     const GridPool& pool = m_bucket.pool();
-    std::vector<GridOrder> order;
+    std::vector<ComputeGridOrder>& order = m_grid_order;
+    order.clear();
     order.reserve(pool.size());
     SurfaceId base = 0;
     for (std::uint32_t slot = 0; slot < pool.size(); ++slot) {
@@ -101,29 +110,45 @@ void ComputeTiles::upload_grids() {
               static_cast<std::uint32_t>(grid.key.path)}});
         base += static_cast<SurfaceId>(grid.micropolygon_count());
     }
-    if (order.size() * sizeof(GridOrder) > m_device.limits().buffer_bytes)
+    if (order.size() * sizeof(ComputeGridOrder) > m_device.limits().buffer_bytes)
         throw GlError("a bucket of " + std::to_string(order.size()) +
                       " grids is too big for the compute executor");
-    m_grids = gl::Buffer::of(order);
 }
 
-void ComputeTiles::hide(const ComputeBatch& batch) {
-    const ComputeBatch::Lists lists = batch.lists();
-    if (batch.moving() && !m_has_time) upload_samples(true);
-    upload_grids();
-    m_entries = gl::Buffer::of(lists.entries);
-    m_vertices = gl::Buffer::of(batch.vertices());
+void ComputeTiles::stage(const ComputeBatch& batch) {
+    if (batch.moving() && !m_has_time) stage_samples(true);
+    stage_grids();
+    m_lists = batch.lists();
+    m_vertex_values = batch.vertices();
+    m_moving = batch.moving();
+}
+
+void ComputeTiles::upload() {
+    if (m_seen.name() == 0) {
+        m_seen = gl::Buffer(m_stride * sizeof(Seen), nullptr);
+        const std::uint32_t nothing[2] = {std::bit_cast<std::uint32_t>(-INFINITY), kNoSurface};
+        glClearNamedBufferData(m_seen.name(), GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, nothing);
+    }
+    if (!m_sample_values.empty()) m_samples = gl::Buffer::of(std::exchange(m_sample_values, {}));
+    m_grids = gl::Buffer::of(m_grid_order);
+    m_entries = gl::Buffer::of(m_lists.entries);
+    m_vertices = gl::Buffer::of(m_vertex_values);
+}
+
+void ComputeTiles::hide() {
+    upload();
     const bool lens = m_frame.projection.has_lens();
-    if (!lists.opaque.empty())
-        dispatch(m_device.hide({COMPUTE_PASS_OPAQUE, batch.moving(), lens}), lists.opaque);
-    if (!lists.transparent.empty()) hide_transparent(lists.transparent, batch.moving());
+    if (!m_lists.opaque.empty())
+        dispatch(m_device.hide({COMPUTE_PASS_OPAQUE, m_moving, lens}), m_lists.opaque);
+    if (!m_lists.transparent.empty()) hide_transparent();
 }
 
 void ComputeTiles::count_dispatch() const {
     if (m_frame.statistics) m_frame.statistics->add(Counter::GlDispatches);
 }
 
-void ComputeTiles::dispatch(const gl::Program& program, const std::vector<ComputeBlock>& blocks) {
+void ComputeTiles::dispatch(const gl::Program& program,
+                            const std::vector<ComputeBlock>& blocks) const {
     const gl::Buffer block_buffer = gl::Buffer::of(blocks);
     const Projection& projection = m_frame.projection;
     const DepthRange range = depth_range(projection);
@@ -151,96 +176,92 @@ void ComputeTiles::dispatch(const gl::Program& program, const std::vector<Comput
 
 // Two passes, so that nothing can overflow: the first counts, the second fills as many parts as the
 // limits ask for.
-void ComputeTiles::hide_transparent(const std::vector<ComputeBlock>& blocks, bool moving) {
+void ComputeTiles::hide_transparent() {
+    const std::vector<ComputeBlock>& blocks = m_lists.transparent;
     const std::size_t cells = std::size_t{16} * m_samples_a_pixel;  // of a block
-    const std::size_t limit = m_device.limits().buffer_bytes / kFragmentBytes;
+    const std::size_t limit = m_device.limits().buffer_bytes / sizeof(DeviceFragment);
     const gl::Buffer count_buffer(blocks.size() * cells * sizeof(std::uint32_t), nullptr);
     count_buffer.bind_storage(COMPUTE_COUNTS);
-    dispatch(m_device.hide({COMPUTE_PASS_COUNT, moving, m_frame.projection.has_lens()}), blocks);
-    const auto counts = count_buffer.read<std::uint32_t>();
+    dispatch(m_device.hide({COMPUTE_PASS_COUNT, m_moving, m_frame.projection.has_lens()}), blocks);
+    m_counts = count_buffer.read<std::uint32_t>();
 
     std::size_t begin = 0, total = 0;
-    for (std::size_t cell = 0; cell < counts.size(); ++cell) {
-        if (total + counts[cell] > limit && total > 0) {
-            fill(blocks, counts, begin, cell, static_cast<std::uint32_t>(total), moving);
+    for (std::size_t cell = 0; cell < m_counts.size(); ++cell) {
+        if (total + m_counts[cell] > limit && total > 0) {
+            fill(begin, cell, static_cast<std::uint32_t>(total));
             begin = cell;
             total = 0;
         }
-        total += counts[cell];
+        total += m_counts[cell];
     }
-    if (total > 0)
-        fill(blocks, counts, begin, counts.size(), static_cast<std::uint32_t>(total), moving);
+    if (total > 0) fill(begin, m_counts.size(), static_cast<std::uint32_t>(total));
 }
 
-void ComputeTiles::fill(const std::vector<ComputeBlock>& blocks,
-                        const std::vector<std::uint32_t>& counts, std::size_t begin,
-                        std::size_t end, std::uint32_t total, bool moving) {
-    std::vector<std::uint32_t> places(counts.size(), kSkip);
+void ComputeTiles::fill(std::size_t begin, std::size_t end, std::uint32_t total) {
+    std::vector<std::uint32_t> places(m_counts.size(), kSkip);
     std::uint32_t next = 0;
     for (std::size_t cell = begin; cell < end; ++cell) {
-        if (counts[cell] > 0) places[cell] = next;
-        next += counts[cell];
+        if (m_counts[cell] > 0) places[cell] = next;
+        next += m_counts[cell];
     }
     const gl::Buffer place_buffer = gl::Buffer::of(places);
-    const gl::Buffer fragment_buffer(total * kFragmentBytes, nullptr);
+    const gl::Buffer fragment_buffer(total * sizeof(DeviceFragment), nullptr);
     place_buffer.bind_storage(COMPUTE_COUNTS);
     fragment_buffer.bind_storage(COMPUTE_OUTPUT);
-    dispatch(m_device.hide({COMPUTE_PASS_FILL, moving, m_frame.projection.has_lens()}), blocks);
-
-    const auto fragments = fragment_buffer.read<DeviceFragment>();
-    auto from = fragments.begin();
-    const std::size_t cells = std::size_t{16} * m_samples_a_pixel;
-    for (std::size_t cell = begin; cell < end; ++cell) {
-        TileStore& store = m_bucket.store(m_first + blocks[cell / cells].tile);
-        FragmentLists& lists = store.lists;
-        lists.prepare(store.key.size(), m_bucket.list_memory());
-        for (const auto end_of_cell = from + counts[cell]; from != end_of_cell; ++from)
-            lists.add(from->sample, {from->key, from->id, 0.0f, 0.0f, false});
-    }
+    dispatch(m_device.hide({COMPUTE_PASS_FILL, m_moving, m_frame.projection.has_lens()}),
+             m_lists.transparent);
+    m_found.push_back({begin, end, fragment_buffer.read<DeviceFragment>()});
     if (m_frame.statistics) m_frame.statistics->add(Counter::FragmentsStored, total);
 }
 
-std::vector<float> ComputeTiles::farthest() {
-    std::vector<ComputeBlock> blocks;
-    for (std::uint32_t tile = 0; tile < m_count; ++tile) {
-        const Rect pixels = m_bucket.local_pixels(m_first + tile);
-        for (std::uint32_t block = 0; block < 16; ++block) {
-            std::uint32_t counting = 0;
-            for (std::uint32_t p = 0; p < 16; ++p) {
-                const int x = static_cast<int>(block % 4 * 4 + p % 4);
-                const int y = static_cast<int>(block / 4 * 4 + p / 4);
-                if (x >= pixels.x0 && x < pixels.x1 && y >= pixels.y0 && y < pixels.y1)
-                    counting |= 1u << p;
-            }
-            blocks.push_back({tile, block, counting, 0});
+void ComputeTiles::collect() {
+    const std::size_t cells = std::size_t{16} * m_samples_a_pixel;
+    for (const Found& found : m_found) {
+        auto from = found.fragments.begin();
+        for (std::size_t cell = found.begin; cell < found.end; ++cell) {
+            TileStore& store = m_bucket.store(m_first + m_lists.transparent[cell / cells].tile);
+            FragmentLists& lists = store.lists;
+            lists.prepare(store.key.size(), m_bucket.list_memory());
+            for (const auto end = from + m_counts[cell]; from != end; ++from)
+                lists.add(from->sample, {from->key, from->id, 0.0f, 0.0f, false});
         }
     }
-    const gl::Buffer block_buffer = gl::Buffer::of(blocks);
-    const gl::Buffer out(blocks.size() * sizeof(float), nullptr);
+    m_found.clear();
+}
+
+gl::Readback ComputeTiles::farthest() const {
+    const gl::Buffer block_buffer = gl::Buffer::of(m_all_blocks);
+    const gl::Buffer out(m_all_blocks.size() * sizeof(float), nullptr);
     m_device.farthest().use();
     block_buffer.bind_storage(COMPUTE_BLOCKS);
     m_seen.bind_storage(COMPUTE_SEEN);
     out.bind_storage(COMPUTE_OUTPUT);
     glUniform1ui(COMPUTE_SAMPLES_A_PIXEL, m_samples_a_pixel);
-    glUniform1ui(COMPUTE_BLOCK_COUNT, static_cast<GLuint>(blocks.size()));
+    glUniform1ui(COMPUTE_BLOCK_COUNT, static_cast<GLuint>(m_all_blocks.size()));
     glDispatchCompute(
-        static_cast<GLuint>((blocks.size() + COMPUTE_GROUP_SIZE - 1) / COMPUTE_GROUP_SIZE), 1, 1);
+        static_cast<GLuint>((m_all_blocks.size() + COMPUTE_GROUP_SIZE - 1) / COMPUTE_GROUP_SIZE), 1,
+        1);
     gl::check("finding the farthest keys");
     count_dispatch();
-    return out.read<float>();
+    return gl::Readback(out, 0, out.size());
 }
 
-void ComputeTiles::read_back(std::size_t tile) {
+gl::Readback ComputeTiles::seen(std::size_t first, std::size_t count) const {
+    const std::size_t bytes = kPixels * m_samples_a_pixel * sizeof(Seen);
+    return gl::Readback(m_seen, (first - m_first) * bytes, count * bytes);
+}
+
+void ComputeTiles::take(const gl::Readback& seen, std::size_t first) {
     const std::size_t samples = kPixels * m_samples_a_pixel;
-    const auto seen = m_seen.read<Seen>((tile - m_first) * samples, samples);
-    TileStore& store = m_bucket.store(tile);
-    for (std::size_t i = 0; i < samples; ++i) {
-        store.key[i] = seen[i].key;
-        store.id[i] = seen[i].id;
+    const std::span<const Seen> values = seen.values<Seen>();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        TileStore& store = m_bucket.store(first + i / samples);
+        store.key[i % samples] = values[i].key;
+        store.id[i % samples] = values[i].id;
     }
 }
 
-void ComputeTiles::write_back(std::size_t tile) {
+void ComputeTiles::write_back(std::size_t tile) const {
     const TileStore& store = m_bucket.store(tile);
     std::vector<Seen> seen(store.key.size());
     for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = {store.key[i], store.id[i]};

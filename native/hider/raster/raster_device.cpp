@@ -163,15 +163,16 @@ void RasterDevice::draw(RasterOutput output, const RasterBuffers& buffers,
     buffers.positions.bind_storage(RASTER_POSITIONS);
     buffers.grids.bind_storage(RASTER_GRIDS);
     buffers.array.bind();
-    m_primitives.emplace_back(GL_PRIMITIVES_GENERATED);
-    m_primitives.back().begin();
     if (m_samples)
         draw_samples(buffers, commands);
     else
         draw_passes(buffers, commands, passes);
-    m_primitives.back().end();
     gl::check("drawing grids");
-    if (m_frame.statistics != nullptr) m_frame.statistics->add(Counter::GlPasses, 1);
+    if (m_frame.statistics == nullptr) return;
+    std::uint64_t indices = 0;
+    for (const Command& c : commands) indices += std::uint64_t{c.count} * c.instances;
+    m_frame.statistics->add(Counter::GlPasses, 1);
+    m_frame.statistics->add(Counter::GlPrimitives, (m_samples ? 2 : 1) * indices / 3);
 }
 
 void RasterDevice::draw_passes(const RasterBuffers& buffers, const std::vector<Command>& commands,
@@ -265,13 +266,6 @@ void RasterDevice::set_marked(const RasterPasses& passes) const {
     glUniform2ui(
         RASTER_MARKED, static_cast<GLuint>(passes.first),
         static_cast<GLuint>(RasterSeen::words_for(static_cast<int>(m_frame.passes.size()))));
-}
-
-std::uint64_t RasterDevice::take_primitives() {
-    std::uint64_t sum = 0;
-    for (const gl::Query& query : m_primitives) sum += query.result();
-    m_primitives.clear();
-    return sum;
 }
 
 float RasterDevice::farthest() const {

@@ -8,7 +8,6 @@
 #include "gl/buffer.h"
 #include "gl/egl_context.h"
 #include "gl/program.h"
-#include "gl/query.h"
 #include "gl/vertex_array.h"
 #include "hider/raster/raster_hider.h"
 #include "hider/raster/raster_output.h"
@@ -69,8 +68,6 @@ class RasterDevice {
     const RasterSamples* samples() const { return m_samples ? &*m_samples : nullptr; }
     /// Made when the first transparent grid comes.
     RasterPeel& peel();
-    /// Primitives drawn since the last call; waits for the device.
-    std::uint64_t take_primitives();
     /// Depth is near / z: the far clip is a depth that the target starts with.
     float farthest() const;
 
@@ -94,7 +91,6 @@ class RasterDevice {
     gl::Program m_accumulate, m_mark;
     gl::Framebuffer m_mark_target;
     gl::Buffer m_passes, m_layers;
-    std::vector<gl::Query> m_primitives;
 };
 
 }  // namespace granita

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include "base/check.h"
@@ -93,21 +92,9 @@ RasterFilter make_gathering_filter(int lattice, double radius, bool is_box,
     filter.lattice = lattice;
     filter.radius = radius;
     filter.is_box = is_box;
-    for (int i = 0; i <= kSteps; ++i) filter.factor.push_back(factor(radius * i / kSteps));
+    for (int i = 0; i <= kSteps; ++i)
+        filter.factor.push_back(static_cast<float>(factor(radius * i / kSteps)));
     return filter;
-}
-
-std::string list_source(const std::vector<double>& values) {
-    std::string source;
-    for (const double weight : values) {
-        char number[32];
-        // Nine digits make a float exact.
-        std::snprintf(number, sizeof number, "%.8e",
-                      static_cast<double>(static_cast<float>(weight)));
-        if (!source.empty()) source += ", ";
-        source += number;
-    }
-    return source;
 }
 
 }  // namespace granita

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pixel filter as the raster executor uses it, in a generated shader (paper, 9.3.6): on a
-// regular lattice every pixel has the same weights, which are its constants; samples that lie
-// anywhere weigh by the filter's factor, a table of constants.  Along a rotated lattice the filter
-// is not separable: its weights are a list of texels.
+// regular lattice every pixel has the same weights; samples that lie anywhere weigh by a table of
+// the filter's factor.  Along a rotated lattice the filter is not separable: its weights are a list
+// of texels.
 #pragma once
 
 #include <functional>
@@ -30,7 +30,7 @@ struct RasterFilter {
     int tap_pixels = 0;     ///< that they reach beyond their own
 
     /// Samples anywhere: the factor at equal steps from 0 to `radius`, unnormalised; else empty.
-    std::vector<double> factor;
+    std::vector<float> factor;
     double radius = 0.0;
     bool is_box = false;
 
@@ -47,8 +47,5 @@ RasterFilter make_raster_filter(RegularLattice lattice, double radius,
 /// linear interpolation errs by less than 1e-5 of the factor at 0 for the filters of film/.
 RasterFilter make_gathering_filter(int lattice, double radius, bool is_box,
                                    const std::function<double(double)>& factor);
-
-/// As the source of a list of floats, for the shaders of resolve/.
-std::string list_source(const std::vector<double>& values);
 
 }  // namespace granita

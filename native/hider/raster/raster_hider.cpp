@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "gl/gl_check.h"
+#include "gl/query.h"
 #include "hider/raster/raster_device.h"
 #include "hider/raster/raster_geometry.h"
 #include "shaders/shared/raster_layout.h"
@@ -26,17 +27,31 @@ class RasterHider::Bucket : public RasterBucket {
           m_transparent(all(m_geometry.transparent())) {
         add(Counter::Micropolygons, m_geometry.micropolygons());
         report_dropped();
-        m_thread.run([&] { upload(); });
+        const std::vector<Vec4f> opacity =
+            m_transparent.empty() ? std::vector<Vec4f>{} : m_geometry.opacity();
+        m_thread.run([&] { upload(opacity); });
     }
     ~Bucket() override {
-        m_thread.run([&] { m_buffers.reset(); });
+        m_thread.run([&] {
+            m_buffers.reset();
+            m_marks = {};
+            m_cells.clear();
+        });
     }
 
+    // In two jobs each: between them the device works for other buckets.
     std::vector<bool> find_seen() override {
-        return m_thread.run([&] { return find_seen_here(); });
+        m_thread.run([&] { mark_seen(); });
+        m_thread.run([&] { m_marks.wait(); });
+        return seen_grids();
     }
     RasterImage render(const RasterBackground& background) override {
-        return m_thread.run([&] { return render_here(background); });
+        const std::vector<Vec4f> radiance = shaded_radiance();
+        m_thread.run([&] { draw(radiance, background); });
+        m_thread.run([&] {
+            for (const Cell& cell : m_cells) cell.image.wait();
+        });
+        return image();
     }
     std::vector<float> center_keys() override {
         return m_thread.run([&] { return center_keys_here(); });
@@ -69,7 +84,7 @@ class RasterHider::Bucket : public RasterBucket {
         }
     }
 
-    void upload() {
+    void upload(const std::vector<Vec4f>& opacity) {
         // Whole or not at all: what is made here must not end on another thread.
         RasterBuffers buffers;
         buffers.positions = gl::Buffer::of(m_geometry.positions());
@@ -79,7 +94,7 @@ class RasterHider::Bucket : public RasterBucket {
         buffers.array.set_uints(RASTER_GRID, buffers.vertex_grids);
         buffers.array.set_indices(buffers.indices);
         if (!m_transparent.empty()) {
-            buffers.opacity = gl::Buffer::of(m_geometry.opacity());
+            buffers.opacity = gl::Buffer::of(opacity);
             buffers.array.set_floats(RASTER_OPACITY, buffers.opacity, 4);
         }
         m_buffers = std::move(buffers);
@@ -119,11 +134,12 @@ class RasterHider::Bucket : public RasterBucket {
         return m_device.commands(m_geometry, m_geometry.transparent(), among, cell, passes, m_seen);
     }
 
-    std::vector<bool> find_seen_here() {
-        const std::size_t grids = m_geometry.inputs().size();
-        const int passes_of_frame = static_cast<int>(m_frame.passes.size());
-        const gl::Buffer marks = gl::Buffer::of(
-            std::vector<std::uint32_t>(grids * RasterSeen::words_for(passes_of_frame), 0));
+    int passes_of_frame() const { return static_cast<int>(m_frame.passes.size()); }
+
+    void mark_seen() {
+        const std::size_t words =
+            m_geometry.inputs().size() * RasterSeen::words_for(passes_of_frame());
+        const gl::Buffer marks = gl::Buffer::of(std::vector<std::uint32_t>(words, 0));
         const bool saturates = m_frame.cull_saturated && m_frame.opacity_threshold < 1.0f;
         for (const RasterCell& cell : m_device.target().cells(m_pixels)) {
             m_device.begin(cell);
@@ -142,21 +158,24 @@ class RasterHider::Bucket : public RasterBucket {
                 m_device.draw(RasterOutput::Mark, *m_buffers, commands, cell, passes);
             });
         }
-        m_seen = RasterSeen(marks.read<std::uint32_t>(), passes_of_frame);
-        std::vector<bool> seen(grids);
-        for (std::size_t i = 0; i < grids; ++i) seen[m_geometry.inputs()[i]] = m_seen.ever(i);
-        add(Counter::GlPrimitives, m_device.take_primitives());
+        m_marks = gl::Readback(marks, 0, marks.size());
+    }
+
+    std::vector<bool> seen_grids() {
+        const auto words = m_marks.values<std::uint32_t>();
+        m_seen = RasterSeen({words.begin(), words.end()}, passes_of_frame());
+        std::vector<bool> seen(m_geometry.inputs().size());
+        for (std::size_t i = 0; i < seen.size(); ++i) seen[m_geometry.inputs()[i]] = m_seen.ever(i);
         return seen;
     }
 
-    void upload_radiance() {
+    std::vector<Vec4f> shaded_radiance() const {
         for (std::size_t i = 0; i < m_geometry.grids().size(); ++i) {
             const Grid& grid = *m_geometry.grids()[i];
             if (!m_seen.ever(i) || grid.holdout) continue;
             GRANITA_CHECK_EQ(grid.radiance.size(), static_cast<std::size_t>(grid.vertex_count()));
         }
-        m_buffers->radiance = gl::Buffer::of(m_geometry.radiance());
-        m_buffers->array.set_floats(RASTER_RADIANCE, m_buffers->radiance, 4);
+        return m_geometry.radiance();
     }
 
     std::vector<ZBatch> batches_of(const RasterCell& cell) const {
@@ -197,11 +216,11 @@ class RasterHider::Bucket : public RasterBucket {
         }
     }
 
-    RasterImage render_here(const RasterBackground& background) {
-        upload_radiance();
+    void draw(const std::vector<Vec4f>& radiance, const RasterBackground& background) {
+        m_buffers->radiance = gl::Buffer::of(radiance);
+        m_buffers->array.set_floats(RASTER_RADIANCE, m_buffers->radiance, 4);
         const gl::Buffer corners = gl::Buffer::of(background.corners);
-        RasterImage image{m_pixels, {}};
-        image.combined.resize(static_cast<std::size_t>(m_pixels.width()) * m_pixels.height());
+        m_cells.clear();
         for (const RasterCell& cell : m_device.target().cells(m_pixels)) {
             m_device.begin(cell);
             const int count = pass_count(cell, background.passes > 1);
@@ -212,15 +231,20 @@ class RasterHider::Bucket : public RasterBucket {
                 if (!batches.empty()) peel(batches, cell, passes);
                 m_device.accumulate(cell, passes, !batches.empty(), background, corners);
             });
-            copy(m_device.target().resolve(cell, m_device.samples()), cell.pixels, 1,
-                 image.combined);
+            m_cells.push_back({cell.pixels, m_device.target().resolve(cell, m_device.samples())});
             add(Counter::SamplesTotal,
                 static_cast<std::uint64_t>(cell.pixels.width()) *
                     static_cast<std::uint64_t>(cell.pixels.height()) *
                     static_cast<std::uint64_t>(m_frame.table ? m_frame.table->samples()
                                                              : lattice().cells() * count));
-            add(Counter::GlPrimitives, m_device.take_primitives());
         }
+    }
+
+    RasterImage image() const {
+        RasterImage image{m_pixels, {}};
+        image.combined.resize(static_cast<std::size_t>(m_pixels.width()) * m_pixels.height());
+        for (const Cell& cell : m_cells)
+            copy(cell.image.values<Vec4f>(), cell.pixels, 1, image.combined);
         return image;
     }
 
@@ -246,9 +270,8 @@ class RasterHider::Bucket : public RasterBucket {
             for (float& depth : depths)
                 depth =
                     depth > 0.0f ? key_of_depth(depth) : -std::numeric_limits<float>::infinity();
-            copy(depths, cell.pixels, 1, keys);
+            copy<float>(depths, cell.pixels, 1, keys);
         }
-        add(Counter::GlPrimitives, m_device.take_primitives());
         return keys;
     }
 
@@ -260,10 +283,9 @@ class RasterHider::Bucket : public RasterBucket {
         std::vector<float> depths(count);
         for (const RasterCell& cell : m_device.target().cells(m_pixels)) {
             draw_surfaces(cell, {pass, 1});
-            copy(m_device.target().read_surfaces(cell), cell.pixels, cells, names);
-            copy(m_device.target().read_depth(cell), cell.pixels, cells, depths);
+            copy<std::uint32_t>(m_device.target().read_surfaces(cell), cell.pixels, cells, names);
+            copy<float>(m_device.target().read_depth(cell), cell.pixels, cells, depths);
         }
-        add(Counter::GlPrimitives, m_device.take_primitives());
         RasterSurfaces result{m_pixels, {}, {}};
         result.surface.resize(count);
         result.key.resize(count, -std::numeric_limits<float>::infinity());
@@ -280,7 +302,7 @@ class RasterHider::Bucket : public RasterBucket {
 
     // Rows of a cell into the bucket's image; `values` a pixel.
     template <class T>
-    void copy(const std::vector<T>& from, const Rect& cell, int values, std::vector<T>& to) const {
+    void copy(std::span<const T> from, const Rect& cell, int values, std::vector<T>& to) const {
         const std::ptrdiff_t width = static_cast<std::ptrdiff_t>(cell.width()) * values;
         const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(m_pixels.width()) * values;
         for (int row = 0; row < cell.height(); ++row)
@@ -296,7 +318,13 @@ class RasterHider::Bucket : public RasterBucket {
     RasterGeometry m_geometry;
     Ranges m_opaque, m_transparent;
     std::optional<RasterBuffers> m_buffers;
+    gl::Readback m_marks;
     RasterSeen m_seen;
+    struct Cell {
+        Rect pixels;
+        gl::Readback image;
+    };
+    std::vector<Cell> m_cells;
 };
 
 std::vector<RasterPass> raster_passes(const SampleTable& table, SampleNeeds needs,

@@ -40,8 +40,7 @@ gl::Program screen_program(const std::string& name, const std::string& fragment,
 }
 
 gl::Program filter_program(const RasterFilter& filter, const std::string& axis) {
-    const gl::Defines defines{{"TAP_WEIGHTS", list_source(filter.weights)},
-                              {"TAP_COUNT", std::to_string(filter.weights.size())},
+    const gl::Defines defines{{"TAP_COUNT", std::to_string(filter.weights.size())},
                               {"TAP_FIRST", std::to_string(filter.first)},
                               {"LATTICE", std::to_string(filter.lattice.side)},
                               {"AXIS", axis}};
@@ -49,9 +48,7 @@ gl::Program filter_program(const RasterFilter& filter, const std::string& axis) 
 }
 
 gl::Program gather_program(const RasterFilter& filter) {
-    const gl::Defines defines{{"FACTOR", list_source(filter.factor)},
-                              {"FACTOR_COUNT", std::to_string(filter.factor.size() - 1)},
-                              {"RADIUS", list_source({filter.radius})},
+    const gl::Defines defines{{"FACTOR_COUNT", std::to_string(filter.factor.size() - 1)},
                               {"IS_BOX", filter.is_box ? "1" : "0"},
                               {"MARGIN", std::to_string(filter.margin())}};
     return screen_program("pixel filter", "resolve/gather.frag", defines);
@@ -70,6 +67,7 @@ int floor_to(int value, int step) {
 RasterTarget::RasterTarget(const RasterFilter& filter, int most_layers, int max_texture_size)
     : m_lattice(filter.lattice),
       m_margin(filter.margin()),
+      m_radius(static_cast<float>(filter.radius)),
       m_cell(choose_cell(filter, max_texture_size)) {
     const Rect whole = m_lattice.texels_of({0, 0, pixel_size(), pixel_size()});
     m_origin = {-whole.x0, -whole.y0};
@@ -85,14 +83,16 @@ RasterTarget::RasterTarget(const RasterFilter& filter, int most_layers, int max_
     m_radiance_target = gl::Framebuffer(&m_radiance, &m_depth);
     m_pixels_target = gl::Framebuffer(&m_pixels, nullptr);
     if (!filter.factor.empty()) {
+        m_table = gl::Buffer::of(filter.factor);
         m_gather = gather_program(filter);
         return;
     }
     if (!filter.taps.empty()) {
-        m_taps = gl::Buffer::of(filter.taps);
+        m_table = gl::Buffer::of(filter.taps);
         m_gather = screen_program("pixel filter", "resolve/taps.frag", lattice_defines());
         return;
     }
+    m_table = gl::Buffer::of(std::vector<float>(filter.weights.begin(), filter.weights.end()));
     m_rows = gl::Texture(GL_RGBA32F, m_cell, side);
     m_rows_target = gl::Framebuffer(&m_rows, nullptr);
     m_filter_x = filter_program(filter, "ivec2(1, 0)");
@@ -175,17 +175,17 @@ void RasterTarget::fill(const gl::Framebuffer& target, const gl::Texture& textur
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-std::vector<Vec4f> RasterTarget::resolve(const RasterCell& cell,
-                                         const RasterSamples* samples) const {
+gl::Readback RasterTarget::resolve(const RasterCell& cell, const RasterSamples* samples) const {
     const gl::TexelRect own = own_pixels(cell);
     const int margin_texels = m_margin * m_lattice.side;
     m_mean.bind(FILTER_SOURCE);
+    m_table.bind_storage(FILTER_TABLE);
     if (samples != nullptr || m_lattice.rotated) {
         m_gather.use();
-        if (samples != nullptr)
+        if (samples != nullptr) {
             samples->bind();
-        else
-            m_taps.bind_storage(FILTER_TAPS);
+            glUniform1f(FILTER_RADIUS, m_radius);
+        }
         fill(m_pixels_target, m_pixels, own, {m_margin, m_margin});
     } else {
         m_filter_x.use();
@@ -196,12 +196,7 @@ std::vector<Vec4f> RasterTarget::resolve(const RasterCell& cell,
         fill(m_pixels_target, m_pixels, own, {0, margin_texels});
     }
     gl::check("filtering a cell");
-
-    const auto floats = m_pixels.read<float>(own, GL_RGBA, 4);
-    std::vector<Vec4f> pixels(floats.size() / 4);
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-        pixels[i] = {floats[4 * i], floats[4 * i + 1], floats[4 * i + 2], floats[4 * i + 3]};
-    return pixels;
+    return gl::Readback(m_pixels, own);
 }
 
 std::vector<float> RasterTarget::center_depths(const RasterCell& cell,

@@ -15,6 +15,7 @@
 #include "gl/buffer.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
+#include "gl/readback.h"
 #include "gl/shader_source.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
@@ -78,9 +79,9 @@ class RasterTarget {
     /// The mean of the passes, which resolve() filters.
     const gl::Texture& mean() const { return m_mean; }
 
-    /// Filters and downsamples the cell; [height][width] of cell.pixels.  `samples`: where the
-    /// filter gathers them, else nullptr.
-    std::vector<Vec4f> resolve(const RasterCell& cell, const RasterSamples* samples) const;
+    /// Filters and downsamples the cell; Vec4f, [height][width] of cell.pixels.  `samples`: where
+    /// the filter gathers them, else nullptr.
+    gl::Readback resolve(const RasterCell& cell, const RasterSamples* samples) const;
     /// Of what begin_surfaces() and drawing left in layer 0: the depths of the samples nearest to
     /// the pixels' centres, 0 where they see nothing; [height][width] of cell.pixels.
     std::vector<float> center_depths(const RasterCell& cell, const RasterSamples* samples);
@@ -102,7 +103,9 @@ class RasterTarget {
               Vec2i origin) const;
 
     RegularLattice m_lattice;
-    int m_margin, m_cell, m_texel_size, m_layers;
+    int m_margin;
+    float m_radius;  ///< pixels, of a filter that gathers
+    int m_cell, m_texel_size, m_layers;
     Vec2i m_origin;
     gl::Texture m_radiance, m_depth, m_mean, m_rows, m_pixels;
     gl::Framebuffer m_radiance_target, m_rows_target, m_pixels_target;
@@ -110,7 +113,7 @@ class RasterTarget {
     gl::Framebuffer m_surfaces_target;
     gl::Program m_filter_x, m_filter_y;  ///< of a lattice
     gl::Program m_gather;                ///< of a rotated lattice or of samples anywhere
-    gl::Buffer m_taps;                   ///< of a rotated lattice
+    gl::Buffer m_table;                  ///< their weights
     gl::Texture m_center_depths;         ///< made at the first center_depths()
     gl::Framebuffer m_center_depths_target;
     gl::Program m_center;

@@ -155,7 +155,11 @@ TEST(RasterHider, of_coincident_grids_the_smaller_key_wins_in_any_order) {
     Grid green = make_grid(6, 7, 3, tilted, [](float, float) { return Vec3f(0, 1, 0); });
     for (const auto& list : {std::vector<const Grid*>{&red, &green}, {&green, &red}}) {
         const RasterImage image = hider.open({0, 0, 16, 16}, list)->render();
-        for (const Vec4f& pixel : image.combined) EXPECT_EQ(pixel, Vec4f(1, 0, 0, 1));
+        // A device may interpolate a colour that is the same at all corners within a rounding.
+        for (const Vec4f& pixel : image.combined) {
+            EXPECT_NEAR(pixel.x, 1.0f, 0x1p-22f);
+            EXPECT_EQ(Vec3f(pixel.y, pixel.z, pixel.w), Vec3f(0, 0, 1));
+        }
     }
 }
 
