@@ -228,9 +228,9 @@ void RasterDevice::accumulate(const RasterCell& cell, const RasterPasses& passes
                 background.passes);
     glUniform4fv(RASTER_BACKGROUND_CONSTANT, 1, &background.constant.x);
     glUniform2i(RASTER_FLAGS, peeled, m_frame.film_transparent);
-    m_target.radiance().bind(0);
     if (peeled) m_peel->bind_result();
     m_target.mean().bind_image(0, GL_READ_WRITE);
+    m_target.radiance().bind_image(1, GL_READ_WRITE);
     if (!b.empty()) corners.bind_storage(RASTER_BACKGROUND);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
     m_target.dispatch(cell, 1);

@@ -63,7 +63,8 @@ class RasterTarget {
     /// Of raster/lattice.glsl.
     gl::Defines lattice_defines() const;
 
-    /// Binds the target and clears the cell's samples: colour to nothing, depth to `farthest`.
+    /// Binds the target and clears the depth of the cell's samples to `farthest`; their colour is
+    /// nothing, as accumulate.comp leaves it.
     void begin_radiance(const RasterCell& cell, float farthest) const;
     /// The same with the micropolygons' names: 0 is none.
     void begin_surfaces(const RasterCell& cell, float farthest);

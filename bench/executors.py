@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Seconds and error of each executor on the machine that runs this: the CPU's, and the GPU's through OpenGL.
+
+    PYTHONPATH=<folder of granita_core> python3 bench/executors.py NAME_OF_THE_MACHINE [--scenes spheres ...]
+
+Wall clock of whole frames, medians of three taken in turns (of what takes long, one); error is the RMSE beside 1,024 samples of the CPU's executor
+with another seed.  Passes are the chapter's sampling: a turned lattice for the whole picture, at times and lens points
+that all pixels share.  Writes bench/results/executors_NAME.json; docs/benchmarks.md shows it.
+"""
+
+import argparse
+import os
+import statistics
+import time
+
+import figure_scenes
+import measure
+import numpy as np
+import snapshot_scenes
+
+THREADS = len(os.sched_getaffinity(0))
+LONG = 4.0  # seconds
+REFERENCE = {"executor": "SIMD", "samples": 1024, "seed": 9}
+
+
+def samples(executor, count, **options):
+    return {"executor": executor, "samples": count, **options}
+
+
+def passes(executor, lattice, times, **options):
+    """`times` passes of about `lattice` samples a pixel."""
+    regular = {"sampling": "REGULAR", "time_samples": times}
+    return samples(executor, lattice, **regular, **options)
+
+
+SETTINGS = {
+    "CPU, 16 samples": samples("SIMD", 16),
+    "CPU, 64 samples": samples("SIMD", 64),
+    "CPU, 256 samples": samples("SIMD", 256),
+    "GPU compute, 64 samples": samples("COMPUTE", 64),
+    "CPU, 16 passes of 17": passes("SIMD", 16, 16),
+    "GPU raster, 16 passes of 17": passes("RASTER", 16, 16),
+    "GPU raster, 16 passes of 65": passes("RASTER", 64, 16),
+    "CPU, 64 samples, 4 threads": samples("SIMD", 64, threads=4),
+    "GPU raster, 16 passes of 17, 4 threads": passes("RASTER", 16, 16, threads=4),
+}
+
+
+def enlarged(snapshot, factor):
+    """The same picture on `factor` times as many pixels a side."""
+    for side in ("width", "height"):
+        snapshot["options"][side] *= factor
+    for place in ("scale", "center"):
+        camera = snapshot["camera"]
+        camera[place] = tuple(factor * x for x in camera[place])
+    return snapshot
+
+
+def defocused(snapshot):
+    """Seen by a camera with a lens, whose circles of confusion have radii of up to 6 pixels."""
+    snapshot["camera"] |= {"lens_radius": 4.0, "focus_distance": 200.0}
+    return snapshot
+
+
+SCENES = {
+    "spheres": lambda: enlarged(snapshot_scenes.spheres(pixels=20 / 3), 3),
+    "lens": lambda: enlarged(defocused(snapshot_scenes.spheres(pixels=20 / 3)), 3),
+    "particles": lambda: enlarged(figure_scenes.particles(2000, {}), 2),
+    "feathers": lambda: enlarged(snapshot_scenes.feathers(angle=0.2), 3),
+}
+
+
+def with_options(snapshot, options):
+    return {**snapshot, "options": {**snapshot["options"], "threads": THREADS, **options}}
+
+
+def timed(snapshot):
+    start = time.perf_counter()
+    result = measure.snapshots.render(snapshot)
+    return result, time.perf_counter() - start
+
+
+def error(picture, reference):
+    return float(np.sqrt(np.mean((picture - reference) ** 2)))
+
+
+def measured(name, build, runs):
+    snapshot = build()
+    reference = timed(with_options(snapshot, REFERENCE))[0]["combined"]
+    seconds = {setting: [] for setting in SETTINGS}
+    results = {}
+    for _ in range(runs):
+        for setting, options in SETTINGS.items():
+            if sum(seconds[setting]) > LONG:
+                continue
+            results[setting], taken = timed(with_options(snapshot, options))
+            seconds[setting].append(taken)
+    rows = []
+    for setting, result in results.items():
+        row = {
+            "scene": name,
+            "setting": setting,
+            "seconds": round(statistics.median(seconds[setting]), 4),
+            "rmse": round(error(result["combined"], reference), 6),
+            "seconds of the device's thread": round(result["statistics"]["seconds_device"], 4),
+            "device": result["statistics"]["device"],
+        }
+        rows.append(row)
+        print(f"| {name} | {setting} | {row['seconds']:.3f} | {row['rmse']:.5f} |", flush=True)
+    return rows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("machine", help="in the name of the results' file")
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
+    parser.add_argument("--runs", type=int, default=3)
+    arguments = parser.parse_args()
+    print(f"| scene | setting, {THREADS} threads | seconds | RMSE |\n|---|---|---|---|", flush=True)
+    rows = []
+    for name in arguments.scenes:
+        rows += measured(name, SCENES[name], arguments.runs)
+        measure.save(f"executors_{arguments.machine}", {"threads": THREADS, "rows": rows})
+
+
+if __name__ == "__main__":
+    main()
