@@ -45,7 +45,7 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
         "Device",
         "What computes the picture",
         "AUTO",
-        ("AUTO", "Automatic", "The CPU, until graphics cards have been measured to be faster"),
+        ("AUTO", "Automatic", "The CPU"),
         ("CPU", "CPU", "All processor cores that Blender may use"),
         ("GPU", "GPU", "OpenGL 4.5; without it the CPU, with a warning"),
         **_NOT_ANIMATED,

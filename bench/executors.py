@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Seconds and error of each executor on the machine that runs this: the CPU's, and the GPU's through OpenGL.
 
-    PYTHONPATH=<folder of granita_core> python3 bench/executors.py NAME_OF_THE_MACHINE [--scenes spheres ...]
+    PYTHONPATH=<folder of granita_core> python3 bench/executors.py [--machine NAME] [--scenes spheres ...]
 
-Wall clock of whole frames, medians of three taken in turns (of what takes long, one); error is the RMSE beside 1,024 samples of the CPU's executor
+Wall clock of whole frames, medians of three taken in turns (fewer of what takes seconds); error is the RMSE beside 1,024 samples of the CPU's executor
 with another seed.  Passes are the chapter's sampling: a turned lattice for the whole picture, at times and lens points
-that all pixels share.  Writes bench/results/executors_NAME.json; docs/benchmarks.md shows it.
+that all pixels share.  "GPU" is what OpenGL offers, which the results name.  Writes bench/results/executors_NAME.json.
 """
 
 import argparse
@@ -15,8 +15,8 @@ import time
 
 import figure_scenes
 import measure
-import numpy as np
 import snapshot_scenes
+from figures import rmse
 
 THREADS = len(os.sched_getaffinity(0))
 LONG = 4.0  # seconds
@@ -79,10 +79,6 @@ def timed(snapshot):
     return result, time.perf_counter() - start
 
 
-def error(picture, reference):
-    return float(np.sqrt(np.mean((picture - reference) ** 2)))
-
-
 def measured(name, build, runs):
     snapshot = build()
     reference = timed(with_options(snapshot, REFERENCE))[0]["combined"]
@@ -99,8 +95,9 @@ def measured(name, build, runs):
         row = {
             "scene": name,
             "setting": setting,
+            "device": result["statistics"]["device"],
             "seconds": round(statistics.median(seconds[setting]), 3),
-            "rmse": round(error(result["combined"], reference), 5),
+            "rmse": rmse(result["combined"], reference),
         }
         rows.append(row)
         print("| {scene} | {setting} | {seconds:.3f} | {rmse:.5f} |".format(**row), flush=True)
@@ -109,7 +106,7 @@ def measured(name, build, runs):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("machine", help="in the name of the results' file")
+    parser.add_argument("--machine", default="here", help="in the name of the results' file")
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
     parser.add_argument("--runs", type=int, default=3)
     arguments = parser.parse_args()

@@ -29,11 +29,9 @@ void Buffer::bind_storage(GLuint binding) const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name());
 }
 
-void Buffer::read_bytes(void* out, std::size_t from, std::size_t size) const {
+void Buffer::read_bytes(void* out, std::size_t size) const {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    if (size > 0)
-        glGetNamedBufferSubData(name(), static_cast<GLintptr>(from), static_cast<GLsizeiptr>(size),
-                                out);
+    if (size > 0) glGetNamedBufferSubData(name(), 0, static_cast<GLsizeiptr>(size), out);
     check("reading a buffer");
 }
 

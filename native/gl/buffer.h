@@ -23,13 +23,8 @@ class Buffer {
     /// Waits for the device.
     template <class T>
     std::vector<T> read() const {
-        return read<T>(0, m_size / sizeof(T));
-    }
-    /// `count` values from value `first` on.
-    template <class T>
-    std::vector<T> read(std::size_t first, std::size_t count) const {
-        std::vector<T> values(count);
-        read_bytes(values.data(), first * sizeof(T), count * sizeof(T));
+        std::vector<T> values(m_size / sizeof(T));
+        read_bytes(values.data(), values.size() * sizeof(T));
         return values;
     }
     /// Overwrites values from value `first` on.
@@ -44,7 +39,7 @@ class Buffer {
     void bind_storage(GLuint binding) const;
 
   private:
-    void read_bytes(void* out, std::size_t from, std::size_t size) const;
+    void read_bytes(void* out, std::size_t size) const;
     void copy_from(const Buffer& source, std::size_t to) const;
     static void destroy(GLuint name) { glDeleteBuffers(1, &name); }
     Handle<&Buffer::destroy> m_handle;

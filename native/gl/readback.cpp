@@ -13,7 +13,7 @@ constexpr GLbitfield kReadInPlace = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL
 }  // namespace
 
 Readback::Readback(std::size_t size)
-    : m_buffer(size, nullptr, kReadInPlace | GL_CLIENT_STORAGE_BIT), m_size(size) {
+    : m_buffer(size, nullptr, kReadInPlace | GL_CLIENT_STORAGE_BIT) {
     if (size == 0) return;  // nothing to map, which OpenGL calls an error
     m_memory =
         glMapNamedBufferRange(m_buffer.name(), 0, static_cast<GLsizeiptr>(size), kReadInPlace);
@@ -30,15 +30,11 @@ Readback::Readback(const Buffer& source, std::size_t from, std::size_t size) : R
 Readback::Readback(const Texture& source, const TexelRect& part)
     : Readback(static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height) * 4 *
                sizeof(float)) {
-    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
-    glBindBuffer(GL_PIXEL_PACK_BUFFER, m_buffer.name());
-    source.read_texels(part, 0, GL_RGBA, GL_FLOAT, m_size, nullptr);
-    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    source.copy_to(m_buffer, part);
     send();
 }
 
 void Readback::send() {
-    glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
     m_sent.reset(glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0));
     glFlush();
     check("reading back");
@@ -46,10 +42,9 @@ void Readback::send() {
 
 void Readback::wait() const {
     constexpr GLuint64 kSecond = 1'000'000'000;  // then whether the GPU was lost
-    while (glClientWaitSync(m_sent.get(), GL_SYNC_FLUSH_COMMANDS_BIT, kSecond) ==
-           GL_TIMEOUT_EXPIRED)
-        check("waiting for the device");
-    check("reading back");
+    while (glClientWaitSync(m_sent.get(), 0, kSecond) == GL_TIMEOUT_EXPIRED)
+        check("waiting for a copy");
+    check("waiting for a copy");
 }
 
 void Readback::Forget::operator()(GLsync sync) const {

@@ -22,12 +22,13 @@ class Readback {
     /// RGBA floats of a part of a texture without layers, row by row.
     Readback(const Texture& source, const TexelRect& part);
 
-    /// Until the copy is there.  On the thread that owns OpenGL, as the others.
+    /// Until the copy is there, and with it all that began before.  On the thread that owns OpenGL,
+    /// as the constructors.
     void wait() const;
     /// What was copied.  Any thread, after wait() and while the object lives.
     template <class T>
     std::span<const T> values() const {
-        return {static_cast<const T*>(m_memory), m_size / sizeof(T)};
+        return {static_cast<const T*>(m_memory), m_buffer.size() / sizeof(T)};
     }
 
   private:
@@ -38,7 +39,6 @@ class Readback {
         void operator()(GLsync sync) const;
     };
     Buffer m_buffer;
-    std::size_t m_size = 0;
     const void* m_memory = nullptr;
     std::unique_ptr<std::remove_pointer_t<GLsync>, Forget> m_sent;
 };

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "gl/buffer.h"
 #include "gl/handle.h"
 
 namespace granita::gl {
@@ -44,8 +45,11 @@ class Texture {
         return texels;
     }
 
+    /// RGBA floats of a part, row by row, to the beginning of a buffer; of a texture without
+    /// layers.
+    void copy_to(const Buffer& buffer, const TexelRect& rect) const;
+
   private:
-    friend class Readback;
     void read_texels(const TexelRect& rect, int layer, GLenum components, GLenum type,
                      std::size_t bytes, void* out) const;
     static void destroy(GLuint name) { glDeleteTextures(1, &name); }

@@ -5,8 +5,8 @@
 // The running mean m += (x - m) / n leaves a sample that is the same in all passes exactly as it is:
 // a cell where nothing moves takes one pass, and its bits are those of many.
 //
-// What it takes it leaves empty for the next draw: a clear of 16 bytes a sample, which goes the way of
-// fragments, was a fifth of a frame on an H200.
+// What it takes it leaves empty for the next draw: a clear of the colour, which goes the way of
+// fragments, took long on a GPU that has few units to draw with (docs/decisions/gl.md).
 //
 // Defines: AT_SAMPLE 0 or 1: samples lie at the lattice, or anywhere; those of raster/lattice.glsl.
 #include "raster/lattice.glsl"

@@ -2,10 +2,10 @@
 // The pixel filter over samples that lie anywhere: sum(w c) / sum(w) with w = f(dx) f(dy), as film/
 // does it on the CPU (Film).  One pass: weights depend on both coordinates' own samples.
 //
-// Defines: FACTOR_COUNT, steps of the table of f from 0 to the radius; IS_BOX 0 or 1; MARGIN, pixels.
+// Defines: FACTOR_COUNT, steps of the table of factors from 0 to the radius; IS_BOX 0 or 1; MARGIN, pixels.
 #include "raster/samples.glsl"
 
-layout(std430, binding = FILTER_TABLE) readonly buffer Table { float f[]; };
+layout(std430, binding = FILTER_TABLE) readonly buffer Table { float factors[]; };
 layout(binding = FILTER_SOURCE) uniform sampler2D source;
 layout(location = FILTER_ORIGIN) uniform ivec2 origin;  // the source's pixel of the target's (0, 0)
 layout(location = FILTER_RADIUS) uniform float radius;  // pixels
@@ -13,12 +13,12 @@ layout(location = 0) out vec4 filtered;
 
 float factor(float d) {
 #if IS_BOX
-    return d >= -radius && d < radius ? f[0] : 0.0;
+    return d >= -radius && d < radius ? factors[0] : 0.0;
 #else
     const float place = abs(d) * (float(FACTOR_COUNT) / radius);
     if (place >= float(FACTOR_COUNT)) return 0.0;
     const int i = int(place);
-    return mix(f[i], f[i + 1], place - float(i));
+    return mix(factors[i], factors[i + 1], place - float(i));
 #endif
 }
 

@@ -81,15 +81,25 @@ class ComputeHider : public Hider {
 
     std::vector<TileStore>& finish() override {
         for (TileGroup& group : m_groups) {
-            if (!group.batch.empty()) stage(group);
-            if (!group.device) continue;
-            fetch(group, [&](ComputeTiles& device, Copies& copies) {
-                if (!group.batch.empty()) device.hide();
-                copies.push_back(device.seen(group.first, group.count));
-            });
-            group.device->collect();
-            group.device->take(group.copies.front(), group.first);
-            group.batch.clear();
+            if (group.batch.empty() && !group.device) continue;
+            const auto seen = [&](ComputeTiles& device) {
+                return device.seen(group.first, group.count);
+            };
+            const auto take = [&](const gl::Readback& copy) {
+                group.device->take(copy, group.first);
+            };
+            if (!group.batch.empty()) {
+                hide_batch(group, seen, take);
+                for (const std::size_t i : grown_lists(group))
+                    m_tiles.cut_lists(i, m_frame.list_end);
+                limit_lists();
+                group.batch.clear();
+            } else {
+                fetch(group, [&](ComputeTiles& device, Copies& copies) {
+                    copies.push_back(seen(device));
+                });
+                take(group.copies.front());
+            }
             m_device.thread().run([&] {
                 group.copies.clear();
                 group.device.reset();
@@ -138,29 +148,43 @@ class ComputeHider : public Hider {
             group.copies.clear();
             begin(*group.device, group.copies);
         });
-        m_device.thread().run([&] {
-            for (const gl::Readback& copy : group.copies) copy.wait();
-        });
+        m_device.thread().run([&] { group.copies.back().wait(); });
     }
 
-    void stage(TileGroup& group) {
+    /// Sends the batch and takes over what it hit.  `begin` leaves a copy of what it leaves on the
+    /// device, which `use` is called with.
+    template <class Begin, class Use>
+    void hide_batch(TileGroup& group, const Begin& begin, const Use& use) {
         m_tiles.check_cancelled();
         if (!group.device)
             group.device.emplace(m_device, m_tiles, m_frame, group.first, group.count);
         group.device->stage(group.batch);
+        fetch(group, [&](ComputeTiles& device, Copies& copies) {
+            device.hide();
+            copies.push_back(begin(device));
+            if (auto counts = device.counts()) copies.push_back(std::move(*counts));
+        });
+        use(group.copies.front());
+        if (group.copies.size() == 1) return;
+        for (const ComputeTiles::Part& part : group.device->parts(group.copies.back())) {
+            fetch(group, [&](ComputeTiles& device, Copies& copies) {
+                copies.push_back(device.fill(part));
+            });
+            group.device->collect(part, group.copies.front());
+        }
     }
 
     void run(TileGroup& group) {
-        stage(group);
-        fetch(group, [](ComputeTiles& device, Copies& copies) {
-            device.hide();
-            copies.push_back(device.farthest());
-        });
-        keep_farthest(group);
-        group.device->collect();
+        hide_batch(
+            group, [](ComputeTiles& device) { return device.farthest(); },
+            [&](const gl::Readback& copy) { keep_farthest(group, copy); });
         if (const std::vector<std::size_t> grown = grown_lists(group); !grown.empty())
             cut_lists(group, grown);
+        limit_lists();
         group.batch.clear();
+    }
+
+    void limit_lists() {
         if (m_tiles.limit_lists()) m_tiles.clear_lists();
     }
 
@@ -178,12 +202,12 @@ class ComputeHider : public Hider {
             for (const std::size_t i : tiles) device.write_back(i);
             copies.push_back(device.farthest());
         });
-        keep_farthest(group);
+        keep_farthest(group, group.copies.front());
     }
 
-    void keep_farthest(const TileGroup& group) {
+    void keep_farthest(const TileGroup& group, const gl::Readback& farthest) {
         std::ranges::copy(
-            group.copies.front().values<float>(),
+            farthest.values<float>(),
             m_farthest.begin() + static_cast<std::ptrdiff_t>(group.first * kBlocks * kBlocks));
     }
 

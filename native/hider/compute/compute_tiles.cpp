@@ -16,6 +16,12 @@ namespace {
 
 constexpr std::size_t kPixels = kTileSize * kTileSize;
 constexpr std::size_t kSampleBytes = 6 * sizeof(float);  ///< x, y, t, u, v, 1 / focus
+/// As hide.comp writes it.
+struct DeviceFragment {
+    float key;
+    std::uint32_t sample;
+    SurfaceId id;
+};
 static_assert(sizeof(DeviceFragment) == 12);
 constexpr std::uint32_t kSkip = ~std::uint32_t{0};
 
@@ -65,9 +71,7 @@ ComputeTiles::ComputeTiles(ComputeDevice& device, BucketTiles& bucket, const Hid
       m_count(count),
       m_samples_a_pixel(static_cast<std::uint32_t>(bucket.samples(first).samples)),
       m_stride(static_cast<std::uint32_t>(count * kPixels) * m_samples_a_pixel),
-      m_all_blocks(blocks_of(bucket, first, count)) {
-    stage_samples(false);
-}
+      m_all_blocks(blocks_of(bucket, first, count)) {}
 
 void ComputeTiles::stage_samples(bool time) {
     const Projection& projection = m_frame.projection;
@@ -98,7 +102,7 @@ void ComputeTiles::stage_samples(bool time) {
 // The whole pool each time: ties with surfaces of earlier batches need their grids.
 void ComputeTiles::stage_grids() {
     const GridPool& pool = m_bucket.pool();
-    std::vector<ComputeGridOrder>& order = m_grid_order;
+    std::vector<GridOrder>& order = m_grid_order;
     order.clear();
     order.reserve(pool.size());
     SurfaceId base = 0;
@@ -110,17 +114,16 @@ void ComputeTiles::stage_grids() {
               static_cast<std::uint32_t>(grid.key.path)}});
         base += static_cast<SurfaceId>(grid.micropolygon_count());
     }
-    if (order.size() * sizeof(ComputeGridOrder) > m_device.limits().buffer_bytes)
+    if (order.size() * sizeof(GridOrder) > m_device.limits().buffer_bytes)
         throw GlError("a bucket of " + std::to_string(order.size()) +
                       " grids is too big for the compute executor");
 }
 
 void ComputeTiles::stage(const ComputeBatch& batch) {
-    if (batch.moving() && !m_has_time) stage_samples(true);
+    if (m_batch == nullptr || (batch.moving() && !m_has_time)) stage_samples(batch.moving());
     stage_grids();
     m_lists = batch.lists();
-    m_vertex_values = batch.vertices();
-    m_moving = batch.moving();
+    m_batch = &batch;
 }
 
 void ComputeTiles::upload() {
@@ -132,27 +135,28 @@ void ComputeTiles::upload() {
     if (!m_sample_values.empty()) m_samples = gl::Buffer::of(std::exchange(m_sample_values, {}));
     m_grids = gl::Buffer::of(m_grid_order);
     m_entries = gl::Buffer::of(m_lists.entries);
-    m_vertices = gl::Buffer::of(m_vertex_values);
+    m_vertices = gl::Buffer::of(m_batch->vertices());
 }
 
 void ComputeTiles::hide() {
     upload();
-    const bool lens = m_frame.projection.has_lens();
-    if (!m_lists.opaque.empty())
-        dispatch(m_device.hide({COMPUTE_PASS_OPAQUE, m_moving, lens}), m_lists.opaque);
-    if (!m_lists.transparent.empty()) hide_transparent();
+    if (!m_lists.opaque.empty()) dispatch(COMPUTE_PASS_OPAQUE, m_lists.opaque);
+    if (m_lists.transparent.empty()) return;
+    const std::size_t samples = m_lists.transparent.size() * 16 * m_samples_a_pixel;
+    m_count_buffer = gl::Buffer(samples * sizeof(std::uint32_t), nullptr);
+    m_count_buffer.bind_storage(COMPUTE_COUNTS);
+    dispatch(COMPUTE_PASS_COUNT, m_lists.transparent);
 }
 
 void ComputeTiles::count_dispatch() const {
     if (m_frame.statistics) m_frame.statistics->add(Counter::GlDispatches);
 }
 
-void ComputeTiles::dispatch(const gl::Program& program,
-                            const std::vector<ComputeBlock>& blocks) const {
+void ComputeTiles::dispatch(int pass, const std::vector<ComputeBlock>& blocks) const {
     const gl::Buffer block_buffer = gl::Buffer::of(blocks);
     const Projection& projection = m_frame.projection;
     const DepthRange range = depth_range(projection);
-    program.use();
+    m_device.hide({pass, m_batch->moving(), projection.has_lens()}).use();
     block_buffer.bind_storage(COMPUTE_BLOCKS);
     m_entries.bind_storage(COMPUTE_ENTRIES);
     m_vertices.bind_storage(COMPUTE_VERTICES);
@@ -163,7 +167,7 @@ void ComputeTiles::dispatch(const gl::Program& program,
     glUniform1ui(COMPUTE_SAMPLE_STRIDE, m_stride);
     glUniform1ui(COMPUTE_LENS_AT, 2 * m_stride);
     glUniform1ui(COMPUTE_TIME_AT, (projection.has_lens() ? 5 : 2) * m_stride);
-    glUniform1ui(COMPUTE_GRID_COUNT, static_cast<GLuint>(m_bucket.pool().size()));
+    glUniform1ui(COMPUTE_GRID_COUNT, static_cast<GLuint>(m_grid_order.size()));
     glUniform1i(COMPUTE_PERSPECTIVE, range.perspective);
     glUniform2f(COMPUTE_KEY_RANGE, range.key_far, range.key_near);
     const auto groups =
@@ -174,59 +178,51 @@ void ComputeTiles::dispatch(const gl::Program& program,
     count_dispatch();
 }
 
+std::optional<gl::Readback> ComputeTiles::counts() const {
+    if (m_lists.transparent.empty()) return std::nullopt;
+    return gl::Readback(m_count_buffer, 0, m_count_buffer.size());
+}
+
 // Two passes, so that nothing can overflow: the first counts, the second fills as many parts as the
 // limits ask for.
-void ComputeTiles::hide_transparent() {
-    const std::vector<ComputeBlock>& blocks = m_lists.transparent;
-    const std::size_t cells = std::size_t{16} * m_samples_a_pixel;  // of a block
+std::vector<ComputeTiles::Part> ComputeTiles::parts(const gl::Readback& counts) {
+    const auto values = counts.values<std::uint32_t>();
+    m_counts.assign(values.begin(), values.end());
     const std::size_t limit = m_device.limits().buffer_bytes / sizeof(DeviceFragment);
-    const gl::Buffer count_buffer(blocks.size() * cells * sizeof(std::uint32_t), nullptr);
-    count_buffer.bind_storage(COMPUTE_COUNTS);
-    dispatch(m_device.hide({COMPUTE_PASS_COUNT, m_moving, m_frame.projection.has_lens()}), blocks);
-    m_counts = count_buffer.read<std::uint32_t>();
-
-    std::size_t begin = 0, total = 0;
-    for (std::size_t cell = 0; cell < m_counts.size(); ++cell) {
-        if (total + m_counts[cell] > limit && total > 0) {
-            fill(begin, cell, static_cast<std::uint32_t>(total));
-            begin = cell;
-            total = 0;
-        }
-        total += m_counts[cell];
+    std::vector<Part> parts;
+    for (std::size_t sample = 0; sample < m_counts.size(); ++sample) {
+        if (m_counts[sample] == 0) continue;
+        if (parts.empty() || parts.back().fragments + m_counts[sample] > limit)
+            parts.push_back({sample, sample, std::vector(m_counts.size(), kSkip), 0});
+        Part& part = parts.back();
+        part.places[sample] = part.fragments;
+        part.fragments += m_counts[sample];
+        part.end = sample + 1;
     }
-    if (total > 0) fill(begin, m_counts.size(), static_cast<std::uint32_t>(total));
+    return parts;
 }
 
-void ComputeTiles::fill(std::size_t begin, std::size_t end, std::uint32_t total) {
-    std::vector<std::uint32_t> places(m_counts.size(), kSkip);
-    std::uint32_t next = 0;
-    for (std::size_t cell = begin; cell < end; ++cell) {
-        if (m_counts[cell] > 0) places[cell] = next;
-        next += m_counts[cell];
-    }
-    const gl::Buffer place_buffer = gl::Buffer::of(places);
-    const gl::Buffer fragment_buffer(total * sizeof(DeviceFragment), nullptr);
-    place_buffer.bind_storage(COMPUTE_COUNTS);
-    fragment_buffer.bind_storage(COMPUTE_OUTPUT);
-    dispatch(m_device.hide({COMPUTE_PASS_FILL, m_moving, m_frame.projection.has_lens()}),
-             m_lists.transparent);
-    m_found.push_back({begin, end, fragment_buffer.read<DeviceFragment>()});
-    if (m_frame.statistics) m_frame.statistics->add(Counter::FragmentsStored, total);
+gl::Readback ComputeTiles::fill(const Part& part) const {
+    const gl::Buffer places = gl::Buffer::of(part.places);
+    const gl::Buffer fragments(part.fragments * sizeof(DeviceFragment), nullptr);
+    places.bind_storage(COMPUTE_COUNTS);
+    fragments.bind_storage(COMPUTE_OUTPUT);
+    dispatch(COMPUTE_PASS_FILL, m_lists.transparent);
+    if (m_frame.statistics) m_frame.statistics->add(Counter::FragmentsStored, part.fragments);
+    return gl::Readback(fragments, 0, fragments.size());
 }
 
-void ComputeTiles::collect() {
-    const std::size_t cells = std::size_t{16} * m_samples_a_pixel;
-    for (const Found& found : m_found) {
-        auto from = found.fragments.begin();
-        for (std::size_t cell = found.begin; cell < found.end; ++cell) {
-            TileStore& store = m_bucket.store(m_first + m_lists.transparent[cell / cells].tile);
-            FragmentLists& lists = store.lists;
-            lists.prepare(store.key.size(), m_bucket.list_memory());
-            for (const auto end = from + m_counts[cell]; from != end; ++from)
-                lists.add(from->sample, {from->key, from->id, 0.0f, 0.0f, false});
-        }
+void ComputeTiles::collect(const Part& part, const gl::Readback& fragments) {
+    const std::size_t samples = std::size_t{16} * m_samples_a_pixel;  // of a block
+    const auto values = fragments.values<DeviceFragment>();
+    auto from = values.begin();
+    for (std::size_t sample = part.begin; sample < part.end; ++sample) {
+        TileStore& store = m_bucket.store(m_first + m_lists.transparent[sample / samples].tile);
+        FragmentLists& lists = store.lists;
+        lists.prepare(store.key.size(), m_bucket.list_memory());
+        for (const auto end = from + m_counts[sample]; from != end; ++from)
+            lists.add(from->sample, {from->key, from->id, 0.0f, 0.0f, false});
     }
-    m_found.clear();
 }
 
 gl::Readback ComputeTiles::farthest() const {

@@ -218,7 +218,7 @@ void RasterDevice::draw_samples(const RasterBuffers& buffers,
 }
 
 void RasterDevice::accumulate(const RasterCell& cell, const RasterPasses& passes, bool peeled,
-                              const RasterBackground& background, const gl::Buffer& corners) const {
+                              const RasterBackground& background, const gl::Buffer& corners) {
     const Rect& b = background.pixels;
     m_accumulate.use();
     if (m_samples) m_samples->bind();
@@ -236,6 +236,7 @@ void RasterDevice::accumulate(const RasterCell& cell, const RasterPasses& passes
     m_target.dispatch(cell, 1);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
     gl::check("accumulating passes");
+    m_target.emptied();
 }
 
 void RasterDevice::mark_names(const gl::Texture& names, bool but_saturated, const RasterCell& cell,

@@ -52,9 +52,9 @@ class RasterDevice {
     void draw(RasterOutput output, const RasterBuffers& buffers,
               const std::vector<Command>& commands, const RasterCell& cell,
               const RasterPasses& passes);
-    /// Adds what was drawn to the mean of the passes before.
+    /// Adds what was drawn to the mean of the passes before, and leaves its colour empty.
     void accumulate(const RasterCell& cell, const RasterPasses& passes, bool peeled,
-                    const RasterBackground& background, const gl::Buffer& corners) const;
+                    const RasterBackground& background, const gl::Buffer& corners);
     /// Marks in `seen` the grids that `names` has, but for samples that peeling has saturated where
     /// `but_saturated`.
     void mark_names(const gl::Texture& names, bool but_saturated, const RasterCell& cell,

@@ -132,11 +132,12 @@ std::array<float, 2> RasterGeometry::depths(const Range& range) const {
     return {box.lo.z, box.hi.z};
 }
 
-std::vector<Vec4f> RasterGeometry::radiance() const {
+std::vector<Vec4f> RasterGeometry::radiance(const RasterSeen& seen) const {
     std::vector<Vec4f> colors(m_vertex_grids.size(), Vec4f(0.0f));
     for (std::size_t g = 0; g < m_grids.size(); ++g) {
-        if (m_grids[g]->holdout) continue;
+        if (m_grids[g]->holdout || !seen.ever(g)) continue;
         const std::vector<Vec3f>& radiance = m_grids[g]->radiance;
+        GRANITA_CHECK_EQ(radiance.size(), static_cast<std::size_t>(m_grids[g]->vertex_count()));
         for (std::size_t v = 0; v < radiance.size(); ++v)
             colors[m_places[g].vertex + v] = Vec4f(radiance[v], 1.0f);
     }

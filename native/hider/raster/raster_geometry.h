@@ -9,6 +9,7 @@
 
 #include "dice/grid.h"
 #include "hider/grid_sweep.h"
+#include "hider/raster/raster_seen.h"
 #include "math/bounds.h"
 #include "math/projection.h"
 
@@ -62,9 +63,9 @@ class RasterGeometry {
     const std::vector<const Grid*>& grids() const { return m_grids; }
     /// Of each the index in the list handed over.
     const std::vector<std::uint32_t>& inputs() const { return m_inputs; }
-    /// Premultiplied colour and coverage a vertex; holdouts are 0 throughout.  0 for grids that
-    /// were not shaded.
-    std::vector<Vec4f> radiance() const;
+    /// Premultiplied colour and coverage a vertex; holdouts are 0 throughout.  0 for grids that are
+    /// not seen: another bucket may be shading those.
+    std::vector<Vec4f> radiance(const RasterSeen& seen) const;
     /// Opacity a vertex, w = 1 for holdouts.
     std::vector<Vec4f> opacity() const;
     /// The micropolygon whose corner 0 is that vertex.

@@ -46,10 +46,10 @@ class RasterHider::Bucket : public RasterBucket {
         return seen_grids();
     }
     RasterImage render(const RasterBackground& background) override {
-        const std::vector<Vec4f> radiance = shaded_radiance();
+        const std::vector<Vec4f> radiance = m_geometry.radiance(m_seen);
         m_thread.run([&] { draw(radiance, background); });
         m_thread.run([&] {
-            for (const Cell& cell : m_cells) cell.image.wait();
+            if (!m_cells.empty()) m_cells.back().image.wait();
         });
         return image();
     }
@@ -63,6 +63,10 @@ class RasterHider::Bucket : public RasterBucket {
   private:
     using Range = RasterGeometry::Range;
     using Ranges = std::vector<std::uint32_t>;
+    struct Cell {
+        Rect pixels;
+        gl::Readback image;
+    };
 
     static Ranges all(const std::vector<Range>& ranges) {
         Ranges indices(ranges.size());
@@ -167,15 +171,6 @@ class RasterHider::Bucket : public RasterBucket {
         std::vector<bool> seen(m_geometry.inputs().size());
         for (std::size_t i = 0; i < seen.size(); ++i) seen[m_geometry.inputs()[i]] = m_seen.ever(i);
         return seen;
-    }
-
-    std::vector<Vec4f> shaded_radiance() const {
-        for (std::size_t i = 0; i < m_geometry.grids().size(); ++i) {
-            const Grid& grid = *m_geometry.grids()[i];
-            if (!m_seen.ever(i) || grid.holdout) continue;
-            GRANITA_CHECK_EQ(grid.radiance.size(), static_cast<std::size_t>(grid.vertex_count()));
-        }
-        return m_geometry.radiance();
     }
 
     std::vector<ZBatch> batches_of(const RasterCell& cell) const {
@@ -320,11 +315,7 @@ class RasterHider::Bucket : public RasterBucket {
     std::optional<RasterBuffers> m_buffers;
     gl::Readback m_marks;
     RasterSeen m_seen;
-    struct Cell {
-        Rect pixels;
-        gl::Readback image;
-    };
-    std::vector<Cell> m_cells;
+    std::vector<Cell> m_cells;  ///< of the last draw()
 };
 
 std::vector<RasterPass> raster_passes(const SampleTable& table, SampleNeeds needs,

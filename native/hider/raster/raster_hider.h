@@ -22,7 +22,8 @@
 // mark the grids that they see.  That costs one more pass over the geometry, needs no order, finds
 // exactly what is seen, makes tiny grids no dearer than large ones, and leaves nothing to wait for.
 //
-// Any thread may call; the work is done on the thread that owns OpenGL.
+// Any thread may call, one at a time for a bucket.  What OpenGL does is done on the thread that
+// owns it; the arrays that it takes are made, and what comes back is taken over, on the caller's.
 #pragma once
 
 #include <cstdint>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "gl/gl_check.h"
@@ -77,8 +78,6 @@ RasterTarget::RasterTarget(const RasterFilter& filter, int most_layers, int max_
     const int draws = (most_layers + most - 1) / most;
     m_layers = (most_layers + draws - 1) / draws;  // all draws as full as the last
     m_radiance = gl::Texture(GL_RGBA32F, side, side, m_layers);
-    constexpr float kNothing[4] = {0.0f, 0.0f, 0.0f, -1.0f};
-    m_radiance.clear({0, 0, side, side}, kNothing);
     m_depth = gl::Texture(GL_DEPTH_COMPONENT32F, side, side, m_layers);
     m_mean = gl::Texture(GL_RGBA32F, side, side);
     m_pixels = gl::Texture(GL_RGBA32F, m_cell, m_cell);
@@ -139,7 +138,10 @@ void RasterTarget::bind(const gl::Framebuffer& framebuffer, const RasterCell& ce
     glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
 }
 
-void RasterTarget::begin_radiance(const RasterCell& cell, float farthest) const {
+void RasterTarget::begin_radiance(const RasterCell& cell, float farthest) {
+    constexpr float kNothing[4] = {0.0f, 0.0f, 0.0f, -1.0f};
+    if (!std::exchange(m_empty, false))
+        m_radiance.clear({0, 0, m_texel_size, m_texel_size}, kNothing);
     bind(m_radiance_target, cell);
     glClearNamedFramebufferfv(m_radiance_target.name(), GL_DEPTH, 0, &farthest);
 }

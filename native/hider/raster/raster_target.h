@@ -63,10 +63,13 @@ class RasterTarget {
     /// Of raster/lattice.glsl.
     gl::Defines lattice_defines() const;
 
-    /// Binds the target and clears the depth of the cell's samples to `farthest`; their colour is
-    /// nothing, as accumulate.comp leaves it.
-    void begin_radiance(const RasterCell& cell, float farthest) const;
-    /// The same with the micropolygons' names: 0 is none.
+    /// Binds the target and clears the depth of the cell's samples to `farthest`.  Their colour is
+    /// nothing, as accumulating has left it; cleared where an error has kept it from that.
+    void begin_radiance(const RasterCell& cell, float farthest);
+    /// What was drawn has been accumulated, and the colour of all samples is nothing again.
+    void emptied() { m_empty = true; }
+    /// Binds the target of the micropolygons' names and clears these, to 0, which is none, and the
+    /// depth of the cell's samples.
     void begin_surfaces(const RasterCell& cell, float farthest);
     /// Binds a target of the same size for drawing into the cell's samples.
     void bind(const gl::Framebuffer& framebuffer, const RasterCell& cell) const;
@@ -108,6 +111,7 @@ class RasterTarget {
     float m_radius;  ///< pixels, of a filter that gathers
     int m_cell, m_texel_size, m_layers;
     Vec2i m_origin;
+    bool m_empty = false;  ///< m_radiance is nothing throughout
     gl::Texture m_radiance, m_depth, m_mean, m_rows, m_pixels;
     gl::Framebuffer m_radiance_target, m_rows_target, m_pixels_target;
     gl::Texture m_surfaces;  ///< made at the first begin_surfaces()

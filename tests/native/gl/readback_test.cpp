@@ -27,7 +27,7 @@ TEST(Readback, is_what_the_source_was_when_it_began) {
         nothing = Readback(Buffer::of(std::vector<int>{}), 0, 0);
     });
     thread.run([&] {
-        for (const Readback* readback : {&whole, &part, &texels, &nothing}) readback->wait();
+        nothing.wait();  // the last of them
     });
     const auto same = []<class T>(std::span<const T> values, const std::vector<T>& expected) {
         return std::vector<T>(values.begin(), values.end()) == expected;

@@ -192,6 +192,22 @@ TEST_P(GpuLoss, context_lost_in_mid_frame) {
     EXPECT_GT(result.gl_work, 0u);  // it had begun
 }
 
+TEST_P(GpuLoss, context_lost_while_a_copy_is_waited_for) {
+    expect_cpu_picture(
+        render(make_scene(GetParam()), failing("waiting for a copy", "the GPU is gone", 4)),
+        "the GPU is gone");
+}
+
+TEST(RasterLoss, context_lost_among_the_layers) {
+    const Result result =
+        render(make_scene(Sampling::Regular), failing("compositing a layer", "the GPU is gone", 1));
+    const Result cpu = render_on_cpu(make_scene(Sampling::Regular));
+    EXPECT_EQ(
+        std::memcmp(result.picture.data(), cpu.picture.data(), cpu.picture.size() * sizeof(Vec4f)),
+        0);
+    EXPECT_EQ(result.device, cpu.device);
+}
+
 TEST_P(GpuLoss, shader_that_does_not_compile) {
     expect_cpu_picture(render(make_scene(GetParam()), failing("making program", "syntax error")),
                        "syntax error");

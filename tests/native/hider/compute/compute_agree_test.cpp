@@ -148,9 +148,29 @@ TEST(Compute, NoFragmentIsLostWhereTheyFillSeveralBuffers) {
     }
     const auto layers = layers_per_sample(make_small_device_hider, shot);
     EXPECT_EQ(layers, std::vector<int>(256 * 16, 8));
-    // Counted once and filled in four parts of at most 100,000 / 12 fragments; no farthest keys, since
-    // nothing comes after them that they could hide.
+    // Counted once and filled in four parts of at most 100,000 / 12 fragments; no farthest keys,
+    // since nothing comes after them that they could hide.
     EXPECT_EQ(shot.statistics.get(Counter::GlDispatches), 5u);
+}
+
+TEST(Compute, ListsOfTheLastBatchAreHeldToTheirMemoryToo) {
+    Shot shot;
+    shot.options.samples = 16;
+    std::list<Grid> grids;
+    for (int i = 0; i < 8; ++i) {
+        grids.push_back(rectangle(-1, -1, 17, 17, 5.0f + static_cast<float>(i), 2, 2));
+        set_color(grids.back(), Vec3f(1), Vec3f(.5f));
+    }
+    const SampleTable table(shot.options, shot.camera);
+    HiderFrame frame{&table, shot.camera.projection};
+    frame.statistics = &shot.statistics;
+    frame.list_bytes = 1;
+    const auto hider = make_device_hider(frame, {0, 0, 1, 1}, {0, 0, 16, 16});
+    for (const Grid& grid : grids) hider->hide(grid);
+    const auto& stores = hider->finish();
+    EXPECT_TRUE(hider->overflowed());
+    EXPECT_TRUE(stores[0].lists.empty());
+    EXPECT_GT(shot.statistics.peak_list_bytes(), 0u);
 }
 
 TEST(Compute, CullsWhatIsHiddenAndNothingElse) {

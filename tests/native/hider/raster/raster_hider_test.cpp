@@ -48,7 +48,7 @@ TEST(RasterHider, draws_with_opengl_and_tests_no_sample_on_the_cpu) {
     for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x)
             EXPECT_EQ(image.combined[y * 8 + x].w, x >= 2 && x < 6 && y >= 1 && y < 5) << x << y;
-    EXPECT_EQ(statistics.get(Counter::GlPrimitives), 12u);  // counted by OpenGL
+    EXPECT_EQ(statistics.get(Counter::GlPrimitives), 12u);  // a micropolygon has two
     EXPECT_EQ(statistics.get(Counter::GlPasses), 1u);
     EXPECT_EQ(statistics.get(Counter::Micropolygons), 6u);
     EXPECT_EQ(statistics.get(Counter::SamplesTotal), 1024u);
@@ -155,11 +155,32 @@ TEST(RasterHider, of_coincident_grids_the_smaller_key_wins_in_any_order) {
     Grid green = make_grid(6, 7, 3, tilted, [](float, float) { return Vec3f(0, 1, 0); });
     for (const auto& list : {std::vector<const Grid*>{&red, &green}, {&green, &red}}) {
         const RasterImage image = hider.open({0, 0, 16, 16}, list)->render();
-        // A device may interpolate a colour that is the same at all corners within a rounding.
+        // A device may interpolate a colour that is the same at all corners to 1 - 2^-24, and four
+        // samples of it are added.
         for (const Vec4f& pixel : image.combined) {
             EXPECT_NEAR(pixel.x, 1.0f, 0x1p-22f);
             EXPECT_EQ(Vec3f(pixel.y, pixel.z, pixel.w), Vec3f(0, 0, 1));
         }
+    }
+}
+
+TEST(RasterHider, an_error_while_drawing_leaves_nothing_to_the_next_bucket) {
+    std::string failing;
+    gl::ContextOptions options;
+    options.faults.at_check = [&](const std::string& what) {
+        if (what == failing) throw GlError(what);
+    };
+    gl::GlThread thread(options);
+    RasterHider hider(thread, make_frame(pixel_projection(), box_filter(2)));
+    const Grid wall = make_rectangle(1, -1, -1, 17, 17, 1, 4, 4);
+    const auto bucket = hider.open({0, 0, 16, 16}, {&wall});
+    const auto empty = hider.open({0, 0, 16, 16}, std::vector<const Grid*>{});
+    bucket->render();
+    for (const char* step : {"drawing grids", "accumulating passes"}) {
+        failing = step;
+        EXPECT_THROW(bucket->render(), GlError);
+        failing.clear();
+        for (const Vec4f& pixel : empty->render().combined) EXPECT_EQ(pixel, Vec4f(0));
     }
 }
 
