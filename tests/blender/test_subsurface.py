@@ -33,6 +33,7 @@ def scattering(thing, method):
     for name, value in inputs.items():
         shader.inputs[name].default_value = value
     tree.link(shader.outputs[0], tree.output.inputs["Surface"])
+    return tree, shader
 
 
 def smooth(thing):
@@ -111,3 +112,28 @@ def test_light_goes_as_far_as_in_cycles(scene, render, make, method):
 def test_subsurface_of_principled(scene, render, method):
     scattering(ball(scene), f"Principled: {method}")
     agrees(*compare(scene, render))
+
+
+def torus(scene):
+    """Its faces are small: their points lie on no lattice."""
+    bpy.ops.mesh.primitive_torus_add(major_radius=0.7, minor_radius=0.3)
+    lamp(scene, "SUN", 3.0, turn=(0.5, 0.3, 0.0))
+    scene_parts.add_camera(scene, ortho_scale=2.4)
+    return smooth(bpy.context.object)
+
+
+@pytest.mark.parametrize("make", [ball, torus])
+@pytest.mark.parametrize("black", [0.0, 0.002])
+def test_black_lines_leave_what_is_between_them_as_light(scene, render, make, black):
+    """Two and a half pixels wide, narrower than light is told apart, and wider than it goes."""
+    tree, shader = scattering(make(scene), methods()[-1])
+    shader.inputs["Scale"].default_value = 0.02
+    checker = tree.add("ShaderNodeTexChecker")
+    checker.inputs["Scale"].default_value = 20.0
+    checker.inputs["Color1"].default_value = (0.8, 0.8, 0.8, 1.0)
+    checker.inputs["Color2"].default_value = (black, black, black, 1.0)
+    coordinates = tree.add("ShaderNodeTexCoord")
+    tree.link(coordinates.outputs["Generated"], checker.inputs["Vector"])
+    tree.link(checker.outputs["Color"], shader.inputs["Color"])
+    theirs, ours = compare(scene, render)
+    assert ours.mean(axis=(0, 1)) == pytest.approx(theirs.mean(axis=(0, 1)), rel=0.04)

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "shade/bounces/neighbours.h"
+#include "shade/lights/leaving_rays.h"
 
 namespace granita {
 namespace {
@@ -11,6 +12,10 @@ namespace {
 /// How far neighbours share, of a lobe's radius.
 constexpr float kShared = 1.0f;
 constexpr float kLeastWeight = 1e-6f;
+/// Of the weight of the brightest point around: less is dark.
+constexpr float kDark = 0.25f;
+/// Points before and after one that are looked at, of separate faces.
+constexpr std::size_t kRun = 8;
 
 /// 1 / metres within which a channel varies little; 0 where nothing of it scatters.
 float by_reach(const SurfaceClosure& closure, std::size_t point, int channel) {
@@ -19,6 +24,43 @@ float by_reach(const SurfaceClosure& closure, std::size_t point, int channel) {
         if (lobe.weight[point][channel] != 0.0f)
             nearest = std::max(nearest, 1.0f / (kShared * lobe.radius[point][channel]));
     return nearest;
+}
+
+/// Calls `visit` with each point at most two steps away that lies next to one: on a lattice, or
+/// among separate faces, which lie in Morton order.
+template <class Visit>
+void visit_around(const ShadingPoints& points, std::size_t i, const Visit& visit) {
+    const std::size_t columns = points.columns;
+    const auto visit_run = [&](std::size_t at, std::size_t reach, std::size_t begin,
+                               std::size_t end) {
+        for (std::size_t j = at - std::min(at - begin, reach); j < std::min(at + reach + 1, end);
+             ++j)
+            if (glm::distance(points.p[j], points.p[i]) <= 2.0f * width_of(points, i)) visit(j);
+    };
+    if (columns == 0) return visit_run(i, kRun, 0, points.count);
+    const std::size_t y = i / columns, rows = points.count / columns;
+    for (std::size_t v = y - std::min<std::size_t>(y, 1); v < std::min(y + 2, rows); ++v)
+        visit_run(v * columns + i % columns, 1, v * columns, (v + 1) * columns);
+}
+
+/// Light by weight.  A dark point knows next to nothing of it (a medium is as light as asked for to
+/// .002, and nothing enters where nothing is sent back), but samples between it and a bright one
+/// need it: it has that of those around it.
+std::vector<Vec3f> by_weight(const ShadingPoints& points, const std::vector<Vec3f>& weight,
+                             const std::vector<Vec3f>& light) {
+    std::vector<Vec3f> ratio(points.count);
+    for (std::size_t i = 0; i < points.count; ++i) {
+        ratio[i] = light[i] / glm::max(weight[i], Vec3f(kLeastWeight));
+        Vec3f light_around(0.0f), weight_around(0.0f), most(0.0f);
+        visit_around(points, i, [&](std::size_t j) {
+            light_around += light[j];
+            weight_around += weight[j];
+            most = glm::max(most, weight[j]);
+        });
+        for (int c = 0; c < 3; ++c)
+            if (weight[i][c] < kDark * most[c]) ratio[i][c] = light_around[c] / weight_around[c];
+    }
+    return ratio;
 }
 
 }  // namespace
@@ -32,12 +74,11 @@ Vec3f subsurface_weight(const SurfaceClosure& closure, std::size_t point) {
 std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
                                    const std::vector<Vec3f>& light) {
     const std::size_t count = points.count;
-    NoisyValues noisy{light, std::vector<Vec3f>(count), std::vector<Vec3f>(count)};
-    for (std::size_t i = 0; i < count; ++i) {
-        noisy.values[i] /= glm::max(subsurface_weight(closure, i), Vec3f(kLeastWeight));
+    std::vector<Vec3f> weight(count);
+    for (std::size_t i = 0; i < count; ++i) weight[i] = subsurface_weight(closure, i);
+    NoisyValues noisy{by_weight(points, weight, light), std::vector<Vec3f>(count), weight};
+    for (std::size_t i = 0; i < count; ++i)
         for (int c = 0; c < 3; ++c) noisy.by_reach[i][c] = by_reach(closure, i, c);
-        noisy.told[i] = Vec3f(glm::greaterThan(noisy.by_reach[i], Vec3f(0.0f)));
-    }
     return share(points, noisy);
 }
 
