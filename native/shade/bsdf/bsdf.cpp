@@ -84,6 +84,13 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
     for (Prepared& lobe : m_lobes)
         lobe.importance = m_importance > 0.0f ? lobe.importance / m_importance
                                               : 1.0f / static_cast<float>(m_lobes.size());
+    for (Prepared& lobe : m_lobes) {
+        if (lobe.kind != LobeKind::Refraction) continue;
+        float others = 0.0f;
+        for (const Prepared& other : m_lobes)
+            if (&other != &lobe && granita::transmits(other.kind)) others += other.importance;
+        lobe.unmet_part = others > lobe.importance ? lobe.importance / others : 1.0f;
+    }
 }
 
 Vec3f PointBsdf::passed(const Prepared& lobe, float cos_half) const {
@@ -149,8 +156,7 @@ float PointBsdf::pdf(std::size_t index, const Vec3f& wo) const {
 
 float PointBsdf::chance(std::size_t index, const Vec3f& wo) const {
     const Prepared& lobe = m_lobes[index];
-    const bool by_facets = lobe.kind == LobeKind::Refraction && !lobe.sharp &&
-                           lobe.fresnel != FresnelKind::None && m_importance > 0.0f;
+    const bool by_facets = lobe.kind == LobeKind::Refraction && !lobe.sharp && m_importance > 0.0f;
     return by_facets ? chance_of_refraction(lobe, wo) / m_importance
                      : lobe.importance * pdf(index, wo);
 }

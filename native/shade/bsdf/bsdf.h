@@ -112,6 +112,7 @@ class PointBsdf {
         Vec2f alphas{0.0f};
         float cos_wi = 0.0f;
         float importance = 0.0f;
+        float unmet_part = 1.0f;             ///< of refraction's density where no sample of it goes
         float directional_albedo = 1.0f;     ///< without Fresnel; known where energy is compensated
         float burley = -1.0f;                ///< Burley's roughness; < 0 = not his model
         float oren_a = 0.0f, oren_b = 0.0f;  ///< diffuse; b = 0 is Lambert
@@ -124,6 +125,7 @@ class PointBsdf {
         float half_wi, half_normal;  ///< cosines of their normal to the view and to the lobe's
         float density;
         float jacobian;  ///< solid angle of half vectors per that of directions
+        bool are_there;  ///< they bend light that way, and are seen
     };
 
     // diffuse_lobe.cpp

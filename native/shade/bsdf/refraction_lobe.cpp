@@ -39,6 +39,8 @@ bool PointBsdf::refracting_facets(const Prepared& lobe, const Vec3f& wo,
     out.half_normal = std::abs(glm::dot(half, lobe.normal));
     out.density = density_of(lobe.distribution, lobe.alpha, squared_sine(lobe.normal, half));
     out.jacobian = lobe.ior * lobe.ior * std::abs(glm::dot(half, wo)) / length2;
+    const float to_wi = glm::dot(half, m_wi);
+    out.are_there = to_wi * glm::dot(half, wo) < 0.0f && to_wi * glm::dot(half, lobe.normal) > 0.0f;
     return true;
 }
 
@@ -55,14 +57,19 @@ Vec3f PointBsdf::evaluate_refraction(const Prepared& lobe, const Vec3f& wo) cons
 
 float PointBsdf::pdf_refraction(const Prepared& lobe, const Vec3f& wo) const {
     RefractingFacets facets;
-    return refracting_facets(lobe, wo, facets) ? density_of_refraction(lobe, facets) : 0.0f;
+    if (!refracting_facets(lobe, wo, facets)) return 0.0f;
+    // Where no sample of this lobe goes, others that do and lamps lose what it never brings.  In
+    // Cycles that is as much as chance would take this lobe and not those (a ball of 99 %
+    // Translucent and 1 % Refraction was 7 % too dark).
+    return (facets.are_there ? 1.0f : lobe.unmet_part) * density_of_refraction(lobe, facets);
 }
 
 float PointBsdf::chance_of_refraction(const Prepared& lobe, const Vec3f& wo) const {
     RefractingFacets facets;
     if (!refracting_facets(lobe, wo, facets)) return 0.0f;
-    return mean_size(lobe.weight * transmittance(lobe, facets.half_wi)) *
-           density_of_refraction(lobe, facets);
+    const Vec3f passes =
+        lobe.fresnel == FresnelKind::None ? Vec3f(1.0f) : transmittance(lobe, facets.half_wi);
+    return mean_size(lobe.weight * passes) * density_of_refraction(lobe, facets);
 }
 
 float PointBsdf::density_of_refraction(const Prepared& lobe, const RefractingFacets& facets) const {

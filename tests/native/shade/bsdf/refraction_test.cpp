@@ -101,6 +101,32 @@ TEST(RoughRefraction, is_as_likely_as_its_weight_without_fresnel) {
     EXPECT_NEAR(bsdf.chance(0, out), 0.9f * bsdf.pdf(0, out), 1e-5f * bsdf.pdf(0, out));
 }
 
+// No sample goes where no facet refracts: beside a lobe that lets a hundred times as much through, as
+// much of the density is left there, which is what chance would take, and all where there is none.
+TEST(RoughRefraction, where_nothing_refracts_has_the_density_of_its_part) {
+    const Vec3f wi = at_cosine(0.6f);
+    const ShadingPoints points = seen_from(wi);
+    constexpr float kIor = 1.0f / kGlass;
+    const PointBsdf alone = prepare(refraction(points, 0.7f, kIor), points);
+    SurfaceClosure closure = closure_of(refraction(points, 0.7f, kIor));
+    closure.lobes[0].weight.assign(1, Vec3f(0.01f));
+    Lobe& translucent = closure.lobes.emplace_back(glossy(points, 1.0f));
+    translucent.kind = LobeKind::Translucent;
+    const PointBsdf bsdf(closure, points, 0, GgxAlbedo::shared());
+    int here = 0, nowhere = 0;
+    for (float x = -0.95f; x < 1.0f; x += 0.1f) {
+        const Vec3f out(x, 0.1f, -std::sqrt(0.99f - x * x));
+        if (alone.pdf(0, out) < 1e-3f) continue;
+        const bool refracts = some_facet_refracts(wi, out, kIor);
+        (refracts ? here : nowhere) += 1;
+        EXPECT_NEAR(bsdf.pdf(0, out), alone.pdf(0, out) * (refracts ? 1.0f : 0.01f),
+                    1e-4f * alone.pdf(0, out))
+            << x;
+    }
+    EXPECT_GT(here, 2);
+    EXPECT_GT(nowhere, 2);
+}
+
 // A stick in water: 60 degrees in air is asin(sin 60 / 1.5) in glass, 35.264 degrees.
 TEST(SharpRefraction, obeys_snell_and_passes_what_is_not_reflected) {
     const ShadingPoints points = seen_from(at_cosine(0.5f));
