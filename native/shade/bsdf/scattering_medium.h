@@ -56,6 +56,15 @@ struct ScatteringMedium {
           g(mean_cosine) {
         for (int c = 0; c < 3; ++c) albedo[c] = single_scattering_albedo(surface_albedo[c], g);
     }
+    /// One without a preferred direction in which light comes as far after many scatterings
+    /// (similarity: Wyman, Patterson and Wilson 1989).
+    ScatteringMedium isotropic() const {
+        ScatteringMedium like = *this;
+        like.extinction *= 1.0f - albedo * g;
+        like.albedo *= (1.0f - g) / (1.0f - albedo * g);
+        like.g = 0.0f;
+        return like;
+    }
 };
 
 }  // namespace granita

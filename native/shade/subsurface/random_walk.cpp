@@ -8,6 +8,9 @@ namespace {
 
 /// A way that goes on so long brings next to nothing.
 constexpr int kMostScatterings = 1024;
+/// Scatterings after which nobody sees where light went at first: ways go on in a medium without a
+/// preferred direction, in larger steps, as in Cycles.
+constexpr int kAlike = 9;
 /// Weight, of that at the start, below which ways end by Russian roulette.
 constexpr float kRoulette = 0.05f;
 /// Mean free paths within which the far side is looked for.
@@ -78,17 +81,23 @@ Vec3f arrival(const Vec3f& extinction, float t, bool reached) {
 
 }  // namespace
 
-bool walk(const RayScene& rays, const RayScene::Body& body, const ScatteringMedium& medium,
+bool walk(const RayScene& rays, const RayScene::Body& body, ScatteringMedium medium,
           const WalkStart& start, Vec3f& weight, RayScene::Met& exit) {
     Numbers numbers(start.seed);
-    const Guide guide(largest(medium.albedo));
+    Guide guide(largest(medium.albedo));
     const Vec3f& sigma = medium.extinction;
-    const float thinnest = std::min({sigma.x, sigma.y, sigma.z});
-    const float guided_share = 1.0f - std::max(0.5f, std::pow(std::abs(medium.g), 0.125f));
+    float thinnest = std::min({sigma.x, sigma.y, sigma.z});
+    float guided_share = 1.0f - std::max(0.5f, std::pow(std::abs(medium.g), 0.125f));
     const float least = kRoulette * largest(weight);
     Vec3f p = start.p, direction = start.direction;
     float far_side = 0.0f;  // its depth; 0: there is none
     for (int scattering = 0; scattering < kMostScatterings; ++scattering) {
+        if (scattering == kAlike && medium.g != 0.0f) {
+            medium = medium.isotropic();
+            guide = Guide(largest(medium.albedo));
+            thinnest = std::min({sigma.x, sigma.y, sigma.z});
+            guided_share = 0.5f;
+        }
         // A channel by what it still brings; all that could have led here share what it did
         // (Wilkie et al. 2014, "Hero Wavelength Spectral Sampling").
         Vec3f share = weight * medium.albedo;

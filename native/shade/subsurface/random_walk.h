@@ -18,7 +18,7 @@ struct WalkStart {
 
 /// Multiplies `weight` by what the way brings; false where it ends inside.  `exit`: what it meets
 /// last, from inside.
-bool walk(const RayScene& rays, const RayScene::Body& body, const ScatteringMedium& medium,
+bool walk(const RayScene& rays, const RayScene::Body& body, ScatteringMedium medium,
           const WalkStart& start, Vec3f& weight, RayScene::Met& exit);
 
 }  // namespace granita

@@ -33,6 +33,19 @@ TEST(ScatteringMedium, HalfSpaceSendsBackTheAlbedoAskedFor) {
         EXPECT_NEAR(spherical_albedo(single_scattering_albedo(albedo, 0.0f)), albedo, 0.003);
 }
 
+// What is absorbed stays; of what is scattered that which turns back counts.
+TEST(ScatteringMedium, AnEvenOneLikeItLetsLightComeAsFar) {
+    const ScatteringMedium medium(Vec3f(0.2f, 0.8f, 1.0f), Vec3f(0.1f, 0.2f, 0.4f), 0.85f);
+    const ScatteringMedium even = medium.isotropic();
+    EXPECT_EQ(even.g, 0.0f);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(even.extinction[c] * (1.0f - even.albedo[c]),
+                    medium.extinction[c] * (1.0f - medium.albedo[c]), 1e-4f);
+        EXPECT_NEAR(even.extinction[c] * even.albedo[c],
+                    medium.extinction[c] * medium.albedo[c] * 0.15f, 1e-4f);
+    }
+}
+
 TEST(ScatteringMedium, EndsOfTheScale) {
     EXPECT_NEAR(single_scattering_albedo(0.0f, 0.0f), 0.0f, 0.01f);
     EXPECT_EQ(single_scattering_albedo(1.0f, 0.0f), 1.0f);
