@@ -151,17 +151,17 @@ class ComputeHider : public Hider {
         m_device.thread().run([&] { group.copies.back().wait(); });
     }
 
-    /// Sends the batch and takes over what it hit.  `begin` leaves a copy of what it leaves on the
-    /// device, which `use` is called with.
-    template <class Begin, class Use>
-    void hide_batch(TileGroup& group, const Begin& begin, const Use& use) {
+    /// Sends the batch and takes over what it hit.  `copy` begins a copy of what is on the device
+    /// afterwards, which `use` is called with.
+    template <class Copy, class Use>
+    void hide_batch(TileGroup& group, const Copy& copy, const Use& use) {
         m_tiles.check_cancelled();
         if (!group.device)
             group.device.emplace(m_device, m_tiles, m_frame, group.first, group.count);
         group.device->stage(group.batch);
         fetch(group, [&](ComputeTiles& device, Copies& copies) {
             device.hide();
-            copies.push_back(begin(device));
+            copies.push_back(copy(device));
             if (auto counts = device.counts()) copies.push_back(std::move(*counts));
         });
         use(group.copies.front());
