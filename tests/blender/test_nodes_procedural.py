@@ -237,12 +237,15 @@ def test_magic(scene, render, depth):
 
 
 @pytest.mark.parametrize("output", ["Fac", "Color"])
-@pytest.mark.parametrize("smooth", [0.0, 0.6, 1.0])
+@pytest.mark.parametrize("smooth", [0.0, 0.6, 1.0, -0.5])
 def test_brick(scene, render, smooth, output):
-    inputs = {"Scale": 1.5, "Mortar Size": 0.1, "Mortar Smooth": smooth, "Bias": 0.1}
+    inputs = {"Scale": 1.5, "Mortar Size": 0.1, "Bias": 0.1}
     tree, node = textured(
         scene, "ShaderNodeTexBrick", inputs, offset=0.3, squash=1.6, squash_frequency=3
     )
+    value = tree.add("ShaderNodeValue")  # a socket of its own takes nothing below 0
+    value.outputs[0].default_value = smooth
+    tree.link(value.outputs[0], node.inputs["Mortar Smooth"])
     node.inputs["Color1"].default_value = (0.9, 0.2, 0.1, 1)
     node.inputs["Color2"].default_value = (0.1, 0.7, 0.3, 1)
     show(scene, render, tree, node, output)

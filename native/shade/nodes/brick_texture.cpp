@@ -49,9 +49,9 @@ float mortar_at(const Brick& brick, float size, float smooth) {
     const float nearest =
         std::min(std::min(brick.x, brick.y), std::min(brick.width - brick.x, brick.row - brick.y));
     if (nearest >= size) return 0.0f;
-    if (smooth == 0.0f) return 1.0f;
     const float depth = 1.0f - nearest / size;
-    const float t = std::clamp(depth / smooth, 0.0f, 1.0f);
+    if (!(depth < smooth)) return 1.0f;  // what links bring may be negative
+    const float t = depth / smooth;
     return t * t * (3.0f - 2.0f * t);
 }
 
