@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Procedural textures against Cycles' own output: all types, all dimensions, all outputs."""
 
+import itertools
 import os
 
 import bpy
@@ -236,8 +237,10 @@ def test_magic(scene, render, depth):
     show(scene, render, tree, node, "Color")
 
 
-@pytest.mark.parametrize("output", ["Fac", "Color"])
-@pytest.mark.parametrize("smooth", [0.0, 0.6, 1.0, -0.5])
+@pytest.mark.parametrize(
+    "smooth, output",
+    [*itertools.product([0.0, 0.6, 1.0], ["Fac", "Color"]), (-0.5, "Color")],
+)
 def test_brick(scene, render, smooth, output):
     inputs = {"Scale": 1.5, "Mortar Size": 0.1, "Bias": 0.1}
     tree, node = textured(

@@ -44,14 +44,15 @@ Brick brick_at(const Vec3f& p, float width, float row, float bias, const BrickLa
             p.y - row * static_cast<float>(row_number), width, row};
 }
 
-/// Share of mortar: 0 inside the brick, 1 between bricks.
-float mortar_at(const Brick& brick, float size, float smooth) {
+/// Share of mortar: 0 inside the brick, 1 between bricks.  Links may bring a smoothness below 0:
+/// `hard` then, as before Blender 4, or none.
+float mortar_at(const Brick& brick, float size, float smooth, bool hard) {
     const float nearest =
         std::min(std::min(brick.x, brick.y), std::min(brick.width - brick.x, brick.row - brick.y));
     if (nearest >= size) return 0.0f;
+    if (smooth == 0.0f || (smooth < 0.0f && hard)) return 1.0f;
     const float depth = 1.0f - nearest / size;
-    if (!(depth < smooth)) return 1.0f;  // what links bring may be negative
-    const float t = depth / smooth;
+    const float t = std::clamp(depth / smooth, 0.0f, 1.0f);
     return t * t * (3.0f - 2.0f * t);
 }
 
@@ -66,10 +67,10 @@ void build_brick_texture(NodeBuilder& b) {
         b.linked("Vector") ? b.vector("Vector") : generated_at(b, b.shift());
     // x: share of mortar, y: the brick's tint.
     const VectorSource found = b.map<Vec3f>(
-        [layout](const Vec3f& v, float scale, float size, float smooth, float bias, float width,
-                 float row) {
+        [layout, hard = !b.since(4, 0)](const Vec3f& v, float scale, float size, float smooth,
+                                        float bias, float width, float row) {
             const Brick brick = brick_at(v * scale, width, row, bias, layout);
-            return Vec3f(mortar_at(brick, size, smooth), brick.tint, 0.0f);
+            return Vec3f(mortar_at(brick, size, smooth, hard), brick.tint, 0.0f);
         },
         vector, b.number("Scale", 5.0f), b.number("Mortar Size", 0.02f), b.number("Mortar Smooth"),
         b.number("Bias"), b.number("Brick Width", 0.5f), b.number("Row Height", 0.25f));
