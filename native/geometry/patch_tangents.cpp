@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Normals and tangents at the corners of a polygon's patches.
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "geometry/shared_geometry.h"
@@ -96,9 +98,20 @@ std::array<Vec4f, 4> SharedGeometry::corner_tangents(const BasePatch& patch,
             entry = m_tangents.emplace(uv_map, make_tangents(uv_map)).first;
         all = &entry->second;
     }
+    // Half of a pair (BasePatch::half) has corners of the pair, which is the only patch of its
+    // face.
+    const std::size_t first_patch = m_first_patch[patch.face];
+    const BasePatch& pair = m_patches[first_patch];
+    const bool is_half = pair.kind == PatchKind::TrianglePair && patch.kind == PatchKind::Triangle;
+    const std::size_t known_patch =
+        is_half ? first_patch : first_patch + static_cast<std::size_t>(patch.sub);
     std::array<Vec4f, 4> found;
-    const std::size_t first = 4 * (m_first_patch[patch.face] + static_cast<std::size_t>(patch.sub));
-    for (std::size_t i = 0; i < 4; ++i) found[i] = (*all)[first + i];
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto at =
+            is_half ? std::ranges::find(pair.corner, patch.corner[i]) - std::begin(pair.corner)
+                    : static_cast<std::ptrdiff_t>(i);
+        found[i] = (*all)[4 * known_patch + static_cast<std::size_t>(at)];
+    }
     return found;
 }
 

@@ -183,3 +183,23 @@ def test_faces_of_many_corners(scene, render, concave):
     add_petals(scene, concave)
     scene_parts.add_camera(scene, ortho_scale=2.0)
     check(scene, render, rms=0.08)  # nine outlines against nothing
+
+
+def test_normal_maps_lean_with_the_tangents_of_bent_quads(scene, render):
+    """Half of each had those of the face after it."""
+    waves = add_waves(scene, 16, 0.15, smooth=True)
+    mesh = waves.data
+    places = np.array([mesh.vertices[loop.vertex_index].co[:2] for loop in mesh.loops])
+    mesh.uv_layers.new(name="UVMap").data.foreach_set("uv", (places / 2 + 0.5).ravel())
+    material = mesh.materials[0]
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    lean, diffuse = tree.nodes.new("ShaderNodeNormalMap"), tree.nodes.new("ShaderNodeBsdfDiffuse")
+    lean.inputs["Color"].default_value = (0.85, 0.5, 0.8, 1.0)
+    output = tree.nodes.new("ShaderNodeOutputMaterial")
+    tree.links.new(lean.outputs[0], diffuse.inputs["Normal"])
+    tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
+    scene_parts.add_camera(scene, ortho_scale=1.8)
+    add_sun(scene)
+    check(scene, render, rms=0.01)
