@@ -101,8 +101,9 @@ TEST(RoughRefraction, is_as_likely_as_its_weight_without_fresnel) {
     EXPECT_NEAR(bsdf.chance(0, out), 0.9f * bsdf.pdf(0, out), 1e-5f * bsdf.pdf(0, out));
 }
 
-// No sample goes where no facet refracts: beside a lobe that lets a hundred times as much through, as
-// much of the density is left there, which is what chance would take, and all where there is none.
+// No sample goes where no facet refracts: beside a lobe that lets a hundred times as much through,
+// as much of the density is left there, which is what chance would take, and all where there is
+// none.
 TEST(RoughRefraction, where_nothing_refracts_has_the_density_of_its_part) {
     const Vec3f wi = at_cosine(0.6f);
     const ShadingPoints points = seen_from(wi);
