@@ -3,9 +3,10 @@
 
     PYTHONPATH=<folder of granita_core> python3 bench/executors.py [--machine NAME] [--scenes spheres ...]
 
-Wall clock of whole frames, medians of three taken in turns (fewer of what takes seconds); error is the RMSE beside 1,024 samples of the CPU's executor
-with another seed.  Passes are the chapter's sampling: a turned lattice for the whole picture, at times and lens points
-that all pixels share.  "GPU" is what OpenGL offers, which the results name.  Writes bench/results/executors_NAME.json.
+Wall clock of whole frames, medians of three taken in turns (fewer of what takes seconds); error is the RMSE beside 1,024
+samples of the CPU's executor with another seed.  Passes are the chapter's sampling: a turned lattice for the whole
+picture, at times and lens points that all pixels share.  "GPU" is what OpenGL offers, which the results name.  Writes
+bench/results/executors_NAME.json.
 """
 
 import argparse
@@ -69,26 +70,22 @@ SCENES = {
 }
 
 
-def with_options(snapshot, options):
-    return {**snapshot, "options": {**snapshot["options"], "threads": THREADS, **options}}
-
-
-def timed(snapshot):
-    start = time.perf_counter()
-    result = measure.snapshots.render(snapshot)
-    return result, time.perf_counter() - start
+def rendered(snapshot, options):
+    """(result, seconds of the clock)."""
+    options = {**snapshot["options"], "threads": THREADS, **options}
+    return measure.render({**snapshot, "options": options}, time.perf_counter)
 
 
 def measured(name, build, runs):
     snapshot = build()
-    reference = timed(with_options(snapshot, REFERENCE))[0]["combined"]
+    reference = rendered(snapshot, REFERENCE)[0]["combined"]
     seconds = {setting: [] for setting in SETTINGS}
     results = {}
     for _ in range(runs):
         for setting, options in SETTINGS.items():
             if sum(seconds[setting]) > LONG:
                 continue
-            results[setting], taken = timed(with_options(snapshot, options))
+            results[setting], taken = rendered(snapshot, options)
             seconds[setting].append(taken)
     rows = []
     for setting, result in results.items():

@@ -98,19 +98,15 @@ std::array<Vec4f, 4> SharedGeometry::corner_tangents(const BasePatch& patch,
             entry = m_tangents.emplace(uv_map, make_tangents(uv_map)).first;
         all = &entry->second;
     }
-    // Half of a pair (BasePatch::half) has corners of the pair, which is the only patch of its
-    // face.
-    const std::size_t first_patch = m_first_patch[patch.face];
-    const BasePatch& pair = m_patches[first_patch];
-    const bool is_half = pair.kind == PatchKind::TrianglePair && patch.kind == PatchKind::Triangle;
-    const std::size_t known_patch =
-        is_half ? first_patch : first_patch + static_cast<std::size_t>(patch.sub);
+    // A half (BasePatch::half) is looked for in its pair, which is the only patch of its face.
+    const std::size_t first = m_first_patch[patch.face];
+    const bool is_paired = m_patches[first].kind == PatchKind::TrianglePair;
+    const std::size_t k = is_paired ? first : first + static_cast<std::size_t>(patch.sub);
+    const auto& corners = m_patches[k].corner;
     std::array<Vec4f, 4> found;
     for (std::size_t i = 0; i < 4; ++i) {
-        const auto at =
-            is_half ? std::ranges::find(pair.corner, patch.corner[i]) - std::begin(pair.corner)
-                    : static_cast<std::ptrdiff_t>(i);
-        found[i] = (*all)[4 * known_patch + static_cast<std::size_t>(at)];
+        const auto at = std::ranges::find(corners, patch.corner[i]) - std::begin(corners);
+        found[i] = (*all)[4 * k + static_cast<std::size_t>(at)];
     }
     return found;
 }

@@ -71,13 +71,8 @@ void Texture::read_texels(const TexelRect& rect, int layer, GLenum components, G
 
 void Texture::copy_to(const Buffer& buffer, const TexelRect& rect) const {
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer.name());
-    // Without a check in between, which might throw while the buffer is bound.
-    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    glGetTextureSubImage(name(), 0, rect.x, rect.y, 0, rect.width, rect.height, 1, GL_RGBA,
-                         GL_FLOAT, static_cast<GLsizei>(buffer.size()), nullptr);
+    read_texels(rect, 0, GL_RGBA, GL_FLOAT, buffer.size(), nullptr);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-    check("copying a texture");
 }
 
 }  // namespace granita::gl

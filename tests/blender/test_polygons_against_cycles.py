@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import scene_parts
 from mesh_parts import CUBE, CUBE_FACES
+from node_comparison import Tree
 
 WIDTH = 96
 
@@ -191,15 +192,12 @@ def test_normal_maps_lean_with_the_tangents_of_bent_quads(scene, render):
     mesh = waves.data
     places = np.array([mesh.vertices[loop.vertex_index].co[:2] for loop in mesh.loops])
     mesh.uv_layers.new(name="UVMap").data.foreach_set("uv", (places / 2 + 0.5).ravel())
-    material = mesh.materials[0]
-    material.use_nodes = True
-    tree = material.node_tree
-    tree.nodes.clear()
-    lean, diffuse = tree.nodes.new("ShaderNodeNormalMap"), tree.nodes.new("ShaderNodeBsdfDiffuse")
+    mesh.materials.clear()
+    tree = Tree(waves)
+    lean, diffuse = tree.add("ShaderNodeNormalMap"), tree.add("ShaderNodeBsdfDiffuse")
     lean.inputs["Color"].default_value = (0.85, 0.5, 0.8, 1.0)
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(lean.outputs[0], diffuse.inputs["Normal"])
-    tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
+    tree.link(lean.outputs[0], diffuse.inputs["Normal"])
+    tree.link(diffuse.outputs[0], tree.output.inputs["Surface"])
     scene_parts.add_camera(scene, ortho_scale=1.8)
     add_sun(scene)
     check(scene, render, rms=0.01)

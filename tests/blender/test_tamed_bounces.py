@@ -30,16 +30,19 @@ def mirrored_wall(scene, material_of):
 
 
 def mixed(thing, *closures, factor=0.5):
-    """Two closures, each (kind, {input: value}), the second by the factor."""
+    """Two closures, each (kind, {input: value}), the second by the factor; returns their nodes."""
     tree = Tree(thing)
     mix = tree.add("ShaderNodeMixShader")
     mix.inputs["Fac"].default_value = factor
+    nodes = []
     for socket, (kind, inputs) in zip(mix.inputs[1:], closures, strict=True):
         node = tree.add(f"ShaderNodeBsdf{kind}")
         for name, value in inputs.items():
             node.inputs[name].default_value = value
         tree.link(node.outputs[0], socket)
+        nodes.append(node)
     tree.link(mix.outputs[0], tree.output.inputs["Surface"])
+    return nodes
 
 
 @pytest.mark.parametrize("kind, clamp, worst", [("Diffuse", 0.3, 0.1), ("Glass", 10.0, 0.8)])
@@ -251,10 +254,8 @@ def test_a_little_refraction_takes_nothing_from_what_is_translucent(scene, rende
     ball = bpy.context.object
     ball.data.polygons.foreach_set("use_smooth", [True] * len(ball.data.polygons))
     closures = [("Refraction", {"Roughness": 0.5, "IOR": 1.4}), ("Translucent", {})]
-    mixed(ball, *closures, factor=0.99)
-    for node in ball.active_material.node_tree.nodes:
-        if node.type == "BSDF_REFRACTION":
-            node.distribution = "GGX"
+    refraction, _ = mixed(ball, *closures, factor=0.99)
+    refraction.distribution = "GGX"
     scene.world = bpy.data.worlds.new("World")
     scene.world.color = (0.5, 0.5, 0.5)
     scene_parts.add_camera(scene, ortho_scale=1.4)

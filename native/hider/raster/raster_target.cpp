@@ -68,8 +68,8 @@ int floor_to(int value, int step) {
 RasterTarget::RasterTarget(const RasterFilter& filter, int most_layers, int max_texture_size)
     : m_lattice(filter.lattice),
       m_margin(filter.margin()),
-      m_radius(static_cast<float>(filter.radius)),
-      m_cell(choose_cell(filter, max_texture_size)) {
+      m_cell(choose_cell(filter, max_texture_size)),
+      m_radius(static_cast<float>(filter.radius)) {
     const Rect whole = m_lattice.texels_of({0, 0, pixel_size(), pixel_size()});
     m_origin = {-whole.x0, -whole.y0};
     m_texel_size = whole.width();

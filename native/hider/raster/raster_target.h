@@ -107,9 +107,8 @@ class RasterTarget {
               Vec2i origin) const;
 
     RegularLattice m_lattice;
-    int m_margin;
+    int m_margin, m_cell, m_texel_size, m_layers;
     float m_radius;  ///< pixels, of a filter that gathers
-    int m_cell, m_texel_size, m_layers;
     Vec2i m_origin;
     bool m_empty = false;  ///< m_radiance is nothing throughout
     gl::Texture m_radiance, m_depth, m_mean, m_rows, m_pixels;

@@ -69,11 +69,7 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
                 const bool is_blurred = !source.made.empty() && source.made[point] >= 0.0f;
                 compensate(lobe, is_blurred ? source.made[point] : std::sqrt(lobe.alpha), albedo);
             }
-            // What has no Fresnel of its own Cycles takes as often where none of it passes.
-            const bool is_open =
-                lobe.kind == LobeKind::Refraction && lobe.fresnel == FresnelKind::None;
-            lobe.importance =
-                mean_size(is_open ? lobe.weight : lobe.weight * passed(lobe, lobe.cos_wi));
+            lobe.importance = mean_size(lobe.weight * taken(lobe, lobe.cos_wi));
         }
         m_transmits = m_transmits || granita::transmits(lobe.kind);
         m_importance += lobe.importance;
@@ -96,6 +92,11 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
 Vec3f PointBsdf::passed(const Prepared& lobe, float cos_half) const {
     return lobe.kind == LobeKind::Refraction ? transmittance(lobe, cos_half)
                                              : fresnel(lobe, cos_half);
+}
+
+Vec3f PointBsdf::taken(const Prepared& lobe, float cos_half) const {
+    const bool is_open = lobe.kind == LobeKind::Refraction && lobe.fresnel == FresnelKind::None;
+    return is_open ? Vec3f(1.0f) : passed(lobe, cos_half);
 }
 
 BsdfValue PointBsdf::evaluate(const Vec3f& wo, bool is_drawn) const {

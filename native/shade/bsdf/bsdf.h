@@ -161,6 +161,9 @@ class PointBsdf {
     Vec3f evaluate_shape(const Prepared& lobe, const Vec3f& wo, bool is_drawn) const;
     /// Share of the light that facets send the lobe's way.
     Vec3f passed(const Prepared& lobe, float cos_half) const;
+    /// Share of it by which chance takes the lobe: what has no Fresnel of its own Cycles takes as
+    /// often where none of it passes.
+    Vec3f taken(const Prepared& lobe, float cos_half) const;
     /// As sample(), through the surface too.
     bool draw(const Prepared& lobe, const Vec2f& u, Vec3f& wo) const;
     /// Where a facet sends the view.

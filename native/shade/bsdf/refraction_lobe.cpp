@@ -67,9 +67,8 @@ float PointBsdf::pdf_refraction(const Prepared& lobe, const Vec3f& wo) const {
 float PointBsdf::chance_of_refraction(const Prepared& lobe, const Vec3f& wo) const {
     RefractingFacets facets;
     if (!refracting_facets(lobe, wo, facets)) return 0.0f;
-    const Vec3f passes =
-        lobe.fresnel == FresnelKind::None ? Vec3f(1.0f) : transmittance(lobe, facets.half_wi);
-    return mean_size(lobe.weight * passes) * density_of_refraction(lobe, facets);
+    return mean_size(lobe.weight * taken(lobe, facets.half_wi)) *
+           density_of_refraction(lobe, facets);
 }
 
 float PointBsdf::density_of_refraction(const Prepared& lobe, const RefractingFacets& facets) const {

@@ -56,6 +56,17 @@ class Guide {
     float m_length, m_log;
 };
 
+/// How ways are led out of a medium.
+struct Lead {
+    explicit Lead(const ScatteringMedium& medium)
+        : guide(largest(medium.albedo)),
+          share(1.0f - std::max(0.5f, std::pow(std::abs(medium.g), 0.125f))),
+          thinnest(std::min({medium.extinction.x, medium.extinction.y, medium.extinction.z})) {}
+    Guide guide;
+    float share;     ///< of directions that the guide draws
+    float thinnest;  ///< least extinction
+};
+
 /// Henyey and Greenstein 1941, per solid angle.
 float phase(float g, float cosine) {
     const float d = 1.0f + g * g - 2.0f * g * cosine;
@@ -84,19 +95,15 @@ Vec3f arrival(const Vec3f& extinction, float t, bool reached) {
 bool walk(const RayScene& rays, const RayScene::Body& body, ScatteringMedium medium,
           const WalkStart& start, Vec3f& weight, RayScene::Met& exit) {
     Numbers numbers(start.seed);
-    Guide guide(largest(medium.albedo));
+    Lead lead(medium);
     const Vec3f& sigma = medium.extinction;
-    float thinnest = std::min({sigma.x, sigma.y, sigma.z});
-    float guided_share = 1.0f - std::max(0.5f, std::pow(std::abs(medium.g), 0.125f));
     const float least = kRoulette * largest(weight);
     Vec3f p = start.p, direction = start.direction;
     float far_side = 0.0f;  // its depth; 0: there is none
     for (int scattering = 0; scattering < kMostScatterings; ++scattering) {
         if (scattering == kAlike && medium.g != 0.0f) {
             medium = medium.isotropic();
-            guide = Guide(largest(medium.albedo));
-            thinnest = std::min({sigma.x, sigma.y, sigma.z});
-            guided_share = 0.5f;
+            lead = Lead(medium);
         }
         // A channel by what it still brings; all that could have led here share what it did
         // (Wilkie et al. 2014, "Hero Wavelength Spectral Sampling").
@@ -110,32 +117,32 @@ bool walk(const RayScene& rays, const RayScene::Body& body, ScatteringMedium med
         const bool is_first = scattering == 0;
         float forward = 1.0f, backward = 1.0f, out = 1.0f, in = 1.0f, back = 0.0f;
         if (!is_first) {
-            const bool guided = numbers.next() < guided_share;
+            const bool guided = numbers.next() < lead.share;
             if (far_side > 0.0f) {
                 const float depth = std::clamp(glm::dot(start.p - p, start.normal), 0.0f, far_side);
-                back = 1.0f / (1.0f + std::exp((far_side - 2.0f * depth) * thinnest /
-                                               guide.diffusion_length()));
+                back = 1.0f / (1.0f + std::exp((far_side - 2.0f * depth) * lead.thinnest /
+                                               lead.guide.diffusion_length()));
             }
             const bool turns_back = numbers.next() < back;
             const float u = numbers.next(), v = numbers.next();
             const Vec3f before = direction;
             float cosine;
             if (guided) {
-                cosine = (turns_back ? -1.0f : 1.0f) * guide.sample_cosine(u);
+                cosine = (turns_back ? -1.0f : 1.0f) * lead.guide.sample_cosine(u);
                 direction = turned(start.normal, cosine, v);
             } else {
                 direction = turned(before, sample_phase(medium.g, u), v);
                 cosine = glm::dot(direction, start.normal);
             }
             const float scattered = phase(medium.g, glm::dot(before, direction));
-            forward = guide.density(cosine) / scattered;
-            backward = guide.density(-cosine) / scattered;
-            out = guide.stretch(cosine);
-            in = guide.stretch(-cosine);
+            forward = lead.guide.density(cosine) / scattered;
+            backward = lead.guide.density(-cosine) / scattered;
+            out = lead.guide.stretch(cosine);
+            in = lead.guide.stretch(-cosine);
             if (guided) stretched *= turns_back ? in : out;
         }
         float t = -std::log(1.0f - numbers.next()) / stretched;
-        const float look = is_first ? std::max(t, kFarSide / thinnest) : t;
+        const float look = is_first ? std::max(t, kFarSide / lead.thinnest) : t;
         bool leaves = rays.nearest(body, {p, direction, look, body.time}, exit);
         if (leaves && is_first) {
             far_side = std::max(-glm::dot(start.normal, direction) * exit.hit.distance, 0.0f);
@@ -149,7 +156,7 @@ bool walk(const RayScene& rays, const RayScene::Body& body, ScatteringMedium med
             Vec3f guided = forward * arrival(out * sigma, t, leaves);
             if (far_side > 0.0f)
                 guided = glm::mix(guided, backward * arrival(in * sigma, t, leaves), back);
-            density = glm::mix(plain, guided, guided_share);
+            density = glm::mix(plain, guided, lead.share);
         }
         const float all = glm::dot(share, density);
         if (!(all > 0.0f)) return false;

@@ -31,11 +31,12 @@ float by_reach(const SurfaceClosure& closure, std::size_t point, int channel) {
 template <class Visit>
 void visit_around(const ShadingPoints& points, std::size_t i, const Visit& visit) {
     const std::size_t columns = points.columns;
+    const float two_steps = 2.0f * width_of(points, i);
     const auto visit_run = [&](std::size_t at, std::size_t reach, std::size_t begin,
                                std::size_t end) {
         for (std::size_t j = at - std::min(at - begin, reach); j < std::min(at + reach + 1, end);
              ++j)
-            if (glm::distance(points.p[j], points.p[i]) <= 2.0f * width_of(points, i)) visit(j);
+            if (glm::distance(points.p[j], points.p[i]) <= two_steps) visit(j);
     };
     if (columns == 0) return visit_run(i, kRun, 0, points.count);
     const std::size_t y = i / columns, rows = points.count / columns;
