@@ -20,7 +20,8 @@ struct Probed {
 /// balance heuristic.  As Cycles has it, the profile of the distance to `p` is spread over the
 /// probe's own circle: what lies above or below gets more than the profile alone would give.
 /// @param normal geometric, unit.
+/// @param rounding of places, metres: RayOffset's.
 void probe(const RayScene& rays, const RayScene::Body& body, const BurleyProfile& profile,
-           const Vec3f& p, const Vec3f& normal, Vec2f u, std::vector<Probed>& out);
+           const Vec3f& p, const Vec3f& normal, float rounding, Vec2f u, std::vector<Probed>& out);
 
 }  // namespace granita

@@ -11,8 +11,10 @@
 namespace granita {
 
 struct WalkStart {
-    Vec3f p, direction;  ///< below the surface and away from it
+    Vec3f p, direction;  ///< on the surface, and into it
     Vec3f normal;        ///< out of it
+    /// Metres within which numbers do not tell a place from the surface: RayOffset's.
+    float rounding = 0.0f;
     std::uint64_t seed = 0;
 };
 

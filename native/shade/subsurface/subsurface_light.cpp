@@ -109,14 +109,15 @@ class SubsurfaceLight::Batch {
         m_normal = faced(i, m_normal);
         m_p += inwards(m_points, i);
         const std::uint32_t face = m_points.faces.empty() ? m_key.face : m_points.faces[i];
-        m_offset = m_rays.ray_offset({m_key.instance, face});
+        RayOffset offset = m_rays.ray_offset({m_key.instance, face});
         const float step = width_of(m_points, i);
-        const float height = step + glm::length(m_offset(m_p, m_normal) - m_p);
+        const float height = step + glm::distance(offset(m_p, m_normal), m_p);
         const Ray down{m_p + height * m_normal, -m_normal, 2.0f * height, m_body.time};
         if (RayScene::Met met{}; m_rays.nearest(m_body, down, met)) {
             m_p = met.hit.p;
-            m_offset.error = 0.0f;
+            offset.error = 0.0f;
         }
+        m_rounding = glm::distance(offset(m_p, m_normal), m_p);
     }
 
     void walk_from(const SubsurfaceLobe& lobe, std::size_t i, std::uint32_t sample, const Vec2f& u,
@@ -130,7 +131,8 @@ class SubsurfaceLight::Batch {
         if (!enter(lobe, i, normal, view, u, start.direction) ||
             !(glm::dot(m_normal, start.direction) < 0.0f))
             return;
-        start.p = m_offset(m_p, -m_normal);
+        start.p = m_p;
+        start.rounding = m_rounding;
         const ScatteringMedium medium(lobe.albedo[i], lobe.radius[i], lobe.anisotropy[i]);
         // The way itself takes on the albedo.
         Vec3f weight = lobe.weight[i] / glm::max(lobe.albedo[i], Vec3f(kLeastAlbedo)) /
@@ -143,7 +145,8 @@ class SubsurfaceLight::Batch {
 
     void probe_from(const SubsurfaceLobe& lobe, std::size_t i, std::uint32_t sample,
                     const Vec2f& u) {
-        probe(m_rays, m_body, BurleyProfile(lobe.radius[i]), m_p, m_normal, u, m_probed);
+        probe(m_rays, m_body, BurleyProfile(lobe.radius[i]), m_p, m_normal, m_rounding, u,
+              m_probed);
         for (Probed& met : m_probed) {
             // On the side of the mesh on which the point itself is seen.
             RayHit& hit = met.met.hit;
@@ -253,8 +256,8 @@ class SubsurfaceLight::Batch {
     int m_count = 1;  ///< of ways a point
     // Of the point at hand, at the time of the body.
     Vec3f m_p{0.0f}, m_normal{0.0f};
-    RayOffset m_offset;
-    bool m_front = false;  ///< some point of a lattice is seen from the front
+    float m_rounding = 0.0f;  ///< of it, metres
+    bool m_front = false;     ///< some point of a lattice is seen from the front
     std::vector<Vec3f> m_direct;
     RayScene::Body m_body;
     std::vector<RayScene::Met> m_exits;
