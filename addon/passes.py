@@ -37,6 +37,7 @@ PASSES = (
     Pass("Emission", "Emit", 3, "RGB", "COLOR", "use_pass_emit"),
     Pass("Environment", "Env", 3, "RGB", "COLOR", "use_pass_environment"),
     Pass("Shadow", "Shadow", 3, "RGB", "COLOR", "use_pass_shadow"),
+    Pass("Shadow Catcher", "Shadow Catcher", 3, "RGB", "COLOR", "use_pass_shadow_catcher"),
     *(
         Pass(name, name, *shape, "denoising_store_passes")
         for name, shape in (

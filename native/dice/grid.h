@@ -24,6 +24,7 @@
 #include <compare>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -113,11 +114,12 @@ struct Grid {
     /// Part of a square pixel that a point stands for, at most 1: how much light it is worth.
     float point_share = 1.0f;
 
-    RasterBounds bounds;   ///< swept over shutter and lens
-    bool motion = false;   ///< knots differ, or it does not exist throughout
-    Lifespan lifespan;     ///< when it exists; less than the shutter only with motion, so that what
-                           ///< is always there costs no test
-    bool holdout = false;  ///< Instance::holdout: hides what is behind and cuts alpha, adds nothing
+    RasterBounds bounds;  ///< swept over shutter and lens
+    bool motion = false;  ///< knots differ, or it does not exist throughout
+    Lifespan lifespan;    ///< when it exists; less than the shutter only with motion, so that what
+                          ///< is always there costs no test
+    bool holdout =
+        false;  ///< Scene::holds_out(): hides what is behind and cuts alpha, adds nothing
     std::uint64_t bytes() const;
 
     // Slots, filled once by shade.
@@ -135,6 +137,10 @@ struct Grid {
     /// [points] likewise what is scattered below the surface, by its weight: light of lamps and the
     /// world, and of other surfaces.
     std::vector<Vec3f> scattered, scattered_bounced;
+
+    /// Of a shadow catcher, whose radiance is what is left of its light: the same as catchers alone
+    /// are lit.
+    std::shared_ptr<const Grid> lit_alone;
 
     /// [micropolygons] 1 where the corners' radiance or opacity differs so much that samples are to
     /// be shaded by themselves, for which the shading state is kept; empty = nowhere.

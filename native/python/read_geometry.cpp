@@ -228,6 +228,7 @@ void read_instances(const Record& r, Scene& scene) {
         instance.visible_glossy = f & 16u;
         instance.visible_transmission = f & 32u;
         instance.visible_volume = f & 64u;
+        instance.shadow_catcher = f & 128u;
         instance.terminator_offset = static_cast<float>(f >> 16) / 65535.0f;
         instance.object_index = object_index.empty() ? 0 : object_index[i];
         instance.random = random.empty() ? 0.0f : random[i];

@@ -129,6 +129,7 @@ void read_light(const Record& r, Light& light) {
     if (r.has("size")) light.size = Vec2f(r.pair("size"));
     light.spread = static_cast<float>(r.number("spread", light.spread));
     light.casts_shadow = r.boolean("casts_shadow", true);
+    light.lights_catchers = r.boolean("lights_catchers", true);
     light.visible_diffuse = r.boolean("visible_diffuse", true);
     light.visible_glossy = r.boolean("visible_glossy", true);
     light.visible_transmission = r.boolean("visible_transmission", true);

@@ -57,11 +57,12 @@ class PixelCorners {
 
 std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& table,
                                    const ShadingSystem& shading, const Vec3f& constant,
-                                   const TileStore& store) {
+                                   const TileStore& store,
+                                   const std::function<bool(SurfaceId)>& shows) {
     if (shading.background_is_constant()) return {constant};
     std::vector<std::size_t> uncovered;
     for (std::size_t i = 0; i < store.id.size(); ++i)
-        if (store.id[i] == kNoSurface) uncovered.push_back(i);
+        if (shows(store.id[i])) uncovered.push_back(i);
     if (uncovered.empty()) return {constant};
 
     // The hider may have met no motion and no lens in this tile; what lies at infinity still has

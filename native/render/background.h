@@ -3,6 +3,7 @@
 // defocused by the lens like everything at infinity.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "hider/sample_store.h"
@@ -16,9 +17,11 @@ struct RasterPass;
 
 /// Background radiance for composite_tile: one value where it does not vary over the tile or is not
 /// seen, otherwise one a sample.
+/// @param shows whether samples that see something show it.
 std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& table,
                                    const ShadingSystem& shading, const Vec3f& constant,
-                                   const TileStore& store);
+                                   const TileStore& store,
+                                   const std::function<bool(SurfaceId)>& shows);
 
 /// The world at the corners of pixels in one pass of REGULAR sampling, within which it is a smooth
 /// function of the pixel: [height + 1][width + 1].

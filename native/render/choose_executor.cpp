@@ -32,6 +32,7 @@ std::string raster_obstacle(const Scene& scene) {
                             [](const Material& m) { return m.graph.has_volume(); }) ||
         scene.world.graph.has_volume())
         return "something is filled by a volume";
+    if (scene.has_shadow_catchers()) return "something catches shadows";
     if (!ChannelSet(scene.options).empty()) return "passes beside Combined and Depth are asked for";
     return {};
 }

@@ -16,15 +16,26 @@ void TileColors::composite(const TileStore& store, const TileSamples& samples, L
     m_frame.progress.check();
     const Options& options = m_frame.scene.options;
     const ChannelSet& channels = m_frame.film.channels();
+    const Scene& scene = m_frame.scene;
+    const bool has_catchers = scene.has_shadow_catchers();
+    const auto shows_background = [&](SurfaceId id) {
+        return id == kNoSurface ||
+               (has_catchers && layers.pool().grid(layers.pool().slot(id)).holdout);
+    };
     std::vector<Vec3f> background{Vec3f(0.0f)};
     if (!options.film_transparent || channels.has_environment()) {
         const StageTimer timer(m_frame.statistics, Stage::Shade);
         background = tile_background(m_frame.scene.camera, m_table, m_frame.shading,
-                                     m_frame.constant_background, store);
+                                     m_frame.constant_background, store, shows_background);
     }
     const StageTimer timer(m_frame.statistics, Stage::Resolve);
-    const CompositeSettings settings{m_frame.view.projection, m_frame.hider.list_end,
-                                     options.film_transparent, &channels, options.depth_pass};
+    const CompositeSettings settings{m_frame.view.projection,
+                                     m_frame.hider.list_end,
+                                     options.film_transparent,
+                                     &channels,
+                                     options.depth_pass,
+                                     has_catchers ? &scene : nullptr,
+                                     channels.find(Quantity::Caught) != nullptr};
     if (!m_frame.shading.volumes()) {
         composite_tile(store, samples, layers, background, settings, m_colors, &m_channels,
                        refined);

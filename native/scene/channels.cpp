@@ -38,6 +38,7 @@ const PassKind kPasses[] = {
     {"Emission", Quantity::Emission, Merge::Layers, 3},
     {"Environment", Quantity::Environment, Merge::Layers, 3},
     {"Shadow", Quantity::LampsArriving, Merge::Layers, 3, Quantity::LampsUnblocked},
+    {"Shadow Catcher", Quantity::Caught, Merge::Layers, 3, Quantity::Composed, true},
     {"Mist", Quantity::Clarity, Merge::Layers, 1, {}, true},
     {"Normal", Quantity::Normal, Merge::First, 3},
     {"UV", Quantity::Uv, Merge::First, 3},

@@ -32,6 +32,8 @@ enum class Quantity {
     Emission,        ///< of surfaces and media
     LampsArriving,   ///< radiance reflected of lamps
     LampsUnblocked,  ///< the same without shadows
+    Caught,          ///< 1 - what is left of a shadow catcher's light
+    Composed,        ///< opacity of what is no shadow catcher
     Clarity,         ///< (1 - mist) opacity
     Normal,          ///< unit, world space, of the lobes (bumps included), faced to the viewer
     Uv,              ///< (u, v, 1) of the UV map active for render
@@ -69,9 +71,10 @@ struct Channel {
 struct Pass {
     std::string name;
     int width;
-    int channel;              ///< index in ChannelSet::channels()
-    int divisor = -1;         ///< likewise: the pass is the ratio of both after filtering
-    bool complement = false;  ///< 1 less the channel
+    int channel;       ///< index in ChannelSet::channels()
+    int divisor = -1;  ///< likewise: the pass is the ratio of both after filtering
+    /// 1 less the channel, and the divisor is 1 less its own.
+    bool complement = false;
 };
 
 /// The channels that a frame's passes need.  Rows of floats, each without gaps:

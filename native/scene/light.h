@@ -37,6 +37,7 @@ struct Light {
     Vec2f size{1.0f};  ///< area: metres, before the matrix's scale
     float spread = 3.14159265f;
     bool casts_shadow = true;
+    bool lights_catchers = true;  ///< false: it is not of the plate (Instance::shadow_catcher)
     bool visible_diffuse = true, visible_glossy = true, visible_transmission = true;
     bool visible_volume = true;
     float diffuse_factor = 1.0f, specular_factor = 1.0f;

@@ -32,6 +32,9 @@ struct Instance {
     bool visible_volume = true;  ///< to rays from what fills things
     bool casts_shadow = true;
     bool holdout = false;
+    /// Stands for what is in a plate: shows the background, darkened as what else there is darkens
+    /// it.
+    bool shadow_catcher = false;
     /// Cosine to smooth faces below which rays to lamps start above them (geometry/smooth_rise.h).
     float terminator_offset = 0.0f;
     int object_index = 0;  ///< pass_index
@@ -72,13 +75,24 @@ struct Scene {
     }
     /// Whether what has a material (-1 = none) of an instance cuts out of the picture.
     bool holds_out(const Instance& instance, int material) const {
-        return instance.holdout ||
-               (material >= 0 && materials[static_cast<std::size_t>(material)].holdout);
+        return instance.holdout || instance.shadow_catcher || is_holdout(material);
+    }
+    /// Whether it shows the background instead.
+    bool catches_shadows(const Instance& instance, int material) const {
+        return instance.shadow_catcher && !instance.holdout && !is_holdout(material);
+    }
+    bool has_shadow_catchers() const {
+        return std::ranges::any_of(instances, &Instance::shadow_catcher);
     }
     /// Whether camera or geometry has more than one knot, or something appears or vanishes.
     bool moves() const;
     /// Whether some instance does not exist throughout the shutter.
     bool has_lifespans() const;
+
+  private:
+    bool is_holdout(int material) const {
+        return material >= 0 && materials[static_cast<std::size_t>(material)].holdout;
+    }
 };
 
 }  // namespace granita

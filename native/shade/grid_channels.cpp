@@ -32,6 +32,12 @@ float clarity(const Mist& mist, const Vec3f& p_camera, bool perspective, float o
     return (1.0f - std::pow(std::clamp(place, 0.0f, 1.0f), mist.exponent)) * opacity;
 }
 
+Vec3f opacity_of(const Grid& grid, std::size_t point) {
+    if (!grid.opacity_varies) return Vec3f(1.0f);
+    const std::vector<std::uint32_t>& anchors = grid.shading_positions.anchors;
+    return grid.opacity[anchors.empty() ? point : anchors[point]];
+}
+
 /// Rows of one channel in Grid::channels, a point each.
 class Rows {
   public:
@@ -52,6 +58,22 @@ class Rows {
     float* m_first;
     std::size_t m_width;
 };
+
+/// Which passes tell of Combined's parts.
+bool is_light(Quantity quantity) {
+    switch (quantity) {
+        case Quantity::DiffuseDirect:
+        case Quantity::DiffuseIndirect:
+        case Quantity::GlossyDirect:
+        case Quantity::GlossyIndirect:
+        case Quantity::TransmissionDirect:
+        case Quantity::TransmissionIndirect:
+        case Quantity::Emission:
+            return true;
+        default:
+            return false;
+    }
+}
 
 }  // namespace
 
@@ -114,12 +136,8 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                 break;
             case Quantity::Clarity:
                 fill([&](std::size_t i) {
-                    const std::size_t vertex = grid.shading_positions.anchors.empty()
-                                                   ? i
-                                                   : grid.shading_positions.anchors[i];
-                    const float opacity = grid.opacity_varies ? mean(grid.opacity[vertex]) : 1.0f;
                     return clarity(scene.options.mist, grid.shading_p()[i], camera.perspective,
-                                   opacity);
+                                   mean(opacity_of(grid, i)));
                 });
                 break;
             case Quantity::Normal:
@@ -150,6 +168,9 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                 fill([&](std::size_t i) { return speed.at(now[i], previous[i], next[i]); });
                 break;
             }
+            case Quantity::Composed:
+                fill([&](std::size_t i) { return opacity_of(grid, i); });
+                break;
             case Quantity::Surface:
                 fill([&](std::size_t) { return Vec4f(1.0f); });
                 break;
@@ -168,6 +189,7 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                 fill([&](std::size_t) { return static_cast<float>(index); });
                 break;
             }
+            case Quantity::Caught:  // by fill_caught()
             case Quantity::VolumeDirect:
             case Quantity::VolumeIndirect:
             case Quantity::Environment:
@@ -177,6 +199,19 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
     for (float& value : grid.channels)
         if (!std::isfinite(value)) value = 0.0f;  // its material is named by who shades the grid
     interpolate_points(grid, channels.vertex_width(), grid.channels);
+}
+
+void fill_caught(Grid& grid, const ChannelSet& channels) {
+    for (const Channel& channel : channels.channels()) {
+        if (channel.quantity == Quantity::Environment) continue;
+        const Rows rows(grid, channels, channel);
+        for (std::size_t v = 0; v < grid.radiance.size(); ++v) {
+            if (channel.quantity == Quantity::Caught)
+                rows.write(v, Vec3f(1.0f) - grid.radiance[v]);
+            else if (channel.quantity == Quantity::Composed || is_light(channel.quantity))
+                rows.write(v, Vec3f(0.0f));
+        }
+    }
 }
 
 }  // namespace granita

@@ -24,4 +24,7 @@ struct ShadedGrid {
 void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                    const ShadingCamera& camera, const ShadedGrid& shaded);
 
+/// Quantity::Caught of a shadow catcher's radiance.  It is not composed in, and shows no light.
+void fill_caught(Grid& grid, const ChannelSet& channels);
+
 }  // namespace granita

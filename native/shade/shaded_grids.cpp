@@ -55,6 +55,7 @@ void take_shading(const Grid& from, Grid& to) {
     to.gathered_world = from.gathered_world;
     to.scattered = from.scattered;
     to.scattered_bounced = from.scattered_bounced;
+    to.lit_alone = from.lit_alone;
     to.unsettled = from.unsettled;
     to.channels = from.channels;
     to.light_share = from.light_share;

@@ -26,6 +26,7 @@
 #include "shade/seen_triangles.h"
 #include "shade/shading_input.h"
 #include "shade/shading_points.h"
+#include "shade/shadow_catchers.h"
 #include "shade/shadow_transparency.h"
 #include "shade/subsurface/shared_scattering.h"
 #include "shade/subsurface/subsurface_light.h"
@@ -68,7 +69,8 @@ struct ShadingSystem::Impl {
     std::unique_ptr<DirectLight> light;         ///< nullptr where nothing that is seen reflects any
     std::unique_ptr<HitShader> hits;            ///< where light is followed or its rays told apart
     std::unique_ptr<BouncedLight> bounces;
-    std::unique_ptr<SubsurfaceLight> below;  ///< where light is scattered below surfaces
+    std::unique_ptr<SubsurfaceLight> below;    ///< where light is scattered below surfaces
+    std::unique_ptr<ShadowCatchers> catchers;  ///< nullptr: there are none
 
     Impl(const Scene& s, Statistics& stats, Report& warnings, const Progress& p,
          bool refines_samples, const KeptShading& kept)
@@ -89,6 +91,8 @@ struct ShadingSystem::Impl {
           geometries(std::make_shared<GeometryCache>(kept.geometry)),
           shaded(kept.grids) {
         const StageTimer timer(stats, Stage::Shade);
+        if (scene.has_shadow_catchers())
+            catchers = std::make_unique<ShadowCatchers>(scene, stats, progress);
         const ChannelSet* passes = channels.empty() ? nullptr : &channels;
         CompiledMaterials compiled = compile_materials(scene, textures, report, progress, passes);
         materials = std::move(compiled.surfaces);
@@ -209,17 +213,7 @@ struct ShadingSystem::Impl {
             grid.scattered = std::move(light.direct);
             grid.scattered_bounced = std::move(light.bounced);
         }
-        for (std::size_t i = 0; i < points.count; ++i) {
-            const Vec3f weight = subsurface_weight(closure, i);
-            const Vec3f direct = grid.scattered[i] * weight;
-            const Vec3f bounced =
-                grid.scattered_bounced.empty() ? Vec3f(0.0f) : grid.scattered_bounced[i] * weight;
-            radiance[i] += direct + bounced;
-            if (!parts) continue;
-            parts->diffuse[i] += direct;
-            parts->diffuse_bounced[i] += bounced;
-            parts->diffuse_color[i] += weight;
-        }
+        reflect_scattered(grid.scattered, grid.scattered_bounced, closure, parts, radiance);
     }
 
     /// Fills radiance and channels of `grid`, whose points are `in.points`; `noise` as
@@ -291,9 +285,17 @@ struct ShadingSystem::Impl {
     }
 
     Grid refine(const Grid& grid, std::span<const RefinedPoint> wanted, float point_size) const {
+        Grid out = refine_lit(grid, wanted, point_size);
+        out.holdout = grid.holdout;
+        if (grid.lit_alone) catchers->divide(out, grid, wanted, channels);
+        return out;
+    }
+
+    Grid refine_lit(const Grid& grid, std::span<const RefinedPoint> wanted,
+                    float point_size) const {
         if (grid.triangles) {
             const SeenTriangles seen(grid, wanted);
-            return refine(seen.grid, seen.points, point_size);
+            return refine_lit(seen.grid, seen.points, point_size);
         }
         RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
         refined.points.alone = !grid.radiance.empty();  // else triangles, made for samples
@@ -380,25 +382,22 @@ struct ShadingSystem::Impl {
             return leave_to_samples(grid, channels.vertex_width());
         std::vector<float> noise(wants_refining ? points.count : 0, 0.0f);
         std::vector<Vec3f> settled;
+        const bool catches =
+            catchers && scene.catches_shadows(scene.instances[grid.instance], grid.material);
         shade(grid, input(grid, points), at, wants_refining ? &noise : nullptr,
-              wants_refining ? &settled : nullptr);
+              wants_refining && !catches ? &settled : nullptr);
         statistics.add(Counter::GridsShaded);
+        if (catches) catchers->divide(grid, channels);
         if (!wants_refining) return;
-        if (grid.holdout) {
+        if (grid.holdout && !catches) {
             grid.unsettled = grid.unsettled_opacity;
             return;
         }
-        // Samples would be shaded by themselves where points happen to be too bright, not too dark.
-        if (!settled.empty()) settled.swap(grid.radiance);
-        grid.unsettled = material(grid.material).has_lines() || changes_in_time(grid)
-                             ? all_micropolygons(grid)
-                             : unsettled_micropolygons(
-                                   grid, noise, thresholds.difference / (sharpness * sharpness),
-                                   thresholds.noise / (fewer * fewer));
-        if (!settled.empty()) settled.swap(grid.radiance);
-        if (grid.unsettled.empty()) grid.unsettled = grid.unsettled_opacity;
-        for (std::size_t m = 0; m < grid.unsettled_opacity.size(); ++m)
-            grid.unsettled[m] |= grid.unsettled_opacity[m];
+        if (material(grid.material).has_lines() || changes_in_time(grid))
+            grid.unsettled = all_micropolygons(grid);
+        else
+            find_unsettled(grid, settled, noise, thresholds.difference / (sharpness * sharpness),
+                           thresholds.noise / (fewer * fewer));
     }
 };
 

@@ -146,6 +146,22 @@ class MicropolygonCorners {
     std::vector<std::array<Corner, 4>> m_corners;
 };
 
+std::vector<std::uint8_t> unsettled_radiance(const Grid& grid, std::span<const float> noise,
+                                             float threshold, float noise_threshold) {
+    if (are_equal(grid.radiance)) return {};
+    const MicropolygonCorners corners(grid);
+    const std::vector<Shown> shown = corners.shown(grid.radiance, shown_color);
+    return corners.marked(shown, [&](const std::array<Corner, 4>& of, float bend) {
+        float doubt = 0.0f, level = 0.0f;
+        for (const Corner& c : of) {
+            doubt += 0.25f * noise[c.point] * noise[c.point];
+            level += 0.25f * luminance(grid.radiance[c.vertex]);
+        }
+        const float shown_doubt = displayed(level + std::sqrt(doubt)) - displayed(level);
+        return bend > threshold + kSpread * shown_doubt || shown_doubt > noise_threshold;
+    });
+}
+
 }  // namespace
 
 bool are_equal(const std::vector<Vec3f>& values) {
@@ -164,20 +180,14 @@ float opacity_difference(const Vec3f& a, const Vec3f& b) {
     return most(a - b);
 }
 
-std::vector<std::uint8_t> unsettled_micropolygons(const Grid& grid, std::span<const float> noise,
-                                                  float threshold, float noise_threshold) {
-    if (are_equal(grid.radiance)) return {};
-    const MicropolygonCorners corners(grid);
-    const std::vector<Shown> shown = corners.shown(grid.radiance, shown_color);
-    return corners.marked(shown, [&](const std::array<Corner, 4>& of, float bend) {
-        float doubt = 0.0f, level = 0.0f;
-        for (const Corner& c : of) {
-            doubt += 0.25f * noise[c.point] * noise[c.point];
-            level += 0.25f * luminance(grid.radiance[c.vertex]);
-        }
-        const float shown_doubt = displayed(level + std::sqrt(doubt)) - displayed(level);
-        return bend > threshold + kSpread * shown_doubt || shown_doubt > noise_threshold;
-    });
+void find_unsettled(Grid& grid, std::vector<Vec3f>& settled, std::span<const float> noise,
+                    float threshold, float noise_threshold) {
+    if (!settled.empty()) settled.swap(grid.radiance);
+    grid.unsettled = unsettled_radiance(grid, noise, threshold, noise_threshold);
+    if (!settled.empty()) settled.swap(grid.radiance);
+    if (grid.unsettled.empty()) grid.unsettled = grid.unsettled_opacity;
+    for (std::size_t m = 0; m < grid.unsettled_opacity.size(); ++m)
+        grid.unsettled[m] |= grid.unsettled_opacity[m];
 }
 
 std::vector<std::uint8_t> unsettled_opacity(const Grid& grid, float threshold) {

@@ -10,7 +10,7 @@
 
 namespace granita {
 
-/// What unsettled_micropolygons() takes, of the settings of a frame.
+/// What find_unsettled() takes, of the settings of a frame.
 struct UnsettledThresholds {
     float difference, noise;
 
@@ -26,15 +26,18 @@ float opacity_difference(const Vec3f& a, const Vec3f& b);
 
 bool are_equal(const std::vector<Vec3f>& values);
 
-/// Marks the micropolygons that interpolating their corners would draw wrong: where displayed
-/// colour along a row of corners bends by more than `threshold`, be it an edge or a highlight, and,
-/// as an edge ends anywhere, those that share a point with one.  Slopes are drawn right.
+/// Fills Grid::unsettled: the micropolygons that interpolating their corners would draw wrong:
+/// where displayed colour along a row of corners bends by more than `threshold`, be it an edge or a
+/// highlight, and, as an edge ends anywhere, those that share a point with one.  Slopes are drawn
+/// right.
 /// @param noise [points] how far each corner's luminance is in doubt: what may be that alone is no
 /// edge, but is refined itself where it is larger than `noise_threshold`.
-std::vector<std::uint8_t> unsettled_micropolygons(const Grid& grid, std::span<const float> noise,
-                                                  float threshold, float noise_threshold);
+/// @param settled [vertices] or empty: the radiance without what happens to be too bright at single
+/// points, which would be refined where it is not too dark.
+void find_unsettled(Grid& grid, std::vector<Vec3f>& settled, std::span<const float> noise,
+                    float threshold, float noise_threshold);
 
-/// The same of the grid's opacity, in any channel as it is: edges of cut-outs.
+/// Marks the same by the grid's opacity, in any channel as it is: edges of cut-outs.
 std::vector<std::uint8_t> unsettled_opacity(const Grid& grid, float threshold);
 
 /// Marks them all.

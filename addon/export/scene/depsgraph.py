@@ -329,9 +329,3 @@ class _Walk:
         for owner in owners:
             for trouble in troubles(owner):
                 self._report(f"object '{owner.name}'", trouble)
-        if prototype.type not in {"HAIR", "LIGHT"}:
-            for owner in owners:
-                if owner.is_shadow_catcher:
-                    self._report(
-                        f"object '{owner.name}'", "is a shadow catcher: rendered as it stands"
-                    )

@@ -25,6 +25,7 @@ VISIBLE_DIFFUSE = 8
 VISIBLE_GLOSSY = 16
 VISIBLE_TRANSMISSION = 32
 VISIBLE_VOLUME = 64
+SHADOW_CATCHER = 128
 TERMINATOR_OFFSET_SHIFT = 16
 
 
@@ -134,6 +135,8 @@ def _flags(prototype, view_layer):
         flags |= VISIBLE_VOLUME
     if placing.holdout_get(view_layer=view_layer):
         flags |= HOLDOUT
+    if any(owner.is_shadow_catcher for owner in owners):
+        flags |= SHADOW_CATCHER
     return flags | _terminator_offset(prototype.source) << TERMINATOR_OFFSET_SHIFT
 
 

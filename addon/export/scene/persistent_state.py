@@ -92,7 +92,7 @@ def _settings(depsgraph):
 
 def _shown(thing):
     """What can be animated and is no change of place or shape."""
-    visible = thing.visible_camera, thing.visible_shadow, thing.is_holdout
+    visible = thing.visible_camera, thing.visible_shadow, thing.is_holdout, thing.is_shadow_catcher
     to_surfaces = thing.visible_diffuse, thing.visible_glossy, thing.visible_transmission
     to_light = *to_surfaces, thing.visible_volume_scatter
     return thing.hide_render, thing.pass_index, *visible, *to_light

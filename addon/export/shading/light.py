@@ -58,6 +58,7 @@ def light_record(light_object, matrices, report, images=None):
         "size": [size, getattr(light, "size_y", size) if _has_two_sizes(shape) else size],
         "spread": getattr(light, "spread", math.pi),
         "casts_shadow": bool(getattr(*shadow_switch(light))),
+        "lights_catchers": bool(light_object.is_shadow_catcher),
         "visible_camera": bool(light_object.visible_camera),
         "visible_diffuse": bool(light_object.visible_diffuse),
         "visible_glossy": bool(light_object.visible_glossy),

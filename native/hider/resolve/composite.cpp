@@ -12,6 +12,7 @@
 #include "hider/resolve/channel_layers.h"
 #include "hider/resolve/layer_kernel.h"
 #include "hider/resolve/surface_interpolator.h"
+#include "scene/scene.h"
 
 namespace granita {
 namespace {
@@ -210,10 +211,29 @@ class TileComposite {
     SampleColor opaque(std::uint32_t sample, const SurfacePoint& point) const {
         SampleColor color;
         color.depth = m_settings.projection.depth_from_key(m_store.key[sample]);
+        if (catches(*point.grid) && !m_settings.catchers_cut)
+            return caught(sample, point(point.grid->radiance), color.depth);
         if (point.grid->holdout) return color;
         if (!point.grid->radiance.empty()) color.color = point(point.grid->radiance);
         color.color += Vec3f(0.0f);  // no negative zeros
         color.alpha = 1.0f;
+        return color;
+    }
+
+    bool catches(const Grid& grid) const {
+        return m_settings.catchers && grid.holdout &&
+               m_settings.catchers->catches_shadows(m_settings.catchers->instances[grid.instance],
+                                                    grid.material);
+    }
+    /// What is left of a shadow catcher's light, in all channels alike, as in Cycles: by that much
+    /// it takes from what is, or will be, behind.
+    SampleColor caught(std::uint32_t sample, const Vec3f& light, float depth) const {
+        SampleColor color = nothing(sample);
+        color.depth = depth;
+        const auto mean = static_cast<float>(channel_mean(light.x, light.y, light.z));
+        const float left = std::clamp(mean, 0.0f, 1.0f);
+        color.color *= left;
+        if (m_settings.film_transparent) color.alpha = 1.0f - left;
         return color;
     }
 
@@ -234,8 +254,10 @@ class TileComposite {
                                     through_volumes(sample, transmission));
     }
     void add_behind(std::uint32_t sample, const SurfacePoint& point, const Vec3d& transmission) {
-        if (!point.grid->holdout)
+        const bool catches_shadows = catches(*point.grid);
+        if (!point.grid->holdout || catches_shadows)
             m_channels->add(sample, point, through_volumes(sample, transmission));
+        if (catches_shadows && !m_settings.film_transparent) add_environment(sample, transmission);
     }
 
     void add_lists(std::size_t packet) {

@@ -23,6 +23,8 @@ struct CompositeSettings {
     bool film_transparent = false;         ///< no background; alpha is what covers it
     const ChannelSet* channels = nullptr;  ///< nullptr = no passes
     bool depth = true;                     ///< whether SampleColors::depth is wanted
+    const Scene* catchers = nullptr;       ///< nullptr: it has none
+    bool catchers_cut = false;             ///< as holdouts do, not showing the background
 };
 
 /// Fills [256 * samples] colours in sample order.  `background`: premultiplied radiance behind
@@ -35,7 +37,8 @@ struct CompositeSettings {
 /// Alpha is the mean of the three opacities without those of holdout surfaces; with a background it
 /// is 1 less what holdouts cut out.  Depth is that of the first layer, or
 /// anything where it is not wanted.  Fills `channels` where
-/// settings.channels asks for some; holdouts take part in Merge::First and Center alone.
+/// settings.channels asks for some; holdouts take part in Merge::First and Center alone, but those
+/// that catch shadows.
 /// Layers of `refined` look as they do through `volumes`, their channels as without.
 void composite_tile(const TileStore& store, const TileSamples& samples, LayerTable& table,
                     std::span<const Vec3f> background, const CompositeSettings& settings,

@@ -83,4 +83,19 @@ std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClo
     return share(points, noisy);
 }
 
+void reflect_scattered(const std::vector<Vec3f>& direct, const std::vector<Vec3f>& bounced,
+                       const SurfaceClosure& closure, ReflectionParts* parts,
+                       std::vector<Vec3f>& radiance) {
+    for (std::size_t i = 0; i < direct.size(); ++i) {
+        const Vec3f weight = subsurface_weight(closure, i);
+        const Vec3f of_lamps = direct[i] * weight;
+        const Vec3f of_others = bounced.empty() ? Vec3f(0.0f) : bounced[i] * weight;
+        radiance[i] += of_lamps + of_others;
+        if (!parts) continue;
+        parts->diffuse[i] += of_lamps;
+        parts->diffuse_bounced[i] += of_others;
+        parts->diffuse_color[i] += weight;
+    }
+}
+
 }  // namespace granita

@@ -7,6 +7,7 @@
 
 #include "math/vec.h"
 #include "shade/bsdf/lobe.h"
+#include "shade/bsdf/reflection.h"
 
 namespace granita {
 
@@ -16,5 +17,11 @@ Vec3f subsurface_weight(const SurfaceClosure& closure, std::size_t point);
 /// [points] `light`, by weight, shared.
 std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
                                    const std::vector<Vec3f>& light);
+
+/// Adds [points] what is scattered below them, by its weight, of lamps and the world and of other
+/// surfaces (empty: none).
+void reflect_scattered(const std::vector<Vec3f>& direct, const std::vector<Vec3f>& bounced,
+                       const SurfaceClosure& closure, ReflectionParts* parts,
+                       std::vector<Vec3f>& radiance);
 
 }  // namespace granita

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What shadow catchers lose of their light, where it is known: all of it, none, or half."""
+
+import numpy as np
+import pytest
+import snapshots as s
+
+SIZE = 32
+SEEN, CATCHER = 123, 128
+UNSEEN = SEEN - 1
+TOWARDS = np.diag([1.0, -1.0, -1.0, 1.0])  # along the view, +z
+
+
+def sun(**values):
+    return {
+        "name": "Sun",
+        "kind": "SUN",
+        "world_from_light": TOWARDS[None],
+        "energy": np.pi,
+    } | values
+
+
+def grey(snapshot, color=(0.8, 0.5, 0.2)):
+    node = {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (*color, 1.0)}}
+    snapshot["materials"].append({"name": "Grey", "nodes": [node], "surface": (0, "BSDF")})
+    return len(snapshot["materials"]) - 1
+
+
+def plate(lights=None, behind=False, **options):
+    """A catcher before all of the frame, and above it, unseen, what takes the sun from its left half."""
+    options = {"samples": 16, "light_samples": 4, "film_transparent": True, **options}
+    snapshot = s.orthographic((SIZE, SIZE), **options)
+    material = grey(snapshot)
+    s.quad(snapshot, s.rectangle(-99, -99, 99, 99, 10.0), material)
+    s.quad(snapshot, s.rectangle(-99, -99, SIZE / 2, 99, 5.0), material)
+    flags = [SEEN | CATCHER, UNSEEN]
+    if behind:
+        s.quad(snapshot, s.rectangle(-99, -99, 99, 99, 20.0), s.emission(snapshot, (1, 1, 1)))
+        flags.append(SEEN)
+    snapshot["instances"]["flags"] = flags
+    snapshot["lights"] = [sun()] if lights is None else lights
+    return snapshot
+
+
+@pytest.mark.parametrize("behind", [False, True])
+def test_shadow_is_black_and_light_is_not_there(behind):
+    """And what is behind is not seen.  Columns beside the edge may be shadow in part."""
+    combined = s.render(plate(behind=behind))["combined"]
+    assert np.all(combined[..., :3] == 0.0)
+    assert np.all(combined[:, : SIZE // 2 - 1, 3] == 1.0)
+    assert np.all(combined[:, SIZE // 2 + 1 :, 3] == 0.0)
+
+
+def test_the_world_is_seen_where_light_is():
+    snapshot = plate(film_transparent=False)
+    s.constant_world(snapshot, 0.5)
+    snapshot["world"]["lights_scene"] = False
+    combined = s.render(snapshot)["combined"]
+    assert combined[:, SIZE // 2 + 1 :, :3] == pytest.approx(0.5, abs=1e-6)
+    assert np.all(combined[:, : SIZE // 2 - 1, :3] == 0.0)
+    assert np.all(combined[..., 3] == 1.0)
+
+
+@pytest.mark.parametrize("film", [False, True])
+def test_the_pass_says_by_how_much(film):
+    """Half of the light is of a lamp that is composed in, which casts a shadow too."""
+    lights = [sun(), sun(name="Lamp", lights_catchers=False)]
+    snapshot = plate(lights, film_transparent=film, passes=["Combined", "Shadow Catcher"])
+    made = s.render(snapshot)
+    caught = made["passes"]["Shadow Catcher"]
+    assert caught[:, : SIZE // 2 - 1] == pytest.approx(0.0, abs=1e-6)
+    assert caught[:, SIZE // 2 + 1 :] == pytest.approx(2.0, abs=1e-6)
+    assert np.all(made["combined"] == 0.0)  # they cut out then
+
+
+def test_a_holdout_catches_nothing():
+    snapshot = plate()
+    snapshot["instances"]["flags"][0] |= 4
+    assert np.all(s.render(snapshot)["combined"] == 0.0)
+
+
+@pytest.mark.parametrize("bounces", [0, 2])
+def test_bits_do_not_depend_on_buckets_threads_and_crop(bounces):
+    def picture(**options):
+        snapshot = plate(passes=["Combined", "Shadow Catcher"], bounces=bounces, **options)
+        made = s.render(snapshot)
+        return np.concatenate([made["combined"], made["passes"]["Shadow Catcher"]], axis=-1)
+
+    whole = picture()
+    for options in ({"bucket_size": 16}, {"threads": 1}):
+        assert np.array_equal(whole, picture(**options))
+    assert np.array_equal(whole[8:24, 4:20], picture(crop=np.int32([4, 8, 20, 24])))
+
+
+def test_the_raster_executor_says_that_it_has_none():
+    with pytest.raises(Exception, match="catches shadows"):
+        s.render(plate(executor="RASTER", sampling="REGULAR"))
