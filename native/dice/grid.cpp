@@ -12,8 +12,8 @@ std::uint64_t Grid::bytes() const {
         gathered_world.size() + scattered.size() + scattered_bounced.size();
     floats += 4 * rise.size() + channels.size() + shading_positions.anchors.size() +
               shading_positions.point_of.size() + shading_positions.faces.size();
-    return sizeof(Grid) + unsettled.size() + unsettled_opacity.size() + 4 * floats +
-           sizeof(Vec3f) * vectors;
+    return sizeof(Grid) + (lit_alone ? lit_alone->bytes() : 0) + unsettled.size() +
+           unsettled_opacity.size() + 4 * floats + sizeof(Vec3f) * vectors;
 }
 
 }  // namespace granita

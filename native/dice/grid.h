@@ -119,7 +119,7 @@ struct Grid {
     Lifespan lifespan;    ///< when it exists; less than the shutter only with motion, so that what
                           ///< is always there costs no test
     bool holdout =
-        false;  ///< Scene::holds_out(): hides what is behind and cuts alpha, adds nothing
+        false;  ///< Scene::holds_out(): hides what is behind and cuts alpha, adds no layer
     std::uint64_t bytes() const;
 
     // Slots, filled once by shade.
@@ -138,8 +138,8 @@ struct Grid {
     /// world, and of other surfaces.
     std::vector<Vec3f> scattered, scattered_bounced;
 
-    /// Of a shadow catcher, whose radiance is what is left of its light: the same as catchers alone
-    /// are lit.
+    /// Of a shadow catcher, whose radiance is what is left of its light: what is gathered and
+    /// scattered where nothing is composed in, and nothing else.
     std::shared_ptr<const Grid> lit_alone;
 
     /// [micropolygons] 1 where the corners' radiance or opacity differs so much that samples are to

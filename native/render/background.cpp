@@ -62,7 +62,7 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
     if (shading.background_is_constant()) return {constant};
     std::vector<std::size_t> uncovered;
     for (std::size_t i = 0; i < store.id.size(); ++i)
-        if (shows(store.id[i])) uncovered.push_back(i);
+        if (store.id[i] == kNoSurface || (shows && shows(store.id[i]))) uncovered.push_back(i);
     if (uncovered.empty()) return {constant};
 
     // The hider may have met no motion and no lens in this tile; what lies at infinity still has

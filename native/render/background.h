@@ -17,7 +17,7 @@ struct RasterPass;
 
 /// Background radiance for composite_tile: one value where it does not vary over the tile or is not
 /// seen, otherwise one a sample.
-/// @param shows whether samples that see something show it.
+/// @param shows whether samples that see something show it; empty: none does.
 std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& table,
                                    const ShadingSystem& shading, const Vec3f& constant,
                                    const TileStore& store,

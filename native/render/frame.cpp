@@ -139,6 +139,7 @@ Frame::Frame(const std::shared_ptr<const Scene>& frame_scene,
           view, filter_of(scene), frame_choice.executor != Executor::Raster, report)),
       levels(*shared_levels),
       constant_background(constant_background_of(shading)),
+      has_catchers(scene.has_shadow_catchers()),
       choice(std::move(frame_choice)),
       raster(choice.executor == Executor::Raster
                  ? std::make_unique<RasterHider>(

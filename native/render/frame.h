@@ -43,6 +43,7 @@ struct Frame {
     std::shared_ptr<const SampleLevels> shared_levels;
     const SampleLevels& levels;
     Vec3f constant_background{0.0f};
+    bool has_catchers = false;  ///< of shadows
     ExecutorChoice choice;
     std::unique_ptr<RasterHider> raster;  ///< only where it was chosen
     Film film;

@@ -85,6 +85,7 @@ void SharedGrid::forget_radiance() {
     m_grid->gathered_world.clear();
     m_grid->scattered.clear();
     m_grid->scattered_bounced.clear();
+    m_grid->lit_alone.reset();
     m_grid->unsettled.clear();
     m_grid->channels.clear();
 }

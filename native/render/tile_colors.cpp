@@ -2,6 +2,7 @@
 #include "render/tile_colors.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "base/stage_timer.h"
 #include "film/tile_noise.h"
@@ -16,17 +17,19 @@ void TileColors::composite(const TileStore& store, const TileSamples& samples, L
     m_frame.progress.check();
     const Options& options = m_frame.scene.options;
     const ChannelSet& channels = m_frame.film.channels();
-    const Scene& scene = m_frame.scene;
-    const bool has_catchers = scene.has_shadow_catchers();
-    const auto shows_background = [&](SurfaceId id) {
-        return id == kNoSurface ||
-               (has_catchers && layers.pool().grid(layers.pool().slot(id)).holdout);
-    };
+    const Scene* const catchers = m_frame.has_catchers ? &m_frame.scene : nullptr;
+    const bool cut = channels.find(Quantity::Caught) != nullptr;
+    std::function<bool(SurfaceId)> shows;
+    if (catchers && (!cut || channels.has_environment()))
+        shows = [&](SurfaceId id) {
+            const Grid& grid = layers.pool().grid(layers.pool().slot(id));
+            return catchers->catches_shadows(catchers->instances[grid.instance], grid.material);
+        };
     std::vector<Vec3f> background{Vec3f(0.0f)};
     if (!options.film_transparent || channels.has_environment()) {
         const StageTimer timer(m_frame.statistics, Stage::Shade);
         background = tile_background(m_frame.scene.camera, m_table, m_frame.shading,
-                                     m_frame.constant_background, store, shows_background);
+                                     m_frame.constant_background, store, shows);
     }
     const StageTimer timer(m_frame.statistics, Stage::Resolve);
     const CompositeSettings settings{m_frame.view.projection,
@@ -34,8 +37,8 @@ void TileColors::composite(const TileStore& store, const TileSamples& samples, L
                                      options.film_transparent,
                                      &channels,
                                      options.depth_pass,
-                                     has_catchers ? &scene : nullptr,
-                                     channels.find(Quantity::Caught) != nullptr};
+                                     catchers,
+                                     cut};
     if (!m_frame.shading.volumes()) {
         composite_tile(store, samples, layers, background, settings, m_colors, &m_channels,
                        refined);

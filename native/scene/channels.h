@@ -33,7 +33,7 @@ enum class Quantity {
     LampsArriving,   ///< radiance reflected of lamps
     LampsUnblocked,  ///< the same without shadows
     Caught,          ///< 1 - what is left of a shadow catcher's light
-    Composed,        ///< opacity of what is no shadow catcher
+    Composed,        ///< opacity of what is no shadow catcher, media too
     Clarity,         ///< (1 - mist) opacity
     Normal,          ///< unit, world space, of the lobes (bumps included), faced to the viewer
     Uv,              ///< (u, v, 1) of the UV map active for render

@@ -33,7 +33,7 @@ float clarity(const Mist& mist, const Vec3f& p_camera, bool perspective, float o
 }
 
 Vec3f opacity_of(const Grid& grid, std::size_t point) {
-    if (!grid.opacity_varies) return Vec3f(1.0f);
+    if (grid.opacity.empty()) return Vec3f(1.0f);
     const std::vector<std::uint32_t>& anchors = grid.shading_positions.anchors;
     return grid.opacity[anchors.empty() ? point : anchors[point]];
 }

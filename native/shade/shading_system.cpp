@@ -387,7 +387,7 @@ struct ShadingSystem::Impl {
         shade(grid, input(grid, points), at, wants_refining ? &noise : nullptr,
               wants_refining && !catches ? &settled : nullptr);
         statistics.add(Counter::GridsShaded);
-        if (catches) catchers->divide(grid, channels);
+        if (catches) catchers->divide(grid, channels, noise);
         if (!wants_refining) return;
         if (grid.holdout && !catches) {
             grid.unsettled = grid.unsettled_opacity;

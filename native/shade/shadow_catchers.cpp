@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/shadow_catchers.h"
 
+#include <cmath>
+#include <utility>
+
+#include "math/luminance.h"
+
 namespace granita {
 namespace {
 
@@ -9,8 +14,6 @@ namespace {
 Scene plate(const Scene& scene) {
     Scene plate;
     plate.options = scene.options;
-    plate.options.passes.clear();
-    plate.options.aovs.clear();
     plate.camera = scene.camera;
     for (std::size_t g = 0; g < scene.geometries.size(); ++g) {
         plate.geometries.emplace_back();
@@ -43,35 +46,59 @@ Scene plate(const Scene& scene) {
     return plate;
 }
 
-/// 1 where neither is any light.
+/// As they were before any light.
+void forget_light(Grid& grid) {
+    for (auto* values :
+         {&grid.gathered, &grid.gathered_world, &grid.scattered, &grid.scattered_bounced})
+        values->clear();
+    grid.channels.clear();
+    grid.lit_alone.reset();
+}
+
+void take_gathered(Grid& from, Grid& to) {
+    to.gathered = std::move(from.gathered);
+    to.gathered_world = std::move(from.gathered_world);
+    to.scattered = std::move(from.scattered);
+    to.scattered_bounced = std::move(from.scattered_bounced);
+}
+
+/// 1 where the plate has no light, as in Cycles.
 void divide(std::vector<Vec3f>& light, const std::vector<Vec3f>& alone) {
     for (std::size_t i = 0; i < light.size(); ++i)
         for (int c = 0; c < 3; ++c) {
-            const float most = std::max(alone[i][c], std::numeric_limits<float>::min());
-            light[i][c] = light[i][c] == alone[i][c] ? 1.0f : light[i][c] / most;
+            const float left = light[i][c] / alone[i][c];
+            light[i][c] = std::isfinite(left) ? left : 1.0f;
         }
 }
 
 }  // namespace
 
 ShadowCatchers::ShadowCatchers(const Scene& scene, Statistics& statistics, const Progress& progress)
-    : m_scene(plate(scene)), m_shading(m_scene, statistics, m_unsaid, progress) {}
+    : m_scene(plate(scene)), m_shading(m_scene, statistics, m_unsaid, progress, false) {}
 
-void ShadowCatchers::divide(Grid& grid, const ChannelSet& channels) const {
-    auto alone = std::make_shared<Grid>(grid);
-    for (auto* values : {&alone->radiance, &alone->gathered, &alone->gathered_world,
-                         &alone->scattered, &alone->scattered_bounced})
-        values->clear();
-    alone->channels.clear();
-    m_shading.shade_radiance(*alone);
-    granita::divide(grid.radiance, alone->radiance);
+void ShadowCatchers::divide(Grid& grid, const ChannelSet& channels, std::span<float> noise) const {
+    Grid alone = grid;
+    forget_light(alone);
+    alone.radiance.clear();
+    m_shading.shade_radiance(alone);
+    granita::divide(grid.radiance, alone.radiance);
     fill_caught(grid, channels);
-    grid.lit_alone = std::move(alone);
+    const std::vector<std::uint32_t>& anchors = grid.shading_positions.anchors;
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+        const float part = noise[i] / luminance(alone.radiance[anchors.empty() ? i : anchors[i]]);
+        noise[i] = std::isfinite(part) ? part : 0.0f;
+    }
+    auto kept = std::make_shared<Grid>();
+    take_gathered(alone, *kept);
+    grid.lit_alone = std::move(kept);
 }
 
 void ShadowCatchers::divide(Grid& samples, const Grid& grid, std::span<const RefinedPoint> wanted,
                             const ChannelSet& channels) const {
-    granita::divide(samples.radiance, m_shading.refine(*grid.lit_alone, wanted).radiance);
+    Grid alone = grid, gathered = *grid.lit_alone;
+    forget_light(alone);
+    take_gathered(gathered, alone);
+    granita::divide(samples.radiance, m_shading.refine(alone, wanted).radiance);
     fill_caught(samples, channels);
 }
 

@@ -4,6 +4,8 @@
 import numpy as np
 import pytest
 import snapshots as s
+from session_parts import Kept
+from test_volumes import absorption, box, filled
 
 SIZE = 32
 SEEN, CATCHER = 123, 128
@@ -71,6 +73,96 @@ def test_the_pass_says_by_how_much(film):
     assert caught[:, : SIZE // 2 - 1] == pytest.approx(0.0, abs=1e-6)
     assert caught[:, SIZE // 2 + 1 :] == pytest.approx(2.0, abs=1e-6)
     assert np.all(made["combined"] == 0.0)  # they cut out then
+
+
+def test_a_channel_without_light_of_the_plate_loses_nothing():
+    """Whatever lamps there are besides, as in Cycles."""
+    lights = [sun(color=(1.0, 0.0, 0.0)), sun(name="Lamp", energy=1e6, lights_catchers=False)]
+    made = s.render(plate(lights, passes=["Combined", "Shadow Catcher"]))
+    caught = made["passes"]["Shadow Catcher"][:, SIZE // 2 + 1 :]
+    assert np.all(caught[..., 1:] == 1.0) and np.all(caught[..., 0] > 1e5)
+    assert np.isfinite(made["combined"]).all()
+
+
+def before(snapshot, opacity):
+    """Something black that lets a part of what is behind through, on the right half."""
+    mixed = ("LINK", 0, "BSDF"), ("LINK", 1, "BSDF")
+    nodes = [
+        {"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1.0,) * 4}},
+        {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.0, 0.0, 0.0, 1.0)}},
+        {
+            "type": "ShaderNodeMixShader",
+            "inputs": {"Fac": opacity, "Shader": mixed[0], "Shader_001": mixed[1]},
+        },
+    ]
+    snapshot["materials"].append({"name": "Veil", "nodes": nodes, "surface": (2, "Shader")})
+    s.quad(snapshot, s.rectangle(-99, -99, 99, 99, 1.0), len(snapshot["materials"]) - 1)
+    # Seen, and nothing else: light goes past it.
+    snapshot["instances"]["flags"] = np.append(snapshot["instances"]["flags"], 1)
+    return snapshot
+
+
+@pytest.mark.parametrize("executor", ["SIMD", "REFERENCE"])
+def test_the_pass_is_of_the_plate_alone_behind_a_veil(executor):
+    snapshot = before(plate(passes=["Combined", "Shadow Catcher"], executor=executor), 0.5)
+    made = s.render(snapshot)
+    caught = made["passes"]["Shadow Catcher"]
+    assert caught[:, : SIZE // 2 - 1] == pytest.approx(0.0, abs=1e-5)
+    assert caught[:, SIZE // 2 + 1 :] == pytest.approx(1.0, abs=1e-5)
+    assert made["combined"][..., 3] == pytest.approx(0.5, abs=1e-5)
+
+
+def test_fog_is_composed_in():
+    """It takes as much of what shines on the catcher as of what is seen of it."""
+    snapshot = plate(passes=["Combined", "Shadow Catcher"])
+    fog = filled(snapshot, absorption(np.log(2.0) / 2.0))
+    box(snapshot, (-50, -50, 2), (90, 90, 4), fog)
+    snapshot["instances"]["flags"] = np.append(snapshot["instances"]["flags"], SEEN)
+    made = s.render(snapshot)
+    caught = made["passes"]["Shadow Catcher"]
+    assert caught[:, : SIZE // 2 - 1] == pytest.approx(0.0, abs=1e-4)
+    assert caught[:, SIZE // 2 + 1 :] == pytest.approx(0.5, abs=1e-4)
+    assert made["combined"][..., 3] == pytest.approx(0.5, abs=1e-4)
+
+
+@pytest.mark.parametrize("passes", [["Combined"], ["Combined", "Shadow Catcher"]])
+def test_a_session_catches_what_a_frame_does(passes):
+    """Lamps that change shade catchers again, at their edges by samples."""
+    kept, alone = Kept(), []
+    for energy in (np.pi, 1.0, 9.0):
+        snapshot = plate(
+            [sun(energy=energy), sun(name="Lamp", lights_catchers=False)], passes=passes
+        )
+        s.constant_world(snapshot, 0.5)
+        alone.append(Kept().picture(snapshot))
+        assert np.array_equal(kept.picture(snapshot), alone[-1])
+    snapshot["lights"][1]["lights_catchers"] = True
+    assert np.array_equal(kept.picture(snapshot), Kept().picture(snapshot))
+
+
+def test_an_output_of_the_material_changes_nothing():
+    """Its attributes have other numbers with it: the light of the plate reads the same ones."""
+    pictures = []
+    for aovs in ([], [{"name": "Place", "kind": "COLOR"}]):
+        snapshot = plate(passes=["Combined", "Shadow Catcher"], aovs=aovs, light_samples=16)
+        s.constant_world(snapshot, 0.5)
+        snapshot["world"]["lights_scene"] = True
+        snapshot["materials"][0] = {
+            "name": "Grey",
+            "surface": (2, "BSDF"),
+            "nodes": [
+                {"type": "ShaderNodeTexCoord", "inputs": {}},
+                {
+                    "type": "ShaderNodeOutputAOV",
+                    "inputs": {"Color": ("LINK", 0, "UV")},
+                    "properties": {"name": "Place"},
+                },
+                {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": ("LINK", 0, "Generated")}},
+            ],
+        }
+        pictures.append(s.render(snapshot)["passes"]["Shadow Catcher"])
+    assert np.array_equal(*pictures)
+    assert 0.1 < pictures[0].mean() < 0.9
 
 
 def test_a_holdout_catches_nothing():

@@ -90,6 +90,7 @@ void ChannelLayers::add_volume(std::uint32_t sample, const SampleVolume& volume,
     add(Quantity::Emission, volume.emitted);
     add(Quantity::VolumeDirect, volume.direct);
     add(Quantity::VolumeIndirect, volume.indirect);
+    add(Quantity::Composed, Vec3f(1.0f) - volume.transmittance);
 }
 
 void ChannelLayers::add_environment(std::uint32_t sample, const Vec3f& radiance,

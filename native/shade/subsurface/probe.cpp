@@ -42,7 +42,7 @@ void probe(const RayScene& rays, const RayScene::Body& body, const BurleyProfile
         const Vec3f weight =
             profile.value(std::hypot(r, height)) * (found[axis] / (squares * profile.density(r)));
         if (is_finite(weight)) out.push_back({met, weight});
-        along += 2.0f * rounding;
+        along += 2.0f * rounding + 4.0f * RayOffset::kRounding * reach;
     }
 }
 
