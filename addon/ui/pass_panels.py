@@ -85,6 +85,8 @@ class GRANITA_VIEWLAYER_PT_passes_light(_PassPanel, bpy.types.Panel):
             ("ambient_occlusion", "Ambient Occlusion"),
         ):
             self.show(column, layer, f"use_pass_{name}", text)
+        cycles = getattr(layer, "cycles", None)
+        self.show(column, cycles, "use_pass_shadow_catcher", "Shadow Catcher")
 
 
 class GRANITA_VIEWLAYER_PT_passes_cryptomatte(_PassPanel, bpy.types.Panel):

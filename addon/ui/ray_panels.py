@@ -37,6 +37,7 @@ class GRANITA_OBJECT_PT_rays(_Panel, bpy.types.Panel):
     def draw(self, context):
         column = self.layout.column()
         column.use_property_split = True
+        column.prop(context.object, "is_shadow_catcher")
         for name, text in self._BOTH if context.object.type == "LIGHT" else self._SURFACE:
             column.prop(context.object, name, text=text)
 

@@ -240,6 +240,13 @@ def test_a_light_shows_what_is_read_of_it(kind):
     assert not shown & {"diffuse_factor", "specular_factor", "volume_factor"}
 
 
+@pytest.mark.parametrize("kind", ["MESH", "LIGHT"])
+def test_an_object_shows_what_sees_it_and_whether_it_is_of_the_plate(kind):
+    data = bpy.data.meshes.new("Thing") if kind == "MESH" else bpy.data.lights.new("Thing", "SUN")
+    shown = drawn(object=bpy.data.objects.new("Thing", data))
+    assert shown >= {"is_shadow_catcher", "visible_diffuse", "visible_glossy", "visible_camera"}
+
+
 def test_stock_panels_come_and_go():
     granita = sys.modules["granita"]
     names = served()
