@@ -24,10 +24,11 @@
 #include <compare>
 #include <cstdint>
 #include <functional>
-#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "dice/grid_light.h"
 #include "math/bounds.h"
 #include "math/vec.h"
 #include "scene/lifespan.h"
@@ -114,12 +115,11 @@ struct Grid {
     /// Part of a square pixel that a point stands for, at most 1: how much light it is worth.
     float point_share = 1.0f;
 
-    RasterBounds bounds;  ///< swept over shutter and lens
-    bool motion = false;  ///< knots differ, or it does not exist throughout
-    Lifespan lifespan;    ///< when it exists; less than the shutter only with motion, so that what
-                          ///< is always there costs no test
-    bool holdout =
-        false;  ///< Scene::holds_out(): hides what is behind and cuts alpha, adds no layer
+    RasterBounds bounds;   ///< swept over shutter and lens
+    bool motion = false;   ///< knots differ, or it does not exist throughout
+    Lifespan lifespan;     ///< when it exists; less than the shutter only with motion, so that what
+                           ///< is always there costs no test
+    bool holdout = false;  ///< Scene::holds_out(): hides what is behind, cuts alpha
     std::uint64_t bytes() const;
 
     // Slots, filled once by shade.
@@ -130,17 +130,10 @@ struct Grid {
     std::vector<Vec3f>
         radiance;  ///< [vertices] premultiplied by opacity, plus emission; linear, unclamped
 
-    /// [points] what diffuse lobes reflect of other surfaces' light and of the world between them,
-    /// by albedo: samples that are shaded by themselves take it from here.  Empty: light is not
-    /// followed so far.  And of that the world's; empty where no channel tells them apart.
-    std::vector<Vec3f> gathered, gathered_world;
-    /// [points] likewise what is scattered below the surface, by its weight: light of lamps and the
-    /// world, and of other surfaces.
-    std::vector<Vec3f> scattered, scattered_bounced;
-
-    /// Of a shadow catcher, whose radiance is what is left of its light: what is gathered and
-    /// scattered where nothing is composed in, and nothing else.
-    std::shared_ptr<const Grid> lit_alone;
+    GridLight found;
+    /// Of a shadow catcher, whose radiance is what is left of its light: where nothing is composed
+    /// in.
+    std::optional<GridLight> found_alone;
 
     /// [micropolygons] 1 where the corners' radiance or opacity differs so much that samples are to
     /// be shaded by themselves, for which the shading state is kept; empty = nowhere.

@@ -38,12 +38,16 @@ void Film::finish_passes(const CellSums& sums, Tile& out) const {
         for (std::size_t i = 0; i < pixels; ++i) {
             const float* from = &rows[i * row + channel.first];
             float* to = &made.values[i * pass.width];
-            std::copy_n(from, pass.width, to);
             if (pass.divisor >= 0) {
                 const float* by = &rows[i * row + m_channels.channels()[pass.divisor].first];
                 float rest[4];
-                for (int c = 0; c < pass.width; ++c) rest[c] = 1.0f - by[c];
-                divide_by_color(from, pass.complement ? rest : by, pass.width, to);
+                if (pass.complement) {
+                    for (int c = 0; c < pass.width; ++c) rest[c] = 1.0f - by[c];
+                    by = rest;
+                }
+                divide_by_color(from, by, pass.width, to);
+            } else {
+                std::copy_n(from, pass.width, to);
             }
             if (pass.complement)
                 for (int c = 0; c < pass.width; ++c) to[c] = 1.0f - to[c];

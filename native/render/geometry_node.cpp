@@ -81,11 +81,8 @@ void SharedGrid::forget_radiance() {
     m_grid->light_share = 0.0f;
     m_grid->broken_radiance = false;
     m_grid->radiance.clear();
-    m_grid->gathered.clear();
-    m_grid->gathered_world.clear();
-    m_grid->scattered.clear();
-    m_grid->scattered_bounced.clear();
-    m_grid->lit_alone.reset();
+    m_grid->found = {};
+    m_grid->found_alone.reset();
     m_grid->unsettled.clear();
     m_grid->channels.clear();
 }

@@ -23,7 +23,7 @@ void TileColors::composite(const TileStore& store, const TileSamples& samples, L
     if (catchers && (!cut || channels.has_environment()))
         shows = [&](SurfaceId id) {
             const Grid& grid = layers.pool().grid(layers.pool().slot(id));
-            return catchers->catches_shadows(catchers->instances[grid.instance], grid.material);
+            return catchers->catches_shadows(grid.instance, grid.material);
         };
     std::vector<Vec3f> background{Vec3f(0.0f)};
     if (!options.film_transparent || channels.has_environment()) {

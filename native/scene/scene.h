@@ -77,8 +77,9 @@ struct Scene {
     bool holds_out(const Instance& instance, int material) const {
         return instance.holdout || instance.shadow_catcher || is_holdout(material);
     }
-    /// Whether it shows the background instead.
-    bool catches_shadows(const Instance& instance, int material) const {
+    /// Whether it shows the background instead.  `index` of the instance.
+    bool catches_shadows(std::size_t index, int material) const {
+        const Instance& instance = instances[index];
         return instance.shadow_catcher && !instance.holdout && !is_holdout(material);
     }
     bool has_shadow_catchers() const {

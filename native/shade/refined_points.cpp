@@ -118,10 +118,10 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
         for (std::size_t i = 0; !from.empty() && i < blends.size(); ++i)
             to.push_back(blends[i].mean<Vec3f>([&](std::size_t point) { return from[point]; }));
     };
-    take(grid.gathered, gathered);
-    take(grid.gathered_world, gathered_world);
-    take(grid.scattered, scattered);
-    take(grid.scattered_bounced, scattered_bounced);
+    take(grid.found.gathered, found.gathered);
+    take(grid.found.gathered_world, found.gathered_world);
+    take(grid.found.scattered, found.scattered);
+    take(grid.found.scattered_bounced, found.scattered_bounced);
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         const RefinedPoint& at = wanted[i];
         const float time = time_of(at);

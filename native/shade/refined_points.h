@@ -37,8 +37,7 @@ struct RefinedPoints {
     ShadingPoints points;  ///< their times are set only where `timed`
     std::vector<GridAttribute> attributes;
     std::vector<ObjectAxes> axes_at_times;  ///< as those of ShadingInput
-    /// As those of Grid.
-    std::vector<Vec3f> gathered, gathered_world, scattered, scattered_bounced;
+    GridLight found;                        ///< of the grid's
 
     /// @param grid with its shading state, whose points do not stand for faces.
     /// @param timed whether anything of the frame moves.

@@ -51,11 +51,8 @@ const Grid* ShadedGrids::find(const Grid& grid) const {
 
 void take_shading(const Grid& from, Grid& to) {
     to.radiance = from.radiance;
-    to.gathered = from.gathered;
-    to.gathered_world = from.gathered_world;
-    to.scattered = from.scattered;
-    to.scattered_bounced = from.scattered_bounced;
-    to.lit_alone = from.lit_alone;
+    to.found = from.found;
+    to.found_alone = from.found_alone;
     to.unsettled = from.unsettled;
     to.channels = from.channels;
     to.light_share = from.light_share;

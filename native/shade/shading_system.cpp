@@ -208,12 +208,13 @@ struct ShadingSystem::Impl {
     void add_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
                        const PointPaths& at, Grid& grid, ReflectionParts* parts,
                        std::vector<Vec3f>& radiance) const {
-        if (grid.scattered.empty()) {
+        if (grid.found.scattered.empty()) {
             ScatteredLight light = below->gather(points, closure, grid.key, at, parts);
-            grid.scattered = std::move(light.direct);
-            grid.scattered_bounced = std::move(light.bounced);
+            grid.found.scattered = std::move(light.direct);
+            grid.found.scattered_bounced = std::move(light.bounced);
         }
-        reflect_scattered(grid.scattered, grid.scattered_bounced, closure, parts, radiance);
+        reflect_scattered(grid.found.scattered, grid.found.scattered_bounced, closure, parts,
+                          radiance);
     }
 
     /// Fills radiance and channels of `grid`, whose points are `in.points`; `noise` as
@@ -233,7 +234,7 @@ struct ShadingSystem::Impl {
         ReflectionParts parts, *asked = channels.empty() ? nullptr : &parts;
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
         LeavingRays leaving;
-        leaving.diffuse = grid.gathered.empty();
+        leaving.diffuse = grid.found.gathered.empty();
         leaving.takes_world = bounces && scene.options.bounces.diffuse > 0 && surface.looks_ahead();
         if (light)
             radiance = light->reflect(points, closure, grid.key, asked, at, noise,
@@ -287,7 +288,7 @@ struct ShadingSystem::Impl {
     Grid refine(const Grid& grid, std::span<const RefinedPoint> wanted, float point_size) const {
         Grid out = refine_lit(grid, wanted, point_size);
         out.holdout = grid.holdout;
-        if (grid.lit_alone) catchers->divide(out, grid, wanted, channels);
+        if (grid.found_alone) catchers->divide(out, grid, wanted, channels);
         return out;
     }
 
@@ -307,10 +308,7 @@ struct ShadingSystem::Impl {
         out.n_u = static_cast<int>(wanted.size()) - 1;
         const Mat3f camera_from_world = glm::transpose(Mat3f(camera.world_from_camera));
         for (const Vec3f& p : refined.points.p) out.p.push_back(camera_from_world * p);
-        out.gathered = refined.gathered;
-        out.gathered_world = refined.gathered_world;
-        out.scattered = refined.scattered;
-        out.scattered_bounced = refined.scattered_bounced;
+        out.found = refined.found;
         if (!grid.opacity.empty()) shade_opacity(out, input(grid, refined));
         shade(out, input(grid, refined), {});
         return out;
@@ -382,8 +380,7 @@ struct ShadingSystem::Impl {
             return leave_to_samples(grid, channels.vertex_width());
         std::vector<float> noise(wants_refining ? points.count : 0, 0.0f);
         std::vector<Vec3f> settled;
-        const bool catches =
-            catchers && scene.catches_shadows(scene.instances[grid.instance], grid.material);
+        const bool catches = catchers && scene.catches_shadows(grid.instance, grid.material);
         shade(grid, input(grid, points), at, wants_refining ? &noise : nullptr,
               wants_refining && !catches ? &settled : nullptr);
         statistics.add(Counter::GridsShaded);

@@ -46,20 +46,13 @@ Scene plate(const Scene& scene) {
     return plate;
 }
 
-/// As they were before any light.
-void forget_light(Grid& grid) {
-    for (auto* values :
-         {&grid.gathered, &grid.gathered_world, &grid.scattered, &grid.scattered_bounced})
-        values->clear();
-    grid.channels.clear();
-    grid.lit_alone.reset();
-}
-
-void take_gathered(Grid& from, Grid& to) {
-    to.gathered = std::move(from.gathered);
-    to.gathered_world = std::move(from.gathered_world);
-    to.scattered = std::move(from.scattered);
-    to.scattered_bounced = std::move(from.scattered_bounced);
+/// The grid with the light that it has found in the plate, none to begin with.
+Grid in_plate(const Grid& grid, GridLight found = {}) {
+    Grid alone = grid;
+    alone.found = std::move(found);
+    alone.found_alone.reset();
+    alone.channels.clear();
+    return alone;
 }
 
 /// 1 where the plate has no light, as in Cycles.
@@ -77,8 +70,7 @@ ShadowCatchers::ShadowCatchers(const Scene& scene, Statistics& statistics, const
     : m_scene(plate(scene)), m_shading(m_scene, statistics, m_unsaid, progress, false) {}
 
 void ShadowCatchers::divide(Grid& grid, const ChannelSet& channels, std::span<float> noise) const {
-    Grid alone = grid;
-    forget_light(alone);
+    Grid alone = in_plate(grid);
     alone.radiance.clear();
     m_shading.shade_radiance(alone);
     granita::divide(grid.radiance, alone.radiance);
@@ -88,16 +80,12 @@ void ShadowCatchers::divide(Grid& grid, const ChannelSet& channels, std::span<fl
         const float part = noise[i] / luminance(alone.radiance[anchors.empty() ? i : anchors[i]]);
         noise[i] = std::isfinite(part) ? part : 0.0f;
     }
-    auto kept = std::make_shared<Grid>();
-    take_gathered(alone, *kept);
-    grid.lit_alone = std::move(kept);
+    grid.found_alone = std::move(alone.found);
 }
 
 void ShadowCatchers::divide(Grid& samples, const Grid& grid, std::span<const RefinedPoint> wanted,
                             const ChannelSet& channels) const {
-    Grid alone = grid, gathered = *grid.lit_alone;
-    forget_light(alone);
-    take_gathered(gathered, alone);
+    const Grid alone = in_plate(grid, *grid.found_alone);
     granita::divide(samples.radiance, m_shading.refine(alone, wanted).radiance);
     fill_caught(samples, channels);
 }

@@ -8,30 +8,20 @@ import bpy
 import numpy as np
 import pytest
 import scene_parts
+from node_comparison import Tree
 
 SIZE, BLOCK = 64, 4
 DIFFUSE_DIRECT = "Diffuse Direct.R" if bpy.app.version >= (5, 0) else "DiffDir.R"
 
 
-def diffuse(name, color):
-    material = bpy.data.materials.new(name)
-    material.use_nodes = True
-    tree = material.node_tree
-    tree.nodes.clear()
-    shader = tree.nodes.new("ShaderNodeBsdfDiffuse")
-    shader.inputs["Color"].default_value = (*color, 1.0)
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(shader.outputs[0], output.inputs["Surface"])
-    return material
-
-
-def replace_shader(thing, kind, **inputs):
-    tree = thing.active_material.node_tree
-    shader = tree.nodes.new(kind)
+def shaded_by(thing, kind, **inputs):
+    """Gives it a material of one shader, in place of what it had."""
+    thing.data.materials.clear()
+    tree = Tree(thing)
+    shader = tree.add(kind)
     for name, value in inputs.items():
         shader.inputs[name].default_value = value
-    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
-    tree.links.new(shader.outputs[0], output.inputs["Surface"])
+    tree.link(shader.outputs[0], tree.output.inputs["Surface"])
 
 
 @pytest.fixture
@@ -46,7 +36,7 @@ def plate(scene):
     bpy.ops.mesh.primitive_cube_add(size=2.0, location=(2.5, 2.0, -1.2))
     box = bpy.context.object
     for thing, color in ((floor, (0.8, 0.2, 0.2)), (ball, (0.2, 0.8, 0.2)), (box, (0.2, 0.2, 0.8))):
-        thing.data.materials.append(diffuse(thing.name, color))
+        shaded_by(thing, "ShaderNodeBsdfDiffuse", Color=(*color, 1.0))
     bpy.ops.object.light_add(type="SUN", rotation=(0.6, 0.5, 0.0))
     sun = bpy.context.object
     sun.name, sun.data.energy, sun.data.angle = "Sun", 2.0, 0.2
@@ -67,8 +57,7 @@ def plate(scene):
 
 
 def channel(made, name):
-    found = [values for key, values in made.items() if key.endswith(f".{name}")]
-    return found[0]
+    return next(values for key, values in made.items() if key.endswith(f".{name}"))
 
 
 def blocks(values):
@@ -90,11 +79,11 @@ def a_lamp_composed_in(_):
 
 
 def a_glossy_floor(_):
-    replace_shader(bpy.data.objects["Floor"], "ShaderNodeBsdfPrincipled", Roughness=0.2)
+    shaded_by(bpy.data.objects["Floor"], "ShaderNodeBsdfPrincipled", Roughness=0.2)
 
 
 def a_ball_that_shines(_):
-    replace_shader(bpy.data.objects["Ball"], "ShaderNodeEmission", Strength=2.0)
+    shaded_by(bpy.data.objects["Ball"], "ShaderNodeEmission", Strength=2.0)
 
 
 def a_lens(scene):
@@ -198,7 +187,7 @@ def test_other_passes_show_no_light_of_catchers(plate, render):
 
 
 def test_what_reflects_them_sees_their_surface(plate, render):
-    replace_shader(bpy.data.objects["Ball"], "ShaderNodeBsdfGlossy", Roughness=0.0)
+    shaded_by(bpy.data.objects["Ball"], "ShaderNodeBsdfGlossy", Roughness=0.0)
     theirs, ours = of_both(plate, render, "Combined.R")["Combined.R"]
     assert math.isclose(ours.mean(), theirs.mean(), rel_tol=0.03)
     assert ours[9].max() > 0.1  # the red floor below its middle

@@ -222,8 +222,7 @@ class TileComposite {
 
     bool catches(const Grid& grid) const {
         return m_settings.catchers && grid.holdout &&
-               m_settings.catchers->catches_shadows(m_settings.catchers->instances[grid.instance],
-                                                    grid.material);
+               m_settings.catchers->catches_shadows(grid.instance, grid.material);
     }
     /// What is left of a shadow catcher's light, in all channels alike, as in Cycles: by that much
     /// it takes from what is, or will be, behind.

@@ -78,9 +78,9 @@ void share_gathered(const ShadingPoints& points, const SurfaceClosure& closure, 
             light.diffuse[i] += world[i];
             light.world_balance[i].x = 0.0f;
         }
-        if (tells_world) grid.gathered_world = shared_light(points, closure, world, nearness);
+        if (tells_world) grid.found.gathered_world = shared_light(points, closure, world, nearness);
     }
-    grid.gathered = shared_light(points, closure, light.diffuse, nearness);
+    grid.found.gathered = shared_light(points, closure, light.diffuse, nearness);
 }
 
 void reflect_world(const GatheredLight& light, ReflectionParts* parts, std::vector<float>* noise,
@@ -100,13 +100,13 @@ void reflect_gathered(const GatheredLight& light, const Grid& grid, const Surfac
                       ReflectionParts* parts, std::vector<Vec3f>& radiance) {
     for (std::size_t i = 0; i < radiance.size(); ++i) {
         const Vec3f albedo = diffuse_albedo(closure, i);
-        const Vec3f diffuse = grid.gathered[i] * albedo;
+        const Vec3f diffuse = grid.found.gathered[i] * albedo;
         const Vec3f others = light.glossy[i] + light.mirrored[i];
         if (parts) {
             // Planes are fitted to either: what lies on top of them is not less than nothing.
-            const Vec3f of_world = grid.gathered_world.empty()
+            const Vec3f of_world = grid.found.gathered_world.empty()
                                        ? Vec3f(0.0f)
-                                       : glm::min(grid.gathered_world[i] * albedo, diffuse);
+                                       : glm::min(grid.found.gathered_world[i] * albedo, diffuse);
             parts->diffuse[i] += of_world;
             parts->diffuse_bounced[i] = diffuse - of_world;
             parts->glossy_bounced[i] = others - light.transmitted[i];

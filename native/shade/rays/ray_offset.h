@@ -21,13 +21,17 @@ struct RayOffset {
     /// the largest coordinate on the way; 2^-20 leaves room for a dozen such steps.
     static constexpr float kRounding = 0x1p-20f;
 
-    Vec3f operator()(const Vec3f& p, const Vec3f& geometric_normal) const {
+    /// Metres.
+    float length(const Vec3f& p) const {
         float size = glm::length(p);  // of all numbers on the way, summed
         if (casts) {
             const float from_origin = size + distance;  // of p, at most
             size = from_origin + std::max(from_origin, extent);
         }
-        return p + geometric_normal * (kRounding * size + error);
+        return kRounding * size + error;
+    }
+    Vec3f operator()(const Vec3f& p, const Vec3f& geometric_normal) const {
+        return p + geometric_normal * length(p);
     }
 };
 

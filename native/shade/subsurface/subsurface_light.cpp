@@ -111,13 +111,13 @@ class SubsurfaceLight::Batch {
         const std::uint32_t face = m_points.faces.empty() ? m_key.face : m_points.faces[i];
         RayOffset offset = m_rays.ray_offset({m_key.instance, face});
         const float step = width_of(m_points, i);
-        const float height = step + glm::distance(offset(m_p, m_normal), m_p);
+        const float height = step + offset.length(m_p);
         const Ray down{m_p + height * m_normal, -m_normal, 2.0f * height, m_body.time};
         if (RayScene::Met met{}; m_rays.nearest(m_body, down, met)) {
             m_p = met.hit.p;
             offset.error = 0.0f;
         }
-        m_rounding = glm::distance(offset(m_p, m_normal), m_p);
+        m_rounding = offset.length(m_p);
     }
 
     void walk_from(const SubsurfaceLobe& lobe, std::size_t i, std::uint32_t sample, const Vec2f& u,
