@@ -19,6 +19,8 @@ import measure
 import snapshot_scenes
 from figures import rmse
 
+import granita_core
+
 THREADS = len(os.sched_getaffinity(0))
 LONG = 4.0  # seconds
 REFERENCE = {"executor": "SIMD", "samples": 1024, "seed": 9}
@@ -47,16 +49,6 @@ SETTINGS = {
 }
 
 
-def enlarged(snapshot, factor):
-    """The same picture on `factor` times as many pixels a side."""
-    for side in ("width", "height"):
-        snapshot["options"][side] *= factor
-    for place in ("scale", "center"):
-        camera = snapshot["camera"]
-        camera[place] = tuple(factor * x for x in camera[place])
-    return snapshot
-
-
 def defocused(snapshot):
     """Seen by a camera with a lens, whose circles of confusion have radii of up to 6 pixels."""
     snapshot["camera"] |= {"lens_radius": 4.0, "focus_distance": 200.0}
@@ -64,9 +56,9 @@ def defocused(snapshot):
 
 
 SCENES = {
-    "spheres": lambda: enlarged(snapshot_scenes.spheres(pixels=20 / 3), 3),
-    "lens": lambda: enlarged(defocused(snapshot_scenes.spheres(pixels=20 / 3)), 3),
-    "particles": lambda: enlarged(figure_scenes.particles(2000, {}), 2),
+    "spheres": lambda: snapshot_scenes.enlarged(snapshot_scenes.spheres(pixels=20 / 3), 3),
+    "lens": lambda: snapshot_scenes.enlarged(defocused(snapshot_scenes.spheres(pixels=20 / 3)), 3),
+    "particles": lambda: snapshot_scenes.enlarged(figure_scenes.particles(2000, {}), 2),
 }
 
 
@@ -111,7 +103,8 @@ def main():
     rows = []
     for name in arguments.scenes:
         rows += measured(name, SCENES[name], arguments.runs)
-        measure.save(f"executors_{arguments.machine}", {"threads": THREADS, "rows": rows})
+        machine = {"threads": THREADS, "opengl": granita_core.opengl()}
+        measure.save(f"executors_{arguments.machine}", {**machine, "rows": rows})
 
 
 if __name__ == "__main__":

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far a frame that is all one bucket, and one that is all one instance, keep several threads busy.
+"""How far frames keep several threads busy: one that is all one bucket, one that is all one instance, and two of many.
 
-    ./dev bench nested_parallelism [--threads 2] [--runs 5]
+    ./dev bench nested_parallelism [--threads 2 ...] [--runs 5] [--machine NAME]
 
 On a busy machine the wall clock says little: what is compared is the processor time of the thread that works longest, which
-is what the frame takes on an idle machine with a core a thread.  Frames of 1 and of N threads alternate; each is a process
-of its own.  Prints a Markdown table and writes bench/results/nested_parallelism.json.
+is what the frame takes on an idle machine with a core a thread; the wall clock is printed beside it.  Frames of 1 and of
+N threads alternate; each is a process of its own.  Prints a Markdown table and writes
+bench/results/nested_parallelism[_NAME].json.
 """
 
 import argparse
@@ -20,13 +21,14 @@ import time
 
 import measure
 import numpy as np
+import snapshot_scenes
 from snapshot_scenes import s
 
 SAMPLER_PERIOD = 0.002  # s
 
 
-def diffuse(snapshot):
-    nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.8, 0.6, 0.4, 1)}}]
+def diffuse(snapshot, color=(0.8, 0.6, 0.4, 1)):
+    nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": color}}]
     snapshot["materials"].append({"name": "Diffuse", "nodes": nodes, "surface": (0, "BSDF")})
     return len(snapshot["materials"]) - 1
 
@@ -97,7 +99,37 @@ def hero(threads, faces=1_000_000):
     return snapshot
 
 
-SCENES = {"hairy_bucket": hairy_bucket, "hero": hero}
+def moving_spheres(threads):
+    """60 spheres that shine by themselves and move by 20 of 1920 x 1080 pixels."""
+    snapshot = snapshot_scenes.spheres(20 / 6, threads=threads, samples=64)
+    return snapshot_scenes.enlarged(snapshot, 6)
+
+
+def room(threads):
+    """40 balls in a closed room with a lamp, lit by four bounces; 320 x 180 pixels."""
+    snapshot = s.perspective(
+        (320, 180), 200, threads=threads, samples=16, light_samples=16, bounces=4
+    )
+    corners = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+    walls = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    s.mesh(snapshot, np.array(corners) * (4.0, 2.0, 6.0), walls, diffuse(snapshot, (0.7,) * 4))
+    random = np.random.default_rng(4)
+    points, faces = snapshot_scenes.unit_sphere()
+    for _ in range(40):
+        place = random.uniform((-3, -1.5, 1), (3, 1.5, 5.5))
+        ball = points * random.uniform(0.1, 0.4) + place
+        s.mesh(snapshot, ball, faces, diffuse(snapshot, (*random.uniform(0.2, 0.9, 3), 1)))
+    lamp = {"name": "Lamp", "kind": "POINT", "color": (1, 1, 1), "energy": 200.0, "radius": 0.2}
+    snapshot["lights"] = [{**lamp, "world_from_light": s.translation(0.0, 1.2, 3.0)[None]}]
+    return snapshot
+
+
+SCENES = {
+    "hairy_bucket": hairy_bucket,
+    "hero": hero,
+    "moving_spheres": moving_spheres,
+    "room": room,
+}
 
 
 class ThreadClock(threading.Thread):
@@ -120,19 +152,18 @@ class ThreadClock(threading.Thread):
 
 
 def one_frame(name, threads):
-    """What a process of its own prints: the busiest thread's seconds, and the frame's."""
+    """What a process of its own prints: the busiest thread's seconds, and the frame's by the clock."""
     snapshot = SCENES[name](threads)
     clock = ThreadClock()
     main = str(threading.get_native_id())
     clock.start()
     time.sleep(5 * SAMPLER_PERIOD)
     before = clock.seconds.get(main, 0.0)
-    taken = s.render(snapshot)["statistics"]
+    wall = measure.render(snapshot, time.perf_counter)[1]
     clock.over.set()
     clock.join()
     clock.seconds[main] -= before
-    stages = {k: round(v, 3) for k, v in taken.items() if k.startswith("seconds_") and v > 0.001}
-    print(json.dumps({"busiest": max(clock.seconds.values()), **stages}))
+    print(json.dumps({"busiest": max(clock.seconds.values()), "wall": wall}))
 
 
 def ask(name, threads):
@@ -140,25 +171,33 @@ def ask(name, threads):
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
 
+def median(frames):
+    return {what: statistics.median(frame[what] for frame in frames) for what in frames[0]}
+
+
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--threads", type=int, nargs="+", default=[2])
     parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("--machine", help="in the name of the results' file")
     parser.add_argument("--frame", choices=SCENES)
     options = parser.parse_args()
     if options.frame:
-        return one_frame(options.frame, options.threads)
+        return one_frame(options.frame, *options.threads)
     table = measure.Table()
     table.header()
     for name in SCENES:
-        taken = {1: [], options.threads: []}
+        taken = {threads: [] for threads in [1, *options.threads]}
         for _ in range(options.runs):
             for threads in taken:
-                taken[threads].append(ask(name, threads)["busiest"])
-        one, many = (statistics.median(taken[n]) for n in taken)
-        what = f"{name}: busiest thread of 1 ({one:.2f} s) over that of {options.threads}"
-        table.row(what, one / many, 0.75 * options.threads, least=True)
-    table.save("nested_parallelism")
+                taken[threads].append(ask(name, threads))
+        one = median(taken.pop(1))
+        for threads, frames in taken.items():
+            many = median(frames)
+            seconds = f"by the clock {one['wall']:.2f} and {many['wall']:.3f} s"
+            what = f"{name}: busiest thread of 1 over that of {threads}; {seconds}"
+            table.row(what, one["busiest"] / many["busiest"], 0.75 * threads, least=True)
+    table.save("_".join(filter(None, ["nested_parallelism", options.machine])))
 
 
 if __name__ == "__main__":

@@ -123,3 +123,13 @@ def tiles(side, whole, **options):
     points[..., :2] = np.stack([x, y], -1)[:, None] + corner
     s.mesh(snapshot, points.reshape(-1, 3), np.arange(4 * side * side).reshape(-1, 4), material)
     return snapshot
+
+
+def enlarged(snapshot, factor):
+    """The same picture on `factor` times as many pixels a side."""
+    for side in ("width", "height"):
+        snapshot["options"][side] *= factor
+    for place in ("scale", "center"):
+        camera = snapshot["camera"]
+        camera[place] = tuple(factor * x for x in camera[place])
+    return snapshot
