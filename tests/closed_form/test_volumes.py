@@ -211,6 +211,36 @@ LAMP = {
 }
 
 
+@pytest.mark.parametrize(
+    ("reach", "depth"), [(5.0, 0.5), (200.0, 0.5), (1e4, 0.5), (1e5, 0.5), (200.0, 100.0)]
+)
+def test_a_world_that_varies_is_passed_to_its_end(reach, depth):
+    """Density falls along the view to nothing at `reach` metres; 1,024 steps of a metre saw no further than that."""
+    snapshot = s.orthographic((16, 16), samples=64)
+    nodes = [
+        {"type": "ShaderNodeTexCoord", "inputs": {}},
+        {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": ("LINK", 1, "Object")}},
+        {
+            "type": "ShaderNodeMath",
+            "inputs": {
+                "Value": ("LINK", 2, "Z"),
+                "Value_001": -2 * depth / reach**2,
+                "Value_002": 2 * depth / reach,
+            },
+            "properties": {"operation": "MULTIPLY_ADD"},
+        },
+        {
+            "type": "ShaderNodeMath",
+            "inputs": {"Value": ("LINK", 3, "Value"), "Value_001": 0.0},
+            "properties": {"operation": "MAXIMUM"},
+        },
+    ]
+    world_of(snapshot, absorption(("LINK", 4, "Value")))
+    snapshot["world"]["nodes"][1:1] = nodes
+    snapshot["world"]["volume"] = (5, "Volume")
+    assert mean(snapshot) == pytest.approx(np.exp(-depth), rel=0.01, abs=1e-6)
+
+
 def lamp(snapshot, place, **more):
     matrix = np.eye(4)
     matrix[:3, 3] = place

@@ -14,6 +14,14 @@ namespace {
 constexpr float kMostSteps = 1024.0f;
 /// And what short ways take.
 constexpr float kLeastSteps = 8.0f;
+/// Steps of ways without an end are at least so much of what lies before them, and so many; from
+/// 10^6 metres on all is alike.
+constexpr float kGrowth = 0.1f;
+constexpr std::size_t kUnendingSteps = 128;
+/// Of those as many are asked at a time, until less than this comes through.
+constexpr std::size_t kRound = 32;
+constexpr float kNothing = 1e-6f;
+static_assert(kUnendingSteps % kRound == 0);
 constexpr float kGolden = 0.618034f;
 /// Places that a program is run over at once.
 constexpr std::size_t kBatch = 4096;
@@ -86,29 +94,72 @@ void MediaFiller::add_pieces(const Ray& ray, float shift, float begin, float end
         count = std::clamp(std::ceil((end - begin) / step), count, kMostSteps);
         if (std::isfinite(end)) step = (end - begin) / count;
     }
-    const auto steps = static_cast<std::size_t>(count);
+    const bool grows = count > 1.0f && !std::isfinite(end);
+    const std::size_t steps = grows ? kUnendingSteps : static_cast<std::size_t>(count);
+    const std::size_t first = m_media.pieces.size();
+    float from = begin;
     for (std::size_t k = 0; k < steps; ++k) {
-        const std::size_t number = m_media.pieces.size();
         MediumPiece& piece = m_media.pieces.emplace_back();
-        piece.begin = k == 0 ? begin : begin + static_cast<float>(k) * step;
-        piece.end = steps == 1 ? end : begin + static_cast<float>(k + 1) * step;
-        // Of steps that are all shifted alike, the sum is as much in doubt as one.
-        const float own = shift + kGolden * static_cast<float>(k);
-        const float at = piece.begin + (own - std::floor(own)) * (piece.end - piece.begin);
-        for (const FilledSpan& span : there) {
-            if (span.program->is_homogeneous()) {
-                add_values(*span.program, Values(nullptr), 0, receives(span.instance), piece);
-                continue;
-            }
-            Asked& asked = m_asked[{span.instance, span.material, ray.type}];
-            asked.program = span.program;
-            asked.places.push_back(
-                {number, ray.start + ray.direction * at, ray.direction, ray.time});
+        piece.begin = from;
+        piece.end = k + 1 == steps ? end
+                    : grows        ? from + std::max(step, kGrowth * from)
+                                   : begin + static_cast<float>(k + 1) * step;
+        from = piece.end;
+        if (!grows || k < kRound) ask(first + k, k, ray, shift, there);
+    }
+    if (grows)
+        m_unending.push_back({m_media.ray_count(), first, kRound, ray, shift,
+                              std::vector<FilledSpan>(there.begin(), there.end())});
+}
+
+/// Of a piece that is one of a part's steps.
+void MediaFiller::ask(std::size_t piece, std::size_t step, const Ray& ray, float shift,
+                      std::span<const FilledSpan> there) {
+    const auto [begin, end] = std::pair(m_media.pieces[piece].begin, m_media.pieces[piece].end);
+    // Of steps that are all shifted alike, the sum is as much in doubt as one.
+    const float own = shift + kGolden * static_cast<float>(step);
+    const float part = own - std::floor(own);
+    const float at = begin + (std::isfinite(end) ? part * (end - begin) : 0.0f);
+    for (const FilledSpan& span : there) {
+        if (span.program->is_homogeneous()) {
+            add_values(*span.program, Values(nullptr), 0, receives(span.instance),
+                       m_media.pieces[piece]);
+            continue;
         }
+        Asked& asked = m_asked[{span.instance, span.material, ray.type}];
+        asked.program = span.program;
+        asked.places.push_back({piece, ray.start + ray.direction * at, ray.direction, ray.time});
     }
 }
 
 void MediaFiller::fill() {
+    ask_all();
+    while (!m_unending.empty()) {
+        for (Unending& way : m_unending) go_on(way);
+        std::erase_if(m_unending, [](const Unending& way) { return way.asked == kUnendingSteps; });
+        ask_all();
+    }
+}
+
+/// Asks further where light comes through what is known, else ends the ray there.
+void MediaFiller::go_on(Unending& way) {
+    const std::size_t last = way.first + way.asked - 1;
+    for (std::size_t i = last + 1 - kRound; i <= last; ++i) {
+        const MediumPiece& piece = m_media.pieces[i];
+        way.transmittance *= passed(piece, piece.end - piece.begin);
+    }
+    if (largest(way.transmittance) < kNothing) {
+        m_media.pieces[last].end = m_media.pieces[way.first + kUnendingSteps - 1].end;
+        m_media.end_with(way.ray, last);
+        way.asked = kUnendingSteps;
+        return;
+    }
+    for (std::size_t k = way.asked; k < way.asked + kRound; ++k)
+        ask(way.first + k, k, way.along, way.shift, way.there);
+    way.asked += kRound;
+}
+
+void MediaFiller::ask_all() {
     for (const auto& [key, asked] : m_asked) {
         const std::span<const Place> places(asked.places);
         for (std::size_t first = 0; first < places.size(); first += kBatch)

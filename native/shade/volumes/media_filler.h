@@ -56,6 +56,18 @@ class MediaFiller {
     };
     void add_pieces(const Ray& ray, float shift, float begin, float end,
                     std::span<const FilledSpan> there);
+    /// A way without an end, of which no more is asked than lets light through.
+    struct Unending {
+        std::size_t ray, first, asked;  ///< its number; its first piece; how many of them
+        Ray along;
+        float shift;
+        std::vector<FilledSpan> there;
+        Vec3f transmittance{1.0f};  ///< of what was asked, as far as it was looked at
+    };
+    void ask(std::size_t piece, std::size_t step, const Ray& ray, float shift,
+             std::span<const FilledSpan> there);
+    void ask_all();
+    void go_on(Unending& way);
     std::uint64_t receives(std::uint32_t instance) const;
     void fill(std::uint32_t instance, const VolumeProgram& program, std::span<const Place> places);
 
@@ -66,6 +78,7 @@ class MediaFiller {
     std::vector<FilledSpan> m_there;
     /// By instance, material and type of ray.
     std::map<std::tuple<std::uint32_t, std::int32_t, RayType>, Asked> m_asked;
+    std::vector<Unending> m_unending;
 };
 
 }  // namespace granita

@@ -32,18 +32,29 @@ class RayMedia {
   public:
     void clear() {
         pieces.clear();
-        m_ends.clear();
+        m_rays.clear();
     }
-    void end_ray() { m_ends.push_back(pieces.size()); }
+    std::size_t ray_count() const { return m_rays.size(); }
+    void end_ray() {
+        const std::size_t begin = m_rays.empty() ? 0 : m_rays.back().begin + m_rays.back().made;
+        const std::size_t count = pieces.size() - begin;
+        m_rays.push_back({begin, count, count});
+    }
+    /// A ray's last pieces are left out, so that it ends with this one.
+    void end_with(std::size_t ray, std::size_t piece) {
+        m_rays[ray].count = piece + 1 - m_rays[ray].begin;
+    }
     std::span<const MediumPiece> of(std::size_t ray) const {
-        const std::size_t begin = ray == 0 ? 0 : m_ends[ray - 1];
-        return {pieces.data() + begin, m_ends[ray] - begin};
+        return {pieces.data() + m_rays[ray].begin, m_rays[ray].count};
     }
 
     std::vector<MediumPiece> pieces;
 
   private:
-    std::vector<std::size_t> m_ends;
+    struct RayPieces {
+        std::size_t begin, made, count;
+    };
+    std::vector<RayPieces> m_rays;
 };
 
 /// Share of light that passes so many metres of a piece.
