@@ -129,6 +129,45 @@ def test_the_camera_may_be_inside():
     assert mean(snapshot) == pytest.approx(np.exp(-(5 - 0.01) * SIGMA), rel=1e-5)
 
 
+def partly_filled(low, high, opaque, extra=()):
+    """A view of a box whose face `opaque` (0 the near one, 1 the far one) shines where the others bound an absorber; of one
+    mesh with it are quadrilaterals `extra`, of the same shine."""
+    snapshot = view()
+    wall(snapshot)
+    shine, fog = s.emission(snapshot), filled(snapshot, absorption())
+    index = box(snapshot, (-1, -1, low), (20, 20, high), fog)
+    mesh, table = snapshot["geometries"][index], snapshot["instances"]
+    table["slots"][-1], table["materials"][-1:] = 2, [fog, shine]
+    for corners in extra:
+        count = mesh["points"].shape[1]
+        mesh["points"] = np.append(mesh["points"], np.float32(corners)[None], 1)
+        mesh["face_sizes"] = np.append(mesh["face_sizes"], np.int32(4))
+        mesh["corner_verts"] = np.append(mesh["corner_verts"], count + np.arange(4, dtype=np.int32))
+    shines = np.zeros(len(mesh["face_sizes"]), np.int32)
+    shines[6:] = 1
+    if opaque is not None:
+        shines[opaque] = 1
+    mesh["material_index"] = shines
+    return mean(snapshot)
+
+
+def test_a_thing_may_be_bounded_by_faces_without_volume():
+    """What is not entered is not there, and a face without volume is met from inside of what others bound."""
+    assert partly_filled(2, 5, 0) == pytest.approx(1.0, rel=1e-5)
+    assert partly_filled(2, 5, 1) == pytest.approx(np.exp(-3 * SIGMA), rel=1e-5)
+    assert partly_filled(-4, 5, 1) == pytest.approx(np.exp(-(5 - 0.01) * SIGMA), rel=1e-5)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_what_is_of_one_mesh_but_not_of_one_piece_tells_of_no_volume(turned):
+    """A wall that stands apart, seen from either side: within the box, and beyond it."""
+    for low, z, passed in [(-4, 3, 3 - 0.01), (8, 3, 0.0)]:
+        corners = s.rectangle(-1, -1, 20, 20, z)
+        corners = corners[::-1] if turned else corners
+        seen = partly_filled(low, low + 9, None, [corners])
+        assert seen == pytest.approx(np.exp(-passed * SIGMA), rel=1e-5)
+
+
 def test_surfaces_stand_inside():
     """The part of a layer is dimmed by what is before it: half is there, half behind all."""
     snapshot = view()

@@ -199,6 +199,7 @@ void RayScene::Impl::add_volumes() {
         rtcAttachGeometryByID(volumes.get(), node, static_cast<unsigned>(volume_instances.size()));
         rtcReleaseGeometry(node);
         volume_instances.push_back(i);
+        find_enclosed(i);
     }
     if (!volumes) return;
     const ForeignThreads embree;

@@ -4,6 +4,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,11 +34,12 @@ struct RayInstance {
 
 struct ShadowContext;
 
-/// Where a ray passes a surface that bounds a volume.
+/// Where a ray passes a surface that bounds a volume, or is of one piece with what bounds it.
 struct VolumeCrossing {
     float distance;
     std::uint32_t instance;  ///< in Scene::instances
-    std::int32_t material;
+    std::int32_t material;   ///< whose volume it is
+    bool bounds;
     bool enters;
 };
 
@@ -88,6 +90,11 @@ struct RayScene::Impl {
     }
     RTCGeometry instance_node(std::uint32_t index, const RayTransforms& transforms) const;
     void add_volumes();
+    void find_enclosed(std::uint32_t instance);
+    std::int32_t enclosed_by(std::uint32_t instance, const BasePatch& patch) const;
+    bool bounds_volume(std::int32_t material) const {
+        return materials.inside(material) != RayMaterials::Inside::Nothing;
+    }
     void note_crossing(const RTCFilterFunctionNArguments* arguments) const;
     bool lets_light_through(const Instance& instance) const;
     std::optional<Vec3f> constant_of(const Instance& instance) const;
@@ -116,6 +123,9 @@ struct RayScene::Impl {
     std::unordered_map<std::uint32_t, std::uint32_t> by_key;  ///< Instance::key to that id
     RtcHandle<RTCScene> volumes;                  ///< what bounds them; nullptr: there are none
     std::vector<std::uint32_t> volume_instances;  ///< by Embree's id there, in Scene::instances
+    /// By geometry and materials of meshes of which only some faces bound a volume: by face, the
+    /// material of the volume that its piece encloses.
+    std::map<std::pair<int, std::vector<std::int32_t>>, std::vector<std::int32_t>> enclosed;
 };
 
 }  // namespace granita

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "shade/rays/enclosed_volumes.h"
 #include "shade/rays/ray_scene_impl.h"
 #include "shade/rays/ray_visibility.h"
 #include "shade/rays/set_ray.h"
@@ -21,6 +22,26 @@ bool is_before(const VolumeCrossing& a, const VolumeCrossing& b) {
 
 }  // namespace
 
+/// Of what mesh and materials only some faces bound a volume.
+void RayScene::Impl::find_enclosed(std::uint32_t index) {
+    const Instance& instance = scene.instances[index];
+    const GeometryData& data = scene.geometry_of(instance);
+    const auto bounds = [this](std::int32_t material) { return bounds_volume(material); };
+    if (data.kind != GeometryKind::Mesh || std::ranges::all_of(instance.materials, bounds)) return;
+    auto& found = enclosed[{instance.geometry, instance.materials}];
+    if (found.empty())
+        found = enclosed_volumes(data, [&](std::size_t face) {
+            const std::int32_t material = instance.material(data.slot(face));
+            return bounds(material) ? material : -1;
+        });
+}
+
+std::int32_t RayScene::Impl::enclosed_by(std::uint32_t index, const BasePatch& patch) const {
+    const Instance& instance = scene.instances[index];
+    const auto found = enclosed.find({instance.geometry, instance.materials});
+    return found == enclosed.end() ? -1 : found->second[static_cast<std::size_t>(patch.face)];
+}
+
 void RayScene::Impl::note_crossing(const RTCFilterFunctionNArguments* arguments) const {
     auto& context = *reinterpret_cast<MetContext*>(arguments->context);
     const auto& traced = *reinterpret_cast<const RTCRay*>(arguments->ray);
@@ -32,15 +53,18 @@ void RayScene::Impl::note_crossing(const RTCFilterFunctionNArguments* arguments)
     if (!meets(ray.type, instance, ray.blocker_set) || !instance.lifespan.contains(ray.time))
         return;
     std::int32_t material = instance.materials.front();
+    bool bounds = true;
     if (instance.materials.size() > 1) {
         RayHit hit;
         locate(traced, at, index, ray.start, ray.direction, hit);
         material = hit.material;
+        bounds = bounds_volume(material);
+        if (!bounds && hit.patch) material = enclosed_by(index, *hit.patch);
     }
-    if (materials.inside(material) == RayMaterials::Inside::Nothing) return;
+    if (material < 0 || !bounds_volume(material)) return;
     // In the space of the object, of which both are told.
     const float side = at.Ng_x * traced.dir_x + at.Ng_y * traced.dir_y + at.Ng_z * traced.dir_z;
-    context.crossings->push_back({traced.tfar, index, material, side < 0.0f});
+    context.crossings->push_back({traced.tfar, index, material, bounds, side < 0.0f});
 }
 
 void RayScene::volumes(const Ray& ray, std::vector<VolumeSpan>& out) const {
@@ -67,6 +91,7 @@ void RayScene::volumes(const Ray& ray, std::vector<VolumeSpan>& out) const {
         VolumeSpan span{crossings[i].instance, crossings[i].material, 0.0f, ray.distance};
         for (std::size_t k = i; k < end && crossings[k].distance < ray.distance; ++k) {
             if (crossings[k].enters == inside) continue;  // met twice, as at an edge
+            if (!crossings[k].bounds) continue;           // nobody comes in or out here
             if (inside) {
                 span.end = crossings[k].distance;
                 out.push_back(span);
