@@ -101,6 +101,31 @@ def test_a_lamp_may_light_what_is_seen_after_few_bounces_alone(bounces):
     assert lit(8) > 1.05 * limited
 
 
+@pytest.mark.parametrize("seen_through", ["mirror", "glass"])
+def test_light_samples_smooth_what_mirrors_and_glass_show(seen_through):
+    """A wall under a sky is lit by chance: all light samples of the mirror's points go there, not one.  Noise falls as
+    n^-.5, to a quarter; half of that is asked for."""
+
+    def noise(light_samples):
+        snapshot = s.orthographic((24, 24), bounces=4, samples=1, light_samples=light_samples)
+        s.constant_world(snapshot, 1.0)
+        snapshot["world"]["lights_scene"] = True
+        if seen_through == "mirror":
+            s.quad(snapshot, s.rectangle(-20, -20, 44, 44, 20.0), mirror(snapshot))
+        else:
+            nodes = [{"type": "ShaderNodeBsdfRefraction", "inputs": {"Roughness": 0.0, "IOR": 1.0}}]
+            pane = material(snapshot, nodes, (0, "BSDF"))
+            s.quad(snapshot, s.rectangle(-20, -20, 44, 44, 20.0), pane)
+        wall = -60.0 if seen_through == "mirror" else 60.0
+        s.quad(snapshot, s.rectangle(-50, -50, 74, 74, wall), diffuse(snapshot, 0.9))
+        # What hides half of the sky from the wall.
+        s.quad(snapshot, s.rectangle(-200, 30, 224, 80, wall / 2), diffuse(snapshot, 0.0))
+        seen = s.render(snapshot)["combined"][4:-4, 4:-4, 0]
+        return seen.std() / seen.mean()
+
+    assert noise(16) < 0.5 * noise(1)
+
+
 @pytest.mark.parametrize("most", [0, 1])
 def test_mirrors_show_a_lamp_after_any_bounces(most):
     """All walls are mirrors around a ball that shines: what meets it is the lamp's surface, which asks for no sample."""

@@ -48,6 +48,7 @@ class BouncedLight::Wave {
             path.width = ray.width;
             path.spread = ray.spread;
             path.least_pdf = ray.pdf;
+            path.splits = ray.samples;
             path.sure_part = std::min(1.0f, largest(ray.weight));
             path.kind = is_diffuse(ray.ray.type) ? BouncedPath::Kind::Diffuse
                         : is_sharp(ray.ray.type) ? BouncedPath::Kind::Mirrored
@@ -66,6 +67,7 @@ class BouncedLight::Wave {
             see_world();
             weigh_met();
             if (std::exchange(is_first, false)) note_near();
+            split();
             shade();
             m_paths.swap(m_next);
             m_next.clear();
@@ -189,6 +191,34 @@ class BouncedLight::Wave {
             const bool brings = is_lit(path) || m_light.m_any_shines || passes(one.hit, path);
             return path.met_weight == 0.0f || !brings;
         });
+    }
+
+    /// Makes what mirrors show one way for each light sample of its point where chance comes in:
+    /// one alone would be its point's only sample of the lamps there, and of all that bounces.
+    void split() {
+        const std::size_t met = m_met.size();
+        for (std::size_t i = 0; i < met; ++i) {
+            BouncedPath& path = m_paths[m_met[i].ray];
+            const int count = path.splits;
+            if (count == 1 || path.kind != BouncedPath::Kind::Mirrored || !is_lit(path)) continue;
+            const RayHit& hit = m_met[i].hit;
+            if (!m_light.m_hits.surface(hit.material, path.next.ray.type).radiance.spreads())
+                continue;
+            const float part = 1.0f / static_cast<float>(count);
+            path.splits = 1;
+            path.next.weight *= part;
+            path.next.share *= part;
+            path.sure_part *= part;
+            path.next.place *= static_cast<std::uint32_t>(count);
+            BouncedPath other = path;
+            for (int k = 1; k < count; ++k) {
+                ++other.next.place;
+                RayScene::Met same = m_met[i];
+                same.ray = static_cast<std::uint32_t>(m_paths.size());
+                m_met.push_back(std::move(same));
+                m_paths.push_back(other);
+            }
+        }
     }
 
     bool passes(const RayHit& hit, const BouncedPath& path) const {

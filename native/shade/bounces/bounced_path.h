@@ -22,6 +22,8 @@ struct BouncedPath {
     /// Part of its point that it was followed for while no chance chose it: those of a point's ways
     /// after as many meetings sum up to 1 at most.
     float sure_part = 0.0f;
+    /// Ways that it is to become where what it meets sends light on by chance.
+    int splits = 1;
     /// How likely it is one of its point's ways where it and others were followed: Cycles takes one
     /// by chance, and clamps what that brings for all.
     float chance = 1.0f;

@@ -54,10 +54,12 @@ constexpr bool transmits(LobeKind kind) {
 constexpr bool sees_all_around(LobeKind kind) {
     return kind == LobeKind::PrincipledHair || kind == LobeKind::Phase;
 }
+constexpr bool is_of_facets(LobeKind kind) {
+    return kind == LobeKind::Glossy || kind == LobeKind::Refraction;
+}
 /// Lobes that Filter Glossy blurs: of microfacets, and hair's.
 constexpr bool is_blurred(LobeKind kind) {
-    return kind == LobeKind::Glossy || kind == LobeKind::Refraction ||
-           kind == LobeKind::PrincipledHair;
+    return is_of_facets(kind) || kind == LobeKind::PrincipledHair;
 }
 /// Of lobe_shape.h.
 constexpr bool is_shaped(LobeKind kind) {

@@ -40,6 +40,14 @@ struct SurfaceProgram {
                });
     }
     bool scatters() const { return !sources.subsurface.empty(); }
+    /// Whether some lobe sends light on in more than one direction.
+    bool spreads() const {
+        return scatters() || std::ranges::any_of(sources.lobes, [](const LobeSource& lobe) {
+                   return !is_of_facets(lobe.kind) ||
+                          (lobe.distribution != Distribution::Sharp &&
+                           !(lobe.roughness.is_constant() && lobe.roughness.constant == 0.0f));
+               });
+    }
     /// Whether nodes bend normals of what is scattered below the surface.
     bool bends_scattered() const {
         return scatters() &&
