@@ -199,8 +199,9 @@ class BouncedLight::Wave {
         const std::size_t met = m_met.size();
         for (std::size_t i = 0; i < met; ++i) {
             BouncedPath& path = m_paths[m_met[i].ray];
-            const int count = path.splits;
-            if (count == 1 || path.kind != BouncedPath::Kind::Mirrored || !is_lit(path)) continue;
+            const auto count =
+                static_cast<int>(std::ceil(static_cast<float>(path.splits) * path.sure_part));
+            if (count <= 1 || path.kind != BouncedPath::Kind::Mirrored || !is_lit(path)) continue;
             const RayHit& hit = m_met[i].hit;
             if (!m_light.m_hits.surface(hit.material, path.next.ray.type).radiance.spreads())
                 continue;
