@@ -193,26 +193,25 @@ class BouncedLight::Wave {
         });
     }
 
-    /// Makes what mirrors show one way for each light sample of its point where chance comes in:
-    /// one alone would be its point's only sample of the lamps there, and of all that bounces.
+    /// Makes what mirrors show a way for each light sample of its point, as far as it is followed
+    /// for all of it, where chance comes in: one alone would be its point's only sample of the
+    /// lamps there, and of all that bounces.
     void split() {
         const std::size_t met = m_met.size();
         for (std::size_t i = 0; i < met; ++i) {
             BouncedPath& path = m_paths[m_met[i].ray];
-            const auto count =
-                static_cast<int>(std::ceil(static_cast<float>(path.splits) * path.sure_part));
-            if (count <= 1 || path.kind != BouncedPath::Kind::Mirrored || !is_lit(path)) continue;
-            const RayHit& hit = m_met[i].hit;
-            if (!m_light.m_hits.surface(hit.material, path.next.ray.type).radiance.spreads())
+            if (path.splits == 1 || path.kind != BouncedPath::Kind::Mirrored || !is_lit(path))
                 continue;
-            const float part = 1.0f / static_cast<float>(count);
-            path.splits = 1;
-            path.next.weight *= part;
-            path.next.share *= part;
-            path.sure_part *= part;
-            path.next.place *= static_cast<std::uint32_t>(count);
+            const std::int32_t material = m_met[i].hit.material;
+            if (!m_light.m_hits.surface(material, path.next.ray.type).radiance.spreads()) continue;
+            const float ways = std::ceil(static_cast<float>(path.splits) * path.sure_part);
+            path.copies = static_cast<int>(ways);
+            path.next.weight /= ways;
+            path.next.share /= ways;
+            path.next.place *= static_cast<std::uint32_t>(path.splits);
             BouncedPath other = path;
-            for (int k = 1; k < count; ++k) {
+            other.is_first = false;
+            for (int k = 1; k < other.copies; ++k) {
                 ++other.next.place;
                 RayScene::Met same = m_met[i];
                 same.ray = static_cast<std::uint32_t>(m_paths.size());
@@ -395,7 +394,13 @@ class BouncedLight::Wave {
                 const End& end) {
         choose_ways(path, ways, through, chance(path, kWay), m_chosen);
         for (const ChosenWay& way : m_chosen) {
+            if (way.is_sure && !path.is_first) continue;
             BouncedPath next = path;
+            const float stands_for = way.is_sure ? static_cast<float>(path.copies) : 1.0f;
+            next.next.weight *= stands_for;
+            next.next.share *= stands_for;
+            next.copies = 1;
+            next.is_first = true;
             next.sure_part = way.sure_part;
             next.chance = way.chance;
             if (!way.is_sure && path.kind == BouncedPath::Kind::Mirrored)

@@ -22,8 +22,10 @@ struct BouncedPath {
     /// Part of its point that it was followed for while no chance chose it: those of a point's ways
     /// after as many meetings sum up to 1 at most.
     float sure_part = 0.0f;
-    /// Ways that it is to become where what it meets sends light on by chance.
-    int splits = 1;
+    /// Ways that it is to become where what it meets sends light on by chance; and of how many it
+    /// is one there, all of which weigh alike, and the first takes what no chance chooses for all.
+    int splits = 1, copies = 1;
+    bool is_first = true;
     /// How likely it is one of its point's ways where it and others were followed: Cycles takes one
     /// by chance, and clamps what that brings for all.
     float chance = 1.0f;

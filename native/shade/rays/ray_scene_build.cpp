@@ -198,8 +198,7 @@ void RayScene::Impl::add_volumes() {
         RTCGeometry node = instance_node(i, *transforms);
         rtcAttachGeometryByID(volumes.get(), node, static_cast<unsigned>(volume_instances.size()));
         rtcReleaseGeometry(node);
-        volume_instances.push_back(i);
-        find_enclosed(i);
+        volume_instances.push_back({i, find_enclosed(scene.instances[i])});
     }
     if (!volumes) return;
     const ForeignThreads embree;

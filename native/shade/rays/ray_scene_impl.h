@@ -90,8 +90,8 @@ struct RayScene::Impl {
     }
     RTCGeometry instance_node(std::uint32_t index, const RayTransforms& transforms) const;
     void add_volumes();
-    void find_enclosed(std::uint32_t instance);
-    std::int32_t enclosed_by(std::uint32_t instance, const BasePatch& patch) const;
+    /// [faces] of a mesh of which only some bound a volume; nullptr: of others.
+    const std::vector<std::int32_t>* find_enclosed(const Instance& instance);
     bool bounds_volume(std::int32_t material) const {
         return materials.inside(material) != RayMaterials::Inside::Nothing;
     }
@@ -121,10 +121,14 @@ struct RayScene::Impl {
     InstanceMotion motion;
     std::vector<RayInstance> instances;                       ///< by Embree's id in `top`
     std::unordered_map<std::uint32_t, std::uint32_t> by_key;  ///< Instance::key to that id
-    RtcHandle<RTCScene> volumes;                  ///< what bounds them; nullptr: there are none
-    std::vector<std::uint32_t> volume_instances;  ///< by Embree's id there, in Scene::instances
-    /// By geometry and materials of meshes of which only some faces bound a volume: by face, the
-    /// material of the volume that its piece encloses.
+    RtcHandle<RTCScene> volumes;  ///< what bounds them; nullptr: there are none
+    struct VolumeInstance {
+        std::uint32_t index;  ///< in Scene::instances
+        /// By face, the material of the volume that its piece encloses; nullptr: all bound one.
+        const std::vector<std::int32_t>* enclosed;
+    };
+    std::vector<VolumeInstance> volume_instances;  ///< by Embree's id there
+    /// By geometry and materials.
     std::map<std::pair<int, std::vector<std::int32_t>>, std::vector<std::int32_t>> enclosed;
 };
 

@@ -22,31 +22,25 @@ bool is_before(const VolumeCrossing& a, const VolumeCrossing& b) {
 
 }  // namespace
 
-/// Of what mesh and materials only some faces bound a volume.
-void RayScene::Impl::find_enclosed(std::uint32_t index) {
-    const Instance& instance = scene.instances[index];
+const std::vector<std::int32_t>* RayScene::Impl::find_enclosed(const Instance& instance) {
     const GeometryData& data = scene.geometry_of(instance);
     const auto bounds = [this](std::int32_t material) { return bounds_volume(material); };
-    if (data.kind != GeometryKind::Mesh || std::ranges::all_of(instance.materials, bounds)) return;
+    if (data.kind != GeometryKind::Mesh || std::ranges::all_of(instance.materials, bounds))
+        return nullptr;
     auto& found = enclosed[{instance.geometry, instance.materials}];
     if (found.empty())
         found = enclosed_volumes(data, [&](std::size_t face) {
             const std::int32_t material = instance.material(data.slot(face));
             return bounds(material) ? material : -1;
         });
-}
-
-std::int32_t RayScene::Impl::enclosed_by(std::uint32_t index, const BasePatch& patch) const {
-    const Instance& instance = scene.instances[index];
-    const auto found = enclosed.find({instance.geometry, instance.materials});
-    return found == enclosed.end() ? -1 : found->second[static_cast<std::size_t>(patch.face)];
+    return &found;
 }
 
 void RayScene::Impl::note_crossing(const RTCFilterFunctionNArguments* arguments) const {
     auto& context = *reinterpret_cast<MetContext*>(arguments->context);
     const auto& traced = *reinterpret_cast<const RTCRay*>(arguments->ray);
     const auto& at = *reinterpret_cast<const RTCHit*>(arguments->hit);
-    const std::uint32_t index = volume_instances[arguments->context->instID[0]];
+    const auto& [index, enclosed_by_face] = volume_instances[arguments->context->instID[0]];
     const Instance& instance = scene.instances[index];
     const Ray& ray = context.rays[0];
     arguments->valid[0] = 0;  // goes on
@@ -59,7 +53,8 @@ void RayScene::Impl::note_crossing(const RTCFilterFunctionNArguments* arguments)
         locate(traced, at, index, ray.start, ray.direction, hit);
         material = hit.material;
         bounds = bounds_volume(material);
-        if (!bounds && hit.patch) material = enclosed_by(index, *hit.patch);
+        if (!bounds && enclosed_by_face)
+            material = (*enclosed_by_face)[static_cast<std::size_t>(hit.patch->face)];
     }
     if (material < 0 || !bounds_volume(material)) return;
     // In the space of the object, of which both are told.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scene/knot_time.h"
 #include "shade/rays/hit_attributes.h"
@@ -14,9 +15,9 @@ namespace {
 constexpr float kMostSteps = 1024.0f;
 /// And what short ways take.
 constexpr float kLeastSteps = 8.0f;
-/// Steps of ways without an end are at least so much of what lies before them, and so many; from
-/// 10^6 metres on all is alike.
-constexpr float kGrowth = 0.1f;
+/// Steps of ways without an end are at least so much of what lies before them, and so many, that
+/// reach so far, metres, from where on all is alike.
+constexpr float kGrowth = 0.1f, kFar = 1e6f;
 constexpr std::size_t kUnendingSteps = 128;
 /// Of those as many are asked at a time, until less than this comes through.
 constexpr std::size_t kRound = 32;
@@ -97,12 +98,14 @@ void MediaFiller::add_pieces(const Ray& ray, float shift, float begin, float end
     const bool grows = count > 1.0f && !std::isfinite(end);
     const std::size_t steps = grows ? kUnendingSteps : static_cast<std::size_t>(count);
     const std::size_t first = m_media.pieces.size();
+    const float growth =
+        grows ? std::max(kGrowth, std::pow(kFar / step, 1.0f / kUnendingSteps) - 1.0f) : 0.0f;
     float from = begin;
     for (std::size_t k = 0; k < steps; ++k) {
         MediumPiece& piece = m_media.pieces.emplace_back();
         piece.begin = from;
         piece.end = k + 1 == steps ? end
-                    : grows        ? from + std::max(step, kGrowth * from)
+                    : grows        ? from + std::max(step, growth * from)
                                    : begin + static_cast<float>(k + 1) * step;
         from = piece.end;
         if (!grows || k < kRound) ask(first + k, k, ray, shift, there);
@@ -149,8 +152,10 @@ void MediaFiller::go_on(Unending& way) {
         way.transmittance *= passed(piece, piece.end - piece.begin);
     }
     if (largest(way.transmittance) < kNothing) {
-        m_media.pieces[last].end = m_media.pieces[way.first + kUnendingSteps - 1].end;
-        m_media.end_with(way.ray, last);
+        MediumPiece& dark = m_media.pieces[last + 1];
+        dark.end = std::numeric_limits<float>::infinity();
+        dark.extinction = Vec3f(1.0f);
+        m_media.end_with(way.ray, last + 1);
         way.asked = kUnendingSteps;
         return;
     }
