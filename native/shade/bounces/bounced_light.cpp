@@ -215,7 +215,7 @@ class BouncedLight::Wave {
                 ++other.next.place;
                 RayScene::Met same = m_met[i];
                 same.ray = static_cast<std::uint32_t>(m_paths.size());
-                m_met.push_back(std::move(same));
+                m_met.push_back(same);
                 m_paths.push_back(other);
             }
         }
