@@ -204,11 +204,7 @@ class BouncedLight::Wave {
                 continue;
             const std::int32_t material = m_met[i].hit.material;
             if (!m_light.m_hits.surface(material, path.next.ray.type).radiance.spreads()) continue;
-            const float ways = std::ceil(static_cast<float>(path.splits) * path.sure_part);
-            path.copies = static_cast<int>(ways);
-            path.next.weight /= ways;
-            path.next.share /= ways;
-            path.next.place *= static_cast<std::uint32_t>(path.splits);
+            path.split();
             BouncedPath other = path;
             other.is_first = false;
             for (int k = 1; k < other.copies; ++k) {
@@ -396,11 +392,7 @@ class BouncedLight::Wave {
         for (const ChosenWay& way : m_chosen) {
             if (way.is_sure && !path.is_first) continue;
             BouncedPath next = path;
-            const float stands_for = way.is_sure ? static_cast<float>(path.copies) : 1.0f;
-            next.next.weight *= stands_for;
-            next.next.share *= stands_for;
-            next.copies = 1;
-            next.is_first = true;
+            next.leave_copies(way.is_sure);
             next.sure_part = way.sure_part;
             next.chance = way.chance;
             if (!way.is_sure && path.kind == BouncedPath::Kind::Mirrored)

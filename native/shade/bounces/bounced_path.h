@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "scene/options.h"
@@ -37,6 +38,25 @@ struct BouncedPath {
     float width = 0.0f;      ///< of the beam where the ray starts, metres
     float spread = 0.0f;     ///< by which it grows, metres a metre
     float length = 0.0f;     ///< that it went since it was last reflected
+
+    /// Becomes the first of as many ways, alike but for their places, as its part of its point has
+    /// of `splits`.
+    void split() {
+        const float ways = std::ceil(static_cast<float>(splits) * sure_part);
+        copies = static_cast<int>(ways);
+        next.weight /= ways;
+        next.share /= ways;
+        next.place *= static_cast<std::uint32_t>(splits);
+    }
+    /// Is one way again: for all of those, or for itself.
+    void leave_copies(bool for_all) {
+        if (for_all) {
+            next.weight *= static_cast<float>(copies);
+            next.share *= static_cast<float>(copies);
+        }
+        copies = 1;
+        is_first = true;
+    }
 
     /// Its weight, were it its point's only one.
     Vec3f throughput() const { return next.weight / next.share; }

@@ -118,7 +118,7 @@ void MediaFiller::add_pieces(const Ray& ray, float shift, float begin, float end
 /// Of a piece that is one of a part's steps.
 void MediaFiller::ask(std::size_t piece, std::size_t step, const Ray& ray, float shift,
                       std::span<const FilledSpan> there) {
-    const auto [begin, end] = std::pair(m_media.pieces[piece].begin, m_media.pieces[piece].end);
+    const float begin = m_media.pieces[piece].begin, end = m_media.pieces[piece].end;
     // Of steps that are all shifted alike, the sum is as much in doubt as one.
     const float own = shift + kGolden * static_cast<float>(step);
     const float part = own - std::floor(own);

@@ -54,8 +54,6 @@ class MediaFiller {
         const VolumeProgram* program = nullptr;
         std::vector<Place> places;
     };
-    void add_pieces(const Ray& ray, float shift, float begin, float end,
-                    std::span<const FilledSpan> there);
     /// A way without an end, of which no more is asked than lets light through.
     struct Unending {
         std::size_t ray, first, asked;  ///< its number; its first piece; how many of them
@@ -64,6 +62,8 @@ class MediaFiller {
         std::vector<FilledSpan> there;
         Vec3f transmittance{1.0f};  ///< of what was asked, as far as it was looked at
     };
+    void add_pieces(const Ray& ray, float shift, float begin, float end,
+                    std::span<const FilledSpan> there);
     void ask(std::size_t piece, std::size_t step, const Ray& ray, float shift,
              std::span<const FilledSpan> there);
     void ask_all();
