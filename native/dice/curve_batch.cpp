@@ -26,6 +26,9 @@ double drawn_in(int across) {
 /// Pixels; below, no two rows of a ribbon are told apart.
 constexpr double kThin = 0.5;
 
+/// Where curves are cut together.
+constexpr float kMostPieces = 64.0f;
+
 /// Two rows of a thin ribbon, one micropolygon across, have the four places of Chebyshev's equal
 /// weights between them: light from the front comes out 1 % too bright instead of 4, from the side
 /// 2 % too dark instead of 15 % too bright.  A row has one far and one near, so that rows are alike
@@ -56,7 +59,10 @@ CurveBatch::Measures CurveBatch::measures(std::uint32_t curve, bool with_ends) c
     static thread_local CurveControl control;  // kept for its memory
     const double lo = start(), hi = end(curve);
     control.gather(*m_elements, curve, lo, hi);
-    Measures measures{control.swept_box(lo, hi), control.width_pixels(), {}};
+    Measures measures;
+    measures.still = measures.box = control.box(0, lo, hi);
+    for (int k = 1; k < m_elements->knot_count(); ++k) measures.box.add(control.box(k, lo, hi));
+    measures.width = control.width_pixels();
     if (with_ends)
         control.steps(lo, hi, static_cast<std::size_t>(m_elements->grid_size()), measures.ends);
     return measures;
@@ -69,20 +75,76 @@ RasterBounds CurveBatch::bounds() const {
     return raster_bounds(box);
 }
 
+RasterBounds CurveBatch::still_bounds() const {
+    Bounds3f box;
+    for (std::size_t i = 0; i < m_count; ++i) box.add(measured(i).still);
+    return raster_bounds(box);
+}
+
 void CurveBatch::measure() {
-    if (!m_measures || is_part()) {
-        auto all = std::make_shared<std::vector<Measures>>();
-        for (std::size_t i = 0; i < m_count; ++i)
-            all->push_back(measures(element(m_first + i), true));
-        m_measures = std::move(all);
-        m_first_measured = m_first;
+    if (!m_measures) measure_curves(false);
+    const bool is_narrow = find_across();
+    if (const RasterBounds still = still_bounds(); is_narrow && scattered(still)) {
+        m_runs = runs_of(still);
+    } else if (is_narrow) {
+        if (!m_has_ends) measure_curves(true);
+        m_diceable = find_rows(static_cast<std::size_t>(m_elements->grid_size() / m_across));
     }
-    if (!find_across() || scattered(bounds())) {
-        m_across = 0;
-        return;
+    if (m_diceable || m_count == 1 || is_part()) return;
+    m_pieces = is_narrow ? pieces_along() : 1;
+    if (m_pieces == 1) m_across = 0;
+}
+
+void CurveBatch::measure_curves(bool with_ends) {
+    auto all = std::make_shared<std::vector<Measures>>();
+    all->reserve(m_count);
+    for (std::size_t i = 0; i < m_count; ++i)
+        all->push_back(measures(element(m_first + i), with_ends));
+    m_measures = std::move(all);
+    m_first_measured = m_first;
+    m_has_ends = with_ends;
+}
+
+/// Into how many parts these curves are cut together, a power of two: so that parts are as long as
+/// curves of one grid may lie apart.
+///
+/// Halves of long curves that lie side by side stay as long: cut down to single curves, each of
+/// them was visited by every bucket along its way.
+unsigned CurveBatch::pieces_along() const {
+    const std::uint32_t first = element(m_first);
+    float length = 0.0f;
+    for (std::size_t i = 0; i < m_count; ++i) {
+        if (end_of(element(m_first + i)) != end_of(first)) return 1;
+        const RasterBounds b = raster_bounds(measured(i).still);
+        if (!b.visible) return 1;
+        length += std::max(b.x1 - b.x0, b.y1 - b.y0);
     }
-    m_diceable = find_rows(static_cast<std::size_t>(m_elements->grid_size() / m_across));
-    if (!m_diceable && m_count > 1) m_across = 0;
+    length /= static_cast<float>(m_count);
+    const RasterBounds all = still_bounds();
+    if (!(2.0f * length >= std::max(all.x1 - all.x0, all.y1 - all.y0))) return 1;
+    return std::bit_ceil(
+        static_cast<unsigned>(std::ceil(std::clamp(length / kRegion, 1.0f, kMostPieces))));
+}
+
+std::vector<std::unique_ptr<Primitive>> CurveBatch::split() const {
+    if (m_pieces == 1) return ElementBatch::split();
+    // At points of the curves where there are enough, which are cheaper places.
+    const double last = end_of(element(m_first)), pieces = m_pieces;
+    const auto place = [&](unsigned i) {
+        const double t = last * i / pieces;
+        return last >= pieces ? std::round(t) : t;
+    };
+    std::vector<std::unique_ptr<Primitive>> parts;
+    for (unsigned i = 0; i < m_pieces; ++i) {
+        auto part = copy_of_run();
+        part->m_path = m_path * m_pieces + i;
+        part->m_lo = place(i);
+        part->m_hi = place(i + 1);
+        part->forget_measures();
+        part->measure();
+        parts.push_back(std::move(part));
+    }
+    return parts;
 }
 
 /// Of whole curves, so that all parts of one agree: it is known before one is split.  False: they
@@ -121,6 +183,10 @@ bool CurveBatch::find_rows(std::size_t most) {
 }
 
 std::unique_ptr<ElementBatch> CurveBatch::child() const {
+    return copy_of_run();
+}
+
+std::unique_ptr<CurveBatch> CurveBatch::copy_of_run() const {
     auto child = std::make_unique<CurveBatch>(*m_elements, m_batch);
     child->m_owner = m_owner;
     child->m_first = m_first;
@@ -131,12 +197,14 @@ std::unique_ptr<ElementBatch> CurveBatch::child() const {
     child->m_hi = m_hi;
     child->m_measures = m_measures;
     child->m_first_measured = m_first_measured;
+    child->m_has_ends = m_has_ends;
     return child;
 }
 
 void CurveBatch::halve(unsigned number) {
     const double last = end(element(m_first));
     (number == 0 ? m_hi : m_lo) = curve_middle(m_lo, last);
+    forget_measures();
 }
 
 template <class Visit>
@@ -217,7 +285,7 @@ Grid CurveBatch::triangles(const Grid& from, std::span<const GridPlace> wanted) 
 
 std::shared_ptr<const ElementBatch> CurveBatch::copy() const {
     auto copy = std::make_shared<CurveBatch>(*this);
-    copy->m_measures.reset();
+    copy->forget_measures();
     return copy;
 }
 

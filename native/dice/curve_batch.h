@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Curves as ribbons that face the eye at every knot, many to a primitive.
 //
-// A primitive is a run of neighbouring curves, or a part of one.  Its grid is a ladder lying
-// down: u runs along; from one curve to the next lead rows that have shrunk to a point, so that the
-// micropolygons between have no area and the hider leaves them out.
+// A primitive is a run of neighbouring curves, or the same part of each.  Its grid is a ladder
+// lying down: u runs along; from one curve to the next lead rows that have shrunk to a point, so
+// that the micropolygons between have no area and the hider leaves them out.
 //
 // Ribbons are flat, their shading normals those of a tube: what Cycles calls rounded ribbons.
 #pragma once
@@ -25,6 +25,7 @@ class CurveBatch final : public ElementBatch {
 
     RasterBounds bounds() const override;
     std::unique_ptr<Grid> dice() const override;
+    std::vector<std::unique_ptr<Primitive>> split() const override;
 
   protected:
     std::unique_ptr<ElementBatch> child() const override;
@@ -42,7 +43,7 @@ class CurveBatch final : public ElementBatch {
 
     /// A curve's, or of the part of one.
     struct Measures {
-        Bounds3f box;              ///< swept
+        Bounds3f box, still;       ///< swept; at the first knot
         double width = 0.0;        ///< pixels, the largest
         std::vector<double> ends;  ///< of the steps that dice it; more than a grid holds: too many
     };
@@ -50,7 +51,15 @@ class CurveBatch final : public ElementBatch {
     const Measures& measured(std::size_t i) const {
         return (*m_measures)[m_first - m_first_measured + i];
     }
+    void measure_curves(bool with_ends);
+    void forget_measures() {
+        m_measures.reset();
+        m_has_ends = false;
+    }
+    RasterBounds still_bounds() const;
     bool find_across();
+    unsigned pieces_along() const;
+    std::unique_ptr<CurveBatch> copy_of_run() const;
     bool find_rows(std::size_t most);
     double end_of(std::uint32_t curve) const;
     bool is_part() const { return m_lo > 0.0 || m_hi > 0.0; }
@@ -73,7 +82,9 @@ class CurveBatch final : public ElementBatch {
     /// Of the curves of the batch that this one was cut from, made once for all that are cut.
     std::shared_ptr<const std::vector<Measures>> m_measures;
     std::size_t m_first_measured = 0;
-    double m_lo = 0.0, m_hi = 0.0;  ///< of a single curve; m_hi 0: to its end
+    bool m_has_ends = false;        ///< `m_measures`
+    double m_lo = 0.0, m_hi = 0.0;  ///< of each curve; m_hi 0: to its end
+    unsigned m_pieces = 1;          ///< along the curves, of what cannot be diced
     int m_across = 0;               ///< micropolygons across; 0 = not yet known
     bool m_thin = false;            ///< its rows share places of normals
     std::vector<Row> m_rows;        ///< of what can be diced

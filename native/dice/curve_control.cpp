@@ -148,23 +148,22 @@ ElementPlace CurveControl::place(double t) const {
     return {m_curve, point, point + 1, t - segment};
 }
 
-Bounds3f CurveControl::swept_box(double lo, double hi) const {
+Bounds3f CurveControl::box(int knot, double lo, double hi) const {
     Bounds3f box;
     double radius = 0.0;
-    for (int k = 0; k < m_elements->knot_count(); ++k)
-        for (double a = lo; a < hi;) {
-            const double b = std::min(std::floor(a) + 1.0, hi);
-            // The Bezier points of the part: the curve lies in their hull.  Its derivative is
-            // continuous, so that at its end it is the next segment's.
-            const Vec3d p = at(k, a).p, q = at(k, b).p, third(1.0 / 3.0);
-            for (const Vec3d& corner :
-                 {p, p + tangent(k, a) * (b - a) * third, q - tangent(k, b) * (b - a) * third, q})
-                box.add(Vec3f(corner));
-            // Of the radius: cubic weights never add up to more than 5/4 of the largest.
-            const Span s = span(k, a);
-            for (const ElementPoint* point : s.p) radius = std::max(radius, 1.25 * point->radius);
-            a = b;
-        }
+    for (double a = lo; a < hi;) {
+        const double b = std::min(std::floor(a) + 1.0, hi);
+        // The Bezier points of the part: the curve lies in their hull.  Its derivative is
+        // continuous, so that at its end it is the next segment's.
+        const Vec3d p = at(knot, a).p, q = at(knot, b).p, third((b - a) / 3.0);
+        for (const Vec3d& corner :
+             {p, p + tangent(knot, a) * third, q - tangent(knot, b) * third, q})
+            box.add(Vec3f(corner));
+        // Of the radius: cubic weights never add up to more than 5/4 of the largest.
+        const Span s = span(knot, a);
+        for (const ElementPoint* point : s.p) radius = std::max(radius, 1.25 * point->radius);
+        a = b;
+    }
     if (!box.empty()) box.grow(static_cast<float>(radius));
     return box;
 }

@@ -31,8 +31,8 @@ class CurveControl {
     /// `with_facing`: shading asks for it, places do not.
     RibbonRow row(int knot, double t, bool with_facing) const;
     ElementPlace place(double t) const;
-    /// Over all knots of the curve's part [lo, hi], its width included.
-    Bounds3f swept_box(double lo, double hi) const;
+    /// Of the curve's part [lo, hi] at a knot, its width included.
+    Bounds3f box(int knot, double lo, double hi) const;
     /// Of its points, the largest width at any knot, pixels.
     double width_pixels() const { return m_width; }
     /// Appends the ends of the steps that dice [lo, hi], until there are more than `most`.

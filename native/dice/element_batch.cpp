@@ -2,17 +2,12 @@
 #include "dice/element_batch.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "dice/motion_bounds.h"
 #include "dice/raster_bound.h"
 
 namespace granita {
-namespace {
-
-/// Elements further apart than this, pixels, are split from each other.
-constexpr float kRegion = 32.0f;
-
-}  // namespace
 
 GridKey ElementBatch::key() const {
     return {m_elements->instance().key, static_cast<std::uint32_t>(m_batch), m_path};
@@ -25,6 +20,13 @@ RasterBounds ElementBatch::raster_bounds(Bounds3f box) const {
 
 bool ElementBatch::scattered(const RasterBounds& b) const {
     return m_count > 1 && b.visible && !(b.x1 - b.x0 <= kRegion && b.y1 - b.y0 <= kRegion);
+}
+
+unsigned ElementBatch::runs_of(const RasterBounds& b) const {
+    const float area =
+        std::max((b.x1 - b.x0) / kRegion, 1.0f) * std::max((b.y1 - b.y0) / kRegion, 1.0f);
+    const auto most = static_cast<float>(std::bit_floor(m_count));
+    return std::bit_floor(static_cast<unsigned>(std::clamp(area, 2.0f, most)));
 }
 
 void ElementBatch::own(std::shared_ptr<const OpenedElements> elements) {
@@ -41,17 +43,19 @@ std::shared_ptr<const ElementBatch> ElementBatch::finish(Grid& grid) const {
 
 std::vector<std::unique_ptr<Primitive>> ElementBatch::split() const {
     std::vector<std::unique_ptr<Primitive>> children;
-    for (unsigned number = 0; number < 2; ++number) {
-        std::unique_ptr<ElementBatch> half = child();
-        half->m_path = 2 * m_path + number;
+    const unsigned parts = m_count > 1 ? m_runs : 2;
+    for (unsigned number = 0; number < parts; ++number) {
+        std::unique_ptr<ElementBatch> part = child();
+        part->m_path = parts * m_path + number;
         if (m_count > 1) {
-            half->m_count = number == 0 ? m_count / 2 : m_count - m_count / 2;
-            half->m_first += number == 0 ? 0 : m_count / 2;
+            const std::size_t first = number * m_count / parts;
+            part->m_count = (number + 1) * m_count / parts - first;
+            part->m_first += first;
         } else {
-            half->halve(number);
+            part->halve(number);
         }
-        half->measure();
-        children.push_back(std::move(half));
+        part->measure();
+        children.push_back(std::move(part));
     }
     return children;
 }

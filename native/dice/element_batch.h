@@ -29,7 +29,7 @@ class ElementBatch : public Primitive {
     virtual std::unique_ptr<ElementBatch> child() const = 0;
     /// Half 0 or 1 of a single element.
     virtual void halve(unsigned number) = 0;
-    /// Sets m_diceable.
+    /// Sets m_diceable, and m_runs where that is false.
     virtual void measure() = 0;
     /// What can be diced, once more.
     virtual std::shared_ptr<const ElementBatch> copy() const = 0;
@@ -38,9 +38,12 @@ class ElementBatch : public Primitive {
     std::uint32_t element(std::size_t i) const { return m_elements->shared().batch(m_batch)[i]; }
     /// Of a camera-space box, with the rounding of positions.
     RasterBounds raster_bounds(Bounds3f box) const;
-    /// Several elements, of these bounds, that lie too far from each other for one grid: buckets
-    /// beside them should not meet them.
+    /// Several elements, of these bounds at the first knot, that lie too far from each other for
+    /// one grid: buckets beside them should not meet them.  What moves is met by as many buckets
+    /// alone or together.
     bool scattered(const RasterBounds& bounds) const;
+    /// Of scattered elements, so many that a run of neighbours may not be: a power of two.
+    unsigned runs_of(const RasterBounds& bounds) const;
     /// Of row j, which crosses the elements; `i` counts across.
     static std::size_t vertex(const Grid& grid, int i, int j) {
         return static_cast<std::size_t>(i) * (static_cast<std::size_t>(grid.n_u) + 1) +
@@ -48,6 +51,8 @@ class ElementBatch : public Primitive {
     }
     /// Keeps the opened instance alive, and measures.
     void own(std::shared_ptr<const OpenedElements> elements);
+    /// Elements further apart than this, pixels, are split from each other.
+    static constexpr float kRegion = 48.0f;
 
     const OpenedElements* m_elements;
     std::shared_ptr<const OpenedElements> m_owner;  ///< keeps m_elements
@@ -55,6 +60,7 @@ class ElementBatch : public Primitive {
     std::uint64_t m_path = 1;
     std::size_t m_first = 0, m_count = 0;  ///< elements of the batch
     bool m_diceable = false;
+    unsigned m_runs = 2;  ///< that several elements are split into
 };
 
 }  // namespace granita

@@ -67,9 +67,9 @@ std::unique_ptr<PointBatch> PointBatch::open(std::shared_ptr<const OpenedElement
     return opened;
 }
 
-RasterBounds PointBatch::bounds() const {
+RasterBounds PointBatch::bounds_until(int end) const {
     Bounds3f box;
-    for (int k = 0; k < m_elements->knot_count(); ++k) {
+    for (int k = 0; k < end; ++k) {
         if (m_part.v1 > 0) {
             // A part lies between its corners; how far it bulges out of their box is bounded by
             // the sagitta of its steps' arcs.
@@ -99,6 +99,10 @@ RasterBounds PointBatch::bounds() const {
     return raster_bounds(box);
 }
 
+RasterBounds PointBatch::bounds() const {
+    return bounds_until(m_elements->knot_count());
+}
+
 PointBatch::Rates PointBatch::rates(std::uint32_t point) const {
     double radius = 0.0;
     for (int k = 0; k < m_elements->knot_count(); ++k) {
@@ -124,7 +128,11 @@ void PointBatch::measure() {
         rows += needed.v + 1;
     }
     if (m_count > 1) {
-        m_diceable = rows * m_longitudes <= most && !scattered(bounds());
+        const RasterBounds still = bounds_until(1);
+        if (scattered(still))
+            m_runs = runs_of(still);
+        else
+            m_diceable = rows * m_longitudes <= most;
         return;
     }
     if (m_part.v1 == 0) m_part = {0, m_latitudes[0], 0, m_longitudes};

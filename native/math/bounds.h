@@ -41,6 +41,7 @@ struct Rect {
     int width() const { return x1 - x0; }
     int height() const { return y1 - y0; }
     bool empty() const { return x0 >= x1 || y0 >= y1; }
+    bool holds(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
     Rect intersect(const Rect& r) const {
         return {x0 > r.x0 ? x0 : r.x0, y0 > r.y0 ? y0 : r.y0, x1 < r.x1 ? x1 : r.x1,
                 y1 < r.y1 ? y1 : r.y1};

@@ -10,12 +10,6 @@
 namespace granita {
 namespace {
 
-template <class Visit>
-void for_each_bucket(const Rect& range, const BucketLayout& layout, Visit visit) {
-    for (int y = range.y0; y < range.y1; ++y)
-        for (int x = range.x0; x < range.x1; ++x) visit(layout.index(x, y));
-}
-
 /// Things that are looked at in a piece of a loop.
 constexpr std::size_t kGrain = 256;
 
@@ -43,7 +37,7 @@ FrameGeometry::FrameGeometry(const View& view, const BucketLayout& layout, Repor
       m_said(said),
       m_revisited(revisited),
       m_states(view.scene->instances.size()),
-      m_finished(static_cast<std::size_t>(layout.count())) {
+      m_ends(layout) {
     const StageTimer timer(*view.statistics, Stage::Open);
     std::vector<Rect> ranges(m_states.size());
     parallel_for(m_states.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -60,18 +54,18 @@ FrameGeometry::FrameGeometry(const View& view, const BucketLayout& layout, Repor
     m_instances = HierarchicalGrid(layout.buckets(), ranges);
 }
 
-std::shared_ptr<FrameGeometry::Opened> FrameGeometry::open(std::uint32_t instance) {
+FrameGeometry::Opened* FrameGeometry::open(std::uint32_t instance) {
     State& state = m_states[instance];
     state.once.call([&] {
         state.opened = make_opened(instance);
         state.is_open = true;
     });
-    return state.opened;
+    return state.opened.get();
 }
 
-std::shared_ptr<FrameGeometry::Opened> FrameGeometry::make_opened(std::uint32_t instance) const {
+std::unique_ptr<FrameGeometry::Opened> FrameGeometry::make_opened(std::uint32_t instance) const {
     const StageTimer timer(*m_view.statistics, Stage::Open);
-    auto opened = std::make_shared<Opened>();
+    auto opened = std::make_unique<Opened>();
     const auto shared = static_cast<std::size_t>(m_view.scene->instances[instance].geometry);
     m_view.geometries->say(*m_view.scene, shared, m_report);
     opened->geometry = open_instance(m_view, instance, m_said);
@@ -90,39 +84,22 @@ std::shared_ptr<FrameGeometry::Opened> FrameGeometry::make_opened(std::uint32_t 
     return opened;
 }
 
-std::shared_ptr<GeometryNode> FrameGeometry::node(Opened& opened, std::uint32_t primitive) {
-    if (!m_revisited && is_single(m_layout.range(opened.bounds[primitive]))) return nullptr;
+GeometryNode* FrameGeometry::node(Opened& opened, std::uint32_t primitive) {
+    const Rect buckets = m_layout.range(opened.bounds[primitive]);
+    if (!m_revisited && is_single(buckets)) return nullptr;
     const std::lock_guard lock(opened.mutex);
     auto& node = opened.nodes[primitive];
     if (!node) {
         m_view.statistics->add(Counter::PrimitivesOpened);
-        node = std::make_shared<GeometryNode>(opened.geometry->primitive(primitive),
-                                              opened.bounds[primitive], m_layout, nullptr);
-        // Buckets that finished before it was made will never ask for it.
-        for_each_bucket(m_layout.range(opened.bounds[primitive]), m_layout, [&](int bucket) {
-            if (m_finished[bucket].load()) node->release(bucket);
-        });
+        node = std::make_shared<GeometryNode>(opened.geometry->primitive(primitive), buckets);
     }
-    return node;
+    return node.get();
 }
 
 void FrameGeometry::release(int bucket) {
-    // First the flag, then the nodes that exist: a node made in between starts with the flag (see
-    // node()), and so do all of an instance that is opened later.
-    m_finished[bucket].store(true);
+    m_ends.end(bucket);
     for_each_instance(bucket, [&](std::uint32_t instance) {
         State& state = m_states[instance];
-        if (state.is_open) {
-            Opened& opened = *state.opened;
-            std::vector<std::shared_ptr<GeometryNode>> nodes;
-            {
-                const std::lock_guard lock(opened.mutex);
-                for_each_face(opened, bucket, [&](std::uint32_t face) {
-                    if (opened.nodes[face]) nodes.push_back(opened.nodes[face]);
-                });
-            }
-            for (const auto& node : nodes) node->release(bucket);
-        }
         if (--state.buckets_left == 0) state.opened.reset();
     });
 }

@@ -30,7 +30,7 @@ class FrameGeometry {
     void for_each_instance(int bucket, Visit visit) const {
         const Vec2i at = m_layout.place(bucket);
         m_instances.for_each(at.x, at.y, [&](std::uint32_t i) {
-            if (holds(m_states[i].buckets, at)) visit(i);
+            if (m_states[i].buckets.holds(at.x, at.y)) visit(i);
         });
     }
     const RasterBounds& bounds(std::uint32_t instance) const { return m_states[instance].bounds; }
@@ -50,17 +50,18 @@ class FrameGeometry {
     };
     /// For a bucket that the instance touches, until its release().  Buckets that ask while it is
     /// being opened take a share of that.
-    std::shared_ptr<Opened> open(std::uint32_t instance);
+    Opened* open(std::uint32_t instance);
     /// visit(primitive) for those of an opened instance that touch the bucket.
     template <class Visit>
     void for_each_face(const Opened& opened, int bucket, Visit visit) const {
         const Vec2i at = m_layout.place(bucket);
         opened.faces.for_each(at.x, at.y, [&](std::uint32_t face) {
-            if (holds(m_layout.range(opened.bounds[face]), at)) visit(face);
+            if (m_layout.range(opened.bounds[face]).holds(at.x, at.y)) visit(face);
         });
     }
     /// The node of a primitive that is wanted more than once; nullptr if it is not.
-    std::shared_ptr<GeometryNode> node(Opened& opened, std::uint32_t primitive);
+    GeometryNode* node(Opened& opened, std::uint32_t primitive);
+    BucketEnds& ends() { return m_ends; }
     /// The bucket is done: releases everything that only it was still waiting for.
     void release(int bucket);
 
@@ -83,12 +84,9 @@ class FrameGeometry {
         SharedOnce once;
         std::atomic<bool> is_open{false};
         std::atomic<int> buckets_left{0};
-        std::shared_ptr<Opened> opened;
+        std::unique_ptr<Opened> opened;
     };
-    static bool holds(const Rect& range, Vec2i at) {
-        return at.x >= range.x0 && at.x < range.x1 && at.y >= range.y0 && at.y < range.y1;
-    }
-    std::shared_ptr<Opened> make_opened(std::uint32_t instance) const;
+    std::unique_ptr<Opened> make_opened(std::uint32_t instance) const;
 
     const View& m_view;
     const BucketLayout& m_layout;
@@ -96,7 +94,7 @@ class FrameGeometry {
     const bool m_revisited;
     std::vector<State> m_states;
     HierarchicalGrid m_instances;
-    std::vector<std::atomic<bool>> m_finished;  ///< [buckets]
+    BucketEnds m_ends;
 };
 
 }  // namespace granita

@@ -107,76 +107,33 @@ std::vector<std::unique_ptr<Primitive>> split_counted(const Primitive& primitive
     return primitive.split();
 }
 
-GeometryNode::GeometryNode(std::unique_ptr<Primitive> primitive, const RasterBounds& bounds,
-                           const BucketLayout& layout, const GeometryNode* parent)
-    : m_bounds(bounds),
-      m_buckets(layout.range(bounds)),
-      m_layout_width(layout.buckets().width()),
-      m_layout_x0(layout.buckets().x0),
-      m_layout_y0(layout.buckets().y0),
+GeometryNode::GeometryNode(std::unique_ptr<Primitive> primitive, const Rect& buckets)
+    : m_buckets(buckets),
       m_knot_boxes(primitive->knot_boxes()),
-      m_primitive(std::move(primitive)) {
-    if (parent) m_buckets = m_buckets.intersect(parent->m_buckets);
-    if (m_buckets.empty()) {
-        m_buckets = {};
-        return;
-    }
-    m_released.assign(static_cast<std::size_t>(m_buckets.width()) * m_buckets.height(), false);
-    m_left = m_released.size();
-    if (!parent) return;
-    // Buckets that were done with the parent before it was split will never come here.
-    for (int y = m_buckets.y0; y < m_buckets.y1; ++y)
-        for (int x = m_buckets.x0; x < m_buckets.x1; ++x) {
-            const int bucket = layout.index(x, y);
-            if (parent->m_released[parent->bit(bucket)]) {
-                m_released[bit(bucket)] = true;
-                --m_left;
-            }
-        }
-}
+      m_primitive(std::move(primitive)) {}
 
-std::size_t GeometryNode::bit(int bucket) const {
-    const int x = m_layout_x0 + bucket % m_layout_width, y = m_layout_y0 + bucket / m_layout_width;
-    return static_cast<std::size_t>((y - m_buckets.y0) * m_buckets.width() + x - m_buckets.x0);
-}
-
-GeometryNode::Content GeometryNode::expand(const BucketLayout& layout, Statistics& statistics) {
+const GeometryNode::Content& GeometryNode::expand(const BucketLayout& layout, BucketEnds& ends,
+                                                  Statistics& statistics) {
+    if (m_expanded.load(std::memory_order_acquire)) return m_content;
     const std::lock_guard lock(m_mutex);
-    if (!m_expanded) {
-        if (m_primitive->diceable()) {
-            m_content.grid = dice_counted(*m_primitive, statistics);
-        } else {
-            for (auto& child : split_counted(*m_primitive, statistics)) {
-                const RasterBounds bounds = child->bounds();
-                auto node = std::make_shared<GeometryNode>(std::move(child), bounds, layout, this);
-                if (node->m_left > 0) m_content.children.push_back(std::move(node));
-            }
+    if (m_expanded.load(std::memory_order_relaxed)) return m_content;
+    Content made;
+    if (m_primitive->diceable()) {
+        made.grid = dice_counted(*m_primitive, statistics);
+    } else {
+        for (auto& child : split_counted(*m_primitive, statistics)) {
+            const RasterBounds bounds = child->bounds();
+            const Rect buckets = layout.range(bounds).intersect(m_buckets);
+            if (buckets.empty() || ends.all_ended(buckets)) continue;
+            made.children.push_back(
+                {buckets, bounds, std::make_shared<GeometryNode>(std::move(child), buckets)});
         }
-        m_primitive.reset();
-        m_expanded = true;
     }
+    m_content = std::move(made);
+    m_primitive.reset();
+    m_expanded.store(true, std::memory_order_release);
+    ends.keep(shared_from_this());
     return m_content;
-}
-
-void GeometryNode::release(int bucket) {
-    Content freed;  // destroyed outside the lock
-    std::vector<std::shared_ptr<GeometryNode>> children;
-    {
-        const std::lock_guard lock(m_mutex);
-        const int x = m_layout_x0 + bucket % m_layout_width;
-        const int y = m_layout_y0 + bucket / m_layout_width;
-        if (x < m_buckets.x0 || x >= m_buckets.x1 || y < m_buckets.y0 || y >= m_buckets.y1) return;
-        if (m_released[bit(bucket)]) return;
-        m_released[bit(bucket)] = true;
-        children = m_content.children;
-        if (--m_left == 0) {
-            freed = std::move(m_content);
-            m_content = {};
-            m_primitive.reset();
-            m_expanded = true;
-        }
-    }
-    for (const auto& child : children) child->release(bucket);
 }
 
 }  // namespace granita

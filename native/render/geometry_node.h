@@ -14,7 +14,7 @@
 #include "base/statistics.h"
 #include "dice/primitive.h"
 #include "hider/grid_sweep.h"
-#include "render/bucket_layout.h"
+#include "render/bucket_ends.h"
 #include "shade/shading_system.h"
 
 namespace granita {
@@ -51,35 +51,36 @@ std::shared_ptr<SharedGrid> dice_counted(const Primitive& primitive, Statistics&
 std::vector<std::unique_ptr<Primitive>> split_counted(const Primitive& primitive,
                                                       Statistics& statistics);
 
-class GeometryNode {
+class GeometryNode : public std::enable_shared_from_this<GeometryNode> {
   public:
-    GeometryNode(std::unique_ptr<Primitive> primitive, const RasterBounds& bounds,
-                 const BucketLayout& layout, const GeometryNode* parent);
+    /// `buckets`: those that want it, bucket coordinates.
+    GeometryNode(std::unique_ptr<Primitive> primitive, const Rect& buckets);
 
+    /// Where a bucket asks whether it wants a child it reads this alone: nodes lie all over memory.
+    struct Child {
+        Rect buckets;
+        RasterBounds bounds;
+        std::shared_ptr<GeometryNode> node;
+    };
     struct Content {
-        std::vector<std::shared_ptr<GeometryNode>> children;
+        std::vector<Child> children;
         std::shared_ptr<SharedGrid> grid;
     };
-    /// The children or the grid, made at the first call.  Thread-safe.
-    Content expand(const BucketLayout& layout, Statistics& statistics);
-    /// Bucket `b` will not ask again, here or below.  After the last one everything is freed.
-    void release(int bucket);
-    const RasterBounds& bounds() const { return m_bounds; }
+    /// The children or the grid, made at the first call; they stay until the last of its buckets
+    /// has ended.  Thread-safe, for buckets that want it.
+    const Content& expand(const BucketLayout& layout, BucketEnds& ends, Statistics& statistics);
+    bool is_expanded() const { return m_expanded.load(std::memory_order_acquire); }
+    void free() { m_content = {}; }
+    const Rect& buckets() const { return m_buckets; }
     /// As Primitive::knot_boxes().
     const std::vector<Bounds3f>& knot_boxes() const { return m_knot_boxes; }
 
   private:
-    std::size_t bit(int bucket) const;
-
-    std::mutex m_mutex;
-    RasterBounds m_bounds;
-    Rect m_buckets;  ///< that want it, bucket coordinates
-    int m_layout_width, m_layout_x0, m_layout_y0;
+    std::mutex m_mutex;  ///< of whoever expands it
+    std::atomic<bool> m_expanded{false};
+    Rect m_buckets;
     std::vector<Bounds3f> m_knot_boxes;
-    std::vector<bool> m_released;  ///< [m_buckets]
-    std::size_t m_left = 0;        ///< not yet released
     std::unique_ptr<Primitive> m_primitive;
-    bool m_expanded = false;
     Content m_content;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/object_pool.h"
 #include "base/parallel.h"
 
 namespace granita {
@@ -10,18 +11,23 @@ namespace {
 
 enum class Kind { Instance, Face, Node, Local };
 
-/// Something with a bound, waiting for its turn.
+/// Something with a bound.  What it points to stays until the bucket ends.
 struct Entry {
-    float nearest_key = 0;
-    std::uint64_t order = 0;  ///< of insertion; breaks ties
     Kind kind = Kind::Instance;
-    std::uint32_t index = 0;                        ///< Instance: instance; Face: primitive
-    std::shared_ptr<FrameGeometry::Opened> opened;  ///< Face
-    std::shared_ptr<GeometryNode> node;             ///< Node
-    std::shared_ptr<Primitive> primitive;           ///< Local: wanted by this bucket alone
+    std::uint32_t index = 0;  ///< Instance: instance; Face: primitive
     RasterBounds bounds;
+    FrameGeometry::Opened* opened = nullptr;     ///< Face
+    GeometryNode* node = nullptr;                ///< Node
+    std::unique_ptr<const Primitive> primitive;  ///< Local: wanted by this bucket alone
+};
 
-    bool operator<(const Entry& other) const {
+/// An entry that waits for its turn.
+struct Turn {
+    float nearest_key;
+    std::uint32_t order;  ///< of insertion; breaks ties
+    std::uint32_t slot;   ///< of the entry
+
+    bool operator<(const Turn& other) const {
         if (nearest_key != other.nearest_key) return nearest_key < other.nearest_key;
         return order > other.order;
     }
@@ -29,7 +35,8 @@ struct Entry {
 
 /// What has become of a face, a node or a primitive of the bucket's own: pieces or a grid.
 struct Expansion {
-    std::vector<Entry> pieces;  ///< with their bounds
+    const GeometryNode::Content* shared = nullptr;  ///< of a node
+    std::vector<Entry> pieces;                      ///< of the bucket's own
     std::shared_ptr<SharedGrid> grid;
 };
 
@@ -40,11 +47,39 @@ struct Expansion {
 constexpr std::size_t kHiddenAWaveEntry = 32;
 constexpr std::size_t kLargestWave = 32;
 
+/// After so many hidden entries it is asked whether all that are left are hidden.
+constexpr int kHiddenEntries = 16;
+
+/// What a visit leaves to the next one of its thread, empty.
+struct Memory {
+    std::vector<Turn> heap;
+    std::vector<Entry> entries;  ///< [slots]
+    std::vector<std::uint32_t> free_slots;
+    std::vector<Entry> wave;
+    std::vector<Expansion> expanded;  ///< [wave]
+    std::vector<std::size_t> unmade;  ///< of the wave
+};
+
 class Visit {
   public:
     Visit(Frame& frame, int bucket, const Rect& reach, const Occlusion& occlusion,
           const std::function<void(std::shared_ptr<SharedGrid>)>& hide)
-        : m_frame(frame), m_bucket(bucket), m_reach(reach), m_occlusion(occlusion), m_hide(hide) {}
+        : m_frame(frame),
+          m_bucket(bucket),
+          m_place(frame.layout.place(bucket)),
+          m_reach(reach),
+          m_occlusion(occlusion),
+          m_hide(hide) {}
+    Visit(const Visit&) = delete;
+    Visit& operator=(const Visit&) = delete;
+    ~Visit() {
+        m_heap.clear();
+        m_entries.clear();
+        m_free_slots.clear();
+        m_memory.wave.clear();
+        m_memory.expanded.clear();
+        ObjectPool<Memory>::give(std::move(m_memory));
+    }
 
     void run() {
         m_frame.geometry.for_each_instance(m_bucket, [&](std::uint32_t instance) {
@@ -56,49 +91,97 @@ class Visit {
         });
         while (!m_heap.empty()) {
             m_frame.progress.check();
-            if (m_heap.front().kind == Kind::Instance) {
+            if (nearest().kind == Kind::Instance) {
                 const Entry entry = pop();
                 if (!is_hidden(entry)) visit_instance(entry.index);
             } else {
                 visit_wave();
             }
+            leave_if_hidden();
         }
     }
 
   private:
     void push(Entry entry) {
         if (!touches(entry.bounds)) return;
-        entry.nearest_key = entry.bounds.nearest_key;
-        entry.order = m_order++;
-        m_heap.push_back(std::move(entry));
+        Turn turn{entry.bounds.nearest_key, m_order++,
+                  static_cast<std::uint32_t>(m_entries.size())};
+        if (m_free_slots.empty()) {
+            m_entries.push_back(std::move(entry));
+        } else {
+            turn.slot = m_free_slots.back();
+            m_free_slots.pop_back();
+            m_entries[turn.slot] = std::move(entry);
+        }
+        m_heap.push_back(turn);
         std::push_heap(m_heap.begin(), m_heap.end());
     }
 
+    const Entry& nearest() const { return m_entries[m_heap.front().slot]; }
+
     Entry pop() {
         std::pop_heap(m_heap.begin(), m_heap.end());
-        Entry entry = std::move(m_heap.back());
+        const std::uint32_t slot = m_heap.back().slot;
         m_heap.pop_back();
-        return entry;
+        m_free_slots.push_back(slot);
+        return std::move(m_entries[slot]);
+    }
+
+    /// Everything that waits lies behind the nearest of it.
+    void leave_if_hidden() {
+        if (m_hidden_entries < kHiddenEntries || m_heap.empty()) return;
+        m_hidden_entries = 0;
+        RasterBounds all;
+        all.x0 = static_cast<float>(m_reach.x0), all.x1 = static_cast<float>(m_reach.x1);
+        all.y0 = static_cast<float>(m_reach.y0), all.y1 = static_cast<float>(m_reach.y1);
+        all.nearest_key = m_heap.front().nearest_key;
+        all.visible = true;
+        if (!occluded(all)) return;
+        m_frame.statistics.add(Counter::PrimitivesCulled, m_heap.size());
+        m_heap.clear();
     }
 
     void visit_wave() {
         const std::size_t size = std::min(1 + m_hidden / kHiddenAWaveEntry, kLargestWave);
-        std::vector<Entry> wave;
-        while (wave.size() < size && !m_heap.empty() && m_heap.front().kind != Kind::Instance) {
+        m_memory.wave.clear();
+        m_memory.unmade.clear();
+        while (m_memory.wave.size() < size && !m_heap.empty() && nearest().kind != Kind::Instance) {
             Entry entry = pop();
-            if (!is_hidden(entry)) wave.push_back(std::move(entry));
+            if (is_hidden(entry)) continue;
+            if (!is_made(entry)) m_memory.unmade.push_back(m_memory.wave.size());
+            m_memory.wave.push_back(std::move(entry));
         }
-        std::vector<Expansion> expanded(wave.size());
-        parallel_for(wave.size(), 1, [&](std::size_t begin, std::size_t end) {
+        m_memory.expanded.clear();
+        m_memory.expanded.resize(m_memory.wave.size());
+        parallel_for(m_memory.unmade.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 m_frame.progress.check();
-                expanded[i] = expand(wave[i]);
+                m_memory.expanded[m_memory.unmade[i]] = expand(m_memory.wave[m_memory.unmade[i]]);
             }
         });
-        for (Expansion& expansion : expanded) {
-            for (Entry& piece : expansion.pieces) push(std::move(piece));
-            if (expansion.grid) hide(std::move(expansion.grid));
+        for (std::size_t i = 0; i < m_memory.wave.size(); ++i) {
+            if (is_made(m_memory.wave[i])) m_memory.expanded[i] = expand(m_memory.wave[i]);
+            push_pieces(m_memory.expanded[i]);
+            if (m_memory.expanded[i].grid) hide(std::move(m_memory.expanded[i].grid));
         }
+    }
+
+    /// Another bucket has split or diced it.
+    static bool is_made(const Entry& entry) {
+        return entry.kind == Kind::Node && entry.node->is_expanded();
+    }
+
+    void push_pieces(Expansion& expansion) {
+        if (expansion.shared)
+            for (const GeometryNode::Child& child : expansion.shared->children)
+                if (child.buckets.holds(m_place.x, m_place.y)) {
+                    Entry piece;
+                    piece.kind = Kind::Node;
+                    piece.bounds = child.bounds;
+                    piece.node = child.node.get();
+                    push(std::move(piece));
+                }
+        for (Entry& piece : expansion.pieces) push(std::move(piece));
     }
 
     bool touches(const RasterBounds& b) const {
@@ -114,6 +197,7 @@ class Visit {
             m_frame.statistics.add(Counter::PrimitivesCulledInTime);
         }
         m_frame.statistics.add(Counter::PrimitivesCulled);
+        ++m_hidden_entries;
         return true;
     }
 
@@ -145,7 +229,7 @@ class Visit {
     }
 
     void visit_instance(std::uint32_t instance) {
-        const auto opened = m_frame.geometry.open(instance);
+        FrameGeometry::Opened* const opened = m_frame.geometry.open(instance);
         m_frame.geometry.for_each_face(*opened, m_bucket, [&](std::uint32_t face) {
             Entry entry;
             entry.kind = Kind::Face;
@@ -172,26 +256,20 @@ class Visit {
     }
 
     Expansion expand_face(const Entry& entry) const {
-        if (auto node = m_frame.geometry.node(*entry.opened, entry.index))
+        if (GeometryNode* node = m_frame.geometry.node(*entry.opened, entry.index))
             return expand_node(*node);
         m_frame.statistics.add(Counter::PrimitivesOpened);
         return expand_primitive(*entry.opened->geometry->primitive(entry.index));
     }
 
     Expansion expand_node(GeometryNode& node) const {
-        auto content = node.expand(m_frame.layout, m_frame.statistics);
-        Expansion out{{}, std::move(content.grid)};
-        for (auto& child : content.children) {
-            Entry& piece = out.pieces.emplace_back();
-            piece.kind = Kind::Node;
-            piece.bounds = child->bounds();
-            piece.node = std::move(child);
-        }
-        return out;
+        FrameGeometry& geometry = m_frame.geometry;
+        const auto& content = node.expand(m_frame.layout, geometry.ends(), m_frame.statistics);
+        return {&content, {}, content.grid};
     }
 
     Expansion expand_primitive(const Primitive& primitive) const {
-        if (primitive.diceable()) return {{}, dice_counted(primitive, m_frame.statistics)};
+        if (primitive.diceable()) return {nullptr, {}, dice_counted(primitive, m_frame.statistics)};
         Expansion out;
         for (auto& child : split_counted(primitive, m_frame.statistics)) {
             Entry& piece = out.pieces.emplace_back();
@@ -214,12 +292,17 @@ class Visit {
 
     Frame& m_frame;
     const int m_bucket;
+    const Vec2i m_place;  ///< in bucket coordinates
     const Rect m_reach;
     const Occlusion& m_occlusion;
     const std::function<void(std::shared_ptr<SharedGrid>)>& m_hide;
-    std::vector<Entry> m_heap;
-    std::uint64_t m_order = 0;
+    Memory m_memory = ObjectPool<Memory>::take();
+    std::vector<Turn>& m_heap = m_memory.heap;
+    std::vector<Entry>& m_entries = m_memory.entries;
+    std::vector<std::uint32_t>& m_free_slots = m_memory.free_slots;
+    std::uint32_t m_order = 0;
     std::size_t m_hidden = 0;  ///< grids
+    int m_hidden_entries = 0;  ///< since it was last asked whether all are
 };
 
 }  // namespace

@@ -119,6 +119,27 @@ TEST(Curves, that_are_neighbours_share_a_grid) {
     EXPECT_NEAR(open_length(grids), 24 * (12.0 + 1.0), 1e-3);
 }
 
+TEST(Curves, that_lie_side_by_side_are_cut_together) {
+    // Long ones: a bucket meets pieces of many, not each of them by itself.
+    std::vector<std::vector<Vec3f>> hairs;
+    double length = 0.0;
+    for (int i = 0; i < 24; ++i) {
+        const auto x = static_cast<float>(i);
+        hairs.push_back({{x, -150, 0}, {x, -50, 0}, {x, 50, 0}, {x, 150, 0}});
+        length += 300.0;
+    }
+    DiceScene scene(curves(hairs, 0.25f));
+    const auto grids = scene.grids();
+    EXPECT_NEAR(area(grids), length * 0.5, 1e-2);
+    // Pieces share their rows bit for bit: nothing is open but the outlines.
+    EXPECT_NEAR(open_length(grids), 2.0 * length + 24 * 1.0, 1e-2);
+    EXPECT_GE(static_cast<double>(micropolygons(grids)) / static_cast<double>(grids.size()), 64.0);
+    for (const auto& grid : grids) {
+        EXPECT_LE(grid->bounds.x1 - grid->bounds.x0, 64.0f);
+        EXPECT_LE(grid->bounds.y1 - grid->bounds.y0, 64.0f);
+    }
+}
+
 TEST(Curves, smaller_than_a_pixel_take_one_step) {
     std::vector<Vec3f> hair;
     for (int i = 0; i <= 8; ++i) hair.emplace_back(0.0f, 0.1f * static_cast<float>(i), 0.0f);
@@ -275,7 +296,7 @@ void expect_bounds_to_hold(GeometryData data) {
             return;
         }
         const auto children = primitive.split();
-        EXPECT_EQ(children.size(), 2u);
+        EXPECT_GE(children.size(), 2u);
         for (const auto& child : children) visit(*child);
     };
     for (std::size_t i = 0; i < opened->primitive_count(); ++i) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace granita {
 namespace {
 
@@ -39,19 +41,24 @@ struct Strip : Primitive {
     int& count;
 };
 
+std::shared_ptr<GeometryNode> node_of(float lo, float hi, float leaf, int& alive,
+                                      const BucketLayout& layout) {
+    auto strip = std::make_unique<Strip>(lo, hi, leaf, alive);
+    const Rect buckets = layout.range(strip->bounds());
+    return std::make_shared<GeometryNode>(std::move(strip), buckets);
+}
+
 TEST(GeometryNode, dices_once_for_all_buckets_and_frees_after_the_last) {
     const BucketLayout layout({0, 0, 64, 16}, 16);
+    BucketEnds ends(layout);
     Statistics statistics;
     int alive = 0;
-    auto strip = std::make_unique<Strip>(1.0f, 63.0f, 100.0f, alive);
-    const RasterBounds bounds = strip->bounds();
-    GeometryNode node(std::move(strip), bounds, layout, nullptr);
+    const auto node = node_of(1.0f, 63.0f, 100.0f, alive, layout);
     std::weak_ptr<SharedGrid> grid;
     for (int bucket = 0; bucket < 4; ++bucket) {
-        grid = node.expand(layout, statistics).grid;
+        grid = node->expand(layout, ends, statistics).grid;
         EXPECT_FALSE(grid.expired());
-        node.release(bucket);
-        node.release(bucket);  // a second time is harmless
+        ends.end(bucket);
     }
     EXPECT_TRUE(grid.expired());
     EXPECT_EQ(statistics.get(Counter::GridsDiced), 1u);
@@ -60,25 +67,58 @@ TEST(GeometryNode, dices_once_for_all_buckets_and_frees_after_the_last) {
 
 TEST(GeometryNode, pieces_are_freed_with_their_own_last_bucket) {
     const BucketLayout layout({0, 0, 64, 16}, 16);
+    BucketEnds ends(layout);
     Statistics statistics;
     int alive = 0;
-    auto strip = std::make_unique<Strip>(0.5f, 63.5f, 32.0f, alive);
-    const RasterBounds bounds = strip->bounds();
-    GeometryNode node(std::move(strip), bounds, layout, nullptr);
-    node.release(0);  // before the split: the left piece is then wanted by bucket 1 and 2 alone
-    auto children = node.expand(layout, statistics).children;
+    const auto node = node_of(0.5f, 63.5f, 32.0f, alive, layout);
+    ends.end(0);  // before the split: the left piece is then wanted by bucket 1 and 2 alone
+    const auto children = node->expand(layout, ends, statistics).children;
     ASSERT_EQ(children.size(), 2u);
-    const std::weak_ptr<SharedGrid> left = children[0]->expand(layout, statistics).grid;
+    const std::weak_ptr<SharedGrid> left = children[0].node->expand(layout, ends, statistics).grid;
     EXPECT_FALSE(left.expired());
-    node.release(1);
+    ends.end(1);
     EXPECT_FALSE(left.expired());  // x = 32 touches bucket 2
-    node.release(2);
+    ends.end(2);
     EXPECT_TRUE(left.expired());
-    const std::weak_ptr<SharedGrid> right = children[1]->expand(layout, statistics).grid;
+    const std::weak_ptr<SharedGrid> right = children[1].node->expand(layout, ends, statistics).grid;
     EXPECT_FALSE(right.expired());
-    node.release(3);
+    ends.end(3);
     EXPECT_TRUE(right.expired());
     EXPECT_EQ(statistics.get(Counter::PrimitivesSplit), 1u);
+}
+
+TEST(GeometryNode, what_no_bucket_will_ask_for_is_not_made) {
+    const BucketLayout layout({0, 0, 64, 16}, 16);
+    BucketEnds ends(layout);
+    Statistics statistics;
+    int alive = 0;
+    const auto node = node_of(0.5f, 63.5f, 31.5f, alive, layout);
+    ends.end(0);
+    ends.end(1);
+    ends.end(2);
+    const auto& children = node->expand(layout, ends, statistics).children;
+    ASSERT_EQ(children.size(), 1u);
+    EXPECT_EQ(children[0].buckets, (Rect{2, 0, 4, 1}));
+    EXPECT_EQ(alive, 1);
+}
+
+TEST(BucketEnds, are_taken_in_any_order) {
+    const BucketLayout layout({0, 0, 64, 16}, 16);
+    std::vector<int> order = {0, 1, 2, 3};
+    do {
+        BucketEnds ends(layout);
+        Statistics statistics;
+        int alive = 0;
+        const auto node = node_of(1.0f, 63.0f, 100.0f, alive, layout);
+        const std::weak_ptr<SharedGrid> grid = node->expand(layout, ends, statistics).grid;
+        for (int i = 0; i < 4; ++i) {
+            EXPECT_FALSE(grid.expired());
+            EXPECT_FALSE(ends.all_ended(node->buckets()));
+            ends.end(order[static_cast<std::size_t>(i)]);
+        }
+        EXPECT_TRUE(grid.expired());
+        EXPECT_TRUE(ends.all_ended(node->buckets()));
+    } while (std::ranges::next_permutation(order).found);
 }
 
 }  // namespace
