@@ -15,6 +15,10 @@ namespace {
 /// Micropolygons across a ribbon: it is flat, and what its normal does is known well before this.
 constexpr int kMostAcross = 32;
 
+/// Ribbons up to this may be shaded by the samples that see them, each with the normal of its
+/// place.
+constexpr int kMostOfSamples = 8;
+
 /// How far out a tube's normals are taken for a ribbon of so many micropolygons across.  Colours go
 /// linearly between vertices: with normals at their true places a tube's edges would be too dark.
 /// Drawn in so far, the mean is right for any cubic; 1 / sqrt(3) with one micropolygon are Gauss's
@@ -225,7 +229,7 @@ std::unique_ptr<Grid> CurveBatch::dice() const {
         place_row(*grid, j, row, control);
     });
     const auto kept = finish(*grid);
-    if (m_across == 1)
+    if (m_across <= kMostOfSamples)
         grid->triangles = [batch = kept](const Grid& of, std::span<const GridPlace> wanted) {
             return static_cast<const CurveBatch&>(*batch).triangles(of, wanted);
         };
@@ -246,8 +250,10 @@ Grid CurveBatch::triangles(const Grid& from, std::span<const GridPlace> wanted) 
         const float* w = place.weight;
         const bool second = place.triangle.second;
         const double ahead = second ? w[1] : w[1] + w[2];
-        const Row &row = m_rows[place.triangle.micropolygon],
-                  &next = m_rows[place.triangle.micropolygon + 1];
+        const auto steps_along = static_cast<std::uint32_t>(m_rows.size() - 1);
+        const std::uint32_t strip = place.triangle.micropolygon / steps_along;
+        const std::uint32_t step = place.triangle.micropolygon % steps_along;
+        const Row &row = m_rows[step], &next = m_rows[step + 1];
         if (gathered != row.curve) control.gather(*m_elements, row.curve, start(), end(row.curve));
         gathered = row.curve;
         const double t = row.t + ahead * (next.t - row.t);
@@ -258,12 +264,13 @@ Grid CurveBatch::triangles(const Grid& from, std::span<const GridPlace> wanted) 
         const double at_next = glm::distance(from.positions[c.v1], from.positions[c.v2]);
         const double width = std::max(at_row + ahead * (at_next - at_row), 1e-30);
         const double from_edge = 2.0 * (second ? w[0] * at_row : w[2] * at_next) / width;
-        const double u = second ? 1.0 - from_edge : from_edge - 1.0;
+        const double in_strip = second ? 2.0 - from_edge : from_edge;  // 0 to 2
+        const double u = (2.0 * strip + in_strip) / m_across - 1.0;
         normals.push_back(Vec3f(side.normal_at(u)));
         fronts.push_back(Vec3f(side.front));
         // As high as where points start, beside the place that is seen: what hides neither hides it
         // from a light behind the eye.
-        const double height = std::sqrt(std::max(1.0 - u * u, 0.0)) * drawn_in(1);
+        const double height = std::sqrt(std::max(1.0 - u * u, 0.0)) * drawn_in(m_across);
         offsets.push_back(Vec3f(side.front * (glm::length(side.half) * height)));
         across.push_back(Vec3f(2.0 * side.half));
         const std::size_t i = normals.size() - 1, n = wanted.size();

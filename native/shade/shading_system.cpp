@@ -300,6 +300,7 @@ struct ShadingSystem::Impl {
         }
         RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
         refined.points.alone = !grid.radiance.empty();  // else triangles, made for samples
+        refined.points.round = kind_of(grid, scene) == GeometryKind::Curves;
         if (light) light->lift(refined.points, grid.key);
         Grid out;
         out.key = grid.key;
@@ -458,7 +459,8 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 }
 
 bool ShadingSystem::leaves_to_samples(const Grid& grid) const {
-    return grid.triangles && m_impl->may_leave(grid);
+    // Wide ribbons share few points with each pixel, whose noise is that of the light they gather.
+    return grid.triangles && m_impl->may_leave(grid) && (grid.n_v == 1 || m_impl->bounces);
 }
 
 void ShadingSystem::shade_radiance(Grid& grid) const {

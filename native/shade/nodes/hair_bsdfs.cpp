@@ -32,14 +32,13 @@ VectorSource hair_axis(NodeBuilder& b, bool mesh_by_v) {
     return out;
 }
 
-/// Of a ribbon how many rows of its points, less one, lie side by side; 0 where rays meet one,
-/// which know how far out.
+/// Of a ribbon how many rows of its points, less one, lie side by side; 0 where rays or samples
+/// meet one, which know how far out.
 FloatSource cells_across(NodeBuilder& b) {
     return b.geometry<float>([](const ShadingInput& in, std::size_t) {
         const ShadingPoints& points = *in.points;
-        if (points.depth > 0) return 0.0f;
-        const std::size_t rows = points.columns == 0 ? 2 : points.count / points.columns;
-        return static_cast<float>(rows) - 1.0f;
+        if (points.columns == 0) return 0.0f;
+        return static_cast<float>(points.count / points.columns) - 1.0f;
     });
 }
 
