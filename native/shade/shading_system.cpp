@@ -292,15 +292,16 @@ struct ShadingSystem::Impl {
         return out;
     }
 
-    Grid refine_lit(const Grid& grid, std::span<const RefinedPoint> wanted,
-                    float point_size) const {
+    Grid refine_lit(const Grid& grid, std::span<const RefinedPoint> wanted, float point_size,
+                    bool narrow = false) const {
         if (grid.triangles) {
             const SeenTriangles seen(grid, wanted);
-            return refine_lit(seen.grid, seen.points, point_size);
+            return refine_lit(seen.grid, seen.points, point_size, grid.n_v == 1);
         }
         RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
         refined.points.alone = !grid.radiance.empty();  // else triangles, made for samples
         refined.points.round = kind_of(grid, scene) == GeometryKind::Curves;
+        refined.points.narrow = narrow;
         if (light) light->lift(refined.points, grid.key);
         Grid out;
         out.key = grid.key;

@@ -189,8 +189,9 @@ struct ShadingPoints {
     bool whole_faces = false;  ///< as Grid::shades_faces()
     /// The border may be an edge in which surfaces meet: not that of spheres and hair.
     bool edges = false;
-    bool round = false;  ///< of ribbons that stand for tubes, as their normals say
-    bool alone = false;  ///< neighbours tell nothing of each one's light
+    bool round = false;   ///< of ribbons that stand for tubes, as their normals say
+    bool narrow = false;  ///< of ribbons whose samples stand for their whole width each
+    bool alone = false;   ///< neighbours tell nothing of each one's light
     std::vector<std::uint8_t> backfacing;  ///< [n]
     /// [n] shutter time at which each is lit, where it then is; negative, or empty: over the whole
     /// shutter.

@@ -32,12 +32,12 @@ VectorSource hair_axis(NodeBuilder& b, bool mesh_by_v) {
     return out;
 }
 
-/// Of a ribbon how many rows of its points, less one, lie side by side; 0 where rays or samples
-/// meet one, which know how far out.
+/// Of a ribbon how many rows of its points, less one, lie side by side; 0 where rays meet one, or
+/// samples a wide one, which know how far out.
 FloatSource cells_across(NodeBuilder& b) {
     return b.geometry<float>([](const ShadingInput& in, std::size_t) {
         const ShadingPoints& points = *in.points;
-        if (points.columns == 0) return 0.0f;
+        if (points.columns == 0) return points.narrow ? 1.0f : 0.0f;
         return static_cast<float>(points.count / points.columns) - 1.0f;
     });
 }
