@@ -38,7 +38,8 @@ FloatSource cells_across(NodeBuilder& b) {
     return b.geometry<float>([](const ShadingInput& in, std::size_t) {
         const ShadingPoints& points = *in.points;
         if (points.columns == 0) return points.narrow ? 1.0f : 0.0f;
-        return static_cast<float>(points.count / points.columns) - 1.0f;
+        const std::size_t rows = points.count / points.columns;
+        return static_cast<float>(rows) - 1.0f;
     });
 }
 
