@@ -30,7 +30,7 @@ double drawn_in(int across) {
 /// Pixels; below, no two rows of a ribbon are told apart.
 constexpr double kThin = 0.5;
 
-/// Where curves are cut together.
+/// Parts that curves are cut into together.
 constexpr float kMostPieces = 64.0f;
 
 /// Two rows of a thin ribbon, one micropolygon across, have the four places of Chebyshev's equal
@@ -64,8 +64,11 @@ CurveBatch::Measures CurveBatch::measures(std::uint32_t curve, bool with_ends) c
     const double lo = start(), hi = end(curve);
     control.gather(*m_elements, curve, lo, hi);
     Measures measures;
-    measures.still = measures.box = control.box(0, lo, hi);
-    for (int k = 1; k < m_elements->knot_count(); ++k) measures.box.add(control.box(k, lo, hi));
+    measures.first = measures.last = measures.box = control.box(0, lo, hi);
+    for (int k = 1; k < m_elements->knot_count(); ++k) {
+        measures.last = control.box(k, lo, hi);
+        measures.box.add(measures.last);
+    }
     measures.width = control.width_pixels();
     if (with_ends)
         control.steps(lo, hi, static_cast<std::size_t>(m_elements->grid_size()), measures.ends);
@@ -80,9 +83,12 @@ RasterBounds CurveBatch::bounds() const {
 }
 
 RasterBounds CurveBatch::still_bounds() const {
-    Bounds3f box;
-    for (std::size_t i = 0; i < m_count; ++i) box.add(measured(i).still);
-    return raster_bounds(box);
+    Bounds3f first, last;
+    for (std::size_t i = 0; i < m_count; ++i) {
+        first.add(measured(i).first);
+        last.add(measured(i).last);
+    }
+    return ElementBatch::still_bounds(first, last);
 }
 
 void CurveBatch::measure() {
@@ -119,8 +125,8 @@ unsigned CurveBatch::pieces_along() const {
     float length = 0.0f;
     for (std::size_t i = 0; i < m_count; ++i) {
         if (end_of(element(m_first + i)) != end_of(first)) return 1;
-        const RasterBounds b = raster_bounds(measured(i).still);
-        if (!b.visible) return 1;
+        const RasterBounds b = ElementBatch::still_bounds(measured(i).first, measured(i).last);
+        if (!b.visible || !std::isfinite(b.x1 - b.x0 + b.y1 - b.y0)) return 1;
         length += std::max(b.x1 - b.x0, b.y1 - b.y0);
     }
     length /= static_cast<float>(m_count);
@@ -272,7 +278,7 @@ Grid CurveBatch::triangles(const Grid& from, std::span<const GridPlace> wanted) 
         // from a light behind the eye.
         const double height = std::sqrt(std::max(1.0 - u * u, 0.0)) * drawn_in(m_across);
         offsets.push_back(Vec3f(side.front * (glm::length(side.half) * height)));
-        across.push_back(Vec3f(2.0 * side.half));
+        across.push_back(Vec3f(2.0 * side.half / static_cast<double>(m_across)));
         const std::size_t i = normals.size() - 1, n = wanted.size();
         const std::vector<Vec3f>& p = grid.shading_p();
         along.push_back(p[i + n] - p[second ? i + 3 * n : i]);

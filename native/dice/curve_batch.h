@@ -43,9 +43,9 @@ class CurveBatch final : public ElementBatch {
 
     /// A curve's, or of the part of one.
     struct Measures {
-        Bounds3f box, still;       ///< swept; at the first knot
-        double width = 0.0;        ///< pixels, the largest
-        std::vector<double> ends;  ///< of the steps that dice it; more than a grid holds: too many
+        Bounds3f box, first, last;  ///< swept; at the first and the last knot
+        double width = 0.0;         ///< pixels, the largest
+        std::vector<double> ends;   ///< of the steps that dice it; more than a grid holds: too many
     };
     Measures measures(std::uint32_t curve, bool with_ends) const;
     const Measures& measured(std::size_t i) const {
@@ -79,7 +79,7 @@ class CurveBatch final : public ElementBatch {
     Side side_at(const CurveControl& control, double t) const;
     Grid triangles(const Grid& from, std::span<const GridPlace> wanted) const;
 
-    /// Of the curves of the batch that this one was cut from, made once for all that are cut.
+    /// Of the curves of the batch that this one was split from, or of their parts.
     std::shared_ptr<const std::vector<Measures>> m_measures;
     std::size_t m_first_measured = 0;
     bool m_has_ends = false;        ///< `m_measures`

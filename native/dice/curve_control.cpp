@@ -39,7 +39,8 @@ Vec3d unit(const Vec3d& v) {
 
 double curve_middle(double lo, double hi) {
     const double middle = 0.5 * (lo + hi);
-    return hi - lo > 1.0 ? std::floor(middle) : middle;
+    const double point = std::max(std::floor(middle), std::floor(lo) + 1.0);
+    return point < hi ? point : middle;
 }
 
 void CurveControl::gather(const OpenedElements& elements, std::uint32_t curve, double lo,
@@ -189,7 +190,7 @@ CurveControl::Way CurveControl::way(int knot, double lo, double hi) const {
 void CurveControl::steps(double lo, double hi, std::size_t most, std::vector<double>& ends) const {
     if (ends.size() > most) return;
     const int knots = m_elements->knot_count();
-    const bool several = hi - lo > 1.0;
+    const bool several = std::floor(lo) + 1.0 < hi;
     const int budget =
         several ? kMostCurveLevels : kMostCurveLevels + std::min(std::ilogb(hi - lo), 0);
     Vec3f start[kMaxKnots], middle[kMaxKnots], end[kMaxKnots];

@@ -18,6 +18,16 @@ RasterBounds ElementBatch::raster_bounds(Bounds3f box) const {
     return raster_bound(m_elements->view().projection, box);
 }
 
+RasterBounds ElementBatch::still_bounds(const Bounds3f& first, const Bounds3f& last) const {
+    Projection focused = m_elements->view().projection;
+    focused.lens_radius = 0.0;
+    const RasterBounds a = raster_bound(focused, first), b = raster_bound(focused, last);
+    const auto extent = [](const RasterBounds& r) {
+        return r.visible ? std::max(r.x1 - r.x0, r.y1 - r.y0) : -1.0f;
+    };
+    return extent(b) > extent(a) ? b : a;
+}
+
 bool ElementBatch::scattered(const RasterBounds& b) const {
     return m_count > 1 && b.visible && !(b.x1 - b.x0 <= kRegion && b.y1 - b.y0 <= kRegion);
 }

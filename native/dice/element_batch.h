@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What batches of curves and of points share: a run of a batch's elements, which is halved until it
+// What batches of curves and of points share: a run of a batch's elements, which is split until it
 // is narrow and dices into one grid, and a single element, which is then split by itself.
 #pragma once
 
@@ -29,7 +29,7 @@ class ElementBatch : public Primitive {
     virtual std::unique_ptr<ElementBatch> child() const = 0;
     /// Half 0 or 1 of a single element.
     virtual void halve(unsigned number) = 0;
-    /// Sets m_diceable, and m_runs where that is false.
+    /// Sets m_diceable, and m_runs where elements are scattered.
     virtual void measure() = 0;
     /// What can be diced, once more.
     virtual std::shared_ptr<const ElementBatch> copy() const = 0;
@@ -38,9 +38,11 @@ class ElementBatch : public Primitive {
     std::uint32_t element(std::size_t i) const { return m_elements->shared().batch(m_batch)[i]; }
     /// Of a camera-space box, with the rounding of positions.
     RasterBounds raster_bounds(Bounds3f box) const;
-    /// Several elements, of these bounds at the first knot, that lie too far from each other for
-    /// one grid: buckets beside them should not meet them.  What moves is met by as many buckets
-    /// alone or together.
+    /// The wider one of what two boxes, at the first and the last knot, are bounded by in focus:
+    /// what moves, or is out of focus, is met by as many buckets alone or together.
+    RasterBounds still_bounds(const Bounds3f& first, const Bounds3f& last) const;
+    /// Several elements, of these still bounds, that lie too far from each other for one grid:
+    /// buckets beside them should not meet them.
     bool scattered(const RasterBounds& bounds) const;
     /// Of scattered elements, so many that a run of neighbours may not be: a power of two.
     unsigned runs_of(const RasterBounds& bounds) const;

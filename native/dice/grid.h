@@ -39,7 +39,7 @@ namespace granita {
 struct GridKey {
     std::uint32_t instance = 0;  ///< Instance::key
     std::uint32_t face = 0;
-    std::uint64_t path = 1;  ///< split path: 1 then one bit a split
+    std::uint64_t path = 1;  ///< split path: 1, then a bit for two pieces, two for four
     auto operator<=>(const GridKey&) const = default;
 };
 
@@ -90,7 +90,7 @@ struct Grid {
     /// Fills in the shading state and the attributes of a grid of dice() before its first shading:
     /// many grids are hidden and never shaded.  Outlives the primitive.  Empty: nothing is missing.
     std::function<void(Grid&)> shading_state;
-    /// Of small faces and narrow ribbons: makes a grid of the triangles of some places, one each,
+    /// Of small faces and ribbons: makes a grid of the triangles of some places, one each,
     /// with the shading state of their corners, the last of which repeats; of ribbons that at the
     /// place. Samples that are shaded by themselves need no other: this grid's own shading points
     /// would stand for whole faces, or for most of a pixel of hair.

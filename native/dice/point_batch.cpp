@@ -67,9 +67,9 @@ std::unique_ptr<PointBatch> PointBatch::open(std::shared_ptr<const OpenedElement
     return opened;
 }
 
-RasterBounds PointBatch::bounds_until(int end) const {
+Bounds3f PointBatch::box(int first, int end) const {
     Bounds3f box;
-    for (int k = 0; k < end; ++k) {
+    for (int k = first; k < end; ++k) {
         if (m_part.v1 > 0) {
             // A part lies between its corners; how far it bulges out of their box is bounded by
             // the sagitta of its steps' arcs.
@@ -96,11 +96,11 @@ RasterBounds PointBatch::bounds_until(int end) const {
             box.add(Vec3f(sphere.p + reach));
         }
     }
-    return raster_bounds(box);
+    return box;
 }
 
 RasterBounds PointBatch::bounds() const {
-    return bounds_until(m_elements->knot_count());
+    return raster_bounds(box(0, m_elements->knot_count()));
 }
 
 PointBatch::Rates PointBatch::rates(std::uint32_t point) const {
@@ -128,7 +128,8 @@ void PointBatch::measure() {
         rows += needed.v + 1;
     }
     if (m_count > 1) {
-        const RasterBounds still = bounds_until(1);
+        const int knots = m_elements->knot_count();
+        const RasterBounds still = still_bounds(box(0, 1), box(knots - 1, knots));
         if (scattered(still))
             m_runs = runs_of(still);
         else

@@ -31,8 +31,8 @@ class PointBatch final : public ElementBatch {
     void fill_shading_state(Grid& grid) const override;
 
   private:
-    /// Over the knots before `end`.
-    RasterBounds bounds_until(int end) const;
+    /// Over the knots from `first` to before `end`.
+    Bounds3f box(int first, int end) const;
     /// Latitudes and longitudes of a half sphere, powers of two.
     struct Rates {
         int v = 0, u = 0;

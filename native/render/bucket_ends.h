@@ -4,7 +4,7 @@
 // A node is kept by one of its buckets: of those that have not ended the one whose turn comes last.
 // Where others still want it when that one ends, it is handed on.  So a node costs the few buckets
 // that kept it: to mark each bucket's end in each node below it was a seventh of a frame of long
-// hair (docs/decisions/curves.md).
+// hair (docs/decisions/curves.md).  end() takes no lock of a node; expand() takes one of a bucket.
 #pragma once
 
 #include <atomic>
@@ -22,11 +22,11 @@ class BucketEnds {
   public:
     explicit BucketEnds(const BucketLayout& layout);
     /// `buckets`: in bucket coordinates.
-    bool all_ended(const Rect& buckets) const { return last_of(buckets) < 0; }
+    bool all_ended(const Rect& buckets) const;
     /// Until the last of its buckets has ended.  Thread-safe.
     void keep(std::shared_ptr<GeometryNode> node);
     /// The bucket will not ask for anything again.  Thread-safe, once a bucket.
-    void end(int bucket);
+    void end(int bucket) noexcept;
 
   private:
     struct Bucket {

@@ -50,7 +50,7 @@ constexpr std::size_t kLargestWave = 32;
 /// After so many hidden entries it is asked whether all that are left are hidden.
 constexpr int kHiddenEntries = 16;
 
-/// What a visit leaves to the next one of its thread, empty.
+/// What a visit leaves to the next one of its thread, for its memory.
 struct Memory {
     std::vector<Turn> heap;
     std::vector<Entry> entries;  ///< [slots]
@@ -145,14 +145,15 @@ class Visit {
         const std::size_t size = std::min(1 + m_hidden / kHiddenAWaveEntry, kLargestWave);
         m_memory.wave.clear();
         m_memory.unmade.clear();
+        m_memory.expanded.clear();
         while (m_memory.wave.size() < size && !m_heap.empty() && nearest().kind != Kind::Instance) {
             Entry entry = pop();
             if (is_hidden(entry)) continue;
-            if (!is_made(entry)) m_memory.unmade.push_back(m_memory.wave.size());
+            const bool is_made = entry.kind == Kind::Node && entry.node->is_expanded();
+            if (!is_made) m_memory.unmade.push_back(m_memory.wave.size());
+            m_memory.expanded.push_back(is_made ? expand(entry) : Expansion{});
             m_memory.wave.push_back(std::move(entry));
         }
-        m_memory.expanded.clear();
-        m_memory.expanded.resize(m_memory.wave.size());
         parallel_for(m_memory.unmade.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 m_frame.progress.check();
@@ -160,15 +161,9 @@ class Visit {
             }
         });
         for (std::size_t i = 0; i < m_memory.wave.size(); ++i) {
-            if (is_made(m_memory.wave[i])) m_memory.expanded[i] = expand(m_memory.wave[i]);
             push_pieces(m_memory.expanded[i]);
             if (m_memory.expanded[i].grid) hide(std::move(m_memory.expanded[i].grid));
         }
-    }
-
-    /// Another bucket has split or diced it.
-    static bool is_made(const Entry& entry) {
-        return entry.kind == Kind::Node && entry.node->is_expanded();
     }
 
     void push_pieces(Expansion& expansion) {

@@ -9,7 +9,7 @@
 
 namespace granita {
 
-/// The triangles of a grid of small faces or narrow ribbons in which points lie, and the points in
+/// The triangles of a grid of small faces or ribbons in which points lie, and the points in
 /// them.
 struct SeenTriangles {
     Grid grid;

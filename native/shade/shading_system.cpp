@@ -301,7 +301,7 @@ struct ShadingSystem::Impl {
         RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
         refined.points.alone = !grid.radiance.empty();  // else triangles, made for samples
         refined.points.round = kind_of(grid, scene) == GeometryKind::Curves;
-        refined.points.narrow = narrow;
+        refined.points.narrow = narrow && refined.points.round;
         if (light) light->lift(refined.points, grid.key);
         Grid out;
         out.key = grid.key;

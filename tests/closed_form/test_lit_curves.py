@@ -61,6 +61,29 @@ def test_matte_hair_in_a_furnace_has_its_albedo(radius):
     assert missing == pytest.approx(1.0 - ALBEDO, abs=0.01)
 
 
+@pytest.mark.parametrize("angle", [-0.6, 0.25, 0.6])
+@pytest.mark.parametrize("radius", [0.5, 1.4, 2.5, 3.5])
+def test_the_sun_lights_a_part_of_ribbons_that_samples_shade(radius, angle):
+    """As in a mirror below: each sample has the normal of its own place across."""
+    snapshot = s.orthographic((64, 64), samples=256, bounces=1, light_samples=4)
+    places = [(32.3, y, 20.0) for y in (-40.0, 10.0, 54.0, 104.0)]
+    curves(snapshot, places, [4], radius, diffuse(snapshot, ALBEDO))
+    angle *= np.pi
+    turned = np.eye(4)
+    turned[:3, 2] = (np.sin(angle), 0.0, -np.cos(angle))
+    turned[:3, 0] = (np.cos(angle), 0.0, np.sin(angle))
+    snapshot["lights"] = [
+        {"name": "Sun", "kind": "SUN", "world_from_light": turned[None], "energy": np.pi}
+    ]
+    seen = s.render(snapshot)["combined"][..., 0].mean(axis=0)
+    phase = abs(angle)
+    expected = ALBEDO * radius * (np.sin(phase) + (np.pi - phase) * np.cos(phase)) / 2
+    # Half a pixel has the noise of its own coverage.
+    assert seen.sum() == pytest.approx(expected, rel=0.02 if radius < 1.0 else 0.006)
+    aside = (seen * (np.arange(64) + 0.5 - 32.3)).sum() / seen.sum() / radius
+    assert radius < 1.0 or aside * np.sign(angle) > 0.3
+
+
 def test_wide_hair_that_gathers_light_is_shaded_by_its_samples():
     """Of ribbons of three pixels a pixel sees few points, whose noise all of its samples would share."""
 

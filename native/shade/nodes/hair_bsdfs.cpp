@@ -32,8 +32,8 @@ VectorSource hair_axis(NodeBuilder& b, bool mesh_by_v) {
     return out;
 }
 
-/// Of a ribbon how many rows of its points, less one, lie side by side; 0 where rays meet one, or
-/// samples a wide one, which know how far out.
+/// Of a ribbon how many rows of its points, less one, lie side by side; 1 of samples of narrow
+/// ones; 0 where rays meet one, or samples a wide one, which know how far out.
 FloatSource cells_across(NodeBuilder& b) {
     return b.geometry<float>([](const ShadingInput& in, std::size_t) {
         const ShadingPoints& points = *in.points;

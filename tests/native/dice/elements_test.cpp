@@ -2,6 +2,7 @@
 // Curves as ribbons and points as spheres (docs/hard_cases.md, cases 9, 27 and 57).
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "dice/dice_scene.h"
 #include "dice/raster_bound.h"
@@ -134,7 +135,9 @@ TEST(Curves, that_lie_side_by_side_are_cut_together) {
     // Pieces share their rows bit for bit: nothing is open but the outlines.
     EXPECT_NEAR(open_length(grids), 2.0 * length + 24 * 1.0, 1e-2);
     EXPECT_GE(static_cast<double>(micropolygons(grids)) / static_cast<double>(grids.size()), 64.0);
+    std::set<GridKey> keys;
     for (const auto& grid : grids) {
+        EXPECT_TRUE(keys.insert(grid->key).second);
         EXPECT_LE(grid->bounds.x1 - grid->bounds.x0, 64.0f);
         EXPECT_LE(grid->bounds.y1 - grid->bounds.y0, 64.0f);
     }
