@@ -59,7 +59,7 @@ double CurveBatch::end_of(std::uint32_t curve) const {
 }
 
 /// Of the part that is this batch's.
-CurveBatch::Measures CurveBatch::measures(std::uint32_t curve, bool with_ends) const {
+CurveBatch::Measures CurveBatch::measures(std::uint32_t curve) const {
     static thread_local CurveControl control;  // kept for its memory
     const double lo = start(), hi = end(curve);
     control.gather(*m_elements, curve, lo, hi);
@@ -70,15 +70,13 @@ CurveBatch::Measures CurveBatch::measures(std::uint32_t curve, bool with_ends) c
         measures.box.add(measures.last);
     }
     measures.width = control.width_pixels();
-    if (with_ends)
-        control.steps(lo, hi, static_cast<std::size_t>(m_elements->grid_size()), measures.ends);
     return measures;
 }
 
 RasterBounds CurveBatch::bounds() const {
     Bounds3f box;
     for (std::size_t i = 0; i < m_count; ++i)
-        box.add(m_measures ? measured(i).box : measures(element(m_first + i), false).box);
+        box.add(m_measures ? measured(i).box : measures(element(m_first + i)).box);
     return raster_bounds(box);
 }
 
@@ -92,27 +90,42 @@ RasterBounds CurveBatch::still_bounds() const {
 }
 
 void CurveBatch::measure() {
-    if (!m_measures) measure_curves(false);
+    if (!m_measures) measure_curves();
     const bool is_narrow = find_across();
-    if (const RasterBounds still = still_bounds(); is_narrow && scattered(still)) {
+    const RasterBounds still = still_bounds();
+    if (is_narrow && scattered(still)) {
         m_runs = runs_of(still);
     } else if (is_narrow) {
-        if (!m_has_ends) measure_curves(true);
+        if (!m_has_ends) find_ends();
         m_diceable = find_rows(static_cast<std::size_t>(m_elements->grid_size() / m_across));
     }
     if (m_diceable || m_count == 1 || is_part()) return;
-    m_pieces = is_narrow ? pieces_along() : 1;
+    m_pieces = is_narrow ? pieces_along(still) : 1;
     if (m_pieces == 1) m_across = 0;
 }
 
-void CurveBatch::measure_curves(bool with_ends) {
+void CurveBatch::measure_curves() {
     auto all = std::make_shared<std::vector<Measures>>();
     all->reserve(m_count);
-    for (std::size_t i = 0; i < m_count; ++i)
-        all->push_back(measures(element(m_first + i), with_ends));
+    for (std::size_t i = 0; i < m_count; ++i) all->push_back(measures(element(m_first + i)));
     m_measures = std::move(all);
     m_first_measured = m_first;
-    m_has_ends = with_ends;
+}
+
+void CurveBatch::find_ends() {
+    static thread_local CurveControl control;  // kept for its memory
+    auto all = std::make_shared<std::vector<Measures>>();
+    all->reserve(m_count);
+    for (std::size_t i = 0; i < m_count; ++i) {
+        const std::uint32_t curve = element(m_first + i);
+        const double lo = start(), hi = end(curve);
+        control.gather(*m_elements, curve, lo, hi);
+        std::vector<double>& ends = all->emplace_back(measured(i)).ends;
+        control.steps(lo, hi, static_cast<std::size_t>(m_elements->grid_size()), ends);
+    }
+    m_measures = std::move(all);
+    m_first_measured = m_first;
+    m_has_ends = true;
 }
 
 /// Into how many parts these curves are cut together, a power of two: so that parts are as long as
@@ -120,7 +133,7 @@ void CurveBatch::measure_curves(bool with_ends) {
 ///
 /// Halves of long curves that lie side by side stay as long: cut down to single curves, each of
 /// them was visited by every bucket along its way.
-unsigned CurveBatch::pieces_along() const {
+unsigned CurveBatch::pieces_along(const RasterBounds& all) const {
     const std::uint32_t first = element(m_first);
     float length = 0.0f;
     for (std::size_t i = 0; i < m_count; ++i) {
@@ -130,7 +143,6 @@ unsigned CurveBatch::pieces_along() const {
         length += std::max(b.x1 - b.x0, b.y1 - b.y0);
     }
     length /= static_cast<float>(m_count);
-    const RasterBounds all = still_bounds();
     if (!(2.0f * length >= std::max(all.x1 - all.x0, all.y1 - all.y0))) return 1;
     return std::bit_ceil(
         static_cast<unsigned>(std::ceil(std::clamp(length / kRegion, 1.0f, kMostPieces))));

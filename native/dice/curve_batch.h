@@ -47,18 +47,21 @@ class CurveBatch final : public ElementBatch {
         double width = 0.0;         ///< pixels, the largest
         std::vector<double> ends;   ///< of the steps that dice it; more than a grid holds: too many
     };
-    Measures measures(std::uint32_t curve, bool with_ends) const;
+    /// Without ends.
+    Measures measures(std::uint32_t curve) const;
     const Measures& measured(std::size_t i) const {
         return (*m_measures)[m_first - m_first_measured + i];
     }
-    void measure_curves(bool with_ends);
+    void measure_curves();
+    void find_ends();
     void forget_measures() {
         m_measures.reset();
         m_has_ends = false;
     }
     RasterBounds still_bounds() const;
     bool find_across();
-    unsigned pieces_along() const;
+    /// @param all still_bounds()
+    unsigned pieces_along(const RasterBounds& all) const;
     std::unique_ptr<CurveBatch> copy_of_run() const;
     bool find_rows(std::size_t most);
     double end_of(std::uint32_t curve) const;

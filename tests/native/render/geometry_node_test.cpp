@@ -41,83 +41,81 @@ struct Strip : Primitive {
     int& count;
 };
 
-std::shared_ptr<GeometryNode> node_of(float lo, float hi, float leaf, int& alive,
-                                      const BucketLayout& layout) {
-    auto strip = std::make_unique<Strip>(lo, hi, leaf, alive);
-    const Rect buckets = layout.range(strip->bounds());
-    return std::make_shared<GeometryNode>(std::move(strip), buckets);
-}
+/// Four buckets in a row, none of which has ended.
+struct Row {
+    const BucketLayout layout{{0, 0, 64, 16}, 16};
+    BucketEnds ends{layout};
+    Statistics statistics;
+    int alive = 0;  ///< strips
+
+    std::shared_ptr<GeometryNode> node(float lo, float hi, float leaf) {
+        auto strip = std::make_unique<Strip>(lo, hi, leaf, alive);
+        const Rect buckets = layout.range(strip->bounds());
+        return std::make_shared<GeometryNode>(std::move(strip), buckets);
+    }
+    const GeometryNode::Content& expand(GeometryNode& node) {
+        return node.expand(layout, ends, statistics);
+    }
+};
 
 TEST(GeometryNode, dices_once_for_all_buckets_and_frees_after_the_last) {
-    const BucketLayout layout({0, 0, 64, 16}, 16);
-    BucketEnds ends(layout);
-    Statistics statistics;
-    int alive = 0;
-    const auto node = node_of(1.0f, 63.0f, 100.0f, alive, layout);
+    Row row;
+    const auto node = row.node(1.0f, 63.0f, 100.0f);
     std::weak_ptr<SharedGrid> grid;
     for (int bucket = 0; bucket < 4; ++bucket) {
-        grid = node->expand(layout, ends, statistics).grid;
+        grid = row.expand(*node).grid;
         EXPECT_FALSE(grid.expired());
-        ends.end(bucket);
+        row.ends.end(bucket);
     }
     EXPECT_TRUE(grid.expired());
-    EXPECT_EQ(statistics.get(Counter::GridsDiced), 1u);
-    EXPECT_EQ(alive, 0);
+    EXPECT_EQ(row.statistics.get(Counter::GridsDiced), 1u);
+    EXPECT_EQ(row.alive, 0);
 }
 
 TEST(GeometryNode, pieces_are_freed_with_their_own_last_bucket) {
-    const BucketLayout layout({0, 0, 64, 16}, 16);
-    BucketEnds ends(layout);
-    Statistics statistics;
-    int alive = 0;
-    const auto node = node_of(0.5f, 63.5f, 32.0f, alive, layout);
-    ends.end(0);  // before the split: the left piece is then wanted by bucket 1 and 2 alone
-    const auto children = node->expand(layout, ends, statistics).children;
+    Row row;
+    const auto node = row.node(0.5f, 63.5f, 32.0f);
+    row.ends.end(0);  // before the split: the left piece is then wanted by bucket 1 and 2 alone
+    const auto children = row.expand(*node).children;
     ASSERT_EQ(children.size(), 2u);
-    const std::weak_ptr<SharedGrid> left = children[0].node->expand(layout, ends, statistics).grid;
+    const std::weak_ptr<SharedGrid> left = row.expand(*children[0].node).grid;
     EXPECT_FALSE(left.expired());
-    ends.end(1);
+    row.ends.end(1);
     EXPECT_FALSE(left.expired());  // x = 32 touches bucket 2
-    ends.end(2);
+    row.ends.end(2);
     EXPECT_TRUE(left.expired());
-    const std::weak_ptr<SharedGrid> right = children[1].node->expand(layout, ends, statistics).grid;
+    const std::weak_ptr<SharedGrid> right = row.expand(*children[1].node).grid;
     EXPECT_FALSE(right.expired());
-    ends.end(3);
+    row.ends.end(3);
     EXPECT_TRUE(right.expired());
-    EXPECT_EQ(statistics.get(Counter::PrimitivesSplit), 1u);
+    EXPECT_EQ(row.statistics.get(Counter::PrimitivesSplit), 1u);
 }
 
 TEST(GeometryNode, what_no_bucket_will_ask_for_is_not_made) {
-    const BucketLayout layout({0, 0, 64, 16}, 16);
-    BucketEnds ends(layout);
-    Statistics statistics;
-    int alive = 0;
-    const auto node = node_of(0.5f, 63.5f, 31.5f, alive, layout);
-    ends.end(0);
-    ends.end(1);
-    ends.end(2);
-    const auto& children = node->expand(layout, ends, statistics).children;
+    Row row;
+    const auto node = row.node(0.5f, 63.5f, 31.5f);
+    row.ends.end(0);
+    row.ends.end(1);
+    row.ends.end(2);
+    const auto& children = row.expand(*node).children;
     ASSERT_EQ(children.size(), 1u);
     EXPECT_EQ(children[0].buckets, (Rect{2, 0, 4, 1}));
-    EXPECT_EQ(alive, 1);
+    EXPECT_EQ(row.alive, 1);
 }
 
 TEST(BucketEnds, are_taken_in_any_order) {
-    const BucketLayout layout({0, 0, 64, 16}, 16);
     std::vector<int> order = {0, 1, 2, 3};
     do {
-        BucketEnds ends(layout);
-        Statistics statistics;
-        int alive = 0;
-        const auto node = node_of(1.0f, 63.0f, 100.0f, alive, layout);
-        const std::weak_ptr<SharedGrid> grid = node->expand(layout, ends, statistics).grid;
+        Row row;
+        const auto node = row.node(1.0f, 63.0f, 100.0f);
+        const std::weak_ptr<SharedGrid> grid = row.expand(*node).grid;
         for (int i = 0; i < 4; ++i) {
             EXPECT_FALSE(grid.expired());
-            EXPECT_FALSE(ends.all_ended(node->buckets()));
-            ends.end(order[static_cast<std::size_t>(i)]);
+            EXPECT_FALSE(row.ends.all_ended(node->buckets()));
+            row.ends.end(order[static_cast<std::size_t>(i)]);
         }
         EXPECT_TRUE(grid.expired());
-        EXPECT_TRUE(ends.all_ended(node->buckets()));
+        EXPECT_TRUE(row.ends.all_ended(node->buckets()));
     } while (std::ranges::next_permutation(order).found);
 }
 
