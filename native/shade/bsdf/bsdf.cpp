@@ -29,6 +29,7 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
         lobe.kind = source.kind;
         lobe.distribution = source.distribution;
         lobe.separable_masking = source.separable_masking;
+        lobe.smooth_color = source.smooth_color;
         lobe.cosine_bumps = source.cosine_bumps;
         lobe.retro_alone = source.retro_alone;
         lobe.fresnel = source.fresnel;
@@ -139,7 +140,9 @@ BsdfValue PointBsdf::albedo() const {
         const Vec3f along_view =
             lobe.kind == LobeKind::Diffuse ? lobe.weight
             : lobe.shape                   ? lobe.weight * lobe.shape->albedo()
-                         : lobe.weight * passed(lobe, lobe.cos_wi) * lobe.directional_albedo;
+            : lobe.kind == LobeKind::Glossy
+                ? lobe.weight * seen_fresnel(lobe) * lobe.directional_albedo
+                : lobe.weight * passed(lobe, lobe.cos_wi) * lobe.directional_albedo;
         albedo.part(part_of(lobe.kind)) += along_view;
     }
     return albedo;

@@ -101,7 +101,8 @@ class PointBsdf {
         LobeKind kind;
         Distribution distribution;
         FresnelKind fresnel;
-        bool sharp = false, separable_masking = false, cosine_bumps = false, retro_alone = false;
+        bool sharp = false, separable_masking = false, smooth_color = false, cosine_bumps = false,
+             retro_alone = false;
         Vec3f weight, normal;
         Vec3f f0{1.0f}, f90{1.0f}, dip{0.0f};
         float ior = 1.0f, f0_real = 0.0f;
@@ -147,6 +148,8 @@ class PointBsdf {
     void compensate(Prepared& lobe, float made, const GgxAlbedo& albedo) const;
     Vec3f fresnel(const Prepared& lobe, float cos_half) const;
     Vec3f film_fresnel(const Prepared& lobe, float cos_half) const;
+    /// The mean of what the view sees: for passes of colour.
+    Vec3f seen_fresnel(const Prepared& lobe) const;
     Vec3f evaluate_glossy(const Prepared& lobe, const Vec3f& wo) const;
     float pdf_glossy(const Prepared& lobe, const Vec3f& wo) const;
     // refraction_lobe.cpp

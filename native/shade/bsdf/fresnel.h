@@ -25,6 +25,11 @@ inline float f0_from_ior(float ior) {
     return ratio * ratio;
 }
 
+inline float ior_from_f0(float f0) {
+    const float root = std::sqrt(glm::clamp(f0, 0.0f, 0.99f));
+    return (1.0f + root) / (1.0f - root);
+}
+
 /// Schlick's (1 - cos)^5.
 inline float schlick_weight(float cosine) {
     const float m = glm::clamp(1.0f - cosine, 0.0f, 1.0f);

@@ -2,6 +2,7 @@
 #include "shade/bsdf/bsdf.h"
 #include "shade/bsdf/bsdf_albedo.h"
 #include "shade/bsdf/fresnel.h"
+#include "shade/bsdf/fresnel_albedo.h"
 #include "shade/bsdf/microfacet.h"
 
 namespace granita {
@@ -83,6 +84,19 @@ Vec3f PointBsdf::fresnel(const Prepared& lobe, float cos_half) const {
             break;
     }
     return Vec3f(1.0f);
+}
+
+Vec3f PointBsdf::seen_fresnel(const Prepared& lobe) const {
+    // Of films and conductors Cycles takes that by the normal.
+    const bool is_smooth = lobe.smooth_color || lobe.film.is_there();
+    const float roughness = std::sqrt(lobe.alpha);
+    if (!is_smooth && lobe.fresnel == FresnelKind::Dielectric)
+        return mix(lobe.f0, lobe.f90, dielectric_albedo(roughness, lobe.cos_wi, lobe.ior));
+    if (!is_smooth && lobe.fresnel == FresnelKind::Schlick)
+        return mix(lobe.f0, lobe.f90, schlick_albedo(roughness, lobe.cos_wi));
+    if (!is_smooth && lobe.fresnel == FresnelKind::F82Tint)
+        return mix(lobe.f0, Vec3f(1.0f), schlick_albedo(roughness, lobe.cos_wi));
+    return fresnel(lobe, lobe.cos_wi);
 }
 
 void PointBsdf::stretch(Prepared& lobe, const Vec3f& tangent, float aspect) const {

@@ -108,6 +108,7 @@ struct Lobe {
     bool multiscatter = false;       ///< glossy: energy compensation as Cycles' MULTI_GGX
     bool separable_masking = false;  ///< glossy: Smith's masking of view and light multiplied, as
                                      ///< Cycles before Blender 4; else height-correlated
+    bool smooth_color = false;       ///< glossy: its pass of colour is that of a smooth surface
     bool burley = false;       ///< diffuse: Burley's (2012) retro-reflection with `roughness`, as
                                ///< Principled before Blender 4
     bool retro_alone = false;  ///< of that what goes back alone

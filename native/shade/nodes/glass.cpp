@@ -91,6 +91,7 @@ void add_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& glass
     cover(sent, seen_from(b, glass.film, glass.ior));
     LobeSource reflected = sent;
     reflected.kind = LobeKind::Glossy;
+    reflected.smooth_color = !b.since(4, 0);
     reflected.weight = product(b, weight, glass.reflected);
     surface.add_lobe(reflected);
     surface.add_lobe(sent);

@@ -16,8 +16,8 @@
 #include "shade/bsdf/fresnel.h"
 #include "shade/bsdf/sheen_fit.h"
 #include "shade/nodes/anisotropy.h"
-#include "shade/nodes/dielectric_albedo.h"
 #include "shade/nodes/glass.h"
+#include "shade/nodes/layer_albedo.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/principled_coat.h"
 #include "shade/nodes/scalar_math.h"
@@ -76,6 +76,7 @@ void add_first_glass(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
     sent.ior = glass.ior;
     LobeSource reflected = sent;
     reflected.kind = LobeKind::Glossy;
+    reflected.smooth_color = true;
     reflected.fresnel = FresnelKind::Dielectric;
     reflected.roughness = c.roughness;
     reflected.f0 = b.map<Vec3f>(
@@ -228,7 +229,7 @@ void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common&
 
     const FloatSource tint = b.number("Specular Tint");
     LobeSource specular = glossy_lobe(c);
-    specular.separable_masking = true;
+    specular.separable_masking = specular.smooth_color = true;
     specular.fresnel = FresnelKind::Dielectric;
     specular.ior = b.map<float>(
         [](float s) { return 2.0f / (1.0f - std::sqrt(0.08f * std::max(s, 0.0f))) - 1.0f; },

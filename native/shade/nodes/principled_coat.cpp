@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "shade/bsdf/fresnel.h"
-#include "shade/nodes/dielectric_albedo.h"
+#include "shade/nodes/layer_albedo.h"
 #include "shade/nodes/scalar_math.h"
 
 namespace granita {
@@ -22,13 +22,16 @@ Vec3f absorbed(const Vec3f& tint, float cosine, float ior) {
 }
 
 VectorSource let_through(NodeBuilder& b, const LobeSource& coat, const FloatSource& amount) {
-    const bool multiscatter = coat.multiscatter;
+    const bool is_smooth = coat.smooth_color, multiscatter = coat.multiscatter;
     const VectorSource passed = b.map<Vec3f>(
-        [multiscatter](float weight, float ior, float roughness, const Vec3f& n,
-                       const Vec3f& view) {
-            const Vec3f albedo = layer_albedo(Vec3f(f0_from_ior(ior)), ior, roughness,
-                                              glm::dot(n, view), multiscatter);
-            return Vec3f(saturate(1.0f - weight * albedo.x));
+        [is_smooth, multiscatter](float weight, float ior, float roughness, const Vec3f& n,
+                                  const Vec3f& view) {
+            const float cosine = glm::dot(n, view);
+            const float albedo =
+                is_smooth
+                    ? fresnel_dielectric(cosine, ior)
+                    : layer_albedo(Vec3f(f0_from_ior(ior)), ior, roughness, cosine, multiscatter).x;
+            return Vec3f(saturate(1.0f - weight * albedo));
         },
         amount, coat.ior, coat.roughness, coat.normal, b.view());
     const VectorSource tint = b.map<Vec3f>([](const Vec3f& c) { return glm::max(c, Vec3f(0.0f)); },
@@ -50,7 +53,8 @@ VectorSource add_coat(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource
     const bool first_generation = !b.since(4, 0);
     LobeSource lobe;
     lobe.kind = LobeKind::Glossy;
-    lobe.multiscatter = b.since(4, 5);  // whatever the node's distribution
+    lobe.multiscatter = b.since(4, 5);   // whatever the node's distribution
+    lobe.smooth_color = !b.since(4, 5);  // and takes as much from what is below
     lobe.separable_masking = first_generation;
     if (first_generation) lobe.distribution = Distribution::Gtr1;
     lobe.fresnel = FresnelKind::Dielectric;
