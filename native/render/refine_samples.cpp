@@ -8,17 +8,25 @@
 #include "base/stage_timer.h"
 #include "hider/resolve/surface_interpolator.h"
 #include "render/sample_place.h"
-#include "scene/channels.h"
 
 namespace granita {
 namespace {
 
 /// Points that are shaded at once.
 constexpr std::size_t kBatch = 1024;
+/// Least chance of a layer that all of the light reaches: its own opacity may be more than that
+/// between its corners.
+constexpr float kLeastChance = 1.0f / 16.0f;
+
+constexpr std::uint64_t kStarts = 0x6c61796572ULL;
+
+float mean_of(const Vec3f& v) {
+    return (v.x + v.y + v.z) / 3.0f;
+}
 
 bool is_within(const Vec3f& opacity, const OpacityBounds& bounds) {
-    const float mean = (opacity.x + opacity.y + opacity.z) / 3.0f;
-    return std::min({opacity.x, opacity.y, opacity.z}) >= bounds.least && mean <= bounds.most;
+    return std::min({opacity.x, opacity.y, opacity.z}) >= bounds.least &&
+           mean_of(opacity) <= bounds.most;
 }
 
 }  // namespace
@@ -30,7 +38,8 @@ BucketRefinement::BucketRefinement(Frame& frame, const Hider& hider,
       m_hider(hider),
       m_pool(hider.pool()),
       m_stores(stores),
-      m_has_channels(!ChannelSet(frame.scene.options).empty()),
+      m_channels(frame.scene.options),
+      m_starts(SobolPoints(frame.scene.options.seed + kStarts).shuffled(kStarts)),
       m_times(stores.size()),
       m_tiles(stores.size()) {
     const StageTimer timer(frame.statistics, Stage::Shade);
@@ -126,12 +135,32 @@ void BucketRefinement::find_behind(std::uint32_t tile) {
 
 void BucketRefinement::find_lists(std::uint32_t tile) {
     const FragmentLists& lists = m_stores[tile].lists;
+    const int samples = m_hider.tile_samples(tile).samples;
     for (std::uint32_t slot = 0; slot < lists.slots() && !lists.empty(); ++slot)
         for (std::uint32_t k = 0; k < lists.counts()[slot]; ++k)
             if (is_unsettled(lists.at(slot, k).id)) {
-                m_open.push_back({tile, slot, 0});
+                const auto place = place_of(m_stores[tile].tile, lists.sample(slot), samples);
+                m_open.push_back({tile, slot, 0, LayerChoice(m_starts(place).x)});
                 break;
             }
+}
+
+/// Whether an unsettled layer is to be shaded, and what its light counts.
+bool BucketRefinement::wants_layer(OpenList& list, const SurfacePoint& at, float& weight) const {
+    weight = 1.0f;
+    if (at.grid->additive || !m_frame.shading.leaves_to_samples(*at.grid)) return true;
+    const Vec3f opacity = glm::clamp(at(at.grid->opacity), 0.0f, 1.0f);
+    const float reached = mean_of(list.transmission);
+    const float seen = mean_of(list.transmission * opacity);
+    if (reached <= 0.0f)
+        weight = 0.0f;
+    else
+        weight = list.choice.weight(std::max(seen, kLeastChance * reached));
+    const bool is_first = !list.has_first &&
+                          m_channels.vertex_width() > m_channels.layers_width() &&
+                          mean_of(opacity) >= m_frame.scene.options.pass_alpha_threshold;
+    list.has_first = list.has_first || is_first;
+    return weight > 0.0f || is_first;
 }
 
 /// Goes on to the list's next layer that is to be shaded; false where none is left that is seen.
@@ -145,8 +174,10 @@ bool BucketRefinement::find_layer(std::size_t list) {
         if (largest(t) <= ends) return false;
         const Fragment fragment = lists.at(open.slot, open.next);
         const SurfacePoint at = point_of(fragment, m_pool);
-        if (is_unsettled(fragment.id)) {
+        float weight;
+        if (is_unsettled(fragment.id) && wants_layer(open, at, weight)) {
             want(fragment.id, open.tile, lists.sample(open.slot), list, at);
+            m_wanted.back().weight = weight;
             return true;
         }
         open.transmission *= Vec3f(1.0f) - glm::clamp(at(at.grid->opacity), 0.0f, 1.0f);
@@ -195,28 +226,38 @@ void BucketRefinement::keep_behind() {
                 m_tiles[next->tile].add(next->sample, m_stores[next->tile].id.size(), grid, v);
 }
 
-/// A layer stays as it was where its opacity is not what the ends of lists have gone by.
+/// A layer stays as it was where its opacity is not what the ends of lists have gone by.  What only
+/// samples shade has that of its corners.
 void BucketRefinement::keep_layers() {
     std::vector<Grid> shaded = shade();
     auto next = m_wanted.begin();
-    for (const Grid& grid : shaded)
+    for (Grid& grid : shaded)
         for (int v = 0; v < grid.vertex_count(); ++v, ++next) {
             OpenList& open = m_open[next->list];
             const FragmentLists& lists = m_stores[open.tile].lists;
             const Fragment fragment = lists.at(open.slot, open.next);
             const SurfacePoint at = point_of(fragment, m_pool);
             Vec3f opacity = at(at.grid->opacity);
-            if (is_within(grid.opacity[v], m_pool.opacity(fragment.id))) {
-                opacity = grid.opacity[v];
+            if (grid.opacity.empty() || is_within(grid.opacity[v], m_pool.opacity(fragment.id))) {
+                if (!grid.opacity.empty()) opacity = grid.opacity[v];
+                weigh(grid, v, next->weight);
                 m_tiles[open.tile].add_layer(lists, open.slot, open.next,
                                              look_of(opacity, grid.radiance[v], at.grid->holdout),
-                                             m_has_channels ? &grid : nullptr, v);
+                                             m_channels.empty() ? nullptr : &grid, v);
             }
             open.transmission *= Vec3f(1.0f) - glm::clamp(opacity, 0.0f, 1.0f);
             ++open.next;
         }
     // Only channels are read again.
-    if (m_has_channels) m_shaded.push_back(std::move(shaded));
+    if (!m_channels.empty()) m_shaded.push_back(std::move(shaded));
+}
+
+/// Radiance, and what passes add up as it.
+void BucketRefinement::weigh(Grid& grid, int vertex, float weight) const {
+    if (weight == 1.0f) return;
+    grid.radiance[vertex] *= weight;
+    float* const row = grid.channels.data() + vertex * m_channels.vertex_width();
+    for (int c = 0; c < m_channels.layers_width(); ++c) row[c] *= weight;
 }
 
 }  // namespace granita

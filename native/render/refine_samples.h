@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "hider/resolve/refined_samples.h"
+#include "render/layer_choice.h"
 #include "render/shade_seen.h"
+#include "scene/channels.h"
 
 namespace granita {
 
@@ -28,11 +30,14 @@ class BucketRefinement {
         std::uint32_t tile, sample;
         std::size_t list;  ///< in m_open, of layers
         RefinedPoint point;
+        float weight = 1.0f;  ///< of its light
     };
     /// A list, as far as it is known how much is seen behind its first `next` layers.
     struct OpenList {
         std::uint32_t tile, slot, next;
+        LayerChoice choice;
         Vec3f transmission{1.0f};
+        bool has_first = false;  ///< is past the layer that passes of the first surface show
     };
     bool is_unsettled(SurfaceId id) const;
     bool moves(SurfaceId id) const { return m_pool.grid(m_pool.slot(id)).motion; }
@@ -41,6 +46,8 @@ class BucketRefinement {
     void find_behind(std::uint32_t tile);
     void find_lists(std::uint32_t tile);
     bool find_layer(std::size_t list);
+    bool wants_layer(OpenList& list, const SurfacePoint& at, float& weight) const;
+    void weigh(Grid& grid, int vertex, float weight) const;
     void find_times(std::uint32_t tile);
     std::vector<Grid> shade();
     void keep_behind();
@@ -57,7 +64,8 @@ class BucketRefinement {
     const Hider& m_hider;
     const GridPool& m_pool;
     const std::vector<TileStore>& m_stores;
-    bool m_has_channels;
+    ChannelSet m_channels;
+    SobolPoints m_starts;                   ///< of lists' choices
     std::vector<std::uint8_t> m_unsettled;  ///< [slots] has any such micropolygon
     std::vector<TileTimes> m_times;         ///< [tiles]
     std::vector<Wanted> m_wanted;           ///< by grid, once they are shaded

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/crash_report.h"
 #include "base/stage_timer.h"
@@ -292,16 +293,16 @@ struct ShadingSystem::Impl {
         return out;
     }
 
-    Grid refine_lit(const Grid& grid, std::span<const RefinedPoint> wanted, float point_size,
-                    bool narrow = false) const {
-        if (grid.triangles) {
-            const SeenTriangles seen(grid, wanted);
-            return refine_lit(seen.grid, seen.points, point_size, grid.n_v == 1);
-        }
+    Grid refine_lit(const Grid& from, std::span<const RefinedPoint> wanted,
+                    float point_size) const {
+        std::optional<SeenTriangles> seen;
+        if (from.triangles) wanted = seen.emplace(from, wanted).points;
+        const Grid& grid = seen ? seen->grid : from;
         RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
-        refined.points.alone = !grid.radiance.empty();  // else triangles, made for samples
         refined.points.round = kind_of(grid, scene) == GeometryKind::Curves;
-        refined.points.narrow = narrow && refined.points.round;
+        refined.points.narrow = refined.points.round && from.n_v == 1;
+        // Small faces share what one bucket sees; ribbons' noise would fall by 3 %, bits differ.
+        refined.points.alone = !grid.radiance.empty() || refined.points.round;
         if (light) light->lift(refined.points, grid.key);
         Grid out;
         out.key = grid.key;
@@ -324,7 +325,7 @@ struct ShadingSystem::Impl {
 
     /// Whether each sample may say all of what it sees of the grid.
     bool may_leave(const Grid& grid) const {
-        return refines && reflects(grid.material) && !grid.opacity_varies && !grid.holdout;
+        return refines && reflects(grid.material) && !grid.holdout;
     }
 
     /// Whether some of the grid's micropolygons look otherwise at some time of the shutter than
@@ -362,10 +363,6 @@ struct ShadingSystem::Impl {
         return true;
     }
 
-    PointPaths paths(const Grid& grid, const ShadingPoints& points) const {
-        return light && light->varies() ? PointPaths(grid, scene, points) : PointPaths();
-    }
-
     void shade_anew(Grid& grid, bool lit, float sharpness) const {
         ShadingPoints points = shading_points(grid, camera);
         const bool wants_refining = can_refine(grid);
@@ -373,11 +370,12 @@ struct ShadingSystem::Impl {
         points.share *= fewer;
         points.round = kind_of(grid, scene) == GeometryKind::Curves;
         if (light && lit) light->lift(points, grid.key);
-        const PointPaths at = paths(grid, points);
+        const PointPaths at =
+            light && light->varies() ? PointPaths(grid, scene, points) : PointPaths();
         if (bounces && lit)
             look_at(points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr,
                     std::min(1.0f, edge_light_share(scene.options.samples) / narrow));
-        if (wants_refining && may_leave(grid) && !scatters(grid.material) &&
+        if (wants_refining && may_leave(grid) && !grid.opacity_varies && !scatters(grid.material) &&
             pays_by_samples(grid, points, scene, *light))
             return leave_to_samples(grid, channels.vertex_width());
         std::vector<float> noise(wants_refining ? points.count : 0, 0.0f);
@@ -445,23 +443,25 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
     if (!opacity_varies(grid.material)) return;
     const ShadingPoints points = shading_points(grid, m_impl->camera);
     m_impl->shade_opacity(grid, m_impl->input(grid, points));
-    grid.opacity_varies =
-        (m_impl->material(grid.material).has_lines() && m_impl->can_refine(grid)) ||
-        std::ranges::any_of(grid.opacity, [](const Vec3f& o) { return o != Vec3f(1.0f); });
-    grid.additive = m_impl->material(grid.material).radiance.sources.additive;
-    if (grid.opacity_varies && m_impl->can_refine(grid)) {
+    const CompiledSurface& surface = m_impl->material(grid.material);
+    const bool refines = m_impl->can_refine(grid), has_lines = refines && surface.has_lines();
+    const auto is_open = [](const Vec3f& opacity) { return opacity != Vec3f(1.0f); };
+    grid.opacity_varies = has_lines || std::ranges::any_of(grid.opacity, is_open);
+    grid.additive = surface.radiance.sources.additive;
+    if (grid.opacity_varies && refines) {
         const float sharpness = m_impl->sharpness(grid);
-        grid.unsettled_opacity =
-            m_impl->material(grid.material).has_lines() || m_impl->opacity_changes_in_time(grid)
-                ? all_micropolygons(grid)
-                : unsettled_opacity(grid, m_impl->thresholds.difference / (sharpness * sharpness));
+        const float threshold = m_impl->thresholds.difference / (sharpness * sharpness);
+        grid.unsettled_opacity = has_lines || m_impl->opacity_changes_in_time(grid)
+                                     ? all_micropolygons(grid)
+                                     : unsettled_opacity(grid, threshold);
     }
     m_impl->statistics.add(Counter::GridsOpacityShaded);
 }
 
 bool ShadingSystem::leaves_to_samples(const Grid& grid) const {
     // Wide ribbons share few points with each pixel, whose noise is that of the light they gather.
-    return grid.triangles && m_impl->may_leave(grid) && (grid.n_v == 1 || m_impl->bounces);
+    const bool pays = grid.disjoint ? !grid.opacity_varies : grid.n_v == 1 || m_impl->bounces;
+    return grid.triangles && pays && m_impl->may_leave(grid);
 }
 
 void ShadingSystem::shade_radiance(Grid& grid) const {
