@@ -293,7 +293,10 @@ Grid CurveBatch::triangles(const Grid& from, std::span<const GridPlace> wanted) 
         across.push_back(Vec3f(2.0 * side.half / static_cast<double>(m_across)));
         const std::size_t i = normals.size() - 1, n = wanted.size();
         const std::vector<Vec3f>& p = grid.shading_p();
-        along.push_back(p[i + n] - p[second ? i + 3 * n : i]);
+        // As long as the step; its edges lean where the ribbon tapers.
+        const Vec3f step_along = p[i + n] - p[second ? i + 3 * n : i];
+        const Vec3d way = normalize_or(side.along, Vec3d(step_along));
+        along.push_back(Vec3f(way) * glm::length(step_along));
         places.push_back(control.place(t));
         steps.push_back(control.place(next.t));
     }
@@ -348,6 +351,7 @@ CurveBatch::Side CurveBatch::side_at(const CurveControl& control, double t) cons
         at.side += ribbon.side * weight;
         facing += ribbon.facing * weight;
         at.half += ribbon.across * weight;
+        at.along += ribbon.along * weight;
     }
     at.front = normalize_or(facing, Vec3d(0.0, 0.0, -1.0));
     return at;

@@ -125,18 +125,23 @@ RibbonRow CurveControl::row(int knot, double t, bool with_facing) const {
     // A curve that runs straight to the eye has no side of its own.
     const bool seen_along =
         !(glm::dot(across, across) > 1e-18 * glm::dot(view, view) * glm::dot(along, along));
-    row.side =
+    Vec3d edge =
         seen_along ? any_perpendicular(glm::length(view) > 0.0 ? view : along) : unit(across);
-    row.across = row.side * here.radius;
+    row.across = edge * here.radius;
+    row.side = edge;
     if (const UnevenScale& scale = m_elements->uneven_scale(knot); scale.is_uneven && !seen_along) {
-        // A ribbon of object space that faces the eye there, taken to the camera's as a whole.
-        const Vec3d flat =
-            unit(glm::cross(scale.object_from_camera * view, scale.object_from_camera * along));
-        row.across = scale.camera_from_object * flat * (here.radius / scale.largest);
-        row.side = unit(row.across);
+        // A ribbon of object space that faces the eye there, taken to the camera's as a whole, and
+        // its tube's normals with it.
+        const Vec3d tangent = scale.object_from_camera * along;
+        const Vec3d flat = unit(glm::cross(scale.object_from_camera * view, tangent));
+        const Vec3d front = unit(glm::cross(tangent, flat));
+        edge = scale.camera_from_object * flat;
+        row.across = edge * (here.radius / scale.largest);
+        row.side = flat * scale.object_from_camera / glm::length(front * scale.object_from_camera);
     }
     if (!with_facing) return row;
-    row.facing = unit(glm::cross(along, row.side));
+    row.along = along;
+    row.facing = unit(glm::cross(along, edge));
     if (seen_along || glm::length(row.facing) == 0.0) row.facing = unit(-view);
     if (glm::dot(row.facing, view) > 0.0) row.facing = -row.facing;
     return row;

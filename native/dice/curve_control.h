@@ -17,8 +17,11 @@ namespace granita {
 struct RibbonRow {
     Vec3d center{0.0};
     Vec3d across{0.0};  ///< from the centre to the ribbon's edge
-    Vec3d side{0.0};    ///< the same, of unit length
+    Vec3d along{0.0};   ///< the axis's way, of any length
     Vec3d facing{0.0};  ///< unit, the ribbon's normal, towards the eye
+    /// The tube's normal at the edge, as long as that of `facing` at the centre: a unit, but where
+    /// its scale is uneven.
+    Vec3d side{0.0};
 };
 
 class CurveControl {

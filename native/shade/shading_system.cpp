@@ -459,9 +459,8 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 }
 
 bool ShadingSystem::leaves_to_samples(const Grid& grid) const {
-    // Wide ribbons share few points with each pixel, whose noise is that of the light they gather.
-    const bool pays = grid.disjoint ? !grid.opacity_varies : grid.n_v == 1 || m_impl->bounces;
-    return grid.triangles && pays && m_impl->may_leave(grid);
+    // Wide ribbons share few points with each pixel.
+    return grid.triangles && !(grid.disjoint && grid.opacity_varies) && m_impl->may_leave(grid);
 }
 
 void ShadingSystem::shade_radiance(Grid& grid) const {

@@ -231,3 +231,16 @@ def test_principled_hair_is_random_by_itself(scene, render, linked):
     sun_of(scene, (0.9, 0.2, 0.0))
     scene_parts.add_camera(scene, (0, -5, 1), ortho_scale=3.0).rotation_euler.x = 1.3
     agree_in_mean(scene, render)
+
+
+@pytest.mark.parametrize("scale", [(1.0, 0.4, 1.0), (0.5, 1.0, 1.0)])
+def test_hair_under_uneven_scale_is_lit_alike(scene, render, scale):
+    """Normals of its tubes are those of ellipses."""
+    thing = furry(scene, count=60, root_radius=0.12, tip_radius=0.03)
+    thing.show_instancer_for_render = False
+    thing.visible_shadow = False
+    thing.scale = scale
+    thing.data.materials.append(scene_parts.matte())
+    sun_of(scene, (0.9, 0.5, 0.6))
+    scene_parts.add_camera(scene, (0, -5, 1), ortho_scale=3.0).rotation_euler.x = 1.3
+    agree_in_mean(scene, render, 0.02)

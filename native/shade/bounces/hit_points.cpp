@@ -81,8 +81,9 @@ void HitPoints::fill_ribbon(std::size_t i, const MetPath& met) {
     const Mat3d world_from_object(met.frame->world_from_object);
     const Vec3d direction(hit.direction);
     const CurveSection at = curve_section(*hit.elements, hit.place, met.time);
-    const Vec3d flat = glm::cross(Mat3d(met.frame->object_from_world) * direction, at.along);
-    const Vec3d edge = world_from_object * (normalize_or(flat, Vec3d(0.0)) * at.radius);
+    const Vec3d flat = normalize_or(
+        glm::cross(Mat3d(met.frame->object_from_world) * direction, at.along), Vec3d(0.0));
+    const Vec3d edge = world_from_object * (flat * at.radius);
     const Vec3d along = world_from_object * at.along;
     const double radius = glm::length(edge), length = glm::length(along);
     if (!(radius > 0.0 && length > 0.0)) return;  // seen along, or nothing: as it is
@@ -90,7 +91,11 @@ void HitPoints::fill_ribbon(std::size_t i, const MetPath& met) {
     Vec3d front = normalize_or(glm::cross(along, side), -direction);
     if (glm::dot(front, direction) > 0.0) front = -front;
     const double sine = std::clamp(hit.uv.y, -1.0, 1.0);
-    const Vec3d normal = side * sine + front * std::sqrt(1.0 - sine * sine);
+    // Uneven scale bends the tube's normals (RibbonRow::side).
+    const Mat3d& world_from_normal = met.frame->world_from_normal;
+    const Vec3d through = world_from_normal * glm::cross(normalize_or(at.along, flat), flat);
+    const Vec3d aside = world_from_normal * flat / glm::length(through);
+    const Vec3d normal = normalize_or(aside * sine + front * std::sqrt(1.0 - sine * sine), front);
     m_points.normal[i] = Vec3f(normal);
     m_points.geometric_normal[i] = Vec3f(front);
     constexpr double kDrawnIn = 0.57735;
