@@ -289,13 +289,13 @@ Grid CurveBatch::triangles(const Grid& from, std::span<const GridPlace> wanted) 
         // As high as where points start, beside the place that is seen: what hides neither hides it
         // from a light behind the eye.
         const double height = std::sqrt(std::max(1.0 - u * u, 0.0)) * drawn_in(m_across);
-        offsets.push_back(Vec3f(side.front * (glm::length(side.half) * height)));
+        offsets.push_back(Vec3f(side.rise * height));
         across.push_back(Vec3f(2.0 * side.half / static_cast<double>(m_across)));
         const std::size_t i = normals.size() - 1, n = wanted.size();
         const std::vector<Vec3f>& p = grid.shading_p();
         // As long as the step; its edges lean where the ribbon tapers.
         const Vec3f step_along = p[i + n] - p[second ? i + 3 * n : i];
-        const Vec3d way = normalize_or(side.along, Vec3d(step_along));
+        const Vec3d way = normalize_or(side.along, Vec3d(0.0));
         along.push_back(Vec3f(way) * glm::length(step_along));
         places.push_back(control.place(t));
         steps.push_back(control.place(next.t));
@@ -351,6 +351,7 @@ CurveBatch::Side CurveBatch::side_at(const CurveControl& control, double t) cons
         at.side += ribbon.side * weight;
         facing += ribbon.facing * weight;
         at.half += ribbon.across * weight;
+        at.rise += ribbon.rise * weight;
         at.along += ribbon.along * weight;
     }
     at.front = normalize_or(facing, Vec3d(0.0, 0.0, -1.0));
@@ -374,8 +375,8 @@ void CurveBatch::shade_row(Grid& grid, int j, const Row& row, const CurveControl
         // Rays start off the axis along the normal: an element that faces them is met only where
         // the normal turns away.  No farther than normals are drawn in: hairs lie in one another,
         // and rays that start beyond their neighbours miss them (docs/decisions/curves.md).
-        grid.ray_offset[v] =
-            Vec3f(normal * (glm::length(at.half) * drawn) - at.half * (row.shrunk ? -1.0 : u));
+        const Vec3d out = at.half * sine + at.rise * std::sqrt(std::max(1.0 - sine * sine, 0.0));
+        grid.ray_offset[v] = Vec3f(out * drawn - at.half * (row.shrunk ? -1.0 : u));
     }
 }
 

@@ -75,7 +75,7 @@ class CurveBatch final : public ElementBatch {
     void shade_row(Grid& grid, int j, const Row& row, const CurveControl& control) const;
     /// Camera space, as RibbonRow; `front` is unit, `half` leads from the axis to the edge.
     struct Side {
-        Vec3d side{0.0}, front{0.0}, half{0.0}, along{0.0};
+        Vec3d side{0.0}, front{0.0}, half{0.0}, rise{0.0}, along{0.0};
         /// Of a tube, so far out to the edge.
         Vec3d normal_at(double sine) const;
     };

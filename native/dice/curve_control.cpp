@@ -128,22 +128,29 @@ RibbonRow CurveControl::row(int knot, double t, bool with_facing) const {
     Vec3d edge =
         seen_along ? any_perpendicular(glm::length(view) > 0.0 ? view : along) : unit(across);
     row.across = edge * here.radius;
-    row.side = edge;
-    if (const UnevenScale& scale = m_elements->uneven_scale(knot); scale.is_uneven && !seen_along) {
-        // A ribbon of object space that faces the eye there, taken to the camera's as a whole, and
-        // its tube's normals with it.
-        const Vec3d tangent = scale.object_from_camera * along;
-        const Vec3d flat = unit(glm::cross(scale.object_from_camera * view, tangent));
-        const Vec3d front = unit(glm::cross(tangent, flat));
+    const UnevenScale& scale = m_elements->uneven_scale(knot);
+    const bool is_ellipse = scale.is_uneven && !seen_along;
+    const Vec3d tangent = scale.object_from_camera * along;
+    Vec3d flat(0.0);
+    if (is_ellipse) {
+        // A ribbon of object space that faces the eye there, taken to the camera's as a whole.
+        flat = unit(glm::cross(scale.object_from_camera * view, tangent));
         edge = scale.camera_from_object * flat;
         row.across = edge * (here.radius / scale.largest);
-        row.side = flat * scale.object_from_camera / glm::length(front * scale.object_from_camera);
     }
     if (!with_facing) return row;
     row.along = along;
     row.facing = unit(glm::cross(along, edge));
     if (seen_along || glm::length(row.facing) == 0.0) row.facing = unit(-view);
     if (glm::dot(row.facing, view) > 0.0) row.facing = -row.facing;
+    row.side = edge;
+    row.rise = row.facing * here.radius;
+    if (!is_ellipse) return row;
+    // Its tube's normals go with it.
+    const Vec3d front = unit(glm::cross(tangent, flat));
+    row.side = flat * scale.object_from_camera / glm::length(front * scale.object_from_camera);
+    row.rise = scale.camera_from_object * front * (here.radius / scale.largest);
+    if (glm::dot(row.rise, row.facing) < 0.0) row.rise = -row.rise;
     return row;
 }
 

@@ -22,6 +22,7 @@ struct RibbonRow {
     /// The tube's normal at the edge, as long as that of `facing` at the centre: a unit, but where
     /// its scale is uneven.
     Vec3d side{0.0};
+    Vec3d rise{0.0};  ///< from the centre to where the tube comes nearest to the eye
 };
 
 class CurveControl {

@@ -71,7 +71,8 @@ void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& stati
         const Stopwatch watch;
         shading.shade_radiance(*m_grid);
         statistics.objects().add_seconds(m_grid->instance, watch.seconds());
-        if (!stays && m_grid->unsettled.empty()) drop_shading_state(*m_grid);
+        const bool is_read = !m_grid->unsettled.empty() && !shading.leaves_to_samples(*m_grid);
+        if (!stays && !is_read) drop_shading_state(*m_grid);
         count_bytes();
     });
 }

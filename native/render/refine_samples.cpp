@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/stage_timer.h"
+#include "hider/resolve/layer_kernel.h"
 #include "hider/resolve/surface_interpolator.h"
 #include "render/sample_place.h"
 
@@ -39,6 +40,7 @@ BucketRefinement::BucketRefinement(Frame& frame, const Hider& hider,
       m_pool(hider.pool()),
       m_stores(stores),
       m_channels(frame.scene.options),
+      m_shows_first(m_channels.vertex_width() > m_channels.layers_width()),
       m_starts(SobolPoints(frame.scene.options.seed + kStarts).shuffled(kStarts)),
       m_times(stores.size()),
       m_tiles(stores.size()) {
@@ -145,22 +147,12 @@ void BucketRefinement::find_lists(std::uint32_t tile) {
             }
 }
 
-/// Whether an unsettled layer is to be shaded, and what its light counts.
-bool BucketRefinement::wants_layer(OpenList& list, const SurfacePoint& at, float& weight) const {
-    weight = 1.0f;
-    if (at.grid->additive || !m_frame.shading.leaves_to_samples(*at.grid)) return true;
-    const Vec3f opacity = glm::clamp(at(at.grid->opacity), 0.0f, 1.0f);
+/// What the light of a layer that only samples shade counts; 0: it is not taken.
+float BucketRefinement::weight_of(OpenList& list, const Vec3f& opacity) const {
     const float reached = mean_of(list.transmission);
-    const float seen = mean_of(list.transmission * opacity);
-    if (reached <= 0.0f)
-        weight = 0.0f;
-    else
-        weight = list.choice.weight(std::max(seen, kLeastChance * reached));
-    const bool is_first = !list.has_first &&
-                          m_channels.vertex_width() > m_channels.layers_width() &&
-                          mean_of(opacity) >= m_frame.scene.options.pass_alpha_threshold;
-    list.has_first = list.has_first || is_first;
-    return weight > 0.0f || is_first;
+    if (reached <= 0.0f) return 0.0f;
+    return list.choice.weight(
+        std::max(mean_of(list.transmission * opacity), kLeastChance * reached));
 }
 
 /// Goes on to the list's next layer that is to be shaded; false where none is left that is seen.
@@ -168,19 +160,27 @@ bool BucketRefinement::wants_layer(OpenList& list, const SurfacePoint& at, float
 bool BucketRefinement::find_layer(std::size_t list) {
     OpenList& open = m_open[list];
     const FragmentLists& lists = m_stores[open.tile].lists;
-    const float ends = 1.0f - m_frame.scene.options.opacity_threshold;
+    const Options& options = m_frame.scene.options;
     for (; open.next < lists.counts()[open.slot]; ++open.next) {
-        const Vec3f& t = open.transmission;
-        if (largest(t) <= ends) return false;
+        const bool has_ended = largest(open.transmission) <= 1.0f - options.opacity_threshold;
+        if (has_ended && (open.has_first || !m_shows_first)) return false;
         const Fragment fragment = lists.at(open.slot, open.next);
         const SurfacePoint at = point_of(fragment, m_pool);
-        float weight;
-        if (is_unsettled(fragment.id) && wants_layer(open, at, weight)) {
-            want(fragment.id, open.tile, lists.sample(open.slot), list, at);
-            m_wanted.back().weight = weight;
-            return true;
+        const Vec3f opacity = glm::clamp(at(at.grid->opacity), 0.0f, 1.0f);
+        const double mean = channel_mean(opacity.x, opacity.y, opacity.z);
+        const bool is_first = !open.has_first && mean > 0.0 && mean >= options.pass_alpha_threshold;
+        open.has_first = open.has_first || is_first;
+        if (is_unsettled(fragment.id)) {
+            const bool left = is_left(*at.grid);
+            const bool chooses = left && !at.grid->additive;
+            const float weight = has_ended ? 0.0f : chooses ? weight_of(open, opacity) : 1.0f;
+            if (weight > 0.0f || (is_first && left && m_shows_first)) {
+                want(fragment.id, open.tile, lists.sample(open.slot), list, at);
+                m_wanted.back().weight = weight;
+                return true;
+            }
         }
-        open.transmission *= Vec3f(1.0f) - glm::clamp(at(at.grid->opacity), 0.0f, 1.0f);
+        open.transmission *= Vec3f(1.0f) - opacity;
     }
     return false;
 }
@@ -222,7 +222,8 @@ void BucketRefinement::keep_behind() {
     auto next = m_wanted.begin();
     for (const Grid& grid : m_shaded.back())
         for (int v = 0; v < grid.vertex_count(); ++v, ++next)
-            if (grid.opacity.empty() || is_within(grid.opacity[v], {1.0f, 1.0f}))
+            if (grid.opacity.empty() || is_left(m_pool.grid(next->slot)) ||
+                is_within(grid.opacity[v], {1.0f, 1.0f}))
                 m_tiles[next->tile].add(next->sample, m_stores[next->tile].id.size(), grid, v);
 }
 
@@ -238,8 +239,9 @@ void BucketRefinement::keep_layers() {
             const Fragment fragment = lists.at(open.slot, open.next);
             const SurfacePoint at = point_of(fragment, m_pool);
             Vec3f opacity = at(at.grid->opacity);
-            if (grid.opacity.empty() || is_within(grid.opacity[v], m_pool.opacity(fragment.id))) {
-                if (!grid.opacity.empty()) opacity = grid.opacity[v];
+            const bool left = is_left(*at.grid);
+            if (left || is_within(grid.opacity[v], m_pool.opacity(fragment.id))) {
+                if (!left) opacity = grid.opacity[v];
                 weigh(grid, v, next->weight);
                 m_tiles[open.tile].add_layer(lists, open.slot, open.next,
                                              look_of(opacity, grid.radiance[v], at.grid->holdout),

@@ -16,7 +16,9 @@
 namespace granita {
 
 /// The samples of a bucket's tiles that see micropolygons which are not settled, behind their lists
-/// or in them: as far into a list as anything of it is seen.
+/// or in them: as far into a list as anything of it is seen.  Of layers that only samples shade
+/// each of these takes one in the mean (LayerChoice), and the one that passes of the first surface
+/// show.
 class BucketRefinement {
   public:
     /// `seen`: of shade_seen(); all of those are shaded.
@@ -46,7 +48,8 @@ class BucketRefinement {
     void find_behind(std::uint32_t tile);
     void find_lists(std::uint32_t tile);
     bool find_layer(std::size_t list);
-    bool wants_layer(OpenList& list, const SurfacePoint& at, float& weight) const;
+    float weight_of(OpenList& list, const Vec3f& opacity) const;
+    bool is_left(const Grid& grid) const { return m_frame.shading.leaves_to_samples(grid); }
     void weigh(Grid& grid, int vertex, float weight) const;
     void find_times(std::uint32_t tile);
     std::vector<Grid> shade();
@@ -65,6 +68,7 @@ class BucketRefinement {
     const GridPool& m_pool;
     const std::vector<TileStore>& m_stores;
     ChannelSet m_channels;
+    bool m_shows_first;                     ///< some of them are of the first surface
     SobolPoints m_starts;                   ///< of lists' choices
     std::vector<std::uint8_t> m_unsettled;  ///< [slots] has any such micropolygon
     std::vector<TileTimes> m_times;         ///< [tiles]

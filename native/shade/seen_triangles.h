@@ -14,6 +14,7 @@ namespace granita {
 struct SeenTriangles {
     Grid grid;
     std::vector<RefinedPoint> points;
+    std::vector<Vec3f> opacity;  ///< [points] of the corners; empty: solid
 
     /// @param from a grid that has Grid::triangles.
     SeenTriangles(const Grid& from, std::span<const RefinedPoint> wanted);

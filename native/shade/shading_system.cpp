@@ -312,6 +312,7 @@ struct ShadingSystem::Impl {
         const Mat3f camera_from_world = glm::transpose(Mat3f(camera.world_from_camera));
         for (const Vec3f& p : refined.points.p) out.p.push_back(camera_from_world * p);
         out.found = refined.found;
+        if (seen) out.opacity = std::move(seen->opacity);
         if (!grid.opacity.empty()) shade_opacity(out, input(grid, refined));
         shade(out, input(grid, refined), {});
         return out;
@@ -323,7 +324,7 @@ struct ShadingSystem::Impl {
         return refines && !grid.shades_faces() && kind_of(grid, scene) == GeometryKind::Mesh;
     }
 
-    /// Whether each sample may say all of what it sees of the grid.
+    /// Whether each sample may say what light it sees of the grid.
     bool may_leave(const Grid& grid) const {
         return refines && reflects(grid.material) && !grid.holdout;
     }
@@ -459,7 +460,7 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
 }
 
 bool ShadingSystem::leaves_to_samples(const Grid& grid) const {
-    // Wide ribbons share few points with each pixel.
+    // Small faces that are not solid stay with their corners.
     return grid.triangles && !(grid.disjoint && grid.opacity_varies) && m_impl->may_leave(grid);
 }
 

@@ -52,7 +52,7 @@ class ShadingSystem {
     /// Fills Grid::opacity and opacity_varies.  Thread-safe for different grids.
     void shade_opacity(Grid& grid) const;
     /// Whether shade_radiance() will leave a grid of small faces or ribbons to the samples that see
-    /// it: then it needs no shading state.
+    /// it: then only opacity needs its shading state.
     bool leaves_to_samples(const Grid& grid) const;
     /// Fills Grid::radiance (premultiplied by opacity, plus emission) and what depends on it, or
     /// takes it from an equal grid of an earlier picture.  Thread-safe for different grids.

@@ -29,9 +29,14 @@ def fading(snapshot, opacity):
 
 def stacks(layers, opacity, **options):
     """Twelve upright hairs, each of so many behind one another, under a sun that nothing hides."""
+    return stacks_of([opacity] * layers, **options)
+
+
+def stacks_of(opacities, **options):
+    """From front to back, a unit apart."""
     snapshot = s.orthographic((48, 32), light_samples=4, **options)
-    surface = fading(snapshot, opacity)
-    for layer in range(layers):
+    for layer, opacity in enumerate(opacities):
+        surface = fading(snapshot, opacity)
         places = [
             (4.0 * x + 2.3, y, 20.0 + layer) for x in range(12) for y in (-20.0, 5.0, 27.0, 52.0)
         ]
@@ -69,20 +74,36 @@ def test_what_is_nearly_clear_brings_its_light(opacity):
 PASSES = ["Combined", "Diffuse Direct", "Diffuse Color", "Normal"]
 
 
-def test_passes_of_layers():
-    """Light and colour add up as Combined; Normal is that of the first layer that is half solid, whichever the sample takes."""
-    made = s.render(stacks(4, 0.5, samples=64, passes=PASSES, pass_alpha_threshold=0.5))
-    solid = s.render(stacks(1, 1.0, samples=64, passes=PASSES, pass_alpha_threshold=0.5))
+def test_passes_that_add_up():
+    """Light and colour as Combined, whose bits they do not change; what mist takes of it."""
+    mist = np.array([0.0, 40.0, 1.0], np.float32)  # all of it at 40
+    made = s.render(stacks(4, 0.5, samples=64, passes=[*PASSES, "Mist"], mist=mist))
+    solid = s.render(stacks(1, 1.0, samples=64, passes=PASSES))
     alone = s.render(stacks(4, 0.5, samples=64, passes=["Combined"]))
     assert np.array_equal(made["combined"], alone["combined"])
-    normal, expected = (frame["passes"]["Normal"] for frame in (made, solid))
-    assert np.abs(expected).max() > 0.4
-    # A layer is a unit farther than that of the solid hair, or none: places are the same.
-    assert normal == pytest.approx(expected, abs=1e-5)
     color, expected = (frame["passes"]["Diffuse Color"].sum() for frame in (made, solid))
     assert color == pytest.approx((1 - 0.5**4) * expected, rel=0.002)
     light = made["passes"]["Diffuse Direct"] * made["passes"]["Diffuse Color"]
     assert light == pytest.approx(made["combined"][..., :3], abs=1e-5)
+    covered = solid["combined"][..., 3].sum()
+    clear = sum(0.5 ** (k + 1) * (1 - (20.0 + k) / 40.0) for k in range(4))
+    assert (1.0 - made["passes"]["Mist"]).sum() == pytest.approx(clear * covered, rel=0.005)
+
+
+@pytest.mark.parametrize("ends", [1.0, 0.4])
+@pytest.mark.parametrize("opacities, first", [([0.3, 0.3, 0.6, 0.9], 2), ([0.9, 0.3], 0)])
+def test_passes_show_the_first_layer_that_is_solid_enough(opacities, first, ends):
+    """Whichever the sample takes, behind the end of its list too; .9 is reached by .9, however it is rounded."""
+    limits = {"opacity_threshold": ends, "pass_alpha_threshold": opacities[first]}
+    passes = ["Combined", "Position", "Normal", "Object Index"]
+    made = s.render(stacks_of(opacities, samples=64, passes=passes, **limits))["passes"]
+    solid = s.render(stacks_of([1.0], samples=64, passes=passes))["passes"]
+    assert np.abs(solid["Normal"]).max() > 0.4
+    assert made["Normal"] == pytest.approx(solid["Normal"], abs=1e-5)
+    shown = np.abs(solid["Position"]).max(axis=-1) > 0.0
+    assert 100 < shown.sum() < 1500
+    depth = made["Position"][shown][:, 2] - solid["Position"][shown][:, 2]
+    assert np.abs(depth) == pytest.approx(np.full(shown.sum(), first), abs=1e-4)
 
 
 def test_bits_do_not_depend_on_buckets_threads_or_crop():

@@ -91,15 +91,17 @@ void HitPoints::fill_ribbon(std::size_t i, const MetPath& met) {
     Vec3d front = normalize_or(glm::cross(along, side), -direction);
     if (glm::dot(front, direction) > 0.0) front = -front;
     const double sine = std::clamp(hit.uv.y, -1.0, 1.0);
-    // Uneven scale bends the tube's normals (RibbonRow::side).
+    const double cosine = std::sqrt(1.0 - sine * sine);
+    // Uneven scale makes an ellipse of the tube (RibbonRow::side, rise).
+    const Vec3d through = glm::cross(glm::normalize(at.along), flat);
     const Mat3d& world_from_normal = met.frame->world_from_normal;
-    const Vec3d through = world_from_normal * glm::cross(normalize_or(at.along, flat), flat);
-    const Vec3d aside = world_from_normal * flat / glm::length(through);
-    const Vec3d normal = normalize_or(aside * sine + front * std::sqrt(1.0 - sine * sine), front);
-    m_points.normal[i] = Vec3f(normal);
+    const Vec3d aside = world_from_normal * flat / glm::length(world_from_normal * through);
+    m_points.normal[i] = Vec3f(normalize_or(aside * sine + front * cosine, front));
     m_points.geometric_normal[i] = Vec3f(front);
     constexpr double kDrawnIn = 0.57735;
-    m_points.ray_offset[i] = Vec3f(normal * (radius * kDrawnIn) - edge * sine);
+    Vec3d rise = world_from_object * (through * at.radius);
+    if (glm::dot(rise, front) < 0.0) rise = -rise;
+    m_points.ray_offset[i] = Vec3f((edge * sine + rise * cosine) * kDrawnIn - edge * sine);
     const double width = beam_width(met);
     m_points.dp_du[i] = Vec3f(along * std::min(width / length, 1.0));
     m_points.dp_dv[i] = Vec3f(side * std::min(width, 2.0 * radius));

@@ -37,13 +37,13 @@ float integrate_dielectric(float roughness, float cosine, float ior) {
 
 }  // namespace
 
-float dielectric_albedo(float roughness, float cosine, float ior) {
+float dielectric_share(float roughness, float cosine, float ior) {
     static const UnitCubeTable kTable(
         [](float x, float y, float z) { return integrate_dielectric(x, y, ior_of_axis(z)); });
     return kTable.look_up(roughness, cosine, ior_axis(ior));
 }
 
-float schlick_albedo(float roughness, float cosine) {
+float schlick_share(float roughness, float cosine) {
     static const UnitCubeTable kTable([](float x, float y, float z) {
         return z == 0.0f ? integrate(x, y, schlick_weight) : 0.0f;
     });

@@ -91,11 +91,11 @@ Vec3f PointBsdf::seen_fresnel(const Prepared& lobe) const {
     const bool is_smooth = lobe.smooth_color || lobe.film.is_there();
     const float roughness = std::sqrt(lobe.alpha);
     if (!is_smooth && lobe.fresnel == FresnelKind::Dielectric)
-        return mix(lobe.f0, lobe.f90, dielectric_albedo(roughness, lobe.cos_wi, lobe.ior));
+        return mix(lobe.f0, lobe.f90, dielectric_share(roughness, lobe.cos_wi, lobe.ior));
     if (!is_smooth && lobe.fresnel == FresnelKind::Schlick)
-        return mix(lobe.f0, lobe.f90, schlick_albedo(roughness, lobe.cos_wi));
+        return mix(lobe.f0, lobe.f90, schlick_share(roughness, lobe.cos_wi));
     if (!is_smooth && lobe.fresnel == FresnelKind::F82Tint)
-        return mix(lobe.f0, Vec3f(1.0f), schlick_albedo(roughness, lobe.cos_wi));
+        return mix(lobe.f0, Vec3f(1.0f), schlick_share(roughness, lobe.cos_wi));
     return fresnel(lobe, lobe.cos_wi);
 }
 

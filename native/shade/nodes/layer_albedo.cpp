@@ -43,7 +43,7 @@ Vec3f layer_albedo(const Vec3f& f0, float ior, float roughness, float cosine, bo
                    const ThinFilm& film) {
     const auto mixed = [&](float grazing) { return f0 * (1.0f - grazing) + Vec3f(grazing); };
     const Vec3f albedo = film.is_there() ? film_on_dielectric(film, cosine, ior, f0)
-                                         : mixed(dielectric_albedo(roughness, cosine, ior));
+                                         : mixed(dielectric_share(roughness, cosine, ior));
     if (!multiscatter) return albedo;
     return albedo * multiscatter_darkening(mixed(dielectric_mean_albedo(ior)), roughness, cosine);
 }
