@@ -286,10 +286,7 @@ Grid CurveBatch::triangles(const Grid& from, std::span<const GridPlace> wanted) 
         const double u = (2.0 * strip + in_strip) / m_across - 1.0;
         normals.push_back(Vec3f(side.normal_at(u)));
         fronts.push_back(Vec3f(side.front));
-        // As high as where points start, beside the place that is seen: what hides neither hides it
-        // from a light behind the eye.
-        const double height = std::sqrt(std::max(1.0 - u * u, 0.0)) * drawn_in(m_across);
-        offsets.push_back(Vec3f(side.rise * height));
+        offsets.push_back(Vec3f(side.rise * std::sqrt(std::max(1.0 - u * u, 0.0))));
         across.push_back(Vec3f(2.0 * side.half / static_cast<double>(m_across)));
         const std::size_t i = normals.size() - 1, n = wanted.size();
         const std::vector<Vec3f>& p = grid.shading_p();
@@ -372,9 +369,8 @@ void CurveBatch::shade_row(Grid& grid, int j, const Row& row, const CurveControl
         const std::size_t v = vertex(grid, i, j);
         grid.normal[v] = Vec3f(normal);
         grid.geometric_normal[v] = Vec3f(at.front);
-        // Rays start off the axis along the normal: an element that faces them is met only where
-        // the normal turns away.  No farther than normals are drawn in: hairs lie in one another,
-        // and rays that start beyond their neighbours miss them (docs/decisions/curves.md).
+        // On the tube, as far as normals are drawn in: by it and the normal rays know where the
+        // axis is (LitPlace::start_around).
         const Vec3d out = at.half * sine + at.rise * std::sqrt(std::max(1.0 - sine * sine, 0.0));
         grid.ray_offset[v] = Vec3f(out * drawn - at.half * (row.shrunk ? -1.0 : u));
     }

@@ -244,3 +244,24 @@ def test_hair_under_uneven_scale_is_lit_alike(scene, render, scale):
     sun_of(scene, (0.9, 0.5, 0.6))
     scene_parts.add_camera(scene, (0, -5, 1), ortho_scale=3.0).rotation_euler.x = 1.3
     agree_in_mean(scene, render, 0.02)
+
+
+@pytest.mark.parametrize("kind", ["Diffuse", "Principled"])
+@pytest.mark.parametrize("count", [40, 400])
+def test_hairs_shade_each_other_alike(scene, render, count, kind):
+    """By parts of their width: rays start beside the place that is seen, and no farther than the hair itself."""
+    thing = furry(scene, count=count, root_radius=0.05)
+    thing.show_instancer_for_render = False
+    tree = Tree(thing)
+    if kind == "Principled":
+        shader = tree.add("ShaderNodeBsdfHairPrincipled", parametrization="MELANIN")
+        shader.inputs["Melanin"].default_value = 0.4
+        shader.inputs["Roughness"].default_value = shader.inputs[
+            "Radial Roughness"
+        ].default_value = 0.8
+    else:
+        shader = tree.add("ShaderNodeBsdfDiffuse")
+    tree.link(shader.outputs[0], tree.output.inputs["Surface"])
+    sun_of(scene, (0.9, 0.2, 0.0))
+    scene_parts.add_camera(scene, (0, -5, 1), ortho_scale=3.0).rotation_euler.x = 1.3
+    agree_in_mean(scene, render, 0.01)

@@ -34,7 +34,4 @@ def test_dense_hair_is_as_bright(scene, render, kind):
     camera.rotation_euler.x = 1.15
     scene.render.resolution_x, scene.render.resolution_y = 96, 64
     theirs, ours = render_bounced(scene, render, 128, limit=2, samples=64)
-    # Rays start beside the hair's axis, as far as normals are drawn in: of Principled Hair, whose light comes through, 3 % more
-    # pass its neighbours than Cycles', without a bounce too (docs/decisions/curves.md).
-    limit = 0.04 if kind == "Principled" else 0.02
-    assert ours.mean(axis=(0, 1)) == pytest.approx(theirs.mean(axis=(0, 1)), rel=limit)
+    assert ours.mean(axis=(0, 1)) == pytest.approx(theirs.mean(axis=(0, 1)), rel=0.02)

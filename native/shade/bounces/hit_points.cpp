@@ -98,10 +98,9 @@ void HitPoints::fill_ribbon(std::size_t i, const MetPath& met) {
     const Vec3d aside = world_from_normal * flat / glm::length(world_from_normal * through);
     m_points.normal[i] = Vec3f(normalize_or(aside * sine + front * cosine, front));
     m_points.geometric_normal[i] = Vec3f(front);
-    constexpr double kDrawnIn = 0.57735;
     Vec3d rise = world_from_object * (through * at.radius);
     if (glm::dot(rise, front) < 0.0) rise = -rise;
-    m_points.ray_offset[i] = Vec3f((edge * sine + rise * cosine) * kDrawnIn - edge * sine);
+    m_points.ray_offset[i] = Vec3f(rise * cosine);
     const double width = beam_width(met);
     m_points.dp_du[i] = Vec3f(along * std::min(width / length, 1.0));
     m_points.dp_dv[i] = Vec3f(side * std::min(width, 2.0 * radius));

@@ -112,8 +112,8 @@ Ray LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& dire
     // above the face itself.  Their own samples lie to a side of the face (PointBsdf::sample).
     const Vec3f& up = type == RayType::Shadow ? outward : from.normal;
     const bool below = transmits && glm::dot(up, direction) < 0.0f;
-    const bool around = point.round && (transmits || glm::dot(outward, direction) < 0.0f);
-    const Vec3f start = around  ? from.start_around(outward, direction)
+    const Vec3f start = point.round
+                            ? from.start_around(outward, direction, point.ray_offset.length(from.p))
                         : below ? from.start_below()
                                 : from.start;
     return {start, direction, distance, from.time, blocker_set, type};

@@ -21,11 +21,20 @@ struct LitPlace {
 
     /// Of rays through the surface.
     Vec3f start_below() const { return 2.0f * p - start; }
-    /// Of rays out of a tube whose surface has `outward` where others start.
-    Vec3f start_around(const Vec3f& outward, const Vec3f& direction) const {
+    /// Of rays out of a tube whose surface has `outward` where others start: beside the place that
+    /// is seen, just past the ribbon through the axis that faces the ray.  Farther on it would be
+    /// beyond hairs that lie in this one.
+    Vec3f start_around(const Vec3f& outward, const Vec3f& direction, float rounding) const {
+        constexpr float kPast = 0.02f, kLeastCosine = 0.05f;
         const float radius =
-            glm::dot(start - p, normal) / std::max(glm::dot(outward, normal), 0.05f);
-        return start + radius * (direction - outward);
+            glm::dot(start - p, normal) / std::max(glm::dot(outward, normal), kLeastCosine);
+        const Vec3f from_axis = p - start + radius * outward;
+        const float behind = -glm::dot(from_axis, direction),
+                    aside = glm::dot(from_axis, from_axis);
+        const float front = glm::dot(normal, direction);
+        const float turned = front * front + (aside > 0.0f ? behind * behind / aside : 0.0f);
+        const float way = std::max(behind, 0.0f) / std::max(turned, kLeastCosine);
+        return p + (way + std::max(kPast * radius, rounding)) * direction;
     }
 };
 
