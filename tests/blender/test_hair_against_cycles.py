@@ -251,6 +251,20 @@ def test_hair_under_uneven_scale_is_lit_alike(scene, render, scale):
 def test_hairs_shade_each_other_alike(scene, render, count, kind):
     """By parts of their width: rays start beside the place that is seen, and no farther than the hair itself."""
     thing = furry(scene, count=count, root_radius=0.05)
+    lit_from_above(scene, thing, kind)
+    agree_in_mean(scene, render, 0.01)
+
+
+def test_thin_rough_hair_is_as_bright(scene, render):
+    """What it absorbs varies over its width, though its lobes are wide."""
+    thing = furry(scene, count=200, root_radius=0.01, tip_radius=0.01)
+    thing.visible_shadow = False
+    lit_from_above(scene, thing, "Principled")
+    agree_in_mean(scene, render, 0.015)
+
+
+def lit_from_above(scene, thing, kind):
+    """Rough hair alone, without what it grows on."""
     thing.show_instancer_for_render = False
     tree = Tree(thing)
     if kind == "Principled":
@@ -264,4 +278,3 @@ def test_hairs_shade_each_other_alike(scene, render, count, kind):
     tree.link(shader.outputs[0], tree.output.inputs["Surface"])
     sun_of(scene, (0.9, 0.2, 0.0))
     scene_parts.add_camera(scene, (0, -5, 1), ortho_scale=3.0).rotation_euler.x = 1.3
-    agree_in_mean(scene, render, 0.01)

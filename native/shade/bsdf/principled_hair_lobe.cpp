@@ -163,8 +163,11 @@ class PrincipledHair : public LobeShape {
         }
         constexpr float kSpacing = 2.0f;  // of the densities' scale
         constexpr float kMost = 64.0f;
+        // What is reflected and absorbed varies over a hair that is ever so rough.
+        constexpr float kWidest = 0.6f;
         const float turn = 2.0f * (last - first);
-        const float count = std::clamp(std::ceil(turn / (kSpacing * m_azimuth.scale)), 1.0f, kMost);
+        const float spacing = std::min(kSpacing * m_azimuth.scale, kWidest);
+        const float count = std::clamp(std::ceil(turn / spacing), 1.0f, kMost);
         const float step = (last - first) / count;
         float sum = 0.0f, reflected = 0.0f;
         for (float k = 0.5f; k < count; k += 1.0f) {
