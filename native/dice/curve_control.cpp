@@ -130,10 +130,10 @@ RibbonRow CurveControl::row(int knot, double t, bool with_facing) const {
     row.across = edge * here.radius;
     const UnevenScale& scale = m_elements->uneven_scale(knot);
     const bool is_ellipse = scale.is_uneven && !seen_along;
-    const Vec3d tangent = scale.object_from_camera * along;
-    Vec3d flat(0.0);
+    Vec3d tangent(0.0), flat(0.0);
     if (is_ellipse) {
         // A ribbon of object space that faces the eye there, taken to the camera's as a whole.
+        tangent = scale.object_from_camera * along;
         flat = unit(glm::cross(scale.object_from_camera * view, tangent));
         edge = scale.camera_from_object * flat;
         row.across = edge * (here.radius / scale.largest);

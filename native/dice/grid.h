@@ -103,8 +103,8 @@ struct Grid {
     std::vector<Vec3f> geometric_normal;  ///< [points] unit, of the surface itself
     std::vector<Vec3f> dp_du, dp_dv;      ///< [points] change of P from one point to the next
     std::vector<GridAttribute> attributes;
-    /// [points] from p to where its rays may start: outside the hair or sphere that is drawn here
-    /// as something flat.  Empty: at p.
+    /// [points] from p to the hair or sphere that is drawn here as something flat: rays start
+    /// outside of it, those of hairs as LitPlace::start_around() says.  Empty: at p.
     std::vector<Vec3f> ray_offset;
     /// [points] from p to the smooth surface that normals of a mesh tell of, on the side that is
     /// seen, and how far the nearest side of its triangle is (geometry/smooth_rise.h).  Empty: the

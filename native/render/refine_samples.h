@@ -67,7 +67,7 @@ class BucketRefinement {
     const Hider& m_hider;
     const GridPool& m_pool;
     const std::vector<TileStore>& m_stores;
-    ChannelSet m_channels;
+    const ChannelSet& m_channels;
     bool m_shows_first;                     ///< some of them are of the first surface
     SobolPoints m_starts;                   ///< of lists' choices
     std::vector<std::uint8_t> m_unsettled;  ///< [slots] has any such micropolygon

@@ -43,8 +43,8 @@ SeenTriangles::SeenTriangles(const Grid& from, std::span<const RefinedPoint> wan
     } else {
         std::iota(index.begin(), index.end(), std::size_t{0});
     }
-    for (const RefinedPoint& at : wanted)
-        if (!from.opacity.empty())
+    if (!from.opacity.empty())
+        for (const RefinedPoint& at : wanted)
             opacity.push_back(from.opacity[at.vertex[0]] * at.weight[0] +
                               from.opacity[at.vertex[1]] * at.weight[1] +
                               from.opacity[at.vertex[2]] * at.weight[2]);

@@ -137,12 +137,10 @@ bool PointBsdf::can_see(const Vec3f& to_center, float radius) const {
 BsdfValue PointBsdf::albedo() const {
     BsdfValue albedo;
     for (const Prepared& lobe : m_lobes) {
-        const Vec3f along_view =
-            lobe.kind == LobeKind::Diffuse ? lobe.weight
-            : lobe.shape                   ? lobe.weight * lobe.shape->albedo()
-            : lobe.kind == LobeKind::Glossy
-                ? lobe.weight * seen_fresnel(lobe) * lobe.directional_albedo
-                : lobe.weight * passed(lobe, lobe.cos_wi) * lobe.directional_albedo;
+        const Vec3f along_view = lobe.kind == LobeKind::Diffuse ? lobe.weight
+                                 : lobe.shape
+                                     ? lobe.weight * lobe.shape->albedo()
+                                     : lobe.weight * seen_part(lobe) * lobe.directional_albedo;
         albedo.part(part_of(lobe.kind)) += along_view;
     }
     return albedo;

@@ -148,8 +148,8 @@ class PointBsdf {
     void compensate(Prepared& lobe, float made, const GgxAlbedo& albedo) const;
     Vec3f fresnel(const Prepared& lobe, float cos_half) const;
     Vec3f film_fresnel(const Prepared& lobe, float cos_half) const;
-    /// The mean of what the view sees: for passes of colour.
-    Vec3f seen_fresnel(const Prepared& lobe) const;
+    /// What of facets passes of colour show.
+    Vec3f seen_part(const Prepared& lobe) const;
     Vec3f evaluate_glossy(const Prepared& lobe, const Vec3f& wo) const;
     float pdf_glossy(const Prepared& lobe, const Vec3f& wo) const;
     // refraction_lobe.cpp

@@ -86,17 +86,19 @@ Vec3f PointBsdf::fresnel(const Prepared& lobe, float cos_half) const {
     return Vec3f(1.0f);
 }
 
-Vec3f PointBsdf::seen_fresnel(const Prepared& lobe) const {
-    // Of films and conductors Cycles takes that by the normal.
-    const bool is_smooth = lobe.smooth_color || lobe.film.is_there();
+Vec3f PointBsdf::seen_part(const Prepared& lobe) const {
+    // The mean over the facets that the view sees; that by the normal alone of films, conductors
+    // and what is refracted, as in Cycles.
     const float roughness = std::sqrt(lobe.alpha);
-    if (!is_smooth && lobe.fresnel == FresnelKind::Dielectric)
-        return mix(lobe.f0, lobe.f90, dielectric_share(roughness, lobe.cos_wi, lobe.ior));
-    if (!is_smooth && lobe.fresnel == FresnelKind::Schlick)
-        return mix(lobe.f0, lobe.f90, schlick_share(roughness, lobe.cos_wi));
-    if (!is_smooth && lobe.fresnel == FresnelKind::F82Tint)
-        return mix(lobe.f0, Vec3f(1.0f), schlick_share(roughness, lobe.cos_wi));
-    return fresnel(lobe, lobe.cos_wi);
+    if (lobe.kind == LobeKind::Glossy && !lobe.smooth_color && !lobe.film.is_there()) {
+        if (lobe.fresnel == FresnelKind::Dielectric)
+            return mix(lobe.f0, lobe.f90, dielectric_share(roughness, lobe.cos_wi, lobe.ior));
+        if (lobe.fresnel == FresnelKind::Schlick)
+            return mix(lobe.f0, lobe.f90, schlick_share(roughness, lobe.cos_wi));
+        if (lobe.fresnel == FresnelKind::F82Tint)
+            return mix(lobe.f0, Vec3f(1.0f), schlick_share(roughness, lobe.cos_wi));
+    }
+    return passed(lobe, lobe.cos_wi);
 }
 
 void PointBsdf::stretch(Prepared& lobe, const Vec3f& tangent, float aspect) const {
