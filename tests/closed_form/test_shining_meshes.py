@@ -312,3 +312,47 @@ def test_no_way_goes_further_for_what_no_ray_sees():
         return s.render(snapshot)["statistics"]["rays_bounce"]
 
     assert rays(True) == rays(False)
+
+
+def cut_stone(radius, center, around=24):
+    """(points, faces): the hull of places on a sphere, most of it quadrilaterals that are not planar, split along their ridges."""
+    rows, rng = around // 2, np.random.default_rng(1)
+    rings = np.linspace(0.3, np.pi - 0.3, rows)[:, None] + np.zeros(around)
+    turns = np.zeros((rows, 1)) + np.arange(around) * 2 * np.pi / around
+    rings += rng.uniform(-0.05, 0.05, rings.shape) * np.pi / rows
+    turns += rng.uniform(-0.05, 0.05, turns.shape) * 2 * np.pi / around
+    across = np.sin(rings)
+    sphere = np.stack([np.cos(rings), across * np.cos(turns), across * np.sin(turns)], axis=-1)
+    points = np.concatenate([sphere.reshape(-1, 3), [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)]])
+    first, last = len(points) - 2, (rows - 1) * around
+    faces = [(first, i, (i + 1) % around) for i in range(around)]
+    faces += [(first + 1, last + (i + 1) % around, last + i) for i in range(around)]
+    for row in range(rows - 1):
+        for i in range(around):
+            upper, lower, after = row * around, (row + 1) * around, (i + 1) % around
+            a, b, c, d = face = (upper + i, lower + i, lower + after, upper + after)
+            normal = np.cross(points[b] - points[a], points[c] - points[a])
+            is_ridge = normal @ (points[d] - points[a]) < 0
+            faces.append(face if is_ridge else face[1:] + face[:1])
+    return np.array(center) + radius * points, faces
+
+
+@pytest.mark.parametrize(("smooth", "most"), [(False, 1e-5), (True, 0.002)])
+def test_a_convex_body_does_not_light_itself(smooth, most):
+    """Samples' places on the diced surface lie some thousandths below the triangles of its ridges, which shone on them from
+    above: .044 of the body's own radiance where it is smooth.  Tilted normals see a little of it there."""
+    snapshot = s.orthographic(
+        (64, 64), samples=16, light_samples=16, shading_threshold=0.0, passes=["Diffuse Direct"]
+    )
+    nodes = [
+        {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.5, 0.5, 0.5, 1)}},
+        {"type": "ShaderNodeEmission", "inputs": {"Color": (1, 1, 1, 1), "Strength": 1.0}},
+        {
+            "type": "ShaderNodeAddShader",
+            "inputs": {"Shader": ("LINK", 0, "BSDF"), "Shader_001": ("LINK", 1, "Emission")},
+        },
+    ]
+    snapshot["materials"].append({"name": "Glow", "nodes": nodes, "surface": (2, "Shader")})
+    points, faces = cut_stone(28.0, (32.3, 32.1, 40.0))
+    s.mesh(snapshot, points, faces, 0, smooth=np.full(len(faces), smooth, np.uint8))
+    assert s.render(snapshot)["passes"]["Diffuse Direct"].mean() < most

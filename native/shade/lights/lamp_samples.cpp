@@ -116,11 +116,15 @@ void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& p
     if (!lamp.is_hard() && lamp.meets_lobes(m_grid.depth))
         density = power_density(density, point.meeting_density(sample.direction));
     const Vec3f radiance = sample.radiance / density;
-    if (m_set.rays && lamp.casts_shadow())
-        m_shadows.send(point.index, value / density, bsdf, radiance, sign,
-                       m_set.ray_to(point, place, lamp, sample, RayType::Shadow));
-    else
+    if (!m_set.rays || !lamp.casts_shadow()) {
         m_shadows.send(point.index, value / density, bsdf, radiance, sign);
+        return;
+    }
+    const Ray ray = m_set.ray_to(point, place, lamp, sample, RayType::Shadow);
+    // A micropolygon lies some roundings, or the sagitta of coarse faces, below what rays meet: its
+    // own surface does not light it from above.
+    if (!lamp.parts(place.time, place.p, ray.start))
+        m_shadows.send(point.index, value / density, bsdf, radiance, sign, ray);
 }
 
 }  // namespace

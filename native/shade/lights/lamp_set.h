@@ -59,7 +59,8 @@ struct LampSet {
             const Lamp& lamp = lamps[index];
             LightSample sample;
             if (lamp.lights(grid.receives) && lamp.meets_lobes(grid.depth) &&
-                lamp.meets(place.time, place.p, direction, sample))
+                lamp.meets(place.time, place.p, direction, sample) &&
+                !lamp.parts(place.time, place.p, place.start_towards(direction)))
                 met(index, lamp, sample);
         };
         if (!tree) {

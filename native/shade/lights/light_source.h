@@ -53,6 +53,8 @@ class LightSource {
     /// What arrives at `p` from `direction`; its pdf is that of sample().  False when the ray
     /// misses the light or it sends nothing.
     virtual bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const = 0;
+    /// Of a surface: whether it passes between a point and where the rays of that start.
+    virtual bool parts(const Vec3f& /*p*/, const Vec3f& /*start*/) const { return false; }
     /// A sphere around the light, shading space; false for lights without a place.
     virtual bool bound(Vec3f& center, float& radius) const = 0;
     /// Of lights that have a place.
