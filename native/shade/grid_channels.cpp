@@ -81,8 +81,11 @@ void fill_channels(Grid& grid, const ChannelSet& channels, const Scene& scene,
                    const ShadingCamera& camera, const ShadedGrid& shaded) {
     const ShadingPoints& points = shaded.points;
     grid.channels.assign(points.count * channels.vertex_width(), 0.0f);
+    // What is cut out of the picture is in no pass but those of its own nodes, as in Cycles.
+    const bool is_cut = grid.holdout && !scene.catches_shadows(grid.instance, grid.material);
     for (const Channel& channel : channels.channels()) {
         if (channel.quantity == Quantity::Environment) continue;
+        if (is_cut && channel.aov < 0) continue;
         if (channel.aov >= 0 && !shaded.sources.writes_aov[channel.aov]) continue;
         const Rows rows(grid, channels, channel);
         const auto fill = [&](auto value) {

@@ -264,14 +264,30 @@ def test_aovs_of_materials(executor):
     assert np.all(made["Mask"][:, 4:] == 0.0)
 
 
-def test_holdouts_stand_in_front_but_add_nothing(executor):
-    snapshot = snapshots.orthographic((8, 8), executor=executor)
-    snapshots.quad(snapshot, snapshots.rectangle(0, 0, 8, 8, 2), diffuse(snapshot, index=4))
-    snapshots.quad(snapshot, snapshots.rectangle(0, 0, 8, 8, 4), diffuse(snapshot))
+@pytest.mark.parametrize("alpha", [None, 0.75])
+def test_holdouts_are_in_no_pass_but_hide_what_is_behind(executor, alpha):
+    """As in Cycles: neither depth nor index of what is cut out, nor of what it hides; its nodes' own output stays."""
+    snapshot = snapshots.orthographic((8, 8), executor=executor, depth_pass=True)
+    snapshot["options"] |= {"opacity_threshold": 1.0, "pass_alpha_threshold": 0.5}
+    cut = snapshots.emission(snapshot, alpha=alpha)
+    material = snapshot["materials"][cut]
+    material["index"] = 4
+    output = {"aov_name": "Tint"}
+    inputs = {"Color": (0.25, 0.5, 2.0, 1.0), "Value": 0.0}
+    material["nodes"].append(
+        {"type": "ShaderNodeOutputAOV", "inputs": inputs, "properties": output}
+    )
+    snapshots.quad(snapshot, snapshots.rectangle(0, 0, 8, 8, 2), cut)
+    snapshots.quad(snapshot, snapshots.rectangle(0, 0, 8, 8, 4), diffuse(snapshot, index=5))
     snapshot["instances"]["flags"] = [7, 3]
-    made = passes(snapshot)["passes"]
-    assert np.all(made["Diffuse Color"] == 0.0)
-    assert np.all(made["Material Index"] == 4)
+    result = passes(snapshot, aovs=[{"name": "Tint", "kind": "COLOR"}])
+    made = result["passes"]
+    assert np.all(made["Material Index"] == 0)
+    assert np.all(made["Normal"] == 0.0)
+    assert np.all(result["depth"] == 1e10)
+    left = 0.0 if alpha is None else 1.0 - alpha
+    assert np.abs(made["Diffuse Color"] - left * np.array((0.8, 0.4, 0.2))).max() < ROUNDING
+    assert np.abs(made["Tint"] - (0.25, 0.5, 2.0, 1.0)).max() < ROUNDING
 
 
 def test_passes_change_neither_picture_nor_visibility(executor):

@@ -213,7 +213,10 @@ class TileComposite {
         color.depth = m_settings.projection.depth_from_key(m_store.key[sample]);
         if (catches(*point.grid) && !m_settings.catchers_cut)
             return caught(sample, point(point.grid->radiance), color.depth);
-        if (point.grid->holdout) return color;
+        if (point.grid->holdout) {
+            if (!catches(*point.grid)) color.depth = std::numeric_limits<float>::infinity();
+            return color;
+        }
         if (!point.grid->radiance.empty()) color.color = point(point.grid->radiance);
         color.color += Vec3f(0.0f);  // no negative zeros
         color.alpha = 1.0f;
@@ -289,10 +292,13 @@ class TileComposite {
                                  ? layers.alpha[i] + rest * behind.alpha
                                  : 1.0 - (layers.cut[i] + rest * (1.0 - behind.alpha));
         const bool found = layers.first_key[i] > kNothing;
+        const bool is_cut = (layers.first_cuts >> i & 1u) != 0;
         m_colors.set(
             sample,
             {Vec3f(color + transmission * Vec3d(behind.color)), static_cast<float>(alpha),
-             found ? m_settings.projection.depth_from_key(layers.first_key[i]) : surface.depth});
+             is_cut  ? std::numeric_limits<float>::infinity()
+             : found ? m_settings.projection.depth_from_key(layers.first_key[i])
+                     : surface.depth});
         if (m_channels) put_channels_over(sample, transmission, found, ended);
     }
 

@@ -38,7 +38,7 @@ struct CompositeSettings {
 /// is 1 less what holdouts cut out.  Depth is that of the first layer, or
 /// anything where it is not wanted.  Fills `channels` where
 /// settings.channels asks for some; holdouts take part in Merge::First and Center alone, but those
-/// that catch shadows.
+/// that catch shadows.  What else cuts has no depth, as in Cycles.
 /// Layers of `refined` look as they do through `volumes`, their channels as without.
 void composite_tile(const TileStore& store, const TileSamples& samples, LayerTable& table,
                     std::span<const Vec3f> background, const CompositeSettings& settings,

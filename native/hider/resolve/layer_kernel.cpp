@@ -78,7 +78,7 @@ class PacketCompositor {
             for (int c = 0; c < 3; ++c) m_out.color[c][i] = 0.0;
             m_out.first_key[i] = -std::numeric_limits<float>::infinity();
         }
-        m_out.ended = 0;
+        m_out.ended = m_out.first_cuts = 0;
     }
 
     /// What layer k of the next packet looks like, whose lists have come by now.  Lookups and rows
@@ -195,7 +195,7 @@ class PacketCompositor {
 
     /// Lanes whose first surface this layer is.
     HWY_INLINE std::uint32_t find_first(const Layer& layer, const FragmentLayer& fragments,
-                                        std::uint32_t lanes) const {
+                                        std::uint32_t lanes) {
         const V found = hn::Load(kTag, m_out.first_key + m_part);
         M first =
             hn::And(mask_of(lanes), hn::Eq(found, set(-std::numeric_limits<float>::infinity())));
@@ -205,7 +205,9 @@ class PacketCompositor {
         V key, id;
         load_heads(fragments, m_part, key, id);
         hn::Store(hn::IfThenElse(first, key, found), kTag, m_out.first_key + m_part);
-        return bits_of(first);
+        const std::uint32_t bits = bits_of(first);
+        m_out.first_cuts |= (bits_of(layer.holdout) & bits) << m_part;
+        return bits;
     }
 
     /// Not where a sample has found a hole: nothing of what is clear at all corners is in lists.

@@ -20,6 +20,7 @@ struct PacketLayers {
     alignas(64) double cut[kPacket];              ///< and of holdouts
     alignas(64) float first_key[kPacket];         ///< of ListEnd's first surface; -inf = none
     std::uint32_t ended = 0;                      ///< bit i: list i reached the threshold
+    std::uint32_t first_cuts = 0;                 ///< and the first surface of list i is a holdout
 };
 
 /// What else wants to know of layers, a sample's from front to back.
