@@ -12,18 +12,24 @@ namespace granita {
 namespace {
 
 /// Angle of a pixel, radians.
-float pixel_spread(const Camera& camera) {
-    return static_cast<float>(1.0 / std::max(camera.projection.scale.x, 1e-9));
+float pixel_spread(const Projection& projection) {
+    if (!projection.perspective) return 0.0f;
+    return static_cast<float>(1.0 / std::max(projection.scale.x, 1e-9));
+}
+
+void add(SeenBackground& seen, const Camera& camera, Vec2d raster, const Look& look) {
+    seen.directions.push_back(world_direction(camera, raster, look));
+    if (!camera.projection.perspective) seen.rasters.emplace_back(raster);
 }
 
 /// Colours at the corners of a tile's pixels, [17][17].
 class PixelCorners {
   public:
-    PixelCorners(const CameraRays& directions, const ShadingSystem& shading, float spread) {
-        std::vector<Vec3f> places;
+    PixelCorners(const Camera& camera, const Vec2d& origin, const ShadingSystem& shading) {
+        SeenBackground seen{.spread = pixel_spread(camera.projection)};
         for (int y = 0; y < kSide; ++y)
-            for (int x = 0; x < kSide; ++x) places.push_back(directions.direction(x, y, {}));
-        shading.background(places, spread, m_colors);
+            for (int x = 0; x < kSide; ++x) add(seen, camera, origin + Vec2d(x, y), {});
+        shading.background(seen, m_colors);
     }
 
     /// Whether what is between the pixel's corners bends by less than the threshold
@@ -70,23 +76,25 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
     const SampleNeeds needs{camera.world_from_camera.size() > 1, camera.projection.has_lens()};
     TileSamples samples;
     table.fill_tile(store.tile, needs, samples);
-    const CameraRays directions(camera, store, samples);
-    const float spread = pixel_spread(camera);
+    const CameraRays rays(camera, store, samples);
+    const Vec2d origin(store.tile * kTileSize);
     std::vector<Vec3f> colors(store.id.size(), Vec3f(0.0f));
     // A static pinhole camera sees a function of the pixel that is smooth but for what the world
     // draws: a sun, a horizon.
-    if (!directions.vary_in_pixel()) {
-        const PixelCorners corners(directions, shading, spread);
+    if (!rays.vary_in_pixel()) {
+        const PixelCorners corners(camera, origin, shading);
         for (const std::size_t i : uncovered) colors[i] = corners.at(samples.x[i], samples.y[i]);
         const auto count = static_cast<std::size_t>(samples.samples);
         std::erase_if(uncovered, [&](std::size_t i) {
             return corners.settled(static_cast<int>(i / count), shading.threshold());
         });
     }
-    std::vector<Vec3f> wanted, found;
-    wanted.reserve(uncovered.size());
-    for (const std::size_t i : uncovered) wanted.push_back(directions.direction(i));
-    shading.background(wanted, spread, found);
+    SeenBackground wanted{.spread = pixel_spread(camera.projection)};
+    std::vector<Vec3f> found;
+    for (const std::size_t i : uncovered)
+        add(wanted, camera, origin + Vec2d(samples.x[i], samples.y[i]),
+            look_of(samples, i, camera.projection));
+    shading.background(wanted, found);
     for (std::size_t k = 0; k < uncovered.size(); ++k) colors[uncovered[k]] = found[k];
     return colors;
 }
@@ -94,11 +102,11 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
 std::vector<Vec3f> corner_background(const Camera& camera, const ShadingSystem& shading,
                                      const Rect& pixels, const RasterPass& pass) {
     const Look look{pass.t, {pass.u, pass.v}, pass.inverse_focus};
-    std::vector<Vec3f> directions, colors;
+    SeenBackground seen{.spread = pixel_spread(camera.projection)};
+    std::vector<Vec3f> colors;
     for (int y = pixels.y0; y <= pixels.y1; ++y)
-        for (int x = pixels.x0; x <= pixels.x1; ++x)
-            directions.push_back(world_direction(camera, {x, y}, look));
-    shading.background(directions, pixel_spread(camera), colors);
+        for (int x = pixels.x0; x <= pixels.x1; ++x) add(seen, camera, {x, y}, look);
+    shading.background(seen, colors);
     return colors;
 }
 

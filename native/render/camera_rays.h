@@ -41,15 +41,6 @@ class CameraRays {
                (!m_samples.t.empty() && m_camera.world_from_camera.size() > 1);
     }
 
-    /// World direction through a tile position (pixels).
-    Vec3f direction(double x, double y, const Look& look) const {
-        return world_direction(m_camera, {m_origin.x + x, m_origin.y + y}, look);
-    }
-    /// Of a sample.
-    Vec3f direction(std::size_t i) const {
-        return direction(m_samples.x[i], m_samples.y[i], look(i));
-    }
-
     struct Seen {
         Ray ray;        ///< of a sample, from the near plane on, without end
         float stretch;  ///< metres along it a metre of depth

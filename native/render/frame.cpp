@@ -48,7 +48,7 @@ HiderFrame make_hider_frame(Frame& frame) {
 Vec3f constant_background_of(const ShadingSystem& shading) {
     if (!shading.background_is_constant()) return Vec3f(0.0f);
     std::vector<Vec3f> color;
-    shading.background({Vec3f(0, 0, 1)}, 0.0f, color);
+    shading.background({.directions = {Vec3f(0, 0, 1)}}, color);
     return color.at(0);
 }
 

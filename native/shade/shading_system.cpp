@@ -479,9 +479,8 @@ Grid ShadingSystem::refine(const Grid& grid, std::span<const RefinedPoint> wante
     return m_impl->refine(grid, wanted, m_impl->footprint);
 }
 
-void ShadingSystem::background(const std::vector<Vec3f>& directions, float spread,
-                               std::vector<Vec3f>& out) const {
-    m_impl->world.radiance(directions, spread, RayType::Camera, out);
+void ShadingSystem::background(const SeenBackground& seen, std::vector<Vec3f>& out) const {
+    m_impl->world.background(seen, out);
 }
 
 TextureStore& ShadingSystem::textures() const {

@@ -14,6 +14,7 @@
 #include "scene/scene.h"
 #include "shade/kept_shading.h"
 #include "shade/refined_points.h"
+#include "shade/seen_background.h"
 #include "shade/seen_volumes.h"
 #include "shade/textures/texture.h"
 
@@ -67,10 +68,8 @@ class ShadingSystem {
     /// number of samples.
     float threshold() const;
 
-    /// The world as the camera sees it.  `directions` [n] unit, world space; `spread` radians a
-    /// direction stands for (texture filtering).  Fills `out` [n].
-    void background(const std::vector<Vec3f>& directions, float spread,
-                    std::vector<Vec3f>& out) const;
+    /// The world as the camera sees it.  Fills `out` [n].
+    void background(const SeenBackground& seen, std::vector<Vec3f>& out) const;
     /// The world's colour is one constant: `background` of any one direction.
     bool background_is_constant() const;
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "shade/lights/environment.h"
 #include "shade/nodes/node_compiler.h"
+#include "shade/seen_background.h"
 
 namespace granita {
 
@@ -20,11 +22,19 @@ class WorldShader {
     /// Radiance along `directions` [n] unit, world axes, each standing for `spread` radians; fills
     /// `out` [n].  Any thread.
     void radiance(const std::vector<Vec3f>& directions, float spread, RayType ray,
-                  std::vector<Vec3f>& out) const;
+                  std::vector<Vec3f>& out) const {
+        run(directions, {}, spread, ray, out);
+    }
+    /// The same as the camera sees it.
+    void background(const SeenBackground& seen, std::vector<Vec3f>& out) const {
+        run(seen.directions, seen.rasters, seen.spread, RayType::Camera, out);
+    }
     /// As a light; calls this.
     WorldEvaluator evaluator() const;
 
   private:
+    void run(const std::vector<Vec3f>& directions, std::span<const Vec2f> rasters, float spread,
+             RayType ray, std::vector<Vec3f>& out) const;
     const SurfaceProgram& program(RayType ray) const;
     const VectorSource& emission(RayType ray) const { return program(ray).sources.emission; }
 

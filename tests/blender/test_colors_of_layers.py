@@ -18,6 +18,8 @@ LAYERS = {
     "half the level": {"Specular IOR Level": 0.25},
     "coat": {"Coat Weight": 1.0, "Coat Roughness": 0.6, "Specular IOR Level": 0.0},
     "metal": {"Metallic": 1.0, "Base Color": (0.9, 0.5, 0.2, 1.0)},
+    "glass": {"Transmission Weight": 1.0, "Roughness": 0.2},
+    "rough glass": {"Transmission Weight": 0.7, "Roughness": 0.8},
     "dipping metal": {"Metallic": 1.0, "Specular Tint": (0.5, 0.7, 0.9, 1.0)},
 }
 
@@ -43,10 +45,15 @@ def test_colors_of_layers_are_those_of_cycles(scene, render, name, distribution)
     scene.render.resolution_x = scene.render.resolution_y = SIZE
     layer = scene.view_layers[0]
     layer.use_pass_diffuse_color = layer.use_pass_glossy_color = True
+    layer.use_pass_transmission_color = True
     made = scene_parts.direct_light_of_both(scene, render, 16)
     y, x = (np.mgrid[:SIZE, :SIZE] + 0.5) / (SIZE / 2) - 1.0
     seen = x * x + y * y < 0.9  # cosines above .3: beyond, pixels hold too many of them
-    for names in (("DiffCol", "Diffuse Color"), ("GlossCol", "Glossy Color")):
+    for names in (
+        ("DiffCol", "Diffuse Color"),
+        ("GlossCol", "Glossy Color"),
+        ("TransCol", "Transmission Color"),
+    ):
         ours, theirs = (picture_of(channels, *names)[seen] for channels in made)
         assert np.abs(ours - theirs).max() < 0.003, names
         assert np.abs(ours.mean(0) - theirs.mean(0)).max() < 7e-4, names

@@ -4,6 +4,7 @@
 #include "math/luminance.h"
 #include "math/sampling.h"
 #include "shade/bsdf/bsdf_albedo.h"
+#include "shade/bsdf/glass_albedo.h"
 #include "shade/bsdf/microfacet.h"
 #include "shade/bsdf/refraction.h"
 
@@ -30,6 +31,7 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
         lobe.distribution = source.distribution;
         lobe.separable_masking = source.separable_masking;
         lobe.smooth_color = source.smooth_color;
+        lobe.of_glass = source.of_glass;
         lobe.cosine_bumps = source.cosine_bumps;
         lobe.retro_alone = source.retro_alone;
         lobe.fresnel = source.fresnel;
@@ -137,10 +139,15 @@ bool PointBsdf::can_see(const Vec3f& to_center, float radius) const {
 BsdfValue PointBsdf::albedo() const {
     BsdfValue albedo;
     for (const Prepared& lobe : m_lobes) {
-        const Vec3f along_view = lobe.kind == LobeKind::Diffuse ? lobe.weight
-                                 : lobe.shape
-                                     ? lobe.weight * lobe.shape->albedo()
-                                     : lobe.weight * seen_part(lobe) * lobe.directional_albedo;
+        Vec3f along_view = lobe.weight;
+        if (lobe.shape) {
+            along_view *= lobe.shape->albedo();
+        } else if (lobe.kind != LobeKind::Diffuse) {
+            along_view *= seen_part(lobe) * lobe.directional_albedo;
+            if (lobe.of_glass)
+                along_view *=
+                    glass_directional_albedo(std::sqrt(lobe.alpha), lobe.cos_wi, lobe.ior);
+        }
         albedo.part(part_of(lobe.kind)) += along_view;
     }
     return albedo;

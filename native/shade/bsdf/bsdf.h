@@ -101,8 +101,8 @@ class PointBsdf {
         LobeKind kind;
         Distribution distribution;
         FresnelKind fresnel;
-        bool sharp = false, separable_masking = false, smooth_color = false, cosine_bumps = false,
-             retro_alone = false;
+        bool sharp = false, separable_masking = false, smooth_color = false, of_glass = false,
+             cosine_bumps = false, retro_alone = false;
         Vec3f weight, normal;
         Vec3f f0{1.0f}, f90{1.0f}, dip{0.0f};
         float ior = 1.0f, f0_real = 0.0f;

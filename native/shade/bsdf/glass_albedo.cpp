@@ -55,11 +55,19 @@ struct Albedo {
     UnitCubeTable average;      ///< the cosine-weighted mean: alike along the second axis
 };
 
+const Albedo& albedo_of(float ior) {
+    static const Albedo kInto(true), kOut(false);
+    return ior >= 1.0f ? kInto : kOut;
+}
+
 }  // namespace
 
+float glass_directional_albedo(float roughness, float cosine, float ior) {
+    return albedo_of(ior).directional.look_up(roughness, cosine, ior_axis(ior));
+}
+
 Vec3f glass_compensation(const Vec3f& color, float roughness, float cosine, float ior) {
-    static const Albedo kInto(true), kOut(false);
-    const Albedo& albedo = ior >= 1.0f ? kInto : kOut;
+    const Albedo& albedo = albedo_of(ior);
     const float z = ior_axis(ior);
     const float e = albedo.directional.look_up(roughness, cosine, z);
     const float e_mean = albedo.average.look_up(roughness, 0.0f, z);

@@ -109,6 +109,8 @@ struct Lobe {
     bool separable_masking = false;  ///< glossy: Smith's masking of view and light multiplied, as
                                      ///< Cycles before Blender 4; else height-correlated
     bool smooth_color = false;       ///< glossy: its pass of colour is that of a smooth surface
+    bool of_glass = false;           ///< its weight holds glass_compensation(), which passes of
+                                     ///< colour do not
     bool burley = false;       ///< diffuse: Burley's (2012) retro-reflection with `roughness`, as
                                ///< Principled before Blender 4
     bool retro_alone = false;  ///< of that what goes back alone

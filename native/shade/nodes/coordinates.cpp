@@ -44,6 +44,16 @@ VectorSource geometric_normal(NodeBuilder& b) {
         [](const ShadingInput& in, std::size_t i) { return in.points->geometric_normal[i]; });
 }
 
+/// Of a world.  Parallel rays of the camera all see it in one direction, and have places of their
+/// own; to others a direction is a place beside the world's origin, as in Cycles.
+VectorSource parallel_window(NodeBuilder& b, const FrameCamera& camera) {
+    return b.geometry<Vec3f>([camera](const ShadingInput& in, std::size_t i) {
+        if (in.rasters.empty())
+            return camera.window(camera.camera_from_world * (in.points->p[i] - camera.position));
+        return Vec3f(in.rasters[i] / camera.resolution, 0.0f);
+    });
+}
+
 }  // namespace
 
 VectorSource position_at(NodeBuilder& b, Shift shift) {
@@ -123,9 +133,12 @@ void build_texture_coordinate(NodeBuilder& b) {
     const auto turn = [camera](const Vec3f& p) { return camera.camera_from_world * p; };
     const auto window = [camera](const Vec3f& p) { return camera.window(p); };
     b.output_vector("Camera", b.map<Vec3f>(turn, in_camera));
-    b.output_vector("Window", b.map<Vec3f>(window, b.map<Vec3f>(turn, camera.projection.perspective
-                                                                          ? in_camera
-                                                                          : position)));
+    const bool is_parallel = !camera.projection.perspective;
+    b.output_vector(
+        "Window",
+        is_parallel && b.is_world()
+            ? parallel_window(b, camera)
+            : b.map<Vec3f>(window, b.map<Vec3f>(turn, is_parallel ? position : in_camera)));
     b.output_vector("Reflection", in_sky ? b.view()
                                   : !b.has_surface()
                                       ? object_normal(b)

@@ -19,6 +19,7 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::si
         lobe.multiscatter = from.multiscatter;
         lobe.separable_masking = from.separable_masking;
         lobe.smooth_color = from.smooth_color;
+        lobe.of_glass = from.of_glass;
         lobe.burley = from.burley;
         lobe.retro_alone = from.retro_alone;
         lobe.cosine_bumps = from.cosine_bumps;

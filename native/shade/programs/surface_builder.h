@@ -15,8 +15,8 @@ struct LobeSource {
     LobeKind kind = LobeKind::Diffuse;
     Distribution distribution = Distribution::Ggx;
     FresnelKind fresnel = FresnelKind::None;
-    bool multiscatter = false, separable_masking = false, smooth_color = false, burley = false,
-         cosine_bumps = false;
+    bool multiscatter = false, separable_masking = false, smooth_color = false, of_glass = false,
+         burley = false, cosine_bumps = false;
     bool retro_alone = false;
     VectorSource weight, normal;
     FloatSource roughness;
