@@ -48,12 +48,27 @@ def test_hair_in_a_furnace_has_its_albedo(component, mirrored):
     assert seen == pytest.approx(np.full(36, ALBEDO), rel=0.04 if mirrored else 0.005)
 
 
-@pytest.mark.parametrize("radius", [0.3, 1.4, 3.5])
-def test_matte_hair_in_a_furnace_has_its_albedo(radius):
-    """Samples that shade ribbons know that they are round: what leaves below the flat ribbon is not lost."""
+WHITE = (ALBEDO,) * 3 + (1.0,)
+LOBES = {
+    "Diffuse": {},
+    "Glossy": {"Roughness": 0.2},
+    "Glossy, sharp": {"Roughness": 0.0},
+    "Refraction": {"Roughness": 0.2, "IOR": 1.3},
+    "Refraction, sharp": {"Roughness": 0.0, "IOR": 1.3},
+}
+
+
+@pytest.mark.parametrize("radius", [0.3, 1.4, 3.5, 12.0])
+@pytest.mark.parametrize("lobe", LOBES)
+def test_round_hair_in_a_furnace_has_its_albedo(lobe, radius):
+    """Points of ribbons know that they are round: what leaves below the flat ribbon is not lost, nor what its edges mirror
+    behind it (a third of gloss was)."""
     snapshot = s.orthographic((64, 64), samples=64, bounces=1, light_samples=16)
     places = [(32.3, y, 20.0) for y in (-40.0, 10.0, 54.0, 104.0)]
-    curves(snapshot, places, [4], radius, diffuse(snapshot, ALBEDO))
+    name = "ShaderNodeBsdf" + lobe.split(",")[0]
+    inputs = {"Color": WHITE, **LOBES[lobe]}
+    nodes = [{"type": name, "inputs": inputs, "properties": {"distribution": "MULTI_GGX"}}]
+    curves(snapshot, places, [4], radius, material(snapshot, nodes, (0, "BSDF")))
     s.constant_world(snapshot, 1.0)
     snapshot["world"]["lights_scene"] = True
     seen = s.render(snapshot)["combined"][..., 0].mean(axis=0)

@@ -183,9 +183,7 @@ bool PointBsdf::sample(std::size_t index, const Vec2f& u, Vec3f& wo) const {
     if (!draw(lobe, u, wo)) return false;
     // What bent normals send through the surface, or back, is lost (Cycles): it would meet the
     // surface itself and be reflected once more.
-    if (m_round || sees_all_around(lobe.kind)) return true;
-    const float side = granita::transmits(lobe.kind) ? -1.0f : 1.0f;
-    return side * glm::dot(m_geometric_normal, wo) >= 0.0f;
+    return sees_all_around(lobe.kind) || leaves(granita::transmits(lobe.kind), wo);
 }
 
 bool PointBsdf::draw(const Prepared& lobe, const Vec2f& u, Vec3f& wo) const {
@@ -214,9 +212,15 @@ bool PointBsdf::deflect(std::size_t index, Vec3f& wo, Vec3f& share) const {
 bool PointBsdf::turn(const Prepared& lobe, const Vec3f& half, Vec3f& wo) const {
     if (lobe.kind == LobeKind::Refraction)
         return refracted(m_wi, half, lobe.ior, wo) && glm::dot(lobe.normal, wo) < 0.0f &&
-               glm::dot(m_geometric_normal, wo) < 0.0f;
+               leaves(true, wo);
     wo = glm::normalize(2.0f * glm::dot(half, m_wi) * half - m_wi);
-    return glm::dot(lobe.normal, wo) > 0.0f && glm::dot(m_geometric_normal, wo) >= 0.0f;
+    return glm::dot(lobe.normal, wo) > 0.0f && leaves(false, wo);
+}
+
+bool PointBsdf::leaves(bool through, const Vec3f& wo) const {
+    if (m_round) return true;
+    const float above = glm::dot(m_geometric_normal, wo);
+    return through ? above < 0.0f : above >= 0.0f;
 }
 
 }  // namespace granita

@@ -171,6 +171,8 @@ class PointBsdf {
     bool draw(const Prepared& lobe, const Vec2f& u, Vec3f& wo) const;
     /// Where a facet sends the view.
     bool turn(const Prepared& lobe, const Vec3f& half, Vec3f& wo) const;
+    /// Whether a way leaves the face to its own side, or through it.  A tube has a place for each.
+    bool leaves(bool through, const Vec3f& wo) const;
 
     std::vector<Prepared> m_lobes;
     Vec3f m_wi, m_normal, m_geometric_normal;

@@ -30,7 +30,7 @@ Vec3f PointBsdf::transmittance(const Prepared& lobe, float cos_half) const {
 /// (docs/decisions/shading.md).  No sample of the lobe goes there.
 bool PointBsdf::refracting_facets(const Prepared& lobe, const Vec3f& wo,
                                   RefractingFacets& out) const {
-    if (glm::dot(lobe.normal, wo) >= 0.0f || glm::dot(m_geometric_normal, wo) >= 0.0f) return false;
+    if (glm::dot(lobe.normal, wo) >= 0.0f || !leaves(true, wo)) return false;
     const Vec3f between = lobe.ior * wo + m_wi;
     const float length2 = glm::dot(between, between);
     if (length2 <= 0.0f) return false;
