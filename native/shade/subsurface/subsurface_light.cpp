@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/surface_frames.h"
 #include "math/luminance.h"
 #include "math/normalize_or.h"
 #include "math/sampling.h"
@@ -25,6 +26,11 @@ namespace {
 /// Of the sequences by which ends are lit: no surface lies so deep.
 constexpr std::uint32_t kDepth = 1u << 20;
 constexpr float kLeastAlbedo = 1e-6f;
+
+Vec2d middle_of(PatchKind kind) {
+    return Vec2d(kind == PatchKind::Triangle ? 1.0 / 3.0 : 0.5);
+}
+
 }  // namespace
 
 /// The ways of a batch of points.
@@ -112,12 +118,46 @@ class SubsurfaceLight::Batch {
         RayOffset offset = m_rays.ray_offset({m_key.instance, face});
         const float step = width_of(m_points, i);
         const float height = step + offset.length(m_p);
-        const Ray down{m_p + height * m_normal, -m_normal, 2.0f * height, m_body.time};
-        if (RayScene::Met met{}; m_rays.nearest(m_body, down, met)) {
-            m_p = met.hit.p;
-            offset.error = 0.0f;
-        }
+        RayScene::Met met{};
+        if (is_small() ? drop_near(i, height, met) : drop(height, met)) offset.error = 0.0f;
         m_rounding = offset.length(m_p);
+    }
+
+    bool is_small() const { return m_points.columns == 0 && m_points.places.empty(); }
+
+    /// Points of small faces are their corners, from which light would start beside the body: what
+    /// they stand for is around a face's middle.  Edges may be missed by rounding.
+    bool drop_near(std::size_t i, float height, RayScene::Met& met) {
+        constexpr float kAside = 0.05f;  // of a micropolygon
+        constexpr Vec2f kWays[] = {{0, 0}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+        const Vec3f corner = m_p;
+        for (const Vec2f& way : kWays) {
+            m_p = corner + kAside * (way.x * m_points.dp_du[i] + way.y * m_points.dp_dv[i]);
+            if (!drop(height, met)) continue;
+            m_p += towards_middle(met);
+            drop(height, met);
+            return true;
+        }
+        m_p = corner;
+        return false;
+    }
+
+    /// Onto what lies under, or no more than a height above, the point.
+    bool drop(float height, RayScene::Met& met) {
+        const Ray down{m_p + height * m_normal, -m_normal, 2.0f * height, m_body.time};
+        if (!m_rays.nearest(m_body, down, met)) return false;
+        m_p = met.hit.p;
+        return true;
+    }
+
+    /// From a place on a face.
+    static Vec3f towards_middle(const RayScene::Met& met) {
+        static thread_local SurfaceFrames there;
+        const RayHit& hit = met.hit;
+        find_frames(*hit.geometry, *hit.patch, {&hit.uv, 1}, there);
+        const Vec2d way = middle_of(hit.patch->kind) - hit.uv;
+        return 0.5f *
+               (met.frame().world_from_object * Vec3f(way.x * there.su[0] + way.y * there.sv[0]));
     }
 
     void walk_from(const SubsurfaceLobe& lobe, std::size_t i, std::uint32_t sample, const Vec2f& u,
