@@ -293,12 +293,11 @@ class TileComposite {
                                  : 1.0 - (layers.cut[i] + rest * (1.0 - behind.alpha));
         const bool found = layers.first_key[i] > kNothing;
         const bool is_cut = (layers.first_cuts >> i & 1u) != 0;
-        m_colors.set(
-            sample,
-            {Vec3f(color + transmission * Vec3d(behind.color)), static_cast<float>(alpha),
-             is_cut  ? std::numeric_limits<float>::infinity()
-             : found ? m_settings.projection.depth_from_key(layers.first_key[i])
-                     : surface.depth});
+        m_colors.set(sample,
+                     {Vec3f(color + transmission * Vec3d(behind.color)), static_cast<float>(alpha),
+                      is_cut  ? std::numeric_limits<float>::infinity()
+                      : found ? m_settings.projection.depth_from_key(layers.first_key[i])
+                              : surface.depth});
         if (m_channels) put_channels_over(sample, transmission, found, ended);
     }
 
