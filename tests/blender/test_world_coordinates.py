@@ -49,6 +49,31 @@ def test_places_and_directions(scene, render, node, output):
     expect_alike(scene, render)
 
 
+@pytest.mark.parametrize("output", ["Window", "Camera", "Generated"])
+def test_parallel_rays_have_one_direction_and_places_of_their_own(scene, render, output):
+    tree, shown = world_tree(scene)
+    scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 3.0
+    scene.camera.data.shift_x = 0.1
+    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs[output], shown)
+    expect_alike(scene, render)
+
+
+def test_an_image_in_one_direction_is_not_filtered(scene, render):
+    """A checker of texels of 6 degrees, of which parallel rays see a place between two."""
+    tree, shown = world_tree(scene)
+    scene.camera.data.type = "ORTHO"
+    image = bpy.data.images.new("Checks", 64, 32, float_buffer=True)
+    rows, columns = np.mgrid[0:32, 0:64]
+    checks = np.ones((32, 64, 4), np.float32)
+    checks[..., :3] = ((rows + columns) % 2)[..., None]
+    image.pixels.foreach_set(checks.ravel())
+    image.update()
+    node = tree.nodes.new("ShaderNodeTexEnvironment")
+    node.image = image
+    tree.links.new(node.outputs[0], shown)
+    expect_alike(scene, render)
+
+
 @pytest.mark.parametrize("kind", ["POINT", "VECTOR", "NORMAL"])
 @pytest.mark.parametrize("convert_from", ["WORLD", "OBJECT", "CAMERA"])
 @pytest.mark.parametrize("convert_to", ["WORLD", "OBJECT", "CAMERA"])
