@@ -25,9 +25,6 @@ constexpr float kLongest = 1.5f;
 PatchKind mean_kind(PatchKind kind) {
     return kind == PatchKind::Triangle ? kind : PatchKind::Quad;
 }
-Vec2d middle_of(PatchKind kind) {
-    return kind == PatchKind::Triangle ? Vec2d(1.0 / 3.0) : Vec2d(0.5);
-}
 
 }  // namespace
 

@@ -34,6 +34,10 @@ class SurfaceEvaluator;
 ///   Triangle      of a polygon, barycentric: corner 0 at (0,0), 1 at (1,0), 2 at (0,1)
 ///   TrianglePair  two of a polygon, corners as a Quad's: (0,1,2) where u > v and (0,2,3)
 enum class PatchKind : std::uint8_t { Quad, SubFace, Triangle, TrianglePair };
+/// Of its domain.
+inline Vec2d middle_of(PatchKind kind) {
+    return Vec2d(kind == PatchKind::Triangle ? 1.0 / 3.0 : 0.5);
+}
 
 struct BasePatch {
     std::uint32_t face = 0;

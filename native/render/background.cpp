@@ -17,19 +17,21 @@ float pixel_spread(const Projection& projection) {
     return static_cast<float>(1.0 / std::max(projection.scale.x, 1e-9));
 }
 
-void add(SeenBackground& seen, const Camera& camera, Vec2d raster, const Look& look) {
-    seen.directions.push_back(world_direction(camera, raster, look));
-    if (!camera.projection.perspective) seen.rasters.emplace_back(raster);
+void add(BackgroundRays& rays, const Camera& camera, Vec2d raster, const Look& look) {
+    const Projection& p = camera.projection;
+    rays.directions.push_back(world_direction(camera, raster, look));
+    // They start on the lens.
+    if (!p.perspective) rays.rasters.emplace_back(raster + look.lens * p.lens_radius * p.scale);
 }
 
 /// Colours at the corners of a tile's pixels, [17][17].
 class PixelCorners {
   public:
     PixelCorners(const Camera& camera, const Vec2d& origin, const ShadingSystem& shading) {
-        SeenBackground seen{.spread = pixel_spread(camera.projection)};
+        BackgroundRays rays{.spread = pixel_spread(camera.projection)};
         for (int y = 0; y < kSide; ++y)
-            for (int x = 0; x < kSide; ++x) add(seen, camera, origin + Vec2d(x, y), {});
-        shading.background(seen, m_colors);
+            for (int x = 0; x < kSide; ++x) add(rays, camera, origin + Vec2d(x, y), {});
+        shading.background(rays, m_colors);
     }
 
     /// Whether what is between the pixel's corners bends by less than the threshold
@@ -89,7 +91,7 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
             return corners.settled(static_cast<int>(i / count), shading.threshold());
         });
     }
-    SeenBackground wanted{.spread = pixel_spread(camera.projection)};
+    BackgroundRays wanted{.spread = pixel_spread(camera.projection)};
     std::vector<Vec3f> found;
     for (const std::size_t i : uncovered)
         add(wanted, camera, origin + Vec2d(samples.x[i], samples.y[i]),
@@ -102,11 +104,11 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
 std::vector<Vec3f> corner_background(const Camera& camera, const ShadingSystem& shading,
                                      const Rect& pixels, const RasterPass& pass) {
     const Look look{pass.t, {pass.u, pass.v}, pass.inverse_focus};
-    SeenBackground seen{.spread = pixel_spread(camera.projection)};
+    BackgroundRays rays{.spread = pixel_spread(camera.projection)};
     std::vector<Vec3f> colors;
     for (int y = pixels.y0; y <= pixels.y1; ++y)
-        for (int x = pixels.x0; x <= pixels.x1; ++x) add(seen, camera, {x, y}, look);
-    shading.background(seen, colors);
+        for (int x = pixels.x0; x <= pixels.x1; ++x) add(rays, camera, {x, y}, look);
+    shading.background(rays, colors);
     return colors;
 }
 

@@ -288,7 +288,6 @@ struct ShadingSystem::Impl {
 
     Grid refine(const Grid& grid, std::span<const RefinedPoint> wanted, float point_size) const {
         Grid out = refine_lit(grid, wanted, point_size);
-        out.holdout = grid.holdout;
         if (grid.found_alone) catchers->divide(out, grid, wanted, channels);
         return out;
     }
@@ -308,6 +307,7 @@ struct ShadingSystem::Impl {
         out.key = grid.key;
         out.instance = grid.instance;
         out.material = grid.material;
+        out.holdout = grid.holdout;
         out.n_u = static_cast<int>(wanted.size()) - 1;
         const Mat3f camera_from_world = glm::transpose(Mat3f(camera.world_from_camera));
         for (const Vec3f& p : refined.points.p) out.p.push_back(camera_from_world * p);
@@ -479,8 +479,8 @@ Grid ShadingSystem::refine(const Grid& grid, std::span<const RefinedPoint> wante
     return m_impl->refine(grid, wanted, m_impl->footprint);
 }
 
-void ShadingSystem::background(const SeenBackground& seen, std::vector<Vec3f>& out) const {
-    m_impl->world.background(seen, out);
+void ShadingSystem::background(const BackgroundRays& rays, std::vector<Vec3f>& out) const {
+    m_impl->world.background(rays, out);
 }
 
 TextureStore& ShadingSystem::textures() const {

@@ -12,9 +12,9 @@
 #include "dice/grid.h"
 #include "dice/view.h"
 #include "scene/scene.h"
+#include "shade/background_rays.h"
 #include "shade/kept_shading.h"
 #include "shade/refined_points.h"
-#include "shade/seen_background.h"
 #include "shade/seen_volumes.h"
 #include "shade/textures/texture.h"
 
@@ -69,7 +69,7 @@ class ShadingSystem {
     float threshold() const;
 
     /// The world as the camera sees it.  Fills `out` [n].
-    void background(const SeenBackground& seen, std::vector<Vec3f>& out) const;
+    void background(const BackgroundRays& rays, std::vector<Vec3f>& out) const;
     /// The world's colour is one constant: `background` of any one direction.
     bool background_is_constant() const;
 

@@ -79,8 +79,8 @@ const SurfaceProgram& WorldShader::program(RayType ray) const {
     return m_programs[m_program_of[static_cast<std::size_t>(ray)]];
 }
 
-void WorldShader::run(const std::vector<Vec3f>& directions, std::span<const Vec2f> rasters,
-                      float spread, RayType ray, std::vector<Vec3f>& out) const {
+void WorldShader::evaluate(const std::vector<Vec3f>& directions, std::span<const Vec2f> rasters,
+                           float spread, RayType ray, std::vector<Vec3f>& out) const {
     const VectorSource& source = emission(ray);
     if (source.is_constant()) {
         out.assign(directions.size(), source.constant);

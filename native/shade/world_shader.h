@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "shade/background_rays.h"
 #include "shade/lights/environment.h"
 #include "shade/nodes/node_compiler.h"
-#include "shade/seen_background.h"
 
 namespace granita {
 
@@ -23,18 +23,18 @@ class WorldShader {
     /// `out` [n].  Any thread.
     void radiance(const std::vector<Vec3f>& directions, float spread, RayType ray,
                   std::vector<Vec3f>& out) const {
-        run(directions, {}, spread, ray, out);
+        evaluate(directions, {}, spread, ray, out);
     }
     /// The same as the camera sees it.
-    void background(const SeenBackground& seen, std::vector<Vec3f>& out) const {
-        run(seen.directions, seen.rasters, seen.spread, RayType::Camera, out);
+    void background(const BackgroundRays& rays, std::vector<Vec3f>& out) const {
+        evaluate(rays.directions, rays.rasters, rays.spread, RayType::Camera, out);
     }
     /// As a light; calls this.
     WorldEvaluator evaluator() const;
 
   private:
-    void run(const std::vector<Vec3f>& directions, std::span<const Vec2f> rasters, float spread,
-             RayType ray, std::vector<Vec3f>& out) const;
+    void evaluate(const std::vector<Vec3f>& directions, std::span<const Vec2f> rasters,
+                  float spread, RayType ray, std::vector<Vec3f>& out) const;
     const SurfaceProgram& program(RayType ray) const;
     const VectorSource& emission(RayType ray) const { return program(ray).sources.emission; }
 

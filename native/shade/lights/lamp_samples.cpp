@@ -112,19 +112,15 @@ void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& p
                       const LightSample& sample, float density, float sign) {
     const BsdfValue bsdf = lamp.apply(point.bsdf.evaluate(sample.direction), m_grid.in_medium);
     const Vec3f value = total(bsdf) * sample.radiance;
-    if (value == Vec3f(0.0f)) return;
+    if (value == Vec3f(0.0f) || LampSet::is_beneath(lamp, point, place, sample.direction)) return;
     if (!lamp.is_hard() && lamp.meets_lobes(m_grid.depth))
         density = power_density(density, point.meeting_density(sample.direction));
     const Vec3f radiance = sample.radiance / density;
-    if (!m_set.rays || !lamp.casts_shadow()) {
+    if (m_set.rays && lamp.casts_shadow())
+        m_shadows.send(point.index, value / density, bsdf, radiance, sign,
+                       m_set.ray_to(point, place, lamp, sample, RayType::Shadow));
+    else
         m_shadows.send(point.index, value / density, bsdf, radiance, sign);
-        return;
-    }
-    const Ray ray = m_set.ray_to(point, place, lamp, sample, RayType::Shadow);
-    // A micropolygon lies some roundings, or the sagitta of coarse faces, below what rays meet: its
-    // own surface does not light it from above.
-    if (!lamp.parts(place.time, place.p, ray.start))
-        m_shadows.send(point.index, value / density, bsdf, radiance, sign, ray);
 }
 
 }  // namespace

@@ -50,17 +50,25 @@ struct LampSet {
     Vec3f occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& place,
                     const Vec3f& direction, RayType type) const;
 
+    /// Whether the point lies under the lamp's own surface, by roundings or the sagitta of coarse
+    /// faces: what passes between it and where its rays start gives it nothing.  Not of tubes.
+    static bool is_beneath(const Lamp& lamp, const LitPoint& point, const LitPlace& place,
+                           const Vec3f& direction) {
+        const bool below = point.is_through(direction);
+        return !point.round &&
+               lamp.separates(place.time, place.p, below ? place.start_below() : place.start);
+    }
     /// Calls `met(index, lamp, sample)` for lamps that samples of the grid's lobes meet along a
     /// direction.
     template <class Met>
-    void meet(const LitGrid& grid, const LitPlace& place, const Vec3f& direction,
-              const Met& met) const {
+    void meet(const LitGrid& grid, const LitPoint& point, const LitPlace& place,
+              const Vec3f& direction, const Met& met) const {
         const auto ask = [&](std::size_t index) {
             const Lamp& lamp = lamps[index];
             LightSample sample;
             if (lamp.lights(grid.receives) && lamp.meets_lobes(grid.depth) &&
                 lamp.meets(place.time, place.p, direction, sample) &&
-                !lamp.parts(place.time, place.p, place.start_towards(direction)))
+                !is_beneath(lamp, point, place, direction))
                 met(index, lamp, sample);
         };
         if (!tree) {

@@ -70,10 +70,10 @@ class Lamp {
         return m_moving ? m_moving->at(time).intersect(p, direction, sample)
                         : at(time).intersect(p, direction, sample);
     }
-    /// LightSource::parts at a time.
-    bool parts(float time, const Vec3f& p, const Vec3f& start) const {
+    /// LightSource::separates at a time.
+    bool separates(float time, const Vec3f& p, const Vec3f& start) const {
         if (!m_is_surface) return false;
-        return m_moving ? m_moving->at(time).parts(p, start) : at(time).parts(p, start);
+        return m_moving ? m_moving->at(time).separates(p, start) : at(time).separates(p, start);
     }
     /// Of one that does not vary: LightSource::bound.
     bool bound(Vec3f& center, float& radius) const { return at(0.0f).bound(center, radius); }

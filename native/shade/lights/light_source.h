@@ -54,7 +54,7 @@ class LightSource {
     /// misses the light or it sends nothing.
     virtual bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const = 0;
     /// Of a surface: whether it passes between a point and where the rays of that start.
-    virtual bool parts(const Vec3f& /*p*/, const Vec3f& /*start*/) const { return false; }
+    virtual bool separates(const Vec3f& /*p*/, const Vec3f& /*start*/) const { return false; }
     /// A sphere around the light, shading space; false for lights without a place.
     virtual bool bound(Vec3f& center, float& radius) const = 0;
     /// Of lights that have a place.

@@ -24,7 +24,7 @@ class TriangleLight : public LightSource {
     void sample_all(const Vec3f& p, std::span<const Vec2f> u,
                     std::span<LightSample> samples) const override;
     bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const override;
-    bool parts(const Vec3f& p, const Vec3f& start) const override {
+    bool separates(const Vec3f& p, const Vec3f& start) const override {
         return height(p) * height(start) <= 0.0f;
     }
     bool bound(Vec3f& center, float& radius) const override;

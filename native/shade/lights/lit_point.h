@@ -21,9 +21,6 @@ struct LitPlace {
 
     /// Of rays through the surface.
     Vec3f start_below() const { return 2.0f * p - start; }
-    Vec3f start_towards(const Vec3f& direction) const {
-        return glm::dot(normal, direction) < 0.0f ? start_below() : start;
-    }
     /// Of rays out of a tube whose surface has `outward` where others start: beside the place that
     /// is seen, just past the ribbon through the axis that faces the ray.  Farther on it would be
     /// beyond hairs that lie in this one.

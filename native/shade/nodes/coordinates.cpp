@@ -136,7 +136,7 @@ void build_texture_coordinate(NodeBuilder& b) {
     const bool is_parallel = !camera.projection.perspective;
     b.output_vector(
         "Window",
-        is_parallel && b.is_world()
+        is_parallel && !b.has_surface()
             ? parallel_window(b, camera)
             : b.map<Vec3f>(window, b.map<Vec3f>(turn, is_parallel ? position : in_camera)));
     b.output_vector("Reflection", in_sky ? b.view()

@@ -88,7 +88,7 @@ void add_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& glass
     sent.f0 = glass.f0;
     sent.f90 = {-1, kOne};
     sent.weight = product(b, weight, glass.sent);
-    sent.of_glass = glass.multiscatter && b.since(4, 0);
+    sent.of_glass = glass.multiscatter && !glass.roughness.is(0.0f) && b.since(4, 0);
     cover(sent, seen_from(b, glass.film, glass.ior));
     LobeSource reflected = sent;
     reflected.kind = LobeKind::Glossy;

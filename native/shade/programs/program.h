@@ -55,7 +55,7 @@ struct ShadingInput {
     ObjectAxes axes;
     std::vector<ObjectAxes> axes_at_times;   ///< [points] where these have times of their own
     float spread = 0.0f;                     ///< world: radians a direction stands for
-    std::span<const Vec2f> rasters;          ///< world: as SeenBackground's
+    std::span<const Vec2f> rasters;          ///< world: as BackgroundRays's
     float ray_length = 0.0f;                 ///< of shadow rays, from where they started
     std::span<const PatternSample> of_lamp;  ///< [points] of lamps' programs
     const RayScene* rays = nullptr;          ///< nullptr: none can be asked

@@ -27,10 +27,6 @@ namespace {
 constexpr std::uint32_t kDepth = 1u << 20;
 constexpr float kLeastAlbedo = 1e-6f;
 
-Vec2d middle_of(PatchKind kind) {
-    return Vec2d(kind == PatchKind::Triangle ? 1.0 / 3.0 : 0.5);
-}
-
 }  // namespace
 
 /// The ways of a batch of points.
@@ -123,23 +119,33 @@ class SubsurfaceLight::Batch {
         m_rounding = offset.length(m_p);
     }
 
-    bool is_small() const { return m_points.columns == 0 && m_points.places.empty(); }
+    /// Whether points are corners of small faces; not means of some, nor samples.
+    bool is_small() const {
+        return m_points.columns == 0 && !m_points.faces.empty() && m_points.places.empty();
+    }
 
     /// Points of small faces are their corners, from which light would start beside the body: what
-    /// they stand for is around a face's middle.  Edges may be missed by rounding.
+    /// they stand for is around a face's middle, of the point's own if one of the rays down beside
+    /// it meets that.
     bool drop_near(std::size_t i, float height, RayScene::Met& met) {
         constexpr float kAside = 0.05f;  // of a micropolygon
-        constexpr Vec2f kWays[] = {{0, 0}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+        constexpr Vec2f kWays[] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
         const Vec3f corner = m_p;
+        bool any = false;
         for (const Vec2f& way : kWays) {
             m_p = corner + kAside * (way.x * m_points.dp_du[i] + way.y * m_points.dp_dv[i]);
-            if (!drop(height, met)) continue;
-            m_p += towards_middle(met);
-            drop(height, met);
-            return true;
+            RayScene::Met beside{};
+            if (!drop(height, beside)) continue;
+            const bool is_own = beside.hit.patch->face == m_points.faces[i];
+            if (is_own || !any) met = beside;
+            any = true;
+            if (is_own) break;
         }
-        m_p = corner;
-        return false;
+        m_p = any ? met.hit.p : corner;
+        if (!any) return false;
+        m_p += towards_middle(met);
+        if (!drop(height, met)) m_p = met.hit.p;
+        return true;
     }
 
     /// Onto what lies under, or no more than a height above, the point.
