@@ -91,6 +91,16 @@ def test_coordinates(scene, render, name, node, output):
     assert_alike(scene, render, name)
 
 
+@pytest.mark.parametrize("name", ["point", "rectangle", "sun"])
+@pytest.mark.parametrize("output", ["Window", "Camera"])
+def test_coordinates_under_a_parallel_view(scene, render, name, output):
+    set_stage(scene, lambert())
+    scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 6.0
+    tree = lamp_tree(scene, name)
+    waves(tree, tree.nodes.new("ShaderNodeTexCoord").outputs[output])
+    assert_alike(scene, render, name)
+
+
 def tree_is_of_area(name):
     return LAMPS[name][0] == "AREA"
 

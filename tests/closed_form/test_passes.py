@@ -266,7 +266,8 @@ def test_aovs_of_materials(executor):
 
 @pytest.mark.parametrize("alpha", [None, 0.75])
 def test_holdouts_are_in_no_pass_but_hide_what_is_behind(executor, alpha):
-    """As in Cycles: neither depth nor index of what is cut out, nor of what it hides; its nodes' own output stays."""
+    """As in Cycles, and clear ones likewise (docs/decisions/passes.md): neither depth nor index of what is cut out, nor of what
+    it hides; its nodes' own output stays."""
     snapshot = snapshots.orthographic((8, 8), executor=executor, depth_pass=True)
     snapshot["options"] |= {"opacity_threshold": 1.0, "pass_alpha_threshold": 0.5}
     cut = snapshots.emission(snapshot, alpha=alpha)
@@ -288,6 +289,32 @@ def test_holdouts_are_in_no_pass_but_hide_what_is_behind(executor, alpha):
     left = 0.0 if alpha is None else 1.0 - alpha
     assert np.abs(made["Diffuse Color"] - left * np.array((0.8, 0.4, 0.2))).max() < ROUNDING
     assert np.abs(made["Tint"] - (0.25, 0.5, 2.0, 1.0)).max() < ROUNDING
+
+
+def test_samples_of_a_holdout_with_holes_are_in_no_pass():
+    """Where its opacity varies samples are shaded by themselves; behind it there is nothing."""
+    snapshot = snapshots.orthographic((8, 8), samples=16, pass_alpha_threshold=0.5)
+    nodes = [
+        {"type": "ShaderNodeTexChecker", "inputs": {"Scale": 11.0}},
+        {"type": "ShaderNodeBsdfTransparent", "inputs": {}},
+        {"type": "ShaderNodeBsdfDiffuse", "inputs": {}},
+        {
+            "type": "ShaderNodeMixShader",
+            "inputs": {
+                "Fac": ("LINK", 0, "Fac"),
+                "Shader": ("LINK", 1, "BSDF"),
+                "Shader_001": ("LINK", 2, "BSDF"),
+            },
+        },
+    ]
+    card = {"name": "Card", "nodes": nodes, "surface": (3, "Shader"), "index": 4}
+    snapshot["materials"].append(card)
+    cut = len(snapshot["materials"]) - 1
+    snapshots.quad(snapshot, snapshots.rectangle(0, 0, 8, 8, 2), cut)
+    snapshot["instances"]["flags"] = [7]
+    made = passes(snapshot)["passes"]
+    assert np.all(made["Material Index"] == 0)
+    assert np.all(made["Normal"] == 0.0)
 
 
 def test_passes_change_neither_picture_nor_visibility(executor):
