@@ -5,7 +5,7 @@
 title = "Heading of the manual"
 [[part.entry]]
 what = "what the artist knows it by"
-keys = ["CyclesLightSettings.is_*"]   # patterns of Flip.key; of Flip.identifier where they hold a colon; []: no flip shows it
+keys = ["CyclesLightSettings.is_*"]   # patterns of Flip.key; of Flip.identifier where they hold a colon
 but = ["CyclesLightSettings.is_portal"]  # likewise, of those that `keys` take in but that are read
 reason = "why, and what happens instead"
 verdicts = ["silent"]                 # what is allowed; these are left out: all but `fails`
