@@ -128,7 +128,7 @@ class SubsurfaceLight::Batch {
     /// they stand for is around a face's middle, of the point's own if one of the rays down beside
     /// it meets that.
     bool drop_near(std::size_t i, float height, RayScene::Met& met) {
-        constexpr float kAside = 0.05f;  // of a micropolygon
+        constexpr float kAside = 0.05f, kInwards = 0.35f;  // of a micropolygon
         constexpr Vec2f kWays[] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
         const Vec3f corner = m_p;
         bool any = false;
@@ -143,7 +143,10 @@ class SubsurfaceLight::Batch {
         }
         m_p = any ? met.hit.p : corner;
         if (!any) return false;
-        m_p += towards_middle(met);
+        // Halfway, of larger faces no more than a part of a micropolygon: shadows stay in place.
+        const Vec3f way = 0.5f * to_middle(met);
+        const float most = kInwards * width_of(m_points, i), length = glm::length(way);
+        m_p += length > most ? way * (most / length) : way;
         if (!drop(height, met)) m_p = met.hit.p;
         return true;
     }
@@ -157,13 +160,12 @@ class SubsurfaceLight::Batch {
     }
 
     /// From a place on a face.
-    static Vec3f towards_middle(const RayScene::Met& met) {
+    static Vec3f to_middle(const RayScene::Met& met) {
         static thread_local SurfaceFrames there;
         const RayHit& hit = met.hit;
         find_frames(*hit.geometry, *hit.patch, {&hit.uv, 1}, there);
         const Vec2d way = middle_of(hit.patch->kind) - hit.uv;
-        return 0.5f *
-               (met.frame().world_from_object * Vec3f(way.x * there.su[0] + way.y * there.sv[0]));
+        return met.frame().world_from_object * Vec3f(way.x * there.su[0] + way.y * there.sv[0]);
     }
 
     void walk_from(const SubsurfaceLobe& lobe, std::size_t i, std::uint32_t sample, const Vec2f& u,
