@@ -27,10 +27,10 @@ void add(BackgroundRays& rays, const Camera& camera, Vec2d raster, const Look& l
 /// Colours at the corners of a tile's pixels, [17][17].
 class PixelCorners {
   public:
-    PixelCorners(const Camera& camera, const Vec2d& origin, const ShadingSystem& shading) {
+    PixelCorners(const Camera& camera, const CameraRays& tile, const ShadingSystem& shading) {
         BackgroundRays rays{.spread = pixel_spread(camera.projection)};
         for (int y = 0; y < kSide; ++y)
-            for (int x = 0; x < kSide; ++x) add(rays, camera, origin + Vec2d(x, y), {});
+            for (int x = 0; x < kSide; ++x) add(rays, camera, tile.raster(x, y), {});
         shading.background(rays, m_colors);
     }
 
@@ -78,13 +78,12 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
     const SampleNeeds needs{camera.world_from_camera.size() > 1, camera.projection.has_lens()};
     TileSamples samples;
     table.fill_tile(store.tile, needs, samples);
-    const CameraRays rays(camera, store, samples);
-    const Vec2d origin(store.tile * kTileSize);
+    const CameraRays tile(camera, store, samples);
     std::vector<Vec3f> colors(store.id.size(), Vec3f(0.0f));
     // A static pinhole camera sees a function of the pixel that is smooth but for what the world
     // draws: a sun, a horizon.
-    if (!rays.vary_in_pixel()) {
-        const PixelCorners corners(camera, origin, shading);
+    if (!tile.vary_in_pixel()) {
+        const PixelCorners corners(camera, tile, shading);
         for (const std::size_t i : uncovered) colors[i] = corners.at(samples.x[i], samples.y[i]);
         const auto count = static_cast<std::size_t>(samples.samples);
         std::erase_if(uncovered, [&](std::size_t i) {
@@ -93,9 +92,8 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
     }
     BackgroundRays wanted{.spread = pixel_spread(camera.projection)};
     std::vector<Vec3f> found;
-    for (const std::size_t i : uncovered)
-        add(wanted, camera, origin + Vec2d(samples.x[i], samples.y[i]),
-            look_of(samples, i, camera.projection));
+    wanted.directions.reserve(uncovered.size());
+    for (const std::size_t i : uncovered) add(wanted, camera, tile.raster(i), tile.look(i));
     shading.background(wanted, found);
     for (std::size_t k = 0; k < uncovered.size(); ++k) colors[uncovered[k]] = found[k];
     return colors;

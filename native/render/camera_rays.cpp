@@ -44,10 +44,9 @@ Vec3f world_direction(const Camera& camera, Vec2d raster, const Look& look) {
 CameraRays::Seen CameraRays::ray(std::size_t i, const Vec3d& origin, float frame_time) const {
     const Projection& p = m_camera.projection;
     const Look seen = look(i);
-    const Vec2d raster = m_origin + Vec2d(m_samples.x[i], m_samples.y[i]);
     const float time = m_samples.t.empty() ? frame_time : m_samples.t[i];
     const Mat4d world_from_camera = matrix_at(m_camera.world_from_camera, time);
-    const CameraLine line = camera_line(p, raster, seen);
+    const CameraLine line = camera_line(p, raster(i), seen);
     const double length = glm::length(line.way);
     return {{Vec3f(transform_point(world_from_camera, line.at(p.near_clip)) - origin),
              Vec3f(glm::normalize(Mat3d(world_from_camera) * line.way)),

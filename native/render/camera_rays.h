@@ -41,6 +41,12 @@ class CameraRays {
                (!m_samples.t.empty() && m_camera.world_from_camera.size() > 1);
     }
 
+    /// Place in the frame, of one in the tile (pixels).
+    Vec2d raster(double x, double y) const { return m_origin + Vec2d(x, y); }
+    /// Of a sample.
+    Vec2d raster(std::size_t i) const { return raster(m_samples.x[i], m_samples.y[i]); }
+    Look look(std::size_t i) const { return look_of(m_samples, i, m_camera.projection); }
+
     struct Seen {
         Ray ray;        ///< of a sample, from the near plane on, without end
         float stretch;  ///< metres along it a metre of depth
@@ -53,8 +59,6 @@ class CameraRays {
     Seen ray(std::size_t i, const Vec3d& origin, float frame_time) const;
 
   private:
-    Look look(std::size_t i) const { return look_of(m_samples, i, m_camera.projection); }
-
     const Camera& m_camera;
     const TileSamples& m_samples;
     Vec2d m_origin;

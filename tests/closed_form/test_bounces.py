@@ -15,9 +15,10 @@ def material(snapshot, nodes, surface):
     return index
 
 
-def diffuse(snapshot, albedo, emitted=0.0):
+def reflecting(snapshot, lobe, albedo, emitted=0.0, **inputs):
+    inputs = {"Color": (albedo,) * 3 + (1.0,), **inputs}
     nodes = [
-        {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (albedo,) * 3 + (1.0,)}},
+        {"type": f"ShaderNodeBsdf{lobe}", "inputs": inputs},
         {"type": "ShaderNodeEmission", "inputs": {"Color": (1.0,) * 4, "Strength": emitted}},
         {
             "type": "ShaderNodeAddShader",
@@ -25,6 +26,10 @@ def diffuse(snapshot, albedo, emitted=0.0):
         },
     ]
     return material(snapshot, nodes, (2, "Shader") if emitted else (0, "BSDF"))
+
+
+def diffuse(snapshot, albedo, emitted=0.0):
+    return reflecting(snapshot, "Diffuse", albedo, emitted)
 
 
 def mirror(snapshot, color=1.0):

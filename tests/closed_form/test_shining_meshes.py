@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
-from test_bounces import mirror
+from test_bounces import mirror, reflecting
 from test_elements import curves
 from test_refined_shading import ALBEDO, EXECUTORS
 
@@ -346,18 +346,7 @@ def test_a_convex_body_does_not_light_itself(smooth, most, lobe):
     snapshot = s.orthographic(
         (64, 64), samples=16, light_samples=16, shading_threshold=0.0, passes=[name]
     )
-    nodes = [
-        {
-            "type": f"ShaderNodeBsdf{lobe}",
-            "inputs": {"Color": (0.5, 0.5, 0.5, 1), "Roughness": 0.4},
-        },
-        {"type": "ShaderNodeEmission", "inputs": {"Color": (1, 1, 1, 1), "Strength": 1.0}},
-        {
-            "type": "ShaderNodeAddShader",
-            "inputs": {"Shader": ("LINK", 0, "BSDF"), "Shader_001": ("LINK", 1, "Emission")},
-        },
-    ]
-    snapshot["materials"].append({"name": "Glow", "nodes": nodes, "surface": (2, "Shader")})
+    glow = reflecting(snapshot, lobe, 0.5, emitted=1.0, Roughness=0.4)
     points, faces = cut_stone(28.0, (32.3, 32.1, 40.0))
-    s.mesh(snapshot, points, faces, 0, smooth=np.full(len(faces), smooth, np.uint8))
+    s.mesh(snapshot, points, faces, glow, smooth=np.full(len(faces), smooth, np.uint8))
     assert s.render(snapshot)["passes"][name].mean() < most

@@ -170,30 +170,29 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
         if (world.shines() && !grid.carries_world())
             world.meet(set, grid, point, place, {wo, value, sign, type, meets_lamps});
         if (!meets_lamps && !any_unasked) continue;
-        set.meet(grid, point, place, wo,
-                 [&](std::size_t index, const Lamp& lamp, const LightSample& met) {
-                     float share = 0.0f;  // of the reflected light, this sample's
-                     float density = 0.0f;
-                     if (lamp.is_asked(grid.depth)) {
-                         if (!meets_lamps) return;
-                         const LampRate rate = rate_of(point, choice, index);
-                         density = point.meeting_density(wo);
-                         const float sampled =
-                             static_cast<float>(rate.samples) * met.pdf * rate.mean;
-                         share = power_share(density, sampled) / density;
-                     } else {
-                         // Cycles asks one of all lamps each time, a world that varies among them.
-                         const float lamps = set.places + (world.has_density() ? 1.0f : 0.0f);
-                         density = point.all_density(wo);
-                         share = point.left_to_lobes(wo, met.pdf / lamps) / density;
-                     }
-                     if (!(density > 0.0f)) return;  // by rounding, at a lobe's rim
-                     const BsdfValue weight = lamp.apply(value, grid.in_medium) * Vec3f(share);
-                     if (total(weight) != Vec3f(0.0f))
-                         add_met(set, grid,
-                                 {&point, &lamp, place, met, weight, type, sign,
-                                  grid.tells_met() ? density / likely : 1.0f});
-                 });
+        const auto meet = [&](std::size_t index, const Lamp& lamp, const LightSample& met) {
+            float share = 0.0f;  // of the reflected light, this sample's
+            float density = 0.0f;
+            if (lamp.is_asked(grid.depth)) {
+                if (!meets_lamps) return;
+                const LampRate rate = rate_of(point, choice, index);
+                density = point.meeting_density(wo);
+                const float sampled = static_cast<float>(rate.samples) * met.pdf * rate.mean;
+                share = power_share(density, sampled) / density;
+            } else {
+                // Cycles asks one of all lamps each time, a world that varies among them.
+                const float lamps = set.places + (world.has_density() ? 1.0f : 0.0f);
+                density = point.all_density(wo);
+                share = point.left_to_lobes(wo, met.pdf / lamps) / density;
+            }
+            if (!(density > 0.0f)) return;  // by rounding, at a lobe's rim
+            const BsdfValue weight = lamp.apply(value, grid.in_medium) * Vec3f(share);
+            if (total(weight) != Vec3f(0.0f))
+                add_met(set, grid,
+                        {&point, &lamp, place, met, weight, type, sign,
+                         grid.tells_met() ? density / likely : 1.0f});
+        };
+        set.meet(grid, point, place, wo, meet);
     }
 }
 
@@ -211,14 +210,14 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
     Vec3f open(0.0f);
     for (int s = 0; s < count; ++s) {
         const LitPlace place = set.place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
-        set.meet(grid, point, place, wo,
-                 [&](std::size_t, const Lamp& lamp, const LightSample& met) {
-                     const BsdfValue weight = lamp.apply(value, grid.in_medium);
-                     if (total(weight) != Vec3f(0.0f))
-                         add_met(set, grid,
-                                 {&point, &lamp, place, met, weight, type, LitGrid::sign(s, count),
-                                  1.0f / chance});
-                 });
+        const auto meet = [&](std::size_t, const Lamp& lamp, const LightSample& met) {
+            const BsdfValue weight = lamp.apply(value, grid.in_medium);
+            if (total(weight) != Vec3f(0.0f))
+                add_met(set, grid,
+                        {&point, &lamp, place, met, weight, type, LitGrid::sign(s, count),
+                         1.0f / chance});
+        };
+        set.meet(grid, point, place, wo, meet);
         if (grid.leaving) {
             leave(set, grid, point, set.ray(point, place, wo, kInfinity, type), value,
                   {chance, kInfinity},
