@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "scene/camera_path.h"
+
 namespace granita {
 namespace {
 
@@ -37,9 +39,10 @@ Knots combine_knots(const Scene& scene, const Instance& instance, const Geometry
     }
     knots.count = static_cast<int>(steps) + 1;
 
+    const CameraPath path(scene.camera);
     const auto compose = [&](const KnotTime& object, const KnotTime& camera) {
-        const Mat4d composed = glm::inverse(matrix_at(world_from_camera, camera)) *
-                               matrix_at(world_from_object, object);
+        const Mat4d composed =
+            path.camera_from_world(camera) * matrix_at(world_from_object, object);
         knots.finite = knots.finite && is_finite(composed);
         return composed;
     };

@@ -17,9 +17,9 @@ float pixel_spread(const Projection& projection) {
     return static_cast<float>(1.0 / std::max(projection.scale.x, 1e-9));
 }
 
-void add(BackgroundRays& rays, const Camera& camera, Vec2d raster, const Look& look) {
-    const Projection& p = camera.projection;
-    rays.directions.push_back(world_direction(camera, raster, look));
+void add(BackgroundRays& rays, const Projection& p, const Vec3f& direction, Vec2d raster,
+         const Look& look) {
+    rays.directions.push_back(direction);
     // They start on the lens.
     if (!p.perspective) rays.rasters.emplace_back(raster + look.lens * p.lens_radius * p.scale);
 }
@@ -30,7 +30,10 @@ class PixelCorners {
     PixelCorners(const Camera& camera, const CameraRays& tile, const ShadingSystem& shading) {
         BackgroundRays rays{.spread = pixel_spread(camera.projection)};
         for (int y = 0; y < kSide; ++y)
-            for (int x = 0; x < kSide; ++x) add(rays, camera, tile.raster(x, y), {});
+            for (int x = 0; x < kSide; ++x) {
+                const Vec2d raster = tile.raster(x, y);
+                add(rays, camera.projection, tile.direction(raster, {}), raster, {});
+            }
         shading.background(rays, m_colors);
     }
 
@@ -93,7 +96,11 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
     BackgroundRays wanted{.spread = pixel_spread(camera.projection)};
     std::vector<Vec3f> found;
     wanted.directions.reserve(uncovered.size());
-    for (const std::size_t i : uncovered) add(wanted, camera, tile.raster(i), tile.look(i));
+    for (const std::size_t i : uncovered) {
+        const Vec2d raster = tile.raster(i);
+        const Look look = tile.look(i);
+        add(wanted, camera.projection, tile.direction(raster, look), raster, look);
+    }
     shading.background(wanted, found);
     for (std::size_t k = 0; k < uncovered.size(); ++k) colors[uncovered[k]] = found[k];
     return colors;
@@ -102,10 +109,13 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
 std::vector<Vec3f> corner_background(const Camera& camera, const ShadingSystem& shading,
                                      const Rect& pixels, const RasterPass& pass) {
     const Look look{pass.t, {pass.u, pass.v}, pass.inverse_focus};
-    BackgroundRays rays{.spread = pixel_spread(camera.projection)};
+    const Projection& p = camera.projection;
+    const Mat4d world_from_camera = CameraPath(camera).world_from_camera(look.t);
+    BackgroundRays rays{.spread = pixel_spread(p)};
     std::vector<Vec3f> colors;
     for (int y = pixels.y0; y <= pixels.y1; ++y)
-        for (int x = pixels.x0; x <= pixels.x1; ++x) add(rays, camera, {x, y}, look);
+        for (int x = pixels.x0; x <= pixels.x1; ++x)
+            add(rays, p, world_direction(p, world_from_camera, {x, y}, look), {x, y}, look);
     shading.background(rays, colors);
     return colors;
 }

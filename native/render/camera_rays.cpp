@@ -3,8 +3,6 @@
 
 #include <limits>
 
-#include "scene/knot_time.h"
-
 namespace granita {
 namespace {
 
@@ -36,16 +34,16 @@ CameraLine camera_line(const Projection& projection, Vec2d raster, const Look& l
     return {start, slope(projection, raster, look)};
 }
 
-Vec3f world_direction(const Camera& camera, Vec2d raster, const Look& look) {
-    const Mat3d world_from_camera(matrix_at(camera.world_from_camera, look.t));
-    return Vec3f(glm::normalize(world_from_camera * slope(camera.projection, raster, look)));
+Vec3f world_direction(const Projection& projection, const Mat4d& world_from_camera, Vec2d raster,
+                      const Look& look) {
+    return Vec3f(glm::normalize(Mat3d(world_from_camera) * slope(projection, raster, look)));
 }
 
 CameraRays::Seen CameraRays::ray(std::size_t i, const Vec3d& origin, float frame_time) const {
-    const Projection& p = m_camera.projection;
+    const Projection& p = m_projection;
     const Look seen = look(i);
     const float time = m_samples.t.empty() ? frame_time : m_samples.t[i];
-    const Mat4d world_from_camera = matrix_at(m_camera.world_from_camera, time);
+    const Mat4d world_from_camera = m_path.world_from_camera(time);
     const CameraLine line = camera_line(p, raster(i), seen);
     const double length = glm::length(line.way);
     return {{Vec3f(transform_point(world_from_camera, line.at(p.near_clip)) - origin),

@@ -4,7 +4,7 @@
 
 #include "hider/sample_store.h"
 #include "hider/samples/sample_table.h"
-#include "scene/camera.h"
+#include "scene/camera_path.h"
 #include "shade/rays/ray.h"
 
 namespace granita {
@@ -28,24 +28,31 @@ CameraLine camera_line(const Projection& projection, Vec2d raster, const Look& l
 
 /// World direction through a raster position (pixels): a point at infinity obeys X = cx + sx (slope
 /// + lx / focus) (math/projection.h with z -> infinity).
-Vec3f world_direction(const Camera& camera, Vec2d raster, const Look& look);
+Vec3f world_direction(const Projection& projection, const Mat4d& world_from_camera, Vec2d raster,
+                      const Look& look);
 
 class CameraRays {
   public:
     /// Of a tile, which both must outlive this.
     CameraRays(const Camera& camera, const TileStore& store, const TileSamples& samples)
-        : m_camera(camera), m_samples(samples), m_origin(Vec2d(store.tile * kTileSize)) {}
+        : m_projection(camera.projection),
+          m_path(camera),
+          m_moves(camera.world_from_camera.size() > 1),
+          m_samples(samples),
+          m_origin(Vec2d(store.tile * kTileSize)) {}
 
-    bool vary_in_pixel() const {
-        return !m_samples.u.empty() ||
-               (!m_samples.t.empty() && m_camera.world_from_camera.size() > 1);
-    }
+    bool vary_in_pixel() const { return !m_samples.u.empty() || (!m_samples.t.empty() && m_moves); }
 
     /// Place in the frame, of one in the tile (pixels).
     Vec2d raster(double x, double y) const { return m_origin + Vec2d(x, y); }
     /// Of a sample.
     Vec2d raster(std::size_t i) const { return raster(m_samples.x[i], m_samples.y[i]); }
-    Look look(std::size_t i) const { return look_of(m_samples, i, m_camera.projection); }
+    Look look(std::size_t i) const { return look_of(m_samples, i, m_projection); }
+
+    /// In the world.
+    Vec3f direction(Vec2d raster, const Look& look) const {
+        return world_direction(m_projection, m_path.world_from_camera(look.t), raster, look);
+    }
 
     struct Seen {
         Ray ray;        ///< of a sample, from the near plane on, without end
@@ -59,7 +66,9 @@ class CameraRays {
     Seen ray(std::size_t i, const Vec3d& origin, float frame_time) const;
 
   private:
-    const Camera& m_camera;
+    const Projection& m_projection;
+    CameraPath m_path;
+    bool m_moves;
     const TileSamples& m_samples;
     Vec2d m_origin;
 };

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <vector>
-
 #include "math/normalize_or.h"
-#include "scene/knot_time.h"
+#include "scene/camera_path.h"
 #include "scene/scene.h"
 #include "shade/programs/shading_camera.h"
 
@@ -15,14 +13,15 @@ class MovingEye {
   public:
     /// The scene outlives this.
     MovingEye(const Scene& scene, const ShadingCamera& camera)
-        : m_knots(scene.camera.world_from_camera),
+        : m_path(scene.camera),
+          m_static(is_static(scene.camera.world_from_camera)),
           m_perspective(camera.perspective),
           m_origin(camera.world_from_camera[3]),
           m_at_frame(relative(camera.world_from_camera)) {}
 
     /// Its axes in the columns (z ahead), and where it is in the last.
     Mat4d place(float time) const {
-        return is_static(m_knots) ? m_at_frame : relative(matrix_at(m_knots, time));
+        return m_static ? m_at_frame : relative(m_path.world_from_camera(time));
     }
     /// Unit, towards it.
     Vec3f view(const Vec3f& p, float time) const {
@@ -37,7 +36,8 @@ class MovingEye {
         return at;
     }
 
-    const std::vector<Mat4d>& m_knots;
+    CameraPath m_path;
+    bool m_static;
     bool m_perspective;
     Vec3d m_origin;
     Mat4d m_at_frame;

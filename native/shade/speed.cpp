@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/speed.h"
 
+#include "scene/camera_path.h"
 #include "shade/shading_points.h"
 
 namespace granita {
@@ -8,12 +9,14 @@ namespace {
 
 /// At one of the adjacent frames, or at the frame.
 Mat4d camera_from_object(const Scene& scene, const Instance& instance, int which) {
-    const auto at = [&](const std::vector<Mat4d>& adjacent, const std::vector<Mat4d>& knots) {
-        return which < 0 || adjacent.empty() ? matrix_at(knots, scene.options.frame_time)
-                                             : adjacent[which];
+    const float time = scene.options.frame_time;
+    const auto at = [&](const std::vector<Mat4d>& adjacent, const auto& at_frame) {
+        return which < 0 || adjacent.empty() ? at_frame() : adjacent[which];
     };
-    return glm::inverse(at(scene.camera.adjacent, scene.camera.world_from_camera)) *
-           at(instance.adjacent, instance.world_from_object);
+    const Mat4d world_from_camera =
+        at(scene.camera.adjacent, [&] { return CameraPath(scene.camera).world_from_camera(time); });
+    return glm::inverse(world_from_camera) *
+           at(instance.adjacent, [&] { return matrix_at(instance.world_from_object, time); });
 }
 
 /// False where it is not before the camera.

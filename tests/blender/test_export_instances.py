@@ -107,6 +107,33 @@ def test_places(scene, cube):
     assert matrices[1, :2, :2] == pytest.approx(np.array([(0, -1), (1, 0)]), abs=1e-6)
 
 
+@pytest.mark.parametrize("hidden", [False, True], ids=["shown", "hidden"])
+def test_a_lone_instance_of_the_first_object_is_itself(scene, cube, hidden):
+    """Blender frees it before Python sees it where its instancer is hidden: another's place and name stood there."""
+    spheres = [scene_parts.add_square(scene, f"Square{i}") for i in range(30)]
+    others = hidden_collection(scene, spheres[0])
+    for i, each in enumerate(spheres[1:], 1):
+        each.location.x = i
+        others.objects.link(each)
+        scene.collection.objects.unlink(each)
+    camera = scene.camera
+    scene.collection.objects.unlink(camera)
+    for name, collection in (("Lone", hidden_collection(scene, cube)), ("Others", others)):
+        empty = scene_parts.add_object(
+            scene, name, None, (0, 7, 0) if name == "Lone" else (0, 0, 0)
+        )
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+        empty.show_instancer_for_render = not hidden
+    scene.collection.objects.link(camera)
+    collected = export_probe.through_engine(scene)[0]["instances"]
+    found = {
+        (name, tuple(matrix[:3, 3]))
+        for name, matrix in zip(collected["name"], collected["world_from_object"])
+    }
+    assert found == {("Cube", (0, 7, 0))} | {(f"Square{i}", (i, 0, 0)) for i in range(30)}
+    assert len(set(collected["key"].tolist())) == 31
+
+
 def curve(scene):
     bpy.ops.curve.primitive_bezier_circle_add()
     bpy.context.object.data.bevel_depth = 0.1

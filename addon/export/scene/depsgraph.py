@@ -8,6 +8,7 @@ The rules of that iterator, each learnt the hard way:
 - Left early, it leaks the rest of the list: it is always drained.  `foreach_get` looks at the first
   element to learn its type and leaves, so it leaks too where that object is an instancer (66 MB in
   three calls over 100,000 instances, 3.4 and 4.5): everything is read in the one loop.
+- The first element may be gone when it is given: see first_instance.py.
 - Touching `.data` of an object whose Subsurf is last makes Blender subdivide: cages are found first.
 """
 
@@ -26,6 +27,7 @@ from ..geometry.attributes import asks_on_edges
 from ..geometry.hair import hair_material, hair_systems
 from ..geometry.pointiness import asks_for_pointiness
 from ..geometry.subdivision import find_cage, simplify_level
+from .first_instance import readable
 from .instance_prototype import InstancePrototype, hidden_owners
 from .instance_values import place_on_instancer, takes_place_on_instancer
 from .simulations import troubles, unbaked
@@ -148,6 +150,8 @@ def visit(depsgraph, report, check_cancel, cages=None):
         for i, instance in enumerate(iterator):
             if i % _POLL_EVERY == 0:
                 poll(check_cancel)
+            if i == 0:
+                instance = readable(instance, depsgraph)
             duplicate = instance.is_instance
             for index in walk.prototypes_of(instance, duplicate):
                 if duplicate and walk.prototypes[index].takes_place_on_instancer:

@@ -10,7 +10,7 @@
 #include <unordered_map>
 
 #include "base/stage_timer.h"
-#include "scene/knot_time.h"
+#include "scene/camera_path.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/bsdf/bsdf_albedo.h"
 #include "shade/lights/grid_samples.h"
@@ -41,7 +41,7 @@ constexpr float kFiner = 4.0f;
 
 /// Of shading space.
 Vec3d camera_origin(const Scene& scene) {
-    return Vec3d(matrix_at(scene.camera.world_from_camera, scene.options.frame_time)[3]);
+    return Vec3d(CameraPath(scene.camera).world_from_camera(scene.options.frame_time)[3]);
 }
 
 }  // namespace

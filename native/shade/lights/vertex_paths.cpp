@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "dice/knots.h"
+#include "scene/camera_path.h"
 
 namespace granita {
 namespace {
@@ -30,7 +31,8 @@ Vec3f position_at(const Grid& grid, std::size_t vertex, const KnotTime& t) {
 VertexPaths::VertexPaths(const Grid& grid, const Scene& scene)
     : m_grid(grid), m_frame_time(scene.options.frame_time) {
     const auto& camera = scene.camera.world_from_camera;
-    const Mat4d at_frame = matrix_at(camera, m_frame_time);
+    const CameraPath path(scene.camera);
+    const Mat4d at_frame = path.world_from_camera(m_frame_time);
     m_frame_rotation = Mat3f(Mat3d(at_frame));
     m_cameras.resize(1);
     if (stands_still(scene, grid)) return;
@@ -41,7 +43,7 @@ VertexPaths::VertexPaths(const Grid& grid, const Scene& scene)
     const Vec3d origin(at_frame[3]);
     for (std::size_t knot = 0; knot < knots(); ++knot) {
         const Mat4d m =
-            matrix_at(camera, static_cast<double>(knot) / static_cast<double>(knots() - 1));
+            path.world_from_camera(static_cast<double>(knot) / static_cast<double>(knots() - 1));
         m_cameras[knot] = {Mat3f(Mat3d(m)), Vec3f(Vec3d(m[3]) - origin)};
     }
     const Instance& instance = scene.instances[grid.instance];

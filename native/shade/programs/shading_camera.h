@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "scene/knot_time.h"
+#include "scene/camera_path.h"
 #include "scene/scene.h"
 
 namespace granita {
@@ -12,7 +12,7 @@ struct ShadingCamera {
     bool perspective;
 
     explicit ShadingCamera(const Scene& scene)
-        : world_from_camera(matrix_at(scene.camera.world_from_camera, scene.options.frame_time)),
+        : world_from_camera(CameraPath(scene.camera).world_from_camera(scene.options.frame_time)),
           perspective(scene.camera.projection.perspective) {}
 };
 

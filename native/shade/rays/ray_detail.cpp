@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "scene/knot_time.h"
+#include "scene/camera_path.h"
 
 namespace granita {
 namespace {
@@ -16,7 +16,7 @@ constexpr std::size_t kMostEyes = 16;
 
 RayDetail::RayDetail(const Scene& scene, int geometry, const Bounds3f& box) {
     const float time = scene.options.frame_time;
-    const Mat4d world_from_camera = matrix_at(scene.camera.world_from_camera, time);
+    const Mat4d world_from_camera = CameraPath(scene.camera).world_from_camera(time);
     const Projection& projection = scene.camera.projection;
     const double pixel = 1.0 / std::max(std::abs(projection.scale.x), std::abs(projection.scale.y));
     std::vector<std::pair<float, Eye>> found;
