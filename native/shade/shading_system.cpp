@@ -333,20 +333,22 @@ struct ShadingSystem::Impl {
     /// when it opens: all else being equal, light samples too.
     bool changes_in_time(Grid& grid) const {
         if (!moves || (!light && are_equal(grid.radiance))) return false;
-        const Grid probes = refine(grid, time_probes(grid), 1.0f);
-        grid.broken_radiance |= probes.broken_radiance || probes.broken_opacity;
-        return any_changes(probes.radiance, thresholds.difference, displayed_difference);
+        const TimeProbes probes(grid, scene.options.frame_time);
+        const Grid found = refine(grid, probes.points, 1.0f);
+        grid.broken_radiance |= found.broken_radiance || found.broken_opacity;
+        return probes.any_changes(found.radiance, thresholds.difference, displayed_difference);
     }
 
     /// The same of its opacity: of what grazes the view, say.
     bool opacity_changes_in_time(Grid& grid) const {
         if (!moves) return false;
-        const RefinedPoints points(grid, scene, camera, time_probes(grid), moves, 1.0f);
+        const TimeProbes probes(grid, scene.options.frame_time);
+        const RefinedPoints points(grid, scene, camera, probes.points, moves, 1.0f);
         Grid out;
         out.material = grid.material;
         shade_opacity(out, input(grid, points));
         grid.broken_opacity |= out.broken_opacity;
-        return any_changes(out.opacity, thresholds.difference, opacity_difference);
+        return probes.any_changes(out.opacity, thresholds.difference, opacity_difference);
     }
 
     /// Takes radiance from an equal grid of an earlier picture, shaded with as many light samples;

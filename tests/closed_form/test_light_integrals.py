@@ -91,6 +91,17 @@ def test_a_highlight_that_sweeps_is_the_integral_of_its_lobe(executor, roughness
     assert seen == pytest.approx(expected, rel=0.05)
 
 
+@pytest.mark.parametrize("executor", EXECUTORS)
+@pytest.mark.parametrize("at", [0.0, 0.5, 1.0])
+def test_a_matte_plane_that_turns_has_the_mean_of_its_cosine(executor, at):
+    """Wherever in the shutter the frame is at which grids are shaded; a fraction of the threshold turned at once."""
+    snapshot = stage(executor, samples=64, shading_threshold=0.1)
+    snapshot["options"]["frame_time"] = at
+    floor(snapshot, transforms=[turned(a) for a in np.linspace(0.1, 0.4, 33)])
+    expected = (np.sin(0.4) - np.sin(0.1)) / 0.3
+    assert row(snapshot)[20:28].mean() == pytest.approx(expected, abs=0.004)
+
+
 LAMP = {"center": (24.0, 8.0), "size": (12.0, 8.0), "z": -30.0}
 BLOCKER_Z, FLOOR_Z = 10.0, 20.0
 
