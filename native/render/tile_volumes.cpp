@@ -6,7 +6,6 @@
 
 #include "render/camera_rays.h"
 #include "render/sample_place.h"
-#include "scene/knot_time.h"
 
 namespace granita {
 namespace {

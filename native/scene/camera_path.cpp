@@ -17,7 +17,9 @@ Mat4d CameraPath::world_from_camera(double time) const {
     const KnotTime at = knot_time(time, static_cast<int>(m_knots.size()));
     const Mat4d& knot = m_knots[at.knot];
     if (at.fraction == 0.0 || knot == m_knots[at.knot + 1]) return knot;
-    return glm::inverse(camera_from_world(at));
+    const Mat4d inverse = camera_from_world(at);
+    // Turned by a half from one knot to the next it has none.
+    return glm::determinant(inverse) != 0.0 ? glm::inverse(inverse) : matrix_at(m_knots, at);
 }
 
 }  // namespace granita

@@ -46,7 +46,7 @@ bool TimeProbes::any_changes(const std::vector<Vec3f>& values, float threshold,
     constexpr std::size_t kCount = std::size(kTimes);
     const std::size_t each = kCount + (m_asks_corners ? 1 : 0);
     Vec3f over_shutter(0.0f), of_corners(0.0f);
-    float sum = 0.0f, squares = 0.0f;
+    Vec3f sum(0.0f), squares(0.0f);
     for (std::size_t first = 0; first < values.size(); first += each) {
         Vec3f mean(0.0f);
         for (std::size_t k = 0; k < kCount; ++k) {
@@ -55,17 +55,18 @@ bool TimeProbes::any_changes(const std::vector<Vec3f>& values, float threshold,
         }
         if (!m_asks_corners) continue;
         const Vec3f apart = mean - values[first + kCount];
-        const float size = apart.x + apart.y + apart.z;
         over_shutter += mean;
         of_corners += values[first + kCount];
-        sum += size;
-        squares += size * size;
+        sum += apart;
+        squares += apart * apart;
     }
-    const auto probes = static_cast<float>(values.size() / each);
+    const std::size_t count = values.size() / each;
+    const auto probes = static_cast<float>(count);
     // One alone tells nothing of chance.
     if (!m_asks_corners || probes < 2.0f) return false;
-    const float spread = probes * squares - sum * sum;
-    if (sum * sum * probes < kDeviations * kDeviations * spread) return false;
+    const Vec3f spread = probes * squares - sum * sum;
+    const Vec3f by_chance = kDeviations * kDeviations / (probes - 1.0f) * spread;
+    if (!glm::any(glm::greaterThanEqual(sum * sum, by_chance))) return false;
     return difference(over_shutter / probes, of_corners / probes) > kBias * threshold;
 }
 

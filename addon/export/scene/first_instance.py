@@ -7,6 +7,7 @@ another object's place, or crashes.  An instancer that is not shown itself is en
 """
 
 from collections import deque
+from functools import cached_property
 
 import numpy as np
 
@@ -31,19 +32,19 @@ class FirstInstance:
     def matrix_world(self):
         return self.object.matrix_world
 
-    @property
+    @cached_property
     def persistent_id(self):
         return self._read("persistent_id", _LEVELS, np.int32)
 
-    @property
+    @cached_property
     def random_id(self):
         return self._read("random_id", 1, np.int32)[0]
 
-    @property
+    @cached_property
     def orco(self):
         return self._read("orco", 3, np.float32)
 
-    @property
+    @cached_property
     def uv(self):
         return self._read("uv", 2, np.float32)
 
