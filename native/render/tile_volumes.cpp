@@ -6,6 +6,7 @@
 
 #include "render/camera_rays.h"
 #include "render/sample_place.h"
+#include "shade/programs/shading_camera.h"
 
 namespace granita {
 namespace {
@@ -62,7 +63,7 @@ TileVolumes::TileVolumes(Frame& frame, const SampleTable& table, const TileStore
     table.fill_tile(store.tile, table.needs(), looks);
     const CameraRays rays(scene.camera, store, looks);
     const float frame_time = scene.options.frame_time;
-    const Vec3d origin(CameraPath(scene.camera).world_from_camera(frame_time)[3]);
+    const Vec3d origin(ShadingCamera(scene).world_from_camera[3]);
     const FragmentLists& lists = store.lists;
     const std::size_t count = store.id.size();
     refined.reserve_layers(lists.total(), has_channels);

@@ -15,7 +15,8 @@
 #include "geometry/surface_frames.h"
 #include "math/largest_stretch.h"
 #include "math/normalize_or.h"
-#include "scene/camera_path.h"
+#include "scene/knot_time.h"
+#include "shade/programs/shading_camera.h"
 
 namespace granita {
 namespace {
@@ -214,7 +215,7 @@ MaterialDisplacement::MaterialDisplacement(const Scene& scene,
     if (std::ranges::none_of(m_programs, [](const auto& p) { return p.has_value(); })) return;
     const Options& options = scene.options;
     const Projection& projection = scene.camera.projection;
-    const Mat4d world_from_camera = CameraPath(scene.camera).world_from_camera(options.frame_time);
+    const Mat4d world_from_camera = ShadingCamera(scene).world_from_camera;
     const double pixel = 1.0 / std::max(std::abs(projection.scale.x), std::abs(projection.scale.y));
     std::map<std::pair<int, std::vector<std::int32_t>>, std::size_t> first_of;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {

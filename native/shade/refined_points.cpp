@@ -7,7 +7,6 @@
 #include "scene/knot_time.h"
 #include "shade/lights/anchor.h"
 #include "shade/lights/vertex_paths.h"
-#include "shade/moving_eye.h"
 
 namespace granita {
 namespace {
@@ -98,10 +97,10 @@ GridAttribute blended(const GridAttribute& from, const std::vector<Blend>& blend
 }  // namespace
 
 RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const ShadingCamera& camera,
-                             std::span<const RefinedPoint> wanted, bool timed, float point_size) {
+                             const MovingEye& eye, std::span<const RefinedPoint> wanted, bool timed,
+                             float point_size) {
     const ShadingPoints around = shading_points(grid, camera);
     const VertexPaths paths(grid, scene);
-    const MovingEye eye(scene, camera);
     points.count = wanted.size();
     points.terminator_offset = around.terminator_offset;
     points.share = around.share * refined_light_share(point_size * point_size);

@@ -10,6 +10,7 @@
 
 #include "dice/grid.h"
 #include "scene/scene.h"
+#include "shade/moving_eye.h"
 #include "shade/programs/program.h"
 #include "shade/shading_points.h"
 
@@ -40,10 +41,12 @@ struct RefinedPoints {
     GridLight found;                        ///< of the grid's
 
     /// @param grid with its shading state, whose points do not stand for faces.
+    /// @param eye the camera's.
     /// @param timed whether anything of the frame moves.
     /// @param point_size side of the square that a point stands for, in steps of the grid.
     RefinedPoints(const Grid& grid, const Scene& scene, const ShadingCamera& camera,
-                  std::span<const RefinedPoint> wanted, bool timed, float point_size);
+                  const MovingEye& eye, std::span<const RefinedPoint> wanted, bool timed,
+                  float point_size);
 };
 
 }  // namespace granita

@@ -297,7 +297,7 @@ struct ShadingSystem::Impl {
         std::optional<SeenTriangles> seen;
         if (from.triangles) wanted = seen.emplace(from, wanted).points;
         const Grid& grid = seen ? seen->grid : from;
-        RefinedPoints refined(grid, scene, camera, wanted, moves, point_size);
+        RefinedPoints refined(grid, scene, camera, eye, wanted, moves, point_size);
         refined.points.round = kind_of(grid, scene) == GeometryKind::Curves;
         refined.points.narrow = refined.points.round && from.n_v == 1;
         // Small faces share what one bucket sees; ribbons' noise would fall by 3 %, bits differ.
@@ -343,7 +343,7 @@ struct ShadingSystem::Impl {
     bool opacity_changes_in_time(Grid& grid) const {
         if (!moves) return false;
         const TimeProbes probes(grid, scene.options.frame_time);
-        const RefinedPoints points(grid, scene, camera, probes.points, moves, 1.0f);
+        const RefinedPoints points(grid, scene, camera, eye, probes.points, moves, 1.0f);
         Grid out;
         out.material = grid.material;
         shade_opacity(out, input(grid, points));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/speed.h"
 
-#include "scene/camera_path.h"
 #include "shade/shading_points.h"
 
 namespace granita {
@@ -9,14 +8,12 @@ namespace {
 
 /// At one of the adjacent frames, or at the frame.
 Mat4d camera_from_object(const Scene& scene, const Instance& instance, int which) {
-    const float time = scene.options.frame_time;
-    const auto at = [&](const std::vector<Mat4d>& adjacent, const auto& at_frame) {
-        return which < 0 || adjacent.empty() ? at_frame() : adjacent[which];
+    const auto at = [&](const std::vector<Mat4d>& adjacent, const Mat4d& at_frame) {
+        return which < 0 || adjacent.empty() ? at_frame : adjacent[which];
     };
-    const Mat4d world_from_camera =
-        at(scene.camera.adjacent, [&] { return CameraPath(scene.camera).world_from_camera(time); });
-    return glm::inverse(world_from_camera) *
-           at(instance.adjacent, [&] { return matrix_at(instance.world_from_object, time); });
+    const Mat4d object = matrix_at(instance.world_from_object, scene.options.frame_time);
+    return glm::inverse(at(scene.camera.adjacent, ShadingCamera(scene).world_from_camera)) *
+           at(instance.adjacent, object);
 }
 
 /// False where it is not before the camera.

@@ -45,8 +45,7 @@ bool TimeProbes::any_changes(const std::vector<Vec3f>& values, float threshold,
                              float (*difference)(const Vec3f&, const Vec3f&)) const {
     constexpr std::size_t kCount = std::size(kTimes);
     const std::size_t each = kCount + (m_asks_corners ? 1 : 0);
-    Vec3f over_shutter(0.0f), of_corners(0.0f);
-    Vec3f sum(0.0f), squares(0.0f);
+    Vec3f of_corners(0.0f), sum(0.0f), squares(0.0f);
     for (std::size_t first = 0; first < values.size(); first += each) {
         Vec3f mean(0.0f);
         for (std::size_t k = 0; k < kCount; ++k) {
@@ -55,7 +54,6 @@ bool TimeProbes::any_changes(const std::vector<Vec3f>& values, float threshold,
         }
         if (!m_asks_corners) continue;
         const Vec3f apart = mean - values[first + kCount];
-        over_shutter += mean;
         of_corners += values[first + kCount];
         sum += apart;
         squares += apart * apart;
@@ -67,7 +65,7 @@ bool TimeProbes::any_changes(const std::vector<Vec3f>& values, float threshold,
     const Vec3f spread = probes * squares - sum * sum;
     const Vec3f by_chance = kDeviations * kDeviations / (probes - 1.0f) * spread;
     if (!glm::any(glm::greaterThanEqual(sum * sum, by_chance))) return false;
-    return difference(over_shutter / probes, of_corners / probes) > kBias * threshold;
+    return difference((of_corners + sum) / probes, of_corners / probes) > kBias * threshold;
 }
 
 }  // namespace granita

@@ -110,9 +110,9 @@ def test_places(scene, cube):
 @pytest.mark.parametrize("hidden", [False, True], ids=["shown", "hidden"])
 def test_a_lone_instance_of_the_first_object_is_itself(scene, cube, hidden):
     """Blender frees it before Python sees it where its instancer is hidden: another's place and name stood there."""
-    spheres = [scene_parts.add_square(scene, f"Square{i}") for i in range(30)]
-    others = hidden_collection(scene, spheres[0])
-    for i, each in enumerate(spheres[1:], 1):
+    squares = [scene_parts.add_square(scene, f"Square{i}") for i in range(30)]
+    others = hidden_collection(scene, squares[0])
+    for i, each in enumerate(squares[1:], 1):
         each.location.x = i
         others.objects.link(each)
         scene.collection.objects.unlink(each)

@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "math/sampling.h"
-#include "scene/camera_path.h"
+#include "scene/knot_time.h"
+#include "shade/programs/shading_camera.h"
 
 namespace granita {
 namespace {
@@ -59,7 +60,7 @@ Volumes::Volumes(const Scene& scene, TextureStore& textures, Report& report) : m
 /// Steps are a tenth of a thing's mean extent, as Cycles has them where there are no voxels.
 void Volumes::measure() {
     const float frame = m_scene.options.frame_time;
-    m_things.origin = Vec3d(CameraPath(m_scene.camera).world_from_camera(frame)[3]);
+    m_things.origin = Vec3d(ShadingCamera(m_scene).world_from_camera[3]);
     m_things.steps[FilledThings::kWorld] = kWorldStep;
     for (std::uint32_t i = 0; i < m_scene.instances.size(); ++i) {
         const Instance& instance = m_scene.instances[i];
