@@ -3,6 +3,7 @@
 
 import math
 
+import bmesh
 import bpy
 import node_comparison
 import numpy as np
@@ -42,7 +43,13 @@ def smooth(thing):
 
 
 def ball(scene):
+    """Blender makes its faces in another order each time, from which sequences of samples follow: sorted here."""
     bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24)
+    mesh, made = bpy.context.object.data, bmesh.new()
+    made.from_mesh(mesh)
+    made.faces.sort(key=lambda face: np.polyval(sorted(v.index for v in face.verts)[:3], 2048.0))
+    made.to_mesh(mesh)
+    made.free()
     lamp(scene, "SUN", 3.0, turn=(math.radians(100), 0.0, math.radians(40)))
     scene_parts.add_camera(scene, ortho_scale=2.4)
     return smooth(bpy.context.object)
