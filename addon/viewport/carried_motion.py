@@ -55,7 +55,9 @@ def corrected(moving, times, places, still):
     before = _Before(times, times)
     found = dict(moving)
     if not _agree(places.camera, _place(still["camera"])):
-        path = _matrices(_place(still["camera"]), moving["camera"]["world_from_camera"], before)
+        path = _matrices(
+            _place(still["camera"]), moving["camera"]["world_from_camera"], before, camera_at
+        )
         found["camera"] = {**moving["camera"], "world_from_camera": path}
     now, then = still["instances"], moving["instances"]
     if now["name"] == then["name"] and np.array_equal(now["key"], then["key"]):
@@ -106,22 +108,12 @@ def _corrected_instances(now, then, places, before):
     return {**then, "world_from_object": paths}
 
 
-class _Before:
-    """Paths of the earlier reading at the times of the new one."""
+def camera_at(path, times):
+    """float64 [len(times), 4, 4]: as path_at() of a camera's world_from_camera.
 
-    def __init__(self, times, moving_times):
-        self._times, self._moving_times = times, moving_times
-        self._is_same = times == moving_times
-
-    def at_frame(self, path):
-        """Where a path [K, ...] was at Blender's frame."""
-        return path_at(path, np.array([self._moving_times.frame_time]))[0]
-
-    def knots(self, path):
-        """The path at as many times of the new shutter; it goes on straight where that is longer."""
-        if self._is_same:
-            return path
-        return path_at(path, self._times.times_of(self._moving_times, len(path)))
+    What it sees goes straight between its knots, and so does its inverse (native/scene/camera_path.h).
+    """
+    return np.linalg.inv(path_at(np.linalg.inv(path), times))
 
 
 def path_at(path, times):
@@ -134,10 +126,28 @@ def path_at(path, times):
     return found.astype(path.dtype)
 
 
-def _matrices(now, path, before):
+class _Before:
+    """Paths of the earlier reading at the times of the new one."""
+
+    def __init__(self, times, moving_times):
+        self._times, self._moving_times = times, moving_times
+        self._is_same = times == moving_times
+
+    def at_frame(self, path, places_at=path_at):
+        """Where a path [K, ...] was at Blender's frame.  `places_at`: of a camera camera_at."""
+        return places_at(path, np.array([self._moving_times.frame_time]))[0]
+
+    def knots(self, path, places_at=path_at):
+        """The path at as many times of the new shutter; it goes on straight where that is longer."""
+        if self._is_same:
+            return path
+        return places_at(path, self._times.times_of(self._moving_times, len(path)))
+
+
+def _matrices(now, path, before, places_at=path_at):
     """float64 [K, 4, 4]: what is at `now` [4, 4] moves as the path did, in world space."""
-    at_frame = before.at_frame(path)
-    knots = before.knots(path)
+    at_frame = before.at_frame(path, places_at)
+    knots = before.knots(path, places_at)
     if np.array_equal(now, at_frame):
         return knots
     if abs(np.linalg.det(at_frame[:3, :3])) < 1e-12:
@@ -150,7 +160,7 @@ def _camera(now, then, before):
         return now
     found = dict(now)
     found["world_from_camera"] = _matrices(
-        now["world_from_camera"][0], then["world_from_camera"], before
+        now["world_from_camera"][0], then["world_from_camera"], before, camera_at
     )
     lens = then.get("lens_knots")
     if lens is not None and now["lens_radius"] > 0.0:

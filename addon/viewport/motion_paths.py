@@ -22,7 +22,8 @@ def motion_paths(snapshot):
     ends = np.cumsum(knots)
     middles = [_middles(geometry, times) for geometry in snapshot["geometries"]]
     found = []
-    eye = np.linalg.inv(path_at(camera["world_from_camera"], times))
+    # Its inverse goes straight (camera_at).
+    eye = path_at(np.linalg.inv(camera["world_from_camera"]), times)
     for geometry, count, end in zip(instances["geometry"], knots, ends):
         places = path_at(instances["world_from_object"][end - count : end], times)
         found.append((eye @ places @ middles[geometry])[..., :3, 0])

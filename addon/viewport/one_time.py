@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .carried_motion import path_at
+from .carried_motion import camera_at, path_at
 
 
 def at_time(snapshot, time):
@@ -29,7 +29,8 @@ def _lives(lifespan, time):
 
 
 def _camera(camera, time):
-    found = {**camera, "world_from_camera": _only(camera["world_from_camera"], time)}
+    path = camera["world_from_camera"]
+    found = {**camera, "world_from_camera": _only(path, time, camera_at)}
     lens = found.pop("lens_knots", None)
     if lens is not None:
         radius, focus = path_at(lens, np.array([time]))[0]
@@ -37,9 +38,9 @@ def _camera(camera, time):
     return found
 
 
-def _only(path, time):
+def _only(path, time, places_at=path_at):
     """The path [K, ...] as one knot."""
-    return path if len(path) == 1 else path_at(path, np.array([time]))
+    return path if len(path) == 1 else places_at(path, np.array([time]))
 
 
 def _instances(instances, time):

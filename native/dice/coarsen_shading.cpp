@@ -54,6 +54,9 @@ void coarsen_shading(Grid& grid, const Projection& projection, double rate) {
     for (std::vector<Vec3f>* values : {&grid.p, &grid.normal, &grid.geometric_normal})
         keep(*values, places.anchors, 1, 1);
     keep(grid.rise, places.anchors, 1, 1);
+    if (!grid.moving_normal.empty())
+        keep(grid.moving_normal, places.anchors,
+             grid.moving_normal.size() / static_cast<std::size_t>(grid.vertex_count()), 1);
     keep(grid.dp_du, places.anchors, 1, u);
     keep(grid.dp_dv, places.anchors, 1, v);
     for (GridAttribute& attribute : grid.attributes) {

@@ -101,7 +101,10 @@ struct Grid {
     std::vector<Vec3f>
         normal;  ///< [points] unit shading normal, outward as modelled (not yet faced forward)
     std::vector<Vec3f> geometric_normal;  ///< [points] unit, of the surface itself
-    std::vector<Vec3f> dp_du, dp_dv;      ///< [points] change of P from one point to the next
+    /// [points][NormalTimes::count()] shading normals when they are known, object space, unit, or
+    /// zero where they are the face's own.  Empty: they go along with the micropolygons.
+    std::vector<Vec3f> moving_normal;
+    std::vector<Vec3f> dp_du, dp_dv;  ///< [points] change of P from one point to the next
     std::vector<GridAttribute> attributes;
     /// [points] from p to the hair or sphere that is drawn here as something flat: rays start
     /// outside of it, those of hairs as LitPlace::start_around() says.  Empty: at p.

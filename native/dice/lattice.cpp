@@ -34,6 +34,7 @@ class LatticeDicer {
         std::swap(grid.normal, m_samples.normal);
         std::swap(grid.geometric_normal, m_samples.geometric_normal);
         std::swap(grid.rise, m_samples.rise);
+        std::swap(grid.moving_normal, m_samples.moving_normal);
         grid.terminator_offset = mesh.instance().terminator_offset;
         count_spared(grid);
         find_derivatives(grid);

@@ -10,6 +10,7 @@
 #include "dice/patch.h"
 #include "dice/patch_batch.h"
 #include "dice/raster_bound.h"
+#include "geometry/knot_normals.h"
 #include "geometry/smooth_rise.h"
 #include "geometry/surface_evaluator.h"
 #include "math/largest_stretch.h"
@@ -147,6 +148,19 @@ Vec4f OpenedMesh::rise(const FrameFace& face, const CornerWeights& weights,
     const Vec3d from_eye =
         view().projection.perspective ? blend(face.p, weights.w) : Vec3d(0.0, 0.0, 1.0);
     return smooth_rise(face.p, face.normal, weights, glm::dot(flat, from_eye) < 0.0);
+}
+
+MovingNormals OpenedMesh::moving_normals(const BasePatch& patch) const {
+    MovingNormals normals;
+    const KnotNormals* const known =
+        m_view->has_light && !m_displaced ? m_shared->knot_normals() : nullptr;
+    if (!known) return normals;
+    normals.at.resize(known->times().count());
+    if (!m_shared->is_smooth(patch.face)) return normals;
+    for (std::size_t number = 0; number < normals.at.size(); ++number)
+        for (std::size_t i = 0; i < 4; ++i)
+            normals.at[number][i] = known->of(patch.corner[i], number);
+    return normals;
 }
 
 std::vector<Bounds3f> OpenedMesh::primitive_boxes(std::size_t primitive) const {

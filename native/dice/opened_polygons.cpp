@@ -80,19 +80,11 @@ SurfacePlace OpenedPolygons::edge_place(const EdgeRef& edge, double t) const {
     return borders.place(borders.edge_of(edge.a, edge.b), t);
 }
 
-bool OpenedPolygons::smooth(std::uint32_t face) const {
-    return !data().smooth.empty() && data().smooth[face];
-}
-
 FrameFace OpenedPolygons::frame_face(const BasePatch& patch) const {
     FrameFace face = frame_corners(patch);
-    const bool custom = !data().corner_normals.empty();
-    face.is_smooth = custom || (smooth(patch.face) && !shared().vertex_normals().empty());
+    face.is_smooth = shared().is_smooth(patch.face);
     for (int i = 0; i < 4 && face.is_smooth; ++i) {
-        const std::uint32_t corner = patch.corner[i];
-        const Vec3f& normal =
-            custom ? data().corner_normals[corner]
-                   : shared().vertex_normals()[static_cast<std::size_t>(vertex_of(corner))];
+        const Vec3f& normal = shared().smooth_normal(patch.corner[i]);
         face.normal[i] = normalize_or(camera_normal(normal), Vec3d(0.0));
     }
     return face;
@@ -128,6 +120,8 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
     out.geometric_normal.resize(n);
     const bool has_rise = rises();
     out.rise.resize(has_rise ? n : 0);
+    out.moving_normal.clear();
+    const MovingNormals moving = moving_normals(patch);
     for (std::size_t i = 0; i < n; ++i) {
         const Vec3d su = face.by_u(weights[i]), sv = face.by_v(weights[i]);
         const Vec3d flat = face.geometric_normal(su, sv);
@@ -136,6 +130,7 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
         out.geometric_normal[i] = Vec3f(flat);
         out.normal[i] = Vec3f(face.shading_normal(weights[i], flat));
         if (has_rise) out.rise[i] = rise(face, weights[i], flat);
+        moving.add(weights[i], out.moving_normal);
     }
 }
 

@@ -23,9 +23,6 @@ class OpenedPolygons final : public OpenedMesh {
 
     FrameFace frame_face(const BasePatch& patch) const override;
     bool may_be_small(const BasePatch&) const override { return true; }
-
-  private:
-    bool smooth(std::uint32_t face) const;
 };
 
 }  // namespace granita

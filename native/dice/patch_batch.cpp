@@ -235,6 +235,7 @@ void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
         append(piece.grid->normal, grid.normal);
         append(piece.grid->geometric_normal, grid.geometric_normal);
         append(piece.grid->rise, grid.rise);
+        append(piece.grid->moving_normal, grid.moving_normal);
         append(piece.grid->dp_du, grid.dp_du);
         append(piece.grid->dp_dv, grid.dp_dv);
     };
@@ -250,6 +251,7 @@ void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
 void PatchBatch::add_points(const Lattice& lattice, Grid& grid) const {
     const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
     const FrameFace face = m_mesh->frame_face(lattice.patch);
+    const MovingNormals moving = m_mesh->moving_normals(lattice.patch);
     const bool has_rise = m_mesh->rises();
     for (std::size_t v = 0; v < stencil.vertex_count(); ++v) {
         const CornerWeights& weights = stencil.weights[v];
@@ -258,6 +260,7 @@ void PatchBatch::add_points(const Lattice& lattice, Grid& grid) const {
         grid.geometric_normal.emplace_back(flat);
         grid.normal.emplace_back(face.shading_normal(weights, flat));
         if (has_rise) grid.rise.push_back(m_mesh->rise(face, weights, flat));
+        moving.add(weights, grid.moving_normal);
         const Vec2d &by_u = stencil.step_u[v], &by_v = stencil.step_v[v];
         grid.dp_du.emplace_back(su * by_u.x + sv * by_u.y);
         grid.dp_dv.emplace_back(su * by_v.x + sv * by_v.y);

@@ -23,22 +23,15 @@ Vec2f around_origin(const Vec3f& p) {
 
 }  // namespace
 
-bool SharedGeometry::is_smooth(std::uint32_t face) const {
-    return !m_data->smooth.empty() && m_data->smooth[face] != 0 && !m_vertex_normals.empty();
-}
-
 std::array<Vec3f, 4> SharedGeometry::corner_normals(const BasePatch& patch) const {
     std::array<Vec3f, 4> normals;
     const auto vertex = [&](std::size_t i) {
         return static_cast<std::size_t>(m_data->corner_verts[patch.corner[i]]);
     };
     const auto point = [&](std::size_t i) { return Vec3d(m_frame_points[vertex(i)]); };
-    const bool custom = !m_data->corner_normals.empty();
-    if (custom || is_smooth(patch.face)) {
+    if (is_smooth(patch.face)) {
         for (std::size_t i = 0; i < 4; ++i)
-            normals[i] = normalize_or(
-                custom ? m_data->corner_normals[patch.corner[i]] : m_vertex_normals[vertex(i)],
-                Vec3f(0.0f));
+            normals[i] = normalize_or(smooth_normal(patch.corner[i]), Vec3f(0.0f));
         return normals;
     }
     const Vec3d across = patch.kind == PatchKind::Triangle

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "geometry/knot_normals.h"
 #include "geometry/limit_vertices.h"
 #include "geometry/patch_borders.h"
 #include "geometry/polygon_patches.h"
@@ -102,6 +103,13 @@ std::uint32_t SharedGeometry::face_of(std::uint32_t corner) const {
 const PatchBorders& SharedGeometry::borders() const {
     m_borders_once.call([this] { m_borders = std::make_unique<PatchBorders>(*this); });
     return *m_borders;
+}
+
+const KnotNormals* SharedGeometry::knot_normals() const {
+    if (m_static || m_subdivision || (m_vertex_normals.empty() && m_data->corner_normals.empty()))
+        return nullptr;
+    m_knot_normals_once.call([this] { m_knot_normals = std::make_unique<KnotNormals>(*this); });
+    return m_knot_normals.get();
 }
 
 std::span<const Vec3f> SharedGeometry::knot_points(int knot) const {

@@ -21,6 +21,7 @@
 
 namespace granita {
 
+class KnotNormals;
 struct LimitVertices;
 class PatchBorders;
 class SubdivisionTopology;
@@ -66,6 +67,10 @@ class SharedGeometry {
     bool is_static() const { return m_static; }
     /// The frame time among the geometry's knots; the first where it stands still.
     const KnotTime& frame() const { return m_frame; }
+    /// A time of the shutter likewise.
+    KnotTime at(float time) const {
+        return m_static ? KnotTime{} : knot_time(static_cast<double>(time), m_data->knots);
+    }
     /// [V] object space, of a knot; all of them are one where it stands still.
     std::span<const Vec3f> knot_points(int knot) const;
     /// Knots at which its points differ: 1 where it stands still.
@@ -81,6 +86,19 @@ class SharedGeometry {
     const Bounds3f& frame_box() const { return m_frame_box; }
     /// [V] object space, at the frame time; empty when no face asks for them.
     const std::vector<Vec3f>& vertex_normals() const { return m_vertex_normals; }
+    /// Whether a polygon has other shading normals than its own.
+    bool is_smooth(std::uint32_t face) const {
+        return !m_data->corner_normals.empty() ||
+               (!m_data->smooth.empty() && m_data->smooth[face] != 0 && !m_vertex_normals.empty());
+    }
+    /// Where it has: of a corner, object space, at the frame time.
+    const Vec3f& smooth_normal(std::uint32_t corner) const {
+        if (!m_data->corner_normals.empty()) return m_data->corner_normals[corner];
+        return m_vertex_normals[static_cast<std::size_t>(m_data->corner_verts[corner])];
+    }
+    /// nullptr: none but faces' own, which are told by its points, or they stay as they are.
+    /// Computed at the first call; any thread.
+    const KnotNormals* knot_normals() const;
     /// Of a polygon's patch, unit, object space, at the frame time; a triangle repeats its last.
     std::array<Vec3f, 4> corner_normals(const BasePatch& patch) const;
     /// tangents() of a polygon's patch in a UV map (empty: the one active for render; where the
@@ -103,7 +121,6 @@ class SharedGeometry {
     std::vector<std::uint8_t> usable_faces() const;
     void add_subdivided(std::uint32_t face);
     std::vector<Vec4f> make_tangents(const std::string& uv_map) const;
-    bool is_smooth(std::uint32_t face) const;
 
     const GeometryData* m_data;
     std::vector<std::uint32_t> m_first_corner;
@@ -120,6 +137,8 @@ class SharedGeometry {
     std::unique_ptr<const SurfaceEvaluator> m_surface;
     mutable Once m_borders_once;
     mutable std::unique_ptr<const PatchBorders> m_borders;
+    mutable Once m_knot_normals_once;
+    mutable std::unique_ptr<const KnotNormals> m_knot_normals;
     mutable std::shared_mutex m_tangent_mutex;
     mutable std::map<std::string, std::vector<Vec4f>> m_tangents;  ///< [patches][4] by UV map
 };

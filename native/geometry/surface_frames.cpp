@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "geometry/corner_values.h"
+#include "geometry/knot_normals.h"
 #include "geometry/surface_evaluator.h"
 #include "math/normalize_or.h"
 
@@ -20,20 +21,25 @@ std::array<Vec3d, 4> corners(const SharedGeometry& geometry, const BasePatch& pa
     return at;
 }
 
-bool is_smooth(const SharedGeometry& geometry, std::uint32_t face) {
-    const GeometryData& data = geometry.data();
-    if (!data.corner_normals.empty()) return true;
-    return !data.smooth.empty() && data.smooth[face] && !geometry.vertex_normals().empty();
+std::array<Vec3d, 4> corners(const SharedGeometry& geometry, const BasePatch& patch,
+                             const KnotTime& time) {
+    if (time == geometry.frame()) return corners(geometry, patch, geometry.frame_points());
+    const int knot = static_cast<int>(time.knot);
+    std::array<Vec3d, 4> at = corners(geometry, patch, geometry.knot_points(knot));
+    if (time.fraction == 0.0) return at;
+    const std::array<Vec3d, 4> next = corners(geometry, patch, geometry.knot_points(knot + 1));
+    for (std::size_t i = 0; i < 4; ++i) at[i] += (next[i] - at[i]) * time.fraction;
+    return at;
 }
 
-std::array<Vec3d, 4> corner_normals(const SharedGeometry& geometry, const BasePatch& patch) {
-    const GeometryData& data = geometry.data();
+std::array<Vec3d, 4> corner_normals(const SharedGeometry& geometry, const BasePatch& patch,
+                                    const KnotTime& time) {
+    const KnotNormals* const moving = time == geometry.frame() ? nullptr : geometry.knot_normals();
     std::array<Vec3d, 4> normals;
     for (std::size_t i = 0; i < 4; ++i) {
         const std::uint32_t corner = patch.corner[i];
-        const auto vertex = static_cast<std::size_t>(data.corner_verts[corner]);
-        normals[i] = data.corner_normals.empty() ? geometry.vertex_normals()[vertex]
-                                                 : data.corner_normals[corner];
+        normals[i] = moving ? moving->of(corner, moving->times().at(time))
+                            : Vec3d(geometry.smooth_normal(corner));
     }
     return normals;
 }
@@ -44,11 +50,11 @@ void resize(SurfaceFrames& out, std::size_t n) {
 }
 
 void polygon_frames(const SharedGeometry& geometry, const BasePatch& patch,
-                    std::span<const Vec2d> uv, SurfaceFrames& out) {
-    const std::array<Vec3d, 4> at = corners(geometry, patch, geometry.frame_points());
-    const bool smooth = is_smooth(geometry, patch.face);
+                    std::span<const Vec2d> uv, const KnotTime& time, SurfaceFrames& out) {
+    const std::array<Vec3d, 4> at = corners(geometry, patch, time);
+    const bool smooth = geometry.is_smooth(patch.face);
     std::array<Vec3d, 4> normals{};
-    if (smooth) normals = corner_normals(geometry, patch);
+    if (smooth) normals = corner_normals(geometry, patch, time);
     const Vec3d across = normalize_or(glm::cross(at[2] - at[0], at[3] - at[1]), kUp);
     for (std::size_t i = 0; i < uv.size(); ++i) {
         const CornerWeights weights(patch.kind, uv[i]);
@@ -61,8 +67,8 @@ void polygon_frames(const SharedGeometry& geometry, const BasePatch& patch,
     }
 }
 
-/// From the columns of a limit face to the frame time.
-Vec3d at_frame(const double* columns, const KnotTime& t) {
+/// From the columns of a limit face to a time.
+Vec3d at_time(const double* columns, const KnotTime& t) {
     const double* const p = columns + 3 * t.knot;
     Vec3d value(p[0], p[1], p[2]);
     if (t.fraction > 0.0) value = value * (1.0 - t.fraction) + Vec3d(p[3], p[4], p[5]) * t.fraction;
@@ -70,43 +76,44 @@ Vec3d at_frame(const double* columns, const KnotTime& t) {
 }
 
 void limit_frames(const SharedGeometry& geometry, const BasePatch& patch, std::span<const Vec2d> uv,
-                  SurfaceFrames& out) {
+                  const KnotTime& time, SurfaceFrames& out) {
     const int face = static_cast<int>(patch.face), sub = static_cast<int>(patch.sub);
     const LimitFace& limit = geometry.surface().limit_face(face);
     const FaceCoordinates coordinates(*geometry.subdivision(), face);
     const auto columns = static_cast<std::size_t>(limit.columns());
     const double scale = coordinates.sub_face_scale();
-    const KnotTime t = geometry.surface().knots() == 1 ? KnotTime{} : geometry.frame();
     std::vector<double> p(columns), du(columns), dv(columns);
     const auto normal_at = [&](const Vec2d& at, const Vec3d& otherwise) {
         limit.evaluate(coordinates.sub_face(sub, at), p.data(), du.data(), dv.data());
-        return normalize_or(glm::cross(at_frame(du.data(), t), at_frame(dv.data(), t)), otherwise);
+        return normalize_or(glm::cross(at_time(du.data(), time), at_time(dv.data(), time)),
+                            otherwise);
     };
     // Where the parameters stall (a cage edge of no length) the middle of the face stands in.
     const Vec3d middle = normal_at({0.5, 0.5}, kUp);
     for (std::size_t i = 0; i < uv.size(); ++i) {
         out.geometric_normal[i] = out.normal[i] = normal_at(uv[i], middle);
-        out.p[i] = at_frame(p.data(), t);
-        out.su[i] = scale * at_frame(du.data(), t);
-        out.sv[i] = scale * at_frame(dv.data(), t);
+        out.p[i] = at_time(p.data(), time);
+        out.su[i] = scale * at_time(du.data(), time);
+        out.sv[i] = scale * at_time(dv.data(), time);
     }
 }
 
 }  // namespace
 
 void find_frames(const SharedGeometry& geometry, const BasePatch& patch, std::span<const Vec2d> uv,
-                 SurfaceFrames& out) {
+                 const KnotTime& time, SurfaceFrames& out) {
     resize(out, uv.size());
     if (geometry.subdivision())
-        limit_frames(geometry, patch, uv, out);
+        limit_frames(geometry, patch, uv, time, out);
     else
-        polygon_frames(geometry, patch, uv, out);
+        polygon_frames(geometry, patch, uv, time, out);
 }
 
-bool find_smooth_face(const SharedGeometry& geometry, const BasePatch& patch, SmoothFace& out) {
-    if (geometry.subdivision() || !is_smooth(geometry, patch.face)) return false;
-    std::ranges::copy(corners(geometry, patch, geometry.frame_points()), out.p);
-    std::ranges::copy(corner_normals(geometry, patch), out.normal);
+bool find_smooth_face(const SharedGeometry& geometry, const BasePatch& patch, const KnotTime& time,
+                      SmoothFace& out) {
+    if (geometry.subdivision() || !geometry.is_smooth(patch.face)) return false;
+    std::ranges::copy(corners(geometry, patch, time), out.p);
+    std::ranges::copy(corner_normals(geometry, patch, time), out.normal);
     return true;
 }
 

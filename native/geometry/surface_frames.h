@@ -9,23 +9,25 @@
 
 namespace granita {
 
-/// At n places at the frame time.  Derivatives by u and v of the patch.
+/// At n places at a time.  Derivatives by u and v of the patch.
 struct SurfaceFrames {
     std::vector<Vec3d> p, su, sv;
     std::vector<Vec3d> normal;            ///< unit, shading, outward as modelled
     std::vector<Vec3d> geometric_normal;  ///< unit
 };
 
+/// `time`: among the geometry's knots.
 void find_frames(const SharedGeometry& geometry, const BasePatch& patch, std::span<const Vec2d> uv,
-                 SurfaceFrames& out);
+                 const KnotTime& time, SurfaceFrames& out);
 
 /// Where shading normals are not the face's own.
 struct SmoothFace {
-    Vec3d p[4], normal[4];  ///< of the corners at the frame time, object space; normals unit
+    Vec3d p[4], normal[4];  ///< of the corners at a time, object space; normals unit
 };
 
 /// False: the face has no normals but its own.  Of polygons; not of what is subdivided.
-bool find_smooth_face(const SharedGeometry& geometry, const BasePatch& patch, SmoothFace& out);
+bool find_smooth_face(const SharedGeometry& geometry, const BasePatch& patch, const KnotTime& time,
+                      SmoothFace& out);
 
 /// [surface_knots()][n]
 void find_positions(const SharedGeometry& geometry, const BasePatch& patch,

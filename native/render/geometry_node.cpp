@@ -9,7 +9,7 @@ namespace {
 /// What nobody reads once radiance is there and settled.
 void drop_shading_state(Grid& grid) {
     for (std::vector<Vec3f>* values : {&grid.p, &grid.normal, &grid.geometric_normal, &grid.dp_du,
-                                       &grid.dp_dv, &grid.ray_offset})
+                                       &grid.dp_dv, &grid.ray_offset, &grid.moving_normal})
         std::vector<Vec3f>().swap(*values);
     std::vector<Vec4f>().swap(grid.rise);
     std::vector<GridAttribute>().swap(grid.attributes);

@@ -14,6 +14,7 @@ namespace granita {
 struct KnotTime {
     std::size_t knot = 0;
     double fraction = 0.0;  ///< of the segment from `knot` on; 0 exactly at a knot
+    bool operator==(const KnotTime&) const = default;
 };
 
 /// Time step / steps: exact at knots.

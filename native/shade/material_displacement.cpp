@@ -70,7 +70,7 @@ class MaterialDisplacement::Batch {
              Offsets& out) {
         const std::size_t n = uv.size();
         m_uv.assign(uv.begin(), uv.end());
-        find_frames(m_geometry, m_patch, uv, m_frames);
+        find_frames(m_geometry, m_patch, uv, m_geometry.frame(), m_frames);
         m_steps.resize(n);
         for (std::size_t i = 0; i < n; ++i) m_steps[i] = step_at(i);
         if (derivatives) add_neighbours(n);
@@ -146,7 +146,7 @@ class MaterialDisplacement::Batch {
             m_uv.push_back(m_uv[i] + Vec2d(0.0, m_differences[i].y));
         m_steps.resize(3 * n);
         for (std::size_t i = 0; i < 2 * n; ++i) m_steps[n + i] = m_steps[i % n];
-        find_frames(m_geometry, m_patch, std::span(m_uv).subspan(n), m_beside);
+        find_frames(m_geometry, m_patch, std::span(m_uv).subspan(n), m_geometry.frame(), m_beside);
     }
 
     void resize_points() {

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 
+#include "geometry/anchor.h"
+#include "geometry/knot_normals.h"
 #include "math/normalize_or.h"
 #include "scene/knot_time.h"
-#include "shade/lights/anchor.h"
 #include "shade/lights/vertex_paths.h"
 
 namespace granita {
@@ -76,6 +77,41 @@ float height_above(const Vec3f& p, const Blend& blend, const ShadingPoints& arou
     return height;
 }
 
+/// Shading normals of a mesh that changes its shape, which a micropolygon alone cannot tell: of a
+/// smooth mesh they turn with the faces beside it too.
+class BentNormals {
+  public:
+    BentNormals(const Grid& grid, const Scene& scene)
+        : m_normals(grid.moving_normal),
+          m_from_object(scene.instances[grid.instance].world_from_object) {
+        const int knots = scene.geometry_of(scene.instances[grid.instance]).knots;
+        m_times = {static_cast<std::size_t>(knots),
+                   knot_time(static_cast<double>(scene.options.frame_time), knots)};
+    }
+
+    /// As modelled, shading space, of any length.
+    Vec3f at(const Blend& blend, float time, const Vec3f& otherwise) const {
+        if (m_normals.empty()) return otherwise;
+        const KnotTime of_knots =
+            knot_time(static_cast<double>(time), static_cast<int>(m_times.knots));
+        const KnotTime t = m_times.at(of_knots);
+        const auto mean = [&](std::size_t number) {
+            return blend.mean<Vec3f>(
+                [&](std::size_t k) { return m_normals[k * m_times.count() + number]; });
+        };
+        Vec3f normal = mean(t.knot);
+        if (t.fraction > 0.0)
+            normal += (mean(t.knot + 1) - normal) * static_cast<float>(t.fraction);
+        const Mat3f from_object(Mat3d(matrix_at(m_from_object, static_cast<double>(time))));
+        return normalize_or(glm::transpose(glm::inverse(from_object)) * normal, otherwise);
+    }
+
+  private:
+    const std::vector<Vec3f>& m_normals;
+    const std::vector<Mat4d>& m_from_object;
+    NormalTimes m_times;
+};
+
 GridAttribute blended(const GridAttribute& from, const std::vector<Blend>& blends,
                       float point_size) {
     GridAttribute out{from.attribute, from.width, {}, {}, {}};
@@ -101,6 +137,7 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
                              float point_size) {
     const ShadingPoints around = shading_points(grid, camera);
     const VertexPaths paths(grid, scene);
+    const BentNormals bent(grid, scene);
     points.count = wanted.size();
     points.terminator_offset = around.terminator_offset;
     points.share = around.share * refined_light_share(point_size * point_size);
@@ -147,8 +184,9 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
             normalize_or(turn_normal * as_modelled(around.geometric_normal), view);
         const float side = glm::dot(outward, view) < 0.0f ? -1.0f : 1.0f;
         points.p.push_back(p);
-        points.normal.push_back(normalize_or(turn_normal * as_modelled(around.normal), outward) *
-                                side);
+        Vec3f normal = turn_normal * as_modelled(around.normal);
+        if (at.time != kAnyTime) normal = bent.at(blend, time, normal);
+        points.normal.push_back(normalize_or(normal, outward) * side);
         points.geometric_normal.push_back(outward * side);
         points.view.push_back(view);
         points.dp_du.push_back(turn * mean(around.dp_du) * point_size);

@@ -46,6 +46,19 @@ HALF = ShutterTimes(0.5, 0.5)
 MOVING = snapshot([at(0, -1), at(0, 1)], [at(1), at(2), at(3)])
 
 
+def zoomed(by):
+    return np.linalg.inv(np.diag([by, by, 1.0, 1.0]))
+
+
+def test_a_camera_that_zooms_goes_on_as_it_did():
+    """From twice to four times; the shutter of the new picture is half as long, and begins where the zoom is 2.5."""
+    moving = snapshot([zoomed(2.0), zoomed(4.0)], [at(0)])
+    still = snapshot([zoomed(3.0)], [at(0)])
+    short = ShutterTimes(0.25, 0.5)
+    found = carried(still, short, moving, HALF)["camera"]["world_from_camera"]
+    np.testing.assert_allclose(found, [zoomed(2.5), zoomed(3.5)])
+
+
 def test_what_did_not_change_keeps_its_very_knots():
     still = snapshot([at(0)], [at(2)])
     found = carried(still, HALF, MOVING, HALF)

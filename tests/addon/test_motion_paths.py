@@ -37,6 +37,12 @@ def test_a_thing_that_moves_straight_crosses_the_picture_evenly():
     np.testing.assert_allclose(np.diff(path, axis=0), np.tile((5, 6.25), (TIMES - 1, 1)))
 
 
+def test_what_a_zoom_moves_goes_straight_and_evenly():
+    zoom = [np.linalg.inv(np.diag([by, by, 1.0, 1.0])) for by in (1.0, 2.0)]
+    (path,) = motion_paths(snapshot(zoom, [at(0)]))
+    np.testing.assert_allclose(path[:, 0], 32 + 100 / 5 * np.linspace(1.0, 2.0, TIMES))
+
+
 def test_what_stands_still_is_left_out_unless_the_camera_moves():
     things = [at(0)], [at(0), at(0.001)]
     assert len(motion_paths(snapshot([at(0)], *things))) == 0

@@ -11,6 +11,19 @@ def at(x):
     return matrix
 
 
+def zoomed(by):
+    """A camera that looks along z, whose picture is `by` times as large."""
+    return np.linalg.inv(np.diag([by, by, 1.0, 1.0]))
+
+
+def test_a_zoom_shows_what_the_picture_of_the_whole_shutter_shows_then():
+    """What is seen goes straight on the picture: twice as far from its middle, then three times in the middle of the way."""
+    scene = snapshot()
+    scene["camera"]["world_from_camera"] = np.array([zoomed(2.0), zoomed(4.0)])
+    (camera,) = at_time(scene, 0.5)["camera"]["world_from_camera"]
+    np.testing.assert_allclose(np.linalg.inv(camera), np.diag([3.0, 3.0, 1.0, 1.0]))
+
+
 def snapshot():
     points = np.zeros((3, 2, 3), dtype=np.float32)
     points[:, 0, 2] = 0, 4, 8

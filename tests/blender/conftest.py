@@ -10,6 +10,27 @@ import pytest
 import scene_parts
 
 
+def pytest_addoption(parser):
+    parser.addoption(
+        "--first-cases",
+        action="store_true",
+        help="of tests marked `lit` the first case of each alone",
+    )
+
+
+def pytest_collection_modifyitems(config, items):
+    if not config.getoption("--first-cases"):
+        return
+    seen, left_out = set(), []
+    for item in items:
+        test = item.parent.nodeid, item.originalname
+        if test in seen and item.get_closest_marker("lit"):
+            left_out.append(item)
+        seen.add(test)
+    config.hook.pytest_deselected(items=left_out)
+    items[:] = [item for item in items if item not in left_out]
+
+
 @pytest.fixture
 def scene():
     """An empty scene of factory settings, 64 by 48 pixels, rendered by Granita without bounces."""

@@ -283,7 +283,7 @@ def test_long_chains_are_exported_in_proportion(scene):
         links.new(emission.outputs[0], output.inputs["Surface"])
         return min(_export_seconds(material) for _ in range(3))
 
-    assert seconds(2000) < 8 * seconds(500)
+    assert seconds(1200) < 8 * seconds(300)
 
 
 def _export_seconds(material):

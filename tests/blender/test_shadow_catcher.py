@@ -10,6 +10,8 @@ import pytest
 import scene_parts
 from node_comparison import Tree
 
+pytestmark = pytest.mark.lit
+
 SIZE, BLOCK = 64, 4
 DIFFUSE_DIRECT = "Diffuse Direct.R" if bpy.app.version >= (5, 0) else "DiffDir.R"
 

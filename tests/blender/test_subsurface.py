@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 import scene_parts
 
+pytestmark = pytest.mark.lit
+
 COLOR, RADIUS = (0.8, 0.5, 0.3), (0.3, 0.15, 0.08)
 SIZE, BLOCK = 64, 8
 

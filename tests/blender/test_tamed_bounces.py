@@ -8,6 +8,8 @@ from bounced_parts import look_at_stage, render_bounced, surface, worst_block
 from mathutils import Vector
 from node_comparison import Tree
 
+pytestmark = pytest.mark.lit
+
 
 def lamp_towards(scene, place, target, energy, size):
     lamp = bpy.data.lights.new("Lamp", "AREA")

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 import scene_parts
 
+pytestmark = pytest.mark.lit
+
 OUTPUTS = [
     ("ShaderNodeTexCoord", "Generated"),
     ("ShaderNodeTexCoord", "Normal"),

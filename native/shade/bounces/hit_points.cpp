@@ -40,7 +40,7 @@ void HitPoints::fill_mesh(std::size_t i, const MetPath& met, bool displaced,
     const RayHit& hit = *met.hit;
     const RayFrame& frame = *met.frame;
     const std::span<const Vec2d> uv(&hit.uv, 1);
-    find_frames(*hit.geometry, *hit.patch, uv, surface);
+    find_frames(*hit.geometry, *hit.patch, uv, hit.geometry->at(met.time), surface);
     const float side = m_points.backfacing[i] ? -1.0f : 1.0f;
     if (!displaced && !fill_smooth(i, met))
         m_points.normal[i] = side * Vec3f(normalize_or(frame.world_from_normal * surface.normal[0],
@@ -61,7 +61,8 @@ void HitPoints::fill_mesh(std::size_t i, const MetPath& met, bool displaced,
 /// scale bends them.
 bool HitPoints::fill_smooth(std::size_t i, const MetPath& met) {
     SmoothFace face;
-    if (!find_smooth_face(*met.hit->geometry, *met.hit->patch, face)) return false;
+    const SharedGeometry& geometry = *met.hit->geometry;
+    if (!find_smooth_face(geometry, *met.hit->patch, geometry.at(met.time), face)) return false;
     for (int k = 0; k < 4; ++k) {
         face.p[k] = Mat3d(met.frame->world_from_object) * face.p[k];
         face.normal[k] =

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "scene/knot_time.h"
-#include "shade/lights/anchor.h"
+#include "geometry/anchor.h"
 #include "shade/lights/vertex_paths.h"
 
 namespace granita {

@@ -124,7 +124,8 @@ void RayDisplaced::find_levels(const RayDetail& detail) {
             static const std::vector<Vec2d> quad = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0.5}};
             static const std::vector<Vec2d> triangle = {{0, 0}, {1, 0}, {0, 1}, {1 / 3., 1 / 3.}};
             find_frames(*m_shared, patches[k],
-                        patches[k].kind == PatchKind::Triangle ? triangle : quad, frames);
+                        patches[k].kind == PatchKind::Triangle ? triangle : quad, m_shared->frame(),
+                        frames);
             float pixel = std::numeric_limits<float>::infinity();
             double length_u = 0.0, length_v = 0.0;
             for (std::size_t i = 0; i < frames.p.size(); ++i) {

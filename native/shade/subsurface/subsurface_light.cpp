@@ -160,10 +160,10 @@ class SubsurfaceLight::Batch {
     }
 
     /// From a place on a face.
-    static Vec3f to_middle(const RayScene::Met& met) {
+    Vec3f to_middle(const RayScene::Met& met) const {
         static thread_local SurfaceFrames there;
         const RayHit& hit = met.hit;
-        find_frames(*hit.geometry, *hit.patch, {&hit.uv, 1}, there);
+        find_frames(*hit.geometry, *hit.patch, {&hit.uv, 1}, hit.geometry->at(m_body.time), there);
         const Vec2d way = middle_of(hit.patch->kind) - hit.uv;
         return met.frame().world_from_object * Vec3f(way.x * there.su[0] + way.y * there.sv[0]);
     }
