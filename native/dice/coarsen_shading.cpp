@@ -26,15 +26,22 @@ int points_step(const Grid& grid, const Projection& projection, int first, int s
 }
 
 template <class T>
-void keep(std::vector<T>& values, const std::vector<std::uint32_t>& anchors, std::size_t width,
-          int scale) {
+void keep(std::vector<T>& values, const std::vector<std::uint32_t>& anchors,
+          std::size_t width = 1) {
     if (values.empty()) return;
     std::vector<T> kept;
     kept.reserve(anchors.size() * width);
     for (const std::uint32_t vertex : anchors)
-        for (std::size_t c = 0; c < width; ++c)
-            kept.push_back(values[vertex * width + c] * static_cast<float>(scale));
+        for (std::size_t c = 0; c < width; ++c) kept.push_back(values[vertex * width + c]);
     values = std::move(kept);
+}
+
+/// Differences between points that are so many steps apart.
+template <class T>
+void keep_steps(std::vector<T>& values, const std::vector<std::uint32_t>& anchors,
+                std::size_t width, int steps) {
+    keep(values, anchors, width);
+    for (T& value : values) value *= static_cast<float>(steps);
 }
 
 }  // namespace
@@ -52,18 +59,16 @@ void coarsen_shading(Grid& grid, const Projection& projection, double rate) {
             places.anchors.push_back(static_cast<std::uint32_t>(j * row + i));
     if (grid.p.empty()) grid.p = grid.positions;
     for (std::vector<Vec3f>* values : {&grid.p, &grid.normal, &grid.geometric_normal})
-        keep(*values, places.anchors, 1, 1);
-    keep(grid.rise, places.anchors, 1, 1);
-    if (!grid.moving_normal.empty())
-        keep(grid.moving_normal, places.anchors,
-             grid.moving_normal.size() / static_cast<std::size_t>(grid.vertex_count()), 1);
-    keep(grid.dp_du, places.anchors, 1, u);
-    keep(grid.dp_dv, places.anchors, 1, v);
+        keep(*values, places.anchors);
+    keep(grid.rise, places.anchors);
+    keep(grid.bent_corners, places.anchors);
+    keep_steps(grid.dp_du, places.anchors, 1, u);
+    keep_steps(grid.dp_dv, places.anchors, 1, v);
     for (GridAttribute& attribute : grid.attributes) {
         const auto width = static_cast<std::size_t>(attribute.width);
-        keep(attribute.values, places.anchors, width, 1);
-        keep(attribute.du, places.anchors, width, u);
-        keep(attribute.dv, places.anchors, width, v);
+        keep(attribute.values, places.anchors, width);
+        keep_steps(attribute.du, places.anchors, width, u);
+        keep_steps(attribute.dv, places.anchors, width, v);
     }
 }
 

@@ -24,6 +24,7 @@
 #include <compare>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -78,6 +79,14 @@ struct ShadingPositions {
     std::vector<std::uint32_t> faces;
 };
 
+/// Corners of a mesh, and what part each has in a place; all 0 where a face is flat.
+struct CornerBlend {
+    std::uint32_t corner[4]{};
+    float weight[4]{};
+};
+
+class KnotNormals;
+
 struct Grid {
     GridKey key;
     std::uint32_t instance = 0;  ///< index in Scene::instances
@@ -101,10 +110,10 @@ struct Grid {
     std::vector<Vec3f>
         normal;  ///< [points] unit shading normal, outward as modelled (not yet faced forward)
     std::vector<Vec3f> geometric_normal;  ///< [points] unit, of the surface itself
-    /// [points][NormalTimes::count()] shading normals when they are known, object space, unit, or
-    /// zero where they are the face's own.  Empty: they go along with the micropolygons.
-    std::vector<Vec3f> moving_normal;
-    std::vector<Vec3f> dp_du, dp_dv;  ///< [points] change of P from one point to the next
+    /// Normals of a mesh that changes its shape; nullptr: they go along with the micropolygons.
+    std::shared_ptr<const KnotNormals> bent;
+    std::vector<CornerBlend> bent_corners;  ///< [points] whose normals are blended; with `bent`
+    std::vector<Vec3f> dp_du, dp_dv;        ///< [points] change of P from one point to the next
     std::vector<GridAttribute> attributes;
     /// [points] from p to the hair or sphere that is drawn here as something flat: rays start
     /// outside of it, those of hairs as LitPlace::start_around() says.  Empty: at p.

@@ -34,9 +34,9 @@ class LatticeDicer {
         std::swap(grid.normal, m_samples.normal);
         std::swap(grid.geometric_normal, m_samples.geometric_normal);
         std::swap(grid.rise, m_samples.rise);
-        std::swap(grid.moving_normal, m_samples.moving_normal);
         grid.terminator_offset = mesh.instance().terminator_offset;
         count_spared(grid);
+        find_bent(grid);
         find_derivatives(grid);
         find_attributes(grid);
     }
@@ -161,6 +161,15 @@ class LatticeDicer {
         const double spared = m_mesh->rate().spared(m_path.data(), grid.knots) - 1.0;
         statistics->add(Counter::PointsSpared,
                         static_cast<std::uint64_t>(spared * static_cast<double>(m_count)));
+    }
+
+    void find_bent(Grid& grid) const {
+        grid.bent = m_mesh->bent();
+        grid.bent_corners.clear();
+        if (!grid.bent) return;
+        for (const Vec2d& uv : m_places.uv)
+            grid.bent_corners.push_back(
+                m_mesh->bent_corners(*m_patch, CornerWeights(m_patch->kind, uv)));
     }
 
     void find_derivatives(Grid& grid) const {

@@ -150,17 +150,18 @@ Vec4f OpenedMesh::rise(const FrameFace& face, const CornerWeights& weights,
     return smooth_rise(face.p, face.normal, weights, glm::dot(flat, from_eye) < 0.0);
 }
 
-MovingNormals OpenedMesh::moving_normals(const BasePatch& patch) const {
-    MovingNormals normals;
-    const KnotNormals* const known =
-        m_view->has_light && !m_displaced ? m_shared->knot_normals() : nullptr;
-    if (!known) return normals;
-    normals.at.resize(known->times().count());
-    if (!m_shared->is_smooth(patch.face)) return normals;
-    for (std::size_t number = 0; number < normals.at.size(); ++number)
-        for (std::size_t i = 0; i < 4; ++i)
-            normals.at[number][i] = known->of(patch.corner[i], number);
-    return normals;
+std::shared_ptr<const KnotNormals> OpenedMesh::bent() const {
+    if (!m_view->has_light || m_displaced) return nullptr;
+    return {m_shared, m_shared->knot_normals()};
+}
+
+CornerBlend OpenedMesh::bent_corners(const BasePatch& patch, const CornerWeights& weights) const {
+    CornerBlend blend;
+    if (!m_shared->is_smooth(patch.face)) return blend;
+    std::copy_n(patch.corner, 4, blend.corner);
+    std::ranges::transform(weights.w, blend.weight,
+                           [](double weight) { return static_cast<float>(weight); });
+    return blend;
 }
 
 std::vector<Bounds3f> OpenedMesh::primitive_boxes(std::size_t primitive) const {

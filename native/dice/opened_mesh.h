@@ -8,9 +8,9 @@
 
 #include "dice/edge_rate.h"
 #include "dice/frame_face.h"
+#include "dice/grid.h"
 #include "dice/knots.h"
 #include "dice/mesh_part.h"
-#include "dice/moving_normals.h"
 #include "dice/patch_edge.h"
 #include "dice/primitive.h"
 #include "dice/small_faces.h"
@@ -24,7 +24,6 @@ struct SurfaceSamples {
     std::vector<Vec3f> positions;         ///< [knots][n], not displaced
     std::vector<Vec3f> su, sv;            ///< [n] at the frame time
     std::vector<Vec3f> normal;            ///< [n] unit, shading, at the frame time
-    std::vector<Vec3f> moving_normal;     ///< as Grid's
     std::vector<Vec3f> geometric_normal;  ///< [n] unit, at the frame time
     std::vector<Vec4f> rise;              ///< [n] as Grid::rise; empty unless OpenedMesh::rises()
 };
@@ -113,8 +112,10 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     }
     /// Grid::rise where the face itself has the normal `flat`.
     Vec4f rise(const FrameFace& face, const CornerWeights& weights, const Vec3d& flat) const;
-    /// Of a polygon's patch; empty where Grid::moving_normal is.
-    MovingNormals moving_normals(const BasePatch& patch) const;
+    /// Grid::bent
+    std::shared_ptr<const KnotNormals> bent() const;
+    /// Grid::bent_corners at a place of a polygon's patch.
+    CornerBlend bent_corners(const BasePatch& patch, const CornerWeights& weights) const;
     /// A normal of what is seen at `p`, camera space, turned to the side that is.
     Vec3f seen_side(const Vec3f& p, const Vec3f& outward) const {
         const Vec3f along = view().projection.perspective ? p : Vec3f(0.0f, 0.0f, 1.0f);

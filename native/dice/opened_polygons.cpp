@@ -120,8 +120,6 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
     out.geometric_normal.resize(n);
     const bool has_rise = rises();
     out.rise.resize(has_rise ? n : 0);
-    out.moving_normal.clear();
-    const MovingNormals moving = moving_normals(patch);
     for (std::size_t i = 0; i < n; ++i) {
         const Vec3d su = face.by_u(weights[i]), sv = face.by_v(weights[i]);
         const Vec3d flat = face.geometric_normal(su, sv);
@@ -130,7 +128,6 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
         out.geometric_normal[i] = Vec3f(flat);
         out.normal[i] = Vec3f(face.shading_normal(weights[i], flat));
         if (has_rise) out.rise[i] = rise(face, weights[i], flat);
-        moving.add(weights[i], out.moving_normal);
     }
 }
 

@@ -25,6 +25,10 @@ struct NormalTimes {
     std::size_t frame_number() const { return frame.knot + (frame_is_knot() ? 0 : 1); }
     /// Of a time among the knots: which of them, and how much of the way to the next.
     KnotTime at(KnotTime t) const;
+    /// Of a time of the shutter.
+    KnotTime at(float time) const {
+        return at(knot_time(static_cast<double>(time), static_cast<int>(knots)));
+    }
 };
 
 /// Unit or zero, object space, by vertex or, where corners have normals of their own, by corner.

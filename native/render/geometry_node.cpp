@@ -9,9 +9,11 @@ namespace {
 /// What nobody reads once radiance is there and settled.
 void drop_shading_state(Grid& grid) {
     for (std::vector<Vec3f>* values : {&grid.p, &grid.normal, &grid.geometric_normal, &grid.dp_du,
-                                       &grid.dp_dv, &grid.ray_offset, &grid.moving_normal})
+                                       &grid.dp_dv, &grid.ray_offset})
         std::vector<Vec3f>().swap(*values);
     std::vector<Vec4f>().swap(grid.rise);
+    std::vector<CornerBlend>().swap(grid.bent_corners);
+    grid.bent.reset();
     std::vector<GridAttribute>().swap(grid.attributes);
     std::vector<std::uint32_t>().swap(grid.shading_positions.faces);
 }

@@ -82,34 +82,39 @@ float height_above(const Vec3f& p, const Blend& blend, const ShadingPoints& arou
 class BentNormals {
   public:
     BentNormals(const Grid& grid, const Scene& scene)
-        : m_normals(grid.moving_normal),
-          m_from_object(scene.instances[grid.instance].world_from_object) {
-        const int knots = scene.geometry_of(scene.instances[grid.instance]).knots;
-        m_times = {static_cast<std::size_t>(knots),
-                   knot_time(static_cast<double>(scene.options.frame_time), knots)};
-    }
+        : m_grid(grid),
+          m_from_object(scene.instances[grid.instance].world_from_object),
+          m_turns(!is_static(m_from_object)),
+          m_from_normal(from_normal(m_from_object.empty() ? Mat4d(1.0) : m_from_object[0])) {}
 
-    /// As modelled, shading space, of any length.
-    Vec3f at(const Blend& blend, float time, const Vec3f& otherwise) const {
-        if (m_normals.empty()) return otherwise;
-        const KnotTime of_knots =
-            knot_time(static_cast<double>(time), static_cast<int>(m_times.knots));
-        const KnotTime t = m_times.at(of_knots);
-        const auto mean = [&](std::size_t number) {
-            return blend.mean<Vec3f>(
-                [&](std::size_t k) { return m_normals[k * m_times.count() + number]; });
-        };
-        Vec3f normal = mean(t.knot);
-        if (t.fraction > 0.0)
-            normal += (mean(t.knot + 1) - normal) * static_cast<float>(t.fraction);
-        const Mat3f from_object(Mat3d(matrix_at(m_from_object, static_cast<double>(time))));
-        return normalize_or(glm::transpose(glm::inverse(from_object)) * normal, otherwise);
+    /// As modelled, shading space, of any length; `carried` where none is known.
+    Vec3f at(const Blend& blend, float time, const Vec3f& carried) const {
+        if (!m_grid.bent) return carried;
+        const KnotTime t = m_grid.bent->times().at(time);
+        Vec3d normal(0.0);
+        for (int k = 0; k < 4; ++k) {
+            if (blend.weight[k] == 0.0f) continue;
+            const CornerBlend& of = m_grid.bent_corners[blend.point[k]];
+            for (int i = 0; i < 4; ++i)
+                if (of.weight[i] != 0.0f)
+                    normal += m_grid.bent->of(of.corner[i], t) *
+                              static_cast<double>(blend.weight[k] * of.weight[i]);
+        }
+        const Mat3f turn = m_turns
+                               ? from_normal(matrix_at(m_from_object, static_cast<double>(time)))
+                               : m_from_normal;
+        return normalize_or(turn * Vec3f(normal), carried);
     }
 
   private:
-    const std::vector<Vec3f>& m_normals;
+    static Mat3f from_normal(const Mat4d& from_object) {
+        return Mat3f(glm::transpose(glm::inverse(Mat3d(from_object))));
+    }
+
+    const Grid& m_grid;
     const std::vector<Mat4d>& m_from_object;
-    NormalTimes m_times;
+    bool m_turns;
+    Mat3f m_from_normal;
 };
 
 GridAttribute blended(const GridAttribute& from, const std::vector<Blend>& blends,

@@ -23,7 +23,7 @@ class ByMaterial final : public Displacement {
     void find(std::size_t index, const SharedGeometry& geometry, const BasePatch& patch,
               std::span<const Vec2d> uv, bool derivatives, Offsets& out) const override {
         SurfaceFrames frames;
-        find_frames(geometry, patch, uv, frames);
+        find_frames(geometry, patch, uv, geometry.frame(), frames);
         const auto& slots = m_scene.scene.instances[index].materials;
         const auto& of_faces = geometry.data().material_index;
         const int slot = of_faces.empty() ? 0 : of_faces[patch.face];
