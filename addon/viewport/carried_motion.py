@@ -111,9 +111,15 @@ def _corrected_instances(now, then, places, before):
 def camera_at(path, times):
     """float64 [len(times), 4, 4]: as path_at() of a camera's world_from_camera.
 
-    What it sees goes straight between its knots, and so does its inverse (native/scene/camera_path.h).
+    What it sees goes straight between its knots, and so does its inverse (native/scene/camera_path.h).  At knots it is
+    these, to the bit.
     """
-    return np.linalg.inv(path_at(np.linalg.inv(path), times))
+    found, inverse = path_at(path, times), path_at(np.linalg.inv(path), times)
+    place = times * (len(path) - 1)
+    between = (place != np.round(place)) | (place < 0) | (place > len(path) - 1)
+    between &= np.abs(np.linalg.det(inverse)) > 1e-12
+    found[between] = np.linalg.inv(inverse[between])
+    return found
 
 
 def path_at(path, times):

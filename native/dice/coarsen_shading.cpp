@@ -61,7 +61,7 @@ void coarsen_shading(Grid& grid, const Projection& projection, double rate) {
     for (std::vector<Vec3f>* values : {&grid.p, &grid.normal, &grid.geometric_normal})
         keep(*values, places.anchors);
     keep(grid.rise, places.anchors);
-    keep(grid.bent_corners, places.anchors);
+    keep(grid.normal_corners, places.anchors);
     keep_steps(grid.dp_du, places.anchors, 1, u);
     keep_steps(grid.dp_dv, places.anchors, 1, v);
     for (GridAttribute& attribute : grid.attributes) {

@@ -33,7 +33,7 @@ float stretch_of(const OpenedMesh& mesh, const Vec3f& p, const Vec3d& su, const 
 struct CornerState {
     std::vector<Vec3f> normal, geometric_normal, dp_du, dp_dv, ray_offset;
     std::vector<Vec4f> rise;
-    std::vector<CornerBlend> bent_corners;
+    std::vector<CornerBlend> normal_corners;
 };
 
 }  // namespace
@@ -44,7 +44,7 @@ Grid face_triangles(const OpenedMesh& mesh, const Grid& batch,
     Grid grid = triangle_grid(batch, mesh.knots(), count,
                               [&](std::size_t t) -> const GridTriangle& { return wanted[t].of; });
     grid.terminator_offset = mesh.instance().terminator_offset;
-    grid.bent = mesh.bent();
+    grid.knot_normals = mesh.knot_normals();
     CornerState at;
     std::vector<float> stretches;
     for (std::size_t t = 0; t < count; ++t) {
@@ -60,7 +60,8 @@ Grid face_triangles(const OpenedMesh& mesh, const Grid& batch,
             at.normal.emplace_back(face.shading_normal(weights, flat));
             at.dp_du.emplace_back(su * double(stretches[t]));
             at.dp_dv.emplace_back(sv * double(stretches[t]));
-            if (grid.bent) at.bent_corners.push_back(mesh.bent_corners(triangle.patch, weights));
+            if (grid.knot_normals)
+                at.normal_corners.push_back(mesh.normal_corners(triangle.patch, weights));
             if (mesh.rises()) at.rise.push_back(mesh.rise(face, weights, flat));
             if (!mesh.shared().subdivision()) continue;
             // The limit, which rays meet, may stand above the micropolygon.
@@ -72,7 +73,7 @@ Grid face_triangles(const OpenedMesh& mesh, const Grid& batch,
     spread_corners(1, at.geometric_normal, grid.geometric_normal);
     spread_corners(1, at.dp_du, grid.dp_du);
     spread_corners(1, at.dp_dv, grid.dp_dv);
-    spread_corners(1, at.bent_corners, grid.bent_corners);
+    spread_corners(1, at.normal_corners, grid.normal_corners);
     if (!at.rise.empty()) spread_corners(1, at.rise, grid.rise);
     if (!at.ray_offset.empty()) spread_corners(1, at.ray_offset, grid.ray_offset);
     std::vector<std::uint32_t> faces;

@@ -12,7 +12,7 @@ std::uint64_t Grid::bytes() const {
                                   found.size() + (found_alone ? found_alone->size() : 0);
     floats += 4 * rise.size() + channels.size() + shading_positions.anchors.size() +
               shading_positions.point_of.size() + shading_positions.faces.size() +
-              8 * bent_corners.size();
+              8 * normal_corners.size();
     return sizeof(Grid) + unsettled.size() + unsettled_opacity.size() + 4 * floats +
            sizeof(Vec3f) * vectors;
 }

@@ -111,9 +111,10 @@ struct Grid {
         normal;  ///< [points] unit shading normal, outward as modelled (not yet faced forward)
     std::vector<Vec3f> geometric_normal;  ///< [points] unit, of the surface itself
     /// Normals of a mesh that changes its shape; nullptr: they go along with the micropolygons.
-    std::shared_ptr<const KnotNormals> bent;
-    std::vector<CornerBlend> bent_corners;  ///< [points] whose normals are blended; with `bent`
-    std::vector<Vec3f> dp_du, dp_dv;        ///< [points] change of P from one point to the next
+    std::shared_ptr<const KnotNormals> knot_normals;
+    std::vector<CornerBlend>
+        normal_corners;               ///< [points] whose normals are blended; with `knot_normals`
+    std::vector<Vec3f> dp_du, dp_dv;  ///< [points] change of P from one point to the next
     std::vector<GridAttribute> attributes;
     /// [points] from p to the hair or sphere that is drawn here as something flat: rays start
     /// outside of it, those of hairs as LitPlace::start_around() says.  Empty: at p.

@@ -36,7 +36,7 @@ class LatticeDicer {
         std::swap(grid.rise, m_samples.rise);
         grid.terminator_offset = mesh.instance().terminator_offset;
         count_spared(grid);
-        find_bent(grid);
+        find_knot_normals(grid);
         find_derivatives(grid);
         find_attributes(grid);
     }
@@ -163,13 +163,13 @@ class LatticeDicer {
                         static_cast<std::uint64_t>(spared * static_cast<double>(m_count)));
     }
 
-    void find_bent(Grid& grid) const {
-        grid.bent = m_mesh->bent();
-        grid.bent_corners.clear();
-        if (!grid.bent) return;
+    void find_knot_normals(Grid& grid) const {
+        grid.knot_normals = m_mesh->knot_normals();
+        grid.normal_corners.clear();
+        if (!grid.knot_normals) return;
         for (const Vec2d& uv : m_places.uv)
-            grid.bent_corners.push_back(
-                m_mesh->bent_corners(*m_patch, CornerWeights(m_patch->kind, uv)));
+            grid.normal_corners.push_back(
+                m_mesh->normal_corners(*m_patch, CornerWeights(m_patch->kind, uv)));
     }
 
     void find_derivatives(Grid& grid) const {

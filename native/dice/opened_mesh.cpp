@@ -150,12 +150,13 @@ Vec4f OpenedMesh::rise(const FrameFace& face, const CornerWeights& weights,
     return smooth_rise(face.p, face.normal, weights, glm::dot(flat, from_eye) < 0.0);
 }
 
-std::shared_ptr<const KnotNormals> OpenedMesh::bent() const {
+std::shared_ptr<const KnotNormals> OpenedMesh::knot_normals() const {
     if (!m_view->has_light || m_displaced) return nullptr;
-    return {m_shared, m_shared->knot_normals()};
+    const KnotNormals* const normals = m_shared->knot_normals();
+    return normals ? std::shared_ptr<const KnotNormals>(m_shared, normals) : nullptr;
 }
 
-CornerBlend OpenedMesh::bent_corners(const BasePatch& patch, const CornerWeights& weights) const {
+CornerBlend OpenedMesh::normal_corners(const BasePatch& patch, const CornerWeights& weights) const {
     CornerBlend blend;
     if (!m_shared->is_smooth(patch.face)) return blend;
     std::copy_n(patch.corner, 4, blend.corner);

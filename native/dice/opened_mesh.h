@@ -112,10 +112,10 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     }
     /// Grid::rise where the face itself has the normal `flat`.
     Vec4f rise(const FrameFace& face, const CornerWeights& weights, const Vec3d& flat) const;
-    /// Grid::bent
-    std::shared_ptr<const KnotNormals> bent() const;
-    /// Grid::bent_corners at a place of a polygon's patch.
-    CornerBlend bent_corners(const BasePatch& patch, const CornerWeights& weights) const;
+    /// Grid::knot_normals
+    std::shared_ptr<const KnotNormals> knot_normals() const;
+    /// Grid::normal_corners at a place of a polygon's patch.
+    CornerBlend normal_corners(const BasePatch& patch, const CornerWeights& weights) const;
     /// A normal of what is seen at `p`, camera space, turned to the side that is.
     Vec3f seen_side(const Vec3f& p, const Vec3f& outward) const {
         const Vec3f along = view().projection.perspective ? p : Vec3f(0.0f, 0.0f, 1.0f);

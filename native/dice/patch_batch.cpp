@@ -219,8 +219,8 @@ void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
         values->reserve(points);
     grid.terminator_offset = m_mesh->instance().terminator_offset;
     grid.rise.reserve(m_mesh->rises() ? points : 0);
-    grid.bent = m_mesh->bent();
-    grid.bent_corners.reserve(grid.bent ? points : 0);
+    grid.knot_normals = m_mesh->knot_normals();
+    grid.normal_corners.reserve(grid.knot_normals ? points : 0);
     ShadingPositions& places = grid.shading_positions;
     places.point_of.resize(static_cast<std::size_t>(grid.vertex_count()));
     for (auto* values : {&places.anchors, &places.faces}) values->reserve(points);
@@ -237,7 +237,7 @@ void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
         append(piece.grid->normal, grid.normal);
         append(piece.grid->geometric_normal, grid.geometric_normal);
         append(piece.grid->rise, grid.rise);
-        append(piece.grid->bent_corners, grid.bent_corners);
+        append(piece.grid->normal_corners, grid.normal_corners);
         append(piece.grid->dp_du, grid.dp_du);
         append(piece.grid->dp_dv, grid.dp_dv);
     };
@@ -261,7 +261,8 @@ void PatchBatch::add_points(const Lattice& lattice, Grid& grid) const {
         grid.geometric_normal.emplace_back(flat);
         grid.normal.emplace_back(face.shading_normal(weights, flat));
         if (has_rise) grid.rise.push_back(m_mesh->rise(face, weights, flat));
-        if (grid.bent) grid.bent_corners.push_back(m_mesh->bent_corners(lattice.patch, weights));
+        if (grid.knot_normals)
+            grid.normal_corners.push_back(m_mesh->normal_corners(lattice.patch, weights));
         const Vec2d &by_u = stencil.step_u[v], &by_v = stencil.step_v[v];
         grid.dp_du.emplace_back(su * by_u.x + sv * by_u.y);
         grid.dp_dv.emplace_back(su * by_v.x + sv * by_v.y);

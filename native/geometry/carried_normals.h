@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Corner normals that a mesh was given, where its shape is another: each goes along with the faces
-// around its vertex that have it in common, so that what was smooth stays so and what was sharp
-// too.
+// around its vertex that have it in common, so that what was smooth stays so and what was sharp too.
+// What the frame shows plane by chance counts as smooth, but for faces that are said to be flat.
 #pragma once
 
 #include <cstdint>
@@ -19,14 +19,13 @@ class CarriedNormals {
     /// The geometry outlives this.
     explicit CarriedNormals(const SharedGeometry& geometry);
 
-    /// [corners] unit or zero, object space, where the vertices are at `points`.
+    /// Which of at() a corner has.
+    std::uint32_t group(std::uint32_t corner) const { return m_group[corner]; }
+    /// [groups] unit or zero, object space, where the vertices are at `points`.
     std::vector<Vec3f> at(std::span<const Vec3f> points) const;
 
   private:
     void find_groups();
-    /// What the face adds to the normal of one of its corners, between `before` and `after`.
-    Vec3d share(std::span<const Vec3f> points, std::uint32_t before, std::uint32_t corner,
-                std::uint32_t after) const;
 
     const SharedGeometry& m_geometry;
     std::vector<std::uint32_t> m_group;  ///< [corners] of one vertex and one normal

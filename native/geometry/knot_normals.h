@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <memory>
 #include <vector>
 
 #include "math/vec.h"
@@ -11,6 +11,7 @@
 
 namespace granita {
 
+class CarriedNormals;
 class SharedGeometry;
 
 /// When they are known: at the knots of its points and, where that lies between two, at the frame
@@ -31,26 +32,27 @@ struct NormalTimes {
     }
 };
 
-/// Unit or zero, object space, by vertex or, where corners have normals of their own, by corner.
+/// Unit or zero, object space.
 /// What is smooth has Blender's vertex normals anew at each knot.  Normals that were given go along
 /// with the faces around the vertex that have them in common.
 class KnotNormals {
   public:
     /// The geometry, which is no subdivision surface, outlives this.
     explicit KnotNormals(const SharedGeometry& geometry);
+    ~KnotNormals();
 
     const NormalTimes& times() const { return m_times; }
     /// Of a corner at one of times().
     const Vec3f& of(std::uint32_t corner, std::size_t number) const;
     /// Between two of them.
     Vec3d of(std::uint32_t corner, const KnotTime& time) const;
-    std::uint64_t bytes() const;
 
   private:
     const SharedGeometry& m_geometry;
     NormalTimes m_times;
-    bool m_by_corner;
-    std::vector<std::vector<Vec3f>> m_at;  ///< [times], empty at the frame time: the geometry's own
+    std::unique_ptr<const CarriedNormals> m_carried;  ///< nullptr: all are vertices' own
+    /// [times][vertices, or groups of what is carried]; empty at the frame time: the geometry's own
+    std::vector<std::vector<Vec3f>> m_at;
 };
 
 }  // namespace granita

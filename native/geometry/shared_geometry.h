@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/once.h"
+#include "base/parallel.h"
 #include "base/report.h"
 #include "geometry/attribute_request.h"
 #include "math/bounds.h"
@@ -137,7 +138,7 @@ class SharedGeometry {
     std::unique_ptr<const SurfaceEvaluator> m_surface;
     mutable Once m_borders_once;
     mutable std::unique_ptr<const PatchBorders> m_borders;
-    mutable Once m_knot_normals_once;
+    mutable SharedOnce m_knot_normals_once;
     mutable std::unique_ptr<const KnotNormals> m_knot_normals;
     mutable std::shared_mutex m_tangent_mutex;
     mutable std::map<std::string, std::vector<Vec4f>> m_tangents;  ///< [patches][4] by UV map

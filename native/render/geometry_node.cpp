@@ -12,8 +12,8 @@ void drop_shading_state(Grid& grid) {
                                        &grid.dp_dv, &grid.ray_offset})
         std::vector<Vec3f>().swap(*values);
     std::vector<Vec4f>().swap(grid.rise);
-    std::vector<CornerBlend>().swap(grid.bent_corners);
-    grid.bent.reset();
+    std::vector<CornerBlend>().swap(grid.normal_corners);
+    grid.knot_normals.reset();
     std::vector<GridAttribute>().swap(grid.attributes);
     std::vector<std::uint32_t>().swap(grid.shading_positions.faces);
 }

@@ -79,43 +79,23 @@ float height_above(const Vec3f& p, const Blend& blend, const ShadingPoints& arou
 
 /// Shading normals of a mesh that changes its shape, which a micropolygon alone cannot tell: of a
 /// smooth mesh they turn with the faces beside it too.
-class BentNormals {
-  public:
-    BentNormals(const Grid& grid, const Scene& scene)
-        : m_grid(grid),
-          m_from_object(scene.instances[grid.instance].world_from_object),
-          m_turns(!is_static(m_from_object)),
-          m_from_normal(from_normal(m_from_object.empty() ? Mat4d(1.0) : m_from_object[0])) {}
-
-    /// As modelled, shading space, of any length; `carried` where none is known.
-    Vec3f at(const Blend& blend, float time, const Vec3f& carried) const {
-        if (!m_grid.bent) return carried;
-        const KnotTime t = m_grid.bent->times().at(time);
-        Vec3d normal(0.0);
-        for (int k = 0; k < 4; ++k) {
-            if (blend.weight[k] == 0.0f) continue;
-            const CornerBlend& of = m_grid.bent_corners[blend.point[k]];
-            for (int i = 0; i < 4; ++i)
-                if (of.weight[i] != 0.0f)
-                    normal += m_grid.bent->of(of.corner[i], t) *
-                              static_cast<double>(blend.weight[k] * of.weight[i]);
+/// As FrameFace, where corners' normals are blended: uneven scale bends them.  The way to the
+/// smooth surface (ShadingPoints::rise) goes along with the micropolygon all the same.
+Vec3f normal_of_moment(const Grid& grid, const Blend& blend, float time, const Mat3f& from_normal) {
+    const KnotTime t = grid.knot_normals->times().at(time);
+    Vec3f normal(0.0f);
+    for (int k = 0; k < 4; ++k) {
+        if (blend.weight[k] == 0.0f) continue;
+        const CornerBlend& of = grid.normal_corners[blend.point[k]];
+        for (int i = 0; i < 4; ++i) {
+            if (of.weight[i] == 0.0f) continue;
+            const Vec3f corner(grid.knot_normals->of(of.corner[i], t));
+            normal +=
+                normalize_or(from_normal * corner, Vec3f(0.0f)) * (blend.weight[k] * of.weight[i]);
         }
-        const Mat3f turn = m_turns
-                               ? from_normal(matrix_at(m_from_object, static_cast<double>(time)))
-                               : m_from_normal;
-        return normalize_or(turn * Vec3f(normal), carried);
     }
-
-  private:
-    static Mat3f from_normal(const Mat4d& from_object) {
-        return Mat3f(glm::transpose(glm::inverse(Mat3d(from_object))));
-    }
-
-    const Grid& m_grid;
-    const std::vector<Mat4d>& m_from_object;
-    bool m_turns;
-    Mat3f m_from_normal;
-};
+    return normal;
+}
 
 GridAttribute blended(const GridAttribute& from, const std::vector<Blend>& blends,
                       float point_size) {
@@ -142,16 +122,20 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
                              float point_size) {
     const ShadingPoints around = shading_points(grid, camera);
     const VertexPaths paths(grid, scene);
-    const BentNormals bent(grid, scene);
+    const auto time_of = [&](const RefinedPoint& at) {
+        return at.time == kAnyTime ? scene.options.frame_time : at.time;
+    };
+    const std::vector<Mat4d>& from_object = scene.instances[grid.instance].world_from_object;
+    const ObjectAxes still(matrix_at(from_object, 0.0));
+    if (timed && !is_static(from_object))
+        for (const RefinedPoint& at : wanted)
+            axes_at_times.emplace_back(matrix_at(from_object, time_of(at)));
     points.count = wanted.size();
     points.terminator_offset = around.terminator_offset;
     points.share = around.share * refined_light_share(point_size * point_size);
     for (auto* values : {&points.p, &points.normal, &points.geometric_normal, &points.view,
                          &points.dp_du, &points.dp_dv})
         values->reserve(wanted.size());
-    const auto time_of = [&](const RefinedPoint& at) {
-        return at.time == kAnyTime ? scene.options.frame_time : at.time;
-    };
     std::vector<Blend> blends;
     blends.reserve(wanted.size());
     for (const RefinedPoint& at : wanted) blends.push_back(blend_at(grid, at));
@@ -190,7 +174,11 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
         const float side = glm::dot(outward, view) < 0.0f ? -1.0f : 1.0f;
         points.p.push_back(p);
         Vec3f normal = turn_normal * as_modelled(around.normal);
-        if (at.time != kAnyTime) normal = bent.at(blend, time, normal);
+        if (grid.knot_normals && at.time != kAnyTime) {
+            const ObjectAxes& axes = axes_at_times.empty() ? still : axes_at_times[i];
+            normal = normalize_or(
+                normal_of_moment(grid, blend, time, axes.world_normal_from_object()), normal);
+        }
         points.normal.push_back(normalize_or(normal, outward) * side);
         points.geometric_normal.push_back(outward * side);
         points.view.push_back(view);
@@ -211,10 +199,6 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
     }
     for (const GridAttribute& attribute : grid.attributes)
         attributes.push_back(blended(attribute, blends, point_size));
-    const std::vector<Mat4d>& from_object = scene.instances[grid.instance].world_from_object;
-    if (!timed || is_static(from_object)) return;
-    for (const RefinedPoint& at : wanted)
-        axes_at_times.emplace_back(matrix_at(from_object, time_of(at)));
 }
 
 }  // namespace granita

@@ -29,8 +29,8 @@ bool same_before_shading(const Grid& a, const Grid& b) {
            a.motion == b.motion && a.lifespan == b.lifespan && a.holdout == b.holdout &&
            a.point_share == b.point_share && same_bytes(a.positions, b.positions) &&
            same_positions(a.shading_positions, b.shading_positions) && same_bytes(a.p, b.p) &&
-           same_bytes(a.normal, b.normal) && a.bent == b.bent &&
-           same_bytes(a.bent_corners, b.bent_corners) &&
+           same_bytes(a.normal, b.normal) && a.knot_normals == b.knot_normals &&
+           same_bytes(a.normal_corners, b.normal_corners) &&
            same_bytes(a.geometric_normal, b.geometric_normal) && same_bytes(a.dp_du, b.dp_du) &&
            same_bytes(a.dp_dv, b.dp_dv) && same_bytes(a.ray_offset, b.ray_offset) &&
            same_bytes(a.rise, b.rise) && a.terminator_offset == b.terminator_offset &&

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "scene/knot_time.h"
 #include "geometry/anchor.h"
+#include "scene/knot_time.h"
 #include "shade/lights/vertex_paths.h"
 
 namespace granita {

@@ -77,11 +77,35 @@ TEST(KnotNormals, that_were_given_go_along_with_the_faces_that_share_them) {
     }
     expect_near(normals.of(0, std::size_t{2}), side(1.0f, -1.0f));
     expect_near(normals.of(0, std::size_t{0}), up);
+    // Said to be flat: though both sides are one plane at the frame.
+    GeometryData folds = tent({0.0f, 1.0f});
+    folds.smooth = {0, 0};
+    folds.corner_normals.assign(8, up);
+    const SharedGeometry folding(folds, 0.0f, report);
+    expect_near(folding.knot_normals()->of(1, std::size_t{1}), side(1.0f, -1.0f));
+    expect_near(folding.knot_normals()->of(4, std::size_t{1}), side(1.0f, 1.0f));
     // Sharp: each with its own face.
     data.corner_normals = {left, left, left, left, right, right, right, right};
     const SharedGeometry sharp(data, 0.25f, report);
     expect_near(sharp.knot_normals()->of(1, std::size_t{2}), side(1.0f, -1.0f));
     expect_near(sharp.knot_normals()->of(4, std::size_t{2}), side(1.0f, 1.0f));
+}
+
+TEST(KnotNormals, that_were_given_go_along_at_a_vertex_amid_an_edge) {
+    Report report;
+    GeometryData data;
+    data.name = "mesh 'Leaf'";
+    data.knots = 2;
+    // A square with a vertex more in its lower edge, which turns by a right angle about y.
+    const Vec3f square[] = {{0, 0, 0}, {0.4f, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    for (const Vec3f& p : square) data.points.push_back(p);
+    for (const Vec3f& p : square) data.points.emplace_back(0.0f, p.y, -p.x);
+    data.face_sizes = {5};
+    data.corner_verts = {0, 1, 2, 3, 4};
+    data.corner_normals.assign(5, Vec3f(0, 0, 1));
+    const SharedGeometry geometry(data, 0.0f, report);
+    for (std::uint32_t corner = 0; corner < 5; ++corner)
+        expect_near(geometry.knot_normals()->of(corner, std::size_t{1}), Vec3f(1, 0, 0));
 }
 
 TEST(NormalTimes, have_the_frame_among_the_knots) {
