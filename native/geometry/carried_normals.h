@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Corner normals that a mesh was given, where its shape is another: each goes along with the faces
-// around its vertex that have it in common, so that what was smooth stays so and what was sharp too.
-// What the frame shows plane by chance counts as smooth, but for faces that are said to be flat.
+// around its vertex that have it in common, so that what was smooth stays so and what was sharp
+// too. What the frame shows plane by chance counts as smooth, but for faces that are said to be
+// flat.
 #pragma once
 
 #include <cstdint>
