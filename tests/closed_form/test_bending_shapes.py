@@ -45,16 +45,21 @@ def leaning(slope):
     return np.array([(-slope, 1.0), (slope, 1.0)]) / np.hypot(slope, 1.0)
 
 
-def bend(snapshot, knots, foot=20.0, way=1.0, **extra):
-    points = [tent(slope, foot, way) for slope in np.linspace(0.0, STEEP, knots)]
-    s.mesh(snapshot, np.array(points), FACES, 0, **extra)
+def bend(snapshot, knots, foot=20.0, way=1.0, place=None, **extra):
+    """`place`: of the instance; points are where it is undone."""
+    points = np.array([tent(slope, foot, way) for slope in np.linspace(0.0, STEEP, knots)])
+    if place is not None:
+        undone = np.linalg.inv(place)
+        points = points @ undone[:3, :3].T + undone[:3, 3]
+        extra["transforms"] = [s.translation(0, y) @ place for y in (-5.0, 5.0)]
+    s.mesh(snapshot, points, FACES, 0, **extra)
     snapshot["instances"]["flags"].append(EVERYWHERE)
 
 
-def smooth_cosines():
-    """[columns], the mean over the shutter."""
+def smooth_cosines(width=HALF):
+    """[columns], the mean over the shutter, where the faces along the ridge are as wide."""
     x = np.arange(SIZE[0]) + 0.5
-    mix = np.abs(x - RIDGE) / HALF
+    mix = np.minimum(np.abs(x - RIDGE) / width, 1.0)
     cosines = []
     for slope in STEEP * TIMES:
         side = leaning(slope)[(x > RIDGE).astype(int)]
@@ -100,6 +105,44 @@ def test_so_has_each_executor(executor):
     snapshot = stage(executor)
     bend(snapshot, 33, smooth=np.ones(2, np.uint8))
     assert row(snapshot)[INSIDE] == pytest.approx(smooth_cosines()[INSIDE], abs=0.004)
+
+
+@pytest.mark.parametrize("scale", [(1, 1, 4), (3, 1, 0.5), (-1, 1, 1)], ids=str)
+@pytest.mark.parametrize("given", [False, True], ids=["smooth", "corner normals"])
+def test_so_has_what_is_scaled_and_moves(given, scale):
+    snapshot = stage(frame_time=1.0)
+    place = s.translation(RIDGE, 3.0, 20.0) @ np.diag([*scale, 1.0])
+    extra = {"smooth": np.ones(2, np.uint8)}
+    if given:
+        # Out of faces, which the points of a mirrored object go around the other way.
+        of_object = corner_normals(STEEP) @ place[:3, :3] * np.sign(np.prod(scale))
+        of_object /= np.linalg.norm(of_object, axis=1)[:, None]
+        extra = {"corner_normals": of_object.astype(np.float32)}
+    bend(snapshot, 33, place=place, **extra)
+    assert row(snapshot)[INSIDE] == pytest.approx(smooth_cosines()[INSIDE], abs=0.004)
+
+
+@pytest.mark.parametrize("width", [4.0, 2.5, 0.5])
+def test_so_has_what_is_of_small_faces(width):
+    """All but those along the ridge are plane: batches of faces, and faces below a pixel."""
+    snapshot = stage()
+    n = round(2 * HALF / width)
+    x = np.linspace(RIDGE - HALF, RIDGE + HALF, n + 1)
+    y = np.arange(-2.0, 18.1, width)
+    points = [
+        [(a, b, 20.0 + slope * abs(a - RIDGE)) for b in y for a in x]
+        for slope in np.linspace(0.0, STEEP, 33)
+    ]
+    i = np.arange(len(x) * len(y)).reshape(len(y), len(x))
+    faces = np.stack([i[:-1, :-1], i[:-1, 1:], i[1:, 1:], i[1:, :-1]], axis=-1).reshape(-1, 4)
+    s.mesh(snapshot, np.array(points), faces.tolist(), 0, smooth=np.ones(len(faces), np.uint8))
+    snapshot["instances"]["flags"].append(EVERYWHERE)
+    left, right = flat_cosines()
+    found = row(snapshot)
+    assert found[6:19] == pytest.approx(left, abs=0.004)
+    assert found[29:42] == pytest.approx(right, abs=0.004)
+    if width > 1.0:
+        assert found[22:26] == pytest.approx(smooth_cosines(width)[22:26], abs=0.012)
 
 
 @pytest.mark.parametrize("frame_time", [0.0, 0.3, 1.0])
