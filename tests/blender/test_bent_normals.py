@@ -10,8 +10,6 @@ from bounced_parts import render_bounced, surface
 from mathutils import Matrix
 from node_comparison import Tree, board, check, render_both, rmse
 
-pytestmark = pytest.mark.lit
-
 
 def show_normal(tree, output):
     """Emits a normal, halved and lifted to [0, 1]."""

@@ -8,8 +8,6 @@ from bounced_parts import render_bounced
 from hair_parts import furry
 from node_comparison import Tree
 
-pytestmark = pytest.mark.lit
-
 
 @pytest.mark.parametrize("kind", ["Reflection", "Transmission", "Principled"])
 def test_dense_hair_is_as_bright(scene, render, kind):

@@ -9,8 +9,6 @@ import scene_parts
 from bounced_parts import render_bounced, surface
 from node_comparison import Tree
 
-pytestmark = pytest.mark.lit
-
 
 def wall(scene, roughness):
     """It faces a camera that sees nothing else; what is behind that one stands in for a room."""

@@ -9,8 +9,6 @@ import pytest
 import scene_parts
 from bounced_parts import light_stage, look_at_stage, render_bounced, surface, worst_block
 
-pytestmark = pytest.mark.lit
-
 
 def cube(scene, shader, color=(0.8, 0.8, 0.8), **inputs):
     """Smooth and of six faces, in front of a dim world, a square lamp on its right."""
