@@ -124,8 +124,8 @@ void find_positions(const SharedGeometry& geometry, const BasePatch& patch,
     out.resize(n * static_cast<std::size_t>(knots));
     if (!geometry.subdivision()) {
         for (int k = 0; k < knots; ++k) {
-            const std::array<Vec3d, 4> at = corners(
-                geometry, patch, knots == 1 ? geometry.frame_points() : geometry.knot_points(k));
+            const std::array<Vec3d, 4> at =
+                corners(geometry, patch, KnotTime{static_cast<std::size_t>(k), 0.0});
             for (std::size_t i = 0; i < n; ++i)
                 out[static_cast<std::size_t>(k) * n + i] =
                     Vec3f(blend(at, CornerWeights(patch.kind, uv[i]).w));

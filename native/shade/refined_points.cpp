@@ -126,7 +126,8 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
         return at.time == kAnyTime ? scene.options.frame_time : at.time;
     };
     const std::vector<Mat4d>& from_object = scene.instances[grid.instance].world_from_object;
-    const ObjectAxes still(matrix_at(from_object, 0.0));
+    ObjectAxes still;
+    if (grid.knot_normals) still = ObjectAxes(matrix_at(from_object, 0.0));
     if (timed && !is_static(from_object))
         for (const RefinedPoint& at : wanted)
             axes_at_times.emplace_back(matrix_at(from_object, time_of(at)));

@@ -21,14 +21,14 @@ def pytest_addoption(parser):
 def pytest_collection_modifyitems(config, items):
     if not config.getoption("--first-cases"):
         return
-    seen, left_out = set(), []
+    seen, kept, left_out = set(), [], []
     for item in items:
         test = item.parent.nodeid, item.originalname
-        if test in seen and item.get_closest_marker("lit"):
-            left_out.append(item)
+        is_more = test in seen and item.get_closest_marker("lit")
+        (left_out if is_more else kept).append(item)
         seen.add(test)
     config.hook.pytest_deselected(items=left_out)
-    items[:] = [item for item in items if item not in left_out]
+    items[:] = kept
 
 
 @pytest.fixture
