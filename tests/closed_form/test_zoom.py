@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
+from test_elements import curves
 
 SIZE = (64, 32)
 
@@ -44,3 +45,29 @@ def test_a_floor_does_not_hide_itself(ends):
     light, alpha = floor_light(ends)
     assert alpha.min() == 1.0
     assert np.abs(light - 3.0 * 0.8 / np.pi).max() < 1e-3
+
+
+def ribbon_width(world_from_camera, world_from_object=None):
+    """Pixels that a curve of 20 cm takes across the picture, 10 m before an eye of 60 mm."""
+    snapshot = s.perspective(SIZE, 60.0, executor="SIMD", samples=256)
+    s.emission(snapshot)
+    points = [(0.3, -8, 10), (0.3, -3, 10), (0.3, 3, 10), (0.3, 8, 10)]
+    curves(snapshot, points, [4], 0.1, 0, world_from_object)
+    snapshot["camera"]["world_from_camera"] = np.array(world_from_camera)
+    snapshot["options"]["frame_time"] = 0.5
+    return s.alpha(snapshot)[8:24].sum(1).mean()
+
+
+MIRROR = np.diag([1.0, -1.0, 1.0, 1.0])  # as Blender's cameras, whose y goes up
+
+
+@pytest.mark.parametrize("mirror", [np.eye(4), MIRROR], ids=["right-handed", "left-handed"])
+def test_hair_does_not_turn_over_where_its_scale_is_even(mirror):
+    """At the frame a zoom scales evenly, at the knots beside it does not: ribbons went over to their other side
+    between, and lost half of their width."""
+    still = 60.0 * 0.2 / 10.0
+    ends = [mirror @ zoomed(by) for by in (0.9, 1.0, 1.1)]
+    assert ribbon_width(ends) == pytest.approx(still, rel=0.01)
+    bends = [mirror @ np.diag([by, 1.0, 1.0, 1.0]) for by in (0.9, 1.0, 1.1)]
+    moved = ribbon_width([np.eye(4)], bends)
+    assert moved == pytest.approx(still, rel=0.01)
