@@ -51,7 +51,7 @@ Lamp::Lamp(MovingTriangle triangle, const Instance& instance,
       m_target(triangle.target),
       m_diffuse(instance.visible_diffuse ? 1.0f : 0.0f),
       m_glossy(instance.visible_glossy ? 1.0f : 0.0f),
-      m_transmission(instance.visible_glossy || instance.visible_transmission ? 1.0f : 0.0f),
+      m_transmission(instance.visible_transmission ? 1.0f : 0.0f),
       m_volume(instance.visible_volume ? 1.0f : 0.0f),
       m_receiver_set(instance.receiver_set),
       m_blocker_set(instance.blocker_set) {

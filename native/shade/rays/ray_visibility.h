@@ -6,16 +6,14 @@
 
 namespace granita {
 
-/// Whether such rays can meet the instance.  Those that go through a surface are glossy or
-/// diffuse as well (Cycles).
+/// Whether such rays can meet the instance.  Diffuse and glossy mean what is reflected: whatever
+/// goes through a surface is transmitted and nothing else, of translucent lobes too (Cycles).
 inline bool meets(RayType ray, const Instance& instance) {
     if (ray == RayType::Camera) return instance.visible_camera;
     if (ray == RayType::Shadow) return instance.casts_shadow;
-    if (ray == RayType::Diffuse) return instance.visible_diffuse;
-    if (ray == RayType::Translucent)
-        return instance.visible_diffuse || instance.visible_transmission;
     if (ray == RayType::Scattered) return instance.visible_volume;
-    return instance.visible_glossy || (goes_through(ray) && instance.visible_transmission);
+    if (goes_through(ray)) return instance.visible_transmission;
+    return is_diffuse(ray) ? instance.visible_diffuse : instance.visible_glossy;
 }
 
 /// Whether there is no ray that it is hidden from.
