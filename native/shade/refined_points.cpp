@@ -133,6 +133,8 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
             axes_at_times.emplace_back(matrix_at(from_object, time_of(at)));
     points.count = wanted.size();
     points.terminator_offset = around.terminator_offset;
+    points.pixel_width = around.pixel_width;
+    points.pixel_slope = around.pixel_slope;
     points.share = around.share * refined_light_share(point_size * point_size);
     for (auto* values : {&points.p, &points.normal, &points.geometric_normal, &points.view,
                          &points.dp_du, &points.dp_dv})

@@ -10,6 +10,7 @@ ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
     const Mat3f rotation(camera.world_from_camera);
     ShadingPoints points;
     points.count = n;
+    (camera.perspective ? points.pixel_slope : points.pixel_width) = camera.pixel;
     points.share = grid.point_share;
     points.faces = grid.shading_positions.faces;
     points.whole_faces = grid.shades_faces();

@@ -12,6 +12,8 @@ namespace {
 /// Not even ones, and not the ends alone: a highlight that sweeps past in the middle looks the same
 /// before and after.
 constexpr int kStep = 29;
+/// Probes of a small grid that tell chance from what all of its samples are wrong by.
+constexpr int kFewest = 3;
 constexpr float kTimes[] = {0.0f, 0.31f, 0.57f, 1.0f};
 /// Of what is linear between these times.
 constexpr float kWeights[] = {0.155f, 0.285f, 0.345f, 0.215f};
@@ -30,7 +32,8 @@ TimeProbes::TimeProbes(const Grid& grid, float frame_time)
     const float open = std::max(grid.lifespan.open, 0.0f);
     const float exposed = std::min(grid.lifespan.close, 1.0f) - open;
     const int count = grid.micropolygon_count();
-    for (int m = kStep / 2 % count; m < count; m += kStep) {
+    const int step = m_asks_corners ? std::clamp(count / kFewest, 1, kStep) : kStep;
+    for (int m = step / 2 % count; m < count; m += step) {
         const Grid::Corners c = grid.corners(m);
         const auto at = [](int v) { return static_cast<std::uint32_t>(v); };
         const auto add = [&](float time) {

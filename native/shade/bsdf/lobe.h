@@ -170,7 +170,10 @@ struct ShadingPoints {
     std::vector<Vec3f> geometric_normal;  ///< [n] unit, faced to the viewer
     std::vector<Vec3f>
         view;  ///< [n] unit, from the point to the eye (orthographic: the constant direction)
-    std::vector<Vec3f> dp_du, dp_dv;   ///< [n] change over one grid step
+    std::vector<Vec3f> dp_du, dp_dv;  ///< [n] change over one grid step
+    /// A pixel's width where they are seen, metres: this much, and this much a metre from the eye.
+    /// Both 0: of what rays see, whose steps are as wide as their beams.
+    float pixel_width = 0.0f, pixel_slope = 0.0f;
     std::vector<Vec3f> ray_offset;     ///< [n] as Grid::ray_offset; may be empty
     std::vector<Vec4f> rise;           ///< [n] as Grid::rise; may be empty
     float terminator_offset = 0.0f;    ///< as Grid::terminator_offset

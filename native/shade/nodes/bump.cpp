@@ -15,12 +15,13 @@ struct Heights {
     FloatSource here, next_u, next_v;
 };
 
-/// Mikkelsen's surface gradient (2010) with the grid's own steps as the differences.
+/// Mikkelsen's surface gradient (2010) with the points' own steps, along which
+/// heights are told apart over the Filter Width.
 VectorSource bumped_normal(NodeBuilder& b, const VectorSource& base, const Heights& height,
                            const FloatSource& strength, const FloatSource& distance, float sign) {
     const VectorSource out = b.new_source<Vec3f>();
     b.add_step(
-        [=](Run& run) {
+        [=, width = b.bump_width()](Run& run) {
             const auto normals = run.read(base);
             const auto heights = run.read(height.here), us = run.read(height.next_u),
                        vs = run.read(height.next_v), strengths = run.read(strength),
@@ -33,7 +34,8 @@ VectorSource bumped_normal(NodeBuilder& b, const VectorSource& base, const Heigh
                 const Vec3f across_v = glm::cross(n, points.dp_du[i]);
                 const float determinant = glm::dot(points.dp_du[i], across_u);
                 const Vec3f gradient =
-                    (us[i] - heights[i]) * across_u + (vs[i] - heights[i]) * across_v;
+                    (us[i] - heights[i]) / run.step_scale(width, Shift::U, i) * across_u +
+                    (vs[i] - heights[i]) / run.step_scale(width, Shift::V, i) * across_v;
                 const float scale = distances[i] * sign * (determinant < 0.0f ? -1.0f : 1.0f);
                 const Vec3f bumped = normalize_or(std::abs(determinant) * n - scale * gradient, n);
                 const float s = std::max(strengths[i], 0.0f);
@@ -53,6 +55,7 @@ void build_bump(NodeBuilder& b) {
         b.output_vector("Normal", b.shading_normal());
         return;
     }
+    if (b.linked("Filter Width")) b.warn("its Filter Width is linked: 1 is taken");
     const Heights heights{b.number_at("Height", Shift::None), b.number_at("Height", Shift::U),
                           b.number_at("Height", Shift::V)};
     b.output_vector("Normal",

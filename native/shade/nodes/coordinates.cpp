@@ -2,6 +2,7 @@
 // Where a point is: UV Map, Texture Coordinate, Geometry and Camera Data.
 #include "shade/nodes/coordinates.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/random_per_island.h"
@@ -57,12 +58,19 @@ VectorSource parallel_window(NodeBuilder& b, const FrameCamera& camera) {
 }  // namespace
 
 VectorSource position_at(NodeBuilder& b, Shift shift) {
-    return b.geometry<Vec3f>([shift](const ShadingInput& in, std::size_t i) {
-        Vec3f p = in.points->p[i];
-        if (shift == Shift::U && !in.points->dp_du.empty()) p += in.points->dp_du[i];
-        if (shift == Shift::V && !in.points->dp_dv.empty()) p += in.points->dp_dv[i];
-        return p;
-    });
+    const VectorSource out = b.new_source<Vec3f>();
+    b.add_step(
+        [=, width = b.bump_width()](Run& run) {
+            const ShadingPoints& points = *run.input().points;
+            Vec3f* result = run.write(out);
+            std::copy_n(points.p.begin(), run.count(), result);
+            const std::vector<Vec3f>& steps = shift == Shift::V ? points.dp_dv : points.dp_du;
+            if (shift == Shift::None || steps.empty()) return;
+            for (std::size_t i = 0; i < run.count(); ++i)
+                result[i] += run.step_scale(width, shift, i) * steps[i];
+        },
+        {}, {out.slot});
+    return out;
 }
 
 VectorSource world_position_at(NodeBuilder& b, Shift shift) {

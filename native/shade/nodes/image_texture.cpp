@@ -138,6 +138,7 @@ void build_image_texture(NodeBuilder& b) {
     const Footprint print = footprint(b);
     const VectorSource color = b.new_source<Vec3f>();
     const FloatSource alpha = b.new_source<float>();
+    const float width = b.bump_width();
     std::vector<int> reads = {print.center.slot, print.point.slot, print.next_u.slot,
                               print.next_v.slot};
 
@@ -159,8 +160,10 @@ void build_image_texture(NodeBuilder& b) {
                     for (std::size_t i = 0; i < n; ++i) {
                         const Vec2f point = box_plane(axis, p[i], normals[i]);
                         places[i] = {box_plane(axis, at[i], normals[i]),
-                                     box_plane(axis, u[i], normals[i]) - point,
-                                     box_plane(axis, v[i], normals[i]) - point};
+                                     (box_plane(axis, u[i], normals[i]) - point) /
+                                         run.step_scale(width, Shift::U, i),
+                                     (box_plane(axis, v[i], normals[i]) - point) /
+                                         run.step_scale(width, Shift::V, i)};
                     }
                     texture->look_up(mode, places, texels);
                     for (std::size_t i = 0; i < n; ++i)
@@ -190,8 +193,10 @@ void build_image_texture(NodeBuilder& b) {
                 places.resize(n);
                 for (std::size_t i = 0; i < n; ++i) {
                     const Vec2f point = project(p[i]);
-                    places[i] = {project(at[i]), edge(point, project(u[i]), seam),
-                                 edge(point, project(v[i]), seam)};
+                    places[i] = {
+                        project(at[i]),
+                        edge(point, project(u[i]), seam) / run.step_scale(width, Shift::U, i),
+                        edge(point, project(v[i]), seam) / run.step_scale(width, Shift::V, i)};
                 }
                 auto texels = ObjectPool<std::vector<Vec4f>>::take();
                 texture->look_up(mode, places, texels);

@@ -20,6 +20,9 @@ namespace {
 constexpr const char* kAovOutput = "ShaderNodeOutputAOV";
 constexpr const char* kLightPath = "ShaderNodeLightPath";
 
+/// Of Bump's Filter Width: its default since Blender 4.3, and the least that there is.
+constexpr float kBumpWidth = 0.1f, kLeastBumpWidth = 0.001f;
+
 /// The AOV Output node of that name: of several the last wins, as in Cycles; -1 = none.
 int find_aov_output(const NodeGraph& graph, const std::string& name) {
     for (std::size_t i = graph.nodes.size(); i-- > 0;) {
@@ -154,6 +157,28 @@ std::vector<AttributeRequest> used_requests(std::vector<AttributeRequest> all,
     }
     for (Program* program : programs) program->renumber_requests(number);
     return kept;
+}
+
+/// How far the heights of a graph's bumps are told apart, pixels: one until Blender 4.3, which lets
+/// artists choose.  Of several the least, as the nodes below them are built once; 0: nothing is
+/// bumped.
+float bump_width(const NodeGraph& graph) {
+    float least = 0.0f;
+    const auto add = [&least](float width) {
+        least = least > 0.0f ? std::min(least, width) : width;
+    };
+    for (const Node& node : graph.nodes) {
+        if (node.type != "ShaderNodeBump") continue;
+        const auto found = node.inputs.find("Filter Width");
+        const auto* width =
+            found == node.inputs.end() ? nullptr : std::get_if<Vec4f>(&found->second);
+        add(width ? std::max(width->x, kLeastBumpWidth) : 1.0f);
+    }
+    if (graph.bends_normals()) {
+        const Node& root = graph.nodes[static_cast<std::size_t>(graph.displacement.node)];
+        add(root.value("version") >= 403.0 ? kBumpWidth : 1.0f);
+    }
+    return least;
 }
 
 /// Values of all nodes that are read.
@@ -342,6 +367,7 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
                               .material_index = owner.material_index,
                               .has_moved_normals = has_moved_normals,
                               .ray_type = type,
+                              .bump_width = bump_width(graph),
                               .read = read_outputs(graph, graph.surface, owner.name, aov_outputs)};
     };
     ProgramBuilder builder = builder_for(ray, report);

@@ -95,7 +95,8 @@ int NodeBuilder::load(const AttributeRequest& request, Shift shift, int width, i
     auto& requests = m_program.requests;
     auto found = std::find(requests.begin(), requests.end(), request);
     if (found == requests.end()) found = requests.insert(requests.end(), request);
-    Load wanted{static_cast<int>(found - requests.begin()), shift, 0, width, first};
+    const float bump_width = shift == Shift::None ? 0.0f : m_program.bump_width;
+    Load wanted{static_cast<int>(found - requests.begin()), shift, 0, width, first, bump_width};
     for (const Load& load : m_program.loads) {
         wanted.slot = load.slot;
         if (load == wanted) return load.slot;

@@ -36,6 +36,9 @@ struct ProgramBuilder {
     int material_index = 0;
     bool has_moved_normals = false;  ///< a mesh's own, which maps bend, are those of its relief
     RayType ray_type = RayType::Camera;
+    /// How far shifted values lie from the point, pixels: heights of bumps are told apart over it,
+    /// on the surface and not as it is seen from the side (Cycles).  0: by the points' own steps.
+    float bump_width = 0.0f;
     std::vector<std::set<std::string>> read{};  ///< [nodes] outputs that something reads
     std::vector<Load> loads{};
     std::vector<Step> steps{};
@@ -64,6 +67,8 @@ class NodeBuilder {
     /// In its graph.
     std::size_t index() const { return m_index; }
     Shift shift() const { return m_shift; }
+    /// Of shifted values, for Run::step_scale.
+    float bump_width() const { return m_program.bump_width; }
     bool is_world() const { return m_program.is_world; }
     /// Whose light the program makes; nullptr: no lamp's.
     const Light* lamp() const { return m_program.lamp; }

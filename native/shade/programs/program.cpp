@@ -27,19 +27,29 @@ void run_load(const Load& load, Run& run) {
     if (load.shift == Shift::V && !attribute->dv.empty()) step = &attribute->dv;
     const int width = attribute->width;
     for (std::size_t i = 0; i < n; ++i) {
+        const float scale = step ? run.step_scale(load.bump_width, load.shift, i) : 1.0f;
         for (int c = 0; c < load.width; ++c) {
             // A scalar attribute read as a colour is grey, as in Cycles; other missing components
             // are zero.
             const int from = width == 1 ? 0 : load.first + c;
             const std::size_t index = i * width + from;
             float value = from < width ? attribute->values[index] : 0.0f;
-            if (step && from < width) value += (*step)[index];
+            if (step && from < width) value += scale * (*step)[index];
             out[i * load.width + c] = value;
         }
     }
 }
 
 }  // namespace
+
+float Run::step_scale(float width, Shift shift, std::size_t point) const {
+    const ShadingPoints& points = *m_input.points;
+    const std::vector<Vec3f>& steps = shift == Shift::V ? points.dp_dv : points.dp_du;
+    const float pixel = points.pixel_width + points.pixel_slope * glm::length(points.p[point]);
+    if (!(width > 0.0f) || !(pixel > 0.0f)) return width > 0.0f ? width : 1.0f;
+    const float length = glm::length(steps[point]);
+    return length > 0.0f ? width * pixel / length : width;
+}
 
 Program::Program(const std::vector<Load>& loads, const std::vector<Step>& steps, int floats_a_point,
                  const std::vector<int>& roots)

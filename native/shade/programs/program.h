@@ -96,6 +96,8 @@ class Run {
 
     std::size_t count() const { return m_count; }
     const ShadingInput& input() const { return m_input; }
+    /// How far along a point's own step a shifted value lies, for a Load's or a bump's width.
+    float step_scale(float width, Shift shift, std::size_t point) const;
     template <class T>
     Column<T> read(const Source<T>& source) const {
         if (source.is_constant()) return {&source.constant, 0};
@@ -119,8 +121,9 @@ struct Load {
     int request = 0;
     Shift shift = Shift::None;
     int slot = 0;
-    int width = 3;  ///< 1 or 3
-    int first = 0;  ///< first component of the attribute
+    int width = 3;            ///< 1 or 3
+    int first = 0;            ///< first component of the attribute
+    float bump_width = 0.0f;  ///< as ProgramBuilder's, of what is shifted
     bool operator==(const Load&) const = default;
 };
 
