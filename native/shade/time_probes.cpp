@@ -28,7 +28,7 @@ constexpr float kOffMiddle = 0.1f;
 }  // namespace
 
 TimeProbes::TimeProbes(const Grid& grid, float frame_time)
-    : m_asks_corners(std::abs(frame_time - 0.5f) > kOffMiddle) {
+    : m_asks_corners(grid.micropolygon_count() > 1 && std::abs(frame_time - 0.5f) > kOffMiddle) {
     const float open = std::max(grid.lifespan.open, 0.0f);
     const float exposed = std::min(grid.lifespan.close, 1.0f) - open;
     const int count = grid.micropolygon_count();

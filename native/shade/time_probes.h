@@ -8,9 +8,9 @@
 
 namespace granita {
 
-/// One micropolygon of many, at several times each.  Where the frame time is not in the middle of
-/// the shutter, so that what changes evenly does not cancel, also as corners are lit: at the
-/// frame's place, over all of the shutter.
+/// One micropolygon of many, or three of few, at several times each.  Where the frame time is not
+/// in the middle of the shutter, so that what changes evenly does not cancel, also as corners are
+/// lit: at the frame's place, over all of the shutter.
 class TimeProbes {
   public:
     TimeProbes(const Grid& grid, float frame_time);

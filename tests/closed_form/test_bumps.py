@@ -6,6 +6,7 @@ import pytest
 import snapshots as s
 
 SIZE, SLOPE = 64, 0.7
+CAGE = {"scheme": "CATMULL_CLARK", "boundary": "ALL", "uv_smooth": "PRESERVE_BOUNDARIES"}
 SUN = np.array(
     [np.sin(1.0), 0.0, np.cos(1.0)]
 )  # from the surface to the sun, y up and z to the eye
@@ -73,13 +74,46 @@ def test_slopes_are_those_of_the_place(period):
     assert np.abs(seen - truth).max() <= 0.01 + SLOPE * 2 * np.pi / period * 0.05
 
 
-@pytest.mark.parametrize("width, by_default", [(1.0, True), (4.0, False), (8.0, False)])
-def test_a_wide_filter_smooths(width, by_default):
-    """Differences over w pixels have sin(pi w / p) / (pi w / p) of the slope; before Blender 4.3 it is one pixel, whatever
-    part of it a sample's own steps are."""
-    period = 16.0
-    seen = waves(period, {} if by_default else {"Filter Width": width}).mean()
-    left = SLOPE * np.sinc(width / period)
-    truth = columns(lambda x, turns: lit(left * np.cos(turns * x)), period).mean()
+@pytest.mark.parametrize("width, period", [(None, 3.2), (1.0, 3.2), (4.0, 16.0), (8.0, 16.0)])
+def test_a_wide_filter_smooths(width, period):
+    """Differences over w pixels have sin(pi w / p) / (pi w / p) of the slope.  Before Blender 4.3 w is one, whatever part of
+    a pixel a sample's own steps are."""
+    seen = waves(period, {} if width is None else {"Filter Width": width}).mean()
+
+    def mean(slope):
+        return columns(lambda x, turns: lit(slope * np.cos(turns * x)), period).mean()
+
+    truth = mean(SLOPE * np.sinc((width or 1.0) / period))
     assert seen == pytest.approx(truth, rel=0.004)
-    assert truth > lit(SLOPE * np.cos(np.linspace(0, 2 * np.pi, 1001)[:-1])).mean()
+    assert abs(truth / mean(SLOPE) - 1.0) > 0.009  # a filter that does nothing is told apart
+
+
+@pytest.mark.parametrize("width", [0.1, 4.0])
+def test_a_bump_does_not_turn_the_tangents_of_a_map(width):
+    """Of a subdivision surface they are made of the map's differences along the grid, which is seen from the side here
+    and has other steps along u than along v; the map lies askew on it."""
+
+    def seen(bumped):
+        snapshot = s.orthographic((SIZE, SIZE), executor="SIMD", samples=16)
+        nodes = [
+            {
+                "type": "ShaderNodeNormalMap",
+                "properties": {"space": "TANGENT"},
+                "inputs": {"Color": (0.9, 0.5, 0.8, 1.0)},
+            }
+        ]
+        if bumped:
+            height = {"Height": 0.5, "Filter Width": width, "Normal": ("LINK", 0, "Normal")}
+            nodes.append({"type": "ShaderNodeBump", "inputs": height})
+        normal = ("LINK", len(nodes) - 1, "Normal")
+        nodes.append({"type": "ShaderNodeEmission", "inputs": {"Color": normal}})
+        surface = (len(nodes) - 1, "Emission")
+        snapshot["materials"].append({"name": "Askew", "nodes": nodes, "surface": surface})
+        corners = [(-100, -100, 10), (164, -100, 1000), (164, 164, 1000), (-100, 164, 10)]
+        uv = np.float32([(0, 0), (1, 1), (0, 2), (-1, 1)])
+        record = {"name": "UVMap", "domain": "CORNER", "kind": "UV", "values": uv}
+        s.quad(snapshot, corners, 0, subdivision=CAGE, attributes=[record])
+        return s.render(snapshot)["combined"][16:48, 16:48, :3]
+
+    assert np.abs(seen(True) - seen(False)).max() < 1e-3
+    assert np.ptp(seen(False).mean(axis=(0, 1))) > 0.1

@@ -143,7 +143,12 @@ class FlatGraph:
             kind, inputs = "ShaderNodeVectorMath", {"Vector": link, "Vector_001": third}
             output, properties = "Value", {"operation": "DOT_PRODUCT"}
         self.nodes.append(
-            {"type": kind, "name": "conversion", "inputs": inputs, "properties": properties}
+            {
+                "type": kind,
+                "name": "conversion",
+                "inputs": inputs,
+                "properties": {**properties, "version": version()},
+            }
         )
         return ("LINK", len(self.nodes) - 1, output)
 

@@ -10,7 +10,7 @@ namespace granita {
 
 namespace {
 
-/// A height at a point and one step along u and v.
+/// A height at a point and the filter's width from there along u and v.
 struct Heights {
     FloatSource here, next_u, next_v;
 };

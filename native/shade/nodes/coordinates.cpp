@@ -55,6 +55,12 @@ VectorSource parallel_window(NodeBuilder& b, const FrameCamera& camera) {
     });
 }
 
+AttributeRequest uv_request(const std::string& name) {
+    const AttributeSource source =
+        name.empty() ? AttributeSource::DefaultUv : AttributeSource::Named;
+    return {source, name, 2, false};
+}
+
 }  // namespace
 
 VectorSource position_at(NodeBuilder& b, Shift shift) {
@@ -98,9 +104,12 @@ VectorSource generated_at(NodeBuilder& b, Shift shift) {
 
 VectorSource uv_at(NodeBuilder& b, const std::string& name, Shift shift) {
     if (b.lamp() && name.empty()) return lamp_uv(b);
-    const AttributeSource source =
-        name.empty() ? AttributeSource::DefaultUv : AttributeSource::Named;
-    return b.attribute_at({source, name, 2, false}, shift);
+    return b.attribute_at(uv_request(name), shift);
+}
+
+VectorSource uv_beside(NodeBuilder& b, const std::string& name, Shift shift) {
+    if (b.lamp() && name.empty()) return lamp_uv(b);
+    return b.attribute_beside(uv_request(name), shift);
 }
 
 void build_uv_map(NodeBuilder& b) {

@@ -13,6 +13,8 @@ VectorSource world_position_at(NodeBuilder& b, Shift shift);
 VectorSource generated_at(NodeBuilder& b, Shift shift);
 /// An empty name: the UV map that is active for render.
 VectorSource uv_at(NodeBuilder& b, const std::string& name, Shift shift);
+/// NodeBuilder::attribute_beside of it.
+VectorSource uv_beside(NodeBuilder& b, const std::string& name, Shift shift);
 /// Unit, along growing u of a map on the surface as modelled; its first derivative where it has
 /// none.
 VectorSource uv_tangent(NodeBuilder& b, const std::string& name);

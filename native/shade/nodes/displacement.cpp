@@ -74,8 +74,8 @@ void build_vector_displacement(NodeBuilder& b) {
         from.of_corners = b.attribute_at(of_corners, Shift::None);
         from.sign = b.attribute_component(of_corners, 3, Shift::None);
         from.uv = uv_at(b, "", Shift::None);
-        from.uv_u = uv_at(b, "", Shift::U);
-        from.uv_v = uv_at(b, "", Shift::V);
+        from.uv_u = uv_beside(b, "", Shift::U);
+        from.uv_v = uv_beside(b, "", Shift::V);
     }
     b.add_step(
         [=](Run& run) {

@@ -108,13 +108,15 @@ std::shared_ptr<const Texture> find_texture(NodeBuilder& b, const std::string& i
 /// filters for slopes.
 struct Footprint {
     VectorSource center, point, next_u, next_v;
+    float width = 0.0f;  ///< of the two: Run::step_scale
 };
 
 Footprint footprint(NodeBuilder& b) {
-    const auto at = [&](Shift shift) {
-        return b.linked("Vector") ? b.vector_at("Vector", shift) : uv_at(b, "", shift);
-    };
-    return {at(b.shift()), at(Shift::None), at(Shift::U), at(Shift::V)};
+    const auto at = [&](Shift shift) { return b.vector_at("Vector", shift); };
+    if (b.linked("Vector"))
+        return {at(b.shift()), at(Shift::None), at(Shift::U), at(Shift::V), b.bump_width()};
+    return {uv_at(b, "", b.shift()), uv_at(b, "", Shift::None), uv_beside(b, "", Shift::U),
+            uv_beside(b, "", Shift::V)};
 }
 
 /// Shadow rays look up one place at a time.
@@ -138,7 +140,6 @@ void build_image_texture(NodeBuilder& b) {
     const Footprint print = footprint(b);
     const VectorSource color = b.new_source<Vec3f>();
     const FloatSource alpha = b.new_source<float>();
-    const float width = b.bump_width();
     std::vector<int> reads = {print.center.slot, print.point.slot, print.next_u.slot,
                               print.next_v.slot};
 
@@ -161,9 +162,9 @@ void build_image_texture(NodeBuilder& b) {
                         const Vec2f point = box_plane(axis, p[i], normals[i]);
                         places[i] = {box_plane(axis, at[i], normals[i]),
                                      (box_plane(axis, u[i], normals[i]) - point) /
-                                         run.step_scale(width, Shift::U, i),
+                                         run.step_scale(print.width, Shift::U, i),
                                      (box_plane(axis, v[i], normals[i]) - point) /
-                                         run.step_scale(width, Shift::V, i)};
+                                         run.step_scale(print.width, Shift::V, i)};
                     }
                     texture->look_up(mode, places, texels);
                     for (std::size_t i = 0; i < n; ++i)
@@ -195,8 +196,9 @@ void build_image_texture(NodeBuilder& b) {
                     const Vec2f point = project(p[i]);
                     places[i] = {
                         project(at[i]),
-                        edge(point, project(u[i]), seam) / run.step_scale(width, Shift::U, i),
-                        edge(point, project(v[i]), seam) / run.step_scale(width, Shift::V, i)};
+                        edge(point, project(u[i]), seam) / run.step_scale(print.width, Shift::U, i),
+                        edge(point, project(v[i]), seam) /
+                            run.step_scale(print.width, Shift::V, i)};
                 }
                 auto texels = ObjectPool<std::vector<Vec4f>>::take();
                 texture->look_up(mode, places, texels);

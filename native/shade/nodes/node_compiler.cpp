@@ -162,13 +162,14 @@ std::vector<AttributeRequest> used_requests(std::vector<AttributeRequest> all,
 /// How far the heights of a graph's bumps are told apart, pixels: one until Blender 4.3, which lets
 /// artists choose.  Of several the least, as the nodes below them are built once; 0: nothing is
 /// bumped.
-float bump_width(const NodeGraph& graph) {
+float bump_width(const NodeGraph& graph, const ReadOutputs& read) {
     float least = 0.0f;
     const auto add = [&least](float width) {
         least = least > 0.0f ? std::min(least, width) : width;
     };
-    for (const Node& node : graph.nodes) {
-        if (node.type != "ShaderNodeBump") continue;
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+        const Node& node = graph.nodes[i];
+        if (node.type != "ShaderNodeBump" || read[i].empty()) continue;
         const auto found = node.inputs.find("Filter Width");
         const auto* width =
             found == node.inputs.end() ? nullptr : std::get_if<Vec4f>(&found->second);
@@ -358,6 +359,7 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
     const bool has_moved_normals =
         graph.moves_surface() && graph.displacement_method == DisplacementMethod::Displacement;
     const auto builder_for = [&](RayType type, Report& warnings) {
+        ReadOutputs read = read_outputs(graph, graph.surface, owner.name, aov_outputs);
         return ProgramBuilder{.scene = scene,
                               .textures = textures,
                               .report = warnings,
@@ -367,8 +369,8 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
                               .material_index = owner.material_index,
                               .has_moved_normals = has_moved_normals,
                               .ray_type = type,
-                              .bump_width = bump_width(graph),
-                              .read = read_outputs(graph, graph.surface, owner.name, aov_outputs)};
+                              .bump_width = bump_width(graph, read),
+                              .read = std::move(read)};
     };
     ProgramBuilder builder = builder_for(ray, report);
 

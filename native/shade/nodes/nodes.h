@@ -100,7 +100,7 @@ void build_unbevelled(NodeBuilder&);
 /// By a number, linear between the entries of the property `spectrum` (rgb), which lie evenly from
 /// `low` to `high`.
 VectorSource spectrum_color(NodeBuilder&, const char* input);
-/// The shading normal bent by a displacement at the point and one step along u and v.
+/// The shading normal bent by a displacement at the point and beside it along u and v.
 VectorSource bumped_by_displacement(NodeBuilder&, const VectorSource& here,
                                     const VectorSource& next_u, const VectorSource& next_v);
 

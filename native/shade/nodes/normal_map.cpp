@@ -50,8 +50,8 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
     const VectorSource tangent = b.attribute_at(of_corners, Shift::None),
                        corner_normal =
                            b.attribute_at({AttributeSource::CornerNormal, "", 3}, Shift::None),
-                       uv = uv_at(b, name, Shift::None), uv_u = uv_at(b, name, Shift::U),
-                       uv_v = uv_at(b, name, Shift::V), out = b.new_source<Vec3f>();
+                       uv = uv_at(b, name, Shift::None), uv_u = uv_beside(b, name, Shift::U),
+                       uv_v = uv_beside(b, name, Shift::V), out = b.new_source<Vec3f>();
     const FloatSource sign = b.attribute_component(of_corners, 3, Shift::None);
     // Since Blender 4 strength scales the map's slopes, before it blended the resulting normals.
     const bool scales_slopes = b.since(4, 0), has_unit_normals = b.since(5, 1);
@@ -109,8 +109,8 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
 VectorSource uv_tangent(NodeBuilder& b, const std::string& name) {
     const VectorSource of_corners =
         b.attribute_at({AttributeSource::Tangent, name, 4}, Shift::None);
-    const VectorSource uv = uv_at(b, name, Shift::None), uv_u = uv_at(b, name, Shift::U),
-                       uv_v = uv_at(b, name, Shift::V), out = b.new_source<Vec3f>();
+    const VectorSource uv = uv_at(b, name, Shift::None), uv_u = uv_beside(b, name, Shift::U),
+                       uv_v = uv_beside(b, name, Shift::V), out = b.new_source<Vec3f>();
     b.add_step(
         [=](Run& run) {
             const auto uvs = run.read(uv), us = run.read(uv_u), vs = run.read(uv_v),

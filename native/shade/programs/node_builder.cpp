@@ -91,30 +91,36 @@ void NodeBuilder::warn(const std::string& message) {
         m_program.report.warn(m_program.owner, "node '" + m_node.name + "': " + message);
 }
 
-int NodeBuilder::load(const AttributeRequest& request, Shift shift, int width, int first) {
+int NodeBuilder::load(Load wanted, const AttributeRequest& request) {
     auto& requests = m_program.requests;
     auto found = std::find(requests.begin(), requests.end(), request);
     if (found == requests.end()) found = requests.insert(requests.end(), request);
-    const float bump_width = shift == Shift::None ? 0.0f : m_program.bump_width;
-    Load wanted{static_cast<int>(found - requests.begin()), shift, 0, width, first, bump_width};
+    wanted.request = static_cast<int>(found - requests.begin());
     for (const Load& load : m_program.loads) {
         wanted.slot = load.slot;
         if (load == wanted) return load.slot;
     }
-    wanted.slot = m_program.new_slot(width);
+    wanted.slot = m_program.new_slot(wanted.width);
     m_program.loads.push_back(wanted);
     return wanted.slot;
 }
 
 VectorSource NodeBuilder::attribute_at(const AttributeRequest& request, Shift shift) {
     if (m_program.is_world) return {-1, Vec3f(0.0f)};
-    return {load(request, shift, 3, 0), Vec3f(0.0f)};
+    return {load({.shift = shift, .bump_width = bump_width_at(shift)}, request), Vec3f(0.0f)};
+}
+
+VectorSource NodeBuilder::attribute_beside(const AttributeRequest& request, Shift shift) {
+    if (m_program.is_world) return {-1, Vec3f(0.0f)};
+    return {load({.shift = shift}, request), Vec3f(0.0f)};
 }
 
 FloatSource NodeBuilder::attribute_component(const AttributeRequest& request, int component,
                                              Shift shift) {
     if (m_program.is_world) return {-1, 0.0f};
-    return {load(request, shift, 1, component), 0.0f};
+    const Load wanted{
+        .shift = shift, .width = 1, .first = component, .bump_width = bump_width_at(shift)};
+    return {load(wanted, request), 0.0f};
 }
 
 VectorSource NodeBuilder::shading_normal() {

@@ -120,6 +120,8 @@ class NodeBuilder {
         return attribute_at(request, m_shift);
     }
     VectorSource attribute_at(const AttributeRequest& request, Shift shift);
+    /// By the points' own steps, as dp_du and dp_dv are, whatever a bump's width is.
+    VectorSource attribute_beside(const AttributeRequest& request, Shift shift);
     FloatSource attribute_component(const AttributeRequest& request, int component) {
         return attribute_component(request, component, m_shift);
     }
@@ -178,10 +180,13 @@ class NodeBuilder {
     FloatSource backfacing();
 
   private:
+    float bump_width_at(Shift shift) const {
+        return shift == Shift::None ? 0.0f : m_program.bump_width;
+    }
     const NodeOutput* link_source(const std::string& input, Shift shift) const;
     VectorSource with_valid_reflection(const VectorSource& normal);
-    /// The slot of `width` components of an attribute from `first` on; equal loads share one.
-    int load(const AttributeRequest& request, Shift shift, int width, int first);
+    /// The slot of what is wanted of an attribute; equal loads share one.
+    int load(Load wanted, const AttributeRequest& request);
 
     ProgramBuilder& m_program;
     const Node& m_node;

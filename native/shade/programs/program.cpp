@@ -42,11 +42,11 @@ void run_load(const Load& load, Run& run) {
 
 }  // namespace
 
-float Run::step_scale(float width, Shift shift, std::size_t point) const {
+float Run::scale_of(float width, Shift shift, std::size_t point) const {
     const ShadingPoints& points = *m_input.points;
     const std::vector<Vec3f>& steps = shift == Shift::V ? points.dp_dv : points.dp_du;
     const float pixel = points.pixel_width + points.pixel_slope * glm::length(points.p[point]);
-    if (!(width > 0.0f) || !(pixel > 0.0f)) return width > 0.0f ? width : 1.0f;
+    if (!(pixel > 0.0f)) return width;
     const float length = glm::length(steps[point]);
     return length > 0.0f ? width * pixel / length : width;
 }

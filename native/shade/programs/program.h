@@ -4,7 +4,7 @@
 //
 //   slot      an array of one float or one Vec3f a point
 //   source    a slot, or a constant when the value is the same everywhere
-//   load      copies a grid attribute into a slot, at the point or one grid step along u or v
+//   load      copies a grid attribute into a slot, at the point or some way along u or v
 //   step      one operation: reads sources, writes slots
 //
 // A program is immutable; any number of threads run it, each with a Run of its own.
@@ -27,9 +27,9 @@ namespace granita {
 
 class RayScene;
 
-/// Where a value is taken: at the point, or one grid step further along u or v.  The differences
-/// are the derivatives that textures and bumps need; they follow any node between (the chain rule
-/// by differences).
+/// Where a value is taken: at the point, or further along u or v, by a step of the grid or as far
+/// as a bump is wide.  The differences are the derivatives that textures and bumps need; they
+/// follow any node between (the chain rule by differences).
 enum class Shift { None, U, V };
 
 /// For normals and directions.
@@ -97,7 +97,9 @@ class Run {
     std::size_t count() const { return m_count; }
     const ShadingInput& input() const { return m_input; }
     /// How far along a point's own step a shifted value lies, for a Load's or a bump's width.
-    float step_scale(float width, Shift shift, std::size_t point) const;
+    float step_scale(float width, Shift shift, std::size_t point) const {
+        return width > 0.0f ? scale_of(width, shift, point) : 1.0f;
+    }
     template <class T>
     Column<T> read(const Source<T>& source) const {
         if (source.is_constant()) return {&source.constant, 0};
@@ -112,6 +114,8 @@ class Run {
     std::vector<float> take_memory() { return std::move(m_memory); }
 
   private:
+    float scale_of(float width, Shift shift, std::size_t point) const;
+
     const ShadingInput& m_input;
     std::size_t m_count;
     std::vector<float> m_memory;
