@@ -29,8 +29,6 @@ _between_layers = False
 
 def await_start():
     """In the render's thread, before Blender calls it: until the window's own is not within Python."""
-    if bpy.app.background:
-        return  # nothing draws
     await_turn()
     end = time.monotonic() + _PATIENCE
     while _frame_of_window() is not None and time.monotonic() < end:
@@ -96,15 +94,16 @@ def _go_last(*_):
             handlers.append(function)
 
 
-register, unregister = registration(
+_HANDLERS = (
     ("render_init", _go_last),
-    (
-        "render_pre",
-        started,
-    ),  # until those of others are done: an engine that is made asks for its turn
+    # Until those of others are done: an engine that is made asks for its turn.
+    ("render_pre", started),
     ("render_pre", _frame_begins),
     ("frame_change_post", _layer_begins),
     ("render_post", started),
     ("render_cancel", started),
     ("render_complete", started),
 )
+# Without a window nothing draws, and an interrupt that comes within a handler would be lost on the render: Blender prints
+# what handlers raise and goes on.
+register, unregister = registration(*(() if bpy.app.background else _HANDLERS))
