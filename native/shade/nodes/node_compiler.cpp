@@ -360,6 +360,7 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
         graph.moves_surface() && graph.displacement_method == DisplacementMethod::Displacement;
     const auto builder_for = [&](RayType type, Report& warnings) {
         ReadOutputs read = read_outputs(graph, graph.surface, owner.name, aov_outputs);
+        const float width = bump_width(graph, read);
         return ProgramBuilder{.scene = scene,
                               .textures = textures,
                               .report = warnings,
@@ -369,7 +370,7 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
                               .material_index = owner.material_index,
                               .has_moved_normals = has_moved_normals,
                               .ray_type = type,
-                              .bump_width = bump_width(graph, read),
+                              .bump_width = width,
                               .read = std::move(read)};
     };
     ProgramBuilder builder = builder_for(ray, report);
