@@ -137,7 +137,10 @@ RibbonRow CurveControl::row(int knot, double t, bool with_facing) const {
         flat = unit(glm::cross(scale.object_from_camera * view, tangent));
         edge = scale.camera_from_object * flat;
         // What mirrors would change sides with the knots at which it is even.
-        if (glm::dot(edge, across) < 0.0) flat = -flat, edge = -edge;
+        if (glm::dot(edge, across) < 0.0) {
+            flat = -flat;
+            edge = -edge;
+        }
         row.across = edge * (here.radius / scale.largest);
     }
     if (!with_facing) return row;

@@ -7,9 +7,8 @@ import snapshots as s
 
 SIZE, SLOPE = 64, 0.7
 CAGE = {"scheme": "CATMULL_CLARK", "boundary": "ALL", "uv_smooth": "PRESERVE_BOUNDARIES"}
-SUN = np.array(
-    [np.sin(1.0), 0.0, np.cos(1.0)]
-)  # from the surface to the sun, y up and z to the eye
+# From the surface to the sun, z to the eye.
+SUN = np.array([np.sin(1.0), 0.0, np.cos(1.0)])
 
 
 def waves(period, width, **options):

@@ -4,6 +4,7 @@
 import pytest
 import snapshots as s
 from test_bounces import diffuse, mean, mirror, reflecting
+from test_bounces_hard_cases import white_world
 
 FROM = {"diffuse": 8, "glossy": 16, "transmission": 32}
 CAMERA = 1
@@ -35,8 +36,7 @@ SENT_AS = {
 def test_rays_pass_what_is_hidden_from_their_kind(front, hidden):
     """White world, and a black wall over the half that the surface sends light on from, without light itself."""
     snapshot = s.orthographic((16, 16), bounces=4, samples=16, light_samples=64)
-    s.constant_world(snapshot, 1.0)
-    snapshot["world"]["lights_scene"] = True
+    white_world(snapshot)
     s.quad(snapshot, s.rectangle(-90, -90, 106, 106, 100.0), before(snapshot, front))
     behind = 101.0 if SENT_AS[front] == "transmission" else -1.0
     black = diffuse(snapshot, 0.0)

@@ -15,8 +15,8 @@ struct Heights {
     FloatSource here, next_u, next_v;
 };
 
-/// Mikkelsen's surface gradient (2010) with the points' own steps, along which
-/// heights are told apart over the Filter Width.
+/// Mikkelsen's surface gradient (2010) with the points' own steps, along which heights are told
+/// apart over the Filter Width.
 VectorSource bumped_normal(NodeBuilder& b, const VectorSource& base, const Heights& height,
                            const FloatSource& strength, const FloatSource& distance, float sign) {
     const VectorSource out = b.new_source<Vec3f>();
