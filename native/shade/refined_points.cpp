@@ -97,6 +97,12 @@ Vec3f normal_of_moment(const Grid& grid, const Blend& blend, float time, const M
     return normal;
 }
 
+void add_blended(const Blend& blend, std::span<const float> values, std::size_t width, float by,
+                 std::vector<float>& to) {
+    for (std::size_t c = 0; c < width; ++c)
+        to.push_back(by * blend.mean<float>([&](std::size_t i) { return values[i * width + c]; }));
+}
+
 GridAttribute blended(const GridAttribute& from, const std::vector<Blend>& blends,
                       float point_size) {
     GridAttribute out{from.attribute, from.width, {}, {}, {}};
@@ -104,10 +110,7 @@ GridAttribute blended(const GridAttribute& from, const std::vector<Blend>& blend
     const auto blend_all = [&](const std::vector<float>& values, std::vector<float>& to, float by) {
         if (values.empty()) return;
         to.reserve(blends.size() * width);
-        for (const Blend& blend : blends)
-            for (std::size_t c = 0; c < width; ++c)
-                to.push_back(
-                    by * blend.mean<float>([&](std::size_t i) { return values[i * width + c]; }));
+        for (const Blend& blend : blends) add_blended(blend, values, width, by, to);
     };
     blend_all(from.values, out.values, 1.0f);
     blend_all(from.du, out.du, point_size);
@@ -116,6 +119,15 @@ GridAttribute blended(const GridAttribute& from, const std::vector<Blend>& blend
 }
 
 }  // namespace
+
+std::vector<float> blended_at(const Grid& grid, std::span<const RefinedPoint> wanted,
+                              std::span<const float> values, int width) {
+    std::vector<float> out;
+    out.reserve(wanted.size() * static_cast<std::size_t>(width));
+    for (const RefinedPoint& at : wanted)
+        add_blended(blend_at(grid, at), values, static_cast<std::size_t>(width), 1.0f, out);
+    return out;
+}
 
 RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const ShadingCamera& camera,
                              const MovingEye& eye, std::span<const RefinedPoint> wanted, bool timed,

@@ -34,6 +34,10 @@ inline float refined_light_share(float area) {
     return std::min(1.0f, 2.0f * area);
 }
 
+/// [wanted][width] of `values` [points][width] of the grid.
+std::vector<float> blended_at(const Grid& grid, std::span<const RefinedPoint> wanted,
+                              std::span<const float> values, int width);
+
 struct RefinedPoints {
     ShadingPoints points;  ///< their times are set only where `timed`
     std::vector<GridAttribute> attributes;

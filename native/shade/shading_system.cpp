@@ -6,35 +6,20 @@
 #include <optional>
 
 #include "base/crash_report.h"
-#include "base/stage_timer.h"
-#include "shade/bounces/bounced_light.h"
-#include "shade/bounces/hit_shader.h"
-#include "shade/bounces/meets_light.h"
 #include "shade/bounces/way_choice.h"
-#include "shade/compiled_materials.h"
+#include "shade/frame_shading.h"
 #include "shade/grid_channels.h"
 #include "shade/interpolated_points.h"
-#include "shade/lamp_shader.h"
 #include "shade/left_to_samples.h"
-#include "shade/lights/direct_light.h"
 #include "shade/lights/light_sample_count.h"
-#include "shade/material_displacement.h"
-#include "shade/moving_eye.h"
-#include "shade/nodes/material_emission.h"
-#include "shade/nodes/node_compiler.h"
 #include "shade/nodes/surface_run.h"
+#include "shade/pattern_probes.h"
 #include "shade/seen_points.h"
 #include "shade/seen_triangles.h"
 #include "shade/shading_input.h"
 #include "shade/shading_points.h"
-#include "shade/shadow_catchers.h"
-#include "shade/shadow_transparency.h"
 #include "shade/subsurface/shared_scattering.h"
-#include "shade/subsurface/subsurface_light.h"
-#include "shade/surface_pattern.h"
 #include "shade/time_probes.h"
-#include "shade/unsettled.h"
-#include "shade/world_shader.h"
 
 namespace granita {
 namespace {
@@ -44,145 +29,8 @@ constexpr float kLeastScattering = 1e-8f;
 
 }  // namespace
 
-struct ShadingSystem::Impl {
-    const Scene& scene;
-    Statistics& statistics;
-    Report& report;
-    const Progress& progress;
-    TextureStore textures;
-    ShadingCamera camera;
-    MovingEye eye;
-    ShutterWarp shutter;
-    ChannelSet channels;
-    std::vector<CompiledSurface> materials;  ///< [materials + 1]
-    std::vector<std::vector<AttributeRequest>> requests;
-    std::unique_ptr<MaterialEmission> emission;
-    std::unique_ptr<MaterialDisplacement> displacement;  ///< nullptr: nothing is displaced
-    WorldShader world;
-    bool refines;
-    bool moves;  ///< anything of the frame
-    UnsettledThresholds thresholds;
-    float footprint;  ///< of a sample, in steps of a grid
-    std::shared_ptr<GeometryCache> geometries;
-    std::shared_ptr<const ShadedGrids> shaded;  ///< of an earlier picture, or nullptr
-    std::unique_ptr<Volumes> volumes;           ///< nullptr where nothing is filled
-    std::unique_ptr<SeenVolumes> seen_volumes;  ///< likewise
-    std::unique_ptr<DirectLight> light;         ///< nullptr where nothing that is seen reflects any
-    std::unique_ptr<HitShader> hits;            ///< where light is followed or its rays told apart
-    std::unique_ptr<BouncedLight> bounces;
-    std::unique_ptr<SubsurfaceLight> below;    ///< where light is scattered below surfaces
-    std::unique_ptr<ShadowCatchers> catchers;  ///< nullptr: there are none
-
-    Impl(const Scene& s, Statistics& stats, Report& warnings, const Progress& p,
-         bool refines_samples, const KeptShading& kept)
-        : scene(s),
-          statistics(stats),
-          report(warnings),
-          progress(p),
-          textures(s, stats, report, &p),
-          camera(s),
-          eye(s, camera),
-          shutter(s.options.shutter_curve),
-          channels(s.options),
-          world(s, textures, report),
-          refines(refines_samples && s.options.refine_samples),
-          moves(s.moves()),
-          thresholds(s.options, moves),
-          footprint(1.0f / std::sqrt(static_cast<float>(s.options.samples))),
-          geometries(std::make_shared<GeometryCache>(kept.geometry)),
-          shaded(kept.grids) {
-        const StageTimer timer(stats, Stage::Shade);
-        if (scene.has_shadow_catchers())
-            catchers = std::make_unique<ShadowCatchers>(scene, stats, progress);
-        const ChannelSet* passes = channels.empty() ? nullptr : &channels;
-        CompiledMaterials compiled = compile_materials(scene, textures, report, progress, passes);
-        materials = std::move(compiled.surfaces);
-        for (const CompiledSurface& material : materials) requests.push_back(material.requests);
-        displacement = std::make_unique<MaterialDisplacement>(
-            scene, std::move(compiled.displacements), geometries, report, kept.offsets);
-        if (!displacement->any()) displacement.reset();
-        emission = std::make_unique<MaterialEmission>(scene, textures, materials);
-        const bool any_reflects = std::ranges::any_of(scene.instances, [this](const Instance& i) {
-            if (!i.visible_camera) return false;
-            const auto shows = [this](int index) { return reflects(index); };
-            return i.materials.empty() ? shows(-1) : std::ranges::any_of(i.materials, shows);
-        });
-        const bool nodes_ask_rays =
-            std::ranges::any_of(scene.materials, asks_rays, &Material::graph);
-        if (Volumes::any(scene)) volumes = std::make_unique<Volumes>(scene, textures, report);
-        if (!any_reflects && !volumes && !nodes_ask_rays) return;
-        const auto of_surface = [this](std::int32_t index, const RayScene& rays) {
-            return surface_pattern(*emission->program(index), scene, rays);
-        };
-        light = std::make_unique<DirectLight>(
-            scene, world.evaluator(), statistics, report, progress, ray_materials(), geometries,
-            kept.rays, displacement.get(),
-            LightPatterns{lamp_patterns(scene, textures, report), of_surface}, nodes_ask_rays);
-        emission->warn(scene, report);
-        if (!light->rays()) return;
-        const bool follows = meets_light(scene, light->lamp_faces(), *emission);
-        if (follows || any([this](std::int32_t index) { return material(index).is_told_apart; }))
-            hits = std::make_unique<HitShader>(scene, textures, report);
-        if (follows)
-            bounces = std::make_unique<BouncedLight>(scene, *light, *hits, *emission, volumes.get(),
-                                                     statistics, progress);
-        if (volumes)
-            seen_volumes = std::make_unique<SeenVolumes>(scene, *volumes, *light, bounces.get());
-        if (!any([this](std::int32_t index) { return scatters(index); })) return;
-        const auto bent = [this](std::int32_t index) {
-            const SurfaceProgram& radiance = material(index).radiance;
-            return radiance.bends_scattered() ? &material(index) : nullptr;
-        };
-        below = std::make_unique<SubsurfaceLight>(scene, *light, bounces.get(), bent, progress);
-    }
-
-    bool reflects(std::int32_t index) const { return material(index).radiance.sources.reflects(); }
-    bool scatters(std::int32_t index) const { return material(index).radiance.scatters(); }
-    const NodeGraph& graph_of(std::int32_t index) const {
-        return scene.materials[static_cast<std::size_t>(index)].graph;
-    }
-    /// Whether it is so of any material of any instance.
-    bool any(const std::function<bool(std::int32_t)>& is) const {
-        return std::ranges::any_of(scene.instances, [&](const Instance& i) {
-            return std::ranges::any_of(i.materials, is);
-        });
-    }
-
-    void warn_of_broken(std::int32_t index, std::size_t count) const {
-        if (count == 0) return;
-        const std::string owner =
-            index < 0 ? "no material"
-                      : "material '" + scene.materials[static_cast<std::size_t>(index)].name + "'";
-        report.warn(owner, "is not finite at some points, where it is left out", count);
-    }
-
-    RayMaterials ray_materials() const {
-        RayMaterials asked;
-        tell_transparency(
-            asked, scene,
-            [this](std::int32_t index) -> const CompiledSurface& { return material(index); },
-            [this](std::int32_t index, RayType ray) -> const OpacityProgram& {
-                if (ray == RayType::Camera) return material(index).passing;
-                const bool is_shadow = ray == RayType::Shadow || !hits;
-                return is_shadow ? material(index).shadow : hits->surface(index, ray).passing;
-            });
-        asked.emitted = [this](std::int32_t index) { return emission->emitted(index); };
-        if (volumes) volumes->tell(asked);
-        // Once a material: instances may be many.
-        std::vector<std::uint8_t> alone;
-        for (std::size_t m = 0; m < scene.materials.size(); ++m)
-            alone.push_back(scatters(static_cast<std::int32_t>(m)) ||
-                            asks_itself(scene.materials[m].graph));
-        const auto asks = [alone = std::move(alone)](std::int32_t index) {
-            return index >= 0 && alone[static_cast<std::size_t>(index)] != 0;
-        };
-        if (any(asks)) asked.is_met_by_itself = asks;
-        return asked;
-    }
-
-    const CompiledSurface& material(int index) const {
-        return index < 0 ? materials.back() : materials[index];
-    }
+struct ShadingSystem::Impl : FrameShading {
+    using FrameShading::FrameShading;
 
     template <class Points>
     ShadingInput input(const Grid& grid, const Points& points) const {
@@ -218,11 +66,17 @@ struct ShadingSystem::Impl {
                           radiance);
     }
 
-    /// Fills radiance and channels of `grid`, whose points are `in.points`; `noise` as
-    /// DirectLight::reflect(), `settled` [vertices] with the radiance but for what is noise at
-    /// single points: empty where it is all.
+    /// Where a grid's corners may not tell all.
+    struct Doubts {
+        std::vector<float> noise;    ///< as DirectLight::reflect()
+        std::vector<Vec3f> settled;  ///< [vertices] radiance but for what is noise at single
+                                     ///< points: empty where it is all
+        std::vector<float> looks;    ///< looks_of(), of patterns
+    };
+
+    /// Fills radiance and channels of `grid`, whose points are `in.points`.
     void shade(Grid& grid, const ShadingInput& in, const PointPaths& at,
-               std::vector<float>* noise = nullptr, std::vector<Vec3f>* settled = nullptr) const {
+               Doubts* doubts = nullptr) const {
         const CrashScope scope("shades", scene.instances[grid.instance].name);
         const SurfaceProgram& surface = material(grid.material).radiance;
         SurfaceRun ran(surface, in);
@@ -232,6 +86,9 @@ struct ShadingSystem::Impl {
             const bool has_body = below && light->rays()->has_body(grid.key);
             draw_as_diffuse(closure, has_body ? kLeastScattering : HUGE_VALF);
         }
+        std::vector<float>* noise = doubts ? &doubts->noise : nullptr;
+        if (doubts && material(grid.material).is_patterned)
+            doubts->looks = looks_of(points, closure);
         ReflectionParts parts, *asked = channels.empty() ? nullptr : &parts;
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
         LeavingRays leaving;
@@ -250,11 +107,11 @@ struct ShadingSystem::Impl {
         const std::size_t broken = ran.broken() + make_finite(radiance);
         grid.broken_radiance |= broken > 0;
         warn_of_broken(grid.material, broken);
-        if (settled && !doubtful.empty()) {
-            *settled = radiance;
-            for (std::size_t i = 0; i < points.count; ++i) (*settled)[i] -= doubtful[i];
-            make_finite(*settled);
-            interpolate_points(grid, 1, *settled);
+        if (doubts && !doubtful.empty()) {
+            doubts->settled = radiance;
+            for (std::size_t i = 0; i < points.count; ++i) doubts->settled[i] -= doubtful[i];
+            make_finite(doubts->settled);
+            interpolate_points(grid, 1, doubts->settled);
         }
         interpolate_points(grid, 1, radiance);
         grid.radiance = std::move(radiance);
@@ -343,12 +200,38 @@ struct ShadingSystem::Impl {
     bool opacity_changes_in_time(Grid& grid) const {
         if (!moves) return false;
         const TimeProbes probes(grid, scene.options.frame_time);
-        const RefinedPoints points(grid, scene, camera, eye, probes.points, moves, 1.0f);
+        return probes.any_changes(opacity_at(grid, probes.points), thresholds.difference,
+                                  opacity_difference);
+    }
+
+    std::vector<Vec3f> opacity_at(Grid& grid, std::span<const RefinedPoint> wanted) const {
+        const RefinedPoints points(grid, scene, camera, eye, wanted, moves, 1.0f);
         Grid out;
         out.material = grid.material;
         shade_opacity(out, input(grid, points));
         grid.broken_opacity |= out.broken_opacity;
-        return probes.any_changes(out.opacity, thresholds.difference, opacity_difference);
+        return std::move(out.opacity);
+    }
+
+    /// Leaves to samples all of a grid whose corners do not tell what patterns show between them.
+    /// Blur is no help: lines that go where a thing moves stay lines.
+    void find_patterns(Grid& grid, const std::vector<float>& looks) const {
+        if (looks.empty()) return;
+        const PatternProbes probes(grid, grid.unsettled);
+        const RefinedPoints found(grid, scene, camera, eye, probes.points, moves, 1.0f);
+        const SurfaceRun ran(material(grid.material).radiance, input(grid, found));
+        const std::vector<float> there = looks_of(ran.points(), ran.closure());
+        if (!probes.miss_looks(grid, there, looks, light != nullptr, thresholds.difference)) return;
+        grid.unsettled = all_micropolygons(grid);
+        if (!PatternProbes::hides_light(there, looks)) return;
+        grid.found = {};
+        leave_to_samples(grid, channels.vertex_width());
+    }
+    void find_open_patterns(Grid& grid) const {
+        if (!material(grid.material).is_patterned) return;
+        const PatternProbes probes(grid, grid.unsettled_opacity);
+        if (probes.miss_opacity(grid, opacity_at(grid, probes.points), thresholds.difference))
+            grid.unsettled_opacity = all_micropolygons(grid);
     }
 
     /// Takes radiance from an equal grid of an earlier picture, shaded with as many light samples;
@@ -381,13 +264,14 @@ struct ShadingSystem::Impl {
         if (wants_refining && may_leave(grid) && !grid.opacity_varies && !scatters(grid.material) &&
             pays_by_samples(grid, points, scene, *light))
             return leave_to_samples(grid, channels.vertex_width());
-        std::vector<float> noise(wants_refining ? points.count : 0, 0.0f);
-        std::vector<Vec3f> settled;
+        Doubts doubts{std::vector<float>(wants_refining ? points.count : 0, 0.0f), {}, {}};
         const bool catches = catchers && scene.catches_shadows(grid.instance, grid.material);
-        shade(grid, input(grid, points), at, wants_refining ? &noise : nullptr,
-              wants_refining && !catches ? &settled : nullptr);
+        shade(grid, input(grid, points), at, wants_refining ? &doubts : nullptr);
         statistics.add(Counter::GridsShaded);
-        if (catches) catchers->divide(grid, channels, noise);
+        if (catches) {
+            doubts.settled.clear();
+            catchers->divide(grid, channels, doubts.noise);
+        }
         if (!wants_refining) return;
         if (grid.holdout && !catches) {
             grid.unsettled = grid.unsettled_opacity;
@@ -396,8 +280,16 @@ struct ShadingSystem::Impl {
         if (material(grid.material).has_lines() || changes_in_time(grid))
             grid.unsettled = all_micropolygons(grid);
         else
-            find_unsettled(grid, settled, noise, thresholds.difference / (sharpness * sharpness),
-                           thresholds.noise / (fewer * fewer));
+            find_unsettled(grid, doubts, sharpness, fewer);
+    }
+
+    /// @param sharpness, fewer: parts of light samples that the blur of the grid leaves, and that
+    /// its points have.
+    void find_unsettled(Grid& grid, Doubts& doubts, float sharpness, float fewer) const {
+        const float difference = thresholds.difference / (sharpness * sharpness);
+        granita::find_unsettled(grid, doubts.settled, doubts.noise, difference,
+                                thresholds.noise / (fewer * fewer));
+        find_patterns(grid, doubts.looks);
     }
 };
 
@@ -451,12 +343,14 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
     const auto is_open = [](const Vec3f& opacity) { return opacity != Vec3f(1.0f); };
     grid.opacity_varies = has_lines || std::ranges::any_of(grid.opacity, is_open);
     grid.additive = surface.radiance.sources.additive;
-    if (grid.opacity_varies && refines) {
+    if (refines && (grid.opacity_varies || surface.is_patterned)) {
         const float sharpness = m_impl->sharpness(grid);
         const float threshold = m_impl->thresholds.difference / (sharpness * sharpness);
         grid.unsettled_opacity = has_lines || m_impl->opacity_changes_in_time(grid)
                                      ? all_micropolygons(grid)
                                      : unsettled_opacity(grid, threshold);
+        m_impl->find_open_patterns(grid);
+        grid.opacity_varies |= !grid.unsettled_opacity.empty();
     }
     m_impl->statistics.add(Counter::GridsOpacityShaded);
 }

@@ -48,7 +48,7 @@ void SurfacePattern::color(std::span<const PatternSample> samples) const {
             const RayScene::Met& met = ends[i];
             const PatternSample& sample = samples[met.ray];
             batch.push_back({nullptr, &met.hit, &met.frame(), sample.time, sample.width,
-                             met.hit.distance, place_of(met.hit.p)});
+                             met.hit.distance, 0.0f, place_of(met.hit.p)});
         }
         points.fill(batch, m_program.requests, 1);
         Run run = m_program.program.prepare(points.input(), batch.size());

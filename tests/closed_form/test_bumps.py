@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
+from test_bounces import diffuse, mean
 
 SIZE, SLOPE = 64, 0.7
 CAGE = {"scheme": "CATMULL_CLARK", "boundary": "ALL", "uv_smooth": "PRESERVE_BOUNDARIES"}
@@ -11,9 +12,8 @@ CAGE = {"scheme": "CATMULL_CLARK", "boundary": "ALL", "uv_smooth": "PRESERVE_BOU
 SUN = np.array([np.sin(1.0), 0.0, np.cos(1.0)])
 
 
-def waves(period, width, **options):
-    """A white plane whose height is a sine of so many pixels, of that slope at most, under a sun: light by column."""
-    snapshot = s.orthographic((SIZE, SIZE), executor="SIMD", samples=64, **options)
+def wavy(snapshot, period, slope, width):
+    """A white material whose height is a sine along x."""
     turns = 2 * np.pi / period
     nodes = [
         {"type": "ShaderNodeNewGeometry", "inputs": {}},
@@ -30,7 +30,7 @@ def waves(period, width, **options):
         },
         {
             "type": "ShaderNodeBump",
-            "inputs": {"Height": ("LINK", 3, "Value"), "Distance": SLOPE / turns, **width},
+            "inputs": {"Height": ("LINK", 3, "Value"), "Distance": slope / turns, **width},
         },
         {
             "type": "ShaderNodeBsdfDiffuse",
@@ -38,14 +38,26 @@ def waves(period, width, **options):
         },
     ]
     snapshot["materials"].append({"name": "Waves", "nodes": nodes, "surface": (5, "BSDF")})
-    s.quad(snapshot, s.rectangle(-100, -100, 164, 164, 10.0), 0)
-    towards = np.eye(4)
-    towards[:3, 2] = SUN * (1, 1, -1)  # the camera looks along z
-    towards[:3, 0] = np.cross((0, 1, 0), towards[:3, 2])
-    towards[:3, 1] = np.cross(towards[:3, 2], towards[:3, 0])
+    return len(snapshot["materials"]) - 1
+
+
+def sun(snapshot, towards):
+    """Of radiance 1 on white that faces it."""
+    axes = np.eye(4)
+    axes[:3, 2] = towards
+    axes[:3, 0] = np.cross((0, 1, 0), towards)
+    axes[:3, 1] = np.cross(axes[:3, 2], axes[:3, 0])
     snapshot["lights"] = [
-        {"name": "Sun", "kind": "SUN", "world_from_light": towards[None], "energy": np.pi}
+        {"name": "Sun", "kind": "SUN", "world_from_light": axes[None], "energy": np.pi}
     ]
+
+
+def waves(period, width, **options):
+    """A plane whose height is a sine of so many pixels, of that slope at most, under a sun: light by column."""
+    snapshot = s.orthographic((SIZE, SIZE), executor="SIMD", samples=64, **options)
+    white = wavy(snapshot, period, SLOPE, width)
+    s.quad(snapshot, s.rectangle(-100, -100, 164, 164, 10.0), white)
+    sun(snapshot, SUN * (1, 1, -1))  # the camera looks along z
     return s.render(snapshot)["combined"][..., 0].mean(axis=0)
 
 
@@ -116,3 +128,24 @@ def test_a_bump_does_not_turn_the_tangents_of_a_map(width):
 
     assert np.abs(seen(True) - seen(False)).max() < 1e-3
     assert np.ptp(seen(False).mean(axis=(0, 1))) > 0.1
+
+
+@pytest.mark.parametrize("camera", ["orthographic", "perspective"])
+def test_bumps_that_light_others_are_as_fine_as_they_are_seen(camera):
+    """A wavy plane behind the camera, in the sun, lights a white one before it, which casts no shadow.  Over the width of
+    the diffuse rays that meet it there was no relief."""
+    slope, far = 3.0, 50.0
+    options = {"samples": 16, "light_samples": 64, "bounces": 1}
+    if camera == "orthographic":
+        snapshot = s.orthographic((16, 16), **options)
+    else:
+        snapshot = s.perspective((16, 16), far, **options)  # a pixel there is 1 wide, too
+    white = wavy(snapshot, 8.0, slope, {"Filter Width": 0.1})
+    s.quad(snapshot, s.rectangle(-9e3, -9e3, 9e3, 9e3, far), diffuse(snapshot, 1.0))
+    s.quad(snapshot, s.rectangle(-9e3, -9e3, 9e3, 9e3, -1.0), white)
+    snapshot["instances"]["flags"] = [121, 123]
+    sun(snapshot, SUN * (1, 1, 1))
+    x = np.linspace(0.0, 2 * np.pi, 10000, endpoint=False)
+    truth = lit(slope * np.cos(x)).mean()
+    assert abs(truth / lit(0.0) - 1.0) > 0.1
+    assert mean(snapshot) == pytest.approx(truth, rel=0.02)

@@ -47,6 +47,7 @@ class BouncedLight::Wave {
             path.transmitted = ray.transmitted;
             path.width = ray.width;
             path.spread = ray.spread;
+            path.seen = glm::length(ray.ray.start);
             path.least_pdf = ray.pdf;
             path.splits = ray.samples;
             path.sure_part = std::min(1.0f, largest(ray.weight));
@@ -411,6 +412,7 @@ class BouncedLight::Wave {
     void send(const BouncedPath& path, const LobeRay& way, const Vec3f& weight, const End& end) {
         BouncedPath next = path;
         next.width = path.width + path.spread * end.distance;
+        next.seen = path.seen + end.distance;
         next.next = way;
         next.next.weight = path.next.weight * weight;
         next.next.share = path.next.share;
@@ -431,6 +433,7 @@ class BouncedLight::Wave {
             {m_light.m_scene.instances[end.hit->instance].key, face});
         BouncedPath next = path;
         next.width = path.width + path.spread * end.distance;
+        next.seen = path.seen + end.distance;
         next.next.weight = path.next.weight * weight;
         next.next.ray.start = offset(end.hit->p, -points.geometric_normal[end.point]);
         ++next.passed;

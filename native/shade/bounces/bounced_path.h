@@ -38,6 +38,7 @@ struct BouncedPath {
     float width = 0.0f;      ///< of the beam where the ray starts, metres
     float spread = 0.0f;     ///< by which it grows, metres a metre
     float length = 0.0f;     ///< that it went since it was last reflected
+    float seen = 0.0f;       ///< from the camera to where the ray starts, along it, metres
 
     /// Becomes the first of as many ways, alike but for their places, as its part of its point has
     /// of `splits`.

@@ -27,7 +27,7 @@ void HitPoints::resize(std::size_t n, const std::vector<AttributeRequest>& reque
     for (auto* values : {&p.p, &p.normal, &p.geometric_normal, &p.view}) values->resize(n);
     p.dp_du.assign(n, Vec3f(0.0f));
     p.dp_dv.assign(n, Vec3f(0.0f));
-    for (auto* values : {&p.times, &p.ray_lengths}) values->resize(n);
+    for (auto* values : {&p.times, &p.ray_lengths, &p.seen_from}) values->resize(n);
     p.backfacing.resize(n);
     p.places.resize(n);
     m_attributes.resize(requests, n);
@@ -119,6 +119,7 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
     if (m_points.round) m_points.ray_offset.assign(met.size(), Vec3f(0.0f));
     const bool displaced = m_rays.is_displaced({instance.key});
     m_points.terminator_offset = instance.terminator_offset;
+    (m_camera.perspective ? m_points.pixel_slope : m_points.pixel_width) = m_camera.pixel;
     if (!first.elements && !displaced) m_points.rise.assign(met.size(), Vec4f(0.0f));
     m_input = {};
     m_input.points = &m_points;
@@ -145,6 +146,7 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
         m_points.times[i] = met[i].time;
         m_points.places[i] = met[i].place;
         m_points.ray_lengths[i] = met[i].length;
+        m_points.seen_from[i] = met[i].seen;
         if (!still) {
             ObjectAxes& axes = m_input.axes_at_times.emplace_back();
             axes.world_from_object = met[i].frame->world_from_object;

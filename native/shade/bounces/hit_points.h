@@ -8,6 +8,7 @@
 #include "scene/scene.h"
 #include "shade/bounces/bounced_path.h"
 #include "shade/programs/program.h"
+#include "shade/programs/shading_camera.h"
 #include "shade/rays/hit_attributes.h"
 #include "shade/rays/ray_scene.h"
 
@@ -21,6 +22,7 @@ struct MetPath {
     float time;
     float width;              ///< of the beam there, metres
     float length;             ///< that light goes to where it was sent from, metres
+    float seen;               ///< that it goes to the camera; 0: nobody asks for bumps
     std::uint32_t place = 0;  ///< LobeRay::place
 };
 
@@ -31,6 +33,7 @@ inline MetPath met_by(const BouncedPath& path, const RayHit& hit, const RayFrame
             path.next.ray.time,
             path.width + path.spread * hit.distance,
             path.length + hit.distance,
+            path.seen + hit.distance,
             path.next.place};
 }
 
@@ -38,7 +41,7 @@ class HitPoints {
   public:
     /// `progress`: asked while programs run over input(); may be absent.
     HitPoints(const Scene& scene, const RayScene& rays, const Progress* progress = nullptr)
-        : m_scene(scene), m_rays(rays), m_progress(progress) {}
+        : m_scene(scene), m_rays(rays), m_camera(scene), m_progress(progress) {}
 
     /// `met`: of one instance and material, after `depth` surfaces.  Textures are filtered by the
     /// width of each beam (Christensen et al. 2003).
@@ -58,6 +61,7 @@ class HitPoints {
 
     const Scene& m_scene;
     const RayScene& m_rays;
+    ShadingCamera m_camera;
     const Progress* m_progress;
     ShadingPoints m_points;
     HitAttributes m_attributes;

@@ -172,7 +172,6 @@ struct ShadingPoints {
         view;  ///< [n] unit, from the point to the eye (orthographic: the constant direction)
     std::vector<Vec3f> dp_du, dp_dv;  ///< [n] change over one grid step
     /// A pixel's width where they are seen, metres: this much, and this much a metre from the eye.
-    /// Both 0: of what rays see, whose steps are as wide as their beams.
     float pixel_width = 0.0f, pixel_slope = 0.0f;
     std::vector<Vec3f> ray_offset;     ///< [n] as Grid::ray_offset; may be empty
     std::vector<Vec4f> rise;           ///< [n] as Grid::rise; may be empty
@@ -204,6 +203,8 @@ struct ShadingPoints {
     std::vector<float> times;
     /// [n] of the rays that see them, metres; empty: from the camera
     std::vector<float> ray_lengths;
+    /// [n] from the eye along the rays that see them, metres; empty: straight
+    std::vector<float> seen_from;
     /// How many surfaces, and places in media, lie between them and the camera; of places in media
     /// beyond kDepths, as these share no sequences with what they lie before.
     std::uint32_t depth = 0;

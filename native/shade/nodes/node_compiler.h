@@ -69,6 +69,7 @@ struct CompiledSurface {
     SurfaceProgram radiance;
     OpacityProgram passing;      ///< opacity_program for single places that rays meet
     OpacityProgram shadow;       ///< the same as shadow rays meet them
+    bool is_patterned = false;   ///< corners of micropolygons may miss what lies between them
     bool is_told_apart = false;  ///< by shadow rays and such as bring light
 
     /// Whether edges of faces show: corners of micropolygons lie on them, or between two of them.

@@ -13,6 +13,9 @@ std::map<std::string, NodeKind> all_kinds() {
     const auto value = [](void (*build)(NodeBuilder&)) {
         return NodeKind{build, nullptr, nullptr};
     };
+    const auto pattern = [](void (*build)(NodeBuilder&)) {
+        return NodeKind{build, nullptr, nullptr, true};
+    };
     const auto closure = [](auto* build) { return NodeKind{nullptr, build, nullptr}; };
     const auto flat = NodeKind{build_flat_texture, nullptr, "a flat grey, its mean"};
     const auto like_diffuse = NodeKind{nullptr, build_diffuse, "Diffuse BSDF"};
@@ -53,11 +56,11 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeMapping", value(build_mapping)},
         {"ShaderNodeMixRGB", value(build_mix_rgb)},
         {"ShaderNodeMix", value(build_mix)},
-        {"ShaderNodeMath", value(build_math)},
-        {"ShaderNodeVectorMath", value(build_vector_math)},
-        {"ShaderNodeMapRange", value(build_map_range)},
+        {"ShaderNodeMath", pattern(build_math)},
+        {"ShaderNodeVectorMath", pattern(build_vector_math)},
+        {"ShaderNodeMapRange", pattern(build_map_range)},
         {"ShaderNodeClamp", value(build_clamp)},
-        {"ShaderNodeValToRGB", value(build_color_ramp)},
+        {"ShaderNodeValToRGB", pattern(build_color_ramp)},
         {"ShaderNodeRGBCurve", value(build_rgb_curves)},
         {"ShaderNodeNormalMap", value(build_normal_map)},
         {"ShaderNodeBump", value(build_bump)},
@@ -89,16 +92,16 @@ std::map<std::string, NodeKind> all_kinds() {
         {"ShaderNodeWireframe", value(build_wireframe)},
         {"ShaderNodeParticleInfo", value(build_particle_info)},
         {"ShaderNodeCameraData", value(build_camera_data)},
-        {"ShaderNodeTexChecker", value(build_checker)},
+        {"ShaderNodeTexChecker", pattern(build_checker)},
         {"ShaderNodeTexGradient", value(build_gradient)},
-        {"ShaderNodeTexNoise", value(build_noise_texture)},
-        {"ShaderNodeTexMusgrave", value(build_musgrave_texture)},
-        {"ShaderNodeTexVoronoi", value(build_voronoi_texture)},
-        {"ShaderNodeTexWave", value(build_wave_texture)},
-        {"ShaderNodeTexMagic", value(build_magic_texture)},
-        {"ShaderNodeTexBrick", value(build_brick_texture)},
-        {"ShaderNodeTexGabor", value(build_gabor_texture)},
-        {"ShaderNodeTexWhiteNoise", value(build_white_noise_texture)},
+        {"ShaderNodeTexNoise", pattern(build_noise_texture)},
+        {"ShaderNodeTexMusgrave", pattern(build_musgrave_texture)},
+        {"ShaderNodeTexVoronoi", pattern(build_voronoi_texture)},
+        {"ShaderNodeTexWave", pattern(build_wave_texture)},
+        {"ShaderNodeTexMagic", pattern(build_magic_texture)},
+        {"ShaderNodeTexBrick", pattern(build_brick_texture)},
+        {"ShaderNodeTexGabor", pattern(build_gabor_texture)},
+        {"ShaderNodeTexWhiteNoise", pattern(build_white_noise_texture)},
         {"ShaderNodeTexSky", value(build_sky_texture)},
         {"ShaderNodeTexIES", value(build_ies_texture)},
         {"ShaderNodeVectorCurve", value(build_vector_curves)},

@@ -16,6 +16,8 @@ struct NodeKind {
     void (*build_closure)(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight) = nullptr;
     /// Not nullptr: this is not the node itself but its kin, which it is replaced by.
     const char* kin = nullptr;
+    /// Between two places whose inputs differ little its values may be anything.
+    bool is_pattern = false;
 };
 
 /// By Blender's bl_idname; nullptr = unknown.

@@ -47,6 +47,7 @@ struct ProgramBuilder {
     VectorSource
         bumped{};  ///< the shading normal, where `is_bumped`: what displacement makes of it
     bool is_bumped = false;
+    bool is_patterned = false;   ///< some node's values are a pattern
     bool bends_normals = false;  ///< a node is linked to what others take for the normal
     /// [node][shift]
     std::vector<std::array<NodeOutputs, 3>> outputs{};

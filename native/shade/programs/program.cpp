@@ -45,7 +45,9 @@ void run_load(const Load& load, Run& run) {
 float Run::scale_of(float width, Shift shift, std::size_t point) const {
     const ShadingPoints& points = *m_input.points;
     const std::vector<Vec3f>& steps = shift == Shift::V ? points.dp_dv : points.dp_du;
-    const float pixel = points.pixel_width + points.pixel_slope * glm::length(points.p[point]);
+    const float away =
+        points.seen_from.empty() ? glm::length(points.p[point]) : points.seen_from[point];
+    const float pixel = points.pixel_width + points.pixel_slope * away;
     if (!(pixel > 0.0f)) return width;
     const float length = glm::length(steps[point]);
     return length > 0.0f ? width * pixel / length : width;

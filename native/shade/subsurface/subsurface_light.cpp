@@ -210,6 +210,7 @@ class SubsurfaceLight::Batch {
         m_exits.push_back(exit);
         BouncedPath& way = m_ways.emplace_back();
         way.width = width_of(m_points, point);
+        way.seen = glm::length(m_points.p[point]);
         way.next.ray.time = m_body.time;
         way.next.weight = weight;
         way.next.point = static_cast<std::uint32_t>(point);

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points amid a grid's micropolygons that are asked whether its corners tell what it shows.  What
+// nodes make of places is not filtered: lines finer than a micropolygon lie between its corners,
+// and a pattern that keeps step with a grid is the same at all of them, so that no corner differs
+// from those beside it (find_unsettled()).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shade/refined_points.h"
+
+namespace granita {
+
+/// What a surface is by itself, whatever lights it.
+inline constexpr int kLookWidth = 13;
+
+/// [points][kLookWidth]: colour and normals of what reflects, how rough it is, the part of the
+/// colour that is diffuse, and what it sends out.
+std::vector<float> looks_of(const ShadingPoints& points, const SurfaceClosure& closure);
+
+/// At places of the grid's own: in one of a few micropolygons, or, where corners have found
+/// something, in all that they have not marked.
+class PatternProbes {
+  public:
+    /// @param marks [micropolygons] of which nothing is asked any more; empty: of none.
+    PatternProbes(const Grid& grid, std::span<const std::uint8_t> marks);
+
+    std::vector<RefinedPoint> points;
+
+    /// Whether looks anywhere differ from those between corners by more than the threshold,
+    /// displayed, lit as the grid is.
+    /// @param looks at the points, and of the grid's shading points.
+    /// @param is_lit whether light may be where corners are too dark to tell.
+    bool miss_looks(const Grid& grid, std::span<const float> looks, std::span<const float> of_grid,
+                    bool is_lit, float threshold) const;
+    /// The same of opacity, [points] and Grid::opacity.
+    bool miss_opacity(const Grid& grid, std::span<const Vec3f> opacity, float threshold) const;
+
+    /// Whether in some channel diffuse lobes of corners reflect nothing of what they reflect
+    /// between them: light of other surfaces, which samples take from there, is then unknown.
+    static bool hides_light(std::span<const float> looks, std::span<const float> of_grid);
+};
+
+}  // namespace granita
