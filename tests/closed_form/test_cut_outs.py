@@ -184,7 +184,7 @@ def fine_holes(snapshot, opacity, stripe):
 
 
 @pytest.mark.parametrize("executor", EXECUTORS)
-def test_holes_that_hiding_missed_let_no_world_through(executor):
+def test_fine_holes_let_no_world_through(executor):
     """What is behind the sheets' end was culled: samples that find the holes there may not go by them."""
     snapshot = stage(executor, opacity_threshold=0.996)
     sheet(snapshot, fine_holes(snapshot, 0.97, 8.4), 20.0)
@@ -196,14 +196,14 @@ def test_holes_that_hiding_missed_let_no_world_through(executor):
 
 
 @pytest.mark.parametrize("executor", EXECUTORS)
-def test_what_hiding_took_for_opaque_is_not_darkened_by_its_holes(executor):
+def test_holes_that_no_corner_meets_are_open(executor):
+    """Hiding took such a sheet for opaque."""
     snapshot = stage(executor)
     sheet(snapshot, fine_holes(snapshot, 1.0, 8.4), 20.0)
-    # Where corners are whole pixels apart; elsewhere some meet a hole, and all are found there.
     picture = s.render(snapshot)["combined"][:, 12:38]
-    assert picture[..., 3] == pytest.approx(1.0)
+    assert picture[..., 3] == pytest.approx(0.88, abs=EDGE)
     rows = picture[..., 0].mean(axis=1)
-    assert rows == pytest.approx(np.clip(np.arange(SIZE[1]) + 1 - 8.4, 0.0, 1.0), abs=EDGE)
+    assert rows == pytest.approx(0.88 * np.clip(np.arange(SIZE[1]) + 1 - 8.4, 0.0, 1.0), abs=EDGE)
 
 
 def test_opacity_that_follows_the_view_is_that_of_each_time():
