@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "base/progress.h"
@@ -33,8 +34,9 @@ class Environment {
   public:
     /// A world that is not constant is evaluated in parallel over `height` x 2 `height` texels:
     /// once in each where it is filtered; else at 4 x 4 places, so that what is at least 0.35 of a
-    /// texel wide (of the default an eighth of a degree, a quarter of the sun) is found.  Radiance
-    /// that is not finite counts as black.  Throws Cancelled.
+    /// texel wide (of the default an eighth of a degree, a quarter of the sun) is found, and at
+    /// 16 x 16 of texels that much of the samples are due to.  Radiance that is not finite counts
+    /// as black.  Throws Cancelled.
     Environment(const WorldEvaluator& world, const Progress& progress, int height = 512);
 
     /// Directions whose radiance was not finite.
@@ -80,11 +82,34 @@ class Environment {
     static constexpr std::array kBlurredRays{RayType::Diffuse, RayType::Glossy,
                                              RayType::Transmission, RayType::Translucent,
                                              RayType::Scattered};
+    /// Those that may see other worlds than the first does.
+    static std::span<const RayType> kinds(const WorldEvaluator& world) {
+        return std::span(kBlurredRays).first(world.by_lobe ? kBlurredRays.size() : 1);
+    }
+
+    /// [kFine + 1] distribution over the rows of a texel, then [kFine][kFine + 1] inside each.
+    static constexpr int kFine = 16;
+    static constexpr std::size_t kFineSize = (kFine + 1) * (kFine + 1);
+    using FineTexel = std::array<float, kFineSize>;
 
     /// [height][width] luminance
     std::vector<float> bake(const WorldEvaluator& world, const Progress& progress);
     void build_distribution(const std::vector<float>& luminance);
-    float density(int row, int column, float sine) const;
+    void build_fine(const WorldEvaluator& world, const Progress& progress,
+                    std::vector<float>& luminance);
+    std::vector<double> look_closely(const WorldEvaluator& world, std::size_t texel) const;
+    /// Of all samples, those of a texel.
+    float part(std::size_t texel) const;
+    const FineTexel* fine(std::size_t texel) const {
+        return m_fine_of.empty() || m_fine_of[texel] == 0 ? nullptr : &m_fine[m_fine_of[texel] - 1];
+    }
+    static float fill_fine(std::span<const double> bright, FineTexel& fine);
+    /// Of a row of a texel.
+    template <class Fine>
+    static auto* fine_columns(Fine& fine, int row) {
+        return fine.data() + (row + 1) * (kFine + 1);
+    }
+    float per_solid_angle(float part, float sine) const;
 
     int m_width = 0, m_height = 0;
     std::size_t m_broken = 0;
@@ -98,7 +123,10 @@ class Environment {
     /// [1 or 3][height][width] as diffuse rays see it; where others see others, then glossy ones
     /// and those that were transmitted.
     std::vector<Vec3f> m_radiance;
-    std::size_t m_texels_apart = 0;  ///< between two of them
+    /// Bright texels of worlds that are not filtered, in which there may be a sun's limb.
+    std::vector<FineTexel> m_fine;
+    std::vector<std::uint16_t> m_fine_of;  ///< [height][width] 1 + index; empty: there are none
+    std::size_t m_texels_apart = 0;        ///< between two of them
 };
 
 }  // namespace granita

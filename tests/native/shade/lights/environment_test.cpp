@@ -112,6 +112,30 @@ TEST(Environment, samples_estimate_the_irradiance_of_a_small_sun) {
     EXPECT_NEAR(sum / count, expected, 0.01 * expected);
 }
 
+// The sun as it is seen lies in four texels, in part; half of the samples of these missed it.
+TEST(Environment, few_samples_miss_a_sun_of_half_a_degree) {
+    const float cosine = std::cos(0.0046f);
+    const SobolPoints places(7), points(2);
+    for (std::uint32_t k = 0; k < 8; ++k) {
+        const Vec3f sun = glm::normalize(Vec3f(places(k).x - 0.5f, places(k).y - 0.5f, 0.4f));
+        const auto shines = [&](const Vec3f& d) { return glm::dot(d, sun) > cosine; };
+        const auto radiance = [&](const Vec3f& d) { return shines(d) ? 1e5f : 0.3f; };
+        const Environment world(world_of([&](const Vec3f& d) { return Vec3f(radiance(d)); }),
+                                kProgress);
+        double sum = 0.0, squares = 0.0;
+        const std::uint32_t count = 1 << 12;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Environment::Sample sample = world.sample(points(i));
+            const double light = radiance(sample.direction) / sample.pdf;
+            sum += light / count;
+            squares += light * light / count;
+        }
+        const double expected = 4 * kPi * 0.3 + 1e5 * 2 * kPi * (1.0 - std::cos(0.0046));
+        EXPECT_NEAR(sum, expected, 0.01 * expected);
+        EXPECT_LT(squares / (sum * sum) - 1.0, 0.15) << k;  // .6 and more by texels alone
+    }
+}
+
 // What is known of texels is the world's own mean over them, for each kind of lobe.
 TEST(Environment, texels_of_a_filtered_world_have_its_irradiance) {
     WorldEvaluator world{
