@@ -87,7 +87,7 @@ struct ShadingSystem::Impl : FrameShading {
             draw_as_diffuse(closure, has_body ? kLeastScattering : HUGE_VALF);
         }
         std::vector<float>* noise = doubts ? &doubts->noise : nullptr;
-        if (doubts && material(grid.material).is_patterned)
+        if (doubts && material(grid.material).radiance.is_patterned)
             doubts->looks = looks_of(points, closure);
         ReflectionParts parts, *asked = channels.empty() ? nullptr : &parts;
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
@@ -228,7 +228,7 @@ struct ShadingSystem::Impl : FrameShading {
         leave_to_samples(grid, channels.vertex_width());
     }
     void find_open_patterns(Grid& grid) const {
-        if (!material(grid.material).is_patterned) return;
+        if (!material(grid.material).radiance.is_patterned) return;
         const PatternProbes probes(grid, grid.unsettled_opacity);
         if (probes.miss_opacity(grid, opacity_at(grid, probes.points), thresholds.difference))
             grid.unsettled_opacity = all_micropolygons(grid);
@@ -343,7 +343,7 @@ void ShadingSystem::shade_opacity(Grid& grid) const {
     const auto is_open = [](const Vec3f& opacity) { return opacity != Vec3f(1.0f); };
     grid.opacity_varies = has_lines || std::ranges::any_of(grid.opacity, is_open);
     grid.additive = surface.radiance.sources.additive;
-    if (refines && (grid.opacity_varies || surface.is_patterned)) {
+    if (refines && (grid.opacity_varies || surface.radiance.is_patterned)) {
         const float sharpness = m_impl->sharpness(grid);
         const float threshold = m_impl->thresholds.difference / (sharpness * sharpness);
         grid.unsettled_opacity = has_lines || m_impl->opacity_changes_in_time(grid)
@@ -385,6 +385,10 @@ TextureStore& ShadingSystem::textures() const {
 
 const SeenVolumes* ShadingSystem::volumes() const {
     return m_impl->seen_volumes.get();
+}
+
+bool ShadingSystem::background_is_patterned() const {
+    return m_impl->world.is_patterned(RayType::Camera);
 }
 
 bool ShadingSystem::background_is_constant() const {

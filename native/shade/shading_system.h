@@ -72,6 +72,8 @@ class ShadingSystem {
     void background(const BackgroundRays& rays, std::vector<Vec3f>& out) const;
     /// The world's colour is one constant: `background` of any one direction.
     bool background_is_constant() const;
+    /// There may be anything between two of its directions, as stars are.
+    bool background_is_patterned() const;
 
     /// nullptr where nothing is filled.
     const SeenVolumes* volumes() const;

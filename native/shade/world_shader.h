@@ -19,6 +19,7 @@ class WorldShader {
     WorldShader(const Scene& scene, TextureStore& textures, Report& report);
 
     bool is_constant(RayType ray) const { return emission(ray).is_constant(); }
+    bool is_patterned(RayType ray) const { return program(ray).is_patterned; }
     /// Radiance along `directions` [n] unit, world axes, each standing for `spread` radians; fills
     /// `out` [n].  Any thread.
     void radiance(const std::vector<Vec3f>& directions, float spread, RayType ray,

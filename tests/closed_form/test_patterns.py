@@ -89,3 +89,30 @@ def test_what_corners_tell_costs_no_samples():
     snapshot["materials"].append({"name": "Wave", "nodes": nodes, "surface": (5, "Emission")})
     s.quad(snapshot, s.rectangle(-64, -64, 128, 128, 10.0), 0)
     assert s.render(snapshot)["statistics"]["points_refined"] == 0
+
+
+def test_stars_finer_than_a_pixel_are_seen():
+    """A world of them, .4 pixels wide each and 4 apart: a tenth was there, those in which a pixel's corner lay."""
+    focal, part = 1000.0, 0.1
+    snapshot = s.perspective((SIZE, SIZE), focal, samples=64)
+    s.constant_world(snapshot, 1.0)
+    nodes = [
+        {"type": "ShaderNodeTexCoord", "inputs": {}},
+        {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": ("LINK", 0, "Generated")}},
+    ]
+
+    def along(axis):  # hardly bent: cosines are 1 within 1 / 1000
+        first = len(nodes)
+        scaled = {"Value": ("LINK", 1, axis), "Value_001": focal / 4.0, "Value_002": 0.43}
+        nodes.append(math("MULTIPLY_ADD", **scaled))
+        nodes.append(math("FRACT", Value=("LINK", first, "Value")))
+        nodes.append(math("LESS_THAN", Value=("LINK", first + 1, "Value"), Value_001=part))
+        return ("LINK", first + 2, "Value")
+
+    both = {"Value": along("X"), "Value_001": along("Y")}
+    nodes.append(math("MULTIPLY", **both))
+    star = ("LINK", len(nodes) - 1, "Value")
+    nodes.append({"type": "ShaderNodeBackground", "inputs": {"Color": star, "Strength": 1.0}})
+    snapshot["world"].update(nodes=nodes, surface=(len(nodes) - 1, "Background"))
+    seen = s.render(snapshot)["combined"][..., 0]
+    assert seen.mean() == pytest.approx(part**2, rel=0.03)

@@ -182,19 +182,25 @@ float bump_width(const NodeGraph& graph, const ReadOutputs& read) {
     return least;
 }
 
+bool varies(const NodeOutputs::value_type& output) {
+    const NodeOutput& of = output.second;
+    return of.kind == SocketKind::Number ? !of.number.is_constant() : !of.vector.is_constant();
+}
+
 /// Values of all nodes that are read.
 void build_values(ProgramBuilder& builder, const NodeGraph& graph) {
     builder.outputs.assign(graph.nodes.size(), {});
     for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
         if (builder.read[i].empty() || graph.nodes[i].type == kAovOutput) continue;
         const NodeKind* kind = find_node_kind(graph.nodes[i].type);
-        builder.is_patterned |= kind && kind->is_pattern;
         // The shifted values first: the value at the point may need their differences.
         for (const Shift shift : {Shift::U, Shift::V, Shift::None}) {
             NodeBuilder b(builder, graph.nodes[i], i, shift);
             if (shift == Shift::None) warn_about_kin(b, kind);
             if (kind && kind->build) kind->build(b);
         }
+        builder.is_patterned |= kind && makes_pattern(*kind, graph.nodes[i]) &&
+                                std::ranges::any_of(builder.outputs[i][0], varies);
     }
 }
 
@@ -382,7 +388,7 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
     compiled.radiance.is_bumped = builder.is_bumped;
     compiled.radiance.bumped = builder.bumped;
     compiled.radiance.bends_normals = builder.bends_normals;
-    compiled.is_patterned = builder.is_patterned;
+    compiled.radiance.is_patterned = builder.is_patterned;
     std::vector<int> roots = roots_of(compiled.radiance.sources, compiled.radiance.passes);
     if (builder.is_bumped) push_root(roots, builder.bumped.slot);
     compiled.radiance.program =

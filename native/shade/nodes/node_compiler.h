@@ -31,6 +31,8 @@ struct SurfaceProgram {
     bool is_bumped = false;
     VectorSource bumped;         ///< where `is_bumped`: the shading normal, bent by displacement
     bool bends_normals = false;  ///< nodes may give lobes others
+    bool is_patterned = false;   ///< places that are near each other may tell nothing of others
+                                 ///< between them
 
     /// Whether diffuse lobes of all points look where the surface does.
     bool looks_ahead() const {
@@ -69,7 +71,6 @@ struct CompiledSurface {
     SurfaceProgram radiance;
     OpacityProgram passing;      ///< opacity_program for single places that rays meet
     OpacityProgram shadow;       ///< the same as shadow rays meet them
-    bool is_patterned = false;   ///< corners of micropolygons may miss what lies between them
     bool is_told_apart = false;  ///< by shadow rays and such as bring light
 
     /// Whether edges of faces show: corners of micropolygons lie on them, or between two of them.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/nodes/node_registry.h"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
+#include <string_view>
 
 #include "shade/nodes/nodes.h"
 
@@ -127,6 +130,16 @@ const NodeKind* find_node_kind(const std::string& type) {
     static const std::map<std::string, NodeKind> kKinds = all_kinds();
     const auto found = kKinds.find(type);
     return found == kKinds.end() ? nullptr : &found->second;
+}
+
+bool makes_pattern(const NodeKind& kind, const Node& node) {
+    static constexpr std::string_view kJumping[] = {
+        "LESS_THAN", "GREATER_THAN", "COMPARE", "SIGN",     "ROUND",   "FLOOR",
+        "CEIL",      "TRUNC",        "FRACT",   "FRACTION", "MODULO",  "WRAP",
+        "SNAP",      "PINGPONG",     "SINE",    "COSINE",   "TANGENT", "FLOORED_MODULO"};
+    const std::string operation = node.text("operation");
+    return kind.is_pattern &&
+           (operation.empty() || std::ranges::find(kJumping, operation) != std::end(kJumping));
 }
 
 }  // namespace granita
