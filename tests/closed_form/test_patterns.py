@@ -92,7 +92,7 @@ def test_what_corners_tell_costs_no_samples():
 
 
 def test_stars_finer_than_a_pixel_are_seen():
-    """A world of them, .4 pixels wide each and 4 apart: a tenth was there, those in which a pixel's corner lay."""
+    """A world of them, .4 pixels wide each and 4 apart: only those in which a pixel's corner lay were there."""
     focal, part = 1000.0, 0.1
     snapshot = s.perspective((SIZE, SIZE), focal, samples=64)
     s.constant_world(snapshot, 1.0)

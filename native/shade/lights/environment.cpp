@@ -276,8 +276,8 @@ float Environment::fill_fine(std::span<const double> bright, FineTexel& fine) {
             for (int dy = 0; dy <= 2; ++dy)
                 for (int dx = 0; dx <= 2; ++dx) {
                     const double part = dx == 1 && dy == 1 ? 1.0 : 0.5;
-                    const auto at = static_cast<std::size_t>((y + dy) * kRow + x + dx);
-                    columns[x] = std::max(columns[x], part * bright[at]);
+                    const int at = (y + dy) * kRow + x + dx;
+                    columns[x] = std::max(columns[x], part * bright[static_cast<std::size_t>(at)]);
                 }
             rows[y] += columns[x];
         }
