@@ -109,7 +109,7 @@ PatternProbes::PatternProbes(const Grid& grid, std::span<const std::uint8_t> mar
                 in_square(grid, m, part(k, kPlastic[0], 16), part(k, kPlastic[1], 32)));
         }
     };
-    if (marks.empty()) {
+    if (std::ranges::find(marks, 0) == marks.end()) {
         const int step = std::min(kStep, count);
         const int first = static_cast<int>(seed % static_cast<std::uint64_t>(step));
         for (int m = first; m < count; m += step) ask(m, 1);
@@ -140,8 +140,9 @@ bool PatternProbes::miss_looks(const Grid& grid, std::span<const float> looks,
             glm::length(is.bent - corners.bent) + std::abs(is.gloss - corners.gloss);
         const Vec3f shown = between(grid.radiance, points[i]);
         const Vec3f more = here * (is.color - corners.color) + is.sent - corners.sent;
-        if (displayed_difference(shown, shown + more) > threshold ||
-            displayed_difference(shown, shown + Vec3f(here * turned)) > threshold)
+        // What is no number is not what corners tell.
+        if (!(displayed_difference(shown, shown + more) <= threshold &&
+              displayed_difference(shown, shown + Vec3f(here * turned)) <= threshold))
             return true;
     }
     return false;
@@ -155,16 +156,23 @@ bool PatternProbes::miss_opacity(const Grid& grid, std::span<const Vec3f> opacit
     return false;
 }
 
-bool PatternProbes::hides_light(std::span<const float> looks, std::span<const float> of_grid) {
-    const auto brightest = [](std::span<const float> of) {
-        Vec3f most(0.0f);
-        for (std::size_t i = 0; i < of.size(); i += kLookWidth)
-            most = glm::max(most, Look(&of[i]).diffuse);
-        return most;
-    };
-    const Vec3f there = brightest(looks), at_corners = brightest(of_grid);
-    for (int c = 0; c < 3; ++c)
-        if (there[c] > kTold && at_corners[c] < kTold * there[c]) return true;
+bool PatternProbes::hide_light(const Grid& grid, std::span<const float> looks) const {
+    const GridLight& found = grid.found;
+    if (found.gathered.empty()) return false;
+    std::vector<float> untold;  // [points of the grid][3]
+    for (std::size_t i = 0; i < found.gathered.size(); ++i)
+        for (int c = 0; c < 3; ++c)
+            untold.push_back(found.gathered[i][c] == 0.0f && (found.gathered_world.empty() ||
+                                                              found.gathered_world[i][c] == 0.0f)
+                                 ? 1.0f
+                                 : 0.0f);
+    const std::vector<float> around = blended_at(grid, points, untold, 3);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec3f diffuse = Look(&looks[i * kLookWidth]).diffuse;
+        for (int c = 0; c < 3; ++c)
+            if (diffuse[c] > kTold && around[3 * i + static_cast<std::size_t>(c)] > 0.0f)
+                return true;
+    }
     return false;
 }
 

@@ -21,7 +21,7 @@ inline constexpr int kLookWidth = 13;
 std::vector<float> looks_of(const ShadingPoints& points, const SurfaceClosure& closure);
 
 /// At places of the grid's own: in one of a few micropolygons, or, where corners have found
-/// something, in all that they have not marked.
+/// something, in all that they have not marked, if there are such.
 class PatternProbes {
   public:
     /// @param marks [micropolygons] of which nothing is asked any more; empty: of none.
@@ -38,9 +38,9 @@ class PatternProbes {
     /// The same of opacity, [points] and Grid::opacity.
     bool miss_opacity(const Grid& grid, std::span<const Vec3f> opacity, float threshold) const;
 
-    /// Whether in some channel diffuse lobes of corners reflect nothing of what they reflect
-    /// between them: light of other surfaces, which samples take from there, is then unknown.
-    static bool hides_light(std::span<const float> looks, std::span<const float> of_grid);
+    /// Whether diffuse lobes at some point reflect what a corner around it does not tell of others'
+    /// light (Grid::found), as nothing near it reflects any: it is unknown there, or dark.
+    bool hide_light(const Grid& grid, std::span<const float> looks) const;
 };
 
 }  // namespace granita

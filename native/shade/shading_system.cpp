@@ -213,19 +213,22 @@ struct ShadingSystem::Impl : FrameShading {
         return std::move(out.opacity);
     }
 
-    /// Leaves to samples all of a grid whose corners do not tell what patterns show between them.
-    /// Blur is no help: lines that go where a thing moves stay lines.
+    /// Marks all of a grid whose corners do not tell what patterns show between them.  Blur is no
+    /// help: lines that go where a thing moves stay lines.
     void find_patterns(Grid& grid, const std::vector<float>& looks) const {
         if (looks.empty()) return;
         const PatternProbes probes(grid, grid.unsettled);
         const RefinedPoints found(grid, scene, camera, eye, probes.points, moves, 1.0f);
         const SurfaceRun ran(material(grid.material).radiance, input(grid, found));
+        grid.broken_radiance |= ran.broken() > 0;
         const std::vector<float> there = looks_of(ran.points(), ran.closure());
-        if (!probes.miss_looks(grid, there, looks, light != nullptr, thresholds.difference)) return;
-        grid.unsettled = all_micropolygons(grid);
-        if (!PatternProbes::hides_light(there, looks)) return;
-        grid.found = {};
-        leave_to_samples(grid, channels.vertex_width());
+        if (probes.hide_light(grid, there)) {
+            // Samples look for it, each for itself.
+            grid.found.gathered.clear();
+            grid.found.gathered_world.clear();
+        }
+        if (probes.miss_looks(grid, there, looks, light != nullptr, thresholds.difference))
+            grid.unsettled = all_micropolygons(grid);
     }
     void find_open_patterns(Grid& grid) const {
         if (!material(grid.material).radiance.is_patterned) return;
@@ -269,7 +272,9 @@ struct ShadingSystem::Impl : FrameShading {
         shade(grid, input(grid, points), at, wants_refining ? &doubts : nullptr);
         statistics.add(Counter::GridsShaded);
         if (catches) {
+            // What is left of light tells nothing of color.
             doubts.settled.clear();
+            doubts.looks.clear();
             catchers->divide(grid, channels, doubts.noise);
         }
         if (!wants_refining) return;
@@ -280,15 +285,9 @@ struct ShadingSystem::Impl : FrameShading {
         if (material(grid.material).has_lines() || changes_in_time(grid))
             grid.unsettled = all_micropolygons(grid);
         else
-            find_unsettled(grid, doubts, sharpness, fewer);
-    }
-
-    /// @param sharpness, fewer: parts of light samples that the blur of the grid leaves, and that
-    /// its points have.
-    void find_unsettled(Grid& grid, Doubts& doubts, float sharpness, float fewer) const {
-        const float difference = thresholds.difference / (sharpness * sharpness);
-        granita::find_unsettled(grid, doubts.settled, doubts.noise, difference,
-                                thresholds.noise / (fewer * fewer));
+            find_unsettled(grid, doubts.settled, doubts.noise,
+                           thresholds.difference / (sharpness * sharpness),
+                           thresholds.noise / (fewer * fewer));
         find_patterns(grid, doubts.looks);
     }
 };

@@ -62,7 +62,7 @@ def test_lines_that_keep_step_with_micropolygons(shown, moved):
 @pytest.mark.parametrize("part", [0.04, 0.1, 0.3])
 def test_lines_thinner_than_a_pixel_are_whole(shown, part):
     """A fifth of a pixel wide and more, every five pixels, askew: they were dashes."""
-    snapshot = s.orthographic((SIZE, SIZE), samples=64)
+    snapshot = s.orthographic((SIZE, SIZE), samples=64, bounces=2)
     if shown == "reflection":
         white_world(snapshot)
     stripes = striped(snapshot, 5.0, part, shown, 0.13)
@@ -73,6 +73,28 @@ def test_lines_thinner_than_a_pixel_are_whole(shown, part):
     truth = (lines - np.floor(lines) > 1.0 - part).reshape(SIZE, 16, SIZE, 16).mean(axis=(1, 3))
     assert seen.mean() == pytest.approx(part, rel=0.01)
     assert np.sqrt(((seen - truth) ** 2).mean()) < 0.03
+
+
+@pytest.mark.parametrize("lit", ["world", "moving", "between holes"])
+def test_what_no_corner_reflects_is_lit_by_others(lit):
+    """Corners, all of them black, tell nothing of the light that samples take from them, whatever marked these."""
+    snapshot = s.orthographic((SIZE, SIZE), samples=64, bounces=2)
+    white_world(snapshot)
+    stripes = striped(snapshot, 1.0, 0.25, "reflection")
+    knots = None
+    if lit == "moving":
+        knots = np.stack([s.translation(-8.0), s.translation(8.0)])
+    if lit == "between holes":
+        nodes = snapshot["materials"][stripes]["nodes"]
+        nodes.append({"type": "ShaderNodeBsdfTransparent", "inputs": {"Color": (1.0,) * 4}})
+        shaders = {"Shader": ("LINK", len(nodes) - 1, "BSDF"), "Shader_001": ("LINK", 8, "BSDF")}
+        inputs = {"Fac": ("LINK", 7, "Value"), **shaders}
+        nodes.append({"type": "ShaderNodeMixShader", "inputs": inputs})
+        snapshot["materials"][stripes]["surface"] = (len(nodes) - 1, "Shader")
+        s.quad(snapshot, s.rectangle(-9e3, -9e3, 9e3, 9e3, 30.0), s.emission(snapshot, (0, 0, 0)))
+    s.quad(snapshot, s.rectangle(-32, -32, 96, 96, 10.0), stripes, transforms=knots)
+    seen = s.render(snapshot)["combined"][..., 0]
+    assert seen.mean() == pytest.approx(0.25, abs=0.01)
 
 
 def test_what_corners_tell_costs_no_samples():

@@ -22,7 +22,7 @@ struct MetPath {
     float time;
     float width;              ///< of the beam there, metres
     float length;             ///< that light goes to where it was sent from, metres
-    float seen;               ///< that it goes to the camera; 0: nobody asks for bumps
+    float seen;               ///< that it goes to the camera; 0: not known
     std::uint32_t place = 0;  ///< LobeRay::place
 };
 

@@ -174,15 +174,17 @@ void Environment::build_distribution(const std::vector<float>& luminance_of) {
         const float* line = luminance_of.data() + static_cast<std::size_t>(row) * m_width;
         for (int column = 0; column < m_width; ++column) {
             // At least a tenth of the brightest neighbour: what a filtered texture brings across a
-            // texel's border is never sampled with far too small a density.
+            // texel's border is never sampled with far too small a density.  Less of what has been
+            // looked at closely.
             double largest = line[column];
             const bool is_known = fine(static_cast<std::size_t>(row) * m_width + column) != nullptr;
-            for (int dy = -1; dy <= 1 && !is_known; ++dy) {
+            const double least = is_known ? 0.01 : 0.1;
+            for (int dy = -1; dy <= 1; ++dy) {
                 const int y = std::clamp(row + dy, 0, m_height - 1) - row;
                 for (int dx = -1; dx <= 1; ++dx) {
                     const int x = (column + dx + m_width) % m_width;
                     const double l = line[static_cast<std::ptrdiff_t>(y) * m_width + x];
-                    largest = std::max(largest, 0.1 * l);
+                    largest = std::max(largest, least * l);
                 }
             }
             columns[column] = largest;
@@ -247,12 +249,13 @@ void Environment::build_fine(const WorldEvaluator& world, const Progress& progre
 std::vector<double> Environment::look_closely(const WorldEvaluator& world,
                                               std::size_t texel) const {
     const auto width = static_cast<std::size_t>(m_width);
+    const std::size_t column = texel % width, row = texel / width;
     std::vector<Vec3f> directions, seen;
     for (int y = -1; y <= kFine; ++y)
         for (int x = -1; x <= kFine; ++x)
             directions.push_back(equirectangular_direction(
-                (static_cast<double>(texel % width) + (x + 0.5) / kFine) / m_width,
-                (static_cast<double>(texel / width) + (y + 0.5) / kFine) / m_height));
+                (static_cast<double>(column) + (x + 0.5) / kFine) / m_width,
+                (static_cast<double>(row) + (y + 0.5) / kFine) / m_height));
     std::vector<double> bright(directions.size(), 0.0);
     for (const RayType ray : kinds(world)) {
         world.radiance(directions, texel_angle() / kFine, ray, seen);

@@ -120,13 +120,12 @@ class Environment {
     /// [height][kGuides] for each step of a row's distribution, the column before it: bisecting a
     /// thousand columns missed the cache five times, a tenth of a lit world's time.
     std::vector<std::uint16_t> m_guides;
-    /// [1 or 3][height][width] as diffuse rays see it; where others see others, then glossy ones
-    /// and those that were transmitted.
+    /// [1 or kBlurredRays][height][width] as each of these sees it.
     std::vector<Vec3f> m_radiance;
+    std::size_t m_texels_apart = 0;  ///< between two of them
     /// Bright texels of worlds that are not filtered, in which there may be a sun's limb.
     std::vector<FineTexel> m_fine;
     std::vector<std::uint16_t> m_fine_of;  ///< [height][width] 1 + index; empty: there are none
-    std::size_t m_texels_apart = 0;        ///< between two of them
 };
 
 }  // namespace granita

@@ -388,7 +388,8 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
     compiled.radiance.is_bumped = builder.is_bumped;
     compiled.radiance.bumped = builder.bumped;
     compiled.radiance.bends_normals = builder.bends_normals;
-    compiled.radiance.is_patterned = builder.is_patterned;
+    // What rays tell differs by chance.
+    compiled.radiance.is_patterned = builder.is_patterned && !asks_rays(graph);
     std::vector<int> roots = roots_of(compiled.radiance.sources, compiled.radiance.passes);
     if (builder.is_bumped) push_root(roots, builder.bumped.slot);
     compiled.radiance.program =

@@ -137,9 +137,11 @@ bool makes_pattern(const NodeKind& kind, const Node& node) {
         "LESS_THAN", "GREATER_THAN", "COMPARE", "SIGN",     "ROUND",   "FLOOR",
         "CEIL",      "TRUNC",        "FRACT",   "FRACTION", "MODULO",  "WRAP",
         "SNAP",      "PINGPONG",     "SINE",    "COSINE",   "TANGENT", "FLOORED_MODULO"};
+    if (!kind.is_pattern) return false;
+    if (node.type == "ShaderNodeValToRGB") return node.text("interpolation") == "CONSTANT";
+    if (node.type == "ShaderNodeMapRange") return node.text("interpolation_type") == "STEPPED";
     const std::string operation = node.text("operation");
-    return kind.is_pattern &&
-           (operation.empty() || std::ranges::find(kJumping, operation) != std::end(kJumping));
+    return operation.empty() || std::ranges::find(kJumping, operation) != std::end(kJumping);
 }
 
 }  // namespace granita

@@ -16,14 +16,15 @@ struct NodeKind {
     void (*build_closure)(NodeBuilder&, SurfaceBuilder&, const FloatSource& weight) = nullptr;
     /// Not nullptr: this is not the node itself but its kin, which it is replaced by.
     const char* kin = nullptr;
-    /// Between two places whose inputs differ little its values may be anything: makes_pattern().
+    /// Between two places whose inputs differ little its values may be anything, if
+    /// makes_pattern().
     bool is_pattern = false;
 };
 
 /// By Blender's bl_idname; nullptr = unknown.
 const NodeKind* find_node_kind(const std::string& type);
 
-/// Whether a node of the kind does, by its operation.
+/// Whether a node of the kind does, by its operation: one that jumps or repeats.
 bool makes_pattern(const NodeKind& kind, const Node& node);
 
 }  // namespace granita

@@ -136,6 +136,25 @@ TEST(Environment, few_samples_miss_a_sun_of_half_a_degree) {
     }
 }
 
+// Also of suns on the seam and about a pole, in the parts of texels.
+TEST(Environment, densities_are_those_of_samples_within_bright_texels) {
+    const SobolPoints points(2);
+    for (const Vec3f& at : {Vec3f(-1.0f, 1e-4f, 0.1f), Vec3f(0.001f, 0.0f, 1.0f),
+                            Vec3f(0.0f, 0.001f, -1.0f), Vec3f(0.3f, -0.5f, 0.6f)}) {
+        const Vec3f sun = glm::normalize(at);
+        const Environment world(world_of([&](const Vec3f& d) {
+                                    return Vec3f(glm::distance(d, sun) < 0.0046f ? 1e5f : 0.3f);
+                                }),
+                                kProgress);
+        int equal = 0;
+        for (std::uint32_t i = 0; i < 1024; ++i) {
+            const Environment::Sample sample = world.sample(points(i));
+            equal += std::abs(world.at(sample.direction).pdf / sample.pdf - 1.0f) < 2e-2f;
+        }
+        EXPECT_GE(equal, 1010) << at.x << ' ' << at.y << ' ' << at.z;  // borders of parts
+    }
+}
+
 // What is known of texels is the world's own mean over them, for each kind of lobe.
 TEST(Environment, texels_of_a_filtered_world_have_its_irradiance) {
     WorldEvaluator world{
