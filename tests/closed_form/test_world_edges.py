@@ -11,10 +11,13 @@ EDGE = 1 / 16
 
 
 def picture(center, executor="SIMD", **options):
-    """Of a world that is 1 right of the column `center`, 0 left of it."""
+    """Of a world that is 1 right of the column `center`, 0 left of it, by a slope: which is no pattern."""
     options = {"samples": 256, **options}
     snapshot = s.perspective(SIZE, 40.0, center=(center, 8.0), executor=executor, **options)
     s.half_world(snapshot)
+    edge = next(n for n in snapshot["world"]["nodes"] if n["type"] == "ShaderNodeMath")
+    edge["properties"] = {"operation": "MULTIPLY", "use_clamp": True}
+    edge["inputs"]["Value_001"] = 1e7
     return s.render(snapshot)["combined"][..., 0]
 
 
