@@ -216,7 +216,8 @@ struct ShadingSystem::Impl : FrameShading {
     /// Marks all of a grid whose corners do not tell what patterns show between them.  Blur is no
     /// help: lines that go where a thing moves stay lines.
     void find_patterns(Grid& grid, const std::vector<float>& looks) const {
-        if (looks.empty()) return;
+        // What is scattered is told by corners that are not black; there samples were darker still.
+        if (looks.empty() || scatters(grid.material)) return;
         const PatternProbes probes(grid, grid.unsettled);
         const RefinedPoints found(grid, scene, camera, eye, probes.points, moves, 1.0f);
         const SurfaceRun ran(material(grid.material).radiance, input(grid, found));
