@@ -84,7 +84,8 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
     const CameraRays tile(camera, store, samples);
     std::vector<Vec3f> colors(store.id.size(), Vec3f(0.0f));
     // A static pinhole camera sees a function of the pixel that is smooth but for what the world
-    // draws: a sun, a horizon.  Of stars finer than a pixel its corners showed a tenth.
+    // draws: a sun, a horizon.  Pixels' corners miss
+    // patterns: of stars of a tenth of a pixel they showed a tenth.
     if (!tile.vary_in_pixel() && !shading.background_is_patterned()) {
         const PixelCorners corners(camera, tile, shading);
         for (const std::size_t i : uncovered) colors[i] = corners.at(samples.x[i], samples.y[i]);

@@ -84,14 +84,16 @@ std::vector<float> looks_of(const ShadingPoints& points, const SurfaceClosure& c
         for (const Lobe& lobe : closure.lobes)
             look.add(head_on(lobe, i), lobe.normal[i] * side, lobe.roughness[i],
                      part_of(lobe.kind) == LightPart::Diffuse);
-        for (const SubsurfaceLobe& lobe : closure.subsurface)
-            look.add(lobe.weight[i], lobe.normal[i] * side, 0.0f, true);
         if (!closure.emission.empty()) look.sent = closure.emission[i];
         for (const Vec3f& v : {look.color, look.bent, look.diffuse, look.sent})
             looks.insert(looks.end(), {v.x, v.y, v.z});
         looks.push_back(look.gloss);
     }
     return looks;
+}
+
+bool are_all_marked(std::span<const std::uint8_t> marks) {
+    return !marks.empty() && std::ranges::find(marks, 0) == marks.end();
 }
 
 PatternProbes::PatternProbes(const Grid& grid, std::span<const std::uint8_t> marks) {
@@ -109,7 +111,7 @@ PatternProbes::PatternProbes(const Grid& grid, std::span<const std::uint8_t> mar
                 in_square(grid, m, part(k, kPlastic[0], 16), part(k, kPlastic[1], 32)));
         }
     };
-    if (std::ranges::find(marks, 0) == marks.end()) {
+    if (marks.empty() || are_all_marked(marks)) {
         const int step = std::min(kStep, count);
         const int first = static_cast<int>(seed % static_cast<std::uint64_t>(step));
         for (int m = first; m < count; m += step) ask(m, 1);

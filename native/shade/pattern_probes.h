@@ -16,9 +16,12 @@ namespace granita {
 /// What a surface is by itself, whatever lights it.
 inline constexpr int kLookWidth = 13;
 
-/// [points][kLookWidth]: colour and normals of what reflects, how rough it is, the part of the
-/// colour that is diffuse, and what it sends out.
+/// Of what scatters nothing below it, [points][kLookWidth]: colour and normals of what reflects,
+/// how rough it is, the part of the colour that is diffuse, and what it sends out.
 std::vector<float> looks_of(const ShadingPoints& points, const SurfaceClosure& closure);
+
+/// [micropolygons]; empty: none is.
+bool are_all_marked(std::span<const std::uint8_t> marks);
 
 /// At places of the grid's own: in one of a few micropolygons, or, where corners have found
 /// something, in all that they have not marked, if there are such.

@@ -87,7 +87,8 @@ struct ShadingSystem::Impl : FrameShading {
             draw_as_diffuse(closure, has_body ? kLeastScattering : HUGE_VALF);
         }
         std::vector<float>* noise = doubts ? &doubts->noise : nullptr;
-        if (doubts && material(grid.material).radiance.is_patterned)
+        // What is scattered is told by corners that are not black; there samples were darker still.
+        if (doubts && surface.is_patterned && !surface.scatters())
             doubts->looks = looks_of(points, closure);
         ReflectionParts parts, *asked = channels.empty() ? nullptr : &parts;
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
@@ -216,8 +217,8 @@ struct ShadingSystem::Impl : FrameShading {
     /// Marks all of a grid whose corners do not tell what patterns show between them.  Blur is no
     /// help: lines that go where a thing moves stay lines.
     void find_patterns(Grid& grid, const std::vector<float>& looks) const {
-        // What is scattered is told by corners that are not black; there samples were darker still.
-        if (looks.empty() || scatters(grid.material)) return;
+        const bool tells_light = !grid.found.gathered.empty();
+        if (looks.empty() || (!tells_light && are_all_marked(grid.unsettled))) return;
         const PatternProbes probes(grid, grid.unsettled);
         const RefinedPoints found(grid, scene, camera, eye, probes.points, moves, 1.0f);
         const SurfaceRun ran(material(grid.material).radiance, input(grid, found));
@@ -232,7 +233,9 @@ struct ShadingSystem::Impl : FrameShading {
             grid.unsettled = all_micropolygons(grid);
     }
     void find_open_patterns(Grid& grid) const {
-        if (!material(grid.material).radiance.is_patterned) return;
+        if (!material(grid.material).radiance.is_patterned ||
+            are_all_marked(grid.unsettled_opacity))
+            return;
         const PatternProbes probes(grid, grid.unsettled_opacity);
         if (probes.miss_opacity(grid, opacity_at(grid, probes.points), thresholds.difference))
             grid.unsettled_opacity = all_micropolygons(grid);
