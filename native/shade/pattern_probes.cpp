@@ -18,6 +18,8 @@ constexpr int kStep = 4;
 /// Probes of each where corners have found something: lines of a fifth of a pixel are dashes that
 /// lack 6 % with one, nothing with three, and samples there cost more than these.
 constexpr int kTimes = 3;
+/// What lets as much more or less through is another thing.
+constexpr float kAnother = 0.5f;
 /// The light of a grid's corners that reflect less is not known by what they send out.
 constexpr float kTold = 0.02f;
 
@@ -96,6 +98,18 @@ bool are_all_marked(std::span<const std::uint8_t> marks) {
     return !marks.empty() && std::ranges::find(marks, 0) == marks.end();
 }
 
+bool any_differs(std::span<const LampSight> of_grid) {
+    return std::ranges::any_of(of_grid, [](const LampSight& sight) {
+        float least = HUGE_VALF, most = -HUGE_VALF;
+        for (const float through : sight.through) {
+            if (through < 0.0f) continue;
+            least = std::min(least, through);
+            most = std::max(most, through);
+        }
+        return most - least > kAnother;
+    });
+}
+
 PatternProbes::PatternProbes(const Grid& grid, std::span<const std::uint8_t> marks) {
     const int count = grid.micropolygon_count();
     const std::uint64_t seed = grid_seed(grid.key, 0);
@@ -155,6 +169,29 @@ bool PatternProbes::miss_opacity(const Grid& grid, std::span<const Vec3f> opacit
     for (std::size_t i = 0; i < points.size(); ++i)
         if (opacity_difference(opacity[i], between(grid.opacity, points[i])) > threshold)
             return true;
+    return false;
+}
+
+bool PatternProbes::miss_shadows(const Grid& grid, std::span<const LampSight> sights,
+                                 std::span<const LampSight> of_grid, float threshold) const {
+    for (std::size_t l = 0; l < sights.size(); ++l) {
+        const LampSight &there = sights[l], &corners = of_grid[l];
+        for (std::size_t i = 0; i < there.through.size(); ++i) {
+            if (there.through[i] < 0.0f) continue;
+            bool is_told = true, is_other = true;
+            Vec3f change(0.0f);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::size_t corner = grid.point_at(points[i].vertex[k]);
+                const float more = there.through[i] - corners.through[corner];
+                is_told = is_told && corners.through[corner] >= 0.0f;
+                is_other = is_other && std::abs(more) > kAnother;
+                change += points[i].weight[k] * more * corners.light[corner];
+            }
+            const Vec3f shown = between(grid.radiance, points[i]);
+            if (is_told && is_other && displayed_difference(shown, shown + change) > threshold)
+                return true;
+        }
+    }
     return false;
 }
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Points amid a grid's micropolygons that are asked whether its corners tell what it shows.  What
-// nodes make of places is not filtered: lines finer than a micropolygon lie between its corners,
-// and a pattern that keeps step with a grid is the same at all of them, so that no corner differs
-// from those beside it (find_unsettled()).
+// nodes make of places is not filtered, nor are shadows of wires: lines finer than a micropolygon
+// lie between its corners, and a pattern that keeps step with a grid is the same at all of them, so
+// that no corner differs from those beside it (find_unsettled()).
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "shade/lights/lamp_sight.h"
 #include "shade/refined_points.h"
 
 namespace granita {
@@ -22,6 +23,9 @@ std::vector<float> looks_of(const ShadingPoints& points, const SurfaceClosure& c
 
 /// [micropolygons]; empty: none is.
 bool are_all_marked(std::span<const std::uint8_t> marks);
+
+/// Whether some of a grid's points see a lamp and others do not.
+bool any_differs(std::span<const LampSight> of_grid);
 
 /// At places of the grid's own: in one of a few micropolygons, or, where corners have found
 /// something, in all that they have not marked, if there are such.
@@ -44,6 +48,12 @@ class PatternProbes {
     /// Whether diffuse lobes at some point reflect what a corner around it does not tell of others'
     /// light (Grid::found), as nothing near it reflects any: it is unknown there, or dark.
     bool hide_light(const Grid& grid, std::span<const float> looks) const;
+
+    /// Whether lamps are seen at some point otherwise than by all corners around it, and their
+    /// light would be missed, displayed.
+    /// @param sights of the points, and of the grid's shading points.
+    bool miss_shadows(const Grid& grid, std::span<const LampSight> sights,
+                      std::span<const LampSight> of_grid, float threshold) const;
 };
 
 }  // namespace granita

@@ -72,6 +72,7 @@ struct ShadingSystem::Impl : FrameShading {
         std::vector<Vec3f> settled;  ///< [vertices] radiance but for what is noise at single
                                      ///< points: empty where it is all
         std::vector<float> looks;    ///< looks_of(), of patterns
+        std::vector<LampSight> sights;
     };
 
     /// Fills radiance and channels of `grid`, whose points are `in.points`.
@@ -96,8 +97,9 @@ struct ShadingSystem::Impl : FrameShading {
         leaving.diffuse = grid.found.gathered.empty();
         leaving.takes_world = bounces && scene.options.bounces.diffuse > 0 && surface.looks_ahead();
         if (light)
-            radiance = light->reflect(points, closure, grid.key, asked, at, noise,
-                                      bounces ? &leaving : nullptr);
+            radiance =
+                light->reflect(points, closure, grid.key, asked, at, noise,
+                               bounces ? &leaving : nullptr, doubts ? &doubts->sights : nullptr);
         else if (asked)
             parts.resize(points.count);
         if (bounces && !closure.lobes.empty())
@@ -232,6 +234,18 @@ struct ShadingSystem::Impl : FrameShading {
         if (probes.miss_looks(grid, there, looks, light != nullptr, thresholds.difference))
             grid.unsettled = all_micropolygons(grid);
     }
+    /// The same where they do not tell shadows.  What blurs shows no such lines.
+    void find_thin_shadows(Grid& grid, std::span<const LampSight> sights, float threshold) const {
+        if (sights.empty() || grid.shades_lattice() || are_all_marked(grid.unsettled)) return;
+        const std::span<const std::uint8_t> marks(grid.unsettled);
+        const PatternProbes probes(grid, any_differs(sights) ? marks : marks.first(0));
+        RefinedPoints found(grid, scene, camera, eye, probes.points, moves, 1.0f);
+        found.points.share = 0.0f;
+        light->lift(found.points, grid.key);
+        if (probes.miss_shadows(grid, light->see(found.points, grid.key, sights), sights,
+                                threshold))
+            grid.unsettled = all_micropolygons(grid);
+    }
     void find_open_patterns(Grid& grid) const {
         if (!material(grid.material).radiance.is_patterned ||
             are_all_marked(grid.unsettled_opacity))
@@ -271,7 +285,7 @@ struct ShadingSystem::Impl : FrameShading {
         if (wants_refining && may_leave(grid) && !grid.opacity_varies && !scatters(grid.material) &&
             pays_by_samples(grid, points, scene, *light))
             return leave_to_samples(grid, channels.vertex_width());
-        Doubts doubts{std::vector<float>(wants_refining ? points.count : 0, 0.0f), {}, {}};
+        Doubts doubts{std::vector<float>(wants_refining ? points.count : 0, 0.0f), {}, {}, {}};
         const bool catches = catchers && scene.catches_shadows(grid.instance, grid.material);
         shade(grid, input(grid, points), at, wants_refining ? &doubts : nullptr);
         statistics.add(Counter::GridsShaded);
@@ -279,20 +293,21 @@ struct ShadingSystem::Impl : FrameShading {
             // What is left of light tells nothing of color.
             doubts.settled.clear();
             doubts.looks.clear();
-            catchers->divide(grid, channels, doubts.noise);
+            catchers->divide(grid, channels, doubts.noise, doubts.sights);
         }
         if (!wants_refining) return;
         if (grid.holdout && !catches) {
             grid.unsettled = grid.unsettled_opacity;
             return;
         }
+        const float difference = thresholds.difference / (sharpness * sharpness);
         if (material(grid.material).has_lines() || changes_in_time(grid))
             grid.unsettled = all_micropolygons(grid);
         else
-            find_unsettled(grid, doubts.settled, doubts.noise,
-                           thresholds.difference / (sharpness * sharpness),
+            find_unsettled(grid, doubts.settled, doubts.noise, difference,
                            thresholds.noise / (fewer * fewer));
         find_patterns(grid, doubts.looks);
+        find_thin_shadows(grid, doubts.sights, difference);
     }
 };
 

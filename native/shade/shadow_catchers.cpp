@@ -69,17 +69,26 @@ void divide(std::vector<Vec3f>& light, const std::vector<Vec3f>& alone) {
 ShadowCatchers::ShadowCatchers(const Scene& scene, Statistics& statistics, const Progress& progress)
     : m_scene(plate(scene)), m_shading(m_scene, statistics, m_unsaid, progress, false) {}
 
-void ShadowCatchers::divide(Grid& grid, const ChannelSet& channels, std::span<float> noise) const {
+void ShadowCatchers::divide(Grid& grid, const ChannelSet& channels, std::span<float> noise,
+                            std::span<LampSight> sights) const {
     Grid alone = in_plate(grid);
     alone.radiance.clear();
     m_shading.shade_radiance(alone);
     granita::divide(grid.radiance, alone.radiance);
     fill_caught(grid, channels);
     const std::vector<std::uint32_t>& anchors = grid.shading_positions.anchors;
+    const auto at = [&](std::size_t point) {
+        return alone.radiance[anchors.empty() ? point : anchors[point]];
+    };
     for (std::size_t i = 0; i < noise.size(); ++i) {
-        const float part = noise[i] / luminance(alone.radiance[anchors.empty() ? i : anchors[i]]);
+        const float part = noise[i] / luminance(at(i));
         noise[i] = std::isfinite(part) ? part : 0.0f;
     }
+    for (LampSight& sight : sights)
+        for (std::size_t i = 0; i < sight.light.size(); ++i) {
+            const Vec3f part = sight.light[i] / at(i);
+            sight.light[i] = is_finite(part) ? part : Vec3f(0.0f);
+        }
     grid.found_alone = std::move(alone.found);
 }
 

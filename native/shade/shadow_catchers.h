@@ -9,6 +9,7 @@
 #include <span>
 
 #include "shade/grid_channels.h"
+#include "shade/lights/lamp_sight.h"
 #include "shade/shading_system.h"
 
 namespace granita {
@@ -19,8 +20,9 @@ class ShadowCatchers {
     ShadowCatchers(const Scene& scene, Statistics& statistics, const Progress& progress);
 
     /// Turns the radiance of a grid of theirs, just shaded, into what is left of it, and its
-    /// `noise` [points] (or empty) into that of this.
-    void divide(Grid& grid, const ChannelSet& channels, std::span<float> noise) const;
+    /// `noise` [points] (or empty) and the light of its `sights` into those of this.
+    void divide(Grid& grid, const ChannelSet& channels, std::span<float> noise,
+                std::span<LampSight> sights) const;
     /// The same of samples in it.
     void divide(Grid& samples, const Grid& grid, std::span<const RefinedPoint> wanted,
                 const ChannelSet& channels) const;

@@ -19,7 +19,7 @@
 #include "shade/lights/lamp_set.h"
 #include "shade/lights/leaving_rays.h"
 #include "shade/lights/lit_grid.h"
-#include "shade/lights/lit_point.h"
+#include "shade/lights/lit_points.h"
 #include "shade/lights/lobe_runs.h"
 #include "shade/lights/met_lamps.h"
 #include "shade/lights/part_rays.h"
@@ -52,8 +52,11 @@ struct DirectLight::Impl {
          std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
          const Displacement* displacement, const LightPatterns& patterns, bool nodes_ask_rays);
 
-    void light_points(LitGrid& grid, const std::vector<LitPoint>& points,
-                      std::size_t lobe_count) const;
+    LitGrid lit_grid(const ShadingPoints& points, const SurfaceClosure& closure, const GridKey& key,
+                     std::vector<Vec3f>& radiance) const;
+    void light_points(LitGrid& grid, const std::vector<LitPoint>& points, std::size_t lobe_count,
+                      std::vector<LampSight>* sights) const;
+    void count(const LitGrid& grid) const;
     void sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
                      const LampChoice* choice) const;
     void sample_rest(LitGrid& grid, const LitPoint& point, const LampChoice* choice) const;
@@ -65,7 +68,6 @@ struct DirectLight::Impl {
     Statistics& statistics;
     const Progress& progress;
     std::shared_ptr<GeometryCache> geometries;
-    int sample_count;
     LampSet set;
     float finer_by_corner;  ///< how many times more lamps these ask
     WorldLight world;
@@ -84,8 +86,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
       statistics(frame_statistics),
       progress(frame_progress),
       geometries(cache ? std::move(cache) : std::make_shared<GeometryCache>()),
-      sample_count(std::max(1, frame_scene.options.light_samples)),
-      set(frame_scene.options.shutter_curve),
+      set(frame_scene.options),
       finer_by_corner(std::sqrt(static_cast<float>(scene.options.samples) / kSamplesOfAsked)),
       world(scene.world, std::move(world_evaluator), report, progress) {
     for (const Instance& instance : scene.instances)
@@ -232,9 +233,9 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
 /// Dimensions are numbered by the closure's lobes, which are the same for all points: 0 the
 /// world's, then the lobes', then the choice's where there are many lamps, then the lamps'.
 void DirectLight::Impl::light_points(LitGrid& grid, const std::vector<LitPoint>& points,
-                                     std::size_t lobe_count) const {
+                                     std::size_t lobe_count, std::vector<LampSight>* sights) const {
     const std::size_t first = 1 + lobe_count;
-    light_by_all(set, grid, points, first + (set.tree ? 1 : 0), progress);
+    light_by_all(set, grid, points, first + (set.tree ? 1 : 0), progress, sights);
     if (!set.tree) {
         for (const LitPoint& point : points) sample_rest(grid, point, nullptr);
         return;
@@ -289,6 +290,25 @@ void DirectLight::Impl::sample_rest(LitGrid& grid, const LitPoint& point,
     }
 }
 
+LitGrid DirectLight::Impl::lit_grid(const ShadingPoints& points, const SurfaceClosure& closure,
+                                    const GridKey& key, std::vector<Vec3f>& radiance) const {
+    LitGrid grid{.radiance = radiance};
+    grid.seed = sequence_seed(points, key, scene.options.seed);
+    grid.placed = !points.places.empty();
+    grid.in_medium = closure.lobes.front().kind == LobeKind::Phase;
+    grid.depth = static_cast<int>(points.depth % ShadingPoints::kDepths);
+    grid.receives = receives(key);
+    grid.meets_surfaces = !shining.empty();
+    return grid;
+}
+
+void DirectLight::Impl::count(const LitGrid& grid) const {
+    statistics.add(Counter::RaysShadow, grid.shadow_rays);
+    statistics.add(Counter::RaysOcclusion, grid.occlusion_rays);
+    statistics.add(Counter::LampsChosen, grid.lamps_chosen);
+    statistics.add(Counter::LightNodes, grid.light_nodes);
+}
+
 DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics,
                          Report& report, const Progress& progress, RayMaterials materials,
                          std::shared_ptr<GeometryCache> geometries, std::shared_ptr<KeptRays> rays,
@@ -321,10 +341,8 @@ bool DirectLight::varies() const {
     return m_impl->set.varies;
 }
 
-/// Points that lie closer share the light that a pixel's worth of them is due.
 int DirectLight::sample_count(float share) const {
-    return std::max(
-        1, static_cast<int>(std::lround(share * static_cast<float>(m_impl->sample_count))));
+    return m_impl->set.sample_count(share);
 }
 
 void DirectLight::lift(ShadingPoints& points, const GridKey& key) const {
@@ -355,88 +373,50 @@ void DirectLight::lift(ShadingPoints& points, const GridKey& key) const {
 std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const SurfaceClosure& closure,
                                         const GridKey& key, ReflectionParts* parts,
                                         const PointPaths& paths, std::vector<float>* noise,
-                                        LeavingRays* leaving) const {
+                                        LeavingRays* leaving,
+                                        std::vector<LampSight>* sights) const {
     std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
     if (noise) noise->assign(points.count, 0.0f);
     if (parts) parts->resize(points.count);
     if (leaving) leaving->met.clear();
     const bool dark = m_impl->set.lamps.empty() && !m_impl->world.shines();
     if (closure.lobes.empty() || (dark && !parts && !leaving)) return radiance;
-    const GgxAlbedo& albedo = GgxAlbedo::shared();
-    const bool placed = !points.places.empty();
-    LitGrid grid{.radiance = radiance, .parts = parts};
-    grid.seed = sequence_seed(points, key, m_impl->scene.options.seed);
+    LitGrid grid = m_impl->lit_grid(points, closure, key, radiance);
+    grid.parts = parts;
     grid.by_lobe = m_impl->world.by_lobe();
-    grid.placed = placed;
-    grid.in_medium = closure.lobes.front().kind == LobeKind::Phase;
-    grid.depth = static_cast<int>(points.depth % ShadingPoints::kDepths);
     grid.balance = noise;
     grid.leaving = leaving;
-    RayOffset ray_offset = m_impl->set.rays ? m_impl->set.rays->ray_offset(key) : RayOffset{};
-    const Vec2f life_exposed = m_impl->set.shutter.exposed(paths.lifespan());
-    const int sample_count = this->sample_count(points.share);
-    const bool meets_surfaces = leaving || !m_impl->shining.empty();
-    std::map<std::uint64_t, std::vector<LitPoint>> sets;  // of one mask together
-    std::vector<LitPoint>& all = sets[m_impl->receives(key)];
-    all.reserve((dark && !leaving) || !points.receives.empty() ? 0 : points.count);
-    for (std::size_t i = 0; i < points.count; ++i) {
-        PointBsdf bsdf(closure, points, i, albedo);
-        if (bsdf.lobe_count() == 0) continue;
-        if (parts) {
-            const BsdfValue color = bsdf.albedo();
-            parts->diffuse_color[i] = color.diffuse;
-            parts->glossy_color[i] = color.glossy;
-            parts->transmission_color[i] = color.transmission;
-        }
-        if (dark && !leaving) continue;
-        const Vec3f& normal = points.geometric_normal[i];
-        const Vec3f p = points.p[i] + (meets_surfaces ? inwards(points, i) : Vec3f(0.0f));
-        const Vec3f offset = points.ray_offset.empty() ? Vec3f(0.0f) : points.ray_offset[i];
-        if (m_impl->set.rays && !points.faces.empty())
-            ray_offset = m_impl->set.rays->ray_offset({key.instance, points.faces[i]});
-        const Vec3f start = ray_offset(p + offset, normal);
-        const bool timed = !points.times.empty() && points.times[i] >= 0.0f;
-        const float time = timed ? points.times[i] : m_impl->scene.options.frame_time;
-        const LitPlace at_frame{time, p, normal, start};
-        const Vec2f exposed = timed ? Vec2f(m_impl->set.shutter.uniform(time)) : life_exposed;
-        int count = sample_count;
-        std::uint32_t place = place_in_sequence(points, i);
-        if (!points.shares.empty() && points.shares[i] != 1.0f) {
-            count = this->sample_count(points.share * points.shares[i]);
-            // Behind what the others take of the sequences: all ends at beyond * sample_count, what
-            // lies between before three times that.
-            const int ahead = points.shares[i] > ShadingPoints::kUnseenShare ? 1 : 3;
-            place += beyond(points) * static_cast<std::uint32_t>(ahead * sample_count / count + 1);
-        }
-        std::vector<LitPoint>& lit = points.receives.empty() ? all : sets[points.receives[i]];
-        lit.push_back({i,
-                       std::move(bsdf),
-                       paths,
-                       ray_offset,
-                       at_frame,
-                       count,
-                       place,
-                       exposed,
-                       points.seen_times.empty() ? std::span<const float>() : points.seen_times[i],
-                       points.rise.empty() ? nullptr : &points.rise[i],
-                       points.terminator_offset,
-                       width_of(points, i),
-                       points.round,
-                       {}});
-        lit.back().share_samples();
-    }
+    grid.meets_surfaces |= leaving != nullptr;
+    LitSets sets = lit_points(m_impl->set, grid, points, closure, key, paths, dark && !leaving);
     for (auto& [receives, lit] : sets) {
         grid.receives = receives;
-        place_lobe_samples(lit, closure.lobes.size(), placed);
-        m_impl->light_points(grid, lit, closure.lobes.size());
+        place_lobe_samples(lit, closure.lobes.size(), grid.placed);
+        m_impl->light_points(grid, lit, closure.lobes.size(), sets.size() == 1 ? sights : nullptr);
     }
     deliver_met(m_impl->set, grid);
     m_impl->world.deliver(grid);
-    m_impl->statistics.add(Counter::RaysShadow, grid.shadow_rays);
-    m_impl->statistics.add(Counter::RaysOcclusion, grid.occlusion_rays);
-    m_impl->statistics.add(Counter::LampsChosen, grid.lamps_chosen);
-    m_impl->statistics.add(Counter::LightNodes, grid.light_nodes);
+    m_impl->count(grid);
     return radiance;
+}
+
+std::vector<LampSight> DirectLight::see(const ShadingPoints& points, const GridKey& key,
+                                        std::span<const LampSight> lamps) const {
+    SurfaceClosure white;
+    Lobe& lobe = white.lobes.emplace_back();
+    lobe.weight.assign(points.count, Vec3f(1.0f));
+    lobe.normal = points.normal;
+    lobe.roughness.assign(points.count, 0.0f);
+    std::vector<Vec3f> radiance(points.count, Vec3f(0.0f));
+    LitGrid grid = m_impl->lit_grid(points, white, key, radiance);
+    const PointPaths none;
+    const LitSets sets = lit_points(m_impl->set, grid, points, white, key, none, false);
+    std::vector<LampSight> sights;
+    for (const auto& [receives, lit] : sets) {
+        grid.receives = receives;
+        sights = see_again(m_impl->set, grid, lit, lamps, 1 + white.lobes.size(), m_impl->progress);
+    }
+    m_impl->count(grid);
+    return sights;
 }
 
 }  // namespace granita

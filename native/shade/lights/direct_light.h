@@ -16,6 +16,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/progress.h"
@@ -29,6 +30,7 @@
 #include "shade/bsdf/reflection.h"
 #include "shade/lights/environment.h"
 #include "shade/lights/lamp_faces.h"
+#include "shade/lights/lamp_sight.h"
 #include "shade/lights/light_anchor.h"
 #include "shade/lights/light_motion.h"
 #include "shade/lights/light_pattern.h"
@@ -67,11 +69,16 @@ class DirectLight {
     /// the shutter, as far as the points are there, of what arrives, on the surface as it is at the
     /// frame time.  Fills `parts` where given, and `noise` [points.count] with how
     /// far, either way, each point's luminance is in doubt.  `leaving`: gets the ways from which
-    /// surfaces would light the points, which their lobes are sampled by.
+    /// surfaces would light the points, which their lobes are sampled by.  `sights`: gets how they
+    /// see small lamps, of few.
     std::vector<Vec3f> reflect(const ShadingPoints& points, const SurfaceClosure& closure,
                                const GridKey& seed, ReflectionParts* parts = nullptr,
                                const PointPaths& paths = {}, std::vector<float>* noise = nullptr,
-                               LeavingRays* leaving = nullptr) const;
+                               LeavingRays* leaving = nullptr,
+                               std::vector<LampSight>* sights = nullptr) const;
+    /// How other points see those lamps: of what is opaque, by one sample each.
+    std::vector<LampSight> see(const ShadingPoints& points, const GridKey& seed,
+                               std::span<const LampSight> lamps) const;
 
     /// Those that are among the light that reflect() knows, so that ways which meet them bring
     /// none.

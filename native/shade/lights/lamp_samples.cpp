@@ -12,6 +12,9 @@ namespace {
 
 /// Of lamps by chance: those that one point has chosen hardly ever share one.
 constexpr std::size_t kDimensions = 32;
+/// Radians from a lamp's middle to its rim: what is larger hardly casts a shadow that is finer than
+/// micropolygons (bars of .2 pixels lack a hundredth of theirs).
+constexpr float kSmall = 0.02f;
 
 std::vector<LampTurn> by_lamp(std::size_t lamp_count, const std::vector<LampTurn>& turns) {
     std::vector<std::uint32_t> begin(lamp_count + 1, 0);
@@ -31,6 +34,9 @@ class LampSender {
 
     /// In samples of that dimension.
     void sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension);
+    /// All points by one.
+    void light(const std::vector<LitPoint>& points, std::size_t lamp, std::size_t first,
+               LampSight* sight, const Progress& progress);
     /// All of a lamp's; before the next.
     void deliver() {
         color();
@@ -97,6 +103,18 @@ void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t
     if (m_uncolored.size() >= kEnough) color();
 }
 
+void LampSender::light(const std::vector<LitPoint>& points, std::size_t lamp, std::size_t first,
+                       LampSight* sight, const Progress& progress) {
+    m_grid.sight = sight;
+    for (const LitPoint& point : points) {
+        progress.check();
+        const LampTurn turn{0, static_cast<std::uint32_t>(lamp), {1.0f, point.sample_count}};
+        sample(point, turn, first + lamp);
+    }
+    deliver();
+    m_grid.sight = nullptr;
+}
+
 void LampSender::color() {
     if (m_uncolored.empty()) return;
     m_patterned.clear();
@@ -115,6 +133,8 @@ void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& p
     if (value == Vec3f(0.0f) || LampSet::is_beneath(lamp, point, place, sample.direction)) return;
     if (!lamp.is_hard() && lamp.meets_lobes(m_grid.depth))
         density = power_density(density, point.meeting_density(sample.direction));
+    if (m_grid.sight && !lamp.is_hard() && sample.pdf * kPi * kSmall * kSmall < 1.0f)
+        m_grid.sight->is_wide();
     const Vec3f radiance = sample.radiance / density;
     if (m_set.rays && lamp.casts_shadow())
         m_shadows.send(point.index, value / density, bsdf, radiance, sign,
@@ -126,19 +146,28 @@ void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& p
 }  // namespace
 
 void light_by_all(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>& points,
-                  std::size_t first, const Progress& progress) {
+                  std::size_t first, const Progress& progress, std::vector<LampSight>* sights) {
     LampSender sender(set, grid);
     const std::size_t count = set.tree ? set.everywhere : set.lamps.size();
     for (std::size_t l = 0; l < count; ++l) {
         const Lamp& lamp = set.lamps[l];
         if (!lamp.lights(grid.receives) || !lamp.is_asked(grid.depth)) continue;
-        for (const LitPoint& point : points) {
-            progress.check();
-            const LampTurn turn{0, static_cast<std::uint32_t>(l), {1.0f, point.sample_count}};
-            sender.sample(point, turn, first + l);
-        }
-        sender.deliver();
+        LampSight sight(static_cast<std::uint32_t>(l));
+        const bool is_told = sights && lamp.casts_shadow();
+        sender.light(points, l, first, is_told ? &sight : nullptr, progress);
+        if (sight.is_told()) sights->push_back(std::move(sight));
     }
+}
+
+std::vector<LampSight> see_again(const LampSet& set, LitGrid& grid,
+                                 const std::vector<LitPoint>& points,
+                                 std::span<const LampSight> lamps, std::size_t first,
+                                 const Progress& progress) {
+    LampSender sender(set, grid);
+    std::vector<LampSight> sights;
+    for (const LampSight& of : lamps)
+        sender.light(points, of.lamp, first, &sights.emplace_back(of.lamp), progress);
+    return sights;
 }
 
 void light_by_chosen(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>& points,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "shade/lights/lamp_choice.h"
@@ -18,9 +19,15 @@ struct LampTurn {
 };
 
 /// Each lamp lights each point, lamp by lamp, so that their rays keep together.  `first`: dimension
-/// of the first lamp.
+/// of the first lamp; `sights`: gets those of small ones; nullptr: not asked for.
 void light_by_all(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>& points,
-                  std::size_t first, const Progress& progress);
+                  std::size_t first, const Progress& progress, std::vector<LampSight>* sights);
+
+/// How the points see lamps that others have seen, in that order.
+std::vector<LampSight> see_again(const LampSet& set, LitGrid& grid,
+                                 const std::vector<LitPoint>& points,
+                                 std::span<const LampSight> lamps, std::size_t first,
+                                 const Progress& progress);
 
 /// The lamps that points have chosen, in the tree's order.
 void light_by_chosen(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>& points,

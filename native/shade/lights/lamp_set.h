@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -17,8 +19,10 @@ namespace granita {
 
 /// The lamps of a frame, and what comes before them.
 struct LampSet {
-    /// `curve`: Options::shutter_curve.
-    explicit LampSet(const std::vector<float>& curve) : shutter(curve) {}
+    explicit LampSet(const Options& options)
+        : shutter(options.shutter_curve),
+          frame_time(options.frame_time),
+          light_samples(std::max(1, options.light_samples)) {}
     /// Once, before light is asked for: where there are many, they are put in a tree.  Throws
     /// Cancelled.
     void set_lamps(std::vector<Lamp> made, const Progress& progress);
@@ -31,6 +35,12 @@ struct LampSet {
     /// Whether a lamp or its shadow does within the shutter.
     bool changes(const Lamp& lamp) const {
         return lamp.varies() || (casters_move && lamp.casts_shadow());
+    }
+    /// Light samples of a point for ShadingPoints::share: those that lie closer share the light
+    /// that a pixel's worth of them is due.
+    int sample_count(float share) const {
+        return std::max(1,
+                        static_cast<int>(std::lround(share * static_cast<float>(light_samples))));
     }
     /// None of a lamp below the horizon; one tells all about a lamp without size that nothing
     /// moving can come before.
@@ -80,6 +90,8 @@ struct LampSet {
     }
 
     ShutterWarp shutter;
+    float frame_time;
+    int light_samples;        ///< of a soft lamp, at a point
     std::vector<Lamp> lamps;  ///< where there is a tree, those that are not in it first
     std::size_t everywhere = 0;
     std::unique_ptr<LightTree> tree;  ///< of the others; nullptr: few, each is asked

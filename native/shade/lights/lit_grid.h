@@ -7,6 +7,7 @@
 #include "math/luminance.h"
 #include "shade/bsdf/reflection.h"
 #include "shade/lights/environment_samples.h"
+#include "shade/lights/lamp_sight.h"
 #include "shade/lights/light_source.h"
 #include "shade/lights/lit_point.h"
 #include "shade/lights/lobe_ray.h"
@@ -42,14 +43,16 @@ struct LitGrid {
     bool placed = false;   ///< points go by places in the frame's sequences, as samples do
     std::vector<SobolPoints> sequences = {};  ///< [dimensions] as far as they were asked for
     std::uint64_t receives = ~0ULL;           ///< Instance::receives
-    int depth = 0;           ///< surfaces, and places in media, between it and the camera
-    bool in_medium = false;  ///< its lobes are phase functions
+    int depth = 0;                ///< surfaces, and places in media, between it and the camera
+    bool in_medium = false;       ///< its lobes are phase functions
+    bool meets_surfaces = false;  ///< rays look for surfaces, be it those that shine
     std::uint64_t shadow_rays = 0, occlusion_rays = 0;
     std::uint64_t lamps_chosen = 0, light_nodes = 0;
     /// [points] the luminance of a point's even samples less that of its odd ones: as much as its
     /// sum is in doubt.  nullptr: not asked for.
     std::vector<float>* balance = nullptr;
     LeavingRays* leaving = nullptr;  ///< to other surfaces; nullptr: not asked for
+    LampSight* sight = nullptr;      ///< of the lamp at hand; nullptr: not asked for
 
     /// The types of ray that its lobes send, but for sharp ones, to a point's own side of the
     /// surface or through it.

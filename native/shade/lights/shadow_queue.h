@@ -60,6 +60,7 @@ class ShadowQueue {
     static constexpr std::size_t kMost = 128;
 
     void arrive(const Light& light, const Vec3f& seen) {
+        if (m_grid.sight) m_grid.sight->add(light.point, m_grid.radiance.size(), light.light, seen);
         m_grid.add(light.point, light.light * seen, light.sign);
         m_grid.add_lamp(light.point, light.parts, seen);
     }

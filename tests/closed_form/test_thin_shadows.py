@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shadows thinner than the micropolygons whose corners are to tell of them: wires, and slits in what is dark."""
+
+import numpy as np
+import pytest
+import snapshots as s
+from test_refined_shading import ALBEDO, CASTS_SHADOW, LIT, SUN, VISIBLE
+
+SIZE = 64
+EVERY, SLOPE = 7.0, 0.13
+
+
+def stage(bucket_size=32, **light):
+    """A floor under a lamp: the sun along the view if `light` says nothing else."""
+    snapshot = s.orthographic((SIZE, SIZE), samples=64, bucket_size=bucket_size)
+    nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (ALBEDO,) * 3 + (1,)}}]
+    snapshot["materials"].append({"name": "Matte", "nodes": nodes, "surface": (0, "BSDF")})
+    lamp(snapshot, **{"energy": SUN, **light})
+    snapshot["instances"]["flags"] = []
+    s.quad(snapshot, s.rectangle(-200, -200, 250, 200, 20.0), 0)
+    snapshot["instances"]["flags"].append(VISIBLE)
+    return snapshot
+
+
+def lamp(snapshot, **values):
+    down = np.diag([1.0, -1.0, -1.0, 1.0])
+    snapshot.setdefault("lights", []).append(
+        {"name": "Lamp", "kind": "SUN", "world_from_light": down[None], **values}
+    )
+
+
+def bars(snapshot, part, z=10.0, transforms=None):
+    """That fill `part` of every seven pixels, askew, and that the lamp alone sees."""
+    for x in np.arange(-140.0, 210.0, EVERY):
+        corners = [(x - SLOPE * y + w, y, z) for y, w in ((-150, 0), (-150, part * EVERY))]
+        corners += [(x - SLOPE * y + w, y, z) for y, w in ((150, part * EVERY), (150, 0))]
+        s.quad(snapshot, np.array(corners), 0, transforms=transforms)
+        snapshot["instances"]["flags"].append(CASTS_SHADOW)
+
+
+def seen(snapshot):
+    return s.render(snapshot)["combined"][..., 0] / LIT
+
+
+@pytest.mark.parametrize("width", [0.1, 0.2, 0.4])
+@pytest.mark.parametrize("angle", [0.0, 0.005])
+def test_wires_cast_all_of_their_shadow(width, angle):
+    """Pixels: they were dashes that lacked 41, 31 and 11 %.  Ten pixels above the floor the sun's disc is .05 wide."""
+    snapshot = stage(sun_angle=angle)
+    bars(snapshot, width / EVERY)
+    assert 1.0 - seen(snapshot).mean() == pytest.approx(width / EVERY, rel=0.04)
+
+
+def test_slits_let_all_of_their_light_through():
+    snapshot = stage()
+    bars(snapshot, 1.0 - 0.2 / EVERY)
+    assert seen(snapshot).mean() == pytest.approx(0.2 / EVERY, rel=0.03)
+
+
+def test_wires_before_a_lamp_with_a_place():
+    """So far off that its wires' shadows are as wide as they; the floor without them says what is lit."""
+    far = 2e4
+    at = np.diag([1.0, -1.0, -1.0, 1.0])
+    at[:3, 3] = (SIZE / 2, SIZE / 2, 20.0 - far)
+    bulb = {"kind": "POINT", "world_from_light": at[None], "energy": 1e9, "radius": 50.0}
+    plain, wired = stage(**bulb), stage(**bulb)
+    bars(wired, 0.2 / EVERY)
+    lit, shaded = (s.render(snapshot)["combined"][..., 0].mean() for snapshot in (plain, wired))
+    assert 1.0 - shaded / lit == pytest.approx(0.2 / EVERY, rel=0.03)
+
+
+def test_no_bit_depends_on_buckets():
+    pictures = []
+    for bucket_size in (16, 64):
+        snapshot = stage(bucket_size=bucket_size)
+        bars(snapshot, 0.2 / EVERY)
+        pictures.append(s.render(snapshot)["combined"])
+    assert np.array_equal(*pictures)
+
+
+@pytest.mark.parametrize("moved", [0.0, 3.0])
+def test_wires_that_move(moved):
+    """Across the view: their shadow lies on other micropolygons at each moment, and is as much."""
+    snapshot = stage()
+    knots = [s.translation(-moved / 2), s.translation(moved / 2)]
+    bars(snapshot, 0.2 / EVERY, transforms=knots)
+    assert 1.0 - seen(snapshot).mean() == pytest.approx(0.2 / EVERY, rel=0.05)
+
+
+def test_shadows_that_nobody_sees_cost_no_samples():
+    """Of a lamp that is a thousandth of another, and of wires whose shadow is none."""
+    snapshot = stage()
+    lamp(snapshot, energy=SUN / 1000)
+    snapshot["lights"][0]["casts_shadow"] = False
+    bars(snapshot, 0.2 / EVERY)
+    assert s.render(snapshot)["statistics"]["points_refined"] == 0
+
+
+def test_a_floor_in_the_sun_asks_a_few_more_rays():
+    """One for every four micropolygons where nothing is found."""
+    snapshot = stage()
+    s.quad(snapshot, s.rectangle(-9e3, -9e3, -8e3, -8e3, 10.0), 0)
+    snapshot["instances"]["flags"].append(CASTS_SHADOW)
+    statistics = s.render(snapshot)["statistics"]
+    assert statistics["points_refined"] == 0
+    assert statistics["rays_shadow"] <= 1.3 * statistics["points_shaded"]
