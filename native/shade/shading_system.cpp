@@ -73,6 +73,7 @@ struct ShadingSystem::Impl : FrameShading {
                                      ///< points: empty where it is all
         std::vector<float> looks;    ///< looks_of(), of patterns
         std::vector<LampSight> sights;
+        std::vector<std::uint8_t> highlights;  ///< as Grid::unsettled
     };
 
     /// Fills radiance and channels of `grid`, whose points are `in.points`.
@@ -91,6 +92,8 @@ struct ShadingSystem::Impl : FrameShading {
         // What is scattered is told by corners that are not black; there samples were darker still.
         if (doubts && surface.is_patterned && !surface.scatters())
             doubts->looks = looks_of(points, closure);
+        if (doubts && light && !grid.shades_lattice())
+            doubts->highlights = light->highlights(grid, points, closure);
         ReflectionParts parts, *asked = channels.empty() ? nullptr : &parts;
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
         LeavingRays leaving;
@@ -285,7 +288,7 @@ struct ShadingSystem::Impl : FrameShading {
         if (wants_refining && may_leave(grid) && !grid.opacity_varies && !scatters(grid.material) &&
             pays_by_samples(grid, points, scene, *light))
             return leave_to_samples(grid, channels.vertex_width());
-        Doubts doubts{std::vector<float>(wants_refining ? points.count : 0, 0.0f), {}, {}, {}};
+        Doubts doubts{std::vector<float>(wants_refining ? points.count : 0, 0.0f), {}, {}, {}, {}};
         const bool catches = catchers && scene.catches_shadows(grid.instance, grid.material);
         shade(grid, input(grid, points), at, wants_refining ? &doubts : nullptr);
         statistics.add(Counter::GridsShaded);
@@ -306,6 +309,7 @@ struct ShadingSystem::Impl : FrameShading {
         else
             find_unsettled(grid, doubts.settled, doubts.noise, difference,
                            thresholds.noise / (fewer * fewer));
+        mark(grid.unsettled, doubts.highlights);
         find_patterns(grid, doubts.looks);
         find_thin_shadows(grid, doubts.sights, difference);
     }

@@ -185,9 +185,12 @@ void find_unsettled(Grid& grid, std::vector<Vec3f>& settled, std::span<const flo
     if (!settled.empty()) settled.swap(grid.radiance);
     grid.unsettled = unsettled_radiance(grid, noise, threshold, noise_threshold);
     if (!settled.empty()) settled.swap(grid.radiance);
-    if (grid.unsettled.empty()) grid.unsettled = grid.unsettled_opacity;
-    for (std::size_t m = 0; m < grid.unsettled_opacity.size(); ++m)
-        grid.unsettled[m] |= grid.unsettled_opacity[m];
+    mark(grid.unsettled, grid.unsettled_opacity);
+}
+
+void mark(std::vector<std::uint8_t>& marks, const std::vector<std::uint8_t>& more) {
+    if (marks.empty()) marks = more;
+    for (std::size_t m = 0; m < more.size(); ++m) marks[m] |= more[m];
 }
 
 std::vector<std::uint8_t> unsettled_opacity(const Grid& grid, float threshold) {

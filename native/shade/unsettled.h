@@ -37,6 +37,9 @@ bool are_equal(const std::vector<Vec3f>& values);
 void find_unsettled(Grid& grid, std::vector<Vec3f>& settled, std::span<const float> noise,
                     float threshold, float noise_threshold);
 
+/// Those of both, of which either may be empty.
+void mark(std::vector<std::uint8_t>& marks, const std::vector<std::uint8_t>& more);
+
 /// Marks the same by the grid's opacity, in any channel as it is: edges of cut-outs.
 std::vector<std::uint8_t> unsettled_opacity(const Grid& grid, float threshold);
 

@@ -22,6 +22,7 @@
 #include "shade/lights/lit_points.h"
 #include "shade/lights/lobe_runs.h"
 #include "shade/lights/met_lamps.h"
+#include "shade/lights/mirrored_lamps.h"
 #include "shade/lights/part_rays.h"
 #include "shade/lights/power_heuristic.h"
 #include "shade/lights/world_light.h"
@@ -397,6 +398,11 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     m_impl->world.deliver(grid);
     m_impl->count(grid);
     return radiance;
+}
+
+std::vector<std::uint8_t> DirectLight::highlights(const Grid& grid, const ShadingPoints& points,
+                                                  const SurfaceClosure& closure) const {
+    return mirrored_lamps(m_impl->set, m_impl->receives(grid.key), grid, points, closure);
 }
 
 std::vector<LampSight> DirectLight::see(const ShadingPoints& points, const GridKey& key,

@@ -80,6 +80,10 @@ class DirectLight {
     std::vector<LampSight> see(const ShadingPoints& points, const GridKey& seed,
                                std::span<const LampSight> lamps) const;
 
+    /// Of a grid of these points: highlights between its corners (mirrored_lamps.h).
+    std::vector<std::uint8_t> highlights(const Grid& grid, const ShadingPoints& points,
+                                         const SurfaceClosure& closure) const;
+
     /// Those that are among the light that reflect() knows, so that ways which meet them bring
     /// none.
     const LampFaces& lamp_faces() const;

@@ -177,26 +177,80 @@ Vec4f magnified(TiledImage& image, const TextureMode& mode, Vec2f center) {
     return image.decoder().seen_of_stored(stored);
 }
 
-/// Of an image that its rim goes on from for ever: what of the footprint is out there sees one
-/// texel, or a line of them, not the rows within that coarse levels would mix in.
-TexturePlace kept_to_image(TexturePlace place) {
-    for (int axis = 0; axis < 2; ++axis) {
-        const float half = 0.5f * (std::abs(place.along_u[axis]) + std::abs(place.along_v[axis]));
-        if (!(half > 0.0f && std::isfinite(half))) continue;
-        const float from = std::clamp(place.center[axis] - half, 0.0f, 1.0f);
-        const float to = std::clamp(place.center[axis] + half, 0.0f, 1.0f);
-        const float kept = 0.5f * (to - from) / half;
-        place.along_u[axis] *= kept;
-        place.along_v[axis] *= kept;
+/// What an axis of a footprint has before the image, in it, or behind it.
+struct Part {
+    float center, kept;  ///< of the axis's length
+    float share;         ///< of what is seen
+};
+
+/// Of an axis from center - half to center + half.
+int parts_of(float center, float half, Part (&parts)[3]) {
+    const float from = center - half, to = center + half;
+    if (!(half > 0.0f && std::isfinite(half)) || (from >= 0.0f && to <= 1.0f)) {
+        parts[0] = {center, 1.0f, 1.0f};
+        return 1;
     }
-    return place;
+    const float low = std::clamp(from, 0.0f, 1.0f), high = std::clamp(to, 0.0f, 1.0f);
+    const float of_all = 0.5f / half, within = (high - low) * of_all;
+    const Part all[] = {{0.0f, 0.0f, (low - from) * of_all},
+                        {0.5f * (low + high), within, within},
+                        {1.0f, 0.0f, (to - high) * of_all}};
+    int count = 0;
+    for (const Part& part : all)
+        if (part.share > 0.0f) parts[count++] = part;
+    return count;
 }
 
-TextureFootprint footprint_of(const Vec2f& size, const TextureMode& mode,
-                              const TexturePlace& asked) {
-    const TexturePlace place =
-        mode.extension == TextureExtension::Extend ? kept_to_image(asked) : asked;
+/// The parts of a footprint in an image and beyond its rim, which goes on there for ever, or where
+/// there is nothing.
+template <class See>
+void see_parts(TextureExtension extension, const TexturePlace& place, const See& see) {
+    Part parts[2][3];
+    int count[2];
+    for (int axis = 0; axis < 2; ++axis) {
+        const float half = 0.5f * (std::abs(place.along_u[axis]) + std::abs(place.along_v[axis]));
+        count[axis] = parts_of(place.center[axis], half, parts[axis]);
+    }
+    for (int j = 0; j < count[1]; ++j)
+        for (int i = 0; i < count[0]; ++i) {
+            const Part &x = parts[0][i], &y = parts[1][j];
+            const Vec2f kept(x.kept, y.kept);
+            const bool is_beyond = x.kept == 0.0f || y.kept == 0.0f;
+            if (extension == TextureExtension::Clip && is_beyond) continue;
+            see({{x.center, y.center}, place.along_u * kept, place.along_v * kept},
+                x.share * y.share);
+        }
+}
+
+/// Of one that is clipped, how far a footprint wider than it is seen by its parts: its levels know
+/// of what is beyond no more than half of their own width.
+float part_of_parts(const TextureMode& mode, const TexturePlace& place) {
+    if (mode.extension == TextureExtension::Extend) return 1.0f;
+    if (mode.extension != TextureExtension::Clip) return 0.0f;
+    const Vec2f width = glm::abs(place.along_u) + glm::abs(place.along_v);
+    const float more = std::max(width.x, width.y) - 1.0f;
+    return more > 0.0f ? std::min(more, 1.0f) : 0.0f;
+}
+
+TextureFootprint footprint_of(const Vec2f& size, const TexturePlace& place) {
     return TextureFootprint::of(place.along_u, place.along_v, size);
+}
+
+/// As levels tell it.
+Vec4f seen_as_one(TiledImage& image, const TextureMode& mode, const TexturePlace& place) {
+    const Vec2f size(image.level(0).width, image.level(0).height);
+    const TextureFootprint print = footprint_of(size, place);
+    // Rows run downward.
+    const Vec2f center(place.center.x, 1.0f - place.center.y);
+    TextureFootprint down = print;
+    down.axis.y = -down.axis.y;
+    // Numbers that are light already, interpolated between neighbours, are the same either way.
+    const bool always_light = !image.decoder().encoded && mode.filter != TextureFilter::Closest;
+    if (always_light || print.longer >= 1.0f) return light_over(image, mode, center, down);
+    const Vec4f near = magnified(image, mode, center);
+    if (print.longer <= 0.5f) return near;
+    const float share = std::log2(print.longer) + 1.0f;
+    return near * (1.0f - share) + light_over(image, mode, center, down) * share;
 }
 
 }  // namespace
@@ -210,7 +264,13 @@ float TextureFootprint::depth() const {
 }
 
 int finest_level(const Vec2f& size, const TextureMode& mode, const TexturePlace& place) {
-    return static_cast<int>(footprint_of(size, mode, place).depth());
+    const float by_parts = part_of_parts(mode, place);
+    float depth = by_parts < 1.0f ? footprint_of(size, place).depth() : HUGE_VALF;
+    if (by_parts > 0.0f)
+        see_parts(mode.extension, place, [&](const TexturePlace& part, float) {
+            depth = std::min(depth, footprint_of(size, part).depth());
+        });
+    return static_cast<int>(std::min(depth, 32.0f));
 }
 
 TextureFootprint TextureFootprint::of(const Vec2f& along_u, const Vec2f& along_v,
@@ -234,19 +294,16 @@ TextureFootprint TextureFootprint::of(const Vec2f& along_u, const Vec2f& along_v
 }
 
 Vec4f filtered(TiledImage& image, const TextureMode& mode, const TexturePlace& place) {
-    const Vec2f size(image.level(0).width, image.level(0).height);
-    const TextureFootprint print = footprint_of(size, mode, place);
-    // Rows run downward.
-    const Vec2f center(place.center.x, 1.0f - place.center.y);
-    TextureFootprint down = print;
-    down.axis.y = -down.axis.y;
-    // Numbers that are light already, interpolated between neighbours, are the same either way.
-    const bool always_light = !image.decoder().encoded && mode.filter != TextureFilter::Closest;
-    if (always_light || print.longer >= 1.0f) return light_over(image, mode, center, down);
-    const Vec4f near = magnified(image, mode, center);
-    if (print.longer <= 0.5f) return near;
-    const float share = std::log2(print.longer) + 1.0f;
-    return near * (1.0f - share) + light_over(image, mode, center, down) * share;
+    const float by_parts = part_of_parts(mode, place);
+    Vec4f sum(0.0f);
+    if (by_parts == 0.0f) return seen_as_one(image, mode, place);
+    if (by_parts < 1.0f) sum = seen_as_one(image, mode, place) * (1.0f - by_parts);
+    TextureMode inside = mode;  // parts end at the rim, and do not fade there
+    inside.extension = TextureExtension::Extend;
+    see_parts(mode.extension, place, [&](const TexturePlace& part, float share) {
+        sum += seen_as_one(image, inside, part) * (by_parts * share);
+    });
+    return sum;
 }
 
 }  // namespace granita

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/lights/mirrored_lamps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/sampling.h"
+#include "shade/bsdf/refraction.h"
+
+namespace granita {
+namespace {
+
+/// Alphas beyond this make highlights that corners see, but on balls of a pixel or two.
+constexpr float kRoughest = 0.15f;
+constexpr float kSharp = 1e-4f;  ///< as of PointBsdf
+/// What most of a lobe lies within, of its alpha: facets turn what they mirror by twice their lean.
+constexpr float kLobeWidth = 4.0f;
+
+/// How a point sends the view past a lamp.
+struct Pass {
+    Vec3f aside{0.0f};  ///< from the lamp's middle, across the way there; about radians
+    Vec3f to_lamp{0.0f};
+    float margin = 0.0f;  ///< from the middle to where nothing is seen of it any more
+    float told = 0.0f;    ///< what is as wide is told by corners so far apart
+    bool is_near = false;
+};
+
+/// False where nothing is.
+bool sent(const Lobe& lobe, const ShadingPoints& points, std::size_t i, Vec3f& way) {
+    const Vec3f &normal = lobe.normal[i], &view = points.view[i];
+    if (lobe.kind == LobeKind::Refraction) return refracted(view, normal, lobe.ior[i], way);
+    way = 2.0f * glm::dot(normal, view) * normal - view;
+    return true;
+}
+
+Pass pass_of(const Lamp& lamp, const Lobe& lobe, const ShadingPoints& points, std::size_t i,
+             float time) {
+    Pass pass;
+    const float alpha = lobe.roughness[i] * lobe.roughness[i];
+    LightSample middle;
+    Vec3f way;
+    // What has no size is never met, and sharp lobes meet alone.
+    if (alpha > kRoughest || (lamp.is_hard() && alpha <= kSharp) || lobe.weight[i] == Vec3f(0.0f) ||
+        !lamp.exists(time) || !lamp.sample(time, points.p[i], Vec2f(0.5f), middle) ||
+        !sent(lobe, points, i, way) || glm::dot(way, middle.direction) <= 0.0f)
+        return pass;
+    const float radius = lamp.is_hard() ? 0.0f : std::sqrt(kInversePi / middle.pdf);
+    pass.to_lamp = middle.direction;
+    pass.aside = way - glm::dot(way, middle.direction) * middle.direction;
+    pass.told = radius + kLobeWidth * alpha;
+    // A sample of a disc may be as far from its middle as that.
+    pass.margin = 2.0f * radius + kLobeWidth * alpha;
+    pass.is_near = true;
+    return pass;
+}
+
+float distance_to(const Vec2f& a, const Vec2f& b) {
+    const Vec2f along = b - a;
+    const float length2 = glm::dot(along, along);
+    const float t = length2 > 0.0f ? std::clamp(-glm::dot(a, along) / length2, 0.0f, 1.0f) : 0.0f;
+    return glm::length(a + t * along);
+}
+
+/// Whether the lamp is within a triangle of ways, or near it.
+bool meets(const Pass& a, const Pass& b, const Pass& c) {
+    if (!a.is_near || !b.is_near || !c.is_near) return false;
+    const float margin = std::max({a.margin, b.margin, c.margin});
+    const Vec3f low = glm::min(glm::min(a.aside, b.aside), c.aside);
+    const Vec3f high = glm::max(glm::max(a.aside, b.aside), c.aside);
+    if (largest(low) > margin || largest(-high) > margin) return false;
+    const float spread = std::max({glm::distance(a.aside, b.aside), glm::distance(b.aside, c.aside),
+                                   glm::distance(c.aside, a.aside)});
+    if (spread <= std::min({a.told, b.told, c.told})) return false;
+    const Basis basis(a.to_lamp);
+    const auto flat = [&](const Pass& pass) { return Vec2f(basis.to_local(pass.aside)); };
+    const Vec2f p = flat(a), q = flat(b), r = flat(c);
+    const auto cross = [](const Vec2f& u, const Vec2f& v) { return u.x * v.y - u.y * v.x; };
+    const float of_pq = cross(p, q), of_qr = cross(q, r), of_rp = cross(r, p);
+    const bool is_inside = (of_pq >= 0.0f && of_qr >= 0.0f && of_rp >= 0.0f) ||
+                           (of_pq <= 0.0f && of_qr <= 0.0f && of_rp <= 0.0f);
+    return is_inside ||
+           std::min({distance_to(p, q), distance_to(q, r), distance_to(r, p)}) <= margin;
+}
+
+bool is_polished(const Lobe& lobe) {
+    return is_of_facets(lobe.kind) && std::ranges::any_of(lobe.roughness, [](float roughness) {
+               return roughness * roughness <= kRoughest;
+           });
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> mirrored_lamps(const LampSet& set, std::uint64_t receives,
+                                         const Grid& grid, const ShadingPoints& points,
+                                         const SurfaceClosure& closure) {
+    std::vector<std::uint8_t> marks;
+    const std::size_t asked = set.tree ? set.everywhere : set.lamps.size();
+    std::vector<Pass> passes(points.count);
+    for (const Lobe& lobe : closure.lobes) {
+        if (!is_polished(lobe)) continue;
+        for (std::size_t l = 0; l < asked; ++l) {
+            const Lamp& lamp = set.lamps[l];
+            if (!lamp.lights(receives) || !lamp.meets_lobes(0)) continue;
+            for (std::size_t i = 0; i < points.count; ++i)
+                passes[i] = pass_of(lamp, lobe, points, i, set.frame_time);
+            for (int m = 0; m < grid.micropolygon_count(); ++m) {
+                const Grid::Corners c = grid.corners(m);
+                const auto at = [&](int vertex) -> const Pass& {
+                    return passes[grid.point_at(static_cast<std::size_t>(vertex))];
+                };
+                if (!meets(at(c.v0), at(c.v1), at(c.v2)) && !meets(at(c.v0), at(c.v2), at(c.v3)))
+                    continue;
+                marks.resize(static_cast<std::size_t>(grid.micropolygon_count()), 0);
+                marks[static_cast<std::size_t>(m)] = 1;
+            }
+        }
+    }
+    return marks;
+}
+
+}  // namespace granita
