@@ -20,6 +20,8 @@ constexpr int kStep = 4;
 constexpr int kTimes = 3;
 /// What lets as much more or less through is another thing.
 constexpr float kAnother = 0.5f;
+/// Of points that tell of shadows, to be asked again.
+constexpr std::size_t kEnough = 16;
 /// The light of a grid's corners that reflect less is not known by what they send out.
 constexpr float kTold = 0.02f;
 
@@ -172,11 +174,14 @@ bool PatternProbes::miss_opacity(const Grid& grid, std::span<const Vec3f> opacit
     return false;
 }
 
-bool PatternProbes::miss_shadows(const Grid& grid, std::span<const LampSight> sights,
-                                 std::span<const LampSight> of_grid, float threshold) const {
+std::vector<RefinedPoint> PatternProbes::missed_shadows(const Grid& grid,
+                                                        std::span<const LampSight> sights,
+                                                        std::span<const LampSight> of_grid,
+                                                        float threshold) const {
+    std::vector<RefinedPoint> missed;
     for (std::size_t l = 0; l < sights.size(); ++l) {
         const LampSight &there = sights[l], &corners = of_grid[l];
-        for (std::size_t i = 0; i < there.through.size(); ++i) {
+        for (std::size_t i = 0; i < there.through.size() && missed.size() < kEnough; ++i) {
             if (there.through[i] < 0.0f) continue;
             bool is_told = true, is_other = true;
             Vec3f change(0.0f);
@@ -189,10 +194,10 @@ bool PatternProbes::miss_shadows(const Grid& grid, std::span<const LampSight> si
             }
             const Vec3f shown = between(grid.radiance, points[i]);
             if (is_told && is_other && displayed_difference(shown, shown + change) > threshold)
-                return true;
+                missed.push_back(points[i]);
         }
     }
-    return false;
+    return missed;
 }
 
 bool PatternProbes::hide_light(const Grid& grid, std::span<const float> looks) const {

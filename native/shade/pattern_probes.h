@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "shade/lights/lamp_sight.h"
@@ -33,6 +34,8 @@ class PatternProbes {
   public:
     /// @param marks [micropolygons] of which nothing is asked any more; empty: of none.
     PatternProbes(const Grid& grid, std::span<const std::uint8_t> marks);
+    /// Some of them, to be asked again.
+    explicit PatternProbes(std::vector<RefinedPoint> some) : points(std::move(some)) {}
 
     std::vector<RefinedPoint> points;
 
@@ -49,11 +52,12 @@ class PatternProbes {
     /// light (Grid::found), as nothing near it reflects any: it is unknown there, or dark.
     bool hide_light(const Grid& grid, std::span<const float> looks) const;
 
-    /// Whether lamps are seen at some point otherwise than by all corners around it, and their
-    /// light would be missed, displayed.
+    /// Those of the points, a few at most, that see a lamp otherwise than all corners around them,
+    /// where its light would be missed, displayed.
     /// @param sights of the points, and of the grid's shading points.
-    bool miss_shadows(const Grid& grid, std::span<const LampSight> sights,
-                      std::span<const LampSight> of_grid, float threshold) const;
+    std::vector<RefinedPoint> missed_shadows(const Grid& grid, std::span<const LampSight> sights,
+                                             std::span<const LampSight> of_grid,
+                                             float threshold) const;
 };
 
 }  // namespace granita

@@ -237,16 +237,26 @@ struct ShadingSystem::Impl : FrameShading {
         if (probes.miss_looks(grid, there, looks, light != nullptr, thresholds.difference))
             grid.unsettled = all_micropolygons(grid);
     }
-    /// The same where they do not tell shadows.  What blurs shows no such lines.
+    /// How probes see lamps, by one sample each or by as many as samples of the grid take.
+    std::vector<LampSight> see(const Grid& grid, const PatternProbes& probes,
+                               std::span<const LampSight> lamps, bool by_one) const {
+        RefinedPoints found(grid, scene, camera, eye, probes.points, moves, 1.0f);
+        if (by_one) found.points.share = 0.0f;
+        light->lift(found.points, grid.key);
+        return light->see(found.points, grid.key, lamps);
+    }
+    /// The same where they do not tell shadows, of what stands still: probes have no way in the
+    /// shutter.  Lattices blur more than their shadows are wide.
     void find_thin_shadows(Grid& grid, std::span<const LampSight> sights, float threshold) const {
         if (sights.empty() || grid.shades_lattice() || are_all_marked(grid.unsettled)) return;
         const std::span<const std::uint8_t> marks(grid.unsettled);
         const PatternProbes probes(grid, any_differs(sights) ? marks : marks.first(0));
-        RefinedPoints found(grid, scene, camera, eye, probes.points, moves, 1.0f);
-        found.points.share = 0.0f;
-        light->lift(found.points, grid.key);
-        if (probes.miss_shadows(grid, light->see(found.points, grid.key, sights), sights,
-                                threshold))
+        const PatternProbes missed(
+            probes.missed_shadows(grid, see(grid, probes, sights, true), sights, threshold));
+        if (missed.points.empty()) return;
+        // One sample of a lamp may be that which its penumbra hides.
+        if (!missed.missed_shadows(grid, see(grid, missed, sights, false), sights, threshold)
+                 .empty())
             grid.unsettled = all_micropolygons(grid);
     }
     void find_open_patterns(Grid& grid) const {
@@ -311,7 +321,8 @@ struct ShadingSystem::Impl : FrameShading {
                            thresholds.noise / (fewer * fewer));
         mark(grid.unsettled, doubts.highlights);
         find_patterns(grid, doubts.looks);
-        find_thin_shadows(grid, doubts.sights, difference);
+        if (!at.moves() && grid.lifespan.is_whole())
+            find_thin_shadows(grid, doubts.sights, difference);
     }
 };
 

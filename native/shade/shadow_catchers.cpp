@@ -87,7 +87,7 @@ void ShadowCatchers::divide(Grid& grid, const ChannelSet& channels, std::span<fl
     for (LampSight& sight : sights)
         for (std::size_t i = 0; i < sight.light.size(); ++i) {
             const Vec3f part = sight.light[i] / at(i);
-            sight.light[i] = is_finite(part) ? part : Vec3f(0.0f);
+            for (int c = 0; c < 3; ++c) sight.light[i][c] = std::isfinite(part[c]) ? part[c] : 0.0f;
         }
     grid.found_alone = std::move(alone.found);
 }

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
+from test_dense_meshes import ball
 from test_refined_shading import ALBEDO, CASTS_SHADOW, LIT, SUN, VISIBLE
 
 SIZE = 64
@@ -104,3 +105,31 @@ def test_a_floor_in_the_sun_asks_a_few_more_rays():
     statistics = s.render(snapshot)["statistics"]
     assert statistics["points_refined"] == 0
     assert statistics["rays_shadow"] <= 1.3 * statistics["points_shaded"]
+
+
+def test_a_thing_that_turns_is_not_shaded_by_samples_for_its_own_shadow():
+    """Its surface comes before places where it is at the frame."""
+    refined = []
+    for casts in (True, False):
+        snapshot = stage(sun_angle=0.0)
+        points, faces = ball(40, 14.0)
+        knots = []
+        for angle in (-0.2, 0.2):
+            turn = s.translation(SIZE / 2 + 10 * angle, SIZE / 2, 0.0)
+            c, d = np.cos(angle), np.sin(angle)
+            turn[:3, :3] = [[c, 0, d], [0, 1, 0], [-d, 0, c]]
+            knots.append(turn)
+        s.mesh(snapshot, points, faces, 0, knots, smooth=np.ones(len(faces), np.uint8))
+        snapshot["instances"]["flags"].append(VISIBLE | CASTS_SHADOW if casts else VISIBLE)
+        refined.append(s.render(snapshot)["statistics"]["points_refined"])
+    assert refined[0] < 1.5 * refined[1] + 64 * 200
+
+
+def test_a_penumbra_is_told_by_corners():
+    """Of a common sun, four pixels wide beside an edge: single samples of it that differ say nothing."""
+    snapshot = stage(sun_angle=0.0092)
+    far = s.rectangle(-300.0, -300.0, SIZE / 2, 400.0, 20.0 - 4.0 / 0.0092)
+    s.quad(snapshot, far, 0)
+    snapshot["instances"]["flags"].append(CASTS_SHADOW)
+    statistics = s.render(snapshot)["statistics"]
+    assert statistics["points_refined"] < 64 * SIZE * 16

@@ -21,6 +21,10 @@ namespace granita {
 
 class GgxAlbedo;
 
+/// Up to this alpha a lobe is narrower than a pixel of any usual frame (0.2 mrad reflected) and is
+/// treated as a mirror.
+inline constexpr float kSharpAlpha = 1e-4f;
+
 /// Radiance towards the view per unit radiance and solid angle: BSDF times cosine times weight.
 struct BsdfValue {
     Vec3f diffuse{0.0f}, glossy{0.0f}, transmission{0.0f};

@@ -8,9 +8,6 @@
 namespace granita {
 namespace {
 
-/// Below this alpha the lobe is narrower than a pixel of any usual frame (0.2 mrad reflected) and
-/// is treated as a mirror.
-constexpr float kSharpAlpha = 1e-4f;
 /// Of stretched facets along their smoother axis: densities stay numbers.
 constexpr float kLeastAlpha = 1e-5f;
 

@@ -5,14 +5,12 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <unordered_map>
 
 #include "base/stage_timer.h"
 #include "scene/camera_path.h"
 #include "shade/bsdf/bsdf.h"
-#include "shade/bsdf/bsdf_albedo.h"
 #include "shade/lights/grid_samples.h"
 #include "shade/lights/lamp_choice.h"
 #include "shade/lights/lamp_samples.h"

@@ -153,7 +153,7 @@ void light_by_all(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>
         const Lamp& lamp = set.lamps[l];
         if (!lamp.lights(grid.receives) || !lamp.is_asked(grid.depth)) continue;
         LampSight sight(static_cast<std::uint32_t>(l));
-        const bool is_told = sights && lamp.casts_shadow();
+        const bool is_told = sights && set.rays && lamp.casts_shadow();
         sender.light(points, l, first, is_told ? &sight : nullptr, progress);
         if (sight.is_told()) sights->push_back(std::move(sight));
     }

@@ -25,6 +25,7 @@ class LampSight {
 
     /// A sample of one of `count` points.
     void add(std::size_t point, std::size_t count, const Vec3f& reflected, const Vec3f& seen) {
+        if (m_is_wide) return;
         if (through.empty()) {
             through.resize(count, kNone);
             light.resize(count, Vec3f(0.0f));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "math/sampling.h"
+#include "shade/bsdf/bsdf.h"
 #include "shade/bsdf/refraction.h"
 
 namespace granita {
@@ -12,9 +13,21 @@ namespace {
 
 /// Alphas beyond this make highlights that corners see, but on balls of a pixel or two.
 constexpr float kRoughest = 0.15f;
-constexpr float kSharp = 1e-4f;  ///< as of PointBsdf
 /// What most of a lobe lies within, of its alpha: facets turn what they mirror by twice their lean.
 constexpr float kLobeWidth = 4.0f;
+
+/// Of a lobe at a point, along what its facets are stretched by and across.
+struct Alphas {
+    float least, most;
+
+    Alphas(const Lobe& lobe, std::size_t i) {
+        const bool is_sharp = lobe.distribution == Distribution::Sharp;
+        const float alpha = is_sharp ? 0.0f : lobe.roughness[i] * lobe.roughness[i];
+        const float ratio = lobe.aspect.empty() ? 1.0f : lobe.aspect[i];
+        least = std::min(alpha / ratio, alpha * ratio);
+        most = std::max(alpha / ratio, alpha * ratio);
+    }
+};
 
 /// How a point sends the view past a lamp.
 struct Pass {
@@ -36,20 +49,21 @@ bool sent(const Lobe& lobe, const ShadingPoints& points, std::size_t i, Vec3f& w
 Pass pass_of(const Lamp& lamp, const Lobe& lobe, const ShadingPoints& points, std::size_t i,
              float time) {
     Pass pass;
-    const float alpha = lobe.roughness[i] * lobe.roughness[i];
+    const Alphas alpha(lobe, i);
     LightSample middle;
     Vec3f way;
     // What has no size is never met, and sharp lobes meet alone.
-    if (alpha > kRoughest || (lamp.is_hard() && alpha <= kSharp) || lobe.weight[i] == Vec3f(0.0f) ||
-        !lamp.exists(time) || !lamp.sample(time, points.p[i], Vec2f(0.5f), middle) ||
-        !sent(lobe, points, i, way) || glm::dot(way, middle.direction) <= 0.0f)
+    if (alpha.least > kRoughest || (lamp.is_hard() && alpha.most <= kSharpAlpha) ||
+        lobe.weight[i] == Vec3f(0.0f) || !lamp.exists(time) ||
+        !lamp.sample(time, points.p[i], Vec2f(0.5f), middle) || !sent(lobe, points, i, way) ||
+        glm::dot(way, middle.direction) <= 0.0f)
         return pass;
     const float radius = lamp.is_hard() ? 0.0f : std::sqrt(kInversePi / middle.pdf);
     pass.to_lamp = middle.direction;
     pass.aside = way - glm::dot(way, middle.direction) * middle.direction;
-    pass.told = radius + kLobeWidth * alpha;
-    // A sample of a disc may be as far from its middle as that.
-    pass.margin = 2.0f * radius + kLobeWidth * alpha;
+    pass.told = radius + kLobeWidth * alpha.least;
+    // Some lamps' middle sample is not their middle: of a cone it is amid the way to its rim.
+    pass.margin = 2.0f * radius + kLobeWidth * alpha.most;
     pass.is_near = true;
     return pass;
 }
@@ -83,9 +97,17 @@ bool meets(const Pass& a, const Pass& b, const Pass& c) {
 }
 
 bool is_polished(const Lobe& lobe) {
-    return is_of_facets(lobe.kind) && std::ranges::any_of(lobe.roughness, [](float roughness) {
-               return roughness * roughness <= kRoughest;
-           });
+    if (!is_of_facets(lobe.kind)) return false;
+    for (std::size_t i = 0; i < lobe.roughness.size(); ++i)
+        if (Alphas(lobe, i).least <= kRoughest) return true;
+    return false;
+}
+
+/// Whether the lobe's light of the lamp counts.
+bool takes(const Lobe& lobe, const Lamp& lamp) {
+    BsdfValue value;
+    value.part(part_of(lobe.kind)) = Vec3f(1.0f);
+    return total(lamp.apply(value, false)) != Vec3f(0.0f);
 }
 
 }  // namespace
@@ -95,12 +117,13 @@ std::vector<std::uint8_t> mirrored_lamps(const LampSet& set, std::uint64_t recei
                                          const SurfaceClosure& closure) {
     std::vector<std::uint8_t> marks;
     const std::size_t asked = set.tree ? set.everywhere : set.lamps.size();
-    std::vector<Pass> passes(points.count);
+    std::vector<Pass> passes;
     for (const Lobe& lobe : closure.lobes) {
         if (!is_polished(lobe)) continue;
         for (std::size_t l = 0; l < asked; ++l) {
             const Lamp& lamp = set.lamps[l];
-            if (!lamp.lights(receives) || !lamp.meets_lobes(0)) continue;
+            if (!lamp.lights(receives) || !takes(lobe, lamp)) continue;
+            passes.resize(points.count);
             for (std::size_t i = 0; i < points.count; ++i)
                 passes[i] = pass_of(lamp, lobe, points, i, set.frame_time);
             for (int m = 0; m < grid.micropolygon_count(); ++m) {

@@ -190,11 +190,11 @@ int parts_of(float center, float half, Part (&parts)[3]) {
         parts[0] = {center, 1.0f, 1.0f};
         return 1;
     }
-    const float low = std::clamp(from, 0.0f, 1.0f), high = std::clamp(to, 0.0f, 1.0f);
-    const float of_all = 0.5f / half, within = (high - low) * of_all;
-    const Part all[] = {{0.0f, 0.0f, (low - from) * of_all},
+    const float low = std::max(from, 0.0f), high = std::min(to, 1.0f), of_all = 0.5f / half;
+    const float within = (high - low) * of_all;  // less than 0 where all is beyond
+    const Part all[] = {{0.0f, 0.0f, (std::min(to, 0.0f) - from) * of_all},
                         {0.5f * (low + high), within, within},
-                        {1.0f, 0.0f, (to - high) * of_all}};
+                        {1.0f, 0.0f, (to - std::max(from, 1.0f)) * of_all}};
     int count = 0;
     for (const Part& part : all)
         if (part.share > 0.0f) parts[count++] = part;

@@ -186,7 +186,7 @@ TEST(Texture, the_rim_is_wrapped_as_asked) {
 // Four columns; what a beam sees that is eleven images wide, or half as wide beside its middle, is
 // mostly the rim.
 TEST(Texture, beams_wider_than_an_image_see_what_is_beyond_it) {
-    const Image image = image_of(4, 1, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {4, 0, 0}}, "Non-Color");
+    const Image image = image_of(4, 1, {{3, 0, 0}, {1, 0, 0}, {2, 0, 0}, {4, 0, 0}}, "Non-Color");
     const auto seen = [&](TextureExtension extension, Vec2f from_to) {
         TextureMode mode;
         mode.extension = extension;
@@ -194,11 +194,14 @@ TEST(Texture, beams_wider_than_an_image_see_what_is_beyond_it) {
         const TexturePlace place{{from_to.x + width / 2, 0.5f}, {width, 0.0f}, {0.0f, 0.1f}};
         return Look(image).at({place}, mode)[0];
     };
-    const float mean = 7.0f / 4;
-    EXPECT_NEAR(seen(TextureExtension::Extend, {-5, 6}).x, (5 * 4 + mean) / 11, 1e-5);
-    EXPECT_NEAR(seen(TextureExtension::Extend, {-1, 9}).x, (8 * 4 + mean) / 10, 1e-5);
-    EXPECT_NEAR(seen(TextureExtension::Extend, {-6, -1}).x, 0.0f, 1e-6);
-    EXPECT_NEAR(seen(TextureExtension::Extend, {1, 3}).x, 4.0f, 1e-6);
+    const float mean = 10.0f / 4;
+    EXPECT_NEAR(seen(TextureExtension::Extend, {-5, 6}).x, (5 * 3 + 5 * 4 + mean) / 11, 1e-5);
+    EXPECT_NEAR(seen(TextureExtension::Extend, {-1, 9}).x, (3 + 8 * 4 + mean) / 10, 1e-5);
+    EXPECT_NEAR(seen(TextureExtension::Extend, {-6, -1}).x, 3.0f, 1e-5);
+    EXPECT_NEAR(seen(TextureExtension::Extend, {2, 3}).x, 4.0f, 1e-5);
+    EXPECT_NEAR(seen(TextureExtension::Extend, {4.99f, 5.01f}).x, 4.0f, 1e-4);
+    for (const Vec2f beam : {Vec2f(-5, 6), Vec2f(-1, 9), Vec2f(-6, -1), Vec2f(4.99f, 5.01f)})
+        EXPECT_NEAR(seen(TextureExtension::Extend, beam).w, 1.0f, 1e-4);
     EXPECT_NEAR(seen(TextureExtension::Clip, {-5, 6}).x, mean / 11, 1e-5);
     EXPECT_NEAR(seen(TextureExtension::Clip, {-1, 9}).x, mean / 10, 1e-5);
     EXPECT_EQ(seen(TextureExtension::Clip, {1, 3.5}), Vec4f(0.0f));
