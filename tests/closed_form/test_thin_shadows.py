@@ -46,10 +46,14 @@ def seen(snapshot):
 @pytest.mark.parametrize("width", [0.1, 0.2, 0.4])
 @pytest.mark.parametrize("angle", [0.0, 0.005])
 def test_wires_cast_all_of_their_shadow(width, angle):
-    """Pixels: they were dashes that lacked 41, 31 and 11 %.  Ten pixels above the floor the sun's disc is .05 wide."""
+    """Pixels: they were dashes that lacked 41, 31 and 11 %.
+
+    Ten pixels above the floor the sun's disc is .05 wide, half of the thinnest wire's shadow: corners see a part of it.
+    """
     snapshot = stage(sun_angle=angle)
     bars(snapshot, width / EVERY)
-    assert 1.0 - seen(snapshot).mean() == pytest.approx(width / EVERY, rel=0.04)
+    bound = 0.07 if angle > 0.4 * width / 10 else 0.04
+    assert 1.0 - seen(snapshot).mean() == pytest.approx(width / EVERY, rel=bound)
 
 
 def test_slits_let_all_of_their_light_through():
@@ -112,17 +116,18 @@ def test_a_thing_that_turns_is_not_shaded_by_samples_for_its_own_shadow():
     refined = []
     for casts in (True, False):
         snapshot = stage(sun_angle=0.0)
+        snapshot["instances"]["flags"] = [0]  # no floor
         points, faces = ball(40, 14.0)
         knots = []
         for angle in (-0.2, 0.2):
-            turn = s.translation(SIZE / 2 + 10 * angle, SIZE / 2, 0.0)
+            turn = s.translation(SIZE / 2 + 10 * angle, SIZE / 2, 60.0)
             c, d = np.cos(angle), np.sin(angle)
             turn[:3, :3] = [[c, 0, d], [0, 1, 0], [-d, 0, c]]
             knots.append(turn)
         s.mesh(snapshot, points, faces, 0, knots, smooth=np.ones(len(faces), np.uint8))
         snapshot["instances"]["flags"].append(VISIBLE | CASTS_SHADOW if casts else VISIBLE)
         refined.append(s.render(snapshot)["statistics"]["points_refined"])
-    assert refined[0] < 1.5 * refined[1] + 64 * 200
+    assert refined[0] < 1.2 * refined[1] + 64 * 20
 
 
 def test_a_penumbra_is_told_by_corners():
