@@ -237,7 +237,7 @@ struct ShadingSystem::Impl : FrameShading {
         if (probes.miss_looks(grid, there, looks, light != nullptr, thresholds.difference))
             grid.unsettled = all_micropolygons(grid);
     }
-    /// How probes see lamps, by one sample each or by as many as samples of the grid take.
+    /// How probes see lamps, by one sample each or by as many as corners take.
     std::vector<LampSight> see(const Grid& grid, const PatternProbes& probes,
                                std::span<const LampSight> lamps, bool by_one) const {
         RefinedPoints found(grid, scene, camera, eye, probes.points, moves, 1.0f);
