@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
+from session_parts import DOWN
 from test_dense_meshes import ball
 
 RADIUS, EVERY, ROWS, COLUMNS = 16.0, 40.37, 3, 4
@@ -23,7 +24,6 @@ def test_a_ball_mirrors_all_of_a_small_sun(roughness):
     inputs = {"Color": (1.0,) * 4, "Roughness": roughness}
     nodes = [{"type": "ShaderNodeBsdfGlossy", "inputs": inputs}]
     snapshot["materials"].append({"name": "Chrome", "nodes": nodes, "surface": (0, "BSDF")})
-    down = np.diag([1.0, -1.0, -1.0, 1.0])
     turn = np.eye(4)
     c, d = np.cos(0.5), np.sin(0.5)
     turn[:3, :3] = [[1, 0, 0], [0, c, -d], [0, d, c]]
@@ -31,7 +31,7 @@ def test_a_ball_mirrors_all_of_a_small_sun(roughness):
         {
             "name": "Sun",
             "kind": "SUN",
-            "world_from_light": (turn @ down)[None],
+            "world_from_light": (turn @ DOWN)[None],
             "energy": SUN,
             "sun_angle": ANGLE,
         }

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
+from session_parts import DOWN, matte
 from test_dense_meshes import ball
 from test_refined_shading import ALBEDO, CASTS_SHADOW, LIT, SUN, VISIBLE
 
@@ -14,8 +15,7 @@ EVERY, SLOPE = 7.0, 0.13
 def stage(bucket_size=32, **light):
     """A floor under a lamp: the sun along the view if `light` says nothing else."""
     snapshot = s.orthographic((SIZE, SIZE), samples=64, bucket_size=bucket_size)
-    nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (ALBEDO,) * 3 + (1,)}}]
-    snapshot["materials"].append({"name": "Matte", "nodes": nodes, "surface": (0, "BSDF")})
+    matte(snapshot, (ALBEDO,) * 3)
     lamp(snapshot, **{"energy": SUN, **light})
     snapshot["instances"]["flags"] = []
     s.quad(snapshot, s.rectangle(-200, -200, 250, 200, 20.0), 0)
@@ -24,9 +24,8 @@ def stage(bucket_size=32, **light):
 
 
 def lamp(snapshot, **values):
-    down = np.diag([1.0, -1.0, -1.0, 1.0])
     snapshot.setdefault("lights", []).append(
-        {"name": "Lamp", "kind": "SUN", "world_from_light": down[None], **values}
+        {"name": "Lamp", "kind": "SUN", "world_from_light": DOWN[None], **values}
     )
 
 
@@ -65,8 +64,7 @@ def test_slits_let_all_of_their_light_through():
 def test_wires_before_a_lamp_with_a_place():
     """So far off that its wires' shadows are as wide as they; the floor without them says what is lit."""
     far = 2e4
-    at = np.diag([1.0, -1.0, -1.0, 1.0])
-    at[:3, 3] = (SIZE / 2, SIZE / 2, 20.0 - far)
+    at = s.translation(SIZE / 2, SIZE / 2, 20.0 - far) @ DOWN
     bulb = {"kind": "POINT", "world_from_light": at[None], "energy": 1e9, "radius": 50.0}
     plain, wired = stage(**bulb), stage(**bulb)
     bars(wired, 0.2 / EVERY)

@@ -295,8 +295,8 @@ TextureFootprint TextureFootprint::of(const Vec2f& along_u, const Vec2f& along_v
 
 Vec4f filtered(TiledImage& image, const TextureMode& mode, const TexturePlace& place) {
     const float by_parts = part_of_parts(mode, place);
-    Vec4f sum(0.0f);
     if (by_parts == 0.0f) return seen_as_one(image, mode, place);
+    Vec4f sum(0.0f);
     if (by_parts < 1.0f) sum = seen_as_one(image, mode, place) * (1.0f - by_parts);
     TextureMode inside = mode;  // parts end at the rim, and do not fade there
     inside.extension = TextureExtension::Extend;

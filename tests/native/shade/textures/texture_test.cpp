@@ -183,8 +183,7 @@ TEST(Texture, the_rim_is_wrapped_as_asked) {
     EXPECT_FLOAT_EQ(at(TextureExtension::Clip, 1.0f).w, 0.5f);
 }
 
-// Four columns; what a beam sees that is eleven images wide, or half as wide beside its middle, is
-// mostly the rim.
+// Four columns.  What is wider than they are sees mostly the rim, or what is beyond it alone.
 TEST(Texture, beams_wider_than_an_image_see_what_is_beyond_it) {
     const Image image = image_of(4, 1, {{3, 0, 0}, {1, 0, 0}, {2, 0, 0}, {4, 0, 0}}, "Non-Color");
     const auto seen = [&](TextureExtension extension, Vec2f from_to) {
