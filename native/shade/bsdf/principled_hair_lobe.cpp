@@ -7,9 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "math/luminance.h"
+#include "math/four_floats.h"
 #include "math/sampling.h"
-#include "shade/bsdf/fresnel.h"
 #include "shade/bsdf/hair_color.h"
 #include "shade/bsdf/lobe_shape.h"
 
@@ -22,38 +21,14 @@ float cosine_of(float sine) {
     return std::sqrt(std::max(0.0f, 1.0f - sine * sine));
 }
 
-float angle_in_circle(float a) {
-    return a - 2.0f * kPi * std::floor((a + kPi) / (2.0f * kPi));
-}
-
-/// Logarithm of the modified Bessel function of order 0.
-float log_bessel(float x) {
-    if (x > 12.0f) return x + 0.5f * (1.0f / (8.0f * x) - std::log(2.0f * kPi) - std::log(x));
-    float sum = 1.0f, term = 1.0f;
-    for (int i = 1; i < 30 && term > 1e-8f * sum; ++i) {
-        term *= 0.25f * x * x / static_cast<float>(i * i);
-        sum += term;
-    }
-    return std::log(sum);
-}
-
-/// Of inclinations, per cosine; v: variance.
-float longitudinal(float sin_i, float cos_i, float sin_o, float cos_o, float v) {
-    const float inverse = 1.0f / v, a = cos_i * cos_o * inverse, b = sin_i * sin_o * inverse;
-    if (v <= 0.1f)  // sinh(1 / v) is exp(1 / v) / 2
-        return std::exp(log_bessel(a) - b - inverse + std::log(inverse));
-    return std::exp(log_bessel(a) - b) / (2.0f * v * std::sinh(inverse));
-}
-
 /// The logistic distribution cut to a full turn.
 struct TrimmedLogistic {
-    float scale;
+    float scale = 1.0f;
 
+    /// Of what lies within half a turn of 0.
     float below(float x) const { return 1.0f / (1.0f + std::exp(std::min(-x / scale, 80.0f))); }
-    float density(float x) const {
-        const float e = std::exp(-std::abs(x) / scale);
-        return e / (scale * (1.0f + e) * (1.0f + e)) / (1.0f - 2.0f * below(-kPi));
-    }
+    /// 1 over the scale and what of the distribution the turn holds.
+    float peak() const { return 1.0f / (scale * (1.0f - 2.0f * below(-kPi))); }
     float sample(float u) const {
         const float first = below(-kPi), at = u * (1.0f - 2.0f * first) + first;
         return std::clamp(-scale * std::log(1.0f / at - 1.0f), -kPi, kPi);
@@ -71,12 +46,55 @@ Vec2f split(float u) {
     return (Vec2f(static_cast<float>(odd), static_cast<float>(even)) + 0.5f) / 4096.0f;
 }
 
-/// Light that meets the hair at one place of its width.
-struct Crossing {
-    float weight;  ///< of the width that the point stands for
-    std::array<float, kPaths - 1> deflections;
-    std::array<Vec3f, kPaths> attenuation;
-    std::array<float, kPaths> shares;  ///< of samples
+/// Fresnel's, exact, of a medium with the index `eta` > 1.
+Floats reflectance(const Floats& cosine, float eta) {
+    const Floats c = magnitude(cosine), g = root(eta * eta - 1.0f + c * c);
+    const Floats a = (g - c) / (g + c), b = ((g + c) * c - 1.0f) / ((g - c) * c + 1.0f);
+    return 0.5f * a * a * (1.0f + b * b);
+}
+
+/// Light that meets the hair at four places of its width; of weight 0 beyond the last.
+struct Crossings {
+    Floats weight;
+    std::array<Floats, kPaths - 1> deflections;
+    /// Of each path red, green, blue and what samples take of it, times the weight.
+    std::array<std::array<Floats, 4>, kPaths> parts;
+};
+
+/// Densities of inclinations about each path's cone, per cosine.
+struct Longitudinal {
+    Floats inverse;  ///< of the variance
+    Floats scale;
+
+    void set(const Floats& variance) {
+        inverse = 1.0f / variance;
+        scale = inverse / (1.0f - exponential(-2.0f * inverse));
+    }
+    /// exp(-b) I0(a) / (2 v sinh(1 / v)), a and b the products of cosines and of sines over v; the
+    /// Bessel function within 2e-7 (Abramowitz and Stegun 9.8.1 and 9.8.2).
+    Floats operator()(const Floats& sin_i, const Floats& cos_i, const Floats& sin_o,
+                      const Floats& cos_o) const {
+        const Floats cosines = cos_i * cos_o, sines = sin_i * sin_o, a = cosines * inverse;
+        const Floats t = a / 3.75f, t2 = least(t * t, all(1.0f)), u = 1.0f / most(t, all(1.0f));
+        Floats near = t2 * 0.0045813f + 0.0360768f;
+        near = near * t2 + 0.2659732f;
+        near = near * t2 + 1.2067492f;
+        near = near * t2 + 3.0899424f;
+        near = near * t2 + 3.5156229f;
+        near = near * t2 + 1.0f;
+        Floats far = u * 0.00392377f - 0.01647633f;
+        far = far * u + 0.02635537f;
+        far = far * u - 0.02057706f;
+        far = far * u + 0.00916281f;
+        far = far * u - 0.00157565f;
+        far = far * u + 0.00225319f;
+        far = far * u + 0.01328592f;
+        far = far * u + 0.39894228f;
+        const auto is_far = t > 1.0f;  // there e^a is taken out of the polynomial
+        const Floats bessel = is_far ? far / root(most(a, all(1.0f))) : near;
+        const Floats exponent = (is_far ? cosines : all(0.0f)) - sines - 1.0f;
+        return exponential(exponent * inverse) * bessel * scale;
+    }
 };
 
 class PrincipledHair : public LobeShape {
@@ -96,49 +114,73 @@ class PrincipledHair : public LobeShape {
         for (std::size_t p = 0; p < kPaths; ++p) {
             // Scales lean: each path leaves its cone by another multiple.
             const float turn = std::array{-2.0f, 1.0f, 4.0f, 0.0f}[p] * form.offset;
-            (form.tilts_light ? m_light_tilt : m_view_tilt)[p] = {std::cos(turn), std::sin(turn)};
-            m_cones[p] = tilted({m_cos_o, m_sin_o}, m_view_tilt[p], -1.0f);
+            (form.tilts_light ? m_light_tilt : m_view_tilt).set(p, turn);
         }
+        m_cones = m_view_tilt.back(m_sin_o, m_cos_o);
     }
 
-    Vec3f evaluate(const Vec3f& wo) const override {
-        return sum_of<Vec3f>(wo, &Crossing::attenuation);
-    }
-    float pdf(const Vec3f& wo) const override { return sum_of<float>(wo, &Crossing::shares); }
+    Vec3f evaluate(const Vec3f& wo) const override { return see(wo).light; }
+    float pdf(const Vec3f& wo) const override { return see(wo).density; }
     bool sample(const Vec2f& u, Vec3f& wo) const override {
-        float turn = u.x;
-        const Crossing* crossing = m_crossings.data();
-        while (crossing != &m_crossings.back() && turn >= crossing->weight)
-            turn -= (crossing++)->weight;
-        turn = std::clamp(turn / crossing->weight, 0.0f, 0.99999994f);
-        const auto& shares = crossing->shares;
+        float turn = u.x * m_width;
+        const Crossings* four = m_crossings.data();
+        std::size_t lane = 0;
+        for (std::size_t k = 1; k < m_count && turn >= four->weight[lane]; ++k) {
+            turn -= four->weight[lane];
+            lane = k % 4;
+            four += lane == 0 ? 1 : 0;
+        }
+        turn = std::min(turn, 0.99999994f * four->weight[lane]);
         std::size_t p = 0;
-        for (; p < kPaths - 1 && turn >= shares[p]; ++p) turn -= shares[p];
-        turn = shares[p] > 0.0f ? std::clamp(turn / shares[p], 0.0f, 0.99999994f) : 0.5f;
+        for (; p < kPaths - 1 && turn >= four->parts[p][3][lane]; ++p)
+            turn -= four->parts[p][3][lane];
+        const float share = four->parts[p][3][lane];
+        turn = share > 0.0f ? std::clamp(turn / share, 0.0f, 0.99999994f) : 0.5f;
         const Vec2f w = split(u.y);
-        const float v = m_variance[p];
+        const float v = 1.0f / m_along.inverse[p];
         const float along =
             1.0f + v * std::log(std::max(w.x, 1e-5f) + (1.0f - w.x) * std::exp(-2.0f / v));
-        const float on_cone = std::clamp(
-            -along * m_cones[p].y + cosine_of(along) * std::cos(2.0f * kPi * w.y) * m_cones[p].x,
-            -1.0f, 1.0f);
-        const float sine = tilted({cosine_of(on_cone), on_cone}, m_light_tilt[p], 1.0f).y;
-        const float around =
-            p < kPaths - 1 ? crossing->deflections[p] + m_azimuth.sample(turn) : 2.0f * kPi * turn;
+        const float on_cone =
+            std::clamp(-along * m_cones.sine[p] +
+                           cosine_of(along) * std::cos(2.0f * kPi * w.y) * m_cones.cosine[p],
+                       -1.0f, 1.0f);
+        const float sine =
+            on_cone * m_light_tilt.cosine[p] + cosine_of(on_cone) * m_light_tilt.sine[p];
+        const float around = p < kPaths - 1 ? four->deflections[p][lane] + m_azimuth.sample(turn)
+                                            : 2.0f * kPi * turn;
         const float phi = m_phi_o + around, c = cosine_of(sine);
         wo = sine * m_x + c * (std::cos(phi) * m_y + std::sin(phi) * m_z);
         return true;
     }
     Vec3f albedo() const override { return m_albedo; }
     float mirrored_part(const Vec3f& wo) const override {
-        const float all = pdf(wo);
-        return all > 0.0f ? sum_of<float>(wo, &Crossing::shares, 1) / all : 1.0f;
+        const Seen& seen = see(wo);
+        return seen.density > 0.0f ? seen.mirrored / seen.density : 1.0f;
     }
     float peak() const override {
-        return 1.0f / (2.0f * kPi * std::sqrt(2.0f * kPi * m_variance[1]));
+        return std::sqrt(m_along.inverse[1] / (2.0f * kPi)) / (2.0f * kPi);
     }
 
   private:
+    /// Angles of the paths.
+    struct Angles {
+        Floats cosine = all(1.0f), sine = all(0.0f);
+
+        void set(std::size_t path, float angle) {
+            cosine[path] = std::cos(angle);
+            sine[path] = std::sin(angle);
+        }
+        /// An inclination, turned back by each.
+        Angles back(float sin, float cos) const {
+            return {magnitude(cos * cosine + sin * sine), sin * cosine - cos * sine};
+        }
+    };
+    /// What is known of a direction.
+    struct Seen {
+        Vec3f wo{NAN}, light{0.0f};
+        float density = 0.0f, mirrored = 0.0f;  ///< of all samples, of those that are mirrored
+    };
+
     /// Cuticles scatter by what an artist can tell apart, not by the densities' own parameters.
     void set_roughness(const HairForm& form) {
         const auto bounded = [](float x) { return std::clamp(x, 0.001f, 1.0f); };
@@ -147,10 +189,11 @@ class PrincipledHair : public LobeShape {
             return root * root;
         };
         const float r = bounded(form.roughness), s = bounded(form.radial_roughness);
-        const float v = variance(r);
-        m_variance = {variance(bounded(form.first_roughness * r)), 0.25f * v, 4.0f * v, 4.0f * v};
+        const float v = variance(r), first = variance(bounded(form.first_roughness * r));
+        m_along.set(Floats{first, 0.25f * v, 4.0f * v, 4.0f * v});
         m_azimuth.scale =
             (0.265f * s + 1.194f * s * s + 5.372f * std::pow(s, 22.0f)) * std::sqrt(kPi / 8.0f);
+        m_peak = m_azimuth.peak();
     }
     /// Azimuth turns by up to a full circle across the hair: what a point stands for is met at
     /// evenly turned places, closer than the azimuthal densities are wide.
@@ -169,90 +212,109 @@ class PrincipledHair : public LobeShape {
         const float spacing = std::min(kSpacing * m_azimuth.scale, kWidest);
         const float count = std::clamp(std::ceil(turn / spacing), 1.0f, kMost);
         const float step = (last - first) / count;
-        float sum = 0.0f, reflected = 0.0f;
-        for (float k = 0.5f; k < count; k += 1.0f) {
-            const float gamma = first + k * step, weight = std::cos(gamma);
-            sum += weight;
-            reflected += weight * add_crossing(form, gamma, weight);
+        m_count = static_cast<std::size_t>(count);
+        m_crossings.resize((m_count + 3) / 4);
+        Floats sine, cosine;
+        for (int k = 0; k < 4; ++k) {
+            const float gamma = first + (static_cast<float>(k) + 0.5f) * step;
+            sine[k] = std::sin(gamma);
+            cosine[k] = std::cos(gamma);
         }
-        for (Crossing& crossing : m_crossings) crossing.weight /= sum;
-        m_albedo = glm::exp(-glm::sqrt(form.sigma) * hair_absorption_scale(4.0f * m_variance[1])) +
-                   reflected / sum;
+        const float turn_sine = std::sin(4.0f * step), turn_cosine = std::cos(4.0f * step);
+        Floats gamma = first + (Floats{0.5f, 1.5f, 2.5f, 3.5f}) * step, left = all(count);
+        left -= Floats{0.5f, 1.5f, 2.5f, 3.5f};
+        float reflected = 0.0f;
+        for (Crossings& four : m_crossings) {
+            four.weight = left > 0.0f ? most(cosine, all(1e-6f)) : all(0.0f);
+            m_width += sum(four.weight);
+            reflected += sum(four.weight * cross(form, gamma, sine, cosine, four));
+            const Floats next = sine * turn_cosine + cosine * turn_sine;
+            cosine = cosine * turn_cosine - sine * turn_sine;
+            sine = next;
+            gamma += 4.0f * step;
+            left -= 4.0f;
+        }
+        m_albedo =
+            glm::exp(-glm::sqrt(form.sigma) * hair_absorption_scale(4.0f / m_along.inverse[1])) +
+            reflected / m_width;
     }
-    /// Returns what is reflected.
-    float add_crossing(const HairForm& form, float gamma, float weight) {
-        const float h = std::sin(gamma), eta = std::max(form.ior, 1.0001f);
-        const float sin_inside = h * m_cos_o / std::sqrt(eta * eta - m_sin_o * m_sin_o);
-        const float inside = std::asin(std::clamp(sin_inside, -1.0f, 1.0f));
-        const float way = 2.0f * cosine_of(sin_inside) / cosine_of(m_sin_o / eta);
-        const float reflected = fresnel_dielectric(m_cos_o * cosine_of(h), eta);
-        Crossing& crossing = m_crossings.emplace_back();
-        crossing.weight = weight;
+    /// At places that are turned by `gamma`, of a known weight.  Returns what is reflected.
+    Floats cross(const HairForm& form, const Floats& gamma, const Floats& h, const Floats& cosine,
+                 Crossings& four) {
+        const float eta = std::max(form.ior, 1.0001f);
+        const Floats sin_inside = most(
+            least(h * (m_cos_o / std::sqrt(eta * eta - m_sin_o * m_sin_o)), all(1.0f)), all(-1.0f));
+        const Floats inside = arc_sine(sin_inside);
+        const Floats way =
+            2.0f / cosine_of(m_sin_o / eta) * root(most(1.0f - sin_inside * sin_inside, all(0.0f)));
         for (std::size_t p = 0; p < kPaths - 1; ++p) {
             const auto n = static_cast<float>(p);
-            crossing.deflections[p] = 2.0f * n * inside - 2.0f * gamma + n * kPi;
+            four.deflections[p] = 2.0f * n * inside - 2.0f * gamma + n * kPi;
         }
-        attenuate(reflected, glm::exp(-form.sigma * way), crossing);
-        return reflected;
+        const Floats fresnel = reflectance(m_cos_o * cosine, eta), through = 1.0f - fresnel;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Floats passed = exponential(-form.sigma[static_cast<int>(c)] * way);
+            const Floats once = passed * fresnel;
+            four.parts[0][c] = fresnel;
+            four.parts[1][c] = through * through * passed;
+            four.parts[2][c] = four.parts[1][c] * once;
+            four.parts[3][c] = once < 1.0f ? four.parts[2][c] * once / (1.0f - once) : all(0.0f);
+        }
+        Floats total = all(0.0f);
+        for (auto& part : four.parts) {
+            part[3] = 0.2126729f * part[0] + 0.7151522f * part[1] + 0.0721750f * part[2];
+            total += part[3];
+        }
+        for (auto& part : four.parts) {
+            part[3] = total > 0.0f ? part[3] / total : all(0.25f);
+            for (Floats& value : part) value *= four.weight;
+        }
+        return fresnel;
     }
-    static void attenuate(float fresnel, const Vec3f& passed, Crossing& crossing) {
-        auto& attenuation = crossing.attenuation;
-        attenuation[0] = Vec3f(fresnel);
-        attenuation[1] = (1.0f - fresnel) * (1.0f - fresnel) * passed;
-        attenuation[2] = attenuation[1] * passed * fresnel;
-        const Vec3f once = passed * fresnel;
-        for (int c = 0; c < 3; ++c)
-            attenuation[3][c] =
-                once[c] < 1.0f ? attenuation[2][c] * once[c] / (1.0f - once[c]) : 0.0f;
-        float total = 0.0f;
-        for (const Vec3f& part : attenuation) total += luminance(part);
-        for (std::size_t p = 0; p < kPaths; ++p)
-            crossing.shares[p] = total > 0.0f ? luminance(attenuation[p]) / total : 0.25f;
-    }
-    static std::array<Vec2f, kPaths> no_turns() {
-        std::array<Vec2f, kPaths> none;
-        none.fill({1.0f, 0.0f});
-        return none;
-    }
-    /// Cosine and sine of an inclination, turned on by an angle or, `sign` -1, back by it.
-    static Vec2f tilted(const Vec2f& inclination, const Vec2f& angle, float sign) {
-        const float s = sign * angle.y;
-        return {std::abs(inclination.x * angle.x - inclination.y * s),
-                inclination.y * angle.x + inclination.x * s};
-    }
-    /// Densities of the first `count` ways through the hair, by `factors` of these.
-    template <class T>
-    T sum_of(const Vec3f& wo, std::array<T, kPaths> Crossing::*factors,
-             std::size_t count = kPaths) const {
-        const float sine = std::clamp(glm::dot(wo, m_x), -1.0f, 1.0f), cosine = cosine_of(sine);
+    /// Density and light are asked for of the same direction in turn, and by one thread a point.
+    const Seen& see(const Vec3f& wo) const {
+        if (wo == m_seen.wo) return m_seen;
+        const float sine = std::clamp(glm::dot(wo, m_x), -1.0f, 1.0f);
+        const Angles light = m_light_tilt.back(sine, cosine_of(sine));
+        const Floats along = m_along(light.sine, light.cosine, m_cones.sine, m_cones.cosine);
         const float phi = std::atan2(glm::dot(wo, m_z), glm::dot(wo, m_y)) - m_phi_o;
-        std::array<T, kPaths> around{};
-        for (const Crossing& crossing : m_crossings) {
-            const std::array<T, kPaths>& factor = crossing.*factors;
-            for (std::size_t p = 0; p < kPaths - 1; ++p)
-                around[p] +=
-                    factor[p] * (crossing.weight *
-                                 m_azimuth.density(angle_in_circle(phi - crossing.deflections[p])));
-            around[kPaths - 1] += factor[kPaths - 1] * (crossing.weight * 0.5f * kInversePi);
+        std::array<std::array<Floats, 4>, kPaths> around{};
+        for (const Crossings& four : m_crossings) {
+            for (std::size_t p = 0; p < kPaths - 1; ++p) {
+                Floats x = phi - four.deflections[p];
+                x -= 2.0f * kPi * __builtin_convertvector(nearest(x * (0.5f * kInversePi)), Floats);
+                const Floats e = exponential(-magnitude(x) / m_azimuth.scale), one = 1.0f + e;
+                const Floats density = m_peak * e / (one * one);
+                for (std::size_t c = 0; c < 4; ++c) around[p][c] += four.parts[p][c] * density;
+            }
+            for (std::size_t c = 0; c < 4; ++c)
+                around[kPaths - 1][c] += four.parts[kPaths - 1][c] * (0.5f * kInversePi);
         }
-        T sum(0.0f);
-        for (std::size_t p = 0; p < count; ++p) {
-            const Vec2f light = tilted({cosine, sine}, m_light_tilt[p], -1.0f);
-            sum += around[p] *
-                   longitudinal(light.y, light.x, m_cones[p].y, m_cones[p].x, m_variance[p]);
+        const auto of_path = [&](std::size_t p, std::size_t c) {
+            return along[p] * sum(around[p][c]) / m_width;
+        };
+        m_seen = {wo};
+        for (std::size_t p = 0; p < kPaths; ++p) {
+            for (std::size_t c = 0; c < 3; ++c) m_seen.light[static_cast<int>(c)] += of_path(p, c);
+            m_seen.density += of_path(p, 3);
         }
-        return sum;
+        m_seen.mirrored = of_path(0, 3);
+        return m_seen;
     }
 
     Vec3f m_x, m_y, m_z;
     float m_sin_o, m_cos_o, m_phi_o;  ///< of the view
-    std::array<float, kPaths> m_variance{};
-    // Cosines and sines, for each path: of the scales' turn of the view or the light, and of the
-    // view's inclination with it.
-    std::array<Vec2f, kPaths> m_view_tilt = no_turns(), m_light_tilt = no_turns(), m_cones{};
-    TrimmedLogistic m_azimuth{};
-    std::vector<Crossing> m_crossings;
+    Longitudinal m_along{};
+    // Of the scales: by how much they turn the view's inclination, or the light's.
+    Angles m_view_tilt, m_light_tilt;
+    Angles m_cones;  ///< the view's inclination, turned
+    TrimmedLogistic m_azimuth;
+    float m_peak = 0.0f;  ///< m_azimuth's
+    std::size_t m_count = 0;
+    std::vector<Crossings> m_crossings;
+    float m_width = 0.0f;  ///< sum of their weights
     Vec3f m_albedo{0.0f};
+    mutable Seen m_seen;
 };
 
 }  // namespace

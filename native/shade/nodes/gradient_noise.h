@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "math/four_floats.h"
 #include "math/hash.h"
 
 namespace granita {
@@ -19,9 +20,6 @@ using NoisePoint = std::array<float, N>;
 namespace noise_detail {
 
 // Four corners of a cell at once.
-using Floats = float __attribute__((vector_size(16)));
-using Ints = std::int32_t __attribute__((vector_size(16)));
-using Words = std::uint32_t __attribute__((vector_size(16)));
 
 inline Floats signed_by(const Floats& x, const Words& hash, int bit) {
     return std::bit_cast<Floats>(std::bit_cast<Words>(x) ^ ((hash >> bit) << 31));
