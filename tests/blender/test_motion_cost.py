@@ -4,12 +4,15 @@
 Seconds are in bench/export_cost.py.
 """
 
+import math
+
+import bpy
 import export_probe
 import pytest
 import scene_parts
 from call_counts import count_calls
 from hair_parts import furry
-from motion_parts import drive, on_every_step, with_shutter
+from motion_parts import drive, on_every_step, open_shutter, with_shutter
 
 from granita.export.geometry import hair_points
 from granita.export.motion import shutter_steps
@@ -35,6 +38,23 @@ def test_static_objects_are_read_at_no_step(scene, monkeypatch, count):
     snapshot, _, _ = export_probe.through_engine(scene, motion_steps=17)
     assert sorted(set(snapshot["instances"]["knots"].tolist())) == [1, 17]
     assert read == {"places": 16, "walks": 0}  # the seventeenth is the frame's own
+
+
+def test_what_turns_near_the_camera_has_the_knots_that_its_chords_need(scene):
+    """A cube of two metres turns by .3 about the view, three metres before the camera.  Its corners lie
+    within sqrt(3) metres of its middle and sqrt(2) of its axis: chords of an N-th of that leave a corner's
+    way by sqrt(2) (.3 / N)^2 / 8 metres, 1/32 pixel at most with the eighth.  A ball about the cube would
+    reach the camera, where a metre is any number of pixels."""
+    open_shutter(scene, 0.5)
+    scene_parts.add_camera(scene, (0, 0, 3))
+    scene.render.resolution_x = scene.render.resolution_y = 100
+    bpy.ops.mesh.primitive_cube_add(size=2.0)
+    drive(bpy.context.object, "rotation_euler", ".3 * (frame - 10) / .5", 2)
+    snapshot, _, _ = export_probe.through_engine(scene, motion_steps=17)
+    pixels = 100 * 50 / 36 / (3 - 1)
+    segments = math.sqrt(math.sqrt(2) * 0.3**2 / 8 * pixels * 32)
+    assert 4 < segments <= 8
+    assert snapshot["instances"]["knots"].tolist() == [9]
 
 
 def test_straight_movers_take_four_steps_of_time_and_the_way_back(scene):

@@ -10,6 +10,11 @@ from ..base.transforms import inverse
 _MOST_PROBES = 4096
 
 
+def _reach(matrices, half):
+    """No less than how far boxes reach from their centers, float64 [m]; matrices [m, 4, 4], half sizes [m, 3]."""
+    return np.einsum("nj,nj->n", np.linalg.norm(matrices[:, :3, :3], axis=1), half)
+
+
 class PixelScale:
     """Measures of differences of paths.
 
@@ -34,13 +39,12 @@ class PixelScale:
             things: int [m].
             path: {tick: float64 [m, 4, 4]}.
         """
-        center, radius = self._scene.bounds(things)
+        center, half = self._scene.bounds(things)
         scale = self._per_metre(things, path)
 
         def measure(difference):
             middle = np.linalg.norm(np.einsum("nij,nj->ni", difference, center)[:, :3], axis=1)
-            around = radius * np.linalg.norm(difference[:, :3, :3], axis=(1, 2))
-            return (middle + around) * scale
+            return (middle + _reach(difference, half)) * scale
 
         return measure
 
@@ -103,11 +107,11 @@ class PixelScale:
         the radii around them [p], and the view of which."""
         scan = self._scene.visit
         things = np.arange(0, len(scan.prototype), max(len(scan.prototype) // _MOST_PROBES, 1))
-        center, radius = self._scene.bounds(things)
+        center, half = self._scene.bounds(things)
         view = next(iter(self.views.values()))
         places = np.einsum("njk,nk->nj", scan.matrices[things], center)
         seen = places @ view.T
-        reach = radius * np.linalg.norm(scan.matrices[things, :3, :3], axis=(1, 2))
+        reach = _reach(scan.matrices[things], half)
         kept = np.isfinite(seen).all(axis=1) & np.isfinite(reach)
         if self._perspective:
             kept &= seen[:, 2] > self._near
@@ -144,11 +148,12 @@ class PixelScale:
         """Pixels a metre, float64 [m]; 0 for what is behind the camera all the time."""
         if not self._perspective:
             return np.full(len(things), self._focal)
-        center, radius = self._scene.bounds(things)
+        center, half = self._scene.bounds(things)
         nearest, farthest = np.full(len(things), np.inf), np.full(len(things), -np.inf)
         for tick, matrices in path.items():
-            depth = np.einsum("nij,nj->ni", matrices, center) @ self.views[tick][2]
-            reach = radius * np.linalg.norm(matrices[:, :3, :3], axis=(1, 2))
+            axis = self.views[tick][2] @ matrices  # depth is linear in object space
+            depth = np.einsum("nj,nj->n", axis, center)
+            reach = np.einsum("nj,nj->n", np.abs(axis[:, :3]), half)
             nearest = np.minimum(nearest, depth - reach)
             farthest = np.maximum(farthest, depth + reach)
         return np.where(farthest > self._near, self._focal / np.maximum(nearest, self._near), 0.0)

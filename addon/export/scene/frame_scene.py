@@ -50,7 +50,7 @@ class FrameScene:
         return (self.geometry_of_prototype[prototype] >= 0) | self.is_light[prototype]
 
     def bounds(self, things):
-        """(float64 [m, 4] centers, float64 [m] radii) in object space; a light is as wide as 1 m."""
+        """(float64 [m, 4] centers, float64 [m, 3] half sizes) of boxes in object space; a light is as wide as 1 m."""
         if self._bounds is None:
             # Row by row: along columns NumPy takes five times as long.
             rows = (source.geometry.points[0].T.copy() for source in self.sources)
@@ -58,6 +58,6 @@ class FrameScene:
             boxes = np.array([*boxes, ((-0.5,) * 3, (0.5,) * 3)], dtype=np.float64)
             centers = np.ones((len(boxes), 4))
             centers[:, :3] = boxes.mean(axis=1)
-            self._bounds = centers, np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1) / 2.0
+            self._bounds = centers, (boxes[:, 1] - boxes[:, 0]) / 2.0
         geometry = self.geometry_of_prototype[self.visit.prototype[things]]
         return self._bounds[0][geometry], self._bounds[1][geometry]
