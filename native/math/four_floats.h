@@ -42,9 +42,9 @@ inline Ints nearest(const Floats& x) {
     return __builtin_convertvector(x + (x < 0.0f ? all(-0.5f) : all(0.5f)), Ints);
 }
 
-/// e^x within 2e-7 of itself (Moshier's polynomial of Cephes); below -87 that of -87.
+/// e^x within 2e-7 of itself (Moshier's polynomial of Cephes); 0 below -87, from 88 on that of 88.
 inline Floats exponential(const Floats& x) {
-    const Floats from = most(x, all(-87.0f));
+    const Floats from = least(most(x, all(-87.0f)), all(88.0f));
     const Ints n = nearest(from * 1.44269504f);
     const Floats whole = __builtin_convertvector(n, Floats);
     const Floats r = from - whole * 0.693359375f + whole * 2.12194440e-4f;  // less n ln 2
@@ -53,7 +53,8 @@ inline Floats exponential(const Floats& x) {
     p = p * r + 4.1665795894e-2f;
     p = p * r + 1.6666665459e-1f;
     p = p * r + 5.0000001201e-1f;
-    return (p * r * r + r + 1.0f) * std::bit_cast<Floats>((n + 127) << 23);
+    const Floats power = (p * r * r + r + 1.0f) * std::bit_cast<Floats>((n + 127) << 23);
+    return x < -87.0f ? all(0.0f) : x == x ? power : x;
 }
 
 /// Within 2e-7 (Abramowitz and Stegun 4.4.46); -1 <= x <= 1.

@@ -8,8 +8,13 @@
 namespace granita {
 
 /// Of a linear colour of Rec. 709, as Cycles turns colours into numbers.
+template <class T>
+T luminance_of(const T& red, const T& green, const T& blue) {
+    return 0.2126729f * red + 0.7151522f * green + 0.0721750f * blue;
+}
+
 inline float luminance(const Vec3f& c) {
-    return 0.2126729f * c.x + 0.7151522f * c.y + 0.0721750f * c.z;
+    return luminance_of(c.x, c.y, c.z);
 }
 
 /// Mean of the channels' sizes.

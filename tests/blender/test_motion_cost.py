@@ -42,9 +42,10 @@ def test_static_objects_are_read_at_no_step(scene, monkeypatch, count):
 
 def test_what_turns_near_the_camera_has_the_knots_that_its_chords_need(scene):
     """A cube of two metres turns by .3 about the view, three metres before the camera.  Its corners lie
-    within sqrt(3) metres of its middle and sqrt(2) of its axis: chords of an N-th of that leave a corner's
-    way by sqrt(2) (.3 / N)^2 / 8 metres, 1/32 pixel at most with the eighth.  A ball about the cube would
-    reach the camera, where a metre is any number of pixels."""
+    within sqrt(2) metres of its axis: chords of an N-th of that leave a corner's
+    way by sqrt(2) (.3 / N)^2 / 8 metres, 1/32 pixel at most with the eighth (nor does the sum of the box's
+    sides ask for more, 2 instead of sqrt(2)).  A ball about the cube would reach the camera, where a metre
+    is any number of pixels."""
     open_shutter(scene, 0.5)
     scene_parts.add_camera(scene, (0, 0, 3))
     scene.render.resolution_x = scene.render.resolution_y = 100
@@ -55,6 +56,14 @@ def test_what_turns_near_the_camera_has_the_knots_that_its_chords_need(scene):
     segments = math.sqrt(math.sqrt(2) * 0.3**2 / 8 * pixels * 32)
     assert 4 < segments <= 8
     assert snapshot["instances"]["knots"].tolist() == [9]
+
+
+def test_flat_things_have_the_knots_of_a_height_that_pulses(scene):
+    """They may be displaced, or as thick as their radius, of which their points tell nothing."""
+    with_shutter(scene)
+    drive(scene_parts.add_square(scene, size=8.0), "scale", "1 + 4 * abs(frame - 10)", 2)
+    snapshot, _, _ = export_probe.through_engine(scene, motion_steps=17)
+    assert snapshot["instances"]["knots"].tolist() == [3]
 
 
 def test_straight_movers_take_four_steps_of_time_and_the_way_back(scene):

@@ -9,6 +9,9 @@ from ..base.identity import distinct
 from .depsgraph import Visit
 from .plain_objects import PlainObjects
 
+# Of what is flat, over its width.
+_LEAST_HEIGHT = 0.1
+
 
 @dataclass
 class FrameScene:
@@ -50,7 +53,8 @@ class FrameScene:
         return (self.geometry_of_prototype[prototype] >= 0) | self.is_light[prototype]
 
     def bounds(self, things):
-        """(float64 [m, 4] centers, float64 [m, 3] half sizes) of boxes in object space; a light is as wide as 1 m."""
+        """(float64 [m, 4] centers, float64 [m, 3] half sizes) of boxes in object space: of points with their
+        radii.  A light is as wide as 1 m, and what is flat a tenth as high as wide, as it may be displaced."""
         if self._bounds is None:
             # Row by row: along columns NumPy takes five times as long.
             rows = (source.geometry.points[0].T.copy() for source in self.sources)
@@ -58,6 +62,11 @@ class FrameScene:
             boxes = np.array([*boxes, ((-0.5,) * 3, (0.5,) * 3)], dtype=np.float64)
             centers = np.ones((len(boxes), 4))
             centers[:, :3] = boxes.mean(axis=1)
-            self._bounds = centers, (boxes[:, 1] - boxes[:, 0]) / 2.0
+            half = (boxes[:, 1] - boxes[:, 0]) / 2.0
+            half = np.maximum(half, _LEAST_HEIGHT * half.max(axis=1, keepdims=True))
+            for i, source in enumerate(self.sources):
+                if source.geometry.radius is not None:
+                    half[i] += np.max(source.geometry.radius[0], initial=0.0)
+            self._bounds = centers, half
         geometry = self.geometry_of_prototype[self.visit.prototype[things]]
         return self._bounds[0][geometry], self._bounds[1][geometry]

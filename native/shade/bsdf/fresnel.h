@@ -7,16 +7,21 @@
 
 namespace granita {
 
-/// Unpolarised reflectance of a smooth dielectric boundary, exact (Cook and Torrance 1982).
-/// `ior` of the far side relative to the near one, > 0.
+/// Fresnel's reflectance by a cosine c and g, the root of ior^2 - 1 + c^2 (Cook and Torrance 1982).
+template <class T>
+T fresnel_of(const T& c, const T& g) {
+    const T a = (g - c) / (g + c);
+    const T b = ((g + c) * c - 1.0f) / ((g - c) * c + 1.0f);
+    return 0.5f * a * a * (1.0f + b * b);
+}
+
+/// Unpolarised reflectance of a smooth dielectric boundary, exact.  `ior` of the far side relative
+/// to the near one, > 0.
 inline float fresnel_dielectric(float cosine, float ior) {
     const float c = std::abs(cosine);
     const float g2 = ior * ior - 1.0f + c * c;
     if (g2 <= 0.0f) return 1.0f;  // total internal reflection
-    const float g = std::sqrt(g2);
-    const float a = (g - c) / (g + c);
-    const float b = ((g + c) * c - 1.0f) / ((g - c) * c + 1.0f);
-    return 0.5f * a * a * (1.0f + b * b);
+    return fresnel_of(c, std::sqrt(g2));
 }
 
 /// Reflectance at normal incidence.

@@ -18,6 +18,7 @@ struct LobeView {
     float cos_wi;  ///< between the first two
 };
 
+/// One thread at a time asks it: it may remember what it was asked for.
 class LobeShape {
   public:
     virtual ~LobeShape() = default;

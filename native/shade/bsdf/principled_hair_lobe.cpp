@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "math/four_floats.h"
+#include "math/luminance.h"
 #include "math/sampling.h"
+#include "shade/bsdf/fresnel.h"
 #include "shade/bsdf/hair_color.h"
 #include "shade/bsdf/lobe_shape.h"
 
@@ -25,7 +27,7 @@ float cosine_of(float sine) {
 struct TrimmedLogistic {
     float scale = 1.0f;
 
-    /// Of what lies within half a turn of 0.
+    /// Share of the uncut distribution below x, |x| at most half a turn.
     float below(float x) const { return 1.0f / (1.0f + std::exp(std::min(-x / scale, 80.0f))); }
     /// 1 over the scale and what of the distribution the turn holds.
     float peak() const { return 1.0f / (scale * (1.0f - 2.0f * below(-kPi))); }
@@ -49,8 +51,7 @@ Vec2f split(float u) {
 /// Fresnel's, exact, of a medium with the index `eta` > 1.
 Floats reflectance(const Floats& cosine, float eta) {
     const Floats c = magnitude(cosine), g = root(eta * eta - 1.0f + c * c);
-    const Floats a = (g - c) / (g + c), b = ((g + c) * c - 1.0f) / ((g - c) * c + 1.0f);
-    return 0.5f * a * a * (1.0f + b * b);
+    return fresnel_of(c, g);
 }
 
 /// Light that meets the hair at four places of its width; of weight 0 beyond the last.
@@ -71,7 +72,7 @@ struct Longitudinal {
         scale = inverse / (1.0f - exponential(-2.0f * inverse));
     }
     /// exp(-b) I0(a) / (2 v sinh(1 / v)), a and b the products of cosines and of sines over v; the
-    /// Bessel function within 2e-7 (Abramowitz and Stegun 9.8.1 and 9.8.2).
+    /// Bessel function within 5e-7 (Abramowitz and Stegun 9.8.1 and 9.8.2).
     Floats operator()(const Floats& sin_i, const Floats& cos_i, const Floats& sin_o,
                       const Floats& cos_o) const {
         const Floats cosines = cos_i * cos_o, sines = sin_i * sin_o, a = cosines * inverse;
@@ -210,7 +211,8 @@ class PrincipledHair : public LobeShape {
         constexpr float kWidest = 0.6f;
         const float turn = 2.0f * (last - first);
         const float spacing = std::min(kSpacing * m_azimuth.scale, kWidest);
-        const float count = std::clamp(std::ceil(turn / spacing), 1.0f, kMost);
+        const float wanted = std::ceil(turn / spacing);
+        const float count = wanted > 1.0f ? std::min(wanted, kMost) : 1.0f;
         const float step = (last - first) / count;
         m_count = static_cast<std::size_t>(count);
         m_crossings.resize((m_count + 3) / 4);
@@ -262,7 +264,7 @@ class PrincipledHair : public LobeShape {
         }
         Floats total = all(0.0f);
         for (auto& part : four.parts) {
-            part[3] = 0.2126729f * part[0] + 0.7151522f * part[1] + 0.0721750f * part[2];
+            part[3] = luminance_of(part[0], part[1], part[2]);
             total += part[3];
         }
         for (auto& part : four.parts) {

@@ -17,9 +17,8 @@ namespace granita {
 template <std::size_t N>
 using NoisePoint = std::array<float, N>;
 
-namespace noise_detail {
-
 // Four corners of a cell at once.
+namespace noise_detail {
 
 inline Floats signed_by(const Floats& x, const Words& hash, int bit) {
     return std::bit_cast<Floats>(std::bit_cast<Words>(x) ^ ((hash >> bit) << 31));

@@ -21,11 +21,12 @@ ShadingPoints hair(float slant, float turn) {
     return points;
 }
 
-Lobe lobe_of(const ShadingPoints& points, LobeKind kind, float roughness, float radial) {
+Lobe lobe_of(const ShadingPoints& points, LobeKind kind, float roughness, float radial,
+             float cells = 0.0f, float aside = 0.0f) {
     Lobe lobe = glossy(points, roughness);
     lobe.kind = kind;
     lobe.tangent.assign(1, Vec3f(1.0f, 0.0f, 0.0f));
-    lobe.more = {{radial}, {kTilt}, {1.0f}, {0.0f}, {0.0f}, {0.0f}};
+    lobe.more = {{radial}, {kTilt}, {1.0f}, {cells}, {aside}, {0.0f}};
     lobe.ior.assign(1, 1.55f);
     lobe.f0.assign(1, Vec3f(0.0f));
     return lobe;
@@ -47,14 +48,18 @@ double sphere_integral(Value value, int steps = 600) {
 struct Case {
     LobeKind kind;
     float roughness, radial, slant, turn;
+    float cells = 0.0f, aside = 0.0f;
 };
+
+Lobe lobe_of(const ShadingPoints& points, const Case& hair) {
+    return lobe_of(points, hair.kind, hair.roughness, hair.radial, hair.cells, hair.aside);
+}
 
 class EveryHair : public testing::TestWithParam<Case> {};
 
 TEST_P(EveryHair, its_density_integrates_to_the_share_of_samples_that_leave) {
     const ShadingPoints points = hair(GetParam().slant, GetParam().turn);
-    const PointBsdf bsdf =
-        prepare(lobe_of(points, GetParam().kind, GetParam().roughness, GetParam().radial), points);
+    const PointBsdf bsdf = prepare(lobe_of(points, GetParam()), points);
     const double integral = sphere_integral([&](const Vec3f& wo) { return bsdf.pdf(0, wo); });
     const SobolPoints sequence(5);
     const int count = 1 << 14;
@@ -69,7 +74,7 @@ TEST_P(EveryHair, its_density_integrates_to_the_share_of_samples_that_leave) {
 
 TEST_P(EveryHair, sampling_estimates_what_quadrature_integrates) {
     const ShadingPoints points = hair(GetParam().slant, GetParam().turn);
-    Lobe lobe = lobe_of(points, GetParam().kind, GetParam().roughness, GetParam().radial);
+    Lobe lobe = lobe_of(points, GetParam());
     lobe.f0.assign(1, Vec3f(0.3f));
     const PointBsdf bsdf = prepare(lobe, points);
     // An integrand that is not symmetric, so that a rotated frame would show.
@@ -88,13 +93,17 @@ TEST_P(EveryHair, sampling_estimates_what_quadrature_integrates) {
     EXPECT_NEAR(sum / count, expected, 0.01 * expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(Hairs, EveryHair,
-                         testing::Values(Case{LobeKind::HairReflection, 0.3f, 0.6f, 0.4f, 0.0f},
-                                         Case{LobeKind::HairReflection, 0.1f, 1.0f, -0.7f, 0.6f},
-                                         Case{LobeKind::HairTransmission, 0.3f, 0.6f, 0.4f, 0.0f},
-                                         Case{LobeKind::PrincipledHair, 0.3f, 0.3f, 0.4f, 0.0f},
-                                         Case{LobeKind::PrincipledHair, 0.6f, 0.4f, -0.8f, 0.8f},
-                                         Case{LobeKind::PrincipledHair, 0.25f, 0.8f, 0.2f, -1.2f}));
+INSTANTIATE_TEST_SUITE_P(
+    Hairs, EveryHair,
+    testing::Values(Case{LobeKind::HairReflection, 0.3f, 0.6f, 0.4f, 0.0f},
+                    Case{LobeKind::HairReflection, 0.1f, 1.0f, -0.7f, 0.6f},
+                    Case{LobeKind::HairTransmission, 0.3f, 0.6f, 0.4f, 0.0f},
+                    Case{LobeKind::PrincipledHair, 0.3f, 0.3f, 0.4f, 0.0f},
+                    Case{LobeKind::PrincipledHair, 0.6f, 0.4f, -0.8f, 0.8f},
+                    Case{LobeKind::PrincipledHair, 0.25f, 0.8f, 0.2f, -1.2f},
+                    // Of 27 places and 14, which are no multiples of four.
+                    Case{LobeKind::PrincipledHair, 0.3f, 0.3f, 0.4f, 0.4f, 1.0f},
+                    Case{LobeKind::PrincipledHair, 0.3f, 0.3f, 0.4f, 0.4f, 2.0f, 1.0f}));
 
 // Chiang et al. 2016: whatever meets a hair that absorbs nothing leaves it.
 TEST(PrincipledHair, a_clear_hair_in_a_white_furnace_vanishes) {
