@@ -41,11 +41,11 @@ def test_static_objects_are_read_at_no_step(scene, monkeypatch, count):
 
 
 def test_what_turns_near_the_camera_has_the_knots_that_its_chords_need(scene):
-    """A cube of two metres turns by .3 about the view, three metres before the camera.  Its corners lie
-    within sqrt(2) metres of its axis: chords of an N-th of that leave a corner's
-    way by sqrt(2) (.3 / N)^2 / 8 metres, 1/32 pixel at most with the eighth (nor does the sum of the box's
-    sides ask for more, 2 instead of sqrt(2)).  A ball about the cube would reach the camera, where a metre
-    is any number of pixels."""
+    """A cube of two metres turns by .3 about the view, three metres before the camera.  Its corners lie within
+    sqrt(2) metres of its axis: chords of an N-th of the turn leave a corner's way by sqrt(2) (.3 / N)^2 / 8
+    metres, 1/32 pixel at most with the eighth (nor does the sum of the box's sides, 2 instead of sqrt(2), ask
+    for more).  A ball about the cube would reach the camera, where a metre is any number of pixels.
+    """
     open_shutter(scene, 0.5)
     scene_parts.add_camera(scene, (0, 0, 3))
     scene.render.resolution_x = scene.render.resolution_y = 100
