@@ -36,8 +36,12 @@ class Looks {
           m_sequence(mix_bits(grid_seed(key, scene.options.seed))),
           m_lens(mix_bits(mix_bits(grid_seed(key, scene.options.seed)))) {}
 
+    struct Look {
+        Ray ray;
+        bool is_behind;  ///< it sees the side that is turned away at the frame time
+    };
     /// From the point to the eye, at one of kLooks times that are spread over its life.
-    Ray from(std::size_t i, int look) {
+    Look from(std::size_t i, int look) {
         const std::uint32_t place = place_in_sequence(m_points, i);
         const float frame_time = m_scene.options.frame_time;
         const float time = m_shutter ? this->time(m_sequence(place).x, look) : frame_time;
@@ -62,7 +66,8 @@ class Looks {
         // Of what the surface turns to the eye of that time.
         const Vec3f ahead = axes[2];
         Vec3f way = projection.perspective ? eye - p : -ahead;
-        if (glm::dot(way, normal) < 0.0f) normal = -normal;
+        const bool is_behind = glm::dot(way, normal) < 0.0f;
+        if (is_behind) normal = -normal;
         const Vec3f start = m_offset(p, normal);
         if (projection.perspective) way = eye - start;
         const float length = glm::length(way);
@@ -70,7 +75,7 @@ class Looks {
         const float clear = 1.0f - static_cast<float>(projection.near_clip) / depth;
         Ray ray{start, way / length, projection.perspective ? length * clear : depth, time};
         ray.type = RayType::Camera;
-        return ray;
+        return {ray, is_behind};
     }
 
     /// Whether its next looks may find something else before it.
@@ -113,8 +118,11 @@ std::vector<std::uint8_t> off_edges(const std::vector<std::uint8_t>& marked, std
     return shrunk(shrunk(marked, 1, columns), columns, columns);
 }
 
-/// [rays] whether enough light comes through.
-std::vector<std::uint8_t> are_clear(const RayScene& rays, std::vector<Ray>& asked) {
+/// [looks] whether enough light comes through.
+std::vector<std::uint8_t> are_clear(const RayScene& rays, const std::vector<Looks::Look>& looks) {
+    std::vector<Ray> asked;
+    asked.reserve(looks.size());
+    for (const Looks::Look& look : looks) asked.push_back(look.ray);
     std::vector<Vec3f> left(asked.size());
     rays.transmittances(asked, left);
     std::vector<std::uint8_t> clear(asked.size());
@@ -124,12 +132,14 @@ std::vector<std::uint8_t> are_clear(const RayScene& rays, std::vector<Ray>& aske
 
 /// At points before which something moves: those that are seen for a part of the shutter are lit as
 /// they are then.  Light of the rest is that of places inside of things, which went into the mean.
-void look_again(ShadingPoints& points, Looks& looks, const RayScene& rays,
-                const std::vector<Ray>& first, std::vector<std::uint8_t>& seen) {
-    std::vector<std::size_t> doubtful;
-    std::vector<Ray> asked;
+/// Returns the points whose other side is seen more often.
+std::vector<std::size_t> look_again(ShadingPoints& points, Looks& looks, const RayScene& rays,
+                                    const std::vector<Looks::Look>& first,
+                                    std::vector<std::uint8_t>& seen) {
+    std::vector<std::size_t> doubtful, turned;
+    std::vector<Looks::Look> asked;
     for (std::size_t i = 0; i < points.count; ++i) {
-        if (!looks.may_vary(first[i])) continue;
+        if (!looks.may_vary(first[i].ray)) continue;
         doubtful.push_back(i);
         for (int look = 1; look < kLooks; ++look) asked.push_back(looks.from(i, look));
     }
@@ -137,28 +147,36 @@ void look_again(ShadingPoints& points, Looks& looks, const RayScene& rays,
     for (std::size_t k = 0; k < doubtful.size(); ++k) {
         const std::size_t i = doubtful[k];
         std::vector<float> times;
-        if (seen[i]) times.push_back(first[i].time);
+        int behind = 0;
+        const auto see = [&](const Looks::Look& look) {
+            times.push_back(look.ray.time);
+            behind += look.is_behind;
+        };
+        if (seen[i]) see(first[i]);
         for (std::size_t at = k * (kLooks - 1); at < (k + 1) * (kLooks - 1); ++at)
-            if (clear[at]) times.push_back(asked[at].time);
+            if (clear[at]) see(asked[at]);
         seen[i] = !times.empty();
+        if (2 * behind > static_cast<int>(times.size())) turned.push_back(i);
         if (times.empty() || times.size() == kLooks) continue;
         points.seen_times.resize(points.count);
         points.seen_times[i] = std::move(times);
     }
+    return turned;
 }
 
 }  // namespace
 
-void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
+std::vector<std::size_t> look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
              const RayScene& rays, const Scene& scene, const MovingEye& eye,
              const ShutterWarp* shutter, float edge) {
     Looks looks(points, paths, key, rays, scene, eye, shutter);
-    std::vector<Ray> asked;
+    std::vector<Looks::Look> asked;
     asked.reserve(points.count);
     for (std::size_t i = 0; i < points.count; ++i) asked.push_back(looks.from(i, 0));
     std::vector<std::uint8_t> seen = are_clear(rays, asked);
-    if (shutter) look_again(points, looks, rays, asked, seen);
-    if (std::ranges::count(seen, 0) == 0) return;
+    std::vector<std::size_t> turned;
+    if (shutter) turned = look_again(points, looks, rays, asked, seen);
+    if (std::ranges::count(seen, 0) == 0) return turned;
     const std::vector<std::uint8_t> inside = off_edges(seen, points.columns);
     const auto all_seen = static_cast<float>(std::ranges::count(seen, 1));
     points.thicket =
@@ -172,6 +190,7 @@ void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
     for (std::size_t i = 0; i < points.count; ++i)
         points.shares[i] = inside[i] ? 1.0f : far[i] ? kUnseenShare : edge;
     points.seen = std::move(seen);
+    return turned;
 }
 
 }  // namespace granita

@@ -24,7 +24,7 @@ namespace granita {
 /// @param points of the grid of `key`, lifted.
 /// @param shutter nullptr where nothing moves.
 /// @param edge part of the light samples, at most 1 (edge_light_share()).
-void look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
+std::vector<std::size_t> look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
              const RayScene& rays, const Scene& scene, const MovingEye& eye,
              const ShutterWarp* shutter, float edge);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
+
 #include "dice/grid.h"
 #include "scene/scene.h"
 #include "shade/bsdf/lobe.h"
@@ -15,5 +17,8 @@ inline GeometryKind kind_of(const Grid& grid, const Scene& scene) {
 
 /// A grid's shading points in shading space.
 ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera);
+
+/// Turns the other side of some points of a mesh to the viewer, who sees it at most other times.
+void show_other_side(ShadingPoints& points, std::span<const std::size_t> which);
 
 }  // namespace granita

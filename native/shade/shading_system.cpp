@@ -49,7 +49,7 @@ struct ShadingSystem::Impl : FrameShading {
         if (leaving.diffuse)
             share_gathered(points, closure, leaving.takes_world, parts != nullptr, light, grid);
         reflect_world(light, parts, noise, radiance);
-        reflect_gathered(light, grid, closure, parts, radiance);
+        reflect_gathered(points, light, grid, closure, parts, radiance);
         return std::move(light.glossy);
     }
 
@@ -290,11 +290,20 @@ struct ShadingSystem::Impl : FrameShading {
         points.share *= fewer;
         points.round = kind_of(grid, scene) == GeometryKind::Curves;
         if (light && lit) light->lift(points, grid.key);
-        const PointPaths at =
-            light && light->varies() ? PointPaths(grid, scene, points) : PointPaths();
-        if (bounces && lit)
-            look_at(points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr,
-                    std::min(1.0f, edge_light_share(scene.options.samples) / narrow));
+        PointPaths at = light && light->varies() ? PointPaths(grid, scene, points) : PointPaths();
+        bool turns = false;
+        if (lit && (bounces || (at.moves() && scatters(grid.material)))) {
+            const std::vector<std::size_t> turned = look_at(
+                points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr,
+                std::min(1.0f, edge_light_share(scene.options.samples) / narrow));
+            turns = !turned.empty() && kind_of(grid, scene) == GeometryKind::Mesh;
+            if (turns) {
+                // What their lobes gather is not that of the inside.
+                show_other_side(points, turned);
+                light->lift(points, grid.key);
+                at = PointPaths(grid, scene, points);
+            }
+        }
         if (wants_refining && may_leave(grid) && !grid.opacity_varies && !scatters(grid.material) &&
             pays_by_samples(grid, points, scene, *light))
             return leave_to_samples(grid, channels.vertex_width());
@@ -314,7 +323,7 @@ struct ShadingSystem::Impl : FrameShading {
             return;
         }
         const float difference = thresholds.difference / (sharpness * sharpness);
-        if (material(grid.material).has_lines() || changes_in_time(grid))
+        if (turns || material(grid.material).has_lines() || changes_in_time(grid))
             grid.unsettled = all_micropolygons(grid);
         else
             find_unsettled(grid, doubts.settled, doubts.noise, difference,

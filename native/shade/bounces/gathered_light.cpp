@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "shade/bounces/neighbours.h"
+#include "shade/bsdf/sheen_fit.h"
 
 namespace granita {
 namespace {
@@ -20,11 +21,20 @@ constexpr float kLeastAlbedo = 1e-4f;
 /// how near other surfaces are.
 constexpr std::size_t kAround = 2, kAroundRun = 8;
 
-/// Weight of a point's diffuse lobes.
-Vec3f diffuse_albedo(const SurfaceClosure& closure, std::size_t point) {
+/// Weight of a point's diffuse lobes, and of sheen what it reflects along the view: what turns is
+/// seen from elsewhere than where its light was gathered.
+Vec3f diffuse_albedo(const ShadingPoints& points, const SurfaceClosure& closure,
+                     std::size_t point) {
     Vec3f sum(0.0f);
-    for (const Lobe& lobe : closure.lobes)
-        if (part_of(lobe.kind) == LightPart::Diffuse) sum += lobe.weight[point];
+    for (const Lobe& lobe : closure.lobes) {
+        if (part_of(lobe.kind) != LightPart::Diffuse) continue;
+        float along_view = 1.0f;
+        if (lobe.kind == LobeKind::Sheen)
+            along_view = sheen_fit(glm::dot(lobe.normal[point], points.view[point]),
+                                   lobe.roughness[point])
+                             .albedo;
+        sum += along_view * lobe.weight[point];
+    }
     return sum;
 }
 
@@ -58,7 +68,7 @@ std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosur
     NoisyValues noisy{diffuse, std::vector<Vec3f>(points.count), std::vector<Vec3f>(points.count),
                       kLeastReach};
     for (std::size_t i = 0; i < points.count; ++i) {
-        const Vec3f albedo = diffuse_albedo(closure, i);
+        const Vec3f albedo = diffuse_albedo(points, closure, i);
         noisy.told[i] = Vec3f(glm::greaterThan(albedo, Vec3f(kLeastAlbedo)));
         noisy.values[i] *= noisy.told[i] / glm::max(albedo, Vec3f(kLeastAlbedo));
         noisy.by_reach[i] = Vec3f(nearness[i] / kNear);
@@ -96,10 +106,11 @@ void reflect_world(const GatheredLight& light, ReflectionParts* parts, std::vect
     }
 }
 
-void reflect_gathered(const GatheredLight& light, const Grid& grid, const SurfaceClosure& closure,
-                      ReflectionParts* parts, std::vector<Vec3f>& radiance) {
+void reflect_gathered(const ShadingPoints& points, const GatheredLight& light, const Grid& grid,
+                      const SurfaceClosure& closure, ReflectionParts* parts,
+                      std::vector<Vec3f>& radiance) {
     for (std::size_t i = 0; i < radiance.size(); ++i) {
-        const Vec3f albedo = diffuse_albedo(closure, i);
+        const Vec3f albedo = diffuse_albedo(points, closure, i);
         const Vec3f diffuse = grid.found.gathered[i] * albedo;
         const Vec3f others = light.glossy[i] + light.mirrored[i];
         if (parts) {

@@ -51,7 +51,8 @@ void reflect_world(const GatheredLight& light, ReflectionParts* parts, std::vect
 
 /// Adds what is reflected of `light`, and of what `grid` has gathered, to `radiance` [points] and,
 /// where they are asked for, to its `parts`.
-void reflect_gathered(const GatheredLight& light, const Grid& grid, const SurfaceClosure& closure,
-                      ReflectionParts* parts, std::vector<Vec3f>& radiance);
+void reflect_gathered(const ShadingPoints& points, const GatheredLight& light, const Grid& grid,
+                      const SurfaceClosure& closure, ReflectionParts* parts,
+                      std::vector<Vec3f>& radiance);
 
 }  // namespace granita

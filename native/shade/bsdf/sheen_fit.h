@@ -16,9 +16,10 @@ struct SheenFit {
 
 /// Rational functions of the cosine of the view and the roughness, as MaterialX publishes them for
 /// the tables of Zeltner, Burley and Chiang (2022), from which Cycles reads: of roughness above .1
-/// they are within .03, .015 and .004 (RMS) of these.
+/// they are within .03, .015 and .004 (RMS) of these.  Seen from below, by smooth normals, it is as
+/// where it is grazed (Cycles).
 inline SheenFit sheen_fit(float cosine, float roughness) {
-    const float x = cosine, y = std::clamp(roughness, 1e-3f, 1.0f);
+    const float x = std::clamp(cosine, 0.0f, 1.0f), y = std::clamp(roughness, 1e-3f, 1.0f);
     SheenFit fit{};
     fit.a = (2.58126f * x + 0.813703f * y) * y / (1.0f + 0.310327f * x * x + 2.60994f * x * y);
     fit.b = std::sqrt(1.0f - x) * (y - 1.0f) * y * y * y /

@@ -112,8 +112,7 @@ class Velvet : public LobeShape {
 }  // namespace
 
 std::unique_ptr<const LobeShape> make_sheen(const LobeView& view, float roughness) {
-    if (view.cos_wi <= 0.0f) return nullptr;
-    const SheenFit fit = sheen_fit(std::min(view.cos_wi, 1.0f), roughness);
+    const SheenFit fit = sheen_fit(view.cos_wi, roughness);
     if (std::abs(fit.a) < 1e-5f || fit.albedo < 1e-5f) return nullptr;
     return std::make_unique<Sheen>(view, fit);
 }

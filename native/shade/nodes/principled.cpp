@@ -150,9 +150,7 @@ FloatSource add_second_sheen(NodeBuilder& b, SurfaceBuilder& surface, const Comm
     surface.add_lobe(lobe);
     return b.map<float>(
         [](const Vec3f& color, float roughness, const Vec3f& n, const Vec3f& view) {
-            const float cosine = glm::dot(n, view);
-            if (cosine <= 0.0f) return 1.0f;
-            const float albedo = sheen_fit(std::min(cosine, 1.0f), roughness).albedo;
+            const float albedo = sheen_fit(glm::dot(n, view), roughness).albedo;
             return saturate(1.0f - albedo * largest(color));
         },
         tint, lobe.roughness, lobe.normal, b.view());

@@ -59,7 +59,7 @@ class SubsurfaceLight::Batch {
             const std::uint32_t first =
                 place_in_sequence(m_points, i) * static_cast<std::uint32_t>(m_count);
             for (std::uint32_t s = first; s < first + static_cast<std::uint32_t>(m_count); ++s) {
-                if (m_light.m_direct.varies()) move_to(time_at(times(s).x));
+                if (m_light.m_direct.varies()) move_to(time_at(i, times(s).x));
                 if (s == first || m_light.m_direct.varies()) stand_on(i);
                 if (lobe.walks)
                     walk_from(lobe, i, s, entries(s), mix_bits(seed ^ mix_bits(s + 1ULL)));
@@ -82,7 +82,16 @@ class SubsurfaceLight::Batch {
     }
 
   private:
-    float time_at(float uniform) const {
+    /// One at which the point is seen: of samples where each of them stands.
+    float time_at(std::size_t i, float uniform) const {
+        if (!m_points.times.empty())
+            return m_points.times[i] < 0.0f ? m_light.m_scene.options.frame_time
+                                            : m_points.times[i];
+        if (!m_points.seen_times.empty() && !m_points.seen_times[i].empty()) {
+            const std::vector<float>& seen = m_points.seen_times[i];
+            const auto count = static_cast<float>(seen.size());
+            return seen[static_cast<std::size_t>(uniform * count) % seen.size()];
+        }
         const Vec2f exposed = m_light.m_shutter.exposed(m_paths.lifespan());
         return m_light.m_shutter.time(exposed.x + uniform * (exposed.y - exposed.x));
     }
