@@ -158,8 +158,11 @@ bool PatternProbes::miss_looks(const Grid& grid, std::span<const float> looks,
             glm::length(is.bent - corners.bent) + std::abs(is.gloss - corners.gloss);
         const Vec3f shown = between(grid.radiance, points[i]);
         const Vec3f more = here * (is.color - corners.color) + is.sent - corners.sent;
+        // As bright, but metal instead of paint.
+        const Vec3f moved = here * (is.diffuse - corners.diffuse);
         // What is no number is not what corners tell.
         if (!(displayed_difference(shown, shown + more) <= threshold &&
+              displayed_difference(shown, shown + moved) <= threshold &&
               displayed_difference(shown, shown + Vec3f(here * turned)) <= threshold))
             return true;
     }

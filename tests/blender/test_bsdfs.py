@@ -216,6 +216,28 @@ def test_cloth_toon_and_translucent(scene, render, turn):
     check(report, _SHEEN)
 
 
+@pytest.mark.skipif(not _SINCE_4, reason="velvet is not seen from below")
+@pytest.mark.parametrize("kind", ["ShaderNodeBsdfSheen", "ShaderNodeBsdfPrincipled"])
+def test_sheen_where_smooth_normals_turn_from_the_eye(scene, render, kind):
+    """The ends of a coarse cone that is shaded smooth, seen at a slant, were dark."""
+    corners = [(np.cos(a), np.sin(a), -1.0) for a in np.arange(6) * np.pi / 3]
+    corners += [(0.4 * x, 0.4 * y, 0.6) for x, y, _ in corners]
+    sides = [(i, (i + 1) % 6, 6 + (i + 1) % 6, 6 + i) for i in range(6)]
+    thing = scene_parts.add_mesh(
+        scene, "Cone", corners, [*sides, (5, 4, 3, 2, 1, 0), (6, 7, 8, 9, 10, 11)]
+    )
+    thing.rotation_euler = (1.4, 0.3, 0.2)
+    thing.data.polygons.foreach_set("use_smooth", [True] * 8)
+    tree = Tree(thing)
+    values = {"Sheen Weight": 1.0, "Transmission Weight": 1.0} if "Principled" in kind else {}
+    shown(tree, node(tree, kind, {**values, "Roughness": 0.5}))
+    sun(scene, BEFORE)
+    scene_parts.add_camera(scene, ortho_scale=3.0)
+    theirs, ours = render_both(scene, render, samples=64)
+    assert theirs.std() > 0.05
+    assert rmse(theirs, ours) < 0.02  # the fit's, as _SHEEN
+
+
 @pytest.mark.skipif(_SINCE_4, reason="since Blender 4 tints are colours")
 def test_tints_by_the_base_colour(scene, render):
     """Saturated ones, by whose luminance they are divided."""

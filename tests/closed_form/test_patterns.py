@@ -4,7 +4,9 @@
 import numpy as np
 import pytest
 import snapshots as s
+from session_parts import DOWN, sun
 from test_bounces_hard_cases import white_world
+from test_dense_meshes import turned
 
 SIZE = 64
 
@@ -30,12 +32,19 @@ def striped(snapshot, period, part, shown, slope=0.0):
         nodes.append({"type": "ShaderNodeEmission", "inputs": {"Color": line}})
     elif shown == "reflection":
         nodes.append({"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": line}})
+    elif shown == "metal":
+        blue = {"Color": (0.05, 0.05, 0.8, 1.0)}
+        nodes.append({"type": "ShaderNodeBsdfDiffuse", "inputs": blue})
+        metal = {**blue, "Roughness": 0.2}
+        nodes.append({"type": "ShaderNodeBsdfAnisotropic", "inputs": metal})
+        shaders = {"Shader": ("LINK", 8, "BSDF"), "Shader_001": ("LINK", 9, "BSDF")}
+        nodes.append({"type": "ShaderNodeMixShader", "inputs": {"Fac": line, **shaders}})
     else:
         nodes.append({"type": "ShaderNodeBsdfTransparent", "inputs": color})
         nodes.append({"type": "ShaderNodeEmission", "inputs": color})
         shaders = {"Shader": ("LINK", 8, "BSDF"), "Shader_001": ("LINK", 9, "Emission")}
         nodes.append({"type": "ShaderNodeMixShader", "inputs": {"Fac": line, **shaders}})
-    output = {"emission": "Emission", "reflection": "BSDF", "opacity": "Shader"}[shown]
+    output = {"emission": "Emission", "reflection": "BSDF"}.get(shown, "Shader")
     snapshot["materials"].append(
         {"name": "Striped", "nodes": nodes, "surface": (len(nodes) - 1, output)}
     )
@@ -56,6 +65,20 @@ def test_lines_that_keep_step_with_micropolygons(shown, moved):
     seen = s.render(snapshot)["combined"][..., 3 if shown == "opacity" else 0]
     # 64 samples of a pixel, whose places along x are of strata
     assert np.abs(seen.mean(axis=0) - 0.25).max() < 0.01
+
+
+def test_metal_is_told_from_paint_as_bright():
+    """Stripes of both under a sun that metal does not mirror to the eye: corners saw paint alone."""
+    means = []
+    for part in (0.0, 0.25, 1.0):
+        snapshot = s.orthographic((SIZE, SIZE), samples=64)
+        sun(snapshot, turned(0.9, 0.0) @ DOWN, angle=0.01)
+        stripes = striped(snapshot, 1.0, part, "metal")
+        s.quad(snapshot, s.rectangle(-32, -32, 96, 96, 10.0), stripes)
+        means.append(s.render(snapshot)["combined"][..., 2].mean(axis=0))
+    paint, both, metal = means
+    assert metal.max() < 0.3 * paint.min()
+    assert both == pytest.approx(0.75 * paint + 0.25 * metal, rel=0.02)
 
 
 @pytest.mark.parametrize("shown", ["emission", "reflection"])

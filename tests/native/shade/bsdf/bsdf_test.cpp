@@ -302,6 +302,8 @@ TEST(Sheen, reflects_what_its_fit_says) {
         return prepare(of_kind(points, LobeKind::Sheen, 1.0f), points).albedo().diffuse.x;
     };
     EXPECT_GT(albedo(0.1f), 1.5f * albedo(0.9f));
+    // By smooth normals that turn away from the eye it is seen as where it is grazed, as in Cycles.
+    EXPECT_EQ(albedo(-0.4f), albedo(0.0f));
 }
 
 TEST(Toon, is_even_within_its_angle_and_fades_beyond) {

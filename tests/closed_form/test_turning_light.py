@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What turns within the shutter in an even world is as bright at each time as if it stood still: its sides are seen that
+are turned away at the frame time, from angles that change."""
+
+import numpy as np
+import pytest
+import snapshots as s
+from test_bounces import material
+from test_bounces_hard_cases import white_world
+from test_dense_meshes import ball, turned
+from test_subsurface import scattering
+
+SIZE = (24, 20)
+CENTER = (12.3, 9.8, 40.0)
+OPENS, CLOSES = -0.4, 0.8  # radians: one side is seen before 0 alone, one after
+SIDE = 9.0
+SAMPLES = 64
+CUBE = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+
+
+def at(turn):
+    """Leaning, so that the top is seen as well."""
+    return s.translation(*CENTER) @ turned(0.5, turn)
+
+
+def evenly_lit(bounces):
+    snapshot = s.orthographic(SIZE, samples=SAMPLES, light_samples=16, bounces=bounces)
+    white_world(snapshot)
+    snapshot["options"]["film_transparent"] = True
+    return snapshot
+
+
+def box(surface, knots, bounces):
+    snapshot = evenly_lit(bounces)
+    corners = np.asarray(CUBE) * SIDE / 2
+    s.mesh(snapshot, corners, FACES, surface(snapshot), transforms=np.stack(knots))
+    return s.render(snapshot)["combined"].astype(float)
+
+
+def diffuse(snapshot):
+    node = {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.8, 0.8, 0.8, 1.0)}}
+    return material(snapshot, [node], (0, "BSDF"))
+
+
+def sheen(snapshot):
+    inputs = {"Color": (0.8, 0.8, 0.8, 1.0), "Roughness": 0.4}
+    return material(
+        snapshot,
+        [{"type": "ShaderNodeBsdfSheen", "inputs": inputs, "properties": {"version": 405.0}}],
+        (0, "BSDF"),
+    )
+
+
+@pytest.mark.parametrize("bounces", [0, 2])
+@pytest.mark.parametrize("surface", [diffuse, sheen])
+def test_a_box_that_turns_is_the_mean_of_boxes_that_stand(surface, bounces):
+    """Sides that turn into sight were lit as seen from inside: .23 of the light was lost where they are; sheen had its
+    light from where it was gathered."""
+    turns = np.linspace(OPENS, CLOSES, 33)
+    moving = box(surface, [at(turn) for turn in turns], bounces)
+    stills = [box(surface, [at(turn)], bounces) for turn in (turns[:-1] + turns[1:]) / 2]
+    truth = np.mean(stills, axis=0)
+    blocks = [image.reshape(10, 2, 12, 2, 4).mean(axis=(1, 3)) for image in (moving, truth)]
+    assert np.abs(blocks[0] - blocks[1]).max() < 0.03
+    assert moving.sum() == pytest.approx(truth.sum(), rel=0.01)
+    if surface is diffuse:
+        covered = moving[..., 3] > 0.05
+        assert np.abs(moving[covered, 0] / moving[covered, 3] - 0.8).max() < 0.03
+
+
+def wax_ball(rings, bounces, places):
+    """What its parts of pixels show, in blocks of 4 x 4 of which it covers a fifth, and all of it."""
+    snapshot = evenly_lit(bounces)
+    wax = scattering(snapshot, albedo=(1.0,) * 3, reach=(2.0,) * 3)
+    points, faces = ball(rings, 5.0)
+    knots = np.stack([s.translation(x, 9.8, 40.0) for x in places])
+    s.mesh(snapshot, points, faces, wax, transforms=knots)
+    seen = s.render(snapshot)["combined"].astype(float)
+    blocks = seen.reshape(5, 4, 6, 4, 4).mean(axis=(1, 3))
+    there = blocks[blocks[..., 3] > 0.2]
+    return there[:, 0] / there[:, 3], seen[..., 0].sum() / seen[..., 3].sum()
+
+
+@pytest.mark.parametrize("rings", [12, 40])
+@pytest.mark.parametrize("bounces", [0, 2])
+def test_wax_of_small_faces_that_moves_is_as_bright_as_where_it_stands(rings, bounces):
+    """Samples of small faces began to scatter where the ball is at other times: .21 of its light was left for .95."""
+    _, still = wax_ball(rings, bounces, [12.0])
+    parts, moving = wax_ball(rings, bounces, [9.0, 15.0])
+    assert moving == pytest.approx(still, rel=0.01)
+    assert np.abs(parts / still - 1.0).max() < 0.05
