@@ -25,7 +25,7 @@ namespace granita {
 /// @param shutter nullptr where nothing moves.
 /// @param edge part of the light samples, at most 1 (edge_light_share()).
 std::vector<std::size_t> look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
-             const RayScene& rays, const Scene& scene, const MovingEye& eye,
-             const ShutterWarp* shutter, float edge);
+                                 const RayScene& rays, const Scene& scene, const MovingEye& eye,
+                                 const ShutterWarp* shutter, float edge);
 
 }  // namespace granita
