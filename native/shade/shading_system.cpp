@@ -12,6 +12,7 @@
 #include "shade/interpolated_points.h"
 #include "shade/left_to_samples.h"
 #include "shade/lights/light_sample_count.h"
+#include "shade/lights/mirrored_lamps.h"
 #include "shade/nodes/surface_run.h"
 #include "shade/pattern_probes.h"
 #include "shade/seen_points.h"
@@ -74,6 +75,7 @@ struct ShadingSystem::Impl : FrameShading {
         std::vector<float> looks;    ///< looks_of(), of patterns
         std::vector<LampSight> sights;
         std::vector<std::uint8_t> highlights;  ///< as Grid::unsettled
+        bool is_polished = false;              ///< highlights are narrow
     };
 
     /// Fills radiance and channels of `grid`, whose points are `in.points`.
@@ -94,6 +96,7 @@ struct ShadingSystem::Impl : FrameShading {
             doubts->looks = looks_of(points, closure);
         if (doubts && light && !grid.shades_lattice())
             doubts->highlights = light->highlights(grid, points, closure);
+        if (doubts && light) doubts->is_polished = any_is_polished(closure);
         ReflectionParts parts, *asked = channels.empty() ? nullptr : &parts;
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
         LeavingRays leaving;
@@ -202,6 +205,17 @@ struct ShadingSystem::Impl : FrameShading {
         return probes.any_changes(found.radiance, thresholds.difference, displayed_difference);
     }
 
+    /// Whether a lamp is mirrored for a part of the shutter: hardly ever at one of those times by
+    /// one of few micropolygons.
+    bool highlights_pass(Grid& grid) const {
+        if (!moves) return false;
+        const TimeProbes probes(grid, scene.options.frame_time, TimeProbes::kOfLooks);
+        const RefinedPoints found(grid, scene, camera, eye, probes.points, moves, 1.0f);
+        const SurfaceRun ran(material(grid.material).radiance, input(grid, found));
+        grid.broken_radiance |= ran.broken() > 0;
+        return light->highlights_pass(ran.points(), ran.closure(), grid.key);
+    }
+
     /// The same of its opacity: of what grazes the view, say.
     bool opacity_changes_in_time(Grid& grid) const {
         if (!moves) return false;
@@ -307,7 +321,8 @@ struct ShadingSystem::Impl : FrameShading {
         if (wants_refining && may_leave(grid) && !grid.opacity_varies && !scatters(grid.material) &&
             pays_by_samples(grid, points, scene, *light))
             return leave_to_samples(grid, channels.vertex_width());
-        Doubts doubts{std::vector<float>(wants_refining ? points.count : 0, 0.0f), {}, {}, {}, {}};
+        Doubts doubts;
+        if (wants_refining) doubts.noise.assign(points.count, 0.0f);
         const bool catches = catchers && scene.catches_shadows(grid.instance, grid.material);
         shade(grid, input(grid, points), at, wants_refining ? &doubts : nullptr);
         statistics.add(Counter::GridsShaded);
@@ -323,7 +338,8 @@ struct ShadingSystem::Impl : FrameShading {
             return;
         }
         const float difference = thresholds.difference / (sharpness * sharpness);
-        if (turns || material(grid.material).has_lines() || changes_in_time(grid))
+        if (turns || material(grid.material).has_lines() || changes_in_time(grid) ||
+            (doubts.is_polished && highlights_pass(grid)))
             grid.unsettled = all_micropolygons(grid);
         else
             find_unsettled(grid, doubts.settled, doubts.noise, difference,

@@ -8,12 +8,10 @@
 namespace granita {
 namespace {
 
-/// Micropolygons for each one that is asked, and when: parts of the time that a grid is there for.
-/// Not even ones, and not the ends alone: a highlight that sweeps past in the middle looks the same
-/// before and after.
-constexpr int kStep = 29;
 /// Probes of a small grid that tell chance from what all of its samples are wrong by.
 constexpr int kFewest = 3;
+/// Parts of the time that a grid is there for.  Not even ones, and not the ends alone: a highlight
+/// that sweeps past in the middle looks the same before and after.
 constexpr float kTimes[] = {0.0f, 0.31f, 0.57f, 1.0f};
 /// Of what is linear between these times.
 constexpr float kWeights[] = {0.155f, 0.285f, 0.345f, 0.215f};
@@ -27,12 +25,12 @@ constexpr float kOffMiddle = 0.1f;
 
 }  // namespace
 
-TimeProbes::TimeProbes(const Grid& grid, float frame_time)
+TimeProbes::TimeProbes(const Grid& grid, float frame_time, int step)
     : m_asks_corners(grid.micropolygon_count() > 1 && std::abs(frame_time - 0.5f) > kOffMiddle) {
     const float open = std::max(grid.lifespan.open, 0.0f);
     const float exposed = std::min(grid.lifespan.close, 1.0f) - open;
     const int count = grid.micropolygon_count();
-    const int step = m_asks_corners ? std::clamp(count / kFewest, 1, kStep) : kStep;
+    if (m_asks_corners) step = std::clamp(count / kFewest, 1, step);
     for (int m = step / 2 % count; m < count; m += step) {
         const Grid::Corners c = grid.corners(m);
         const auto at = [](int v) { return static_cast<std::uint32_t>(v); };

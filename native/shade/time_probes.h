@@ -8,12 +8,16 @@
 
 namespace granita {
 
-/// One micropolygon of many, or three of few, at several times each.  Where the frame time is not
+/// One micropolygon of `step`, or three of few, at several times each.  Where the frame time is not
 /// in the middle of the shutter, so that what changes evenly does not cancel, also as corners are
 /// lit: at the frame's place, over all of the shutter.
 class TimeProbes {
   public:
-    TimeProbes(const Grid& grid, float frame_time);
+    /// Micropolygons for each one that is asked: for light, which costs rays, and for what is told
+    /// without.
+    static constexpr int kOfLight = 29, kOfLooks = 3;
+
+    TimeProbes(const Grid& grid, float frame_time, int step = kOfLight);
 
     std::vector<RefinedPoint> points;
 

@@ -5,7 +5,8 @@ are turned away at the frame time, from angles that change."""
 import numpy as np
 import pytest
 import snapshots as s
-from test_bounces import material
+from session_parts import DOWN
+from test_bounces import material, mirror
 from test_bounces_hard_cases import white_world
 from test_dense_meshes import ball, turned
 from test_subsurface import scattering
@@ -90,3 +91,24 @@ def test_wax_of_small_faces_that_moves_is_as_bright_as_where_it_stands(rings, bo
     parts, moving = wax_ball(rings, bounces, [9.0, 15.0])
     assert moving == pytest.approx(still, rel=0.01)
     assert np.abs(parts / still - 1.0).max() < 0.05
+
+
+def lamp_in_a_mirror(turns):
+    """Mean radiance of a card that mirrors a small square lamp a hundred metres before it, which the picture does not hold
+    where the card faces the eye."""
+    snapshot = s.orthographic(SIZE, samples=256, light_samples=16)
+    lamp = {"name": "Lamp", "kind": "AREA", "shape": "SQUARE", "size": (2.0, 2.0), "energy": 1e3}
+    lamp["world_from_light"] = (s.translation(42.0, 9.3, -60.0) @ DOWN)[None]
+    snapshot["lights"] = [lamp]
+    knots = [s.translation(*CENTER) @ turned(0.0, turn) for turn in turns]
+    corners = s.rectangle(-40, -40, 40, 40, 0.0)
+    s.quad(snapshot, corners, mirror(snapshot), transforms=np.stack(knots))
+    return s.render(snapshot)["combined"][..., 0].mean()
+
+
+def test_a_mirror_that_turns_shows_the_lamp_as_long_as_it_does():
+    """For a part of the shutter, to a few micropolygons at a time: none that was asked had seen it."""
+    turns = np.linspace(-0.12, 0.12, 33)
+    stills = np.linspace(-0.12, 0.12, 257)
+    truth = np.mean([lamp_in_a_mirror([turn]) for turn in (stills[:-1] + stills[1:]) / 2])
+    assert lamp_in_a_mirror(turns) == pytest.approx(truth, rel=0.05)

@@ -83,6 +83,9 @@ class DirectLight {
     /// Of a grid of these points: highlights between its corners (mirrored_lamps.h).
     std::vector<std::uint8_t> highlights(const Grid& grid, const ShadingPoints& points,
                                          const SurfaceClosure& closure) const;
+    /// Of points of a grid at times of the shutter: highlights that come and go (lamps_pass()).
+    bool highlights_pass(const ShadingPoints& points, const SurfaceClosure& closure,
+                         const GridKey& key) const;
 
     /// Those that are among the light that reflect() knows, so that ways which meet them bring
     /// none.

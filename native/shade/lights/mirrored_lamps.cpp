@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "math/sampling.h"
 #include "shade/bsdf/bsdf.h"
@@ -103,6 +104,11 @@ bool is_polished(const Lobe& lobe) {
     return false;
 }
 
+/// Lamps that are not in a tree.
+std::span<const Lamp> few_of(const LampSet& set) {
+    return {set.lamps.data(), set.tree ? set.everywhere : set.lamps.size()};
+}
+
 /// Whether the lobe's light of the lamp counts.
 bool takes(const Lobe& lobe, const Lamp& lamp) {
     BsdfValue value;
@@ -116,12 +122,10 @@ std::vector<std::uint8_t> mirrored_lamps(const LampSet& set, std::uint64_t recei
                                          const Grid& grid, const ShadingPoints& points,
                                          const SurfaceClosure& closure) {
     std::vector<std::uint8_t> marks;
-    const std::size_t asked = set.tree ? set.everywhere : set.lamps.size();
     std::vector<Pass> passes;
     for (const Lobe& lobe : closure.lobes) {
         if (!is_polished(lobe)) continue;
-        for (std::size_t l = 0; l < asked; ++l) {
-            const Lamp& lamp = set.lamps[l];
+        for (const Lamp& lamp : few_of(set)) {
             if (!lamp.lights(receives) || !takes(lobe, lamp)) continue;
             passes.resize(points.count);
             for (std::size_t i = 0; i < points.count; ++i)
@@ -139,6 +143,29 @@ std::vector<std::uint8_t> mirrored_lamps(const LampSet& set, std::uint64_t recei
         }
     }
     return marks;
+}
+
+bool any_is_polished(const SurfaceClosure& closure) {
+    return std::ranges::any_of(closure.lobes, is_polished);
+}
+
+bool lamps_pass(const LampSet& set, std::uint64_t receives, const ShadingPoints& points,
+                const SurfaceClosure& closure) {
+    for (const Lobe& lobe : closure.lobes) {
+        if (!is_polished(lobe)) continue;
+        for (const Lamp& lamp : few_of(set)) {
+            if (!lamp.lights(receives) || !takes(lobe, lamp)) continue;
+            bool any_meets = false, any_misses = false;
+            for (std::size_t i = 0; i < points.count; ++i) {
+                if (points.times[i] < 0.0f) continue;
+                const Pass pass = pass_of(lamp, lobe, points, i, points.times[i]);
+                const bool meets = pass.is_near && glm::length(pass.aside) <= pass.margin;
+                (meets ? any_meets : any_misses) = true;
+            }
+            if (any_meets && any_misses) return true;
+        }
+    }
+    return false;
 }
 
 }  // namespace granita

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Highlights between the corners of micropolygons: that of a small lamp on a polished ball is far
-// narrower than one, and hardly ever lies on a corner.
+// narrower than one, and hardly ever lies on a corner.  And those that pass by within the shutter.
 #pragma once
 
 #include <cstdint>
@@ -20,5 +20,13 @@ namespace granita {
 std::vector<std::uint8_t> mirrored_lamps(const LampSet& set, std::uint64_t receives,
                                          const Grid& grid, const ShadingPoints& points,
                                          const SurfaceClosure& closure);
+
+/// Whether some lobe's highlights are narrow.
+bool any_is_polished(const SurfaceClosure& closure);
+
+/// Whether facets of some points, each at its own time, mirror or refract the view to a lamp of few,
+/// and those of others do not.
+bool lamps_pass(const LampSet& set, std::uint64_t receives, const ShadingPoints& points,
+                const SurfaceClosure& closure);
 
 }  // namespace granita
