@@ -59,7 +59,10 @@ void element_value(const SharedElements& elements, const AttributeRequest& reque
     };
     if (request.source == AttributeSource::Generated) {
         // One place a hair, its root's, as in Cycles.
-        set(generated(elements.frame_box(), position(elements.first_point(place.element))));
+        const std::size_t root = elements.first_point(place.element);
+        const std::vector<Vec3f>& known = elements.data().generated;
+        set(known.empty() ? generated(elements.frame_box(), elements.frame_point(root))
+                          : Vec3d(known[root]));
     } else if (is_position(request.source)) {
         set(along(position));
     } else if (request.source == AttributeSource::ElementRandom) {

@@ -96,7 +96,6 @@ void read_faces(const Record& r, GeometryData& g) {
     g.smooth = r.values<std::uint8_t>("smooth", {static_cast<py::ssize_t>(g.face_count())});
     g.corner_normals =
         vectors(r, "corner_normals", static_cast<py::ssize_t>(g.corner_verts.size()));
-    g.generated = vectors(r, "generated", static_cast<py::ssize_t>(g.vertex_count()));
     g.ngon_triangles = r.values<std::int32_t>("ngon_triangles", {-1, 3});
     if (!g.ngon_triangles.empty()) check_ngon_triangles(r, g);
     if (r.has("subdivision")) read_subdivision(r.record("subdivision"), g);
@@ -141,7 +140,7 @@ void read_geometry(const Record& r, GeometryData& g) {
         if (!g.adjacent.empty())
             std::memcpy(g.adjacent.data(), others.data(), g.adjacent.size() * sizeof(Vec3f));
     }
-
+    g.generated = vectors(r, "generated", static_cast<py::ssize_t>(g.vertex_count()));
     if (g.kind == GeometryKind::Mesh)
         read_faces(r, g);
     else

@@ -167,8 +167,8 @@ std::vector<std::size_t> look_again(ShadingPoints& points, Looks& looks, const R
 }  // namespace
 
 std::vector<std::size_t> look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
-             const RayScene& rays, const Scene& scene, const MovingEye& eye,
-             const ShutterWarp* shutter, float edge) {
+                                 const RayScene& rays, const Scene& scene, const MovingEye& eye,
+                                 const ShutterWarp* shutter, float edge) {
     Looks looks(points, paths, key, rays, scene, eye, shutter);
     std::vector<Looks::Look> asked;
     asked.reserve(points.count);

@@ -129,6 +129,24 @@ def test_shading_is_that_of_cycles(scene, render):
     assert abs(means[0] / means[1] - 1.0) < (0.02 if bpy.app.version < (5, 0, 0) else 0.03), means
 
 
+@pytest.mark.parametrize("child_type", ["NONE", "INTERPOLATED"])
+def test_hairs_have_the_texture_space_of_what_they_stand_on(scene, render, child_type):
+    """Generated is one place a hair, its root's; in the box of the hairs themselves it was elsewhere."""
+    scene_parts.add_camera(scene, (0, -5, 2.5)).rotation_euler.x = 1.15
+    thing = furry(scene, child_type=child_type, root_radius=0.03)
+    tree = Tree(thing)
+    emission, place = tree.add("ShaderNodeEmission"), tree.add("ShaderNodeTexCoord")
+    tree.link(place.outputs["Generated"], emission.inputs["Color"])
+    tree.link(emission.outputs[0], tree.output.inputs["Surface"])
+    scene.cycles_curves.shape = "RIBBONS"
+    scene.render.film_transparent = True
+    theirs, ours = (
+        picture.reshape(-1, 4).sum(axis=0)
+        for picture in render_both(scene, render, samples=64, channels="RGBA")
+    )
+    assert ours / ours[3] == pytest.approx(theirs / theirs[3], abs=0.01)
+
+
 @pytest.mark.parametrize("build", [spiral_curves, grid_points])
 def test_shadows_are_those_of_cycles(scene, render, build):
     """On a floor that the camera sees from above, of moving things: means of colour in blocks."""

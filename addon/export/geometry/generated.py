@@ -52,6 +52,19 @@ def cage_generated(evaluated, cage, topology, label, depsgraph, report):
         return _in_texture_space(original, read_points(mesh))
 
 
+def hair_generated(emitter, points, sizes):
+    """float32 [P, 3] of a particle system's hairs: where each one's root lies in the texture space of the mesh that it
+    stands on, in its present shape (Cycles).
+
+    Args:
+        emitter: evaluated mesh.
+        points: float32 [P, 3], a hair's one after the other.
+        sizes: int32 [hairs], how many are of each.
+    """
+    roots = points[np.cumsum(sizes) - sizes]
+    return np.repeat(_in_texture_space(emitter, roots), sizes, axis=0)
+
+
 def _in_texture_space(mesh, places):
     size = np.array(mesh.texspace_size, dtype=np.float32)
     size[size == 0.0] = 1.0

@@ -11,7 +11,7 @@ from ..base.snapshot import Geometry
 from .attributes import GENERATED
 from .curves import read_curves
 from .elements import split_radii
-from .generated import cage_generated, read_generated
+from .generated import cage_generated, hair_generated, read_generated
 from .hair import read_hair
 from .hair_points import HairPoints
 from .mesh import read_geometry, whole_mesh
@@ -141,6 +141,11 @@ def _read(prototype, example, requested, depsgraph, report, check_cancel):
         found = read_hair(
             prototype.source, prototype.system, prototype.label, depsgraph.mode, report
         )
+        if found is not None and GENERATED in requested:
+            hairs = found[0]
+            hairs.generated = hair_generated(
+                prototype.source.data, hairs.points[0], hairs.curve_sizes
+            )
         velocity = None
     elif prototype.cage is None:
         with whole_mesh(prototype.source, prototype.data) as mesh:
