@@ -36,7 +36,9 @@ class Geometry:
     adjacent: Optional[np.ndarray] = (
         None  # float32 [2, V, 3], of the frame before and the one after
     )
-    generated: Optional[np.ndarray] = None  # float32 [V, 3], within the texture space of the mesh, or of hairs' emitter
+    generated: Optional[np.ndarray] = (
+        None  # float32 [V, 3], within the texture space of the mesh, or of hairs' emitter
+    )
     face_sizes: Optional[np.ndarray] = None  # int32 [F], corners a face, at least 3
     corner_verts: Optional[np.ndarray] = None  # int32 [C]
     ngon_triangles: Optional[np.ndarray] = None  # int32 [T, 3], corners within faces of more than 4
