@@ -56,8 +56,8 @@ struct GeometryData {
     int knots = 1;
     std::vector<Vec3f> points;    ///< [knots][V] object space, metres
     std::vector<Vec3f> adjacent;  ///< [2][V] of the frame before and the one after, or empty
-    /// [V] Blender's Generated coordinates of a mesh, or of hairs, each at its root.  Empty: the box
-    /// of the points stands in.
+    /// [V] Blender's Generated coordinates of a mesh, or of hairs, each at its root.  Empty: the
+    /// box of the points stands in.
     std::vector<Vec3f> generated;
     std::size_t vertex_count() const { return points.size() / static_cast<std::size_t>(knots); }
     std::vector<std::int32_t> face_sizes;    ///< [F] corners a face, >= 3

@@ -30,9 +30,9 @@ Vec3f diffuse_albedo(const ShadingPoints& points, const SurfaceClosure& closure,
         if (part_of(lobe.kind) != LightPart::Diffuse) continue;
         float along_view = 1.0f;
         if (lobe.kind == LobeKind::Sheen)
-            along_view = sheen_fit(glm::dot(lobe.normal[point], points.view[point]),
-                                   lobe.roughness[point])
-                             .albedo;
+            along_view =
+                sheen_fit(glm::dot(lobe.normal[point], points.view[point]), lobe.roughness[point])
+                    .albedo;
         sum += along_view * lobe.weight[point];
     }
     return sum;
