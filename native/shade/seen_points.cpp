@@ -33,6 +33,8 @@ class Looks {
           m_offset(rays.ray_offset(key)),
           m_key(key),
           m_at_frame(eye.place(scene.options.frame_time)),
+          m_opens(eye.place(0.0f)),
+          m_closes(eye.place(1.0f)),
           m_sequence(mix_bits(grid_seed(key, scene.options.seed))),
           m_lens(mix_bits(mix_bits(grid_seed(key, scene.options.seed)))) {}
 
@@ -66,8 +68,8 @@ class Looks {
         // Of what the surface turns to the eye of that time.
         const Vec3f ahead = axes[2];
         Vec3f way = projection.perspective ? eye - p : -ahead;
-        const bool is_behind = glm::dot(way, normal) < 0.0f;
-        if (is_behind) normal = -normal;
+        const bool is_below = glm::dot(way, normal) < 0.0f;
+        if (is_below) normal = -normal;
         const Vec3f start = m_offset(p, normal);
         if (projection.perspective) way = eye - start;
         const float length = glm::length(way);
@@ -75,15 +77,29 @@ class Looks {
         const float clear = 1.0f - static_cast<float>(projection.near_clip) / depth;
         Ray ray{start, way / length, projection.perspective ? length * clear : depth, time};
         ray.type = RayType::Camera;
-        return {ray, is_behind};
+        return {ray, is_below != is_below_at_frame(i)};
     }
 
-    /// Whether its next looks may find something else before it.
-    bool may_vary(const Ray& ray) const {
-        return m_paths.moves() || m_rays.varies(ray.start, ray.direction, ray.distance);
+    /// Whether its next looks may find something else before it, or another side of it.
+    bool may_vary(std::size_t i, const Ray& ray) const {
+        return m_paths.moves() || m_rays.varies(ray.start, ray.direction, ray.distance) ||
+               is_behind_for(i, m_opens) || is_behind_for(i, m_closes);
     }
 
   private:
+    /// Ways tell of normals otherwise than surfaces do: about silhouettes they may not agree.
+    bool is_below_at_frame(std::size_t i) const {
+        return m_paths.moves() &&
+               glm::dot(m_paths.at(i, m_scene.options.frame_time).normal, m_points.view[i]) < 0.0f;
+    }
+
+    /// Of a point that stands, from an eye of another time.
+    bool is_behind_for(std::size_t i, const Mat4d& eye) const {
+        const Vec3f way =
+            m_scene.camera.projection.perspective ? Vec3f(eye[3]) - m_points.p[i] : -Vec3f(eye[2]);
+        return glm::dot(way, m_points.geometric_normal[i]) < 0.0f;
+    }
+
     float time(float uniform, int look) const {
         const float turned = uniform + static_cast<float>(look) / kLooks;
         const Vec2f exposed = m_shutter->exposed(m_paths.lifespan());
@@ -98,7 +114,7 @@ class Looks {
     const ShutterWarp* m_shutter;
     RayOffset m_offset;
     GridKey m_key;
-    Mat4d m_at_frame;
+    Mat4d m_at_frame, m_opens, m_closes;
     SobolPoints m_sequence, m_lens;
 };
 
@@ -139,7 +155,7 @@ std::vector<std::size_t> look_again(ShadingPoints& points, Looks& looks, const R
     std::vector<std::size_t> doubtful, turned;
     std::vector<Looks::Look> asked;
     for (std::size_t i = 0; i < points.count; ++i) {
-        if (!looks.may_vary(first[i].ray)) continue;
+        if (!looks.may_vary(i, first[i].ray)) continue;
         doubtful.push_back(i);
         for (int look = 1; look < kLooks; ++look) asked.push_back(looks.from(i, look));
     }

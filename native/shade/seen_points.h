@@ -24,6 +24,7 @@ namespace granita {
 /// @param points of the grid of `key`, lifted.
 /// @param shutter nullptr where nothing moves.
 /// @param edge part of the light samples, at most 1 (edge_light_share()).
+/// @return points of which the side that is turned away at the frame time is seen more often.
 std::vector<std::size_t> look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
                                  const RayScene& rays, const Scene& scene, const MovingEye& eye,
                                  const ShutterWarp* shutter, float edge);

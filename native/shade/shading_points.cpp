@@ -47,7 +47,10 @@ ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
 void show_other_side(ShadingPoints& points, std::span<const std::size_t> which) {
     for (const std::size_t i : which) {
         points.normal[i] = -points.normal[i];
-        points.geometric_normal[i] = -points.geometric_normal[i];
+        Vec3f& outward = points.geometric_normal[i];
+        outward = -outward;
+        // Mirrored, so that it is on that side as well.
+        points.view[i] -= 2.0f * glm::dot(points.view[i], outward) * outward;
         points.backfacing[i] ^= 1;
         // That of the smooth surface is known of the side alone that is seen at the frame time.
         if (!points.rise.empty()) points.rise[i] = Vec4f(0.0f, 0.0f, 0.0f, points.rise[i].w);

@@ -18,7 +18,7 @@ inline GeometryKind kind_of(const Grid& grid, const Scene& scene) {
 /// A grid's shading points in shading space.
 ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera);
 
-/// Turns the other side of some points of a mesh to the viewer, who sees it at most other times.
+/// Turns the other side of some points of a mesh to the viewer, who sees it for most of the time.
 void show_other_side(ShadingPoints& points, std::span<const std::size_t> which);
 
 }  // namespace granita

@@ -27,6 +27,9 @@ namespace {
 
 /// Metres: what scatters no farther is drawn as diffuse, as in Cycles.
 constexpr float kLeastScattering = 1e-8f;
+/// One point of as many that turns within the shutter leaves its grid to samples: along the
+/// silhouettes of round things that move a few do.
+constexpr std::size_t kTurned = 8;
 
 }  // namespace
 
@@ -208,7 +211,7 @@ struct ShadingSystem::Impl : FrameShading {
     /// Whether a lamp is mirrored for a part of the shutter: hardly ever at one of those times by
     /// one of few micropolygons.
     bool highlights_pass(Grid& grid) const {
-        if (!moves) return false;
+        if (!grid.motion) return false;
         const TimeProbes probes(grid, scene.options.frame_time, TimeProbes::kOfLooks);
         const RefinedPoints found(grid, scene, camera, eye, probes.points, moves, 1.0f);
         const SurfaceRun ran(material(grid.material).radiance, input(grid, found));
@@ -304,18 +307,21 @@ struct ShadingSystem::Impl : FrameShading {
         points.share *= fewer;
         points.round = kind_of(grid, scene) == GeometryKind::Curves;
         if (light && lit) light->lift(points, grid.key);
-        PointPaths at = light && light->varies() ? PointPaths(grid, scene, points) : PointPaths();
+        const auto paths = [&] {
+            return light && light->varies() ? PointPaths(grid, scene, points) : PointPaths();
+        };
+        PointPaths at = paths();
         bool turns = false;
-        if (lit && (bounces || (at.moves() && scatters(grid.material)))) {
+        if (lit && (bounces || (below && moves && scatters(grid.material)))) {
             const std::vector<std::size_t> turned = look_at(
                 points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr,
                 std::min(1.0f, edge_light_share(scene.options.samples) / narrow));
-            turns = !turned.empty() && kind_of(grid, scene) == GeometryKind::Mesh;
-            if (turns) {
-                // What their lobes gather is not that of the inside.
+            if (wants_refining && !turned.empty()) {
+                // Else their lobes would gather the light of the inside.
                 show_other_side(points, turned);
                 light->lift(points, grid.key);
-                at = PointPaths(grid, scene, points);
+                at = paths();
+                turns = kTurned * turned.size() > points.count;
             }
         }
         if (wants_refining && may_leave(grid) && !grid.opacity_varies && !scatters(grid.material) &&

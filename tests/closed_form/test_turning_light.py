@@ -32,10 +32,17 @@ def evenly_lit(bounces):
     return snapshot
 
 
-def box(surface, knots, bounces):
+def box(surface, turns, bounces, mover="box"):
+    """It turns, or the camera about it."""
     snapshot = evenly_lit(bounces)
     corners = np.asarray(CUBE) * SIDE / 2
-    s.mesh(snapshot, corners, FACES, surface(snapshot), transforms=np.stack(knots))
+    knots = np.stack([at(turn) for turn in turns])
+    if mover == "camera":
+        snapshot["camera"]["world_from_camera"] = np.stack(
+            [at(0.0) @ np.linalg.inv(at(turn)) for turn in turns]
+        )
+        knots = at(0.0)[None]
+    s.mesh(snapshot, corners, FACES, surface(snapshot), transforms=knots)
     return s.render(snapshot)["combined"].astype(float)
 
 
@@ -53,19 +60,32 @@ def sheen(snapshot):
     )
 
 
+def paint(snapshot):
+    inputs = {"Base Color": (0.8, 0.8, 0.8, 1.0), "Roughness": 0.1, "IOR": 1.5}
+    properties = {"version": 405.0, "distribution": "MULTI_GGX"}
+    nodes = [{"type": "ShaderNodeBsdfPrincipled", "inputs": inputs, "properties": properties}]
+    return material(snapshot, nodes, (0, "BSDF"))
+
+
+def wax(snapshot):
+    return scattering(snapshot, albedo=(0.8,) * 3, reach=(2.0,) * 3, version=405)
+
+
+@pytest.mark.parametrize("mover", ["box", "camera"])
 @pytest.mark.parametrize("bounces", [0, 2])
-@pytest.mark.parametrize("surface", [diffuse, sheen])
-def test_a_box_that_turns_is_the_mean_of_boxes_that_stand(surface, bounces):
-    """Sides that turn into sight were lit as seen from inside: .23 of the light was lost where they are; sheen had its
-    light from where it was gathered."""
+@pytest.mark.parametrize("surface", [diffuse, sheen, paint, wax])
+def test_a_box_that_turns_is_the_mean_of_boxes_that_stand(surface, bounces, mover):
+    """Sides that turn into sight were lit as seen from inside; sheen had its light from where it was gathered."""
     turns = np.linspace(OPENS, CLOSES, 33)
-    moving = box(surface, [at(turn) for turn in turns], bounces)
-    stills = [box(surface, [at(turn)], bounces) for turn in (turns[:-1] + turns[1:]) / 2]
+    moving = box(surface, turns, bounces, mover)
+    stills = [box(surface, [turn], bounces, mover) for turn in (turns[:-1] + turns[1:]) / 2]
     truth = np.mean(stills, axis=0)
     blocks = [image.reshape(10, 2, 12, 2, 4).mean(axis=(1, 3)) for image in (moving, truth)]
-    assert np.abs(blocks[0] - blocks[1]).max() < 0.03
-    assert moving.sum() == pytest.approx(truth.sum(), rel=0.01)
-    if surface is diffuse:
+    # Of wax three deviations of the noise of 16 ways a point, .02 over six seeds.
+    assert np.abs(blocks[0] - blocks[1]).max() < (0.06 if surface is wax else 0.03)
+    assert moving.sum() == pytest.approx(truth.sum(), rel=0.015 if surface is wax else 0.01)
+    # Past whose sides a camera sees for a moment, points along their ends are asked too seldom.
+    if surface is diffuse and mover == "box":
         covered = moving[..., 3] > 0.05
         assert np.abs(moving[covered, 0] / moving[covered, 3] - 0.8).max() < 0.03
 
@@ -112,3 +132,21 @@ def test_a_mirror_that_turns_shows_the_lamp_as_long_as_it_does():
     stills = np.linspace(-0.12, 0.12, 257)
     truth = np.mean([lamp_in_a_mirror([turn]) for turn in (stills[:-1] + stills[1:]) / 2])
     assert lamp_in_a_mirror(turns) == pytest.approx(truth, rel=0.05)
+
+
+def test_wax_that_stands_takes_the_light_of_all_the_shutter():
+    """Of small faces, in a world that a card hides from it for half of the time: its samples see nothing that moves."""
+
+    def shown(places):
+        snapshot = evenly_lit(0)
+        material = scattering(snapshot, reach=(2.0,) * 3)
+        points, faces = ball(40, 5.0)
+        s.mesh(snapshot, points, faces, material, transforms=s.translation(*CENTER)[None])
+        card = s.rectangle(-60, -60, 60, 60, 0.0)
+        knots = np.stack([s.translation(12.0, -20.0, 40.0) @ turned(np.pi / 2, 0.0)] * 2)
+        knots[:, 0, 3] = places
+        s.quad(snapshot, card, s.emission(snapshot, (0.0, 0.0, 0.0)), transforms=knots)
+        return s.render(snapshot)["combined"][..., 0].mean()
+
+    mean = np.mean([shown((x, x)) for x in np.linspace(-148.0, 148.0, 38)])
+    assert shown((-150.0, 150.0)) == pytest.approx(mean, rel=0.02)

@@ -30,7 +30,7 @@ inline SheenFit sheen_fit(float cosine, float roughness) {
     const float rest =
         y * (0.000654023f + (-0.0207818f + 0.119681f * y) * y) / (1.26264f + y * (-1.92021f + y));
     const float t = (x - mean) / width;
-    fit.albedo = std::exp(-0.5f * t * t) / (width * std::sqrt(2.0f * kPi)) + rest;
+    fit.albedo = std::max(std::exp(-0.5f * t * t) / (width * std::sqrt(2.0f * kPi)) + rest, 0.0f);
     return fit;
 }
 

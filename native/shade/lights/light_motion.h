@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "dice/grid.h"
@@ -9,6 +10,12 @@
 #include "shade/bsdf/lobe.h"
 
 namespace granita {
+
+/// One of some times, by a number in [0, 1).
+inline float one_of(std::span<const float> times, float uniform) {
+    const auto count = static_cast<float>(times.size());
+    return times[static_cast<std::size_t>(uniform * count) % times.size()];
+}
 
 /// Where the points of a grid are over the shutter, for light that changes within it: world axes,
 /// origin at the camera of the frame time, linear between equidistant knots.  The camera's own

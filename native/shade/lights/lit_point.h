@@ -72,8 +72,7 @@ struct LitPoint {
     /// One of the times that it is lit for, by a number in [0, 1).
     float time(const ShutterWarp& shutter, float uniform) const {
         if (seen_times.empty()) return shutter.time(exposed.x + uniform * (exposed.y - exposed.x));
-        const auto count = static_cast<float>(seen_times.size());
-        return seen_times[static_cast<std::size_t>(uniform * count) % seen_times.size()];
+        return one_of(seen_times, uniform);
     }
     void share_samples() {
         samples.resize(bsdf.lobe_count());

@@ -155,14 +155,16 @@ bool lamps_pass(const LampSet& set, std::uint64_t receives, const ShadingPoints&
         if (!is_polished(lobe)) continue;
         for (const Lamp& lamp : few_of(set)) {
             if (!lamp.lights(receives) || !takes(lobe, lamp)) continue;
-            bool any_meets = false, any_misses = false;
-            for (std::size_t i = 0; i < points.count; ++i) {
-                if (points.times[i] < 0.0f) continue;
-                const Pass pass = pass_of(lamp, lobe, points, i, points.times[i]);
-                const bool meets = pass.is_near && glm::length(pass.aside) <= pass.margin;
-                (meets ? any_meets : any_misses) = true;
+            for (std::size_t i = 0, end; i < points.count; i = end) {
+                bool any_meets = false, any_misses = false;
+                for (end = i; end < points.count && points.places[end] == points.places[i]; ++end) {
+                    if (points.times[end] < 0.0f) continue;
+                    const Pass pass = pass_of(lamp, lobe, points, end, points.times[end]);
+                    const bool meets = pass.is_near && glm::length(pass.aside) <= pass.margin;
+                    (meets ? any_meets : any_misses) = true;
+                }
+                if (any_meets && any_misses) return true;
             }
-            if (any_meets && any_misses) return true;
         }
     }
     return false;

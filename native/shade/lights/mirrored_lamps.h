@@ -24,8 +24,8 @@ std::vector<std::uint8_t> mirrored_lamps(const LampSet& set, std::uint64_t recei
 /// Whether some lobe's highlights are narrow.
 bool any_is_polished(const SurfaceClosure& closure);
 
-/// Whether facets of some points, each at its own time, mirror or refract the view to a lamp of
-/// few, and those of others do not.
+/// Whether facets mirror or refract the view to a lamp of few at some times and not at others.
+/// @param points samples of ShadingPoints::times, those of one place one after the other.
 bool lamps_pass(const LampSet& set, std::uint64_t receives, const ShadingPoints& points,
                 const SurfaceClosure& closure);
 

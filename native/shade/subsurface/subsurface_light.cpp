@@ -82,16 +82,11 @@ class SubsurfaceLight::Batch {
     }
 
   private:
-    /// One at which the point is seen: of samples where each of them stands.
+    /// One at which the point is seen: of samples at which they stand where they are.
     float time_at(std::size_t i, float uniform) const {
-        if (!m_points.times.empty())
-            return m_points.times[i] < 0.0f ? m_light.m_scene.options.frame_time
-                                            : m_points.times[i];
-        if (!m_points.seen_times.empty() && !m_points.seen_times[i].empty()) {
-            const std::vector<float>& seen = m_points.seen_times[i];
-            const auto count = static_cast<float>(seen.size());
-            return seen[static_cast<std::size_t>(uniform * count) % seen.size()];
-        }
+        if (!m_points.times.empty() && m_points.times[i] >= 0.0f) return m_points.times[i];
+        if (!m_points.seen_times.empty() && !m_points.seen_times[i].empty())
+            return one_of(m_points.seen_times[i], uniform);
         const Vec2f exposed = m_light.m_shutter.exposed(m_paths.lifespan());
         return m_light.m_shutter.time(exposed.x + uniform * (exposed.y - exposed.x));
     }

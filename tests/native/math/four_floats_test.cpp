@@ -12,9 +12,10 @@ TEST(FourFloats, exponential_is_that_of_the_library) {
     for (float x = -87.0f; x < 88.0f; x += 0.0137f) {
         const Floats four = exponential(Floats{x, -x, 0.5f * x, 0.0f});
         EXPECT_NEAR(four[0] / std::exp(x), 1.0f, 4e-7f) << x;
-        if (x < 87.0f) {  // beyond it, 0
+        if (x <= 87.0f)
             EXPECT_NEAR(four[1] / std::exp(-x), 1.0f, 4e-7f) << x;
-        }
+        else
+            EXPECT_EQ(four[1], 0.0f) << x;
         EXPECT_NEAR(four[2] / std::exp(0.5f * x), 1.0f, 4e-7f) << x;
         EXPECT_EQ(four[3], 1.0f);
     }
