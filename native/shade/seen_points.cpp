@@ -35,6 +35,9 @@ class Looks {
           m_at_frame(eye.place(scene.options.frame_time)),
           m_opens(eye.place(0.0f)),
           m_closes(eye.place(1.0f)),
+          // Edits of the lens keep what is shaded without bounces (scene/scene_changes.cpp).
+          m_sees_lens(scene.camera.projection.has_lens() && scene.camera.projection.perspective &&
+                      scene.options.bounces.most > 0),
           m_sequence(mix_bits(grid_seed(key, scene.options.seed))),
           m_lens(mix_bits(mix_bits(grid_seed(key, scene.options.seed)))) {}
 
@@ -61,7 +64,7 @@ class Looks {
         const Projection& projection = m_scene.camera.projection;
         const Mat3f axes{Mat3d(at)};
         Vec3f eye(at[3]);
-        if (projection.has_lens() && projection.perspective)
+        if (m_sees_lens)
             eye += axes *
                    Vec3f(static_cast<float>(projection.lens_radius) * sample_disc(m_lens(place)),
                          0.0f);
@@ -115,6 +118,7 @@ class Looks {
     RayOffset m_offset;
     GridKey m_key;
     Mat4d m_at_frame, m_opens, m_closes;
+    bool m_sees_lens;
     SobolPoints m_sequence, m_lens;
 };
 

@@ -313,9 +313,11 @@ struct ShadingSystem::Impl : FrameShading {
         PointPaths at = paths();
         bool turns = false;
         if (lit && (bounces || (below && moves && scatters(grid.material)))) {
+            // Without bounces nothing that is shaded goes by Samples.
+            const float edge =
+                bounces ? std::min(1.0f, edge_light_share(scene.options.samples) / narrow) : 1.0f;
             const std::vector<std::size_t> turned = look_at(
-                points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr,
-                std::min(1.0f, edge_light_share(scene.options.samples) / narrow));
+                points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr, edge);
             if (wants_refining && !turned.empty()) {
                 // Else their lobes would gather the light of the inside.
                 show_other_side(points, turned);
