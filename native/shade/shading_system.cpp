@@ -12,7 +12,6 @@
 #include "shade/interpolated_points.h"
 #include "shade/left_to_samples.h"
 #include "shade/lights/light_sample_count.h"
-#include "shade/lights/mirrored_lamps.h"
 #include "shade/nodes/surface_run.h"
 #include "shade/pattern_probes.h"
 #include "shade/seen_points.h"
@@ -78,7 +77,7 @@ struct ShadingSystem::Impl : FrameShading {
         std::vector<float> looks;    ///< looks_of(), of patterns
         std::vector<LampSight> sights;
         std::vector<std::uint8_t> highlights;  ///< as Grid::unsettled
-        bool is_polished = false;              ///< highlights are narrow
+        bool may_pass = false;                 ///< lamps, as what moves mirrors them
     };
 
     /// Fills radiance and channels of `grid`, whose points are `in.points`.
@@ -99,7 +98,8 @@ struct ShadingSystem::Impl : FrameShading {
             doubts->looks = looks_of(points, closure);
         if (doubts && light && !grid.shades_lattice())
             doubts->highlights = light->highlights(grid, points, closure);
-        if (doubts && light) doubts->is_polished = any_is_polished(closure);
+        if (doubts && light && grid.motion)
+            doubts->may_pass = light->highlights_may_pass(closure, grid.key);
         ReflectionParts parts, *asked = channels.empty() ? nullptr : &parts;
         std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
         LeavingRays leaving;
@@ -211,7 +211,6 @@ struct ShadingSystem::Impl : FrameShading {
     /// Whether a lamp is mirrored for a part of the shutter: hardly ever at one of those times by
     /// one of few micropolygons.
     bool highlights_pass(Grid& grid) const {
-        if (!grid.motion) return false;
         const TimeProbes probes(grid, scene.options.frame_time, TimeProbes::kOfLooks);
         const RefinedPoints found(grid, scene, camera, eye, probes.points, moves, 1.0f);
         const SurfaceRun ran(material(grid.material).radiance, input(grid, found));
@@ -300,6 +299,19 @@ struct ShadingSystem::Impl : FrameShading {
         return true;
     }
 
+    PointPaths paths_of(const Grid& grid, const ShadingPoints& points) const {
+        return light && light->varies() ? PointPaths(grid, scene, points) : PointPaths();
+    }
+
+    /// look_at(); without bounces nothing that is shaded goes by Samples.
+    std::vector<std::size_t> look(const Grid& grid, ShadingPoints& points, const PointPaths& at,
+                                  float narrow) const {
+        const float edge =
+            bounces ? std::min(1.0f, edge_light_share(scene.options.samples) / narrow) : 1.0f;
+        return look_at(points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr,
+                       edge);
+    }
+
     void shade_anew(Grid& grid, bool lit, float sharpness) const {
         ShadingPoints points = shading_points(grid, camera);
         const bool wants_refining = can_refine(grid);
@@ -307,22 +319,15 @@ struct ShadingSystem::Impl : FrameShading {
         points.share *= fewer;
         points.round = kind_of(grid, scene) == GeometryKind::Curves;
         if (light && lit) light->lift(points, grid.key);
-        const auto paths = [&] {
-            return light && light->varies() ? PointPaths(grid, scene, points) : PointPaths();
-        };
-        PointPaths at = paths();
+        PointPaths at = paths_of(grid, points);
         bool turns = false;
         if (lit && (bounces || (below && moves && scatters(grid.material)))) {
-            // Without bounces nothing that is shaded goes by Samples.
-            const float edge =
-                bounces ? std::min(1.0f, edge_light_share(scene.options.samples) / narrow) : 1.0f;
-            const std::vector<std::size_t> turned = look_at(
-                points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr, edge);
+            const std::vector<std::size_t> turned = look(grid, points, at, narrow);
             if (wants_refining && !turned.empty()) {
                 // Else their lobes would gather the light of the inside.
                 show_other_side(points, turned);
                 light->lift(points, grid.key);
-                at = paths();
+                at = paths_of(grid, points);
                 turns = kTurned * turned.size() > points.count;
             }
         }
@@ -347,7 +352,7 @@ struct ShadingSystem::Impl : FrameShading {
         }
         const float difference = thresholds.difference / (sharpness * sharpness);
         if (turns || material(grid.material).has_lines() || changes_in_time(grid) ||
-            (doubts.is_polished && highlights_pass(grid)))
+            (doubts.may_pass && highlights_pass(grid)))
             grid.unsettled = all_micropolygons(grid);
         else
             find_unsettled(grid, doubts.settled, doubts.noise, difference,

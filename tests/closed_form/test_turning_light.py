@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import snapshots as s
 from session_parts import DOWN
-from test_bounces import material, mirror
+from test_bounces import material, mirror, reflecting
 from test_bounces_hard_cases import white_world
 from test_dense_meshes import ball, turned
 from test_subsurface import scattering
@@ -47,24 +47,22 @@ def box(surface, turns, bounces, mover="box"):
 
 
 def diffuse(snapshot):
-    node = {"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (0.8, 0.8, 0.8, 1.0)}}
-    return material(snapshot, [node], (0, "BSDF"))
+    return reflecting(snapshot, "Diffuse", 0.8)
+
+
+def of_cycles_4_5(snapshot, lobe, inputs):
+    kind = {"type": f"ShaderNodeBsdf{lobe}", "properties": {"version": 405.0}}
+    return material(snapshot, [{**kind, "inputs": inputs}], (0, "BSDF"))
 
 
 def sheen(snapshot):
     inputs = {"Color": (0.8, 0.8, 0.8, 1.0), "Roughness": 0.4}
-    return material(
-        snapshot,
-        [{"type": "ShaderNodeBsdfSheen", "inputs": inputs, "properties": {"version": 405.0}}],
-        (0, "BSDF"),
-    )
+    return of_cycles_4_5(snapshot, "Sheen", inputs)
 
 
 def paint(snapshot):
     inputs = {"Base Color": (0.8, 0.8, 0.8, 1.0), "Roughness": 0.1, "IOR": 1.5}
-    properties = {"version": 405.0, "distribution": "MULTI_GGX"}
-    nodes = [{"type": "ShaderNodeBsdfPrincipled", "inputs": inputs, "properties": properties}]
-    return material(snapshot, nodes, (0, "BSDF"))
+    return of_cycles_4_5(snapshot, "Principled", inputs)
 
 
 def wax(snapshot):
@@ -93,10 +91,10 @@ def test_a_box_that_turns_is_the_mean_of_boxes_that_stand(surface, bounces, move
 def wax_ball(rings, bounces, places):
     """What its parts of pixels show, in blocks of 4 x 4 of which it covers a fifth, and all of it."""
     snapshot = evenly_lit(bounces)
-    wax = scattering(snapshot, albedo=(1.0,) * 3, reach=(2.0,) * 3)
+    white = scattering(snapshot, albedo=(1.0,) * 3, reach=(2.0,) * 3)
     points, faces = ball(rings, 5.0)
     knots = np.stack([s.translation(x, 9.8, 40.0) for x in places])
-    s.mesh(snapshot, points, faces, wax, transforms=knots)
+    s.mesh(snapshot, points, faces, white, transforms=knots)
     seen = s.render(snapshot)["combined"].astype(float)
     blocks = seen.reshape(5, 4, 6, 4, 4).mean(axis=(1, 3))
     there = blocks[blocks[..., 3] > 0.2]
@@ -139,9 +137,8 @@ def test_wax_that_stands_takes_the_light_of_all_the_shutter():
 
     def shown(places):
         snapshot = evenly_lit(0)
-        material = scattering(snapshot, reach=(2.0,) * 3)
         points, faces = ball(40, 5.0)
-        s.mesh(snapshot, points, faces, material, transforms=s.translation(*CENTER)[None])
+        s.mesh(snapshot, points, faces, wax(snapshot), transforms=s.translation(*CENTER)[None])
         card = s.rectangle(-60, -60, 60, 60, 0.0)
         knots = np.stack([s.translation(12.0, -20.0, 40.0) @ turned(np.pi / 2, 0.0)] * 2)
         knots[:, 0, 3] = places

@@ -403,6 +403,10 @@ std::vector<std::uint8_t> DirectLight::highlights(const Grid& grid, const Shadin
     return mirrored_lamps(m_impl->set, m_impl->receives(grid.key), grid, points, closure);
 }
 
+bool DirectLight::highlights_may_pass(const SurfaceClosure& closure, const GridKey& key) const {
+    return may_mirror_lamps(m_impl->set, m_impl->receives(key), closure);
+}
+
 bool DirectLight::highlights_pass(const ShadingPoints& points, const SurfaceClosure& closure,
                                   const GridKey& key) const {
     return lamps_pass(m_impl->set, m_impl->receives(key), points, closure);

@@ -83,7 +83,9 @@ class DirectLight {
     /// Of a grid of these points: highlights between its corners (mirrored_lamps.h).
     std::vector<std::uint8_t> highlights(const Grid& grid, const ShadingPoints& points,
                                          const SurfaceClosure& closure) const;
-    /// Of points of a grid at times of the shutter: highlights that come and go (lamps_pass()).
+    /// The same within the shutter: whether any may come and go, and whether some do between points
+    /// of a grid at several times each (lamps_pass()).
+    bool highlights_may_pass(const SurfaceClosure& closure, const GridKey& key) const;
     bool highlights_pass(const ShadingPoints& points, const SurfaceClosure& closure,
                          const GridKey& key) const;
 

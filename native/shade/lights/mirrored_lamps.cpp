@@ -104,16 +104,29 @@ bool is_polished(const Lobe& lobe) {
     return false;
 }
 
-/// Lamps that are not in a tree.
-std::span<const Lamp> few_of(const LampSet& set) {
-    return {set.lamps.data(), set.tree ? set.everywhere : set.lamps.size()};
-}
-
 /// Whether the lobe's light of the lamp counts.
 bool takes(const Lobe& lobe, const Lamp& lamp) {
     BsdfValue value;
     value.part(part_of(lobe.kind)) = Vec3f(1.0f);
     return total(lamp.apply(value, false)) != Vec3f(0.0f);
+}
+
+/// A lamp of few whose light a polished lobe mirrors or refracts.
+struct Highlight {
+    const Lobe& lobe;
+    const Lamp& lamp;
+};
+
+std::vector<Highlight> highlights_of(const LampSet& set, std::uint64_t receives,
+                                     const SurfaceClosure& closure) {
+    const std::span<const Lamp> few(set.lamps.data(), set.tree ? set.everywhere : set.lamps.size());
+    std::vector<Highlight> all;
+    for (const Lobe& lobe : closure.lobes) {
+        if (!is_polished(lobe)) continue;
+        for (const Lamp& lamp : few)
+            if (lamp.lights(receives) && takes(lobe, lamp)) all.push_back({lobe, lamp});
+    }
+    return all;
 }
 
 }  // namespace
@@ -122,51 +135,41 @@ std::vector<std::uint8_t> mirrored_lamps(const LampSet& set, std::uint64_t recei
                                          const Grid& grid, const ShadingPoints& points,
                                          const SurfaceClosure& closure) {
     std::vector<std::uint8_t> marks;
-    std::vector<Pass> passes;
-    for (const Lobe& lobe : closure.lobes) {
-        if (!is_polished(lobe)) continue;
-        for (const Lamp& lamp : few_of(set)) {
-            if (!lamp.lights(receives) || !takes(lobe, lamp)) continue;
-            passes.resize(points.count);
-            for (std::size_t i = 0; i < points.count; ++i)
-                passes[i] = pass_of(lamp, lobe, points, i, set.frame_time);
-            for (int m = 0; m < grid.micropolygon_count(); ++m) {
-                const Grid::Corners c = grid.corners(m);
-                const auto at = [&](int vertex) -> const Pass& {
-                    return passes[grid.point_at(static_cast<std::size_t>(vertex))];
-                };
-                if (!meets(at(c.v0), at(c.v1), at(c.v2)) && !meets(at(c.v0), at(c.v2), at(c.v3)))
-                    continue;
-                marks.resize(static_cast<std::size_t>(grid.micropolygon_count()), 0);
-                marks[static_cast<std::size_t>(m)] = 1;
-            }
+    std::vector<Pass> passes(points.count);
+    for (const auto& [lobe, lamp] : highlights_of(set, receives, closure)) {
+        for (std::size_t i = 0; i < points.count; ++i)
+            passes[i] = pass_of(lamp, lobe, points, i, set.frame_time);
+        for (int m = 0; m < grid.micropolygon_count(); ++m) {
+            const Grid::Corners c = grid.corners(m);
+            const auto at = [&](int vertex) -> const Pass& {
+                return passes[grid.point_at(static_cast<std::size_t>(vertex))];
+            };
+            if (!meets(at(c.v0), at(c.v1), at(c.v2)) && !meets(at(c.v0), at(c.v2), at(c.v3)))
+                continue;
+            marks.resize(static_cast<std::size_t>(grid.micropolygon_count()), 0);
+            marks[static_cast<std::size_t>(m)] = 1;
         }
     }
     return marks;
 }
 
-bool any_is_polished(const SurfaceClosure& closure) {
-    return std::ranges::any_of(closure.lobes, is_polished);
+bool may_mirror_lamps(const LampSet& set, std::uint64_t receives, const SurfaceClosure& closure) {
+    return !highlights_of(set, receives, closure).empty();
 }
 
 bool lamps_pass(const LampSet& set, std::uint64_t receives, const ShadingPoints& points,
                 const SurfaceClosure& closure) {
-    for (const Lobe& lobe : closure.lobes) {
-        if (!is_polished(lobe)) continue;
-        for (const Lamp& lamp : few_of(set)) {
-            if (!lamp.lights(receives) || !takes(lobe, lamp)) continue;
-            for (std::size_t i = 0, end; i < points.count; i = end) {
-                bool any_meets = false, any_misses = false;
-                for (end = i; end < points.count && points.places[end] == points.places[i]; ++end) {
-                    if (points.times[end] < 0.0f) continue;
-                    const Pass pass = pass_of(lamp, lobe, points, end, points.times[end]);
-                    const bool meets = pass.is_near && glm::length(pass.aside) <= pass.margin;
-                    (meets ? any_meets : any_misses) = true;
-                }
-                if (any_meets && any_misses) return true;
+    for (const auto& [lobe, lamp] : highlights_of(set, receives, closure))
+        for (std::size_t i = 0, end; i < points.count; i = end) {
+            bool any_meets = false, any_misses = false;
+            for (end = i; end < points.count && points.places[end] == points.places[i]; ++end) {
+                if (points.times[end] < 0.0f) continue;
+                const Pass pass = pass_of(lamp, lobe, points, end, points.times[end]);
+                const bool meets = pass.is_near && glm::length(pass.aside) <= pass.margin;
+                (meets ? any_meets : any_misses) = true;
             }
+            if (any_meets && any_misses) return true;
         }
-    }
     return false;
 }
 

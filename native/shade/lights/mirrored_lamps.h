@@ -21,8 +21,8 @@ std::vector<std::uint8_t> mirrored_lamps(const LampSet& set, std::uint64_t recei
                                          const Grid& grid, const ShadingPoints& points,
                                          const SurfaceClosure& closure);
 
-/// Whether some lobe's highlights are narrow.
-bool any_is_polished(const SurfaceClosure& closure);
+/// Whether there are lamps and lobes by which the others may be true.
+bool may_mirror_lamps(const LampSet& set, std::uint64_t receives, const SurfaceClosure& closure);
 
 /// Whether facets mirror or refract the view to a lamp of few at some times and not at others.
 /// @param points samples of ShadingPoints::times, those of one place one after the other.
