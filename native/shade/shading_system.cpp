@@ -56,8 +56,9 @@ struct ShadingSystem::Impl : FrameShading {
         return std::move(light.glossy);
     }
 
-    /// Adds what is scattered below the surface, as add_bounces() of points or samples.
-    void add_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
+    /// Adds what is scattered below the surface, as add_bounces() of points or samples.  Returns by
+    /// how much it differs from its mean: samples take that from the grid and know no better.
+    std::vector<Vec3f> add_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
                        const PointPaths& at, Grid& grid, ReflectionParts* parts,
                        std::vector<Vec3f>& radiance) const {
         if (grid.found.scattered.empty()) {
@@ -67,13 +68,15 @@ struct ShadingSystem::Impl : FrameShading {
         }
         reflect_scattered(grid.found.scattered, grid.found.scattered_bounced, closure, parts,
                           radiance);
+        return scattered_beyond_mean(grid.found.scattered, grid.found.scattered_bounced, closure);
     }
 
     /// Where a grid's corners may not tell all.
     struct Doubts {
         std::vector<float> noise;    ///< as DirectLight::reflect()
         std::vector<Vec3f> settled;  ///< [vertices] radiance but for what is noise at single
-                                     ///< points: empty where it is all
+                                     ///< points, and what all take from the grid: empty where it
+                                     ///< is all
         std::vector<float> looks;    ///< looks_of(), of patterns
         std::vector<LampSight> sights;
         std::vector<std::uint8_t> highlights;  ///< as Grid::unsettled
@@ -113,7 +116,12 @@ struct ShadingSystem::Impl : FrameShading {
             parts.resize(points.count);
         if (bounces && !closure.lobes.empty())
             doubtful = add_bounces(points, closure, leaving, grid, asked, noise, radiance);
-        if (!closure.subsurface.empty()) add_scattered(points, closure, at, grid, asked, radiance);
+        if (!closure.subsurface.empty()) {
+            const std::vector<Vec3f> shared =
+                add_scattered(points, closure, at, grid, asked, radiance);
+            doubtful.resize(points.count, Vec3f(0.0f));
+            for (std::size_t i = 0; i < shared.size(); ++i) doubtful[i] += shared[i];
+        }
         for (std::size_t i = 0; i < closure.emission.size(); ++i)
             radiance[i] += closure.emission[i];
         const std::size_t broken = ran.broken() + make_finite(radiance);

@@ -98,4 +98,16 @@ void reflect_scattered(const std::vector<Vec3f>& direct, const std::vector<Vec3f
     }
 }
 
+std::vector<Vec3f> scattered_beyond_mean(const std::vector<Vec3f>& direct,
+                                         const std::vector<Vec3f>& bounced,
+                                         const SurfaceClosure& closure) {
+    std::vector<Vec3f> light = direct;
+    for (std::size_t i = 0; i < bounced.size(); ++i) light[i] += bounced[i];
+    Vec3f mean(0.0f);
+    for (const Vec3f& one : light) mean += one / static_cast<float>(light.size());
+    for (std::size_t i = 0; i < light.size(); ++i)
+        light[i] = (light[i] - mean) * subsurface_weight(closure, i);
+    return light;
+}
+
 }  // namespace granita

@@ -24,4 +24,9 @@ void reflect_scattered(const std::vector<Vec3f>& direct, const std::vector<Vec3f
                        const SurfaceClosure& closure, ReflectionParts* parts,
                        std::vector<Vec3f>& radiance);
 
+/// [points] what reflect_scattered() adds beyond the mean light of all points by each one's weight.
+std::vector<Vec3f> scattered_beyond_mean(const std::vector<Vec3f>& direct,
+                                         const std::vector<Vec3f>& bounced,
+                                         const SurfaceClosure& closure);
+
 }  // namespace granita
