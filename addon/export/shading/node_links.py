@@ -6,6 +6,13 @@ from types import SimpleNamespace
 
 import bpy
 
+# EEVEE's, Freestyle's and what is no longer read.
+_NOT_IN_CYCLES = {
+    "ShaderNodeShaderToRGB",
+    "ShaderNodeSqueeze",
+    "ShaderNodeUVAlongStroke",
+}
+
 # Stands for a socket.
 NOTHING = SimpleNamespace(default_value=0.0, hide_value=False, type="VALUE")
 
@@ -14,12 +21,12 @@ class Scope:
     """A node tree in use: the material's own, or a group's as seen from one group node.
 
     Attributes:
-        undefined: names of the nodes of unknown type that `trace` met, in this tree or any group's.
+        left_out: {name: why} of the nodes that `trace` met and passed over, in this tree or any group's.
     """
 
     def __init__(self, tree, group_node=None, parent=None):
         self.tree = tree
-        self.undefined = {} if parent is None else parent.undefined
+        self.left_out = {} if parent is None else parent.left_out
         self.group_node = group_node
         self.parent = parent
         self._children = {}
@@ -79,7 +86,7 @@ def trace(scope, socket):
 
     Returns:
         Source.  A link that leads nowhere counts as none: the source is the socket's own constant.  So
-        does one from a node whose type Blender does not know (its add-on is gone), as in Cycles.
+        does one from a node that Cycles does not have, EEVEE's or one whose add-on is gone, as in Cycles.
     """
     own = Source(scope, None, socket)
     link = scope.link(socket)
@@ -88,8 +95,8 @@ def trace(scope, socket):
     passed, muted = [], False
     while True:
         link = scope.link(socket)
-        if link is not None and _is_undefined(link.from_node):
-            scope.undefined[link.from_node.name] = None
+        if link is not None and (why := _left_out(link.from_node)):
+            scope.left_out[link.from_node.name] = why
             link = None
         if link is None:
             # Boundaries of groups hand on their own constants, muted nodes nothing: 0, as in Cycles, and
@@ -126,9 +133,13 @@ def trace(scope, socket):
         passed.append(socket)
 
 
-def _is_undefined(node):
-    # Blender knows of it what is true of all nodes.
-    return node.bl_rna.base is None
+def _left_out(node):
+    """Why Cycles has nothing of a node, or None."""
+    if node.bl_rna.base is None:  # Blender knows of it what is true of all nodes
+        return "is of a type that Blender does not know"
+    if node.bl_idname in _NOT_IN_CYCLES:
+        return "is unknown to Cycles"
+    return "asks for Open Shading Language" if node.bl_idname == "ShaderNodeScript" else None
 
 
 def _types(passed):

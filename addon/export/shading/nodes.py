@@ -46,7 +46,7 @@ class FlatGraph:
         source = trace(self._root, socket)
         if source.node is not None:
             self._add_nodes(source)
-        self._report_undefined()
+        self._report_left_out()
         if source.node is None:
             return None
         return self._index[source.key], output_identifier(source.socket)
@@ -63,15 +63,15 @@ class FlatGraph:
                     scopes.append(scope.inside(node))
                 elif node.bl_idname == "ShaderNodeOutputAOV" and aov_name(node) in names:
                     self._add_aov_output(scope, node)
-        self._report_undefined()
+        self._report_left_out()
 
-    def _report_undefined(self):
-        for name in self._root.undefined:
+    def _report_left_out(self):
+        for name, why in self._root.left_out.items():
             self._report(
                 self._owner,
-                f"node '{name}' is of a type that Blender does not know: it is left out",
+                f"node '{name}' {why}: it is left out, what it feeds keeps its own values",
             )
-        self._root.undefined.clear()
+        self._root.left_out.clear()
 
     def _add_aov_output(self, scope, node):
         inputs = {}
