@@ -323,7 +323,8 @@ struct ShadingSystem::Impl : FrameShading {
     void shade_anew(Grid& grid, bool lit, float sharpness) const {
         ShadingPoints points = shading_points(grid, camera);
         const bool wants_refining = can_refine(grid);
-        const float narrow = edge_share(grid), fewer = sharpness * narrow;
+        const float narrow = edge_share(grid);
+        const float fewer = sharpness * narrow * dense_light_share(grid, scene);
         points.share *= fewer;
         points.round = kind_of(grid, scene) == GeometryKind::Curves;
         if (light && lit) light->lift(points, grid.key);

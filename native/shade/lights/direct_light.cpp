@@ -12,7 +12,7 @@
 #include "scene/camera_path.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/lights/grid_samples.h"
-#include "shade/lights/lamp_choice.h"
+#include "shade/lights/lamp_choices.h"
 #include "shade/lights/lamp_samples.h"
 #include "shade/lights/lamp_set.h"
 #include "shade/lights/leaving_rays.h"
@@ -35,8 +35,6 @@ constexpr std::uint32_t kSharing = 16;
 /// Points that many samples of the picture see ask as many times more lamps as noise would allow if
 /// a pixel had so many.
 constexpr int kSamplesOfAsked = 16;
-/// A choice that many share knows its lamps as much better.
-constexpr float kFiner = 4.0f;
 
 /// Of shading space.
 Vec3d camera_origin(const Scene& scene) {
@@ -57,9 +55,8 @@ struct DirectLight::Impl {
                       std::vector<LampSight>* sights) const;
     void count(const LitGrid& grid) const;
     void sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
-                     const LampChoice* choice) const;
-    void sample_rest(LitGrid& grid, const LitPoint& point, const LampChoice* choice) const;
-    LampRate rate_of(const LitPoint& point, const LampChoice* choice, std::size_t lamp) const;
+                     const LampChoices& choices) const;
+    void sample_rest(LitGrid& grid, const LitPoint& point, const LampChoices& choices) const;
     void mirror(LitGrid& grid, const LitPoint& point, std::size_t lobe) const;
     std::uint64_t receives(const GridKey& key) const;
 
@@ -120,15 +117,8 @@ std::uint64_t DirectLight::Impl::receives(const GridKey& key) const {
     return found == linked.end() ? ~0ULL : found->second;
 }
 
-/// How often the point asks a lamp; `choice`: aimed there, or nullptr where each is asked.
-LampRate DirectLight::Impl::rate_of(const LitPoint& point, const LampChoice* choice,
-                                    std::size_t lamp) const {
-    if (!choice || lamp < set.everywhere) return {1.0f, point.sample_count};
-    return choice->rate_of(static_cast<std::uint32_t>(lamp - set.everywhere));
-}
-
 void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::size_t lobe,
-                                    const LampChoice* choice) const {
+                                    const LampChoices& choices) const {
     const bool meets_lamps = point.meets_lamps(lobe);
     const bool any_unasked = grid.depth > set.asked_by_all;
     if (!world.shines() && !meets_lamps && !any_unasked && !grid.leaving) return;
@@ -175,7 +165,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             float density = 0.0f;
             if (lamp.is_asked(grid.depth)) {
                 if (!meets_lamps) return;
-                const LampRate rate = rate_of(point, choice, index);
+                const LampRate rate = choices.rate_of(index, point.sample_count);
                 density = point.meeting_density(wo);
                 const float sampled = static_cast<float>(rate.samples) * met.pdf * rate.mean;
                 share = power_share(density, sampled) / density;
@@ -234,19 +224,17 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
 void DirectLight::Impl::light_points(LitGrid& grid, const std::vector<LitPoint>& points,
                                      std::size_t lobe_count, std::vector<LampSight>* sights) const {
     const std::size_t first = 1 + lobe_count;
-    light_by_all(set, grid, points, first + (set.tree ? 1 : 0), progress, sights);
-    if (!set.tree) {
-        for (const LitPoint& point : points) sample_rest(grid, point, nullptr);
+    LampChoices choices(set, grid, finer_by_corner);
+    light_by_all(set, grid, points, first + (choices.empty() ? 0 : 1), progress, sights);
+    if (choices.empty()) {
+        for (const LitPoint& point : points) sample_rest(grid, point, choices);
         return;
     }
     std::vector<std::uint32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0u);
     if (!grid.placed)
         std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return points[i].place; });
-    const float asked = set.asked * (grid.placed ? 1.0f : finer_by_corner);
-    LampChoice choice(*set.tree);
     LightReceiver receiver(grid.receives);
-    std::vector<ChosenLamp> chosen;
     std::vector<LampTurn> turns;
     for (std::size_t begin = 0, end; begin < order.size(); begin = end) {
         receiver.clear();
@@ -256,36 +244,28 @@ void DirectLight::Impl::light_points(LitGrid& grid, const std::vector<LitPoint>&
             if (end > begin && (grid.placed || point.place / kSharing != square)) break;
             receiver.add(point.reach(), point.bsdf);
         }
-        const int samples = points[order[begin]].sample_count;
-        const float lamps_asked = asked * static_cast<float>(samples);
-        choice.aim(receiver, samples, lamps_asked,
-                   grid.placed ? lamps_asked : kFiner * lamps_asked);
+        choices.aim(receiver, points[order[begin]].sample_count);
         for (std::size_t i = begin; i < end; ++i) {
             const LitPoint& point = points[order[i]];
-            chosen.clear();
-            choice.choose(grid.sequence(point, first, 1)(0).x, chosen);
-            int by_chance = 0;
-            for (const ChosenLamp& one : chosen)
-                turns.push_back({order[i], static_cast<std::uint32_t>(set.everywhere) + one.lamp,
-                                 one.rate, one.by_chance ? LitGrid::sign(by_chance++, 2) : 0.0f});
-            sample_rest(grid, point, &choice);
+            choices.choose(grid.sequence(point, first, 1)(0), order[i], turns);
+            sample_rest(grid, point, choices);
         }
     }
-    grid.light_nodes += choice.nodes_seen();
+    grid.light_nodes += choices.nodes_seen();
     grid.lamps_chosen += turns.size();
-    light_by_chosen(set, grid, points, turns, first + 1 + set.everywhere, progress);
+    light_by_chosen(set, grid, points, std::move(turns), first + 1 + set.everywhere, progress);
 }
 
 /// What lamps do not tell.
 void DirectLight::Impl::sample_rest(LitGrid& grid, const LitPoint& point,
-                                    const LampChoice* choice) const {
+                                    const LampChoices& choices) const {
     progress.check();
     world.sample(set, grid, point);
     for (std::size_t k = 0; k < point.bsdf.lobe_count(); ++k) {
         if (point.bsdf.is_sharp(k))
             mirror(grid, point, k);
         else
-            sample_lobe(grid, point, k, choice);
+            sample_lobe(grid, point, k, choices);
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "shade/lights/power_heuristic.h"
 #include "shade/lights/shadow_queue.h"
@@ -16,7 +17,13 @@ constexpr std::size_t kDimensions = 32;
 /// micropolygons (bars of .2 pixels lack a hundredth of theirs).
 constexpr float kSmall = 0.02f;
 
-std::vector<LampTurn> by_lamp(std::size_t lamp_count, const std::vector<LampTurn>& turns) {
+/// In their order, lamp by lamp.  What rays meet is lit in small batches: of many faces a count of
+/// each lamp's would cost more than what they give.
+std::vector<LampTurn> by_lamp(std::size_t lamp_count, std::vector<LampTurn> turns) {
+    if (turns.size() < lamp_count) {
+        std::ranges::stable_sort(turns, {}, &LampTurn::lamp);
+        return turns;
+    }
     std::vector<std::uint32_t> begin(lamp_count + 1, 0);
     for (const LampTurn& turn : turns) ++begin[turn.lamp + 1];
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -148,8 +155,8 @@ void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& p
 void light_by_all(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>& points,
                   std::size_t first, const Progress& progress, std::vector<LampSight>* sights) {
     LampSender sender(set, grid);
-    const std::size_t count = set.tree ? set.everywhere : set.lamps.size();
-    for (std::size_t l = 0; l < count; ++l) {
+    const std::size_t end = set.chooses_of_few(grid) ? set.always : set.everywhere;
+    for (std::size_t l = 0; l < end; ++l) {
         const Lamp& lamp = set.lamps[l];
         if (!lamp.lights(grid.receives) || !lamp.is_asked(grid.depth)) continue;
         LampSight sight(static_cast<std::uint32_t>(l));
@@ -171,10 +178,9 @@ std::vector<LampSight> see_again(const LampSet& set, LitGrid& grid,
 }
 
 void light_by_chosen(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>& points,
-                     const std::vector<LampTurn>& turns, std::size_t first,
-                     const Progress& progress) {
+                     std::vector<LampTurn> turns, std::size_t first, const Progress& progress) {
     LampSender sender(set, grid);
-    for (const LampTurn& turn : by_lamp(set.lamps.size(), turns)) {
+    for (const LampTurn& turn : by_lamp(set.lamps.size(), std::move(turns))) {
         progress.check();
         const Lamp& lamp = set.lamps[turn.lamp];
         if (!lamp.lights(grid.receives) || !lamp.is_asked(grid.depth)) continue;

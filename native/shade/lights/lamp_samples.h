@@ -5,18 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "shade/lights/lamp_choice.h"
 #include "shade/lights/lamp_set.h"
+#include "shade/lights/lamp_turn.h"
 
 namespace granita {
-
-/// How a point asks a lamp.
-struct LampTurn {
-    std::uint32_t point = 0;  ///< in the list of lit points
-    std::uint32_t lamp = 0;
-    LampRate rate{1.0f, 1};
-    float sign = 0.0f;  ///< as LitGrid::sign, of all its samples; 0: they have their own
-};
 
 /// Each lamp lights each point, lamp by lamp, so that their rays keep together.  `first`: dimension
 /// of the first lamp; `sights`: gets those of small ones; nullptr: not asked for.
@@ -31,7 +23,6 @@ std::vector<LampSight> see_again(const LampSet& set, LitGrid& grid,
 
 /// The lamps that points have chosen, in the tree's order.
 void light_by_chosen(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>& points,
-                     const std::vector<LampTurn>& turns, std::size_t first,
-                     const Progress& progress);
+                     std::vector<LampTurn> turns, std::size_t first, const Progress& progress);
 
 }  // namespace granita

@@ -3,19 +3,42 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace granita {
 namespace {
 
-/// As many lamps, and faces that shine, are all asked: no choice pays.
+/// As many lamps, and faces that shine, are all asked by what the eye sees: no choice pays.
 constexpr std::ptrdiff_t kFewLamps = 16, kFewFaces = 4;
+/// As many are asked by what rays meet, too (docs/decisions/lighting.md).
+constexpr std::size_t kFewOfMet = 8;
 /// Of others, for each light sample: lamps take some samples each time, faces one.
 constexpr float kAsked = 4.0f, kAskedOfFaces = 2.0f;
 
 /// Of a ray's way to a surface that shines, and of the numbers that places are told in: what lies
 /// in the lamp's own plane casts no shadow on it.
 constexpr float kRounding = 0x1p-20f;
+
+bool has_place(const Lamp& lamp) {
+    LightBound bound;
+    return !lamp.is_surface() && lamp.bound(bound);
+}
+
+/// Of lamps [begin, end), which are put into its order.
+std::unique_ptr<LightTree> make_tree(std::vector<Lamp>& lamps, std::size_t begin, std::size_t end,
+                                     const Progress& progress) {
+    progress.check();
+    std::vector<LightBound> bounds(end - begin);
+    for (std::size_t l = begin; l < end; ++l) lamps[l].bound(bounds[l - begin]);
+    std::vector<std::uint32_t> order;
+    auto tree = std::make_unique<LightTree>(bounds, order, &progress);
+    std::vector<Lamp> ordered;
+    ordered.reserve(order.size());
+    for (const std::uint32_t l : order) ordered.push_back(std::move(lamps[begin + l]));
+    std::ranges::move(ordered, lamps.begin() + static_cast<std::ptrdiff_t>(begin));
+    return tree;
+}
 
 }  // namespace
 
@@ -40,29 +63,18 @@ void LampSet::set_lamps(std::vector<Lamp> made, const Progress& progress) {
         asked_by_all = std::min(asked_by_all, lamp.most_bounces());
         places += lamp.is_surface() ? 0.0f : 1.0f;
     }
-    const auto has_place = [](const Lamp& lamp) {
-        LightBound bound;
-        return !lamp.is_surface() && lamp.bound(bound);
-    };
     const bool many_lamps = std::ranges::count_if(lamps, has_place) > kFewLamps;
     const bool many_faces = std::ranges::count_if(lamps, &Lamp::is_surface) > kFewFaces;
-    if (!many_lamps && !many_faces) return;
-    const auto chosen = std::stable_partition(lamps.begin(), lamps.end(), [&](const Lamp& lamp) {
-        return !(lamp.is_surface() ? many_faces : many_lamps && has_place(lamp));
-    });
-    everywhere = static_cast<std::size_t>(chosen - lamps.begin());
+    const auto is_chosen = [&](const Lamp& lamp) {
+        return lamp.is_surface() ? many_faces : many_lamps && has_place(lamp);
+    };
+    const auto in_tree = std::stable_partition(lamps.begin(), lamps.end(), std::not_fn(is_chosen));
+    const auto in_few = std::stable_partition(lamps.begin(), in_tree, std::not_fn(has_place));
+    everywhere = static_cast<std::size_t>(in_tree - lamps.begin());
+    always = static_cast<std::size_t>(in_few - lamps.begin());
     asked = many_lamps ? kAsked : kAskedOfFaces;
-    const std::size_t in_tree = lamps.size() - everywhere;
-    progress.check();
-    std::vector<LightBound> bounds(in_tree);
-    for (std::size_t l = 0; l < in_tree; ++l) lamps[everywhere + l].bound(bounds[l]);
-    std::vector<std::uint32_t> order;
-    tree = std::make_unique<LightTree>(bounds, order, &progress);
-    std::vector<Lamp> ordered;
-    ordered.reserve(lamps.size());
-    for (std::size_t l = 0; l < everywhere; ++l) ordered.push_back(std::move(lamps[l]));
-    for (const std::uint32_t l : order) ordered.push_back(std::move(lamps[everywhere + l]));
-    lamps = std::move(ordered);
+    if (everywhere < lamps.size()) tree = make_tree(lamps, everywhere, lamps.size(), progress);
+    if (everywhere - always > kFewOfMet) few = make_tree(lamps, always, everywhere, progress);
 }
 
 void LampSet::set_casters(std::unique_ptr<RayScene> casters) {

@@ -23,7 +23,7 @@ struct LampSet {
         : shutter(options.shutter_curve),
           frame_time(options.frame_time),
           light_samples(std::max(1, options.light_samples)) {}
-    /// Once, before light is asked for: where there are many, they are put in a tree.  Throws
+    /// Once, before light is asked for: those of which points ask a choice are put in trees. Throws
     /// Cancelled.
     void set_lamps(std::vector<Lamp> made, const Progress& progress);
     /// Traces shadows from now on.
@@ -68,6 +68,8 @@ struct LampSet {
         return !point.round &&
                lamp.separates(place.time, place.p, below ? place.start_below() : place.start);
     }
+    /// Whether points do not ask all lamps of `few`.
+    bool chooses_of_few(const LitGrid& grid) const { return few && grid.placed && grid.depth > 0; }
     /// Calls `met(index, lamp, sample)` for lamps that samples of the grid's lobes meet along a
     /// direction.
     template <class Met>
@@ -81,23 +83,21 @@ struct LampSet {
                 !is_beneath(lamp, point, place, direction))
                 met(index, lamp, sample);
         };
-        if (!tree) {
-            for (std::size_t l = 0; l < lamps.size(); ++l) ask(l);
-            return;
-        }
         for (std::size_t l = 0; l < everywhere; ++l) ask(l);
-        tree->meet(place.p, direction, [&](std::uint32_t l) { ask(everywhere + l); });
+        if (tree) tree->meet(place.p, direction, [&](std::uint32_t l) { ask(everywhere + l); });
     }
 
     ShutterWarp shutter;
     float frame_time;
-    int light_samples;        ///< of a soft lamp, at a point
-    std::vector<Lamp> lamps;  ///< where there is a tree, those that are not in it first
-    std::size_t everywhere = 0;
-    std::unique_ptr<LightTree> tree;  ///< of the others; nullptr: few, each is asked
-    float asked = 0.0f;               ///< of these, for each light sample of few
-    std::unique_ptr<RayScene> rays;   ///< nullptr where nothing can cast a shadow
-    bool parallel_view = false;       ///< beams that the camera sees do not widen
+    int light_samples;           ///< of a soft lamp, at a point
+    std::vector<Lamp> lamps;     ///< which all ask, then those of `few`, then of `tree`
+    std::size_t always = 0;      ///< where those end that all points ask
+    std::size_t everywhere = 0;  ///< and those that what rays meet chooses among
+    /// Nullptr where these are too few for a choice to pay.
+    std::unique_ptr<LightTree> few, tree;
+    float asked = 0.0f;              ///< of `tree`, for each light sample
+    std::unique_ptr<RayScene> rays;  ///< nullptr where nothing can cast a shadow
+    bool parallel_view = false;      ///< beams that the camera sees do not widen
     bool casters_move = false;
     bool varies = false;                    ///< casters or lamps do
     int asked_by_all = Light::kAnyBounces;  ///< bounces after which every lamp is still asked

@@ -16,6 +16,9 @@ constexpr double kSquare = 4.0;
 
 /// Samples a pixel whose error at edges is that of all light samples.
 constexpr double kEdgeSamples = 650.0;
+/// Points a pixel from which on they share its light samples: a lattice of squares has one, faces
+/// of a pixel four.
+constexpr double kDense = 8.0;
 /// Pixels across from which ribbons are surfaces.
 constexpr double kWide = 8.0;
 
@@ -60,6 +63,22 @@ class GridOnFilm {
         }
         return std::max(1.0, sum / static_cast<double>(m_grid.point_count()));
     }
+    /// Square pixels of all micropolygons, at that end or middle of the shutter at which these are
+    /// most; infinite where one is not before the camera.
+    double most_area() const {
+        const auto last = static_cast<std::size_t>(m_grid.knots) - 1;
+        double most = 0.0;
+        for (const std::size_t knot : {std::size_t{0}, last / 2, last}) {
+            double sum = 0.0;
+            for (int m = 0; m < m_grid.micropolygon_count(); ++m) {
+                Vec2d corner[4];
+                if (!places(m, corner, knot)) return std::numeric_limits<double>::infinity();
+                sum += area_of(corner);
+            }
+            most = std::max(most, sum);
+        }
+        return most;
+    }
     /// Pixels across, ribbons along u: their area over their length.
     double width() const {
         double area = 0.0, length = 0.0;
@@ -80,12 +99,12 @@ class GridOnFilm {
         const Vec2d across = corner[2] - corner[0], up = corner[3] - corner[1];
         return 0.5 * std::abs(across.x * up.y - across.y * up.x);
     }
-    /// At the first knot.  False where one is not before the camera.
-    bool places(int micropolygon, Vec2d (&corner)[4]) const {
+    /// False where one is not before the camera.
+    bool places(int micropolygon, Vec2d (&corner)[4], std::size_t knot = 0) const {
         const Grid::Corners c = m_grid.corners(micropolygon);
-        const KnotTime first;
-        return place(c.v0, first, corner[0]) && place(c.v1, first, corner[1]) &&
-               place(c.v2, first, corner[2]) && place(c.v3, first, corner[3]);
+        const KnotTime then{knot, 0.0};
+        return place(c.v0, then, corner[0]) && place(c.v1, then, corner[1]) &&
+               place(c.v2, then, corner[2]) && place(c.v3, then, corner[3]);
     }
     /// False where it is not before the camera.
     bool place(int vertex, const KnotTime& time, Vec2d& out) const {
@@ -126,6 +145,14 @@ float edge_light_sample_count(const Grid& grid, const Scene& scene) {
     const double wide = GridOnFilm(grid, scene.camera.projection).width() / kWide;
     return std::max(edge_light_share(scene.options.samples),
                     static_cast<float>(std::min(1.0, wide * wide)));
+}
+
+float dense_light_share(const Grid& grid, const Scene& scene) {
+    const GeometryKind kind = scene.geometry_of(scene.instances[grid.instance]).kind;
+    if (kind != GeometryKind::Mesh || grid.shades_faces()) return 1.0f;
+    const double area = GridOnFilm(grid, scene.camera.projection).most_area();
+    const double share = kDense * area / static_cast<double>(grid.point_count());
+    return share < 1.0 ? static_cast<float>(share) : 1.0f;
 }
 
 float light_sample_step(float count) {

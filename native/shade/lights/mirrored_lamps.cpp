@@ -119,7 +119,7 @@ struct Highlight {
 
 std::vector<Highlight> highlights_of(const LampSet& set, std::uint64_t receives,
                                      const SurfaceClosure& closure) {
-    const std::span<const Lamp> few(set.lamps.data(), set.tree ? set.everywhere : set.lamps.size());
+    const std::span<const Lamp> few(set.lamps.data(), set.everywhere);
     std::vector<Highlight> all;
     for (const Lobe& lobe : closure.lobes) {
         if (!is_polished(lobe)) continue;
