@@ -14,8 +14,6 @@ namespace {
 /// samples do not (docs/decisions/bounces.md has what was measured).
 constexpr double kOfThickets = 2.0;
 constexpr double kOfOthers = 0.5;
-/// Of what is thinner than a pixel by far, all of it in sight.
-constexpr double kOfSlivers = 0.125;
 /// Part of the points that is seen above which nothing much hides a grid.
 constexpr double kNearlyAll = 0.9;
 
@@ -28,8 +26,6 @@ double ways_of_samples(const Grid& grid, const ShadingPoints& points, double see
     const float sampled = 1.0f / static_cast<float>(scene.options.samples);  // of a pixel, by one
     const int each = light.sample_count(grid.point_share * refined_light_share(sampled));
     double ways = 0.0;
-    if (points.shares.empty())
-        ways = static_cast<double>(points.count) * light.sample_count(points.share);
     for (const float share : points.shares) ways += light.sample_count(points.share * share);
     return seen * area * scene.options.samples * each / ways;
 }
@@ -38,16 +34,14 @@ double ways_of_samples(const Grid& grid, const ShadingPoints& points, double see
 
 bool pays_by_samples(const Grid& grid, const ShadingPoints& points, const Scene& scene,
                      const DirectLight& light) {
-    const double seen = points.seen.empty()
-                            ? 1.0
-                            : static_cast<double>(std::ranges::count(points.seen, 1)) /
-                                  static_cast<double>(points.seen.size());
+    if (points.seen.empty()) return false;
+    const double seen = static_cast<double>(std::ranges::count(points.seen, 1)) /
+                        static_cast<double>(points.seen.size());
     // Points of small faces are as many as these.
-    if (grid.shades_faces()) return seen < 0.5;
-    const double limit = points.thicket      ? kOfThickets
-                         : seen > kNearlyAll ? kOfSlivers
-                                             : kOfOthers;
-    return ways_of_samples(grid, points, seen, scene, light) < limit;
+    if (grid.disjoint) return seen < 0.5;
+    if (!points.thicket && seen > kNearlyAll) return false;
+    return ways_of_samples(grid, points, seen, scene, light) <
+           (points.thicket ? kOfThickets : kOfOthers);
 }
 
 }  // namespace granita

@@ -324,7 +324,7 @@ struct ShadingSystem::Impl : FrameShading {
         ShadingPoints points = shading_points(grid, camera);
         const bool wants_refining = can_refine(grid);
         const float narrow = edge_share(grid);
-        const float fewer = sharpness * narrow * dense_light_share(grid, scene);
+        float fewer = sharpness * narrow;
         points.share *= fewer;
         points.round = kind_of(grid, scene) == GeometryKind::Curves;
         if (light && lit) light->lift(points, grid.key);
@@ -343,6 +343,9 @@ struct ShadingSystem::Impl : FrameShading {
         if (wants_refining && may_leave(grid) && !grid.opacity_varies && !scatters(grid.material) &&
             pays_by_samples(grid, points, scene, *light))
             return leave_to_samples(grid, channels.vertex_width());
+        const float dense = dense_light_share(grid, scene);
+        points.share *= dense;
+        fewer *= dense;
         Doubts doubts;
         if (wants_refining) doubts.noise.assign(points.count, 0.0f);
         const bool catches = catchers && scene.catches_shadows(grid.instance, grid.material);
