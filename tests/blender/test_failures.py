@@ -66,6 +66,18 @@ for tree in (bpy.data.materials["Glow"].node_tree, lamp.node_tree):
 bpy.utils.unregister_class(Lost)
 """
 
+# EEVEE's alone.
+EEVEE_NODE = """
+import bpy
+tree = bpy.data.materials["Glow"].node_tree
+node = tree.nodes.new("ShaderNodeShaderToRGB")
+node.name = "Whisker"
+shader = tree.nodes.new("ShaderNodeBsdfDiffuse")
+emission = next(n for n in tree.nodes if n.type == "EMISSION")
+tree.links.new(shader.outputs[0], node.inputs[0])
+tree.links.new(node.outputs[0], emission.inputs["Color"])
+"""
+
 BROKEN_LAMP = """
 import bpy
 lamp = bpy.data.lights.new("Lamp", "POINT")
@@ -160,6 +172,7 @@ CASES = {
     ),
     "unknown node": Case(0, "Glow", UNKNOWN_NODE),
     "undefined node": Case(0, "material 'Glow', light 'Sun': node 'Whisker' is of", UNDEFINED_NODE),
+    "node of EEVEE": Case(0, "material 'Glow': node 'Whisker' is unknown to Cycles", EEVEE_NODE),
     "energy not a number": Case(0, "light 'Faulty': is left out", BROKEN_LAMP.format("nan")),
     "energy infinite": Case(0, "light 'Faulty': is left out", BROKEN_LAMP.format("inf")),
     "control characters in a name": Case(
@@ -222,7 +235,7 @@ def test_exit_code_and_message(name, blend, folder):
         exr.read(path)
 
 
-@pytest.mark.parametrize("prepare", [UNDEFINED_NODE, BROKEN_LAMP.format("nan")])
+@pytest.mark.parametrize("prepare", [UNDEFINED_NODE, EEVEE_NODE, BROKEN_LAMP.format("nan")])
 def test_what_is_left_out_leaves_the_rest(prepare, blend, tmp_path):
     """The square's own colour, and no light from the lamp: as if neither were there."""
     outcome = render_host.run(blend, tmp_path / "out", prepare)

@@ -182,3 +182,32 @@ def test_bits_do_not_depend_on_buckets_and_threads(method, bounces):
     assert np.array_equal(whole, lump(method, bounces=bounces, threads=1))
     crop = np.int32([4, 8, 20, 24])
     assert np.array_equal(whole[8:24, 4:20], lump(method, bounces=bounces, crop=crop))
+
+
+@pytest.mark.parametrize("bounces", [0, 2])
+def test_noise_of_what_scatters_leaves_no_samples_to_shade(bounces):
+    """Samples take it from the grid: with one light sample a slab's neighbours differ by much more than the threshold, and
+    all of its 4,096 samples were shaded by themselves, for nothing."""
+    snapshot = view(light_samples=1, bounces=bounces)
+    slab(snapshot, scattering(snapshot, reach=(0.2, 0.2, 0.2)), depth=40.0, half=40.0)
+    snapshot["instances"]["flags"] = [123]
+    lit_half(snapshot, axis="X")
+    result = s.render(snapshot)
+    assert np.abs(np.diff(result["combined"][..., 0])).max() > 0.05
+    assert result["statistics"]["points_refined"] == 0
+
+
+def test_edges_of_texture_over_what_scatters_are_still_shaded_by_samples():
+    snapshot = view(samples=16)
+    index = scattering(snapshot)
+    nodes = snapshot["materials"][index]["nodes"]
+    checker = {"type": "ShaderNodeTexChecker", "inputs": {"Scale": 0.011}}
+    checker["inputs"] |= {"Color1": (0.9, 0.9, 0.9, 1.0), "Color2": (0.1, 0.1, 0.1, 1.0)}
+    position = {"type": "ShaderNodeNewGeometry", "inputs": {}}
+    checker["inputs"]["Vector"] = ("LINK", 0, "Position")
+    nodes[0]["inputs"]["Color"] = ("LINK", 1, "Color")
+    nodes[:0] = [position, checker]
+    snapshot["materials"][index]["surface"] = (2, "BSSRDF")
+    slab(snapshot, index)
+    lit_half(snapshot)
+    assert s.render(snapshot)["statistics"]["points_refined"] > 0

@@ -19,15 +19,15 @@ _MATH = {
 
 
 def constant(tree, socket):
-    """(A float, a list of floats, or None where something varies or is not understood; names of the nodes
-    of unknown type that feed it).
+    """(A float, a list of floats, or None where something varies or is not understood; what to say of the
+    nodes that feed it and are left out).
 
     Args:
         tree: node tree of the datablock.
         socket: input of one of its own nodes.
     """
     scope = Scope(tree)
-    return _value(trace(scope, socket)), list(scope.undefined)
+    return _value(trace(scope, socket)), list(scope.left_out.values())
 
 
 def _value(source):

@@ -179,9 +179,9 @@ def _emission(light, label, report):
         return [1.0] * 3, 1.0
     found = []
     for name in ("Color", "Strength"):
-        value, undefined = constant(light.node_tree, node.inputs[name])
-        for lost in undefined:
-            report(label, f"node '{lost}' is of a type that Blender does not know: it is left out")
+        value, left_out = constant(light.node_tree, node.inputs[name])
+        for said in left_out:
+            report(label, said)
         if value is None:
             report(label, f"what is linked to {name} of '{node.name}' varies and is not used")
             value = node.inputs[name].default_value

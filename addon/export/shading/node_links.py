@@ -21,7 +21,7 @@ class Scope:
     """A node tree in use: the material's own, or a group's as seen from one group node.
 
     Attributes:
-        left_out: {name: why} of the nodes that `trace` met and passed over, in this tree or any group's.
+        left_out: {name: what to say} of the nodes that `trace` passed over, in this tree or any group's.
     """
 
     def __init__(self, tree, group_node=None, parent=None):
@@ -96,7 +96,10 @@ def trace(scope, socket):
     while True:
         link = scope.link(socket)
         if link is not None and (why := _left_out(link.from_node)):
-            scope.left_out[link.from_node.name] = why
+            name = link.from_node.name
+            scope.left_out[name] = (
+                f"node '{name}' {why}: it is left out, what it feeds keeps its own values"
+            )
             link = None
         if link is None:
             # Boundaries of groups hand on their own constants, muted nodes nothing: 0, as in Cycles, and

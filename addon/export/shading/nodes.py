@@ -66,11 +66,8 @@ class FlatGraph:
         self._report_left_out()
 
     def _report_left_out(self):
-        for name, why in self._root.left_out.items():
-            self._report(
-                self._owner,
-                f"node '{name}' {why}: it is left out, what it feeds keeps its own values",
-            )
+        for said in self._root.left_out.values():
+            self._report(self._owner, said)
         self._root.left_out.clear()
 
     def _add_aov_output(self, scope, node):
