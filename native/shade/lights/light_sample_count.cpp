@@ -16,9 +16,8 @@ constexpr double kSquare = 4.0;
 
 /// Samples a pixel whose error at edges is that of all light samples.
 constexpr double kEdgeSamples = 650.0;
-/// Points a pixel from which on they share its light samples: a lattice of squares has one, faces
-/// of a pixel four.
-constexpr double kDense = 8.0;
+/// Of the variance of a point, what a pixel of a mesh may have: faces of a pixel keep all samples.
+constexpr double kDense = 4.0;
 /// Pixels across from which ribbons are surfaces.
 constexpr double kWide = 8.0;
 
@@ -151,8 +150,9 @@ float dense_light_share(const Grid& grid, const Scene& scene) {
     const GeometryKind kind = scene.geometry_of(scene.instances[grid.instance]).kind;
     if (kind != GeometryKind::Mesh || grid.shades_faces()) return 1.0f;
     const double area = GridOnFilm(grid, scene.camera.projection).most_area();
-    const double share = kDense * area / static_cast<double>(grid.point_count());
-    return share < 1.0 ? static_cast<float>(share) : 1.0f;
+    const double of_one = area / static_cast<double>(grid.point_count());
+    const double variance = kDense * (of_one + 1.0 / scene.options.samples);
+    return variance < 1.0 ? static_cast<float>(std::sqrt(variance)) : 1.0f;
 }
 
 float light_sample_step(float count) {

@@ -37,10 +37,12 @@ float edge_light_share(int samples);
 /// @return in (0, 1].
 float edge_light_sample_count(const Grid& grid, const Scene& scene);
 
-/// Part of the light samples that a point of a mesh's grid is due where these lie so close that a
-/// pixel has many: of faces like slivers, of what is seen edge-on throughout the shutter.
+/// How much of its light samples a point of a mesh's grid needs where these lie so close that a
+/// pixel has many, at most 1: of faces like slivers, of what is seen edge-on throughout the
+/// shutter. A pixel's variance is that of a point over how many of them it has, and over how many
+/// of its samples see one each.
 /// @param grid positions at all its knots, camera space.
-/// @return in [0, 1].
+/// @return in (0, 1].
 float dense_light_share(const Grid& grid, const Scene& scene);
 
 /// The nearest of steps a fourth root of 2 apart, of which 1 is one.  A lens that is opened a
