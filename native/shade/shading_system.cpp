@@ -56,9 +56,8 @@ struct ShadingSystem::Impl : FrameShading {
         return std::move(light.glossy);
     }
 
-    /// Adds what is scattered below the surface, as add_bounces() of points or samples.  Returns by
-    /// how much it differs from its mean: samples take that from the grid and know no better.
-    std::vector<Vec3f> add_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
+    /// Adds what is scattered below the surface, as add_bounces() of points or samples.
+    void add_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
                        const PointPaths& at, Grid& grid, ReflectionParts* parts,
                        std::vector<Vec3f>& radiance) const {
         if (grid.found.scattered.empty()) {
@@ -68,7 +67,6 @@ struct ShadingSystem::Impl : FrameShading {
         }
         reflect_scattered(grid.found.scattered, grid.found.scattered_bounced, closure, parts,
                           radiance);
-        return scattered_beyond_mean(grid.found.scattered, grid.found.scattered_bounced, closure);
     }
 
     /// Where a grid's corners may not tell all.
@@ -116,9 +114,11 @@ struct ShadingSystem::Impl : FrameShading {
             parts.resize(points.count);
         if (bounces && !closure.lobes.empty())
             doubtful = add_bounces(points, closure, leaving, grid, asked, noise, radiance);
-        if (!closure.subsurface.empty()) {
-            const std::vector<Vec3f> shared =
-                add_scattered(points, closure, at, grid, asked, radiance);
+        if (!closure.subsurface.empty()) add_scattered(points, closure, at, grid, asked, radiance);
+        if (doubts && !grid.found.scattered.empty()) {
+            // Samples take it from the grid and know no better.
+            const std::vector<Vec3f> shared = scattered_beyond_typical(
+                grid.found.scattered, grid.found.scattered_bounced, closure);
             doubtful.resize(points.count, Vec3f(0.0f));
             for (std::size_t i = 0; i < shared.size(); ++i) doubtful[i] += shared[i];
         }
@@ -320,7 +320,7 @@ struct ShadingSystem::Impl : FrameShading {
                        edge);
     }
 
-    void shade_anew(Grid& grid, bool lit, float sharpness) const {
+    void shade_anew(Grid& grid, bool lit, float sharpness, float dense) const {
         ShadingPoints points = shading_points(grid, camera);
         const bool wants_refining = can_refine(grid);
         const float narrow = edge_share(grid);
@@ -343,7 +343,6 @@ struct ShadingSystem::Impl : FrameShading {
         if (wants_refining && may_leave(grid) && !grid.opacity_varies && !scatters(grid.material) &&
             pays_by_samples(grid, points, scene, *light))
             return leave_to_samples(grid, channels.vertex_width());
-        const float dense = dense_light_share(grid, scene);
         points.share *= dense;
         fewer *= dense;
         Doubts doubts;
@@ -447,9 +446,10 @@ void ShadingSystem::shade_radiance(Grid& grid) const {
     if (leaves_to_samples(grid)) return leave_to_samples(grid, m_impl->channels.vertex_width());
     const bool lit = m_impl->reflects(grid.material);
     const float sharpness = lit || m_impl->can_refine(grid) ? m_impl->sharpness(grid) : 1.0f;
-    const float share = grid.point_share * sharpness * m_impl->edge_share(grid);
+    const float dense = lit && m_impl->light ? dense_light_share(grid, m_impl->scene) : 1.0f;
+    const float share = grid.point_share * sharpness * m_impl->edge_share(grid) * dense;
     if (m_impl->take_shaded(grid, share)) return;
-    m_impl->shade_anew(grid, lit, sharpness);
+    m_impl->shade_anew(grid, lit, sharpness, dense);
     grid.light_share = share;
 }
 

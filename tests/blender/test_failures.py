@@ -78,6 +78,32 @@ tree.links.new(shader.outputs[0], node.inputs[0])
 tree.links.new(node.outputs[0], emission.inputs["Color"])
 """
 
+# Muted nodes let through what they are fed with, whether Cycles has them or not.
+MUTED_NODE = """
+import bpy
+tree = bpy.data.materials["Glow"].node_tree
+emission = next(n for n in tree.nodes if n.type == "EMISSION")
+node, number = tree.nodes.new("ShaderNodeSqueeze"), tree.nodes.new("ShaderNodeValue")
+number.outputs[0].default_value = emission.inputs["Strength"].default_value
+node.mute = True
+tree.links.new(number.outputs[0], node.inputs[0])
+tree.links.new(node.outputs[0], emission.inputs["Strength"])
+emission.inputs["Strength"].default_value = 7.0
+"""
+
+# A lamp that EEVEE's node feeds shines no more than one that nothing does.
+EEVEE_LAMP = """
+import bpy
+lamp = bpy.data.lights.new("Sun", "SUN")
+bpy.context.collection.objects.link(bpy.data.objects.new("Sun", lamp))
+lamp.use_nodes = True
+tree = lamp.node_tree
+node = tree.nodes.new("ShaderNodeShaderToRGB")
+node.name = "Whisker"
+output = next(n for n in tree.nodes if n.type == "OUTPUT_LIGHT")
+tree.links.new(node.outputs[0], output.inputs["Surface"])
+"""
+
 BROKEN_LAMP = """
 import bpy
 lamp = bpy.data.lights.new("Lamp", "POINT")
@@ -173,6 +199,9 @@ CASES = {
     "unknown node": Case(0, "Glow", UNKNOWN_NODE),
     "undefined node": Case(0, "material 'Glow', light 'Sun': node 'Whisker' is of", UNDEFINED_NODE),
     "node of EEVEE": Case(0, "material 'Glow': node 'Whisker' is unknown to Cycles", EEVEE_NODE),
+    "lamp of a node of EEVEE": Case(
+        0, "light 'Sun': node 'Whisker' is unknown to Cycles", EEVEE_LAMP
+    ),
     "energy not a number": Case(0, "light 'Faulty': is left out", BROKEN_LAMP.format("nan")),
     "energy infinite": Case(0, "light 'Faulty': is left out", BROKEN_LAMP.format("inf")),
     "control characters in a name": Case(
@@ -235,7 +264,9 @@ def test_exit_code_and_message(name, blend, folder):
         exr.read(path)
 
 
-@pytest.mark.parametrize("prepare", [UNDEFINED_NODE, EEVEE_NODE, BROKEN_LAMP.format("nan")])
+@pytest.mark.parametrize(
+    "prepare", [UNDEFINED_NODE, EEVEE_NODE, MUTED_NODE, BROKEN_LAMP.format("nan")]
+)
 def test_what_is_left_out_leaves_the_rest(prepare, blend, tmp_path):
     """The square's own colour, and no light from the lamp: as if neither were there."""
     outcome = render_host.run(blend, tmp_path / "out", prepare)

@@ -262,3 +262,21 @@ def test_what_rays_meet_chooses_among_few(surface):
     assert counted["lamps_chosen"] < 6 * counted["hits_shaded"]
     assert lit(around[:8])[1]["lamps_chosen"] == 0
     assert lit(around, bounces=0)[1]["lamps_chosen"] == 0
+
+
+@pytest.mark.parametrize(
+    "options", [{"bucket_size": 16}, {"threads": 1}, {"crop": np.int32([4, 8, 20, 24])}]
+)
+def test_bits_of_what_rays_meet_do_not_depend_on_buckets_threads_or_crop(options):
+    def seen(**more):
+        snapshot = inside(2, light_samples=4, **more)
+        room(snapshot, reflecting(snapshot, "Glossy", 0.6, Roughness=0.4))
+        around = np.random.default_rng(3).uniform(-0.8, 0.8, (12, 3))
+        snapshot["lights"] = [lamp(place, 5.0, radius=0.1) for place in around]
+        snapshot["lights"][3]["most_bounces"] = 0
+        return s.render(snapshot)["combined"]
+
+    whole = seen()
+    if "crop" in options:
+        whole = whole[8:24, 4:20]
+    assert np.array_equal(whole, seen(**options))

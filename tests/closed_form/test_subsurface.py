@@ -197,7 +197,9 @@ def test_noise_of_what_scatters_leaves_no_samples_to_shade(bounces):
     assert result["statistics"]["points_refined"] == 0
 
 
-def test_edges_of_texture_over_what_scatters_are_still_shaded_by_samples():
+@pytest.mark.parametrize("lit", [1.0, 0.05])
+def test_edges_of_texture_over_what_scatters_are_still_shaded_by_samples(lit):
+    """Be it that light falls on a small part of a grid alone."""
     snapshot = view(samples=16)
     index = scattering(snapshot)
     nodes = snapshot["materials"][index]["nodes"]
@@ -208,6 +210,9 @@ def test_edges_of_texture_over_what_scatters_are_still_shaded_by_samples():
     nodes[0]["inputs"]["Color"] = ("LINK", 1, "Color")
     nodes[:0] = [position, checker]
     snapshot["materials"][index]["surface"] = (2, "BSSRDF")
-    slab(snapshot, index)
+    slab(snapshot, index, half=40.0)
     lit_half(snapshot)
+    if lit < 1.0:  # all but a strip in the dark, behind the eye
+        s.quad(snapshot, s.rectangle(-2000, -2000, 2000, (1.0 - lit) * SIZE, 9.9), index)
+        snapshot["instances"]["flags"] = [123, 123 & ~1]
     assert s.render(snapshot)["statistics"]["points_refined"] > 0

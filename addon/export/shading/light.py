@@ -10,6 +10,7 @@ import math
 import bpy
 
 from .constant_nodes import as_number, constant
+from .node_links import Scope, trace
 from .nodes import FlatGraph
 
 _AREA_SHAPES = {"SQUARE", "RECTANGLE", "DISK", "ELLIPSE"}
@@ -171,9 +172,13 @@ def _emission(light, label, report):
     surface = _surface(light)
     if surface is None:
         return [1.0] * 3, 0.0
-    node = _first_shader(surface)
-    if node.type == "EMISSION" and node.mute:
+    scope = Scope(light.node_tree)
+    source = trace(scope, surface)
+    for said in scope.left_out.values():
+        report(label, said)
+    if source.node is None:  # muted, or left out
         return [1.0] * 3, 0.0
+    node = _first_shader(surface)
     if node.type != "EMISSION":
         report(label, f"its node '{node.name}' is not understood: it shines white, strength 1")
         return [1.0] * 3, 1.0

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import bpy
 
-# EEVEE's, Freestyle's and what is no longer read.
+# EEVEE's, Freestyle's and what is no longer read; EEVEE's Specular BSDF is drawn as a diffuse one.
 _NOT_IN_CYCLES = {
     "ShaderNodeShaderToRGB",
     "ShaderNodeSqueeze",
@@ -21,7 +21,7 @@ class Scope:
     """A node tree in use: the material's own, or a group's as seen from one group node.
 
     Attributes:
-        left_out: {name: what to say} of the nodes that `trace` passed over, in this tree or any group's.
+        left_out: {(name, why): what to say} of the nodes that `trace` passed over, in this tree or any group's.
     """
 
     def __init__(self, tree, group_node=None, parent=None):
@@ -95,9 +95,9 @@ def trace(scope, socket):
     passed, muted = [], False
     while True:
         link = scope.link(socket)
-        if link is not None and (why := _left_out(link.from_node)):
+        if link is not None and not link.from_node.mute and (why := _left_out(link.from_node)):
             name = link.from_node.name
-            scope.left_out[name] = (
+            scope.left_out[name, why] = (
                 f"node '{name}' {why}: it is left out, what it feeds keeps its own values"
             )
             link = None

@@ -21,7 +21,7 @@ std::vector<LampSight> see_again(const LampSet& set, LitGrid& grid,
                                  std::span<const LampSight> lamps, std::size_t first,
                                  const Progress& progress);
 
-/// The lamps that points have chosen, in the tree's order.
+/// The lamps that points have chosen, lamp by lamp.
 void light_by_chosen(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>& points,
                      std::vector<LampTurn> turns, std::size_t first, const Progress& progress);
 

@@ -18,6 +18,8 @@ constexpr double kSquare = 4.0;
 constexpr double kEdgeSamples = 650.0;
 /// Of the variance of a point, what a pixel of a mesh may have: faces of a pixel keep all samples.
 constexpr double kDense = 4.0;
+/// One light sample is in no doubt that could be told.
+constexpr float kLeastSamples = 2.0f;
 /// Pixels across from which ribbons are surfaces.
 constexpr double kWide = 8.0;
 
@@ -65,16 +67,17 @@ class GridOnFilm {
     /// Square pixels of all micropolygons, at that end or middle of the shutter at which these are
     /// most; infinite where one is not before the camera.
     double most_area() const {
-        const auto last = static_cast<std::size_t>(m_grid.knots) - 1;
         double most = 0.0;
-        for (const std::size_t knot : {std::size_t{0}, last / 2, last}) {
+        for (const double time : {0.0, 0.5, 1.0}) {
             double sum = 0.0;
             for (int m = 0; m < m_grid.micropolygon_count(); ++m) {
                 Vec2d corner[4];
-                if (!places(m, corner, knot)) return std::numeric_limits<double>::infinity();
+                if (!places(m, corner, knot_time(time, m_grid.knots)))
+                    return std::numeric_limits<double>::infinity();
                 sum += area_of(corner);
             }
             most = std::max(most, sum);
+            if (m_grid.knots == 1) break;
         }
         return most;
     }
@@ -99,9 +102,8 @@ class GridOnFilm {
         return 0.5 * std::abs(across.x * up.y - across.y * up.x);
     }
     /// False where one is not before the camera.
-    bool places(int micropolygon, Vec2d (&corner)[4], std::size_t knot = 0) const {
+    bool places(int micropolygon, Vec2d (&corner)[4], const KnotTime& then = {}) const {
         const Grid::Corners c = m_grid.corners(micropolygon);
-        const KnotTime then{knot, 0.0};
         return place(c.v0, then, corner[0]) && place(c.v1, then, corner[1]) &&
                place(c.v2, then, corner[2]) && place(c.v3, then, corner[3]);
     }
@@ -152,7 +154,10 @@ float dense_light_share(const Grid& grid, const Scene& scene) {
     const double area = GridOnFilm(grid, scene.camera.projection).most_area();
     const double of_one = area / static_cast<double>(grid.point_count());
     const double variance = kDense * (of_one + 1.0 / scene.options.samples);
-    return variance < 1.0 ? static_cast<float>(std::sqrt(variance)) : 1.0f;
+    if (!(variance < 1.0)) return 1.0f;
+    return std::min(1.0f,
+                    std::max(static_cast<float>(std::sqrt(variance)),
+                             kLeastSamples / static_cast<float>(scene.options.light_samples)));
 }
 
 float light_sample_step(float count) {

@@ -11,7 +11,7 @@ namespace {
 
 /// How far neighbours share, of a lobe's radius.
 constexpr float kShared = 1.0f;
-constexpr float kLeastWeight = 1e-6f;
+constexpr float kLeastWeight = 1e-6f, kLeastLight = 1e-20f;
 /// Of the weight of the brightest point around: less is dark.
 constexpr float kDark = 0.25f;
 /// Points before and after one that are looked at, of separate faces.
@@ -98,15 +98,20 @@ void reflect_scattered(const std::vector<Vec3f>& direct, const std::vector<Vec3f
     }
 }
 
-std::vector<Vec3f> scattered_beyond_mean(const std::vector<Vec3f>& direct,
-                                         const std::vector<Vec3f>& bounced,
-                                         const SurfaceClosure& closure) {
+std::vector<Vec3f> scattered_beyond_typical(const std::vector<Vec3f>& direct,
+                                            const std::vector<Vec3f>& bounced,
+                                            const SurfaceClosure& closure) {
     std::vector<Vec3f> light = direct;
     for (std::size_t i = 0; i < bounced.size(); ++i) light[i] += bounced[i];
-    Vec3f mean(0.0f);
-    for (const Vec3f& one : light) mean += one / static_cast<float>(light.size());
+    Vec3f sum(kLeastLight), squares(0.0f);
+    for (const Vec3f& one : light) {
+        if (!is_finite(one)) continue;
+        sum += one;
+        squares += one * one;
+    }
+    const Vec3f typical = squares / sum;
     for (std::size_t i = 0; i < light.size(); ++i)
-        light[i] = (light[i] - mean) * subsurface_weight(closure, i);
+        light[i] = (light[i] - typical) * subsurface_weight(closure, i);
     return light;
 }
 

@@ -24,9 +24,10 @@ void reflect_scattered(const std::vector<Vec3f>& direct, const std::vector<Vec3f
                        const SurfaceClosure& closure, ReflectionParts* parts,
                        std::vector<Vec3f>& radiance);
 
-/// [points] what reflect_scattered() adds beyond the mean light of all points by each one's weight.
-std::vector<Vec3f> scattered_beyond_mean(const std::vector<Vec3f>& direct,
-                                         const std::vector<Vec3f>& bounced,
-                                         const SurfaceClosure& closure);
+/// [points] what reflect_scattered() adds beyond one light for all points by each one's weight: the
+/// mean of what light falls on, be it the least part of them.
+std::vector<Vec3f> scattered_beyond_typical(const std::vector<Vec3f>& direct,
+                                            const std::vector<Vec3f>& bounced,
+                                            const SurfaceClosure& closure);
 
 }  // namespace granita
