@@ -190,7 +190,6 @@ def test_noise_of_what_scatters_leaves_no_samples_to_shade(bounces):
     all of its 4,096 samples were shaded by themselves, for nothing."""
     snapshot = view(light_samples=1, bounces=bounces)
     slab(snapshot, scattering(snapshot, reach=(0.2, 0.2, 0.2)), depth=40.0, half=40.0)
-    snapshot["instances"]["flags"] = [123]
     lit_half(snapshot, axis="X")
     result = s.render(snapshot)
     assert np.abs(np.diff(result["combined"][..., 0])).max() > 0.05

@@ -56,56 +56,58 @@ class GridOnFilm {
     /// Square pixels that a point stands for, at least 1.
     double area() const {
         if (m_grid.disjoint) return 1.0;
-        double sum = 0.0;
-        for (int m = 0; m < m_grid.micropolygon_count(); ++m) {
-            Vec2d corner[4];
-            if (!places(m, corner)) return 1.0;
-            sum += area_of(corner);
-        }
-        return std::max(1.0, sum / static_cast<double>(m_grid.point_count()));
+        const double sum = area_at({});
+        return std::isfinite(sum) ? std::max(1.0, sum / static_cast<double>(m_grid.point_count()))
+                                  : 1.0;
     }
     /// Square pixels of all micropolygons, at that end or middle of the shutter at which these are
     /// most; infinite where one is not before the camera.
     double most_area() const {
-        double most = 0.0;
-        for (const double time : {0.0, 0.5, 1.0}) {
-            double sum = 0.0;
-            for (int m = 0; m < m_grid.micropolygon_count(); ++m) {
-                Vec2d corner[4];
-                if (!places(m, corner, knot_time(time, m_grid.knots)))
-                    return std::numeric_limits<double>::infinity();
-                sum += area_of(corner);
-            }
-            most = std::max(most, sum);
-            if (m_grid.knots == 1) break;
-        }
+        double most = area_at({});
+        if (m_grid.knots == 1) return most;
+        for (const double time : {0.5, 1.0})
+            most = std::max(most, area_at(knot_time(time, m_grid.knots)));
         return most;
     }
     /// Pixels across, ribbons along u: their area over their length.
     double width() const {
         double area = 0.0, length = 0.0;
-        for (int m = 0; m < m_grid.micropolygon_count(); ++m) {
-            Vec2d corner[4];
-            if (!places(m, corner)) return kWide;
+        const auto add = [&](const Corners& corner) {
             const double here = area_of(corner);
-            if (!(here > 0.0)) continue;  // between two of them
+            if (!(here > 0.0)) return;  // between two of them
             area += here;
             length +=
                 0.5 * (glm::distance(corner[0], corner[1]) + glm::distance(corner[2], corner[3]));
-        }
+        };
+        if (!visit({}, add)) return kWide;
         return length > 0.0 ? area / length * m_grid.n_v : 0.0;
     }
 
   private:
-    static double area_of(const Vec2d (&corner)[4]) {
+    using Corners = Vec2d[4];
+
+    static double area_of(const Corners& corner) {
         const Vec2d across = corner[2] - corner[0], up = corner[3] - corner[1];
         return 0.5 * std::abs(across.x * up.y - across.y * up.x);
     }
-    /// False where one is not before the camera.
-    bool places(int micropolygon, Vec2d (&corner)[4], const KnotTime& then = {}) const {
-        const Grid::Corners c = m_grid.corners(micropolygon);
-        return place(c.v0, then, corner[0]) && place(c.v1, then, corner[1]) &&
-               place(c.v2, then, corner[2]) && place(c.v3, then, corner[3]);
+    /// Infinite where one is not before the camera.
+    double area_at(const KnotTime& then) const {
+        double sum = 0.0;
+        const bool all = visit(then, [&](const Corners& corner) { sum += area_of(corner); });
+        return all ? sum : std::numeric_limits<double>::infinity();
+    }
+    /// of(corners) for each micropolygon at a time, until one is not before the camera: false.
+    template <class Of>
+    bool visit(const KnotTime& then, const Of& of) const {
+        for (int m = 0; m < m_grid.micropolygon_count(); ++m) {
+            const Grid::Corners c = m_grid.corners(m);
+            Corners corner;
+            if (!place(c.v0, then, corner[0]) || !place(c.v1, then, corner[1]) ||
+                !place(c.v2, then, corner[2]) || !place(c.v3, then, corner[3]))
+                return false;
+            of(corner);
+        }
+        return true;
     }
     /// False where it is not before the camera.
     bool place(int vertex, const KnotTime& time, Vec2d& out) const {
