@@ -138,31 +138,25 @@ def _surface(light):
     return surface if surface is not None and surface.is_linked else None
 
 
-def _first_shader(surface):
-    node = surface.links[0].from_node
-    while node.type == "REROUTE" and node.inputs[0].is_linked:
-        node = node.inputs[0].links[0].from_node
-    return node
-
-
 def _graph(light, label, images, report):
     """{"nodes": ..., "surface": ...} of a light whose nodes vary, else None."""
     if not light.use_nodes or light.node_tree is None or _surface(light) is None:
         return None
-    node = _first_shader(_surface(light))
-    if node.type == "EMISSION":
-        inputs = [node.inputs[name] for name in ("Color", "Strength")]
-        if node.mute or all(constant(light.node_tree, i)[0] is not None for i in inputs):
-            return None
-    said, shown = [], {}
-    graph = FlatGraph(light.node_tree, label, shown, lambda *words: said.append(words))
-    surface = graph.add(_surface(light))
-    if surface is None:
+    source = trace(Scope(light.node_tree), _surface(light))
+    if source.node is None:  # _emission() says why
         return None
-    for words in said:
-        report(*words)
-    images.update(shown)
+    if _is_plain_emission(source):
+        inputs = [source.node.inputs[name] for name in ("Color", "Strength")]
+        if all(constant(light.node_tree, i)[0] is not None for i in inputs):
+            return None
+    graph = FlatGraph(light.node_tree, label, images, report)
+    surface = graph.add(_surface(light))
     return {"nodes": graph.nodes, "surface": surface}
+
+
+def _is_plain_emission(source):
+    """Of the light's own tree, not of a group in it."""
+    return source.node.type == "EMISSION" and source.scope.parent is None
 
 
 def _emission(light, label, report):
@@ -178,8 +172,8 @@ def _emission(light, label, report):
         report(label, said)
     if source.node is None:  # muted, or left out
         return [1.0] * 3, 0.0
-    node = _first_shader(surface)
-    if node.type != "EMISSION":
+    node = source.node
+    if not _is_plain_emission(source):
         report(label, f"its node '{node.name}' is not understood: it shines white, strength 1")
         return [1.0] * 3, 1.0
     found = []
