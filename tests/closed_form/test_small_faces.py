@@ -295,11 +295,11 @@ def test_lit_faces_of_which_few_are_seen_cost_what_sees_them(samples):
     assert result["statistics"]["points_shaded"] <= samples * 50 * 34
 
 
-def wall_of_slivers(wide, light_samples=16):
-    """48 x 32 pixels of faces 1.5 pixels high and `wide` pixels wide, in a soft shadow."""
-    options = {"executor": "SIMD", "samples": 16, "light_samples": light_samples}
+def wall_of_slivers(wide, high=1.5, **options):
+    """48 x 32 pixels of faces `high` pixels high and `wide` pixels wide, in a soft shadow."""
+    options = {"executor": "SIMD", "samples": 16, "light_samples": 16} | options
     snapshot = s.orthographic((48, 32), **options)
-    x, y = np.arange(0.0, 48.0 + wide / 2, wide), np.linspace(0.0, 31.5, 22)
+    x, y = np.arange(0.0, 48.0 + wide / 2, wide), np.arange(0.0, 31.5 + high / 2, high)
     points = np.array([(a, b, 20.0) for b in y for a in x])
     corners = np.arange(len(points)).reshape(len(y), len(x))
     quads = [corners[:-1, :-1], corners[:-1, 1:], corners[1:, 1:], corners[1:, :-1]]
@@ -321,6 +321,15 @@ def test_points_of_slivers_have_no_more_light_samples_than_pixels_need(wide):
     assert slivers.mean() == pytest.approx(exact.mean(), rel=4e-3)
     assert np.std(slivers - exact) < 1.3 * np.std(squares - exact)
     assert rays < 14 * rays_of_squares
+
+
+def test_points_of_a_finer_dicing_rate_keep_their_light_samples():
+    """They were asked for.  Noise of .59 of that of a pixel's points; with fewer samples (15 of 16) .81."""
+    faces = {"wide": 12.0, "high": 10.5, "samples": 64, "shading_threshold": 1000}
+    exact, _ = wall_of_slivers(**faces, light_samples=1024)
+    of_pixels, _ = wall_of_slivers(**faces)
+    fine, _ = wall_of_slivers(**faces, dicing_rate=0.5)
+    assert np.std(fine - exact) < 0.7 * np.std(of_pixels - exact)
 
 
 def dented_ball(across, size, **options):

@@ -155,7 +155,9 @@ float dense_light_share(const Grid& grid, const Scene& scene) {
     if (kind != GeometryKind::Mesh || grid.shades_faces()) return 1.0f;
     const double area = GridOnFilm(grid, scene.camera.projection).most_area();
     const double of_one = area / static_cast<double>(grid.point_count());
-    const double variance = kDense * (of_one + 1.0 / scene.options.samples);
+    // Those of a finer dicing rate are wanted.
+    const double rate = std::min(1.0f, scene.options.dicing_rate);
+    const double variance = kDense * (of_one / (rate * rate) + 1.0 / scene.options.samples);
     if (!(variance < 1.0)) return 1.0f;
     return std::min(1.0f,
                     std::max(static_cast<float>(std::sqrt(variance)),

@@ -40,7 +40,7 @@ float edge_light_sample_count(const Grid& grid, const Scene& scene);
 /// How much of its light samples a point of a mesh's grid needs where these lie so close that a
 /// pixel has many, at most 1: of faces like slivers, of what is seen edge-on throughout the
 /// shutter. A pixel's variance is that of a point over how many of them it has, and over how many
-/// of its samples see one each.
+/// of its samples see one each.  Below a dicing rate of 1 a pixel is a square of that side.
 /// @param grid positions at all its knots, camera space.
 /// @return in (0, 1].
 float dense_light_share(const Grid& grid, const Scene& scene);
