@@ -218,16 +218,19 @@ def test_hair_and_points_are_seen_in_mirrors():
 
 @pytest.mark.parametrize("kind", ["strand", "points"])
 def test_hair_and_points_are_lit_by_what_they_see(kind):
-    """In a furnace of radiance 1 they reflect their albedo, but for what they hide from themselves."""
-    snapshot = inside(1, light_samples=64)
+    """In a furnace of radiance 1 they reflect their albedo, but for what they hide from themselves.  Small ones have
+    few of the light samples: one frame is off by up to a tenth."""
+    snapshot = inside(1, light_samples=256)
     room(snapshot, s.emission(snapshot))
     grey = diffuse(snapshot, ALBEDO)
     if kind == "strand":
         curves(snapshot, np.linspace((-0.9, 0, 0.5), (0.9, 0, 0.5), 5), [5], 0.1, grey)
     else:
         cloud(snapshot, [(0, 0, 0.5)], 0.1, grey)
-    seen = s.render(snapshot)["combined"][15:17, 15:17, 0]
-    assert seen.mean() == pytest.approx(ALBEDO, rel=0.05)
+    seen = []
+    for snapshot["options"]["seed"] in range(8):
+        seen.append(s.render(snapshot)["combined"][15:17, 15:17, 0])
+    assert np.mean(seen) == pytest.approx(ALBEDO, rel=0.03)
 
 
 def test_what_casts_no_shadow_is_seen_in_mirrors():

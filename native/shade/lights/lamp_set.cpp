@@ -69,8 +69,8 @@ void LampSet::set_lamps(std::vector<Lamp> made, const Progress& progress) {
         return lamp.is_surface() ? many_faces : many_lamps && has_place(lamp);
     };
     const auto in_tree = std::stable_partition(lamps.begin(), lamps.end(), std::not_fn(is_chosen));
-    const auto in_few = std::stable_partition(lamps.begin(), in_tree, [](const Lamp& lamp) {
-        return !has_place(lamp) || lamp.most_bounces() != Light::kAnyBounces;
+    const auto in_few = std::stable_partition(lamps.begin(), in_tree, [&](const Lamp& lamp) {
+        return !has_place(lamp) || lamp.most_bounces() <= bounces;
     });
     everywhere = static_cast<std::size_t>(in_tree - lamps.begin());
     always = static_cast<std::size_t>(in_few - lamps.begin());
