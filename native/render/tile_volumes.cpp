@@ -72,6 +72,13 @@ TileVolumes::TileVolumes(Frame& frame, const SampleTable& table, const TileStore
     for (std::uint32_t slot = 0; slot < lists.slots() && !lists.empty(); ++slot)
         if (lists.counts()[slot] > 0) slot_of[lists.sample(slot)] = slot;
     const auto depth_of = [&](float key) { return frame.view.projection.depth_from_key(key); };
+    // Of what lies behind shadow catchers the world's fog alone is seen, as in Cycles.
+    const auto shows_background = [&](std::uint32_t id) {
+        if (id == kNoSurface) return true;
+        if (!scene.world.is_filled()) return false;
+        const Grid& grid = *pool.locate(id).grid;
+        return grid.holdout && scene.catches_shadows(grid.instance, grid.material);
+    };
 
     std::vector<ViewRay> seen;
     std::vector<float> depths;
@@ -86,8 +93,8 @@ TileVolumes::TileVolumes(Frame& frame, const SampleTable& table, const TileStore
             if (const std::uint32_t slot = slot_of[s]; slot != ~0u)
                 for (std::uint32_t k = 0; k < lists.counts()[slot]; ++k)
                     depths.push_back(from.distance(depth_of(lists.at(slot, k).key)));
-            depths.push_back(store.id[s] == kNoSurface ? kInfinity
-                                                       : from.distance(depth_of(store.key[s])));
+            depths.push_back(shows_background(store.id[s]) ? kInfinity
+                                                           : from.distance(depth_of(store.key[s])));
             seen.push_back({from.ray,
                             place_of(store.tile, static_cast<std::uint32_t>(s), looks.samples),
                             static_cast<std::uint32_t>(depths.size())});

@@ -62,6 +62,7 @@ struct World {
     bool visible_camera = true, visible_diffuse = true, visible_glossy = true,
          visible_transmission = true, visible_volume = true;
     int most_bounces = Light::kAnyBounces;  ///< as Light::most_bounces
+    bool is_filled() const { return lights_scene && graph.has_volume(); }
     bool operator==(const World&) const = default;
 };
 

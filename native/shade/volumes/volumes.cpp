@@ -31,14 +31,10 @@ constexpr float kStep = 0.1f;
 /// Metres: Cycles' default.
 constexpr float kWorldStep = 1.0f;
 
-bool world_is_filled(const World& world) {
-    return world.lights_scene && world.graph.has_volume();
-}
-
 }  // namespace
 
 bool Volumes::any(const Scene& scene) {
-    if (world_is_filled(scene.world)) return true;
+    if (scene.world.is_filled()) return true;
     return std::ranges::any_of(scene.instances, [&](const Instance& instance) {
         return std::ranges::any_of(instance.materials, [&](std::int32_t index) {
             return index >= 0 &&
@@ -51,7 +47,7 @@ Volumes::Volumes(const Scene& scene, TextureStore& textures, Report& report) : m
     for (const Material& material : scene.materials)
         m_materials.push_back(compile(material.graph, textures, report,
                                       {"material '" + material.name + "'", false, material.index}));
-    if (world_is_filled(scene.world))
+    if (scene.world.is_filled())
         m_world = compile(scene.world.graph, textures, report,
                           {"world '" + scene.world.name + "'", true});
     measure();
