@@ -72,10 +72,10 @@ TileVolumes::TileVolumes(Frame& frame, const SampleTable& table, const TileStore
     for (std::uint32_t slot = 0; slot < lists.slots() && !lists.empty(); ++slot)
         if (lists.counts()[slot] > 0) slot_of[lists.sample(slot)] = slot;
     const auto depth_of = [&](float key) { return frame.view.projection.depth_from_key(key); };
-    // Of what lies behind shadow catchers the world's fog alone is seen, as in Cycles.
+    // Where the film shows the world behind shadow catchers, its fog lies before it, as in Cycles.
     const auto shows_background = [&](std::uint32_t id) {
         if (id == kNoSurface) return true;
-        if (!scene.world.is_filled()) return false;
+        if (scene.options.film_transparent || !scene.world.is_filled()) return false;
         const Grid& grid = *pool.locate(id).grid;
         return grid.holdout && scene.catches_shadows(grid.instance, grid.material);
     };

@@ -211,19 +211,24 @@ def a_lamp_in_fog(scene):
     bpy.context.object.data.energy = 500.0
 
 
-@pytest.mark.parametrize("change", [an_endless_fog, a_lamp_in_fog, a_cloud_above, a_cloud_below])
-@pytest.mark.parametrize("transparent", [True, False])
-def test_volumes_are_before_and_behind_them(plate, render, change, transparent):
-    """The world's fog hides the world behind them, too; of smoke what is before them counts, as in Cycles.  Blocks near
-    the lamp in fog have noise, at edges Cycles dims a world twice."""
-    if change is a_lamp_in_fog and not transparent:
-        pytest.skip("Cycles adds the fog before catchers twice: half as much again as with a transparent film")
+@pytest.mark.parametrize("change", [a_lamp_in_fog, a_cloud_above, a_cloud_below])
+def test_volumes_before_them_dim_them(plate, render, change):
+    """Those behind do not, as in Cycles.  Blocks near the lamp in fog have noise; there Cycles' catchers are more opaque
+    than fog and shadow make them (alpha .55 where 7 m of it have .13)."""
     change(plate)
-    plate.render.film_transparent = transparent
-    made = of_both(plate, render, *(f"Combined.{c}" for c in "RGBA"))
+    channels = "RGB" if change is a_lamp_in_fog else "RGBA"
+    made = of_both(plate, render, *(f"Combined.{c}" for c in channels))
     for name, (theirs, ours) in made.items():
         assert np.abs(ours - theirs).max() < 0.06, name
         assert ours.mean() == pytest.approx(theirs.mean(), abs=0.002), name
+
+
+def test_no_world_shines_through_endless_fog(plate, render):
+    """Neither beside them nor on them."""
+    an_endless_fog(plate)
+    plate.render.film_transparent = False
+    for theirs, ours in of_both(plate, render, "Combined.R", "Combined.B").values():
+        assert not theirs.any() and not ours.any()
 
 
 def test_other_passes_show_no_light_of_catchers(plate, render):
