@@ -72,7 +72,8 @@ TileVolumes::TileVolumes(Frame& frame, const SampleTable& table, const TileStore
     for (std::uint32_t slot = 0; slot < lists.slots() && !lists.empty(); ++slot)
         if (lists.counts()[slot] > 0) slot_of[lists.sample(slot)] = slot;
     const auto depth_of = [&](float key) { return frame.view.projection.depth_from_key(key); };
-    // Where the film shows the world behind shadow catchers, its fog lies before it, as in Cycles.
+    // Where the film shows the world behind shadow catchers, its fog lies before it, as in Cycles
+    // (and with it what fills things there, which Cycles leaves out).
     const auto shows_background = [&](std::uint32_t id) {
         if (id == kNoSurface) return true;
         if (scene.options.film_transparent || !scene.world.is_filled()) return false;

@@ -193,7 +193,10 @@ def cloud(scene, height):
     bpy.ops.mesh.primitive_cube_add(size=3.0, location=(-2.0, 2.0, height))
     tree = Tree(bpy.context.object)
     smoke = tree.add("ShaderNodeVolumeAbsorption")
-    smoke.inputs["Color"].default_value, smoke.inputs["Density"].default_value = (0.2, 0.5, 0.8, 1.0), 0.5
+    smoke.inputs["Color"].default_value, smoke.inputs["Density"].default_value = (
+        (0.2, 0.5, 0.8, 1.0),
+        0.5,
+    )
     tree.link(smoke.outputs[0], tree.output.inputs["Volume"])
 
 

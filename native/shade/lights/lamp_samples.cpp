@@ -5,7 +5,6 @@
 #include <numeric>
 #include <utility>
 
-#include "shade/lights/lamp_rounds.h"
 #include "shade/lights/power_heuristic.h"
 #include "shade/lights/shadow_queue.h"
 
@@ -40,20 +39,11 @@ class LampSender {
     LampSender(const LampSet& set, LitGrid& grid)
         : m_set(set), m_grid(grid), m_shadows(set.rays.get(), grid) {}
 
-    enum class Round { First, Second, Both };
-
-    /// Whether a point's samples of a lamp are taken in two rounds.
-    static bool has_rounds(int samples) { return samples % (2 * kOfFirst) == 0; }
-    /// In samples of that dimension, those of the round, each weighted as one of all.
-    /// @return all of them over those of the first round.
-    float sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension,
-                 Round round = Round::Both);
+    /// In samples of that dimension.
+    void sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension);
     /// All points by one.
     void light(const std::vector<LitPoint>& points, std::size_t lamp, std::size_t first,
                LampSight* sight, const Progress& progress);
-    /// The same in one round, which is the first or the second of all points.
-    void light(const std::vector<LitPoint>& points, std::size_t first, Round round, LampRound& lamp,
-               const Progress& progress);
     /// All of a lamp's; before the next.
     void deliver() {
         color();
@@ -69,7 +59,6 @@ class LampSender {
         float density, sign;
     };
     static constexpr std::size_t kEnough = 256;
-    static constexpr int kOfFirst = 4;  ///< samples for each that the first round takes
 
     void color();
     /// `density`: of such samples, a solid angle; `sign`: as LitGrid::sign.
@@ -83,30 +72,25 @@ class LampSender {
     std::vector<PatternSample> m_patterned;
 };
 
-float LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension,
-                         Round round) {
+void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension) {
     const Lamp& lamp = m_set.lamps[turn.lamp];
     if (!m_uncolored.empty() && m_uncolored.front().lamp->pattern() != lamp.pattern()) color();
     const int wanted = m_set.samples_of(point, lamp);
     const int count = std::min(wanted, turn.rate.samples);
     // One sample of many tells all where nothing varies along its ray; one of one is any time's.
     const bool timed = m_set.changes(lamp) && (wanted > 1 || point.sample_count == 1);
-    const int few = has_rounds(count) ? count / kOfFirst : count;
-    const int begin = round == Round::Second ? few : 0, end = round == Round::First ? few : count;
-    const float times = count == few ? 1.0f : static_cast<float>(kOfFirst);
-    if (begin == end) return times;
     const SobolPoints sequence = m_grid.sequence(point, dimension, count);
     std::vector<Vec2f>& points = m_grid.lamp_points;
     std::vector<LightSample>& samples = m_grid.lamp_samples;
     points.clear();
-    for (int s = begin; s < end; ++s) points.push_back(sequence(static_cast<std::uint32_t>(s)));
+    for (int s = 0; s < count; ++s) points.push_back(sequence(static_cast<std::uint32_t>(s)));
     samples.resize(points.size());
     if (!timed) {
-        if (!lamp.exists(point.at_frame.time)) return times;
+        if (!lamp.exists(point.at_frame.time)) return;
         lamp.sample_all(point.at_frame.time, point.at_frame.p, points, samples);
     }
-    for (int s = begin; s < end; ++s) {
-        const auto index = static_cast<std::size_t>(s - begin);
+    for (int s = 0; s < count; ++s) {
+        const auto index = static_cast<std::size_t>(s);
         LitPlace moved;
         const LitPlace& place = timed ? moved : point.at_frame;
         if (timed) {
@@ -117,14 +101,13 @@ float LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_
         const LightSample& sample = samples[index];
         if (!(sample.pdf > 0.0f)) continue;
         const float density = static_cast<float>(count) * sample.pdf * turn.rate.mean;
-        const float sign = turn.sign != 0.0f ? turn.sign : LitGrid::sign(s, few);
+        const float sign = turn.sign != 0.0f ? turn.sign : LitGrid::sign(s, count);
         if (lamp.pattern())
             m_uncolored.push_back({&point, &lamp, place, sample, density, sign});
         else
             send(point, lamp, place, sample, density, sign);
     }
     if (m_uncolored.size() >= kEnough) color();
-    return times;
 }
 
 void LampSender::light(const std::vector<LitPoint>& points, std::size_t lamp, std::size_t first,
@@ -137,23 +120,6 @@ void LampSender::light(const std::vector<LitPoint>& points, std::size_t lamp, st
     }
     deliver();
     m_grid.sight = nullptr;
-}
-
-void LampSender::light(const std::vector<LitPoint>& points, std::size_t first, Round round,
-                       LampRound& lamp, const Progress& progress) {
-    lamp.swap(m_grid);
-    std::vector<float>* const balance = std::exchange(m_grid.balance, &lamp.balance);
-    m_grid.sight = lamp.sight_is_told ? &lamp.sight : nullptr;
-    for (const LitPoint& point : points) {
-        progress.check();
-        const LampTurn turn{0, lamp.sight.lamp, {1.0f, point.sample_count}};
-        const float times = sample(point, turn, first + lamp.sight.lamp, round);
-        lamp.times[point.index] = round == Round::First ? times : 1.0f;
-    }
-    deliver();
-    m_grid.sight = nullptr;
-    m_grid.balance = balance;
-    lamp.swap(m_grid);
 }
 
 void LampSender::color() {
@@ -190,29 +156,13 @@ void light_by_all(const LampSet& set, LitGrid& grid, const std::vector<LitPoint>
                   std::size_t first, const Progress& progress, std::vector<LampSight>* sights) {
     LampSender sender(set, grid);
     const std::size_t end = set.chooses_of_few(grid) ? set.always : set.everywhere;
-    const bool in_rounds = !grid.placed && std::ranges::any_of(points, [](const LitPoint& point) {
-        return LampSender::has_rounds(point.sample_count);
-    });
-    std::vector<LampRound> rounds;
     for (std::size_t l = 0; l < end; ++l) {
         const Lamp& lamp = set.lamps[l];
         if (!lamp.lights(grid.receives) || !lamp.is_asked(grid.depth)) continue;
+        LampSight sight(static_cast<std::uint32_t>(l));
         const bool is_told = sights && set.rays && lamp.casts_shadow();
-        const auto index = static_cast<std::uint32_t>(l);
-        if (in_rounds) {
-            LampRound& round = rounds.emplace_back(index, grid, is_told);
-            sender.light(points, first, LampSender::Round::First, round, progress);
-            continue;
-        }
-        LampSight sight(index);
         sender.light(points, l, first, is_told ? &sight : nullptr, progress);
         if (sight.is_told()) sights->push_back(std::move(sight));
-    }
-    choose_to_go_on(rounds, set.unseen);
-    for (LampRound& round : rounds) {
-        if (round.goes_on) sender.light(points, first, LampSender::Round::Second, round, progress);
-        round.add_to(grid);
-        if (round.sight_is_told && round.sight.is_told()) sights->push_back(std::move(round.sight));
     }
 }
 

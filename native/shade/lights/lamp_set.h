@@ -19,15 +19,11 @@ namespace granita {
 
 /// The lamps of a frame, and what comes before them.
 struct LampSet {
-    /// At one sample a pixel, .0025 at 64.  With twice as much frames took as long.
-    static constexpr float kUnseen = 0.02f;
-
     explicit LampSet(const Options& options)
         : shutter(options.shutter_curve),
           frame_time(options.frame_time),
           light_samples(std::max(1, options.light_samples)),
-          bounces(options.bounces.most),
-          unseen(kUnseen / std::sqrt(static_cast<float>(options.samples))) {}
+          bounces(options.bounces.most) {}
     /// Once, before light is asked for: those of which points ask a choice are put in trees. Throws
     /// Cancelled.
     void set_lamps(std::vector<Lamp> made, const Progress& progress);
@@ -42,9 +38,8 @@ struct LampSet {
         return lamp.varies() || (casters_move && lamp.casts_shadow());
     }
     /// Light samples of a point for ShadingPoints::share: those that lie closer share the light
-    /// that a pixel's worth of them is due.  Halved until nearest: the sequences are stratified in
-    /// powers of two, and 9 to 15 samples of a penumbra have the noise of 8 to 13 of 16
-    /// (docs/decisions/lighting.md).
+    /// that a pixel's worth of them is due.  A half, a quarter and so on, whichever is nearest: the
+    /// sequences are stratified in powers of two (docs/decisions/lighting.md).
     int sample_count(float share) const {
         const float halved = share < 1.0f ? std::exp2(std::round(std::log2(share))) : share;
         return std::max(1,
@@ -98,8 +93,7 @@ struct LampSet {
     ShutterWarp shutter;
     float frame_time;
     int light_samples;           ///< of a soft lamp, at a point
-    int bounces;                 ///< lamps of more have no end
-    float unseen;                ///< noise of a grid's lamps that is not (math/displayed.h)
+    int bounces;                 ///< of the scene
     std::vector<Lamp> lamps;     ///< which all ask, then those of `few`, then of `tree`
     std::size_t always = 0;      ///< where those end that all points ask
     std::size_t everywhere = 0;  ///< and those that what rays meet chooses among

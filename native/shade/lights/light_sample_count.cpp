@@ -18,8 +18,9 @@ constexpr double kSquare = 4.0;
 constexpr double kEdgeSamples = 650.0;
 /// Of the variance of a point, what a pixel of a mesh may have: faces of a pixel keep all samples.
 constexpr double kDense = 4.0;
-/// One light sample is in no doubt that could be told.
-constexpr float kLeastSamples = 2.0f;
+/// One light sample is in no doubt that could be told.  Of a share that is rounded by up to the
+/// root of two (LampSet::sample_count) two are left.
+constexpr float kLeastSamples = 2.8f;
 /// Pixels across from which ribbons are surfaces.
 constexpr double kWide = 8.0;
 

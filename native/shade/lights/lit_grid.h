@@ -48,8 +48,8 @@ struct LitGrid {
     bool meets_surfaces = false;  ///< rays look for surfaces, be it those that shine
     std::uint64_t shadow_rays = 0, occlusion_rays = 0;
     std::uint64_t lamps_chosen = 0, light_nodes = 0;
-    /// [points] the luminance of half of a point's samples less that of the others, by sign(): as
-    /// much as its sum is in doubt.  nullptr: not asked for.
+    /// [points] the luminance of a point's even samples less that of its odd ones: as much as its
+    /// sum is in doubt.  nullptr: not asked for.
     std::vector<float>* balance = nullptr;
     LeavingRays* leaving = nullptr;  ///< to other surfaces; nullptr: not asked for
     LampSight* sight = nullptr;      ///< of the lamp at hand; nullptr: not asked for
@@ -60,13 +60,8 @@ struct LitGrid {
         return in_medium ? kScattered : goes_through ? kBlurredThrough : kBlurred;
     }
 
-    /// Of sample `s` of `count` which the point takes alike; one alone is in no doubt.  Of four,
-    /// which lie in the quarters of a square, across its diagonals: what rises evenly from side to
-    /// side is none.
-    static float sign(int s, int count) {
-        if (count < 2) return 0.0f;
-        return (count % 4 == 0 ? s / 2 : s) % 2 == 0 ? 1.0f : -1.0f;
-    }
+    /// Of sample `s` of `count` which the point takes alike; one alone is in no doubt.
+    static float sign(int s, int count) { return count < 2 ? 0.0f : s % 2 == 0 ? 1.0f : -1.0f; }
     void add(std::size_t point, const Vec3f& light, float sign) {
         radiance[point] += light;
         if (balance) (*balance)[point] += sign * luminance(light);
