@@ -19,12 +19,12 @@ void TileColors::composite(const TileStore& store, const TileSamples& samples, L
     const ChannelSet& channels = m_frame.film.channels();
     const Scene* const catchers = m_frame.has_catchers ? &m_frame.scene : nullptr;
     const bool cut = channels.find(Quantity::Caught) != nullptr;
+    const auto catches = [&](SurfaceId id) {
+        const Grid& grid = layers.pool().grid(layers.pool().slot(id));
+        return catchers->catches_shadows(grid.instance, grid.material);
+    };
     std::function<bool(SurfaceId)> shows;
-    if (catchers && (!cut || channels.has_environment()))
-        shows = [&](SurfaceId id) {
-            const Grid& grid = layers.pool().grid(layers.pool().slot(id));
-            return catchers->catches_shadows(grid.instance, grid.material);
-        };
+    if (catchers && (!cut || channels.has_environment())) shows = catches;
     std::vector<Vec3f> background{Vec3f(0.0f)};
     if (!options.film_transparent || channels.has_environment()) {
         const StageTimer timer(m_frame.statistics, Stage::Shade);
@@ -44,7 +44,12 @@ void TileColors::composite(const TileStore& store, const TileSamples& samples, L
                        refined);
         return;
     }
-    const TileVolumes volumes(m_frame, m_table, store, layers.pool(), refined);
+    // Where the film shows the world behind shadow catchers, its fog lies before it, as in Cycles
+    // (and with it what fills things there, which Cycles leaves out).
+    const bool fogged = !options.film_transparent && m_frame.scene.world.is_filled();
+    std::function<bool(SurfaceId)> shows_fogged;
+    if (catchers && !cut && fogged) shows_fogged = catches;
+    const TileVolumes volumes(m_frame, m_table, store, layers.pool(), refined, shows_fogged);
     composite_tile(store, samples, layers, background, settings, m_colors, &m_channels,
                    volumes.refined, volumes.samples);
 }

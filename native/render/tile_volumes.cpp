@@ -54,7 +54,8 @@ bool volumes_fit(const Frame& frame, const std::vector<TileStore>& stores) {
 }
 
 TileVolumes::TileVolumes(Frame& frame, const SampleTable& table, const TileStore& store,
-                         const GridPool& pool, const RefinedSamples& already)
+                         const GridPool& pool, const RefinedSamples& already,
+                         const std::function<bool(SurfaceId)>& shows)
     : refined(already) {
     const Scene& scene = frame.scene;
     const bool has_channels = !frame.film.channels().empty();
@@ -72,14 +73,6 @@ TileVolumes::TileVolumes(Frame& frame, const SampleTable& table, const TileStore
     for (std::uint32_t slot = 0; slot < lists.slots() && !lists.empty(); ++slot)
         if (lists.counts()[slot] > 0) slot_of[lists.sample(slot)] = slot;
     const auto depth_of = [&](float key) { return frame.view.projection.depth_from_key(key); };
-    // Where the film shows the world behind shadow catchers, its fog lies before it, as in Cycles
-    // (and with it what fills things there, which Cycles leaves out).
-    const auto shows_background = [&](std::uint32_t id) {
-        if (id == kNoSurface) return true;
-        if (scene.options.film_transparent || !scene.world.is_filled()) return false;
-        const Grid& grid = *pool.locate(id).grid;
-        return grid.holdout && scene.catches_shadows(grid.instance, grid.material);
-    };
 
     std::vector<ViewRay> seen;
     std::vector<float> depths;
@@ -94,8 +87,8 @@ TileVolumes::TileVolumes(Frame& frame, const SampleTable& table, const TileStore
             if (const std::uint32_t slot = slot_of[s]; slot != ~0u)
                 for (std::uint32_t k = 0; k < lists.counts()[slot]; ++k)
                     depths.push_back(from.distance(depth_of(lists.at(slot, k).key)));
-            depths.push_back(shows_background(store.id[s]) ? kInfinity
-                                                           : from.distance(depth_of(store.key[s])));
+            const bool ends = store.id[s] != kNoSurface && !(shows && shows(store.id[s]));
+            depths.push_back(ends ? from.distance(depth_of(store.key[s])) : kInfinity);
             seen.push_back({from.ray,
                             place_of(store.tile, static_cast<std::uint32_t>(s), looks.samples),
                             static_cast<std::uint32_t>(depths.size())});

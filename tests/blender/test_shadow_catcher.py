@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scene_parts
 from node_comparison import Tree
+from test_volumes import filled
 
 pytestmark = pytest.mark.lit
 
@@ -191,13 +192,8 @@ def an_endless_fog(scene):
 
 def cloud(scene, height):
     bpy.ops.mesh.primitive_cube_add(size=3.0, location=(-2.0, 2.0, height))
-    tree = Tree(bpy.context.object)
-    smoke = tree.add("ShaderNodeVolumeAbsorption")
-    smoke.inputs["Color"].default_value, smoke.inputs["Density"].default_value = (
-        (0.2, 0.5, 0.8, 1.0),
-        0.5,
-    )
-    tree.link(smoke.outputs[0], tree.output.inputs["Volume"])
+    smoke = {"Color": (0.2, 0.5, 0.8, 1.0), "Density": 0.5}
+    filled(bpy.context.object, "ShaderNodeVolumeAbsorption", **smoke)
 
 
 def a_cloud_above(scene):

@@ -9,6 +9,7 @@ import node_comparison
 import numpy as np
 import pytest
 import scene_parts
+from test_lights import set_world
 
 pytestmark = pytest.mark.lit
 
@@ -177,9 +178,7 @@ def test_light_enters_as_roughly_as_in_cycles(scene, render, roughness):
     shader.inputs["Color"].default_value = (0.14, 0.436, 0.792, 1.0)
     shader.inputs["Radius"].default_value = (0.05, 0.01, 0.005)
     shader.inputs["Roughness"].default_value = roughness
-    scene.world = bpy.data.worlds.new("White")
-    scene.world.use_nodes = True
-    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    set_world(scene, (1.0, 1.0, 1.0))
     camera = scene_parts.add_camera(scene, (0.0, -4.964, 0.603), ortho_scale=1.0)
     camera.rotation_euler = (1.45, 0.0, 0.0)
     theirs, ours = (picture.mean((0, 1)) for picture in compare(scene, render, 64))

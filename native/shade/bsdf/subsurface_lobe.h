@@ -15,7 +15,7 @@ struct SurfaceClosure;
 /// How a way into the medium begins.
 enum class SubsurfaceEntry {
     Diffuse,
-    Refracted,  ///< about visible facets of `roughness`
+    Refracted,  ///< about visible facets of `alpha`
     Mixed,      ///< one way in two diffuse, the others refracted by the roughest facets
 };
 
@@ -27,7 +27,7 @@ struct SubsurfaceLobe {
     std::vector<Vec3f> normal;  ///< [n] unit, facing the viewer
     std::vector<Vec3f> albedo;  ///< [n] of a thick slab
     std::vector<Vec3f> radius;  ///< [n] metres, by channel: mean free path, or Burley's d
-    std::vector<float> anisotropy, roughness, ior;  ///< [n]
+    std::vector<float> anisotropy, alpha, ior;  ///< [n]; the last two as light enters
 };
 
 /// Moves to diffuse lobes what scatters no farther than `radius`, by channel.

@@ -109,7 +109,7 @@ std::vector<int> roots_of(const SurfaceSources& sources, const PassSources& pass
     for (const SubsurfaceSource& lobe : sources.subsurface)
         for (const int slot :
              {lobe.weight.slot, lobe.normal.slot, lobe.albedo.slot, lobe.radius.slot,
-              lobe.anisotropy.slot, lobe.roughness.slot, lobe.ior.slot})
+              lobe.anisotropy.slot, lobe.alpha.slot, lobe.ior.slot})
             push_root(roots, slot);
     return roots;
 }

@@ -161,7 +161,7 @@ SubsurfaceSource subsurface_of(NodeBuilder& b, const Common& c, const FloatSourc
     SubsurfaceSource lobe;
     lobe.normal = c.specular_normal;
     lobe.radius = scaled(b, b.vector("Subsurface Radius", Vec3f(1.0f, 0.2f, 0.1f)), scale);
-    lobe.roughness = c.roughness;
+    lobe.alpha = b.map<float>([](float r) { return r * r; }, c.roughness);
     lobe.anisotropy = b.number("Subsurface Anisotropy");
     lobe.ior = b.number("Subsurface IOR", 1.4f);
     return lobe;

@@ -5,7 +5,6 @@
 #include "shade/nodes/subsurface.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "shade/bsdf/scattering_medium.h"
 #include "shade/nodes/nodes.h"
@@ -42,8 +41,7 @@ void build_subsurface(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource
     lobe.normal = b.specular_normal();
     lobe.radius = scaled(b, b.vector("Radius", Vec3f(1.0f, 0.2f, 0.1f)), b.number("Scale", 1.0f));
     // Cycles squares Principled's alone.
-    lobe.roughness =
-        b.map<float>([](float r) { return std::sqrt(saturate(r)); }, b.number("Roughness", 1.0f));
+    lobe.alpha = b.map<float>(saturate, b.number("Roughness", 1.0f));
     lobe.ior = b.number("IOR", 1.4f);
     lobe.anisotropy = b.number("Anisotropy");
     set_subsurface_method(b, lobe, "falloff");

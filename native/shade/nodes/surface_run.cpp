@@ -53,7 +53,7 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::si
         lobe.albedo = values_of(run, from.albedo);
         lobe.radius = values_of(run, from.radius);
         lobe.anisotropy = values_of(run, from.anisotropy);
-        lobe.roughness = values_of(run, from.roughness);
+        lobe.alpha = values_of(run, from.alpha);
         lobe.ior = values_of(run, from.ior);
         closure.subsurface.push_back(std::move(lobe));
     }

@@ -36,7 +36,7 @@ struct SubsurfaceSource {
     bool is_bent = false;  ///< `normal` is another than the surface's own
     SubsurfaceEntry entry = SubsurfaceEntry::Diffuse;
     VectorSource weight, normal, albedo, radius;
-    FloatSource anisotropy, roughness, ior;
+    FloatSource anisotropy, alpha, ior;
 };
 
 /// How a medium scatters light about its way.
