@@ -87,6 +87,8 @@ struct Image {
     std::string name;
     std::string path;                 ///< absolute; empty where there is no file
     std::string colorspace = "sRGB";  ///< Blender's colorspace_settings.name
+    /// CHANNEL_PACKED: no alpha of the colour; NONE: ignored; ASSOCIATED: colour is multiplied by
+    /// it already; UNASSOCIATED: not yet; STRAIGHT, PREMUL: as the file says, or given pixels are.
     std::string alpha_mode = "STRAIGHT";
     int width = 0, height = 0;
     std::vector<float> pixels;  ///< [height][width][4], lower-left first, scene-linear, or empty

@@ -65,8 +65,7 @@ def light_stage(scene, energy, grey):
     lamp.energy = energy
     lamp = scene_parts.add_object(scene, "Lamp", lamp, (3.0, -3.0, 5.0))
     lamp.rotation_euler = lamp.location.to_track_quat("Z", "Y").to_euler()
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.color = (grey, grey, grey)
+    scene_parts.set_world(scene, (grey, grey, grey))
 
 
 def look_at_stage(scene, height, target):

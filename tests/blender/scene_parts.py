@@ -57,6 +57,14 @@ def add_camera(scene, location=(0.0, 0.0, 5.0), ortho_scale=None):
     return scene.camera
 
 
+def set_world(scene, color):
+    """A new world of one colour; by nodes, which the worlds of Blender 5 always have."""
+    world = scene.world = bpy.data.worlds.new("World")
+    if world.node_tree is None:
+        world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (*color, 1.0)
+
+
 def add_mesh(scene, name, vertices, faces, location=(0.0, 0.0, 0.0), material=None):
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(vertices, [], faces)

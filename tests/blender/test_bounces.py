@@ -61,8 +61,7 @@ def test_light_through_leaves_is_transmitted(scene, render, diffuse, transmissio
     links.new(mix.outputs[0], output.inputs["Surface"])
     for i in range(4):
         scene_parts.add_square(scene, f"Sheet {i}", 20.0, (0.0, 0.0, -0.5 * i), material)
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.color = (1.0, 1.0, 1.0)
+    scene_parts.set_world(scene, (1.0, 1.0, 1.0))
     scene_parts.add_camera(scene, ortho_scale=1.0)
     scene.render.resolution_x = scene.render.resolution_y = 8
     limits = {"diffuse_bounces": diffuse, "transmission_bounces": transmission}

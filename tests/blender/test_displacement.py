@@ -50,8 +50,7 @@ def hills(scene, method, vector=False):
     sun = bpy.data.lights.new("Sun", "SUN")
     sun.energy, sun.angle = math.pi, 0.0
     scene_parts.add_object(scene, "Sun", sun).rotation_euler = (0.3, 1.0, 0.0)
-    scene.world = bpy.data.worlds.new("Black")
-    scene.world.color = (0.0, 0.0, 0.0)
+    scene_parts.set_world(scene, (0.0, 0.0, 0.0))
     scene.render.resolution_x, scene.render.resolution_y = 160, 120
 
 

@@ -39,16 +39,8 @@ def set_stage(scene, material, ball=None):
     sphere.data.materials.append(ball or material)
     for polygon in sphere.data.polygons:
         polygon.use_smooth = True
-    set_world(scene, (0.0, 0.0, 0.0))
+    scene_parts.set_world(scene, (0.0, 0.0, 0.0))
     return sphere
-
-
-def set_world(scene, color):
-    world = bpy.data.worlds.new("World")
-    if world.node_tree is None:
-        world.use_nodes = True
-    world.node_tree.nodes["Background"].inputs["Color"].default_value = (*color, 1.0)
-    scene.world = world
 
 
 def add_light(
@@ -209,21 +201,21 @@ def test_a_light_that_glossy_surfaces_do_not_see(scene, render):
 
 def test_a_world_of_one_colour_with_its_occlusion(scene, render):
     set_stage(scene, lambert())
-    set_world(scene, (0.5, 0.7, 1.0))
+    scene_parts.set_world(scene, (0.5, 0.7, 1.0))
     expect_alike(scene, render, DIFFUSE)
 
 
 def test_rough_gloss_under_a_lamp_and_the_world(scene, render):
     set_stage(scene, scene_parts.closure("Shiny", "ShaderNodeBsdfGlossy", Roughness=0.5))
     add_light(scene, "AREA", 300.0, size=2.0)
-    set_world(scene, (0.2, 0.3, 0.4))
+    scene_parts.set_world(scene, (0.2, 0.3, 0.4))
     expect_alike(scene, render, GLOSSY)
 
 
 def test_a_mirror_sees_lamps_and_the_world(scene, render):
     set_stage(scene, lambert(), scene_parts.closure("Shiny", "ShaderNodeBsdfGlossy", Roughness=0.0))
     add_light(scene, "AREA", 300.0, (0.0, -3.0, 5.0), (0.4, 0.0, 0.0), size=2.0)
-    set_world(scene, (0.2, 0.3, 0.4))
+    scene_parts.set_world(scene, (0.2, 0.3, 0.4))
     expect_alike(scene, render, GLOSSY)
 
 

@@ -8,7 +8,8 @@ surface at the time of each sample, Granita once, with the mean over the shutter
 import numpy as np
 import pytest
 from motion_parts import drive, open_shutter
-from test_lights import add_light, both, expect_alike, lambert, set_stage, set_world
+from scene_parts import set_world
+from test_lights import add_light, both, expect_alike, lambert, set_stage
 
 # As for lights at rest: the same noise and no more.  Measured on 3.4: .0047 to .0054.
 BLURRED = 0.025

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Light that goes from hair to hair, against Cycles of the same Blender."""
 
-import bpy
 import pytest
 import scene_parts
 from bounced_parts import render_bounced
@@ -26,8 +25,7 @@ def test_dense_hair_is_as_bright(scene, render, kind):
         shader.inputs["Color"].default_value = (0.9, 0.6, 0.3, 1.0)
         shader.inputs["RoughnessU"].default_value = shader.inputs["RoughnessV"].default_value = 0.3
     tree.link(shader.outputs[0], tree.output.inputs["Surface"])
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.color = (1.0, 1.0, 1.0)
+    scene_parts.set_world(scene, (1.0, 1.0, 1.0))
     scene.cycles_curves.shape = "RIBBONS"
     scene.render.film_transparent = True
     camera = scene_parts.add_camera(scene, (0.0, -4.0, 2.0))

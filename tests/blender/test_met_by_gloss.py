@@ -18,8 +18,7 @@ def wall(scene, roughness):
         (1.0, 1.0, 1.0),
         Roughness=roughness,
     )
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.color = (0.1, 0.1, 0.1)
+    scene_parts.set_world(scene, (0.1, 0.1, 0.1))
     scene_parts.add_camera(scene, (0.0, 0.0, 2.0), ortho_scale=5.0)
     scene.render.resolution_x, scene.render.resolution_y = 32, 24
 

@@ -10,21 +10,13 @@ import pytest
 import scene_parts as parts
 
 
-def world(color):
-    made = bpy.data.worlds.new("World")
-    if made.node_tree is None:
-        made.use_nodes = True
-    made.node_tree.nodes["Background"].inputs["Color"].default_value = (*color, 1.0)
-    return made
-
-
 @pytest.fixture
 def stage(scene):
     """A glowing wall on the left half, the world on the right."""
     scene.render.resolution_x = scene.render.resolution_y = 48
     parts.add_camera(scene, ortho_scale=4.0)
     parts.add_square(scene, "Wall", 4.0, (-2.0, 0.0, -1.0), parts.emission("Wall", (0.2, 0.3, 0.4)))
-    scene.world = world((0.3, 0.2, 0.1))
+    parts.set_world(scene, (0.3, 0.2, 0.1))
     for name in ("z", "emit", "environment", "object_index"):
         setattr(scene.view_layers[0], f"use_pass_{name}", True)
     return scene

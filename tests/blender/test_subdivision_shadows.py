@@ -51,8 +51,7 @@ def test_something_small_on_a_large_cage_keeps_its_contact_shadow(scene, render)
     camera = scene_parts.add_camera(scene, (place[0], place[1], place[2] + 3.0))
     camera.data.lens, camera.data.clip_start = 180.0, 0.01
     add_sun(scene, math.radians(50.0))
-    scene.world = bpy.data.worlds.new("Black")
-    scene.world.color = (0.0, 0.0, 0.0)
+    scene_parts.set_world(scene, (0.0, 0.0, 0.0))
     scene.render.resolution_x, scene.render.resolution_y = 120, 80
     granita, cycles = dark_parts(scene, render, 32)
     assert cycles > 0.02
@@ -71,8 +70,7 @@ def test_transparency_is_looked_up_where_the_limit_is(scene, render):
     scene_parts.add_square(scene, "Floor", 8.0)
     scene_parts.add_camera(scene, (0.0, 0.0, 9.0), ortho_scale=4.0)
     add_sun(scene, 0.0)
-    scene.world = bpy.data.worlds.new("Black")
-    scene.world.color = (0.0, 0.0, 0.0)
+    scene_parts.set_world(scene, (0.0, 0.0, 0.0))
     granita, cycles = dark_parts(scene, render, 16)
     assert 0.02 < cycles < 0.2
     # The shadow's border is 90 of 3072 pixels, each one or the other.

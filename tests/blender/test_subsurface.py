@@ -9,7 +9,7 @@ import node_comparison
 import numpy as np
 import pytest
 import scene_parts
-from test_lights import set_world
+from scene_parts import set_world
 
 pytestmark = pytest.mark.lit
 

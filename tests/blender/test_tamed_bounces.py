@@ -143,8 +143,7 @@ def test_brushed_metal_is_filtered_along_and_across(scene, render):
     sun.energy, sun.angle = 3.0, 0.5
     light = scene_parts.add_object(scene, "Sun", sun)
     light.rotation_euler = Vector((3.0, -3.0, 5.0)).to_track_quat("Z", "Y").to_euler()
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.color = (0.3, 0.35, 0.4)
+    scene_parts.set_world(scene, (0.3, 0.35, 0.4))
     look_at_stage(scene, 2.5, 0.9)
     both = render_bounced(scene, render, 512, blur_glossy=1.0)
     assert worst_block(both) < 0.07
@@ -241,8 +240,7 @@ def test_what_the_filter_blurs_keeps_the_energy_that_it_was_made_with(scene, ren
     wall = scene_parts.add_square(scene, "Wall", 4.0, (0.0, 1.5, 2.0))
     wall.rotation_euler.x = 1.57
     surface(wall, "ShaderNodeBsdfDiffuse", (0.8, 0.1, 0.1))
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.color = (0.5, 0.5, 0.5)
+    scene_parts.set_world(scene, (0.5, 0.5, 0.5))
     look_at_stage(scene, 2.0, 1.5)
     theirs, ours = render_bounced(scene, render, 1024, limit=4, blur_glossy=1.0)
     inner = (slice(20, 36), slice(24, 40))  # of the wall
@@ -258,8 +256,7 @@ def test_a_little_refraction_takes_nothing_from_what_is_translucent(scene, rende
     closures = [("Refraction", {"Roughness": 0.5, "IOR": 1.4}), ("Translucent", {})]
     refraction, _ = mixed(ball, *closures, factor=0.99)
     refraction.distribution = "GGX"
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.color = (0.5, 0.5, 0.5)
+    scene_parts.set_world(scene, (0.5, 0.5, 0.5))
     scene_parts.add_camera(scene, ortho_scale=1.4)
     both = render_bounced(scene, render, 256, blur_glossy=1.0, limit=12, transmission_bounces=12)
     assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.015)

@@ -94,7 +94,10 @@ def _build(name, rich=False, mode=None):
             links.new(next(s for s in node.outputs if s.type == "SHADER"), output.inputs["Surface"])
         else:
             emission = nodes.new("ShaderNodeEmission")
-            links.new(_sum_of_outputs(nodes, links, node), emission.inputs["Color"])
+            total = _sum_of_outputs(nodes, links, node)
+            if total is None:
+                return {}
+            links.new(total, emission.inputs["Color"])
             links.new(emission.outputs[0], output.inputs["Surface"])
         return {"node": node, "nodes": nodes, "links": links, "output": output, "scene": scene}
 

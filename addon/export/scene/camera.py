@@ -103,10 +103,12 @@ _KINDS = {"PERSP": "PERSPECTIVE", "ORTHO": "ORTHOGRAPHIC"}
 
 def _lens_of(evaluated):
     """What of a Camera counts, of any object: Blender looks through every one.  As in Cycles a light's lens
-    sees its cone, and any other's has 50 mm."""
+    sees its cone, and any other's has 50 mm, 35 since 5.1."""
     if evaluated.type == "CAMERA":
         return evaluated.data
-    lens = 50.0
+    import bpy
+
+    lens = 50.0 if bpy.app.version < (5, 1) else 35.0
     if evaluated.type == "LIGHT":
         cone = getattr(evaluated.data, "spot_size", math.pi / 4.0)  # 45 degrees where it has none
         lens = 16.0 / math.tan(0.5 * cone)

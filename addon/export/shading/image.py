@@ -96,7 +96,13 @@ def _sequence_path(image, image_user):
 
 def _empty_record(image, name):
     space = image.colorspace_settings.name
-    return {"name": name, "path": "", "colorspace": space, "alpha_mode": image.alpha_mode}
+    return {"name": name, "path": "", "colorspace": space, "alpha_mode": _alpha_mode(image)}
+
+
+def _alpha_mode(image):
+    """Until 5.1 Cycles goes by the file, whether its image is said to be straight or premultiplied."""
+    told = {} if bpy.app.version < (5, 1) else {"STRAIGHT": "UNASSOCIATED", "PREMUL": "ASSOCIATED"}
+    return told.get(image.alpha_mode, image.alpha_mode)
 
 
 def _record(image, name, path, report):
@@ -220,7 +226,7 @@ class PaintedPixels:
             _painted = before
 
     def of(self, image):
-        space, alpha = image.colorspace_settings.name, image.alpha_mode
+        space, alpha = image.colorspace_settings.name, _alpha_mode(image)
         key = image.name_full, space, alpha, image.is_float, *image.size
         if key in self._pixels:
             self.was_taken = True
@@ -252,12 +258,15 @@ def _pixels(image):
     image.pixels.foreach_get(pixels.reshape(-1))
     if count != 4:
         pixels = _with_four_channels(pixels)
-    if image.is_float:
+    space, alpha_mode = image.colorspace_settings.name, _alpha_mode(image)
+    associates = _associates(space, alpha_mode)
+    if image.is_float:  # multiplied already, but where straight is what they are said to be
+        if associates and alpha_mode == "UNASSOCIATED":
+            pixels[..., :3] *= pixels[..., 3:]
         return pixels
-    space = image.colorspace_settings.name
     if space == "sRGB":
-        return _bytes(pixels, _associates(space, image.alpha_mode))
-    _decode_bytes(pixels, space, image.alpha_mode)
+        return _bytes(pixels, associates)
+    _decode_bytes(pixels, space, associates)
     return pixels
 
 
@@ -271,7 +280,7 @@ def _with_four_channels(values):
 
 
 def _associates(space, alpha_mode):
-    return space not in _DATA_SPACES and alpha_mode not in ("CHANNEL_PACKED", "NONE")
+    return space not in _DATA_SPACES and alpha_mode not in ("CHANNEL_PACKED", "NONE", "ASSOCIATED")
 
 
 def _strips(pixels):
@@ -300,9 +309,8 @@ def _bytes(pixels, associates):
     return found
 
 
-def _decode_bytes(pixels, space, alpha_mode):
+def _decode_bytes(pixels, space, associates):
     """Blender gives the pixels of 8-bit images in their own space, alpha straight; of others as we want them."""
-    associates = _associates(space, alpha_mode)
     if space in _LINEAR_SPACES and not associates:
         return
     decoded = np.arange(256, dtype=np.float32) / 255

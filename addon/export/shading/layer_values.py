@@ -9,7 +9,7 @@ from .world import world_of
 
 def set_layer_values(records, scene, view_layer):
     """Writes the property `layer_value` (four floats) into Attribute nodes of type View Layer, and `world_distance`
-    (metres, how far an Ambient Occlusion looks whose Distance is 0) into those.
+    (metres, how far an Ambient Occlusion looks whose Distance is 0) into those, `seconds` and `frame` into Scene Times.
 
     Args:
         records: material or world records of the snapshot.
@@ -24,6 +24,10 @@ def set_layer_values(records, scene, view_layer):
                 properties["layer_value"] = np.array(value, dtype=np.float32)
             elif node["type"] == "ShaderNodeAmbientOcclusion" and world is not None:
                 properties["world_distance"] = float(world.light_settings.distance)
+            elif node["type"] == "GeometryNodeInputSceneTime":
+                frame, render = scene.frame_current_final, scene.render
+                properties["frame"] = frame
+                properties["seconds"] = frame * render.fps_base / render.fps
 
 
 def _lookup(name, scene, view_layer):

@@ -10,6 +10,7 @@ import math
 import bpy
 
 from .constant_nodes import as_number, constant
+from .inlined_tree import inlined
 from .node_links import Scope, trace
 from .nodes import FlatGraph
 
@@ -30,8 +31,9 @@ def light_record(light_object, matrices, report, images=None):
     """
     light = light_object.data
     label = f"light '{light_object.name}'"
-    graph = None if images is None else _graph(light, label, images, report)
-    color, factor = ([1.0] * 3, 1.0) if graph else _emission(light, label, report)
+    read = _with_nodes(light)
+    graph = None if images is None else _graph(read, label, images, report)
+    color, factor = ([1.0] * 3, 1.0) if graph else _emission(read, label, report)
     if getattr(light, "use_temperature", False):
         color = [c * t for c, t in zip(color, light.temperature_color)]
     for name in ("diffuse_factor", "specular_factor"):
@@ -82,10 +84,10 @@ def light_energy(light_object, has_graph=None):
     def silent(_datablock, _message):
         """The record tells."""
 
-    light = light_object.data
+    read = _with_nodes(light_object.data)
     if has_graph is None:
-        has_graph = _graph(light, "", {}, silent) is not None
-    factor = 1.0 if has_graph else _emission(light, "", silent)[1]
+        has_graph = _graph(read, "", {}, silent) is not None
+    factor = 1.0 if has_graph else _emission(read, "", silent)[1]
     return _energy(light_object, factor), has_graph
 
 
@@ -130,27 +132,32 @@ def _area(light, matrix):
     return area * (math.pi / 4.0 if light.shape in ("DISK", "ELLIPSE") else 1.0)
 
 
-def _surface(light):
+def _with_nodes(light):
+    """What has the light's nodes as its `node_tree`, or None where it uses none."""
+    return inlined(light) if light.use_nodes and light.node_tree is not None else None
+
+
+def _surface(tree):
     """The socket Surface of the light's output, if something is linked to it."""
-    outputs = [node for node in light.node_tree.nodes if node.type == "OUTPUT_LIGHT"]
+    outputs = [node for node in tree.nodes if node.type == "OUTPUT_LIGHT"]
     output = next((node for node in outputs if node.is_active_output), None)
     surface = output.inputs["Surface"] if output else None
     return surface if surface is not None and surface.is_linked else None
 
 
-def _graph(light, label, images, report):
+def _graph(read, label, images, report):
     """{"nodes": ..., "surface": ...} of a light whose nodes vary, else None."""
-    if not light.use_nodes or light.node_tree is None or _surface(light) is None:
+    if read is None or (linked := _surface(read.node_tree)) is None:
         return None
-    source = trace(Scope(light.node_tree), _surface(light))
+    source = trace(Scope(read.node_tree), linked)
     if source.node is None:  # _emission() says why
         return None
     if _is_plain_emission(source):
         inputs = [source.node.inputs[name] for name in ("Color", "Strength")]
-        if all(constant(light.node_tree, i)[0] is not None for i in inputs):
+        if all(constant(read.node_tree, i)[0] is not None for i in inputs):
             return None
-    graph = FlatGraph(light.node_tree, label, images, report)
-    surface = graph.add(_surface(light))
+    graph = FlatGraph(read.node_tree, label, images, report)
+    surface = graph.add(linked)
     return {"nodes": graph.nodes, "surface": surface}
 
 
@@ -159,14 +166,14 @@ def _is_plain_emission(source):
     return source.node.type == "EMISSION" and source.scope.parent is None
 
 
-def _emission(light, label, report):
+def _emission(read, label, report):
     """Colour and strength of the light's Emission node; white and 1 without nodes."""
-    if not light.use_nodes or light.node_tree is None:
+    if read is None:
         return [1.0] * 3, 1.0
-    surface = _surface(light)
+    surface = _surface(read.node_tree)
     if surface is None:
         return [1.0] * 3, 0.0
-    scope = Scope(light.node_tree)
+    scope = Scope(read.node_tree)
     source = trace(scope, surface)
     for said in scope.left_out.values():
         report(label, said)
@@ -178,7 +185,7 @@ def _emission(light, label, report):
         return [1.0] * 3, 1.0
     found = []
     for name in ("Color", "Strength"):
-        value, left_out = constant(light.node_tree, node.inputs[name])
+        value, left_out = constant(read.node_tree, node.inputs[name])
         for said in left_out:
             report(label, said)
         if value is None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Materials as node graphs (docs/scene_snapshot.md)."""
 
+from .inlined_tree import inlined
 from .nodes import FlatGraph, version
 
 
@@ -41,8 +42,9 @@ def material_record(material, images, report, aovs=()):
         }
         return {**record, "nodes": [node], "surface": (0, "BSDF")}
     owner = f"material '{material.name_full}'"
-    graph = FlatGraph(material.node_tree, owner, images, report)
-    output = material.node_tree.get_output_node("CYCLES")
+    read = inlined(material)
+    graph = FlatGraph(read.node_tree, owner, images, report)
+    output = read.node_tree.get_output_node("CYCLES")
     surface = None
     if output is not None:
         surface = graph.add(output.inputs["Surface"])

@@ -8,7 +8,11 @@ import bpy
 
 # EEVEE's, Freestyle's and what is no longer read; EEVEE's Specular BSDF is drawn as a diffuse one.
 _NOT_IN_CYCLES = {
+    "ShaderNodeLightAccumulation",
+    "ShaderNodeLightEvaluation",
+    "ShaderNodeLightInfo",
     "ShaderNodeShaderToRGB",
+    "ShaderNodeShadowRaycast",
     "ShaderNodeSqueeze",
     "ShaderNodeUVAlongStroke",
 }

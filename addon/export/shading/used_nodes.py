@@ -4,8 +4,13 @@
 
 def any_node(materials, is_wanted):
     """Whether `is_wanted` is true of a node of evaluated Materials (or None), or of groups in them."""
-    pending = [m.node_tree for m in materials if m is not None and m.use_nodes and m.node_tree]
-    entered = set()
+    trees = [m.node_tree for m in materials if m is not None and m.use_nodes and m.node_tree]
+    return any_node_of(trees, is_wanted)
+
+
+def any_node_of(trees, is_wanted):
+    """Whether `is_wanted` is true of a node of these trees, or of groups in them."""
+    pending, entered = list(trees), set()
     while pending:
         tree = pending.pop()
         if tree.as_pointer() in entered:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The world as a node graph (docs/scene_snapshot.md)."""
 
+from .inlined_tree import inlined
 from .nodes import FlatGraph
 
 
@@ -53,8 +54,9 @@ def export_world(scene, view_layer, report, images=None):
         }
         return {**record, "nodes": [node], "surface": (0, "Background")}
     shown = {}
-    graph = FlatGraph(world.node_tree, owner, shown, report)
-    output = world.node_tree.get_output_node("CYCLES")
+    read = inlined(world)
+    graph = FlatGraph(read.node_tree, owner, shown, report)
+    output = read.node_tree.get_output_node("CYCLES")
     if output is not None:
         record["surface"] = graph.add(output.inputs["Surface"])
         record["volume"] = graph.add(output.inputs["Volume"])

@@ -48,7 +48,7 @@ PointBsdf::PointBsdf(const SurfaceClosure& closure, const ShadingPoints& points,
             if (source.burley)
                 lobe.burley = roughness;
             else
-                prepare_diffuse(lobe, source.f0.empty() ? nullptr : &source.f0[point], roughness);
+                prepare_diffuse(lobe, source, point);
             lobe.importance = mean_size(lobe.weight) * (lobe.retro_alone ? kRetro : 1.0f);
         } else if (is_shaped(lobe.kind)) {
             lobe.shape = make_shape(source, point, view);

@@ -134,7 +134,7 @@ class PointBsdf {
     };
 
     // diffuse_lobe.cpp
-    void prepare_diffuse(Prepared& lobe, const Vec3f* color, float roughness) const;
+    void prepare_diffuse(Prepared& lobe, const Lobe& source, std::size_t point) const;
     Vec3f evaluate_diffuse(const Prepared& lobe, const Vec3f& wo) const;
     /// Of a diffuse lobe's light, where its normal is bent.
     float unshadowed(const Prepared& lobe, const Vec3f& wo) const;

@@ -46,17 +46,19 @@ float cosine_bump_shadowing(const Vec3f& surface_normal, const Vec3f& normal, co
 
 }  // namespace
 
-void PointBsdf::prepare_diffuse(Prepared& lobe, const Vec3f* color, float roughness) const {
+void PointBsdf::prepare_diffuse(Prepared& lobe, const Lobe& source, std::size_t point) const {
+    const float roughness = source.roughness.empty() ? 0.0f : source.roughness[point];
     const float sigma = std::clamp(roughness, 0.0f, 1.0f);
     if (sigma < 1e-5f) return;
     lobe.oren_a = 1.0f / (kPi + sigma * (0.5f * kPi - 2.0f / 3.0f));
     lobe.oren_b = sigma * lobe.oren_a;
-    if (color == nullptr) return;
+    if (source.f0.empty()) return;
     // Energy-preserving multiple scattering of the OpenPBR specification.
-    const Vec3f albedo = glm::clamp(*color, Vec3f(0.0f), Vec3f(1.0f));
+    const Vec3f albedo = glm::clamp(source.f0[point], Vec3f(0.0f), Vec3f(1.0f));
     const float mean = lobe.oren_a * kPi + (2.0f * kPi - 5.6f) / 3.0f * lobe.oren_b;
     const float seen = lobe.oren_a * kPi + lobe.oren_b * oren_nayar_g(std::max(lobe.cos_wi, 0.0f));
-    lobe.oren_multiscatter = kInversePi * albedo * albedo * (mean / (1.0f - mean)) /
+    const Vec3f taken = source.deepens_color ? albedo * albedo : albedo;
+    lobe.oren_multiscatter = kInversePi * taken * (mean / (1.0f - mean)) /
                              (Vec3f(1.0f) - albedo * (1.0f - mean)) * (1.0f - seen);
 }
 

@@ -115,6 +115,8 @@ struct Lobe {
                                ///< Principled before Blender 4
     bool retro_alone = false;  ///< of that what goes back alone
     PhaseKind phase = PhaseKind::HenyeyGreenstein;
+    bool deepens_color = false;    ///< diffuse: what bounces inside takes the colour once more than
+                                   ///< it should, as in Blender 4.3 to 5.2
     bool cosine_bumps = false;     ///< diffuse: bent normals fade light as before Blender 4.5
     std::vector<Vec3f> weight;     ///< [n]
     std::vector<Vec3f> normal;     ///< [n] unit, facing the viewer as Cycles ensures

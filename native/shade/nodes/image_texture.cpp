@@ -89,14 +89,16 @@ TextureMode texture_mode(NodeBuilder& b) {
     return mode;
 }
 
-/// `image` is the first of its tiles, of which a box sees no other.
-std::shared_ptr<const Texture> find_texture(NodeBuilder& b, const std::string& image, bool all) {
+/// `image` is the first of its tiles.  A box sees no other: it repeats that one, and since 5.2 it has
+/// nothing beside it.
+std::shared_ptr<const Texture> find_texture(NodeBuilder& b, const std::string& image, bool box) {
     const std::string user = "node '" + b.node().name + "'";
     const std::vector<float> numbers = b.table("tiles");
-    if (numbers.empty() || !all) return b.textures().find(image, user);
+    if (numbers.empty() || (box && !b.since(5, 2))) return b.textures().find(image, user);
     std::map<int, std::shared_ptr<const Texture>> tiles;
     for (const float number : numbers) {
         const int tile = static_cast<int>(number);
+        if (box && tile != UdimTexture::kFirst) continue;
         const std::string name = b.text("tiles_of") + "/" + std::to_string(tile);
         tiles[tile] = b.textures().find(name, user);
     }
@@ -136,7 +138,7 @@ void build_image_texture(NodeBuilder& b) {
     }
     const TextureMode mode = texture_mode(b);
     const std::string projection = b.text("projection", "FLAT");
-    const auto texture = find_texture(b, image, projection != "BOX");
+    const auto texture = find_texture(b, image, projection == "BOX");
     const Footprint print = footprint(b);
     const VectorSource color = b.new_source<Vec3f>();
     const FloatSource alpha = b.new_source<float>();

@@ -8,6 +8,7 @@
 
 #include "math/sampling.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/operation.h"
 #include "shade/nodes/scalar_math.h"
 
 namespace granita {
@@ -82,12 +83,7 @@ const std::map<std::string, Operation>& operations() {
 }  // namespace
 
 void build_math(NodeBuilder& b) {
-    const std::string name = b.text("operation", "ADD");
-    const auto found = operations().find(name);
-    if (found == operations().end())
-        b.warn("operation " + name + " is not supported; rendered as Add");
-    const Operation operation =
-        found == operations().end() ? operations().at("ADD") : found->second;
+    const Operation operation = chosen_operation(b, operations());
     const bool clamp = b.flag("use_clamp");
     b.output("Value", b.map<float>(
                           [operation, clamp](float x, float y, float z) {

@@ -342,6 +342,7 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
     diffuse.roughness = b.map<float>(saturate, b.number("Diffuse Roughness"));
     diffuse.cosine_bumps = !b.since(4, 5);
     diffuse.has_color = !diffuse.roughness.is(0.0f);
+    diffuse.deepens_color = !b.since(5, 3);
     diffuse.f0 = c.base_color;
     diffuse.weight = scaled(b, product(b, c.base_color, reached),
                             add_second_subsurface(b, surface, c, specular.ior, reached));

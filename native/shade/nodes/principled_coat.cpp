@@ -21,28 +21,34 @@ Vec3f absorbed(const Vec3f& tint, float cosine, float ior) {
     return {std::pow(tint.x, way), std::pow(tint.y, way), std::pow(tint.z, way)};
 }
 
+/// What reaches the layers below.  Since 5.3 the coat takes as much as if each facet were alone,
+/// though it reflects what they hand on; and a part of the surface that it does not cover is not
+/// seen through its tint, where before both shares were of the whole.
 VectorSource let_through(NodeBuilder& b, const LobeSource& coat, const FloatSource& amount) {
-    const bool is_smooth = coat.smooth_color, multiscatter = coat.multiscatter;
-    const VectorSource passed = b.map<Vec3f>(
-        [is_smooth, multiscatter](float weight, float ior, float roughness, const Vec3f& n,
-                                  const Vec3f& view) {
+    const bool covers = b.since(5, 3), is_smooth = coat.smooth_color;
+    const bool multiscatter = coat.multiscatter && !covers;
+    const VectorSource albedo = b.map<Vec3f>(
+        [is_smooth, multiscatter](float ior, float roughness, const Vec3f& n, const Vec3f& view) {
             const float cosine = glm::dot(n, view);
-            const float albedo =
-                is_smooth
-                    ? fresnel_dielectric(cosine, ior)
-                    : layer_albedo(Vec3f(f0_from_ior(ior)), ior, roughness, cosine, multiscatter).x;
-            return Vec3f(saturate(1.0f - weight * albedo));
+            return is_smooth ? Vec3f(fresnel_dielectric(cosine, ior))
+                             : layer_albedo(Vec3f(f0_from_ior(ior)), ior, roughness, cosine,
+                                            multiscatter);
         },
-        amount, coat.ior, coat.roughness, coat.normal, b.view());
+        coat.ior, coat.roughness, coat.normal, b.view());
+    const VectorSource passed = b.map<Vec3f>(
+        [](float weight, const Vec3f& a) { return Vec3f(saturate(1.0f - weight * a.x)); }, amount,
+        albedo);
     const VectorSource tint = b.map<Vec3f>([](const Vec3f& c) { return glm::max(c, Vec3f(0.0f)); },
                                            b.color("Coat Tint", kOne));
     if (tint.is(kOne)) return passed;
     return b.map<Vec3f>(
-        [](const Vec3f& light, const Vec3f& c, float weight, float ior, const Vec3f& n,
-           const Vec3f& view) {
-            return light * (kOne + (absorbed(c, glm::dot(n, view), ior) - kOne) * weight);
+        [covers](const Vec3f& light, const Vec3f& a, const Vec3f& c, float weight, float ior,
+                 const Vec3f& n, const Vec3f& view) {
+            const Vec3f colored = absorbed(c, glm::dot(n, view), ior);
+            if (!covers) return light * (kOne + (colored - kOne) * weight);
+            return glm::max(kOne + (colored * (1.0f - a.x) - kOne) * weight, Vec3f(0.0f));
         },
-        passed, tint, amount, coat.ior, coat.normal, b.view());
+        passed, albedo, tint, amount, coat.ior, coat.normal, b.view());
 }
 
 }  // namespace

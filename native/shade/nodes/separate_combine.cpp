@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Separate and Combine: colours (RGB, HSV, HSL) and vectors.  The older one-mode nodes are the same
-// with other socket names.
+// with other socket names.  Get Vector Component, of a number cut off.
 #include "shade/nodes/hsv.h"
 #include "shade/nodes/nodes.h"
 
@@ -67,6 +67,15 @@ void build_separate_xyz(NodeBuilder& b) {
 
 void build_combine_xyz(NodeBuilder& b) {
     b.output_vector("Vector", join(b, kXyz, unchanged));
+}
+
+void build_vector_component(NodeBuilder& b) {
+    b.output("Value", b.map<float>(
+                          [](const Vec3f& v, float index) {
+                              return index > -1.0f && index < 3.0f ? v[static_cast<int>(index)]
+                                                                   : 0.0f;
+                          },
+                          b.vector("Vector"), b.number("Index")));
 }
 
 }  // namespace granita

@@ -28,6 +28,7 @@ void build_diffuse(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource& w
                                                               : FloatSource{-1, 0.0f};
     // Since Blender 4.3 light that bounces inside a rough surface takes on its colour.
     lobe.has_color = b.since(4, 3) && !lobe.roughness.is(0.0f);
+    lobe.deepens_color = !b.since(5, 3);
     surface.add_lobe(lobe);
 }
 

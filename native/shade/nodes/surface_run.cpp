@@ -22,6 +22,7 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::si
         lobe.of_glass = from.of_glass;
         lobe.burley = from.burley;
         lobe.retro_alone = from.retro_alone;
+        lobe.deepens_color = from.deepens_color;
         lobe.cosine_bumps = from.cosine_bumps;
         lobe.weight = values_of(run, from.weight);
         broken += make_finite(lobe.weight);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/operation.h"
 #include "shade/nodes/scalar_math.h"
 
 namespace granita {
@@ -127,11 +128,7 @@ void build_vector_math(NodeBuilder& b) {
         b.output("Value", b.map<float>(scalar->second, x, y));
         return;
     }
-    const auto found = vector_operations().find(name);
-    if (found == vector_operations().end())
-        b.warn("operation " + name + " is not supported; rendered as Add");
-    const VectorOperation operation =
-        found == vector_operations().end() ? vector_operations().at("ADD") : found->second;
+    const VectorOperation operation = chosen_operation(b, vector_operations());
     b.output_vector("Vector",
                     b.map<Vec3f>(operation, x, y, b.vector("Vector_002"), b.number("Scale", 1.0f)));
 }

@@ -17,7 +17,7 @@ struct LobeSource {
     FresnelKind fresnel = FresnelKind::None;
     bool multiscatter = false, separable_masking = false, smooth_color = false, of_glass = false,
          burley = false, cosine_bumps = false;
-    bool retro_alone = false;
+    bool retro_alone = false, deepens_color = false;
     VectorSource weight, normal;
     FloatSource roughness;
     bool has_color = false;  ///< f0 is the lobe's colour though it has no Fresnel

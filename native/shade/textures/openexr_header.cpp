@@ -49,7 +49,7 @@ bool openexr_header_fits(const std::string& path) {
         first = false;
         if (!read_name(file, name)) return false;  // its type
         const std::int32_t size = read_number(file);
-        if (!file || size < 0 || file.tellg() + std::int64_t{size} > end) return false;
+        if (!file || size < 0 || static_cast<std::int64_t>(file.tellg()) + size > end) return false;
         file.seekg(size, std::ios::cur);
     }
     return false;

@@ -71,18 +71,20 @@ bool TextureFile::open(const Image& image) {
         return false;
     }
     // Cycles: colour channels of data, packed channels and ignored alpha are left untouched; others
-    // arrive associated.
+    // arrive associated, since 5.1 by what is said of them instead of by the file.
     OIIO::ImageSpec config;
-    const bool untouched = m_space.is_data || m_opaque || image.alpha_mode == "CHANNEL_PACKED";
-    const bool is_png = std::string_view(format.reader) == "png";
-    if (untouched || is_png) config.attribute("oiio:UnassociatedAlpha", 1);
+    const std::string& alpha = image.alpha_mode;
+    const bool untouched =
+        m_space.is_data || m_opaque || alpha == "CHANNEL_PACKED" || alpha == "ASSOCIATED";
+    const bool by_us = std::string_view(format.reader) == "png" || alpha == "UNASSOCIATED";
+    if (untouched || by_us) config.attribute("oiio:UnassociatedAlpha", 1);
     if (!m_input->open(image.path, m_spec, config)) {
         m_header.error = m_input->geterror();
         return false;
     }
     if (!check(m_spec)) return false;
     m_channels = std::min(m_spec.nchannels, 4);
-    m_associate = is_png && !untouched && (m_channels == 2 || m_channels == 4);
+    m_associate = by_us && !untouched && (m_channels == 2 || m_channels == 4);
     m_raw_type = m_spec.format == OIIO::TypeUInt8  ? TexelType::Byte
                  : m_spec.format == OIIO::TypeHalf ? TexelType::Half
                                                    : TexelType::Float;
@@ -216,6 +218,10 @@ void TextureFile::associate(void* raw, std::size_t count) const {
     if (m_raw_type == TexelType::Byte)
         multiply(static_cast<std::uint8_t*>(raw),
                  [](int x, int a) { return static_cast<std::uint8_t>(x * a / 255); });
+    else if (m_raw_type == TexelType::Half)
+        multiply(static_cast<std::uint16_t*>(raw), [](std::uint16_t x, std::uint16_t a) {
+            return half_from_float(float_from_half(x) * float_from_half(a));
+        });
     else
         multiply(static_cast<float*>(raw), [](float x, float a) { return x * a; });
 }

@@ -8,14 +8,14 @@ namespace granita {
 
 namespace {
 
-constexpr int kFirst = 1001, kAcross = 10, kMostRows = 100;
+constexpr int kAcross = 10, kMostRows = 100;
 constexpr int kNone = 0;
 
 /// Number of the tile that holds a place, or kNone.  Places before the first are its repetition.
 int tile_at(const Vec2f& place) {
     const Vec2f tile = glm::trunc(place);
     if (!(tile.x >= 0.0f && tile.x < kAcross && tile.y >= 0.0f && tile.y < kMostRows)) return kNone;
-    return kFirst + kAcross * static_cast<int>(tile.y) + static_cast<int>(tile.x);
+    return UdimTexture::kFirst + kAcross * static_cast<int>(tile.y) + static_cast<int>(tile.x);
 }
 
 }  // namespace

@@ -12,6 +12,8 @@ namespace granita {
 /// Reads each place in its tile; where there is none it is magenta, as in Cycles.
 class UdimTexture : public Texture {
   public:
+    static constexpr int kFirst = 1001;
+
     explicit UdimTexture(std::map<int, std::shared_ptr<const Texture>> tiles);
 
     void look_up(const TextureMode& mode, const std::vector<TexturePlace>& places,

@@ -75,6 +75,29 @@ TEST(TextureFile, alpha_of_png_multiplies_what_is_stored) {
     }
 }
 
+// What is said of alpha, whatever the format says of it: OpenEXR is always associated, PNG never.
+// Bytes are rounded, and their products cut off: 1.5 / 255.
+TEST(TextureFile, alpha_is_what_it_is_said_to_be) {
+    for (const char* suffix : {".png", ".exr"}) {
+        ImageFile file(suffix);
+        OIIO::ImageSpec spec(1, 1, 4,
+                             suffix == std::string(".png") ? OIIO::TypeUInt8 : OIIO::TypeHalf);
+        spec.attribute("oiio:UnassociatedAlpha", 1);
+        const float texel[] = {0.2f, 0.4f, 0.6f, 0.8f};
+        const auto out = OIIO::ImageOutput::create(file.path());
+        ASSERT_TRUE(out && out->open(file.path(), spec) &&
+                    out->write_image(OIIO::TypeFloat, texel) && out->close());
+        for (const char* mode : {"ASSOCIATED", "UNASSOCIATED"}) {
+            Image image = file.image("Linear");
+            image.alpha_mode = mode;
+            const Vec4f found = Look(image).at({0.5f, 0.5f}, 0.0f);
+            const float times = mode == std::string("ASSOCIATED") ? 1.0f : 0.8f;
+            for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k], texel[k] * times, 6e-3) << mode;
+            EXPECT_NEAR(found.w, 0.8f, 1e-3);
+        }
+    }
+}
+
 TEST(TextureFile, what_is_no_number_is_black) {
     ImageFile file(".exr");
     const float values[] = {NAN, INFINITY, -INFINITY, 4.0f};
