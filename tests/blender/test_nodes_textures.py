@@ -181,14 +181,22 @@ def _perspective(scene, thing):
     thing.matrix_world = Matrix.Rotation(0.5, 4, (0.6, 0.64, 0.48)) @ Matrix.Scale(2.0, 4)
 
 
+def normal_map_conventions():
+    has_two = "convention" in bpy.types.ShaderNodeNormalMap.bl_rna.properties
+    return enum_values("ShaderNodeNormalMap", "convention") if has_two else ["OPENGL"]
+
+
 @pytest.mark.parametrize("space", enum_values("ShaderNodeNormalMap", "space"))
 @pytest.mark.parametrize("leaning", [False, True])
-def test_normal_map(scene, render, space, leaning):
+@pytest.mark.parametrize("convention", normal_map_conventions())
+def test_normal_map(scene, render, space, leaning, convention):
     """Blue above 1/2: what points into the surface is bent back, differently in every Blender."""
     thing = board(scene, 0.55, 1, tilt=0.5 * leaning, both_sides=leaning)
     thing.matrix_world = Matrix.Rotation(np.pi / 2, 4, "Z")
     tree = Tree(thing)
     node = tree.add("ShaderNodeNormalMap", space=space, uv_map="UVMap")
+    if convention != "OPENGL":
+        node.convention = convention
     tree.link(tree.attribute("A", "Color"), node.inputs["Color"])
     tree.link(tree.attribute("B", "Fac"), node.inputs["Strength"])
     tree.emit(node.outputs[0])

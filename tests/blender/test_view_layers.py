@@ -125,6 +125,8 @@ def test_exposure_is_of_light_alone(glowing, render):
 
 @pytest.mark.parametrize("kind", ["EMPTY", "SPOT", "POINT"])
 def test_any_object_may_be_the_camera(glowing, render, kind):
+    if kind == "EMPTY" and (5, 1) <= bpy.app.version < (5, 3):
+        pytest.skip("Cycles itself crashes")
     light = None
     if kind != "EMPTY":
         light = bpy.data.lights.new(kind, kind)

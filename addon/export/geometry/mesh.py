@@ -193,11 +193,16 @@ def _shading(mesh):
     say it all; those are for flat faces too.
 
     From Blender 4.1 on custom normals and sharp edges alone split normals in Cycles, though the
-    mesh itself splits them between flat faces and smooth ones as well.  Before, Auto Smooth does.
+    mesh itself splits them between flat faces and smooth ones as well, which 5.2 takes over.  Before,
+    Auto Smooth does.
     """
     if hasattr(mesh, "normals_domain"):
         if mesh.normals_domain == "FACE":
             return None, None
+        import bpy
+
+        if mesh.normals_domain == "CORNER" and bpy.app.version >= (5, 2):
+            return _smooth(mesh), vectors(mesh.corner_normals)
         if mesh.has_custom_normals or _values(mesh, "sharp_edge", np.bool_).any():
             return _smooth(mesh), vectors(mesh.corner_normals)
         return _smooth(mesh), None

@@ -89,8 +89,8 @@ TextureMode texture_mode(NodeBuilder& b) {
     return mode;
 }
 
-/// `image` is the first of its tiles.  A box sees no other: it repeats that one, and since 5.2 it has
-/// nothing beside it.
+/// `image` is the first of its tiles.  A box sees no other: it repeats that one, and since 5.2 it
+/// has nothing beside it.
 std::shared_ptr<const Texture> find_texture(NodeBuilder& b, const std::string& image, bool box) {
     const std::string user = "node '" + b.node().name + "'";
     const std::vector<float> numbers = b.table("tiles");

@@ -32,6 +32,7 @@ Integer rounded(Integer a, Integer b) {
 }
 
 Integer power(Integer a, Integer b) {
+    if (a == 0 && b < 0) return 0;
     return integer(static_cast<float>(std::pow(static_cast<double>(a), static_cast<double>(b))));
 }
 
@@ -51,7 +52,8 @@ const std::map<std::string, Operation>& operations() {
         {"DIVIDE_ROUND", [](Integer a, Integer b, Integer) { return rounded(a, b); }},
         {"DIVIDE_FLOOR", [](Integer a, Integer b, Integer) { return floored(a, b); }},
         {"DIVIDE_CEIL", [](Integer a, Integer b, Integer) { return -floored(-a, b); }},
-        {"FLOORED_MODULO", [](Integer a, Integer b, Integer) { return a - floored(a, b) * b; }},
+        {"FLOORED_MODULO",
+         [](Integer a, Integer b, Integer) { return b == 0 ? 0 : a - floored(a, b) * b; }},
         {"MODULO", [](Integer a, Integer b, Integer) { return b == 0 ? 0 : a % b; }},
         {"GCD", [](Integer a, Integer b, Integer) { return std::gcd(a, b); }},
         {"LCM", [](Integer a, Integer b, Integer) { return std::lcm(a, b); }},

@@ -375,6 +375,7 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
                               .is_world = owner.is_world,
                               .lamp = owner.lamp,
                               .material_index = owner.material_index,
+                              .moves_surface = graph.moves_surface(),
                               .has_moved_normals = has_moved_normals,
                               .ray_type = type,
                               .bump_width = width,

@@ -53,15 +53,21 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
                        uv = uv_at(b, name, Shift::None), uv_u = uv_beside(b, name, Shift::U),
                        uv_v = uv_beside(b, name, Shift::V), out = b.new_source<Vec3f>();
     const FloatSource sign = b.attribute_component(of_corners, 3, Shift::None);
-    // Since Blender 4 strength scales the map's slopes, before it blended the resulting normals.
-    const bool scales_slopes = b.since(4, 0), has_unit_normals = b.since(5, 1);
-    // Of what is displaced Blender 5 takes the normals as modelled, unless nothing bends them.
-    const bool is_moved = b.has_moved_normals(), takes_modelled = b.since(5, 0);
+    // Of what is displaced Blender 5 takes the normals as modelled, unless nothing bends them;
+    // since 5.1 the artist chooses.
+    const bool is_moved = b.has_moved_normals(),
+               takes_modelled = b.since(5, 0) && b.text("base") != "DISPLACED";
+    // Since Blender 4 strength scales the map's slopes, before it blended the resulting normals, as
+    // it does again between the displaced surface's and those of a map on the modelled one.
+    const bool scales_slopes =
+        b.since(4, 0) && !(b.moves_surface() && takes_modelled && b.since(5, 1));
+    const bool has_unit_normals = b.since(5, 1);
+    const VectorSource shown = b.shading_normal();
     b.add_step(
         [=](Run& run) {
             const auto colors = run.read(color), uvs = run.read(uv), us = run.read(uv_u),
                        vs = run.read(uv_v), tangents = run.read(tangent),
-                       corner_normals = run.read(corner_normal);
+                       corner_normals = run.read(corner_normal), unbent = run.read(shown);
             const auto strengths = run.read(strength), signs = run.read(sign);
             const ShadingPoints& points = *run.input().points;
             Vec3f* result = run.write(out);
@@ -82,7 +88,7 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
                                           Vec2f(us[i] - uvs[i]), Vec2f(vs[i] - uvs[i]));
                 }
                 if (!frame.valid) {  // no UV map: Cycles leaves the normal alone
-                    result[i] = points.normal[i];
+                    result[i] = unbent[i];
                     continue;
                 }
                 Vec3f c = 2.0f * (colors[i] - 0.5f);
@@ -93,12 +99,11 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
                 Vec3f n = frame.tangent * c.x + frame.bitangent * c.y + frame.normal * c.z;
                 if (has_tangent) n = run.input().axes_at(i).world_normal_from_object() * n;
                 n = normalize_or(n, normal);
-                result[i] =
-                    strengthened(points.normal[i], side * n, scales_slopes ? 1.0f : strengths[i]);
+                result[i] = strengthened(unbent[i], side * n, scales_slopes ? 1.0f : strengths[i]);
             }
         },
-        {color.slot, strength.slot, uv.slot, uv_u.slot, uv_v.slot, tangent.slot, sign.slot,
-         corner_normal.slot},
+        {color.slot, strength.slot, shown.slot, uv.slot, uv_u.slot, uv_v.slot, tangent.slot,
+         sign.slot, corner_normal.slot},
         {out.slot});
     b.output_vector("Normal", out);
 }
@@ -137,7 +142,9 @@ VectorSource uv_tangent(NodeBuilder& b, const std::string& name) {
 }
 
 void build_normal_map(NodeBuilder& b) {
-    const VectorSource color = b.color("Color", Vec3f(0.5f, 0.5f, 1.0f));
+    VectorSource color = b.color("Color", Vec3f(0.5f, 0.5f, 1.0f));
+    if (b.text("convention") == "DIRECTX")  // green is down
+        color = b.map<Vec3f>([](const Vec3f& c) { return Vec3f(c.x, 1.0f - c.y, c.z); }, color);
     const FloatSource strength = b.number("Strength", 1.0f);
     const std::string space = b.text("space", "TANGENT");
     if (b.is_world()) {
@@ -150,10 +157,10 @@ void build_normal_map(NodeBuilder& b) {
     }
     const bool object = space == "OBJECT" || space == "BLENDER_OBJECT";
     const bool flipped = space == "BLENDER_OBJECT" || space == "BLENDER_WORLD";
-    const VectorSource out = b.new_source<Vec3f>();
+    const VectorSource shown = b.shading_normal(), out = b.new_source<Vec3f>();
     b.add_step(
         [=](Run& run) {
-            const auto colors = run.read(color);
+            const auto colors = run.read(color), unbent = run.read(shown);
             const auto strengths = run.read(strength);
             const ShadingPoints& points = *run.input().points;
             Vec3f* result = run.write(out);
@@ -164,10 +171,10 @@ void build_normal_map(NodeBuilder& b) {
                 if (object) n = run.input().axes_at(i).world_normal_from_object() * n;
                 n = normalize_or(n, points.normal[i]);
                 if (points.backfacing[i]) n = -n;
-                result[i] = strengthened(points.normal[i], n, strengths[i]);
+                result[i] = strengthened(unbent[i], n, strengths[i]);
             }
         },
-        {color.slot, strength.slot}, {out.slot});
+        {color.slot, strength.slot, shown.slot}, {out.slot});
     b.output_vector("Normal", out);
 }
 

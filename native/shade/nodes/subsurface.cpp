@@ -2,8 +2,7 @@
 // Subsurface Scattering, and what of it Principled shares.  Blender 4 renamed the methods: what was
 // Random Walk is Random Walk (Skin), and what took the radius as it is became Random Walk; ways
 // into the medium are refracted since.  5.2 renamed that one Random Walk (Legacy), and its Random
-// Walk takes the radius for the whole mean free path instead of the reduced one; 5.3 for metres,
-// not for the reach of older profiles.
+// Walk takes the radius for the whole mean free path: not reduced, and not the reach of a profile.
 #include "shade/nodes/subsurface.h"
 
 #include <algorithm>
@@ -27,7 +26,7 @@ void set_subsurface_method(NodeBuilder& b, SubsurfaceSource& lobe, const char* p
     const float least = b.since(5, 2) ? -0.99f : 0.0f, most = whole ? 0.99f : 0.9f;
     lobe.anisotropy =
         b.map<float>([=](float g) { return std::clamp(g, least, most); }, lobe.anisotropy);
-    const float share = whole && b.since(5, 3) ? 1.0f : kMeanFreeShareOfReach;
+    const float share = whole ? 1.0f : kMeanFreeShareOfReach;
     lobe.radius = b.map<Vec3f>(
         [=](const Vec3f& radius, const Vec3f& albedo, float ior, float g) {
             Vec3f path = glm::max(radius, Vec3f(0.0f));

@@ -34,6 +34,7 @@ struct ProgramBuilder {
     bool is_world = false;        ///< or a lamp's: of no geometry
     const Light* lamp = nullptr;  ///< whose it is
     int material_index = 0;
+    bool moves_surface = false;      ///< displacement does
     bool has_moved_normals = false;  ///< a mesh's own, which maps bend, are those of its relief
     RayType ray_type = RayType::Camera;
     /// How far shifted values lie from the point, pixels: heights of bumps are told apart over it,
@@ -166,6 +167,7 @@ class NodeBuilder {
         m_program.steps.push_back({std::move(run), std::move(reads), std::move(writes)});
     }
 
+    bool moves_surface() const { return m_program.moves_surface; }
     bool has_moved_normals() const { return m_program.has_moved_normals; }
     /// The shading normal, faced to the viewer.
     VectorSource shading_normal();
