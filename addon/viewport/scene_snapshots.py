@@ -8,6 +8,7 @@ import bpy
 from .. import passes
 from ..export import PersistentState
 from ..export.base.report import ExportError, Report
+from ..export.base.updates import read_updates
 from ..export.scene.shutter import is_blurred, scene_shutter
 from ..export.shading.image import PaintedPixels
 from . import scene_reading
@@ -55,7 +56,7 @@ class SceneSnapshots:
         self._state.note(depsgraph)
         if depsgraph.id_type_updated("IMAGE"):
             self._painted.forget()
-        self._paths_may_differ |= any(_can_change_paths(update) for update in depsgraph.updates)
+        self._paths_may_differ |= any(_can_change_paths(*update) for update in read_updates(depsgraph))
 
     def forget(self):
         """Addresses may mean something else now."""
@@ -161,13 +162,12 @@ def _viewpoint_of(sight):
     return viewpoint_of
 
 
-def _can_change_paths(update):
+def _can_change_paths(thing, moved, formed, shaded):
     """Not what a selection or the cursor is to Blender: the scene, without anything that moved; nor how a surface looks,
     nor a lamp or a camera that nothing moves.  A reading of the shutter may hold the window up, and neither a click
     nor a drag of a colour should."""
-    thing, types = update.id, bpy.types
-    moved = update.is_updated_transform or update.is_updated_geometry
-    if update.is_updated_shading and not moved:
+    types, moved = bpy.types, moved or formed
+    if shaded and not moved:
         return False  # since Blender 4.5 what wears a material is named with it
     if isinstance(thing, (types.Scene, types.Collection)):
         return moved

@@ -84,6 +84,6 @@ def test_transforms(scene, render, kind, convert_from, convert_to):
     tree, shown = world_tree(scene)
     turn = tree.nodes.new("ShaderNodeVectorTransform")
     turn.vector_type, turn.convert_from, turn.convert_to = kind, convert_from, convert_to
-    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Generated"], turn.inputs[0])
+    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Generated"], turn.inputs["Vector"])
     tree.links.new(turn.outputs[0], shown)
     expect_alike(scene, render)

@@ -6,6 +6,39 @@ dangling reference.
 """
 
 
+def read_updates(depsgraph):
+    """[(evaluated ID, whether it moved, whether its geometry changed, whether its looks did)] of the last evaluation.
+
+    Blender 5.3 says of an object without modifiers that its geometry changed, too, where a material did that it
+    wears: then its data looks otherwise and is of the same form, as no other edit leaves it.
+    """
+    import bpy
+
+    found = [
+        (u.id, u.is_updated_transform, u.is_updated_geometry, u.is_updated_shading)
+        for u in depsgraph.updates
+    ]
+    if bpy.app.version < (5, 3):
+        return found
+    worn = {
+        thing.original.as_pointer()
+        for thing, _, formed, shaded in found
+        if shaded and not formed and not isinstance(thing, bpy.types.Object)
+    }
+    if not worn:
+        return found
+
+    def is_worn(thing):
+        if not isinstance(thing, bpy.types.Object) or thing.data is None or len(thing.modifiers):
+            return False
+        return thing.data.original.as_pointer() in worn
+
+    return [
+        (thing, moved, formed and not is_worn(thing), shaded)
+        for thing, moved, formed, shaded in found
+    ]
+
+
 class Touched:
     """Everything that updates of the depsgraph named since it was made; by address of the original."""
 
@@ -18,16 +51,15 @@ class Touched:
         """What the last evaluation touched."""
         import bpy
 
-        for update in depsgraph.updates:
-            moved, formed = update.is_updated_transform, update.is_updated_geometry
-            pointer = update.id.original.as_pointer()
+        for thing, moved, formed, _ in read_updates(depsgraph):
+            pointer = thing.original.as_pointer()
             if moved:
                 self.moved.add(pointer)
             if formed:
                 self.formed.add(pointer)
-            if isinstance(update.id, bpy.types.Collection):
+            if isinstance(thing, bpy.types.Collection):
                 self.collections = True
-            if not (moved or formed) and isinstance(update.id, bpy.types.Object):
+            if not (moved or formed) and isinstance(thing, bpy.types.Object):
                 self.otherwise.add(pointer)
 
 
@@ -53,7 +85,7 @@ def object_names():
 def last_updates(depsgraph):
     """[(evaluated ID, whether it moved, whether its geometry changed)] of the last evaluation, read once: each look
     at them costs a microsecond a thing."""
-    return [(u.id, u.is_updated_transform, u.is_updated_geometry) for u in depsgraph.updates]
+    return [update[:3] for update in read_updates(depsgraph)]
 
 
 def lights_changed(updates):
