@@ -131,7 +131,9 @@ def test_alpha(scene, render, tmp_path, mode, output):
         tree.emit(mix.outputs[0])
     else:
         tree.emit(node.outputs[output])
-    check(scene, render, SAMPLES)
+    # Colours that were never multiplied are divided by alphas down to .1, of which a byte's step is 4 %.
+    divided = mode == "PREMUL" and output == "both" and bpy.app.version >= (5, 1)
+    check(scene, render, SAMPLES, limit=0.02 if divided else LIMIT)
 
 
 @pytest.mark.parametrize("projection", ["BOX", "SPHERE", "TUBE"])
