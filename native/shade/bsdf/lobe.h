@@ -22,6 +22,7 @@ enum class LobeKind {
     Refraction,  ///< of microfacets: light from the far side
     // Of lobe_shape.h:
     Translucent,   ///< diffuse, from the far side
+    ThinGlass,     ///< roughness: from the far side of a sheet, straight on but for that
     Sheen,         ///< roughness
     GrazingSheen,  ///< Principled's before Blender 4
     Velvet,        ///< roughness: the facets' spread
@@ -47,7 +48,7 @@ enum class LightPart { Diffuse, Glossy, Transmission };
 
 constexpr bool transmits(LobeKind kind) {
     return kind == LobeKind::Refraction || kind == LobeKind::Translucent ||
-           kind == LobeKind::HairTransmission || kind == LobeKind::PrincipledHair ||
+           kind == LobeKind::ThinGlass || kind == LobeKind::HairTransmission || kind == LobeKind::PrincipledHair ||
            kind == LobeKind::Phase;
 }
 /// Lobes of tubes and media, which send light on to all sides.
@@ -75,6 +76,7 @@ constexpr LightPart part_of(LobeKind kind) {
         case LobeKind::DiffuseToon:
             return LightPart::Diffuse;
         case LobeKind::Refraction:
+        case LobeKind::ThinGlass:
         case LobeKind::HairTransmission:
         case LobeKind::Phase:
             return LightPart::Transmission;

@@ -15,6 +15,8 @@ std::unique_ptr<const LobeShape> make_shape(const Lobe& lobe, std::size_t point,
     switch (lobe.kind) {
         case LobeKind::Translucent:
             return make_translucent(view);
+        case LobeKind::ThinGlass:
+            return make_thin_glass(view, lobe.roughness[point]);
         case LobeKind::Sheen:
             return make_sheen(view, lobe.roughness[point]);
         case LobeKind::GrazingSheen:

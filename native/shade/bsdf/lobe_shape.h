@@ -57,6 +57,8 @@ std::unique_ptr<const LobeShape> make_shape(const Lobe& lobe, std::size_t point,
 
 // The kinds.
 std::unique_ptr<const LobeShape> make_translucent(const LobeView& view);
+/// What is seen through a sheet, mirrored at it (Kulla and Conty 2017).
+std::unique_ptr<const LobeShape> make_thin_glass(const LobeView& view, float roughness);
 /// Ashikhmin, Premoze and Shirley 2000, "A Microfacet-based BRDF Generator", as velvet.
 std::unique_ptr<const LobeShape> make_velvet(const LobeView& view, float sigma);
 /// Zeltner, Burley and Chiang 2022, "Practical Multiple-Scattering Sheen Using Linearly Transformed

@@ -22,6 +22,7 @@
 #include "shade/nodes/principled_coat.h"
 #include "shade/nodes/scalar_math.h"
 #include "shade/nodes/subsurface.h"
+#include "shade/nodes/thin_wall.h"
 
 namespace granita {
 
@@ -36,6 +37,7 @@ struct Common {
     VectorSource specular_normal;  ///< of glossy lobes, of which subsurface is one in Cycles
     FloatSource metallic, roughness, transmission, specular, ior;
     bool multiscatter = false;
+    bool is_thin = false;  ///< of no depth
     FilmSource film;
 };
 
@@ -271,7 +273,10 @@ void add_second_glass(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
     glass.reflected = {-1, kOne};
     // Through a body light passes two of them.
     glass.sent = b.map<Vec3f>(
-        [](const Vec3f& base) { return glm::sqrt(glm::clamp(base, Vec3f(0.0f), kOne)); },
+        [thin = c.is_thin](const Vec3f& base) {
+            const Vec3f color = glm::clamp(base, Vec3f(0.0f), kOne);
+            return thin ? color : glm::sqrt(color);
+        },
         c.base_color);
     glass.normal = c.specular_normal;
     glass.roughness = c.roughness;
@@ -283,6 +288,11 @@ void add_second_glass(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
         c.ior, tint);
     glass.multiscatter = c.multiscatter;
     glass.film = c.film;
+    if (c.is_thin) {
+        glass.reflected = tint;
+        add_thin_glass(b, surface, glass, c.ior);
+        return;
+    }
     add_glass(b, surface, glass);
 }
 
@@ -344,8 +354,16 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
     diffuse.has_color = !diffuse.roughness.is(0.0f);
     diffuse.deepens_color = !b.since(5, 3);
     diffuse.f0 = c.base_color;
-    diffuse.weight = scaled(b, product(b, c.base_color, reached),
-                            add_second_subsurface(b, surface, c, specular.ior, reached));
+    const VectorSource colored = product(b, c.base_color, reached);
+    if (c.is_thin) {
+        const FloatSource amount = b.map<float>(saturate, b.number("Subsurface Weight"));
+        diffuse.weight = scaled(b, colored, amount);
+        add_thin_subsurface(b, surface, diffuse, b.number("Subsurface Anisotropy"));
+        diffuse.weight = scaled(b, colored, b.map<float>([](float s) { return 1.0f - s; }, amount));
+    } else {
+        diffuse.weight =
+            scaled(b, colored, add_second_subsurface(b, surface, c, specular.ior, reached));
+    }
     surface.add_lobe(diffuse);
 }
 
@@ -371,6 +389,9 @@ void build_principled(NodeBuilder& b, SurfaceBuilder& surface, const FloatSource
     c.specular = b.number("Specular IOR Level", 0.5f);
     c.ior = b.map<float>([](float ior) { return std::max(ior, 1e-5f); }, b.number("IOR", 1.45f));
     c.multiscatter = b.text("distribution", "GGX") == "MULTI_GGX";
+    const FloatSource thin = b.number("Thin Wall");
+    c.is_thin = thin.is_constant() && !thin.is(0.0f);
+    if (!thin.is_constant()) b.warn("a Thin Wall that varies is not supported; rendered as off");
     if (first) {
         add_first_generation(b, surface, c);
     } else {

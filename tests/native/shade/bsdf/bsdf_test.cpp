@@ -191,6 +191,8 @@ class EveryLobe : public testing::TestWithParam<int> {
                 return of_kind(points, LobeKind::GlossyToon, 0.3f, 0.1f);
             case 14:
                 return of_kind(points, LobeKind::Sheen, 1.0f);
+            case 15:
+                return of_kind(points, LobeKind::ThinGlass, 0.6f);
             default:
                 Lobe lobe = glossy(points, which == 1 ? 0.8f : 0.5f);
                 if (which == 3) lobe.distribution = Distribution::Beckmann;
@@ -235,7 +237,7 @@ TEST_P(EveryLobe, sampling_estimates_what_quadrature_integrates) {
     EXPECT_NEAR(sum / count, expected, 0.006 * expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lobes, EveryLobe, testing::Range(0, 15));
+INSTANTIATE_TEST_SUITE_P(Lobes, EveryLobe, testing::Range(0, 16));
 
 // Burley 2012, 5.6: alpha / aspect along the tangent, alpha * aspect across; of a view along the
 // normal the density of facets alone tells what is reflected.
@@ -286,6 +288,26 @@ TEST(Translucent, is_a_lambert_lobe_of_the_far_side) {
     EXPECT_TRUE(bsdf.transmits());
     EXPECT_TRUE(bsdf.can_see(Vec3f(0.0f, 0.0f, -2.0f), 0.5f));
     EXPECT_FALSE(bsdf.can_see(Vec3f(0.0f, 0.0f, 2.0f), 0.5f));
+}
+
+// Light that comes through is what a mirror would send to where it goes on to.
+TEST(ThinGlass, lets_through_what_its_facets_mirror) {
+    for (const float cos_view : {0.3f, 0.8f}) {
+        const ShadingPoints points = one_point(cos_view);
+        const PointBsdf sheet = prepare(of_kind(points, LobeKind::ThinGlass, 0.5f), points);
+        const PointBsdf mirror = prepare(glossy(points, 0.5f), points);
+        const float straight = total(sheet.evaluate(-points.view[0])).x;
+        const Vec3f view = points.view[0], back(-view.x, -view.y, view.z);
+        const float expected = mirror.evaluate(back).glossy.x;
+        for (const Vec3f& way : {Vec3f(0.6f, 0.0f, -0.8f), Vec3f(0.0f, 0.8f, -0.6f)}) {
+            const float mirrored = mirror.evaluate(Vec3f(way.x, way.y, -way.z)).glossy.x;
+            EXPECT_NEAR(total(sheet.evaluate(way)).x / straight, mirrored / expected,
+                        1e-3f * mirrored / expected);
+        }
+        // Nothing is lost.
+        EXPECT_NEAR(sphere_integral([&](const Vec3f& wo) { return total(sheet.evaluate(wo)).x; }),
+                    1.0, 0.02);
+    }
 }
 
 // What it reflects of a white furnace is the albedo by which Principled dims what is below.
