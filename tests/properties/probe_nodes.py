@@ -15,6 +15,8 @@ _LEFT_OUT = {
     "ShaderNode",
     "ShaderNodeCustomGroup",
     "ShaderNodeGroup",
+    "ShaderNodeLightIterInternalInput",
+    "ShaderNodeLightIterInternalOutput",
     "ShaderNodeOutputAOV",
     "ShaderNodeOutputLight",
     "ShaderNodeOutputLineStyle",
@@ -27,6 +29,15 @@ _LEFT_OUT = {
 }
 _SHOWN = 0.25  # of an output, so that several fit below 1
 # Constants that make sockets count which multiply with something that is 0 from the start.
+_CLEAR = {
+    "ShaderNodeBsdfPrincipled": {
+        "Transmission": 0.5,
+        "Transmission Weight": 0.5,
+        "Subsurface Weight": 0.5,
+        "Roughness": 0.0,
+        "Specular IOR Level": 0.2,
+    }
+}
 _RICH = {
     "ShaderNodeBsdfPrincipled": {
         "Metallic": 0.3,
@@ -57,8 +68,8 @@ def _is_closure(node):
     return any(socket.type == "SHADER" for socket in node.outputs)
 
 
-def _build(name, rich=False, mode=None):
-    """`mode`: (property, item) that the node is set to."""
+def _build(name, constants=None, mode=None):
+    """`constants`: {socket: value}; `mode`: (property, item) that the node is set to."""
 
     def build(scene):
         stage.set_world(scene)
@@ -76,7 +87,7 @@ def _build(name, rich=False, mode=None):
         if mode:
             setattr(node, *mode)
         _fill_vectors(node)
-        for identifier, value in _RICH.get(name, {}).items() if rich else ():
+        for identifier, value in (constants or {}).items():
             socket = next((s for s in node.inputs if s.identifier == identifier), None)
             if socket is not None and not (
                 hasattr(socket.default_value, "__len__") and isinstance(value, float)
@@ -233,10 +244,10 @@ def probes():
     found = []
     for name in node_names():
         found.append(Probe(name, _build(name), ("node",), _outputs(name), _LEFT, node=True))
-        if name in _RICH:
-            found.append(
-                Probe(f"{name}, rich", _build(name, True), ("node",), {}, _LEFT, node=True)
-            )
+        for label, known in (("rich", _RICH), ("clear", _CLEAR)):
+            if name in known:
+                build = _build(name, known[name])
+                found.append(Probe(f"{name}, {label}", build, ("node",), {}, _LEFT, node=True))
         for mode, opened in _modes(name).items():
             label = f"{name}, {mode[1]}"
             found.append(

@@ -293,6 +293,8 @@ void add_second_glass(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
         add_thin_glass(b, surface, glass, c.ior);
         return;
     }
+    if (!b.number("Transmission Dispersion Scale").is(0.0f))
+        b.warn("dispersion is not supported; glass bends all colours alike");
     add_glass(b, surface, glass);
 }
 
