@@ -116,11 +116,17 @@ def test_bytes_of_a_space_that_is_not_known_are_decoded_as_srgb(scene, monkeypat
 @pytest.mark.parametrize("kept", ["set", "packed", "file"])
 @pytest.mark.parametrize("is_float", [False, True])
 @pytest.mark.parametrize("alpha_mode", ["STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"])
-@pytest.mark.parametrize("names", [("sRGB",), ("Non-Color",), ("Linear", "Linear Rec.709")])
+@pytest.mark.parametrize(
+    "names", [("sRGB",), ("Non-Color",), ("Linear", "Linear Rec.709"), ("Rec.1886",)]
+)
 def test_colour_beside_alpha(scene, render, tmp_path, names, alpha_mode, is_float, kept):
     """Both at random; data are no colour, that alpha belongs to."""
     image = bpy.data.images.new("Image", 16, 16, alpha=True, float_buffer=is_float)
-    space = next(name for name in names if name in spaces(image))
+    space = next((name for name in names if name in spaces(image)), None)
+    if space == "Rec.1886" and (alpha_mode == "CHANNEL_PACKED" or kept == "set"):
+        pytest.skip("read as sRGB, and said so; packed channels are divided before Blender 5")
+    if space is None:
+        pytest.skip("no such space")
     image.colorspace_settings.name, image.alpha_mode = space, alpha_mode
     values = np.random.default_rng(1).uniform(0.1, 1.0, (256, 4)).astype(np.float32)
     image.pixels.foreach_set(values.ravel())

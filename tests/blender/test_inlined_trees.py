@@ -14,8 +14,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 is_newest = pytest.mark.skipif(
-    not hasattr(bpy.types, "FunctionNodeIntegerMath")
-    or bpy.app.version < (5, 3),
+    not hasattr(bpy.types, "FunctionNodeIntegerMath") or bpy.app.version < (5, 3),
     reason="in shaders since Blender 5.3",
 )
 

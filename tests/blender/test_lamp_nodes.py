@@ -118,7 +118,9 @@ def test_transforms(scene, render, name, kind, spaces):
     geometry, turn = (tree.nodes.new(f"ShaderNode{n}") for n in ("NewGeometry", "VectorTransform"))
     turn.vector_type = kind
     turn.convert_from, turn.convert_to = spaces.split()
-    tree.links.new(geometry.outputs["Position" if kind == "POINT" else "Incoming"], turn.inputs["Vector"])
+    tree.links.new(
+        geometry.outputs["Position" if kind == "POINT" else "Incoming"], turn.inputs["Vector"]
+    )
     waves(tree, turn.outputs[0])
     assert_alike(scene, render, name)
 

@@ -84,7 +84,9 @@ bool TextureFile::open(const Image& image) {
     }
     if (!check(m_spec)) return false;
     m_channels = std::min(m_spec.nchannels, 4);
-    m_associate = by_us && !untouched && (m_channels == 2 || m_channels == 4);
+    const bool has_alpha = m_channels == 2 || m_channels == 4;
+    m_associate = by_us && !untouched && has_alpha;
+    m_is_associated = has_alpha && !m_opaque && alpha != "CHANNEL_PACKED";
     m_raw_type = m_spec.format == OIIO::TypeUInt8  ? TexelType::Byte
                  : m_spec.format == OIIO::TypeHalf ? TexelType::Half
                                                    : TexelType::Float;
@@ -257,7 +259,11 @@ void TextureFile::convert(const void* raw, std::size_t count, std::byte* out) co
         } else {
             expand(static_cast<const float*>(raw) + i * m_channels, m_channels, 1.0f, &color.x);
         }
-        if (!m_as_it_is) color = Vec4f(m_space.linear(Vec3f(color)), color.w);
+        if (!m_as_it_is) {
+            // Curves are those of what was painted: what is associated is divided for them.
+            const float alpha = m_is_associated && color.w > 0.0f ? color.w : 1.0f;
+            color = Vec4f(m_space.linear(Vec3f(color) / alpha) * alpha, color.w);
+        }
         for (int k = 0; k < 4; ++k) color[k] = finite(color[k]);
         if (m_opaque) color.w = 1.0f;
         store_texel(color, out, m_header.type);

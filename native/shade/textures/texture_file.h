@@ -65,9 +65,10 @@ class TextureFile {
     std::vector<std::byte> m_raw;
     TexelType m_raw_type = TexelType::Byte;
     int m_channels = 0, m_strip = 64;
-    bool m_as_it_is = false;   ///< numbers are stored as the file has them
-    bool m_opaque = false;     ///< alpha is to be ignored
-    bool m_associate = false;  ///< its reader leaves the product with alpha to us
+    bool m_as_it_is = false;       ///< numbers are stored as the file has them
+    bool m_opaque = false;         ///< alpha is to be ignored
+    bool m_associate = false;      ///< its reader leaves the product with alpha to us
+    bool m_is_associated = false;  ///< texels are products with alpha
 };
 
 }  // namespace granita
