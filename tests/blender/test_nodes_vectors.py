@@ -83,6 +83,16 @@ def test_curves_of_vectors_and_numbers(scene, render, kind):
     check(scene, render)
 
 
+@pytest.mark.parametrize("value", [-1.0, 2.0])
+def test_a_number_beyond_a_float_curve(scene, render, value):
+    tree = Tree(board(scene))
+    node = tree.add("ShaderNodeFloatCurve")
+    node.inputs[0].default_value, node.inputs[1].default_value = 1.0, value
+    tree.emit(node.outputs[0])
+    theirs, ours = render_both(scene, render)
+    np.testing.assert_allclose(ours, theirs, atol=1e-4)
+
+
 @pytest.mark.parametrize(
     "kind, span, lowest", [("Blackbody", 9000.0, 1500.0), ("Wavelength", 400.0, 360.0)]
 )

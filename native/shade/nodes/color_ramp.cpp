@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/scalar_math.h"
 
 namespace granita {
 
@@ -65,8 +66,9 @@ void build_color_ramp(NodeBuilder& b) {
 
 namespace {
 
-/// Three curves, over the components of the input `name`.
-VectorSource three_curves(NodeBuilder& b, const VectorSource& input) {
+/// Three curves, over the components of an input; beyond their ends they go on straight if they are
+/// `open`.
+VectorSource three_curves(NodeBuilder& b, const VectorSource& input, bool open = true) {
     const Table table = std::make_shared<const std::vector<float>>(b.table("curves"));
     if (table->size() < 6) {
         b.warn("has no curves; rendered unchanged");
@@ -77,8 +79,10 @@ VectorSource three_curves(NodeBuilder& b, const VectorSource& input) {
     return b.map<Vec3f>(
         [=](float factor, const Vec3f& c) {
             Vec3f out;
-            for (int i = 0; i < 3; ++i)
-                out[i] = look_up_extended(*table, 3, i, (c[i] - low) / range);
+            for (int i = 0; i < 3; ++i) {
+                const float place = (c[i] - low) / range;
+                out[i] = look_up_extended(*table, 3, i, open ? place : saturate(place));
+            }
             return c * (1.0f - factor) + out * factor;
         },
         b.number("Fac", 1.0f), input);
@@ -95,8 +99,10 @@ void build_vector_curves(NodeBuilder& b) {
 }
 
 void build_float_curve(NodeBuilder& b) {
-    const VectorSource curve =
-        three_curves(b, b.map<Vec3f>([](float x) { return Vec3f(x); }, b.number("Value", 1.0f)));
+    const FloatSource value = b.number("Value", 1.0f);
+    const VectorSource all = b.map<Vec3f>([](float x) { return Vec3f(x); }, value);
+    // Since 5.0 Cycles ends the curve for what it knows beforehand.
+    const VectorSource curve = three_curves(b, all, !(value.is_constant() && b.since(5, 0)));
     b.output("Value", b.map<float>([](const Vec3f& v) { return v.x; }, curve));
 }
 
