@@ -56,7 +56,9 @@ class SceneSnapshots:
         self._state.note(depsgraph)
         if depsgraph.id_type_updated("IMAGE"):
             self._painted.forget()
-        self._paths_may_differ |= any(_can_change_paths(*update) for update in read_updates(depsgraph))
+        self._paths_may_differ |= any(
+            _can_change_paths(*update) for update in read_updates(depsgraph)
+        )
 
     def forget(self):
         """Addresses may mean something else now."""

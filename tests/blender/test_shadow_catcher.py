@@ -217,7 +217,8 @@ def test_volumes_before_them_dim_them(plate, render, change):
     change(plate)
     channels = "RGB" if change is a_lamp_in_fog else "RGBA"
     made = of_both(plate, render, *(f"Combined.{c}" for c in channels))
-    rank = 0.99 if change is a_lamp_in_fog else 1.0  # two blocks touch the lamp
+    # Two blocks touch the lamp, and are noise in Blender 5.2.
+    rank = 0.99 if change is a_lamp_in_fog and bpy.app.version >= (5, 2) else 1.0
     for name, (theirs, ours) in made.items():
         assert np.quantile(np.abs(ours - theirs), rank) < 0.06, name
         assert ours.mean() == pytest.approx(theirs.mean(), abs=0.002), name

@@ -10,7 +10,8 @@ def read_updates(depsgraph):
     """[(evaluated ID, whether it moved, whether its geometry changed, whether its looks did)] of the last evaluation.
 
     Blender 5.3 says of an object without modifiers that its geometry changed, too, where a material did that it
-    wears: then its data looks otherwise and is of the same form, as no other edit leaves it.
+    wears: then its data looks otherwise and is of the same form.  That is asked of meshes alone, and not of those
+    that a rig, a lattice or a curve deforms as their parent.
     """
     import bpy
 
@@ -21,17 +22,17 @@ def read_updates(depsgraph):
     if bpy.app.version < (5, 3):
         return found
     worn = {
-        thing.original.as_pointer()
+        thing.name_full
         for thing, _, formed, shaded in found
-        if shaded and not formed and not isinstance(thing, bpy.types.Object)
+        if shaded and not formed and isinstance(thing, bpy.types.Mesh)
     }
     if not worn:
         return found
 
     def is_worn(thing):
-        if not isinstance(thing, bpy.types.Object) or thing.data is None or len(thing.modifiers):
+        if not isinstance(thing, bpy.types.Object) or thing.type != "MESH" or len(thing.modifiers):
             return False
-        return thing.data.original.as_pointer() in worn
+        return thing.parent_type not in ("ARMATURE", "LATTICE") and thing.data.name_full in worn
 
     return [
         (thing, moved, formed and not is_worn(thing), shaded)

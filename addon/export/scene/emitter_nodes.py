@@ -13,6 +13,7 @@ from ..base.snapshot import Attribute
 _PLACELESS = {
     *("ShaderNodeLightFalloff", "ShaderNodeLightPath", "ShaderNodeValue", "ShaderNodeRGB"),
     *("ShaderNodeMath", "ShaderNodeMixRGB", "ShaderNodeMix", "ShaderNodeBlackbody"),
+    *("FunctionNodeIntegerMath", "FunctionNodeBooleanMath", "GeometryNodeInputSceneTime"),
 }
 # Those that know of places only what they are told, or Generated and UV.
 _TOLD = _PLACELESS | {
@@ -21,6 +22,7 @@ _TOLD = _PLACELESS | {
     *("ShaderNodeTexMagic", "ShaderNodeTexBrick", "ShaderNodeTexWhiteNoise"),
     *("ShaderNodeMapping", "ShaderNodeVectorMath", "ShaderNodeMapRange", "ShaderNodeClamp"),
     *("ShaderNodeSeparateXYZ", "ShaderNodeCombineXYZ", "ShaderNodeSeparateColor"),
+    "FunctionNodeGetVectorComponent",
     *("ShaderNodeCombineColor", "ShaderNodeSeparateRGB", "ShaderNodeCombineRGB"),
     *("ShaderNodeValToRGB", "ShaderNodeRGBToBW", "ShaderNodeRGBCurve", "ShaderNodeGamma"),
     *("ShaderNodeBrightContrast", "ShaderNodeHueSaturation", "ShaderNodeInvert"),

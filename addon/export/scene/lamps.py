@@ -21,6 +21,7 @@ def read_lamps(depsgraph, scan, things, images, report):
     Returns:
         [(thing, record)].
     """
+    from ..shading.layer_values import set_layer_values
     from ..shading.light import light_record
 
     everything = originals(depsgraph) if len(things) else {}
@@ -31,7 +32,10 @@ def read_lamps(depsgraph, scan, things, images, report):
         if owners is None or prototype.is_hidden_now(owners):
             continue
         if prototype.address not in records:
-            records[prototype.address] = light_record(owners[0], None, report, images)
+            record = light_record(owners[0], None, report, images)
+            if "nodes" in record:
+                set_layer_values([record], depsgraph.scene_eval, depsgraph.view_layer_eval)
+            records[prototype.address] = record
         found.append((thing, dict(records[prototype.address])))
     return found
 

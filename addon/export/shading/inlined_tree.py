@@ -34,7 +34,9 @@ def inlined(datablock):
         return datablock
     if isinstance(datablock, bpy.types.Material):
         return kinds.from_material(datablock)
-    return (kinds.from_world if isinstance(datablock, bpy.types.World) else kinds.from_light)(datablock)
+    return (kinds.from_world if isinstance(datablock, bpy.types.World) else kinds.from_light)(
+        datablock
+    )
 
 
 def _is_maker(node):

@@ -12,7 +12,7 @@ def set_layer_values(records, scene, view_layer):
     (metres, how far an Ambient Occlusion looks whose Distance is 0) into those, `seconds` and `frame` into Scene Times.
 
     Args:
-        records: material or world records of the snapshot.
+        records: of materials, a world or lights with nodes.
         scene, view_layer: evaluated.
     """
     world = world_of(scene, view_layer)

@@ -84,6 +84,8 @@ def light_energy(light_object, has_graph=None):
     def silent(_datablock, _message):
         """The record tells."""
 
+    if has_graph:
+        return _energy(light_object, 1.0), True
     read = _with_nodes(light_object.data)
     if has_graph is None:
         has_graph = _graph(read, "", {}, silent) is not None

@@ -22,7 +22,7 @@ enum class LobeKind {
     Refraction,  ///< of microfacets: light from the far side
     // Of lobe_shape.h:
     Translucent,   ///< diffuse, from the far side
-    ThinGlass,     ///< roughness: from the far side of a sheet, straight on but for that
+    ThinGlass,     ///< from the far side of a sheet, straight on; roughness: of both its faces
     Sheen,         ///< roughness
     GrazingSheen,  ///< Principled's before Blender 4
     Velvet,        ///< roughness: the facets' spread
@@ -48,8 +48,8 @@ enum class LightPart { Diffuse, Glossy, Transmission };
 
 constexpr bool transmits(LobeKind kind) {
     return kind == LobeKind::Refraction || kind == LobeKind::Translucent ||
-           kind == LobeKind::ThinGlass || kind == LobeKind::HairTransmission || kind == LobeKind::PrincipledHair ||
-           kind == LobeKind::Phase;
+           kind == LobeKind::ThinGlass || kind == LobeKind::HairTransmission ||
+           kind == LobeKind::PrincipledHair || kind == LobeKind::Phase;
 }
 /// Lobes of tubes and media, which send light on to all sides.
 constexpr bool sees_all_around(LobeKind kind) {
@@ -60,7 +60,7 @@ constexpr bool is_of_facets(LobeKind kind) {
 }
 /// Lobes that Filter Glossy blurs: of microfacets, and hair's.
 constexpr bool is_blurred(LobeKind kind) {
-    return is_of_facets(kind) || kind == LobeKind::PrincipledHair;
+    return is_of_facets(kind) || kind == LobeKind::ThinGlass || kind == LobeKind::PrincipledHair;
 }
 /// Of lobe_shape.h.
 constexpr bool is_shaped(LobeKind kind) {

@@ -57,7 +57,7 @@ std::unique_ptr<const LobeShape> make_shape(const Lobe& lobe, std::size_t point,
 
 // The kinds.
 std::unique_ptr<const LobeShape> make_translucent(const LobeView& view);
-/// What is seen through a sheet, mirrored at it (Kulla and Conty 2017).
+/// What is seen through a sheet: as a mirror of that roughness would show what is before it.
 std::unique_ptr<const LobeShape> make_thin_glass(const LobeView& view, float roughness);
 /// Ashikhmin, Premoze and Shirley 2000, "A Microfacet-based BRDF Generator", as velvet.
 std::unique_ptr<const LobeShape> make_velvet(const LobeView& view, float sigma);

@@ -290,7 +290,8 @@ void add_second_glass(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
     glass.film = c.film;
     if (c.is_thin) {
         glass.reflected = tint;
-        add_thin_glass(b, surface, glass, c.ior);
+        glass.ior = c.ior;
+        add_thin_glass(b, surface, glass);
         return;
     }
     if (!b.number("Transmission Dispersion Scale").is(0.0f))
@@ -359,6 +360,8 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
     const VectorSource colored = product(b, c.base_color, reached);
     if (c.is_thin) {
         const FloatSource amount = b.map<float>(saturate, b.number("Subsurface Weight"));
+        if (!amount.is(0.0f) && diffuse.has_color)
+            b.warn("Diffuse Roughness of what a Thin Wall lets through is not supported; it is 0");
         diffuse.weight = scaled(b, colored, amount);
         add_thin_subsurface(b, surface, diffuse, b.number("Subsurface Anisotropy"));
         diffuse.weight = scaled(b, colored, b.map<float>([](float s) { return 1.0f - s; }, amount));

@@ -42,7 +42,7 @@ Sheet sheet_of(const Vec3f& once, const Vec3f& color, float cosine, float ior) {
 Vec3f face_reflectance(const Vec3f& f0, float cosine, float ior, const ThinFilm& film) {
     if (film.is_there()) return film_on_dielectric(film, cosine, ior, f0);
     const float straight = f0_from_ior(ior);
-    const float share = (fresnel_dielectric(cosine, ior) - straight) / (1.0f - straight);
+    const float share = safe_divide(fresnel_dielectric(cosine, ior) - straight, 1.0f - straight);
     return f0 + (kOne - f0) * saturate(share);
 }
 
@@ -56,8 +56,7 @@ float blur(float roughness, float ior, bool by_root) {
 
 }  // namespace
 
-void add_thin_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& glass,
-                    const FloatSource& ior) {
+void add_thin_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& glass) {
     const auto share = [&](Vec3f Sheet::*which) {
         return b.map<Vec3f>(
             [which, spectrum = glass.film.spectrum](const Vec3f& f0, const Vec3f& color,
@@ -67,7 +66,7 @@ void add_thin_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& 
                 const ThinFilm film{thickness, film_ior, spectrum};
                 return sheet_of(face_reflectance(f0, cosine, eta, film), color, cosine, eta).*which;
             },
-            glass.f0, glass.sent, glass.normal, b.view(), ior, glass.film.thickness,
+            glass.f0, glass.sent, glass.normal, b.view(), glass.ior, glass.film.thickness,
             glass.film.ior);
     };
     LobeSource reflected;
@@ -82,10 +81,11 @@ void add_thin_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& 
     const VectorSource through = product(b, glass.weight, share(&Sheet::sent));
     const FloatSource blurred = b.map<float>(
         [by_root = !b.since(5, 3)](float r, float eta) { return blur(r, eta, by_root); },
-        glass.roughness, ior);
+        glass.roughness, glass.ior);
     const FloatSource is_sharp =
         b.map<float>([](float r) { return r * r * r * r <= kSharpAlpha2 ? 1.0f : 0.0f; }, blurred);
-    // Of glass, not of a hole: what is clear ends rays' ways no sooner, and needs none at all.
+    // What does not blur is transparency, as in Cycles for all but camera rays: Reyes has that for
+    // nothing, and what is behind stays as sharp, and as blurred by motion, as without the pane.
     surface.add_transparency(b, scaled(b, through, is_sharp));
     if (is_sharp.is(1.0f)) return;
     LobeSource sent;

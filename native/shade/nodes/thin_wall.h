@@ -7,11 +7,11 @@
 
 namespace granita {
 
-/// `glass.sent`: the colour of what has gone through once at normal incidence; `glass.ior` is that
-/// of the sheet, from either side.
-void add_thin_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& glass,
-                    const FloatSource& ior);
-/// Light that is scattered in the sheet, back and through it by its mean cosine.
+/// `glass.sent`: the colour of what has gone through once at normal incidence; `glass.ior`: of the
+/// sheet, from either side.  Its distribution and multiscatter are not asked for, as in Cycles.
+void add_thin_glass(NodeBuilder& b, SurfaceBuilder& surface, const GlassSource& glass);
+/// Light that is scattered in the sheet, back and through it by its mean cosine; `diffuse`: of all
+/// of it.
 void add_thin_subsurface(NodeBuilder& b, SurfaceBuilder& surface, LobeSource diffuse,
                          const FloatSource& anisotropy);
 

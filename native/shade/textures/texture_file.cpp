@@ -205,6 +205,7 @@ bool TextureFile::read_tile(int level, int across, int down, std::byte* out) {
         m_header.error = m_input->geterror();
         return false;
     }
+    if (m_associate) associate(raw, texels);
     convert(raw, texels, out);
     return true;
 }

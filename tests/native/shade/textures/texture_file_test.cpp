@@ -98,6 +98,32 @@ TEST(TextureFile, alpha_is_what_it_is_said_to_be) {
     }
 }
 
+// Tiles and levels that are served as the file has them.
+TEST(TextureFile, alpha_of_tiles_is_what_it_is_said_to_be) {
+    ImageFile file(".tif");
+    const auto out = OIIO::ImageOutput::create(file.path());
+    ASSERT_TRUE(out);
+    for (int size = 64, level = 0; size > 0; size /= 2, ++level) {
+        OIIO::ImageSpec spec(size, size, 4, OIIO::TypeFloat);
+        spec.tile_width = spec.tile_height = 16;
+        spec.attribute("textureformat", "Plain Texture");
+        spec.attribute("oiio:UnassociatedAlpha", 1);
+        std::vector<float> texels;
+        for (int i = 0; i < size * size; ++i) texels.insert(texels.end(), {0.2f, 0.4f, 0.6f, 0.5f});
+        const auto mode = level ? OIIO::ImageOutput::AppendSubimage : OIIO::ImageOutput::Create;
+        ASSERT_TRUE(out->open(file.path(), spec, mode) &&
+                    out->write_image(OIIO::TypeFloat, texels.data()));
+    }
+    ASSERT_TRUE(out->close());
+    Image image = file.image("Linear");
+    for (const char* mode : {"ASSOCIATED", "UNASSOCIATED"}) {
+        image.alpha_mode = mode;
+        const float times = mode == std::string("ASSOCIATED") ? 1.0f : 0.5f;
+        for (const float width : {0.0f, 0.1f})
+            EXPECT_NEAR(Look(image).at({0.4f, 0.6f}, width).y, 0.4f * times, 1e-3f) << mode;
+    }
+}
+
 TEST(TextureFile, what_is_no_number_is_black) {
     ImageFile file(".exr");
     const float values[] = {NAN, INFINITY, -INFINITY, 4.0f};
