@@ -57,5 +57,7 @@ def test_colors_of_layers_are_those_of_cycles(scene, render, name, distribution)
         ours, theirs = (picture_of(channels, *names)[seen] for channels in made)
         # The newest Cycles measures anew what rough glass lets through.
         is_new = "glass" in name and names[0] == "TransCol" and bpy.app.version >= (5, 2)
-        assert np.abs(ours - theirs).max() < (0.08 if is_new else 0.003), names
+        # Where smooth layers graze they are up to .0036 off in Blender 5.0.
+        most = 0.08 if is_new else 0.004 if bpy.app.version >= (5, 0) else 0.003
+        assert np.abs(ours - theirs).max() < most, names
         assert np.abs(ours.mean(0) - theirs.mean(0)).max() < (0.02 if is_new else 7e-4), names

@@ -122,7 +122,8 @@ def test_what_shines_in_first_reflections_is_not_indirect(scene, render, roughne
     look_at_stage(scene, 3.0, 0.5)
     both = render_bounced(scene, render, 512, limit=1, clamp=1.0)
     assert both[0].mean() > 1.0
-    assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.02)
+    # Facets that hand light on: - 2.0 % in Blender 5.0, whose Glossy has them from the start.
+    assert both[1].mean() == pytest.approx(both[0].mean(), rel=0.025)
 
 
 def test_brushed_metal_is_filtered_along_and_across(scene, render):
