@@ -59,8 +59,7 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
                takes_modelled = b.since(5, 0) && b.text("base") != "DISPLACED";
     // Since Blender 4 strength scales the map's slopes, before it blended the resulting normals, as
     // it does again between the displaced surface's and those of a map on the modelled one.
-    const bool scales_slopes =
-        b.since(4, 0) && !(b.moves_surface() && takes_modelled);
+    const bool scales_slopes = b.since(4, 0) && !(b.moves_surface() && takes_modelled);
     const bool has_unit_normals = b.since(5, 1);
     const VectorSource shown = b.shading_normal();
     b.add_step(
