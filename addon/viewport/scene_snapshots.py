@@ -8,7 +8,6 @@ import bpy
 from .. import passes
 from ..export import PersistentState
 from ..export.base.report import ExportError, Report
-from ..export.base.updates import read_updates
 from ..export.scene.shutter import is_blurred, scene_shutter
 from ..export.shading.image import PaintedPixels
 from . import scene_reading
@@ -53,12 +52,11 @@ class SceneSnapshots:
 
     def note(self, depsgraph):
         """What Blender tells of an edit, before the next reading."""
-        self._state.note(depsgraph)
+        updates = self._state.note(depsgraph)
         if depsgraph.id_type_updated("IMAGE"):
             self._painted.forget()
-        self._paths_may_differ |= any(
-            _can_change_paths(*update) for update in read_updates(depsgraph)
-        )
+        if not self._paths_may_differ:
+            self._paths_may_differ = any(_can_change_paths(*update) for update in updates)
 
     def forget(self):
         """Addresses may mean something else now."""

@@ -7,7 +7,8 @@ dangling reference.
 
 
 def read_updates(depsgraph):
-    """[(evaluated ID, whether it moved, whether its geometry changed, whether its looks did)] of the last evaluation.
+    """[(evaluated ID, whether it moved, whether its geometry changed, whether its looks did)] of the last evaluation,
+    read once: each look at them costs a microsecond a thing.
 
     Blender 5.3 says of an object without modifiers that its geometry changed, too, where a material did that it
     wears: then its data looks otherwise and is of the same form.  That is asked of meshes alone, and not of those
@@ -48,11 +49,11 @@ class Touched:
         self.otherwise = set()  # objects of which something else changed
         self.collections = False
 
-    def add(self, depsgraph):
-        """What the last evaluation touched."""
+    def add(self, updates):
+        """What an evaluation touched, of `read_updates`."""
         import bpy
 
-        for thing, moved, formed, _ in read_updates(depsgraph):
+        for thing, moved, formed, _ in updates:
             pointer = thing.original.as_pointer()
             if moved:
                 self.moved.add(pointer)
@@ -83,19 +84,13 @@ def object_names():
     return bpy.data.objects.keys()
 
 
-def last_updates(depsgraph):
-    """[(evaluated ID, whether it moved, whether its geometry changed)] of the last evaluation, read once: each look
-    at them costs a microsecond a thing."""
-    return [update[:3] for update in read_updates(depsgraph)]
-
-
 def lights_changed(updates):
     """Whether the last step touched any light or nodes."""
     from bpy.types import Light, NodeTree
 
-    return any(isinstance(thing, (Light, NodeTree)) for thing, _, _ in updates)
+    return any(isinstance(thing, (Light, NodeTree)) for thing, *_ in updates)
 
 
 def changed_geometry(updates):
     """Addresses of the original datablocks whose geometry the last step touched."""
-    return {thing.original.as_pointer() for thing, _, formed in updates if formed}
+    return {thing.original.as_pointer() for thing, _, formed, _ in updates if formed}

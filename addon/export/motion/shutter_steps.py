@@ -5,7 +5,7 @@ import numpy as np
 
 from ..base.report import poll
 from ..base.transforms import is_finite
-from ..base.updates import changed_geometry, last_updates, lights_changed, originals
+from ..base.updates import changed_geometry, lights_changed, originals, read_updates
 from ..geometry.mesh import whole_mesh
 from ..geometry.subdivision import cage_mesh, has_cage
 from ..scene.depsgraph import visit
@@ -79,10 +79,10 @@ class ShutterSteps:
         self._report_gone()
         self.ticks.append(tick)
         self._read_camera(tick)  # what its lens does is no change of place or geometry
-        updates = last_updates(self._scene.depsgraph) if knows_updates else None
+        updates = read_updates(self._scene.depsgraph) if knows_updates else None
         self._read_energies(tick, updates)
         self._velocities.note(tick, self._scene.depsgraph)
-        if updates is None or any(moved or formed for _, moved, formed in updates):
+        if updates is None or any(moved or formed for _, moved, formed, _ in updates):
             changes = self._plain.changes(updates) if knows_updates else None
             if knows_updates:
                 self._changed |= changed_geometry(updates)

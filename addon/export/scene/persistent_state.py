@@ -11,7 +11,7 @@ names and copied arrays are kept: no reference into Blender's memory outlives a 
 import numpy as np
 
 from ..base.transforms import from_matrix
-from ..base.updates import Touched, object_names, originals
+from ..base.updates import Touched, object_names, originals, read_updates
 from ..geometry.attributes import requested_names
 from ..geometry.geometry_source import read_source
 from ..geometry.subdivision import simplify_level
@@ -28,12 +28,14 @@ class PersistentState:
 
     def note(self, depsgraph):
         """After every evaluation of the depsgraph within a frame: what moved then may not stand where it
-        stood before."""
-        self._touched.add(depsgraph)
+        stood before.  Returns what `read_updates` has found."""
+        updates = read_updates(depsgraph)
+        self._touched.add(updates)
+        return updates
 
     def scene_objects(self, depsgraph, report, check_cancel):
         """SceneObjects of the frame at which the depsgraph stands.  They are kept when `keep` is called."""
-        self._touched.add(depsgraph)
+        self.note(depsgraph)
         before, touched, settings = self._scene_objects, self._touched, self._settings
         self._forget()
         self._settings = _settings(depsgraph)

@@ -68,14 +68,14 @@ class PlainObjects:
         """Changes of the last step, or None where only a walk can tell.
 
         Args:
-            updates: of `last_updates`.
+            updates: of `read_updates`.
         """
         from bpy.types import Collection, Object
 
         if object_names() != self.names:
             return None
         found = Changes()
-        for thing, moved, formed in updates:
+        for thing, moved, formed, _ in updates:
             if not (moved or formed):
                 continue
             if isinstance(thing, Collection):

@@ -195,11 +195,21 @@ void add_first_subsurface(NodeBuilder& b, SurfaceBuilder& surface, const Common&
         scaled(b, diffuse.weight, b.map<float>([](float there) { return 1.0f - there; }, is_there));
 }
 
-/// Returns what is left to diffuse.  `ior`: of the specular layer.
+/// Returns what is left to diffuse, whose weight is not known before.  `ior`: of the specular
+/// layer.
 FloatSource add_second_subsurface(NodeBuilder& b, SurfaceBuilder& surface, const Common& c,
-                                  const FloatSource& ior, const VectorSource& weight) {
+                                  const FloatSource& ior, const VectorSource& weight,
+                                  LobeSource diffuse) {
     const FloatSource amount = b.map<float>(saturate, b.number("Subsurface Weight"));
     if (amount.is(0.0f)) return {-1, 1.0f};
+    const FloatSource rest = b.map<float>([](float s) { return 1.0f - s; }, amount);
+    if (c.is_thin) {
+        if (diffuse.has_color)
+            b.warn("Diffuse Roughness of what a Thin Wall lets through is not supported; it is 0");
+        diffuse.weight = scaled(b, product(b, c.base_color, weight), amount);
+        add_thin_subsurface(b, surface, diffuse, b.number("Subsurface Anisotropy"));
+        return rest;
+    }
     SubsurfaceSource lobe = subsurface_of(b, c, b.number("Subsurface Scale", 0.05f));
     lobe.albedo =
         b.map<Vec3f>([](const Vec3f& base) { return glm::min(base, kOne); }, c.base_color);
@@ -207,7 +217,7 @@ FloatSource add_second_subsurface(NodeBuilder& b, SurfaceBuilder& surface, const
     lobe.weight = scaled(b, product(b, lobe.albedo, weight), amount);
     set_subsurface_method(b, lobe, "subsurface_method");
     surface.add_subsurface(lobe);
-    return b.map<float>([](float s) { return 1.0f - s; }, amount);
+    return rest;
 }
 
 void add_first_generation(NodeBuilder& b, SurfaceBuilder& surface, const Common& c) {
@@ -357,18 +367,8 @@ void add_second_generation(NodeBuilder& b, SurfaceBuilder& surface, Common c) {
     diffuse.has_color = !diffuse.roughness.is(0.0f);
     diffuse.deepens_color = !b.since(5, 3);
     diffuse.f0 = c.base_color;
-    const VectorSource colored = product(b, c.base_color, reached);
-    if (c.is_thin) {
-        const FloatSource amount = b.map<float>(saturate, b.number("Subsurface Weight"));
-        if (!amount.is(0.0f) && diffuse.has_color)
-            b.warn("Diffuse Roughness of what a Thin Wall lets through is not supported; it is 0");
-        diffuse.weight = scaled(b, colored, amount);
-        add_thin_subsurface(b, surface, diffuse, b.number("Subsurface Anisotropy"));
-        diffuse.weight = scaled(b, colored, b.map<float>([](float s) { return 1.0f - s; }, amount));
-    } else {
-        diffuse.weight =
-            scaled(b, colored, add_second_subsurface(b, surface, c, specular.ior, reached));
-    }
+    diffuse.weight = scaled(b, product(b, c.base_color, reached),
+                            add_second_subsurface(b, surface, c, specular.ior, reached, diffuse));
     surface.add_lobe(diffuse);
 }
 

@@ -27,26 +27,24 @@ Vec3f absorbed(const Vec3f& tint, float cosine, float ior) {
 VectorSource let_through(NodeBuilder& b, const LobeSource& coat, const FloatSource& amount) {
     const bool covers = b.since(5, 3), is_smooth = coat.smooth_color;
     const bool multiscatter = coat.multiscatter && !covers;
-    const VectorSource albedo = b.map<Vec3f>(
+    const FloatSource albedo = b.map<float>(
         [is_smooth, multiscatter](float ior, float roughness, const Vec3f& n, const Vec3f& view) {
             const float cosine = glm::dot(n, view);
-            return is_smooth ? Vec3f(fresnel_dielectric(cosine, ior))
-                             : layer_albedo(Vec3f(f0_from_ior(ior)), ior, roughness, cosine,
-                                            multiscatter);
+            if (is_smooth) return fresnel_dielectric(cosine, ior);
+            return layer_albedo(Vec3f(f0_from_ior(ior)), ior, roughness, cosine, multiscatter).x;
         },
         coat.ior, coat.roughness, coat.normal, b.view());
     const VectorSource passed = b.map<Vec3f>(
-        [](float weight, const Vec3f& a) { return Vec3f(saturate(1.0f - weight * a.x)); }, amount,
-        albedo);
+        [](float weight, float a) { return Vec3f(saturate(1.0f - weight * a)); }, amount, albedo);
     const VectorSource tint = b.map<Vec3f>([](const Vec3f& c) { return glm::max(c, Vec3f(0.0f)); },
                                            b.color("Coat Tint", kOne));
     if (tint.is(kOne)) return passed;
     return b.map<Vec3f>(
-        [covers](const Vec3f& light, const Vec3f& a, const Vec3f& c, float weight, float ior,
+        [covers](const Vec3f& light, float a, const Vec3f& c, float weight, float ior,
                  const Vec3f& n, const Vec3f& view) {
             const Vec3f colored = absorbed(c, glm::dot(n, view), ior);
             if (!covers) return light * (kOne + (colored - kOne) * weight);
-            return glm::max(kOne + (colored * (1.0f - a.x) - kOne) * weight, Vec3f(0.0f));
+            return glm::max(kOne + (colored * (1.0f - a) - kOne) * weight, Vec3f(0.0f));
         },
         passed, albedo, tint, amount, coat.ior, coat.normal, b.view());
 }

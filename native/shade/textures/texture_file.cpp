@@ -183,7 +183,6 @@ bool TextureFile::read_rows(int begin, int count, std::byte* out) {
             : m_input->read_scanlines(0, 0, top, top + count, m_spec.z, 0, m_channels, raw_type(),
                                       raw);
     if (complete) {
-        if (m_associate) associate(raw, texels);
         convert(raw, texels, out);
     } else {
         m_header.error = m_input->geterror();
@@ -205,7 +204,6 @@ bool TextureFile::read_tile(int level, int across, int down, std::byte* out) {
         m_header.error = m_input->geterror();
         return false;
     }
-    if (m_associate) associate(raw, texels);
     convert(raw, texels, out);
     return true;
 }
@@ -229,8 +227,9 @@ void TextureFile::associate(void* raw, std::size_t count) const {
         multiply(static_cast<float*>(raw), [](float x, float a) { return x * a; });
 }
 
-/// From the file's channels and colour space to texels.
-void TextureFile::convert(const void* raw, std::size_t count, std::byte* out) const {
+/// From the file's channels, alpha and colour space to texels.
+void TextureFile::convert(void* raw, std::size_t count, std::byte* out) const {
+    if (m_associate) associate(raw, count);
     if (m_raw_type == TexelType::Byte && m_as_it_is) {
         const auto* from = static_cast<const std::uint8_t*>(raw);
         auto* to = reinterpret_cast<std::uint8_t*>(out);

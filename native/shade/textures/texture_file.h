@@ -53,7 +53,7 @@ class TextureFile {
     bool check(const OIIO::ImageSpec& spec);
     void find_levels();
     void associate(void* raw, std::size_t count) const;
-    void convert(const void* raw, std::size_t count, std::byte* out) const;
+    void convert(void* raw, std::size_t count, std::byte* out) const;
     void* raw_memory(std::size_t texels);
     OIIO::TypeDesc raw_type() const;
 
