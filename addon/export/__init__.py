@@ -142,6 +142,8 @@ def export_frame(
     report_occlusion(scene, _evaluated_world(depsgraph), report)
     report_transparent_glass(scene, report)
     report_volume_bounces(scene, settings, (*materials, world), report)
+    images = _each_once(seen.images + world_images + list(lamp_images.values()))
+    images, colors = _in_color_spaces(images, report)
     snapshot = Snapshot(
         options=options,
         camera=camera_at_frame,
@@ -151,7 +153,8 @@ def export_frame(
         ],
         instances=replace(instances),
         materials=materials,
-        images=_each_once(seen.images + world_images + list(lamp_images.values())),
+        images=images,
+        **colors,
         lights=[record for _, record in lights],
         world=world,
     )
@@ -165,6 +168,15 @@ def export_frame(
 
 def _each_once(images):
     return list({image["name"]: image for image in images}.values())
+
+
+def _in_color_spaces(images, report):
+    """(the images, what else the snapshot says of colours)."""
+    from .shading.color_space import in_color_spaces
+    from .shading.working_space import working_space
+
+    images, spaces = in_color_spaces(images, report)
+    return images, {"color_spaces": spaces, "working_space": working_space()}
 
 
 def _render_camera(engine, scene):

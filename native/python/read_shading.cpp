@@ -74,22 +74,6 @@ void read_graph(const Record& r, NodeGraph& graph) {
     }
 }
 
-void read_image(const Record& r, Image& image) {
-    image.path = r.text("path", "");
-    image.colorspace = r.text("colorspace", "sRGB");
-    image.alpha_mode = r.text("alpha_mode", "STRAIGHT");
-    const auto take = [&](const auto& array, auto& texels) {
-        image.height = static_cast<int>(array.shape(0));
-        image.width = static_cast<int>(array.shape(1));
-        texels.assign(array.data(), array.data() + array.size());
-    };
-    if (r.has("pixels")) take(r.array<float>("pixels", {-1, -1, 4}), image.pixels);
-    if (r.has("bytes")) {
-        if (!image.pixels.empty()) r.fail("has both 'pixels' and 'bytes'");
-        take(r.array<std::uint8_t>("bytes", {-1, -1, 4}), image.bytes);
-    }
-}
-
 namespace {
 
 /// A bit of the masks of instances, or -1.

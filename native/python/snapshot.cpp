@@ -210,7 +210,11 @@ std::shared_ptr<Scene> read_scene(const py::dict& snapshot) {
         m.holdout = r.boolean("holdout", false);
         read_graph(r, m.graph);
     });
-    read_list("images", "image", scene->images, read_image);
+    const ColorSpaces spaces = read_color_spaces(root);
+    read_list("images", "image", scene->images,
+              [&](const Record& r, Image& image) { read_image(r, spaces, image); });
+    if (root.has("working_space"))
+        read_working_space(root.record("working_space"), scene->working_space);
     read_list("lights", "light", scene->lights, read_light);
     if (root.has("world")) {
         const Record world = root.record("world");

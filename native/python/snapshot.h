@@ -74,7 +74,13 @@ void read_graph(const Record& record, NodeGraph& graph);
 void read_light(const Record& record, Light& light);
 /// Light::most_bounces, of a world too.
 int read_most_bounces(const Record& record);
-void read_image(const Record& record, Image& image);
+
+/// By name.
+using ColorSpaces = std::map<std::string, std::shared_ptr<const ColorSpace>>;
+ColorSpaces read_color_spaces(const Record& root);
+void read_working_space(const Record& record, WorkingSpace& space);
+/// @param spaces  those that are not plain (scene/color_space.h).
+void read_image(const Record& record, const ColorSpaces& spaces, Image& image);
 std::shared_ptr<Scene> read_scene(const py::dict& snapshot);
 
 void bind_errors(py::module_& module);

@@ -5,11 +5,13 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "math/vec.h"
+#include "scene/color_space.h"
 
 namespace granita {
 
@@ -85,16 +87,20 @@ struct Material {
 /// pixels, as numbers or as bytes.
 struct Image {
     std::string name;
-    std::string path;                 ///< absolute; empty where there is no file
-    std::string colorspace = "sRGB";  ///< Blender's colorspace_settings.name
+    std::string path;  ///< absolute; empty where there is no file
+    std::shared_ptr<const ColorSpace> space = plain_color_space("sRGB");  ///< of a file or bytes
     /// CHANNEL_PACKED: no alpha of the colour; NONE: ignored; ASSOCIATED: colour is multiplied by
     /// it already; UNASSOCIATED: not yet; STRAIGHT, PREMUL: as the file says, or given pixels are.
     std::string alpha_mode = "STRAIGHT";
     int width = 0, height = 0;
     std::vector<float> pixels;  ///< [height][width][4], lower-left first, scene-linear, or empty
-    std::vector<std::uint8_t> bytes;  ///< the same, colour encoded as sRGB, or empty
+    std::vector<std::uint8_t> bytes;  ///< the same, in its space, or empty
     bool is_file() const { return pixels.empty() && bytes.empty(); }
-    bool operator==(const Image&) const = default;
+    /// Its colours are products with alpha.
+    bool has_products() const {
+        return alpha_mode != "NONE" && alpha_mode != "CHANNEL_PACKED" && !space->is_data;
+    }
+    bool operator==(const Image& other) const;
 };
 
 }  // namespace granita

@@ -2,8 +2,16 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace granita {
+
+bool Image::operator==(const Image& other) const {
+    const auto rest = [](const Image& i) {
+        return std::tie(i.name, i.path, i.alpha_mode, i.width, i.height, i.pixels, i.bytes);
+    };
+    return (space == other.space || *space == *other.space) && rest(*this) == rest(other);
+}
 
 bool Scene::moves() const {
     return camera.world_from_camera.size() > 1 || has_lifespans() ||

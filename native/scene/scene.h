@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/camera.h"
+#include "scene/color_space.h"
 #include "scene/geometry_list.h"
 #include "scene/lifespan.h"
 #include "scene/light.h"
@@ -66,6 +67,7 @@ struct Scene {
     std::map<std::string, std::vector<Vec4f>> instance_values;
     std::vector<Material> materials;
     std::vector<Image> images;
+    WorkingSpace working_space;
     std::vector<Light> lights;
     World world;
     std::uint64_t receives_in_volumes = ~0ULL;  ///< as Instance::receives, of what fills the world

@@ -107,7 +107,7 @@ SceneChanges::SceneChanges(const Scene& before, const Scene& now)
         note(!materials[m], part::kMaterials);
         note(before.materials[m].holdout == now.materials[m].holdout, part::kRest);
     }
-    if (before.images == now.images) return;
+    if (before.images == now.images && before.working_space == now.working_space) return;
     // Of an image it is not known here who shows it: the world may.
     parts |= part::kMaterials | part::kLights;
     materials.assign(materials.size(), true);

@@ -113,7 +113,7 @@ def world(varies=False, told=False):
 
 def image_world(snapshot):
     """Sends out 1 by a texture, whose means lighting looks up."""
-    image = {"name": "I", "path": "", "colorspace": "Linear", "alpha_mode": "STRAIGHT"}
+    image = {"name": "I", "path": "", "colorspace": "scene_linear", "alpha_mode": "STRAIGHT"}
     snapshot["images"] = [image | {"pixels": np.ones((8, 16, 4), np.float32)}]
     nodes = [
         {"type": "ShaderNodeTexCoord", "inputs": {}},

@@ -110,7 +110,7 @@ def one_bright_side(snapshot):
     level[1:3, 3:9] = 4.0
     pixels = np.ones((8, 16, 4), np.float32)
     pixels[..., :3] = level[..., None]
-    image = {"name": "I", "path": "", "colorspace": "Linear", "alpha_mode": "STRAIGHT"}
+    image = {"name": "I", "path": "", "colorspace": "scene_linear", "alpha_mode": "STRAIGHT"}
     snapshot["images"] = [image | {"pixels": pixels}]
     snapshot["world"] = {
         "name": "World",

@@ -189,7 +189,7 @@ def test_a_picture_by_its_texels():
     pixels_ = np.ones((4, 4, 4), np.float32)
     pixels_[..., :3] = texels[..., None]
     snapshot = stage(light_samples=256)
-    image = {"name": "I", "path": "", "colorspace": "Linear", "alpha_mode": "STRAIGHT"}
+    image = {"name": "I", "path": "", "colorspace": "scene_linear", "alpha_mode": "STRAIGHT"}
     snapshot["images"] = [image | {"pixels": pixels_}]
     nodes = [
         {"type": "ShaderNodeTexCoord", "inputs": {}},

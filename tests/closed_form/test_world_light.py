@@ -24,7 +24,7 @@ def stage(nodes, image):
         {
             "name": "I",
             "path": "",
-            "colorspace": "Linear",
+            "colorspace": "scene_linear",
             "alpha_mode": "STRAIGHT",
             "pixels": pixels,
         }

@@ -103,6 +103,8 @@ class Snapshot:
     instances: Instances
     materials: list  # of dict
     images: list  # of dict
+    color_spaces: list  # of dict
+    working_space: dict | None
     lights: list  # of dict
     world: dict
 

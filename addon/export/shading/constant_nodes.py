@@ -6,6 +6,7 @@ import operator
 
 from .node_links import Scope, trace
 from .spectrum import blackbody
+from .working_space import luminance, scene_color
 
 _MATH = {
     "ADD": operator.add,
@@ -46,7 +47,7 @@ def _value(source):
         return min(max(result, 0.0), 1.0) if node.use_clamp else result
     if node.type == "BLACKBODY":
         temperature = as_number(_value(trace(source.scope, node.inputs[0])))
-        return None if temperature is None else list(blackbody(temperature))
+        return None if temperature is None else scene_color(blackbody(temperature)).tolist()
     if node.type == "LIGHT_FALLOFF" and source.socket.name == "Quadratic":
         # Without smoothing this is what light does anyway.
         smooth = _value(trace(source.scope, node.inputs["Smooth"]))
@@ -58,5 +59,5 @@ def _value(source):
 def as_number(value):
     """As Cycles converts a colour to a number."""
     if isinstance(value, list):
-        return 0.2126729 * value[0] + 0.7151522 * value[1] + 0.0721750 * value[2]
+        return float(luminance() @ value)
     return value

@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ..base.regular_file import is_no_file, open_regular_file
+from .working_space import scene_from_rec709
 
 # What files begin with that Blender reads and Granita's readers do not: DPX, Cineon, SGI, Photoshop, DDS.
 _BLENDERS_OWN = (
@@ -21,10 +22,6 @@ _BLENDERS_OWN = (
     b"8BPS",
     b"DDS ",
 )
-# Byte images in these are handed over as they are, in others decoded from sRGB.
-_LINEAR_SPACES = {"Non-Color", "Raw", "Linear", "Linear Rec.709", "Linear BT.709"}
-# What is in these is no colour: alpha counts for nothing.
-_DATA_SPACES = {"Non-Color", "Raw"}
 # Pixels that are decoded at a time.
 _STRIP = 1 << 14
 
@@ -99,6 +96,11 @@ def _empty_record(image, name):
     return {"name": name, "path": "", "colorspace": space, "alpha_mode": _alpha_mode(image)}
 
 
+def is_data(image):
+    """Its numbers are no colours: alpha counts for nothing."""
+    return image.colorspace_settings.is_data
+
+
 def _alpha_mode(image):
     """Until 5.1 Cycles goes by the file, whether its image is said to be straight or premultiplied."""
     told = {} if bpy.app.version < (5, 1) else {"STRAIGHT": "UNASSOCIATED", "PREMUL": "ASSOCIATED"}
@@ -119,25 +121,21 @@ def _record(image, name, path, report):
         record["path"] = _packed_file(image, image.packed_file) or _file_path(image, label, report)
         if _is_for_blender(record["path"]) and (pixels := _pixels(image)) is not None:
             record["path"] = ""
-            _hand_over(record, pixels, image, label, report)
+            _hand_over(record, pixels, image)
     else:
         pixels = _generated_pixels(image)
         if pixels is None:
             report(label, f"its source {image.source} has no pixels: shown magenta")
             record["path"] = image.filepath or image.name_full
         else:
-            _hand_over(record, pixels, image, label, report)
+            _hand_over(record, pixels, image)
     return record
 
 
-def _hand_over(record, pixels, image, label, report):
-    space = record["colorspace"]
-    if image.is_float:
-        if space not in _DATA_SPACES:
-            record["colorspace"] = "scene_linear"
-    elif space != "sRGB" and space not in _LINEAR_SPACES:
-        report(label, f"its colour space '{space}' is read as sRGB")
-    record["pixels" if pixels.dtype == np.float32 else "bytes"] = pixels
+def _hand_over(record, pixels, image):
+    if image.is_float and not is_data(image):
+        record["colorspace"] = "scene_linear"
+    record["pixels" if image.is_float else "bytes"] = pixels
 
 
 def _is_in_a_file(image):
@@ -227,7 +225,8 @@ class PaintedPixels:
 
     def of(self, image):
         space, alpha = image.colorspace_settings.name, _alpha_mode(image)
-        key = image.name_full, space, alpha, image.is_float, *image.size
+        colors = scene_from_rec709().tobytes()  # floats are scene-linear
+        key = image.name_full, space, alpha, image.is_float, colors, *image.size
         if key in self._pixels:
             self.was_taken = True
         else:
@@ -247,7 +246,7 @@ def _generated_pixels(image):
 
 
 def _pixels(image):
-    """float32 [h, w, 4], lower left first, scene-linear, alpha associated, or uint8, colour encoded as sRGB: a
+    """float32 [h, w, 4], lower left first, scene-linear, alpha associated, or uint8 in the image's colour space: a
     quarter of the memory, and nothing is decoded to be encoded again.  None where Blender has none.
     """
     width, height = image.size
@@ -258,16 +257,13 @@ def _pixels(image):
     image.pixels.foreach_get(pixels.reshape(-1))
     if count != 4:
         pixels = _with_four_channels(pixels)
-    space, alpha_mode = image.colorspace_settings.name, _alpha_mode(image)
-    associates = _associates(space, alpha_mode)
+    alpha_mode = _alpha_mode(image)
+    associates = not is_data(image) and alpha_mode not in ("CHANNEL_PACKED", "NONE", "ASSOCIATED")
     if image.is_float:  # multiplied already, but where straight is what they are said to be
         if associates and alpha_mode == "UNASSOCIATED":
             pixels[..., :3] *= pixels[..., 3:]
         return pixels
-    if space == "sRGB":
-        return _bytes(pixels, associates)
-    _decode_bytes(pixels, space, associates)
-    return pixels
+    return _bytes(pixels, associates)
 
 
 def _with_four_channels(values):
@@ -279,20 +275,10 @@ def _with_four_channels(values):
     return pixels
 
 
-def _associates(space, alpha_mode):
-    return space not in _DATA_SPACES and alpha_mode not in ("CHANNEL_PACKED", "NONE", "ASSOCIATED")
-
-
 def _strips(pixels):
     """Rows that stay in the processor's cache: an artist waits for what is done to them at each frame."""
     rows = max(1, _STRIP // pixels.shape[1])
     return (slice(begin, begin + rows) for begin in range(0, len(pixels), rows))
-
-
-def _associate(color, alpha):
-    """Colour times 255 by alpha, in whole bytes, cut off, as in Cycles."""
-    color *= alpha
-    color += np.float32(1e-3)
 
 
 def _bytes(pixels, associates):
@@ -301,30 +287,10 @@ def _bytes(pixels, associates):
     for rows in _strips(pixels):
         strip = pixels[rows] * np.float32(255)
         if associates:
-            _associate(strip[..., :3], pixels[rows, :, 3:])
-            strip[..., 3] += np.float32(0.5)
+            # Whole bytes, cut off, as in Cycles.
+            strip[..., :3] *= pixels[rows, :, 3:]
+            strip += np.array([1e-3, 1e-3, 1e-3, 0.5], dtype=np.float32)
         else:
             strip += np.float32(0.5)
         found[rows] = strip
     return found
-
-
-def _decode_bytes(pixels, space, associates):
-    """Blender gives the pixels of 8-bit images in their own space, alpha straight; of others as we want them."""
-    if space in _LINEAR_SPACES and not associates:
-        return
-    decoded = np.arange(256, dtype=np.float32) / 255
-    if space not in _LINEAR_SPACES:
-        decoded = _linear_from_srgb(decoded)
-    for rows in _strips(pixels):
-        strip = pixels[rows]
-        color = strip[..., :3] * np.float32(255)
-        if associates:
-            _associate(color, strip[..., 3:])
-        else:
-            color += np.float32(0.5)
-        strip[..., :3] = decoded.take(color.astype(np.uint8))
-
-
-def _linear_from_srgb(x):
-    return np.where(x < 0.04045, np.maximum(x, 0) / 12.92, ((np.abs(x) + 0.055) / 1.055) ** 2.4)

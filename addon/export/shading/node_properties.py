@@ -6,8 +6,9 @@ from functools import cache
 import numpy as np
 
 from .ies import ies_table
-from .image import image_name, image_tiles
+from .image import image_name, image_tiles, is_data
 from .spectrum import TEMPERATURES, WAVELENGTHS, blackbody, monochromatic
+from .working_space import scene_color
 
 # Cycles tabulates ramps and curves with as many entries; steps then fall on the same places.
 TABLE_SIZE = 256
@@ -118,15 +119,16 @@ def _direction(node, *_):
 
 
 def _blackbody(_node, *_):
-    low, high = TEMPERATURES
-    table = np.array([blackbody(x) for x in np.linspace(low, high, 512)], dtype=np.float32)
-    return {"spectrum": table.ravel(), "low": low, "high": high}
+    return _spectrum(blackbody, TEMPERATURES, 512)
 
 
 def _wavelength(_node, *_):
-    low, high = WAVELENGTHS
-    table = np.array([monochromatic(x) for x in np.linspace(low, high, 401)], dtype=np.float32)
-    return {"spectrum": table.ravel(), "low": low, "high": high}
+    return _spectrum(monochromatic, WAVELENGTHS, 401)
+
+
+def _spectrum(color_of, ends, count):
+    table = scene_color([color_of(x) for x in np.linspace(*ends, count)]).astype(np.float32)
+    return {"spectrum": table.ravel(), "low": ends[0], "high": ends[1]}
 
 
 def _curves(node, *_):
@@ -161,7 +163,7 @@ def _image_texture(node, owner, images, report):
     record = images[found["image"]]
     alpha = next((socket for socket in node.outputs if socket.identifier == "Alpha"), None)
     packed = record["alpha_mode"] in ("CHANNEL_PACKED", "NONE")
-    data = record["colorspace"] in ("Non-Color", "Raw")
+    data = is_data(node.image)
     found["unassociate_alpha"] = float(bool(alpha and alpha.is_linked and not packed and not data))
     return found
 

@@ -40,8 +40,9 @@ def blackbody(temperature):
 
 @lru_cache(maxsize=4096)
 def monochromatic(wavelength):
-    """(r, g, b) of light of one wavelength, nanometres; black beyond WAVELENGTHS."""
+    """(r, g, b) of light of one wavelength, nanometres; black beyond WAVELENGTHS.  Negative where a screen cannot
+    show it."""
     if not WAVELENGTHS[0] < wavelength < WAVELENGTHS[1]:
         return (0.0, 0.0, 0.0)
     rgb = _RGB_FROM_XYZ @ observer.xyz(np.array([float(wavelength)]))[:, 0]
-    return tuple(np.maximum(rgb * _MONOCHROMATIC_SCALE, 0.0).tolist())
+    return tuple((rgb * _MONOCHROMATIC_SCALE).tolist())

@@ -130,7 +130,7 @@ struct Lobe {
     std::vector<float> aspect;     ///< [n] alpha / aspect along it, alpha * aspect across
     std::vector<std::vector<float>> more;  ///< [][n] what its kind asks for beside; of microfacets
                                            ///< a thin film's thickness and index, if there is one
-    FilmSpectrum film_spectrum = FilmSpectrum::Observed;
+    const FilmSpectrum* film_spectrum = nullptr;
     std::vector<Vec3f> f0, f90;  ///< [n] FresnelKind::None and diffuse lobes: f90 empty, f0 empty
                                  ///< or the lobe's colour, which energy compensation saturates
     std::vector<float> ior;  ///< [n] Dielectric and refractions: of the far side relative to the

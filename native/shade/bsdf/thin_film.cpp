@@ -5,17 +5,14 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <vector>
 
-#include "math/observer.h"
-#include "math/sampling.h"
 #include "shade/bsdf/fresnel.h"
 
 namespace granita {
 namespace {
 
 using Complex = std::complex<float>;
-using Response = std::array<Complex, 3>;  ///< a value a colour
+using Response = FilmSpectrum::Response;
 /// A value a polarisation: across the plane of incidence, in it.
 template <class T>
 using Polarised = std::array<T, 2>;
@@ -68,94 +65,9 @@ Boundary conductor_boundary(float cosine, float n, float k) {
     return b;
 }
 
-/// Fourier transforms of the colours' spectra over wave numbers, 1 for a path of 0: evenly spaced
-/// over paths.
-class Spectrum {
-  public:
-    template <class ResponseTo>
-    Spectrum(float longest, std::size_t segments, const ResponseTo& response)
-        : m_longest(longest), m_values(segments + 1) {
-        for (std::size_t i = 0; i <= segments; ++i)
-            m_values[i] = response(longest * static_cast<float>(i) / static_cast<float>(segments));
-        const Response all = m_values[0];
-        for (Response& value : m_values)
-            for (std::size_t c = 0; c < 3; ++c) value[c] /= all[c].real();
-    }
-
-    /// @param path nanometres.
-    Response at(float path) const {
-        const auto last = static_cast<float>(m_values.size() - 1);
-        const float place = std::clamp(path / m_longest, 0.0f, 1.0f) * last;
-        const std::size_t i = std::min(static_cast<std::size_t>(place), m_values.size() - 2);
-        const float t = place - static_cast<float>(i);
-        Response value;
-        for (std::size_t c = 0; c < 3; ++c)
-            value[c] = m_values[i][c] * (1.0f - t) + m_values[i + 1][c] * t;
-        return value;
-    }
-
-  private:
-    float m_longest;  ///< path, nanometres
-    std::vector<Response> m_values;
-};
-
-Response rgb_response(const Response& xyz) {
-    const Vec3f re = rgb_of_xyz(Vec3f(xyz[0].real(), xyz[1].real(), xyz[2].real()));
-    const Vec3f im = rgb_of_xyz(Vec3f(xyz[0].imag(), xyz[1].imag(), xyz[2].imag()));
-    return {Complex(re.x, im.x), Complex(re.y, im.y), Complex(re.z, im.z)};
-}
-
-/// The integral of exp(-2 pi i path / wavelength) over the observer's curves.
-Response observed(float path) {
-    constexpr int kParts = 10;  // of the observer's steps
-    Response xyz{};
-    for (std::size_t i = 0; i + 1 < kObserver[0].size(); ++i)
-        for (int part = 0; part < kParts; ++part) {
-            const float t = static_cast<float>(part) / kParts;
-            const float wavelength = 380.0f + 10.0f * (static_cast<float>(i) + t);
-            const Complex wave = std::polar(1.0f, -2.0f * kPi * path / wavelength);
-            for (std::size_t c = 0; c < 3; ++c) {
-                const auto& y = kObserver[c];
-                xyz[c] += wave * (y[i] * (1.0f - t) + y[i + 1] * t);
-            }
-        }
-    return rgb_response(xyz);
-}
-
-/// The paper's Gaussians in XYZ of light of equal energy, which is made the white of Rec. 709.
-Response fitted(float path) {
-    struct Gaussian {
-        float size, middle, variance;
-    };
-    constexpr std::array<Gaussian, 4> kGaussians{{{5.4856e-13f, 1.6810e6f, 4.3278e9f},
-                                                  {4.4201e-13f, 1.7953e6f, 9.3046e9f},
-                                                  {5.2481e-13f, 2.2084e6f, 6.6121e9f},
-                                                  {9.7470e-14f, 2.2399e6f, 4.5282e9f}}};
-    constexpr std::array<float, 3> kWhite{0.95047f, 1.0f, 1.08883f};
-    const float phase = 2.0f * kPi * path * 1e-9f;
-    Response xyz{};
-    for (std::size_t i = 0; i < kGaussians.size(); ++i) {
-        const Gaussian& g = kGaussians[i];
-        const float size = g.size * std::sqrt(2.0f * kPi * g.variance) *
-                           std::exp(-phase * phase * g.variance) / 1.0685e-7f;
-        xyz[i % 3] += kWhite[i % 3] * std::polar(size, -g.middle * phase);
-    }
-    return rgb_response(xyz);
-}
-
-const Spectrum& spectrum_of(FilmSpectrum kind) {
-    constexpr float kLongest = 60e3f / (2.0f * kPi);
-    if (kind == FilmSpectrum::Fitted) {
-        static const Spectrum kFitted(kLongest, 4096, fitted);
-        return kFitted;
-    }
-    static const Spectrum kObserved(kLongest, 511, observed);  // as fine as Cycles'
-    return kObserved;
-}
-
 /// So thin a film is no film: its index becomes the outside's.
 float index_of(const ThinFilm& film) {
-    const float least = film.spectrum == FilmSpectrum::Fitted ? 30.0f : 1.0f;
+    const float least = film.spectrum->kind() == FilmSpectrum::Kind::Fitted ? 30.0f : 1.0f;
     const float t = std::clamp(film.thickness / least, 0.0f, 1.0f);
     return 1.0f + (film.ior - 1.0f) * t * t * (3.0f - 2.0f * t);
 }
@@ -193,10 +105,10 @@ Vec3f film_reflectance(const ThinFilm& film, float cosine, const InnerBoundary& 
     const Boundary outer = dielectric_boundary(std::abs(cosine), index);
     if (reflects_all(outer)) return Vec3f(kAllReflected);
     const float path = 2.0f * index * film.thickness * outer.cosine;
-    const Spectrum& spectrum = spectrum_of(film.spectrum);
     std::array<Response, kOrders> responses;
     for (int m = 0; m < kOrders; ++m)
-        responses[static_cast<std::size_t>(m)] = spectrum.at(static_cast<float>(m + 1) * path);
+        responses[static_cast<std::size_t>(m)] =
+            film.spectrum->at(static_cast<float>(m + 1) * path);
     Vec3f color(0.0f);
     for (int c = 0; c < 3; ++c)
         color[c] = reflected(outer, inner_boundary(c, outer.cosine, index), responses,

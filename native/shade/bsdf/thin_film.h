@@ -5,19 +5,14 @@
 #pragma once
 
 #include "math/vec.h"
+#include "shade/bsdf/film_spectrum.h"
 
 namespace granita {
 
-/// How colours answer to a difference of optical paths.
-enum class FilmSpectrum {
-    Fitted,    ///< the paper's fit, as Cycles before Blender 5
-    Observed,  ///< of the observer's curves
-};
-
 struct ThinFilm {
-    float thickness = 0.0f;  ///< nanometres
-    float ior = 1.0f;        ///< relative to the outside
-    FilmSpectrum spectrum = FilmSpectrum::Observed;
+    float thickness = 0.0f;                  ///< nanometres
+    float ior = 1.0f;                        ///< relative to the outside
+    const FilmSpectrum* spectrum = nullptr;  ///< of one that is there
 
     /// Thinner ones are none.
     bool is_there() const { return thickness > 0.1f; }

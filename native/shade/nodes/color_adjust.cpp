@@ -58,7 +58,7 @@ void build_hue_saturation(NodeBuilder& b) {
 }
 
 void build_rgb_to_bw(NodeBuilder& b) {
-    b.output("Val", b.map<float>(luminance, b.color("Color")));
+    b.output("Val", b.number_of(b.color("Color")));
 }
 
 }  // namespace granita

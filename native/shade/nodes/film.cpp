@@ -10,7 +10,8 @@ FilmSource film_source(NodeBuilder& b) {
     film.thickness = b.number("Thin Film Thickness");
     film.ior = b.map<float>([](float ior) { return std::max(ior, 1e-5f); },
                             b.number("Thin Film IOR", 1.33f));
-    if (!b.since(5, 0)) film.spectrum = FilmSpectrum::Fitted;
+    const auto kind = b.since(5, 0) ? FilmSpectrum::Kind::Observed : FilmSpectrum::Kind::Fitted;
+    if (film.is_there()) film.spectrum = film_spectrum(kind, b.scene().working_space);
     return film;
 }
 

@@ -8,7 +8,7 @@ namespace granita {
 
 struct FilmSource {
     FloatSource thickness{-1, 0.0f}, ior{-1, 1.0f};  ///< as ThinFilm
-    FilmSpectrum spectrum = FilmSpectrum::Observed;
+    const FilmSpectrum* spectrum = nullptr;
 
     bool is_there() const {
         return !thickness.is_constant() || ThinFilm{thickness.constant}.is_there();

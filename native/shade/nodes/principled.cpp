@@ -265,7 +265,7 @@ void add_metal(NodeBuilder& b, SurfaceBuilder& surface, const Common& c, const V
     const auto reflectance = [](const Vec3f& v) { return glm::clamp(v, Vec3f(0.0f), kOne); };
     LobeSource metal = glossy_lobe(c);
     // Before Blender 5 metals have none.
-    if (c.film.spectrum == FilmSpectrum::Observed) cover(metal, c.film);
+    if (b.since(5, 0)) cover(metal, c.film);
     // With a white tint F82 is Schlick's.
     const bool schlick = tint.is(kOne) && metal.more.empty();
     metal.fresnel = schlick ? FresnelKind::Schlick : FresnelKind::F82Tint;

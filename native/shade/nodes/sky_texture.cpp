@@ -55,8 +55,8 @@ float dip_of_horizon(float altitude) {
     return std::acos(std::min(kEarthRadius / (kEarthRadius + altitude), 1.0f));
 }
 
-Vec3f rgb_of(const Vec3f& xyz) {
-    return glm::max(rgb_of_xyz(xyz), Vec3f(0.0f));
+Vec3f rgb_of(const WorkingSpace& colors, const Vec3f& xyz) {
+    return glm::max(colors.from_xyz(xyz), Vec3f(0.0f));
 }
 
 /// @param height 0 at the disc's lowest place, 1 at its highest.
@@ -91,6 +91,7 @@ void build_scattering(NodeBuilder& b, SkyModel model, const VectorSource& direct
     const float bottom = cut ? 0.0f : sun.elevation - half;
     const float extent = cut ? sun.elevation + half : sun.diameter;
     const auto table = sky_table(model, air);
+    const WorkingSpace colors = b.scene().working_space;
     b.output_color("Color", b.map<Vec3f>(
                                 // Not made unit, as in Cycles.
                                 [=](const Vec3f& d) {
@@ -98,10 +99,11 @@ void build_scattering(NodeBuilder& b, SkyModel model, const VectorSource& direct
                                     const float away = angle_between(d, to_sun);
                                     const Vec3f sky = table->look_up(
                                         elevation, std::atan2(d.y, d.x) - sun.azimuth);
-                                    if (away >= half || elevation < sun.horizon) return rgb_of(sky);
+                                    if (away >= half || elevation < sun.horizon)
+                                        return rgb_of(colors, sky);
                                     const Vec3f seen =
                                         disc(sun, (elevation - bottom) / extent, away);
-                                    return rgb_of(nishita ? seen : seen + sky);
+                                    return rgb_of(colors, nishita ? seen : seen + sky);
                                 },
                                 direction));
 }
@@ -115,8 +117,10 @@ Vec3f at_its_height(const Vec3f& d) {
 
 template <class Sky>
 void build_fit(NodeBuilder& b, const VectorSource& direction, const Sky& sky) {
-    b.output_color("Color",
-                   b.map<Vec3f>([sky](const Vec3f& d) { return rgb_of(sky.xyz(at_its_height(d))); },
+    b.output_color("Color", b.map<Vec3f>(
+                                [sky, colors = b.scene().working_space](const Vec3f& d) {
+                                    return rgb_of(colors, sky.xyz(at_its_height(d)));
+                                },
                                 direction));
 }
 

@@ -37,9 +37,9 @@ FloatSource NodeBuilder::number(const std::string& input, float fallback) const 
 FloatSource NodeBuilder::number_at(const std::string& input, Shift shift, float fallback) const {
     if (const NodeOutput* from = link_source(input, shift)) {
         if (from->kind == SocketKind::Number) return from->number;
-        // Cycles: a colour becomes its luminance, a vector the mean of its components.
+        // And of a vector the mean of its components.
         NodeBuilder self(*this);
-        if (from->kind == SocketKind::Color) return self.map<float>(luminance, from->vector);
+        if (from->kind == SocketKind::Color) return self.number_of(from->vector);
         return self.map<float>([](const Vec3f& v) { return (v.x + v.y + v.z) / 3.0f; },
                                from->vector);
     }

@@ -97,6 +97,12 @@ class NodeBuilder {
         return vector(input, fallback);
     }
 
+    /// Luminance, which Cycles makes of a colour where a number is asked for.
+    FloatSource number_of(const VectorSource& color) {
+        return map<float>(
+            [colors = scene().working_space](const Vec3f& c) { return colors.number(c); }, color);
+    }
+
     // Properties.
     std::string text(const std::string& property, const std::string& fallback = "") const {
         return m_node.text(property, fallback);

@@ -27,7 +27,7 @@ struct LobeSource {
     VectorSource tangent;
     FloatSource aspect;
     std::vector<FloatSource> more;  ///< as Lobe::more
-    FilmSpectrum film_spectrum = FilmSpectrum::Observed;
+    const FilmSpectrum* film_spectrum = nullptr;
 };
 
 /// As SubsurfaceLobe.

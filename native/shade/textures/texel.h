@@ -47,16 +47,6 @@ inline std::uint16_t half_from_float(float x) {
     return static_cast<std::uint16_t>(half | sign);
 }
 
-/// IEC 61966-2-1, as Cycles computes it: nothing below zero.
-inline float srgb_from_linear(float x) {
-    if (x < 0.0031308f) return x < 0.0f ? 0.0f : x * 12.92f;
-    return 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
-}
-inline float linear_from_srgb(float x) {
-    if (x < 0.04045f) return x < 0.0f ? 0.0f : x / 12.92f;
-    return std::pow((x + 0.055f) / 1.055f, 2.4f);
-}
-
 /// One texel as it is stored: bytes become 0 to 1.
 inline Vec4f stored_texel(const std::byte* at, TexelType type) {
     if (type == TexelType::Byte) {

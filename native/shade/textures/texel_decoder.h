@@ -2,6 +2,7 @@
 // How stored texels become light.
 #pragma once
 
+#include "math/srgb.h"
 #include "shade/textures/texel.h"
 
 namespace granita {

@@ -152,8 +152,6 @@ std::shared_ptr<const Texture> TextureStore::find(const std::string& name,
             owner, "cannot be read, shown magenta: " + image->path + " (" + header.error + ")");
         return texture;
     }
-    if (image->is_file() && !find_color_space(image->colorspace))
-        m_impl->report.warn(owner, "its colour space '" + image->colorspace + "' is read as sRGB");
     texture = std::make_shared<ImageTexture>(*image, header, m_impl->cache, m_impl->files,
                                              m_impl->statistics, m_impl->report, m_impl->progress);
     return texture;

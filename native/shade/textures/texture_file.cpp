@@ -25,23 +25,12 @@ constexpr std::uint64_t kMostBytesAtOnce = std::uint64_t{512} << 20;
 /// A file's own levels are used where they end in so few texels.
 constexpr int kLastLevel = 64;
 
-float finite(float x) {
-    return std::isfinite(x) ? std::clamp(x, -kLargestNumber, kLargestNumber) : 0.0f;
-}
-
 /// Of a row of tiles as texels, and of a tile as it is stored.
 std::uint64_t bytes_at_once(const OIIO::ImageSpec& spec) {
     if (spec.tile_width == 0) return 0;
     const auto row =
         static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.tile_height);
     return std::max<std::uint64_t>(row * sizeof(Vec4f), spec.tile_bytes(true));
-}
-
-/// Grey, grey and alpha, rgb, rgba and more: to rgba.
-template <class T>
-void expand(const T* from, int channels, T one, T* to) {
-    for (int k = 0; k < 3; ++k) to[k] = channels >= 3 ? from[k] : from[0];
-    to[3] = channels >= 4 ? from[3] : channels == 2 ? from[1] : one;
 }
 
 }  // namespace
@@ -63,8 +52,6 @@ bool TextureFile::open(const Image& image) {
         m_header.error = "its header is damaged";
         return false;
     }
-    m_space = find_color_space(image.colorspace).value_or(*find_color_space("sRGB"));
-    m_opaque = image.alpha_mode == "NONE";
     m_input = OIIO::ImageInput::create(format.reader);
     if (!m_input) {
         m_header.error = OIIO::geterror();
@@ -74,8 +61,9 @@ bool TextureFile::open(const Image& image) {
     // arrive associated, since 5.1 by what is said of them instead of by the file.
     OIIO::ImageSpec config;
     const std::string& alpha = image.alpha_mode;
+    const bool opaque = alpha == "NONE";
     const bool untouched =
-        m_space.is_data || m_opaque || alpha == "CHANNEL_PACKED" || alpha == "ASSOCIATED";
+        image.space->is_data || opaque || alpha == "CHANNEL_PACKED" || alpha == "ASSOCIATED";
     const bool by_us = std::string_view(format.reader) == "png" || alpha == "UNASSOCIATED";
     if (untouched || by_us) config.attribute("oiio:UnassociatedAlpha", 1);
     if (!m_input->open(image.path, m_spec, config)) {
@@ -86,18 +74,19 @@ bool TextureFile::open(const Image& image) {
     m_channels = std::min(m_spec.nchannels, 4);
     const bool has_alpha = m_channels == 2 || m_channels == 4;
     m_associate = by_us && !untouched && has_alpha;
-    m_is_associated = has_alpha && !m_opaque && alpha != "CHANNEL_PACKED";
     m_raw_type = m_spec.format == OIIO::TypeUInt8  ? TexelType::Byte
                  : m_spec.format == OIIO::TypeHalf ? TexelType::Half
                                                    : TexelType::Float;
+    m_converter = TexelConverter({.space = image.space,
+                                  .type = m_raw_type,
+                                  .channels = m_channels,
+                                  .opaque = opaque,
+                                  .is_associated = has_alpha && image.has_products()});
     m_header.width = m_spec.width;
     m_header.height = m_spec.height;
-    m_header.has_alpha = !m_opaque && (m_channels == 2 || m_channels == 4);
-    m_header.encoded = m_space.is_plain() && m_space.curve == ColorSpace::Curve::Srgb;
-    // Other spaces than sRGB's are made linear, which bytes have not room for.
-    m_as_it_is =
-        m_header.encoded || (m_space.is_plain() && m_space.curve == ColorSpace::Curve::Linear);
-    m_header.type = m_raw_type == TexelType::Byte && !m_as_it_is ? TexelType::Half : m_raw_type;
+    m_header.has_alpha = has_alpha && !opaque;
+    m_header.encoded = m_converter.encoded();
+    m_header.type = m_converter.type();
     if (m_spec.tile_width > 0) m_strip = m_spec.tile_height;
     find_levels();
     return true;
@@ -227,47 +216,9 @@ void TextureFile::associate(void* raw, std::size_t count) const {
         multiply(static_cast<float*>(raw), [](float x, float a) { return x * a; });
 }
 
-/// From the file's channels, alpha and colour space to texels.
 void TextureFile::convert(void* raw, std::size_t count, std::byte* out) const {
     if (m_associate) associate(raw, count);
-    if (m_raw_type == TexelType::Byte && m_as_it_is) {
-        const auto* from = static_cast<const std::uint8_t*>(raw);
-        auto* to = reinterpret_cast<std::uint8_t*>(out);
-        for (std::size_t i = 0; i < count; ++i, from += m_channels, to += 4) {
-            expand<std::uint8_t>(from, m_channels, 255, to);
-            if (m_opaque) to[3] = 255;
-        }
-        return;
-    }
-    const std::size_t texel = byte_size(m_header.type);
-    for (std::size_t i = 0; i < count; ++i, out += texel) {
-        Vec4f color;
-        if (m_raw_type == TexelType::Byte) {
-            std::uint8_t c[4];
-            expand<std::uint8_t>(static_cast<const std::uint8_t*>(raw) + i * m_channels, m_channels,
-                                 255, c);
-            color = Vec4f(c[0], c[1], c[2], c[3]) / 255.0f;
-        } else if (m_raw_type == TexelType::Half) {
-            std::uint16_t c[4];
-            expand<std::uint16_t>(static_cast<const std::uint16_t*>(raw) + i * m_channels,
-                                  m_channels, half_from_float(1.0f), c);
-            // Beyond the exponent of the largest number are infinities and what is none.
-            const auto number = [](std::uint16_t h) {
-                return (h & 0x7c00u) == 0x7c00u ? 0.0f : float_from_half(h);
-            };
-            color = Vec4f(number(c[0]), number(c[1]), number(c[2]), number(c[3]));
-        } else {
-            expand(static_cast<const float*>(raw) + i * m_channels, m_channels, 1.0f, &color.x);
-        }
-        if (!m_as_it_is) {
-            // Curves are those of what was painted: what is associated is divided for them.
-            const float alpha = m_is_associated && color.w > 0.0f ? color.w : 1.0f;
-            color = Vec4f(m_space.linear(Vec3f(color) / alpha) * alpha, color.w);
-        }
-        for (int k = 0; k < 4; ++k) color[k] = finite(color[k]);
-        if (m_opaque) color.w = 1.0f;
-        store_texel(color, out, m_header.type);
-    }
+    m_converter.convert(raw, count, out);
 }
 
 }  // namespace granita

@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "scene/node_graph.h"
-#include "shade/textures/color_space.h"
-#include "shade/textures/texel.h"
+#include "shade/textures/texel_converter.h"
 
 namespace granita {
 
@@ -60,15 +59,12 @@ class TextureFile {
     std::unique_ptr<OIIO::ImageInput> m_input;
     OIIO::ImageSpec m_spec;
     TextureHeader m_header;
-    ColorSpace m_space;
+    TexelConverter m_converter;
     std::vector<FileLevel> m_levels;
     std::vector<std::byte> m_raw;
     TexelType m_raw_type = TexelType::Byte;
     int m_channels = 0, m_strip = 64;
-    bool m_as_it_is = false;       ///< numbers are stored as the file has them
-    bool m_opaque = false;         ///< alpha is to be ignored
-    bool m_associate = false;      ///< its reader leaves the product with alpha to us
-    bool m_is_associated = false;  ///< texels are products with alpha
+    bool m_associate = false;  ///< its reader leaves the product with alpha to us
 };
 
 }  // namespace granita

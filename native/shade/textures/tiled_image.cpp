@@ -15,17 +15,11 @@ namespace {
 /// Of the rows that are decoded at once.
 constexpr int kRows = 64;
 
-/// Whether these linear numbers were bytes of sRGB once: their encoded numbers are 255ths, but for
-/// what single precision lost on the way.  They are kept as such then, which Cycles interpolates as
-/// they are.
-bool are_bytes(const std::vector<float>& pixels) {
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const float x = pixels[i];
-        if (!(x >= 0.0f && x <= 1.0f)) return false;
-        const float byte = 255.0f * (i % 4 == 3 ? x : srgb_from_linear(x));
-        if (std::abs(byte - std::round(byte)) > 0.01f) return false;
-    }
-    return true;
+/// Of bytes that the scene holds.
+TexelConverter converter_of(const Image& image) {
+    return TexelConverter({.space = image.space,
+                           .opaque = image.alpha_mode == "NONE",
+                           .is_associated = image.has_products()});
 }
 
 }  // namespace
@@ -56,9 +50,13 @@ TextureHeader read_texture_header(const Image& image) {
     header.width = image.width;
     header.height = image.height;
     header.has_alpha = image.alpha_mode != "NONE";
-    header.encoded =
-        !image.bytes.empty() || (image.colorspace == "sRGB" && are_bytes(image.pixels));
-    header.type = header.encoded ? TexelType::Byte : TexelType::Float;
+    if (image.bytes.empty()) {
+        header.type = TexelType::Float;
+    } else {
+        const TexelConverter converter = converter_of(image);
+        header.encoded = converter.encoded();
+        header.type = converter.type();
+    }
     return header;
 }
 
@@ -168,8 +166,6 @@ void TiledImage::decode_pixels(int finest, const Progress* progress) {
         const float* c = m_image.pixels.data() + static_cast<std::size_t>(y) * m_header.width * 4;
         for (int x = 0; x < m_header.width; ++x, c += 4) {
             Vec4f color(c[0], c[1], c[2], m_image.alpha_mode == "NONE" ? 1.0f : c[3]);
-            if (m_header.encoded)
-                for (int k = 0; k < 3; ++k) color[k] = srgb_from_linear(color[k]);
             for (int k = 0; k < 4; ++k)
                 if (!std::isfinite(color[k])) color[k] = 0.0f;
             store_texel(color, row.data() + x * texel, m_header.type);
@@ -178,18 +174,17 @@ void TiledImage::decode_pixels(int finest, const Progress* progress) {
     }
 }
 
-/// As they are, their lowest row first.
+/// So do bytes.
 void TiledImage::decode_bytes(int finest, const Progress* progress) {
     LevelWriter writer = writer_for(finest);
-    const std::size_t length = byte_size(TexelType::Byte) * m_header.width;
-    std::vector<std::uint8_t> row(length);
+    const TexelConverter converter = converter_of(m_image);
+    const auto width = static_cast<std::size_t>(m_header.width);
+    std::vector<std::byte> row(byte_size(m_header.type) * width);
     for (int y = m_header.height - 1; y >= 0; --y) {
         if (progress) progress->check();
-        std::copy_n(m_image.bytes.data() + static_cast<std::size_t>(y) * length, length,
-                    row.data());
-        for (std::size_t alpha = 3; !m_header.has_alpha && alpha < length; alpha += 4)
-            row[alpha] = 255;
-        writer.push(std::as_bytes(std::span(row)).data(), 1);
+        const std::size_t begin = static_cast<std::size_t>(y) * width * 4;
+        converter.convert(m_image.bytes.data() + begin, width, row.data());
+        writer.push(row.data(), 1);
     }
 }
 

@@ -48,6 +48,10 @@ Vec3f integrated(double thickness, double film, Complex body, double cosine) {
     return rgb_of_xyz(reflected) / rgb_of_xyz(all);
 }
 
+const FilmSpectrum* observed() {
+    return film_spectrum(FilmSpectrum::Kind::Observed);
+}
+
 void expect_near(const Vec3f& a, const Vec3f& b, float most) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], most) << c;
 }
@@ -56,7 +60,7 @@ TEST(ThinFilm, colors_are_those_of_exact_interference) {
     for (const float thickness : {120.0f, 350.0f, 700.0f})
         for (const float cosine : {1.0f, 0.6f, 0.2f}) {
             SCOPED_TRACE(::testing::Message() << thickness << " nm, cosine " << cosine);
-            const ThinFilm film{thickness, 1.33f};
+            const ThinFilm film{thickness, 1.33f, observed()};
             // The sum ends after three orders, the spectrum's table has steps of 19 nm.
             expect_near(film_on_dielectric(film, cosine, 1.8f),
                         glm::clamp(integrated(thickness, 1.33, 1.8, cosine), 0.0f, 1.0f), 0.004f);
@@ -68,7 +72,7 @@ TEST(ThinFilm, colors_are_those_of_exact_interference) {
 }
 
 TEST(ThinFilm, a_film_like_the_air_is_none) {
-    const ThinFilm film{400.0f, 1.0f};
+    const ThinFilm film{400.0f, 1.0f, observed()};
     for (const float cosine : {1.0f, 0.5f, 0.05f}) {
         const Vec3f f0(0.9f, 0.5f, 0.2f), dip = f82_dip(f0, Vec3f(0.7f)), n(1.3f), k(2.0f);
         expect_near(film_on_dielectric(film, cosine, 1.5f), Vec3f(fresnel_dielectric(cosine, 1.5f)),
@@ -79,14 +83,14 @@ TEST(ThinFilm, a_film_like_the_air_is_none) {
 }
 
 TEST(ThinFilm, a_conductor_that_absorbs_nothing_is_a_dielectric) {
-    const ThinFilm film{300.0f, 1.4f};
+    const ThinFilm film{300.0f, 1.4f, observed()};
     for (const float cosine : {0.95f, 0.4f})
         expect_near(film_on_conductor(film, cosine, Vec3f(2.2f), Vec3f(0.0f)),
                     film_on_dielectric(film, cosine, 2.2f), 1e-5f);
 }
 
 TEST(ThinFilm, what_cannot_leave_a_body_is_reflected) {
-    const ThinFilm film{300.0f, 1.33f / 1.5f};
+    const ThinFilm film{300.0f, 1.33f / 1.5f, observed()};
     EXPECT_EQ(film_on_dielectric(film, 0.3f, 1.0f / 1.5f), Vec3f(1.0f));
 }
 

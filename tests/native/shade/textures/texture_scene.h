@@ -25,7 +25,7 @@ namespace granita {
 inline Image image_of(int width, int height, const std::vector<Vec3f>& colors, const char* space) {
     Image image;
     image.name = "Image";
-    image.colorspace = space;
+    image.space = plain_color_space(space);
     image.width = width;
     image.height = height;
     for (const Vec3f& c : colors) image.pixels.insert(image.pixels.end(), {c.x, c.y, c.z, 1.0f});
@@ -34,9 +34,9 @@ inline Image image_of(int width, int height, const std::vector<Vec3f>& colors, c
 
 /// Of bytes of sRGB, lowest row first.
 inline Image image_of_bytes(int width, int height, const std::vector<std::uint8_t>& grey) {
-    std::vector<Vec3f> colors;
-    for (const std::uint8_t g : grey) colors.push_back(Vec3f(linear_from_srgb(float(g) / 255.0f)));
-    return image_of(width, height, colors, "sRGB");
+    Image image = image_of(width, height, {}, "sRGB");
+    for (const std::uint8_t g : grey) image.bytes.insert(image.bytes.end(), {g, g, g, 255});
+    return image;
 }
 
 /// Black and white at random, in blocks of so many texels a side.
@@ -80,7 +80,7 @@ class ImageFile {
         Image made;
         made.name = "Image";
         made.path = path();
-        made.colorspace = space;
+        made.space = plain_color_space(space);
         return made;
     }
 

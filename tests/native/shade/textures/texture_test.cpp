@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "math/srgb.h"
 #include "shade/textures/texel.h"
 #include "shade/textures/texture_scene.h"
 

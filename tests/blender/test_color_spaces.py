@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Colours as Blender's configuration of OpenColorIO has them, against Cycles: every space that an image can be said to be
+in, and every working space."""
+
+import os
+
+import bpy
+import numpy as np
+import pytest
+from node_comparison import Tree, board, render_both, rmse
+from scene_parts import add_object, set_world
+from test_images import exported, spaces
+from test_nodes_textures import saved_image, smooth_image, textured
+
+SAMPLES = 64
+# Of how much a picture varies; half of it is Cycles' noise.
+LIMIT = 0.004
+# Of colours that no screen shows, which are most of a cube.
+LIMIT_OF_A_CUBE = 0.03
+# Of a studio's configuration (./dev runs these tests with one too) there is one.
+STUDIOS = "the configuration's"
+if "OCIO" in os.environ:
+    WORKING_SPACES = [STUDIOS]
+else:
+    WORKING_SPACES = ["ACEScg", "Linear Rec.2020"] if bpy.app.version >= (5, 0) else []
+
+
+def float_image(tmp_path):
+    made = smooth_image("Made", float_buffer=True)
+    made.file_format, made.filepath_raw = "OPEN_EXR", str(tmp_path / "Image.exr")
+    made.save()
+    return bpy.data.images.load(str(tmp_path / "Image.exr"))
+
+
+def error_of(scene, render):
+    """Of how much the picture varies."""
+    theirs, ours = render_both(scene, render, SAMPLES)
+    assert theirs.std() > 0.03
+    return rmse(theirs, ours) / theirs.std()
+
+
+@pytest.mark.parametrize("is_float", [False, True])
+def test_every_space_of_files(scene, render, tmp_path, is_float):
+    from granita.export.shading.color_space import in_color_spaces
+
+    image = float_image(tmp_path) if is_float else saved_image(tmp_path, "Image")
+    tree, node = textured(scene, image)
+    tree.emit(node.outputs["Color"])
+    errors, named = {}, []
+    for space in sorted(spaces(image)):
+        image.colorspace_settings.name = space
+        records, warnings = exported(scene)
+        if warnings:
+            said = f"its colour space '{space}' is read as sRGB"
+            assert warnings == [(f"image '{image.name}'", said)]
+            named.append(space)
+            continue
+        described = in_color_spaces([{"name": "Image", "colorspace": space}], None)[1]
+        has_cube = any("cube" in record for record in described)
+        error = error_of(scene, render)
+        if error > (LIMIT_OF_A_CUBE if has_cube else LIMIT):
+            errors[space] = error
+    assert not errors
+    if bpy.app.version >= (4, 5):
+        assert not named
+    elif STUDIOS not in WORKING_SPACES:
+        # Without OpenColorIO's module pictures of view transforms are not known.
+        assert all(
+            name.startswith(("AgX", "Filmic sRGB", "Khronos", "False Color")) for name in named
+        )
+
+
+def painted(float_buffer):
+    def of(tree, _path):
+        image = smooth_image("Painted", float_buffer=float_buffer)
+        return tree.add("ShaderNodeTexImage", image=image).outputs["Color"]
+
+    return of
+
+
+def of_file(make, *names):
+    """`names`: of one space in Blender's configuration and in studios'."""
+
+    def of(tree, path):
+        image = make(path)
+        image.colorspace_settings.name = next(name for name in names if name in spaces(image))
+        return tree.add("ShaderNodeTexImage", image=image).outputs["Color"]
+
+    return of
+
+
+def number_of(kind, socket, scale, offset):
+    """A node that makes a colour of a number."""
+
+    def of(tree, _path):
+        scaled = tree.add("ShaderNodeMath", operation="MULTIPLY_ADD")
+        scaled.inputs[1].default_value, scaled.inputs[2].default_value = scale, offset
+        tree.link(tree.attribute("A"), scaled.inputs[0])
+        node = tree.add(kind)
+        tree.link(scaled.outputs[0], node.inputs[socket])
+        return node.outputs[0]
+
+    return of
+
+
+def grey_of_colors(tree, _path):
+    node = tree.add("ShaderNodeRGBToBW")
+    tree.link(tree.attribute("A", "Color"), node.inputs[0])
+    return node.outputs[0]
+
+
+def number_of_colors(tree, _path):
+    node = tree.add("ShaderNodeMath", operation="MULTIPLY")
+    node.inputs[1].default_value = 1.0
+    tree.link(tree.attribute("A", "Color"), node.inputs[0])
+    return node.outputs[0]
+
+
+def sky(kind):
+    def of(tree, _path):
+        node = tree.add("ShaderNodeTexSky", sky_type=kind)
+        scaled = tree.add("ShaderNodeVectorMath", operation="SCALE")
+        scaled.inputs["Scale"].default_value = 0.3
+        up = tree.add("ShaderNodeVectorMath", operation="NORMALIZE")
+        tree.link(tree.attribute("A"), up.inputs[0])
+        if "Vector" in node.inputs:  # else of Generated, over the board
+            tree.link(up.outputs[0], node.inputs["Vector"])
+        tree.link(node.outputs["Color"], scaled.inputs[0])
+        return scaled.outputs[0]
+
+    return of
+
+
+def bytes_of_corners(tree, _path):
+    mesh = bpy.context.scene.objects["Board"].data
+    colors = mesh.color_attributes.new("Bytes", "BYTE_COLOR", "CORNER")
+    values = np.random.default_rng(3).random((len(colors.data) // 4, 4)).repeat(4, axis=0)
+    values[:, 3] = 1.0
+    colors.data.foreach_set("color", values.astype(np.float32).ravel())
+    return tree.attribute("Bytes", "Color")
+
+
+SOURCES = {
+    "painted bytes": painted(False),
+    "painted floats": painted(True),
+    "bytes": of_file(lambda path: saved_image(path, "Image"), "sRGB", "sRGB - Texture"),
+    "linear bytes": of_file(
+        lambda path: saved_image(path, "Image"), "Linear Rec.709", "Linear Rec.709 (sRGB)"
+    ),
+    "floats": of_file(float_image, "ACEScg"),
+    "data": of_file(float_image, "Non-Color", "Raw"),
+    "Blackbody": number_of("ShaderNodeBlackbody", "Temperature", 2000.0, 4000.0),
+    "Wavelength": number_of("ShaderNodeWavelength", "Wavelength", 100.0, 550.0),
+    "RGB to BW": grey_of_colors,
+    "a number": number_of_colors,
+    "Preetham": sky("PREETHAM"),
+    "a sky": sky("SINGLE_SCATTERING" if bpy.app.version >= (5, 0) else "NISHITA"),
+    "byte attribute": bytes_of_corners,
+}
+
+
+def work_in(space):
+    if space != STUDIOS:
+        bpy.ops.wm.set_working_color_space(working_space=space)
+
+
+@pytest.mark.smoke
+@pytest.mark.parametrize("space", WORKING_SPACES)
+@pytest.mark.parametrize("source", SOURCES.values(), ids=SOURCES.keys())
+def test_working_spaces(scene, render, tmp_path, space, source):
+    work_in(space)
+    tree = Tree(board(scene, low=0.0))
+    tree.emit(source(tree, tmp_path))
+    assert error_of(scene, render) < LIMIT
+
+
+@pytest.mark.parametrize("space", WORKING_SPACES)
+def test_a_film_in_a_working_space(scene, render, space):
+    work_in(space)
+    tree = Tree(board(scene, low=0.0, tilt=0.4))
+    film = tree.add("ShaderNodeMath", operation="MULTIPLY_ADD")
+    film.inputs[1].default_value, film.inputs[2].default_value = 400.0, 100.0
+    tree.link(tree.attribute("B"), film.inputs[0])
+    shader = tree.add("ShaderNodeBsdfPrincipled")
+    shader.inputs["Metallic"].default_value = 1.0
+    shader.inputs["Roughness"].default_value = 0.6
+    tree.link(film.outputs[0], shader.inputs["Thin Film Thickness"])
+    tree.link(shader.outputs[0], tree.output.inputs["Surface"])
+    set_world(scene, (0.0, 0.0, 0.0))
+    sun = bpy.data.lights.new("Sun", "SUN")
+    sun.energy, sun.angle = 3.0, 0.0
+    if bpy.app.version >= (4, 5):
+        sun.use_temperature, sun.temperature = True, 3000.0
+    add_object(scene, "Sun", sun)
+    assert error_of(scene, render) < 0.01
