@@ -83,6 +83,7 @@ class AreaLight : public LightSource {
         const Vec2f center(glm::dot(to_center, m_u), glm::dot(to_center, m_v));
         Vec2f lo = center - m_half, hi = center + m_half;
         if (!clip_to_spread(height, lo, hi)) return;
+        const bool by_area = is_sampled_by_area(lo, hi);
         const auto finish = [&](const Vec2f& q, double solid_angle, LightSample& sample) {
             const Vec3f to_light = q.x * m_u + q.y * m_v - height * m_front;
             const float distance = glm::length(to_light);
@@ -90,15 +91,17 @@ class AreaLight : public LightSource {
             sample.distance = distance;
             if (!shade(solid_angle, sample)) sample.pdf = 0.0f;
         };
-        if (m_ellipse) {
+        if (by_area) {
             for (std::size_t i = 0; i < u.size(); ++i)
-                finish(center + sample_disc(u[i]) * m_half, 0.0, samples[i]);
+                finish(center + sample_disc(u[i]) * m_half, kByArea, samples[i]);
             return;
         }
         // Once a point: its arcsines and roots take longer than a sample.
         const SphericalRectangle rectangle(lo.x, hi.x, lo.y, hi.y, -height);
-        for (std::size_t i = 0; i < u.size(); ++i)
-            finish(Vec2f(rectangle.sample(u[i])), rectangle.solid_angle(), samples[i]);
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const Vec2f q(rectangle.sample(u[i]));
+            if (is_in_shape(q - center)) finish(q, rectangle.solid_angle(), samples[i]);
+        }
     }
 
     bool intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const override {
@@ -109,14 +112,12 @@ class AreaLight : public LightSource {
         sample.direction = direction;
         sample.distance = height / cos_light;
         const Vec3f off = direction * sample.distance - to_center;
-        const float x = glm::dot(off, m_u) / m_half.x, y = glm::dot(off, m_v) / m_half.y;
-        if (m_ellipse ? x * x + y * y > 1.0f : std::max(std::abs(x), std::abs(y)) > 1.0f)
-            return false;
+        if (!is_in_shape(Vec2f(glm::dot(off, m_u), glm::dot(off, m_v)))) return false;
         const Vec2f center(glm::dot(to_center, m_u), glm::dot(to_center, m_v));
         Vec2f lo = center - m_half, hi = center + m_half;
         if (!clip_to_spread(height, lo, hi)) return false;
-        double solid_angle = 0.0;
-        if (!m_ellipse)
+        double solid_angle = kByArea;
+        if (!is_sampled_by_area(lo, hi))
             solid_angle = SphericalRectangle(lo.x, hi.x, lo.y, hi.y, -height).solid_angle();
         return shade(solid_angle, sample);
     }
@@ -141,17 +142,29 @@ class AreaLight : public LightSource {
   private:
     static constexpr float kLeastSpread = 0.0174533f;  // one degree: narrower is only noise
 
-    /// Only what lies within the spread's circle below the point can send light there.  Ellipses
-    /// are sampled whole.
+    static constexpr double kByArea = -1.0;
+
+    /// @param q  from the middle, along the sides.
+    bool is_in_shape(const Vec2f& q) const {
+        const Vec2f part = glm::abs(q / m_half);
+        return m_ellipse ? glm::dot(part, part) <= 1.0f : std::max(part.x, part.y) <= 1.0f;
+    }
+
+    /// Only what lies within the spread's circle below the point can send light there.
     bool clip_to_spread(float height, Vec2f& lo, Vec2f& hi) const {
-        if (m_ellipse || m_tan_half == 0.0f) return true;
+        if (m_tan_half == 0.0f) return true;
         const Vec2f reach(height * m_tan_half);
         lo = glm::max(lo, -reach);
         hi = glm::min(hi, reach);
         return lo.x < hi.x && lo.y < hi.y;
     }
 
-    /// `solid_angle`: of what is sampled of a rectangle; ellipses are sampled by area.
+    /// An ellipse is, unless its spread leaves less of it than it is.
+    bool is_sampled_by_area(const Vec2f& lo, const Vec2f& hi) const {
+        return m_ellipse && (hi.x - lo.x) * (hi.y - lo.y) >= m_area;
+    }
+
+    /// `solid_angle`: of the rectangle that is sampled, or kByArea.
     bool shade(double solid_angle, LightSample& sample) const {
         const float cos_light = -glm::dot(sample.direction, m_front);
         if (cos_light <= 0.0f) return false;
@@ -162,8 +175,9 @@ class AreaLight : public LightSource {
             sample.radiance *= std::max(0.0f, (m_tan_half - tangent) * m_spread_scale);
             if (tangent >= m_tan_half) return false;
         }
-        sample.pdf = m_ellipse ? sample.distance * sample.distance / (cos_light * m_area)
-                               : static_cast<float>(1.0 / solid_angle);
+        sample.pdf = solid_angle == kByArea
+                         ? sample.distance * sample.distance / (cos_light * m_area)
+                         : static_cast<float>(1.0 / solid_angle);
         return std::isfinite(sample.pdf) && sample.pdf > 0.0f;
     }
 

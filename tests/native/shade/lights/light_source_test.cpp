@@ -173,6 +173,20 @@ TEST(AreaLight, a_narrow_spread_sends_the_same_flux) {
     }
 }
 
+// Below a wide softbox, as below an endless one: what it sends per area arrives.  Of samples all
+// over the disc one in a hundred would do.
+TEST(AreaLight, a_disc_of_little_spread_is_sampled_where_it_shines) {
+    Light light = light_of(LightKind::Area, 60.0f, aimed({0, 0, 0.1}, {0, 0, -1}));
+    light.shape = AreaShape::Disk;
+    light.size = {1.0f, 1.0f};
+    light.spread = 0.9f;
+    const auto source = source_of(light);
+    for (const Vec3f& p : {Vec3f(0.0f), Vec3f(0.3f, 0.2f, 0.0f), Vec3f(-0.43f, 0.0f, 0.0f)})
+        EXPECT_NEAR(irradiance(*source, p, kUp, 64), 60.0 / (kPi * 0.25), 4.0);
+    // Half of a circle about the rim's foot lies in the disc, but for its curvature.
+    EXPECT_NEAR(irradiance(*source, Vec3f(0.5f, 0.0f, 0.0f), kUp, 1024), 30.0 / (kPi * 0.25), 2.0);
+}
+
 class EveryLight : public testing::TestWithParam<int> {
   protected:
     static Light make(int which) {
@@ -188,6 +202,7 @@ class EveryLight : public testing::TestWithParam<int> {
         if (which == 4) light.shape = AreaShape::Rectangle;
         if (which == 5) light.shape = AreaShape::Ellipse;
         if (which == 6) light.shape = AreaShape::Rectangle, light.spread = 1.0f;
+        if (which == 7) light.shape = AreaShape::Ellipse, light.spread = 0.25f;
         return light;
     }
 };
@@ -216,7 +231,7 @@ TEST_P(EveryLight, a_ray_along_a_sample_meets_it_with_the_same_density_and_radia
 }
 
 TEST_P(EveryLight, its_density_integrates_to_one_over_the_directions_that_meet_it) {
-    if (GetParam() == 6) return;  // sampled over a square around the circle that reaches the point
+    if (GetParam() >= 6) return;  // sampled over a square around the circle that reaches the point
     const auto source = source_of(make(GetParam()));
     // The smallest light here, the sun, catches 1500 of 2^18 uniform net points; of those only the
     // ones on its rim err.
@@ -232,7 +247,7 @@ TEST_P(EveryLight, its_density_integrates_to_one_over_the_directions_that_meet_i
     EXPECT_NEAR(sum / count, 1.0, 0.02);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, EveryLight, testing::Range(0, 7));
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryLight, testing::Range(0, 8));
 
 }  // namespace
 }  // namespace granita
