@@ -202,7 +202,7 @@ class EveryLight : public testing::TestWithParam<int> {
         if (which == 4) light.shape = AreaShape::Rectangle;
         if (which == 5) light.shape = AreaShape::Ellipse;
         if (which == 6) light.shape = AreaShape::Rectangle, light.spread = 1.0f;
-        if (which == 7) light.shape = AreaShape::Ellipse, light.spread = 0.25f;
+        if (which == 7) light.shape = AreaShape::Ellipse, light.spread = 0.4f;
         return light;
     }
 };
