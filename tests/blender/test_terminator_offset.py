@@ -35,6 +35,26 @@ def test_what_hides_a_near_lamp(scene, render):
     check(scene, render, limit=0, worst=0.05)
 
 
+def test_what_a_sky_lights(scene, render):
+    """By a disc like the sun's: Cycles' samples of a world start there too."""
+    cube(scene, "ShaderNodeBsdfDiffuse")
+    bpy.data.objects.remove(scene.objects["Lamp"])
+    tree = scene.world.node_tree
+    places = tree.nodes.new("ShaderNodeTexCoord")
+    along = tree.nodes.new("ShaderNodeVectorMath")
+    along.operation, along.inputs[1].default_value = "DOT_PRODUCT", (0.46, -0.46, 0.76)
+    disc = tree.nodes.new("ShaderNodeMapRange")
+    disc.interpolation_type = "SMOOTHSTEP"
+    for name, value in (("From Min", 0.99), ("From Max", 0.999), ("To Max", 200.0)):
+        disc.inputs[name].default_value = value
+    disc.inputs["To Min"].default_value = 0.5
+    tree.links.new(places.outputs["Generated"], along.inputs[0])
+    tree.links.new(along.outputs["Value"], disc.inputs["Value"])
+    tree.links.new(disc.outputs[0], tree.nodes["Background"].inputs["Strength"])
+    look_at_stage(scene, 1.5, 1.0)
+    check(scene, render, limit=0, worst=0.05, mean=0.01)
+
+
 def test_a_mirror_shows_no_faces(scene, render):
     """64 % of a block."""
     cube(scene, "ShaderNodeBsdfDiffuse")

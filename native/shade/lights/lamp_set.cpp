@@ -184,8 +184,9 @@ Vec3f LampSet::occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& p
                          const Vec3f& direction, RayType type) const {
     if (!rays) return Vec3f(1.0f);
     ++grid.occlusion_rays;
-    return rays->transmittance(
-        ray(point, place, direction, std::numeric_limits<float>::infinity(), type));
+    Ray to = ray(point, place, direction, std::numeric_limits<float>::infinity(), type);
+    if (point.rise && type == RayType::Shadow) bend(point, place, to);
+    return rays->transmittance(to);
 }
 
 }  // namespace granita
