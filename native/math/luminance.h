@@ -7,10 +7,13 @@
 
 namespace granita {
 
-/// Of a linear colour of Rec. 709, as Cycles turns colours into numbers.
+/// Of the primaries of Rec. 709, as Cycles has them.
+inline constexpr Vec3f kLuminance(0.2126729f, 0.7151522f, 0.0721750f);
+
+/// Of a linear colour of Rec. 709.
 template <class T>
 T luminance_of(const T& red, const T& green, const T& blue) {
-    return 0.2126729f * red + 0.7151522f * green + 0.0721750f * blue;
+    return kLuminance.x * red + kLuminance.y * green + kLuminance.z * blue;
 }
 
 inline float luminance(const Vec3f& c) {

@@ -33,7 +33,7 @@ float look_up(const ColorSpace& space, float x) {
     if (x > space.high) return beyond(space, x);
     const auto last = static_cast<float>(space.table.size() - 1);
     const float place = (x - space.low) / (space.high - space.low) * last;
-    const float begin = std::floor(std::clamp(place, 0.0f, last - 1.0f));
+    const float begin = place > 0.0f ? std::floor(std::min(place, last - 1.0f)) : 0.0f;
     const auto i = static_cast<std::size_t>(begin);
     return glm::mix(space.table[i], space.table[i + 1], place - begin);
 }

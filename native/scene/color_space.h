@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "math/luminance.h"
 #include "math/vec.h"
 
 namespace granita {
@@ -38,7 +39,7 @@ std::shared_ptr<const ColorSpace> plain_color_space(std::string_view name);
 /// working space of their own, and so have studios' configurations of OpenColorIO.
 struct WorkingSpace {
     Mat3f from_rec709 = Mat3f(1.0f);
-    Vec3f luminance{0.2126729f, 0.7151522f, 0.0721750f};  ///< of the primaries
+    Vec3f luminance = kLuminance;  ///< of the primaries
     bool operator==(const WorkingSpace&) const = default;
 
     Vec3f from_xyz(const Vec3f& xyz) const;

@@ -37,7 +37,7 @@ def test_even_light_is_seen_as_white():
 def test_beyond_the_ends_colors_stay():
     assert blackbody(1.0) == blackbody(800.0)
     assert blackbody(1e9) == blackbody(12000.0)
-    assert min(blackbody(800.0)) == 0.0
+    assert min(blackbody(800.0)) < 0.0  # beyond what a screen shows
 
 
 def test_monochromatic_light_is_red_green_blue():

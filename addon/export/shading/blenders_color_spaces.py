@@ -55,8 +55,8 @@ def _filmic_log(x):
 
 # name -> (curve: "DATA", "LINEAR", "SRGB" or a function; to linear Rec. 709, None = is)
 _SPACES = {
-    "Non-Color": ("DATA", None),
     "Raw": ("DATA", None),
+    "Utility - Raw": ("DATA", None),
     "Linear": ("LINEAR", None),
     "Linear Rec.709": ("LINEAR", None),
     "sRGB": ("SRGB", None),
@@ -75,7 +75,6 @@ _SPACES = {
     "Linear CIE-XYZ E": ("LINEAR", _XYZ_E),
     "Linear FilmLight E-Gamut": ("LINEAR", _E_GAMUT),
     # ACES 1.0 to 1.2
-    "Utility - Raw": ("DATA", None),
     "Utility - Linear - sRGB": ("LINEAR", None),
     "Utility - Linear - Rec.709": ("LINEAR", None),
     "Utility - sRGB - Texture": ("SRGB", None),
@@ -92,7 +91,6 @@ _SPACES = {
 
 def blenders_color_space(name):
     """(curve, float64 [3,3] to linear Rec. 709); None for other names, and for pictures of a view transform (Filmic
-    sRGB, AgX).  The curve is "DATA" (no colour at all),
-    "LINEAR", "SRGB" or a function of arrays."""
+    sRGB, AgX).  The curve is "DATA" (no colours), "LINEAR", "SRGB" or a function of arrays."""
     found = _SPACES.get(name)
     return found and (found[0], np.eye(3) if found[1] is None else np.array(found[1]))

@@ -20,6 +20,11 @@ from .working_space import scene_from_rec709
 
 # The native side knows these by their names.
 _PLAIN = {"LINEAR": "scene_linear", "SRGB": "sRGB", "DATA": "Non-Color"}
+# What images are handed over as, whatever a configuration makes of these names.
+_AS_THEY_ARE = {
+    "scene_linear": {"curve": "LINEAR"},
+    "Non-Color": {"is_data": True, "curve": "LINEAR"},
+}
 # A curve is known at so many places, 0 and 1 among them.  Over a camera's 17 stops they are straight within 1e-6 between;
 # files of floats reach beyond 0 and 1.
 _PLACES, _LOW, _HIGH = 10241, -0.5, 2.0
@@ -28,6 +33,7 @@ _CUBE = 65
 # it is 1e-6 (7e-4 of ACEScc's, which OpenColorIO tabulates), of another .08 and more; a cube's is 1e-3.
 _TOLERANCE = 1e-3
 _DARK = 0.01
+_LARGEST = 1e30
 
 
 def in_color_spaces(images, report):
@@ -40,21 +46,31 @@ def in_color_spaces(images, report):
     Returns:
         (the images, `colorspace` by the native side's name; records of spaces that it does not know by name).
     """
-    known, records = {}, []
+    described = {name: _described(name) for name in {image["colorspace"] for image in images}}
+    told, found = set(), []
     for image in images:
-        name = image["colorspace"]
-        if name in known:
-            continue
-        record = _described(name)
-        if record is None:
-            label = f"image '{image['name']}'"
-            report(label, f"its colour space '{name}' is read as sRGB")
-            record = {"curve": "SRGB", **_matrix(scene_from_rec709())}
-        known[name] = _plain_name(record)
-        if known[name] is None:
-            known[name] = name
-            records.append({"name": name, **record})
-    return [{**image, "colorspace": known[image["colorspace"]]} for image in images], records
+        complaint = described[image["colorspace"]][1]
+        # Of a tile, or a picture of a sequence, the datablock's name is before the last slash.
+        label = f"image '{image['name'].rpartition('/')[0] or image['name']}'"
+        if complaint and label not in told:
+            told.add(label)
+            report(label, f"its colour space '{image['colorspace']}' {complaint}")
+        found.append({**image, "colorspace": _native_name(image["colorspace"], described)})
+    return found, [
+        {"name": _native_name(name, described), **record}
+        for name, (record, _) in sorted(described.items())
+        if _plain_name(record) is None
+    ]
+
+
+def is_data(name):
+    """Whether numbers of a colour space are no colours, so that alpha counts for nothing."""
+    return "is_data" in _described(name)[0]
+
+
+def _native_name(name, described):
+    """No configuration's name is taken for a plain one."""
+    return _plain_name(described[name][0]) or f"space {name}"
 
 
 def _plain_name(record):
@@ -66,25 +82,40 @@ def _plain_name(record):
 
 
 def _described(name):
+    """(record, what the artist is to be told of it or None)."""
+    if name in _AS_THEY_ARE:
+        return _AS_THEY_ARE[name], None
     config = _configuration()
     if config is not None and config.getColorSpace(name) is not None:
-        return _of_configuration(name, config.getCacheID())
+        return _of_configuration(name, _identity(config))
     found = blenders_color_space(name)
+    unknown = None
     if found is None:
-        return {"curve": "LINEAR"} if name == "scene_linear" else None
+        unknown, found = "is read as sRGB", blenders_color_space("sRGB")
     curve, to_rec709 = found
     if curve == "DATA":
-        return {"is_data": True, "curve": "LINEAR"}
-    matrix = scene_from_rec709() @ to_rec709
-    if callable(curve):
-        return {**_table(curve(_places())), **_matrix(matrix)}
-    return {"curve": curve, **_matrix(matrix)}
+        return {"is_data": True, "curve": "LINEAR"}, unknown
+    matrix = _matrix(scene_from_rec709() @ to_rec709)
+    return {
+        **(_table(curve(_places())) if callable(curve) else {"curve": curve}),
+        **matrix,
+    }, unknown
 
 
 def _configuration():
     """Blender's, or None where there is no module to ask it by."""
     module = _open_color_io()
-    return module and module.GetCurrentConfig()
+    try:
+        return module and module.GetCurrentConfig()
+    except Exception:  # there is none that it can read
+        return None
+
+
+def _identity(config):
+    try:
+        return config.getCacheID()
+    except Exception as failure:  # a file of one of its spaces is missing
+        return str(failure)
 
 
 @lru_cache(maxsize=1)
@@ -102,7 +133,7 @@ def _open_color_io():
         try:
             sys.modules[name] = importlib.util.module_from_spec(spec)
             spec.loader.exec_module(sys.modules[name])
-        except ImportError:
+        except Exception:  # of another build, say: Blender's own table has most of it
             del sys.modules[name]
             return None
     return sys.modules[name]
@@ -110,26 +141,27 @@ def _open_color_io():
 
 @lru_cache(maxsize=256)
 def _of_configuration(name, _configuration_id):
-    module, config = _open_color_io(), _configuration()
+    config = _configuration()
     if config.getColorSpace(name).isData():
-        return {"is_data": True, "curve": "LINEAR"}
+        return {"is_data": True, "curve": "LINEAR"}, None
     try:
         processor = config.getProcessor(name, "scene_linear").getDefaultCPUProcessor()
-    except module.Exception:  # Cycles too takes them as they are then
-        return {"curve": "LINEAR"}
+    except Exception as failure:  # its own have no kind in common; a file is missing, say
+        reason = " ".join(str(failure).split())
+        return {"curve": "LINEAR"}, f"cannot be converted, and is read as scene-linear: {reason}"
 
     def convert(colors):
         found = np.array(colors, dtype=np.float32)
         processor.applyRGB(found)
-        return found
+        return np.clip(np.nan_to_num(found), -_LARGEST, _LARGEST)
 
-    return _curve_and_matrix(convert) or _cube(convert)
+    return _curve_and_matrix(convert) or _cube(convert), None
 
 
 def _curve_and_matrix(convert):
     """The record of a space that is one curve for all channels, and then a matrix; None of another."""
     white = convert([[1, 1, 1]])[0].astype(np.float64)
-    if not np.all(np.isfinite(white)) or np.max(np.abs(white)) < _DARK:
+    if np.max(np.abs(white)) < _DARK:
         return None
     brightest = int(np.argmax(np.abs(white)))
 
@@ -146,7 +178,8 @@ def _curve_and_matrix(convert):
     made = np.interp(colors, places, numbers) @ matrix.T
     asked = convert(colors)
     bright = np.maximum(np.abs(asked).max(axis=1, keepdims=True), _DARK)
-    if not np.mean(np.abs(made - asked) / bright) <= _TOLERANCE:
+    errors = np.abs(made - asked) / bright
+    if np.mean(errors) > _TOLERANCE or np.quantile(errors, 0.99) > 10 * _TOLERANCE:
         return None
     far = np.array([-1.0, 0.18, 16.0, 1000.0])
     if np.allclose(curve(far), far, rtol=1e-4, atol=1e-6):
@@ -176,7 +209,7 @@ def _cube(convert):
     places = np.linspace(0, 1, _CUBE)
     blue, green, red = np.meshgrid(places, places, places, indexing="ij")
     cube = convert(np.stack([red, green, blue], axis=-1).reshape(-1, 3))
-    return {"curve": "LINEAR", "cube": np.nan_to_num(cube).reshape(_CUBE, _CUBE, _CUBE, 3)}
+    return {"curve": "LINEAR", "cube": cube.reshape(_CUBE, _CUBE, _CUBE, 3)}
 
 
 def _linear_from_srgb(x):

@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ..base.regular_file import is_no_file, open_regular_file
+from .color_space import is_data
 from .working_space import scene_from_rec709
 
 # What files begin with that Blender reads and Granita's readers do not: DPX, Cineon, SGI, Photoshop, DDS.
@@ -93,12 +94,9 @@ def _sequence_path(image, image_user):
 
 def _empty_record(image, name):
     space = image.colorspace_settings.name
+    if is_data(space):
+        space = "Non-Color"
     return {"name": name, "path": "", "colorspace": space, "alpha_mode": _alpha_mode(image)}
-
-
-def is_data(image):
-    """Its numbers are no colours: alpha counts for nothing."""
-    return image.colorspace_settings.is_data
 
 
 def _alpha_mode(image):
@@ -133,7 +131,7 @@ def _record(image, name, path, report):
 
 
 def _hand_over(record, pixels, image):
-    if image.is_float and not is_data(image):
+    if image.is_float and record["colorspace"] != "Non-Color":
         record["colorspace"] = "scene_linear"
     record["pixels" if image.is_float else "bytes"] = pixels
 
@@ -224,9 +222,7 @@ class PaintedPixels:
             _painted = before
 
     def of(self, image):
-        space, alpha = image.colorspace_settings.name, _alpha_mode(image)
-        colors = scene_from_rec709().tobytes()  # floats are scene-linear
-        key = image.name_full, space, alpha, image.is_float, colors, *image.size
+        key = image.name_full, *_given_as(image)
         if key in self._pixels:
             self.was_taken = True
         else:
@@ -234,12 +230,18 @@ class PaintedPixels:
         return self._pixels[key]
 
 
+def _given_as(image):
+    """What `_pixels` goes by, beside what the image shows.  Floats are scene-linear."""
+    space, alpha = image.colorspace_settings.name, _alpha_mode(image)
+    return space, alpha, image.is_float, *image.size, scene_from_rec709().tobytes()
+
+
 def _generated_pixels(image):
     """What was painted or set by a script is read each time, but by views: nothing tells of its changes."""
     if image.source != "GENERATED" or image.is_dirty:
         return _pixels(image) if _painted is None else _painted.of(image)
-    settings = image.generated_type, *image.generated_color, *image.size, image.is_float
-    key = (image.as_pointer(), image.colorspace_settings.name, *settings)
+    settings = image.generated_type, *image.generated_color
+    key = (image.as_pointer(), *settings, *_given_as(image))
     if key not in _of_this_job:
         _of_this_job[key] = _pixels(image)
     return _of_this_job[key]
@@ -258,7 +260,11 @@ def _pixels(image):
     if count != 4:
         pixels = _with_four_channels(pixels)
     alpha_mode = _alpha_mode(image)
-    associates = not is_data(image) and alpha_mode not in ("CHANNEL_PACKED", "NONE", "ASSOCIATED")
+    associates = not is_data(image.colorspace_settings.name) and alpha_mode not in (
+        "CHANNEL_PACKED",
+        "NONE",
+        "ASSOCIATED",
+    )
     if image.is_float:  # multiplied already, but where straight is what they are said to be
         if associates and alpha_mode == "UNASSOCIATED":
             pixels[..., :3] *= pixels[..., 3:]

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from .ies import ies_table
-from .image import image_name, image_tiles, is_data
+from .image import image_name, image_tiles
 from .spectrum import TEMPERATURES, WAVELENGTHS, blackbody, monochromatic
 from .working_space import scene_color
 
@@ -163,7 +163,7 @@ def _image_texture(node, owner, images, report):
     record = images[found["image"]]
     alpha = next((socket for socket in node.outputs if socket.identifier == "Alpha"), None)
     packed = record["alpha_mode"] in ("CHANNEL_PACKED", "NONE")
-    data = is_data(node.image)
+    data = record["colorspace"] == "Non-Color"
     found["unassociate_alpha"] = float(bool(alpha and alpha.is_linked and not packed and not data))
     return found
 

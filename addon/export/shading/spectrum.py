@@ -25,7 +25,7 @@ _MONOCHROMATIC_SCALE = 1.0 / 2.52
 
 @lru_cache(maxsize=4096)
 def blackbody(temperature):
-    """(r, g, b) of a black body, of luminance 1; colours that a screen cannot show are cut off at 0.
+    """(r, g, b) of a black body, of luminance 1; negative where a screen cannot show it.
 
     Args:
         temperature: kelvin.
@@ -35,7 +35,7 @@ def blackbody(temperature):
     # Planck's law but for a factor; 1.4388e7 nm K is the second radiation constant.
     power = wavelength**-5.0 / np.expm1(1.4388e7 / (wavelength * kelvin))
     xyz = observer.xyz(wavelength) @ power
-    return tuple(np.maximum(_RGB_FROM_XYZ @ (xyz / xyz[1]), 0.0).tolist())
+    return tuple((_RGB_FROM_XYZ @ (xyz / xyz[1])).tolist())
 
 
 @lru_cache(maxsize=4096)

@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "base/report.h"
-#include "math/luminance.h"
 #include "scene/scene.h"
 #include "shade/programs/node_output.h"
 #include "shade/programs/program.h"

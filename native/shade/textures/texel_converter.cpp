@@ -43,15 +43,15 @@ TexelConverter::TexelConverter(const From& from) : m_from(from) {
 Vec4f TexelConverter::converted(const Vec4f& color) const {
     const float alpha = m_from.is_associated && color.w > 0.0f ? color.w : 1.0f;
     const Vec3f light = m_from.space->linear(Vec3f(color) / alpha) * alpha;
-    // As Cycles: grey, whatever the primaries.
-    const bool is_grey = m_from.channels < 3;
+    // As Cycles: grey, whatever the primaries, unless there is alpha beside it.
+    const bool is_grey = m_from.channels == 1;
     return Vec4f(is_grey ? Vec3f((light.x + light.y + light.z) / 3.0f) : light, color.w);
 }
 
 /// So are most images in a working space of other primaries than theirs: no powers a texel.
 Vec4f TexelConverter::converted_byte(const std::uint8_t* c) const {
     const bool is_divided = m_from.is_associated && c[3] != 255;
-    if (is_divided || m_from.channels < 3 || m_from.space->cube_size > 0)
+    if (is_divided || m_from.channels == 1 || m_from.space->cube_size > 0)
         return converted(Vec4f(c[0], c[1], c[2], c[3]) / 255.0f);
     const Vec3f light = m_from.space->matrix * Vec3f(m_curve[c[0]], m_curve[c[1]], m_curve[c[2]]);
     return Vec4f(light, static_cast<float>(c[3]) / 255.0f);
@@ -87,8 +87,11 @@ void TexelConverter::convert(const void* from, std::size_t count, std::byte* out
         } else {
             expand(static_cast<const float*>(from) + i * channels, m_from.channels, 1.0f, &color.x);
         }
-        if (!m_as_it_is) color = converted(color);
         for (int k = 0; k < 4; ++k) color[k] = finite(color[k]);
+        if (!m_as_it_is) {
+            color = converted(color);
+            for (int k = 0; k < 4; ++k) color[k] = finite(color[k]);
+        }
         if (m_from.opaque) color.w = 1.0f;
         store_texel(color, out, m_type);
     }

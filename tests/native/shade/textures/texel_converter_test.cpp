@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace granita {
@@ -57,14 +58,32 @@ TEST(TexelConverter, curves_are_of_what_was_painted_not_of_its_product_with_alph
     EXPECT_EQ(only_texel(TexelConverter(from), bytes).w, 1.0f);
 }
 
-TEST(TexelConverter, greys_stay_grey) {
+TEST(TexelConverter, greys_alone_stay_grey) {
     TexelConverter::From from;
     from.space = swapped();
-    from.channels = 2;
+    from.channels = 1;
     const std::uint8_t bytes[] = {255, 128};
-    const Vec4f texel = only_texel(TexelConverter(from), bytes);
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(texel[k], 2.5f / 3.0f, 1e-3f);
-    EXPECT_NEAR(texel.w, 128 / 255.0f, 1e-3f);
+    const Vec4f grey = only_texel(TexelConverter(from), bytes);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(grey[k], 2.5f / 3.0f, 1e-3f);
+    from.channels = 2;
+    const Vec4f beside_alpha = only_texel(TexelConverter(from), bytes);
+    EXPECT_NEAR(beside_alpha.x, 0.5f, 1e-3f);
+    EXPECT_NEAR(beside_alpha.y, 1.0f, 1e-3f);
+    EXPECT_NEAR(beside_alpha.w, 128 / 255.0f, 1e-3f);
+}
+
+TEST(TexelConverter, what_is_no_number_is_black) {
+    auto space = std::make_shared<ColorSpace>();
+    space->curve = ColorSpace::Curve::Table;
+    space->table = {1.0f, 2.0f, 3.0f};
+    TexelConverter::From from;
+    from.space = space;
+    from.type = TexelType::Float;
+    const float floats[] = {NAN, -INFINITY, 0.5f, 1.0f};
+    const Vec4f texel = only_texel(TexelConverter(from), floats);
+    EXPECT_EQ(texel.x, 1.0f);  // of black
+    EXPECT_TRUE(std::isfinite(texel.y));
+    EXPECT_EQ(texel.z, 2.0f);
 }
 
 }  // namespace
