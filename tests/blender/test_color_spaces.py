@@ -242,3 +242,29 @@ def test_a_film_in_a_working_space(scene, render, space):
         sun.use_temperature, sun.temperature = True, 3000.0
     add_object(scene, "Sun", sun)
     assert error_of(scene, render) < 0.01
+
+
+@pytest.mark.parametrize("space", [s for s in WORKING_SPACES if s != STUDIOS])
+def test_what_is_kept_between_frames_follows_the_working_space(scene, render, tmp_path, space):
+    tree = Tree(board(scene, low=0.0))
+    mix = tree.add("ShaderNodeMixRGB")
+    tree.link(bytes_of_corners(tree, tmp_path), mix.inputs["Color1"])
+    # Blender changes no space while an image is painted on.
+    image = bpy.data.images.new("Grid", 64, 64, float_buffer=True)
+    image.generated_type = "COLOR_GRID"
+    grid = tree.add("ShaderNodeTexImage", image=image)
+    tree.link(grid.outputs["Color"], mix.inputs["Color2"])
+    tree.emit(mix.outputs["Color"])
+    scene.granita.samples = 1
+    scene.render.use_persistent_data = True
+
+    def picture():
+        passes = render(scene)
+        return np.stack([passes[f"ViewLayer.Combined.{c}"] for c in "RGB"], axis=-1)
+
+    before = picture()
+    work_in(space)
+    kept = picture()
+    scene.render.use_persistent_data = False
+    assert np.abs(kept - before).max() > 0.05
+    np.testing.assert_array_equal(kept, picture())

@@ -15,7 +15,6 @@ from ..base.updates import Touched, object_names, originals, read_updates
 from ..geometry.attributes import requested_names
 from ..geometry.geometry_source import read_source
 from ..geometry.subdivision import simplify_level
-from ..shading.working_space import scene_from_rec709
 from .depsgraph import hidden_types, prototype_again
 from .instance_values import requested_values
 from .scene_objects import read_scene_objects, shade
@@ -38,11 +37,9 @@ class PersistentState:
         """SceneObjects of the frame at which the depsgraph stands.  They are kept when `keep` is called."""
         self.note(depsgraph)
         before, touched, settings = self._scene_objects, self._touched, self._settings
-        colors = self._colors
         self._forget()
         self._settings = _settings(depsgraph)
-        self._colors = scene_from_rec709().tobytes()  # which colours of vertices are in
-        if before is None or self._colors != colors:
+        if before is None:
             return read_scene_objects(depsgraph, None, report, check_cancel)
         if self._settings == settings and _renew(before, touched, depsgraph, report, check_cancel):
             return before
@@ -56,7 +53,6 @@ class PersistentState:
 
     def _forget(self):
         self._scene_objects, self._settings, self._touched = None, None, Touched()
-        self._colors = None
 
 
 def _settings(depsgraph):
