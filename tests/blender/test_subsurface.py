@@ -158,6 +158,15 @@ def test_black_lines_leave_what_is_between_them_as_light(scene, render, make, bl
     assert ours.mean(axis=(0, 1)) == pytest.approx(theirs.mean(axis=(0, 1)), rel=0.03)
 
 
+def test_what_passes_a_thin_sheet_is_no_brighter_the_darker_it_is(scene, render):
+    """Of a colour of .02 what goes through unscattered was fifty times Cycles'."""
+    tree, shader = scattering(sheet(scene), "RANDOM_WALK")
+    shader.inputs["Color"].default_value = (0.3, 0.02, 0.002, 1.0)
+    shader.inputs["Radius"].default_value = (1.0, 1.0, 1.0)
+    theirs, ours = compare(scene, render)
+    assert ours.mean(axis=(0, 1)) == pytest.approx(theirs.mean(axis=(0, 1)), rel=0.08)
+
+
 def test_walks_that_go_on_straight_come_out_as_light(scene, render):
     """A thousand scatterings that hardly turn them left 4 % of the ways inside."""
     _, shader = scattering(ball(scene), "RANDOM_WALK")

@@ -26,6 +26,8 @@ namespace {
 /// Of the sequences by which ends are lit: no surface lies so deep.
 constexpr std::uint32_t kDepth = 1u << 20;
 constexpr float kLeastAlbedo = 1e-6f;
+/// Of one scattering.
+constexpr float kLeastScattered = 0.2f;
 
 }  // namespace
 
@@ -185,10 +187,17 @@ class SubsurfaceLight::Batch {
             return;
         start.p = m_p;
         start.rounding = m_rounding;
-        const ScatteringMedium medium(lobe.albedo[i], lobe.radius[i], lobe.anisotropy[i]);
+        ScatteringMedium medium(lobe.albedo[i], lobe.radius[i], lobe.anisotropy[i]);
         // The way itself takes on the albedo.
         Vec3f weight = lobe.weight[i] / glm::max(lobe.albedo[i], Vec3f(kLeastAlbedo)) /
                        static_cast<float>(m_count);
+        // As Cycles: dark channels scatter more, of less light.  What passes thin walls unscattered
+        // would be all the brighter, the darker a colour is: fifty times that of .02.
+        for (int c = 0; c < 3; ++c) {
+            if (medium.albedo[c] >= kLeastScattered) continue;
+            weight[c] *= medium.albedo[c] / kLeastScattered;
+            medium.albedo[c] = kLeastScattered;
+        }
         RayScene::Met exit{};
         if (!walk(m_rays, m_body, medium, start, weight, exit)) return;
         exit.hit.direction = -exit.hit.direction;  // as if it were seen from outside
