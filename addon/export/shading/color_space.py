@@ -20,11 +20,9 @@ from .working_space import scene_from_rec709
 
 # The native side knows these by their names.
 _PLAIN = {"LINEAR": "scene_linear", "SRGB": "sRGB", "DATA": "Non-Color"}
+_DATA = {"is_data": True, "curve": "LINEAR"}
 # What images are handed over as, whatever a configuration makes of these names.
-_AS_THEY_ARE = {
-    "scene_linear": {"curve": "LINEAR"},
-    "Non-Color": {"is_data": True, "curve": "LINEAR"},
-}
+_AS_THEY_ARE = {"scene_linear": {"curve": "LINEAR"}, "Non-Color": _DATA}
 # A curve is known at so many places, 0 and 1 among them.  Over a camera's 17 stops they are straight within 1e-6 between;
 # files of floats reach beyond 0 and 1.
 _PLACES, _LOW, _HIGH = 10241, -0.5, 2.0
@@ -94,12 +92,9 @@ def _described(name):
         unknown, found = "is read as sRGB", blenders_color_space("sRGB")
     curve, to_rec709 = found
     if curve == "DATA":
-        return {"is_data": True, "curve": "LINEAR"}, unknown
-    matrix = _matrix(scene_from_rec709() @ to_rec709)
-    return {
-        **(_table(curve(_places())) if callable(curve) else {"curve": curve}),
-        **matrix,
-    }, unknown
+        return _DATA, unknown
+    record = _table(curve(_places())) if callable(curve) else {"curve": curve}
+    return {**record, **_matrix(scene_from_rec709() @ to_rec709)}, unknown
 
 
 def _configuration():
@@ -143,7 +138,7 @@ def _open_color_io():
 def _of_configuration(name, _configuration_id):
     config = _configuration()
     if config.getColorSpace(name).isData():
-        return {"is_data": True, "curve": "LINEAR"}, None
+        return _DATA, None
     try:
         processor = config.getProcessor(name, "scene_linear").getDefaultCPUProcessor()
     except Exception as failure:  # its own have no kind in common; a file is missing, say
