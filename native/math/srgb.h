@@ -6,10 +6,6 @@
 
 namespace granita {
 
-inline float srgb_from_linear(float x) {
-    if (x < 0.0031308f) return x < 0.0f ? 0.0f : x * 12.92f;
-    return 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
-}
 inline float linear_from_srgb(float x) {
     if (x < 0.04045f) return x < 0.0f ? 0.0f : x / 12.92f;
     return std::pow((x + 0.055f) / 1.055f, 2.4f);

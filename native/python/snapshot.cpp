@@ -169,15 +169,12 @@ Lifespan lifespan(const std::string& datablock, float open, float close) {
 
 std::vector<Mat4d> matrices(const Record& record, const char* key) {
     const auto a = record.array<double>(key, {-1, 4, 4});
+    record.require_finite<double>(key, {a.data(), static_cast<std::size_t>(a.size())});
     std::vector<Mat4d> list(static_cast<std::size_t>(a.shape(0)));
     const double* m = a.data();
     for (Mat4d& matrix : list) {
         for (int row = 0; row < 4; ++row)
-            for (int column = 0; column < 4; ++column) {
-                if (!std::isfinite(*m))
-                    record.fail(std::string("'") + key + "' holds a value that is not finite");
-                matrix[column][row] = *m++;
-            }
+            for (int column = 0; column < 4; ++column) matrix[column][row] = *m++;
     }
     return list;
 }
@@ -210,7 +207,8 @@ std::shared_ptr<Scene> read_scene(const py::dict& snapshot) {
         m.holdout = r.boolean("holdout", false);
         read_graph(r, m.graph);
     });
-    const ColorSpaces spaces = read_color_spaces(root);
+    std::vector<NamedColorSpace> spaces;
+    read_list("color_spaces", "colour space", spaces, read_color_space);
     read_list("images", "image", scene->images,
               [&](const Record& r, Image& image) { read_image(r, spaces, image); });
     if (root.has("working_space"))

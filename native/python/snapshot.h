@@ -6,6 +6,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
+#include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +48,13 @@ class Record {
     template <class T>
     std::vector<T> values(const char* key, const std::vector<py::ssize_t>& shape) const;
 
+    /// Fails where one of the values of a key is infinite or no number.
+    template <class T>
+    void require_finite(const char* key, std::span<const T> values) const {
+        if (!std::ranges::all_of(values, [](T x) { return std::isfinite(x); }))
+            fail(std::string("'") + key + "' holds a value that is not finite");
+    }
+
     [[noreturn]] void fail(const std::string& message) const;
     /// Fails where the dict has a key that nobody asked for: a name spelled wrongly.
     void refuse_others() const;
@@ -75,12 +85,14 @@ void read_light(const Record& record, Light& light);
 /// Light::most_bounces, of a world too.
 int read_most_bounces(const Record& record);
 
-/// By name.
-using ColorSpaces = std::map<std::string, std::shared_ptr<const ColorSpace>>;
-ColorSpaces read_color_spaces(const Record& root);
+struct NamedColorSpace {
+    std::string name;
+    std::shared_ptr<const ColorSpace> space;
+};
+void read_color_space(const Record& record, NamedColorSpace& space);
 void read_working_space(const Record& record, WorkingSpace& space);
 /// @param spaces  those that are not plain (scene/color_space.h).
-void read_image(const Record& record, const ColorSpaces& spaces, Image& image);
+void read_image(const Record& record, const std::vector<NamedColorSpace>& spaces, Image& image);
 std::shared_ptr<Scene> read_scene(const py::dict& snapshot);
 
 void bind_errors(py::module_& module);

@@ -137,6 +137,7 @@ Ray LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& dire
 /// shade itself, so that a ray through it starts behind it, and coarse ones not each other, above
 /// which it starts (Cycles).
 void LampSet::bend(const LitPoint& point, const LitPlace& place, Ray& ray) {
+    if (!point.rise || ray.type != RayType::Shadow) return;
     const float smooth = glm::dot(point.bsdf.surface_normal(), ray.direction);
     const float flat = glm::dot(place.normal, ray.direction), offset = point.terminator_offset;
     if (smooth <= 0.0f || std::min(smooth, flat) >= offset) return;
@@ -156,7 +157,7 @@ Ray LampSet::ray_to(const LitPoint& point, const LitPlace& place, const Lamp& la
                     const LightSample& sample, RayType type) const {
     Ray to = ray(point, place, sample.direction, sample.distance, type, lamp.blocker_set());
     const Vec3f unbent = to.start;
-    if (point.rise && type == RayType::Shadow) bend(point, place, to);
+    bend(point, place, to);
     const bool is_near = sample.distance < std::numeric_limits<float>::infinity();
     if (!lamp.is_surface() && (to.start == unbent || !is_near)) return to;
     // Where it starts beside the point, as of strands and above coarse faces, it would pass the
@@ -185,7 +186,7 @@ Vec3f LampSet::occlusion(LitGrid& grid, const LitPoint& point, const LitPlace& p
     if (!rays) return Vec3f(1.0f);
     ++grid.occlusion_rays;
     Ray to = ray(point, place, direction, std::numeric_limits<float>::infinity(), type);
-    if (point.rise && type == RayType::Shadow) bend(point, place, to);
+    bend(point, place, to);
     return rays->transmittance(to);
 }
 
