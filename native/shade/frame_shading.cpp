@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "base/stage_timer.h"
 #include "shade/bounces/meets_light.h"
@@ -62,17 +64,20 @@ FrameShading::FrameShading(const Scene& s, Statistics& stats, Report& warnings, 
     const bool follows = meets_light(scene, light->lamp_faces(), *emission);
     if (follows || any([this](std::int32_t index) { return material(index).is_told_apart; }))
         hits = std::make_unique<HitShader>(scene, textures, report);
+    HitScattering scatter;
+    if (any([this](std::int32_t index) { return scatters(index); })) {
+        const auto bent = [this](std::int32_t index) {
+            const SurfaceProgram& radiance = material(index).radiance;
+            return radiance.bends_scattered() ? &material(index) : nullptr;
+        };
+        below = std::make_unique<SubsurfaceLight>(scene, *light, bent, progress);
+        scatter = std::bind_front(&SubsurfaceLight::scatter, below.get());
+    }
     if (follows)
         bounces = std::make_unique<BouncedLight>(scene, *light, *hits, *emission, volumes.get(),
-                                                 statistics, progress);
+                                                 std::move(scatter), statistics, progress);
     if (volumes)
         seen_volumes = std::make_unique<SeenVolumes>(scene, *volumes, *light, bounces.get());
-    if (!any([this](std::int32_t index) { return scatters(index); })) return;
-    const auto bent = [this](std::int32_t index) {
-        const SurfaceProgram& radiance = material(index).radiance;
-        return radiance.bends_scattered() ? &material(index) : nullptr;
-    };
-    below = std::make_unique<SubsurfaceLight>(scene, *light, bounces.get(), bent, progress);
 }
 
 void FrameShading::warn_of_broken(std::int32_t index, std::size_t count) const {

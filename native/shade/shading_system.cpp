@@ -24,8 +24,6 @@
 namespace granita {
 namespace {
 
-/// Metres: what scatters no farther is drawn as diffuse, as in Cycles.
-constexpr float kLeastScattering = 1e-8f;
 /// One point of as many that turns within the shutter leaves its grid to samples: along the
 /// silhouettes of round things that move a few do.
 constexpr std::size_t kTurned = 8;
@@ -61,7 +59,8 @@ struct ShadingSystem::Impl : FrameShading {
                        const PointPaths& at, Grid& grid, ReflectionParts* parts,
                        std::vector<Vec3f>& radiance) const {
         if (grid.found.scattered.empty()) {
-            ScatteredLight light = below->gather(points, closure, grid.key, at, parts);
+            ScatteredLight light = 
+                below->gather(points, closure, grid.key, at, parts, bounces.get());
             grid.found.scattered = std::move(light.direct);
             grid.found.scattered_bounced = std::move(light.bounced);
         }
@@ -91,7 +90,7 @@ struct ShadingSystem::Impl : FrameShading {
         SurfaceClosure closure = ran.take_closure();
         if (!closure.subsurface.empty()) {
             const bool has_body = below && light->rays()->has_body(grid.key);
-            draw_as_diffuse(closure, has_body ? kLeastScattering : HUGE_VALF);
+            draw_as_diffuse(closure, has_body);
         }
         std::vector<float>* noise = doubts ? &doubts->noise : nullptr;
         // What is scattered is told by corners that are not black; there samples were darker still.

@@ -299,14 +299,18 @@ class BouncedLight::Wave {
         m_light.m_direct.lift(m_points.points(), key);
         SurfaceRun ran(surface.radiance, m_points.input());
         SurfaceClosure closure = ran.take_closure();
-        draw_as_diffuse(closure, std::numeric_limits<float>::infinity());
+        const bool has_body = m_light.m_scatter && m_light.m_direct.rays()->has_body(key);
+        draw_as_diffuse(closure, has_body, first.was_diffuse);
         tame(batch, closure);
         std::vector<Vec3f> light(batch.size(), Vec3f(0.0f)), emitted = light;
         m_leaving.rays.clear();
         m_leaving.met.clear();
-        if (is_lit(first))
+        if (is_lit(first)) {
             light = m_light.m_direct.reflect(ran.points(), closure, key, nullptr, {}, nullptr,
                                              &m_leaving);
+            if (!closure.subsurface.empty())
+                m_light.m_scatter(ran.points(), closure, key, light, m_leaving.rays);
+        }
         for (std::size_t i = 0; i < closure.emission.size(); ++i)
             if (!m_light.is_lamp(*batch[i].hit) &&
                 in_light_set(batch[i].path->next.receives, instance.receiver_set))
@@ -458,12 +462,13 @@ class BouncedLight::Wave {
 
 BouncedLight::BouncedLight(const Scene& scene, const DirectLight& direct, const HitShader& hits,
                            const MaterialEmission& emission, const Volumes* volumes,
-                           Statistics& statistics, const Progress& progress)
+                           HitScattering scatter, Statistics& statistics, const Progress& progress)
     : m_scene(scene),
       m_direct(direct),
       m_hits(hits),
       m_emission(emission),
       m_volumes(volumes),
+      m_scatter(std::move(scatter)),
       m_any_shines((volumes && volumes->shines()) || scene.options.bounces.occlusion_added > 0.0f),
       m_statistics(statistics),
       m_progress(progress) {

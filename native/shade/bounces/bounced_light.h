@@ -15,6 +15,7 @@
 // put together.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "base/progress.h"
@@ -30,12 +31,18 @@
 
 namespace granita {
 
+/// Of light that enters surfaces and leaves them elsewhere (SubsurfaceLight::scatter).
+using HitScattering =
+    std::function<void(const ShadingPoints& hits, const SurfaceClosure& closure, const GridKey& key,
+                       std::vector<Vec3f>& radiance, std::vector<LobeRay>& leaving)>;
+
 class BouncedLight {
   public:
-    /// All must outlive it; `direct` has rays.  `volumes` nullptr: nothing is filled.
+    /// All must outlive it; `direct` has rays.  `volumes` nullptr: nothing is filled.  `scatter`
+    /// may be empty: what it would is diffuse.
     BouncedLight(const Scene& scene, const DirectLight& direct, const HitShader& hits,
-                 const MaterialEmission& emission, const Volumes* volumes, Statistics& statistics,
-                 const Progress& progress);
+                 const MaterialEmission& emission, const Volumes* volumes, HitScattering scatter,
+                 Statistics& statistics, const Progress& progress);
 
     /// What comes along the rays that leave `points`.
     GatheredLight gather(const std::vector<LobeRay>& leaving, std::size_t points) const;
@@ -55,6 +62,7 @@ class BouncedLight {
     const HitShader& m_hits;
     const MaterialEmission& m_emission;
     const Volumes* m_volumes;
+    HitScattering m_scatter;
     bool m_any_shines = false;  ///< of surfaces that are no lamps
     Statistics& m_statistics;
     const Progress& m_progress;

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/bsdf/subsurface_lobe.h"
 
+#include <limits>
 #include <utility>
 
 #include "shade/bsdf/lobe.h"
 
 namespace granita {
 
-void draw_as_diffuse(SurfaceClosure& closure, float radius) {
+void draw_as_diffuse(SurfaceClosure& closure, bool has_body, bool was_diffuse) {
+    constexpr float kLeast = 1e-8f;
     for (SubsurfaceLobe& from : closure.subsurface) {
+        const bool scatters = has_body && (from.after_diffuse || !was_diffuse);
+        const float radius = scatters ? kLeast : std::numeric_limits<float>::infinity();
         const std::size_t count = from.weight.size();
         Lobe lobe;
         bool any_moves = false, any_stays = false;

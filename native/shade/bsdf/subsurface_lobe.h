@@ -4,6 +4,7 @@
 // stands beside them.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "math/vec.h"
@@ -22,15 +23,23 @@ enum class SubsurfaceEntry {
 struct SubsurfaceLobe {
     bool walks = true;  ///< at random inside of the mesh; else goes by Burley's profile
     SubsurfaceEntry entry = SubsurfaceEntry::Diffuse;
-    bool burley = false;        ///< leaves as Burley's (2012) diffuse lobe does
+    bool burley = false;  ///< leaves as Burley's (2012) diffuse lobe does
+    bool after_diffuse =
+        true;  ///< scatters light for diffuse surfaces too, and is not diffuse there
     std::vector<Vec3f> weight;  ///< [n] of what leaves; holds the albedo, as those of lobes do
     std::vector<Vec3f> normal;  ///< [n] unit, facing the viewer
     std::vector<Vec3f> albedo;  ///< [n] of a thick slab
     std::vector<Vec3f> radius;  ///< [n] metres, by channel: mean free path, or Burley's d
     std::vector<float> anisotropy, alpha, ior;  ///< [n]; the last two as light enters
+
+    /// The least radius.
+    float nearest(std::size_t i) const {
+        return std::min({radius[i].x, radius[i].y, radius[i].z});
+    }
 };
 
-/// Moves to diffuse lobes what scatters no farther than `radius`, by channel.
-void draw_as_diffuse(SurfaceClosure& closure, float radius);
+/// Moves to diffuse lobes what is not scattered: by channel what goes no farther than 1e-8 m, as in
+/// Cycles; of what rays know no body of, all; what a diffuse surface sees, lobes that say so.
+void draw_as_diffuse(SurfaceClosure& closure, bool has_body, bool was_diffuse = false);
 
 }  // namespace granita

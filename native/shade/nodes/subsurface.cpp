@@ -19,6 +19,7 @@ void set_subsurface_method(NodeBuilder& b, SubsurfaceSource& lobe, const char* p
     const bool skin = method == (first ? "RANDOM_WALK" : "RANDOM_WALK_SKIN");
     const bool whole = b.since(5, 2) && method == "RANDOM_WALK";
     lobe.walks = method != "BURLEY";
+    lobe.after_diffuse = b.since(5, 0) && lobe.walks;
     lobe.is_bent = b.linked("Normal");
     if (!first && lobe.walks)
         lobe.entry = skin ? SubsurfaceEntry::Mixed : SubsurfaceEntry::Refracted;

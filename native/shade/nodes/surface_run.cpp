@@ -46,6 +46,7 @@ SurfaceClosure closure_of(const Run& run, const SurfaceSources& sources, std::si
         SubsurfaceLobe lobe;
         lobe.walks = from.walks;
         lobe.burley = from.burley;
+        lobe.after_diffuse = from.after_diffuse;
         lobe.entry = from.entry;
         lobe.weight = values_of(run, from.weight);
         broken += make_finite(lobe.weight);

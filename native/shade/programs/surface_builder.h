@@ -32,7 +32,7 @@ struct LobeSource {
 
 /// As SubsurfaceLobe.
 struct SubsurfaceSource {
-    bool walks = true, burley = false;
+    bool walks = true, burley = false, after_diffuse = true;
     bool is_bent = false;  ///< `normal` is another than the surface's own
     SubsurfaceEntry entry = SubsurfaceEntry::Diffuse;
     VectorSource weight, normal, albedo, radius;

@@ -73,13 +73,19 @@ Vec3f subsurface_weight(const SurfaceClosure& closure, std::size_t point) {
 }
 
 std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
+                                   const std::vector<Vec3f>& gone,
                                    const std::vector<Vec3f>& light) {
     const std::size_t count = points.count;
     std::vector<Vec3f> weight(count);
     for (std::size_t i = 0; i < count; ++i) weight[i] = subsurface_weight(closure, i);
     NoisyValues noisy{by_weight(points, weight, light), std::vector<Vec3f>(count), weight};
+    noisy.may_vary = true;
     for (std::size_t i = 0; i < count; ++i)
-        for (int c = 0; c < 3; ++c) noisy.by_reach[i][c] = by_reach(closure, i, c);
+        for (int c = 0; c < 3; ++c) {
+            noisy.by_reach[i][c] = by_reach(closure, i, c);
+            if (gone[i][c] > 0.0f && noisy.by_reach[i][c] > 0.0f)
+                noisy.by_reach[i][c] = std::max(noisy.by_reach[i][c], 1.0f / gone[i][c]);
+        }
     return share(points, noisy);
 }
 

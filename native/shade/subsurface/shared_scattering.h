@@ -14,9 +14,11 @@ namespace granita {
 /// Of all that scatters at a point.
 Vec3f subsurface_weight(const SurfaceClosure& closure, std::size_t point);
 
-/// [points] `light`, by weight, shared.
+/// [points] `light`, by weight, shared.  `gone`: [points] how far along the surface ways have gone,
+/// metres by channel, not finite where none leaves: through thin walls not as far as the medium has
+/// it.
 std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
-                                   const std::vector<Vec3f>& light);
+                                   const std::vector<Vec3f>& gone, const std::vector<Vec3f>& light);
 
 /// Adds [points] what is scattered below them, by its weight, of lamps and the world and of other
 /// surfaces (empty: none).

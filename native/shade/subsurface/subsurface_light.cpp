@@ -25,6 +25,8 @@ namespace {
 
 /// Of the sequences by which ends are lit: no surface lies so deep.
 constexpr std::uint32_t kDepth = 1u << 20;
+/// Steps of a lattice: light that goes no farther varies between its points.
+constexpr float kCells = 2.0f;
 constexpr float kLeastAlbedo = 1e-6f;
 /// Of one scattering.
 constexpr float kLeastScattered = 0.2f;
@@ -35,34 +37,57 @@ constexpr float kLeastScattered = 0.2f;
 class SubsurfaceLight::Batch {
   public:
     Batch(const SubsurfaceLight& light, const ShadingPoints& points, const GridKey& key,
-          const PointPaths& paths, ReflectionParts* parts)
+          const PointPaths& paths, ReflectionParts* parts, bool follows)
         : m_light(light),
           m_rays(*light.m_direct.rays()),
           m_points(points),
           m_key(key),
           m_paths(paths),
           m_parts(parts),
-          m_seed(grid_seed(key, light.m_scene.options.seed)),
-          m_direct(points.count, Vec3f(0.0f)) {
+          m_follows(follows),
+          m_seed(sequence_seed(points, key, light.m_scene.options.seed)),
+          m_direct(points.count, Vec3f(0.0f)),
+          m_aside(m_direct),
+          m_weights(m_direct) {
         const auto samples = static_cast<float>(light.m_scene.options.light_samples);
         m_count = std::max(1, static_cast<int>(std::lround(points.share * samples)));
         m_front = points.columns > 0 && std::ranges::count(points.backfacing, 0) > 0;
     }
 
+    void scatter(const std::vector<SubsurfaceLobe>& lobes) {
+        for (std::size_t k = 0; k < lobes.size(); ++k) scatter(lobes[k], k);
+    }
+
+    /// [points] what has come straight.
+    std::vector<Vec3f>& direct() { return m_direct; }
+    /// [points] metres along the surface from where light enters to where it leaves, a channel;
+    /// infinite where none does.
+    std::vector<Vec3f> reach() const {
+        std::vector<Vec3f> reach(m_points.count);
+        for (std::size_t i = 0; i < reach.size(); ++i) reach[i] = m_aside[i] / m_weights[i];
+        return reach;
+    }
+    /// Of points, as their lobes' rays.
+    const std::vector<LobeRay>& leaving() const { return m_leaving; }
+
+  private:
     void scatter(const SubsurfaceLobe& lobe, std::size_t index) {
         m_exits.clear();
         m_ways.clear();
         const std::uint64_t seed = mix_bits(m_seed + 0x9e3779b97f4a7c15ULL * (index + 1));
-        const SobolPoints entries(seed), times(mix_bits(seed));
+        const SobolPoints entries(seed), times(mix_bits(seed)), places(mix_bits(~seed));
         m_body = m_rays.body(m_key, m_light.m_scene.options.frame_time);
         for (std::size_t i = 0; i < m_points.count; ++i) {
             if (lobe.weight[i] == Vec3f(0.0f)) continue;
             m_light.m_progress.check();
+            const bool varies_in_cell =
+                m_points.columns > 0 && lobe.nearest(i) < kCells * width_of(m_points, i);
             const std::uint32_t first =
                 place_in_sequence(m_points, i) * static_cast<std::uint32_t>(m_count);
             for (std::uint32_t s = first; s < first + static_cast<std::uint32_t>(m_count); ++s) {
                 if (m_light.m_direct.varies()) move_to(time_at(i, times(s).x));
-                if (s == first || m_light.m_direct.varies()) stand_on(i);
+                if (s == first || varies_in_cell || m_light.m_direct.varies())
+                    stand_on(i, varies_in_cell ? cell_at(i, places(s)) : Vec2f(0.0f));
                 if (lobe.walks)
                     walk_from(lobe, i, s, entries(s), mix_bits(seed ^ mix_bits(s + 1ULL)));
                 else
@@ -72,18 +97,6 @@ class SubsurfaceLight::Batch {
         light_exits(lobe.burley);
     }
 
-    /// Not by weight, nor shared yet.
-    ScatteredLight finish() {
-        ScatteredLight light{std::move(m_direct), {}};
-        if (!m_light.m_bounces) return light;
-        GatheredLight gathered = m_light.m_bounces->gather(m_leaving, m_points.count);
-        for (std::size_t i = 0; i < gathered.world.size(); ++i)
-            light.direct[i] += total(gathered.world[i]);
-        light.bounced = std::move(gathered.diffuse);
-        return light;
-    }
-
-  private:
     /// One at which the point is seen: of samples at which they stand where they are.
     float time_at(std::size_t i, float uniform) const {
         if (!m_points.times.empty() && m_points.times[i] >= 0.0f) return m_points.times[i];
@@ -104,9 +117,20 @@ class SubsurfaceLight::Batch {
         return is_turned(i) ? -normal : normal;
     }
 
-    /// Puts a point onto what rays meet of its mesh, from which coarse points of curved or small
-    /// faces may lie as far as light goes.
-    void stand_on(std::size_t i) {
+    /// Steps of a lattice from a point to a place in what it stands for: up to halfway to its
+    /// neighbours.
+    Vec2f cell_at(std::size_t i, const Vec2f& uniform) const {
+        const std::size_t columns = m_points.columns, rows = m_points.count / columns;
+        const auto step = [](std::size_t at, std::size_t count, float u) {
+            const float from = at > 0 ? -0.5f : 0.0f, to = at + 1 < count ? 0.5f : 0.0f;
+            return from + u * (to - from);
+        };
+        return {step(i % columns, columns, uniform.x), step(i / columns, rows, uniform.y)};
+    }
+
+    /// Puts a point, as many steps aside, onto what rays meet of its mesh, from which coarse points
+    /// of curved or small faces may lie as far as light goes.
+    void stand_on(std::size_t i, const Vec2f& aside) {
         m_p = m_points.p[i];
         m_normal = m_points.geometric_normal[i];
         if (m_paths.moves()) {
@@ -118,12 +142,28 @@ class SubsurfaceLight::Batch {
         m_p += inwards(m_points, i);
         const std::uint32_t face = m_points.faces.empty() ? m_key.face : m_points.faces[i];
         RayOffset offset = m_rays.ray_offset({m_key.instance, face});
+        if (is_hit()) {
+            offset.error = 0.0f;
+            m_rounding = offset.length(m_p);
+            return;
+        }
         const float step = width_of(m_points, i);
         const float height = step + offset.length(m_p);
         RayScene::Met met{};
-        if (is_small() ? drop_near(i, height, met) : drop(height, met)) offset.error = 0.0f;
+        bool is_on = false;
+        if (aside != Vec2f(0.0f)) {
+            const Vec3f corner = m_p;
+            m_p += aside.x * m_points.dp_du[i] + aside.y * m_points.dp_dv[i];
+            is_on = drop(height, met);
+            if (!is_on) m_p = corner;
+        }
+        if (!is_on) is_on = is_small() ? drop_near(i, height, met) : drop(height, met);
+        if (is_on) offset.error = 0.0f;
         m_rounding = offset.length(m_p);
     }
+
+    /// Whether points are where rays have met the mesh.
+    bool is_hit() const { return m_points.depth > 0; }
 
     /// Whether points are corners of small faces; not means of some, nor samples.
     bool is_small() const {
@@ -220,15 +260,20 @@ class SubsurfaceLight::Batch {
     void add_exit(std::size_t point, std::uint32_t place, const Vec3f& weight,
                   RayScene::Met& exit) {
         exit.hit.distance = 0.0f;
+        const Vec3f way_there = exit.hit.p - m_p;
+        const float aside = glm::length(way_there - glm::dot(way_there, m_normal) * m_normal);
+        m_aside[point] += weight * aside;
+        m_weights[point] += weight;
         m_exits.push_back(exit);
         BouncedPath& way = m_ways.emplace_back();
         way.width = width_of(m_points, point);
-        way.seen = glm::length(m_points.p[point]);
+        way.seen = is_hit() ? m_points.seen_from[point] : glm::length(m_points.p[point]);
         way.next.ray.time = m_body.time;
         way.next.weight = weight;
         way.next.point = static_cast<std::uint32_t>(point);
         // As rays of lobes: a part of the sequences for each grid.
-        way.next.place = (static_cast<std::uint32_t>(m_seed) << 14) + place;
+        const auto first = m_points.places.empty() ? static_cast<std::uint32_t>(m_seed) << 14 : 0u;
+        way.next.place = first + place;
     }
 
     /// By material where any bends its normals, else all at once.
@@ -261,7 +306,7 @@ class SubsurfaceLight::Batch {
             met.push_back(met_by(m_ways[k], m_exits[k].hit, m_exits[k].frame()));
         HitPoints ends(m_light.m_scene, m_rays);
         static const std::vector<AttributeRequest> kNone;
-        ends.fill(met, surface ? surface->requests : kNone, kDepth);
+        ends.fill(met, surface ? surface->requests : kNone, kDepth + m_points.depth);
         m_light.m_direct.lift(ends.points(), {m_key.instance});
         ends.points().view = ends.points().normal;
         SurfaceClosure closure;
@@ -293,7 +338,7 @@ class SubsurfaceLight::Batch {
         ReflectionParts parts;
         const std::vector<Vec3f> light =
             m_light.m_direct.reflect(points, closure, {m_key.instance}, m_parts ? &parts : nullptr,
-                                     {}, nullptr, m_light.m_bounces ? &leaving : nullptr);
+                                     {}, nullptr, m_follows ? &leaving : nullptr);
         for (std::size_t k = 0; k < light.size(); ++k) {
             const std::size_t i = m_ways[batch[k]].next.point;
             m_direct[i] += light[k];
@@ -314,6 +359,7 @@ class SubsurfaceLight::Batch {
     const GridKey& m_key;
     const PointPaths& m_paths;
     ReflectionParts* m_parts;
+    bool m_follows;  ///< what other surfaces send
     std::uint64_t m_seed;
     int m_count = 1;  ///< of ways a point
     // Of the point at hand, at the time of the body.
@@ -321,6 +367,8 @@ class SubsurfaceLight::Batch {
     float m_rounding = 0.0f;  ///< of it, metres
     bool m_front = false;     ///< some point of a lattice is seen from the front
     std::vector<Vec3f> m_direct;
+    std::vector<Vec3f> m_aside,
+        m_weights;  ///< [points] of ways: metres along the surface, by weight
     RayScene::Body m_body;
     std::vector<RayScene::Met> m_exits;
     std::vector<Probed> m_probed;
@@ -328,26 +376,39 @@ class SubsurfaceLight::Batch {
     std::vector<LobeRay> m_leaving;
 };
 
-SubsurfaceLight::SubsurfaceLight(const Scene& scene, const DirectLight& direct,
-                                 const BouncedLight* bounces, BentSurface bent,
+SubsurfaceLight::SubsurfaceLight(const Scene& scene, const DirectLight& direct, BentSurface bent,
                                  const Progress& progress)
     : m_scene(scene),
       m_direct(direct),
-      m_bounces(bounces),
       m_bent(std::move(bent)),
       m_progress(progress),
       m_shutter(scene.options.shutter_curve) {}
 
 ScatteredLight SubsurfaceLight::gather(const ShadingPoints& points, const SurfaceClosure& closure,
                                        const GridKey& key, const PointPaths& paths,
-                                       ReflectionParts* parts) const {
-    Batch batch(*this, points, key, paths, parts);
-    for (std::size_t k = 0; k < closure.subsurface.size(); ++k)
-        batch.scatter(closure.subsurface[k], k);
-    ScatteredLight light = batch.finish();
+                                       ReflectionParts* parts, const BouncedLight* bounces) const {
+    Batch batch(*this, points, key, paths, parts, bounces != nullptr);
+    batch.scatter(closure.subsurface);
+    ScatteredLight light{std::move(batch.direct()), {}};
+    if (bounces) {
+        GatheredLight gathered = bounces->gather(batch.leaving(), points.count);
+        for (std::size_t i = 0; i < gathered.world.size(); ++i)
+            light.direct[i] += total(gathered.world[i]);
+        light.bounced = std::move(gathered.diffuse);
+    }
+    const std::vector<Vec3f> reach = batch.reach();
     for (auto* values : {&light.direct, &light.bounced})
-        if (!values->empty()) *values = share_scattered(points, closure, *values);
+        if (!values->empty()) *values = share_scattered(points, closure, reach, *values);
     return light;
+}
+
+void SubsurfaceLight::scatter(const ShadingPoints& hits, const SurfaceClosure& closure,
+                              const GridKey& key, std::vector<Vec3f>& radiance,
+                              std::vector<LobeRay>& leaving) const {
+    Batch batch(*this, hits, key, {}, nullptr, true);
+    batch.scatter(closure.subsurface);
+    for (std::size_t i = 0; i < hits.count; ++i) radiance[i] += batch.direct()[i];
+    leaving.insert(leaving.end(), batch.leaving().begin(), batch.leaving().end());
 }
 
 }  // namespace granita

@@ -2,8 +2,10 @@
 // Light that leaves a surface where it did not enter it: ways from the points of a grid through the
 // inside of their mesh, whose ends are lit together as one batch.
 //
-//   SubsurfaceLight below(scene, direct, bounces, bent, progress);    // once a frame
-//   light = below.gather(points, closure, grid.key, paths, parts);    // any thread, any grid
+//   SubsurfaceLight below(scene, direct, bent, progress);                      // once a frame
+//   light = below.gather(points, closure, grid.key, paths, parts, bounces);    // any thread and
+//   grid below.scatter(hits, closure, key, radiance, leaving);                      // where ways
+//   land
 //
 // What is gathered of a point depends on it alone: pictures are the same to the bit however points
 // are put together.
@@ -33,23 +35,27 @@ class SubsurfaceLight {
     /// they do not.
     using BentSurface = std::function<const CompiledSurface*(std::int32_t material)>;
 
-    /// All must outlive it; `direct` has rays; `bounces` nullptr: what enters has come straight
-    /// from lamps and the world.
-    SubsurfaceLight(const Scene& scene, const DirectLight& direct, const BouncedLight* bounces,
-                    BentSurface bent, const Progress& progress);
+    /// All must outlive it; `direct` has rays.
+    SubsurfaceLight(const Scene& scene, const DirectLight& direct, BentSurface bent,
+                    const Progress& progress);
 
     /// What closure.subsurface scatters of points that are there at the times that `paths` and the
-    /// shutter tell.  `parts`, where given, gets what arrives of lamps.
+    /// shutter tell.  `parts`, where given, gets what arrives of lamps.  `bounces` nullptr: what
+    /// enters has come straight from lamps and the world.
     ScatteredLight gather(const ShadingPoints& points, const SurfaceClosure& closure,
-                          const GridKey& key, const PointPaths& paths,
-                          ReflectionParts* parts) const;
+                          const GridKey& key, const PointPaths& paths, ReflectionParts* parts,
+                          const BouncedLight* bounces) const;
+
+    /// The same of HitPoints: one way a point.  Adds to [points] `radiance` what comes straight,
+    /// and to `leaving` the rays along which other surfaces' light comes.
+    void scatter(const ShadingPoints& hits, const SurfaceClosure& closure, const GridKey& key,
+                 std::vector<Vec3f>& radiance, std::vector<LobeRay>& leaving) const;
 
   private:
     class Batch;
 
     const Scene& m_scene;
     const DirectLight& m_direct;
-    const BouncedLight* m_bounces;
     BentSurface m_bent;
     const Progress& m_progress;
     ShutterWarp m_shutter;

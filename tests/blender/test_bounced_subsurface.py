@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light scattered below surfaces that mirrors show or other light meets, beside Cycles in the same Blender."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+import scene_parts
+from bounced_parts import look_at_stage, render_bounced, surface
+from mathutils import Vector
+
+pytestmark = pytest.mark.lit
+
+COLOR, RADIUS = (0.8, 0.6, 0.4), (0.3, 0.15, 0.08)
+
+
+def methods():
+    shader = bpy.types.ShaderNodeSubsurfaceScattering.bl_rna.properties["falloff"]
+    return [item.identifier for item in shader.enum_items]
+
+
+def waxen(thing, method):
+    surface(thing, "ShaderNodeSubsurfaceScattering", COLOR, Scale=1.0, Radius=RADIUS)
+    tree = thing.material_slots[0].material.node_tree
+    next(n for n in tree.nodes if n.type == "SUBSURFACE_SCATTERING").falloff = method
+    return thing
+
+
+def lamp(scene, place, energy, size=0.1):
+    data = bpy.data.lights.new("Lamp", "POINT")
+    data.energy, data.shadow_soft_size = energy, size
+    scene_parts.add_object(scene, "Lamp", data, place)
+
+
+def box(size, place=(0.0, 0.0, 0.0), wall=0.0):
+    """`wall`: of a hollow one, its thickness."""
+    bpy.ops.mesh.primitive_cube_add(size=1.0, scale=size, location=place)
+    thing = bpy.context.object
+    if wall:
+        solid = thing.modifiers.new("Solidify", "SOLIDIFY")
+        solid.thickness, solid.offset = wall, -1.0
+    return thing
+
+
+def mirrored(scene, method):
+    """A sheet lit from behind and a head, in a mirror behind them."""
+    waxen(box((1.6, 0.06, 1.6), (-0.6, 0.2, 0.0)), method)
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=0.6, location=(1.0, 0.2, 0.0))
+    waxen(bpy.context.object, method)
+    mirror = scene_parts.add_square(scene, "Mirror", 6.0, (0.0, 2.5, 0.0))
+    mirror.rotation_euler = (math.pi / 2, 0.0, 0.0)
+    surface(mirror, "ShaderNodeBsdfGlossy", (0.9, 0.9, 0.9), Roughness=0.0)
+    lamp(scene, (0.0, -2.0, 6.0), 600.0)
+    look_at_stage(scene, 0.9, 0.0)
+
+
+def lantern(scene, method):
+    """A shade of wax around a lamp, which lights a floor."""
+    waxen(box((0.8, 0.8, 1.0), wall=0.06), method)
+    floor = scene_parts.add_square(scene, "Floor", 8.0, (0.0, 0.0, -0.6))
+    surface(floor, "ShaderNodeBsdfDiffuse", (0.7, 0.7, 0.7))
+    lamp(scene, (0.0, 0.0, 0.0), 100.0)
+    look_at_stage(scene, 2.0, -0.2)
+
+
+def hollow(scene, method):
+    """Lit by the sun from behind."""
+    waxen(box((1.6, 1.6, 1.6), wall=0.2), method)
+    sun = bpy.data.lights.new("Sun", "SUN")
+    sun.energy = 5.0
+    made = scene_parts.add_object(scene, "Sun", sun)
+    made.rotation_euler = Vector((-1.0, 2.0, 1.0)).to_track_quat("Z", "Y").to_euler()
+    look_at_stage(scene, 1.0, 0.0)
+
+
+@pytest.mark.parametrize("make", [mirrored, lantern, hollow])
+@pytest.mark.parametrize("method", methods())
+def test_light_scattered_where_ways_land(scene, render, make, method):
+    make(scene, method)
+    both = render_bounced(scene, render, 256)
+    theirs, ours = (image.reshape(12, 4, 16, 4, 3).mean(axis=(1, 3)) for image in both)
+    d=ours-theirs
+    print("P", make.__name__, method, "mean", theirs.mean(axis=(0,1)), (ours.mean(axis=(0,1))/theirs.mean(axis=(0,1))), "rms", np.sqrt((d**2).mean(axis=(0,1)))/theirs.mean(axis=(0,1)), "max", np.abs(d).max())
