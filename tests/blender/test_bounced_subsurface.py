@@ -44,7 +44,7 @@ def box(size, place=(0.0, 0.0, 0.0), wall=0.0):
 
 
 def mirrored(scene, method):
-    """A sheet lit from behind and a head, in a mirror behind them."""
+    """A sheet lit from behind and a ball, in a mirror behind them."""
     waxen(box((1.6, 0.06, 1.6), (-0.6, 0.2, 0.0)), method)
     bpy.ops.mesh.primitive_uv_sphere_add(radius=0.6, location=(1.0, 0.2, 0.0))
     waxen(bpy.context.object, method)
@@ -52,6 +52,7 @@ def mirrored(scene, method):
     mirror.rotation_euler = (math.pi / 2, 0.0, 0.0)
     surface(mirror, "ShaderNodeBsdfGlossy", (0.9, 0.9, 0.9), Roughness=0.0)
     lamp(scene, (0.0, -2.0, 6.0), 600.0)
+    scene.cycles.caustics_reflective = False  # the lamp's, over the mirror, is noise in both
     look_at_stage(scene, 0.9, 0.0)
 
 
@@ -76,9 +77,23 @@ def hollow(scene, method):
 
 @pytest.mark.parametrize("make", [mirrored, lantern, hollow])
 @pytest.mark.parametrize("method", methods())
-def test_light_scattered_where_ways_land(scene, render, make, method):
+def test_light_is_scattered_where_ways_land(scene, render, make, method):
+    """Cycles 5 does for diffuse ways as well, those before for mirrors' alone: drawn as diffuse, floors that lanterns light
+    were up to 2.1 times too bright and the inside of hollow bodies had a fifth.  Bounds are noise, and inversions of the
+    albedo, which part by a hundredth."""
     make(scene, method)
     both = render_bounced(scene, render, 256)
     theirs, ours = (image.reshape(12, 4, 16, 4, 3).mean(axis=(1, 3)) for image in both)
-    d=ours-theirs
-    print("P", make.__name__, method, "mean", theirs.mean(axis=(0,1)), (ours.mean(axis=(0,1))/theirs.mean(axis=(0,1))), "rms", np.sqrt((d**2).mean(axis=(0,1)))/theirs.mean(axis=(0,1)), "max", np.abs(d).max())
+    level = theirs.mean(axis=(0, 1))
+    assert ours.mean(axis=(0, 1)) == pytest.approx(level, rel=0.03, abs=0.02 * float(level.max()))
+    assert (np.abs(ours - theirs).mean(axis=(0, 1)) < 0.2 * level).all()
+
+
+def test_probes_reach_as_far_as_the_channel_that_was_drawn(scene, render):
+    """Probes of Burley's profile: what passes a block of the widest channel alone was half as much again as in Cycles."""
+    hollow(scene, "BURLEY")
+    block = next(thing for thing in scene.objects if thing.type == "MESH")
+    block.modifiers.clear()
+    block.scale.y *= 0.125
+    theirs, ours = (image.mean() for image in render_bounced(scene, render, 1024, bounces="NONE"))
+    assert ours == pytest.approx(theirs, rel=0.04)

@@ -5,6 +5,7 @@ profile, sheets that let light through."""
 import numpy as np
 import pytest
 import snapshots as s
+from test_many_lamps import lamp
 
 SIZE = 32
 
@@ -26,13 +27,13 @@ def scattering(
     return index
 
 
-def slab(snapshot, material, depth=4e2, half=4e2):
-    """Seen from in front, its face at z = 10 across the whole frame."""
+def slab(snapshot, material, depth=4e2, half=4e2, middle=SIZE / 2):
+    """Seen from in front, its face at z = 10, across the whole frame unless it is less wide."""
     corners = [
         (x, y, z)
         for z in (10.0, 10.0 + depth)
-        for y in (SIZE / 2 - half, SIZE / 2 + half)
-        for x in (SIZE / 2 - half, SIZE / 2 + half)
+        for y in (middle - half, middle + half)
+        for x in (middle - half, middle + half)
     ]
     faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
     s.mesh(snapshot, corners, faces, material)
@@ -182,6 +183,42 @@ def test_bits_do_not_depend_on_buckets_and_threads(method, bounces):
     assert np.array_equal(whole, lump(method, bounces=bounces, threads=1))
     crop = np.int32([4, 8, 20, 24])
     assert np.array_equal(whole[8:24, 4:20], lump(method, bounces=bounces, crop=crop))
+
+
+def beside(scale, radius, depth, light):
+    """A block of 16 x 16 x `depth`, of this radius, metres as wide as pixels are at `scale` 1; its
+    pixels then, [16, 16, 3]."""
+    snapshot = s.orthographic((SIZE * scale,) * 2, samples=16, light_samples=64)
+    reach = (4 * np.pi * radius * scale,) * 3
+    material = scattering(snapshot, "RANDOM_WALK_FIXED_RADIUS", reach=reach)
+    slab(snapshot, material, depth * scale, 8.0 * scale, SIZE * scale / 2)
+    light(snapshot, scale)
+    return seen(snapshot).reshape(SIZE, scale, SIZE, scale, 3).mean(axis=(1, 3))[8:24, 8:24]
+
+
+def test_light_that_goes_less_than_a_pixel_is_no_brighter_at_edges():
+    """It enters at the side and leaves beside the edge: points of a lattice that stood for a pixel lay on it, and a block
+    lit so was up to 1.6 times too bright."""
+
+    def light(snapshot, scale):
+        lit_half(snapshot, "Z")
+
+    coarse, fine = (beside(scale, 0.05, 16.0, light) for scale in (1, 8))
+    assert fine.mean() > 0.0005
+    assert coarse.mean(axis=(0, 1)) == pytest.approx(fine.mean(axis=(0, 1)), rel=0.04)
+
+
+def test_a_thin_sheet_shows_how_near_a_lamp_behind_it_is():
+    """Light goes through it on the spot, be its medium as thin as it likes: neighbours shared what comes through as far as
+    the medium scatters light, and its middle was a fifth too dark."""
+
+    def light(snapshot, scale):
+        place = (SIZE * scale / 2, SIZE * scale / 2, 10.0 + 5.0 * scale)
+        snapshot["lights"] = [lamp(place, 100.0 * scale**2, casts_shadow=True)]
+
+    coarse, fine = (beside(scale, 4.0, 0.8, light) for scale in (1, 8))
+    assert coarse.mean(axis=(0, 1)) == pytest.approx(fine.mean(axis=(0, 1)), rel=0.03)
+    assert coarse[6:10, 6:10].mean() == pytest.approx(fine[6:10, 6:10].mean(), rel=0.03)
 
 
 @pytest.mark.parametrize("bounces", [0, 2])

@@ -29,14 +29,6 @@ constexpr float kBend = 0.25f;
 constexpr float kHidden = 1e-6f;
 /// Of the mean square way to neighbours: slopes that fewer than a line of them tell are none.
 constexpr float kRidge = 1e-3f;
-/// Of neighbours, one in as many that count alike, from which on a plane's residuals tell noise.
-constexpr float kFew = 0.2f;
-/// Reaches that are tried where values may vary, each half the one before it.
-constexpr std::size_t kReaches = 3;
-/// In steps of the grid; fewer neighbours would not tell their noise.
-constexpr float kFewSteps = 2.0f;
-/// Standard deviations by which they may differ.
-constexpr float kAgree = 2.0f;
 
 V set(float value) {
     return hn::Set(kTag, value);
@@ -96,13 +88,9 @@ struct Heights {
         least = hn::Min(least, hn::IfThenElse(counts, value, least));
         most = hn::Max(most, hn::IfThenElse(counts, value, most));
     }
-    struct Fit {
-        float height;  ///< not finite where nobody told
-        float doubt;   ///< its variance, by what the plane does not explain; infinite: not known
-    };
-
-    /// Of the plane that fits best, between the least and the most of them.
-    Fit fit(const Spread& spread) const {
+    /// Of the plane that fits best, between the least and the most of them.  Not finite where
+    /// nobody told.
+    float fit(const Spread& spread) const {
         // About the mean place of the neighbours.
         const float w = sum(spread.w), sum_x = sum(spread.x), sum_y = sum(spread.y);
         const float x = sum_x / w, y = sum_y / w, mean = sum(v) / w;
@@ -122,12 +110,8 @@ struct Heights {
         const float by_noise = 2.0f * noise * sum(spread.ww) / w;
         const float kept = explained > by_noise ? 1.0f - by_noise / explained : 0.0f;
         const float height = mean - kept * (x * slope_x + y * slope_y);
-        if (!std::isfinite(height)) return {height, 0.0f};
-        const float alone = sum(spread.ww) / (w * w);  // 1 / as many neighbours as count
-        const float doubt = alone < kFew ? noise * alone / (1.0f - 3.0f * alone)
-                                         : std::numeric_limits<float>::infinity();
-        return {std::clamp(height, std::ranges::min(lanes(least)), std::ranges::max(lanes(most))),
-                doubt};
+        if (!std::isfinite(height)) return height;
+        return std::clamp(height, std::ranges::min(lanes(least)), std::ranges::max(lanes(most)));
     }
 };
 
@@ -150,16 +134,24 @@ class Sharing {
 
     std::vector<Vec3f> run() {
         std::vector<Vec3f> shared = m_noisy.values;
-        for (std::size_t i = 0; i < m_points.count; ++i) {
+        const std::size_t count = m_points.count, columns = m_points.columns;
+        const auto before = [](std::size_t at, std::size_t reach) {
+            return at - std::min(at, reach);
+        };
+        for (std::size_t i = 0; i < count; ++i) {
             start(i);
-            std::array<std::array<Heights::Fit, 3>, kReaches> fits;
-            const std::size_t reaches = m_noisy.may_vary ? kReaches : 1;
-            for (std::size_t k = 0; k < reaches; ++k) fits[k] = fit(i, k);
-            for (int c = 0; c < 3; ++c) {
-                std::size_t k = 0;
-                while (k + 1 < reaches && !agree(fits, k, reaches, c)) ++k;
-                const float height = fits[k][c].height;
-                if (std::isfinite(height)) shared[i][c] = height;
+            if (columns == 0) {
+                take(before(i, kRun), std::min(i + kRun + 1, count));
+            } else {
+                const std::size_t x = i % columns, y = i / columns, rows = count / columns;
+                const auto [top, bottom] = window(y, rows);
+                const auto [left, right] = window(x, columns);
+                for (std::size_t v = top; v < bottom; ++v)
+                    take(v * columns + left, v * columns + right);
+            }
+            for (std::size_t c = 0; c < 3; ++c) {
+                const float height = m_heights[c].fit(m_spreads[c * m_channels_apart]);
+                if (std::isfinite(height)) shared[i][static_cast<int>(c)] = height;
             }
         }
         return shared;
@@ -176,43 +168,10 @@ class Sharing {
         return {channel(0), channel(1), channel(2)};
     }
     /// As many on each line of a lattice: at its end those of the one side.
-    static std::pair<std::size_t, std::size_t> window(std::size_t at, std::size_t count,
-                                                      std::size_t reach) {
-        const std::size_t size = std::min(2 * reach + 1, count);
-        const std::size_t first = std::min(at - std::min(at, reach), count - size);
+    static std::pair<std::size_t, std::size_t> window(std::size_t at, std::size_t count) {
+        const std::size_t size = std::min(2 * kReach + 1, count);
+        const std::size_t first = std::min(at - std::min(at, kReach), count - size);
         return {first, first + size};
-    }
-
-    /// Whether what is nearer says the same as the [k]-th reach.
-    static bool agree(const std::array<std::array<Heights::Fit, 3>, kReaches>& fits, std::size_t k,
-                      std::size_t reaches, int channel) {
-        for (std::size_t j = k + 1; j < reaches; ++j) {
-            const float apart = fits[k][channel].height - fits[j][channel].height;
-            if (apart * apart > kAgree * kAgree * fits[j][channel].doubt) return false;
-        }
-        return true;
-    }
-
-    /// By neighbours as far away as they reach, or the `halvings`-th part of that.
-    std::array<Heights::Fit, 3> fit(std::size_t i, std::size_t halvings) {
-        m_spreads = {};
-        m_heights = {};
-        m_nearer = static_cast<float>(1 << halvings);
-        const std::size_t count = m_points.count, columns = m_points.columns;
-        if (columns == 0) {
-            const std::size_t run = kRun >> halvings;
-            take(i - std::min(i, run), std::min(i + run + 1, count));
-        } else {
-            const std::size_t x = i % columns, y = i / columns, rows = count / columns;
-            const auto [top, bottom] = window(y, rows, kReach >> halvings);
-            const auto [left, right] = window(x, columns, kReach >> halvings);
-            for (std::size_t v = top; v < bottom; ++v)
-                take(v * columns + left, v * columns + right);
-        }
-        std::array<Heights::Fit, 3> fits;
-        for (std::size_t c = 0; c < 3; ++c)
-            fits[c] = m_heights[c].fit(m_spreads[c * m_channels_apart]);
-        return fits;
     }
     static V dot(const std::array<V, 3>& a, const Vec3f& b) {
         return a[0] * set(b.x) + a[1] * set(b.y) + a[2] * set(b.z);
@@ -226,9 +185,9 @@ class Sharing {
 
     void start(std::size_t i) {
         m_at = i;
+        m_spreads = {};
+        m_heights = {};
         const float step = width_of(m_points, i);
-        m_window_by_reach = 1.0f / (static_cast<float>(kReach) * std::max(step, 1e-30f));
-        m_few_by_reach = 1.0f / (kFewSteps * std::max(step, 1e-30f));
         m_most_by_reach = 1.0f / (m_noisy.least_reach * std::max(step, 1e-30f));
         const Vec3f& normal = m_points.normal[i];
         const Vec3f other = std::abs(normal.x) < 0.7f ? Vec3f(1, 0, 0) : Vec3f(0, 1, 0);
@@ -253,13 +212,9 @@ class Sharing {
             for (std::size_t c = 0; c < 3; ++c) {
                 if (c == 0 || m_channels_apart) {
                     // What lies in a narrow place tells nothing of what is outside.
-                    V by_reach = hn::Min(hn::Max(set(m_by_reach[c][m_at]), m_by_reach[c].at(j)),
-                                         set(m_most_by_reach));
-                    if (m_nearer > 1.0f) {
-                        const V whole = hn::Max(by_reach, set(m_window_by_reach));
-                        by_reach =
-                            hn::Min(whole * set(m_nearer), hn::Max(whole, set(m_few_by_reach)));
-                    }
+                    const V by_reach =
+                        hn::Min(hn::Max(set(m_by_reach[c][m_at]), m_by_reach[c].at(j)),
+                                set(m_most_by_reach));
                     const V near = hn::Max(set(1.0f) - distance * by_reach, set(0.0f));
                     weights[c] = asked * near * m_told[c].at(j);
                     m_spreads[c].add(weights[c], x, y);
@@ -278,8 +233,7 @@ class Sharing {
     Columns m_by_reach, m_told, m_values;
     std::size_t m_channels_apart = 1;  ///< 0: all have the same neighbours
     std::size_t m_at = 0;
-    float m_most_by_reach = 0.0f, m_window_by_reach = 0.0f, m_few_by_reach = 0.0f;
-    float m_nearer = 1.0f;  ///< by which reaches are divided
+    float m_most_by_reach = 0.0f;
     Vec3f m_x{0.0f}, m_y{0.0f};
     std::array<Spread, 3> m_spreads;
     std::array<Heights, 3> m_heights;

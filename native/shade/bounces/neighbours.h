@@ -14,13 +14,11 @@ struct NoisyValues {
     std::vector<Vec3f> by_reach;  ///< 1 / metres within which values vary little
     std::vector<Vec3f> told;      ///< 1, or 0 where a point tells nothing of a channel
     float least_reach = 0.0f;     ///< in steps of the grid, whatever `by_reach` says
-    bool may_vary = false;        ///< they may vary sooner than that: as far as they tell
 };
 
 /// [points] what neighbours of a grid found together.  Slopes stay: each point takes the plane that
 /// fits its neighbours best (locally weighted regression, Cleveland 1979).  Of two the nearer reach
 /// decides.  Points count for as much as they asked (ShadingPoints::shares), hidden ones hardly.
-/// Values that may vary are taken from as far as all nearer ones agree (Lepski 1991).
 std::vector<Vec3f> share(const ShadingPoints& points, const NoisyValues& noisy);
 
 }  // namespace granita

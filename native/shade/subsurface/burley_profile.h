@@ -19,8 +19,6 @@ class BurleyProfile {
     explicit BurleyProfile(const Vec3f& d) : m_d(d) {
         for (int c = 0; c < 3; ++c) m_channels += d[c] > 0.0f ? 1.0f : 0.0f;
     }
-    /// Where it is cut off, with less than .4 % of it outside.
-    float reach() const { return kCut * largest(m_d); }
     /// 2 pi r R(r): per metre of radius, by channel.
     Vec3f value(float r) const {
         Vec3f value(0.0f);
@@ -33,16 +31,22 @@ class BurleyProfile {
         const Vec3f all = value(r);
         return (all.x + all.y + all.z) / m_channels;
     }
-    /// A distance, of any channel alike; `u` in [0, 1).
-    float sample(float u) const {
+    struct Distance {
+        float r;      ///< metres
+        float reach;  ///< where its channel is cut off, with less than .4 % of it outside
+    };
+    /// Of any channel alike; `u` in [0, 1).
+    Distance sample(float u) const {
         u *= m_channels;
         int c = 0;
         while (!(m_d[c] > 0.0f) || u >= 1.0f) u -= m_d[c++] > 0.0f ? 1.0f : 0.0f;
         const float whole = 1.0f - std::exp(-kCut / 3.0f),
                     narrow = 0.25f * (1.0f - std::exp(-kCut));
         const float share = narrow / (narrow + 0.75f * whole);
-        if (u < share) return -m_d[c] * std::log(1.0f - u / share * (4.0f * narrow));
-        return -3.0f * m_d[c] * std::log(1.0f - (u - share) / (1.0f - share) * whole);
+        const float mean = u < share
+                               ? -std::log(1.0f - u / share * (4.0f * narrow))
+                               : -3.0f * std::log(1.0f - (u - share) / (1.0f - share) * whole);
+        return {m_d[c] * mean, m_d[c] * kCut};
     }
 
   private:

@@ -20,7 +20,7 @@ void probe(const RayScene& rays, const RayScene::Body& body, const BurleyProfile
     std::size_t axis = 0;
     while (axis < 2 && u.y >= kShares[axis]) u.y -= kShares[axis++];
     const float phi = 2.0f * kPi * u.y / kShares[axis];
-    const float r = profile.sample(u.x), reach = profile.reach();
+    const auto [r, reach] = profile.sample(u.x);
     const Vec3f &x = axes[(axis + 1) % 3], &y = axes[(axis + 2) % 3];
     const Vec3f direction = -axes[axis], foot = p + r * (std::cos(phi) * x + std::sin(phi) * y);
     // Along the probe, from its foot.

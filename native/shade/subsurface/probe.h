@@ -18,7 +18,8 @@ struct Probed {
 /// What a probe meets that is let down on a disc about `p`: along the normal, one time in two, or
 /// across it, so that steep parts are found too: axes share by the power heuristic, channels by the
 /// balance heuristic.  As Cycles has it, the profile of the distance to `p` is spread over the
-/// probe's own circle: what lies above or below gets more than the profile alone would give.
+/// probe's own circle: what lies above or below gets more than the profile alone would give; and a
+/// probe is as long as the channel reaches that was drawn, so that others lose some of what is far.
 /// @param normal geometric, unit.
 /// @param rounding of places, metres: RayOffset's.
 void probe(const RayScene& rays, const RayScene::Body& body, const BurleyProfile& profile,

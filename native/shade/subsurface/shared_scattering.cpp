@@ -18,8 +18,8 @@ constexpr float kDark = 0.25f;
 constexpr std::size_t kRun = 8;
 
 /// 1 / metres within which a channel varies little; 0 where nothing of it scatters.
-float by_reach(const SurfaceClosure& closure, std::size_t point, int channel) {
-    float nearest = 0.0f;
+float by_reach(const SurfaceClosure& closure, float gone, std::size_t point, int channel) {
+    float nearest = gone > 0.0f ? 1.0f / gone : 0.0f;
     for (const SubsurfaceLobe& lobe : closure.subsurface)
         if (lobe.weight[point][channel] != 0.0f)
             nearest = std::max(nearest, 1.0f / (kShared * lobe.radius[point][channel]));
@@ -79,13 +79,8 @@ std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClo
     std::vector<Vec3f> weight(count);
     for (std::size_t i = 0; i < count; ++i) weight[i] = subsurface_weight(closure, i);
     NoisyValues noisy{by_weight(points, weight, light), std::vector<Vec3f>(count), weight};
-    noisy.may_vary = true;
     for (std::size_t i = 0; i < count; ++i)
-        for (int c = 0; c < 3; ++c) {
-            noisy.by_reach[i][c] = by_reach(closure, i, c);
-            if (gone[i][c] > 0.0f && noisy.by_reach[i][c] > 0.0f)
-                noisy.by_reach[i][c] = std::max(noisy.by_reach[i][c], 1.0f / gone[i][c]);
-        }
+        for (int c = 0; c < 3; ++c) noisy.by_reach[i][c] = by_reach(closure, gone[i][c], i, c);
     return share(points, noisy);
 }
 

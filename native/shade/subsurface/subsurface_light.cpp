@@ -61,11 +61,11 @@ class SubsurfaceLight::Batch {
     /// [points] what has come straight.
     std::vector<Vec3f>& direct() { return m_direct; }
     /// [points] metres along the surface from where light enters to where it leaves, a channel;
-    /// infinite where none does.
-    std::vector<Vec3f> reach() const {
-        std::vector<Vec3f> reach(m_points.count);
-        for (std::size_t i = 0; i < reach.size(); ++i) reach[i] = m_aside[i] / m_weights[i];
-        return reach;
+    /// not a number where none does.
+    std::vector<Vec3f> gone() const {
+        std::vector<Vec3f> gone(m_points.count);
+        for (std::size_t i = 0; i < gone.size(); ++i) gone[i] = m_aside[i] / m_weights[i];
+        return gone;
     }
     /// Of points, as their lobes' rays.
     const std::vector<LobeRay>& leaving() const { return m_leaving; }
@@ -139,7 +139,6 @@ class SubsurfaceLight::Batch {
             m_normal = there.normal;
         }
         m_normal = faced(i, m_normal);
-        m_p += inwards(m_points, i);
         const std::uint32_t face = m_points.faces.empty() ? m_key.face : m_points.faces[i];
         RayOffset offset = m_rays.ray_offset({m_key.instance, face});
         if (is_hit()) {
@@ -150,14 +149,13 @@ class SubsurfaceLight::Batch {
         const float step = width_of(m_points, i);
         const float height = step + offset.length(m_p);
         RayScene::Met met{};
-        bool is_on = false;
-        if (aside != Vec2f(0.0f)) {
-            const Vec3f corner = m_p;
-            m_p += aside.x * m_points.dp_du[i] + aside.y * m_points.dp_dv[i];
-            is_on = drop(height, met);
-            if (!is_on) m_p = corner;
+        const Vec3f corner = m_p;
+        m_p += aside.x * m_points.dp_du[i] + aside.y * m_points.dp_dv[i];
+        bool is_on = aside != Vec2f(0.0f) && drop(height, met);
+        if (!is_on) {
+            m_p = corner + inwards(m_points, i);
+            is_on = is_small() ? drop_near(i, height, met) : drop(height, met);
         }
-        if (!is_on) is_on = is_small() ? drop_near(i, height, met) : drop(height, met);
         if (is_on) offset.error = 0.0f;
         m_rounding = offset.length(m_p);
     }
@@ -396,9 +394,9 @@ ScatteredLight SubsurfaceLight::gather(const ShadingPoints& points, const Surfac
             light.direct[i] += total(gathered.world[i]);
         light.bounced = std::move(gathered.diffuse);
     }
-    const std::vector<Vec3f> reach = batch.reach();
+    const std::vector<Vec3f> gone = batch.gone();
     for (auto* values : {&light.direct, &light.bounced})
-        if (!values->empty()) *values = share_scattered(points, closure, reach, *values);
+        if (!values->empty()) *values = share_scattered(points, closure, gone, *values);
     return light;
 }
 
