@@ -15,6 +15,7 @@ from .geometry.velocity import points_by_velocity
 from .motion.adjacent_frames import read_adjacent_frames
 from .motion.appearing_instances import with_appearing_instances
 from .motion.sample_motion import Motion, sample_motion
+from .scene.culling import Culling, culling_asked
 from .scene.frame_scene import FrameScene
 from .scene.instance import linked, place
 from .scene.lamp_emitters import add_emitters
@@ -92,6 +93,7 @@ def export_frame(
     else:
         scene_objects = read_scene_objects(depsgraph, None, report, check_cancel)
     scene_objects.hidden = viewpoint.hidden
+    scene_objects.culling = _culling(scene, camera_at_frame, viewpoint.frame)
     world, world_images = _world(depsgraph, report)
     lamp_images = {}
     lamps = read_lamps(depsgraph, scene_objects.scan, scene_objects.lights(), lamp_images, report)
@@ -164,6 +166,10 @@ def export_frame(
         tell_places(Places(camera_place, here[seen.chosen], lamps_here))
     add_emitters(snapshot, lights, scan, report)
     return snapshot.as_dict()
+
+
+def _culling(scene, camera, frame):
+    return Culling(scene, camera, frame) if any(culling_asked(scene)) else None
 
 
 def _each_once(images):

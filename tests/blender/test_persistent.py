@@ -218,6 +218,18 @@ def simplify(scene, square):
     return at(11, change)
 
 
+def things_left_out(scene, square):
+    """By Simplify's culling; what it is asked changes, then what the thing lets it."""
+    scene.render.use_simplify = True
+    square.location.x += 30.0
+
+    def change(frame):
+        scene.cycles.use_camera_cull = frame > 10
+        square.cycles.use_camera_cull = frame != 12
+
+    return change
+
+
 CHANGES = [
     a_thing_that_moves,
     a_shape_that_changes,
@@ -241,6 +253,7 @@ CHANGES = [
     another_name,
     a_collection_held_out,
     simplify,
+    things_left_out,
 ]
 
 

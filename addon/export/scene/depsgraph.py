@@ -27,6 +27,7 @@ from ..geometry.attributes import asks_on_edges
 from ..geometry.hair import hair_material, hair_systems
 from ..geometry.pointiness import asks_for_pointiness
 from ..geometry.subdivision import find_cage, simplify_level
+from .culling import culling_asked, culling_box
 from .first_instance import readable
 from .instance_prototype import InstancePrototype, hidden_owners
 from .instance_values import place_on_instancer, takes_place_on_instancer
@@ -208,6 +209,7 @@ class _Walk:
         self._mode = depsgraph.mode
         self._hidden_types = hidden_types(depsgraph.view_layer)
         self._simplify = simplify_level(depsgraph.scene_eval.render, depsgraph.mode)
+        self._culls = any(culling_asked(depsgraph.scene))
         self._index = {}
         self._hair = {}
         self._at_frame = cages is None
@@ -239,7 +241,8 @@ class _Walk:
                 self.prototypes.append(prototype)
                 if self._at_frame:
                     material = hair_material(source, name)
-                    self._look_closer(prototype, [material] if material is not None else [])
+                    materials = [material] if material is not None else []
+                    self._look_closer(prototype, instance.object, materials)
             found = self._hair[key] = tuple(found)
         return found
 
@@ -285,7 +288,7 @@ class _Walk:
             self.prototypes.append(prototype)
             if self._at_frame:
                 slots = () if object_type == "LIGHT" else shown.material_slots
-                self._look_closer(prototype, [slot.material for slot in slots])
+                self._look_closer(prototype, shown, [slot.material for slot in slots])
         return index
 
     def _cage(self, source):
@@ -312,9 +315,11 @@ class _Walk:
             self._answers[key] = question((*materials, self._override))
         return self._answers[key]
 
-    def _look_closer(self, prototype, materials):
-        """What does not change within the shutter."""
+    def _look_closer(self, prototype, shown, materials):
+        """What does not change within the shutter; `shown`: the evaluated Object of one of its instances."""
         prototype.materials = materials
+        if self._culls and prototype.type != "LIGHT":
+            prototype.culling_box = culling_box(shown)
         prototype.takes_place_on_instancer = prototype.parent is not None and self._asks(
             takes_place_on_instancer, materials
         )

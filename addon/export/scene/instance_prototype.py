@@ -31,6 +31,7 @@ class InstancePrototype:
     address: int = 0  # of the original Object
     parent_address: int = 0  # of what instances it; 0 = nothing
     takes_place_on_instancer: bool = False
+    culling_box: object = None  # of culling.culling_box, where the scene leaves things out by it
     blurs: bool = True
     fewest_segments: int = 1
     unbaked: tuple = ()  # of simulations.unbaked: (object's name, simulation)

@@ -15,6 +15,7 @@ from ..base.updates import Touched, object_names, originals, read_updates
 from ..geometry.attributes import requested_names
 from ..geometry.geometry_source import read_source
 from ..geometry.subdivision import simplify_level
+from .culling import culling_asked
 from .depsgraph import hidden_types, prototype_again
 from .instance_values import requested_values
 from .scene_objects import read_scene_objects, shade
@@ -77,6 +78,7 @@ def _settings(depsgraph):
         depsgraph.scene.as_pointer(),
         layer.name,
         simplify_level(depsgraph.scene_eval.render, depsgraph.mode),
+        any(culling_asked(depsgraph.scene)),
         override.as_pointer() if override is not None else 0,
         hidden_types(layer),
         tuple(collections(layer.layer_collection)),

@@ -9,6 +9,7 @@ from ..base.report import overheard
 from ..base.snapshot import Instances
 from ..geometry.attributes import requested_names
 from ..geometry.geometry_source import read_geometries
+from .culling import Culling
 from .depsgraph import Visit, visit
 from .instance import PrototypeTable, collect_materials, prototype_table, unplaced_instances, usable
 from .instance_values import requested_values
@@ -32,11 +33,14 @@ class SceneObjects:
     chosen: np.ndarray = None  # int [n]
     instances: Instances = None
     hidden: frozenset = frozenset()  # of the viewpoint
+    culling: Culling = None  # likewise
 
     def choose(self, report):
         """Finds what can be rendered of it."""
         chosen = usable(self.scan, self.table, report)
         chosen = chosen[self._is_shown()[chosen]]
+        if self.culling is not None:
+            chosen = chosen[~self.culling.left_out(self.scan)[chosen]]
         if self.instances is None or not np.array_equal(chosen, self.chosen):
             self.instances = unplaced_instances(self.scan, chosen, self.table)
         self.chosen = chosen
