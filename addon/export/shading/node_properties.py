@@ -8,6 +8,7 @@ import numpy as np
 from .ies import ies_table
 from .image import image_name, image_tiles
 from .spectrum import TEMPERATURES, WAVELENGTHS, blackbody, monochromatic
+from .texture_mapping import is_unmoved, mapping_rows
 from .working_space import scene_color
 
 # Cycles tabulates ramps and curves with as many entries; steps then fall on the same places.
@@ -27,30 +28,14 @@ def node_properties(node, owner, images, report):
         dict of float, str and float32 arrays.
     """
     found = _plain_properties(node)
-    if _is_mapped(node):
-        report(
-            owner, f"node '{node.name}': its own texture mapping is not read; use a Mapping node"
-        )
+    mapping = getattr(node, "texture_mapping", None)
+    if mapping is not None and not is_unmoved(mapping):
+        found["texture_mapping"] = mapping_rows(mapping)
+        found["texture_mapping_is_unit"] = float(mapping.vector_type == "NORMAL")
     special = _SPECIAL.get(node.bl_idname)
     if special is not None:
         found.update(special(node, owner, images, report))
     return found
-
-
-def _is_mapped(node):
-    """Whether a texture node moves its coordinates by itself, as files and scripts from before Blender 2.8 ask for."""
-    mapping = getattr(node, "texture_mapping", None)
-    if mapping is None:
-        return False
-    moved = any(mapping.translation) or any(mapping.rotation) or tuple(mapping.scale) != (1, 1, 1)
-    axes = mapping.mapping_x, mapping.mapping_y, mapping.mapping_z
-    return (
-        moved
-        or mapping.use_min
-        or mapping.use_max
-        or axes != ("X", "Y", "Z")
-        or mapping.mapping != "FLAT"
-    )
 
 
 def _plain_properties(node):

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/texture_place.h"
 
 namespace granita {
 
@@ -63,8 +63,7 @@ void build_brick_texture(NodeBuilder& b) {
                              static_cast<float>(b.value("squash", 1.0)),
                              static_cast<int>(b.value("offset_frequency", 2.0)),
                              static_cast<int>(b.value("squash_frequency", 2.0))};
-    const VectorSource vector =
-        b.linked("Vector") ? b.vector("Vector") : generated_at(b, b.shift());
+    const VectorSource vector = texture_place(b);
     // x: share of mortar, y: the brick's tint.
     const VectorSource found = b.map<Vec3f>(
         [layout, hard = !b.since(4, 0)](const Vec3f& v, float scale, float size, float smooth,

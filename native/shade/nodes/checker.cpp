@@ -5,16 +5,12 @@
 #include <cstdlib>
 
 #include "math/sampling.h"
-#include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/texture_place.h"
 
 namespace granita {
 
 namespace {
-
-VectorSource coordinate(NodeBuilder& b) {
-    return b.linked("Vector") ? b.vector("Vector") : generated_at(b, b.shift());
-}
 
 /// 1 on the cubes of the first colour, the odd ones.  The nudge keeps faces that lie on whole
 /// numbers, where rounding would decide, on one side (Cycles').
@@ -46,7 +42,7 @@ float gradient(const std::string& type, const Vec3f& p) {
 }  // namespace
 
 void build_checker(NodeBuilder& b) {
-    const FloatSource first = b.map<float>(checker, coordinate(b), b.number("Scale", 5.0f));
+    const FloatSource first = b.map<float>(checker, texture_place(b), b.number("Scale", 5.0f));
     b.output("Fac", first);
     b.output_color(
         "Color",
@@ -58,7 +54,7 @@ void build_gradient(NodeBuilder& b) {
     const std::string type = b.text("gradient_type", "LINEAR");
     const FloatSource factor =
         b.map<float>([type](const Vec3f& p) { return std::clamp(gradient(type, p), 0.0f, 1.0f); },
-                     coordinate(b));
+                     texture_place(b));
     b.output("Fac", factor);
     b.output_color("Color", b.map<Vec3f>([](float x) { return Vec3f(x); }, factor));
 }

@@ -7,6 +7,7 @@
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/texture_mode.h"
+#include "shade/nodes/texture_place.h"
 
 namespace granita {
 
@@ -37,8 +38,8 @@ void build_environment_texture(NodeBuilder& b) {
     const bool ball = b.text("projection", "EQUIRECTANGULAR") == "MIRROR_BALL";
     TextureMode mode;
     mode.filter = texture_filter(b);
-    const VectorSource direction =
-        b.linked("Vector") ? b.vector("Vector") : world_position_at(b, Shift::None);
+    const VectorSource direction = mapped_place(
+        b, b.linked("Vector") ? b.vector("Vector") : world_position_at(b, Shift::None));
     const VectorSource color = b.new_source<Vec3f>();
     b.add_step(
         [=](Run& run) {

@@ -9,8 +9,8 @@
 #include "math/hash.h"
 #include "math/normalize_or.h"
 #include "math/sampling.h"
-#include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/texture_place.h"
 
 namespace granita {
 namespace {
@@ -100,7 +100,7 @@ struct SpaceImpulse {
 }  // namespace
 
 void build_gabor_texture(NodeBuilder& b) {
-    const VectorSource place = b.linked("Vector") ? b.vector("Vector") : generated_at(b, b.shift());
+    const VectorSource place = texture_place(b);
     const FloatSource scale = b.number("Scale", 5.0f), frequency = b.number("Frequency", 2.0f);
     const FloatSource anisotropy = b.number("Anisotropy", 1.0f);
     const auto isotropy = [](float x) { return 1.0f - std::clamp(x, 0.0f, 1.0f); };

@@ -13,6 +13,7 @@
 #include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/texture_mode.h"
+#include "shade/nodes/texture_place.h"
 #include "shade/textures/udim_texture.h"
 
 namespace granita {
@@ -114,11 +115,12 @@ struct Footprint {
 };
 
 Footprint footprint(NodeBuilder& b) {
-    const auto at = [&](Shift shift) { return b.vector_at("Vector", shift); };
+    const auto at = [&](Shift shift) { return mapped_place(b, b.vector_at("Vector", shift)); };
     if (b.linked("Vector"))
         return {at(b.shift()), at(Shift::None), at(Shift::U), at(Shift::V), b.bump_width()};
-    return {uv_at(b, "", b.shift()), uv_at(b, "", Shift::None), uv_beside(b, "", Shift::U),
-            uv_beside(b, "", Shift::V)};
+    return {mapped_place(b, uv_at(b, "", b.shift())), mapped_place(b, uv_at(b, "", Shift::None)),
+            mapped_place(b, uv_beside(b, "", Shift::U)),
+            mapped_place(b, uv_beside(b, "", Shift::V))};
 }
 
 /// Shadow rays look up one place at a time.

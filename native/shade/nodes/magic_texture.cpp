@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "shade/nodes/coordinates.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/texture_place.h"
 
 namespace granita {
 
@@ -39,8 +39,7 @@ Vec3f magic(const Vec3f& place, int depth, float distortion) {
 
 void build_magic_texture(NodeBuilder& b) {
     const int depth = static_cast<int>(b.value("turbulence_depth", 2.0));
-    const VectorSource vector =
-        b.linked("Vector") ? b.vector("Vector") : generated_at(b, b.shift());
+    const VectorSource vector = texture_place(b);
     const VectorSource color = b.map<Vec3f>(
         [depth](const Vec3f& v, float scale, float d) { return magic(v * scale, depth, d); },
         vector, b.number("Scale", 5.0f), b.number("Distortion", 1.0f));

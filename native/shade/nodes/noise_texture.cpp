@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "shade/nodes/coordinates.h"
 #include "shade/nodes/dimensions.h"
 #include "shade/nodes/gradient_noise.h"
 #include "shade/nodes/multifractal.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/texture_place.h"
 
 namespace granita {
 
@@ -53,8 +53,7 @@ struct NoisePlace {
 
 template <std::size_t N>
 NoisePlace noise_place(NodeBuilder& b) {
-    return {b.linked("Vector") || N == 1 ? b.vector("Vector") : generated_at(b, b.shift()),
-            b.number("W"), b.number("Scale", 5.0f)};
+    return {N == 1 ? b.vector("Vector") : texture_place(b), b.number("W"), b.number("Scale", 5.0f)};
 }
 
 /// Value and colour of one kind of noise: `octaves_of` makes of the numbers `sources` what `noise`

@@ -8,13 +8,13 @@
 #include "math/normalize_or.h"
 #include "math/observer.h"
 #include "math/sampling.h"
-#include "shade/nodes/coordinates.h"
 #include "shade/nodes/daylight.h"
 #include "shade/nodes/hosek_wilkie.h"
 #include "shade/nodes/multiple_scattering.h"
 #include "shade/nodes/nodes.h"
 #include "shade/nodes/single_scattering.h"
 #include "shade/nodes/sky_table.h"
+#include "shade/nodes/texture_place.h"
 
 namespace granita {
 namespace {
@@ -133,8 +133,7 @@ Vec3f direction_to_sun(const NodeBuilder& b) {
 }  // namespace
 
 void build_sky_texture(NodeBuilder& b) {
-    const VectorSource direction =
-        b.linked("Vector") ? b.vector("Vector") : generated_at(b, b.shift());
+    const VectorSource direction = texture_place(b);
     const std::string type = b.text("sky_type", "NISHITA");
     if (type == "PREETHAM")
         build_fit(b, direction, Daylight(direction_to_sun(b), number(b, "turbidity", 2.2)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "shade/nodes/coordinates.h"
 #include "shade/nodes/dimensions.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/texture_place.h"
 #include "shade/nodes/voronoi.h"
 
 namespace granita {
@@ -25,8 +25,7 @@ VoronoiFeature feature_of(const std::string& name) {
 
 template <std::size_t N>
 void build(NodeBuilder& b, const VoronoiSettings& settings) {
-    const VectorSource vector =
-        b.linked("Vector") || N == 1 ? b.vector("Vector") : generated_at(b, b.shift());
+    const VectorSource vector = N == 1 ? b.vector("Vector") : texture_place(b);
     const FloatSource w = b.number("W"), scale = b.number("Scale", 5.0f);
     const FloatSource randomness = b.number("Randomness", 1.0f),
                       exponent = b.number("Exponent", 0.5f),

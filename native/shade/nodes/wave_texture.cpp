@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <numbers>
 
-#include "shade/nodes/coordinates.h"
 #include "shade/nodes/gradient_noise.h"
 #include "shade/nodes/nodes.h"
+#include "shade/nodes/texture_place.h"
 
 namespace granita {
 
@@ -41,8 +41,7 @@ float profile_at(const std::string& profile, float phase) {
 void build_wave_texture(NodeBuilder& b) {
     const WaveShape shape{b.text("wave_type", "BANDS"), b.text("bands_direction", "X"),
                           b.text("rings_direction", "X"), b.text("wave_profile", "SIN")};
-    const VectorSource vector =
-        b.linked("Vector") ? b.vector("Vector") : generated_at(b, b.shift());
+    const VectorSource vector = texture_place(b);
     const FloatSource factor = b.map<float>(
         [shape](const Vec3f& v, float scale, float distortion, float detail, float detail_scale,
                 float roughness, float offset) {
