@@ -93,7 +93,8 @@ def export_frame(
     else:
         scene_objects = read_scene_objects(depsgraph, None, report, check_cancel)
     scene_objects.hidden = viewpoint.hidden
-    scene_objects.culling = _culling(scene, camera_at_frame, viewpoint.frame)
+    culls = viewpoint.culls and any(culling_asked(scene))
+    scene_objects.culling = Culling(scene, camera_at_frame, viewpoint.frame) if culls else None
     world, world_images = _world(depsgraph, report)
     lamp_images = {}
     lamps = read_lamps(depsgraph, scene_objects.scan, scene_objects.lights(), lamp_images, report)
@@ -166,10 +167,6 @@ def export_frame(
         tell_places(Places(camera_place, here[seen.chosen], lamps_here))
     add_emitters(snapshot, lights, scan, report)
     return snapshot.as_dict()
-
-
-def _culling(scene, camera, frame):
-    return Culling(scene, camera, frame) if any(culling_asked(scene)) else None
 
 
 def _each_once(images):

@@ -3,6 +3,7 @@
 
 from . import (
     compare_operators,
+    culling_panels,
     denoise_operator,
     light_panels,
     linking_panels,
@@ -22,6 +23,7 @@ _PARTS = (
     render_panels,
     motion_panels,
     ray_panels,
+    culling_panels,
     light_panels,
     linking_panels,
     material_panels,

@@ -59,7 +59,7 @@ struct ShadingSystem::Impl : FrameShading {
                        const PointPaths& at, Grid& grid, ReflectionParts* parts,
                        std::vector<Vec3f>& radiance) const {
         if (grid.found.scattered.empty()) {
-            ScatteredLight light = 
+            ScatteredLight light =
                 below->gather(points, closure, grid.key, at, parts, bounces.get());
             grid.found.scattered = std::move(light.direct);
             grid.found.scattered_bounced = std::move(light.bounced);

@@ -33,7 +33,7 @@ class SceneObjects:
     chosen: np.ndarray = None  # int [n]
     instances: Instances = None
     hidden: frozenset = frozenset()  # of the viewpoint
-    culling: Culling = None  # likewise
+    culling: Culling = None  # from the viewpoint; None: all stay
 
     def choose(self, report):
         """Finds what can be rendered of it."""

@@ -17,6 +17,8 @@ class CameraViewpoint:
     crop: tuple  # pixels of the frame that are made, (x0, y0, x1, y1)
     hidden: frozenset = frozenset()  # addresses of original objects that are not seen from here
 
+    culls = True  # what Simplify leaves out by its place
+
     def __post_init__(self):
         # Read while it is sure to be there.
         self.blurs = blurs(self.camera)
@@ -47,6 +49,7 @@ class StillViewpoint:
 
     blurs = False
     fewest_segments = 1
+    culls = False  # nothing is read anew as one looks around
 
     def record(self, _depsgraph, _report):
         return dict(self.still_record)

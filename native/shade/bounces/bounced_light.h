@@ -2,7 +2,7 @@
 // Light that surfaces send to each other: ways from the points of a grid over other surfaces,
 // traced and shaded in batches, a bounce of all at a time.
 //
-//   BouncedLight bounces(scene, direct, hits, emission, statistics, progress);    // once a frame
+//   BouncedLight bounces(scene, direct, hits, emission, volumes, scatter, ...);    // once a frame
 //   light = bounces.gather(leaving, points);          // any thread, any grid
 //
 // Each surface that is met adds what it emits, unless it is a lamp, and what of lamps and the world
@@ -39,7 +39,7 @@ using HitScattering =
 class BouncedLight {
   public:
     /// All must outlive it; `direct` has rays.  `volumes` nullptr: nothing is filled.  `scatter`
-    /// may be empty: what it would is diffuse.
+    /// empty: subsurface is drawn as diffuse.
     BouncedLight(const Scene& scene, const DirectLight& direct, const HitShader& hits,
                  const MaterialEmission& emission, const Volumes* volumes, HitScattering scatter,
                  Statistics& statistics, const Progress& progress);

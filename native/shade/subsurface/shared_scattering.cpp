@@ -12,19 +12,11 @@ namespace {
 /// How far neighbours share, of a lobe's radius.
 constexpr float kShared = 1.0f;
 constexpr float kLeastWeight = 1e-6f, kLeastLight = 1e-20f;
+constexpr float kLeastWay = 1e-9f;  // metres
 /// Of the weight of the brightest point around: less is dark.
 constexpr float kDark = 0.25f;
 /// Points before and after one that are looked at, of separate faces.
 constexpr std::size_t kRun = 8;
-
-/// 1 / metres within which a channel varies little; 0 where nothing of it scatters.
-float by_reach(const SurfaceClosure& closure, float gone, std::size_t point, int channel) {
-    float nearest = gone > 0.0f ? 1.0f / gone : 0.0f;
-    for (const SubsurfaceLobe& lobe : closure.subsurface)
-        if (lobe.weight[point][channel] != 0.0f)
-            nearest = std::max(nearest, 1.0f / (kShared * lobe.radius[point][channel]));
-    return nearest;
-}
 
 /// Calls `visit` with each point at most two steps away that lies next to one: on a lattice, or
 /// among separate faces, which lie in Morton order.
@@ -42,6 +34,25 @@ void visit_around(const ShadingPoints& points, std::size_t i, const Visit& visit
     const std::size_t y = i / columns, rows = points.count / columns;
     for (std::size_t v = y - std::min<std::size_t>(y, 1); v < std::min(y + 2, rows); ++v)
         visit_run(v * columns + i % columns, 1, v * columns, (v + 1) * columns);
+}
+
+/// 1 / metres within which a channel varies little, no farther than ways go; 0 where nothing of it
+/// scatters.
+float by_reach(const ShadingPoints& points, const SurfaceClosure& closure, const WaysGone& gone,
+               std::size_t point, int channel) {
+    float nearest = 0.0f;
+    for (const SubsurfaceLobe& lobe : closure.subsurface)
+        if (lobe.weight[point][channel] != 0.0f)
+            nearest = std::max(nearest, 1.0f / (kShared * lobe.radius[point][channel]));
+    // One point's ways may be few.
+    float weight = 0.0f, along = 0.0f;
+    visit_around(points, point, [&](std::size_t i) {
+        weight += gone.weight[i][channel];
+        along += gone.along[i][channel];
+    });
+    if (nearest > 0.0f && weight > 0.0f)
+        nearest = std::max(nearest, weight / std::max(along, kLeastWay * weight));
+    return nearest;
 }
 
 /// Light by weight.  A dark point knows next to nothing of it (a medium is as light as asked for to
@@ -73,14 +84,13 @@ Vec3f subsurface_weight(const SurfaceClosure& closure, std::size_t point) {
 }
 
 std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
-                                   const std::vector<Vec3f>& gone,
-                                   const std::vector<Vec3f>& light) {
+                                   const WaysGone& gone, const std::vector<Vec3f>& light) {
     const std::size_t count = points.count;
     std::vector<Vec3f> weight(count);
     for (std::size_t i = 0; i < count; ++i) weight[i] = subsurface_weight(closure, i);
     NoisyValues noisy{by_weight(points, weight, light), std::vector<Vec3f>(count), weight};
     for (std::size_t i = 0; i < count; ++i)
-        for (int c = 0; c < 3; ++c) noisy.by_reach[i][c] = by_reach(closure, gone[i][c], i, c);
+        for (int c = 0; c < 3; ++c) noisy.by_reach[i][c] = by_reach(points, closure, gone, i, c);
     return share(points, noisy);
 }
 

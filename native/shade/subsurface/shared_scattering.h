@@ -14,11 +14,16 @@ namespace granita {
 /// Of all that scatters at a point.
 Vec3f subsurface_weight(const SurfaceClosure& closure, std::size_t point);
 
-/// [points] `light`, by weight, shared.  `gone`: [points] how far along the surface ways have gone,
-/// metres by channel, not finite where none leaves: through thin walls not as far as the medium has
-/// it.
+/// Of the ways of each of [points] that leave again, a channel: through thin walls they do not go
+/// as far as the medium has it.
+struct WaysGone {
+    std::vector<Vec3f> weight;
+    std::vector<Vec3f> along;  ///< the surface, metres, by weight
+};
+
+/// [points] `light`, by weight, shared.
 std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
-                                   const std::vector<Vec3f>& gone, const std::vector<Vec3f>& light);
+                                   const WaysGone& gone, const std::vector<Vec3f>& light);
 
 /// Adds [points] what is scattered below them, by its weight, of lamps and the world and of other
 /// surfaces (empty: none).

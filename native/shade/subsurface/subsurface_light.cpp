@@ -47,8 +47,7 @@ class SubsurfaceLight::Batch {
           m_follows(follows),
           m_seed(sequence_seed(points, key, light.m_scene.options.seed)),
           m_direct(points.count, Vec3f(0.0f)),
-          m_aside(m_direct),
-          m_weights(m_direct) {
+          m_gone{m_direct, m_direct} {
         const auto samples = static_cast<float>(light.m_scene.options.light_samples);
         m_count = std::max(1, static_cast<int>(std::lround(points.share * samples)));
         m_front = points.columns > 0 && std::ranges::count(points.backfacing, 0) > 0;
@@ -60,13 +59,7 @@ class SubsurfaceLight::Batch {
 
     /// [points] what has come straight.
     std::vector<Vec3f>& direct() { return m_direct; }
-    /// [points] metres along the surface from where light enters to where it leaves, a channel;
-    /// not a number where none does.
-    std::vector<Vec3f> gone() const {
-        std::vector<Vec3f> gone(m_points.count);
-        for (std::size_t i = 0; i < gone.size(); ++i) gone[i] = m_aside[i] / m_weights[i];
-        return gone;
-    }
+    const WaysGone& gone() const { return m_gone; }
     /// Of points, as their lobes' rays.
     const std::vector<LobeRay>& leaving() const { return m_leaving; }
 
@@ -75,7 +68,8 @@ class SubsurfaceLight::Batch {
         m_exits.clear();
         m_ways.clear();
         const std::uint64_t seed = mix_bits(m_seed + 0x9e3779b97f4a7c15ULL * (index + 1));
-        const SobolPoints entries(seed), times(mix_bits(seed)), places(mix_bits(~seed));
+        const SobolPoints entries = sequence(seed), times = sequence(mix_bits(seed)),
+                          places = sequence(mix_bits(~seed));
         m_body = m_rays.body(m_key, m_light.m_scene.options.frame_time);
         for (std::size_t i = 0; i < m_points.count; ++i) {
             if (lobe.weight[i] == Vec3f(0.0f)) continue;
@@ -95,6 +89,13 @@ class SubsurfaceLight::Batch {
             }
         }
         light_exits(lobe.burley);
+    }
+
+    /// What has a place in the frame's sequences already is not tied to that: to the direction in
+    /// which it was met.
+    SobolPoints sequence(std::uint64_t seed) const {
+        const SobolPoints made(seed);
+        return m_points.places.empty() ? made : made.shuffled(mix_bits(seed));
     }
 
     /// One at which the point is seen: of samples at which they stand where they are.
@@ -149,15 +150,30 @@ class SubsurfaceLight::Batch {
         const float step = width_of(m_points, i);
         const float height = step + offset.length(m_p);
         RayScene::Met met{};
-        const Vec3f corner = m_p;
-        m_p += aside.x * m_points.dp_du[i] + aside.y * m_points.dp_dv[i];
-        bool is_on = aside != Vec2f(0.0f) && drop(height, met);
+        bool is_on = step_aside(i, aside, height);
         if (!is_on) {
-            m_p = corner + inwards(m_points, i);
+            m_p += inwards(m_points, i);
             is_on = is_small() ? drop_near(i, height, met) : drop(height, met);
         }
         if (is_on) offset.error = 0.0f;
         m_rounding = offset.length(m_p);
+    }
+
+    /// Onto the mesh, as many steps of the lattice aside, where it faces as the point does.
+    bool step_aside(std::size_t i, const Vec2f& aside, float height) {
+        constexpr float kLeastCosine = 0.5f;
+        if (aside == Vec2f(0.0f)) return false;
+        const Vec3f corner = m_p;
+        m_p += aside.x * m_points.dp_du[i] + aside.y * m_points.dp_dv[i];
+        RayScene::Met met{};
+        const bool is_there = drop(height, met);
+        const float cosine = is_there ? glm::dot(met.hit.normal, m_normal) : 0.0f;
+        if (std::abs(cosine) < kLeastCosine) {
+            m_p = corner;
+            return false;
+        }
+        m_normal = cosine < 0.0f ? -met.hit.normal : met.hit.normal;
+        return true;
     }
 
     /// Whether points are where rays have met the mesh.
@@ -260,8 +276,8 @@ class SubsurfaceLight::Batch {
         exit.hit.distance = 0.0f;
         const Vec3f way_there = exit.hit.p - m_p;
         const float aside = glm::length(way_there - glm::dot(way_there, m_normal) * m_normal);
-        m_aside[point] += weight * aside;
-        m_weights[point] += weight;
+        m_gone.weight[point] += weight;
+        m_gone.along[point] += weight * aside;
         m_exits.push_back(exit);
         BouncedPath& way = m_ways.emplace_back();
         way.width = width_of(m_points, point);
@@ -302,7 +318,7 @@ class SubsurfaceLight::Batch {
         met.reserve(batch.size());
         for (const std::uint32_t k : batch)
             met.push_back(met_by(m_ways[k], m_exits[k].hit, m_exits[k].frame()));
-        HitPoints ends(m_light.m_scene, m_rays);
+        HitPoints ends(m_light.m_scene, m_rays, &m_light.m_progress);
         static const std::vector<AttributeRequest> kNone;
         ends.fill(met, surface ? surface->requests : kNone, kDepth + m_points.depth);
         m_light.m_direct.lift(ends.points(), {m_key.instance});
@@ -365,8 +381,7 @@ class SubsurfaceLight::Batch {
     float m_rounding = 0.0f;  ///< of it, metres
     bool m_front = false;     ///< some point of a lattice is seen from the front
     std::vector<Vec3f> m_direct;
-    std::vector<Vec3f> m_aside,
-        m_weights;  ///< [points] of ways: metres along the surface, by weight
+    WaysGone m_gone;
     RayScene::Body m_body;
     std::vector<RayScene::Met> m_exits;
     std::vector<Probed> m_probed;
@@ -394,16 +409,16 @@ ScatteredLight SubsurfaceLight::gather(const ShadingPoints& points, const Surfac
             light.direct[i] += total(gathered.world[i]);
         light.bounced = std::move(gathered.diffuse);
     }
-    const std::vector<Vec3f> gone = batch.gone();
     for (auto* values : {&light.direct, &light.bounced})
-        if (!values->empty()) *values = share_scattered(points, closure, gone, *values);
+        if (!values->empty()) *values = share_scattered(points, closure, batch.gone(), *values);
     return light;
 }
 
 void SubsurfaceLight::scatter(const ShadingPoints& hits, const SurfaceClosure& closure,
                               const GridKey& key, std::vector<Vec3f>& radiance,
                               std::vector<LobeRay>& leaving) const {
-    Batch batch(*this, hits, key, {}, nullptr, true);
+    const PointPaths none;  // they are where they were met
+    Batch batch(*this, hits, key, none, nullptr, true);
     batch.scatter(closure.subsurface);
     for (std::size_t i = 0; i < hits.count; ++i) radiance[i] += batch.direct()[i];
     leaving.insert(leaving.end(), batch.leaving().begin(), batch.leaving().end());

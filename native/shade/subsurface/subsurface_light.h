@@ -2,10 +2,9 @@
 // Light that leaves a surface where it did not enter it: ways from the points of a grid through the
 // inside of their mesh, whose ends are lit together as one batch.
 //
-//   SubsurfaceLight below(scene, direct, bent, progress);                      // once a frame
-//   light = below.gather(points, closure, grid.key, paths, parts, bounces);    // any thread and
-//   grid below.scatter(hits, closure, key, radiance, leaving);                      // where ways
-//   land
+//   SubsurfaceLight below(scene, direct, bent, progress);    // once a frame
+//   light = below.gather(points, closure, grid.key, paths, parts, bounces);
+//   below.scatter(hits, closure, key, radiance, leaving);    // of what rays meet
 //
 // What is gathered of a point depends on it alone: pictures are the same to the bit however points
 // are put together.
@@ -46,8 +45,8 @@ class SubsurfaceLight {
                           const GridKey& key, const PointPaths& paths, ReflectionParts* parts,
                           const BouncedLight* bounces) const;
 
-    /// The same of HitPoints: one way a point.  Adds to [points] `radiance` what comes straight,
-    /// and to `leaving` the rays along which other surfaces' light comes.
+    /// The same of HitPoints, whose share is that of one way a point.  Adds to [points] `radiance`
+    /// what comes straight, and to `leaving` the rays along which other surfaces' light comes.
     void scatter(const ShadingPoints& hits, const SurfaceClosure& closure, const GridKey& key,
                  std::vector<Vec3f>& radiance, std::vector<LobeRay>& leaving) const;
 
