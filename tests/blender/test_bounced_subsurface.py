@@ -9,15 +9,11 @@ import pytest
 import scene_parts
 from bounced_parts import look_at_stage, render_bounced, surface
 from mathutils import Vector
+from test_subsurface import lamp, methods
 
 pytestmark = pytest.mark.lit
 
 COLOR, RADIUS = (0.8, 0.6, 0.4), (0.3, 0.15, 0.08)
-
-
-def methods():
-    shader = bpy.types.ShaderNodeSubsurfaceScattering.bl_rna.properties["falloff"]
-    return [item.identifier for item in shader.enum_items]
 
 
 def waxen(thing, method):
@@ -25,12 +21,6 @@ def waxen(thing, method):
     tree = thing.material_slots[0].material.node_tree
     next(n for n in tree.nodes if n.type == "SUBSURFACE_SCATTERING").falloff = method
     return thing
-
-
-def lamp(scene, place, energy, size=0.1):
-    data = bpy.data.lights.new("Lamp", "POINT")
-    data.energy, data.shadow_soft_size = energy, size
-    scene_parts.add_object(scene, "Lamp", data, place)
 
 
 def box(size, place=(0.0, 0.0, 0.0), wall=0.0):
@@ -51,7 +41,7 @@ def mirrored(scene, method):
     mirror = scene_parts.add_square(scene, "Mirror", 6.0, (0.0, 2.5, 0.0))
     mirror.rotation_euler = (math.pi / 2, 0.0, 0.0)
     surface(mirror, "ShaderNodeBsdfGlossy", (0.9, 0.9, 0.9), Roughness=0.0)
-    lamp(scene, (0.0, -2.0, 6.0), 600.0)
+    lamp(scene, "POINT", 600.0, (0.0, -2.0, 6.0), shadow_soft_size=0.1)
     scene.cycles.caustics_reflective = False  # the lamp's, over the mirror, is noise in both
     look_at_stage(scene, 0.9, 0.0)
 
@@ -61,17 +51,15 @@ def lantern(scene, method):
     waxen(box((0.8, 0.8, 1.0), wall=0.06), method)
     floor = scene_parts.add_square(scene, "Floor", 8.0, (0.0, 0.0, -0.6))
     surface(floor, "ShaderNodeBsdfDiffuse", (0.7, 0.7, 0.7))
-    lamp(scene, (0.0, 0.0, 0.0), 100.0)
+    lamp(scene, "POINT", 100.0, shadow_soft_size=0.1)
     look_at_stage(scene, 2.0, -0.2)
 
 
 def hollow(scene, method):
     """Lit by the sun from behind."""
     waxen(box((1.6, 1.6, 1.6), wall=0.2), method)
-    sun = bpy.data.lights.new("Sun", "SUN")
-    sun.energy = 5.0
-    made = scene_parts.add_object(scene, "Sun", sun)
-    made.rotation_euler = Vector((-1.0, 2.0, 1.0)).to_track_quat("Z", "Y").to_euler()
+    towards = Vector((-1.0, 2.0, 1.0)).to_track_quat("Z", "Y").to_euler()
+    lamp(scene, "SUN", 5.0, turn=towards)
     look_at_stage(scene, 1.0, 0.0)
 
 

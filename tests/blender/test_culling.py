@@ -99,13 +99,17 @@ def test_things_beside_and_behind_the_camera(stage, render, kind, clip):
     agree(stage, render, whole)
 
 
-def test_a_camera_that_moves_leaves_out_as_it_stands_at_the_frame(stage, render):
+def add_moving_camera(stage):
     camera = scene_parts.add_camera(stage, (1.0, -2.0, 8.0))
     for frame, x in ((0, -5.0), (1, 1.0), (2, 7.0)):
         camera.location.x = x
         camera.keyframe_insert("location", frame=frame)
     stage.render.use_motion_blur = True
     stage.frame_set(1)
+
+
+def test_a_camera_that_moves_leaves_out_as_it_stands_at_the_frame(stage, render):
+    add_moving_camera(stage)
     whole, _ = pictures(stage, render)
     stage.cycles.use_camera_cull, stage.cycles.camera_cull_margin = True, 0.0
     agree(stage, render, whole)
@@ -113,13 +117,8 @@ def test_a_camera_that_moves_leaves_out_as_it_stands_at_the_frame(stage, render)
 
 def test_what_comes_within_the_shutter_changes_nothing_of_what_is_left_out(stage):
     """By a camera that moves: it is looked from where that stands at the frame."""
-    camera = scene_parts.add_camera(stage, (1.0, -2.0, 8.0))
-    for frame, x in ((0, -5.0), (1, 1.0), (2, 7.0)):
-        camera.location.x = x
-        camera.keyframe_insert("location", frame=frame)
-    stage.render.use_motion_blur = True
+    add_moving_camera(stage)
     stage.cycles.use_camera_cull, stage.cycles.camera_cull_margin = True, 0.0
-    stage.frame_set(1)
     names = []
     for comes in (False, True):
         if comes:
