@@ -159,6 +159,11 @@ struct Grid {
     /// Part of the light samples of a point that radiance was made with; 0 = not shaded, or not to
     /// the end.
     float light_share = 0.0f;
+    /// What its points tell grids around (shade/bounces/gathered_light.h), by what part of their
+    /// light samples, and what they were told by these.  nullptr: they tell nothing.
+    std::shared_ptr<const ToldLight> told;
+    float told_share = 0.0f;
+    std::vector<std::shared_ptr<const ToldLight>> told_around;
     /// Something of radiance, or of opacity, was not finite, which is left out and was said.
     bool broken_radiance = false, broken_opacity = false;
 

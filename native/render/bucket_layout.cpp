@@ -25,8 +25,8 @@ int clamped_cell(float x, int size, int lo, int hi) {
 
 }  // namespace
 
-BucketLayout::BucketLayout(const Rect& pixels, int bucket_size, int margin)
-    : m_pixels(pixels), m_size(bucket_size), m_margin(margin) {
+BucketLayout::BucketLayout(const Rect& pixels, int bucket_size, int margin, int around)
+    : m_pixels(pixels), m_size(bucket_size), m_margin(margin), m_around(around) {
     GRANITA_CHECK_EQ(bucket_size % kTileSize, 0);
     m_buckets = {floor_div(m_pixels.x0, m_size), floor_div(m_pixels.y0, m_size),
                  ceil_div(m_pixels.x1, m_size), ceil_div(m_pixels.y1, m_size)};
@@ -49,7 +49,7 @@ Rect BucketLayout::tiles(int index) const {
 }
 
 Rect BucketLayout::range(const RasterBounds& bounds) const {
-    const auto margin = static_cast<float>(m_margin);
+    const auto margin = static_cast<float>(m_margin + m_around);
     const float x0 = bounds.x0 - margin, y0 = bounds.y0 - margin, x1 = bounds.x1 + margin,
                 y1 = bounds.y1 + margin;
     // Written so that NaN is outside.

@@ -15,7 +15,8 @@ class BucketLayout {
     /// `margin`: pixels around its own whose geometry a bucket wants too.  The CPU executors tile
     /// the crop with its filter margin and need no other margin (film merges); the raster executor
     /// tiles the crop and filters by itself.
-    BucketLayout(const Rect& pixels, int bucket_size, int margin = 0);
+    /// `around`: pixels beyond that in which a bucket looks for what lies beside its things.
+    BucketLayout(const Rect& pixels, int bucket_size, int margin = 0, int around = 0);
 
     int count() const { return m_buckets.width() * m_buckets.height(); }
     /// The whole layout in bucket coordinates.
@@ -33,14 +34,14 @@ class BucketLayout {
     Rect reach(int index) const;
     /// Tiles that cover pixels(index), in tile coordinates.
     Rect tiles(int index) const;
-    /// Buckets that a swept bound can touch, in bucket coordinates; empty if none.
+    /// Buckets that a swept bound can touch, or be around of, in bucket coordinates; empty if none.
     Rect range(const RasterBounds& bounds) const;
     /// All indices, spiralling outwards from the centre.
     std::vector<int> spiral() const;
 
   private:
     Rect m_pixels;
-    int m_size, m_margin;
+    int m_size, m_margin, m_around;
     Rect m_buckets;
 };
 

@@ -12,8 +12,12 @@ namespace {
 
 class TileParts {
   public:
-    TileParts(Frame& frame, const SampleTable& table, Vec2i tile, const HiddenGrids& grids)
-        : m_frame(frame), m_table(table), m_tile(tile), m_grids(grids), m_colors(frame, table) {}
+    TileParts(Frame& frame, int bucket, const SampleTable& table, Vec2i tile,
+              const HiddenGrids& grids)
+        : m_frame(frame),
+          m_bucket(bucket),
+          m_table(table),
+          m_tile(tile), m_grids(grids), m_colors(frame, table) {}
 
     /// `pixels`: of the tile, in the frame's coordinates.
     ResolvedTile resolve(const Rect& pixels) {
@@ -37,7 +41,7 @@ class TileParts {
         }
         if (hider->overflowed() || (!is_pixel && !volumes_fit(m_frame, *stores)))
             return add_halves(pixels);
-        const std::vector<bool> seen = shade_seen(m_frame, *hider, hidden);
+        const std::vector<bool> seen = shade_seen(m_frame, m_bucket, *hider, hidden);
         const BucketRefinement refinement(m_frame, *hider, *stores, seen);
         LayerTable layers(hider->pool(), seen);
         m_samples = hider->tile_samples(0);
@@ -78,6 +82,7 @@ class TileParts {
     }
 
     Frame& m_frame;
+    const int m_bucket;
     const SampleTable& m_table;
     Vec2i m_tile;
     const HiddenGrids& m_grids;
@@ -94,7 +99,7 @@ std::unique_ptr<Hider> make_hider(const HiderFrame& settings, const ExecutorChoi
                                                   : make_simd_hider(settings, tiles, pixels);
 }
 
-std::vector<ResolvedTile> resolve_in_parts(Frame& frame, const SampleTable& table,
+std::vector<ResolvedTile> resolve_in_parts(Frame& frame, int bucket, const SampleTable& table,
                                            const Rect& tiles, const Rect& pixels,
                                            const HiddenGrids& grids) {
     std::vector<ResolvedTile> resolved;
@@ -102,7 +107,7 @@ std::vector<ResolvedTile> resolve_in_parts(Frame& frame, const SampleTable& tabl
         for (int x = tiles.x0; x < tiles.x1; ++x) {
             const Rect own{x * kTileSize, y * kTileSize, (x + 1) * kTileSize, (y + 1) * kTileSize};
             resolved.push_back(
-                TileParts(frame, table, {x, y}, grids).resolve(own.intersect(pixels)));
+                TileParts(frame, bucket, table, {x, y}, grids).resolve(own.intersect(pixels)));
         }
     return resolved;
 }

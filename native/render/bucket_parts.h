@@ -16,7 +16,7 @@ std::unique_ptr<Hider> make_hider(const HiderFrame& settings, const ExecutorChoi
                                   const Rect& tiles, const Rect& pixels);
 
 /// `pixels`: of these tiles; `grids`: all that their samples may see, from front to back.
-std::vector<ResolvedTile> resolve_in_parts(Frame& frame, const SampleTable& table,
+std::vector<ResolvedTile> resolve_in_parts(Frame& frame, int bucket, const SampleTable& table,
                                            const Rect& tiles, const Rect& pixels,
                                            const HiddenGrids& grids);
 

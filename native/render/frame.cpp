@@ -6,6 +6,7 @@
 
 #include "base/stage_timer.h"
 #include "render/faces_of_samples.h"
+#include "render/neighbour_grids.h"
 #include "render/raster_bucket.h"
 #include "shade/material_displacement.h"
 
@@ -71,16 +72,16 @@ int rounded_down(int pixel) {
 /// themselves.  Where tiles take what samples they need, that is decided by whole tiles, lest it
 /// depend on the crop.
 BucketLayout make_layout(const Options& options, const Film& film, const SampleLevels& levels,
-                         Executor executor) {
+                         Executor executor, int around) {
     const int size = bucket_size(options, levels.fewest().samples(), executor);
     const Rect& pixels = film.sample_pixels();
     if (executor == Executor::Raster)
-        return BucketLayout(options.crop, size, options.crop.x0 - pixels.x0);
-    if (levels.count() == 1) return BucketLayout(pixels, size);
+        return BucketLayout(options.crop, size, options.crop.x0 - pixels.x0, around);
+    if (levels.count() == 1) return BucketLayout(pixels, size, 0, around);
     return BucketLayout(
         {rounded_down(pixels.x0), rounded_down(pixels.y0), rounded_down(pixels.x1 + kTileSize - 1),
          rounded_down(pixels.y1 + kTileSize - 1)},
-        size);
+        size, 0, around);
 }
 
 std::optional<SceneChanges> changes_since(const KeptVisibility* before, const Scene& scene) {
@@ -147,10 +148,11 @@ Frame::Frame(const std::shared_ptr<const Scene>& frame_scene,
                                                      statistics, report, choice.gl->info()))
                  : nullptr),
       film(scene.options),
-      layout(make_layout(scene.options, film, levels, choice.executor)),
+      layout(make_layout(scene.options, film, levels, choice.executor,
+                         shading.shares_light() ? neighbour_margin(scene.options) : 0)),
       visibility(kept.is_kept ? make_visibility(*this, frame_scene, frame_statistics) : nullptr),
       hider(make_hider_frame(*this)),
-      geometry(view, layout, report, said(), levels.count() > 1) {
+      geometry(view, layout, report, said(), levels.count() > 1 || shading.shares_light()) {
     // The raster executor's samples are its device's.
     if (choice.executor != Executor::Raster)
         shared_view->sampled_faces = std::make_shared<const FacesOfSamples>(

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/geometry_node.h"
 
+#include <algorithm>
+
 #include "base/stage_timer.h"
 
 namespace granita {
@@ -47,6 +49,18 @@ void SharedGrid::ensure_shading_state(Statistics& statistics) {
     });
 }
 
+const SharedGrid::Place& SharedGrid::place(Statistics& statistics) {
+    m_has_place.call([&] {
+        ensure_shading_state(statistics);
+        for (std::size_t i = 0; i < m_grid->point_count(); ++i) {
+            m_place.box.add(m_grid->shading_p()[i]);
+            m_place.step = std::max({m_place.step, glm::length(m_grid->dp_du[i]),
+                                     glm::length(m_grid->dp_dv[i])});
+        }
+    });
+    return m_place;
+}
+
 const GridSweep& SharedGrid::sweep(const Projection& projection, const LensShape& lens) {
     m_has_sweep.call([&] {
         m_sweep.emplace(*m_grid, projection, lens);
@@ -66,12 +80,38 @@ void SharedGrid::ensure_opacity(const ShadingSystem& shading, Statistics& statis
     });
 }
 
-void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& statistics, bool stays) {
-    m_radiance.call([&] {
+void SharedGrid::ensure_told(const ShadingSystem& shading, Statistics& statistics) {
+    m_told.call([&] {
+        if (shading.opacity_varies(m_grid->material)) ensure_opacity(shading, statistics);
         if (!shading.leaves_to_samples(*m_grid)) ensure_shading_state(statistics);
         const StageTimer timer(statistics, Stage::Shade);
         const Stopwatch watch;
-        shading.shade_radiance(*m_grid);
+        m_begun = shading.begin_radiance(*m_grid);
+        // Before the state is dropped of which it is told.
+        if (m_grid->told) place(statistics);
+        statistics.objects().add_seconds(m_grid->instance, watch.seconds());
+    });
+}
+
+void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& statistics,
+                                 const std::function<HiddenGrids()>& around, bool stays) {
+    m_radiance.call([&] {
+        ensure_told(shading, statistics);
+        ToldLights told;
+        if (m_grid->told)
+            for (const auto& other : around()) {
+                other->ensure_told(shading, statistics);
+                if (other->grid().told) told.push_back(other->grid().told);
+            }
+        const StageTimer timer(statistics, Stage::Shade);
+        const Stopwatch watch;
+        const bool is_shaded = m_grid->light_share > 0.0f && m_grid->told_around == told;
+        if (!m_begun && !is_shaded && !shading.leaves_to_samples(*m_grid)) {
+            drop_radiance();
+            m_begun = shading.begin_radiance(*m_grid, true);
+        }
+        if (m_begun) shading.end_radiance(*m_grid, *m_begun, told);
+        m_begun.reset();
         statistics.objects().add_seconds(m_grid->instance, watch.seconds());
         const bool is_read = !m_grid->unsettled.empty() && !shading.leaves_to_samples(*m_grid);
         if (!stays && !is_read) drop_shading_state(*m_grid);
@@ -79,15 +119,24 @@ void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& stati
     });
 }
 
-void SharedGrid::forget_radiance() {
-    m_radiance.reset();
+void SharedGrid::drop_radiance() {
     m_grid->light_share = 0.0f;
     m_grid->broken_radiance = false;
     m_grid->radiance.clear();
     m_grid->found = {};
     m_grid->found_alone.reset();
+    m_grid->told_around.clear();
     m_grid->unsettled.clear();
     m_grid->channels.clear();
+}
+
+void SharedGrid::forget_radiance() {
+    m_told.reset();
+    m_radiance.reset();
+    m_begun.reset();
+    drop_radiance();
+    m_grid->told.reset();
+    m_grid->told_share = 0.0f;
 }
 
 std::shared_ptr<SharedGrid> dice_counted(const Primitive& primitive, Statistics& statistics) {

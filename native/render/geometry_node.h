@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -19,6 +20,9 @@
 
 namespace granita {
 
+class SharedGrid;
+using HiddenGrids = std::vector<std::shared_ptr<SharedGrid>>;  ///< in a hider's arrival order
+
 /// A diced grid and its slots, each filled once whoever asks first.
 class SharedGrid {
   public:
@@ -26,8 +30,18 @@ class SharedGrid {
     ~SharedGrid();
     const Grid& grid() const { return *m_grid; }
     void ensure_opacity(const ShadingSystem& shading, Statistics& statistics);
-    /// `stays`: a later picture may shade it anew.
-    void ensure_radiance(const ShadingSystem& shading, Statistics& statistics, bool stays = false);
+    /// What it tells grids around it (Grid::told).
+    void ensure_told(const ShadingSystem& shading, Statistics& statistics);
+    /// `around`: makes the grids that tell it something, where it asks for them, in the order of
+    /// their keys.  `stays`: a later picture may shade it anew.
+    void ensure_radiance(const ShadingSystem& shading, Statistics& statistics,
+                         const std::function<HiddenGrids()>& around, bool stays = false);
+    /// Where its points are at the frame time, in camera space, and how far the next is, at most.
+    struct Place {
+        Bounds3f box;
+        float step = 0.0f;
+    };
+    const Place& place(Statistics& statistics);
     /// Between two pictures: the next one shades it anew.
     void forget_radiance();
     /// What hiding must know of it, once its opacity is there where that varies.
@@ -35,16 +49,17 @@ class SharedGrid {
 
   private:
     void ensure_shading_state(Statistics& statistics);
+    void drop_radiance();
     void count_bytes();
 
     std::unique_ptr<Grid> m_grid;
     Statistics& m_statistics;
     std::uint64_t m_bytes = 0;
     std::optional<GridSweep> m_sweep;
-    Once m_has_state, m_opacity, m_has_sweep, m_radiance;
+    Place m_place;
+    std::shared_ptr<GridShading> m_begun;
+    Once m_has_state, m_has_place, m_opacity, m_has_sweep, m_told, m_radiance;
 };
-
-using HiddenGrids = std::vector<std::shared_ptr<SharedGrid>>;  ///< in a hider's arrival order
 
 /// Splits until diceable and dices, with the counters.  nullptr when nothing is left of it.
 std::shared_ptr<SharedGrid> dice_counted(const Primitive& primitive, Statistics& statistics);

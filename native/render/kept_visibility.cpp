@@ -29,8 +29,7 @@ std::uint64_t bytes_of(const KeptVisibility::Bucket& bucket) {
     std::uint64_t bytes = 0;
     for (const TileStore& store : bucket.hider->finish())
         bytes += bytes_of(store.key) + bytes_of(store.id) + store.lists.total() * sizeof(Fragment);
-    for (const auto& grid : bucket.grids)
-        if (grid) bytes += grid->grid().bytes();
+    bucket.for_each_grid([&](SharedGrid& grid) { bytes += grid.grid().bytes(); });
     return bytes;
 }
 
@@ -48,6 +47,7 @@ KeptVisibility::KeptVisibility(std::shared_ptr<const Scene> scene, std::shared_p
       m_requests(shading.requests()),
       m_channels(m_scene->options),
       m_offsets(shading.displacement() ? shading.displacement()->kept() : nullptr),
+      m_shares_light(shading.shares_light()),
       m_sample_pixels(sample_pixels),
       m_statistics(std::move(statistics)),
       m_levels(std::move(levels)),
@@ -86,6 +86,7 @@ bool KeptVisibility::serves(const Scene& now, const SceneChanges& changes,
         return false;
     if (!displaces_alike(now, changes) || m_requests != shading.requests()) return false;
     if (shading.has_light() && !m_view->has_light) return false;
+    if (shading.shares_light() && !m_shares_light) return false;
     const bool has_lists = std::ranges::any_of(m_traits, &Traits::opacity_varies);
     if (has_lists && (changes.parts & part::kPasses) != 0) return false;
     const bool asks_rays = std::ranges::any_of(m_traits, &Traits::opacity_asks_rays);
@@ -109,16 +110,15 @@ void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChange
     const bool wants_channels = !ChannelSet(scene->options).empty();
     all |= wants_channels && !same_channels(m_channels, scene->options);
     for (const auto& bucket : m_buckets)
-        for (const auto& shared : bucket->grids) {
-            if (!shared) continue;
-            const Grid& grid = shared->grid();
+        bucket->for_each_grid([&](SharedGrid& shared) {
+            const Grid& grid = shared.grid();
             const bool is_other =
                 grid.material >= 0 && changes.materials[static_cast<std::size_t>(grid.material)];
             const bool lacks_channels = wants_channels && grid.channels.empty();
             if (all || is_other || lacks_channels || grid.broken_radiance ||
                 grid.light_share == 0.0f)
-                shared->forget_radiance();
-        }
+                shared.forget_radiance();
+        });
     m_traits = traits_of(*scene, shading);
     if (wants_channels) m_channels = scene->options;
     m_scene = std::move(scene);
@@ -129,8 +129,7 @@ std::shared_ptr<const ShadedGrids> KeptVisibility::shaded_grids(const SceneChang
         return nullptr;
     auto grids = std::make_shared<ShadedGrids>();
     for (const auto& bucket : m_buckets)
-        for (const auto& shared : bucket->grids)
-            if (shared) grids->add(shared->grid());
+        bucket->for_each_grid([&](SharedGrid& shared) { grids->add(shared.grid()); });
     return grids;
 }
 

@@ -27,6 +27,17 @@ class KeptVisibility {
         std::unique_ptr<Hider> hider;  ///< finished, without samples
         HiddenGrids grids;             ///< of its pool; nullptr where no sample sees it
         std::vector<bool> seen;        ///< [grids]
+        /// [grids] neighbours_of(); empty where light is not shared.
+        std::vector<HiddenGrids> around;
+
+        /// visit(SharedGrid&) for all, some more than once.
+        template <class Visit>
+        void for_each_grid(Visit visit) const {
+            for (const auto& grid : grids)
+                if (grid) visit(*grid);
+            for (const HiddenGrids& beside : around)
+                for (const auto& grid : beside) visit(*grid);
+        }
     };
 
     /// `statistics`: in which the grids' memory is counted; `levels`: whose samples they are.
@@ -93,6 +104,7 @@ class KeptVisibility {
     std::vector<std::vector<AttributeRequest>> m_requests;  ///< [materials + 1]
     Options m_channels;  ///< of grids that hold some: they stay while none are asked for
     std::shared_ptr<KeptOffsets> m_offsets;
+    bool m_shares_light;  ///< grids know those around them
     Rect m_sample_pixels;
     std::shared_ptr<Statistics> m_statistics;
     std::shared_ptr<const SampleLevels> m_levels;

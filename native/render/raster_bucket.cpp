@@ -97,7 +97,7 @@ Tile raster_bucket(Frame& frame, int bucket) {
         device_bucket = frame.raster->open(pixels, std::span<const GridSweep* const>(sweeps));
         seen = device_bucket->find_seen();
     }
-    shade_grids(frame, grids, seen);
+    shade_grids(frame, bucket, grids, seen);
     RasterBackground behind;
     {
         const StageTimer timer(frame.statistics, Stage::Shade);

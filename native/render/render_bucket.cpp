@@ -3,6 +3,7 @@
 
 #include "base/stage_timer.h"
 #include "render/bucket_parts.h"
+#include "render/neighbour_grids.h"
 #include "render/raster_bucket.h"
 #include "render/refine_samples.h"
 #include "render/resolved_tile.h"
@@ -89,24 +90,27 @@ std::vector<ResolvedTile> look(Frame& frame, int bucket, int level, const Rect& 
         hide_geometry(frame, bucket, pixels, *hider, grids);
         if (level == 0) count_needs(frame, grids);
         if (finish(frame, *hider)) {
-            std::vector<bool> seen = shade_seen(frame, *hider, grids);
+            std::vector<bool> seen = shade_seen(frame, bucket, *hider, grids);
             auto resolved = resolve(frame, *hider, seen);
-            if (frame.visibility)
-                frame.visibility->keep(bucket,
-                                       {std::move(hider), std::move(grids), std::move(seen)});
+            if (frame.visibility) {
+                std::vector<HiddenGrids> around = all_neighbours(frame, bucket, grids, seen);
+                frame.visibility->keep(bucket, {std::move(hider), std::move(grids),
+                                                std::move(seen), std::move(around)});
+            }
             return resolved;
         }
     }
-    return resolve_in_parts(frame, table, tiles, pixels, grids);
+    return resolve_in_parts(frame, bucket, table, tiles, pixels, grids);
 }
 
 /// As an earlier picture has seen it.
-std::vector<ResolvedTile> look_again(Frame& frame, const KeptVisibility::Bucket& bucket) {
+std::vector<ResolvedTile> look_again(Frame& frame, int bucket) {
+    const KeptVisibility::Bucket& kept = *frame.visibility->bucket(bucket);
     frame.statistics.add(Counter::BucketsSeenBefore);
-    shade_grids(frame, bucket.grids, bucket.seen);
-    bucket.hider->make_samples();
-    std::vector<ResolvedTile> resolved = resolve(frame, *bucket.hider, bucket.seen);
-    bucket.hider->drop_samples();
+    shade_grids(frame, bucket, kept.grids, kept.seen, kept.around);
+    kept.hider->make_samples();
+    std::vector<ResolvedTile> resolved = resolve(frame, *kept.hider, kept.seen);
+    kept.hider->drop_samples();
     return resolved;
 }
 
@@ -128,7 +132,7 @@ std::vector<Tile> render_bucket(Frame& frame, int bucket) {
     std::vector<TileContribution> contributions;
     std::vector<ResolvedTile> tiles = frame.sees_anew
                                           ? look(frame, bucket, 0, frame.layout.tiles(bucket))
-                                          : look_again(frame, *frame.visibility->bucket(bucket));
+                                          : look_again(frame, bucket);
     for (ResolvedTile& tile : tiles) {
         look_closer(frame, bucket, tile);
         contributions.push_back(std::move(tile.contribution));

@@ -3,28 +3,33 @@
 
 #include "base/parallel.h"
 #include "base/stage_timer.h"
+#include "render/neighbour_grids.h"
 
 namespace granita {
 
-void shade_grids(const Frame& frame, const HiddenGrids& grids, const std::vector<bool>& seen) {
+void shade_grids(Frame& frame, int bucket, const HiddenGrids& grids, const std::vector<bool>& seen,
+                 const std::vector<HiddenGrids>& around) {
     // Towards the end of a frame threads are idle that take some of them.
     parallel_for(grids.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t slot = begin; slot < end; ++slot) {
             frame.progress.check();
-            if (seen[slot])
-                grids[slot]->ensure_radiance(frame.shading, frame.statistics,
-                                             frame.visibility != nullptr);
+            if (!seen[slot]) continue;
+            const auto beside = [&] {
+                return around.empty() ? neighbours_of(frame, bucket, *grids[slot]) : around[slot];
+            };
+            grids[slot]->ensure_radiance(frame.shading, frame.statistics, beside,
+                                         frame.visibility != nullptr);
         }
     });
 }
 
-std::vector<bool> shade_seen(Frame& frame, const Hider& hider, const HiddenGrids& grids) {
+std::vector<bool> shade_seen(Frame& frame, int bucket, const Hider& hider, const HiddenGrids& grids) {
     std::vector<bool> seen;
     {
         const StageTimer timer(frame.statistics, Stage::Hide);
         seen = hider.seen_grids();
     }
-    shade_grids(frame, grids, seen);
+    shade_grids(frame, bucket, grids, seen);
     return seen;
 }
 

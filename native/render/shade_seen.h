@@ -9,11 +9,14 @@
 namespace granita {
 
 /// Shades those of the grids that are seen [grids], on all threads that have nothing else to do.
-void shade_grids(const Frame& frame, const HiddenGrids& grids, const std::vector<bool>& seen);
+/// @param around [grids] those that tell each something (neighbours_of()); empty: they are looked
+/// for.
+void shade_grids(Frame& frame, int bucket, const HiddenGrids& grids, const std::vector<bool>& seen,
+                 const std::vector<HiddenGrids>& around = {});
 
 /// Shades the grids that some sample sees, once the hider has finished; `grids` are its pool's.
 /// Returns which they are, by slot: others belong to the buckets that see them, whose threads may
 /// be shading them now.
-std::vector<bool> shade_seen(Frame& frame, const Hider& hider, const HiddenGrids& grids);
+std::vector<bool> shade_seen(Frame& frame, int bucket, const Hider& hider, const HiddenGrids& grids);
 
 }  // namespace granita

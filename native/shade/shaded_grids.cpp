@@ -42,7 +42,8 @@ bool same_before_shading(const Grid& a, const Grid& b) {
 }  // namespace
 
 void ShadedGrids::add(const Grid& grid) {
-    if (grid.light_share > 0.0f && !grid.broken_radiance) m_grids.emplace(grid.key, &grid);
+    if ((grid.light_share > 0.0f || grid.told) && !grid.broken_radiance)
+        m_grids.emplace(grid.key, &grid);
 }
 
 const Grid* ShadedGrids::find(const Grid& grid) const {
@@ -58,6 +59,7 @@ void take_shading(const Grid& from, Grid& to) {
     to.unsettled = from.unsettled;
     to.channels = from.channels;
     to.light_share = from.light_share;
+    to.told_around = from.told_around;
 }
 
 }  // namespace granita

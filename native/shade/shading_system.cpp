@@ -9,6 +9,7 @@
 #include "shade/bounces/way_choice.h"
 #include "shade/frame_shading.h"
 #include "shade/grid_channels.h"
+#include "shade/grid_shading.h"
 #include "shade/interpolated_points.h"
 #include "shade/left_to_samples.h"
 #include "shade/lights/light_sample_count.h"
@@ -38,20 +39,16 @@ struct ShadingSystem::Impl : FrameShading {
         return shading_input(grid, points, scene, light ? light->rays() : nullptr, progress);
     }
 
-    /// Adds what surfaces send to each other: to points of a grid, whose `gathered` is filled, or
-    /// to samples in it, whose diffuse lobes take it from there.  Returns what of it is noise at
-    /// single points: what neighbours do not share.
-    std::vector<Vec3f> add_bounces(const ShadingPoints& points, const SurfaceClosure& closure,
-                                   LeavingRays& leaving, Grid& grid, ReflectionParts* parts,
-                                   std::vector<float>* noise, std::vector<Vec3f>& radiance) const {
+    /// What surfaces send to each other: to points of a grid, which tell each other of it, or to
+    /// samples in it, whose diffuse lobes take it from the grid.
+    void gather(PointShading& s, LeavingRays& leaving) const {
+        const ShadingPoints& points = s.ran.points();
         const float due = points.share * static_cast<float>(scene.options.light_samples);
         if (!points.places.empty() && due < 1.0f) thin_out(leaving.rays, scene.options.seed);
-        GatheredLight light = bounces->gather(leaving.rays, points.count);
+        s.gathered = bounces->gather(leaving.rays, points.count);
         if (leaving.diffuse)
-            share_gathered(points, closure, leaving.takes_world, parts != nullptr, light, grid);
-        reflect_world(light, parts, noise, radiance);
-        reflect_gathered(points, light, grid, closure, parts, radiance);
-        return std::move(light.glossy);
+            s.told = std::make_shared<const ToldLight>(tell_gathered(
+                points, s.closure, leaving.takes_world, !channels.empty(), *s.gathered));
     }
 
     /// Adds what is scattered below the surface, as add_bounces() of points or samples.
@@ -68,62 +65,67 @@ struct ShadingSystem::Impl : FrameShading {
                           radiance);
     }
 
-    /// Where a grid's corners may not tell all.
-    struct Doubts {
-        std::vector<float> noise;    ///< as DirectLight::reflect()
-        std::vector<Vec3f> settled;  ///< [vertices] radiance but for what is noise at single
-                                     ///< points, and what all take from the grid: empty where it
-                                     ///< is all
-        std::vector<float> looks;    ///< looks_of(), of patterns
-        std::vector<LampSight> sights;
-        std::vector<std::uint8_t> highlights;  ///< as Grid::unsettled
-        bool may_pass = false;                 ///< lamps, as what moves mirrors them
-    };
-
-    /// Fills radiance and channels of `grid`, whose points are `in.points`.
-    void shade(Grid& grid, const ShadingInput& in, const PointPaths& at,
-               Doubts* doubts = nullptr) const {
+    /// Runs the surface over `in.points` of `grid`, whose light they find each by themselves.
+    void find_light(PointShading& s, const Grid& grid, const PointPaths& at,
+                    Doubts* doubts = nullptr) const {
         const CrashScope scope("shades", scene.instances[grid.instance].name);
         const SurfaceProgram& surface = material(grid.material).radiance;
-        SurfaceRun ran(surface, in);
-        const ShadingPoints& points = ran.points();
-        SurfaceClosure closure = ran.take_closure();
-        if (!closure.subsurface.empty()) {
+        const ShadingPoints& points = s.ran.points();
+        if (!s.closure.subsurface.empty()) {
             const bool has_body = below && light->rays()->has_body(grid.key);
-            draw_as_diffuse(closure, has_body);
+            draw_as_diffuse(s.closure, has_body);
         }
-        std::vector<float>* noise = doubts ? &doubts->noise : nullptr;
         // What is scattered is told by corners that are not black; there samples were darker still.
         if (doubts && surface.is_patterned && !surface.scatters())
-            doubts->looks = looks_of(points, closure);
+            doubts->looks = looks_of(points, s.closure);
         if (doubts && light && !grid.shades_lattice())
-            doubts->highlights = light->highlights(grid, points, closure);
+            doubts->highlights = light->highlights(grid, points, s.closure);
         if (doubts && light && grid.motion)
-            doubts->may_pass = light->highlights_may_pass(closure, grid.key);
-        ReflectionParts parts, *asked = channels.empty() ? nullptr : &parts;
-        std::vector<Vec3f> radiance(points.count, Vec3f(0.0f)), doubtful;
+            doubts->may_pass = light->highlights_may_pass(s.closure, grid.key);
+        ReflectionParts* asked = channels.empty() ? nullptr : &s.parts;
+        s.radiance.assign(points.count, Vec3f(0.0f));
         LeavingRays leaving;
         leaving.diffuse = grid.found.gathered.empty();
         leaving.takes_world = bounces && scene.options.bounces.diffuse > 0 && surface.looks_ahead();
         if (light)
-            radiance =
-                light->reflect(points, closure, grid.key, asked, at, noise,
-                               bounces ? &leaving : nullptr, doubts ? &doubts->sights : nullptr);
+            s.radiance = light->reflect(points, s.closure, grid.key, asked, at,
+                                        doubts ? &doubts->noise : nullptr,
+                                        bounces ? &leaving : nullptr,
+                                        doubts ? &doubts->sights : nullptr);
         else if (asked)
-            parts.resize(points.count);
-        if (bounces && !closure.lobes.empty())
-            doubtful = add_bounces(points, closure, leaving, grid, asked, noise, radiance);
-        if (!closure.subsurface.empty()) add_scattered(points, closure, at, grid, asked, radiance);
+            s.parts.resize(points.count);
+        if (bounces && !s.closure.lobes.empty()) gather(s, leaving);
+    }
+
+    /// Fills radiance and channels of `grid` with what its points found, and what those `around`
+    /// tell them.
+    void shade(Grid& grid, PointShading& s, const PointPaths& at, const ToldLights& around = {},
+               Doubts* doubts = nullptr) const {
+        const CrashScope scope("shades", scene.instances[grid.instance].name);
+        const SurfaceProgram& surface = material(grid.material).radiance;
+        const ShadingPoints& points = s.ran.points();
+        ReflectionParts* asked = channels.empty() ? nullptr : &s.parts;
+        std::vector<Vec3f>& radiance = s.radiance;
+        // What of it is noise at single points: what neighbours do not share.
+        std::vector<Vec3f> doubtful;
+        if (s.told) share_gathered(points, *s.told, around, grid.found);
+        if (s.gathered) {
+            reflect_world(*s.gathered, asked, doubts ? &doubts->noise : nullptr, radiance);
+            reflect_gathered(points, *s.gathered, grid, s.closure, asked, radiance);
+            doubtful = std::move(s.gathered->glossy);
+        }
+        if (!s.closure.subsurface.empty())
+            add_scattered(points, s.closure, at, grid, asked, radiance);
         if (doubts && !grid.found.scattered.empty()) {
             // Samples take it from the grid and know no better.
             const std::vector<Vec3f> shared = scattered_beyond_typical(
-                grid.found.scattered, grid.found.scattered_bounced, closure);
+                grid.found.scattered, grid.found.scattered_bounced, s.closure);
             doubtful.resize(points.count, Vec3f(0.0f));
             for (std::size_t i = 0; i < shared.size(); ++i) doubtful[i] += shared[i];
         }
-        for (std::size_t i = 0; i < closure.emission.size(); ++i)
-            radiance[i] += closure.emission[i];
-        const std::size_t broken = ran.broken() + make_finite(radiance);
+        for (std::size_t i = 0; i < s.closure.emission.size(); ++i)
+            radiance[i] += s.closure.emission[i];
+        const std::size_t broken = s.ran.broken() + make_finite(radiance);
         grid.broken_radiance |= broken > 0;
         warn_of_broken(grid.material, broken);
         if (doubts && !doubtful.empty()) {
@@ -136,7 +138,7 @@ struct ShadingSystem::Impl : FrameShading {
         grid.radiance = std::move(radiance);
         if (asked)
             fill_channels(grid, channels, scene, camera,
-                          {points, closure, parts, ran.run(), surface.passes});
+                          {points, s.closure, s.parts, s.ran.run(), surface.passes});
         statistics.add(Counter::PointsShaded, points.count);
     }
 
@@ -189,8 +191,11 @@ struct ShadingSystem::Impl : FrameShading {
         for (const Vec3f& p : refined.points.p) out.p.push_back(camera_from_world * p);
         out.found = refined.found;
         if (seen) out.opacity = std::move(seen->opacity);
-        if (!grid.opacity.empty()) shade_opacity(out, input(grid, refined));
-        shade(out, input(grid, refined), {});
+        const ShadingInput in = input(grid, refined);
+        if (!grid.opacity.empty()) shade_opacity(out, in);
+        PointShading shading(material(grid.material).radiance, in);
+        find_light(shading, out, {});
+        shade(out, shading, {});
         return out;
     }
 
@@ -297,10 +302,16 @@ struct ShadingSystem::Impl : FrameShading {
         const Grid* same = shaded ? shaded->find(grid) : nullptr;
         if (same == nullptr) return false;
         // What samples are shaded by themselves goes by the share itself.
-        const bool is_enough = refines ? same->light_share == share
-                                       : !light || light->sample_count(same->light_share) ==
-                                                       light->sample_count(share);
-        if (!is_enough) return false;
+        const auto is_enough = [&](float with) {
+            return with > 0.0f &&
+                   (refines ? with == share
+                            : !light || light->sample_count(with) == light->sample_count(share));
+        };
+        if (same->told && is_enough(same->told_share)) {
+            grid.told = same->told;
+            grid.told_share = same->told_share;
+        }
+        if (!is_enough(same->light_share)) return grid.told != nullptr;
         take_shading(*same, grid);
         statistics.add(Counter::GridsShadedBefore);
         return true;
@@ -319,35 +330,48 @@ struct ShadingSystem::Impl : FrameShading {
                        edge);
     }
 
-    void shade_anew(Grid& grid, bool lit, float sharpness, float dense) const {
-        ShadingPoints points = shading_points(grid, camera);
-        const bool wants_refining = can_refine(grid);
+    /// What the grid's points find by themselves; nullptr: it is left to samples.
+    std::shared_ptr<GridShading> begin(Grid& grid, bool lit, float sharpness, float dense) const {
+        auto begun = std::make_shared<GridShading>();
+        begun->points = shading_points(grid, camera);
+        ShadingPoints& points = begun->points;
+        begun->wants_refining = can_refine(grid);
         const float narrow = edge_share(grid);
-        float fewer = sharpness * narrow;
-        points.share *= fewer;
+        begun->sharpness = sharpness;
+        begun->fewer = sharpness * narrow;
+        points.share *= begun->fewer;
         points.round = kind_of(grid, scene) == GeometryKind::Curves;
         if (light && lit) light->lift(points, grid.key);
-        PointPaths at = paths_of(grid, points);
-        bool turns = false;
+        begun->at = paths_of(grid, points);
         if (lit && (bounces || (below && moves && scatters(grid.material)))) {
-            const std::vector<std::size_t> turned = look(grid, points, at, narrow);
-            if (wants_refining && !turned.empty()) {
+            const std::vector<std::size_t> turned = look(grid, points, begun->at, narrow);
+            if (begun->wants_refining && !turned.empty()) {
                 // Else their lobes would gather the light of the inside.
                 show_other_side(points, turned);
                 light->lift(points, grid.key);
-                at = paths_of(grid, points);
-                turns = kTurned * turned.size() > points.count;
+                begun->at = paths_of(grid, points);
+                begun->turns = kTurned * turned.size() > points.count;
             }
         }
-        if (wants_refining && may_leave(grid) && !grid.opacity_varies && !scatters(grid.material) &&
-            pays_by_samples(grid, points, scene, *light))
-            return leave_to_samples(grid, channels.vertex_width());
+        if (begun->wants_refining && may_leave(grid) && !grid.opacity_varies &&
+            !scatters(grid.material) && pays_by_samples(grid, points, scene, *light)) {
+            leave_to_samples(grid, channels.vertex_width());
+            return nullptr;
+        }
         points.share *= dense;
-        fewer *= dense;
-        Doubts doubts;
-        if (wants_refining) doubts.noise.assign(points.count, 0.0f);
+        begun->fewer *= dense;
+        if (begun->wants_refining) begun->doubts.noise.assign(points.count, 0.0f);
+        begun->in.emplace(input(grid, points));
+        begun->found.emplace(material(grid.material).radiance, *begun->in);
+        find_light(*begun->found, grid, begun->at,
+                   begun->wants_refining ? &begun->doubts : nullptr);
+        return begun;
+    }
+
+    void end(Grid& grid, GridShading& begun, const ToldLights& around) const {
         const bool catches = catchers && scene.catches_shadows(grid.instance, grid.material);
-        shade(grid, input(grid, points), at, wants_refining ? &doubts : nullptr);
+        Doubts& doubts = begun.doubts;
+        shade(grid, *begun.found, begun.at, around, begun.wants_refining ? &doubts : nullptr);
         statistics.add(Counter::GridsShaded);
         if (catches) {
             // What is left of light tells nothing of color.
@@ -355,21 +379,21 @@ struct ShadingSystem::Impl : FrameShading {
             doubts.looks.clear();
             catchers->divide(grid, channels, doubts.noise, doubts.sights);
         }
-        if (!wants_refining) return;
+        if (!begun.wants_refining) return;
         if (grid.holdout && !catches) {
             grid.unsettled = grid.unsettled_opacity;
             return;
         }
-        const float difference = thresholds.difference / (sharpness * sharpness);
-        if (turns || material(grid.material).has_lines() || changes_in_time(grid) ||
+        const float difference = thresholds.difference / (begun.sharpness * begun.sharpness);
+        if (begun.turns || material(grid.material).has_lines() || changes_in_time(grid) ||
             (doubts.may_pass && highlights_pass(grid)))
             grid.unsettled = all_micropolygons(grid);
         else
             find_unsettled(grid, doubts.settled, doubts.noise, difference,
-                           thresholds.noise / (fewer * fewer));
+                           thresholds.noise / (begun.fewer * begun.fewer));
         mark(grid.unsettled, doubts.highlights);
         find_patterns(grid, doubts.looks);
-        if (!at.moves() && grid.lifespan.is_whole())
+        if (!begun.at.moves() && grid.lifespan.is_whole())
             find_thin_shadows(grid, doubts.sights, difference);
     }
 };
@@ -390,6 +414,10 @@ float ShadingSystem::threshold() const {
 
 const MaterialDisplacement* ShadingSystem::displacement() const {
     return m_impl->displacement.get();
+}
+
+bool ShadingSystem::shares_light() const {
+    return m_impl->bounces != nullptr;
 }
 
 bool ShadingSystem::has_light() const {
@@ -441,15 +469,37 @@ bool ShadingSystem::leaves_to_samples(const Grid& grid) const {
     return grid.triangles && !(grid.disjoint && grid.opacity_varies) && m_impl->may_leave(grid);
 }
 
-void ShadingSystem::shade_radiance(Grid& grid) const {
-    if (leaves_to_samples(grid)) return leave_to_samples(grid, m_impl->channels.vertex_width());
+std::shared_ptr<GridShading> ShadingSystem::begin_radiance(Grid& grid, bool anew) const {
+    if (leaves_to_samples(grid)) {
+        leave_to_samples(grid, m_impl->channels.vertex_width());
+        return nullptr;
+    }
     const bool lit = m_impl->reflects(grid.material);
     const float sharpness = lit || m_impl->can_refine(grid) ? m_impl->sharpness(grid) : 1.0f;
     const float dense = lit && m_impl->light ? dense_light_share(grid, m_impl->scene) : 1.0f;
     const float share = grid.point_share * sharpness * m_impl->edge_share(grid) * dense;
-    if (m_impl->take_shaded(grid, share)) return;
-    m_impl->shade_anew(grid, lit, sharpness, dense);
-    grid.light_share = share;
+    if (!anew && m_impl->take_shaded(grid, share)) return nullptr;
+    auto begun = m_impl->begin(grid, lit, sharpness, dense);
+    (begun ? begun->light_share : grid.light_share) = share;
+    if (begun && begun->found->told && !grid.told) {
+        grid.told = begun->found->told;
+        grid.told_share = share;
+    }
+    return begun;
+}
+
+void ShadingSystem::end_radiance(Grid& grid, GridShading& begun, const ToldLights& around) const {
+    m_impl->end(grid, begun, around);
+    grid.light_share = begun.light_share;
+    grid.told_around = around;
+}
+
+void ShadingSystem::shade_radiance(Grid& grid) const {
+    const auto begun = begin_radiance(grid);
+    if (begun)
+        end_radiance(grid, *begun, {});
+    else if (grid.light_share == 0.0f)
+        end_radiance(grid, *begin_radiance(grid, true), {});
 }
 
 Grid ShadingSystem::refine(const Grid& grid, std::span<const RefinedPoint> wanted) const {

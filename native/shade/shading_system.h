@@ -13,6 +13,7 @@
 #include "dice/view.h"
 #include "scene/scene.h"
 #include "shade/background_rays.h"
+#include "shade/bounces/gathered_light.h"
 #include "shade/kept_shading.h"
 #include "shade/refined_points.h"
 #include "shade/seen_volumes.h"
@@ -20,6 +21,7 @@
 
 namespace granita {
 
+struct GridShading;
 class MaterialDisplacement;
 
 class ShadingSystem {
@@ -43,6 +45,9 @@ class ShadingSystem {
     /// For View: what rays and dicing know of the same geometries.
     std::shared_ptr<GeometryCache> geometries() const;
 
+    /// Whether grids take light from those around them.
+    bool shares_light() const;
+
     /// Whether opacity must run before visibility (it is not the constant 1).  -1 = no material.
     bool opacity_varies(int material) const;
     /// Whether opacity depends on what rays of its nodes meet.
@@ -58,6 +63,13 @@ class ShadingSystem {
     /// Fills Grid::radiance (premultiplied by opacity, plus emission) and what depends on it, or
     /// takes it from an equal grid of an earlier picture.  Thread-safe for different grids.
     void shade_radiance(Grid& grid) const;
+    /// Its first half: what the grid's points find by themselves, among it what they tell grids
+    /// around (Grid::told).  nullptr: there is no other half, or an equal grid of an earlier
+    /// picture has told it, and has been shaded where Grid::light_share says so.
+    /// @param anew whatever earlier pictures have.
+    std::shared_ptr<GridShading> begin_radiance(Grid& grid, bool anew = false) const;
+    /// `around`: what grids near this one tell it, in the order of their keys.
+    void end_radiance(Grid& grid, GridShading& begun, const ToldLights& around) const;
 
     /// Shades points between the vertices of a shaded grid, each at its time.
     /// @return as many vertices, point by point: place, radiance, channels and, where the grid's

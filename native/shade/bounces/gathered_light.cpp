@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "shade/bounces/neighbours.h"
 #include "shade/bsdf/sheen_fit.h"
 
 namespace granita {
@@ -61,10 +60,9 @@ std::vector<float> mean_nearness(const ShadingPoints& points, const GatheredLigh
     return means;
 }
 
-/// [points] `diffuse` by albedo, shared between neighbours.
-std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosure& closure,
-                                const std::vector<Vec3f>& diffuse,
-                                const std::vector<float>& nearness) {
+/// `diffuse` by albedo.
+NoisyPoints told_of(const ShadingPoints& points, const SurfaceClosure& closure,
+                    const std::vector<Vec3f>& diffuse, const std::vector<float>& nearness) {
     NoisyValues noisy{diffuse, std::vector<Vec3f>(points.count), std::vector<Vec3f>(points.count),
                       kLeastReach};
     for (std::size_t i = 0; i < points.count; ++i) {
@@ -73,14 +71,22 @@ std::vector<Vec3f> shared_light(const ShadingPoints& points, const SurfaceClosur
         noisy.values[i] *= noisy.told[i] / glm::max(albedo, Vec3f(kLeastAlbedo));
         noisy.by_reach[i] = Vec3f(nearness[i] / kNear);
     }
-    return points.alone ? std::move(noisy.values) : share(points, noisy);
+    return NoisyPoints(points, noisy);
+}
+
+std::vector<Vec3f> values_of(const NoisyPoints& points) {
+    std::vector<Vec3f> values(points.count);
+    for (std::size_t i = 0; i < points.count; ++i)
+        values[i] = {points.values[0][i], points.values[1][i], points.values[2][i]};
+    return values;
 }
 
 }  // namespace
 
-void share_gathered(const ShadingPoints& points, const SurfaceClosure& closure, bool takes_world,
-                    bool tells_world, GatheredLight& light, Grid& grid) {
+ToldLight tell_gathered(const ShadingPoints& points, const SurfaceClosure& closure,
+                        bool takes_world, bool tells_world, GatheredLight& light) {
     const std::vector<float> nearness = mean_nearness(points, light);
+    ToldLight told;
     if (takes_world && !light.world.empty()) {
         std::vector<Vec3f> world;
         for (std::size_t i = 0; i < light.world.size(); ++i) {
@@ -88,9 +94,26 @@ void share_gathered(const ShadingPoints& points, const SurfaceClosure& closure, 
             light.diffuse[i] += world[i];
             light.world_balance[i].x = 0.0f;
         }
-        if (tells_world) grid.found.gathered_world = shared_light(points, closure, world, nearness);
+        if (tells_world) told.world = told_of(points, closure, world, nearness);
     }
-    grid.found.gathered = shared_light(points, closure, light.diffuse, nearness);
+    told.all = told_of(points, closure, light.diffuse, nearness);
+    return told;
+}
+
+void share_gathered(const ShadingPoints& points, const ToldLight& told, const ToldLights& around,
+                    GridLight& found) {
+    if (points.alone) {
+        found.gathered = values_of(told.all);
+        if (told.world) found.gathered_world = values_of(*told.world);
+        return;
+    }
+    std::vector<const NoisyPoints*> all, world;
+    for (const auto& other : around) {
+        all.push_back(&other->all);
+        if (other->world) world.push_back(&*other->world);
+    }
+    found.gathered = share(points, told.all, kLeastReach, all);
+    if (told.world) found.gathered_world = share(points, *told.world, kLeastReach, world);
 }
 
 void reflect_world(const GatheredLight& light, ReflectionParts* parts, std::vector<float>* noise,

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "dice/grid.h"
 #include "math/vec.h"
+#include "shade/bounces/neighbours.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/bsdf/lobe.h"
 #include "shade/bsdf/reflection.h"
@@ -37,12 +40,26 @@ struct GatheredLight {
           met(points, 0.0f) {}
 };
 
-/// Fills Grid's `gathered` with what diffuse lobes gathered, by albedo, shared between neighbours,
-/// and `gathered_world` if somebody `tells_world`: light of other surfaces, and of the world
-/// between them, if it `takes_world`, varies as slowly as these are far away (Ward, Rubinstein and
-/// Clear 1988, their error bound read the other way).  Takes the world's to `light`.diffuse.
-void share_gathered(const ShadingPoints& points, const SurfaceClosure& closure, bool takes_world,
-                    bool tells_world, GatheredLight& light, Grid& grid);
+/// What diffuse lobes of a grid's points gathered, by albedo, before it is shared: light of other
+/// surfaces and of the world between them, and of that the world's where somebody asks.
+struct ToldLight {
+    NoisyPoints all;
+    std::optional<NoisyPoints> world;
+
+    std::size_t bytes() const { return all.bytes() + (world ? world->bytes() : 0); }
+};
+using ToldLights = std::vector<std::shared_ptr<const ToldLight>>;  ///< [grids]
+
+/// What points tell each other of `light`, and the grids around: light of other surfaces, and of the
+/// world between them, if it `takes_world`, varies as slowly as these are far away (Ward, Rubinstein
+/// and Clear 1988, their error bound read the other way).  Takes the world's to `light`.diffuse.
+ToldLight tell_gathered(const ShadingPoints& points, const SurfaceClosure& closure,
+                        bool takes_world, bool tells_world, GatheredLight& light);
+
+/// Fills `gathered` and, if it was told, `gathered_world` of `found` with what neighbours share, in
+/// a grid and with those `around` it.
+void share_gathered(const ShadingPoints& points, const ToldLight& told, const ToldLights& around,
+                    GridLight& found);
 
 /// Adds what `light` has of the world to `radiance`, and where they are asked for, to `parts` and
 /// the `noise` of points (DirectLight::reflect()).

@@ -45,17 +45,24 @@ float sum(V values) {
     return (a + b) + (c + d);
 }
 
-/// A number of each point, behind the last of which there is room to read.
-struct Column {
-    std::vector<float> values;
+V at(const NoisyPoints::Column& column, std::size_t j) {
+    return hn::LoadU(kTag, column.data() + j);
+}
 
-    template <class Value>
-    Column(std::size_t count, Value value) : values(count + hn::Lanes(kTag) - 1) {
-        for (std::size_t i = 0; i < count; ++i) values[i] = value(i);
-    }
-    V at(std::size_t j) const { return hn::LoadU(kTag, values.data() + j); }
-    float operator[](std::size_t i) const { return values[i]; }
-};
+std::array<V, 3> at(const NoisyPoints::Columns& columns, std::size_t j) {
+    return {at(columns[0], j), at(columns[1], j), at(columns[2], j)};
+}
+
+void add(NoisyPoints::Columns& to, const NoisyPoints::Columns& from, std::size_t j) {
+    for (std::size_t c = 0; c < 3; ++c) to[c].push_back(from[c][j]);
+}
+
+NoisyPoints::Columns columns_of(const std::vector<Vec3f>& of) {
+    NoisyPoints::Columns columns;
+    for (int c = 0; c < 3; ++c)
+        for (const Vec3f& v : of) columns[c].push_back(is_finite(v) ? v[c] : 0.0f);
+    return columns;
+}
 
 /// Where neighbours lie around a point, by weight.
 struct Spread {
@@ -115,60 +122,80 @@ struct Heights {
     }
 };
 
+/// Those of some grids that lie within `reach` of a box.
+NoisyPoints near_to(const Bounds3f& box, float reach,
+                    std::span<const NoisyPoints* const> around) {
+    Bounds3f wide = box;
+    wide.grow(reach);
+    NoisyPoints near;
+    for (const NoisyPoints* points : around) {
+        bool any = false;
+        for (std::size_t j = 0; j < points->count; ++j) {
+            bool is_near = points->asked[j] > 0.0f;
+            for (int c = 0; c < 3; ++c)
+                is_near &= points->p[c][j] >= wide.lo[c] && points->p[c][j] <= wide.hi[c];
+            if (!is_near) continue;
+            any = true;
+            ++near.count;
+            add(near.p, points->p, j);
+            add(near.normal, points->normal, j);
+            add(near.values, points->values, j);
+            add(near.by_reach, points->by_reach, j);
+            add(near.told, points->told, j);
+            near.asked.push_back(points->asked[j]);
+        }
+        if (any) near.is_grey &= points->is_grey;
+    }
+    near.pad();
+    return near;
+}
+
 class Sharing {
   public:
-    Sharing(const ShadingPoints& points, const NoisyValues& noisy)
-        : m_points(points),
-          m_noisy(noisy),
-          m_p(columns(points.p)),
-          m_normal(columns(points.normal)),
-          m_asked(points.count, [&](std::size_t i) { return asked(i); }),
-          m_by_reach(columns(noisy.by_reach)),
-          m_told(columns(noisy.told)),
-          m_values(columns(noisy.values)) {
-        const auto is_grey = [](const Vec3f& v) { return v.x == v.y && v.x == v.z; };
-        if (std::ranges::all_of(noisy.by_reach, is_grey) &&
-            std::ranges::all_of(noisy.told, is_grey))
-            m_channels_apart = 0;
+    Sharing(const ShadingPoints& points, const NoisyPoints& own, float least_reach,
+            std::span<const NoisyPoints* const> around)
+        : m_points(points), m_own(own), m_least_reach(least_reach) {
+        if (!around.empty()) {
+            float step = 0.0f;
+            for (std::size_t i = 0; i < points.count; ++i)
+                step = std::max(step, width_of(points, i));
+            m_around = near_to(own.box, static_cast<float>(kReach) * step, around);
+        }
+        if (own.is_grey && m_around.is_grey) m_channels_apart = 0;
     }
 
     std::vector<Vec3f> run() {
-        std::vector<Vec3f> shared = m_noisy.values;
         const std::size_t count = m_points.count, columns = m_points.columns;
+        std::vector<Vec3f> shared(count);
         const auto before = [](std::size_t at, std::size_t reach) {
             return at - std::min(at, reach);
         };
         for (std::size_t i = 0; i < count; ++i) {
             start(i);
             if (columns == 0) {
-                take(before(i, kRun), std::min(i + kRun + 1, count));
+                take(m_own, before(i, kRun), std::min(i + kRun + 1, count));
             } else {
                 const std::size_t x = i % columns, y = i / columns, rows = count / columns;
                 const auto [top, bottom] = window(y, rows);
                 const auto [left, right] = window(x, columns);
                 for (std::size_t v = top; v < bottom; ++v)
-                    take(v * columns + left, v * columns + right);
+                    take(m_own, v * columns + left, v * columns + right);
             }
+            take(m_around, 0, m_around.count);
             for (std::size_t c = 0; c < 3; ++c) {
                 const float height = m_heights[c].fit(m_spreads[c * m_channels_apart]);
-                if (std::isfinite(height)) shared[i][static_cast<int>(c)] = height;
+                shared[i][static_cast<int>(c)] =
+                    std::isfinite(height) ? height : m_own.values[c][i];
             }
         }
         return shared;
     }
 
   private:
-    using Columns = std::array<Column, 3>;
-
-    static Columns columns(const std::vector<Vec3f>& of) {
-        const auto channel = [&](int c) {
-            return Column(of.size(),
-                          [&, c](std::size_t i) { return is_finite(of[i]) ? of[i][c] : 0.0f; });
-        };
-        return {channel(0), channel(1), channel(2)};
-    }
-    /// As many on each line of a lattice: at its end those of the one side.
-    static std::pair<std::size_t, std::size_t> window(std::size_t at, std::size_t count) {
+    /// As many on each line of a lattice: at its end those of the one side, unless other grids go
+    /// on there.
+    std::pair<std::size_t, std::size_t> window(std::size_t at, std::size_t count) const {
+        if (m_around.count > 0) return {at - std::min(at, kReach), std::min(at + kReach + 1, count)};
         const std::size_t size = std::min(2 * kReach + 1, count);
         const std::size_t first = std::min(at - std::min(at, kReach), count - size);
         return {first, first + size};
@@ -177,60 +204,51 @@ class Sharing {
         return a[0] * set(b.x) + a[1] * set(b.y) + a[2] * set(b.z);
     }
 
-    float asked(std::size_t i) const {
-        if (!is_finite(m_noisy.values[i])) return 0.0f;
-        return (m_points.shares.empty() ? 1.0f : m_points.shares[i]) *
-               (m_points.seen.empty() || m_points.seen[i] ? 1.0f : kHidden);
-    }
-
     void start(std::size_t i) {
         m_at = i;
         m_spreads = {};
         m_heights = {};
         const float step = width_of(m_points, i);
-        m_most_by_reach = 1.0f / (m_noisy.least_reach * std::max(step, 1e-30f));
+        m_most_by_reach = 1.0f / (m_least_reach * std::max(step, 1e-30f));
         const Vec3f& normal = m_points.normal[i];
         const Vec3f other = std::abs(normal.x) < 0.7f ? Vec3f(1, 0, 0) : Vec3f(0, 1, 0);
         m_x = glm::normalize(glm::cross(normal, other));
         m_y = glm::cross(normal, m_x);
     }
 
-    void take(std::size_t first, std::size_t last) {
-        const auto of = [](const Columns& columns, std::size_t j) {
-            return std::array{columns[0].at(j), columns[1].at(j), columns[2].at(j)};
-        };
+    void take(const NoisyPoints& from, std::size_t first, std::size_t last) {
         const Vec3f& p = m_points.p[m_at];
         for (std::size_t j = first; j < last; j += hn::Lanes(kTag)) {
-            std::array<V, 3> way = of(m_p, j);
+            std::array<V, 3> way = at(from.p, j);
             for (int c = 0; c < 3; ++c) way[c] -= set(p[c]);
             const V distance = hn::Sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
             const V x = dot(way, m_x), y = dot(way, m_y);
-            const V bend = set(1.0f) - dot(of(m_normal, j), m_points.normal[m_at]);
+            const V bend = set(1.0f) - dot(at(from.normal, j), m_points.normal[m_at]);
             const V alike = hn::Max(set(1.0f) - bend / set(kBend), set(0.0f));
-            const V asked = hn::IfThenElseZero(hn::FirstN(kTag, last - j), m_asked.at(j) * alike);
+            const V asked =
+                hn::IfThenElseZero(hn::FirstN(kTag, last - j), at(from.asked, j) * alike);
             std::array<V, 3> weights;
             for (std::size_t c = 0; c < 3; ++c) {
                 if (c == 0 || m_channels_apart) {
                     // What lies in a narrow place tells nothing of what is outside.
                     const V by_reach =
-                        hn::Min(hn::Max(set(m_by_reach[c][m_at]), m_by_reach[c].at(j)),
+                        hn::Min(hn::Max(set(m_own.by_reach[c][m_at]), at(from.by_reach[c], j)),
                                 set(m_most_by_reach));
                     const V near = hn::Max(set(1.0f) - distance * by_reach, set(0.0f));
-                    weights[c] = asked * near * m_told[c].at(j);
+                    weights[c] = asked * near * at(from.told[c], j);
                     m_spreads[c].add(weights[c], x, y);
                 } else {
                     weights[c] = weights[0];
                 }
-                m_heights[c].add(weights[c], x, y, m_values[c].at(j));
+                m_heights[c].add(weights[c], x, y, at(from.values[c], j));
             }
         }
     }
 
     const ShadingPoints& m_points;
-    const NoisyValues& m_noisy;
-    Columns m_p, m_normal;
-    Column m_asked;
-    Columns m_by_reach, m_told, m_values;
+    const NoisyPoints& m_own;
+    const float m_least_reach;
+    NoisyPoints m_around;
     std::size_t m_channels_apart = 1;  ///< 0: all have the same neighbours
     std::size_t m_at = 0;
     float m_most_by_reach = 0.0f;
@@ -241,8 +259,38 @@ class Sharing {
 
 }  // namespace
 
-std::vector<Vec3f> share(const ShadingPoints& points, const NoisyValues& noisy) {
-    return Sharing(points, noisy).run();
+NoisyPoints::NoisyPoints(const ShadingPoints& points, const NoisyValues& noisy)
+    : count(points.count),
+      p(columns_of(points.p)),
+      normal(columns_of(points.normal)),
+      values(columns_of(noisy.values)),
+      by_reach(columns_of(noisy.by_reach)),
+      told(columns_of(noisy.told)) {
+    for (const Vec3f& point : points.p) box.add(point);
+    for (std::size_t i = 0; i < count; ++i) {
+        const float seen = points.seen.empty() || points.seen[i] ? 1.0f : kHidden;
+        const float share = points.shares.empty() ? 1.0f : points.shares[i];
+        asked.push_back(is_finite(noisy.values[i]) ? seen * share : 0.0f);
+    }
+    const auto grey = [](const Vec3f& v) { return v.x == v.y && v.x == v.z; };
+    is_grey = std::ranges::all_of(noisy.by_reach, grey) && std::ranges::all_of(noisy.told, grey);
+    pad();
+}
+
+void NoisyPoints::pad() {
+    const std::size_t room = count + hn::Lanes(kTag) - 1;
+    for (Columns* columns : {&p, &normal, &values, &by_reach, &told})
+        for (Column& column : *columns) column.resize(room);
+    asked.resize(room);
+}
+
+std::size_t NoisyPoints::bytes() const {
+    return 16 * asked.capacity() * sizeof(float);
+}
+
+std::vector<Vec3f> share(const ShadingPoints& points, const NoisyPoints& own, float least_reach,
+                         std::span<const NoisyPoints* const> around) {
+    return Sharing(points, own, least_reach, around).run();
 }
 
 }  // namespace granita

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <span>
 #include <vector>
 
+#include "math/bounds.h"
 #include "math/vec.h"
 #include "shade/bsdf/lobe.h"
 
@@ -16,9 +20,31 @@ struct NoisyValues {
     float least_reach = 0.0f;     ///< in steps of the grid, whatever `by_reach` says
 };
 
-/// [points] what neighbours of a grid found together.  Slopes stay: each point takes the plane that
-/// fits its neighbours best (locally weighted regression, Cleveland 1979).  Of two the nearer reach
-/// decides.  Points count for as much as they asked (ShadingPoints::shares), hidden ones hardly.
-std::vector<Vec3f> share(const ShadingPoints& points, const NoisyValues& noisy);
+/// The same beside where the points lie, a column each: what grids around may be told.  Hidden
+/// points hardly count (ShadingPoints::seen), others for as much as they asked (shares).
+struct NoisyPoints {
+    /// Behind the last there is room to read.
+    using Column = std::vector<float>;
+    using Columns = std::array<Column, 3>;  ///< of vectors, or channels
+
+    std::size_t count = 0;
+    Columns p, normal, values, by_reach, told;
+    Column asked;
+    Bounds3f box;
+    bool is_grey = true;  ///< channels share alike
+
+    NoisyPoints() = default;
+    NoisyPoints(const ShadingPoints& points, const NoisyValues& noisy);
+    /// Room for one more vector of points that are read at once.
+    void pad();
+    std::size_t bytes() const;
+};
+
+/// [points] what neighbours found together, of a grid and of those `around` it.  Slopes stay: each
+/// point takes the plane that fits its neighbours best (locally weighted regression, Cleveland
+/// 1979).  Of two the nearer reach decides.
+/// @param least_reach as NoisyValues::least_reach.
+std::vector<Vec3f> share(const ShadingPoints& points, const NoisyPoints& own, float least_reach,
+                         std::span<const NoisyPoints* const> around = {});
 
 }  // namespace granita
