@@ -21,6 +21,9 @@ struct Bounds3f {
         lo = glm::min(lo, b.lo);
         hi = glm::max(hi, b.hi);
     }
+    bool holds(const Vec3f& p) const {
+        return glm::all(glm::greaterThanEqual(p, lo)) && glm::all(glm::lessThanEqual(p, hi));
+    }
     void grow(float d) {
         lo -= Vec3f(d);
         hi += Vec3f(d);

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "shade/lights/leaving_rays.h"
 
@@ -122,33 +123,58 @@ struct Heights {
     }
 };
 
-/// Those of some grids that lie within `reach` of a box.
-NoisyPoints near_to(const Bounds3f& box, float reach,
-                    std::span<const NoisyPoints* const> around) {
-    Bounds3f wide = box;
-    wide.grow(reach);
-    NoisyPoints near;
-    for (const NoisyPoints* points : around) {
-        bool any = false;
-        for (std::size_t j = 0; j < points->count; ++j) {
-            bool is_near = points->asked[j] > 0.0f;
-            for (int c = 0; c < 3; ++c)
-                is_near &= points->p[c][j] >= wide.lo[c] && points->p[c][j] <= wide.hi[c];
-            if (!is_near) continue;
-            any = true;
-            ++near.count;
-            add(near.p, points->p, j);
-            add(near.normal, points->normal, j);
-            add(near.values, points->values, j);
-            add(near.by_reach, points->by_reach, j);
-            add(near.told, points->told, j);
-            near.asked.push_back(points->asked[j]);
-        }
-        if (any) near.is_grey &= points->is_grey;
+/// Points that follow each other, and lie beside each other.
+struct Run {
+    std::size_t begin = 0, end = 0;
+    Bounds3f box;
+
+    bool is_within(const Vec3f& p, float reach) const {
+        const Vec3f way = glm::max(glm::max(box.lo - p, p - box.hi), Vec3f(0.0f));
+        return glm::dot(way, way) < reach * reach;
     }
-    near.pad();
-    return near;
-}
+};
+
+/// Of the grids around one.
+struct Around {
+    /// Points in a run, at most: of more the most are too far from any one point.
+    static constexpr std::size_t kRunLength = 16;
+
+    NoisyPoints points;
+    std::vector<Run> runs;
+
+    /// Those that lie within `reach` of a box.
+    Around(const Bounds3f& box, float reach, std::span<const NoisyPoints* const> grids) {
+        Bounds3f wide = box;
+        wide.grow(reach);
+        for (const NoisyPoints* grid : grids) {
+            std::size_t last = 0;
+            for (std::size_t j = 0; j < grid->count; ++j) {
+                const Vec3f p(grid->p[0][j], grid->p[1][j], grid->p[2][j]);
+                if (grid->asked[j] == 0.0f || !wide.holds(p)) continue;
+                const bool goes_on = !runs.empty() && runs.back().end == points.count &&
+                                     last + 1 == j && j % kRunLength != 0;
+                if (!goes_on) runs.push_back({points.count, points.count, {}});
+                add(*grid, j);
+                runs.back().end = points.count;
+                runs.back().box.add(p);
+                last = j;
+            }
+        }
+        points.pad();
+    }
+
+  private:
+    void add(const NoisyPoints& grid, std::size_t j) {
+        ++points.count;
+        granita::add(points.p, grid.p, j);
+        granita::add(points.normal, grid.normal, j);
+        granita::add(points.values, grid.values, j);
+        granita::add(points.by_reach, grid.by_reach, j);
+        granita::add(points.told, grid.told, j);
+        points.asked.push_back(grid.asked[j]);
+        points.is_grey &= grid.is_grey;
+    }
+};
 
 class Sharing {
   public:
@@ -159,9 +185,9 @@ class Sharing {
             float step = 0.0f;
             for (std::size_t i = 0; i < points.count; ++i)
                 step = std::max(step, width_of(points, i));
-            m_around = near_to(own.box, static_cast<float>(kReach) * step, around);
+            m_around.emplace(own.box, static_cast<float>(kReach) * step, around);
         }
-        if (own.is_grey && m_around.is_grey) m_channels_apart = 0;
+        if (own.is_grey && (!m_around || m_around->points.is_grey)) m_channels_apart = 0;
     }
 
     std::vector<Vec3f> run() {
@@ -181,7 +207,7 @@ class Sharing {
                 for (std::size_t v = top; v < bottom; ++v)
                     take(m_own, v * columns + left, v * columns + right);
             }
-            take(m_around, 0, m_around.count);
+            if (m_around) take_around(i);
             for (std::size_t c = 0; c < 3; ++c) {
                 const float height = m_heights[c].fit(m_spreads[c * m_channels_apart]);
                 shared[i][static_cast<int>(c)] =
@@ -195,7 +221,7 @@ class Sharing {
     /// As many on each line of a lattice: at its end those of the one side, unless other grids go
     /// on there.
     std::pair<std::size_t, std::size_t> window(std::size_t at, std::size_t count) const {
-        if (m_around.count > 0) return {at - std::min(at, kReach), std::min(at + kReach + 1, count)};
+        if (m_around && m_around->points.count > 0) return {at - std::min(at, kReach), std::min(at + kReach + 1, count)};
         const std::size_t size = std::min(2 * kReach + 1, count);
         const std::size_t first = std::min(at - std::min(at, kReach), count - size);
         return {first, first + size};
@@ -214,6 +240,16 @@ class Sharing {
         const Vec3f other = std::abs(normal.x) < 0.7f ? Vec3f(1, 0, 0) : Vec3f(0, 1, 0);
         m_x = glm::normalize(glm::cross(normal, other));
         m_y = glm::cross(normal, m_x);
+    }
+
+    void take_around(std::size_t i) {
+        float by_reach = m_most_by_reach;
+        for (const NoisyPoints::Column& channel : m_own.by_reach)
+            by_reach = std::min(by_reach, channel[i]);
+        const float reach =
+            std::min(static_cast<float>(kReach) * width_of(m_points, i), 1.0f / by_reach);
+        for (const Run& run : m_around->runs)
+            if (run.is_within(m_points.p[i], reach)) take(m_around->points, run.begin, run.end);
     }
 
     void take(const NoisyPoints& from, std::size_t first, std::size_t last) {
@@ -248,7 +284,7 @@ class Sharing {
     const ShadingPoints& m_points;
     const NoisyPoints& m_own;
     const float m_least_reach;
-    NoisyPoints m_around;
+    std::optional<Around> m_around;
     std::size_t m_channels_apart = 1;  ///< 0: all have the same neighbours
     std::size_t m_at = 0;
     float m_most_by_reach = 0.0f;
