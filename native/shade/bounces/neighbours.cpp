@@ -142,15 +142,17 @@ struct Around {
     NoisyPoints points;
     std::vector<Run> runs;
 
-    /// Those that lie within `reach` of a box.
-    Around(const Bounds3f& box, float reach, std::span<const NoisyPoints* const> grids) {
-        Bounds3f wide = box;
+    /// Those that lie within `reach` of a grid, but for those of their borders that are its own:
+    /// where a wall stands on that border, they lie on the other side of it.
+    Around(const NoisyPoints& own, float reach, std::span<const NoisyPoints* const> grids) {
+        Bounds3f wide = own.box;
         wide.grow(reach);
         for (const NoisyPoints* grid : grids) {
             std::size_t last = 0;
             for (std::size_t j = 0; j < grid->count; ++j) {
-                const Vec3f p(grid->p[0][j], grid->p[1][j], grid->p[2][j]);
+                const Vec3f p = place(*grid, j);
                 if (grid->asked[j] == 0.0f || !wide.holds(p)) continue;
+                if (own.box.holds(p) && is_one_of(own, p)) continue;
                 const bool goes_on = !runs.empty() && runs.back().end == points.count &&
                                      last + 1 == j && j % kRunLength != 0;
                 if (!goes_on) runs.push_back({points.count, points.count, {}});
@@ -164,6 +166,14 @@ struct Around {
     }
 
   private:
+    static Vec3f place(const NoisyPoints& points, std::size_t j) {
+        return {points.p[0][j], points.p[1][j], points.p[2][j]};
+    }
+    static bool is_one_of(const NoisyPoints& points, const Vec3f& p) {
+        for (std::size_t j = 0; j < points.count; ++j)
+            if (place(points, j) == p) return true;
+        return false;
+    }
     void add(const NoisyPoints& grid, std::size_t j) {
         ++points.count;
         granita::add(points.p, grid.p, j);
@@ -185,7 +195,7 @@ class Sharing {
             float step = 0.0f;
             for (std::size_t i = 0; i < points.count; ++i)
                 step = std::max(step, width_of(points, i));
-            m_around.emplace(own.box, static_cast<float>(kReach) * step, around);
+            m_around.emplace(own, static_cast<float>(kReach) * step, around);
         }
         if (own.is_grey && (!m_around || m_around->points.is_grey)) m_channels_apart = 0;
     }
