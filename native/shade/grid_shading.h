@@ -8,12 +8,12 @@
 #include <optional>
 #include <vector>
 
-#include "shade/bounces/gathered_light.h"
 #include "shade/bsdf/lobe.h"
 #include "shade/bsdf/reflection.h"
 #include "shade/lights/lamp_sight.h"
 #include "shade/lights/light_motion.h"
 #include "shade/nodes/surface_run.h"
+#include "shade/told_light.h"
 
 namespace granita {
 
@@ -28,7 +28,7 @@ struct PointShading {
     ReflectionParts parts;
     std::vector<Vec3f> radiance;
     std::optional<GatheredLight> gathered;   ///< none: light is not followed
-    std::shared_ptr<const ToldLight> told;   ///< nullptr: they tell each other nothing
+    std::shared_ptr<ToldLight> told = std::make_shared<ToldLight>();
 };
 
 /// Where a grid's corners may not tell all.

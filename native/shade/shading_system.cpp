@@ -47,22 +47,8 @@ struct ShadingSystem::Impl : FrameShading {
         if (!points.places.empty() && due < 1.0f) thin_out(leaving.rays, scene.options.seed);
         s.gathered = bounces->gather(leaving.rays, points.count);
         if (leaving.diffuse)
-            s.told = std::make_shared<const ToldLight>(tell_gathered(
-                points, s.closure, leaving.takes_world, !channels.empty(), *s.gathered));
-    }
-
-    /// Adds what is scattered below the surface, as add_bounces() of points or samples.
-    void add_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
-                       const PointPaths& at, Grid& grid, ReflectionParts* parts,
-                       std::vector<Vec3f>& radiance) const {
-        if (grid.found.scattered.empty()) {
-            ScatteredLight light =
-                below->gather(points, closure, grid.key, at, parts, bounces.get());
-            grid.found.scattered = std::move(light.direct);
-            grid.found.scattered_bounced = std::move(light.bounced);
-        }
-        reflect_scattered(grid.found.scattered, grid.found.scattered_bounced, closure, parts,
-                          radiance);
+            s.told->gathered = tell_gathered(points, s.closure, leaving.takes_world,
+                                             !channels.empty(), *s.gathered);
     }
 
     /// Runs the surface over `in.points` of `grid`, whose light they find each by themselves.
@@ -95,11 +81,14 @@ struct ShadingSystem::Impl : FrameShading {
         else if (asked)
             s.parts.resize(points.count);
         if (bounces && !s.closure.lobes.empty()) gather(s, leaving);
+        if (!s.closure.subsurface.empty() && grid.found.scattered.empty())
+            s.told->scattered =
+                below->gather(points, s.closure, grid.key, at, asked, bounces.get());
     }
 
     /// Fills radiance and channels of `grid` with what its points found, and what those `around`
     /// tell them.
-    void shade(Grid& grid, PointShading& s, const PointPaths& at, const ToldLights& around = {},
+    void shade(Grid& grid, PointShading& s, const ToldLights& around = {},
                Doubts* doubts = nullptr) const {
         const CrashScope scope("shades", scene.instances[grid.instance].name);
         const SurfaceProgram& surface = material(grid.material).radiance;
@@ -108,14 +97,15 @@ struct ShadingSystem::Impl : FrameShading {
         std::vector<Vec3f>& radiance = s.radiance;
         // What of it is noise at single points: what neighbours do not share.
         std::vector<Vec3f> doubtful;
-        if (s.told) share_gathered(points, *s.told, around, grid.found);
+        share_told(points, *s.told, around, grid.found);
         if (s.gathered) {
             reflect_world(*s.gathered, asked, doubts ? &doubts->noise : nullptr, radiance);
             reflect_gathered(points, *s.gathered, grid, s.closure, asked, radiance);
             doubtful = std::move(s.gathered->glossy);
         }
         if (!s.closure.subsurface.empty())
-            add_scattered(points, s.closure, at, grid, asked, radiance);
+            reflect_scattered(grid.found.scattered, grid.found.scattered_bounced, s.closure, asked,
+                              radiance);
         if (doubts && !grid.found.scattered.empty()) {
             // Samples take it from the grid and know no better.
             const std::vector<Vec3f> shared = scattered_beyond_typical(
@@ -195,7 +185,7 @@ struct ShadingSystem::Impl : FrameShading {
         if (!grid.opacity.empty()) shade_opacity(out, in);
         PointShading shading(material(grid.material).radiance, in);
         find_light(shading, out, {});
-        shade(out, shading, {});
+        shade(out, shading);
         return out;
     }
 
@@ -371,7 +361,7 @@ struct ShadingSystem::Impl : FrameShading {
     void end(Grid& grid, GridShading& begun, const ToldLights& around) const {
         const bool catches = catchers && scene.catches_shadows(grid.instance, grid.material);
         Doubts& doubts = begun.doubts;
-        shade(grid, *begun.found, begun.at, around, begun.wants_refining ? &doubts : nullptr);
+        shade(grid, *begun.found, around, begun.wants_refining ? &doubts : nullptr);
         statistics.add(Counter::GridsShaded);
         if (catches) {
             // What is left of light tells nothing of color.
@@ -417,7 +407,7 @@ const MaterialDisplacement* ShadingSystem::displacement() const {
 }
 
 bool ShadingSystem::shares_light() const {
-    return m_impl->bounces != nullptr;
+    return m_impl->bounces || m_impl->below;
 }
 
 bool ShadingSystem::has_light() const {
@@ -481,7 +471,7 @@ std::shared_ptr<GridShading> ShadingSystem::begin_radiance(Grid& grid, bool anew
     if (!anew && m_impl->take_shaded(grid, share)) return nullptr;
     auto begun = m_impl->begin(grid, lit, sharpness, dense);
     (begun ? begun->light_share : grid.light_share) = share;
-    if (begun && begun->found->told && !grid.told) {
+    if (begun && !begun->found->told->empty() && !grid.told) {
         grid.told = begun->found->told;
         grid.told_share = share;
     }

@@ -13,11 +13,11 @@
 #include "dice/view.h"
 #include "scene/scene.h"
 #include "shade/background_rays.h"
-#include "shade/bounces/gathered_light.h"
 #include "shade/kept_shading.h"
 #include "shade/refined_points.h"
 #include "shade/seen_volumes.h"
 #include "shade/textures/texture.h"
+#include "shade/told_light.h"
 
 namespace granita {
 

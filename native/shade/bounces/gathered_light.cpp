@@ -12,8 +12,6 @@ namespace {
 
 /// How far neighbours share, of the harmonic mean distance of other surfaces.
 constexpr float kNear = 0.25f;
-/// In steps of the grid: what varies faster than this is not drawn any more.
-constexpr float kLeastReach = 2.0f;
 /// Least albedo by which light is told: of what a pure red surface gets only the red is known.
 constexpr float kLeastAlbedo = 1e-4f;
 /// Points of a lattice to each side, and of separate ones in their order, whose rays tell together
@@ -63,8 +61,8 @@ std::vector<float> mean_nearness(const ShadingPoints& points, const GatheredLigh
 /// `diffuse` by albedo.
 NoisyPoints told_of(const ShadingPoints& points, const SurfaceClosure& closure,
                     const std::vector<Vec3f>& diffuse, const std::vector<float>& nearness) {
-    NoisyValues noisy{diffuse, std::vector<Vec3f>(points.count), std::vector<Vec3f>(points.count),
-                      kLeastReach};
+    NoisyValues noisy{diffuse, std::vector<Vec3f>(points.count),
+                      std::vector<Vec3f>(points.count)};
     for (std::size_t i = 0; i < points.count; ++i) {
         const Vec3f albedo = diffuse_albedo(points, closure, i);
         noisy.told[i] = Vec3f(glm::greaterThan(albedo, Vec3f(kLeastAlbedo)));
@@ -74,19 +72,12 @@ NoisyPoints told_of(const ShadingPoints& points, const SurfaceClosure& closure,
     return NoisyPoints(points, noisy);
 }
 
-std::vector<Vec3f> values_of(const NoisyPoints& points) {
-    std::vector<Vec3f> values(points.count);
-    for (std::size_t i = 0; i < points.count; ++i)
-        values[i] = {points.values[0][i], points.values[1][i], points.values[2][i]};
-    return values;
-}
-
 }  // namespace
 
-ToldLight tell_gathered(const ShadingPoints& points, const SurfaceClosure& closure,
-                        bool takes_world, bool tells_world, GatheredLight& light) {
+ToldGathered tell_gathered(const ShadingPoints& points, const SurfaceClosure& closure,
+                           bool takes_world, bool tells_world, GatheredLight& light) {
     const std::vector<float> nearness = mean_nearness(points, light);
-    ToldLight told;
+    ToldGathered told;
     if (takes_world && !light.world.empty()) {
         std::vector<Vec3f> world;
         for (std::size_t i = 0; i < light.world.size(); ++i) {
@@ -98,22 +89,6 @@ ToldLight tell_gathered(const ShadingPoints& points, const SurfaceClosure& closu
     }
     told.all = told_of(points, closure, light.diffuse, nearness);
     return told;
-}
-
-void share_gathered(const ShadingPoints& points, const ToldLight& told, const ToldLights& around,
-                    GridLight& found) {
-    if (points.alone) {
-        found.gathered = values_of(told.all);
-        if (told.world) found.gathered_world = values_of(*told.world);
-        return;
-    }
-    std::vector<const NoisyPoints*> all, world;
-    for (const auto& other : around) {
-        all.push_back(&other->all);
-        if (other->world) world.push_back(&*other->world);
-    }
-    found.gathered = share(points, told.all, kLeastReach, all);
-    if (told.world) found.gathered_world = share(points, *told.world, kLeastReach, world);
 }
 
 void reflect_world(const GatheredLight& light, ReflectionParts* parts, std::vector<float>* noise,

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -40,26 +39,18 @@ struct GatheredLight {
           met(points, 0.0f) {}
 };
 
-/// What diffuse lobes of a grid's points gathered, by albedo, before it is shared: light of other
-/// surfaces and of the world between them, and of that the world's where somebody asks.
-struct ToldLight {
+/// What diffuse lobes of a grid's points gathered, by albedo, as they tell it each other and the
+/// grids around: light of other surfaces and of the world between them, which varies as slowly as
+/// these are far away (Ward, Rubinstein and Clear 1988, their error bound read the other way), and
+/// of that the world's where somebody asks.
+struct ToldGathered {
     NoisyPoints all;
     std::optional<NoisyPoints> world;
-
-    std::size_t bytes() const { return all.bytes() + (world ? world->bytes() : 0); }
 };
-using ToldLights = std::vector<std::shared_ptr<const ToldLight>>;  ///< [grids]
 
-/// What points tell each other of `light`, and the grids around: light of other surfaces, and of the
-/// world between them, if it `takes_world`, varies as slowly as these are far away (Ward, Rubinstein
-/// and Clear 1988, their error bound read the other way).  Takes the world's to `light`.diffuse.
-ToldLight tell_gathered(const ShadingPoints& points, const SurfaceClosure& closure,
-                        bool takes_world, bool tells_world, GatheredLight& light);
-
-/// Fills `gathered` and, if it was told, `gathered_world` of `found` with what neighbours share, in
-/// a grid and with those `around` it.
-void share_gathered(const ShadingPoints& points, const ToldLight& told, const ToldLights& around,
-                    GridLight& found);
+/// @param takes_world the world's light, from `light`.diffuse; `tells_world`: and apart.
+ToldGathered tell_gathered(const ShadingPoints& points, const SurfaceClosure& closure,
+                           bool takes_world, bool tells_world, GatheredLight& light);
 
 /// Adds what `light` has of the world to `radiance`, and where they are asked for, to `parts` and
 /// the `noise` of points (DirectLight::reflect()).

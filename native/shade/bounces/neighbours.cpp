@@ -330,6 +330,12 @@ void NoisyPoints::pad() {
     asked.resize(room);
 }
 
+std::vector<Vec3f> NoisyPoints::all_values() const {
+    std::vector<Vec3f> all(count);
+    for (std::size_t i = 0; i < count; ++i) all[i] = {values[0][i], values[1][i], values[2][i]};
+    return all;
+}
+
 std::size_t NoisyPoints::bytes() const {
     return 16 * asked.capacity() * sizeof(float);
 }

@@ -17,7 +17,6 @@ struct NoisyValues {
     std::vector<Vec3f> values;
     std::vector<Vec3f> by_reach;  ///< 1 / metres within which values vary little
     std::vector<Vec3f> told;      ///< 1, or 0 where a point tells nothing of a channel
-    float least_reach = 0.0f;     ///< in steps of the grid, whatever `by_reach` says
 };
 
 /// The same beside where the points lie, a column each: what grids around may be told.  Hidden
@@ -35,6 +34,8 @@ struct NoisyPoints {
 
     NoisyPoints() = default;
     NoisyPoints(const ShadingPoints& points, const NoisyValues& noisy);
+    /// [count] `values`.
+    std::vector<Vec3f> all_values() const;
     /// Room for one more vector of points that are read at once.
     void pad();
     std::size_t bytes() const;
@@ -43,7 +44,7 @@ struct NoisyPoints {
 /// [points] what neighbours found together, of a grid and of those `around` it.  Slopes stay: each
 /// point takes the plane that fits its neighbours best (locally weighted regression, Cleveland
 /// 1979).  Of two the nearer reach decides.
-/// @param least_reach as NoisyValues::least_reach.
+/// @param least_reach in steps of the grid, whatever `by_reach` says.
 std::vector<Vec3f> share(const ShadingPoints& points, const NoisyPoints& own, float least_reach,
                          std::span<const NoisyPoints* const> around = {});
 

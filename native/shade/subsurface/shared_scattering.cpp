@@ -83,15 +83,15 @@ Vec3f subsurface_weight(const SurfaceClosure& closure, std::size_t point) {
     return sum;
 }
 
-std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
-                                   const WaysGone& gone, const std::vector<Vec3f>& light) {
+NoisyPoints tell_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
+                           const WaysGone& gone, const std::vector<Vec3f>& light) {
     const std::size_t count = points.count;
     std::vector<Vec3f> weight(count);
     for (std::size_t i = 0; i < count; ++i) weight[i] = subsurface_weight(closure, i);
     NoisyValues noisy{by_weight(points, weight, light), std::vector<Vec3f>(count), weight};
     for (std::size_t i = 0; i < count; ++i)
         for (int c = 0; c < 3; ++c) noisy.by_reach[i][c] = by_reach(points, closure, gone, i, c);
-    return share(points, NoisyPoints(points, noisy), noisy.least_reach);
+    return NoisyPoints(points, noisy);
 }
 
 void reflect_scattered(const std::vector<Vec3f>& direct, const std::vector<Vec3f>& bounced,

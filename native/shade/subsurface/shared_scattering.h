@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/vec.h"
+#include "shade/bounces/neighbours.h"
 #include "shade/bsdf/lobe.h"
 #include "shade/bsdf/reflection.h"
 
@@ -21,9 +22,9 @@ struct WaysGone {
     std::vector<Vec3f> along;  ///< the surface, metres, by weight
 };
 
-/// [points] `light`, by weight, shared.
-std::vector<Vec3f> share_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
-                                   const WaysGone& gone, const std::vector<Vec3f>& light);
+/// What points tell their neighbours of [points] `light`, by weight.
+NoisyPoints tell_scattered(const ShadingPoints& points, const SurfaceClosure& closure,
+                           const WaysGone& gone, const std::vector<Vec3f>& light);
 
 /// Adds [points] what is scattered below them, by its weight, of lamps and the world and of other
 /// surfaces (empty: none).

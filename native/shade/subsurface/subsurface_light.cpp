@@ -402,16 +402,14 @@ ScatteredLight SubsurfaceLight::gather(const ShadingPoints& points, const Surfac
                                        ReflectionParts* parts, const BouncedLight* bounces) const {
     Batch batch(*this, points, key, paths, parts, bounces != nullptr);
     batch.scatter(closure.subsurface);
-    ScatteredLight light{std::move(batch.direct()), {}};
-    if (bounces) {
-        GatheredLight gathered = bounces->gather(batch.leaving(), points.count);
-        for (std::size_t i = 0; i < gathered.world.size(); ++i)
-            light.direct[i] += total(gathered.world[i]);
-        light.bounced = std::move(gathered.diffuse);
-    }
-    for (auto* values : {&light.direct, &light.bounced})
-        if (!values->empty()) *values = share_scattered(points, closure, batch.gone(), *values);
-    return light;
+    const auto told = [&](const std::vector<Vec3f>& light) {
+        return tell_scattered(points, closure, batch.gone(), light);
+    };
+    if (!bounces) return {told(batch.direct()), {}};
+    const GatheredLight gathered = bounces->gather(batch.leaving(), points.count);
+    for (std::size_t i = 0; i < gathered.world.size(); ++i)
+        batch.direct()[i] += total(gathered.world[i]);
+    return {told(batch.direct()), told(gathered.diffuse)};
 }
 
 void SubsurfaceLight::scatter(const ShadingPoints& hits, const SurfaceClosure& closure,

@@ -11,21 +11,23 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "base/progress.h"
 #include "scene/scene.h"
 #include "scene/shutter_warp.h"
 #include "shade/bounces/bounced_light.h"
+#include "shade/bounces/neighbours.h"
 #include "shade/lights/direct_light.h"
 #include "shade/nodes/node_compiler.h"
 
 namespace granita {
 
-/// Each [points] and shared by neighbours: radiance by the weight of what scatters.
+/// What points tell their neighbours: radiance by the weight of what scatters.
 struct ScatteredLight {
-    std::vector<Vec3f> direct;
-    std::vector<Vec3f> bounced;  ///< of other surfaces; empty: light is not followed so far
+    NoisyPoints direct;
+    std::optional<NoisyPoints> bounced;  ///< of other surfaces; none: light is not followed so far
 };
 
 class SubsurfaceLight {
