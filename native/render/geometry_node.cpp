@@ -100,6 +100,8 @@ void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& stati
         ToldLights told;
         if (m_grid->told)
             for (const auto& other : around()) {
+                if (!place(statistics).is_within(m_grid->told->reach(), other->place(statistics)))
+                    continue;
                 other->ensure_told(shading, statistics);
                 if (other->grid().told) told.push_back(other->grid().told);
             }

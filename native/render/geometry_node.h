@@ -40,6 +40,13 @@ class SharedGrid {
     struct Place {
         Bounds3f box;
         float step = 0.0f;
+
+        bool is_within(float reach, const Place& other) const {
+            for (int c = 0; c < 3; ++c)
+                if (other.box.lo[c] > box.hi[c] + reach || other.box.hi[c] < box.lo[c] - reach)
+                    return false;
+            return true;
+        }
     };
     const Place& place(Statistics& statistics);
     /// Between two pictures: the next one shades it anew.

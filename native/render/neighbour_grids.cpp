@@ -19,9 +19,7 @@ class Search {
           m_at(frame.layout.place(bucket)),
           m_grid(grid.grid()),
           m_margin(static_cast<float>(neighbour_margin(frame.scene.options))),
-          m_near(grid.place(frame.statistics).box) {
-        m_near.grow(kReach * grid.place(frame.statistics).step);
-    }
+          m_place(grid.place(frame.statistics)) {}
 
     HiddenGrids run() {
         FrameGeometry& geometry = m_frame.geometry;
@@ -53,10 +51,8 @@ class Search {
         const Grid& grid = other->grid();
         if (grid.key == m_grid.key || grid.material != m_grid.material) return;
         if (m_frame.shading.leaves_to_samples(grid)) return;
-        const Bounds3f& box = other->place(m_frame.statistics).box;
-        for (int c = 0; c < 3; ++c)
-            if (box.lo[c] > m_near.hi[c] || box.hi[c] < m_near.lo[c]) return;
-        m_found.push_back(other);
+        if (m_place.is_within(kReach * m_place.step, other->place(m_frame.statistics)))
+            m_found.push_back(other);
     }
 
     Frame& m_frame;
@@ -64,7 +60,7 @@ class Search {
     const Vec2i m_at;
     const Grid& m_grid;
     const float m_margin;
-    Bounds3f m_near;
+    const SharedGrid::Place& m_place;
     HiddenGrids m_found;
 };
 

@@ -351,16 +351,22 @@ struct ShadingSystem::Impl : FrameShading {
         points.share *= dense;
         begun->fewer *= dense;
         if (begun->wants_refining) begun->doubts.noise.assign(points.count, 0.0f);
-        begun->in.emplace(input(grid, points));
-        begun->found.emplace(material(grid.material).radiance, *begun->in);
-        find_light(*begun->found, grid, begun->at,
-                   begun->wants_refining ? &begun->doubts : nullptr);
+        // Of what nobody sees grids around are told nothing.
+        if (points.seen.empty() || std::ranges::count(points.seen, 0) < std::ssize(points.seen))
+            find_light(grid, *begun);
         return begun;
+    }
+
+    void find_light(const Grid& grid, GridShading& begun) const {
+        begun.in.emplace(input(grid, begun.points));
+        begun.found.emplace(material(grid.material).radiance, *begun.in);
+        find_light(*begun.found, grid, begun.at, begun.wants_refining ? &begun.doubts : nullptr);
     }
 
     void end(Grid& grid, GridShading& begun, const ToldLights& around) const {
         const bool catches = catchers && scene.catches_shadows(grid.instance, grid.material);
         Doubts& doubts = begun.doubts;
+        if (!begun.found) find_light(grid, begun);
         shade(grid, *begun.found, around, begun.wants_refining ? &doubts : nullptr);
         statistics.add(Counter::GridsShaded);
         if (catches) {
@@ -471,7 +477,7 @@ std::shared_ptr<GridShading> ShadingSystem::begin_radiance(Grid& grid, bool anew
     if (!anew && m_impl->take_shaded(grid, share)) return nullptr;
     auto begun = m_impl->begin(grid, lit, sharpness, dense);
     (begun ? begun->light_share : grid.light_share) = share;
-    if (begun && !begun->found->told->empty() && !grid.told) {
+    if (begun && begun->found && !begun->found->told->empty() && !grid.told) {
         grid.told = begun->found->told;
         grid.told_share = share;
     }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/told_light.h"
 
+#include <algorithm>
+
 namespace granita {
 namespace {
-
-/// In steps of the grid: what bounces and varies faster than this is not drawn any more.
-constexpr float kLeastReach = 2.0f;
 
 /// Of each kind of light that there is.
 template <class Visit>
@@ -27,6 +26,14 @@ std::size_t ToldLight::bytes() const {
     return bytes;
 }
 
+float ToldLight::reach() const {
+    float reach = 0.0f;
+    for_each_kind(*this, [&](const NoisyPoints* points) {
+        if (points) reach = std::max(reach, points->longest_reach);
+    });
+    return reach;
+}
+
 void share_told(const ShadingPoints& points, const ToldLight& told, const ToldLights& around,
                 GridLight& found) {
     std::vector<const NoisyPoints*> beside[4];
@@ -45,7 +52,7 @@ void share_told(const ShadingPoints& points, const ToldLight& told, const ToldLi
         if (own)
             *shared[kind] = points.alone && !scatters
                                 ? own->all_values()
-                                : share(points, *own, scatters ? 0.0f : kLeastReach, beside[kind]);
+                                : share(points, *own, beside[kind]);
         ++kind;
     });
 }

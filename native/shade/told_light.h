@@ -17,6 +17,8 @@ struct ToldLight {
     std::optional<ScatteredLight> scattered;
 
     bool empty() const { return !gathered && !scattered; }
+    /// Metres within which grids may tell these points something.
+    float reach() const;
     std::size_t bytes() const;
 };
 using ToldLights = std::vector<std::shared_ptr<const ToldLight>>;  ///< [grids]

@@ -12,6 +12,8 @@ namespace {
 
 /// How far neighbours share, of the harmonic mean distance of other surfaces.
 constexpr float kNear = 0.25f;
+/// In steps of the grid: what varies faster than this is not drawn any more.
+constexpr float kLeastReach = 2.0f;
 /// Least albedo by which light is told: of what a pure red surface gets only the red is known.
 constexpr float kLeastAlbedo = 1e-4f;
 /// Points of a lattice to each side, and of separate ones in their order, whose rays tell together
@@ -69,7 +71,7 @@ NoisyPoints told_of(const ShadingPoints& points, const SurfaceClosure& closure,
         noisy.values[i] *= noisy.told[i] / glm::max(albedo, Vec3f(kLeastAlbedo));
         noisy.by_reach[i] = Vec3f(nearness[i] / kNear);
     }
-    return NoisyPoints(points, noisy);
+    return NoisyPoints(points, noisy, kLeastReach);
 }
 
 }  // namespace

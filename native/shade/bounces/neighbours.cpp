@@ -142,11 +142,11 @@ struct Around {
     NoisyPoints points;
     std::vector<Run> runs;
 
-    /// Those that lie within `reach` of a grid, but for those of their borders that are its own:
+    /// Those that lie within reach of a grid, but for those of their borders that are its own:
     /// where a wall stands on that border, they lie on the other side of it.
-    Around(const NoisyPoints& own, float reach, std::span<const NoisyPoints* const> grids) {
+    Around(const NoisyPoints& own, std::span<const NoisyPoints* const> grids) {
         Bounds3f wide = own.box;
-        wide.grow(reach);
+        wide.grow(own.longest_reach);
         for (const NoisyPoints* grid : grids) {
             std::size_t last = 0;
             for (std::size_t j = 0; j < grid->count; ++j) {
@@ -188,15 +188,10 @@ struct Around {
 
 class Sharing {
   public:
-    Sharing(const ShadingPoints& points, const NoisyPoints& own, float least_reach,
+    Sharing(const ShadingPoints& points, const NoisyPoints& own,
             std::span<const NoisyPoints* const> around)
-        : m_points(points), m_own(own), m_least_reach(least_reach) {
-        if (!around.empty()) {
-            float step = 0.0f;
-            for (std::size_t i = 0; i < points.count; ++i)
-                step = std::max(step, width_of(points, i));
-            m_around.emplace(own, static_cast<float>(kReach) * step, around);
-        }
+        : m_points(points), m_own(own) {
+        if (!around.empty()) m_around.emplace(own, around);
         if (own.is_grey && (!m_around || m_around->points.is_grey)) m_channels_apart = 0;
     }
 
@@ -244,8 +239,6 @@ class Sharing {
         m_at = i;
         m_spreads = {};
         m_heights = {};
-        const float step = width_of(m_points, i);
-        m_most_by_reach = 1.0f / (m_least_reach * std::max(step, 1e-30f));
         const Vec3f& normal = m_points.normal[i];
         const Vec3f other = std::abs(normal.x) < 0.7f ? Vec3f(1, 0, 0) : Vec3f(0, 1, 0);
         m_x = glm::normalize(glm::cross(normal, other));
@@ -253,13 +246,9 @@ class Sharing {
     }
 
     void take_around(std::size_t i) {
-        float by_reach = m_most_by_reach;
-        for (const NoisyPoints::Column& channel : m_own.by_reach)
-            by_reach = std::min(by_reach, channel[i]);
-        const float reach =
-            std::min(static_cast<float>(kReach) * width_of(m_points, i), 1.0f / by_reach);
         for (const Run& run : m_around->runs)
-            if (run.is_within(m_points.p[i], reach)) take(m_around->points, run.begin, run.end);
+            if (run.is_within(m_points.p[i], m_own.reach[i]))
+                take(m_around->points, run.begin, run.end);
     }
 
     void take(const NoisyPoints& from, std::size_t first, std::size_t last) {
@@ -279,7 +268,7 @@ class Sharing {
                     // What lies in a narrow place tells nothing of what is outside.
                     const V by_reach =
                         hn::Min(hn::Max(set(m_own.by_reach[c][m_at]), at(from.by_reach[c], j)),
-                                set(m_most_by_reach));
+                                set(m_own.most_by_reach[m_at]));
                     const V near = hn::Max(set(1.0f) - distance * by_reach, set(0.0f));
                     weights[c] = asked * near * at(from.told[c], j);
                     m_spreads[c].add(weights[c], x, y);
@@ -293,11 +282,9 @@ class Sharing {
 
     const ShadingPoints& m_points;
     const NoisyPoints& m_own;
-    const float m_least_reach;
     std::optional<Around> m_around;
     std::size_t m_channels_apart = 1;  ///< 0: all have the same neighbours
     std::size_t m_at = 0;
-    float m_most_by_reach = 0.0f;
     Vec3f m_x{0.0f}, m_y{0.0f};
     std::array<Spread, 3> m_spreads;
     std::array<Heights, 3> m_heights;
@@ -305,7 +292,7 @@ class Sharing {
 
 }  // namespace
 
-NoisyPoints::NoisyPoints(const ShadingPoints& points, const NoisyValues& noisy)
+NoisyPoints::NoisyPoints(const ShadingPoints& points, const NoisyValues& noisy, float least_reach)
     : count(points.count),
       p(columns_of(points.p)),
       normal(columns_of(points.normal)),
@@ -317,6 +304,12 @@ NoisyPoints::NoisyPoints(const ShadingPoints& points, const NoisyValues& noisy)
         const float seen = points.seen.empty() || points.seen[i] ? 1.0f : kHidden;
         const float share = points.shares.empty() ? 1.0f : points.shares[i];
         asked.push_back(is_finite(noisy.values[i]) ? seen * share : 0.0f);
+        const float step = std::max(width_of(points, i), 1e-30f);
+        most_by_reach.push_back(1.0f / (least_reach * step));
+        const float least = std::min({by_reach[0][i], by_reach[1][i], by_reach[2][i]});
+        reach.push_back(std::min(static_cast<float>(kReach) * step,
+                                 1.0f / std::min(least, most_by_reach[i])));
+        longest_reach = std::max(longest_reach, reach[i]);
     }
     const auto grey = [](const Vec3f& v) { return v.x == v.y && v.x == v.z; };
     is_grey = std::ranges::all_of(noisy.by_reach, grey) && std::ranges::all_of(noisy.told, grey);
@@ -337,12 +330,12 @@ std::vector<Vec3f> NoisyPoints::all_values() const {
 }
 
 std::size_t NoisyPoints::bytes() const {
-    return 16 * asked.capacity() * sizeof(float);
+    return 18 * asked.capacity() * sizeof(float);
 }
 
-std::vector<Vec3f> share(const ShadingPoints& points, const NoisyPoints& own, float least_reach,
+std::vector<Vec3f> share(const ShadingPoints& points, const NoisyPoints& own,
                          std::span<const NoisyPoints* const> around) {
-    return Sharing(points, own, least_reach, around).run();
+    return Sharing(points, own, around).run();
 }
 
 }  // namespace granita

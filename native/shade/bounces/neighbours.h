@@ -29,11 +29,16 @@ struct NoisyPoints {
     std::size_t count = 0;
     Columns p, normal, values, by_reach, told;
     Column asked;
+    /// Of points that are told something: what counts of the reach of either at most, as 1 / metres,
+    /// and the metres within which neighbours lie at all.
+    Column most_by_reach, reach;
     Bounds3f box;
+    float longest_reach = 0.0f;
     bool is_grey = true;  ///< channels share alike
 
     NoisyPoints() = default;
-    NoisyPoints(const ShadingPoints& points, const NoisyValues& noisy);
+    /// @param least_reach in steps of the grid, whatever NoisyValues::by_reach says.
+    NoisyPoints(const ShadingPoints& points, const NoisyValues& noisy, float least_reach);
     /// [count] `values`.
     std::vector<Vec3f> all_values() const;
     /// Room for one more vector of points that are read at once.
@@ -44,8 +49,7 @@ struct NoisyPoints {
 /// [points] what neighbours found together, of a grid and of those `around` it.  Slopes stay: each
 /// point takes the plane that fits its neighbours best (locally weighted regression, Cleveland
 /// 1979).  Of two the nearer reach decides.
-/// @param least_reach in steps of the grid, whatever `by_reach` says.
-std::vector<Vec3f> share(const ShadingPoints& points, const NoisyPoints& own, float least_reach,
+std::vector<Vec3f> share(const ShadingPoints& points, const NoisyPoints& own,
                          std::span<const NoisyPoints* const> around = {});
 
 }  // namespace granita

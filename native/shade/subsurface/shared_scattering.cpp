@@ -91,7 +91,7 @@ NoisyPoints tell_scattered(const ShadingPoints& points, const SurfaceClosure& cl
     NoisyValues noisy{by_weight(points, weight, light), std::vector<Vec3f>(count), weight};
     for (std::size_t i = 0; i < count; ++i)
         for (int c = 0; c < 3; ++c) noisy.by_reach[i][c] = by_reach(points, closure, gone, i, c);
-    return NoisyPoints(points, noisy);
+    return NoisyPoints(points, noisy, 0.0f);
 }
 
 void reflect_scattered(const std::vector<Vec3f>& direct, const std::vector<Vec3f>& bounced,
