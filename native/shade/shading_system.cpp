@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/crash_report.h"
+#include "math/sampling.h"
 #include "shade/bounces/way_choice.h"
 #include "shade/frame_shading.h"
 #include "shade/grid_channels.h"
@@ -41,14 +42,33 @@ struct ShadingSystem::Impl : FrameShading {
 
     /// What surfaces send to each other: to points of a grid, which tell each other of it, or to
     /// samples in it, whose diffuse lobes take it from the grid.
-    void gather(PointShading& s, LeavingRays& leaving) const {
+    void gather(PointShading& s, LeavingRays& leaving, const Grid& grid,
+                const PointPaths& at) const {
         const ShadingPoints& points = s.ran.points();
         const float due = points.share * static_cast<float>(scene.options.light_samples);
         if (!points.places.empty() && due < 1.0f) thin_out(leaving.rays, scene.options.seed);
         s.gathered = bounces->gather(leaving.rays, points.count);
+        if (leaving.diffuse && points.places.empty() && !points.alone)
+            gather_more(s, leaving, grid, at);
         if (leaving.diffuse)
             s.told->gathered = tell_gathered(points, s.closure, leaving.takes_world,
                                              !channels.empty(), *s.gathered);
+    }
+
+    /// Again where too few points share.
+    void gather_more(PointShading& s, LeavingRays& leaving, const Grid& grid,
+                     const PointPaths& at) const {
+        const ShadingPoints& points = s.ran.points();
+        std::vector<std::uint8_t> times = times_more(points, *s.gathered);
+        GridKey key = grid.key;
+        while (std::ranges::any_of(times, [](int t) { return t > 0; })) {
+            key.path = mix_bits(key.path + 1);
+            leaving.rays.clear();
+            leaving.only = times;
+            light->reflect(points, s.closure, key, nullptr, at, nullptr, &leaving);
+            add_gathered(*s.gathered, bounces->gather(leaving.rays, points.count), times);
+            for (std::uint8_t& t : times) t -= t > 0;
+        }
     }
 
     /// Runs the surface over `in.points` of `grid`, whose light they find each by themselves.
@@ -80,7 +100,7 @@ struct ShadingSystem::Impl : FrameShading {
                                         doubts ? &doubts->sights : nullptr);
         else if (asked)
             s.parts.resize(points.count);
-        if (bounces && !s.closure.lobes.empty()) gather(s, leaving);
+        if (bounces && !s.closure.lobes.empty()) gather(s, leaving, grid, at);
         if (!s.closure.subsurface.empty() && grid.found.scattered.empty())
             s.told->scattered =
                 below->gather(points, s.closure, grid.key, at, asked, bounces.get());

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "shade/bsdf/sheen_fit.h"
+#include "shade/lights/leaving_rays.h"
 
 namespace granita {
 namespace {
@@ -19,6 +20,11 @@ constexpr float kLeastAlbedo = 1e-4f;
 /// Points of a lattice to each side, and of separate ones in their order, whose rays tell together
 /// how near other surfaces are.
 constexpr std::size_t kAround = 2, kAroundRun = 8;
+
+/// How many points a point shares with, at least, if asking more often can make up for it; at most
+/// so many times more, and all of a grid together no more often than those that share well.
+constexpr float kSharing = 24.0f;
+constexpr int kTimesMore = 3;
 
 /// Weight of a point's diffuse lobes, and of sheen what it reflects along the view: what turns is
 /// seen from elsewhere than where its light was gathered.
@@ -62,7 +68,8 @@ std::vector<float> mean_nearness(const ShadingPoints& points, const GatheredLigh
 
 /// `diffuse` by albedo.
 NoisyPoints told_of(const ShadingPoints& points, const SurfaceClosure& closure,
-                    const std::vector<Vec3f>& diffuse, const std::vector<float>& nearness) {
+                    const std::vector<Vec3f>& diffuse, const std::vector<float>& nearness,
+                    const std::vector<float>& counts) {
     NoisyValues noisy{diffuse, std::vector<Vec3f>(points.count),
                       std::vector<Vec3f>(points.count)};
     for (std::size_t i = 0; i < points.count; ++i) {
@@ -71,10 +78,48 @@ NoisyPoints told_of(const ShadingPoints& points, const SurfaceClosure& closure,
         noisy.values[i] *= noisy.told[i] / glm::max(albedo, Vec3f(kLeastAlbedo));
         noisy.by_reach[i] = Vec3f(nearness[i] / kNear);
     }
+    noisy.counts = counts;
     return NoisyPoints(points, noisy, kLeastReach);
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> times_more(const ShadingPoints& points, const GatheredLight& light) {
+    const std::vector<float> nearness = mean_nearness(points, light);
+    std::vector<std::uint8_t> times(points.count, 0);
+    std::size_t more[kTimesMore + 1] = {}, crowded = 0;
+    for (std::size_t i = 0; i < points.count; ++i) {
+        if (light.met[i] == 0.0f || (!points.seen.empty() && !points.seen[i])) continue;
+        const float steps =
+            std::max(kNear / (nearness[i] * std::max(width_of(points, i), 1e-30f)), kLeastReach);
+        const float wanted = kSharing / (steps * steps);
+        times[i] = static_cast<std::uint8_t>(
+            std::clamp(static_cast<int>(std::ceil(wanted)) - 1, 0, kTimesMore));
+        crowded += times[i] > 0;
+        for (int t = 1; t <= times[i]; ++t) ++more[t];
+    }
+    int most = 0;
+    for (std::size_t sum = 0; most < kTimesMore; ++most)
+        if ((sum += more[most + 1]) > points.count - crowded) break;
+    for (std::uint8_t& t : times) t = std::min(t, static_cast<std::uint8_t>(most));
+    return times;
+}
+
+void add_gathered(GatheredLight& light, const GatheredLight& more,
+                  std::span<const std::uint8_t> which) {
+    light.counts.resize(light.diffuse.size(), 1.0f);
+    for (std::size_t i = 0; i < light.diffuse.size(); ++i) {
+        if (!which[i]) continue;
+        const float part = 1.0f / ++light.counts[i];
+        light.diffuse[i] += part * (more.diffuse[i] - light.diffuse[i]);
+        if (!light.world.empty()) {
+            const Vec3f world = more.world.empty() ? Vec3f(0.0f) : more.world[i].diffuse;
+            light.world[i].diffuse += part * (world - light.world[i].diffuse);
+        }
+        light.nearness[i] += more.nearness[i];
+        light.met[i] += more.met[i];
+    }
+}
 
 ToldGathered tell_gathered(const ShadingPoints& points, const SurfaceClosure& closure,
                            bool takes_world, bool tells_world, GatheredLight& light) {
@@ -87,9 +132,9 @@ ToldGathered tell_gathered(const ShadingPoints& points, const SurfaceClosure& cl
             light.diffuse[i] += world[i];
             light.world_balance[i].x = 0.0f;
         }
-        if (tells_world) told.world = told_of(points, closure, world, nearness);
+        if (tells_world) told.world = told_of(points, closure, world, nearness, light.counts);
     }
-    told.all = told_of(points, closure, light.diffuse, nearness);
+    told.all = told_of(points, closure, light.diffuse, nearness, light.counts);
     return told;
 }
 

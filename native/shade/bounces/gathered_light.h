@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "dice/grid.h"
@@ -29,6 +31,7 @@ struct GatheredLight {
     /// Sum of 1 / distance of what diffuse lobes' rays meet, and how many do: how fast its light
     /// changes from place to place.
     std::vector<float> nearness, met;
+    std::vector<float> counts;  ///< how many times diffuse lobes gathered; empty: once
 
     explicit GatheredLight(std::size_t points)
         : diffuse(points, Vec3f(0.0f)),
@@ -47,6 +50,14 @@ struct ToldGathered {
     NoisyPoints all;
     std::optional<NoisyPoints> world;
 };
+
+/// How many times more [points] are to gather: in corners too few share to agree on anything.  Such
+/// points are seen as noise in a picture that is smooth elsewhere.
+std::vector<std::uint8_t> times_more(const ShadingPoints& points, const GatheredLight& light);
+
+/// Takes what diffuse lobes of `which` points gathered once `more` into the mean.
+void add_gathered(GatheredLight& light, const GatheredLight& more,
+                  std::span<const std::uint8_t> which);
 
 /// @param takes_world the world's light, from `light`.diffuse; `tells_world`: and apart.
 ToldGathered tell_gathered(const ShadingPoints& points, const SurfaceClosure& closure,

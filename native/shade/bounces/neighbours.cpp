@@ -303,7 +303,8 @@ NoisyPoints::NoisyPoints(const ShadingPoints& points, const NoisyValues& noisy, 
     for (std::size_t i = 0; i < count; ++i) {
         const float seen = points.seen.empty() || points.seen[i] ? 1.0f : kHidden;
         const float share = points.shares.empty() ? 1.0f : points.shares[i];
-        asked.push_back(is_finite(noisy.values[i]) ? seen * share : 0.0f);
+        const float count = noisy.counts.empty() ? 1.0f : noisy.counts[i];
+        asked.push_back(is_finite(noisy.values[i]) ? seen * share * count : 0.0f);
         const float step = std::max(width_of(points, i), 1e-30f);
         most_by_reach.push_back(1.0f / (least_reach * step));
         const float least = std::min({by_reach[0][i], by_reach[1][i], by_reach[2][i]});

@@ -17,6 +17,7 @@ struct NoisyValues {
     std::vector<Vec3f> values;
     std::vector<Vec3f> by_reach;  ///< 1 / metres within which values vary little
     std::vector<Vec3f> told;      ///< 1, or 0 where a point tells nothing of a channel
+    std::vector<float> counts{};  ///< how many times they were looked for; empty: once
 };
 
 /// The same beside where the points lie, a column each: what grids around may be told.  Hidden

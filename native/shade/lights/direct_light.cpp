@@ -157,6 +157,7 @@ void DirectLight::Impl::sample_lobe(LitGrid& grid, const LitPoint& point, std::s
             leave(set, grid, point, ray, sent * Vec3f(1.0f / density), {chosen / density, likely},
                   samples.first + index, ahead);
         }
+        if (grid.wants_ways_alone()) continue;
         if (world.shines() && !grid.carries_world())
             world.meet(set, grid, point, place, {wo, value, sign, type, meets_lamps});
         if (!meets_lamps && !any_unasked) continue;
@@ -225,6 +226,12 @@ void DirectLight::Impl::light_points(LitGrid& grid, const std::vector<LitPoint>&
                                      std::size_t lobe_count, std::vector<LampSight>* sights) const {
     const std::size_t first = 1 + lobe_count;
     LampChoices choices(set, grid, finer_by_corner);
+    if (grid.wants_ways_alone()) {
+        for (const LitPoint& point : points)
+            for (std::size_t k = 0; k < point.bsdf.lobe_count(); ++k)
+                if (!point.bsdf.is_sharp(k)) sample_lobe(grid, point, k, choices);
+        return;
+    }
     light_by_all(set, grid, points, first + (choices.empty() ? 0 : 1), progress, sights);
     if (choices.empty()) {
         for (const LitPoint& point : points) sample_rest(grid, point, choices);

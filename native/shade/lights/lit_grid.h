@@ -112,6 +112,8 @@ struct LitGrid {
         add(point, total(value), sign);
         add_world(point, value);
     }
+    bool wants_ways_alone() const { return leaving && !leaving->only.empty(); }
+    bool wants(std::size_t point) const { return !wants_ways_alone() || leaving->only[point]; }
     bool tells_met() const { return leaving && leaving->tells_met; }
     bool carries_world() const { return leaving && leaving->carries_world(); }
     bool takes_world() const { return leaving && leaving->takes_world; }

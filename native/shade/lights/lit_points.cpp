@@ -20,6 +20,7 @@ LitSets lit_points(const LampSet& set, LitGrid& grid, const ShadingPoints& point
     std::vector<LitPoint>& all = sets[grid.receives];
     all.reserve(is_dark || !points.receives.empty() ? 0 : points.count);
     for (std::size_t i = 0; i < points.count; ++i) {
+        if (!grid.wants(i)) continue;
         PointBsdf bsdf(closure, points, i, albedo);
         if (bsdf.lobe_count() == 0) continue;
         if (ReflectionParts* parts = grid.parts) {

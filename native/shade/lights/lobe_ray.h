@@ -60,6 +60,8 @@ struct LeavingRays {
     bool diffuse = true;
     /// What diffuse lobes reflect of the world counts as what surfaces send: neighbours share it.
     bool takes_world = false;
+    /// [points] the ways of these alone are wanted, and no other light; empty: all of all.
+    std::vector<std::uint8_t> only{};
     /// What samples of lobes would find of the world goes along with their rays and is left out of
     /// reflect(): one ray tells whether anything is met, and what.
     bool carries_world() const { return diffuse || takes_world; }
