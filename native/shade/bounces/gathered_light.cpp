@@ -24,7 +24,7 @@ constexpr std::size_t kAround = 2, kAroundRun = 8;
 /// How many points a point shares with, at least, if asking more often can make up for it; at most
 /// so many times more, and all of a grid together no more often than those that share well.
 constexpr float kSharing = 24.0f;
-constexpr int kTimesMore = 3;
+constexpr float kTimesMore = 7.0f;
 
 /// Weight of a point's diffuse lobes, and of sheen what it reflects along the view: what turns is
 /// seen from elsewhere than where its light was gathered.
@@ -86,22 +86,21 @@ NoisyPoints told_of(const ShadingPoints& points, const SurfaceClosure& closure,
 
 std::vector<std::uint8_t> times_more(const ShadingPoints& points, const GatheredLight& light) {
     const std::vector<float> nearness = mean_nearness(points, light);
-    std::vector<std::uint8_t> times(points.count, 0);
-    std::size_t more[kTimesMore + 1] = {}, crowded = 0;
+    std::vector<float> wanted(points.count, 0.0f);
+    float sum = 0.0f, crowded = 0.0f;
     for (std::size_t i = 0; i < points.count; ++i) {
         if (light.met[i] == 0.0f || (!points.seen.empty() && !points.seen[i])) continue;
         const float steps =
             std::max(kNear / (nearness[i] * std::max(width_of(points, i), 1e-30f)), kLeastReach);
-        const float wanted = kSharing / (steps * steps);
-        times[i] = static_cast<std::uint8_t>(
-            std::clamp(static_cast<int>(std::ceil(wanted)) - 1, 0, kTimesMore));
-        crowded += times[i] > 0;
-        for (int t = 1; t <= times[i]; ++t) ++more[t];
+        wanted[i] = std::clamp(kSharing / (steps * steps) - 1.0f, 0.0f, kTimesMore);
+        sum += wanted[i];
+        crowded += wanted[i] / kTimesMore;
     }
-    int most = 0;
-    for (std::size_t sum = 0; most < kTimesMore; ++most)
-        if ((sum += more[most + 1]) > points.count - crowded) break;
-    for (std::uint8_t& t : times) t = std::min(t, static_cast<std::uint8_t>(most));
+    const float most = static_cast<float>(points.count) - crowded;
+    const float part = sum > most ? most / sum : 1.0f;
+    std::vector<std::uint8_t> times(points.count);
+    for (std::size_t i = 0; i < points.count; ++i)
+        times[i] = static_cast<std::uint8_t>(std::lround(part * wanted[i]));
     return times;
 }
 
