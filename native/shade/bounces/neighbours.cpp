@@ -22,6 +22,8 @@ using V = hn::Vec<decltype(kTag)>;
 /// Neighbours to each side that a point of a lattice shares with; of separate faces, which lie in
 /// Morton order, those before and after.
 constexpr std::size_t kReach = 8, kRun = 64;
+/// Steps of the grid: what varies slower than that is found at every second point.
+constexpr float kSlowly = 6.0f;
 /// Most that their normals are turned away, as 1 - cosine.
 constexpr float kBend = 0.25f;
 /// Of points that nobody sees, for those that somebody does: where things stand on each other they
@@ -197,38 +199,65 @@ class Sharing {
 
     std::vector<Vec3f> run() {
         const std::size_t count = m_points.count, columns = m_points.columns;
-        std::vector<Vec3f> shared(count);
-        const auto before = [](std::size_t at, std::size_t reach) {
-            return at - std::min(at, reach);
-        };
-        for (std::size_t i = 0; i < count; ++i) {
-            start(i);
-            if (columns == 0) {
-                take(m_own, before(i, kRun), std::min(i + kRun + 1, count));
-            } else {
-                const std::size_t x = i % columns, y = i / columns, rows = count / columns;
-                const auto [top, bottom] = window(y, rows);
-                const auto [left, right] = window(x, columns);
-                for (std::size_t v = top; v < bottom; ++v)
-                    take(m_own, v * columns + left, v * columns + right);
+        m_shared.resize(count);
+        if (columns == 0) {
+            for (std::size_t i = 0; i < count; ++i) {
+                start(i);
+                take(m_own, i - std::min(i, kRun), std::min(i + kRun + 1, count));
+                finish();
             }
-            if (m_around) take_around(i);
-            for (std::size_t c = 0; c < 3; ++c) {
-                const float height = m_heights[c].fit(m_spreads[c * m_channels_apart]);
-                shared[i][static_cast<int>(c)] =
-                    std::isfinite(height) ? height : m_own.values[c][i];
-            }
+            return std::move(m_shared);
         }
-        return shared;
+        for (std::size_t i = 0; i < count; ++i)
+            if (corners_of(i).front() == i) share_at(i);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::array<std::size_t, 4> corners = corners_of(i);
+            if (corners.front() == i) continue;
+            if (std::ranges::all_of(corners, [&](std::size_t c) { return varies_slowly(c); }))
+                m_shared[i] = 0.25f * (m_shared[corners[0]] + m_shared[corners[1]] +
+                                       m_shared[corners[2]] + m_shared[corners[3]]);
+            else
+                share_at(i);
+        }
+        return std::move(m_shared);
     }
 
   private:
+    /// Of every second point of every second row and of the last ones, those around a point; all of
+    /// them itself where it is such a one.
+    std::array<std::size_t, 4> corners_of(std::size_t i) const {
+        const std::size_t columns = m_points.columns, rows = m_points.count / columns;
+        const auto around = [](std::size_t at, std::size_t last) {
+            return at % 2 == 0 || at == last ? std::pair(at, at) : std::pair(at - 1, at + 1);
+        };
+        const auto [left, right] = around(i % columns, columns - 1);
+        const auto [top, bottom] = around(i / columns, rows - 1);
+        return {top * columns + left, top * columns + right, bottom * columns + left,
+                bottom * columns + right};
+    }
+    /// Whether points beside it may be interpolated.
+    bool varies_slowly(std::size_t i) const {
+        const float most =
+            std::max({m_own.by_reach[0][i], m_own.by_reach[1][i], m_own.by_reach[2][i]});
+        return most * kSlowly * width_of(m_points, i) < 1.0f;
+    }
+    void share_at(std::size_t i) {
+        start(i);
+        const std::size_t columns = m_points.columns;
+        const auto [top, bottom] = window(i / columns, m_points.count / columns);
+        const auto [left, right] = window(i % columns, columns);
+        for (std::size_t v = top; v < bottom; ++v)
+            take(m_own, v * columns + left, v * columns + right);
+        finish();
+    }
     /// As many on each line of a lattice: at its end those of the one side, unless other grids go
     /// on there.
     std::pair<std::size_t, std::size_t> window(std::size_t at, std::size_t count) const {
-        if (m_around && m_around->points.count > 0) return {at - std::min(at, kReach), std::min(at + kReach + 1, count)};
+        const std::size_t before = at - std::min(at, kReach);
+        if (m_around && m_around->points.count > 0)
+            return {before, std::min(at + kReach + 1, count)};
         const std::size_t size = std::min(2 * kReach + 1, count);
-        const std::size_t first = std::min(at - std::min(at, kReach), count - size);
+        const std::size_t first = std::min(before, count - size);
         return {first, first + size};
     }
     static V dot(const std::array<V, 3>& a, const Vec3f& b) {
@@ -245,10 +274,17 @@ class Sharing {
         m_y = glm::cross(normal, m_x);
     }
 
-    void take_around(std::size_t i) {
-        for (const Run& run : m_around->runs)
-            if (run.is_within(m_points.p[i], m_own.reach[i]))
-                take(m_around->points, run.begin, run.end);
+    /// With what grids around tell.
+    void finish() {
+        if (m_around)
+            for (const Run& run : m_around->runs)
+                if (run.is_within(m_points.p[m_at], m_own.reach[m_at]))
+                    take(m_around->points, run.begin, run.end);
+        for (std::size_t c = 0; c < 3; ++c) {
+            const float height = m_heights[c].fit(m_spreads[c * m_channels_apart]);
+            m_shared[m_at][static_cast<int>(c)] =
+                std::isfinite(height) ? height : m_own.values[c][m_at];
+        }
     }
 
     void take(const NoisyPoints& from, std::size_t first, std::size_t last) {
@@ -283,6 +319,7 @@ class Sharing {
     const ShadingPoints& m_points;
     const NoisyPoints& m_own;
     std::optional<Around> m_around;
+    std::vector<Vec3f> m_shared;
     std::size_t m_channels_apart = 1;  ///< 0: all have the same neighbours
     std::size_t m_at = 0;
     Vec3f m_x{0.0f}, m_y{0.0f};
