@@ -20,6 +20,9 @@ constexpr float kLeastAlbedo = 1e-4f;
 /// Points of a lattice to each side, and of separate ones in their order, whose rays tell together
 /// how near other surfaces are.
 constexpr std::size_t kAround = 2, kAroundRun = 8;
+/// Of lattices the same where it decides who gathers more often: points that found little would take
+/// more than those beside that found much.
+constexpr std::size_t kAroundMore = 4;
 
 /// How many points a point shares with, at least, if asking more often can make up for it; at most
 /// so many times more, and all of a grid together no more often than those that share well.
@@ -46,10 +49,11 @@ Vec3f diffuse_albedo(const ShadingPoints& points, const SurfaceClosure& closure,
 /// [points] mean of 1 / distance of what the rays of a point and of those around it meet.  Its own
 /// alone would say how far it shares by what it has found: points whose few rays meet nothing are
 /// bright, and would tell more neighbours than those whose rays are hidden.
-std::vector<float> mean_nearness(const ShadingPoints& points, const GatheredLight& light) {
+std::vector<float> mean_nearness(const ShadingPoints& points, const GatheredLight& light,
+                                 std::size_t around = kAround) {
     const std::size_t count = points.count, columns = points.columns ? points.columns : count;
-    const std::size_t across = points.columns ? kAround : kAroundRun,
-                      down = points.columns ? kAround : 0;
+    const std::size_t across = points.columns ? around : kAroundRun,
+                      down = points.columns ? around : 0;
     const std::size_t rows = count / std::max<std::size_t>(columns, 1);
     std::vector<float> means(count, 0.0f);
     for (std::size_t i = 0; i < count; ++i) {
@@ -85,18 +89,20 @@ NoisyPoints told_of(const ShadingPoints& points, const SurfaceClosure& closure,
 }  // namespace
 
 std::vector<std::uint8_t> times_more(const ShadingPoints& points, const GatheredLight& light) {
-    const std::vector<float> nearness = mean_nearness(points, light);
+    const std::vector<float> nearness = mean_nearness(points, light, kAroundMore);
     std::vector<float> wanted(points.count, 0.0f);
-    float sum = 0.0f, crowded = 0.0f;
+    float sum = 0.0f, crowded = 0.0f, seen = 0.0f;
     for (std::size_t i = 0; i < points.count; ++i) {
-        if (light.met[i] == 0.0f || (!points.seen.empty() && !points.seen[i])) continue;
+        if (!points.seen.empty() && !points.seen[i]) continue;
+        ++seen;
+        if (nearness[i] == 0.0f) continue;
         const float steps =
             std::max(kNear / (nearness[i] * std::max(width_of(points, i), 1e-30f)), kLeastReach);
         wanted[i] = std::clamp(kSharing / (steps * steps) - 1.0f, 0.0f, kTimesMore);
         sum += wanted[i];
         crowded += wanted[i] / kTimesMore;
     }
-    const float most = static_cast<float>(points.count) - crowded;
+    const float most = seen - crowded;
     const float part = sum > most ? most / sum : 1.0f;
     std::vector<std::uint8_t> times(points.count);
     for (std::size_t i = 0; i < points.count; ++i)

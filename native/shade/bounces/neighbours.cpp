@@ -184,6 +184,7 @@ struct Around {
         granita::add(points.by_reach, grid.by_reach, j);
         granita::add(points.told, grid.told, j);
         points.asked.push_back(grid.asked[j]);
+        points.side.push_back(grid.side[j]);
         points.is_grey &= grid.is_grey;
     }
 };
@@ -296,8 +297,9 @@ class Sharing {
             const V x = dot(way, m_x), y = dot(way, m_y);
             const V bend = set(1.0f) - dot(at(from.normal, j), m_points.normal[m_at]);
             const V alike = hn::Max(set(1.0f) - bend / set(kBend), set(0.0f));
-            const V asked =
-                hn::IfThenElseZero(hn::FirstN(kTag, last - j), at(from.asked, j) * alike);
+            const auto counts = hn::And(hn::FirstN(kTag, last - j),
+                                        hn::Eq(at(from.side, j), set(m_own.side[m_at])));
+            const V asked = hn::IfThenElseZero(counts, at(from.asked, j) * alike);
             std::array<V, 3> weights;
             for (std::size_t c = 0; c < 3; ++c) {
                 if (c == 0 || m_channels_apart) {
@@ -341,6 +343,7 @@ NoisyPoints::NoisyPoints(const ShadingPoints& points, const NoisyValues& noisy, 
         const float seen = points.seen.empty() || points.seen[i] ? 1.0f : kHidden;
         const float share = points.shares.empty() ? 1.0f : points.shares[i];
         const float count = noisy.counts.empty() ? 1.0f : noisy.counts[i];
+        side.push_back(points.backfacing.empty() ? 0.0f : points.backfacing[i]);
         asked.push_back(is_finite(noisy.values[i]) ? seen * share * count : 0.0f);
         const float step = std::max(width_of(points, i), 1e-30f);
         most_by_reach.push_back(1.0f / (least_reach * step));
@@ -359,6 +362,7 @@ void NoisyPoints::pad() {
     for (Columns* columns : {&p, &normal, &values, &by_reach, &told})
         for (Column& column : *columns) column.resize(room);
     asked.resize(room);
+    side.resize(room);
 }
 
 std::vector<Vec3f> NoisyPoints::all_values() const {
@@ -368,7 +372,7 @@ std::vector<Vec3f> NoisyPoints::all_values() const {
 }
 
 std::size_t NoisyPoints::bytes() const {
-    return 18 * asked.capacity() * sizeof(float);
+    return 19 * asked.capacity() * sizeof(float);
 }
 
 std::vector<Vec3f> share(const ShadingPoints& points, const NoisyPoints& own,

@@ -30,6 +30,7 @@ struct NoisyPoints {
     std::size_t count = 0;
     Columns p, normal, values, by_reach, told;
     Column asked;
+    Column side;  ///< 1: its back is seen, which finds other light
     /// Of points that are told something: what counts of the reach of either at most, as 1 / metres,
     /// and the metres within which neighbours lie at all.
     Column most_by_reach, reach;
