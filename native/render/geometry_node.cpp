@@ -31,9 +31,13 @@ SharedGrid::~SharedGrid() {
     m_statistics.remove_grid_bytes(m_bytes + (m_sweep ? m_sweep->bytes() : 0));
 }
 
+std::uint64_t SharedGrid::bytes() const {
+    return m_grid->bytes() + (m_grid->told ? m_grid->told->bytes() : 0);
+}
+
 void SharedGrid::count_bytes() {
     m_statistics.remove_grid_bytes(m_bytes);
-    m_bytes = m_grid->bytes();
+    m_bytes = bytes();
     m_statistics.add_grid_bytes(m_bytes);
 }
 
@@ -88,7 +92,10 @@ void SharedGrid::ensure_told(const ShadingSystem& shading, Statistics& statistic
         const Stopwatch watch;
         m_begun = shading.begin_radiance(*m_grid);
         // Before the state is dropped of which it is told.
-        if (m_grid->told) place(statistics);
+        if (m_grid->told) {
+            place(statistics);
+            count_bytes();
+        }
         statistics.objects().add_seconds(m_grid->instance, watch.seconds());
     });
 }

@@ -29,6 +29,8 @@ class SharedGrid {
     SharedGrid(std::unique_ptr<Grid> grid, Statistics& statistics);
     ~SharedGrid();
     const Grid& grid() const { return *m_grid; }
+    /// With what it tells.
+    std::uint64_t bytes() const;
     void ensure_opacity(const ShadingSystem& shading, Statistics& statistics);
     /// What it tells grids around it (Grid::told).
     void ensure_told(const ShadingSystem& shading, Statistics& statistics);

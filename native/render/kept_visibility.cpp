@@ -2,6 +2,7 @@
 #include "render/kept_visibility.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "scene/channels.h"
 #include "shade/material_displacement.h"
@@ -29,7 +30,10 @@ std::uint64_t bytes_of(const KeptVisibility::Bucket& bucket) {
     std::uint64_t bytes = 0;
     for (const TileStore& store : bucket.hider->finish())
         bytes += bytes_of(store.key) + bytes_of(store.id) + store.lists.total() * sizeof(Fragment);
-    bucket.for_each_grid([&](SharedGrid& grid) { bytes += grid.grid().bytes(); });
+    std::unordered_set<const SharedGrid*> counted;
+    bucket.for_each_grid([&](SharedGrid& grid) {
+        if (counted.insert(&grid).second) bytes += grid.bytes();
+    });
     return bytes;
 }
 
