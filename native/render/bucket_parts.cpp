@@ -17,7 +17,9 @@ class TileParts {
         : m_frame(frame),
           m_bucket(bucket),
           m_table(table),
-          m_tile(tile), m_grids(grids), m_colors(frame, table) {}
+          m_tile(tile),
+          m_grids(grids),
+          m_colors(frame, table) {}
 
     /// `pixels`: of the tile, in the frame's coordinates.
     ResolvedTile resolve(const Rect& pixels) {

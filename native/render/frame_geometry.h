@@ -21,8 +21,8 @@ namespace granita {
 class FrameGeometry {
   public:
     /// What there is to say of geometries goes to `report`, of opened instances to `said`.
-    /// `revisited`: buckets look at parts of themselves again, or around their things, and find what
-    /// they have diced.
+    /// `revisited`: buckets look at parts of themselves again, or around their things, and find
+    /// what they have diced.
     FrameGeometry(const View& view, const BucketLayout& layout, Report& report, Report& said,
                   bool revisited = false);
 

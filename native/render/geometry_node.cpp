@@ -58,8 +58,8 @@ const SharedGrid::Place& SharedGrid::place(Statistics& statistics) {
         ensure_shading_state(statistics);
         for (std::size_t i = 0; i < m_grid->point_count(); ++i) {
             m_place.box.add(m_grid->shading_p()[i]);
-            m_place.step = std::max({m_place.step, glm::length(m_grid->dp_du[i]),
-                                     glm::length(m_grid->dp_dv[i])});
+            m_place.step = std::max(
+                {m_place.step, glm::length(m_grid->dp_du[i]), glm::length(m_grid->dp_dv[i])});
         }
     });
     return m_place;

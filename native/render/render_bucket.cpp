@@ -94,8 +94,8 @@ std::vector<ResolvedTile> look(Frame& frame, int bucket, int level, const Rect& 
             auto resolved = resolve(frame, *hider, seen);
             if (frame.visibility) {
                 std::vector<HiddenGrids> around = all_neighbours(frame, bucket, grids, seen);
-                frame.visibility->keep(bucket, {std::move(hider), std::move(grids),
-                                                std::move(seen), std::move(around)});
+                frame.visibility->keep(bucket, {std::move(hider), std::move(grids), std::move(seen),
+                                                std::move(around)});
             }
             return resolved;
         }

@@ -23,7 +23,8 @@ void shade_grids(Frame& frame, int bucket, const HiddenGrids& grids, const std::
     });
 }
 
-std::vector<bool> shade_seen(Frame& frame, int bucket, const Hider& hider, const HiddenGrids& grids) {
+std::vector<bool> shade_seen(Frame& frame, int bucket, const Hider& hider,
+                             const HiddenGrids& grids) {
     std::vector<bool> seen;
     {
         const StageTimer timer(frame.statistics, Stage::Hide);

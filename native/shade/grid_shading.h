@@ -27,7 +27,7 @@ struct PointShading {
     SurfaceClosure closure;
     ReflectionParts parts;
     std::vector<Vec3f> radiance;
-    std::optional<GatheredLight> gathered;   ///< none: light is not followed
+    std::optional<GatheredLight> gathered;  ///< none: light is not followed
     std::shared_ptr<ToldLight> told = std::make_shared<ToldLight>();
 };
 

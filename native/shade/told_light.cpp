@@ -44,15 +44,14 @@ void share_told(const ShadingPoints& points, const ToldLight& told, const ToldLi
             ++kind;
         });
     }
-    std::vector<Vec3f>* const shared[4] = {&found.gathered, &found.gathered_world,
-                                           &found.scattered, &found.scattered_bounced};
+    std::vector<Vec3f>* const shared[4] = {&found.gathered, &found.gathered_world, &found.scattered,
+                                           &found.scattered_bounced};
     int kind = 0;
     for_each_kind(told, [&](const NoisyPoints* own) {
         const bool scatters = kind >= 2;
         if (own)
-            *shared[kind] = points.alone && !scatters
-                                ? own->all_values()
-                                : share(points, *own, beside[kind]);
+            *shared[kind] =
+                points.alone && !scatters ? own->all_values() : share(points, *own, beside[kind]);
         ++kind;
     });
 }

@@ -20,8 +20,8 @@ constexpr float kLeastAlbedo = 1e-4f;
 /// Points of a lattice to each side, and of separate ones in their order, whose rays tell together
 /// how near other surfaces are.
 constexpr std::size_t kAround = 2, kAroundRun = 8;
-/// Of lattices the same where it decides who gathers more often: points that found little would take
-/// more than those beside that found much.
+/// Of lattices the same where it decides who gathers more often: points that found little would
+/// take more than those beside that found much.
 constexpr std::size_t kAroundMore = 4;
 
 /// How many points a point shares with, at least, if asking more often can make up for it; at most
@@ -74,8 +74,7 @@ std::vector<float> mean_nearness(const ShadingPoints& points, const GatheredLigh
 NoisyPoints told_of(const ShadingPoints& points, const SurfaceClosure& closure,
                     const std::vector<Vec3f>& diffuse, const std::vector<float>& nearness,
                     const std::vector<float>& counts) {
-    NoisyValues noisy{diffuse, std::vector<Vec3f>(points.count),
-                      std::vector<Vec3f>(points.count)};
+    NoisyValues noisy{diffuse, std::vector<Vec3f>(points.count), std::vector<Vec3f>(points.count)};
     for (std::size_t i = 0; i < points.count; ++i) {
         const Vec3f albedo = diffuse_albedo(points, closure, i);
         noisy.told[i] = Vec3f(glm::greaterThan(albedo, Vec3f(kLeastAlbedo)));

@@ -348,8 +348,8 @@ NoisyPoints::NoisyPoints(const ShadingPoints& points, const NoisyValues& noisy, 
         const float step = std::max(width_of(points, i), 1e-30f);
         most_by_reach.push_back(1.0f / (least_reach * step));
         const float least = std::min({by_reach[0][i], by_reach[1][i], by_reach[2][i]});
-        reach.push_back(std::min(static_cast<float>(kReach) * step,
-                                 1.0f / std::min(least, most_by_reach[i])));
+        reach.push_back(
+            std::min(static_cast<float>(kReach) * step, 1.0f / std::min(least, most_by_reach[i])));
         longest_reach = std::max(longest_reach, reach[i]);
     }
     const auto grey = [](const Vec3f& v) { return v.x == v.y && v.x == v.z; };

@@ -31,8 +31,8 @@ struct NoisyPoints {
     Columns p, normal, values, by_reach, told;
     Column asked;
     Column side;  ///< 1: its back is seen, which finds other light
-    /// Of points that are told something: what counts of the reach of either at most, as 1 / metres,
-    /// and the metres within which neighbours lie at all.
+    /// Of points that are told something: what counts of the reach of either at most, as 1 /
+    /// metres, and the metres within which neighbours lie at all.
     Column most_by_reach, reach;
     Bounds3f box;
     float longest_reach = 0.0f;
