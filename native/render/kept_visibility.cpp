@@ -153,6 +153,11 @@ void KeptVisibility::keep(int index, Bucket bucket) {
     m_buckets[static_cast<std::size_t>(index)] = std::make_unique<Bucket>(std::move(bucket));
 }
 
+void KeptVisibility::drop_begun() {
+    for (const auto& bucket : m_buckets)
+        if (bucket) bucket->for_each_grid([](SharedGrid& grid) { grid.drop_begun(); });
+}
+
 bool KeptVisibility::is_whole() const {
     return !m_given_up &&
            std::ranges::all_of(m_buckets, [](const auto& b) { return b != nullptr; });

@@ -71,6 +71,8 @@ class KeptVisibility {
     }
     /// Thread-safe for different buckets.  Past `kMostBytes` all are given up.
     void keep(int index, Bucket bucket);
+    /// What its grids have begun reads the picture's shading, which ends with it.
+    void drop_begun();
     /// Of a picture that cannot be kept.
     void give_up() { m_given_up = true; }
     bool is_whole() const;
