@@ -161,7 +161,7 @@ Frame::Frame(const std::shared_ptr<const Scene>& frame_scene,
 
 std::unique_ptr<KeptVisibility> Frame::take_visibility() {
     if (!visibility) return nullptr;
-    visibility->drop_begun();
+    visibility->end_picture();
     // It is to be said again.
     if (shading.displacement() && shading.displacement()->has_said()) return nullptr;
     if (sees_anew) {

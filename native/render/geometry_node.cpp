@@ -2,6 +2,7 @@
 #include "render/geometry_node.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/stage_timer.h"
 
@@ -91,11 +92,9 @@ void SharedGrid::ensure_told(const ShadingSystem& shading, Statistics& statistic
         const StageTimer timer(statistics, Stage::Shade);
         const Stopwatch watch;
         m_begun = shading.begin_radiance(*m_grid);
-        // Before the state is dropped of which it is told.
-        if (m_grid->told) {
-            place(statistics);
-            count_bytes();
-        }
+        // Grids around may ask once the state is dropped of which it is told.
+        if (shading.shares_light() && !shading.leaves_to_samples(*m_grid)) place(statistics);
+        if (m_grid->told) count_bytes();
         statistics.objects().add_seconds(m_grid->instance, watch.seconds());
     });
 }
@@ -115,12 +114,13 @@ void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& stati
         const StageTimer timer(statistics, Stage::Shade);
         const Stopwatch watch;
         const bool is_shaded = m_grid->light_share > 0.0f && m_grid->told_around == told;
-        if (!m_begun && !is_shaded && !shading.leaves_to_samples(*m_grid)) {
+        // What an end that is cut short leaves of it is no beginning: who tries again begins anew.
+        auto begun = std::exchange(m_begun, nullptr);
+        if (!begun && !is_shaded && !shading.leaves_to_samples(*m_grid)) {
             drop_radiance();
-            m_begun = shading.begin_radiance(*m_grid, true);
+            begun = shading.begin_radiance(*m_grid, true);
         }
-        if (m_begun) shading.end_radiance(*m_grid, *m_begun, told);
-        m_begun.reset();
+        if (begun) shading.end_radiance(*m_grid, *begun, told);
         statistics.objects().add_seconds(m_grid->instance, watch.seconds());
         const bool is_read = !m_grid->unsettled.empty() && !shading.leaves_to_samples(*m_grid);
         if (!stays && !is_read) drop_shading_state(*m_grid);

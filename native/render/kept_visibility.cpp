@@ -30,10 +30,8 @@ std::uint64_t bytes_of(const KeptVisibility::Bucket& bucket) {
     std::uint64_t bytes = 0;
     for (const TileStore& store : bucket.hider->finish())
         bytes += bytes_of(store.key) + bytes_of(store.id) + store.lists.total() * sizeof(Fragment);
-    std::unordered_set<const SharedGrid*> counted;
-    bucket.for_each_grid([&](SharedGrid& grid) {
-        if (counted.insert(&grid).second) bytes += grid.bytes();
-    });
+    for (const auto& grid : bucket.grids)
+        if (grid) bytes += grid->bytes();
     return bytes;
 }
 
@@ -153,9 +151,21 @@ void KeptVisibility::keep(int index, Bucket bucket) {
     m_buckets[static_cast<std::size_t>(index)] = std::make_unique<Bucket>(std::move(bucket));
 }
 
-void KeptVisibility::drop_begun() {
-    for (const auto& bucket : m_buckets)
-        if (bucket) bucket->for_each_grid([](SharedGrid& grid) { grid.drop_begun(); });
+void KeptVisibility::end_picture() {
+    // Of those that only tell others; while buckets were rendered other threads might tell.
+    std::unordered_set<const SharedGrid*> counted;
+    for (const auto& bucket : m_buckets) {
+        if (!bucket) continue;
+        for (const auto& grid : bucket->grids) counted.insert(grid.get());
+    }
+    for (const auto& bucket : m_buckets) {
+        if (!bucket) continue;
+        bucket->for_each_grid([&](SharedGrid& grid) {
+            grid.drop_begun();
+            if (counted.insert(&grid).second) m_bytes += grid.bytes();
+        });
+    }
+    if (m_bytes > kMostBytes) give_up();
 }
 
 bool KeptVisibility::is_whole() const {

@@ -71,8 +71,8 @@ class KeptVisibility {
     }
     /// Thread-safe for different buckets.  Past `kMostBytes` all are given up.
     void keep(int index, Bucket bucket);
-    /// What its grids have begun reads the picture's shading, which ends with it.
-    void drop_begun();
+    /// All buckets are done.  What grids have begun reads the picture's shading, and ends with it.
+    void end_picture();
     /// Of a picture that cannot be kept.
     void give_up() { m_given_up = true; }
     bool is_whole() const;

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shade/bounces/neighbours.h"
+
 namespace granita {
 namespace {
-
-/// Steps of a grid within which its points share.
-constexpr float kReach = 8.0f;
 
 class Search {
   public:
@@ -49,8 +48,13 @@ class Search {
     void consider(const std::shared_ptr<SharedGrid>& other) {
         const Grid& grid = other->grid();
         if (grid.key == m_grid.key || grid.material != m_grid.material) return;
+        // Which of its grids are left to samples goes by opacity, whoever has asked for that so
+        // far.
+        if (m_frame.shading.opacity_varies(grid.material))
+            other->ensure_opacity(m_frame.shading, m_frame.statistics);
         if (m_frame.shading.leaves_to_samples(grid)) return;
-        if (m_place.is_within(kReach * m_place.step, other->place(m_frame.statistics)))
+        if (m_place.is_within(static_cast<float>(kNeighbourReach) * m_place.step,
+                              other->place(m_frame.statistics)))
             m_found.push_back(other);
     }
 

@@ -244,20 +244,24 @@ struct ShadingSystem::Impl : PointShader {
         find_light(*begun.found, grid, begun.at, begun.wants_refining ? &begun.doubts : nullptr);
     }
 
+    /// Whether its light is divided by that of the plate, where grids tell each other nothing.
+    bool catches(const Grid& grid) const {
+        return catchers && scene.catches_shadows(grid.instance, grid.material);
+    }
+
     void end(Grid& grid, GridShading& begun, const ToldLights& around) const {
-        const bool catches = catchers && scene.catches_shadows(grid.instance, grid.material);
         Doubts& doubts = begun.doubts;
         if (!begun.found) find(grid, begun);
         shade(grid, *begun.found, around, begun.wants_refining ? &doubts : nullptr);
         statistics.add(Counter::GridsShaded);
-        if (catches) {
+        if (catches(grid)) {
             // What is left of light tells nothing of color.
             doubts.settled.clear();
             doubts.looks.clear();
             catchers->divide(grid, channels, doubts.noise, doubts.sights);
         }
         if (!begun.wants_refining) return;
-        if (grid.holdout && !catches) {
+        if (grid.holdout && !catches(grid)) {
             grid.unsettled = grid.unsettled_opacity;
             return;
         }
@@ -357,8 +361,13 @@ std::shared_ptr<GridShading> ShadingSystem::begin_radiance(Grid& grid, bool anew
     const float share = grid.point_share * sharpness * m_impl->edge_share(grid) * dense;
     if (!anew && m_impl->take_shaded(grid, share)) return nullptr;
     auto begun = m_impl->begin(grid, lit, sharpness, dense);
-    (begun ? begun->light_share : grid.light_share) = share;
-    if (begun && begun->found && !begun->found->told->empty() && !grid.told) {
+    if (!begun) {
+        grid.light_share = share;  // all of it is left to samples
+        return nullptr;
+    }
+    begun->light_share = share;
+    const bool tells = begun->found && !begun->found->told->empty() && !m_impl->catches(grid);
+    if (tells && !grid.told) {
         grid.told = begun->found->told;
         grid.told_share = share;
     }
@@ -372,11 +381,7 @@ void ShadingSystem::end_radiance(Grid& grid, GridShading& begun, const ToldLight
 }
 
 void ShadingSystem::shade_radiance(Grid& grid) const {
-    const auto begun = begin_radiance(grid);
-    if (begun)
-        end_radiance(grid, *begun, {});
-    else if (grid.light_share == 0.0f)
-        end_radiance(grid, *begin_radiance(grid, true), {});
+    if (const auto begun = begin_radiance(grid, true)) end_radiance(grid, *begun, {});
 }
 
 Grid ShadingSystem::refine(const Grid& grid, std::span<const RefinedPoint> wanted) const {

@@ -60,8 +60,8 @@ class ShadingSystem {
     /// Whether shade_radiance() will leave a grid of small faces or ribbons to the samples that see
     /// it: then only opacity needs its shading state.
     bool leaves_to_samples(const Grid& grid) const;
-    /// Fills Grid::radiance (premultiplied by opacity, plus emission) and what depends on it, or
-    /// takes it from an equal grid of an earlier picture.  Thread-safe for different grids.
+    /// Fills Grid::radiance (premultiplied by opacity, plus emission) and what depends on it, of a
+    /// grid that grids around tell nothing.  Thread-safe for different grids.
     void shade_radiance(Grid& grid) const;
     /// Its first half: what the grid's points find by themselves, among it what they tell grids
     /// around (Grid::told).  nullptr: there is no other half, or an equal grid of an earlier

@@ -112,6 +112,10 @@ std::vector<std::uint8_t> times_more(const ShadingPoints& points, const Gathered
 void add_gathered(GatheredLight& light, const GatheredLight& more,
                   std::span<const std::uint8_t> which) {
     light.counts.resize(light.diffuse.size(), 1.0f);
+    if (!more.world.empty()) {
+        light.world.resize(light.diffuse.size());
+        light.world_balance.resize(light.diffuse.size(), Vec2f(0.0f));
+    }
     for (std::size_t i = 0; i < light.diffuse.size(); ++i) {
         if (!which[i]) continue;
         const float part = 1.0f / ++light.counts[i];

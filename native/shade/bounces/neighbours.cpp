@@ -19,13 +19,15 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr hn::FixedTag<float, 4> kTag;
 using V = hn::Vec<decltype(kTag)>;
 
-/// Neighbours to each side that a point of a lattice shares with; of separate faces, which lie in
-/// Morton order, those before and after.
-constexpr std::size_t kReach = 8, kRun = 64;
+/// Of separate faces, which lie in Morton order, those before and after a point that it shares
+/// with.
+constexpr std::size_t kRun = 64;
 /// Steps of the grid: what varies slower than that is found at every second point.
 constexpr float kSlowly = 6.0f;
 /// Most that their normals are turned away, as 1 - cosine.
 constexpr float kBend = 0.25f;
+/// The same of points between which others are interpolated: not across creases.
+constexpr float kBendBetween = 0.05f;
 /// Of points that nobody sees, for those that somebody does: where things stand on each other they
 /// are inside, in the dark.  Far less than kRidge, or slopes towards them would be told by them: a
 /// floor's last pixel before a wall was up to 17 % too dark.
@@ -214,7 +216,7 @@ class Sharing {
         for (std::size_t i = 0; i < count; ++i) {
             const std::array<std::size_t, 4> corners = corners_of(i);
             if (corners.front() == i) continue;
-            if (std::ranges::all_of(corners, [&](std::size_t c) { return varies_slowly(c); }))
+            if (std::ranges::all_of(corners, [&](std::size_t c) { return tells_between(c, i); }))
                 m_shared[i] = 0.25f * (m_shared[corners[0]] + m_shared[corners[1]] +
                                        m_shared[corners[2]] + m_shared[corners[3]]);
             else
@@ -236,11 +238,13 @@ class Sharing {
         return {top * columns + left, top * columns + right, bottom * columns + left,
                 bottom * columns + right};
     }
-    /// Whether points beside it may be interpolated.
-    bool varies_slowly(std::size_t i) const {
-        const float most =
-            std::max({m_own.by_reach[0][i], m_own.by_reach[1][i], m_own.by_reach[2][i]});
-        return most * kSlowly * width_of(m_points, i) < 1.0f;
+    /// Whether what varies slowly at a corner goes on to a point beside it.
+    bool tells_between(std::size_t corner, std::size_t i) const {
+        const float most = std::max(
+            {m_own.by_reach[0][corner], m_own.by_reach[1][corner], m_own.by_reach[2][corner]});
+        const float bend = 1.0f - glm::dot(m_points.normal[corner], m_points.normal[i]);
+        return most * kSlowly * width_of(m_points, corner) < 1.0f && bend < kBendBetween &&
+               m_own.side[corner] == m_own.side[i];
     }
     void share_at(std::size_t i) {
         start(i);
@@ -254,10 +258,10 @@ class Sharing {
     /// As many on each line of a lattice: at its end those of the one side, unless other grids go
     /// on there.
     std::pair<std::size_t, std::size_t> window(std::size_t at, std::size_t count) const {
-        const std::size_t before = at - std::min(at, kReach);
+        const std::size_t before = at - std::min(at, kNeighbourReach);
         if (m_around && m_around->points.count > 0)
-            return {before, std::min(at + kReach + 1, count)};
-        const std::size_t size = std::min(2 * kReach + 1, count);
+            return {before, std::min(at + kNeighbourReach + 1, count)};
+        const std::size_t size = std::min(2 * kNeighbourReach + 1, count);
         const std::size_t first = std::min(before, count - size);
         return {first, first + size};
     }
@@ -348,8 +352,8 @@ NoisyPoints::NoisyPoints(const ShadingPoints& points, const NoisyValues& noisy, 
         const float step = std::max(width_of(points, i), 1e-30f);
         most_by_reach.push_back(1.0f / (least_reach * step));
         const float least = std::min({by_reach[0][i], by_reach[1][i], by_reach[2][i]});
-        reach.push_back(
-            std::min(static_cast<float>(kReach) * step, 1.0f / std::min(least, most_by_reach[i])));
+        reach.push_back(std::min(static_cast<float>(kNeighbourReach) * step,
+                                 1.0f / std::min(least, most_by_reach[i])));
         longest_reach = std::max(longest_reach, reach[i]);
     }
     const auto grey = [](const Vec3f& v) { return v.x == v.y && v.x == v.z; };

@@ -12,6 +12,9 @@
 
 namespace granita {
 
+/// Steps of a grid to each side within which its points share.
+constexpr std::size_t kNeighbourReach = 8;
+
 /// What points of a grid found each by chance, each [points], a channel at a time.
 struct NoisyValues {
     std::vector<Vec3f> values;
