@@ -171,3 +171,21 @@ def test_bits_do_not_depend_on_buckets_threads_and_crop(bounces):
 def test_the_raster_executor_says_that_it_has_none():
     with pytest.raises(Exception, match="catches shadows"):
         s.render(plate(executor="RASTER", sampling="REGULAR"))
+
+
+def test_a_valley_that_catches_nothing_is_not_there():
+    """Its slopes light each other: what grids tell each other would not be what those of the plate know."""
+    snapshot = s.orthographic((SIZE, SIZE), samples=16, light_samples=4, bounces=2, grid_size=64)
+    s.constant_world(snapshot, 1.0)
+    snapshot["options"]["film_transparent"] = True
+    snapshot["world"]["lights_scene"] = True
+    across = np.linspace(-8, 40, 9)
+    points = np.array([(x, y, 40.0 - 1.5 * abs(x - 16)) for x in across for y in across])
+    faces = [
+        (9 * i + j, 9 * i + j + 1, 9 * i + j + 10, 9 * i + j + 9)
+        for i in range(8)
+        for j in range(8)
+    ]
+    s.mesh(snapshot, points, faces, matte(snapshot, (0.8, 0.8, 0.8)))
+    snapshot["instances"]["flags"] = [SEEN | CATCHER]
+    assert s.render(snapshot)["combined"][..., 3].max() < 1e-4
