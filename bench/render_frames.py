@@ -3,7 +3,7 @@
 
     blender -b --factory-startup --addons granita --python bench/render_frames.py -- JOB.json
 
-JOB: {"module": "scenes", "lit_scenes", "lamp_scenes", "bounced_scenes", "bounced_places", "crowd_scenes", "limit_scenes", "hero_scene", "moving_files", "walk_scene", "opened_files" (the scene is a path) or "demo", "scene", "variant" (of moving_files; frames of walk_scene), "folder", "file", "runs", "seed" (of
+JOB: {"module": "scenes", "lit_scenes", "lamp_scenes", "bounced_scenes", "bounced_places", "crowd_scenes", "limit_scenes", "hero_scene", "moving_files", "walk_scene", "opened_files" (the scene is a path), "random_stage" (a seed) or "demo", "scene", "variant" (of moving_files; frames of walk_scene), "folder", "file", "runs", "seed" (of
 Cycles), "size" (width and height, the scene's own without), "settings": [{"engine": "CYCLES" or "GRANITA", "samples",
 "shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), "frame" (a still at this one), "bounces" (light is followed so far; none without), other
 properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FILE lists for each setting its runs as [wall, processor,
@@ -51,10 +51,8 @@ def build(job):
         return hero_scene.hero(), 1, scenes.SHUTTER
     if job["module"] == "demo":
         return build_demo()
-    if job["module"] == "opened_files":
-        import opened_files
-
-        return opened_files.build(job["scene"])
+    if job["module"] in ("opened_files", "random_stage"):
+        return importlib.import_module(job["module"]).build(job["scene"])
     if job["module"] == "walk_scene":
         import walk_scene
 

@@ -36,6 +36,8 @@
 
 namespace granita {
 
+struct ToldLight;
+
 /// Identity of a grid, from the scene alone (decision 3): orders pools, breaks ties, seeds shading.
 struct GridKey {
     std::uint32_t instance = 0;  ///< Instance::key
@@ -159,8 +161,8 @@ struct Grid {
     /// Part of the light samples of a point that radiance was made with; 0 = not shaded, or not to
     /// the end.
     float light_share = 0.0f;
-    /// What its points tell grids around (shade/bounces/gathered_light.h), by what part of their
-    /// light samples, and what they were told by these.  nullptr: they tell nothing.
+    /// What its points tell grids around (shade/told_light.h), by what part of their light samples,
+    /// nullptr: nothing; and what they were told by these, of a grid that is kept.
     std::shared_ptr<const ToldLight> told;
     float told_share = 0.0f;
     std::vector<std::shared_ptr<const ToldLight>> told_around;

@@ -8,8 +8,6 @@
 
 namespace granita {
 
-struct ToldLight;
-
 /// Light that the points of a grid have found: samples that are shaded by themselves take it from
 /// there.
 struct GridLight {

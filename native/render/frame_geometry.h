@@ -47,7 +47,7 @@ class FrameGeometry {
         HierarchicalGrid faces;            ///< primitives
         std::mutex mutex;                  ///< of `nodes`
         std::vector<std::shared_ptr<GeometryNode>>
-            nodes;  ///< [primitives], of those in several buckets
+            nodes;  ///< [primitives], of those that are wanted more than once
     };
     /// For a bucket that the instance touches, until its release().  Buckets that ask while it is
     /// being opened take a share of that.

@@ -121,6 +121,7 @@ void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& stati
             begun = shading.begin_radiance(*m_grid, true);
         }
         if (begun) shading.end_radiance(*m_grid, *begun, told);
+        m_grid->told_around = stays ? std::move(told) : ToldLights();
         statistics.objects().add_seconds(m_grid->instance, watch.seconds());
         const bool is_read = !m_grid->unsettled.empty() && !shading.leaves_to_samples(*m_grid);
         if (!stays && !is_read) drop_shading_state(*m_grid);

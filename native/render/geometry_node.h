@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A primitive that several buckets want: split or diced once, by the first that needs it, and freed
-// after the last (decision 5).  Primitives of a single bucket never come here; the bucket owns
-// them.
+// A primitive that is wanted more than once: split or diced by the first that needs it, and freed
+// after the last of its buckets (decision 5).  Those that one bucket wants once never come here;
+// the bucket owns them.
 #pragma once
 
 #include <atomic>

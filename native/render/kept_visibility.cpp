@@ -117,8 +117,8 @@ void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChange
             const bool is_other =
                 grid.material >= 0 && changes.materials[static_cast<std::size_t>(grid.material)];
             const bool lacks_channels = wants_channels && grid.channels.empty();
-            if (all || is_other || lacks_channels || grid.broken_radiance ||
-                grid.light_share == 0.0f)
+            const bool was_found = grid.light_share > 0.0f || grid.told;
+            if (all || is_other || lacks_channels || grid.broken_radiance || !was_found)
                 shared.forget_radiance();
         });
     m_traits = traits_of(*scene, shading);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "shade/bounces/neighbours.h"
 
 namespace granita {
@@ -48,14 +49,18 @@ class Search {
     void consider(const std::shared_ptr<SharedGrid>& other) {
         const Grid& grid = other->grid();
         if (grid.key == m_grid.key || grid.material != m_grid.material) return;
-        // Which of its grids are left to samples goes by opacity, whoever has asked for that so
-        // far.
-        if (m_frame.shading.opacity_varies(grid.material))
-            other->ensure_opacity(m_frame.shading, m_frame.statistics);
-        if (m_frame.shading.leaves_to_samples(grid)) return;
-        if (m_place.is_within(static_cast<float>(kNeighbourReach) * m_place.step,
-                              other->place(m_frame.statistics)))
-            m_found.push_back(other);
+        const ShadingSystem& shading = m_frame.shading;
+        const bool varies = shading.opacity_varies(grid.material);
+        if (!varies && shading.leaves_to_samples(grid)) return;
+        if (!m_place.is_within(static_cast<float>(kNeighbourReach) * m_place.step,
+                               other->place(m_frame.statistics)))
+            return;
+        if (varies) {
+            // Which are left to samples goes by opacity, whoever has asked for that so far.
+            other->ensure_opacity(shading, m_frame.statistics);
+            if (shading.leaves_to_samples(grid)) return;
+        }
+        m_found.push_back(other);
     }
 
     Frame& m_frame;
@@ -83,9 +88,13 @@ std::vector<HiddenGrids> all_neighbours(Frame& frame, int bucket, const HiddenGr
     std::vector<HiddenGrids> around;
     if (!frame.shading.shares_light()) return around;
     around.resize(grids.size());
-    for (std::size_t slot = 0; slot < grids.size(); ++slot)
-        if (seen[slot] && !frame.shading.leaves_to_samples(grids[slot]->grid()))
-            around[slot] = neighbours_of(frame, bucket, *grids[slot]);
+    parallel_for(grids.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t slot = begin; slot < end; ++slot) {
+            frame.progress.check();
+            if (seen[slot] && !frame.shading.leaves_to_samples(grids[slot]->grid()))
+                around[slot] = neighbours_of(frame, bucket, *grids[slot]);
+        }
+    });
     return around;
 }
 

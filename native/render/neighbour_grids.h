@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grids beside a grid, of the same surface: what they gather of other surfaces' light they tell
-// each other (shade/bounces/gathered_light.h), or each would end in a step of its noise.
+// each other (shade/told_light.h), or each would end in a step of its noise.
 #pragma once
 
 #include "render/frame.h"

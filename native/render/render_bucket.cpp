@@ -90,13 +90,13 @@ std::vector<ResolvedTile> look(Frame& frame, int bucket, int level, const Rect& 
         hide_geometry(frame, bucket, pixels, *hider, grids);
         if (level == 0) count_needs(frame, grids);
         if (finish(frame, *hider)) {
-            std::vector<bool> seen = shade_seen(frame, bucket, *hider, grids);
+            std::vector<HiddenGrids> around;
+            std::vector<bool> seen =
+                shade_seen(frame, bucket, *hider, grids, frame.visibility ? &around : nullptr);
             auto resolved = resolve(frame, *hider, seen);
-            if (frame.visibility) {
-                std::vector<HiddenGrids> around = all_neighbours(frame, bucket, grids, seen);
+            if (frame.visibility)
                 frame.visibility->keep(bucket, {std::move(hider), std::move(grids), std::move(seen),
                                                 std::move(around)});
-            }
             return resolved;
         }
     }

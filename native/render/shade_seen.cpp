@@ -23,14 +23,15 @@ void shade_grids(Frame& frame, int bucket, const HiddenGrids& grids, const std::
     });
 }
 
-std::vector<bool> shade_seen(Frame& frame, int bucket, const Hider& hider,
-                             const HiddenGrids& grids) {
+std::vector<bool> shade_seen(Frame& frame, int bucket, const Hider& hider, const HiddenGrids& grids,
+                             std::vector<HiddenGrids>* around) {
     std::vector<bool> seen;
     {
         const StageTimer timer(frame.statistics, Stage::Hide);
         seen = hider.seen_grids();
     }
-    shade_grids(frame, bucket, grids, seen);
+    if (around) *around = all_neighbours(frame, bucket, grids, seen);
+    shade_grids(frame, bucket, grids, seen, around ? *around : std::vector<HiddenGrids>());
     return seen;
 }
 

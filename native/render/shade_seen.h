@@ -17,7 +17,8 @@ void shade_grids(Frame& frame, int bucket, const HiddenGrids& grids, const std::
 /// Shades the grids that some sample sees, once the hider has finished; `grids` are its pool's.
 /// Returns which they are, by slot: others belong to the buckets that see them, whose threads may
 /// be shading them now.
-std::vector<bool> shade_seen(Frame& frame, int bucket, const Hider& hider,
-                             const HiddenGrids& grids);
+/// @param around filled as shade_grids() wants it, for whoever shades them again.
+std::vector<bool> shade_seen(Frame& frame, int bucket, const Hider& hider, const HiddenGrids& grids,
+                             std::vector<HiddenGrids>* around = nullptr);
 
 }  // namespace granita

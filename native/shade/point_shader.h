@@ -17,7 +17,7 @@ struct PointShader : FrameShading {
         return shading_input(grid, points, scene, light ? light->rays() : nullptr, progress);
     }
 
-    /// Runs the surface over `in.points` of `grid`, whose light they find each by themselves.
+    /// The light that points of `grid` find each by themselves, once its surface was run over them.
     void find_light(PointShading& s, const Grid& grid, const PointPaths& at,
                     Doubts* doubts = nullptr) const;
 

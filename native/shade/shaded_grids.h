@@ -11,8 +11,8 @@ namespace granita {
 
 class ShadedGrids {
   public:
-    /// The grid must outlive the object and keep its shading state.  One that was never shaded, or
-    /// was not finite everywhere, which is to be said again, is left out.
+    /// The grid must outlive the object and keep its shading state.  One that was neither shaded
+    /// nor tells anything, or was not finite everywhere, which is to be said again, is left out.
     void add(const Grid& grid);
     bool empty() const { return m_grids.empty(); }
     /// nullptr where none is equal in every byte that Grid has before it is shaded.
@@ -22,7 +22,7 @@ class ShadedGrids {
     std::map<GridKey, const Grid*> m_grids;
 };
 
-/// Fills what shading leaves.
+/// Fills what shading leaves, but for what the grid tells.
 void take_shading(const Grid& from, Grid& to);
 
 }  // namespace granita

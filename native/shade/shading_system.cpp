@@ -167,9 +167,9 @@ struct ShadingSystem::Impl : PointShader {
             grid.unsettled_opacity = all_micropolygons(grid);
     }
 
-    /// Takes radiance from an equal grid of an earlier picture, shaded with as many light samples;
-    /// false where there is none.
-    bool take_shaded(Grid& grid, float share) const {
+    /// Takes from an equal grid of an earlier picture what was found with as many light samples:
+    /// radiance, and what the grid tells, or that alone.  False where there is neither.
+    bool take_earlier(Grid& grid, float share) const {
         const Grid* same = shaded ? shaded->find(grid) : nullptr;
         if (same == nullptr) return false;
         // What samples are shaded by themselves goes by the share itself.
@@ -359,7 +359,7 @@ std::shared_ptr<GridShading> ShadingSystem::begin_radiance(Grid& grid, bool anew
     const float sharpness = lit || m_impl->can_refine(grid) ? m_impl->sharpness(grid) : 1.0f;
     const float dense = lit && m_impl->light ? dense_light_share(grid, m_impl->scene) : 1.0f;
     const float share = grid.point_share * sharpness * m_impl->edge_share(grid) * dense;
-    if (!anew && m_impl->take_shaded(grid, share)) return nullptr;
+    if (!anew && m_impl->take_earlier(grid, share)) return nullptr;
     auto begun = m_impl->begin(grid, lit, sharpness, dense);
     if (!begun) {
         grid.light_share = share;  // all of it is left to samples
@@ -377,7 +377,6 @@ std::shared_ptr<GridShading> ShadingSystem::begin_radiance(Grid& grid, bool anew
 void ShadingSystem::end_radiance(Grid& grid, GridShading& begun, const ToldLights& around) const {
     m_impl->end(grid, begun, around);
     grid.light_share = begun.light_share;
-    grid.told_around = around;
 }
 
 void ShadingSystem::shade_radiance(Grid& grid) const {

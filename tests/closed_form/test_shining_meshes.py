@@ -104,6 +104,16 @@ def test_a_square_that_moves_lights_from_where_it_is(executor, how):
     assert seen(snapshot).mean() == pytest.approx(truth.mean(), rel=0.004)
 
 
+def test_what_shines_hides_its_own_far_side():
+    """Two sheets of one mesh, the one above the other, that cast no shadow: light of the far one comes from behind."""
+    snapshot = stage()
+    points = [*s.rectangle(10, 12, 22, 18, LAMP), *s.rectangle(10, 12, 22, 18, LAMP - 0.01)]
+    shines(snapshot, points, [(0, 1, 2, 3), (4, 5, 6, 7)], flags=DIFFUSE | GLOSSY)
+    truth = ALBEDO * form_factor(10, 12, 22, 18, FLOOR - LAMP, *pixels())
+    assert seen(snapshot) == pytest.approx(truth, abs=0.004)
+    assert seen(snapshot).mean() == pytest.approx(truth.mean(), rel=0.003)
+
+
 def ball(radius, center, around=48):
     """(points, faces), poles left open by a thousandth."""
     rings = np.linspace(0.001, np.pi - 0.001, around // 2)

@@ -40,22 +40,7 @@ class BouncedLight::Wave {
             std::ranges::any_of(leaving, [](const LobeRay& ray) { return ray.world.shines(); });
         m_gathered.world.resize(sees_world ? gathered.diffuse.size() : 0);
         m_gathered.world_balance.resize(m_gathered.world.size(), Vec2f(0.0f));
-        for (const LobeRay& ray : leaving) {
-            BouncedPath path;
-            path.next = ray;
-            path.diffuse_part = ray.diffuse;
-            path.transmitted = ray.transmitted;
-            path.width = ray.width;
-            path.spread = ray.spread;
-            path.seen = glm::length(ray.ray.start);
-            path.least_pdf = ray.pdf;
-            path.splits = ray.samples;
-            path.sure_part = std::min(1.0f, largest(ray.weight));
-            path.kind = is_diffuse(ray.ray.type) ? BouncedPath::Kind::Diffuse
-                        : is_sharp(ray.ray.type) ? BouncedPath::Kind::Mirrored
-                                                 : BouncedPath::Kind::Glossy;
-            follow(path, is_scattered);
-        }
+        for (const LobeRay& ray : leaving) follow(BouncedPath::leaving(ray), is_scattered);
         m_paths.swap(m_next);
     }
 
@@ -98,18 +83,8 @@ class BouncedLight::Wave {
     }
 
     /// Keeps the way for the next wave, unless it may go no further.
-    void follow(BouncedPath& path, bool is_scattered) {
-        path.was_diffuse |= is_diffuse(path.next.ray.type);
-        if (is_scattered)
-            ++path.volume;
-        else if (path.next.ray.type == RayType::Diffuse)
-            ++path.diffuse;
-        else if (goes_through(path.next.ray.type))
-            ++path.transmission;
-        else
-            ++path.glossy;
-        if (path.kind == BouncedPath::Kind::Mirrored && !is_sharp(path.next.ray.type))
-            path.kind = BouncedPath::Kind::Glossy;
+    void follow(BouncedPath path, bool is_scattered) {
+        path.count_bounce(is_scattered);
         if (is_within_limits(path)) m_next.push_back(path);
     }
 
@@ -407,42 +382,18 @@ class BouncedLight::Wave {
             const bool is_asked = world.shines() || m_limits.occlusion_added > 0.0f;
             if (next.met_weight == 0.0f && !is_asked) continue;
             if (way.ray)
-                send(next, *way.ray, way.weight, end);
+                follow(next.sent(*way.ray, way.weight, end.distance), end.hit == nullptr);
             else
-                pass(next, way.weight, end);
+                m_next.push_back(next.passing(behind(end), way.weight, end.distance));
         }
     }
 
-    void send(const BouncedPath& path, const LobeRay& way, const Vec3f& weight, const End& end) {
-        BouncedPath next = path;
-        next.width = path.width + path.spread * end.distance;
-        next.seen = path.seen + end.distance;
-        next.next = way;
-        next.next.weight = path.next.weight * weight;
-        next.next.share = path.next.share;
-        next.next.point = path.next.point;
-        next.next.place = path.next.place;
-        next.spread = std::max(path.spread, way.spread);
-        next.least_pdf = std::min(path.least_pdf, way.pdf);
-        next.length = 0.0f;
-        ++next.depth;
-        follow(next, end.hit == nullptr);
-    }
-
-    /// Straight on, from behind the surface.
-    void pass(const BouncedPath& path, const Vec3f& weight, const End& end) {
+    Vec3f behind(const End& end) const {
         const ShadingPoints& points = *end.points;
         const std::uint32_t face = points.faces.empty() ? 0 : points.faces[end.point];
         const RayOffset offset = m_light.m_direct.rays()->ray_offset(
             {m_light.m_scene.instances[end.hit->instance].key, face});
-        BouncedPath next = path;
-        next.width = path.width + path.spread * end.distance;
-        next.seen = path.seen + end.distance;
-        next.next.weight = path.next.weight * weight;
-        next.next.ray.start = offset(end.hit->p, -points.geometric_normal[end.point]);
-        ++next.passed;
-        next.length = path.length + end.distance;
-        m_next.push_back(next);
+        return offset(end.hit->p, -points.geometric_normal[end.point]);
     }
 
     const BouncedLight& m_light;

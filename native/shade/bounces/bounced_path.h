@@ -40,6 +40,15 @@ struct BouncedPath {
     float length = 0.0f;     ///< that it went since it was last reflected
     float seen = 0.0f;       ///< from the camera to where the ray starts, along it, metres
 
+    /// As a lobe of the grid's point sends it.
+    static BouncedPath leaving(const LobeRay& ray);
+    /// As a lobe sends it on from a place `distance` metres ahead, by `weight` of its light.
+    BouncedPath sent(const LobeRay& way, const Vec3f& weight, float distance) const;
+    /// As a surface `distance` metres ahead lets it pass straight on, from behind itself.
+    BouncedPath passing(const Vec3f& start, const Vec3f& weight, float distance) const;
+    /// Counts what has sent it, a place in a medium or a lobe (Ray::type).
+    void count_bounce(bool is_scattered);
+
     /// Becomes the first of as many ways, alike but for their places, as its part of its point has
     /// of `splits`.
     void split() {
@@ -74,6 +83,7 @@ struct BouncedPath {
         return most > 0.0f && sum > most ? brought * (most / sum) : brought;
     }
 
+    /// Whether it came no further than the limits, each by as many `more`.
     bool is_within(const Bounces& limits, int more) const {
         return depth <= limits.most + more && diffuse <= limits.diffuse + more &&
                glossy <= limits.glossy + more && transmission <= limits.transmission + more &&

@@ -94,7 +94,10 @@ void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) 
     const float time = reinterpret_cast<const RTCRay*>(arguments->ray)->time;
     const Instance& met = scene->scene.instances[instance.index];
     const RayType type = context->rays->type;
-    if (!meets(type, met, context->blocker_set) || !met.lifespan.contains(time)) {
+    // Whoever looks at what shines sees its near side, whatever shadow it casts.
+    const bool is_own = id == context->rays->target.instance;
+    const bool is_met = is_own || meets(type, met, context->blocker_set);
+    if (!is_met || !met.lifespan.contains(time)) {
         arguments->valid[0] = 0;
         return;
     }
