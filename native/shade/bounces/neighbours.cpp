@@ -24,6 +24,9 @@ using V = hn::Vec<decltype(kTag)>;
 constexpr std::size_t kRun = 64;
 /// Steps of the grid: what varies slower than that is found at every second point.
 constexpr float kSlowly = 6.0f;
+/// Points of other grids, at most: twice as many as lie around one of a lattice.  Where a ball has
+/// its pole, or a cone its tip, a point's reach holds thousands.
+constexpr std::size_t kEnough = 512;
 /// Most that their normals are turned away, as 1 - cosine.
 constexpr float kBend = 0.25f;
 /// The same of points between which others are interpolated: not across creases.
@@ -56,10 +59,6 @@ V at(const NoisyPoints::Column& column, std::size_t j) {
 
 std::array<V, 3> at(const NoisyPoints::Columns& columns, std::size_t j) {
     return {at(columns[0], j), at(columns[1], j), at(columns[2], j)};
-}
-
-void add(NoisyPoints::Columns& to, const NoisyPoints::Columns& from, std::size_t j) {
-    for (std::size_t c = 0; c < 3; ++c) to[c].push_back(from[c][j]);
 }
 
 NoisyPoints::Columns columns_of(const std::vector<Vec3f>& of) {
@@ -127,77 +126,82 @@ struct Heights {
     }
 };
 
+Vec3f place(const NoisyPoints& points, std::size_t j) {
+    return {points.p[0][j], points.p[1][j], points.p[2][j]};
+}
+
+bool is_within(const Bounds3f& box, const Vec3f& p, float reach) {
+    const Vec3f way = glm::max(glm::max(box.lo - p, p - box.hi), Vec3f(0.0f));
+    return glm::dot(way, way) < reach * reach;
+}
+
 /// Points that follow each other, and lie beside each other.
 struct Run {
     std::size_t begin = 0, end = 0;
-    Bounds3f box;
-
-    bool is_within(const Vec3f& p, float reach) const {
-        const Vec3f way = glm::max(glm::max(box.lo - p, p - box.hi), Vec3f(0.0f));
-        return glm::dot(way, way) < reach * reach;
-    }
+    Bounds3f box{};
 };
 
-/// Of the grids around one.
-struct Around {
-    /// Points in a run, at most: of more the most are too far from any one point.
-    static constexpr std::size_t kRunLength = 16;
+/// What one of the grids around tells.
+struct Beside {
+    const NoisyPoints* points;
+    Bounds3f box{};  ///< of all runs
+    std::vector<Run> runs{};
+};
 
-    NoisyPoints points;
-    std::vector<Run> runs;
-
-    /// Those that lie within reach of a grid, but for those of their borders that are its own:
-    /// where a wall stands on that border, they lie on the other side of it.
-    Around(const NoisyPoints& own, std::span<const NoisyPoints* const> grids) {
-        Bounds3f wide = own.box;
-        wide.grow(own.longest_reach);
-        for (const NoisyPoints* grid : grids) {
-            std::size_t last = 0;
-            for (std::size_t j = 0; j < grid->count; ++j) {
-                const Vec3f p = place(*grid, j);
-                if (grid->asked[j] == 0.0f || !wide.holds(p)) continue;
-                if (own.box.holds(p) && is_one_of(own, p)) continue;
-                const bool goes_on = !runs.empty() && runs.back().end == points.count &&
-                                     last + 1 == j && j % kRunLength != 0;
-                if (!goes_on) runs.push_back({points.count, points.count, {}});
-                add(*grid, j);
-                runs.back().end = points.count;
-                runs.back().box.add(p);
-                last = j;
-            }
-        }
-        points.pad();
+/// Where the points of a grid lie.
+class Places {
+  public:
+    explicit Places(const NoisyPoints& points) {
+        m_sorted.reserve(points.count);
+        for (std::size_t j = 0; j < points.count; ++j)
+            m_sorted.push_back(as_array(place(points, j)));
+        std::ranges::sort(m_sorted);
     }
+    bool hold(const Vec3f& p) const { return std::ranges::binary_search(m_sorted, as_array(p)); }
 
   private:
-    static Vec3f place(const NoisyPoints& points, std::size_t j) {
-        return {points.p[0][j], points.p[1][j], points.p[2][j]};
-    }
-    static bool is_one_of(const NoisyPoints& points, const Vec3f& p) {
-        for (std::size_t j = 0; j < points.count; ++j)
-            if (place(points, j) == p) return true;
-        return false;
-    }
-    void add(const NoisyPoints& grid, std::size_t j) {
-        ++points.count;
-        granita::add(points.p, grid.p, j);
-        granita::add(points.normal, grid.normal, j);
-        granita::add(points.values, grid.values, j);
-        granita::add(points.by_reach, grid.by_reach, j);
-        granita::add(points.told, grid.told, j);
-        points.asked.push_back(grid.asked[j]);
-        points.side.push_back(grid.side[j]);
-        points.is_grey &= grid.is_grey;
-    }
+    static std::array<float, 3> as_array(const Vec3f& p) { return {p.x, p.y, p.z}; }
+
+    std::vector<std::array<float, 3>> m_sorted;
 };
+
+/// Of the grids around one, the points within its reach, but for those of their borders that are
+/// its own: where a wall stands on that border, they lie on the other side of it.
+std::vector<Beside> beside(const NoisyPoints& own, std::span<const NoisyPoints* const> grids) {
+    // Of more the most are too far from any one point.
+    constexpr std::size_t kRunLength = 16;
+    Bounds3f wide = own.box;
+    wide.grow(own.longest_reach);
+    std::vector<Beside> all;
+    std::optional<Places> own_places;
+    for (const NoisyPoints* grid : grids) {
+        Beside found{grid};
+        for (std::size_t j = 0; j < grid->count; ++j) {
+            const Vec3f p = place(*grid, j);
+            if (grid->asked[j] == 0.0f || !wide.holds(p)) continue;
+            if (own.box.holds(p)) {
+                if (!own_places) own_places.emplace(own);
+                if (own_places->hold(p)) continue;
+            }
+            const bool goes_on =
+                !found.runs.empty() && found.runs.back().end == j && j % kRunLength != 0;
+            if (!goes_on) found.runs.push_back({j, j});
+            found.runs.back().end = j + 1;
+            found.runs.back().box.add(p);
+            found.box.add(p);
+        }
+        if (!found.runs.empty()) all.push_back(std::move(found));
+    }
+    return all;
+}
 
 class Sharing {
   public:
     Sharing(const ShadingPoints& points, const NoisyPoints& own,
             std::span<const NoisyPoints* const> around)
-        : m_points(points), m_own(own) {
-        if (!around.empty()) m_around.emplace(own, around);
-        if (own.is_grey && (!m_around || m_around->points.is_grey)) m_channels_apart = 0;
+        : m_points(points), m_own(own), m_beside(beside(own, around)) {
+        const auto is_grey = [](const Beside& grid) { return grid.points->is_grey; };
+        if (own.is_grey && std::ranges::all_of(m_beside, is_grey)) m_channels_apart = 0;
     }
 
     std::vector<Vec3f> run() {
@@ -259,8 +263,7 @@ class Sharing {
     /// on there.
     std::pair<std::size_t, std::size_t> window(std::size_t at, std::size_t count) const {
         const std::size_t before = at - std::min(at, kNeighbourReach);
-        if (m_around && m_around->points.count > 0)
-            return {before, std::min(at + kNeighbourReach + 1, count)};
+        if (!m_beside.empty()) return {before, std::min(at + kNeighbourReach + 1, count)};
         const std::size_t size = std::min(2 * kNeighbourReach + 1, count);
         const std::size_t first = std::min(before, count - size);
         return {first, first + size};
@@ -281,15 +284,34 @@ class Sharing {
 
     /// With what grids around tell.
     void finish() {
-        if (m_around)
-            for (const Run& run : m_around->runs)
-                if (run.is_within(m_points.p[m_at], m_own.reach[m_at]))
-                    take(m_around->points, run.begin, run.end);
+        find_near();
+        for (const auto& [points, run] : m_near) take(*points, run->begin, run->end);
         for (std::size_t c = 0; c < 3; ++c) {
             const float height = m_heights[c].fit(m_spreads[c * m_channels_apart]);
             m_shared[m_at][static_cast<int>(c)] =
                 std::isfinite(height) ? height : m_own.values[c][m_at];
         }
+    }
+
+    /// What lies beside the point at hand, or of more than enough some all over it.
+    void find_near() {
+        const Vec3f& p = m_points.p[m_at];
+        const float reach = m_own.reach[m_at];
+        m_near.clear();
+        std::size_t count = 0;
+        for (const Beside& grid : m_beside) {
+            if (!is_within(grid.box, p, reach)) continue;
+            for (const Run& run : grid.runs) {
+                if (!is_within(run.box, p, reach)) continue;
+                m_near.emplace_back(grid.points, &run);
+                count += run.end - run.begin;
+            }
+        }
+        if (count <= kEnough) return;
+        const std::size_t found = m_near.size(),
+                          kept = std::max<std::size_t>(found * kEnough / count, 1);
+        for (std::size_t i = 0; i < kept; ++i) m_near[i] = m_near[i * found / kept];
+        m_near.resize(kept);
     }
 
     void take(const NoisyPoints& from, std::size_t first, std::size_t last) {
@@ -324,7 +346,8 @@ class Sharing {
 
     const ShadingPoints& m_points;
     const NoisyPoints& m_own;
-    std::optional<Around> m_around;
+    std::vector<Beside> m_beside;
+    std::vector<std::pair<const NoisyPoints*, const Run*>> m_near;
     std::vector<Vec3f> m_shared;
     std::size_t m_channels_apart = 1;  ///< 0: all have the same neighbours
     std::size_t m_at = 0;
