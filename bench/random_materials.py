@@ -24,7 +24,8 @@ FACTORS = (
 CLOSURES = {
     "ShaderNodeBsdfPrincipled": 10,
     "ShaderNodeBsdfDiffuse": 3,
-    "ShaderNodeBsdfGlossy": 2,
+    "ShaderNodeBsdfGlossy": 2,  # in Blender 4 the next one is it
+    "ShaderNodeBsdfAnisotropic": 2,
     "ShaderNodeBsdfGlass": 1,
     "ShaderNodeBsdfRefraction": 1,
     "ShaderNodeBsdfTranslucent": 1,
@@ -50,6 +51,12 @@ def image(random):
     return made
 
 
+def socket(sockets, *names):
+    """The first one in use that has one of the names; None: there is none."""
+    names = [*names, *("Factor" for name in names if name == "Fac")]
+    return next((s for name in names for s in sockets if s.name == name and s.enabled), None)
+
+
 class Graph:
     """Nodes of one material, each chosen by `random` (a numpy generator)."""
 
@@ -64,14 +71,17 @@ class Graph:
         return self.tree.nodes.new(kind)
 
     def link(self, output, node, name):
-        if name in node.inputs:
-            self.tree.links.new(output, node.inputs[name])
+        """Where this version's node has such an input."""
+        found = socket(node.inputs, name)
+        if found is not None:
+            self.tree.links.new(output, found)
 
     def set(self, node, **inputs):
+        """Likewise."""
         for name, value in inputs.items():
-            name = name.replace("_", " ")
-            if name in node.inputs and hasattr(node.inputs[name], "default_value"):
-                node.inputs[name].default_value = value
+            found = socket(node.inputs, name.replace("_", " "))
+            if hasattr(found, "default_value"):
+                found.default_value = value
 
     def choose_enums(self, node, *names):
         for name in names:
@@ -109,6 +119,12 @@ class Graph:
         self.link(place, node, "Vector")
         return node
 
+    @staticmethod
+    def output(node, name):
+        """That one, or whichever is in use."""
+        found = socket(node.outputs, name)
+        return found if found is not None else next(o for o in node.outputs if o.enabled)
+
     def value(self):
         """An output between 0 and 1 or so."""
         if self.chance(0.25):
@@ -122,16 +138,13 @@ class Graph:
         )
         self.choose_enums(ramp.color_ramp, "interpolation")
         pattern = self.pattern()
-        self.link(
-            pattern.outputs["Fac"] if "Fac" in pattern.outputs else pattern.outputs[0], ramp, "Fac"
-        )
+        self.link(self.output(pattern, "Fac"), ramp, "Fac")
         return ramp.outputs["Color"]
 
     def colors(self):
         """An output of colours that reflect at most nine tenths."""
         if self.chance(0.5):
-            pattern = self.pattern()
-            made = pattern.outputs["Color"] if "Color" in pattern.outputs else pattern.outputs[0]
+            made = self.output(self.pattern(), "Color")
         else:
             ramp = self.node("ShaderNodeValToRGB")
             for element in ramp.color_ramp.elements:
@@ -154,7 +167,7 @@ class Graph:
         kinds = [kind for kind in CLOSURES if hasattr(bpy.types, kind)]
         weights = [CLOSURES[kind] for kind in kinds]
         node = self.node(self.random.choice(kinds, p=[w / sum(weights) for w in weights]))
-        base = next((n for n in ("Base Color", "Color") if n in node.inputs), None)
+        base = "Base Color" if "Base Color" in node.inputs else "Color"
         self.set(node, **{base: color(self.random)})
         self.set(node, Strength=float(self.random.uniform(0.2, 3)))
         self.set(
@@ -221,5 +234,6 @@ def material(name, random, displaces=False):
         graph.set(node, Scale=0.1)
         graph.link(graph.value(), node, "Height")
         graph.link(node.outputs[0], output, "Displacement")
-        made.cycles.displacement_method = "BOTH"
+        owner = made if hasattr(made, "displacement_method") else made.cycles
+        owner.displacement_method = "BOTH"
     return made

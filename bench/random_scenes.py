@@ -3,9 +3,10 @@
 
     ./dev bench random_scenes [--seeds 1 2 3] [--reference 128] [--python PYTHON] [--pictures FOLDER]
 
-random_stage.py makes the scenes, 240 x 135 pixels, one thread each, four bounces, no clamps.  FLIP is over the frame; a block is
+random_stage.py makes the scenes, 240 x 135 pixels, one thread each, four bounces, Blender's own clamps.  FLIP is over the frame; a block is
 12 x 12 pixels, as a screen shows it: the mean of one in which noise is gone differs where the engines do, and the widest gap
-is printed beside that of the reference's own halves.  With --pictures Granita | Cycles | four times the difference.
+is printed beside that of the reference's own halves.  With --pictures Granita | Cycles | four times the difference, on a
+dark ground.
 Writes bench/results/random_scenes.json.
 """
 
@@ -17,10 +18,10 @@ import numpy as np
 import pictures
 from measure import save
 
-SETTINGS = [{"engine": "GRANITA", "samples": 64, "light_samples": 8, "bounces": 4}]
-SIZE = (240, 135)
+BOUNCED = {"bounces": 4, "tamed": True}
+GRANITA = {"engine": "GRANITA", "samples": 64, "light_samples": 8, **BOUNCED}
 BLOCK = 12
-SEEDS = range(1, 9)
+SEEDS = range(1, 5)
 
 
 def blocks(image):
@@ -38,14 +39,12 @@ def widest_gap(a, b):
 
 
 def measure(seed, options):
-    job = {"module": "random_stage", "scene": str(seed), "runs": 1, "size": SIZE}
-    half = {"engine": "CYCLES", "samples": options.reference // 2, "bounces": 4}
-    first, second = (
-        frames.render({**job, "settings": [half], "seed": s}, python=options.python)[0]
-        for s in (1, 2)
-    )
+    half = {"engine": "CYCLES", "samples": options.reference // 2, **BOUNCED}
+    job = {"module": "random_stage", "scene": str(seed), "runs": 1}
+    # In one process: hair of particles lies elsewhere in another.
+    job["settings"] = [GRANITA, {**half, "seed": 1}, {**half, "seed": 2}]
+    (image, seconds), first, second = frames.render(job, python=options.python)
     truth = (first[0] + second[0]) / 2
-    ((image, seconds),) = frames.render({**job, "settings": SETTINGS}, python=options.python)
     gap, place = widest_gap(image, truth)
     row = {
         "seed": seed,
@@ -79,7 +78,13 @@ def main():
         "| seed | RMSE | FLIP | mean | widest gap of a block | at | of the reference's halves | seconds | of the reference |"
     )
     print("|---|---|---|---|---|---|---|---|---|")
-    save("random_scenes", [measure(seed, options) for seed in options.seeds])
+    rows = []
+    for seed in options.seeds:
+        try:
+            rows.append(measure(seed, options))
+        except RuntimeError as error:
+            print(f"| {seed} | {str(error).strip().splitlines()[-1]} |", flush=True)
+    save("random_scenes", rows)
 
 
 if __name__ == "__main__":

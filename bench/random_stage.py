@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scenes by chance, one a seed, of what artists put into scenes; no two engines' author has seen them.  Runs inside Blender."""
+"""Scenes by chance, one a seed, of what artists put into scenes.  Runs inside Blender."""
 
 import math
 
@@ -10,7 +10,7 @@ from mathutils import Vector
 from random_materials import color, material
 from scenes import SHUTTER, empty
 
-WIDTH = 320
+WIDTH = 240
 
 
 def grid(**place):
@@ -95,7 +95,8 @@ def thing(index, random):
     change(item, random)
     if item.type == "MESH" and random.random() < 0.08:
         hair(item, random)
-    if random.random() < 0.3:
+    # Cycles mixes up the vertices of metaballs that move.
+    if item.type != "META" and random.random() < 0.3:
         move(item, random)
     if random.random() < 0.15:
         for turn in range(5):

@@ -4,8 +4,8 @@
     blender -b --factory-startup --addons granita --python bench/render_frames.py -- JOB.json
 
 JOB: {"module": "scenes", "lit_scenes", "lamp_scenes", "bounced_scenes", "bounced_places", "crowd_scenes", "limit_scenes", "hero_scene", "moving_files", "walk_scene", "opened_files" (the scene is a path), "random_stage" (a seed) or "demo", "scene", "variant" (of moving_files; frames of walk_scene), "folder", "file", "runs", "seed" (of
-Cycles), "size" (width and height, the scene's own without), "settings": [{"engine": "CYCLES" or "GRANITA", "samples",
-"shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), "frame" (a still at this one), "bounces" (light is followed so far; none without), other
+Cycles; a setting's own comes first), "size" (width and height, the scene's own without), "settings": [{"engine": "CYCLES" or "GRANITA", "samples",
+"shutter" (the scene's own without), "at" (a still at this part of the shutter, without blur), "frame" (a still at this one), "bounces" (light is followed so far; none without), "tamed" (with Blender's own clamps), other
 properties of scene.granita}]}.  Frame i of the settings is kept as FOLDER/i.exr; FILE lists for each setting its runs as [wall, processor,
 bytes]: seconds of the whole frame, export included, and the most that the process has held until then.
 """
@@ -99,14 +99,16 @@ def main():
             engine, samples = setting.pop("engine"), setting.pop("samples")
             open_for = setting.pop("shutter", shutter)
             at, bounces = setting.pop("at", None), setting.pop("bounces", 0)
+            tamed = setting.pop("tamed", False)
+            seed = setting.pop("seed", job.get("seed", 0))
             begins, open_for = (opens, open_for) if at is None else (opens + at * open_for, 0.0)
             begins = setting.pop("frame", begins)
             if engine == "CYCLES":
-                engines.set_cycles(scene, samples, job.get("seed", 0))
+                engines.set_cycles(scene, samples, seed)
             else:
                 engines.set_granita(scene, samples, **setting)
             if bounces:
-                engines.set_bounces(scene, bounces)
+                engines.set_bounces(scene, bounces, tamed)
             engines.set_motion(scene, engine, begins, open_for)
             bpy.context.view_layer.update()
             processor = time.process_time()

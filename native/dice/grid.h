@@ -162,7 +162,7 @@ struct Grid {
     /// the end.
     float light_share = 0.0f;
     /// What its points tell grids around (shade/told_light.h), by what part of their light samples,
-    /// nullptr: nothing; and what they were told by these, of a grid that is kept.
+    /// and what they were told by these, of a grid that is kept.  nullptr: they tell nothing.
     std::shared_ptr<const ToldLight> told;
     float told_share = 0.0f;
     std::vector<std::shared_ptr<const ToldLight>> told_around;

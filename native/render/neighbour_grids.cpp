@@ -50,17 +50,14 @@ class Search {
         const Grid& grid = other->grid();
         if (grid.key == m_grid.key || grid.material != m_grid.material) return;
         const ShadingSystem& shading = m_frame.shading;
-        const bool varies = shading.opacity_varies(grid.material);
-        if (!varies && shading.leaves_to_samples(grid)) return;
-        if (!m_place.is_within(static_cast<float>(kNeighbourReach) * m_place.step,
-                               other->place(m_frame.statistics)))
-            return;
-        if (varies) {
-            // Which are left to samples goes by opacity, whoever has asked for that so far.
+        // Which small faces are left to samples goes by opacity, whoever has asked for that so far.
+        if (grid.triangles && shading.opacity_varies(grid.material))
             other->ensure_opacity(shading, m_frame.statistics);
-            if (shading.leaves_to_samples(grid)) return;
-        }
-        m_found.push_back(other);
+        // Those have no place once their state is dropped.
+        if (shading.leaves_to_samples(grid)) return;
+        if (m_place.is_within(static_cast<float>(kNeighbourReach) * m_place.step,
+                              other->place(m_frame.statistics)))
+            m_found.push_back(other);
     }
 
     Frame& m_frame;

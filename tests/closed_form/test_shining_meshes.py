@@ -104,12 +104,23 @@ def test_a_square_that_moves_lights_from_where_it_is(executor, how):
     assert seen(snapshot).mean() == pytest.approx(truth.mean(), rel=0.004)
 
 
-def test_what_shines_hides_its_own_far_side():
-    """Two sheets of one mesh, the one above the other, that cast no shadow: light of the far one comes from behind."""
-    snapshot = stage()
-    points = [*s.rectangle(10, 12, 22, 18, LAMP), *s.rectangle(10, 12, 22, 18, LAMP - 0.01)]
-    shines(snapshot, points, [(0, 1, 2, 3), (4, 5, 6, 7)], flags=DIFFUSE | GLOSSY)
-    truth = ALBEDO * form_factor(10, 12, 22, 18, FLOOR - LAMP, *pixels())
+@pytest.mark.parametrize("bounces", [0, 1])
+@pytest.mark.parametrize(("near", "lights"), [("shines", 1), ("matte", 1), ("another", 2)])
+def test_what_shines_hides_its_own_far_side(near, lights, bounces):
+    """Two sheets, the one above the other, that cast no shadow: of one mesh, light of the far one comes from behind."""
+    snapshot = stage(bounces=bounces)
+    sheets = [s.rectangle(10, 12, 22, 18, z) for z in (LAMP - 0.01, LAMP)]
+    if near == "another":
+        for sheet in sheets:
+            shines(snapshot, sheet, [(0, 1, 2, 3)], flags=DIFFUSE | GLOSSY)
+    else:
+        faces = [(0, 1, 2, 3), (4, 5, 6, 7)]
+        slots = np.array([0, 1], np.int32)
+        shines(snapshot, sum(sheets, []), faces, flags=DIFFUSE | GLOSSY, material_index=slots)
+        table = snapshot["instances"]
+        table["slots"][-1] = 2
+        table["materials"].append(0 if near == "matte" else table["materials"][-1])
+    truth = lights * ALBEDO * form_factor(10, 12, 22, 18, FLOOR - LAMP, *pixels())
     assert seen(snapshot) == pytest.approx(truth, abs=0.004)
     assert seen(snapshot).mean() == pytest.approx(truth.mean(), rel=0.003)
 

@@ -61,12 +61,12 @@ def set_cycles(scene, samples, seed=0):
     cycles.pixel_filter_type, cycles.filter_width = "BLACKMAN_HARRIS", 1.5
 
 
-def set_bounces(scene, most):
-    """Light is followed from surface to surface in either engine, without anything that tames its noise."""
+def set_bounces(scene, most, tamed=False):
+    """Light is followed from surface to surface in either engine; its noise is tamed as a new file does it, or not at all."""
     cycles = scene.cycles
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = most
     cycles.transmission_bounces = most
-    cycles.sample_clamp_indirect = cycles.blur_glossy = 0.0
+    cycles.sample_clamp_indirect, cycles.blur_glossy = (10.0, 1.0) if tamed else (0.0, 0.0)
     scene.granita.bounces = "FULL"
 
 

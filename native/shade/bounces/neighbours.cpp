@@ -24,7 +24,7 @@ using V = hn::Vec<decltype(kTag)>;
 constexpr std::size_t kRun = 64;
 /// Steps of the grid: what varies slower than that is found at every second point.
 constexpr float kSlowly = 6.0f;
-/// Points of other grids, at most: twice as many as lie around one of a lattice.  Where a ball has
+/// Points of other grids, or so: twice as many as lie around one of a lattice.  Where a ball has
 /// its pole, or a cone its tip, a point's reach holds thousands.
 constexpr std::size_t kEnough = 512;
 /// Most that their normals are turned away, as 1 - cosine.

@@ -22,7 +22,8 @@ struct Ray {
     float time = 0.5f;       ///< of the shutter, [0, 1]
     int blocker_set = -1;    ///< of the light: others than Instance::blocks names let it pass
     RayType type = RayType::Shadow;
-    RayTarget target = {};  ///< where it goes to, which casts no shadow on itself
+    /// Where it goes to: a face that shines, which casts no shadow on itself.
+    RayTarget target = {};
 
     /// Embree leaves other rays undefined, and as Debian builds it ends the process at them.
     bool is_traceable() const {

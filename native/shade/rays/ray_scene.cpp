@@ -72,6 +72,17 @@ Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& r
     return materials.transparency(hit, context.rays->type);
 }
 
+/// Whoever looks at what shines sees its near side, whatever shadow it casts: light of the far one
+/// would come to it twice.
+bool RayScene::Impl::hides_itself(const ShadowContext& context, const RTCRay& ray, const RTCHit& at,
+                                  const RayInstance& instance) const {
+    const bool blocks = in_light_set(scene.instances[instance.index].blocks, context.blocker_set);
+    if (context.rays->type != RayType::Shadow || !blocks || !materials.emitted) return false;
+    RayHit hit;
+    locate(ray, at, instance.index, context.start, context.direction, hit);
+    return materials.emitted(hit.material) != Vec3f(0.0f);
+}
+
 /// Called for hits on geometry that may let light through, not exist or not be in the light's set:
 /// goes on while light is left. Without spatial splits (medium quality) Embree meets a triangle
 /// once.  Spheres of points are met from outside alone.
@@ -91,23 +102,22 @@ void RayScene::Impl::pass_through(const RTCFilterFunctionNArguments* arguments) 
             context->looked_at[RTCRayN_id(arguments->ray, arguments->N, i)] = true;
     }
     if (context->looked_at != nullptr || arguments->valid[0] != -1 || instance.is_plain) return;
-    const float time = reinterpret_cast<const RTCRay*>(arguments->ray)->time;
+    const auto& traced = *reinterpret_cast<const RTCRay*>(arguments->ray);
+    const float time = traced.time;
     const Instance& met = scene->scene.instances[instance.index];
     const RayType type = context->rays->type;
-    // Whoever looks at what shines sees its near side, whatever shadow it casts.
-    const bool is_own = id == context->rays->target.instance;
-    const bool is_met = is_own || meets(type, met, context->blocker_set);
+    const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+    const bool is_met = meets(type, met, context->blocker_set) ||
+                        (id == context->rays->target.instance &&
+                         scene->hides_itself(*context, traced, hit, instance));
     if (!is_met || !met.lifespan.contains(time)) {
         arguments->valid[0] = 0;
         return;
     }
     if (!instance.lets_light_through || context->all_opaque) return;
     try {
-        context->left *=
-            instance.constant
-                ? *instance.constant
-                : scene->transparency(*context, *reinterpret_cast<const RTCRay*>(arguments->ray),
-                                      *reinterpret_cast<const RTCHit*>(arguments->hit), instance);
+        context->left *= instance.constant ? *instance.constant
+                                           : scene->transparency(*context, traced, hit, instance);
     } catch (...) {
         context->failure = std::current_exception();  // thrown on after Embree's frames are left
         return;

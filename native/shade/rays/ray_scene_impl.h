@@ -98,6 +98,8 @@ struct RayScene::Impl {
     void note_crossing(const RTCFilterFunctionNArguments* arguments) const;
     bool lets_light_through(const Instance& instance) const;
     std::optional<Vec3f> constant_of(const Instance& instance) const;
+    bool hides_itself(const ShadowContext& context, const RTCRay& ray, const RTCHit& hit,
+                      const RayInstance& instance) const;
     Vec3f transparency(const ShadowContext& context, const RTCRay& ray, const RTCHit& hit,
                        const RayInstance& instance) const;
     static void pass_through(const RTCFilterFunctionNArguments* arguments);
