@@ -51,10 +51,10 @@ def image(random):
     return made
 
 
-def socket(sockets, *names):
-    """The first one in use that has one of the names; None: there is none."""
-    names = [*names, *("Factor" for name in names if name == "Fac")]
-    return next((s for name in names for s in sockets if s.name == name and s.enabled), None)
+def socket(sockets, name):
+    """The one in use that has the name, in Blender 5 "Factor" for "Fac"; None: there is none."""
+    names = (name, "Factor") if name == "Fac" else (name,)
+    return next((s for s in sockets if s.name in names and s.enabled), None)
 
 
 class Graph:

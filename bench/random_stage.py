@@ -8,7 +8,7 @@ import engines
 import numpy as np
 from mathutils import Vector
 from random_materials import color, material
-from scenes import SHUTTER, empty
+from scenes import SHUTTER, animate, empty
 
 WIDTH = 240
 
@@ -64,12 +64,10 @@ def change(item, random):
 
 
 def move(item, random):
-    """Along a way, or around, through frames 0 to 2."""
+    """Along a way, or around."""
     path = random.choice(("location", "rotation_euler"))
-    rest, step = np.array(getattr(item, path)), random.normal(0, 0.15, 3) / SHUTTER
-    for frame in (0, 2):
-        setattr(item, path, rest + (frame - 1) * step)
-        item.keyframe_insert(path, frame=frame)
+    for axis, change in enumerate(random.normal(0, 0.15, 3)):
+        animate(item, path, axis, change)
 
 
 def hair(item, random):

@@ -30,8 +30,10 @@ std::vector<bool> shade_seen(Frame& frame, int bucket, const Hider& hider, const
         const StageTimer timer(frame.statistics, Stage::Hide);
         seen = hider.seen_grids();
     }
-    if (around) *around = all_neighbours(frame, bucket, grids, seen);
-    shade_grids(frame, bucket, grids, seen, around ? *around : std::vector<HiddenGrids>());
+    std::vector<HiddenGrids> unlisted;
+    std::vector<HiddenGrids>& listed = around ? *around : unlisted;
+    if (around) listed = all_neighbours(frame, bucket, grids, seen);
+    shade_grids(frame, bucket, grids, seen, listed);
     return seen;
 }
 
