@@ -1,26 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials by chance: patterns, closures and how they are put together.  Runs inside Blender."""
+"""Materials by chance: closures, how they are put together, and volumes.  Runs inside Blender."""
 
 import bpy
+from random_patterns import PLACES, Patterns, color
 
-# Not White Noise, which the last bit of a place decides.
-PATTERNS = (
-    "ShaderNodeTexNoise",
-    "ShaderNodeTexVoronoi",
-    "ShaderNodeTexWave",
-    "ShaderNodeTexChecker",
-    "ShaderNodeTexBrick",
-    "ShaderNodeTexMagic",
-    "ShaderNodeTexGradient",
-    "ShaderNodeTexImage",
-)
-PLACES = ("Generated", "Object", "UV", "Normal")
-FACTORS = (
-    "ShaderNodeFresnel",
-    "ShaderNodeLayerWeight",
-    "ShaderNodeLightPath",
-    "ShaderNodeNewGeometry",
-)
 CLOSURES = {
     "ShaderNodeBsdfPrincipled": 10,
     "ShaderNodeBsdfDiffuse": 3,
@@ -34,139 +17,32 @@ CLOSURES = {
     "ShaderNodeBsdfToon": 1,
     "ShaderNodeBsdfVelvet": 1,
     "ShaderNodeBsdfSheen": 1,
+    "ShaderNodeBsdfMetallic": 1,
     "ShaderNodeEmission": 1,
+    "ShaderNodeHoldout": 0.3,
 }
+# Of Principled, by the names of every version.
+LAYERS = (
+    ("Metallic",),
+    ("Transmission", "Transmission Weight"),
+    ("Coat Weight", "Clearcoat"),
+    ("Sheen", "Sheen Weight"),
+    ("Subsurface", "Subsurface Weight"),
+    ("Anisotropic",),
+    ("Specular", "Specular IOR Level"),
+    ("Specular Tint",),
+    ("Diffuse Roughness",),
+)
 
 
-def color(random, brightest=0.9):
-    return (*random.uniform(0.02, brightest, 3), 1.0)
-
-
-def image(random):
-    """Smooth noise in 64 x 64 texels."""
-    made = bpy.data.images.new("Texels", 64, 64, alpha=False)
-    coarse = random.uniform(0, 1, (8, 8, 3)).repeat(8, 0).repeat(8, 1)
-    made.pixels[:] = [v for texel in coarse.reshape(-1, 3) for v in (*texel, 1.0)]
-    made.pack()
-    return made
-
-
-def socket(sockets, name):
-    """The one in use that has the name, in Blender 5 "Factor" for "Fac"; None: there is none."""
-    names = (name, "Factor") if name == "Fac" else (name,)
-    return next((s for s in sockets if s.name in names and s.enabled), None)
-
-
-class Graph:
-    """Nodes of one material, each chosen by `random` (a numpy generator)."""
-
-    def __init__(self, tree, random):
-        self.tree, self.random = tree, random
-        tree.nodes.clear()
-
-    def chance(self, of):
-        return self.random.random() < of
-
-    def node(self, kind):
-        return self.tree.nodes.new(kind)
-
-    def link(self, output, node, name):
-        """Where this version's node has such an input."""
-        found = socket(node.inputs, name)
-        if found is not None:
-            self.tree.links.new(output, found)
-
-    def set(self, node, **inputs):
-        """Likewise."""
-        for name, value in inputs.items():
-            found = socket(node.inputs, name.replace("_", " "))
-            if hasattr(found, "default_value"):
-                found.default_value = value
-
-    def choose_enums(self, node, *names):
-        for name in names:
-            found = node.bl_rna.properties.get(name)
-            if found and found.type == "ENUM" and found.enum_items:
-                setattr(
-                    node, name, self.random.choice([item.identifier for item in found.enum_items])
-                )
-
-    def pattern(self):
-        """The node of a texture somewhere on the surface."""
-        node = self.node(self.random.choice(PATTERNS))
-        if node.bl_idname == "ShaderNodeTexImage":
-            node.image = image(self.random)
-            self.choose_enums(node, "interpolation", "extension")
-        self.choose_enums(
-            node,
-            "wave_type",
-            "wave_profile",
-            "gradient_type",
-            "feature",
-            "distance",
-            "noise_dimensions",
-        )
-        scale = float(self.random.uniform(1, 8))
-        self.set(node, Scale=scale, Detail=float(self.random.uniform(0, 4)))
-        self.set(node, Color1=color(self.random), Color2=color(self.random))
-        place = self.node("ShaderNodeTexCoord").outputs[self.random.choice(PLACES)]
-        if self.chance(0.3):
-            mapping = self.node("ShaderNodeMapping")
-            mapping.inputs["Rotation"].default_value = self.random.uniform(-1, 1, 3)
-            mapping.inputs["Scale"].default_value = self.random.uniform(0.5, 3, 3)
-            self.link(place, mapping, "Vector")
-            place = mapping.outputs[0]
-        self.link(place, node, "Vector")
-        return node
-
-    @staticmethod
-    def output(node, name):
-        """That one, or whichever is in use."""
-        found = socket(node.outputs, name)
-        return found if found is not None else next(o for o in node.outputs if o.enabled)
-
-    def value(self):
-        """An output between 0 and 1 or so."""
-        if self.chance(0.25):
-            node = self.node(self.random.choice(FACTORS))
-            outputs = [o for o in node.outputs if o.type == "VALUE" and "Depth" not in o.name]
-            outputs = [o for o in outputs if o.name not in ("Ray Length", "Random Per Island")]
-            return outputs[self.random.integers(len(outputs))]
-        ramp = self.node("ShaderNodeValToRGB")
-        ramp.color_ramp.elements[0].position, ramp.color_ramp.elements[1].position = sorted(
-            self.random.uniform(0, 1, 2)
-        )
-        self.choose_enums(ramp.color_ramp, "interpolation")
-        pattern = self.pattern()
-        self.link(self.output(pattern, "Fac"), ramp, "Fac")
-        return ramp.outputs["Color"]
-
-    def colors(self):
-        """An output of colours that reflect at most nine tenths."""
-        if self.chance(0.5):
-            made = self.output(self.pattern(), "Color")
-        else:
-            ramp = self.node("ShaderNodeValToRGB")
-            for element in ramp.color_ramp.elements:
-                element.color = color(self.random)
-            self.link(self.value(), ramp, "Fac")
-            made = ramp.outputs["Color"]
-        dim = self.node("ShaderNodeMixRGB")
-        dim.blend_type = "MULTIPLY"
-        self.set(dim, Fac=1.0, Color2=color(self.random))
-        self.link(made, dim, "Color1")
-        return dim.outputs["Color"]
-
-    def bump(self):
-        node = self.node("ShaderNodeBump")
-        self.set(node, Strength=float(self.random.uniform(0.1, 0.6)), Distance=0.05)
-        self.link(self.value(), node, "Height")
-        return node.outputs["Normal"]
+class Graph(Patterns):
+    """Nodes of one material."""
 
     def closure(self):
         kinds = [kind for kind in CLOSURES if hasattr(bpy.types, kind)]
         weights = [CLOSURES[kind] for kind in kinds]
-        node = self.node(self.random.choice(kinds, p=[w / sum(weights) for w in weights]))
+        total = sum(weights)
+        node = self.node(self.random.choice(kinds, p=[w / total for w in weights]))
         base = "Base Color" if "Base Color" in node.inputs else "Color"
         self.set(node, **{base: color(self.random)})
         self.set(node, Strength=float(self.random.uniform(0.2, 3)))
@@ -174,47 +50,59 @@ class Graph:
             node,
             IOR=float(self.random.uniform(1.1, 1.8)),
             Roughness=float(self.random.uniform(0.05, 0.9)),
+            Scale=float(self.random.uniform(0.02, 0.3)),
         )
-        self.set(node, Scale=float(self.random.uniform(0.02, 0.3)))
         if self.chance(0.5):
             self.link(self.colors(), node, base)
         if self.chance(0.3):
             self.link(self.value(), node, "Roughness")
         if self.chance(0.25):
-            self.link(self.bump(), node, "Normal")
+            self.link(self.normals(), node, "Normal")
+        if self.chance(0.2):
+            tangent = self.node("ShaderNodeTangent")
+            tangent.direction_type = "RADIAL"
+            self.link(tangent.outputs[0], node, "Tangent")
         if node.bl_idname == "ShaderNodeBsdfPrincipled":
             self.principled(node)
         return node.outputs[0]
 
     def principled(self, node):
-        """A few of its layers, by the names of every version."""
-        layers = (
-            {"Metallic": 1.0},
-            {"Transmission": 1.0, "Transmission Weight": 1.0},
-            {"Coat Weight": 1.0, "Clearcoat": 1.0},
-            {"Sheen": 0.5, "Sheen Weight": 0.5},
-            {"Subsurface": 0.3, "Subsurface Weight": 0.5, "Subsurface Scale": 0.1},
-            {"Alpha": 0.5},
-            {"Anisotropic": 0.7},
-            {
-                "Emission Strength": 0.5,
-                "Emission": color(self.random),
-                "Emission Color": color(self.random),
-            },
-            {"Specular": 0.9, "Specular IOR Level": 0.9},
-        )
-        for layer in layers:
-            if self.chance(0.15):
-                self.set(node, **layer)
+        """A few of its layers, whole, in part or by a pattern."""
+        for names in LAYERS:
+            if not self.chance(0.15):
+                continue
+            weight = 1.0 if self.chance(0.5) else float(self.random.uniform(0.1, 0.9))
+            for name in names:
+                found = node.inputs.get(name)
+                if found is not None and found.type == "RGBA":
+                    found.default_value = color(self.random)
+                elif found is not None:
+                    found.default_value = weight
+            if self.chance(0.2):
+                value = self.value()
+                for name in names:
+                    self.link(value, node, name)
+        self.set(node, Subsurface_Scale=0.1, Sheen_Tint=color(self.random))
+        self.set(node, Coat_Tint=color(self.random), Coat_Roughness=0.2, Clearcoat_Roughness=0.2)
+        if self.chance(0.1):
+            self.set(node, Thin_Film_Thickness=float(self.random.uniform(100, 900)))
+        if self.chance(0.15):
+            self.set(node, Alpha=0.5)
+            if self.chance(0.5):
+                self.link(self.value(), node, "Alpha")
+        if self.chance(0.12):
+            self.set(node, Emission_Strength=0.5, Emission=color(self.random))
+            self.set(node, Emission_Color=color(self.random))
+            if self.chance(0.4):
+                glow = self.colors()
+                self.link(glow, node, "Emission")
+                self.link(glow, node, "Emission Color")
 
     def surface(self):
         made = self.closure()
         if self.chance(0.3):
-            mix = self.node(
-                self.random.choice(
-                    ("ShaderNodeMixShader", "ShaderNodeMixShader", "ShaderNodeAddShader")
-                )
-            )
+            kinds = ("ShaderNodeMixShader", "ShaderNodeMixShader", "ShaderNodeAddShader")
+            mix = self.node(self.random.choice(kinds))
             if mix.bl_idname == "ShaderNodeMixShader":
                 self.tree.links.new(self.value(), mix.inputs[0])
             self.tree.links.new(made, mix.inputs[-2])
@@ -222,17 +110,39 @@ class Graph:
             made = mix.outputs[0]
         return made
 
+    def volume(self):
+        kinds = (
+            "ShaderNodeVolumePrincipled",
+            "ShaderNodeVolumeScatter",
+            "ShaderNodeVolumeAbsorption",
+        )
+        node = self.node(self.random.choice(kinds))
+        self.set(
+            node,
+            Color=color(self.random),
+            Density=float(self.random.uniform(0.1, 2)),
+            Anisotropy=float(self.random.uniform(-0.5, 0.7)),
+        )
+        if self.chance(0.4):
+            self.link(self.value(), node, "Density")
+        return node.outputs[0]
 
-def material(name, random, displaces=False):
+
+def material(name, random, displaces=False, filled=False):
+    """Of a surface; `filled` has a volume, with a surface around it or none."""
     made = bpy.data.materials.new(name)
     made.use_nodes = True
+    made.node_tree.nodes.clear()
     graph = Graph(made.node_tree, random)
     output = graph.node("ShaderNodeOutputMaterial")
-    graph.link(graph.surface(), output, "Surface")
+    if filled:
+        graph.link(graph.volume(), output, "Volume")
+    if not filled or graph.chance(0.3):
+        graph.link(graph.surface(), output, "Surface")
     if displaces:
         node = graph.node("ShaderNodeDisplacement")
         graph.set(node, Scale=0.1)
-        graph.link(graph.value(), node, "Height")
+        graph.link(Patterns(made.node_tree, random, PLACES).value(), node, "Height")
         graph.link(node.outputs[0], output, "Displacement")
         owner = made if hasattr(made, "displacement_method") else made.cycles
         owner.displacement_method = "BOTH"

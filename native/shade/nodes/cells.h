@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "math/hash.h"
 #include "math/pcg_hash.h"
@@ -71,6 +72,50 @@ float length_of(const CellPoint<N>& d, Metric metric, float exponent) {
     return metric == Metric::Euclidean ? std::sqrt(sum) : sum;
 }
 
+/// A bound that it is not below, at a fraction of its cost: of lengths by powers those of higher
+/// powers are shorter.
+template <std::size_t N>
+float least_length_of(const CellPoint<N>& d, Metric metric, float exponent) {
+    if (metric != Metric::Minkowski) return length_of<N>(d, metric, exponent);
+    if (!(exponent > 0.0f)) return 0.0f;
+    if (exponent <= 1.0f) return length_of<N>(d, Metric::Manhattan, exponent);
+    return length_of<N>(d, exponent <= 2.0f ? Metric::Euclidean : Metric::Chebychev, exponent);
+}
+
+/// A cell near another, as seen from there.
+template <std::size_t N>
+struct CellBeside {
+    CellPoint<N> offset{};
+    int index = 0;  ///< in an order that has the first axis fastest
+    int sides = 0;  ///< axes along which it is away
+};
+
+/// Those up to `Reach` away, in that order.
+template <std::size_t N, int Reach>
+constexpr auto cells_beside() {
+    constexpr std::size_t kSide = 2 * Reach + 1;
+    constexpr std::size_t kCells =
+        kSide * (N > 1 ? kSide : 1) * (N > 2 ? kSide : 1) * (N > 3 ? kSide : 1);
+    std::array<CellBeside<N>, kCells> cells{};
+    for (std::size_t i = 0; i < kCells; ++i) {
+        cells[i].index = static_cast<int>(i);
+        for (std::size_t c = 0, rest = i; c < N; ++c, rest /= kSide) {
+            cells[i].offset[c] = static_cast<float>(static_cast<int>(rest % kSide) - Reach);
+            cells[i].sides += cells[i].offset[c] != 0.0f;
+        }
+    }
+    return cells;
+}
+
+/// Those up to one away, from the middle outwards.
+template <std::size_t N>
+constexpr auto cells_outwards() {
+    auto cells = cells_beside<N, 1>();
+    std::ranges::sort(cells, {},
+                      [](const CellBeside<N>& cell) { return std::pair(cell.sides, cell.index); });
+    return cells;
+}
+
 template <std::size_t N>
 CellPoint<N> difference(const CellPoint<N>& a, const CellPoint<N>& b) {
     CellPoint<N> d;
@@ -110,24 +155,24 @@ class CellsAround {
     }
     Vec3f color(const CellPoint<N>& offset) const { return color_of_cell<N>(cell(offset), m_pcg); }
 
-    /// `visit(offset, point)` of the cells up to `reach` away, the first axis fastest.
-    template <class Visit>
-    void each(int reach, const Visit& visit) const {
-        const int side = 2 * reach + 1;
-        int cells = 1;
-        for (std::size_t c = 0; c < N; ++c) cells *= side;
-        for (int index = 0; index < cells; ++index) {
-            CellPoint<N> offset;
-            for (std::size_t c = 0, rest = static_cast<std::size_t>(index); c < N; ++c) {
-                offset[c] = static_cast<float>(rest % static_cast<std::size_t>(side)) -
-                            static_cast<float>(reach);
-                rest /= static_cast<std::size_t>(side);
-            }
-            visit(offset, point(offset));
-        }
+    /// `visit(cell, point)` of those `beside` (CellBeside) that may hold a point that is near:
+    /// `is_near(way)`, with the least way to any of them along each axis.
+    template <class IsNear, class Visit>
+    void each(const auto& beside, const IsNear& is_near, const Visit& visit) const {
+        for (const CellBeside<N>& cell : beside)
+            if (is_near(least_way(cell.offset))) visit(cell, point(cell.offset));
     }
 
   private:
+    /// To the points that a cell may have, along each axis.
+    CellPoint<N> least_way(const CellPoint<N>& offset) const {
+        CellPoint<N> way;
+        for (std::size_t c = 0; c < N; ++c)
+            way[c] =
+                std::max({offset[c] - m_inside[c], m_inside[c] - (offset[c] + m_randomness), 0.0f});
+        return way;
+    }
+
     CellPoint<N> m_base, m_inside;
     float m_randomness;
     bool m_pcg;

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "shade/nodes/cells.h"
 
@@ -82,28 +84,31 @@ class Voronoi {
     /// Half of the way from the nearest point to its own nearest.
     float sphere_radius(const CellPoint<N>& place) const {
         const CellsAround<N> cells = around(place);
-        CellPoint<N> middle{}, nearest{};
+        const Near nearest = nearest_of(cells, Metric::Euclidean, 1).first;
         float least = kFar;
-        cells.each(1, [&](const CellPoint<N>& offset, const CellPoint<N>& point) {
-            const CellPoint<N> way = difference(point, cells.inside());
-            if (dot(way, way) >= least) return;
-            least = dot(way, way);
-            middle = offset;
-            nearest = point;
-        });
-        least = kFar;
-        cells.each(1, [&](const CellPoint<N>& offset, const CellPoint<N>&) {
-            if (offset == CellPoint<N>{}) return;
+        for (const CellBeside<N>& cell : kBeside) {
+            if (cell.sides == 0) continue;
             CellPoint<N> other;
-            for (std::size_t c = 0; c < N; ++c) other[c] = middle[c] + offset[c];
-            const CellPoint<N> way = difference(cells.point(other), nearest);
+            for (std::size_t c = 0; c < N; ++c) other[c] = nearest.offset[c] + cell.offset[c];
+            const CellPoint<N> way = difference(cells.point(other), nearest.point);
             least = std::min(least, dot(way, way));
-        });
+        }
         return 0.5f * std::sqrt(least);
     }
 
   private:
     static constexpr float kFar = std::numeric_limits<float>::max();
+    static constexpr auto kBeside = cells_beside<N, 1>(), kOutwards = cells_outwards<N>();
+    static constexpr auto kAround = cells_beside<N, 2>();
+    struct Near {
+        float distance = kFar;
+        int index = 0;  ///< of two that are as near the first counts
+        CellPoint<N> offset{}, point{};
+
+        bool operator<(const Near& other) const {
+            return std::tie(distance, index) < std::tie(other.distance, other.index);
+        }
+    };
 
     CellsAround<N> around(const CellPoint<N>& place) const {
         return CellsAround<N>(place, m_in.randomness, m_settings.pcg);
@@ -131,22 +136,35 @@ class Voronoi {
                                                               : nearest_octave(place);
     }
 
+    /// The nearest two points, the second one only if `count` says so.  Most cells are farther away
+    /// than what was found before (in 3D a point asks 9 of 27).
+    std::pair<Near, Near> nearest_of(const CellsAround<N>& cells, Metric metric, int count) const {
+        Near first, second;
+        const Near& last = count > 1 ? second : first;
+        cells.each(
+            kOutwards,
+            [&](const CellPoint<N>& way) {
+                return !(least_length_of<N>(way, metric, m_in.exponent) > last.distance);
+            },
+            [&](const CellBeside<N>& cell, const CellPoint<N>& point) {
+                const CellPoint<N> way = difference(point, cells.inside());
+                const Near here{length_of<N>(way, metric, m_in.exponent), cell.index, cell.offset,
+                                point};
+                if (here < first) {
+                    second = first;
+                    first = here;
+                } else if (here < second) {
+                    second = here;
+                }
+            });
+        return {first, second};
+    }
+
     VoronoiValue<N> nearest_octave(const CellPoint<N>& place) const {
         const CellsAround<N> cells = around(place);
-        struct Near {
-            float distance = kFar;
-            CellPoint<N> offset{}, point{};
-        } first, second;
-        cells.each(1, [&](const CellPoint<N>& offset, const CellPoint<N>& point) {
-            const Near here{distance(cells, point), offset, point};
-            if (here.distance < first.distance) {
-                second = first;
-                first = here;
-            } else if (here.distance < second.distance) {
-                second = here;
-            }
-        });
-        const Near& found = m_settings.feature == VoronoiFeature::F2 ? second : first;
+        const bool is_second = m_settings.feature == VoronoiFeature::F2;
+        const auto [first, second] = nearest_of(cells, m_settings.metric, is_second ? 2 : 1);
+        const Near& found = is_second ? second : first;
         VoronoiValue<N> value{found.distance, {}, found.point};
         if (m_colored) value.color = cells.color(found.offset);
         for (std::size_t c = 0; c < N; ++c) value.position[c] += cells.base()[c];
@@ -158,8 +176,14 @@ class Voronoi {
         const CellsAround<N> cells = around(place);
         VoronoiValue<N> value;
         value.distance = 8.0f;
-        cells.each(2, [&](const CellPoint<N>& offset, const CellPoint<N>& point) {
-            const float here = distance(cells, point);
+        // What is no nearer than that by all of the smoothness changes nothing.
+        const auto is_near = [&](const CellPoint<N>& way) {
+            return !(least_length_of<N>(way, m_settings.metric, m_in.exponent) >
+                     value.distance + m_in.smoothness);
+        };
+        cells.each(kAround, is_near, [&](const CellBeside<N>& cell, const CellPoint<N>& point) {
+            const float here =
+                length_of<N>(difference(point, cells.inside()), m_settings.metric, m_in.exponent);
             const float t =
                 std::clamp(0.5f + 0.5f * (value.distance - here) / m_in.smoothness, 0.0f, 1.0f);
             const float h = t * t * (3.0f - 2.0f * t);
@@ -167,7 +191,7 @@ class Voronoi {
             value.distance += h * (here - value.distance) - less;
             less /= 1.0f + 3.0f * m_in.smoothness;
             if (m_colored && h > 0.0f)
-                value.color += h * (cells.color(offset) - value.color) - less;
+                value.color += h * (cells.color(cell.offset) - value.color) - less;
             for (std::size_t c = 0; c < N; ++c)
                 value.position[c] += h * (point[c] - value.position[c]) - less;
         });
@@ -182,16 +206,14 @@ class Voronoi {
             return std::min(std::abs(0.5f * (middle + cells.point({-1.0f})[0]) - at),
                             std::abs(0.5f * (middle + cells.point({1.0f})[0]) - at));
         }
-        CellPoint<N> nearest{};
-        float least = kFar;
-        cells.each(1, [&](const CellPoint<N>&, const CellPoint<N>& point) {
-            const CellPoint<N> way = difference(point, cells.inside());
-            if (dot(way, way) >= least) return;
-            least = dot(way, way);
-            nearest = way;
-        });
-        least = 8.0f;
-        cells.each(1, [&](const CellPoint<N>&, const CellPoint<N>& point) {
+        const Near first = nearest_of(cells, Metric::Euclidean, 1).first;
+        const CellPoint<N> nearest = difference(first.point, cells.inside());
+        float least = 8.0f;
+        // No border is nearer than half of what its point is farther away.
+        const auto is_near = [&](const CellPoint<N>& way) {
+            return length_of<N>(way, Metric::Euclidean, 2.0f) < first.distance + 2.001f * least;
+        };
+        cells.each(kBeside, is_near, [&](const CellBeside<N>&, const CellPoint<N>& point) {
             const CellPoint<N> way = difference(point, cells.inside());
             const CellPoint<N> across = difference(way, nearest);
             const float length = dot(across, across);
@@ -200,10 +222,6 @@ class Voronoi {
                              0.5f * (dot(nearest, across) + dot(way, across)) / std::sqrt(length));
         });
         return least;
-    }
-
-    float distance(const CellsAround<N>& cells, const CellPoint<N>& point) const {
-        return length_of<N>(difference(point, cells.inside()), m_settings.metric, m_in.exponent);
     }
 
     VoronoiSettings m_settings;
