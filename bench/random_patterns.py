@@ -100,10 +100,12 @@ class Patterns:
             self.tree.links.new(output, found)
 
     def set(self, node, **inputs):
-        """Likewise."""
+        """Likewise; colours where older versions have numbers are left."""
         for name, value in inputs.items():
             found = socket(node.inputs, name.replace("_", " "))
-            if hasattr(found, "default_value"):
+            if hasattr(found, "default_value") and (found.type == "VALUE") == isinstance(
+                value, float
+            ):
                 found.default_value = value
 
     def choose_enums(self, node, *names):

@@ -66,7 +66,7 @@ def bend(item, random):
         key.keyframe_insert("value", frame=frame)
 
 
-def change(item, random):
+def change(item, displaces, random):
     """Modifiers, smoothness, and what rays may see it."""
     if item.type == "MESH":
         tint(item.data, random)
@@ -79,10 +79,15 @@ def change(item, random):
                 item.modifiers.new(kind, kind)
         if random.random() < 0.15:
             array = item.modifiers.new("ARRAY", "ARRAY")
-            array.count, array.relative_offset_displace = 3, (0.4, 0.3, 0.5)
+            array.count, array.use_relative_offset = 3, False
+            array.use_constant_offset, array.constant_offset_displace = True, (0.5, 0.4, 0.7)
         if random.random() < 0.05:
             item.modifiers.new("WIREFRAME", "WIREFRAME")
-    for name in ("camera", "diffuse", "glossy", "transmission", "shadow", "volume_scatter"):
+        if displaces:  # of Cycles the vertices move alone
+            fine = item.modifiers.new("SUBSURF", "SUBSURF")
+            fine.subdivision_type, fine.render_levels = "SIMPLE", 4
+    # Not "shadow": what passes then is in Cycles a matter of how it chose the lamp.
+    for name in ("camera", "diffuse", "glossy", "transmission", "volume_scatter"):
         if random.random() < 0.03:
             setattr(item, f"visible_{name}", False)
     item.is_holdout = bool(random.random() < 0.02)
@@ -146,7 +151,7 @@ def thing(index, random):
         item.data.materials.append(material(f"Material {index} beside", random))
         for face in item.data.polygons:
             face.material_index = int(random.integers(2))
-    change(item, random)
+    change(item, displaces, random)
     if item.type == "MESH" and random.random() < 0.08:
         hair(item, random)
     # Cycles mixes up the vertices of metaballs that move.
