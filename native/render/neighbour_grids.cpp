@@ -3,81 +3,171 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "base/parallel.h"
+#include "render/box_cells.h"
 #include "shade/bounces/neighbours.h"
 
 namespace granita {
 namespace {
 
-class Search {
-  public:
-    Search(Frame& frame, int bucket, SharedGrid& grid)
-        : m_frame(frame),
-          m_bucket(bucket),
-          m_at(frame.layout.place(bucket)),
-          m_grid(grid.grid()),
-          m_margin(static_cast<float>(neighbour_margin(frame.scene.options))),
-          m_place(grid.place(frame.statistics)) {}
+/// Grids around one, of more the nearest: a lattice has 8 to 20 of them.  Where each face of half a
+/// pixel is a grid, or strips meet at a pole, a thousand would tell little that those do not.
+constexpr std::size_t kMost = 64;
 
-    HiddenGrids run() {
+struct Near {
+    float distance2;
+    GridKey key;
+    const std::shared_ptr<SharedGrid>* grid;
+
+    bool operator<(const Near& other) const {
+        return std::tie(distance2, key) < std::tie(other.distance2, other.key);
+    }
+};
+
+Vec3f middle(const Bounds3f& box) {
+    return 0.5f * (box.lo + box.hi);
+}
+
+/// The largest of what is least, and the least of what is largest.
+RasterBounds common(const RasterBounds& a, const RasterBounds& b) {
+    RasterBounds both = a;
+    both.x0 = std::max(a.x0, b.x0);
+    both.y0 = std::max(a.y0, b.y0);
+    both.x1 = std::min(a.x1, b.x1);
+    both.y1 = std::min(a.y1, b.y1);
+    return both;
+}
+
+/// Whether all buckets that see `own` find what lies there.
+bool is_beside(const RasterBounds& b, const RasterBounds& own, float margin) {
+    return b.visible && b.x0 - margin <= own.x0 && b.x1 + margin >= own.x1 &&
+           b.y0 - margin <= own.y0 && b.y1 + margin >= own.y1;
+}
+
+}  // namespace
+
+struct NeighbourGrids::List {
+    /// Of the grids that may ask: the bounds that are easiest to lie beside, and materials.
+    RasterBounds asks;
+    std::vector<int> materials;
+    SharedOnce made;
+    std::vector<Listed> listed;
+    BoxCells cells;  ///< of their places
+
+    void add_asking(const Grid& grid) {
+        const RasterBounds& b = grid.bounds;
+        asks = materials.empty() ? b : common(asks, b);
+        if (std::ranges::find(materials, grid.material) == materials.end())
+            materials.push_back(grid.material);
+    }
+};
+
+/// Lists those of one instance.
+class NeighbourGrids::Maker {
+  public:
+    Maker(Frame& frame, int bucket, List& list)
+        : m_frame(frame),
+          m_at(frame.layout.place(bucket)),
+          m_margin(static_cast<float>(neighbour_margin(frame.scene.options))),
+          m_list(list) {}
+
+    void run(std::uint32_t instance, int bucket) {
         FrameGeometry& geometry = m_frame.geometry;
-        FrameGeometry::Opened& opened = *geometry.open(m_grid.instance);
-        geometry.for_each_face(opened, m_bucket, [&](std::uint32_t face) {
-            if (is_beside(opened.bounds[face])) visit(*geometry.node(opened, face));
+        FrameGeometry::Opened& opened = *geometry.open(instance);
+        geometry.for_each_face(opened, bucket, [&](std::uint32_t face) {
+            const RasterBounds& bounds = opened.bounds[face];
+            if (is_beside(bounds, m_list.asks, m_margin))
+                visit(*geometry.node(opened, face), bounds);
         });
-        std::ranges::sort(m_found, {}, [](const auto& grid) { return grid->grid().key; });
-        return std::move(m_found);
+        std::vector<Bounds3f> boxes;
+        for (const Listed& one : m_list.listed) boxes.push_back(one.place.box);
+        m_list.cells = BoxCells(boxes);
     }
 
   private:
-    /// Whether all buckets that see the grid find it.
-    bool is_beside(const RasterBounds& b) const {
-        const RasterBounds& own = m_grid.bounds;
-        return b.visible && b.x0 - m_margin <= own.x0 && b.x1 + m_margin >= own.x1 &&
-               b.y0 - m_margin <= own.y0 && b.y1 + m_margin >= own.y1;
-    }
-
-    void visit(GeometryNode& node) {
+    void visit(GeometryNode& node, const RasterBounds& bounds) {
         const GeometryNode::Content& content =
             node.expand(m_frame.layout, m_frame.geometry.ends(), m_frame.statistics);
         for (const GeometryNode::Child& child : content.children)
-            if (child.buckets.holds(m_at.x, m_at.y) && is_beside(child.bounds)) visit(*child.node);
-        if (content.grid) consider(content.grid);
+            if (child.buckets.holds(m_at.x, m_at.y) &&
+                is_beside(child.bounds, m_list.asks, m_margin))
+                visit(*child.node, common(bounds, child.bounds));
+        if (content.grid) add(content.grid, bounds);
     }
 
-    void consider(const std::shared_ptr<SharedGrid>& other) {
-        const Grid& grid = other->grid();
-        if (grid.key == m_grid.key || grid.material != m_grid.material) return;
+    void add(const std::shared_ptr<SharedGrid>& shared, const RasterBounds& bounds) {
+        const Grid& grid = shared->grid();
+        if (std::ranges::find(m_list.materials, grid.material) == m_list.materials.end()) return;
         const ShadingSystem& shading = m_frame.shading;
         // Which small faces are left to samples goes by opacity, whoever has asked for that so far.
         if (grid.triangles && shading.opacity_varies(grid.material))
-            other->ensure_opacity(shading, m_frame.statistics);
+            shared->ensure_opacity(shading, m_frame.statistics);
         // Those have no place once their state is dropped.
         if (shading.leaves_to_samples(grid)) return;
-        if (m_place.is_within(static_cast<float>(kNeighbourReach) * m_place.step,
-                              other->place(m_frame.statistics)))
-            m_found.push_back(other);
+        m_list.listed.push_back({shared, bounds, shared->place(m_frame.statistics)});
     }
 
     Frame& m_frame;
-    const int m_bucket;
     const Vec2i m_at;
-    const Grid& m_grid;
     const float m_margin;
-    const SharedGrid::Place& m_place;
-    HiddenGrids m_found;
+    List& m_list;
 };
-
-}  // namespace
 
 int neighbour_margin(const Options& options) {
     const float side = std::sqrt(static_cast<float>(options.grid_size)) * options.dicing_rate;
     return static_cast<int>(std::ceil(2.0f * side));
 }
 
-HiddenGrids neighbours_of(Frame& frame, int bucket, SharedGrid& grid) {
-    return Search(frame, bucket, grid).run();
+NeighbourGrids::NeighbourGrids(Frame& frame, int bucket, const HiddenGrids& grids,
+                               const std::vector<bool>& seen)
+    : m_frame(frame), m_bucket(bucket) {
+    if (!frame.shading.shares_light()) return;
+    for (std::size_t slot = 0; slot < grids.size(); ++slot) {
+        if (!seen[slot]) continue;
+        const Grid& grid = grids[slot]->grid();
+        std::unique_ptr<List>& list = m_lists[grid.instance];
+        if (!list) list = std::make_unique<List>();
+        list->add_asking(grid);
+    }
+}
+
+NeighbourGrids::~NeighbourGrids() = default;
+
+HiddenGrids NeighbourGrids::of(SharedGrid& grid) {
+    const Grid& own = grid.grid();
+    List& list = *m_lists.at(own.instance);
+    list.made.call([&] { Maker(m_frame, m_bucket, list).run(own.instance, m_bucket); });
+    const SharedGrid::Place& place = grid.place(m_frame.statistics);
+    const float reach = static_cast<float>(kNeighbourReach) * place.step;
+    const float margin = static_cast<float>(neighbour_margin(m_frame.scene.options));
+    std::vector<Near> near;
+    const auto find = [&](float within) {
+        Bounds3f around = place.box;
+        around.grow(within);
+        near.clear();
+        list.cells.each_near(around, [&](std::uint32_t index) {
+            const Listed& one = list.listed[index];
+            if (!place.is_within(within, one.place) || !is_beside(one.bounds, own.bounds, margin))
+                return;
+            const Grid& other = one.grid->grid();
+            if (other.key == own.key || other.material != own.material) return;
+            const Vec3f way = middle(one.place.box) - middle(place.box);
+            near.push_back({glm::dot(way, way), other.key, &one.grid});
+        });
+    };
+    // Not all of what lies within reach, where enough of it is nearer: spikes reach far.
+    for (float part = 1.0f / 64.0f; part <= 1.0f && near.size() < kMost; part *= 4.0f)
+        find(part * reach);
+    if (near.size() > kMost) {
+        std::nth_element(near.begin(), near.begin() + kMost, near.end());
+        near.resize(kMost);
+    }
+    std::ranges::sort(near, {}, &Near::key);
+    HiddenGrids found;
+    for (const Near& one : near) found.push_back(*one.grid);
+    return found;
 }
 
 std::vector<HiddenGrids> all_neighbours(Frame& frame, int bucket, const HiddenGrids& grids,
@@ -85,11 +175,12 @@ std::vector<HiddenGrids> all_neighbours(Frame& frame, int bucket, const HiddenGr
     std::vector<HiddenGrids> around;
     if (!frame.shading.shares_light()) return around;
     around.resize(grids.size());
+    NeighbourGrids neighbours(frame, bucket, grids, seen);
     parallel_for(grids.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t slot = begin; slot < end; ++slot) {
             frame.progress.check();
             if (seen[slot] && !frame.shading.leaves_to_samples(grids[slot]->grid()))
-                around[slot] = neighbours_of(frame, bucket, *grids[slot]);
+                around[slot] = neighbours.of(*grids[slot]);
         }
     });
     return around;

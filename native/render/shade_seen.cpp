@@ -9,13 +9,14 @@ namespace granita {
 
 void shade_grids(Frame& frame, int bucket, const HiddenGrids& grids, const std::vector<bool>& seen,
                  const std::vector<HiddenGrids>& around) {
+    NeighbourGrids neighbours(frame, bucket, grids, seen);
     // Towards the end of a frame threads are idle that take some of them.
     parallel_for(grids.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t slot = begin; slot < end; ++slot) {
             frame.progress.check();
             if (!seen[slot]) continue;
             const auto beside = [&] {
-                return around.empty() ? neighbours_of(frame, bucket, *grids[slot]) : around[slot];
+                return around.empty() ? neighbours.of(*grids[slot]) : around[slot];
             };
             grids[slot]->ensure_radiance(frame.shading, frame.statistics, beside,
                                          frame.visibility != nullptr);

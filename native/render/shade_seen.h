@@ -9,7 +9,7 @@
 namespace granita {
 
 /// Shades those of the grids that are seen [grids], on all threads that have nothing else to do.
-/// @param around [grids] those that tell each something (neighbours_of()); empty: they are looked
+/// @param around [grids] those that tell each something (NeighbourGrids); empty: they are looked
 /// for.
 void shade_grids(Frame& frame, int bucket, const HiddenGrids& grids, const std::vector<bool>& seen,
                  const std::vector<HiddenGrids>& around = {});

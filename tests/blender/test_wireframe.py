@@ -68,14 +68,17 @@ def test_on_faces_below_a_pixel(scene, render, size):
     assert ours.mean() == pytest.approx(theirs.mean(), rel=0.02)
 
 
-def test_subdivision_surfaces_are_named(scene, render, capfd):
-    thing = scene_parts.add_square(scene)
-    thing.data.polygons[0].use_smooth = True
-    thing.modifiers.new("Subdivision", "SUBSURF")
-    wired(thing, 0.2)
+@pytest.mark.parametrize("levels", [1, 3])
+def test_subdivision_surfaces_show_the_faces_of_their_level(scene, render, levels):
+    bpy.ops.mesh.primitive_cube_add(size=2.4)
+    thing = bpy.context.object
+    bpy.ops.object.shade_smooth()
+    modifier = thing.modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels = modifier.render_levels = levels
+    thing.rotation_euler = (0.4, 0.3, 0.0)
+    wired(thing, 0.06)
     scene_parts.add_camera(scene, ortho_scale=3.0)
-    render(scene)
-    assert "edges of the cage" in capfd.readouterr().out
+    agree(scene, render)
 
 
 def test_widths_in_pixels_in_a_mirror(scene, render):

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.updates import originals
+from ..shading.used_nodes import any_node
 from .mesh import has_flat_faces, unsigned
 
 # Blender's creases run from 0 to 1; OpenSubdiv's sharpness is 10 times their square, and 10 is
@@ -77,6 +78,11 @@ def find_cage(evaluated, mode, simplify_level):
     is_pure = len(enabled) == 1 and original_mesh.shape_keys is None
     sharing = (original_mesh.as_pointer(), settings) if is_pure else None
     return Cage(enabled[-1], flag, settings, sharing)
+
+
+def asks_for_faces(materials):
+    """Whether nodes of evaluated Materials show where the faces are that Blender makes, by their edges."""
+    return any_node(materials, lambda node: node.type == "WIREFRAME")
 
 
 def simplify_level(render, mode):
