@@ -68,15 +68,15 @@ def test_on_faces_below_a_pixel(scene, render, size):
     assert ours.mean() == pytest.approx(theirs.mean(), rel=0.02)
 
 
-@pytest.mark.parametrize("levels", [1, 3])
-def test_subdivision_surfaces_show_the_faces_of_their_level(scene, render, levels):
+@pytest.mark.parametrize("levels, size", [(1, 0.15), (3, 0.06)])
+def test_subdivision_surfaces_show_the_faces_of_their_level(scene, render, levels, size):
     bpy.ops.mesh.primitive_cube_add(size=2.4)
     thing = bpy.context.object
     bpy.ops.object.shade_smooth()
     modifier = thing.modifiers.new("Subdivision", "SUBSURF")
     modifier.levels = modifier.render_levels = levels
     thing.rotation_euler = (0.4, 0.3, 0.0)
-    wired(thing, 0.06)
+    wired(thing, size)
     scene_parts.add_camera(scene, ortho_scale=3.0)
     agree(scene, render)
 
