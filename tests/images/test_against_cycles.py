@@ -25,7 +25,7 @@ SCENES = {
     "object_alpha": (64, 32, 0.5),
     "creased": (64, 32, 0.5),
     # Lanterns of two pixels, ten times white, are discs of the lens: their edges want many samples.
-    "demo": (512, 64, 0.5),
+    "demo": (256, 64, 0.5),
 }
 MOST_FLIP = 0.02
 
