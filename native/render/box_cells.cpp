@@ -9,24 +9,29 @@ namespace granita {
 namespace {
 
 /// Boxes a cell, about, and most cells to a side.
-constexpr double kBoxes = 4.0;
-constexpr int kMostSide = 128;
+constexpr float kBoxes = 4.0f, kMostSide = 128.0f;
 
 }  // namespace
 
 BoxCells::BoxCells(std::span<const Bounds3f> boxes) {
     Bounds3f all;
-    for (const Bounds3f& box : boxes) all.add(box);
+    Vec3f lengths(0.0f);
+    for (const Bounds3f& box : boxes) {
+        all.add(box);
+        lengths += box.hi - box.lo;
+    }
     const Vec3f size = all.hi - all.lo;
     std::array axes = {0, 1, 2};
     std::ranges::sort(axes, [&](int a, int b) { return size[a] > size[b]; });
-    m_side = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(boxes.size()) / kBoxes)), 1,
-                        kMostSide);
+    const auto count = static_cast<float>(boxes.size());
     for (int c = 0; c < 2; ++c) {
-        m_axes[c] = axes[static_cast<std::size_t>(c)];
-        m_origin[c] = all.lo[m_axes[c]];
-        const float length = size[m_axes[c]];
-        m_cells[c] = length > 0.0f ? static_cast<float>(m_side) / length : 0.0f;
+        const int axis = m_axes[c] = axes[static_cast<std::size_t>(c)];
+        m_origin[c] = all.lo[axis];
+        // Not smaller than boxes are in the mean, or these would lie in many.
+        const float fitting = lengths[axis] > 0.0f ? size[axis] / lengths[axis] * count : 1.0f;
+        const float side = std::min(std::sqrt(count / kBoxes), fitting);
+        m_sides[c] = side > 1.0f ? static_cast<int>(std::min(side, kMostSide)) : 1;
+        if (m_sides[c] > 1) m_cells[c] = static_cast<float>(m_sides[c]) / size[axis];
     }
     const auto each = [&](const auto& visit) {
         for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -36,7 +41,7 @@ BoxCells::BoxCells(std::span<const Bounds3f> boxes) {
                     visit(cell(x, y), Entry{static_cast<std::uint32_t>(i), in.x0, in.y0});
         }
     };
-    m_begin.assign(static_cast<std::size_t>(m_side * m_side) + 1, 0);
+    m_begin.assign(static_cast<std::size_t>(m_sides[0] * m_sides[1]) + 1, 0);
     each([&](std::size_t cell, const Entry&) { ++m_begin[cell + 1]; });
     for (std::size_t i = 1; i < m_begin.size(); ++i) m_begin[i] += m_begin[i - 1];
     m_entries.resize(m_begin.back());
@@ -47,7 +52,8 @@ BoxCells::BoxCells(std::span<const Bounds3f> boxes) {
 BoxCells::Cells BoxCells::cells_of(const Bounds3f& box) const {
     const auto at = [this](float place, int c) {
         const float cell = (place - m_origin[c]) * m_cells[c];
-        return static_cast<int>(std::clamp(cell, 0.0f, static_cast<float>(m_side - 1)));
+        if (!(cell > 0.0f)) return 0;  // or no number
+        return static_cast<int>(std::min(cell, static_cast<float>(m_sides[c] - 1)));
     };
     return {at(box.lo[m_axes[0]], 0), at(box.lo[m_axes[1]], 1), at(box.hi[m_axes[0]], 0),
             at(box.hi[m_axes[1]], 1)};

@@ -11,7 +11,8 @@
 
 namespace granita {
 
-/// Boxes by the cells that they lie in of a raster along the two longest axes of all together.
+/// Finite boxes by the cells that they lie in, of a raster along the two longest axes of all
+/// together: who is beside a box is found among few.
 class BoxCells {
   public:
     BoxCells() = default;
@@ -32,6 +33,9 @@ class BoxCells {
                 }
     }
 
+    /// How many are in how many cells, in all.
+    std::size_t entries() const { return m_entries.size(); }
+
   private:
     struct Cells {
         int x0, y0, x1, y1;  ///< including the last
@@ -41,10 +45,9 @@ class BoxCells {
         int x0, y0;  ///< its first cell
     };
     Cells cells_of(const Bounds3f& box) const;
-    std::size_t cell(int x, int y) const { return static_cast<std::size_t>(y * m_side + x); }
+    std::size_t cell(int x, int y) const { return static_cast<std::size_t>(y * m_sides[0] + x); }
 
-    int m_side = 1;
-    int m_axes[2] = {0, 1};
+    int m_axes[2] = {0, 1}, m_sides[2] = {1, 1};
     float m_origin[2] = {0, 0}, m_cells[2] = {0, 0};  ///< and cells a metre
     std::vector<std::uint32_t> m_begin;               ///< [cells + 1] of their entries
     std::vector<Entry> m_entries;

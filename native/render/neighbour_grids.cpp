@@ -12,8 +12,9 @@
 namespace granita {
 namespace {
 
-/// Grids around one, of more the nearest: a lattice has 8 to 20 of them.  Where each face of half a
-/// pixel is a grid, or strips meet at a pole, a thousand would tell little that those do not.
+/// Grids around one, seen or not, of more the nearest: a lattice has 8 to 20 of them.  Where each
+/// face of half a pixel is a grid, or strips meet at a pole, a thousand would tell little that
+/// those do not.
 constexpr std::size_t kMost = 64;
 
 struct Near {
@@ -69,18 +70,23 @@ class NeighbourGrids::Maker {
   public:
     Maker(Frame& frame, int bucket, List& list)
         : m_frame(frame),
+          m_bucket(bucket),
           m_at(frame.layout.place(bucket)),
           m_margin(static_cast<float>(neighbour_margin(frame.scene.options))),
           m_list(list) {}
 
-    void run(std::uint32_t instance, int bucket) {
+    void run(std::uint32_t instance) {
         FrameGeometry& geometry = m_frame.geometry;
         FrameGeometry::Opened& opened = *geometry.open(instance);
-        geometry.for_each_face(opened, bucket, [&](std::uint32_t face) {
+        geometry.for_each_face(opened, m_bucket, [&](std::uint32_t face) {
             const RasterBounds& bounds = opened.bounds[face];
             if (is_beside(bounds, m_list.asks, m_margin))
                 visit(*geometry.node(opened, face), bounds);
         });
+        parallel_for(m_list.listed.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) place(m_list.listed[i]);
+        });
+        std::erase_if(m_list.listed, [](const Listed& one) { return !one.grid; });
         std::vector<Bounds3f> boxes;
         for (const Listed& one : m_list.listed) boxes.push_back(one.place.box);
         m_list.cells = BoxCells(boxes);
@@ -88,28 +94,34 @@ class NeighbourGrids::Maker {
 
   private:
     void visit(GeometryNode& node, const RasterBounds& bounds) {
+        m_frame.progress.check();
         const GeometryNode::Content& content =
             node.expand(m_frame.layout, m_frame.geometry.ends(), m_frame.statistics);
         for (const GeometryNode::Child& child : content.children)
             if (child.buckets.holds(m_at.x, m_at.y) &&
                 is_beside(child.bounds, m_list.asks, m_margin))
                 visit(*child.node, common(bounds, child.bounds));
-        if (content.grid) add(content.grid, bounds);
+        const auto& grid = content.grid;
+        if (grid &&
+            std::ranges::find(m_list.materials, grid->grid().material) != m_list.materials.end())
+            m_list.listed.push_back({grid, bounds, {}});
     }
 
-    void add(const std::shared_ptr<SharedGrid>& shared, const RasterBounds& bounds) {
-        const Grid& grid = shared->grid();
-        if (std::ranges::find(m_list.materials, grid.material) == m_list.materials.end()) return;
+    /// Drops those that tell nothing.
+    void place(Listed& one) {
+        const Grid& grid = one.grid->grid();
         const ShadingSystem& shading = m_frame.shading;
         // Which small faces are left to samples goes by opacity, whoever has asked for that so far.
         if (grid.triangles && shading.opacity_varies(grid.material))
-            shared->ensure_opacity(shading, m_frame.statistics);
+            one.grid->ensure_opacity(shading, m_frame.statistics);
         // Those have no place once their state is dropped.
-        if (shading.leaves_to_samples(grid)) return;
-        m_list.listed.push_back({shared, bounds, shared->place(m_frame.statistics)});
+        if (!shading.leaves_to_samples(grid)) one.place = one.grid->place(m_frame.statistics);
+        const Bounds3f& box = one.place.box;
+        if (box.empty() || !is_finite(box.lo) || !is_finite(box.hi)) one.grid.reset();
     }
 
     Frame& m_frame;
+    const int m_bucket;
     const Vec2i m_at;
     const float m_margin;
     List& m_list;
@@ -137,8 +149,10 @@ NeighbourGrids::~NeighbourGrids() = default;
 
 HiddenGrids NeighbourGrids::of(SharedGrid& grid) {
     const Grid& own = grid.grid();
-    List& list = *m_lists.at(own.instance);
-    list.made.call([&] { Maker(m_frame, m_bucket, list).run(own.instance, m_bucket); });
+    const auto found_list = m_lists.find(own.instance);
+    if (found_list == m_lists.end()) return {};
+    List& list = *found_list->second;
+    list.made.call([&] { Maker(m_frame, m_bucket, list).run(own.instance); });
     const SharedGrid::Place& place = grid.place(m_frame.statistics);
     const float reach = static_cast<float>(kNeighbourReach) * place.step;
     const float margin = static_cast<float>(neighbour_margin(m_frame.scene.options));

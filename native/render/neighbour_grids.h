@@ -30,7 +30,7 @@ class NeighbourGrids {
   private:
     struct Listed {
         std::shared_ptr<SharedGrid> grid;
-        RasterBounds bounds;  ///< in which all find it that do
+        RasterBounds bounds;  ///< common to all nodes on the way to it
         SharedGrid::Place place;
     };
     struct List;

@@ -104,6 +104,23 @@ def a_material_in_motion(scene, square):
     drive(node.inputs["Strength"], "default_value", "frame")
 
 
+def edges_that_a_material_shows(scene, square):
+    """Of faces that Blender makes, and a cage has not."""
+    square.data.polygons[0].use_smooth = True
+    square.modifiers.new("Subdivision", "SUBSURF")
+    material = scene_parts.emission("Glow", (1, 1, 1))
+    square.data.materials.append(material)
+    drive(square, "location", "frame", 0)
+
+    def show():
+        wire = material.node_tree.nodes.new("ShaderNodeWireframe")
+        wire.inputs["Size"].default_value = 0.1
+        node = next(n for n in material.node_tree.nodes if n.type == "EMISSION")
+        material.node_tree.links.new(wire.outputs[0], node.inputs["Strength"])
+
+    return at(11, show)
+
+
 def another_material(scene, square):
     square.data.materials.append(scene_parts.emission("One", (1, 0, 0)))
     other = scene_parts.emission("Two", (0, 1, 0))
@@ -241,6 +258,7 @@ CHANGES = [
     lamps,
     a_focal_length,
     a_material_in_motion,
+    edges_that_a_material_shows,
     another_material,
     what_is_hidden_and_comes,
     settings_of_a_mover,

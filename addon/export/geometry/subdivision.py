@@ -82,7 +82,7 @@ def find_cage(evaluated, mode, simplify_level):
 
 def asks_for_faces(materials):
     """Whether nodes of evaluated Materials show where the faces are that Blender makes, by their edges."""
-    return any_node(materials, lambda node: node.type == "WIREFRAME")
+    return any_node(materials, lambda node: node.type == "WIREFRAME" and node.outputs[0].is_linked)
 
 
 def simplify_level(render, mode):

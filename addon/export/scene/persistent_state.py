@@ -18,7 +18,7 @@ from ..geometry.subdivision import simplify_level
 from .culling import culling_asked
 from .depsgraph import hidden_types, prototype_again
 from .instance_values import requested_values
-from .scene_objects import read_scene_objects, shade
+from .scene_objects import mesh_questions, read_scene_objects, shade
 
 
 class PersistentState:
@@ -115,6 +115,8 @@ def _renew(scene_objects, touched, depsgraph, report, check_cancel):
 
     scene_objects.materials, scene_objects.images = shade(used, depsgraph, note)
     if requested_names(scene_objects.materials) != scene_objects.attribute_names:
+        return False
+    if mesh_questions(used) != scene_objects.mesh_questions:
         return False
     if requested_values(scene_objects.materials):
         return False  # any property of an object may be meant

@@ -72,14 +72,15 @@ float length_of(const CellPoint<N>& d, Metric metric, float exponent) {
     return metric == Metric::Euclidean ? std::sqrt(sum) : sum;
 }
 
-/// A bound that it is not below, at a fraction of its cost: of lengths by powers those of higher
-/// powers are shorter.
+/// At most length_of(), for less: of lengths by powers those of higher powers are shorter.  Powers
+/// above 2 are 0 in floats where lengths are not.
 template <std::size_t N>
 float least_length_of(const CellPoint<N>& d, Metric metric, float exponent) {
     if (metric != Metric::Minkowski) return length_of<N>(d, metric, exponent);
-    if (!(exponent > 0.0f)) return 0.0f;
-    if (exponent <= 1.0f) return length_of<N>(d, Metric::Manhattan, exponent);
-    return length_of<N>(d, exponent <= 2.0f ? Metric::Euclidean : Metric::Chebychev, exponent);
+    constexpr float kRounding = 1.0f - 1e-5f;  // of powers
+    if (!(exponent > 0.0f && exponent <= 2.0f)) return 0.0f;
+    const Metric shorter = exponent <= 1.0f ? Metric::Manhattan : Metric::Euclidean;
+    return kRounding * length_of<N>(d, shorter, exponent);
 }
 
 /// A cell near another, as seen from there.

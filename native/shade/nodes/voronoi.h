@@ -137,7 +137,7 @@ class Voronoi {
     }
 
     /// The nearest two points, the second one only if `count` says so.  Most cells are farther away
-    /// than what was found before (in 3D a point asks 9 of 27).
+    /// than what was found before (in 3D a place asks 8 of 27).
     std::pair<Near, Near> nearest_of(const CellsAround<N>& cells, Metric metric, int count) const {
         Near first, second;
         const Near& last = count > 1 ? second : first;
@@ -211,9 +211,10 @@ class Voronoi {
         float least = 8.0f;
         // No border is nearer than half of what its point is farther away.
         const auto is_near = [&](const CellPoint<N>& way) {
-            return length_of<N>(way, Metric::Euclidean, 2.0f) < first.distance + 2.001f * least;
+            return length_of<N>(way, Metric::Euclidean, 2.0f) <
+                   first.distance + 2.0f * least + 1e-5f;
         };
-        cells.each(kBeside, is_near, [&](const CellBeside<N>&, const CellPoint<N>& point) {
+        cells.each(kOutwards, is_near, [&](const CellBeside<N>&, const CellPoint<N>& point) {
             const CellPoint<N> way = difference(point, cells.inside());
             const CellPoint<N> across = difference(way, nearest);
             const float length = dot(across, across);

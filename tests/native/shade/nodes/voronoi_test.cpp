@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -53,8 +54,9 @@ void expect_nearest(Metric metric, float exponent, float randomness) {
             Voronoi<N>({metric, VoronoiFeature::F1}, in, false).value(place).distance;
         const float second =
             Voronoi<N>({metric, VoronoiFeature::F2}, in, false).value(place).distance;
-        // Places are rounded to 1e-6 beside their cell, powers below 1 are steep there.
-        const double rounding = exponent < 1.0f ? 2e-3 : 2e-5;
+        // Places are rounded to 1e-6 beside their cell, powers below 1 are steep there, and those
+        // of 32 are 0 in floats below .04.
+        const double rounding = exponent < 1.0f ? 2e-3 : exponent > 8.0f ? 0.04 : 2e-5;
         ASSERT_NEAR(first, ways[0], rounding) << i;
         ASSERT_NEAR(second, ways[1], rounding) << i;
     }
@@ -67,8 +69,17 @@ TEST(Voronoi, FindsTheNearestPointsOfAllCellsAround) {
             expect_nearest<3>(metric, 1.0f, randomness);
             expect_nearest<4>(metric, 1.0f, randomness);
         }
-        for (const float exponent : {0.5f, 1.5f, 2.0f, 6.0f})
+        for (const float exponent : {0.5f, 1.5f, 2.0f, 6.0f, 32.0f})
             expect_nearest<3>(Metric::Minkowski, exponent, randomness);
+    }
+}
+
+/// As far as all points are that the power of 0, or of less, makes infinitely far.
+TEST(Voronoi, HasNoNearestPointWithoutAPower) {
+    for (const float exponent : {0.0f, std::nanf("")}) {
+        const VoronoiInputs in{1.0f, exponent, 0.0f, 0.0f, 0.5f, 2.0f};
+        const Voronoi<3> voronoi({Metric::Minkowski}, in, false);
+        EXPECT_EQ(voronoi.value({0.3f, 0.6f, 0.1f}).distance, std::numeric_limits<float>::max());
     }
 }
 
