@@ -41,7 +41,7 @@ BoxCells::BoxCells(std::span<const Bounds3f> boxes) {
                     visit(cell(x, y), Entry{static_cast<std::uint32_t>(i), in.x0, in.y0});
         }
     };
-    m_begin.assign(static_cast<std::size_t>(m_sides[0] * m_sides[1]) + 1, 0);
+    m_begin.assign(cell(0, m_sides[1]) + 1, 0);
     each([&](std::size_t cell, const Entry&) { ++m_begin[cell + 1]; });
     for (std::size_t i = 1; i < m_begin.size(); ++i) m_begin[i] += m_begin[i - 1];
     m_entries.resize(m_begin.back());

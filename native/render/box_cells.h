@@ -45,7 +45,10 @@ class BoxCells {
         int x0, y0;  ///< its first cell
     };
     Cells cells_of(const Bounds3f& box) const;
-    std::size_t cell(int x, int y) const { return static_cast<std::size_t>(y * m_sides[0] + x); }
+    std::size_t cell(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(m_sides[0]) +
+               static_cast<std::size_t>(x);
+    }
 
     int m_axes[2] = {0, 1}, m_sides[2] = {1, 1};
     float m_origin[2] = {0, 0}, m_cells[2] = {0, 0};  ///< and cells a metre
