@@ -3,7 +3,8 @@
 
     ./dev bench random_scenes [--seeds 1 2 3] [--reference 128] [--python PYTHON] [--pictures FOLDER]
 
-random_stage.py makes the scenes (of random_things.py, random_light.py, random_materials.py, random_patterns.py), 240 x 135 pixels, one thread each, four bounces, Blender's own clamps.  FLIP is over the frame; a block is
+random_stage.py makes the scenes (of random_things.py, random_light.py, random_materials.py, random_patterns.py),
+240 x 135 pixels, one thread each, four bounces, Blender's own clamps.  FLIP is over the frame; a block is
 12 x 12 pixels, as a screen shows it: the mean of one in which noise is gone differs where the engines do, and the widest gap
 is printed beside that of the reference's own halves.  With --pictures Granita | Cycles | four times the difference, on a
 dark ground.
