@@ -12,9 +12,9 @@
 namespace granita {
 namespace {
 
-/// Grids around one, seen or not, of more the nearest: a lattice has 8 to 20 of them.  Where each
-/// face of half a pixel is a grid, or strips meet at a pole, a thousand would tell little that
-/// those do not.
+/// Grids around one, seen or not, of more the nearest: around a lattice of full size lie 8, around
+/// one of 4 x 4 points 48.  Where each face of half a pixel is a grid, or strips meet at a pole, a
+/// thousand would tell little that those do not.
 constexpr std::size_t kMost = 64;
 
 struct Near {
