@@ -51,7 +51,7 @@ def view(scene, random):
 
 
 def settings(scene, floor, random):
-    """Of the film and the shutter."""
+    """Of the film."""
     if random.random() < 0.2:
         scene.render.film_transparent = True
         floor.is_shadow_catcher = bool(random.random() < 0.5)

@@ -27,7 +27,7 @@ class KeptVisibility {
         std::unique_ptr<Hider> hider;  ///< finished, without samples
         HiddenGrids grids;             ///< of its pool; nullptr where no sample sees it
         std::vector<bool> seen;        ///< [grids]
-        /// [grids] NeighbourGrids; empty where light is not shared.
+        /// [grids] all_neighbours(); empty where light is not shared.
         std::vector<HiddenGrids> around;
 
         /// visit(SharedGrid&) for all, some more than once.

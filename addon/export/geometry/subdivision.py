@@ -14,6 +14,7 @@ import numpy as np
 from ..base.updates import originals
 from ..shading.used_nodes import any_node
 from .mesh import has_flat_faces, unsigned
+from .pointiness import asks_for_pointiness
 
 # Blender's creases run from 0 to 1; OpenSubdiv's sharpness is 10 times their square, and 10 is
 # infinitely sharp.
@@ -80,9 +81,11 @@ def find_cage(evaluated, mode, simplify_level):
     return Cage(enabled[-1], flag, settings, sharing)
 
 
-def asks_for_faces(materials):
-    """Whether nodes of evaluated Materials show where the faces are that Blender makes, by their edges."""
-    return any_node(materials, lambda node: node.type == "WIREFRAME" and node.outputs[0].is_linked)
+def asks_for_blenders_mesh(materials):
+    """Whether nodes of evaluated Materials ask for vertices or faces that Blender makes, which a cage has not."""
+    return asks_for_pointiness(materials) or any_node(
+        materials, lambda node: node.type == "WIREFRAME" and node.outputs[0].is_linked
+    )
 
 
 def simplify_level(render, mode):

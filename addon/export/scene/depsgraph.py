@@ -25,8 +25,7 @@ from ..base.report import poll
 from ..base.transforms import has_area
 from ..geometry.attributes import asks_on_edges
 from ..geometry.hair import hair_material, hair_systems
-from ..geometry.pointiness import asks_for_pointiness
-from ..geometry.subdivision import asks_for_faces, find_cage, simplify_level
+from ..geometry.subdivision import asks_for_blenders_mesh, find_cage, simplify_level
 from .culling import culling_asked, culling_box
 from .first_instance import readable
 from .instance_prototype import InstancePrototype, hidden_owners
@@ -300,11 +299,9 @@ class _Walk:
     def _find_cage(self, source):
         cage = find_cage(source, self._mode, self._simplify)
         materials = [slot.material for slot in source.material_slots]
-        # Of vertices, edges and faces that Blender makes, which a cage has not.
-        if cage is None or any(
-            self._asks(question, materials) for question in (asks_for_pointiness, asks_for_faces)
-        ):
+        if cage is None or self._asks(asks_for_blenders_mesh, materials):
             return None
+        # Likewise of edges.
         return None if asks_on_edges(source.data, (*materials, self._override)) else cage
 
     @staticmethod

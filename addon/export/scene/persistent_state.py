@@ -14,11 +14,11 @@ from ..base.transforms import from_matrix
 from ..base.updates import Touched, object_names, originals, read_updates
 from ..geometry.attributes import requested_names
 from ..geometry.geometry_source import read_source
-from ..geometry.subdivision import simplify_level
+from ..geometry.subdivision import asks_for_blenders_mesh, simplify_level
 from .culling import culling_asked
 from .depsgraph import hidden_types, prototype_again
 from .instance_values import requested_values
-from .scene_objects import mesh_questions, read_scene_objects, shade
+from .scene_objects import read_scene_objects, shade
 
 
 class PersistentState:
@@ -116,7 +116,7 @@ def _renew(scene_objects, touched, depsgraph, report, check_cancel):
     scene_objects.materials, scene_objects.images = shade(used, depsgraph, note)
     if requested_names(scene_objects.materials) != scene_objects.attribute_names:
         return False
-    if mesh_questions(used) != scene_objects.mesh_questions:
+    if [asks_for_blenders_mesh([material]) for material in used] != scene_objects.blenders_meshes:
         return False
     if requested_values(scene_objects.materials):
         return False  # any property of an object may be meant

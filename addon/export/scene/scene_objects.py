@@ -9,8 +9,7 @@ from ..base.report import overheard
 from ..base.snapshot import Instances
 from ..geometry.attributes import requested_names
 from ..geometry.geometry_source import read_geometries
-from ..geometry.pointiness import asks_for_pointiness
-from ..geometry.subdivision import asks_for_faces
+from ..geometry.subdivision import asks_for_blenders_mesh
 from .culling import Culling
 from .depsgraph import Visit, visit
 from .instance import PrototypeTable, collect_materials, prototype_table, unplaced_instances, usable
@@ -28,7 +27,7 @@ class SceneObjects:
     sources: list  # of geometry.GeometrySource
     attribute_names: set  # of the generic attributes that were read
     used_materials: list  # addresses of original Materials, in the snapshot's order
-    mesh_questions: list  # of each of them, mesh_questions()
+    blenders_meshes: list  # of each of them, bool: asks_for_blenders_mesh()
     materials: list  # records of the snapshot
     images: list  # likewise
     said: list  # [(datablock, message)], what the walk had to report
@@ -99,15 +98,10 @@ def read_scene_objects(depsgraph, known, report, check_cancel):
         prototype.forget()
     addresses = [material.original.as_pointer() for material in used]
     plain = PlainObjects(scan, depsgraph.view_layer)
-    asked = mesh_questions(used)
+    asked = [asks_for_blenders_mesh([material]) for material in used]
     return SceneObjects(
         scan, plain, table, sources, names, addresses, asked, materials, images, said
     )
-
-
-def mesh_questions(used):
-    """[(bool, bool)] of evaluated Materials: what they ask of Blender's own mesh, which a cage does not know."""
-    return [(asks_for_pointiness([m]), asks_for_faces([m])) for m in used]
 
 
 def shade(used, depsgraph, report):
