@@ -88,11 +88,10 @@ std::unique_ptr<Grid> FaceBatch::dice() const {
     auto grid = make_grid(count);
     constexpr std::size_t kPlane[4] = {0, 1, 3, 2};
     for (int k = 0; k < grid->knots; ++k) {
-        const std::span<const Vec3f> points = m_mesh->points(k);
         Vec3f* const to = &grid->positions[4 * count * static_cast<std::size_t>(k)];
         for (std::size_t i = 0; i < count; ++i)
             for (std::size_t c = 0; c < 4; ++c)
-                to[kPlane[c] * count + i] = points[m_mesh->place_of(patch(i).corner[c])];
+                to[kPlane[c] * count + i] = m_mesh->small_point(k, patch(i).corner[c]);
     }
     motion_bounds(*grid, m_mesh->view().projection);
     grid->shading_state = [batch = *this](Grid& of) { batch.fill_shading_state(of); };
@@ -197,7 +196,7 @@ FaceBatch::Face FaceBatch::face(const Grid& grid, std::size_t i, const BasePatch
     // On both triangles of a quad, so that no ray's own surface lies above it.
     face.middle =
         triangle ? (corner[0] + corner[1] + corner[2]) / 3.0f : 0.5f * (corner[0] + corner[2]);
-    const FrameFace at = m_mesh->frame_face(part);
+    const FrameFace at = m_mesh->small_face(part);
     const Vec3d su = at.by_u(weights), sv = at.by_v(weights);
     const Vec3d flat = at.geometric_normal(su, sv);
     face.su = Vec3f(su);
@@ -282,12 +281,12 @@ void FaceBatch::fill_attributes(Grid& grid, const std::vector<Face>& faces,
                                    std::vector<float>& du, std::vector<float>& dv) {
             const BasePatch& part = faces[i].patch;
             const Vec2d uv = middle_of(part.kind);
-            if (m_mesh->shared().subdivision()) {
+            if (m_mesh->shared().subdivision())
                 m_mesh->attribute(part, request, {&uv, 1}, values, du, dv);
-                return;
-            }
-            interpolate(corner_values(m_mesh->shared(), part, request), mean_kind(part.kind),
-                        {&uv, 1}, out.width, values, du, dv);
+            else
+                interpolate(corner_values(m_mesh->shared(), part, request), mean_kind(part.kind),
+                            {&uv, 1}, out.width, values, du, dv);
+            m_mesh->displace(part, mean_kind(part.kind), request, {&uv, 1}, values, du, dv);
         };
         std::vector<float> values, du, dv, mean;
         for (const Cluster& cluster : clusters) {

@@ -49,7 +49,7 @@ Grid face_triangles(const OpenedMesh& mesh, const Grid& batch,
     std::vector<float> stretches;
     for (std::size_t t = 0; t < count; ++t) {
         const FaceTriangle& triangle = wanted[t];
-        const FrameFace face = mesh.frame_face(triangle.patch);
+        const FrameFace face = mesh.small_face(triangle.patch);
         const Vec3f& p = grid.shading_p()[t];
         for (const Vec2d& uv : corner_places(triangle)) {
             const CornerWeights weights(triangle.patch.kind, uv);
@@ -86,6 +86,7 @@ Grid face_triangles(const OpenedMesh& mesh, const Grid& batch,
         for (std::size_t t = 0; t < count; ++t) {
             const std::array<Vec2d, 3> places = corner_places(wanted[t]);
             mesh.attribute(wanted[t].patch, request, places, values, du, dv);
+            mesh.displace(wanted[t].patch, wanted[t].patch.kind, request, places, values, du, dv);
             all.insert(all.end(), values.begin(), values.end());
             if (!request.derivatives) continue;
             for (const float step : du) all_du.push_back(step * stretches[t]);

@@ -97,59 +97,56 @@ class LatticeDicer {
     }
 
     void displace(Grid& grid) {
-        const Displacement& displacement = *m_mesh->view().displacement;
-        const std::size_t instance = m_mesh->instance_index();
-        displacement.find(instance, m_mesh->shared(), *m_patch, m_places.uv, true, m_offsets);
+        m_sites.clear();
+        for (const Vec2d& uv : m_places.uv) m_sites.push_back({m_patch, uv});
+        find_offsets(true, m_offsets);
         find_displaced_normals();
-        displace_border(displacement);
-        for (int k = 0; k < grid.knots; ++k) {
-            const Mat3d turn = m_mesh->direction_matrix(k);
-            for (std::size_t i = 0; i < m_count; ++i)
-                grid.positions[at_knot(k, static_cast<int>(i))] +=
-                    Vec3f(turn * Vec3d(m_offsets.offset[i]));
-        }
+        displace_border();
+        for (int k = 0; k < grid.knots; ++k)
+            for (std::size_t i = 0; i < m_count; ++i) {
+                Vec3f& p = grid.positions[at_knot(k, static_cast<int>(i))];
+                p = m_mesh->displaced(k, p, m_offsets.offset[i]);
+            }
     }
 
-    /// The tangents move as the offsets change.  The shading normal is that of the smooth surface
-    /// which has it where nothing is displaced: whose tangents are square to it.
+    /// At m_sites.
+    void find_offsets(bool derivatives, Offsets& out) const {
+        m_mesh->view().displacement->find(m_mesh->instance_index(), m_mesh->shared(), m_sites,
+                                          derivatives, out);
+    }
+
+    /// The tangents move as the offsets change.
     void find_displaced_normals() {
         const Mat3d turn(m_mesh->knots().frame_camera_from_object);
         for (std::size_t i = 0; i < m_count; ++i) {
             const Vec3d by_u = turn * Vec3d(m_offsets.by_u[i]),
                         by_v = turn * Vec3d(m_offsets.by_v[i]);
             const Vec3d su(m_samples.su[i]), sv(m_samples.sv[i]), n(m_samples.normal[i]);
-            const Vec3d flat_u = su - n * glm::dot(n, su), flat_v = sv - n * glm::dot(n, sv);
             const double side = m_mesh->frame_orientation();
             const Vec3d moved_u = su + by_u, moved_v = sv + by_v;
             m_samples.su[i] = Vec3f(moved_u);
             m_samples.sv[i] = Vec3f(moved_v);
             m_samples.geometric_normal[i] = Vec3f(normalize_or(
                 side * glm::cross(moved_u, moved_v), Vec3d(m_samples.geometric_normal[i])));
-            m_samples.normal[i] =
-                Vec3f(normalize_or(side * glm::cross(flat_u + by_u, flat_v + by_v), n));
+            m_samples.normal[i] = Vec3f(displaced_normal(n, su, sv, by_u, by_v, side));
         }
     }
 
-    /// Every vertex of the border goes where its owner says, a run of one owner's at a time.
-    void displace_border(const Displacement& displacement) {
-        std::vector<int>& vertices = m_border_vertices;
-        vertices.clear();
+    /// Every vertex of the border goes where its owner says.
+    void displace_border() {
+        m_border_vertices.clear();
+        m_sites.clear();
         for (int side = 0; side < 4; ++side)
-            for (int i = 0; i <= m_places.side_steps(side); ++i)
-                vertices.push_back(m_places.vertex(side, i));
-        const auto owner = [&](int vertex) { return m_border[static_cast<std::size_t>(vertex)]; };
-        for (std::size_t first = 0, last = 0; first < vertices.size(); first = last) {
-            const BasePatch* const patch = owner(vertices[first]).patch;
-            m_border_uv.clear();
-            for (last = first; last < vertices.size() && owner(vertices[last]).patch == patch;
-                 ++last)
-                m_border_uv.push_back(owner(vertices[last]).uv);
-            displacement.find(m_mesh->instance_index(), m_mesh->shared(), patch ? *patch : *m_patch,
-                              m_border_uv, false, m_border_offsets);
-            for (std::size_t i = first; i < last; ++i)
-                m_offsets.offset[static_cast<std::size_t>(vertices[i])] =
-                    m_border_offsets.offset[i - first];
-        }
+            for (int i = 0; i <= m_places.side_steps(side); ++i) {
+                const int vertex = m_places.vertex(side, i);
+                const SurfacePlace& owner = m_border[static_cast<std::size_t>(vertex)];
+                m_border_vertices.push_back(vertex);
+                m_sites.push_back({owner.patch ? owner.patch : m_patch, owner.uv});
+            }
+        find_offsets(false, m_border_offsets);
+        for (std::size_t i = 0; i < m_border_vertices.size(); ++i)
+            m_offsets.offset[static_cast<std::size_t>(m_border_vertices[i])] =
+                m_border_offsets.offset[i];
     }
 
     void count_spared(const Grid& grid) {
@@ -196,9 +193,7 @@ class LatticeDicer {
     void find_attributes(Grid& grid) {
         const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
             m_mesh->attribute(*m_patch, request, m_places.uv, out.values, m_by_u, m_by_v);
-            if (m_mesh->displaced() && request.source != AttributeSource::Generated &&
-                is_position(request.source))
-                displace_attribute(out);
+            if (m_mesh->displaces(request)) displace_attribute(out);
             if (!request.derivatives) {
                 out.du.clear();
                 out.dv.clear();
@@ -229,7 +224,7 @@ class LatticeDicer {
     Offsets m_offsets, m_border_offsets;
     std::vector<SurfacePlace> m_border;  ///< [vertices] who says where one goes, on the border
     std::vector<int> m_border_vertices;
-    std::vector<Vec2d> m_border_uv;
+    std::vector<SurfacePlace> m_sites;  ///< whose offsets are asked for
 };
 
 }  // namespace

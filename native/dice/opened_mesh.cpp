@@ -142,6 +142,36 @@ FrameFace OpenedMesh::frame_corners(const BasePatch& patch) const {
     return face;
 }
 
+FrameFace OpenedMesh::small_face(const BasePatch& patch) const {
+    FrameFace face = frame_face(patch);
+    face.is_displaced = m_displaced;
+    const Mat3d turn(m_knots.frame_camera_from_object);
+    for (int i = 0; m_displaced && i < 4; ++i) {
+        face.moved[i] = turn * Vec3d(m_small.offsets()[place_of(patch.corner[i])]);
+        face.p[i] += face.moved[i];
+    }
+    return face;
+}
+
+void OpenedMesh::displace(const BasePatch& patch, PatchKind kind, const AttributeRequest& request,
+                          std::span<const Vec2d> uv, std::vector<float>& values,
+                          std::vector<float>& du, std::vector<float>& dv) const {
+    if (!displaces(request)) return;
+    std::array<Vec3f, 4> offsets;
+    for (std::size_t i = 0; i < 4; ++i) offsets[i] = m_small.offsets()[place_of(patch.corner[i])];
+    for (std::size_t i = 0; i < uv.size(); ++i) {
+        const CornerWeights weights(kind, uv[i]);
+        const auto add = [&](const std::array<double, 4>& by, std::vector<float>& to) {
+            const Vec3d moved = blend(offsets, by);
+            for (int c = 0; c < 3; ++c)
+                to[3 * i + static_cast<std::size_t>(c)] += static_cast<float>(moved[c]);
+        };
+        add(weights.w, values);
+        add(weights.du, du);
+        add(weights.dv, dv);
+    }
+}
+
 Vec4f OpenedMesh::rise(const FrameFace& face, const CornerWeights& weights,
                        const Vec3d& flat) const {
     if (!face.is_smooth) return Vec4f(0.0f);

@@ -75,6 +75,18 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     };
     Corners corners(const BasePatch& patch, int knot) const;
 
+    // Of small faces (SmallFaces), which is where displacement has moved them:
+    /// A corner's vertex at a knot, camera space.
+    Vec3f small_point(int knot, std::uint32_t corner) const {
+        const std::size_t place = place_of(corner);
+        return m_displaced ? m_small.offsets().point(*this, knot, place) : points(knot)[place];
+    }
+    FrameFace small_face(const BasePatch& patch) const;
+    /// As displacement moves values of an attribute at (u, v), whose weights are those of `kind`.
+    void displace(const BasePatch& patch, PatchKind kind, const AttributeRequest& request,
+                  std::span<const Vec2d> uv, std::vector<float>& values, std::vector<float>& du,
+                  std::vector<float>& dv) const;
+
     const View& view() const { return *m_view; }
     const Instance& instance() const { return *m_instance; }
     std::size_t instance_index() const { return m_instance_index; }
@@ -125,9 +137,15 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     bool displaced() const { return m_displaced; }
     /// The longest way that displacement may move a point at any knot, metres.
     float displacement_reach() const { return m_displacement_reach; }
-    /// From object to camera space at a knot, of directions.
-    Mat3d direction_matrix(int knot) const {
-        return Mat3d(m_knots.camera_from_object[static_cast<std::size_t>(knot)]);
+    /// Whether values of an attribute move along: places of the frame and of those around it.
+    bool displaces(const AttributeRequest& request) const {
+        return m_displaced && request.source != AttributeSource::Generated &&
+               is_position(request.source);
+    }
+    /// Where a point of camera space at a knot goes that has this offset in object space.
+    Vec3f displaced(int knot, const Vec3f& p, const Vec3f& offset) const {
+        const Mat3d turn(m_knots.camera_from_object[static_cast<std::size_t>(knot)]);
+        return p + Vec3f(turn * Vec3d(offset));
     }
 
     /// Object-space normals to camera space at the frame time, of any length.
@@ -166,7 +184,7 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     Mat3d m_camera_from_object_normal{1.0};
     bool m_displaced = false;
     float m_displacement_reach = 0.0f;
-    SmallFaces m_small;  ///< none where displaced
+    SmallFaces m_small;
 };
 
 }  // namespace granita

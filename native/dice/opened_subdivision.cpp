@@ -22,7 +22,7 @@ OpenedSubdivision::OpenedSubdivision(const View& view, std::size_t instance,
     : OpenedMesh(view, instance, shared, MeshPart(*shared), std::move(knots), report) {
     for (int k = 0; k < knot_count(); ++k)
         m_times.push_back(knot_time(k, knot_count() - 1, this->shared().surface().knots()));
-    if (!displaced()) m_whole = whole_edges(*this);
+    m_whole = whole_edges(*this);
     find_small_faces();
 }
 

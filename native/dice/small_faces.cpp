@@ -20,6 +20,9 @@ namespace {
 constexpr float kRegion = 32.0f;
 /// Places on screen and in depth are told apart to this part of a pixel.
 constexpr float kStepsAPixel = 4.0f;
+/// How many times longer than a micropolygon's side a displaced one may be: what is shaded as one
+/// point should not show that.
+constexpr double kStretch = 1.5;
 
 /// Faces that are looked at in a piece of a loop.
 constexpr std::size_t kGrain = 1 << 12;
@@ -39,13 +42,17 @@ Corners corners_of(const OpenedMesh& mesh, const BasePatch& patch) {
 
 /// log2 of the micropolygons along u and v, by the sides' lengths.
 struct Levels {
+    static constexpr std::uint8_t kTooMany = 255;
     std::uint8_t u = 0, v = 0;
     bool whole() const { return u + v == 0; }
+    bool small() const { return u != kTooMany; }
     int micropolygons() const { return 1 << (u + v); }
 };
-constexpr Levels kLarge{255, 255};
+constexpr Levels kLarge{Levels::kTooMany, Levels::kTooMany};
 
 int most_levels(const OpenedMesh& mesh) {
+    // Points of a lattice that is displaced have offsets of their own.
+    if (mesh.displaced()) return 0;
     // Only straight edges have their points from tables.
     if (!mesh.straight_edges()) return 0;
     // Points of a coarser shading rate lie on lattices.
@@ -113,6 +120,34 @@ std::vector<Levels> find_levels(const OpenedMesh& mesh, ScreenPoints& screen) {
     return levels;
 }
 
+/// The offsets of the vertices of small faces.  What is not small any more where they take it
+/// becomes kLarge.
+VertexOffsets displace(const OpenedMesh& mesh, std::vector<Levels>& levels) {
+    const MeshPart& part = mesh.part();
+    std::vector<bool> wanted(part.vertex_count(), false);
+    for (std::size_t p = 0; p < levels.size(); ++p)
+        for (const std::uint32_t corner : mesh.shared().patches()[part.patch(p)].corner)
+            if (levels[p].small()) wanted[mesh.place_of(corner)] = true;
+    VertexOffsets offsets(mesh, wanted);
+    const auto longest = static_cast<float>(kStretch * M_SQRT2 * mesh.rate().rate());
+    ScreenPoints screen(mesh);
+    for (int k = 0; k < mesh.knot_count(); ++k) {
+        screen.project(offsets.points(mesh, k));
+        const auto is_short = [&](std::size_t a, std::size_t b) {
+            return glm::distance(screen[a], screen[b]) <= longest;  // nor if it is not a number
+        };
+        parallel_for(levels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) {
+                if (!levels[p].small()) continue;
+                const Corners c = corners_of(mesh, mesh.shared().patches()[part.patch(p)]);
+                for (int i = 0; i < c.count; ++i)
+                    if (!is_short(c.v[i], c.v[i + 1 < c.count ? i + 1 : 0])) levels[p] = kLarge;
+            }
+        });
+    }
+    return offsets;
+}
+
 /// A small face among its neighbours.
 struct Member {
     std::uint32_t patch = 0;
@@ -148,24 +183,30 @@ void find_place(Member& member, const OpenedMesh& mesh, const ScreenPoints& scre
 
 SmallFaces::SmallFaces(const OpenedMesh& mesh) {
     ScreenPoints screen(mesh);
-    const std::vector<Levels> levels = mesh.displaced()
-                                           ? std::vector<Levels>(mesh.part().patch_count(), kLarge)
-                                           : find_levels(mesh, screen);
-    const auto count = static_cast<std::size_t>(std::count_if(
-        levels.begin(), levels.end(), [](const Levels& l) { return l.u != kLarge.u; }));
-    if (count > 0) screen.project(mesh.points(mesh.knots().frame_knot));
+    std::vector<Levels> levels = find_levels(mesh, screen);
+    const auto is_small = [](const Levels& l) { return l.small(); };
+    if (mesh.displaced() && std::ranges::any_of(levels, is_small))
+        m_offsets = displace(mesh, levels);
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(levels, is_small));
+    std::span<const Vec3f> at_frame = mesh.points(mesh.knots().frame_knot);
+    std::vector<Vec3f> displaced;
+    if (mesh.displaced()) {
+        displaced = m_offsets.points(mesh, mesh.knots().frame_knot);
+        at_frame = displaced;
+    }
+    if (count > 0) screen.project(at_frame);
     m_others.reserve(levels.size() - count);
     std::vector<Member> members(count);
     std::size_t member = 0;
     for (std::uint32_t p = 0; p < levels.size(); ++p)
-        if (levels[p].u == kLarge.u)
+        if (!levels[p].small())
             m_others.push_back(mesh.part().patch(p));
         else
             members[member++] = {.patch = mesh.part().patch(p), .levels = levels[p]};
     if (members.empty()) return;
     parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            find_place(members[i], mesh, screen, mesh.points(mesh.knots().frame_knot));
+            find_place(members[i], mesh, screen, at_frame);
     });
     Vec3f lowest(INFINITY);
     for (const Member& m : members) lowest = glm::min(lowest, m.place);
@@ -210,11 +251,11 @@ SmallFaces::SmallFaces(const OpenedMesh& mesh) {
     m_boxes.resize(batch_count() * knots);
     parallel_for(m_boxes.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const std::span<const Vec3f> points = mesh.points(static_cast<int>(i % knots));
+            const int knot = static_cast<int>(i % knots);
             Bounds3f& box = m_boxes[i];
             for (const std::uint32_t face : batch(i / knots))
                 for (const std::uint32_t corner : mesh.shared().patches()[face].corner)
-                    box.add(points[mesh.place_of(corner)]);
+                    box.add(m_offsets.point(mesh, knot, mesh.place_of(corner)));
             box.grow_relative(1e-6f);  // of what lies between the corners
         }
     });

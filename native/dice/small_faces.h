@@ -6,12 +6,17 @@
 // on screen and in depth that show the same side and have one material.  What shows its back is
 // apart, so that it is culled and never shaded where the front hides it.  Faces of one micropolygon
 // (FaceBatch) do not mix with larger ones (PatchBatch).
+//
+// Of what is displaced only faces of one micropolygon are gathered, whose vertices are displaced
+// when they are: each once, not once for every face around it.  What displacement stretches to
+// more than a micropolygon may be is left alone.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "dice/vertex_offsets.h"
 #include "math/bounds.h"
 
 namespace granita {
@@ -37,14 +42,17 @@ class SmallFaces {
         return {m_boxes.data() + index * knots, knots};
     }
     bool is_whole(std::size_t index) const { return m_whole[index]; }
+    /// Of their vertices.
+    const VertexOffsets& offsets() const { return m_offsets; }
     /// Patches in no batch.
     std::span<const std::uint32_t> others() const { return m_others; }
     std::uint64_t bytes() const {
         return 4 * (m_order.size() + m_batches.size() + m_others.size()) +
-               sizeof(Bounds3f) * m_boxes.size();
+               sizeof(Bounds3f) * m_boxes.size() + m_offsets.bytes();
     }
 
   private:
+    VertexOffsets m_offsets;
     std::vector<std::uint32_t> m_order, m_batches, m_others;
     std::vector<bool> m_whole;      ///< [batches]
     std::vector<Bounds3f> m_boxes;  ///< [batches][knots]

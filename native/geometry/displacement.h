@@ -11,15 +11,15 @@
 #include <span>
 #include <vector>
 
-#include "geometry/shared_geometry.h"
+#include "geometry/surface_place.h"
 
 namespace granita {
 
-/// Offsets at n places of a patch, object space, at the frame time; they hold throughout the
-/// shutter, as in Cycles.
+/// Offsets at n places, object space, at the frame time; they hold throughout the shutter, as in
+/// Cycles.
 struct Offsets {
     std::vector<Vec3f> offset;
-    std::vector<Vec3f> by_u, by_v;  ///< derivatives, where they were asked for
+    std::vector<Vec3f> by_u, by_v;  ///< derivatives of the patch, where they were asked for
 };
 
 /// Thread-safe; instances by their index in Scene::instances.
@@ -34,8 +34,10 @@ class Displacement {
     virtual std::size_t same_as(std::size_t instance) const = 0;
     /// Shared by those of several pictures whose offsets are all the same; nullptr: by none.
     virtual std::shared_ptr<const void> identity() const { return nullptr; }
-    virtual void find(std::size_t instance, const SharedGeometry& geometry, const BasePatch& patch,
-                      std::span<const Vec2d> uv, bool derivatives, Offsets& out) const = 0;
+    /// On any patches; a call for many places costs a fraction of a call for each.
+    virtual void find(std::size_t instance, const SharedGeometry& geometry,
+                      std::span<const SurfacePlace> places, bool derivatives,
+                      Offsets& out) const = 0;
 };
 
 }  // namespace granita

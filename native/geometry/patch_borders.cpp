@@ -123,6 +123,10 @@ SurfacePlace PatchBorders::place(std::uint32_t edge, double t) const {
 }
 
 SurfacePlace PatchBorders::vertex(std::size_t vertex) const {
+    if (const SubdivisionTopology* topology = m_geometry.subdivision()) {
+        const SubdivisionTopology::Owner& owner = topology->vertex_owner(vertex);
+        return on_face(owner.face, owner.local, 0.0);
+    }
     const std::uint32_t owner = m_vertex_owners[vertex];
     const BasePatch& patch = m_geometry.patches()[owner / 4];
     return {&patch, corner_uv(patch.kind, static_cast<int>(owner % 4))};
@@ -131,11 +135,8 @@ SurfacePlace PatchBorders::vertex(std::size_t vertex) const {
 SurfacePlace PatchBorders::on_cage(std::size_t index, double t) const {
     const SubdivisionTopology& topology = *m_geometry.subdivision();
     const SubdivisionTopology::Edge& edge = topology.edge(index);
-    if (t == 0.0 || t == 1.0) {
-        const SubdivisionTopology::Owner& owner =
-            topology.vertex_owner(static_cast<std::size_t>(t == 0.0 ? edge.lo : edge.hi));
-        return on_face(owner.face, owner.local, 0.0);
-    }
+    if (t == 0.0 || t == 1.0)
+        return vertex(static_cast<std::size_t>(t == 0.0 ? edge.lo : edge.hi));
     const std::uint32_t corner =
         m_geometry.first_corner(static_cast<std::size_t>(edge.owner.face)) +
         static_cast<std::uint32_t>(edge.owner.local);

@@ -26,6 +26,8 @@ class PatchBorders {
     std::size_t edge_count() const { return m_edge_count; }
     /// The owner's place of a point of an edge.
     SurfacePlace place(std::uint32_t edge, double t) const;
+    /// The owner's place of a vertex: of an edge's end, whichever edge it is.
+    SurfacePlace vertex(std::size_t vertex) const;
 
     /// Of polygons: the edge between two vertices, which runs from `lo` to `hi`.
     std::uint32_t edge_of(std::uint32_t lo, std::uint32_t hi) const;
@@ -45,7 +47,6 @@ class PatchBorders {
         std::uint8_t a, b;  ///< corners of the patch at `lo` and at `hi`
     };
     void find_polygon_edges();
-    SurfacePlace vertex(std::size_t vertex) const;
     SurfacePlace on_cage(std::size_t edge, double t) const;
     SurfacePlace on_face(std::int32_t face, std::int32_t local, double t) const;
 

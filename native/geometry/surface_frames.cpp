@@ -50,14 +50,16 @@ void resize(SurfaceFrames& out, std::size_t n) {
 }
 
 void polygon_frames(const SharedGeometry& geometry, const BasePatch& patch,
-                    std::span<const Vec2d> uv, const KnotTime& time, SurfaceFrames& out) {
+                    std::span<const Vec2d> uv, const KnotTime& time, std::size_t first,
+                    SurfaceFrames& out) {
     const std::array<Vec3d, 4> at = corners(geometry, patch, time);
     const bool smooth = geometry.is_smooth(patch.face);
     std::array<Vec3d, 4> normals{};
     if (smooth) normals = corner_normals(geometry, patch, time);
     const Vec3d across = normalize_or(glm::cross(at[2] - at[0], at[3] - at[1]), kUp);
-    for (std::size_t i = 0; i < uv.size(); ++i) {
-        const CornerWeights weights(patch.kind, uv[i]);
+    for (std::size_t k = 0; k < uv.size(); ++k) {
+        const CornerWeights weights(patch.kind, uv[k]);
+        const std::size_t i = first + k;
         out.p[i] = blend(at, weights.w);
         out.su[i] = blend(at, weights.du);
         out.sv[i] = blend(at, weights.dv);
@@ -76,7 +78,7 @@ Vec3d at_time(const double* columns, const KnotTime& t) {
 }
 
 void limit_frames(const SharedGeometry& geometry, const BasePatch& patch, std::span<const Vec2d> uv,
-                  const KnotTime& time, SurfaceFrames& out) {
+                  const KnotTime& time, std::size_t first, SurfaceFrames& out) {
     const int face = static_cast<int>(patch.face), sub = static_cast<int>(patch.sub);
     const LimitFace& limit = geometry.surface().limit_face(face);
     const FaceCoordinates coordinates(*geometry.subdivision(), face);
@@ -90,8 +92,9 @@ void limit_frames(const SharedGeometry& geometry, const BasePatch& patch, std::s
     };
     // Where the parameters stall (a cage edge of no length) the middle of the face stands in.
     const Vec3d middle = normal_at({0.5, 0.5}, kUp);
-    for (std::size_t i = 0; i < uv.size(); ++i) {
-        out.geometric_normal[i] = out.normal[i] = normal_at(uv[i], middle);
+    for (std::size_t k = 0; k < uv.size(); ++k) {
+        const std::size_t i = first + k;
+        out.geometric_normal[i] = out.normal[i] = normal_at(uv[k], middle);
         out.p[i] = at_time(p.data(), time);
         out.su[i] = scale * at_time(du.data(), time);
         out.sv[i] = scale * at_time(dv.data(), time);
@@ -102,11 +105,18 @@ void limit_frames(const SharedGeometry& geometry, const BasePatch& patch, std::s
 
 void find_frames(const SharedGeometry& geometry, const BasePatch& patch, std::span<const Vec2d> uv,
                  const KnotTime& time, SurfaceFrames& out) {
-    resize(out, uv.size());
+    out.clear();
+    add_frames(geometry, patch, uv, time, out);
+}
+
+void add_frames(const SharedGeometry& geometry, const BasePatch& patch, std::span<const Vec2d> uv,
+                const KnotTime& time, SurfaceFrames& out) {
+    const std::size_t first = out.p.size();
+    resize(out, first + uv.size());
     if (geometry.subdivision())
-        limit_frames(geometry, patch, uv, time, out);
+        limit_frames(geometry, patch, uv, time, first, out);
     else
-        polygon_frames(geometry, patch, uv, time, out);
+        polygon_frames(geometry, patch, uv, time, first, out);
 }
 
 bool find_smooth_face(const SharedGeometry& geometry, const BasePatch& patch, const KnotTime& time,

@@ -14,11 +14,18 @@ struct SurfaceFrames {
     std::vector<Vec3d> p, su, sv;
     std::vector<Vec3d> normal;            ///< unit, shading, outward as modelled
     std::vector<Vec3d> geometric_normal;  ///< unit
+
+    void clear() {
+        for (auto* values : {&p, &su, &sv, &normal, &geometric_normal}) values->clear();
+    }
 };
 
 /// `time`: among the geometry's knots.
 void find_frames(const SharedGeometry& geometry, const BasePatch& patch, std::span<const Vec2d> uv,
                  const KnotTime& time, SurfaceFrames& out);
+/// After those that are there already.
+void add_frames(const SharedGeometry& geometry, const BasePatch& patch, std::span<const Vec2d> uv,
+                const KnotTime& time, SurfaceFrames& out);
 
 /// Where shading normals are not the face's own.
 struct SmoothFace {

@@ -28,6 +28,8 @@ constexpr std::size_t kSamples = 1 << 16;
 constexpr int kMostAlongSide = 256;
 /// Patches in a piece of that loop.
 constexpr std::size_t kGrain = 64;
+/// Places that a program runs over: their memory stays in the second cache.
+constexpr std::size_t kMostAtOnce = 1024;
 /// Of a patch: a place and the two beside it stay within it.
 constexpr double kLargestStep = 0.5;
 /// Of a pixel: between the points whose difference is a slope.  Over a whole one the normals of a
@@ -52,25 +54,25 @@ struct MaterialDisplacement::Target {
     mutable float bound = 0.0f;
 };
 
-/// Places of a patch as points that a program runs over.
+/// Places as points that a program runs over.
 class MaterialDisplacement::Batch {
   public:
-    Batch(const Target& target, const Instance& instance, const SharedGeometry& geometry,
-          const BasePatch& patch)
+    Batch(const Target& target, const Instance& instance, const SharedGeometry& geometry)
         : m_target(target),
           m_instance(instance),
           m_geometry(geometry),
-          m_patch(patch),
           m_memory(ObjectPool<Memory>::take()) {}
     ~Batch() { ObjectPool<Memory>::give(std::move(m_memory)); }
     Batch(const Batch&) = delete;
     Batch& operator=(const Batch&) = delete;
 
-    void run(const DisplacementProgram& program, std::span<const Vec2d> uv, bool derivatives,
-             Offsets& out) {
-        const std::size_t n = uv.size();
-        m_uv.assign(uv.begin(), uv.end());
-        find_frames(m_geometry, m_patch, uv, m_geometry.frame(), m_frames);
+    /// Those of `places` go to `out` from `first` on, which has room for them.
+    void run(const DisplacementProgram& program, std::span<const SurfacePlace> places,
+             bool derivatives, std::size_t first, Offsets& out) {
+        const std::size_t n = places.size();
+        m_places.assign(places.begin(), places.end());
+        find_uv();
+        find_frames_from(0, m_frames);
         m_steps.resize(n);
         for (std::size_t i = 0; i < n; ++i) m_steps[i] = step_at(i);
         if (derivatives) add_neighbours(n);
@@ -83,21 +85,22 @@ class MaterialDisplacement::Batch {
         input.attributes = &m_attributes;
         input.instance = &m_instance;
         input.axes = m_target.axes;
-        Run run = program.program.prepare(input, m_uv.size(), std::move(m_memory.slots));
+        Run run = program.program.prepare(input, m_places.size(), std::move(m_memory.slots));
         program.program.execute(run);
         const auto offsets = run.read(program.offset);
         const auto in_object = [&](std::size_t i) {
             return Vec3f(m_target.object_from_world * Vec3d(offsets[i]));
         };
-        for (std::size_t i = 0; i < n; ++i) out.offset[i] = in_object(i);
+        for (std::size_t i = 0; i < n; ++i) out.offset[first + i] = in_object(i);
         for (std::size_t i = 0; derivatives && i < n; ++i) {
             const Vec2d& step = m_differences[i];
             const auto slope = [&](std::size_t next, double by) {
-                return by != 0.0 ? (in_object(next) - out.offset[i]) / static_cast<float>(by)
-                                 : Vec3f(0.0f);
+                return by != 0.0
+                           ? (in_object(next) - out.offset[first + i]) / static_cast<float>(by)
+                           : Vec3f(0.0f);
             };
-            out.by_u[i] = slope(n + i, step.x);
-            out.by_v[i] = slope(2 * n + i, step.y);
+            out.by_u[first + i] = slope(n + i, step.x);
+            out.by_v[first + i] = slope(2 * n + i, step.y);
         }
         m_memory.slots = run.take_memory();
     }
@@ -105,12 +108,30 @@ class MaterialDisplacement::Batch {
   private:
     /// Used again by the next batch.
     struct Memory {
+        std::vector<SurfacePlace> places;
         std::vector<Vec2d> uv, steps, differences;
         SurfaceFrames frames, beside;
         ShadingPoints points;
         std::vector<GridAttribute> attributes;
+        GridAttribute of_patch;
         std::vector<float> slots;
     };
+
+    void find_uv() {
+        m_uv.clear();
+        for (const SurfacePlace& place : m_places) m_uv.push_back(place.uv);
+    }
+
+    /// Of the places from `begin` on.
+    void find_frames_from(std::size_t begin, SurfaceFrames& out) {
+        out.clear();
+        for_each_patch(std::span(m_places).subspan(begin),
+                       [&](const BasePatch& patch, std::size_t first, std::size_t count) {
+                           add_frames(m_geometry, patch,
+                                      std::span(m_uv).subspan(begin + first, count),
+                                      m_geometry.frame(), out);
+                       });
+    }
 
     double pixel_at(std::size_t i) const {
         return m_target.angle * glm::distance(m_frames.p[i], m_target.eye) + m_target.least;
@@ -140,17 +161,20 @@ class MaterialDisplacement::Batch {
     void add_neighbours(std::size_t n) {
         m_differences.resize(n);
         for (std::size_t i = 0; i < n; ++i) m_differences[i] = difference_at(i) * m_steps[i];
-        for (std::size_t i = 0; i < n; ++i)
-            m_uv.push_back(m_uv[i] + Vec2d(m_differences[i].x, 0.0));
-        for (std::size_t i = 0; i < n; ++i)
-            m_uv.push_back(m_uv[i] + Vec2d(0.0, m_differences[i].y));
+        m_places.resize(3 * n);
+        for (std::size_t i = 0; i < n; ++i) {
+            const SurfacePlace& at = m_places[i];
+            m_places[n + i] = {at.patch, at.uv + Vec2d(m_differences[i].x, 0.0)};
+            m_places[2 * n + i] = {at.patch, at.uv + Vec2d(0.0, m_differences[i].y)};
+        }
+        find_uv();
         m_steps.resize(3 * n);
         for (std::size_t i = 0; i < 2 * n; ++i) m_steps[n + i] = m_steps[i % n];
-        find_frames(m_geometry, m_patch, std::span(m_uv).subspan(n), m_geometry.frame(), m_beside);
+        find_frames_from(n, m_beside);
     }
 
     void resize_points() {
-        const std::size_t n = m_uv.size();
+        const std::size_t n = m_places.size();
         m_points.count = n;
         for (auto* values : {&m_points.p, &m_points.normal, &m_points.geometric_normal,
                              &m_points.view, &m_points.dp_du, &m_points.dp_dv})
@@ -180,7 +204,7 @@ class MaterialDisplacement::Batch {
             GridAttribute& to = m_attributes[k];
             to.attribute = static_cast<int>(k);
             to.width = requests[k].width;
-            m_geometry.surface().attribute(m_patch, requests[k], m_uv, to.values, to.du, to.dv);
+            find_attribute(requests[k], to);
             const auto width = static_cast<std::size_t>(to.width);
             for (std::size_t i = 0; i < to.values.size(); ++i) {
                 to.du[i] *= static_cast<float>(m_steps[i / width].x);
@@ -189,12 +213,28 @@ class MaterialDisplacement::Batch {
         }
     }
 
+    void find_attribute(const AttributeRequest& request, GridAttribute& to) {
+        for (auto* values : {&to.values, &to.du, &to.dv}) values->clear();
+        GridAttribute& part = m_memory.of_patch;
+        const auto append = [](const std::vector<float>& from, std::vector<float>& values) {
+            values.insert(values.end(), from.begin(), from.end());
+        };
+        for_each_patch(
+            m_places, [&](const BasePatch& patch, std::size_t first, std::size_t count) {
+                m_geometry.surface().attribute(patch, request, std::span(m_uv).subspan(first, count),
+                                               part.values, part.du, part.dv);
+                append(part.values, to.values);
+                append(part.du, to.du);
+                append(part.dv, to.dv);
+            });
+    }
+
     const Target& m_target;
     const Instance& m_instance;
     const SharedGeometry& m_geometry;
-    const BasePatch& m_patch;
     Memory m_memory;
     /// [places], and where slopes are asked for, of those beside them along u and along v.
+    std::vector<SurfacePlace>& m_places = m_memory.places;
     std::vector<Vec2d>&m_uv = m_memory.uv, &m_steps = m_memory.steps;
     std::vector<Vec2d>& m_differences = m_memory.differences;
     SurfaceFrames &m_frames = m_memory.frames, &m_beside = m_memory.beside;
@@ -283,17 +323,32 @@ const DisplacementProgram* MaterialDisplacement::program_of(const Instance& inst
     return program(instance.material(geometry.data().slot(face)));
 }
 
-void MaterialDisplacement::find(std::size_t index, const SharedGeometry& geometry,
-                                const BasePatch& patch, std::span<const Vec2d> uv, bool derivatives,
-                                Offsets& out) const {
-    const std::size_t n = uv.size();
+void MaterialDisplacement::run(std::size_t index, const SharedGeometry& geometry,
+                               std::span<const SurfacePlace> places, bool derivatives,
+                               Offsets& out) const {
+    const std::size_t n = places.size();
     out.offset.assign(n, Vec3f(0.0f));
     out.by_u.assign(derivatives ? n : 0, Vec3f(0.0f));
     out.by_v.assign(derivatives ? n : 0, Vec3f(0.0f));
     const Instance& instance = m_scene.instances[index];
-    const DisplacementProgram* const program = program_of(instance, geometry, patch.face);
-    if (!program) return;
-    Batch(*m_targets[index], instance, geometry, patch).run(*program, uv, derivatives, out);
+    Batch batch(*m_targets[index], instance, geometry);
+    const auto program_at = [&](std::size_t i) {
+        return program_of(instance, geometry, places[i].patch->face);
+    };
+    for (std::size_t first = 0, end = 0; first < n; first = end) {
+        const DisplacementProgram* const program = program_at(first);
+        while (end < n && end - first < kMostAtOnce && program_at(end) == program) ++end;
+        if (program)
+            batch.run(*program, places.subspan(first, end - first), derivatives, first, out);
+    }
+}
+
+void MaterialDisplacement::find(std::size_t index, const SharedGeometry& geometry,
+                                std::span<const SurfacePlace> places, bool derivatives,
+                                Offsets& out) const {
+    run(index, geometry, places, derivatives, out);
+    const std::size_t n = places.size();
+    const Instance& instance = m_scene.instances[index];
     const float most = bound(index);
     std::size_t broken = 0, beyond = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -353,7 +408,6 @@ float MaterialDisplacement::find_bound(std::size_t index) const {
 }
 
 float MaterialDisplacement::sampled_bound(std::size_t index, const SharedGeometry& geometry) const {
-    const Instance& instance = m_scene.instances[index];
     const std::vector<BasePatch>& patches = geometry.patches();
     int side = 1;
     while (side < kMostAlongSide &&
@@ -361,22 +415,22 @@ float MaterialDisplacement::sampled_bound(std::size_t index, const SharedGeometr
         side *= 2;
     std::vector<float> most(patches.size(), 0.0f);
     parallel_for(patches.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        std::vector<Vec2d> uv;
+        std::vector<SurfacePlace> places;
         Offsets offsets;
-        for (std::size_t k = begin; k < end; ++k) {
-            const DisplacementProgram* const p = program_of(instance, geometry, patches[k].face);
-            if (!p) continue;
-            uv.clear();
-            for (int j = 0; j <= side; ++j)
-                for (int i = 0; i <= side; ++i) {
-                    if (patches[k].kind == PatchKind::Triangle && i + j > side) continue;
-                    uv.push_back(Vec2d(i, j) / static_cast<double>(side));
-                }
-            offsets.offset.resize(uv.size());
-            Batch(*m_targets[index], instance, geometry, patches[k]).run(*p, uv, false, offsets);
+        const auto measure = [&](std::size_t k) {
+            run(index, geometry, places, false, offsets);
             for (const Vec3f& offset : offsets.offset)
                 if (is_finite(offset)) most[k] = std::max(most[k], glm::length(offset));
+            places.clear();
+        };
+        for (std::size_t k = begin; k < end; ++k) {
+            for (int j = 0; j <= side; ++j)
+                for (int i = 0; i <= side; ++i)
+                    if (patches[k].kind != PatchKind::Triangle || i + j <= side)
+                        places.push_back({&patches[k], Vec2d(i, j) / static_cast<double>(side)});
+            if (places.size() >= kMostAtOnce) measure(k);
         }
+        measure(begin);
     });
     return most.empty() ? 0.0f : std::ranges::max(most);
 }

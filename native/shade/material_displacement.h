@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Displacement by the materials' programs, run over places of a patch at once.
+// Displacement by the materials' programs, run over many places at once.
 //
 // A program reads textures over a pixel of the camera, wherever the place may be: so an offset
 // depends on the place alone, and neither grids' borders nor what rays meet can be told from it.
@@ -44,8 +44,8 @@ class MaterialDisplacement final : public Displacement {
     bool displaces(std::size_t instance) const override;
     float bound(std::size_t instance) const override;
     std::size_t same_as(std::size_t instance) const override;
-    void find(std::size_t instance, const SharedGeometry& geometry, const BasePatch& patch,
-              std::span<const Vec2d> uv, bool derivatives, Offsets& out) const override;
+    void find(std::size_t instance, const SharedGeometry& geometry,
+              std::span<const SurfacePlace> places, bool derivatives, Offsets& out) const override;
 
   private:
     struct Target;
@@ -53,6 +53,9 @@ class MaterialDisplacement final : public Displacement {
     const DisplacementProgram* program_of(const Instance& instance, const SharedGeometry& geometry,
                                           std::uint32_t face) const;
     const DisplacementProgram* program(std::int32_t material) const;
+    /// find(), but for what its bound cuts off.
+    void run(std::size_t instance, const SharedGeometry& geometry,
+             std::span<const SurfacePlace> places, bool derivatives, Offsets& out) const;
     float kept_bound(std::size_t instance) const;
     float find_bound(std::size_t instance) const;
     float sampled_bound(std::size_t instance, const SharedGeometry& geometry) const;

@@ -27,10 +27,10 @@ constexpr std::size_t kLeastCells = 1 << 14;
 constexpr int kMostUnseenLevels = 6;
 /// Points over all knots that a geometry may have: about a gigabyte in Embree.
 constexpr std::size_t kMostPoints = 8'000'000;
-/// Points of a patch that are displaced at once.
+/// Points that are displaced at once.
 constexpr std::size_t kRun = 1024;
-/// Patches, or such runs, that a thread takes at a time.
-constexpr std::size_t kGrain = 16;
+/// Patches that a thread takes at a time.
+constexpr std::size_t kGrain = 256;
 
 /// (i, j) of a lattice's cells; a triangle's have i + j <= cells.
 class Cells {
@@ -99,8 +99,17 @@ RayDisplaced::RayDisplaced(std::shared_ptr<const SharedGeometry> shared,
     number();
     const std::size_t patches = m_shared->patches().size();
     parallel_for(patches, kGrain, [&](std::size_t begin, std::size_t end) {
-        progress.check();
-        for (std::size_t k = begin; k != end; ++k) place(k, displacement, instance);
+        std::vector<SurfacePlace> places;
+        std::size_t first_point = m_first_point[begin];
+        for (std::size_t k = begin; k != end; ++k) {
+            add_places(k, places);
+            make_quads(k);
+            if (places.size() < kRun && k + 1 != end) continue;
+            progress.check();
+            place(places, first_point, displacement, instance);
+            first_point += places.size();
+            places.clear();
+        }
     });
     for (std::size_t k = 0; k < patches; ++k) {
         float& extent = m_extents[m_shared->patches()[k].face];
@@ -220,50 +229,52 @@ SurfacePlace RayDisplaced::border_place(const PatchBorders::Side& side, int i, i
     return m_borders.place(side.edge, std::floor(t * steps + 0.5) / steps);
 }
 
-void RayDisplaced::place(std::size_t k, const Displacement& displacement, std::size_t instance) {
+/// Adds the places of a patch's points.
+void RayDisplaced::add_places(std::size_t k, std::vector<SurfacePlace>& places) const {
     const BasePatch& patch = m_shared->patches()[k];
     const int n_u = 1 << m_levels[k].u, n_v = 1 << m_levels[k].v;
     const Cells cells(patch.kind, n_u, n_v);
-    std::vector<SurfacePlace> places(point_count(k));
-    cells.for_points([&](int i, int j) {
-        places[cells.index(i, j)] = {&patch, Vec2d(i, j) / Vec2d(n_u, n_v)};
-    });
+    const std::size_t first = places.size();
+    places.resize(first + point_count(k));
+    const auto at = [&](int i, int j) -> SurfacePlace& {
+        return places[first + cells.index(i, j)];
+    };
+    cells.for_points([&](int i, int j) { at(i, j) = {&patch, Vec2d(i, j) / Vec2d(n_u, n_v)}; });
     for (int number = 0; number < PatchBorders::side_count(patch.kind); ++number) {
         const PatchBorders::Side side = m_borders.side(k, number);
         const int n = 1 << m_levels[k].along(number);
         for (int i = 0; i <= n; ++i) {
             const auto [u, v] = cells.on_side(number, i);
-            places[cells.index(u, v)] = border_place(side, i, n);
+            at(u, v) = border_place(side, i, n);
         }
     }
-    // Those of one owner at a time; the patch's own points lie in runs between them.
-    std::vector<std::uint32_t> order(places.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return places[i].patch; });
-    std::vector<std::size_t> runs{0};
-    for (std::size_t i = 1; i < order.size(); ++i)
-        if (i - runs.back() == kRun || places[order[i]].patch != places[order[i - 1]].patch)
-            runs.push_back(i);
-    runs.push_back(order.size());
+}
+
+/// Points from `first_point` on, where these places are.
+void RayDisplaced::place(std::span<const SurfacePlace> places, std::size_t first_point,
+                         const Displacement& displacement, std::size_t instance) {
     const std::size_t total = m_primitives.point_count();
-    parallel_for(runs.size() - 1, kGrain, [&](std::size_t begin, std::size_t end) {
+    const auto knots = static_cast<std::size_t>(m_primitives.knots);
+    parallel_for(places.size(), kRun, [&](std::size_t begin, std::size_t end) {
+        const std::span<const SurfacePlace> of = places.subspan(begin, end - begin);
         std::vector<Vec2d> uv;
         std::vector<Vec3f> positions;
         Offsets offsets;
-        for (std::size_t run = begin; run < end; ++run) {
-            const std::span<const std::uint32_t> of =
-                std::span(order).subspan(runs[run], runs[run + 1] - runs[run]);
-            const BasePatch& owner = *places[of[0]].patch;
+        displacement.find(instance, *m_shared, of, false, offsets);
+        for_each_patch(of, [&](const BasePatch& patch, std::size_t first, std::size_t count) {
             uv.clear();
-            for (const std::uint32_t i : of) uv.push_back(places[i].uv);
-            find_positions(*m_shared, owner, uv, positions);
-            displacement.find(instance, *m_shared, owner, uv, false, offsets);
-            for (std::size_t knot = 0; knot < static_cast<std::size_t>(m_primitives.knots); ++knot)
-                for (std::size_t i = 0; i < of.size(); ++i)
-                    m_primitives.points[knot * total + m_first_point[k] + of[i]] =
-                        positions[knot * uv.size() + i] + offsets.offset[i];
-        }
+            for (const SurfacePlace& at : of.subspan(first, count)) uv.push_back(at.uv);
+            find_positions(*m_shared, patch, uv, positions);
+            for (std::size_t knot = 0; knot < knots; ++knot)
+                for (std::size_t i = 0; i < count; ++i)
+                    m_primitives.points[knot * total + first_point + begin + first + i] =
+                        positions[knot * count + i] + offsets.offset[first + i];
+        });
     });
+}
+
+void RayDisplaced::make_quads(std::size_t k) {
+    const Cells cells(m_shared->patches()[k].kind, 1 << m_levels[k].u, 1 << m_levels[k].v);
     std::size_t quad = m_first_quad[k];
     const auto number_of = [&](const std::array<int, 2>& at) {
         return m_first_point[k] + cells.index(at[0], at[1]);

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/progress.h"
@@ -42,7 +43,10 @@ class RayDisplaced final : public RayFaces<4> {
     void coarsen();
     void find_edge_levels();
     void number();
-    void place(std::size_t patch, const Displacement& displacement, std::size_t instance);
+    void add_places(std::size_t patch, std::vector<SurfacePlace>& places) const;
+    void place(std::span<const SurfacePlace> places, std::size_t first_point,
+               const Displacement& displacement, std::size_t instance);
+    void make_quads(std::size_t patch);
     std::size_t point_count(std::size_t patch) const;
     std::size_t quad_count(std::size_t patch) const;
     /// Of the whole edge, for a side of a patch with `level`.

@@ -20,23 +20,28 @@ class ByMaterial final : public Displacement {
     bool displaces(std::size_t) const override { return true; }
     float bound(std::size_t) const override { return m_bound; }
     std::size_t same_as(std::size_t instance) const override { return instance; }
-    void find(std::size_t index, const SharedGeometry& geometry, const BasePatch& patch,
-              std::span<const Vec2d> uv, bool derivatives, Offsets& out) const override {
-        SurfaceFrames frames;
-        find_frames(geometry, patch, uv, geometry.frame(), frames);
-        const auto& slots = m_scene.scene.instances[index].materials;
-        const auto& of_faces = geometry.data().material_index;
-        const int slot = of_faces.empty() ? 0 : of_faces[patch.face];
-        const int material = slots.empty() ? -1 : slots[static_cast<std::size_t>(slot)];
-        const float amount =
-            material < 0 ? m_amounts.back() : m_amounts[static_cast<std::size_t>(material)];
+    void find(std::size_t index, const SharedGeometry& geometry,
+              std::span<const SurfacePlace> places, bool derivatives, Offsets& out) const override {
         out.offset.clear();
-        for (const Vec3d& normal : frames.normal) out.offset.push_back(amount * Vec3f(normal));
-        out.by_u.assign(derivatives ? uv.size() : 0, Vec3f(0.0f));
-        out.by_v.assign(derivatives ? uv.size() : 0, Vec3f(0.0f));
+        for (const SurfacePlace& place : places) {
+            SurfaceFrames frames;
+            find_frames(geometry, *place.patch, {&place.uv, 1}, geometry.frame(), frames);
+            out.offset.push_back(amount(index, geometry, place.patch->face) *
+                                 Vec3f(frames.normal[0]));
+        }
+        out.by_u.assign(derivatives ? places.size() : 0, Vec3f(0.0f));
+        out.by_v.assign(derivatives ? places.size() : 0, Vec3f(0.0f));
     }
 
   private:
+    float amount(std::size_t index, const SharedGeometry& geometry, std::uint32_t face) const {
+        const auto& slots = m_scene.scene.instances[index].materials;
+        const auto& of_faces = geometry.data().material_index;
+        const int slot = of_faces.empty() ? 0 : of_faces[face];
+        const int material = slots.empty() ? -1 : slots[static_cast<std::size_t>(slot)];
+        return material < 0 ? m_amounts.back() : m_amounts[static_cast<std::size_t>(material)];
+    }
+
     const DiceScene& m_scene;
     std::vector<float> m_amounts;
     float m_bound;

@@ -3,11 +3,13 @@
 // pixels share them too: the same micropolygons and points.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <set>
 
 #include "dice/opened_mesh.h"
 #include "dice/patch.h"
 #include "dice_scene.h"
+#include "geometry/surface_frames.h"
 
 namespace granita::testing {
 namespace {
@@ -242,6 +244,121 @@ TEST(SmallFaces, hold_positions_alone_until_they_are_shaded) {
                       static_cast<std::size_t>(grid->vertex_count()));
         }
     }
+}
+
+/// Up, by a function of where a point is before, at any knot.
+class Raised final : public Displacement {
+  public:
+    using Height = std::function<float(const Vec3d&)>;
+    Raised(DiceScene& scene, Height height) : m_height(std::move(height)) {
+        scene.view.displacement = this;
+        scene.view.requests.assign(1, {});
+    }
+    bool displaces(std::size_t) const override { return true; }
+    float bound(std::size_t) const override { return 50.0f; }
+    std::size_t same_as(std::size_t instance) const override { return instance; }
+    void find(std::size_t, const SharedGeometry& geometry, std::span<const SurfacePlace> places,
+              bool derivatives, Offsets& out) const override {
+        constexpr double kStep = 1e-4;
+        out = {};
+        for (const SurfacePlace& place : places) {
+            const std::vector<Vec2d> uv{place.uv, place.uv + Vec2d(kStep, 0.0),
+                                        place.uv + Vec2d(0.0, kStep)};
+            SurfaceFrames at;
+            find_frames(geometry, *place.patch, uv, geometry.frame(), at);
+            const auto up = [&](std::size_t i) { return Vec3f(0.0f, 0.0f, m_height(at.p[i])); };
+            out.offset.push_back(up(0));
+            if (!derivatives) continue;
+            out.by_u.push_back((up(1) - up(0)) / static_cast<float>(kStep));
+            out.by_v.push_back((up(2) - up(0)) / static_cast<float>(kStep));
+        }
+    }
+
+  private:
+    Height m_height;
+};
+
+TEST(SmallFaces, displaced_ones_share_grids_too) {
+    const auto waves = [](const Vec3d& p) {
+        return static_cast<float>(2.0 * std::sin(0.3 * p.x) * std::cos(0.2 * p.y));
+    };
+    for (const bool subdivided : {false, true})
+        for (const bool moves : {false, true}) {
+            GeometryData data = flat_sheet(48, 48.0f);
+            data.is_subdivision = subdivided;
+            data.subdivision.boundary = SubdivisionBoundary::EdgeAndCorner;
+            DiceScene s(data);
+            const Raised raised(s, waves);
+            s.scene.materials.resize(1);
+            s.scene.instances[0].materials = {0};
+            s.view.requests = {{{AttributeSource::ObjectPosition, "", 3, false}}};
+            if (moves) {
+                Mat4d up(1.0);
+                up[3].z = 3.0;
+                s.scene.instances[0].world_from_object = {Mat4d(1.0), up};
+            }
+            const auto grids = s.grids();
+            EXPECT_LT(grids.size(), 32u) << subdivided;
+            EXPECT_EQ(micropolygons(grids), 48 * 48);
+            for (const auto& grid : grids) {
+                ASSERT_TRUE(grid->disjoint);
+                for (std::size_t i = 0; i < grid->positions.size(); ++i) {
+                    const auto k = static_cast<int>(i) / grid->vertex_count();
+                    const Vec3f& p = grid->positions[i];
+                    EXPECT_NEAR(p.z, 5.0f + waves(Vec3d(p)) + 3.0f * static_cast<float>(k), 1e-5f);
+                }
+                for (std::size_t i = 0; i < grid->point_count(); ++i) {
+                    const Vec3f& p = grid->shading_p()[i];
+                    const double x = p.x, y = p.y;
+                    const Vec3d up(-0.6 * std::cos(0.3 * x) * std::cos(0.2 * y),
+                                   0.4 * std::sin(0.3 * x) * std::sin(0.2 * y), 1.0);
+                    // Of a chord, where the slope is: half a metre by a curvature of .18 at most.
+                    EXPECT_NEAR(std::abs(glm::dot(grid->normal[i], Vec3f(glm::normalize(up)))),
+                                1.0f, 2e-3f);
+                    const Vec3f way(0.0f, 0.0f, moves ? 3.0f * s.scene.options.frame_time : 0.0f);
+                    const float* const in_object = &grid->attributes[0].values[3 * i];
+                    // The mean of four corners; the point lies between two of them.
+                    EXPECT_NEAR(
+                        glm::distance(Vec3f(in_object[0], in_object[1], in_object[2]), p - way),
+                        0.0f, 0.05f);
+                }
+            }
+        }
+}
+
+TEST(SmallFaces, displaced_ones_lie_where_their_patches_would) {
+    GeometryData data = sheet(24, 20.0f, [](float x, float y) { return 0.02f * x * y; });
+    data.smooth.assign(24 * 24, 1);
+    DiceScene s(data);
+    const Raised raised(s, [](const Vec3d& p) { return static_cast<float>(std::sin(p.x + p.y)); });
+    const auto opened =
+        std::dynamic_pointer_cast<const OpenedMesh>(open_instance(s.view, 0, s.report));
+    ASSERT_TRUE(opened);
+    const auto point = [](const Vec3f& p) { return std::array{p.x, p.y, p.z}; };
+    std::set<std::array<float, 3>> batched, single;
+    for (const auto& grid : s.grids())
+        for (const Vec3f& p : grid->positions) batched.insert(point(p));
+    for (const BasePatch& patch : opened->shared().patches()) {
+        std::vector<std::unique_ptr<Grid>> grids;
+        DiceScene::dice_all(*Patch::open(opened, patch), grids);
+        for (const auto& grid : grids)
+            for (const Vec3f& p : grid->positions) single.insert(point(p));
+    }
+    EXPECT_EQ(batched, single);
+}
+
+TEST(SmallFaces, what_displacement_stretches_is_left_alone) {
+    DiceScene s(flat_sheet(32, 32.0f));
+    s.perspective();
+    s.view.projection.scale = {5.0, 5.0};  // a pixel at five metres
+    // A cliff: the faces across it are seen from the side, many pixels long.
+    const Raised raised(s, [](const Vec3d& p) { return p.x > 10.3 ? -1.0f : 0.0f; });
+    const auto grids = s.grids();
+    long alone = 0;
+    for (const auto& grid : grids) alone += grid->disjoint ? 0 : 1;
+    EXPECT_EQ(alone, 32);
+    EXPECT_LT(grids.size(), 64u);
+    EXPECT_EQ(micropolygons(grids), 1024);
 }
 
 }  // namespace
