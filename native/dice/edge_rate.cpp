@@ -50,7 +50,7 @@ struct EdgeRate::Swept {
     bool seen = false;
 };
 
-EdgeRate::EdgeRate(const View& view, double longer)
+EdgeRate::EdgeRate(const View& view, double longer, bool displaced)
     : m_projection(view.projection),
       m_rate(std::max<double>(view.scene->options.dicing_rate, kFinest) * longer),
       m_shading_rate(std::max<double>(m_rate, view.scene->options.shading_rate)),
@@ -58,6 +58,7 @@ EdgeRate::EdgeRate(const View& view, double longer)
       m_height(view.scene->options.height),
       m_motion_factor(view.scene->options.motion_factor * view.scene->options.row_exposure()),
       m_focus_factor(view.scene->options.focus_factor),
+      m_displaced(displaced),
       m_near(view.projection.perspective ? std::max(view.projection.near_clip, 1e-9)
                                          : view.projection.near_clip),
       m_rounding(static_cast<float>(std::ldexp(
@@ -155,8 +156,10 @@ double EdgeRate::angle(const Vec3f* start, const Vec3f* middle, const Vec3f* end
 bool EdgeRate::stays_whole(const Vec3f* start, const Vec3f* end, int knots) const {
     Swept swept;
     double longest = 0.0;
-    for (int k = 0; k < knots; ++k)
-        longest = std::max(longest, glm::length(add(swept, start[k], end[k])));
+    for (int k = 0; k < knots; ++k) {
+        const Vec2d there = add(swept, start[k], end[k]);
+        longest = std::max(longest, length(glm::length(there), there, start[k], end[k]));
+    }
     return !swept.clipped && outside(swept) == 0.0 && longest <= M_SQRT2 * m_rate;
 }
 
@@ -177,9 +180,9 @@ int EdgeRate::sure_levels(const Vec3f* start, const Vec3f* end, int knots) const
     bool equal = true;  // are its halves
     for (int k = 0; k < knots; ++k) {
         const Vec2f there = piece(start[k], end[k]);
-        const float length2 = glm::dot(there, there);
-        if (!std::isfinite(length2)) return kUnsure;
-        longest2 = std::max(longest2, length2);
+        const float counts2 = length2(there, start[k], end[k]);
+        if (!std::isfinite(counts2)) return kUnsure;
+        longest2 = std::max(longest2, counts2);
         if (m_projection.perspective)
             equal &= std::abs(start[k].z - end[k].z) <=
                      0.8f * static_cast<float>(kEqual) * std::min(start[k].z, end[k].z);
@@ -192,8 +195,10 @@ int EdgeRate::sure_levels(const Vec3f* start, const Vec3f* end, int knots) const
     // A circle is smallest at an end, or both ends lie on either side of the sharp plane.
     add_lens(blurred, knots, [&](int k) { return std::array{start[k].z, end[k].z}; });
     double counted = 0.0;
-    for (int k = 0; k < knots; ++k)
-        counted = std::max(counted, blurred.length(Vec2d(piece(start[k], end[k]))));
+    for (int k = 0; k < knots; ++k) {
+        const Vec2d there(piece(start[k], end[k]));
+        counted = std::max(counted, length(blurred.length(there), there, start[k], end[k]));
+    }
     int levels = 0;
     double limit = M_SQRT2 * m_rate * blurred.all;
     while (exceeds(static_cast<float>(counted), limit) == 1) ++levels, limit *= 2.0;
@@ -217,17 +222,19 @@ int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, 
         } else {
             pieces[0] = add(swept, a, m), pieces[1] = add(swept, m, b), whole = add(swept, a, b);
         }
-        const double first = glm::length(pieces[0]), second = glm::length(pieces[1]);
-        const double chord = glm::length(whole);
-        const double length = first + second;
-        longest = std::max(longest, length);
-        counted = std::max(counted, blurred.length(pieces[0]) + blurred.length(pieces[1]));
+        const double first = length(glm::length(pieces[0]), pieces[0], a, m);
+        const double second = length(glm::length(pieces[1]), pieces[1], m, b);
+        const double chord = length(glm::length(whole), whole, a, b);
+        const double both = first + second;
+        longest = std::max(longest, both);
+        counted = std::max(counted, length(blurred.length(pieces[0]), pieces[0], a, m) +
+                                        length(blurred.length(pieces[1]), pieces[1], m, b));
         if (std::abs(first - second) > kEqual * std::max(first, second)) equal = false;
         // The height of the triangle start, middle, end over its chord, by Heron's formula.
-        const double s = 0.5 * (length + chord);
+        const double s = 0.5 * (both + chord);
         const double area2 = s * (s - first) * (s - second) * (s - chord);
         const double height =
-            chord > 0.25 * length ? 2.0 * std::sqrt(std::max(area2, 0.0)) / chord : 0.5 * length;
+            chord > 0.25 * both ? 2.0 * std::sqrt(std::max(area2, 0.0)) / chord : 0.5 * both;
         sag = std::max(sag, height);
     };
     if (m_projection.perspective && knots > 1) {

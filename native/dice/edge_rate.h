@@ -19,6 +19,10 @@
 // apart, and of shading detail that they miss (waves shorter than an eighth of the blur) no more
 // than 1 / (8 pi) = 4 % would have been seen.
 //
+// What displacement moves does not stay as it lies: of a plain that is seen edge-on it makes hills.
+// Its pieces are as long as if they faced the eye (RenderMan's "rasterorient" 0), or hills had the
+// detail of what lay there before.
+//
 // Near the eye plane raster lengths have no limit, and behind it they mean nothing.  What the frame
 // does not show, or only in part, is therefore measured from the eye as well: it is bisected while
 // it is longer than half its distance, so that sizes grade evenly around the camera and the work is
@@ -26,6 +30,8 @@
 // no more than its angle.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -38,8 +44,8 @@ namespace granita {
 
 class EdgeRate {
   public:
-    /// `longer`: times the dicing rate of the view.
-    explicit EdgeRate(const View& view, double longer = 1.0);
+    /// `longer`: times the dicing rate of the view; `displaced`: so is what is diced.
+    explicit EdgeRate(const View& view, double longer = 1.0, bool displaced = false);
 
     /// A piece stays whole, has a uniform tree of so many levels below it, or is adaptive: bisected
     /// once, its halves looked at anew.
@@ -66,6 +72,11 @@ class EdgeRate {
     /// Pixels from the frame to a swept bound; 0 where they overlap.
     double outside(const RasterBounds& bounds) const;
     bool inside(const RasterBounds& bounds) const;
+
+    /// The square of what counts of a straight piece's length, which is `there` in the raster.
+    float length2(const Vec2f& there, const Vec3f& a, const Vec3f& b) const {
+        return glm::dot(there, there) + static_cast<float>(unseen2(Vec2d(there), a, b));
+    }
 
     /// How many times more vertices there would be around a moving point, were it not for its blur.
     double spared(const Vec3f* p, int knots) const;
@@ -98,6 +109,18 @@ class EdgeRate {
         const float v = m_projection.perspective ? 1.0f / b.z : 1.0f;
         return Vec2f(m_projection.scale) * (Vec2f(b) * v - Vec2f(a) * u);
     }
+    /// The square of what counts of a piece but is not seen in the raster, where it is `there`.
+    double unseen2(const Vec2d& there, const Vec3f& a, const Vec3f& b) const {
+        if (!m_displaced) return 0.0;
+        const double depth = m_projection.perspective ? std::max(0.5 * (a.z + b.z), m_near) : 1.0;
+        const Vec3d way =
+            std::max(m_projection.scale.x, m_projection.scale.y) / depth * Vec3d(b - a);
+        return std::max(glm::dot(way, way) - glm::dot(there, there), 0.0);
+    }
+    /// What counts of a piece's length, which is `seen` of it.
+    double length(double seen, const Vec2d& there, const Vec3f& a, const Vec3f& b) const {
+        return m_displaced ? std::sqrt(seen * seen + unseen2(there, a, b)) : seen;
+    }
     /// Pixels from the frame to the box.
     double outside(const Swept& swept) const;
     /// Length over distance from the eye, the largest over the knots.
@@ -106,6 +129,7 @@ class EdgeRate {
     Projection m_projection;
     double m_rate, m_shading_rate, m_width, m_height;
     double m_motion_factor, m_focus_factor;
+    bool m_displaced;
     double m_near;
     float m_rounding;  ///< of a length in single precision, pixels
     VisibleInterval m_seen;

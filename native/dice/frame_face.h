@@ -30,9 +30,9 @@ inline Vec3d displaced_normal(const Vec3d& n, const Vec3d& su, const Vec3d& sv, 
 
 /// A polygon's patch at the frame time, camera space: what it is shaded by.
 struct FrameFace {
-    Vec3d p[4]{};              ///< corners; a triangle repeats its last
-    Vec3d normal[4]{};         ///< of the corners, unit or zero; read where `is_smooth`
-    Vec3d moved[4]{};          ///< how far displacement has moved the corners
+    Vec3d p[4]{};       ///< corners; a triangle repeats its last
+    Vec3d normal[4]{};  ///< of the corners, unit or zero; read where `is_smooth`
+    Vec3d moved[4]{};   ///< how far displacement has moved the corners
     bool is_displaced = false;
     bool is_smooth = false;    ///< normals are linear between the corners'
     double orientation = 1.0;  ///< -1: mirrored

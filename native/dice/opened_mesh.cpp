@@ -36,7 +36,8 @@ OpenedMesh::OpenedMesh(const View& view, std::size_t instance,
       m_shared(std::move(shared)),
       m_knots(std::move(knots)),
       m_report(&report),
-      m_rate(view),
+      m_displaced(view.displacement && view.displacement->displaces(instance)),
+      m_rate(view, 1.0, m_displaced),
       m_part(std::move(part)) {
     transform_points();
     m_frame_orientation = orientation_of(m_knots.frame_camera_from_object);
@@ -85,10 +86,8 @@ void OpenedMesh::transform_points() {
 }
 
 void OpenedMesh::find_displacement() {
-    const Displacement* const displacement = m_view->displacement;
-    m_displaced = displacement && displacement->displaces(m_instance_index);
     if (!m_displaced) return;
-    const float bound = displacement->bound(m_instance_index);
+    const float bound = m_view->displacement->bound(m_instance_index);
     for (const Mat4d& m : m_knots.camera_from_object)
         m_displacement_reach =
             std::max(m_displacement_reach, bound * static_cast<float>(largest_stretch(m)));

@@ -177,12 +177,12 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     std::shared_ptr<const SharedGeometry> m_shared;
     Knots m_knots;
     Report* m_report;
+    bool m_displaced;
     EdgeRate m_rate;
     MeshPart m_part;
     std::vector<Vec3f> m_points;  ///< [knots][vertices of the part] camera space
     double m_frame_orientation = 1.0;
     Mat3d m_camera_from_object_normal{1.0};
-    bool m_displaced = false;
     float m_displacement_reach = 0.0f;
     SmallFaces m_small;
 };

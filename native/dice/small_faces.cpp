@@ -79,14 +79,15 @@ std::vector<Levels> find_levels(const OpenedMesh& mesh, ScreenPoints& screen) {
     const auto is_small = [&](const Vec2f& l) { return std::max(l.x, l.y) <= limit2[most]; };
     std::atomic<std::size_t> left = part.patch_count();
     for (int k = 0; k < mesh.knot_count() && left > 0; ++k) {
-        screen.project(mesh.points(k));
+        const std::span<const Vec3f> points = mesh.points(k);
+        screen.project(points);
         const auto measure = [&](std::size_t p) {
             if (!is_small(length2[p])) return std::size_t{0};
             const Corners c = corners_of(mesh, patch(p));
             float side2[4] = {};
             for (int i = 0; i < c.count; ++i) {
-                const Vec2f side = screen[c.v[i + 1 < c.count ? i + 1 : 0]] - screen[c.v[i]];
-                side2[i] = glm::dot(side, side);
+                const std::size_t a = c.v[i], b = c.v[i + 1 < c.count ? i + 1 : 0];
+                side2[i] = mesh.rate().length2(screen[b] - screen[a], points[a], points[b]);
             }
             length2[p] = glm::max(
                 length2[p], Vec2f(std::max(side2[0], side2[2]), std::max(side2[1], side2[3])));
@@ -205,8 +206,7 @@ SmallFaces::SmallFaces(const OpenedMesh& mesh) {
             members[member++] = {.patch = mesh.part().patch(p), .levels = levels[p]};
     if (members.empty()) return;
     parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            find_place(members[i], mesh, screen, at_frame);
+        for (std::size_t i = begin; i < end; ++i) find_place(members[i], mesh, screen, at_frame);
     });
     Vec3f lowest(INFINITY);
     for (const Member& m : members) lowest = glm::min(lowest, m.place);

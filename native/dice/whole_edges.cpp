@@ -35,10 +35,11 @@ std::vector<bool> whole_edges(const OpenedMesh& mesh) {
     const float longest = static_cast<float>(0.999 * M_SQRT2 * mesh.rate().rate());
     ScreenPoints screen(mesh);
     for (int k = 0; k < mesh.knot_count(); ++k) {
-        screen.project(mesh.points(k));
+        const std::span<const Vec3f> points = mesh.points(k);
+        screen.project(points);
         over_edges([&](std::size_t a, std::size_t b) {
-            const Vec2f chord = screen[b] - screen[a];
-            return glm::dot(chord, chord) <= longest * longest;  // false where not a number
+            const float length2 = mesh.rate().length2(screen[b] - screen[a], points[a], points[b]);
+            return length2 <= longest * longest;  // false where not a number
         });
     }
     if (std::ranges::none_of(whole, [](bool w) { return w; })) return whole;

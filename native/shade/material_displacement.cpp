@@ -32,9 +32,8 @@ constexpr std::size_t kGrain = 64;
 constexpr std::size_t kMostAtOnce = 1024;
 /// Of a patch: a place and the two beside it stay within it.
 constexpr double kLargestStep = 0.5;
-/// Of a pixel: between the points whose difference is a slope.  Over a whole one the normals of a
-/// ball of 20 pixels are .025 off, over a quarter .006.
-constexpr double kDifference = 1.0 / 16.0;
+/// Pixels: slopes are not of what is smaller, however fine micropolygons are.
+constexpr double kFinest = 1.0 / 16.0;
 /// Of the coordinates: smaller differences drown in the rounding of single precision.
 constexpr double kLeastDifference = 2e-5;
 
@@ -50,6 +49,10 @@ struct MaterialDisplacement::Target {
     // `least`.
     Vec3d eye{0.0};
     double angle = 0.0, least = 0.0;
+    /// Pixels from one to the other of two points whose difference is a slope: a micropolygon's
+    /// side.  Detail that the micropolygons do not have should not be seen in normals either: they
+    /// would look away from the eye here and there, where the surface itself is hidden.
+    double difference = 1.0;
     mutable Once bound_once;
     mutable float bound = 0.0f;
 };
@@ -93,23 +96,33 @@ class MaterialDisplacement::Batch {
         };
         for (std::size_t i = 0; i < n; ++i) out.offset[first + i] = in_object(i);
         for (std::size_t i = 0; derivatives && i < n; ++i) {
-            const Vec2d& step = m_differences[i];
-            const auto slope = [&](std::size_t next, double by) {
-                return by != 0.0
-                           ? (in_object(next) - out.offset[first + i]) / static_cast<float>(by)
-                           : Vec3f(0.0f);
+            const Vec3f& here = out.offset[first + i];
+            const auto slope = [&](std::size_t beside, const Beside& at) {
+                if (at.way == 0.0) return Vec3f(0.0f);
+                const Vec3f one = in_object(beside + i), other = in_object(beside + n + i);
+                const Vec3f rise = at.is_between ? one - other : 4.0f * one - other - 3.0f * here;
+                return rise / static_cast<float>(at.way);
             };
-            out.by_u[first + i] = slope(n + i, step.x);
-            out.by_v[first + i] = slope(2 * n + i, step.y);
+            out.by_u[first + i] = slope(n, m_beside_u[i]);
+            out.by_v[first + i] = slope(3 * n, m_beside_v[i]);
         }
         m_memory.slots = run.take_memory();
     }
 
   private:
+    /// Along u or v, two points from which a slope is found: on either side, or, where a patch of a
+    /// subdivision surface ends, one farther inside than the other.
+    struct Beside {
+        double one = 0.0, other = 0.0;  ///< from the place
+        double way = 0.0;               ///< 0: there is no slope
+        bool is_between = true;         ///< the place lies between them
+    };
+
     /// Used again by the next batch.
     struct Memory {
         std::vector<SurfacePlace> places;
-        std::vector<Vec2d> uv, steps, differences;
+        std::vector<Vec2d> uv, steps;
+        std::vector<Beside> beside_u, beside_v;
         SurfaceFrames frames, beside;
         ShadingPoints points;
         std::vector<GridAttribute> attributes;
@@ -149,27 +162,42 @@ class MaterialDisplacement::Batch {
         return {along(m_frames.su[i], m_uv[i].x), along(m_frames.sv[i], m_uv[i].y)};
     }
 
-    /// Of a pixel's step.
+    /// Of a pixel's step: across the points whose difference is a slope.
     double difference_at(std::size_t i) const {
         const Vec3d& p = m_frames.p[i];
         const double pixel = pixel_at(i);
         const double least =
             kLeastDifference * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-        return pixel > 0.0 ? std::clamp(least / pixel, kDifference, 1.0) : 1.0;
+        const double most = std::max(m_target.difference, 1.0);
+        return pixel > 0.0 ? std::clamp(least / pixel, m_target.difference, most) : most;
+    }
+
+    /// The two points beside a place in the order in which they are added.
+    Beside beside(double at, double step, double difference) const {
+        const double way = std::min(difference * std::abs(step), kLargestStep);
+        const bool inside = at - 0.5 * way >= 0.0 && at + 0.5 * way <= 1.0;
+        if (inside || !m_geometry.subdivision()) return {0.5 * way, -0.5 * way, way, true};
+        const double turned = at > 0.5 ? -way : way;
+        return {0.5 * turned, turned, turned, false};
     }
 
     void add_neighbours(std::size_t n) {
-        m_differences.resize(n);
-        for (std::size_t i = 0; i < n; ++i) m_differences[i] = difference_at(i) * m_steps[i];
-        m_places.resize(3 * n);
+        m_beside_u.clear();
+        m_beside_v.clear();
+        m_places.resize(5 * n);
         for (std::size_t i = 0; i < n; ++i) {
-            const SurfacePlace& at = m_places[i];
-            m_places[n + i] = {at.patch, at.uv + Vec2d(m_differences[i].x, 0.0)};
-            m_places[2 * n + i] = {at.patch, at.uv + Vec2d(0.0, m_differences[i].y)};
+            const auto& [patch, uv] = m_places[i];
+            const double difference = difference_at(i);
+            const Beside& u = m_beside_u.emplace_back(beside(uv.x, m_steps[i].x, difference));
+            const Beside& v = m_beside_v.emplace_back(beside(uv.y, m_steps[i].y, difference));
+            m_places[n + i] = {patch, uv + Vec2d(u.one, 0.0)};
+            m_places[2 * n + i] = {patch, uv + Vec2d(u.other, 0.0)};
+            m_places[3 * n + i] = {patch, uv + Vec2d(0.0, v.one)};
+            m_places[4 * n + i] = {patch, uv + Vec2d(0.0, v.other)};
         }
         find_uv();
-        m_steps.resize(3 * n);
-        for (std::size_t i = 0; i < 2 * n; ++i) m_steps[n + i] = m_steps[i % n];
+        m_steps.resize(5 * n);
+        for (std::size_t i = n; i < 5 * n; ++i) m_steps[i] = m_steps[i % n];
         find_frames_from(n, m_beside);
     }
 
@@ -219,14 +247,13 @@ class MaterialDisplacement::Batch {
         const auto append = [](const std::vector<float>& from, std::vector<float>& values) {
             values.insert(values.end(), from.begin(), from.end());
         };
-        for_each_patch(
-            m_places, [&](const BasePatch& patch, std::size_t first, std::size_t count) {
-                m_geometry.surface().attribute(patch, request, std::span(m_uv).subspan(first, count),
-                                               part.values, part.du, part.dv);
-                append(part.values, to.values);
-                append(part.du, to.du);
-                append(part.dv, to.dv);
-            });
+        for_each_patch(m_places, [&](const BasePatch& patch, std::size_t first, std::size_t count) {
+            m_geometry.surface().attribute(patch, request, std::span(m_uv).subspan(first, count),
+                                           part.values, part.du, part.dv);
+            append(part.values, to.values);
+            append(part.du, to.du);
+            append(part.dv, to.dv);
+        });
     }
 
     const Target& m_target;
@@ -236,7 +263,7 @@ class MaterialDisplacement::Batch {
     /// [places], and where slopes are asked for, of those beside them along u and along v.
     std::vector<SurfacePlace>& m_places = m_memory.places;
     std::vector<Vec2d>&m_uv = m_memory.uv, &m_steps = m_memory.steps;
-    std::vector<Vec2d>& m_differences = m_memory.differences;
+    std::vector<Beside>&m_beside_u = m_memory.beside_u, &m_beside_v = m_memory.beside_v;
     SurfaceFrames &m_frames = m_memory.frames, &m_beside = m_memory.beside;
     ShadingPoints& m_points = m_memory.points;
     std::vector<GridAttribute>& m_attributes = m_memory.attributes;
@@ -285,6 +312,7 @@ MaterialDisplacement::MaterialDisplacement(const Scene& scene,
         target->shading_from_object = world_from_object;
         target->shading_from_object[3] -= glm::dvec4(Vec3d(world_from_camera[3]), 0.0);
         target->axes = ObjectAxes(world_from_object);
+        target->difference = std::max<double>(options.dicing_rate, kFinest);
         target->object_from_world = inverse;
         const double scale = largest_stretch(world_from_object);
         target->eye = inverse * (Vec3d(world_from_camera[3]) - Vec3d(world_from_object[3]));
