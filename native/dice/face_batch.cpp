@@ -196,13 +196,11 @@ FaceBatch::Face FaceBatch::face(const Grid& grid, std::size_t i, const BasePatch
     // On both triangles of a quad, so that no ray's own surface lies above it.
     face.middle =
         triangle ? (corner[0] + corner[1] + corner[2]) / 3.0f : 0.5f * (corner[0] + corner[2]);
-    const FrameFace at = m_mesh->small_face(part);
-    const Vec3d su = at.by_u(weights), sv = at.by_v(weights);
-    const Vec3d flat = at.geometric_normal(su, sv);
-    face.su = Vec3f(su);
-    face.sv = Vec3f(sv);
-    face.geometric_normal = Vec3f(flat);
-    face.normal = Vec3f(at.shading_normal(weights, flat));
+    const TangentFrame at = m_mesh->small_face(part).frame(weights);
+    face.su = Vec3f(at.su);
+    face.sv = Vec3f(at.sv);
+    face.geometric_normal = Vec3f(at.geometric_normal);
+    face.normal = Vec3f(at.normal);
     const Projection& projection = m_mesh->view().projection;
     const auto place = [&](const Vec3f& at) {
         return Vec2f(projection.scale) * Vec2f(at) / (projection.perspective ? at.z : 1.0f);

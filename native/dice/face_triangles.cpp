@@ -53,20 +53,20 @@ Grid face_triangles(const OpenedMesh& mesh, const Grid& batch,
         const Vec3f& p = grid.shading_p()[t];
         for (const Vec2d& uv : corner_places(triangle)) {
             const CornerWeights weights(triangle.patch.kind, uv);
-            const Vec3d su = face.by_u(weights), sv = face.by_v(weights);
-            const Vec3d flat = face.geometric_normal(su, sv);
-            if (stretches.size() == t) stretches.push_back(stretch_of(mesh, p, su, sv));
-            at.geometric_normal.emplace_back(flat);
-            at.normal.emplace_back(face.shading_normal(weights, flat));
-            at.dp_du.emplace_back(su * double(stretches[t]));
-            at.dp_dv.emplace_back(sv * double(stretches[t]));
+            const TangentFrame frame = face.frame(weights);
+            if (stretches.size() == t) stretches.push_back(stretch_of(mesh, p, frame.su, frame.sv));
+            at.geometric_normal.emplace_back(frame.geometric_normal);
+            at.normal.emplace_back(frame.normal);
+            at.dp_du.emplace_back(frame.su * double(stretches[t]));
+            at.dp_dv.emplace_back(frame.sv * double(stretches[t]));
             if (grid.knot_normals)
                 at.normal_corners.push_back(mesh.normal_corners(triangle.patch, weights));
-            if (mesh.rises()) at.rise.push_back(mesh.rise(face, weights, flat));
+            if (mesh.rises()) at.rise.push_back(mesh.rise(face, weights, frame.geometric_normal));
             if (!mesh.shared().subdivision()) continue;
             // The limit, which rays meet, may stand above the micropolygon.
             const float height = mesh.shared().limit()->heights[triangle.patch.face];
-            at.ray_offset.push_back(mesh.seen_side(p, Vec3f(flat)) * (height * mesh.frame_scale()));
+            at.ray_offset.push_back(mesh.seen_side(p, at.geometric_normal.back()) *
+                                    (height * mesh.frame_scale()));
         }
     }
     spread_corners(1, at.normal, grid.normal);

@@ -100,7 +100,7 @@ class LatticeDicer {
         m_sites.clear();
         for (const Vec2d& uv : m_places.uv) m_sites.push_back({m_patch, uv});
         find_offsets(true, m_offsets);
-        find_displaced_normals();
+        find_displaced_frames();
         displace_border();
         for (int k = 0; k < grid.knots; ++k)
             for (std::size_t i = 0; i < m_count; ++i) {
@@ -115,20 +115,15 @@ class LatticeDicer {
                                           derivatives, out);
     }
 
-    /// The tangents move as the offsets change.
-    void find_displaced_normals() {
-        const Mat3d turn(m_mesh->knots().frame_camera_from_object);
+    void find_displaced_frames() {
         for (std::size_t i = 0; i < m_count; ++i) {
-            const Vec3d by_u = turn * Vec3d(m_offsets.by_u[i]),
-                        by_v = turn * Vec3d(m_offsets.by_v[i]);
-            const Vec3d su(m_samples.su[i]), sv(m_samples.sv[i]), n(m_samples.normal[i]);
-            const double side = m_mesh->frame_orientation();
-            const Vec3d moved_u = su + by_u, moved_v = sv + by_v;
-            m_samples.su[i] = Vec3f(moved_u);
-            m_samples.sv[i] = Vec3f(moved_v);
-            m_samples.geometric_normal[i] = Vec3f(normalize_or(
-                side * glm::cross(moved_u, moved_v), Vec3d(m_samples.geometric_normal[i])));
-            m_samples.normal[i] = Vec3f(displaced_normal(n, su, sv, by_u, by_v, side));
+            TangentFrame at{Vec3d(m_samples.su[i]), Vec3d(m_samples.sv[i]),
+                            Vec3d(m_samples.normal[i]), Vec3d(m_samples.geometric_normal[i])};
+            m_mesh->displace(at, m_offsets, i);
+            m_samples.su[i] = Vec3f(at.su);
+            m_samples.sv[i] = Vec3f(at.sv);
+            m_samples.geometric_normal[i] = Vec3f(at.geometric_normal);
+            m_samples.normal[i] = Vec3f(at.normal);
         }
     }
 
@@ -179,21 +174,10 @@ class LatticeDicer {
         }
     }
 
-    /// Places in object space, of the frame and of those around it, are moved alike.
-    void displace_attribute(GridAttribute& out) {
-        const auto add = [&](const std::vector<Vec3f>& offsets, std::vector<float>& to) {
-            for (std::size_t i = 0; i < to.size(); ++i)
-                to[i] += offsets[i / 3][static_cast<int>(i % 3)];
-        };
-        add(m_offsets.offset, out.values);
-        add(m_offsets.by_u, m_by_u);
-        add(m_offsets.by_v, m_by_v);
-    }
-
     void find_attributes(Grid& grid) {
         const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
             m_mesh->attribute(*m_patch, request, m_places.uv, out.values, m_by_u, m_by_v);
-            if (m_mesh->displaces(request)) displace_attribute(out);
+            m_mesh->displace(request, m_offsets, 0, out.values, m_by_u, m_by_v);
             if (!request.derivatives) {
                 out.du.clear();
                 out.dv.clear();

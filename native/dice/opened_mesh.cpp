@@ -144,31 +144,45 @@ FrameFace OpenedMesh::frame_corners(const BasePatch& patch) const {
 FrameFace OpenedMesh::small_face(const BasePatch& patch) const {
     FrameFace face = frame_face(patch);
     face.is_displaced = m_displaced;
-    const Mat3d turn(m_knots.frame_camera_from_object);
-    for (int i = 0; m_displaced && i < 4; ++i) {
-        face.moved[i] = turn * Vec3d(m_small.offsets()[place_of(patch.corner[i])]);
-        face.p[i] += face.moved[i];
-    }
+    if (!m_displaced) return face;
+    std::ranges::transform(corner_offsets(patch), face.moved, [&](const Vec3f& offset) {
+        return Mat3d(m_knots.frame_camera_from_object) * Vec3d(offset);
+    });
     return face;
+}
+
+std::array<Vec3f, 4> OpenedMesh::corner_offsets(const BasePatch& patch) const {
+    std::array<Vec3f, 4> offsets;
+    for (std::size_t i = 0; i < 4; ++i) offsets[i] = m_small.offsets()[place_of(patch.corner[i])];
+    return offsets;
+}
+
+void OpenedMesh::displace(const AttributeRequest& request, const Offsets& offsets,
+                          std::size_t first, std::vector<float>& values, std::vector<float>& du,
+                          std::vector<float>& dv) const {
+    if (!displaces(request)) return;
+    const auto add = [&](const std::vector<Vec3f>& of, std::vector<float>& to) {
+        for (std::size_t i = 0; i < to.size(); ++i)
+            to[i] += of[first + i / 3][static_cast<int>(i % 3)];
+    };
+    add(offsets.offset, values);
+    add(offsets.by_u, du);
+    add(offsets.by_v, dv);
 }
 
 void OpenedMesh::displace(const BasePatch& patch, PatchKind kind, const AttributeRequest& request,
                           std::span<const Vec2d> uv, std::vector<float>& values,
                           std::vector<float>& du, std::vector<float>& dv) const {
     if (!displaces(request)) return;
-    std::array<Vec3f, 4> offsets;
-    for (std::size_t i = 0; i < 4; ++i) offsets[i] = m_small.offsets()[place_of(patch.corner[i])];
-    for (std::size_t i = 0; i < uv.size(); ++i) {
-        const CornerWeights weights(kind, uv[i]);
-        const auto add = [&](const std::array<double, 4>& by, std::vector<float>& to) {
-            const Vec3d moved = blend(offsets, by);
-            for (int c = 0; c < 3; ++c)
-                to[3 * i + static_cast<std::size_t>(c)] += static_cast<float>(moved[c]);
-        };
-        add(weights.w, values);
-        add(weights.du, du);
-        add(weights.dv, dv);
+    const std::array<Vec3f, 4> corners = corner_offsets(patch);
+    Offsets offsets;
+    for (const Vec2d& at : uv) {
+        const CornerWeights weights(kind, at);
+        offsets.offset.emplace_back(blend(corners, weights.w));
+        offsets.by_u.emplace_back(blend(corners, weights.du));
+        offsets.by_v.emplace_back(blend(corners, weights.dv));
     }
+    displace(request, offsets, 0, values, du, dv);
 }
 
 Vec4f OpenedMesh::rise(const FrameFace& face, const CornerWeights& weights,

@@ -15,6 +15,7 @@
 #include "dice/primitive.h"
 #include "dice/small_faces.h"
 #include "dice/view.h"
+#include "geometry/displacement.h"
 #include "geometry/shared_geometry.h"
 
 namespace granita {
@@ -82,6 +83,8 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
         return m_displaced ? m_small.offsets().point(*this, knot, place) : points(knot)[place];
     }
     FrameFace small_face(const BasePatch& patch) const;
+    /// Of what is displaced, object space.
+    std::array<Vec3f, 4> corner_offsets(const BasePatch& patch) const;
     /// As displacement moves values of an attribute at (u, v), whose weights are those of `kind`.
     void displace(const BasePatch& patch, PatchKind kind, const AttributeRequest& request,
                   std::span<const Vec2d> uv, std::vector<float>& values, std::vector<float>& du,
@@ -142,6 +145,16 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
         return m_displaced && request.source != AttributeSource::Generated &&
                is_position(request.source);
     }
+    /// Of the i-th of some places that have these offsets.
+    void displace(TangentFrame& at, const Offsets& offsets, std::size_t i) const {
+        const Mat3d turn(m_knots.frame_camera_from_object);
+        at.displace(turn * Vec3d(offsets.by_u[i]), turn * Vec3d(offsets.by_v[i]),
+                    m_frame_orientation);
+    }
+    /// Values of an attribute at places, which begin with the first-th of those that have these
+    /// offsets.
+    void displace(const AttributeRequest& request, const Offsets& offsets, std::size_t first,
+                  std::vector<float>& values, std::vector<float>& du, std::vector<float>& dv) const;
     /// Where a point of camera space at a knot goes that has this offset in object space.
     Vec3f displaced(int knot, const Vec3f& p, const Vec3f& offset) const {
         const Mat3d turn(m_knots.camera_from_object[static_cast<std::size_t>(knot)]);

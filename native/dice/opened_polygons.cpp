@@ -121,13 +121,12 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
     const bool has_rise = rises();
     out.rise.resize(has_rise ? n : 0);
     for (std::size_t i = 0; i < n; ++i) {
-        const Vec3d su = face.by_u(weights[i]), sv = face.by_v(weights[i]);
-        const Vec3d flat = face.geometric_normal(su, sv);
-        out.su[i] = Vec3f(su);
-        out.sv[i] = Vec3f(sv);
-        out.geometric_normal[i] = Vec3f(flat);
-        out.normal[i] = Vec3f(face.shading_normal(weights[i], flat));
-        if (has_rise) out.rise[i] = rise(face, weights[i], flat);
+        const TangentFrame at = face.frame(weights[i]);
+        out.su[i] = Vec3f(at.su);
+        out.sv[i] = Vec3f(at.sv);
+        out.geometric_normal[i] = Vec3f(at.geometric_normal);
+        out.normal[i] = Vec3f(at.normal);
+        if (has_rise) out.rise[i] = rise(face, weights[i], at.geometric_normal);
     }
 }
 

@@ -8,6 +8,7 @@
 #include "dice/motion_bounds.h"
 #include "dice/patch.h"
 #include "dice/raster_bound.h"
+#include "geometry/patch_borders.h"
 
 namespace granita {
 namespace {
@@ -117,7 +118,8 @@ void PatchBatch::dice_face(const BasePatch& patch, std::vector<Piece>& pieces) c
 
 PatchBatch::Parts PatchBatch::find_parts() const {
     // Elsewhere Patch may find more than its sides do.
-    const bool in_frame = m_mesh->rate().in_frame(boxes());
+    bool in_frame = m_mesh->rate().in_frame(boxes());
+    if (in_frame && m_mesh->displaced()) in_frame = m_mesh->rate().in_frame(still_boxes());
     Parts parts;
     parts.lattices.reserve(face_count());
     const auto add = [&](const BasePatch& part) {
@@ -145,12 +147,14 @@ std::unique_ptr<Grid> PatchBatch::dice() const {
         micropolygons += LatticeStencil::of(lattice.stencil).micropolygon_count();
     for (const Piece& piece : parts.pieces) micropolygons += piece.grid->micropolygon_count();
     if (micropolygons == 0) return nullptr;
+    if (m_mesh->displaced()) find_offsets(parts);
     auto grid = make_grid(static_cast<std::size_t>(micropolygons));
     place(*grid, parts);
     // All have the light samples of a whole pixel: by the area of a batch, those of its larger
     // faces were too few, and what light grazes had specks.
     find_motion(*grid);
-    grid->bounds = corner_bounds();
+    grid->bounds = m_mesh->displaced() ? raster_bound(m_mesh->view().projection, grid->positions)
+                                       : corner_bounds();
     count_spared(*grid, parts);
     grid->shading_state = [batch = *this, parts = std::move(parts)](Grid& of) {
         batch.fill_shading_state(of, parts);
@@ -158,16 +162,88 @@ std::unique_ptr<Grid> PatchBatch::dice() const {
     return grid;
 }
 
+std::vector<Bounds3f> PatchBatch::still_boxes() const {
+    std::vector<Bounds3f> boxes(static_cast<std::size_t>(m_mesh->knot_count()));
+    for (std::size_t k = 0; k < boxes.size(); ++k)
+        for (std::size_t i = 0; i < face_count(); ++i)
+            for (const std::uint32_t corner : patch(i).corner)
+                boxes[k].add(m_mesh->points(static_cast<int>(k))[m_mesh->place_of(corner)]);
+    return boxes;
+}
+
+/// Who answers for a vertex of a lattice: of what two corners tell, the edge's owner.
+SurfacePlace PatchBatch::border_place(const BasePatch& patch, const LatticeStencil& stencil,
+                                      std::size_t v) const {
+    const int sides = patch.kind == PatchKind::Triangle ? 3 : 4;
+    const auto vertex = [&](int i) {
+        return static_cast<std::uint32_t>(m_mesh->data().corner_verts[patch.corner[i % sides]]);
+    };
+    const PatchBorders& borders = m_mesh->shared().borders();
+    const std::array<double, 4>& w = stencil.weights[v].w;
+    for (int i = 0; i < sides; ++i) {
+        const double before = w[static_cast<std::size_t>(i)];
+        const double after = w[static_cast<std::size_t>((i + 1) % sides)];
+        if (before == 1.0) return borders.vertex(vertex(i));
+        if (!(before > 0.0 && after > 0.0 && before + after == 1.0)) continue;
+        const std::uint32_t from = vertex(i), to = vertex(i + 1);
+        return borders.place(borders.edge_of(std::min(from, to), std::max(from, to)),
+                             from < to ? after : before);
+    }
+    return {&patch, stencil.uv[v]};
+}
+
+void PatchBatch::find_offsets(Parts& parts) const {
+    std::vector<SurfacePlace> places;
+    for (const Lattice& lattice : parts.lattices) {
+        const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
+        for (std::size_t v = 0; v < stencil.vertex_count(); ++v)
+            places.push_back(border_place(lattice.patch, stencil, v));
+    }
+    m_mesh->view().displacement->find(m_mesh->instance_index(), m_mesh->shared(), places, false,
+                                      parts.offsets);
+}
+
+/// With what changes of them by (u, v) of each lattice's own patch: between the corners of what is
+/// one micropolygon.
+Offsets PatchBatch::offsets_with_slopes(const Parts& parts) const {
+    std::vector<SurfacePlace> places;
+    for (const Lattice& lattice : parts.lattices) {
+        const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
+        if (stencil.micropolygon_count() == 1) continue;
+        for (const Vec2d& uv : stencil.uv) places.push_back({&lattice.patch, uv});
+    }
+    Offsets found;
+    m_mesh->view().displacement->find(m_mesh->instance_index(), m_mesh->shared(), places, true,
+                                      found);
+    Offsets out;
+    out.offset = parts.offsets.offset;
+    std::size_t next = 0;
+    for (const Lattice& lattice : parts.lattices) {
+        const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
+        const bool alone = stencil.micropolygon_count() == 1;
+        const auto corners = m_mesh->corner_offsets(lattice.patch);
+        for (const CornerWeights& weights : stencil.weights) {
+            out.by_u.push_back(alone ? Vec3f(blend(corners, weights.du)) : found.by_u[next]);
+            out.by_v.push_back(alone ? Vec3f(blend(corners, weights.dv)) : found.by_v[next]);
+            if (!alone) ++next;
+        }
+    }
+    return out;
+}
+
 void PatchBatch::place(Grid& grid, const Parts& parts) const {
     const auto count = static_cast<std::size_t>(grid.vertex_count());
     for (int k = 0; k < grid.knots; ++k) {
         Vec3f* const to = &grid.positions[static_cast<std::size_t>(k) * count];
+        const Vec3f* offset = parts.offsets.offset.data();
         const auto place_lattice = [&](const Lattice& lattice, const Slot& slot) {
             const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
             const OpenedMesh::Corners corners = m_mesh->corners(lattice.patch, k);
             Vec3f at[LatticeStencil::kMostVertices];
-            for (std::size_t v = 0; v < stencil.vertex_count(); ++v)
+            for (std::size_t v = 0; v < stencil.vertex_count(); ++v) {
                 at[v] = Vec3f(blend(corners.p, stencil.weights[v].w));
+                if (m_mesh->displaced()) at[v] = m_mesh->displaced(k, at[v], *offset++);
+            }
             slot.spread(to, [&](std::size_t v) { return at[v]; });
         };
         const auto place_piece = [&](const Piece& piece, const Slot& slot) {
@@ -241,40 +317,47 @@ void PatchBatch::fill_shading_state(Grid& grid, const Parts& parts) const {
         append(piece.grid->dp_du, grid.dp_du);
         append(piece.grid->dp_dv, grid.dp_dv);
     };
+    const Offsets offsets = m_mesh->displaced() ? offsets_with_slopes(parts) : Offsets{};
+    std::size_t vertex = 0;
     const auto shade_lattice = [&](const Lattice& lattice, const Slot& slot) {
         begin(lattice.patch.face, slot);
-        add_points(lattice, grid);
+        add_points(lattice, offsets, vertex, grid);
+        vertex += LatticeStencil::of(lattice.stencil).vertex_count();
     };
     for_each_part(grid, parts, shade_lattice, shade_piece);
     set_point_positions(grid, m_mesh->knots());
-    fill_attributes(grid, parts);
+    fill_attributes(grid, parts, offsets);
 }
 
-void PatchBatch::add_points(const Lattice& lattice, Grid& grid) const {
+void PatchBatch::add_points(const Lattice& lattice, const Offsets& offsets, std::size_t first,
+                            Grid& grid) const {
     const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
     const FrameFace face = m_mesh->frame_face(lattice.patch);
     const bool has_rise = m_mesh->rises();
     for (std::size_t v = 0; v < stencil.vertex_count(); ++v) {
         const CornerWeights& weights = stencil.weights[v];
-        const Vec3d su = face.by_u(weights), sv = face.by_v(weights);
-        const Vec3d flat = face.geometric_normal(su, sv);
-        grid.geometric_normal.emplace_back(flat);
-        grid.normal.emplace_back(face.shading_normal(weights, flat));
-        if (has_rise) grid.rise.push_back(m_mesh->rise(face, weights, flat));
+        TangentFrame at = face.frame(weights);
+        if (m_mesh->displaced()) m_mesh->displace(at, offsets, first + v);
+        grid.geometric_normal.emplace_back(at.geometric_normal);
+        grid.normal.emplace_back(at.normal);
+        if (has_rise) grid.rise.push_back(m_mesh->rise(face, weights, at.geometric_normal));
         if (grid.knot_normals)
             grid.normal_corners.push_back(m_mesh->normal_corners(lattice.patch, weights));
         const Vec2d &by_u = stencil.step_u[v], &by_v = stencil.step_v[v];
-        grid.dp_du.emplace_back(su * by_u.x + sv * by_u.y);
-        grid.dp_dv.emplace_back(su * by_v.x + sv * by_v.y);
+        grid.dp_du.emplace_back(at.su * by_u.x + at.sv * by_u.y);
+        grid.dp_dv.emplace_back(at.su * by_v.x + at.sv * by_v.y);
     }
 }
 
-void PatchBatch::fill_attributes(Grid& grid, const Parts& parts) const {
+void PatchBatch::fill_attributes(Grid& grid, const Parts& parts, const Offsets& offsets) const {
     std::vector<float> values, du, dv;
     const auto fill = [&](const AttributeRequest& request, GridAttribute& out) {
+        std::size_t vertex = 0;
         for (const Lattice& lattice : parts.lattices) {
             const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
             m_mesh->attribute(lattice.patch, request, stencil.uv, values, du, dv);
+            m_mesh->displace(request, offsets, vertex, values, du, dv);
+            vertex += stencil.vertex_count();
             append(values, out.values);
             for (std::size_t i = 0; request.derivatives && i < values.size(); ++i) {
                 const std::size_t v = i / static_cast<std::size_t>(out.width);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "dice/face_batch.h"
+#include "dice/lattice_stencil.h"
 
 namespace granita {
 
@@ -29,17 +30,26 @@ class PatchBatch final : public FaceBatch {
     struct Parts {
         std::vector<Lattice> lattices;
         std::vector<Piece> pieces;
+        /// [vertices of the lattices] of what is displaced.
+        Offsets offsets;
     };
     Parts find_parts() const;
     bool find_stencil(const BasePatch& patch, std::uint32_t& stencil) const;
     int levels(std::uint32_t a, std::uint32_t b, const BasePatch& face) const;
     void dice_face(const BasePatch& patch, std::vector<Piece>& pieces) const;
+    std::vector<Bounds3f> still_boxes() const;
+    SurfacePlace border_place(const BasePatch& patch, const LatticeStencil& stencil,
+                              std::size_t vertex) const;
+    void find_offsets(Parts& parts) const;
+    Offsets offsets_with_slopes(const Parts& parts) const;
     void place(Grid& grid, const Parts& parts) const;
     RasterBounds corner_bounds() const;
     void count_spared(const Grid& grid, const Parts& parts) const;
     void fill_shading_state(Grid& grid, const Parts& parts) const;
-    void add_points(const Lattice& lattice, Grid& grid) const;
-    void fill_attributes(Grid& grid, const Parts& parts) const;
+    /// `first`: of its vertices among those of all lattices.
+    void add_points(const Lattice& lattice, const Offsets& offsets, std::size_t first,
+                    Grid& grid) const;
+    void fill_attributes(Grid& grid, const Parts& parts, const Offsets& offsets) const;
 };
 
 }  // namespace granita

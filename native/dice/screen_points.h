@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -34,10 +35,22 @@ class ScreenPoints {
         }
     }
     const Vec2f& operator[](std::size_t v) const { return m_points[v]; }
-    /// Whether the vertex may have been in the frame, over all knots so far.
-    bool met_frame(std::size_t v) const {
+    /// Whether the vertex may have been in the frame, or within a margin of it, over all knots so
+    /// far.
+    bool met_frame(std::size_t v, float margin = 0.0f) const {
         const Swept& s = m_swept[v];
-        return s.lo.x <= m_width && s.hi.x >= 0.0f && s.lo.y <= m_height && s.hi.y >= 0.0f;
+        return s.lo.x <= m_width + margin && s.hi.x >= -margin && s.lo.y <= m_height + margin &&
+               s.hi.y >= -margin;
+    }
+    /// How far a vertex of this depth, where it is now, may move in the raster as it goes this way
+    /// in space, in any direction.
+    float margin(std::size_t v, float z, float way) const {
+        const float scale =
+            static_cast<float>(std::max(m_projection.scale.x, m_projection.scale.y));
+        if (!m_projection.perspective) return scale * way;
+        const float from_center = glm::distance(m_points[v], Vec2f(m_projection.center));
+        return z > way ? (scale + from_center) * way / (z - way)
+                       : std::numeric_limits<float>::infinity();
     }
     /// Pixels from the eye, so that a step in depth is as long as one across.
     float depth(float z) const {

@@ -44,15 +44,15 @@ Corners corners_of(const OpenedMesh& mesh, const BasePatch& patch) {
 struct Levels {
     static constexpr std::uint8_t kTooMany = 255;
     std::uint8_t u = 0, v = 0;
-    bool whole() const { return u + v == 0; }
+    /// By displacement: one micropolygon as to its sides, but too long to be shaded as one point.
+    bool stretched = false;
+    bool whole() const { return u + v == 0 && !stretched; }
     bool small() const { return u != kTooMany; }
     int micropolygons() const { return 1 << (u + v); }
 };
 constexpr Levels kLarge{Levels::kTooMany, Levels::kTooMany};
 
 int most_levels(const OpenedMesh& mesh) {
-    // Points of a lattice that is displaced have offsets of their own.
-    if (mesh.displaced()) return 0;
     // Only straight edges have their points from tables.
     if (!mesh.straight_edges()) return 0;
     // Points of a coarser shading rate lie on lattices.
@@ -103,12 +103,18 @@ std::vector<Levels> find_levels(const OpenedMesh& mesh, ScreenPoints& screen) {
         });
     }
     std::vector<Levels> levels(part.patch_count(), kLarge);
+    // What displacement may move there meets it too.
+    const std::span<const Vec3f> at_end = mesh.points(mesh.knot_count() - 1);
+    const auto meets = [&](std::size_t v) {
+        const float reach = mesh.displacement_reach();
+        return screen.met_frame(v, reach > 0.0f ? screen.margin(v, at_end[v].z, reach) : 0.0f);
+    };
     const auto find = [&](std::size_t p) {
         if (!is_small(length2[p])) return;
         const Corners c = corners_of(mesh, patch(p));
         bool met = true;
         for (int i = 0; i < c.count; ++i)
-            met &= screen.met_frame(c.v[i]) || screen.met_frame(c.v[i + 1 < c.count ? i + 1 : 0]);
+            met &= meets(c.v[i]) || meets(c.v[i + 1 < c.count ? i + 1 : 0]);
         if (!met || !mesh.may_be_small(patch(p))) return;
         levels[p] = {};
         while (length2[p].x > limit2[levels[p].u]) ++levels[p].u;
@@ -121,8 +127,7 @@ std::vector<Levels> find_levels(const OpenedMesh& mesh, ScreenPoints& screen) {
     return levels;
 }
 
-/// The offsets of the vertices of small faces.  What is not small any more where they take it
-/// becomes kLarge.
+/// The offsets of the vertices of small faces, by which some are stretched.
 VertexOffsets displace(const OpenedMesh& mesh, std::vector<Levels>& levels) {
     const MeshPart& part = mesh.part();
     std::vector<bool> wanted(part.vertex_count(), false);
@@ -134,15 +139,21 @@ VertexOffsets displace(const OpenedMesh& mesh, std::vector<Levels>& levels) {
     ScreenPoints screen(mesh);
     for (int k = 0; k < mesh.knot_count(); ++k) {
         screen.project(offsets.points(mesh, k));
-        const auto is_short = [&](std::size_t a, std::size_t b) {
-            return glm::distance(screen[a], screen[b]) <= longest;  // nor if it is not a number
+        const auto look = [&](Levels& at, float length) {
+            if (length <= longest) return;
+            // Only lattices of straight edges have tables; and what is no number is not small.
+            if (length < INFINITY && mesh.straight_edges())
+                at.stretched = true;
+            else
+                at = kLarge;
         };
         parallel_for(levels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
                 if (!levels[p].small()) continue;
                 const Corners c = corners_of(mesh, mesh.shared().patches()[part.patch(p)]);
                 for (int i = 0; i < c.count; ++i)
-                    if (!is_short(c.v[i], c.v[i + 1 < c.count ? i + 1 : 0])) levels[p] = kLarge;
+                    look(levels[p],
+                         glm::distance(screen[c.v[i]], screen[c.v[i + 1 < c.count ? i + 1 : 0]]));
             }
         });
     }
@@ -227,7 +238,8 @@ SmallFaces::SmallFaces(const OpenedMesh& mesh) {
     const int most = std::max(mesh.view().scene->options.grid_size, 1);
     m_order.reserve(members.size());
     Bounds3f region;
-    int micropolygons = 0;  // of the last batch
+    int micropolygons = 0;           // of the last batch
+    std::vector<bool> has_lattices;  // [batches]
     const Member* last = nullptr;
     for (const auto& [code, number] : order) {
         const Member& m = members[number];
@@ -238,10 +250,12 @@ SmallFaces::SmallFaces(const OpenedMesh& mesh) {
         if (!last || micropolygons > most || !m.goes_with(*last) || largest(size) > kRegion) {
             m_batches.push_back(static_cast<std::uint32_t>(m_order.size()));
             m_whole.push_back(m.levels.whole());
+            has_lattices.push_back(false);
             micropolygons = m.micropolygons();
             wider = {};
             wider.add(m.place);
         }
+        has_lattices.back() = has_lattices.back() || m.levels.micropolygons() > 1;
         region = wider;
         last = &m;
         m_order.push_back(m.patch);
@@ -253,10 +267,17 @@ SmallFaces::SmallFaces(const OpenedMesh& mesh) {
         for (std::size_t i = begin; i < end; ++i) {
             const int knot = static_cast<int>(i % knots);
             Bounds3f& box = m_boxes[i];
+            Bounds3f still;
             for (const std::uint32_t face : batch(i / knots))
-                for (const std::uint32_t corner : mesh.shared().patches()[face].corner)
+                for (const std::uint32_t corner : mesh.shared().patches()[face].corner) {
                     box.add(m_offsets.point(mesh, knot, mesh.place_of(corner)));
+                    still.add(mesh.points(knot)[mesh.place_of(corner)]);
+                }
             box.grow_relative(1e-6f);  // of what lies between the corners
+            if (!mesh.displaced() || !has_lattices[i / knots]) continue;
+            // Points of a lattice go elsewhere than its corners do.
+            still.grow(mesh.displacement_reach());
+            box.add(still);
         }
     });
 }

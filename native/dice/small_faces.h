@@ -7,9 +7,8 @@
 // apart, so that it is culled and never shaded where the front hides it.  Faces of one micropolygon
 // (FaceBatch) do not mix with larger ones (PatchBatch).
 //
-// Of what is displaced only faces of one micropolygon are gathered, whose vertices are displaced
-// when they are: each once, not once for every face around it.  What displacement stretches to
-// more than a micropolygon may be is left alone.
+// Of what is displaced the vertices are displaced here: each once, not once for every face around
+// it.  A face that this stretches to more than a point may stand for goes with the larger ones.
 #pragma once
 
 #include <cstdint>

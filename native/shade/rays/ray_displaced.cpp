@@ -97,27 +97,28 @@ RayDisplaced::RayDisplaced(std::shared_ptr<const SharedGeometry> shared,
     coarsen();
     find_edge_levels();
     number();
+    place_vertices(displacement, instance, progress);
     const std::size_t patches = m_shared->patches().size();
     parallel_for(patches, kGrain, [&](std::size_t begin, std::size_t end) {
         std::vector<SurfacePlace> places;
         std::size_t first_point = m_first_point[begin];
         for (std::size_t k = begin; k != end; ++k) {
-            add_places(k, places);
             make_quads(k);
+            if (point_count(k) > 0) add_places(k, places);
             if (places.size() < kRun && k + 1 != end) continue;
             progress.check();
-            place(places, first_point, displacement, instance);
+            place(
+                places, [&](std::size_t i) { return first_point + i; }, displacement, instance);
             first_point += places.size();
             places.clear();
         }
     });
     for (std::size_t k = 0; k < patches; ++k) {
         float& extent = m_extents[m_shared->patches()[k].face];
-        const std::size_t last =
-            k + 1 < patches ? m_first_point[k + 1] : m_primitives.point_count();
         for (int knot = 0; knot < m_primitives.knots; ++knot)
-            for (std::size_t i = m_first_point[k]; i < last; ++i)
-                extent = std::max(extent, largest_coordinate(m_primitives.at(knot)[i]));
+            for (std::size_t quad = m_first_quad[k]; quad < m_first_quad[k + 1]; ++quad)
+                for (const std::uint32_t corner : m_primitives.indices[quad])
+                    extent = std::max(extent, largest_coordinate(m_primitives.at(knot)[corner]));
     }
     m_primitives.put_still_first();
 }
@@ -161,6 +162,8 @@ void RayDisplaced::coarsen() {
     const auto points = [&] {
         std::size_t sum = 0;
         for (std::size_t k = 0; k < patches.size(); ++k) sum += point_count(k);
+        if (std::ranges::any_of(m_levels, [](const Levels& l) { return l.are_none(); }))
+            sum += m_shared->data().vertex_count();
         return sum * static_cast<std::size_t>(m_primitives.knots);
     };
     const auto can_be_coarser = [](const Levels& level) { return level.u > 0 || level.v > 0; };
@@ -196,7 +199,12 @@ void RayDisplaced::find_edge_levels() {
         }
 }
 
+bool RayDisplaced::is_of_vertices(std::size_t k) const {
+    return m_levels[k].are_none() && m_shared->patches()[k].kind != PatchKind::SubFace;
+}
+
 std::size_t RayDisplaced::point_count(std::size_t k) const {
+    if (is_of_vertices(k)) return 0;
     const std::size_t n = (std::size_t{1} << m_levels[k].u) + 1;
     if (m_shared->patches()[k].kind == PatchKind::Triangle) return n * (n + 1) / 2;
     return n * ((std::size_t{1} << m_levels[k].v) + 1);
@@ -211,6 +219,8 @@ std::size_t RayDisplaced::quad_count(std::size_t k) const {
 void RayDisplaced::number() {
     const auto& patches = m_shared->patches();
     std::size_t points = 0, quads = 0;
+    for (std::size_t k = 0; k < patches.size() && points == 0; ++k)
+        if (is_of_vertices(k)) points = m_shared->data().vertex_count();
     for (std::size_t k = 0; k < patches.size(); ++k) {
         m_first_point.push_back(static_cast<std::uint32_t>(points));
         m_first_quad.push_back(static_cast<std::uint32_t>(quads));
@@ -250,8 +260,33 @@ void RayDisplaced::add_places(std::size_t k, std::vector<SurfacePlace>& places) 
     }
 }
 
-/// Points from `first_point` on, where these places are.
-void RayDisplaced::place(std::span<const SurfacePlace> places, std::size_t first_point,
+/// Those of patches that have no other points, each once.
+void RayDisplaced::place_vertices(const Displacement& displacement, std::size_t instance,
+                                  const Progress& progress) {
+    const auto& patches = m_shared->patches();
+    std::vector<bool> wanted;
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+        if (!is_of_vertices(k)) continue;
+        wanted.resize(m_shared->data().vertex_count(), false);
+        for (const std::uint32_t corner : patches[k].corner) wanted[vertex_of(corner)] = true;
+    }
+    parallel_for(wanted.size(), kRun, [&](std::size_t begin, std::size_t end) {
+        progress.check();
+        std::vector<SurfacePlace> places;
+        std::vector<std::uint32_t> vertices;
+        for (std::size_t v = begin; v < end; ++v) {
+            if (!wanted[v]) continue;
+            places.push_back(m_borders.vertex(v));
+            vertices.push_back(static_cast<std::uint32_t>(v));
+        }
+        place(
+            places, [&](std::size_t i) { return vertices[i]; }, displacement, instance);
+    });
+}
+
+/// `point(i)`: which of the points is the i-th place.
+template <class Point>
+void RayDisplaced::place(std::span<const SurfacePlace> places, const Point& point,
                          const Displacement& displacement, std::size_t instance) {
     const std::size_t total = m_primitives.point_count();
     const auto knots = static_cast<std::size_t>(m_primitives.knots);
@@ -267,7 +302,7 @@ void RayDisplaced::place(std::span<const SurfacePlace> places, std::size_t first
             find_positions(*m_shared, patch, uv, positions);
             for (std::size_t knot = 0; knot < knots; ++knot)
                 for (std::size_t i = 0; i < count; ++i)
-                    m_primitives.points[knot * total + first_point + begin + first + i] =
+                    m_primitives.points[knot * total + point(begin + first + i)] =
                         positions[knot * count + i] + offsets.offset[first + i];
         });
     });
@@ -276,8 +311,13 @@ void RayDisplaced::place(std::span<const SurfacePlace> places, std::size_t first
 void RayDisplaced::make_quads(std::size_t k) {
     const Cells cells(m_shared->patches()[k].kind, 1 << m_levels[k].u, 1 << m_levels[k].v);
     std::size_t quad = m_first_quad[k];
+    const BasePatch& patch = m_shared->patches()[k];
+    const bool of_vertices = is_of_vertices(k);
     const auto number_of = [&](const std::array<int, 2>& at) {
-        return m_first_point[k] + cells.index(at[0], at[1]);
+        if (!of_vertices) return m_first_point[k] + cells.index(at[0], at[1]);
+        // (1, 1) of a quad is its third corner, (0, 1) its fourth, or a triangle's third.
+        const int corner = at[1] == 0 ? at[0] : 3 - at[0];
+        return vertex_of(patch.corner[corner]);
     };
     cells.for_quads(
         [&](const auto&... corners) { m_primitives.indices[quad++] = {number_of(corners)...}; });

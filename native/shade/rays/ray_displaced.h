@@ -36,6 +36,7 @@ class RayDisplaced final : public RayFaces<4> {
     /// log2 of the cells along u and v, alike in a triangular patch.
     struct Levels {
         std::uint8_t u = 0, v = 0;
+        bool are_none() const { return u + v == 0; }
         /// Of a side of the patch.
         int along(int side) const { return side % 2 == 0 ? u : v; }
     };
@@ -44,9 +45,18 @@ class RayDisplaced final : public RayFaces<4> {
     void find_edge_levels();
     void number();
     void add_places(std::size_t patch, std::vector<SurfacePlace>& places) const;
-    void place(std::span<const SurfacePlace> places, std::size_t first_point,
+    void place_vertices(const Displacement& displacement, std::size_t instance,
+                        const Progress& progress);
+    template <class Point>
+    void place(std::span<const SurfacePlace> places, const Point& point,
                const Displacement& displacement, std::size_t instance);
     void make_quads(std::size_t patch);
+    /// Its points are its corners, which are points of all such patches around.
+    bool is_of_vertices(std::size_t patch) const;
+    std::uint32_t vertex_of(std::uint32_t corner) const {
+        return static_cast<std::uint32_t>(m_shared->data().corner_verts[corner]);
+    }
+    /// Of its own.
     std::size_t point_count(std::size_t patch) const;
     std::size_t quad_count(std::size_t patch) const;
     /// Of the whole edge, for a side of a patch with `level`.
@@ -56,7 +66,7 @@ class RayDisplaced final : public RayFaces<4> {
     const PatchBorders& m_borders;
     std::vector<Levels> m_levels;              ///< [patches]
     std::vector<std::uint8_t> m_edge_levels;   ///< [edges]
-    std::vector<std::uint32_t> m_first_point;  ///< [patches]
+    std::vector<std::uint32_t> m_first_point;  ///< [patches] those of vertices go before
     std::vector<std::uint32_t> m_first_quad;   ///< [patches + 1]
     bool m_coarsened = false;
 };
