@@ -49,7 +49,6 @@ class MaterialDisplacement final : public Displacement {
 
   private:
     struct Target;
-    class Batch;
     const DisplacementProgram* program_of(const Instance& instance, const SharedGeometry& geometry,
                                           std::uint32_t face) const;
     const DisplacementProgram* program(std::int32_t material) const;
