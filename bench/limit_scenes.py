@@ -138,6 +138,28 @@ def faces():
     return scene
 
 
+def displaced_faces():
+    """2 M faces, a third of a pixel each, that a noise moves; seen at an angle."""
+    scene = lit(480, math.radians(66), (0, -16, 7))
+    side = np.linspace(-10, 10, 1415)
+    across, up = np.meshgrid(side, side)
+    mesh = hero_scene.grid_mesh("Hills", np.stack([across, up, 0 * up], axis=-1))
+    surface = clay()
+    surface.cycles.displacement_method = "DISPLACEMENT"
+    tree = surface.node_tree
+    place = tree.nodes.new("ShaderNodeTexCoord").outputs["Object"]
+    noise, moved = (tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexNoise", "Displacement"))
+    noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 0.6, 6.0
+    moved.inputs["Scale"].default_value = 2.0
+    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
+    tree.links.new(place, noise.inputs["Vector"])
+    tree.links.new(noise.outputs["Fac"], moved.inputs["Height"])
+    tree.links.new(moved.outputs["Displacement"], output.inputs["Displacement"])
+    mesh.materials.append(surface)
+    scenes.add(scene, "Hills", mesh)
+    return scene
+
+
 def tiles(faces_a_pixel):
     """The frame covered by tiles of 10,000 faces: a pixel holds so many."""
     scene = lit(480)
@@ -170,6 +192,7 @@ SCENES = {
     "n-gon of 100,000 corners": ngon,
     "2,000 nodes": nodes,
     "5 M faces": faces,
+    "2 M faces that are displaced": displaced_faces,
     "4 faces a pixel": lambda: tiles(4),
     "700 faces a pixel": lambda: tiles(700),
     "8192 x 8192 pixels": large_frame,

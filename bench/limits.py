@@ -22,6 +22,7 @@ ROWS = {
     "n-gon of 100,000 corners": 16,
     "2,000 nodes": 16,
     "5 M faces": 16,
+    "2 M faces that are displaced": 16,
     "4 faces a pixel": 16,
     "700 faces a pixel": 16,
     "8192 x 8192 pixels": 4,
