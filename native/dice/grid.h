@@ -101,6 +101,7 @@ struct Grid {
     /// Fills in the shading state and the attributes of a grid of dice() before its first shading:
     /// many grids are hidden and never shaded.  Outlives the primitive.  Empty: nothing is missing.
     std::function<void(Grid&)> shading_state;
+    bool state_asks_displacement = false;  ///< which ends with the picture
     /// Of small faces and ribbons: makes a grid of the triangles of some places, one each,
     /// with the shading state of their corners, the last of which repeats; of ribbons that at the
     /// place. Samples that are shaded by themselves need no other: this grid's own shading points

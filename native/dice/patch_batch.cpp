@@ -156,6 +156,7 @@ std::unique_ptr<Grid> PatchBatch::dice() const {
     grid->bounds = m_mesh->displaced() ? raster_bound(m_mesh->view().projection, grid->positions)
                                        : corner_bounds();
     count_spared(*grid, parts);
+    grid->state_asks_displacement = m_mesh->displaced();
     grid->shading_state = [batch = *this, parts = std::move(parts)](Grid& of) {
         batch.fill_shading_state(of, parts);
     };

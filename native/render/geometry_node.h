@@ -51,8 +51,9 @@ class SharedGrid {
         }
     };
     const Place& place(Statistics& statistics);
-    /// The picture is done, and what was begun of a grid that only tells others is not needed.
-    void drop_begun() { m_begun.reset(); }
+    /// What was begun of a grid that only tells others is not needed any more; what a later picture
+    /// could not make any more is made.
+    void end_picture();
     /// Between two pictures: the next one shades it anew.
     void forget_radiance();
     /// What hiding must know of it, once its opacity is there where that varies.

@@ -161,7 +161,7 @@ void KeptVisibility::end_picture() {
     for (const auto& bucket : m_buckets) {
         if (!bucket) continue;
         bucket->for_each_grid([&](SharedGrid& grid) {
-            grid.drop_begun();
+            grid.end_picture();
             if (counted.insert(&grid).second) m_bytes += grid.bytes();
         });
     }

@@ -202,6 +202,24 @@ def test_what_is_displaced_is_moved_again_where_its_offsets_may_be_others(name):
     assert found == expected
 
 
+def test_displaced_faces_of_a_few_pixels_are_shaded_by_later_pictures():
+    # What the first picture has hidden, and only tells others, is what the later ones' displacement is asked for no more.
+    first, kept = scene(), Kept()
+    displaced_cube(first)
+    x, y = np.meshgrid(np.linspace(-2, 2, 31), np.linspace(-2, 2, 31))
+    corner = np.arange(30 * 31).reshape(30, 31)[:, :-1].ravel()
+    faces = np.stack([corner, corner + 31, corner + 32, corner + 1], 1).tolist()
+    for z in (6.0, 6.5):
+        s.mesh(first, np.stack([x.ravel(), y.ravel(), np.full(x.size, z)], 1), faces, 2)
+    first["options"].update(bounces=2, dicing_rate=0.5)
+    kept.follow(first)
+    for edit in (other_light, other_color, other_world):
+        later = copy.deepcopy(first)
+        edit(later)
+        kept.follow(later)
+        kept.follow(first)
+
+
 def test_a_material_that_comes_to_hold_out_is_hidden_anew():
     first, second = scene(), scene()
     second["materials"][1]["holdout"] = True
