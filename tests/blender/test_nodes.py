@@ -2,7 +2,7 @@
 """Nodes of numbers and colours against Cycles' own output (node_comparison.py): every value of their
 enums, inputs that vary."""
 
-from time import perf_counter
+from time import thread_time
 
 import bpy
 import pytest
@@ -281,7 +281,7 @@ def test_long_chains_are_exported_in_proportion(scene):
         emission = nodes.new("ShaderNodeEmission")
         links.new(previous.outputs[0], emission.inputs["Strength"])
         links.new(emission.outputs[0], output.inputs["Surface"])
-        return min(_export_seconds(material) for _ in range(3))
+        return min(_export_seconds(material) for _ in range(5))
 
     assert seconds(1200) < 8 * seconds(300)
 
@@ -289,6 +289,6 @@ def test_long_chains_are_exported_in_proportion(scene):
 def _export_seconds(material):
     from granita.export.shading.material import export_materials
 
-    started = perf_counter()
+    started = thread_time()  # what else runs on the machine does not count
     export_materials([material], print)
-    return perf_counter() - started
+    return thread_time() - started
