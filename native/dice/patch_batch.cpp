@@ -124,7 +124,8 @@ PatchBatch::Parts PatchBatch::find_parts() const {
     parts.lattices.reserve(face_count());
     const auto add = [&](const BasePatch& part) {
         std::uint32_t stencil = 0;
-        if (in_frame && find_stencil(part, stencil))
+        // Of what is curved none but whole faces are here, whose edges have been told so.
+        if (!m_mesh->straight_edges() || (in_frame && find_stencil(part, stencil)))
             parts.lattices.push_back({part, stencil});
         else
             dice_face(part, parts.pieces);

@@ -18,11 +18,13 @@ class ScreenPoints {
         : m_projection(mesh.view().projection),
           m_width(static_cast<float>(mesh.view().scene->options.width)),
           m_height(static_cast<float>(mesh.view().scene->options.height)),
+          m_reach(mesh.displacement_reach()),
           m_swept(mesh.part().vertex_count()) {}
 
     void project(std::span<const Vec3f> points) {
         const float near = static_cast<float>(m_projection.near_clip);
         const Vec2f scale(m_projection.scale), center(m_projection.center);
+        m_from = points;
         m_points.resize(points.size());
         for (std::size_t v = 0; v < points.size(); ++v) {
             const Vec3f& p = points[v];
@@ -35,22 +37,13 @@ class ScreenPoints {
         }
     }
     const Vec2f& operator[](std::size_t v) const { return m_points[v]; }
-    /// Whether the vertex may have been in the frame, or within a margin of it, over all knots so
-    /// far.
-    bool met_frame(std::size_t v, float margin = 0.0f) const {
+    /// Whether the vertex may have been in the frame, over all knots so far, or may be moved there
+    /// by displacement.  Its mesh's points were projected last.
+    bool met_frame(std::size_t v) const {
         const Swept& s = m_swept[v];
+        const float margin = m_reach > 0.0f ? moved(v) : 0.0f;
         return s.lo.x <= m_width + margin && s.hi.x >= -margin && s.lo.y <= m_height + margin &&
                s.hi.y >= -margin;
-    }
-    /// How far a vertex of this depth, where it is now, may move in the raster as it goes this way
-    /// in space, in any direction.
-    float margin(std::size_t v, float z, float way) const {
-        const float scale =
-            static_cast<float>(std::max(m_projection.scale.x, m_projection.scale.y));
-        if (!m_projection.perspective) return scale * way;
-        const float from_center = glm::distance(m_points[v], Vec2f(m_projection.center));
-        return z > way ? (scale + from_center) * way / (z - way)
-                       : std::numeric_limits<float>::infinity();
     }
     /// Pixels from the eye, so that a step in depth is as long as one across.
     float depth(float z) const {
@@ -62,8 +55,21 @@ class ScreenPoints {
     struct Swept {
         Vec2f lo{INFINITY}, hi{-INFINITY};
     };
+    /// How far displacement may move a vertex in the raster.
+    float moved(std::size_t v) const {
+        const float scale =
+            static_cast<float>(std::max(m_projection.scale.x, m_projection.scale.y));
+        if (!m_projection.perspective) return scale * m_reach;
+        const float from_center = glm::distance(m_points[v], Vec2f(m_projection.center));
+        const float left = m_from[v].z - m_reach;
+        return left > 0.0f ? (scale + from_center) * m_reach / left
+                           : std::numeric_limits<float>::infinity();
+    }
+
     const Projection m_projection;
     const float m_width, m_height;
+    const float m_reach;  ///< metres
+    std::span<const Vec3f> m_from;
     std::vector<Vec2f> m_points;
     std::vector<Swept> m_swept;
 };

@@ -103,18 +103,12 @@ std::vector<Levels> find_levels(const OpenedMesh& mesh, ScreenPoints& screen) {
         });
     }
     std::vector<Levels> levels(part.patch_count(), kLarge);
-    // What displacement may move there meets it too.
-    const std::span<const Vec3f> at_end = mesh.points(mesh.knot_count() - 1);
-    const auto meets = [&](std::size_t v) {
-        const float reach = mesh.displacement_reach();
-        return screen.met_frame(v, reach > 0.0f ? screen.margin(v, at_end[v].z, reach) : 0.0f);
-    };
     const auto find = [&](std::size_t p) {
         if (!is_small(length2[p])) return;
         const Corners c = corners_of(mesh, patch(p));
         bool met = true;
         for (int i = 0; i < c.count; ++i)
-            met &= meets(c.v[i]) || meets(c.v[i + 1 < c.count ? i + 1 : 0]);
+            met &= screen.met_frame(c.v[i]) || screen.met_frame(c.v[i + 1 < c.count ? i + 1 : 0]);
         if (!met || !mesh.may_be_small(patch(p))) return;
         levels[p] = {};
         while (length2[p].x > limit2[levels[p].u]) ++levels[p].u;
@@ -140,12 +134,8 @@ VertexOffsets displace(const OpenedMesh& mesh, std::vector<Levels>& levels) {
     for (int k = 0; k < mesh.knot_count(); ++k) {
         screen.project(offsets.points(mesh, k));
         const auto look = [&](Levels& at, float length) {
-            if (length <= longest) return;
-            // Only lattices of straight edges have tables; and what is no number is not small.
-            if (length < INFINITY && mesh.straight_edges())
-                at.stretched = true;
-            else
-                at = kLarge;
+            at.stretched |= length > longest;
+            if (!(length < INFINITY)) at = kLarge;
         };
         parallel_for(levels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {

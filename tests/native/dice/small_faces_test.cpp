@@ -389,20 +389,25 @@ TEST(SmallFaces, displaced_ones_are_what_their_patches_would_be) {
 }
 
 TEST(SmallFaces, what_displacement_stretches_is_not_shaded_as_one_point) {
-    DiceScene s(flat_sheet(32, 32.0f));
-    s.perspective();
-    s.view.projection.scale = {5.0, 5.0};  // a pixel at five metres
-    // A cliff: the faces across it are seen from the side, many pixels long.
-    const Raised raised(s, [](const Vec3d& p) { return p.x > 10.3 ? -1.0f : 0.0f; });
-    const auto grids = s.grids();
-    int stretched = 0;
-    for (const auto& grid : grids) {
-        EXPECT_TRUE(grid->disjoint);
-        if (!grid->shades_faces()) stretched += grid->micropolygon_count();
+    for (const bool subdivided : {false, true}) {
+        GeometryData data = flat_sheet(32, 32.0f);
+        data.is_subdivision = subdivided;
+        data.subdivision.boundary = SubdivisionBoundary::EdgeAndCorner;
+        DiceScene s(std::move(data));
+        s.perspective();
+        s.view.projection.scale = {5.0, 5.0};  // a pixel at five metres
+        // A cliff: the faces across it are seen from the side, many pixels long.
+        const Raised raised(s, [](const Vec3d& p) { return p.x > 10.3 ? -1.0f : 0.0f; });
+        const auto grids = s.grids();
+        int stretched = 0;
+        for (const auto& grid : grids) {
+            EXPECT_TRUE(grid->disjoint);
+            if (!grid->shades_faces()) stretched += grid->micropolygon_count();
+        }
+        EXPECT_EQ(stretched, 32);
+        EXPECT_LT(grids.size(), 32u);
+        EXPECT_EQ(micropolygons(grids), 1024);
     }
-    EXPECT_EQ(stretched, 32);
-    EXPECT_LT(grids.size(), 32u);
-    EXPECT_EQ(micropolygons(grids), 1024);
 }
 
 }  // namespace
