@@ -222,14 +222,19 @@ int EdgeRate::levels(const Vec3f* start, const Vec3f* middle, const Vec3f* end, 
         } else {
             pieces[0] = add(swept, a, m), pieces[1] = add(swept, m, b), whole = add(swept, a, b);
         }
-        const double first = length(glm::length(pieces[0]), pieces[0], a, m);
-        const double second = length(glm::length(pieces[1]), pieces[1], m, b);
-        const double chord = length(glm::length(whole), whole, a, b);
+        const double first = glm::length(pieces[0]), second = glm::length(pieces[1]);
+        const double chord = glm::length(whole);
         const double both = first + second;
         longest = std::max(longest, both);
-        counted = std::max(counted, length(blurred.length(pieces[0]), pieces[0], a, m) +
-                                        length(blurred.length(pieces[1]), pieces[1], m, b));
-        if (std::abs(first - second) > kEqual * std::max(first, second)) equal = false;
+        const double count_first = length(blurred.length(pieces[0]), pieces[0], a, m);
+        const double count_second = length(blurred.length(pieces[1]), pieces[1], m, b);
+        counted = std::max(counted, count_first + count_second);
+        const auto differ = [](double x, double y) {
+            return std::abs(x - y) > kEqual * std::max(x, y);
+        };
+        // Of what is displaced a piece may be seen end-on and count all the same.
+        if (differ(first, second) || (m_displaced && differ(count_first, count_second)))
+            equal = false;
         // The height of the triangle start, middle, end over its chord, by Heron's formula.
         const double s = 0.5 * (both + chord);
         const double area2 = s * (s - first) * (s - second) * (s - chord);

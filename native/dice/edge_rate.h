@@ -63,6 +63,12 @@ class EdgeRate {
     /// change the answer.  A third of the time.
     int sure_levels(const Vec3f* start, const Vec3f* end, int knots) const;
     static constexpr int kUnsure = -2;
+    /// What counts of a straight piece in single precision, length2(), is below this where
+    /// levels() of it is surely 0.
+    float sure_length() const {
+        // Displaced, a piece that recedes counts for a little more by its halves than as a whole.
+        return static_cast<float>((m_displaced ? 0.99 : 0.999) * M_SQRT2 * m_rate);
+    }
     /// Whether what lies in these boxes, [knots] in camera space, does so.
     bool in_frame(std::span<const Bounds3f> boxes) const;
     /// The dicing rate, pixels; never 0.

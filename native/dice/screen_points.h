@@ -24,7 +24,6 @@ class ScreenPoints {
     void project(std::span<const Vec3f> points) {
         const float near = static_cast<float>(m_projection.near_clip);
         const Vec2f scale(m_projection.scale), center(m_projection.center);
-        m_from = points;
         m_points.resize(points.size());
         for (std::size_t v = 0; v < points.size(); ++v) {
             const Vec3f& p = points[v];
@@ -32,18 +31,17 @@ class ScreenPoints {
             const float w = m_projection.perspective ? 1.0f / p.z : 1.0f;
             m_points[v] = ahead ? center + scale * Vec2f(p) * w
                                 : Vec2f(std::numeric_limits<float>::quiet_NaN());
-            m_swept[v].lo = glm::min(m_swept[v].lo, m_points[v]);
-            m_swept[v].hi = glm::max(m_swept[v].hi, m_points[v]);
+            const Vec2f margin(m_reach > 0.0f ? moved(m_points[v], p.z) : 0.0f);
+            m_swept[v].lo = glm::min(m_swept[v].lo, m_points[v] - margin);
+            m_swept[v].hi = glm::max(m_swept[v].hi, m_points[v] + margin);
         }
     }
     const Vec2f& operator[](std::size_t v) const { return m_points[v]; }
-    /// Whether the vertex may have been in the frame, over all knots so far, or may be moved there
-    /// by displacement.  Its mesh's points were projected last.
+    /// Whether the vertex may have been in the frame, over all knots so far, or may have been moved
+    /// there by displacement.
     bool met_frame(std::size_t v) const {
         const Swept& s = m_swept[v];
-        const float margin = m_reach > 0.0f ? moved(v) : 0.0f;
-        return s.lo.x <= m_width + margin && s.hi.x >= -margin && s.lo.y <= m_height + margin &&
-               s.hi.y >= -margin;
+        return s.lo.x <= m_width && s.hi.x >= 0.0f && s.lo.y <= m_height && s.hi.y >= 0.0f;
     }
     /// Pixels from the eye, so that a step in depth is as long as one across.
     float depth(float z) const {
@@ -55,21 +53,20 @@ class ScreenPoints {
     struct Swept {
         Vec2f lo{INFINITY}, hi{-INFINITY};
     };
-    /// How far displacement may move a vertex in the raster.
-    float moved(std::size_t v) const {
+    /// How far displacement may move a vertex of this depth in the raster, where it is `there`.
+    float moved(const Vec2f& there, float z) const {
         const float scale =
             static_cast<float>(std::max(m_projection.scale.x, m_projection.scale.y));
         if (!m_projection.perspective) return scale * m_reach;
-        const float from_center = glm::distance(m_points[v], Vec2f(m_projection.center));
-        const float left = m_from[v].z - m_reach;
-        return left > 0.0f ? (scale + from_center) * m_reach / left
-                           : std::numeric_limits<float>::infinity();
+        const float left = z - m_reach;
+        return left > 0.0f
+                   ? (scale + glm::distance(there, Vec2f(m_projection.center))) * m_reach / left
+                   : std::numeric_limits<float>::infinity();
     }
 
     const Projection m_projection;
     const float m_width, m_height;
     const float m_reach;  ///< metres
-    std::span<const Vec3f> m_from;
     std::vector<Vec2f> m_points;
     std::vector<Swept> m_swept;
 };

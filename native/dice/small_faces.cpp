@@ -52,11 +52,15 @@ struct Levels {
 };
 constexpr Levels kLarge{Levels::kTooMany, Levels::kTooMany};
 
+/// Points of a coarser shading rate lie on lattices, each a grid of its own.
+bool shares_points(const OpenedMesh& mesh) {
+    return mesh.rate().shading_rate() <= mesh.rate().rate();
+}
+
 int most_levels(const OpenedMesh& mesh) {
     // Only straight edges have their points from tables.
     if (!mesh.straight_edges()) return 0;
-    // Points of a coarser shading rate lie on lattices.
-    if (mesh.rate().shading_rate() > mesh.rate().rate()) return 0;
+    if (!shares_points(mesh)) return 0;
     int most = LatticeStencil::kMostLevels;
     while (1 << 2 * most > mesh.view().scene->options.grid_size && most > 0) --most;
     return most;
@@ -69,8 +73,7 @@ std::vector<Levels> find_levels(const OpenedMesh& mesh, ScreenPoints& screen) {
     const auto patch = [&](std::size_t p) -> const BasePatch& {
         return mesh.shared().patches()[part.patch(p)];
     };
-    // A thousandth less than EdgeRate's own limit: this is single precision.
-    const float longest = static_cast<float>(0.999 * M_SQRT2 * mesh.rate().rate());
+    const float longest = mesh.rate().sure_length();
     const int most = most_levels(mesh);
     float limit2[LatticeStencil::kMostLevels + 1];  // of each level
     for (int i = 0; i <= most; ++i) limit2[i] = std::ldexp(longest * longest, 2 * i);
@@ -135,7 +138,7 @@ VertexOffsets displace(const OpenedMesh& mesh, std::vector<Levels>& levels) {
         screen.project(offsets.points(mesh, k));
         const auto look = [&](Levels& at, float length) {
             at.stretched |= length > longest;
-            if (!(length < INFINITY)) at = kLarge;
+            if (!(length < INFINITY) || (at.stretched && !shares_points(mesh))) at = kLarge;
         };
         parallel_for(levels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
@@ -190,9 +193,10 @@ SmallFaces::SmallFaces(const OpenedMesh& mesh) {
     if (mesh.displaced() && std::ranges::any_of(levels, is_small))
         m_offsets = displace(mesh, levels);
     const auto count = static_cast<std::size_t>(std::ranges::count_if(levels, is_small));
+    if (count == 0) m_offsets = {};
     std::span<const Vec3f> at_frame = mesh.points(mesh.knots().frame_knot);
     std::vector<Vec3f> displaced;
-    if (mesh.displaced()) {
+    if (mesh.displaced() && count > 0) {
         displaced = m_offsets.points(mesh, mesh.knots().frame_knot);
         at_frame = displaced;
     }
@@ -245,7 +249,8 @@ SmallFaces::SmallFaces(const OpenedMesh& mesh) {
             wider = {};
             wider.add(m.place);
         }
-        has_lattices.back() = has_lattices.back() || m.levels.micropolygons() > 1;
+        // The halves of a bent quad have a point between them where that is long enough.
+        has_lattices.back() = has_lattices.back() || m.micropolygons() > 1;
         region = wider;
         last = &m;
         m_order.push_back(m.patch);
@@ -257,17 +262,22 @@ SmallFaces::SmallFaces(const OpenedMesh& mesh) {
         for (std::size_t i = begin; i < end; ++i) {
             const int knot = static_cast<int>(i % knots);
             Bounds3f& box = m_boxes[i];
-            Bounds3f still;
-            for (const std::uint32_t face : batch(i / knots))
-                for (const std::uint32_t corner : mesh.shared().patches()[face].corner) {
-                    box.add(m_offsets.point(mesh, knot, mesh.place_of(corner)));
-                    still.add(mesh.points(knot)[mesh.place_of(corner)]);
-                }
-            box.grow_relative(1e-6f);  // of what lies between the corners
-            if (!mesh.displaced() || !has_lattices[i / knots]) continue;
-            // Points of a lattice go elsewhere than its corners do.
-            still.grow(mesh.displacement_reach());
-            box.add(still);
+            const auto add_corners = [&](auto point) {
+                for (const std::uint32_t face : batch(i / knots))
+                    for (const std::uint32_t corner : mesh.shared().patches()[face].corner)
+                        box.add(point(mesh.place_of(corner)));
+                box.grow_relative(1e-6f);  // of what lies between the corners
+            };
+            const auto still = [&](std::size_t v) { return mesh.points(knot)[v]; };
+            if (mesh.displaced() && has_lattices[i / knots]) {
+                // Points of a lattice go elsewhere than its corners do.
+                add_corners(still);
+                box.grow(mesh.displacement_reach());
+            } else if (mesh.displaced()) {
+                add_corners([&](std::size_t v) { return m_offsets.point(mesh, knot, v); });
+            } else {
+                add_corners(still);
+            }
         }
     });
 }

@@ -31,8 +31,7 @@ std::vector<bool> whole_edges(const OpenedMesh& mesh) {
                                  static_cast<std::size_t>(topology.edge(e).hi));
     };
 
-    // A thousandth less than EdgeRate's own limit: this is single precision.
-    const float longest = static_cast<float>(0.999 * M_SQRT2 * mesh.rate().rate());
+    const float longest = mesh.rate().sure_length();
     ScreenPoints screen(mesh);
     for (int k = 0; k < mesh.knot_count(); ++k) {
         const std::span<const Vec3f> points = mesh.points(k);

@@ -2,7 +2,8 @@
 // How materials move the surfaces of instances (decision 6), as dicing and rays ask for it.
 //
 // An offset is a function of the instance and of a place on its geometry, and of nothing else: not
-// of grids, rates or who asks.  What two patches share is moved as the patch that owns it says
+// of grids, rates or who asks.  What changes of it is told between places as far apart as
+// micropolygons are.  What two patches share is moved as the patch that owns it says
 // (PatchBorders), so that both have the same bits (decision 10).
 #pragma once
 

@@ -54,11 +54,6 @@ void SharedGrid::ensure_shading_state(Statistics& statistics) {
     });
 }
 
-void SharedGrid::end_picture() {
-    m_begun.reset();
-    if (m_grid->state_asks_displacement) ensure_shading_state(m_statistics);
-}
-
 const SharedGrid::Place& SharedGrid::place(Statistics& statistics) {
     m_has_place.call([&] {
         ensure_shading_state(statistics);

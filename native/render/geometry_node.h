@@ -51,16 +51,17 @@ class SharedGrid {
         }
     };
     const Place& place(Statistics& statistics);
-    /// What was begun of a grid that only tells others is not needed any more; what a later picture
-    /// could not make any more is made.
-    void end_picture();
+    /// The picture is done, and what was begun of a grid that only tells others is not needed.
+    void drop_begun() { m_begun.reset(); }
+    /// Whether its shading state is not there and a later picture could not make it.
+    bool asks_picture() const { return m_grid->state_asks_displacement && m_grid->shading_state; }
+    void ensure_shading_state(Statistics& statistics);
     /// Between two pictures: the next one shades it anew.
     void forget_radiance();
     /// What hiding must know of it, once its opacity is there where that varies.
     const GridSweep& sweep(const Projection& projection, const LensShape& lens);
 
   private:
-    void ensure_shading_state(Statistics& statistics);
     void drop_radiance();
     void count_bytes();
 

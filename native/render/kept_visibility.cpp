@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "base/parallel.h"
 #include "scene/channels.h"
 #include "shade/material_displacement.h"
 
@@ -154,14 +155,23 @@ void KeptVisibility::keep(int index, Bucket bucket) {
 void KeptVisibility::end_picture() {
     // Of those that only tell others; while buckets were rendered other threads might tell.
     std::unordered_set<const SharedGrid*> counted;
+    std::unordered_set<SharedGrid*> asking;
     for (const auto& bucket : m_buckets) {
         if (!bucket) continue;
         for (const auto& grid : bucket->grids) counted.insert(grid.get());
+        bucket->for_each_grid([&](SharedGrid& grid) {
+            grid.drop_begun();
+            if (grid.asks_picture()) asking.insert(&grid);
+        });
     }
+    if (m_given_up) return;
+    const std::vector<SharedGrid*> asked(asking.begin(), asking.end());
+    parallel_for(asked.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) asked[i]->ensure_shading_state(*m_statistics);
+    });
     for (const auto& bucket : m_buckets) {
         if (!bucket) continue;
         bucket->for_each_grid([&](SharedGrid& grid) {
-            grid.end_picture();
             if (counted.insert(&grid).second) m_bytes += grid.bytes();
         });
     }

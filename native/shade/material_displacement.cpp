@@ -25,8 +25,10 @@ constexpr std::size_t kSamples = 1 << 16;
 constexpr int kMostAlongSide = 256;
 /// Patches in a piece of that loop.
 constexpr std::size_t kGrain = 64;
-/// Places that a program runs over: their memory stays in the second cache.
+/// Points that a program runs over, or so: their memory stays in the second cache.
 constexpr std::size_t kMostAtOnce = 1024;
+/// Of each place where slopes are asked for.
+constexpr std::size_t kPointsForSlopes = 5;
 /// Pixels: slopes are not of what is smaller, however fine micropolygons are.
 constexpr double kFinest = 1.0 / 16.0;
 
@@ -133,9 +135,10 @@ void MaterialDisplacement::run(std::size_t index, const SharedGeometry& geometry
     const auto program_at = [&](std::size_t i) {
         return program_of(instance, geometry, places[i].patch->face);
     };
+    const std::size_t most = derivatives ? kMostAtOnce / kPointsForSlopes : kMostAtOnce;
     for (std::size_t first = 0, end = 0; first < n; first = end) {
         const DisplacementProgram* const program = program_at(first);
-        while (end < n && end - first < kMostAtOnce && program_at(end) == program) ++end;
+        while (end < n && end - first < most && program_at(end) == program) ++end;
         if (program)
             run_displacement(*program, m_targets[index]->at, instance, geometry,
                              places.subspan(first, end - first), derivatives, first, out);

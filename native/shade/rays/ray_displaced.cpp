@@ -113,12 +113,18 @@ RayDisplaced::RayDisplaced(std::shared_ptr<const SharedGeometry> shared,
             places.clear();
         }
     });
+    std::vector<float> extents(patches, 0.0f);
+    parallel_for(patches, kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k)
+            for (int knot = 0; knot < m_primitives.knots; ++knot)
+                for (std::size_t quad = m_first_quad[k]; quad < m_first_quad[k + 1]; ++quad)
+                    for (const std::uint32_t corner : m_primitives.indices[quad])
+                        extents[k] =
+                            std::max(extents[k], largest_coordinate(m_primitives.at(knot)[corner]));
+    });
     for (std::size_t k = 0; k < patches; ++k) {
         float& extent = m_extents[m_shared->patches()[k].face];
-        for (int knot = 0; knot < m_primitives.knots; ++knot)
-            for (std::size_t quad = m_first_quad[k]; quad < m_first_quad[k + 1]; ++quad)
-                for (const std::uint32_t corner : m_primitives.indices[quad])
-                    extent = std::max(extent, largest_coordinate(m_primitives.at(knot)[corner]));
+        extent = std::max(extent, extents[k]);
     }
     m_primitives.put_still_first();
 }

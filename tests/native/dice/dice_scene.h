@@ -86,6 +86,30 @@ inline GeometryData mesh(std::vector<Vec3f> points, std::vector<std::int32_t> si
     return data;
 }
 
+/// n x n quads over `size` metres around the origin, z from `height(x, y)`.
+template <class Height>
+GeometryData sheet(int n, float size, Height height) {
+    std::vector<Vec3f> p;
+    std::vector<std::int32_t> corners;
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) {
+            const float x = size * (static_cast<float>(i) / n - 0.5f);
+            const float y = size * (static_cast<float>(j) / n - 0.5f);
+            p.emplace_back(x, y, height(x, y));
+        }
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            const int v = j * (n + 1) + i;
+            for (const int c : {v, v + 1, v + n + 2, v + n + 1}) corners.push_back(c);
+        }
+    return mesh(std::move(p), std::vector<std::int32_t>(static_cast<std::size_t>(n) * n, 4),
+                std::move(corners));
+}
+
+inline GeometryData flat_sheet(int n, float size) {
+    return sheet(n, size, [](float, float) { return 5.0f; });
+}
+
 /// Corners at +-half, six outward quads.
 inline GeometryData cube(float half, float z = 0.0f) {
     std::vector<Vec3f> p;
