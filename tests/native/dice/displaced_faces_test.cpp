@@ -189,8 +189,10 @@ TEST(DisplacedFaces, lie_within_the_bounds_of_their_batches) {
     for (const float size : {20.0f, 30.0f, 45.0f, 80.0f})
         for (const bool subdivided : {false, true})
             for (const bool wide : {false, true}) {
-                GeometryData data = sheet(24, size, [](float x, float y) {
-                    return 9.0f + std::sin(x * 0.9f) * std::sin(y * 0.9f);
+                // Every second vertex is raised: quads with a crease.
+                GeometryData data = sheet(24, size, [&](float x, float y) {
+                    const float k = static_cast<float>(M_PI) * 24.0f / size;
+                    return 9.0f + 0.3f * std::cos(k * x) * std::cos(k * y);
                 });
                 data.is_subdivision = subdivided;
                 data.subdivision.boundary = SubdivisionBoundary::EdgeAndCorner;
