@@ -229,9 +229,7 @@ def waves(modelled, size=48, height=4.0, wave=2 * np.pi / 16.0, tilt=0.0, **opti
     inputs = {"Height": math("MULTIPLY", *sines), "Midlevel": 0.0, "Scale": height}
     nodes.append({"type": "ShaderNodeDisplacement", "inputs": inputs})
     material = matte(snapshot, nodes, (len(nodes) - 1, "Displacement"))
-    s.quad(
-        snapshot, s.rectangle(0, 0, size, depth, 40.0)[::-1], material, transforms=transforms
-    )
+    s.quad(snapshot, s.rectangle(0, 0, size, depth, 40.0)[::-1], material, transforms=transforms)
     return s.render(snapshot)["combined"][..., 0]
 
 
