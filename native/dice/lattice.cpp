@@ -99,7 +99,7 @@ class LatticeDicer {
     void displace(Grid& grid) {
         m_sites.clear();
         for (const Vec2d& uv : m_places.uv) m_sites.push_back({m_patch, uv});
-        find_offsets(true, m_offsets);
+        m_mesh->find_offsets(m_sites, true, m_offsets);
         find_displaced_frames();
         displace_border();
         for (int k = 0; k < grid.knots; ++k)
@@ -107,12 +107,6 @@ class LatticeDicer {
                 Vec3f& p = grid.positions[at_knot(k, static_cast<int>(i))];
                 p = m_mesh->displaced(k, p, m_offsets.offset[i]);
             }
-    }
-
-    /// At m_sites.
-    void find_offsets(bool derivatives, Offsets& out) const {
-        m_mesh->view().displacement->find(m_mesh->instance_index(), m_mesh->shared(), m_sites,
-                                          derivatives, out);
     }
 
     void find_displaced_frames() {
@@ -138,7 +132,7 @@ class LatticeDicer {
                 m_border_vertices.push_back(vertex);
                 m_sites.push_back({owner.patch ? owner.patch : m_patch, owner.uv});
             }
-        find_offsets(false, m_border_offsets);
+        m_mesh->find_offsets(m_sites, false, m_border_offsets);
         for (std::size_t i = 0; i < m_border_vertices.size(); ++i)
             m_offsets.offset[static_cast<std::size_t>(m_border_vertices[i])] =
                 m_border_offsets.offset[i];

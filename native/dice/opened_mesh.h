@@ -140,6 +140,10 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     bool displaced() const { return m_displaced; }
     /// The longest way that displacement may move a point at any knot, metres.
     float displacement_reach() const { return m_displacement_reach; }
+    /// Where it is displaced: how far that moves these places.
+    void find_offsets(std::span<const SurfacePlace> places, bool derivatives, Offsets& out) const {
+        m_view->displacement->find(m_instance_index, *m_shared, places, derivatives, out);
+    }
     /// Whether values of an attribute move along: places of the frame and of those around it.
     bool displaces(const AttributeRequest& request) const {
         return m_displaced && request.source != AttributeSource::Generated &&

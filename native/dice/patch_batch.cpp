@@ -173,20 +173,20 @@ std::vector<Bounds3f> PatchBatch::still_boxes() const {
     return boxes;
 }
 
-/// Who answers for a vertex of a lattice: of what two corners tell, the edge's owner.
-SurfacePlace PatchBatch::border_place(const BasePatch& patch, const LatticeStencil& stencil,
-                                      std::size_t v) const {
+/// Who answers for a vertex of a lattice that is no corner: of what two corners tell, the edge's
+/// owner.
+SurfacePlace PatchBatch::owner_place(const BasePatch& patch, const LatticeStencil& stencil,
+                                     std::size_t v) const {
     const int sides = patch.kind == PatchKind::Triangle ? 3 : 4;
     const auto vertex = [&](int i) {
         return static_cast<std::uint32_t>(m_mesh->data().corner_verts[patch.corner[i % sides]]);
     };
-    const PatchBorders& borders = m_mesh->shared().borders();
     const std::array<double, 4>& w = stencil.weights[v].w;
     for (int i = 0; i < sides; ++i) {
         const double before = w[static_cast<std::size_t>(i)];
         const double after = w[static_cast<std::size_t>((i + 1) % sides)];
-        if (before == 1.0) return borders.vertex(vertex(i));
         if (!(before > 0.0 && after > 0.0 && before + after == 1.0)) continue;
+        const PatchBorders& borders = m_mesh->shared().borders();
         const std::uint32_t from = vertex(i), to = vertex(i + 1);
         return borders.place(borders.edge_of(std::min(from, to), std::max(from, to)),
                              from < to ? after : before);
@@ -194,15 +194,27 @@ SurfacePlace PatchBatch::border_place(const BasePatch& patch, const LatticeStenc
     return {&patch, stencil.uv[v]};
 }
 
+/// Those of corners are known.
 void PatchBatch::find_offsets(Parts& parts) const {
+    std::vector<Vec3f>& offsets = parts.offsets;
+    std::vector<std::size_t> others;
     std::vector<SurfacePlace> places;
     for (const Lattice& lattice : parts.lattices) {
         const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
-        for (std::size_t v = 0; v < stencil.vertex_count(); ++v)
-            places.push_back(border_place(lattice.patch, stencil, v));
+        const std::array<Vec3f, 4> corners = m_mesh->corner_offsets(lattice.patch);
+        for (std::size_t v = 0; v < stencil.vertex_count(); ++v) {
+            const std::array<double, 4>& w = stencil.weights[v].w;
+            const auto corner = static_cast<std::size_t>(std::ranges::find(w, 1.0) - w.begin());
+            if (corner == w.size()) {
+                others.push_back(offsets.size());
+                places.push_back(owner_place(lattice.patch, stencil, v));
+            }
+            offsets.push_back(corner == w.size() ? Vec3f(0.0f) : corners[corner]);
+        }
     }
-    m_mesh->view().displacement->find(m_mesh->instance_index(), m_mesh->shared(), places, false,
-                                      parts.offsets);
+    Offsets found;
+    m_mesh->find_offsets(places, false, found);
+    for (std::size_t i = 0; i < others.size(); ++i) offsets[others[i]] = found.offset[i];
 }
 
 /// With what changes of them by (u, v) of each lattice's own patch: between the corners of what is
@@ -215,10 +227,9 @@ Offsets PatchBatch::offsets_with_slopes(const Parts& parts) const {
         for (const Vec2d& uv : stencil.uv) places.push_back({&lattice.patch, uv});
     }
     Offsets found;
-    m_mesh->view().displacement->find(m_mesh->instance_index(), m_mesh->shared(), places, true,
-                                      found);
+    m_mesh->find_offsets(places, true, found);
     Offsets out;
-    out.offset = parts.offsets.offset;
+    out.offset = parts.offsets;
     std::size_t next = 0;
     for (const Lattice& lattice : parts.lattices) {
         const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
@@ -237,7 +248,7 @@ void PatchBatch::place(Grid& grid, const Parts& parts) const {
     const auto count = static_cast<std::size_t>(grid.vertex_count());
     for (int k = 0; k < grid.knots; ++k) {
         Vec3f* const to = &grid.positions[static_cast<std::size_t>(k) * count];
-        const Vec3f* offset = parts.offsets.offset.data();
+        const Vec3f* offset = parts.offsets.data();
         const auto place_lattice = [&](const Lattice& lattice, const Slot& slot) {
             const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
             const OpenedMesh::Corners corners = m_mesh->corners(lattice.patch, k);

@@ -31,15 +31,15 @@ class PatchBatch final : public FaceBatch {
         std::vector<Lattice> lattices;
         std::vector<Piece> pieces;
         /// [vertices of the lattices] of what is displaced.
-        Offsets offsets;
+        std::vector<Vec3f> offsets;
     };
     Parts find_parts() const;
     bool find_stencil(const BasePatch& patch, std::uint32_t& stencil) const;
     int levels(std::uint32_t a, std::uint32_t b, const BasePatch& face) const;
     void dice_face(const BasePatch& patch, std::vector<Piece>& pieces) const;
     std::vector<Bounds3f> still_boxes() const;
-    SurfacePlace border_place(const BasePatch& patch, const LatticeStencil& stencil,
-                              std::size_t vertex) const;
+    SurfacePlace owner_place(const BasePatch& patch, const LatticeStencil& stencil,
+                             std::size_t vertex) const;
     void find_offsets(Parts& parts) const;
     Offsets offsets_with_slopes(const Parts& parts) const;
     void place(Grid& grid, const Parts& parts) const;

@@ -3,7 +3,6 @@
 
 #include "base/parallel.h"
 #include "dice/opened_mesh.h"
-#include "geometry/displacement.h"
 #include "geometry/patch_borders.h"
 
 namespace granita {
@@ -26,14 +25,13 @@ VertexOffsets::VertexOffsets(const OpenedMesh& mesh, const std::vector<bool>& wa
             places.push_back(borders.vertex(mesh.part().vertex(v)));
         }
         Offsets found;
-        mesh.view().displacement->find(mesh.instance_index(), mesh.shared(), places, false, found);
+        mesh.find_offsets(places, false, found);
         for (std::size_t i = 0; i < vertices.size(); ++i) m_offsets[vertices[i]] = found.offset[i];
     });
 }
 
 Vec3f VertexOffsets::point(const OpenedMesh& mesh, int knot, std::size_t place) const {
-    const Vec3f& p = mesh.points(knot)[place];
-    return m_offsets.empty() ? p : mesh.displaced(knot, p, m_offsets[place]);
+    return mesh.displaced(knot, mesh.points(knot)[place], m_offsets[place]);
 }
 
 std::vector<Vec3f> VertexOffsets::points(const OpenedMesh& mesh, int knot) const {

@@ -27,7 +27,7 @@ class VertexOffsets {
     std::uint64_t bytes() const { return sizeof(Vec3f) * m_offsets.size(); }
 
   private:
-    std::vector<Vec3f> m_offsets;  ///< empty: nothing is displaced
+    std::vector<Vec3f> m_offsets;
 };
 
 }  // namespace granita

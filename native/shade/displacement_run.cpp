@@ -13,7 +13,7 @@
 namespace granita {
 namespace {
 
-/// Of a patch: a place and the two beside it stay within it.
+/// Of a patch: a place and those beside it stay within it.
 constexpr double kLargestStep = 0.5;
 /// Of the coordinates: smaller differences drown in the rounding of single precision.
 constexpr double kLeastDifference = 2e-5;

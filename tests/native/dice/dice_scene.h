@@ -119,6 +119,33 @@ inline GeometryData cube(float half, float z = 0.0f) {
                 {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5});
 }
 
+/// Longitudes and latitudes of a closed surface, n rows of 2 n quads: `place(latitude, longitude)`,
+/// the same all along a pole.
+template <class Place>
+GeometryData globe(int n, Place place) {
+    GeometryData data = mesh({}, {}, {});
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i < 2 * n; ++i)
+            data.points.emplace_back(
+                place(M_PI * (static_cast<double>(j) / n - 0.5), M_PI * i / n));
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < 2 * n; ++i) {
+            const int a = j * 2 * n + i, b = j * 2 * n + (i + 1) % (2 * n);
+            for (const int c : {a, b, b + 2 * n, a + 2 * n}) data.corner_verts.push_back(c);
+            data.face_sizes.push_back(4);
+        }
+    return data;
+}
+
+/// Whether a grid lies where what it is of was said to.
+inline void expect_within(const RasterBounds& is, const RasterBounds& said) {
+    EXPECT_GE(is.x0, said.x0 - 0.01f);
+    EXPECT_LE(is.x1, said.x1 + 0.01f);
+    EXPECT_GE(is.y0, said.y0 - 0.01f);
+    EXPECT_LE(is.y1, said.y1 + 0.01f);
+    EXPECT_LE(is.nearest_key, said.nearest_key + 0.01f);
+}
+
 inline double area(const std::vector<std::unique_ptr<Grid>>& grids, int knot = 0) {
     double sum = 0.0;
     for (const auto& grid : grids) {

@@ -205,16 +205,12 @@ TEST(DisplacedFaces, lie_within_the_bounds_of_their_batches) {
                 const auto opened = open_instance(s.view, 0, s.report);
                 std::size_t diced = 0;
                 for (std::size_t i = 0; i < opened->primitive_count(); ++i) {
-                    const RasterBounds b = opened->bounds(i);
+                    const RasterBounds said = opened->bounds(i);
                     std::vector<std::unique_ptr<Grid>> grids;
                     DiceScene::dice_all(*opened->primitive(i), grids);
                     for (const auto& grid : grids) {
                         ++diced;
-                        EXPECT_GE(grid->bounds.x0, b.x0 - 0.01f);
-                        EXPECT_LE(grid->bounds.x1, b.x1 + 0.01f);
-                        EXPECT_GE(grid->bounds.y0, b.y0 - 0.01f);
-                        EXPECT_LE(grid->bounds.y1, b.y1 + 0.01f);
-                        EXPECT_LE(grid->bounds.nearest_key, b.nearest_key + 0.01f);
+                        expect_within(grid->bounds, said);
                     }
                 }
                 EXPECT_GT(diced, 0u);
@@ -226,25 +222,12 @@ TEST(DisplacedFaces, have_no_cracks_to_what_is_larger_at_any_rate) {
     for (const float rate : {1.0f, 8.0f})
         for (const float shading : {0.0f, 12.0f})
             for (const bool subdivided : {false, true}) {
-                GeometryData data = mesh({}, {}, {});
-                constexpr int n = 16;
-                for (int j = 0; j <= n; ++j)
-                    for (int i = 0; i < 2 * n; ++i) {
-                        const double latitude = M_PI * (static_cast<double>(j) / n - 0.5);
-                        const double longitude = M_PI * i / n;
-                        const bool pole = j == 0 || j == n;
-                        const double r = pole ? 0.0 : std::cos(latitude);
-                        data.points.emplace_back(0.3 + r * std::cos(longitude),
-                                                 r * std::sin(longitude) - 0.2,
-                                                 4.0 + 3.0 * std::sin(latitude));
-                    }
-                for (int j = 0; j < n; ++j)
-                    for (int i = 0; i < 2 * n; ++i) {
-                        const int k = (i + 1) % (2 * n), row = j * 2 * n;
-                        for (const int c : {row + i, row + k, row + 2 * n + k, row + 2 * n + i})
-                            data.corner_verts.push_back(c);
-                        data.face_sizes.push_back(4);
-                    }
+                GeometryData data = globe(16, [](double latitude, double longitude) {
+                    const bool pole = std::abs(latitude) == 0.5 * M_PI;
+                    const double r = pole ? 0.0 : std::cos(latitude);
+                    return Vec3f(0.3 + r * std::cos(longitude), r * std::sin(longitude) - 0.2,
+                                 4.0 + 3.0 * std::sin(latitude));
+                });
                 data.is_subdivision = subdivided;
                 DiceScene s(std::move(data), rate);
                 s.scene.options.shading_rate = shading;

@@ -105,13 +105,7 @@ TEST(Displacement, bounds_grow_by_the_bound) {
             std::vector<std::unique_ptr<Grid>> grids;
             DiceScene::dice_all(*opened->primitive(i), grids);
             for (const auto& grid : grids)
-                for (const RasterBounds& b : {out, whole}) {
-                    EXPECT_GE(grid->bounds.x0, b.x0 - 0.01f);
-                    EXPECT_LE(grid->bounds.x1, b.x1 + 0.01f);
-                    EXPECT_GE(grid->bounds.y0, b.y0 - 0.01f);
-                    EXPECT_LE(grid->bounds.y1, b.y1 + 0.01f);
-                    EXPECT_LE(grid->bounds.nearest_key, b.nearest_key + 0.01f);
-                }
+                for (const RasterBounds& said : {out, whole}) expect_within(grid->bounds, said);
         }
         EXPECT_TRUE(s.report.warnings().empty());
     }

@@ -40,24 +40,12 @@ TEST(SmallFaces, every_face_is_one_micropolygon_with_the_bits_of_its_vertices) {
 
 TEST(SmallFaces, their_borders_to_larger_faces_have_no_cracks) {
     // A closed surface: a ball's latitudes and longitudes, drawn out to one side.
-    GeometryData data = mesh({}, {}, {});
-    constexpr int n = 48;
-    for (int j = 0; j <= n; ++j)
-        for (int i = 0; i < 2 * n; ++i) {
-            const double latitude = M_PI * (static_cast<double>(j) / n - 0.5);
-            const double longitude = M_PI * i / n;
-            const double r = 40.0 + 35.0 * std::sin(longitude);
-            data.points.emplace_back(r * std::cos(latitude) * std::cos(longitude),
-                                     r * std::cos(latitude) * std::sin(longitude),
-                                     r * std::sin(latitude) + 300.0);
-            if (j == 0 || j == n) data.points.back() = {0.0f, 0.0f, j == 0 ? 260.0f : 340.0f};
-        }
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < 2 * n; ++i) {
-            const int a = j * 2 * n + i, b = j * 2 * n + (i + 1) % (2 * n);
-            for (const int c : {a, b, b + 2 * n, a + 2 * n}) data.corner_verts.push_back(c);
-            data.face_sizes.push_back(4);
-        }
+    GeometryData data = globe(48, [](double latitude, double longitude) {
+        if (std::abs(latitude) == 0.5 * M_PI) return Vec3f(0, 0, latitude < 0.0 ? 260 : 340);
+        const double r = 40.0 + 35.0 * std::sin(longitude);
+        return Vec3f(r * std::cos(latitude) * std::cos(longitude),
+                     r * std::cos(latitude) * std::sin(longitude), r * std::sin(latitude) + 300.0);
+    });
     DiceScene s(std::move(data));
     // All of them are of a few pixels at most; some are larger.
     for (const double focal : {250.0, 800.0}) {
