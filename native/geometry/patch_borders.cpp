@@ -135,8 +135,7 @@ SurfacePlace PatchBorders::vertex(std::size_t vertex) const {
 SurfacePlace PatchBorders::on_cage(std::size_t index, double t) const {
     const SubdivisionTopology& topology = *m_geometry.subdivision();
     const SubdivisionTopology::Edge& edge = topology.edge(index);
-    if (t == 0.0 || t == 1.0)
-        return vertex(static_cast<std::size_t>(t == 0.0 ? edge.lo : edge.hi));
+    if (t == 0.0 || t == 1.0) return vertex(static_cast<std::size_t>(t == 0.0 ? edge.lo : edge.hi));
     const std::uint32_t corner =
         m_geometry.first_corner(static_cast<std::size_t>(edge.owner.face)) +
         static_cast<std::uint32_t>(edge.owner.local);
