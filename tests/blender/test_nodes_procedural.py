@@ -237,6 +237,28 @@ def test_magic(scene, render, depth):
     show(scene, render, tree, node, "Color")
 
 
+@pytest.mark.parametrize("low", [-31.3, 22.7, 300.2])
+@pytest.mark.parametrize(
+    "kind, output, contrast",
+    [
+        ("ShaderNodeTexMagic", "Color", None),
+        ("ShaderNodeTexNoise", "Color", 2.0),
+        ("ShaderNodeTexVoronoi", "Color", None),
+        ("ShaderNodeTexVoronoi", "Position", None),
+        ("ShaderNodeTexWave", "Fac", None),
+        ("ShaderNodeTexChecker", "Fac", None),
+        ("ShaderNodeTexBrick", "Color", None),
+        ("ShaderNodeTexGabor", "Value", 2.0),
+        ("ShaderNodeTexMusgrave", "Fac", None),
+    ],
+)
+def test_far_from_the_origin(scene, render, kind, output, contrast, low):
+    if not hasattr(bpy.types, kind):
+        pytest.skip(f"no {kind} in this Blender")
+    tree, node = textured(scene, kind, {"Scale": 1.1}, low=low, high=low + 3.0)
+    show(scene, render, tree, node, output, contrast)
+
+
 @pytest.mark.parametrize(
     "smooth, output",
     [*itertools.product([0.0, 0.6, 1.0], ["Fac", "Color"]), (-0.5, "Color")],

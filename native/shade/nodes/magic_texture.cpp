@@ -9,11 +9,13 @@ namespace granita {
 
 namespace {
 
-/// Sines of sums of sines; each depth adds one line.
-Vec3f magic(const Vec3f& place, int depth, float distortion) {
+Vec3f wrapped(const Vec3f& place) {
     constexpr float kTwoPi = 2.0f * std::numbers::pi_v<float>;
-    const Vec3f p(std::fmod(place.x, kTwoPi), std::fmod(place.y, kTwoPi),
-                  std::fmod(place.z, kTwoPi));
+    return {std::fmod(place.x, kTwoPi), std::fmod(place.y, kTwoPi), std::fmod(place.z, kTwoPi)};
+}
+
+/// Sines of sums of sines; each depth adds one line.
+Vec3f magic(const Vec3f& p, int depth, float distortion) {
     const float d = distortion;
     float x = std::sin((p.x + p.y + p.z) * 5.0f);
     float y = std::cos((-p.x + p.y - p.z) * 5.0f);
@@ -40,8 +42,11 @@ Vec3f magic(const Vec3f& place, int depth, float distortion) {
 void build_magic_texture(NodeBuilder& b) {
     const int depth = static_cast<int>(b.value("turbulence_depth", 2.0));
     const VectorSource vector = texture_place(b);
+    // Blender before 5.2 wraps before it scales: another pattern beyond 2 pi of the origin.
     const VectorSource color = b.map<Vec3f>(
-        [depth](const Vec3f& v, float scale, float d) { return magic(v * scale, depth, d); },
+        [depth, first = !b.since(5, 2)](const Vec3f& v, float scale, float d) {
+            return magic(first ? wrapped(v) * scale : wrapped(v * scale), depth, d);
+        },
         vector, b.number("Scale", 5.0f), b.number("Distortion", 1.0f));
     b.output_color("Color", color);
     b.output("Fac", b.map<float>([](const Vec3f& c) { return (c.x + c.y + c.z) / 3.0f; }, color));
