@@ -14,7 +14,7 @@ BouncedPath BouncedPath::leaving(const LobeRay& ray) {
             .diffuse_part = ray.diffuse,
             .transmitted = ray.transmitted,
             .kind = kind,
-            .sure_part = std::min(1.0f, largest(ray.weight)),
+            .sure_part = ray.counts_as,
             .splits = ray.samples,
             .least_pdf = ray.pdf,
             .width = ray.width,

@@ -20,8 +20,8 @@ struct BouncedPath {
     Vec3f diffuse_part{0.0f}, transmitted{0.0f};
     /// What sent it from there.
     enum class Kind { Diffuse, Glossy, Mirrored } kind = Kind::Diffuse;
-    /// Part of its point that it was followed for while no chance chose it: those of a point's ways
-    /// after as many meetings sum up to 1 at most.
+    /// As how many of its point's light samples it counted when no chance had chosen it yet: those
+    /// of a point's ways after as many meetings sum up to all of them at most.
     float sure_part = 0.0f;
     /// Ways that it is to become where what it meets sends light on by chance; and of how many it
     /// is one there, all of which weigh alike, and the first takes what no chance chooses for all.
@@ -49,10 +49,9 @@ struct BouncedPath {
     /// Counts what has sent it, a place in a medium or a lobe (Ray::type).
     void count_bounce(bool is_scattered);
 
-    /// Becomes the first of as many ways, alike but for their places, as its part of its point has
-    /// of `splits`.
+    /// Becomes the first of as many ways, alike but for their places, as light samples it counts.
     void split() {
-        const float ways = std::ceil(static_cast<float>(splits) * sure_part);
+        const float ways = std::ceil(sure_part);
         copies = static_cast<int>(ways);
         next.weight /= ways;
         next.share /= ways;

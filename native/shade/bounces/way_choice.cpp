@@ -10,24 +10,21 @@
 namespace granita {
 namespace {
 
-/// Weights from which ways of mirrors are followed surely: at one place, and all the way.
-constexpr float kMost = 0.5f, kMuch = 0.02f;
+/// Of a light sample, as how much the way of a mirror counts that is followed surely.
+constexpr float kMuch = 0.32f;
 
-/// Of its place's ways, which weigh `all` together.
+/// As much as a way counts of its point's light samples; its place's ways weigh `all` together.
 float part(const BouncedPath& path, const Vec3f& weight, float all) {
     return path.sure_part * largest(weight) / std::max(1.0f, all);
 }
 
 /// Whether a way is followed without chance; `all`: what the ways from its place weigh together.
 /// Mirrors and glass show edges, which are found only in what is in no doubt; and points that
-/// happen to show what is improbable would alone be shaded again.  Of a place's ways one at most is
-/// followed for its part of them, the others for theirs of the whole point: half mirrors that face
-/// each other, or what adds a mirror to what is clear, would double the rays of a point at each
-/// meeting.
+/// happen to show what is improbable would alone be shaded again.  What counts as less than a part
+/// of a light sample is left to chance: samples that are shaded by themselves, with one each, would
+/// follow all that panes and half mirrors make of it (docs/decisions/bounces.md).
 bool is_sure(const BouncedPath& path, const Vec3f& weight, float all) {
-    if (path.kind != BouncedPath::Kind::Mirrored) return false;
-    const float most = largest(weight);
-    return (most >= kMost && most > 0.5f * all) || part(path, weight, all) >= kMuch;
+    return path.kind == BouncedPath::Kind::Mirrored && part(path, weight, all) >= kMuch;
 }
 
 bool is_sure(const BouncedPath& path, const LobeRay& way, float all) {

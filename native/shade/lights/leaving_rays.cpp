@@ -39,10 +39,11 @@ void leave(const LampSet& set, LitGrid& grid, const LitPoint& point, const Ray& 
     const auto first = grid.placed ? 0u : static_cast<std::uint32_t>(grid.seed) << 14;
     const Vec3f whole = glm::max(weight, Vec3f(std::numeric_limits<float>::min()));
     const int samples = is_sharp(ray.type) && !set.varies ? point.sample_count : 1;
-    grid.leaving->rays.push_back({ray, weight, value.diffuse / whole, value.transmission / whole,
-                                  chance.share, chance.pdf, static_cast<std::uint32_t>(point.index),
-                                  first + place, samples, point.width, spread, grid.receives,
-                                  world});
+    grid.leaving->rays.push_back(
+        {ray, weight, value.diffuse / whole, value.transmission / whole, chance.share, chance.pdf,
+         static_cast<std::uint32_t>(point.index), first + place, samples,
+         std::min(1.0f, largest(weight)) * static_cast<float>(point.sample_count), point.width,
+         spread, grid.receives, world});
 }
 
 }  // namespace granita
