@@ -55,7 +55,8 @@ struct LitPoint {
     float width = 0.0f;  ///< of what it stands for, metres
     bool round = false;  ///< on a tube, as ShadingPoints::round
     struct LobeSamples {
-        int count = 0;            ///< 0 of sharp lobes
+        int count = 0;            ///< 0 of sharp lobes, and by chance
+        float expected = 0.0f;    ///< its mean
         std::uint32_t first = 0;  ///< in the sequence of the lobe
     };
     std::vector<LobeSamples> samples;  ///< [lobes]
@@ -74,12 +75,23 @@ struct LitPoint {
         if (seen_times.empty()) return shutter.time(exposed.x + uniform * (exposed.y - exposed.x));
         return one_of(seen_times, uniform);
     }
-    void share_samples() {
+    /// @param uniform in [0, 1): lobes of less than a sample take one as seldom; 1: at least one.
+    void share_samples(float uniform) {
         samples.resize(bsdf.lobe_count());
+        constexpr float kMore = 2.0f;
         for (std::size_t k = 0; k < samples.size(); ++k) {
             if (bsdf.is_sharp(k)) continue;
             const float share = bsdf.importance(k) * static_cast<float>(sample_count);
-            samples[k].count = std::max(1, static_cast<int>(std::lround(share)));
+            LobeSamples& own = samples[k];
+            if (uniform < 1.0f && kMore * share < 1.0f) {
+                own.expected = kMore * share;
+                uniform += own.expected;
+                own.count = uniform >= 1.0f ? 1 : 0;
+                uniform -= static_cast<float>(own.count);
+            } else {
+                own.count = std::max(1, static_cast<int>(std::lround(share)));
+                own.expected = static_cast<float>(own.count);
+            }
         }
     }
     /// Expected samples a solid angle around `wo` over the lobes that `which` accepts.
@@ -87,8 +99,7 @@ struct LitPoint {
     float lobe_density(const Vec3f& wo, Which which) const {
         float sum = 0.0f;
         for (std::size_t k = 0; k < samples.size(); ++k)
-            if (samples[k].count > 0 && which(k))
-                sum += static_cast<float>(samples[k].count) * bsdf.pdf(k, wo);
+            if (samples[k].expected > 0.0f && which(k)) sum += samples[k].expected * bsdf.pdf(k, wo);
         return sum;
     }
     /// Lamps are met by samples of lobes that are not diffuse: over those, sampling the lamp is
@@ -103,7 +114,7 @@ struct LitPoint {
     float chance_density(const Vec3f& wo, Which which) const {
         float sum = 0.0f;
         for (std::size_t k = 0; k < samples.size(); ++k)
-            if (samples[k].count > 0 && which(k)) sum += bsdf.chance(k, wo);
+            if (samples[k].expected > 0.0f && which(k)) sum += bsdf.chance(k, wo);
         return sum * bsdf.part_of_all();
     }
     float chance_density(const Vec3f& wo) const {
@@ -117,7 +128,7 @@ struct LitPoint {
     LightPart counted_as(std::size_t lobe, const Vec3f& wo, float uniform) const {
         float left = uniform * chance_density(wo);
         for (std::size_t k = 0; k < samples.size(); ++k) {
-            if (samples[k].count == 0) continue;
+            if (samples[k].expected == 0.0f) continue;
             const float own = bsdf.chance(k, wo) * bsdf.part_of_all();
             if (left < own) return bsdf.counted_as(k, wo, left / own);
             left -= own;

@@ -64,7 +64,8 @@ LitSets lit_points(const LampSet& set, LitGrid& grid, const ShadingPoints& point
                        width_of(points, i),
                        points.round,
                        {}});
-        lit.back().share_samples();
+        const std::size_t choice = 3 + closure.lobes.size() + set.everywhere;
+        lit.back().share_samples(grid.placed ? grid.sequence(choice, place)(0).x : 1.0f);
     }
     return sets;
 }
