@@ -23,8 +23,8 @@ struct BouncedPath {
     /// As how many of its point's light samples it counted when no chance had chosen it yet: those
     /// of a point's ways after as many meetings sum up to all of them at most.
     float sure_part = 0.0f;
-    /// Ways that it is to become where what it meets sends light on by chance; and of how many it
-    /// is one there, all of which weigh alike, and the first takes what no chance chooses for all.
+    /// The most ways that it may become where what it meets sends light on by chance; and of how
+    /// many it is one there, which weigh alike: the first takes what no chance chooses for all.
     int splits = 1, copies = 1;
     bool is_first = true;
     /// How likely it is one of its point's ways where it and others were followed: Cycles takes one
@@ -49,7 +49,7 @@ struct BouncedPath {
     /// Counts what has sent it, a place in a medium or a lobe (Ray::type).
     void count_bounce(bool is_scattered);
 
-    /// Becomes the first of as many ways, alike but for their places, as light samples it counts.
+    /// Becomes the first of as many ways, alike but for their places, as it counts light samples.
     void split() {
         const float ways = std::ceil(sure_part);
         copies = static_cast<int>(ways);

@@ -10,8 +10,9 @@
 namespace granita {
 namespace {
 
-/// Of a light sample, as how much the way of a mirror counts that is followed surely.
-constexpr float kMuch = 0.32f;
+/// Light samples that a mirror's way must count as to be followed surely, and the part of all that
+/// its place sends on from which it is as good as alone.
+constexpr float kMuch = 0.32f, kAlone = 0.98f;
 
 /// As much as a way counts of its point's light samples; its place's ways weigh `all` together.
 float part(const BouncedPath& path, const Vec3f& weight, float all) {
@@ -21,10 +22,12 @@ float part(const BouncedPath& path, const Vec3f& weight, float all) {
 /// Whether a way is followed without chance; `all`: what the ways from its place weigh together.
 /// Mirrors and glass show edges, which are found only in what is in no doubt; and points that
 /// happen to show what is improbable would alone be shaded again.  What counts as less than a part
-/// of a light sample is left to chance: samples that are shaded by themselves, with one each, would
-/// follow all that panes and half mirrors make of it (docs/decisions/bounces.md).
+/// of a light sample is left to chance, unless it is all there is: samples that are shaded by
+/// themselves, with one each, would follow all that panes and half mirrors make of it
+/// (docs/decisions/bounces.md).
 bool is_sure(const BouncedPath& path, const Vec3f& weight, float all) {
-    return path.kind == BouncedPath::Kind::Mirrored && part(path, weight, all) >= kMuch;
+    return path.kind == BouncedPath::Kind::Mirrored &&
+           (part(path, weight, all) >= kMuch || largest(weight) >= kAlone * all);
 }
 
 bool is_sure(const BouncedPath& path, const LobeRay& way, float all) {

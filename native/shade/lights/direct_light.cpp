@@ -221,7 +221,8 @@ void DirectLight::Impl::mirror(LitGrid& grid, const LitPoint& point, std::size_t
 }
 
 /// Dimensions are numbered by the closure's lobes, which are the same for all points: 0 the
-/// world's, then the lobes', then the choice's where there is one, then the lamps'.
+/// world's, then the lobes', then the choice's where there is one, then the lamps'
+/// (lobe_choice_dimension()).
 void DirectLight::Impl::light_points(LitGrid& grid, const std::vector<LitPoint>& points,
                                      std::size_t lobe_count, std::vector<LampSight>* sights) const {
     const std::size_t first = 1 + lobe_count;

@@ -11,8 +11,6 @@
 namespace granita {
 namespace {
 
-/// Of lamps by chance: those that one point has chosen hardly ever share one.
-constexpr std::size_t kDimensions = 32;
 /// Radians from a lamp's middle to its rim: what is larger hardly casts a shadow that is finer than
 /// micropolygons (bars of .2 pixels lack a hundredth of theirs).
 constexpr float kSmall = 0.02f;
@@ -184,7 +182,7 @@ void light_by_chosen(const LampSet& set, LitGrid& grid, const std::vector<LitPoi
         progress.check();
         const Lamp& lamp = set.lamps[turn.lamp];
         if (!lamp.lights(grid.receives) || !lamp.is_asked(grid.depth)) continue;
-        sender.sample(points[turn.point], turn, first + turn.lamp % kDimensions);
+        sender.sample(points[turn.point], turn, first + turn.lamp % kChosenDimensions);
     }
     sender.deliver();
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -55,8 +57,8 @@ struct LitPoint {
     float width = 0.0f;  ///< of what it stands for, metres
     bool round = false;  ///< on a tube, as ShadingPoints::round
     struct LobeSamples {
-        int count = 0;            ///< 0 of sharp lobes, and by chance
-        float expected = 0.0f;    ///< its mean
+        int count = 0;            ///< 0 of sharp lobes; of others, where chance leaves them out
+        float expected = 0.0f;    ///< mean of that; 0 of sharp lobes alone
         std::uint32_t first = 0;  ///< in the sequence of the lobe
     };
     std::vector<LobeSamples> samples;  ///< [lobes]
@@ -75,23 +77,28 @@ struct LitPoint {
         if (seen_times.empty()) return shutter.time(exposed.x + uniform * (exposed.y - exposed.x));
         return one_of(seen_times, uniform);
     }
-    /// @param uniform in [0, 1): lobes of less than a sample take one as seldom; 1: at least one.
-    void share_samples(float uniform) {
-        samples.resize(bsdf.lobe_count());
+    /// As lobes weigh, at least one of each; with a number in [0, 1) lobes that are due less than
+    /// half a sample take one twice as often as they weigh, by systematic chance over all of them
+    /// (Madow 1949).
+    void share_samples(std::optional<float> uniform) {
         constexpr float kMore = 2.0f;
+        /// Importances are a smooth surface's, which may vanish where a rough one's light does not.
+        constexpr float kLeast = 0.125f;
+        float at = uniform.value_or(0.0f);
+        samples.resize(bsdf.lobe_count());
         for (std::size_t k = 0; k < samples.size(); ++k) {
             if (bsdf.is_sharp(k)) continue;
-            const float share = bsdf.importance(k) * static_cast<float>(sample_count);
             LobeSamples& own = samples[k];
-            if (uniform < 1.0f && kMore * share < 1.0f) {
-                own.expected = kMore * share;
-                uniform += own.expected;
-                own.count = uniform >= 1.0f ? 1 : 0;
-                uniform -= static_cast<float>(own.count);
-            } else {
-                own.count = std::max(1, static_cast<int>(std::lround(share)));
-                own.expected = static_cast<float>(own.count);
-            }
+            const float due = bsdf.importance(k) * static_cast<float>(sample_count);
+            own.count = std::max(1, static_cast<int>(std::lround(due)));
+            own.expected = static_cast<float>(own.count);
+            // Rough glass lets most of its light out where smooth glass would none.
+            const bool is_glass = bsdf.part(k) == LightPart::Transmission;
+            if (!uniform || is_glass || kMore * due >= 1.0f) continue;
+            own.expected = std::max(kLeast, kMore * due);
+            at += own.expected;
+            own.count = at >= 1.0f ? 1 : 0;
+            at -= static_cast<float>(own.count);
         }
     }
     /// Expected samples a solid angle around `wo` over the lobes that `which` accepts.
@@ -99,7 +106,8 @@ struct LitPoint {
     float lobe_density(const Vec3f& wo, Which which) const {
         float sum = 0.0f;
         for (std::size_t k = 0; k < samples.size(); ++k)
-            if (samples[k].expected > 0.0f && which(k)) sum += samples[k].expected * bsdf.pdf(k, wo);
+            if (samples[k].expected > 0.0f && which(k))
+                sum += samples[k].expected * bsdf.pdf(k, wo);
         return sum;
     }
     /// Lamps are met by samples of lobes that are not diffuse: over those, sampling the lamp is
@@ -123,8 +131,8 @@ struct LitPoint {
     /// Of a sharp lobe.
     float chance(std::size_t lobe) const { return bsdf.importance(lobe) * bsdf.part_of_all(); }
     /// What a sample along `wo`, drawn from `lobe`, may count as, by a number in [0, 1): as often
-    /// as chance had drawn it from each lobe.  Each has a sample at least, however seldom chance
-    /// would take it, and light that others reflect along it as well.
+    /// as chance had drawn it from each lobe: one is taken more often than chance would, and brings
+    /// light that others reflect along it as well.
     LightPart counted_as(std::size_t lobe, const Vec3f& wo, float uniform) const {
         float left = uniform * chance_density(wo);
         for (std::size_t k = 0; k < samples.size(); ++k) {

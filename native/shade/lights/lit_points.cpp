@@ -5,6 +5,7 @@
 
 #include "shade/bsdf/bsdf_albedo.h"
 #include "shade/lights/grid_samples.h"
+#include "shade/lights/lamp_samples.h"
 #include "shade/lights/leaving_rays.h"
 
 namespace granita {
@@ -15,6 +16,7 @@ LitSets lit_points(const LampSet& set, LitGrid& grid, const ShadingPoints& point
     RayOffset ray_offset = set.rays ? set.rays->ray_offset(key) : RayOffset{};
     const Vec2f life_exposed = set.shutter.exposed(paths.lifespan());
     const int sample_count = set.sample_count(points.share);
+    const std::size_t choice = lobe_choice_dimension(closure.lobes.size(), set.everywhere);
     const GgxAlbedo& albedo = GgxAlbedo::shared();
     LitSets sets;
     std::vector<LitPoint>& all = sets[grid.receives];
@@ -64,8 +66,8 @@ LitSets lit_points(const LampSet& set, LitGrid& grid, const ShadingPoints& point
                        width_of(points, i),
                        points.round,
                        {}});
-        const std::size_t choice = 3 + closure.lobes.size() + set.everywhere;
-        lit.back().share_samples(grid.placed ? grid.sequence(choice, place)(0).x : 1.0f);
+        lit.back().share_samples(grid.placed ? std::optional(grid.sequence(choice, place)(0).x)
+                                             : std::nullopt);
     }
     return sets;
 }

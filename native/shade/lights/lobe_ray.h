@@ -34,7 +34,7 @@ struct LobeRay {
     std::uint32_t point = 0;         ///< in the grid, or batch
     std::uint32_t place = 0;         ///< in sequences of samples: neighbours' are neighbours
     int samples = 1;                 ///< of its lobe that it stands for: a mirror sends all one way
-    float counts_as = 1.0f;          ///< as how many of its point's light samples, by its weight
+    float counts_as = 1.0f;          ///< light samples of its point, by its weight: of mirrors
     float width = 0.0f;              ///< that its point stands for, metres
     float spread = 0.0f;             ///< radians that it stands for
     std::uint64_t receives = ~0ULL;  ///< as Instance::receives of what it leaves

@@ -14,7 +14,7 @@ Vec3f wrapped(const Vec3f& place) {
     return {std::fmod(place.x, kTwoPi), std::fmod(place.y, kTwoPi), std::fmod(place.z, kTwoPi)};
 }
 
-/// Sines of sums of sines; each depth adds one line.
+/// Sines of sums of sines of a place that is wrapped and scaled; each depth adds one line.
 Vec3f magic(const Vec3f& p, int depth, float distortion) {
     const float d = distortion;
     float x = std::sin((p.x + p.y + p.z) * 5.0f);
@@ -44,8 +44,8 @@ void build_magic_texture(NodeBuilder& b) {
     const VectorSource vector = texture_place(b);
     // Blender before 5.2 wraps before it scales: another pattern beyond 2 pi of the origin.
     const VectorSource color = b.map<Vec3f>(
-        [depth, first = !b.since(5, 2)](const Vec3f& v, float scale, float d) {
-            return magic(first ? wrapped(v) * scale : wrapped(v * scale), depth, d);
+        [depth, wraps_first = !b.since(5, 2)](const Vec3f& v, float scale, float d) {
+            return magic(wraps_first ? wrapped(v) * scale : wrapped(v * scale), depth, d);
         },
         vector, b.number("Scale", 5.0f), b.number("Distortion", 1.0f));
     b.output_color("Color", color);

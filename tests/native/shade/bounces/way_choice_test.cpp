@@ -79,6 +79,32 @@ TEST(WayChoice, one_way_stands_for_all_from_a_place) {
     EXPECT_NEAR(by[2], 0.2, 1e-4);
 }
 
+// A pane's two ways, of a point of 16 light samples and of one that counts as .3 of one.
+TEST(WayChoice, panes_make_one_way_of_less_than_a_light_sample) {
+    BouncedPath path{.next = way(0, RayType::Singular, 1.0f)};
+    path.kind = BouncedPath::Kind::Mirrored;
+    const std::vector<LobeRay> ways{way(0, RayType::Singular, 0.9f),
+                                    way(0, RayType::Singular, 0.1f)};
+    std::vector<ChosenWay> chosen;
+    path.sure_part = 16.0f;
+    choose_ways(path, ways, Vec3f(0.0f), 0.5f, chosen);
+    ASSERT_EQ(chosen.size(), 2u);
+    EXPECT_TRUE(chosen[0].is_sure && chosen[1].is_sure);
+    EXPECT_NEAR(chosen[0].sure_part, 14.4, 1e-5);
+    EXPECT_NEAR(chosen[1].sure_part, 1.6, 1e-5);
+
+    path.sure_part = 0.3f;
+    double by[2] = {};
+    for (std::uint32_t i = 0; i < kPoints; ++i) {
+        choose_ways(path, ways, Vec3f(0.0f), (static_cast<float>(i) + 0.5f) / kPoints, chosen);
+        ASSERT_EQ(chosen.size(), 1u);
+        EXPECT_FALSE(chosen[0].is_sure);
+        by[chosen[0].ray == &ways[0] ? 0 : 1] += chosen[0].weight.x / kPoints;
+    }
+    EXPECT_NEAR(by[0], 0.9, 1e-4);
+    EXPECT_NEAR(by[1], 0.1, 1e-4);
+}
+
 TEST(WayChoice, mirrors_of_mirrors_are_in_no_doubt) {
     BouncedPath path{.next = way(0, RayType::Singular, 1.0f)};
     path.kind = BouncedPath::Kind::Mirrored;
