@@ -68,9 +68,9 @@ def test_a_furnace_of_albedo_1_and_far_away(place, bounces):
     assert mean(snapshot) == pytest.approx(bounces + 2, rel=0.005)
 
 
-def within_glass(roughness, place, **options):
+def within_glass(roughness, place):
     """What an eye sees within a ball of glass in a white world."""
-    snapshot = inside(16, transmission_bounces=16, **options)
+    snapshot = inside(16, transmission_bounces=16)
     snapshot["camera"]["world_from_camera"] = s.translation(*place)[None]
     white_world(snapshot)
     inputs = {"Color": (1.0,) * 4, "Roughness": roughness, "IOR": 1.5}
