@@ -31,8 +31,16 @@ constexpr double kBlurSteps = 16.0;
 constexpr float kSlack = 2e-3f;
 constexpr double kLeastSure = 0.1;             ///< dicing rate, pixels
 constexpr float kMostRounding = 1.0f / 50.0f;  ///< pixels
+/// Of vertices for each that blur leaves, below which something is sharp.
+constexpr double kMostSpared = 2.0;
 /// Largest length over distance of what is not shown.
 constexpr double kNearby = 0.5;
+
+/// What is rough is shaded sample by sample (shade/left_to_samples.h): the more of these, the less
+/// finer micropolygons cost beside them.
+int rough_levels(int samples) {
+    return samples >= 192 ? 2 : samples >= 16 ? 1 : 0;
+}
 
 double distance_to_segment(const Vec3d& a, const Vec3d& b) {
     const Vec3d d = b - a;
@@ -59,6 +67,7 @@ EdgeRate::EdgeRate(const View& view, double longer, bool displaced)
       m_motion_factor(view.scene->options.motion_factor * view.scene->options.row_exposure()),
       m_focus_factor(view.scene->options.focus_factor),
       m_displaced(displaced),
+      m_most_rough(displaced && view.has_light ? rough_levels(view.scene->options.samples) : 0),
       m_near(view.projection.perspective ? std::max(view.projection.near_clip, 1e-9)
                                          : view.projection.near_clip),
       m_rounding(static_cast<float>(std::ldexp(
@@ -126,6 +135,15 @@ EdgeRate::Blur EdgeRate::blur(const Vec3f* start, const Vec3f* middle, const Vec
 double EdgeRate::spared(const Vec3f* p, int knots) const {
     const Blur there = blur(p, p, p, knots);
     return there.along * there.all * there.all;
+}
+
+bool EdgeRate::shows_sharp(const Vec3f* p, int knots, int frame) const {
+    const Vec3f& at = p[frame];
+    if (m_projection.perspective && !(at.z >= m_near)) return false;
+    const Vec2d place = m_projection.center + Vec2d(m_projection.scale) * Vec2d(at) /
+                                                  (m_projection.perspective ? at.z : 1.0);
+    return place.x >= 0.0 && place.y >= 0.0 && place.x <= m_width && place.y <= m_height &&
+           spared(p, knots) < kMostSpared;
 }
 
 double EdgeRate::outside(const Swept& swept) const {

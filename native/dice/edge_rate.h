@@ -75,6 +75,17 @@ class EdgeRate {
     double rate() const { return m_rate; }
     /// Distance of shaded points, pixels: the dicing rate, or coarser.
     double shading_rate() const { return m_shading_rate; }
+    /// How many levels finer what displacement makes rough may be: as many as samples tell.
+    int most_rough_levels() const { return m_most_rough; }
+    /// Pixels of a piece if it faced the eye.
+    double facing_length(const Vec3f& a, const Vec3f& b) const {
+        const double depth = m_projection.perspective ? std::max(0.5 * (a.z + b.z), m_near) : 1.0;
+        return std::max(m_projection.scale.x, m_projection.scale.y) / depth *
+               glm::length(Vec3d(b - a));
+    }
+    /// Whether a point, [knots], lies within the frame at the frame time and is not so blurred that
+    /// there are fewer vertices around it.
+    bool shows_sharp(const Vec3f* p, int knots, int frame) const;
     /// Pixels from the frame to a swept bound; 0 where they overlap.
     double outside(const RasterBounds& bounds) const;
     bool inside(const RasterBounds& bounds) const;
@@ -118,10 +129,8 @@ class EdgeRate {
     /// The square of what counts of a piece but is not seen in the raster, where it is `there`.
     double unseen2(const Vec2d& there, const Vec3f& a, const Vec3f& b) const {
         if (!m_displaced) return 0.0;
-        const double depth = m_projection.perspective ? std::max(0.5 * (a.z + b.z), m_near) : 1.0;
-        const Vec3d way =
-            std::max(m_projection.scale.x, m_projection.scale.y) / depth * Vec3d(b - a);
-        return std::max(glm::dot(way, way) - glm::dot(there, there), 0.0);
+        const double facing = facing_length(a, b);
+        return std::max(facing * facing - glm::dot(there, there), 0.0);
     }
     /// What counts of a piece's length, which is `seen` of it.
     double length(double seen, const Vec2d& there, const Vec3f& a, const Vec3f& b) const {
@@ -136,6 +145,7 @@ class EdgeRate {
     double m_rate, m_shading_rate, m_width, m_height;
     double m_motion_factor, m_focus_factor;
     bool m_displaced;
+    int m_most_rough;
     double m_near;
     float m_rounding;  ///< of a length in single precision, pixels
     VisibleInterval m_seen;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "dice/grid_attributes.h"
+#include "dice/lattice_offsets.h"
 #include "dice/motion_bounds.h"
 #include "dice/parametric_positions.h"
 #include "math/normalize_or.h"
@@ -97,9 +98,8 @@ class LatticeDicer {
     }
 
     void displace(Grid& grid) {
-        m_sites.clear();
-        for (const Vec2d& uv : m_places.uv) m_sites.push_back({m_patch, uv});
-        m_mesh->find_offsets(m_sites, true, m_offsets);
+        const LatticeOffsets::Lattice whole{m_patch, &m_places};
+        m_inside.find(*m_mesh, {&whole, 1}, m_offsets);
         find_displaced_frames();
         displace_border();
         for (int k = 0; k < grid.knots; ++k)
@@ -199,6 +199,7 @@ class LatticeDicer {
     std::vector<Vec3f> m_path;
     SurfaceSamples m_samples;
     // Of what is displaced:
+    LatticeOffsets m_inside;
     Offsets m_offsets, m_border_offsets;
     std::vector<SurfacePlace> m_border;  ///< [vertices] who says where one goes, on the border
     std::vector<int> m_border_vertices;

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "dice/parametric_positions.h"
-
 namespace granita {
 namespace {
 
@@ -15,20 +13,16 @@ constexpr std::uint32_t kTriangles = kDigits * kDigits * kDigits;
 /// `levels` [4]: of the lattice's sides, -1 where one is a point.
 LatticeStencil make(PatchKind kind, const Vec2d* corner_uv, const int* levels) {
     LatticeStencil stencil;
-    stencil.n_u = 1 << std::max(levels[0], levels[2]);
-    stencil.n_v = 1 << std::max(levels[1], levels[3]);
+    const int n_u = 1 << std::max(levels[0], levels[2]);
+    const int n_v = 1 << std::max(levels[1], levels[3]);
     std::vector<int> ends[4];
     for (int side = 0; side < 4; ++side) {
-        const int steps = side % 2 == 0 ? stencil.n_u : stencil.n_v;
+        const int steps = side % 2 == 0 ? n_u : n_v;
         for (int leaf = 0; levels[side] >= 0 && leaf <= 1 << levels[side]; ++leaf)
             ends[side].push_back(leaf * steps >> levels[side]);
     }
-    ParametricPositions positions;
-    positions.find(corner_uv, stencil.n_u, stencil.n_v, ends);
-    for (const Vec2d& uv : positions.uv) stencil.weights.emplace_back(kind, uv);
-    stencil.uv = std::move(positions.uv);
-    stencil.step_u = std::move(positions.step_u);
-    stencil.step_v = std::move(positions.step_v);
+    stencil.find(corner_uv, n_u, n_v, ends);
+    for (const Vec2d& uv : stencil.uv) stencil.weights.emplace_back(kind, uv);
     return stencil;
 }
 

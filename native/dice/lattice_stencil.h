@@ -8,21 +8,18 @@
 #include <cstdint>
 #include <vector>
 
+#include "dice/parametric_positions.h"
 #include "geometry/corner_values.h"
 
 namespace granita {
 
-struct LatticeStencil {
+struct LatticeStencil : ParametricPositions {
     /// Levels of a side's tree that there are tables for.
     static constexpr int kMostLevels = 2;
     static constexpr int kMostVertices = ((1 << kMostLevels) + 1) * ((1 << kMostLevels) + 1);
 
-    int n_u = 1, n_v = 1;
     std::vector<CornerWeights> weights;  ///< [vertices]
-    std::vector<Vec2d> uv;               ///< [vertices]
-    std::vector<Vec2d> step_u, step_v;   ///< as ParametricPositions has them
 
-    std::size_t vertex_count() const { return uv.size(); }
     int micropolygon_count() const { return n_u * n_v; }
 
     /// `levels` [4]: of the side that leaves each corner, 0 to kMostLevels; [3] for a triangle.

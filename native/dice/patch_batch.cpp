@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "dice/grid_attributes.h"
+#include "dice/lattice_offsets.h"
 #include "dice/lattice_stencil.h"
 #include "dice/motion_bounds.h"
 #include "dice/patch.h"
@@ -220,14 +221,13 @@ void PatchBatch::find_offsets(Parts& parts) const {
 /// With what changes of them by (u, v) of each lattice's own patch: between the corners of what is
 /// one micropolygon.
 Offsets PatchBatch::offsets_with_slopes(const Parts& parts) const {
-    std::vector<SurfacePlace> places;
+    std::vector<LatticeOffsets::Lattice> wanted;
     for (const Lattice& lattice : parts.lattices) {
         const LatticeStencil& stencil = LatticeStencil::of(lattice.stencil);
-        if (stencil.micropolygon_count() == 1) continue;
-        for (const Vec2d& uv : stencil.uv) places.push_back({&lattice.patch, uv});
+        if (stencil.micropolygon_count() > 1) wanted.push_back({&lattice.patch, &stencil});
     }
     Offsets found;
-    m_mesh->find_offsets(places, true, found);
+    LatticeOffsets().find(*m_mesh, wanted, found);
     Offsets out;
     out.offset = parts.offsets;
     std::size_t next = 0;

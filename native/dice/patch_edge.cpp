@@ -2,8 +2,10 @@
 #include "dice/patch_edge.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "dice/edge_rate.h"
+#include "dice/lattice_stencil.h"
 #include "dice/opened_mesh.h"
 
 namespace granita {
@@ -13,6 +15,14 @@ namespace {
 double on_edge(const PatchEdge& side, double place) {
     return (side.index + place) / static_cast<double>(std::uint32_t{1} << side.depth);
 }
+
+/// Places of an edge at which roughness is looked for, and of its length the largest step from one.
+constexpr int kProbes = 6;
+constexpr double kProbeStep = 1.0 / 32.0;
+/// Sag over length of a micropolygon's side that is rough.
+constexpr double kRoughBend = 0.02;
+/// Levels of a base edge from which it may be diced more finely for that.
+constexpr int kLeastRough = LatticeStencil::kMostLevels + 1;
 
 }  // namespace
 
@@ -44,18 +54,64 @@ void EdgeWalker::point(const PatchEdge& side, double at, EdgePoint& out) const {
 }
 
 void EdgeWalker::classify(PatchEdge& side) const {
+    int found = levels(side);
+    // Faces of a few micropolygons have their vertices from tables (dice/small_faces.h).
+    if (found >= 0 && m_mesh.rate().most_rough_levels() > 0 &&
+        (side.line || side.depth + found >= kLeastRough)) {
+        if (side.rough < 0) side.rough = static_cast<std::int8_t>(rough_levels(side));
+        found = std::min(found + side.rough, static_cast<int>(side.budget));
+    }
+    side.levels = static_cast<std::int8_t>(found);
+}
+
+int EdgeWalker::levels(const PatchEdge& side) const {
     EdgePoint start, middle, end;
     edge_point(side, on_edge(side, 0.0), start);
     edge_point(side, on_edge(side, 1.0), end);
     const EdgeRate& rate = m_mesh.rate();
     if (!side.line && m_mesh.straight_edges() &&
-        rate.stays_whole(start.p, end.p, m_mesh.knot_count())) {
-        side.levels = 0;
-        return;
-    }
+        rate.stays_whole(start.p, end.p, m_mesh.knot_count()))
+        return 0;
     edge_point(side, on_edge(side, 0.5), middle);
-    side.levels = static_cast<std::int8_t>(
-        rate.levels(start.p, middle.p, end.p, m_mesh.knot_count(), side.budget, side.most_outside));
+    return rate.levels(start.p, middle.p, end.p, m_mesh.knot_count(), side.budget,
+                       side.most_outside);
+}
+
+/// By how far displacement bends single micropolygons along the whole edge, where the frame shows
+/// it sharp.
+int EdgeWalker::rough_levels(const PatchEdge& side) const {
+    const EdgeRate& rate = m_mesh.rate();
+    const int frame = m_mesh.knots().frame_knot;
+    std::vector<SurfacePlace> places;
+    std::vector<double> lengths;
+    EdgePoint before, after;
+    for (int i = 0; i < kProbes; ++i) {
+        const double t = (i + 0.5) / kProbes;
+        edge_point(side, t - kProbeStep, before);
+        edge_point(side, t + kProbeStep, after);
+        const Vec3f &a = before.p[frame], &b = after.p[frame];
+        const double pixels = rate.facing_length(a, b);
+        if (!(pixels > 0.0) || !rate.shows_sharp(before.p, m_mesh.knot_count(), frame)) continue;
+        const double half = kProbeStep * std::min(1.0, rate.rate() / pixels);
+        lengths.push_back(glm::distance(a, b) * half / kProbeStep);
+        for (const double at : {t - half, t, t + half}) {
+            places.push_back(edge_place(side, at));
+            if (!places.back().patch) places.back().patch = &m_patch;
+        }
+    }
+    Offsets offsets;
+    m_mesh.find_offsets(places, false, offsets);
+    const Mat3f turn(m_mesh.knots().frame_camera_from_object);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+        const Vec3f* const at = &offsets.offset[3 * i];
+        const double sag = glm::length(turn * (at[1] - 0.5f * (at[0] + at[2])));
+        sum += sag * sag / (lengths[i] * lengths[i]);
+    }
+    double bend = lengths.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(lengths.size()));
+    int levels = 0;
+    for (; levels < rate.most_rough_levels() && bend > kRoughBend; ++levels) bend *= 0.5;
+    return levels;
 }
 
 PatchEdge EdgeWalker::half(const PatchEdge& side, int half) const {

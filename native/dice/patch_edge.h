@@ -46,6 +46,7 @@ struct PatchEdge {
     std::uint8_t depth = 0;
     std::uint8_t budget = 0;  ///< levels that may still follow
     std::int8_t levels = 0;   ///< of the tree below: uniform, or EdgeRate::kAdaptive
+    std::int8_t rough = -1;   ///< of the edge, of these levels by roughness; -1: not known
     bool reversed = false;    ///< the patch's direction is against the edge's
     bool collapsed = false;   ///< no edge at all: one point, its neighbours know which
     /// Counts as no farther outside the frame than this, pixels: lines that stand for a surface.
@@ -74,6 +75,8 @@ class EdgeWalker {
                    int budget, float most_outside = std::numeric_limits<float>::infinity()) const;
 
   private:
+    int levels(const PatchEdge& side) const;
+    int rough_levels(const PatchEdge& side) const;
     void edge_point(const PatchEdge& side, double t, EdgePoint& out) const;
     SurfacePlace edge_place(const PatchEdge& side, double t) const;
 

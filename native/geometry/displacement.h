@@ -16,6 +16,10 @@
 
 namespace granita {
 
+/// Of the coordinates: offsets at places that are closer differ by the rounding of single
+/// precision.
+inline constexpr double kLeastDifference = 2e-5;
+
 /// Offsets at n places, object space, at the frame time; they hold throughout the shutter, as in
 /// Cycles.
 struct Offsets {

@@ -15,8 +15,6 @@ namespace {
 
 /// Of a patch: a place and those beside it stay within it.
 constexpr double kLargestStep = 0.5;
-/// Of the coordinates: smaller differences drown in the rounding of single precision.
-constexpr double kLeastDifference = 2e-5;
 
 /// Places as points that a program runs over.
 class Batch {

@@ -2,6 +2,7 @@
 #include "shade/left_to_samples.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "dice/visible_area.h"
 #include "shade/refined_points.h"
@@ -14,8 +15,31 @@ namespace {
 /// samples do not (docs/decisions/bounces.md has what was measured).
 constexpr double kOfThickets = 2.0;
 constexpr double kOfOthers = 0.5;
+/// Of what is rough nearly all samples are shaded by themselves anyway, whatever its points find.
+constexpr double kOfRough = 10.0;
 /// Part of the points that is seen above which nothing much hides a grid.
 constexpr double kNearlyAll = 0.9;
+/// Of unit normals, how far those of a micropolygon's two diagonals differ, in the mean.  Of what a
+/// noise displaces (.2 to .5) corners settle a tenth of the micropolygons, of smooth waves (.02) all.
+constexpr double kRough = 0.15;
+
+/// As thresholds of displayed color fall with samples.
+double least_rough(int samples) {
+    return kRough * std::min(1.0, std::sqrt(64.0 / samples));
+}
+
+double roughness(const Grid& grid) {
+    if (grid.shades_faces() || grid.shades_lattice()) return 0.0;
+    double sum = 0.0;
+    const auto normal = [&](int vertex) {
+        return grid.normal[grid.point_at(static_cast<std::size_t>(vertex))];
+    };
+    for (int m = 0; m < grid.micropolygon_count(); ++m) {
+        const Grid::Corners c = grid.corners(m);
+        sum += glm::length(normal(c.v0) + normal(c.v2) - normal(c.v1) - normal(c.v3));
+    }
+    return sum / grid.micropolygon_count();
+}
 
 /// Ways that all samples of a lattice would send for each that its points would.
 double ways_of_samples(const Grid& grid, const ShadingPoints& points, double seen,
@@ -26,7 +50,8 @@ double ways_of_samples(const Grid& grid, const ShadingPoints& points, double see
     const float sampled = 1.0f / static_cast<float>(scene.options.samples);  // of a pixel, by one
     const int each = light.sample_count(grid.point_share * refined_light_share(sampled));
     double ways = 0.0;
-    for (const float share : points.shares) ways += light.sample_count(points.share * share);
+    for (std::size_t i = 0; i < points.count; ++i)
+        ways += light.sample_count(points.share * (points.shares.empty() ? 1.0f : points.shares[i]));
     return seen * area * scene.options.samples * each / ways;
 }
 
@@ -34,7 +59,9 @@ double ways_of_samples(const Grid& grid, const ShadingPoints& points, double see
 
 bool pays_by_samples(const Grid& grid, const ShadingPoints& points, const Scene& scene,
                      const DirectLight& light) {
-    if (points.seen.empty()) return false;
+    if (points.seen.empty())
+        return roughness(grid) > least_rough(scene.options.samples) &&
+               ways_of_samples(grid, points, 1.0, scene, light) < kOfRough;
     const double seen = static_cast<double>(std::ranges::count(points.seen, 1)) /
                         static_cast<double>(points.seen.size());
     // Points of small faces are as many as these.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Of grass, leaves and small instances that hide each other a grid has more points than samples
 // that see something of it.  Shading these samples by themselves then costs less, and is right:
-// what would be interpolated from corners out of sight is gone.
+// what would be interpolated from corners out of sight is gone.  The same holds where corners say
+// little of what lies between them: of what is displaced so finely that normals turn from one
+// micropolygon to the next.
 #pragma once
 
 #include "dice/grid.h"
@@ -13,7 +15,7 @@ namespace granita {
 
 /// Whether no point of a grid of a mesh is to be lit: each sample that sees it sends ways itself.
 /// The same whatever bucket asks.
-/// @param points of the grid, looked at (look_at()); false where all of them are seen.
+/// @param points of the grid, looked at (look_at()) where light bounces.
 bool pays_by_samples(const Grid& grid, const ShadingPoints& points, const Scene& scene,
                      const DirectLight& light);
 
