@@ -89,6 +89,9 @@ bool KeptVisibility::serves(const Scene& now, const SceneChanges& changes,
         return false;
     if (!displaces_alike(now, changes) || m_requests != shading.requests()) return false;
     if (shading.has_light() && !m_view->has_light) return false;
+    // What is displaced is diced as finely as light shows it.
+    const bool is_darker = m_view->has_light && !shading.has_light();
+    if (is_darker && shading.displacement() && shading.displacement()->any()) return false;
     if (shading.shares_light() && !m_shares_light) return false;
     const bool has_lists = std::ranges::any_of(m_traits, &Traits::opacity_varies);
     if (has_lists && (changes.parts & part::kPasses) != 0) return false;

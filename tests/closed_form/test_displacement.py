@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfaces that materials move: a cube becomes a ball, edges of a rectangle become sines, a square tilts."""
 
+import copy
+
 import numpy as np
 import pytest
 import snapshots as s
+from session_parts import Kept
 
 SIZE = 64
 MIDDLE = SIZE / 2
@@ -197,9 +200,9 @@ def tilted(angle, size, depth):
     return matrix[None]
 
 
-def waves(modelled, size=48, height=4.0, wave=2 * np.pi / 16.0, tilt=0.0, **options):
+def sheet_of_waves(modelled, size=48, height=4.0, wave=2 * np.pi / 16.0, tilt=0.0, samples=16, **options):
     """A sheet of waves that a low sun makes shade each other, displaced or modelled five times as finely as pixels."""
-    snapshot = s.orthographic((size, size), samples=16, executor="SIMD", **options)
+    snapshot = s.orthographic((size, size), samples=samples, executor="SIMD", **options)
     sun(snapshot, (1.0, 0.4, -0.6))
     depth = round(1.5 * size / np.cos(tilt)) if tilt else size
     transforms = tilted(tilt, size, depth) if tilt else None
@@ -213,7 +216,7 @@ def waves(modelled, size=48, height=4.0, wave=2 * np.pi / 16.0, tilt=0.0, **opti
         smooth = np.ones(len(faces), np.uint8)
         material = matte(snapshot, [], None)
         s.mesh(snapshot, points, faces.tolist(), material, transforms, smooth=smooth)
-        return s.render(snapshot)["combined"][..., 0]
+        return snapshot
     nodes = [
         {"type": "ShaderNodeTexCoord", "inputs": {}},
         {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": link(0, "Object")}},
@@ -230,24 +233,62 @@ def waves(modelled, size=48, height=4.0, wave=2 * np.pi / 16.0, tilt=0.0, **opti
     nodes.append({"type": "ShaderNodeDisplacement", "inputs": inputs})
     material = matte(snapshot, nodes, (len(nodes) - 1, "Displacement"))
     s.quad(snapshot, s.rectangle(0, 0, size, depth, 40.0)[::-1], material, transforms=transforms)
-    return s.render(snapshot)["combined"][..., 0]
+    return snapshot
+
+
+def waves(modelled, **options):
+    return s.render(sheet_of_waves(modelled, **options))["combined"][..., 0]
 
 
 def test_hills_on_a_plain_that_is_seen_edge_on_are_those_modelled():
     # Waves of 16 pixels are three high on the plain, where one micropolygon of it as it lies would be five pixels deep.
-    # Chords of a pixel cut crests that are seen from the side short: by a fourth as much where they are half as long.
-    modelled = waves(True, height=3.0, tilt=np.radians(78))
-    for rate, darker, noise in ((1.0, 0.035, 0.022), (0.5, 0.008, 0.01)):
-        displaced = waves(False, height=3.0, tilt=np.radians(78), dicing_rate=rate)
+    # Chords of a pixel cut crests that are seen from the side short; half as long, which samples pay for, a third as much.
+    modelled = waves(True, height=3.0, tilt=np.radians(78), samples=64)
+    for samples, darker, noise in ((4, 0.045, 0.06), (16, 0.014, 0.021), (64, 0.012, 0.009)):
+        displaced = waves(False, height=3.0, tilt=np.radians(78), samples=samples)
         assert displaced.mean() == pytest.approx(modelled.mean(), rel=darker)
         assert np.sqrt(np.mean((displaced - modelled) ** 2)) < noise
+
+
+def test_what_is_rough_is_diced_as_finely_as_samples_tell():
+    def diced(samples, **of):
+        return s.render(sheet_of_waves(False, samples=samples, **of))["statistics"]["points_diced"]
+
+    rough = {"height": 1.0, "wave": 2 * np.pi / 5.0}
+    smooth = {"height": 0.5, "wave": 2 * np.pi / 40.0}
+    few = diced(4, **rough)
+    assert diced(64, **rough) == pytest.approx(4 * few, rel=0.03)
+    assert diced(256, **rough) > 10 * few
+    assert diced(4, **smooth) == diced(256, **smooth) == few
+
+
+def test_what_is_diced_for_light_is_diced_anew_without():
+    glow = {"type": "ShaderNodeEmission", "inputs": {"Color": (1, 1, 1, 1), "Strength": 1.0}}
+    lit = sheet_of_waves(False, height=1.0, wave=2 * np.pi / 5.0)
+    shining = lit["materials"][0]
+    shining |= {"nodes": [*shining["nodes"], glow], "surface": (len(shining["nodes"]), "Emission")}
+    s.quad(lit, s.rectangle(0, 0, 8, 8, 30.0)[::-1], matte(lit, [], None))
+    kept = Kept()
+    kept.follow(lit)
+    unlit = copy.deepcopy(lit)
+    unlit["materials"][1] |= {"nodes": [glow], "surface": (0, "Emission")}
+    before = kept.statistics["points_diced"]
+    kept.follow(unlit)
+    assert 0 < kept.statistics["points_diced"] < 0.5 * before
+
+
+def test_corners_of_what_is_rough_are_not_lit():
+    rough = s.render(sheet_of_waves(False, height=1.0, wave=2 * np.pi / 5.0, samples=64))["statistics"]
+    assert rough["points_shaded"] == rough["points_refined"] == 48 * 48 * 64
+    smooth = s.render(sheet_of_waves(False, height=0.5, wave=2 * np.pi / 40.0, samples=64))["statistics"]
+    assert smooth["points_refined"] == 0
 
 
 def test_shadows_are_those_of_the_same_waves_modelled():
     displaced, modelled = waves(False), waves(True)
     assert (modelled < 0.02).mean() > 0.1  # there are shadows
     # Edges of shadows are a part of a pixel away.
-    assert np.sqrt(np.mean((displaced - modelled) ** 2)) < 0.025
+    assert np.sqrt(np.mean((displaced - modelled) ** 2)) < 0.011
     # Where nothing changes from pixel to pixel there is no speckle, dark or bright.
     around = np.stack([np.roll(modelled, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)])
     even = np.ptp(around, 0) < 0.1
@@ -261,6 +302,10 @@ def test_pictures_do_not_depend_on_buckets_threads_or_crop():
     for change in ({"bucket_size": 16, "threads": 1}, {"bucket_size": 48, "threads": 2}):
         other, _ = ball(towards=(1, 0.5, -0.6), samples=16, **change)
         assert (s.render(other)["combined"] == whole).all(), change
+    rough = {"height": 1.0, "wave": 2 * np.pi / 5.0}
+    whole = waves(False, **rough)
+    for change in ({"bucket_size": 16, "threads": 1}, {"bucket_size": 32, "threads": 2}):
+        assert (waves(False, **rough, **change) == whole).all(), change
 
 
 def test_points_of_a_material_that_displaces_are_named():

@@ -250,5 +250,29 @@ TEST(DisplacedFaces, have_no_cracks_to_what_is_larger_at_any_rate) {
             }
 }
 
+TEST(DisplacedFaces, what_is_rough_is_diced_more_finely_and_stays_closed) {
+    for (const bool subdivided : {false, true}) {
+        std::vector<int> counts;
+        for (const int samples : {4, 64, 256}) {
+            GeometryData data = cube(20.0f, 60.0f);
+            data.is_subdivision = subdivided;
+            DiceScene s(data);
+            s.scene.options.samples = samples;
+            // One half of it is rough, so that edges differ and faces lie between them.
+            const Raised raised(s, [](const Vec3d& p) {
+                return static_cast<float>(p.x > 0.0 ? std::sin(3.0 * p.x) * std::sin(2.5 * p.y)
+                                                    : 0.1 * std::sin(0.1 * p.y));
+            });
+            const auto grids = s.grids();
+            EXPECT_TRUE(open_edges(grids).empty()) << subdivided << " " << samples;
+            counts.push_back(micropolygons(grids));
+        }
+        // More than half of it, as grids take what their roughest edge needs.
+        EXPECT_GT(counts[1], 2 * counts[0]) << subdivided;
+        EXPECT_GT(counts[2], 2 * counts[1]) << subdivided;
+        EXPECT_LT(counts[2], 16 * counts[0]) << subdivided;
+    }
+}
+
 }  // namespace
 }  // namespace granita::testing
