@@ -380,7 +380,7 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
         place_lobe_samples(lit, closure.lobes.size(), grid.placed);
         m_impl->light_points(grid, lit, closure.lobes.size(), sets.size() == 1 ? sights : nullptr);
     }
-    deliver_met(m_impl->set, grid);
+    deliver_met(grid);
     m_impl->world.deliver(grid);
     m_impl->count(grid);
     return radiance;

@@ -76,6 +76,10 @@ void LampSet::set_lamps(std::vector<Lamp> made, const Progress& progress) {
     always = static_cast<std::size_t>(in_few - lamps.begin());
     asked = many_lamps ? kAsked : kAskedOfFaces;
     if (everywhere < lamps.size()) tree = make_tree(lamps, everywhere, lamps.size(), progress);
+    for (std::size_t l = everywhere; l < lamps.size(); ++l) {
+        const TriangleLight::Corners* const corners = lamps[l].corners();
+        still_faces.push_back(corners ? std::optional(*corners) : std::nullopt);
+    }
     if (everywhere - always > kFewOfMet) few = make_tree(lamps, always, everywhere, progress);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/progress.h"
@@ -87,7 +88,12 @@ struct LampSet {
                 met(index, lamp, sample);
         };
         for (std::size_t l = 0; l < everywhere; ++l) ask(l);
-        if (tree) tree->meet(place.p, direction, [&](std::uint32_t l) { ask(everywhere + l); });
+        if (!tree) return;
+        tree->meet(place.p, direction, [&](std::uint32_t l) {
+            const std::optional<TriangleLight::Corners>& face = still_faces[l];
+            if (!face || TriangleLight::crossing(*face, place.p, direction) > 0.0f)
+                ask(everywhere + l);
+        });
     }
 
     ShutterWarp shutter;
@@ -99,6 +105,9 @@ struct LampSet {
     std::size_t everywhere = 0;  ///< and those that what rays meet chooses among
     /// Nullptr where these are too few for a choice to pay.
     std::unique_ptr<LightTree> few, tree;
+    /// [lamps of `tree`] the triangles among them that stand still: of dozens that a ray comes by
+    /// it meets a few, and those are all that it reads.
+    std::vector<std::optional<TriangleLight::Corners>> still_faces;
     float asked = 0.0f;              ///< of `tree`, for each light sample
     std::unique_ptr<RayScene> rays;  ///< nullptr where nothing can cast a shadow
     bool parallel_view = false;      ///< beams that the camera sees do not widen

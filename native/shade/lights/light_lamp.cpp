@@ -63,13 +63,9 @@ Lamp::Lamp(MovingTriangle triangle, const Instance& instance,
 
 LightBound Lamp::bound_of(const LightSource& source) const {
     LightBound here;
-    Vec3f center(0.0f);
-    float radius = 0.0f;
-    source.bound(center, radius);
     LightEmission emission = source.emission();
     emission.intensity *= m_pattern.largest;
-    here.box.add(center);
-    here.box.grow(radius);
+    here.box = source.box();
     here.axis = emission.axis;
     here.cone = emission.cone;
     here.fall = emission.fall;

@@ -33,6 +33,12 @@ class Lamp {
     bool casts_shadow() const { return m_casts_shadow; }
     /// Whether rays meet it, which are to end before it.
     bool is_surface() const { return m_is_surface; }
+    /// Of a triangle that stands still; nullptr: it is none.
+    const TriangleLight::Corners* corners() const {
+        return m_is_surface && !m_moving
+                   ? &static_cast<const TriangleLight&>(*m_sources[0]).corners()
+                   : nullptr;
+    }
     /// Of a surface: what rays meet of it.
     const RayTarget& target() const { return m_target; }
     /// Whether it lights an instance of that mask (Instance::receives).

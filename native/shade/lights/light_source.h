@@ -13,6 +13,7 @@
 #include <memory>
 #include <span>
 
+#include "math/bounds.h"
 #include "math/sampling.h"
 #include "math/vec.h"
 #include "scene/light.h"
@@ -57,6 +58,16 @@ class LightSource {
     virtual bool separates(const Vec3f& /*p*/, const Vec3f& /*start*/) const { return false; }
     /// A sphere around the light, shading space; false for lights without a place.
     virtual bool bound(Vec3f& center, float& radius) const = 0;
+    /// Of lights that have a place: what rays have to pass to meet it.
+    virtual Bounds3f box() const {
+        Bounds3f box;
+        Vec3f center(0.0f);
+        float radius = 0.0f;
+        bound(center, radius);
+        box.add(center);
+        box.grow(radius);
+        return box;
+    }
     /// Of lights that have a place.
     virtual LightEmission emission() const = 0;
 };

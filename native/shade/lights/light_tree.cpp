@@ -35,8 +35,8 @@ std::uint32_t LightTree::add_node(const std::vector<LightBound>& lamps, std::uin
     const auto index = static_cast<std::uint32_t>(m_nodes.size());
     m_nodes.emplace_back();
     m_slot_of_node.push_back(parent);
-    std::fill_n(m_nodes[index].child, kWidth, kNothing);
     const std::vector<LightGroup> groups = split_lights(lamps, first, last, kWidth);
+    m_nodes[index].count = static_cast<std::uint8_t>(groups.size());
     for (std::uint32_t i = 0; i < groups.size(); ++i) {
         const LightGroup& group = groups[i];
         const Slot slot = index * kWidth + i;
@@ -86,25 +86,6 @@ float LightTree::importances(std::uint32_t index, const LightReceiverView& recei
         sum += of_child[i];
     }
     return sum;
-}
-
-std::uint32_t LightTree::passed(const LightNode& node, const Vec3f& p, const Vec3f& inverse) const {
-    // A few roundings of slab distances.
-    constexpr float kWider = 1.0f + 8.0f * std::numeric_limits<float>::epsilon();
-    std::uint32_t bits = 0;
-    for (std::uint32_t i = 0; i < kWidth; ++i) {
-        if (node.child[i] == kNothing) break;
-        float enter = 0.0f, leave = std::numeric_limits<float>::infinity();
-        for (int k = 0; k < 3; ++k) {
-            const float a = (node.lo[k][i] - p[k]) * inverse[k];
-            const float b = (node.hi[k][i] - p[k]) * inverse[k];
-            // Along a face of the box 0 * inf is no number: it is inside.
-            enter = std::max(enter, std::isnan(a) || std::isnan(b) ? enter : std::min(a, b));
-            leave = std::min(leave, std::isnan(a) || std::isnan(b) ? leave : std::max(a, b));
-        }
-        if (enter <= leave * kWider) bits |= 1u << i;
-    }
-    return bits;
 }
 
 }  // namespace granita

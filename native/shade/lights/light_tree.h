@@ -3,6 +3,7 @@
 // 2018), eight children a node: what each can give at most to a point is computed at once.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -45,22 +46,19 @@ class LightTree {
     }
 
   private:
-    static constexpr std::uint32_t kLamp = LightNode::kLamp, kNothing = LightNode::kNothing;
+    static constexpr std::uint32_t kLamp = LightNode::kLamp;
 
     std::uint32_t child(Slot slot) const { return m_nodes[slot / kWidth].child[slot % kWidth]; }
     std::uint32_t add_node(const std::vector<LightBound>& lamps, std::uint32_t* first,
                            std::uint32_t* last, Slot parent, const Progress* progress);
     void set_child(std::uint32_t node, std::uint32_t i, const LightBound& bound);
-    /// Bits of children that a ray passes.
-    std::uint32_t passed(const LightNode& node, const Vec3f& p, const Vec3f& inverse) const;
 
     template <class Met>
     void meet_below(std::uint32_t node, const Vec3f& p, const Vec3f& inverse,
                     const Met& met) const {
-        const std::uint32_t bits = passed(m_nodes[node], p, inverse);
-        for (std::uint32_t i = 0; i < kWidth; ++i) {
-            if ((bits >> i & 1u) == 0) continue;
-            const std::uint32_t below = m_nodes[node].child[i];
+        for (std::uint32_t bits = light_boxes_passed(m_nodes[node], p, inverse); bits;
+             bits &= bits - 1) {
+            const std::uint32_t below = m_nodes[node].child[std::countr_zero(bits)];
             if ((below & kLamp) != 0)
                 met(below & ~kLamp);
             else

@@ -83,19 +83,24 @@ void TriangleLight::sample_all(const Vec3f& p, std::span<const Vec2f> u,
     }
 }
 
-bool TriangleLight::intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const {
+float TriangleLight::crossing(const Corners& corners, const Vec3f& p, const Vec3f& direction) {
     // Moeller and Trumbore 1997.
-    const Vec3f u = m_corners[1] - m_corners[0], v = m_corners[2] - m_corners[0];
+    const Vec3f u = corners[1] - corners[0], v = corners[2] - corners[0];
     const Vec3f across = glm::cross(direction, v);
     const float volume = glm::dot(u, across);
-    if (volume == 0.0f) return false;
-    const Vec3f from = p - m_corners[0];
+    if (volume == 0.0f) return 0.0f;
+    const Vec3f from = p - corners[0];
     const float a = glm::dot(from, across) / volume;
     const Vec3f other = glm::cross(from, u);
     const float b = glm::dot(direction, other) / volume;
-    if (!(a >= 0.0f && b >= 0.0f && a + b <= 1.0f)) return false;
+    if (!(a >= 0.0f && b >= 0.0f && a + b <= 1.0f)) return 0.0f;
     const float distance = glm::dot(v, other) / volume;
-    if (!(distance > 0.0f) || height(p) == 0.0f) return false;
+    return distance > 0.0f ? distance : 0.0f;
+}
+
+bool TriangleLight::intersect(const Vec3f& p, const Vec3f& direction, LightSample& sample) const {
+    const float distance = crossing(m_corners, p, direction);
+    if (distance == 0.0f || height(p) == 0.0f) return false;
     float pdf;
     if (is_far(p)) {
         const float cosine = std::abs(glm::dot(direction, m_normal));
@@ -115,6 +120,14 @@ bool TriangleLight::bound(Vec3f& center, float& radius) const {
     radius = 0.0f;
     for (const Vec3f& corner : m_corners) radius = std::max(radius, glm::distance(center, corner));
     return true;
+}
+
+/// Of a thousand small faces in a row a ray passes a few boxes and a hundred spheres.
+Bounds3f TriangleLight::box() const {
+    Bounds3f box;
+    for (const Vec3f& corner : m_corners) box.add(corner);
+    box.grow_relative(kRounding);
+    return box;
 }
 
 LightEmission TriangleLight::emission() const {

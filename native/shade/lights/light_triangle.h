@@ -28,8 +28,12 @@ class TriangleLight : public LightSource {
         return height(p) * height(start) <= 0.0f;
     }
     bool bound(Vec3f& center, float& radius) const override;
+    Bounds3f box() const override;
     LightEmission emission() const override;
     float area() const { return m_area; }  ///< square metres
+    const Corners& corners() const { return m_corners; }
+    /// Distance at which a ray from `p` meets it, in lengths of the direction; 0: it does not.
+    static float crossing(const Corners& corners, const Vec3f& p, const Vec3f& direction);
 
   private:
     /// Whether it is so far that its area is as good to sample as its solid angle.

@@ -27,6 +27,7 @@ struct MetLamp {
     RayType ray;       ///< that the lobe sends there
     float sign;        ///< as LitGrid::sign
     float whole;  ///< how many times as much a sample of all lobes, taken by chance, would have
+    Vec3f through{0.0f};  ///< of the light, what passes what is between
 };
 
 /// What a grid's points share while they are lit.

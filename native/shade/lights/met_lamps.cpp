@@ -6,25 +6,29 @@
 namespace granita {
 namespace {
 
-void add(const LampSet& set, LitGrid& grid, const MetLamp& met) {
+void add(LitGrid& grid, const MetLamp& met) {
     const BsdfValue arriving = met.weight * met.sample.radiance;
     if (total(arriving) == Vec3f(0.0f)) return;
-    const Vec3f seen = set.passed(grid, *met.point, met.place, *met.lamp, met.sample, met.ray);
-    grid.add_met(met.point->index, total(arriving) * seen, met.sign, met.whole);
-    grid.add_lamp(met.point->index, arriving, seen);
+    grid.add_met(met.point->index, total(arriving) * met.through, met.sign, met.whole);
+    grid.add_lamp(met.point->index, arriving, met.through);
 }
 
 }  // namespace
 
-void add_met(const LampSet& set, LitGrid& grid, const MetLamp& met) {
-    if (met.lamp->pattern())
+/// Of a mesh that shines a ray meets faces behind each other: nodes are asked of those that it
+/// reaches.  Passes tell of the others too.
+void add_met(const LampSet& set, LitGrid& grid, MetLamp met) {
+    const bool waits = met.lamp->pattern() != nullptr;
+    if (!waits && total(met.weight * met.sample.radiance) == Vec3f(0.0f)) return;
+    met.through = set.passed(grid, *met.point, met.place, *met.lamp, met.sample, met.ray);
+    if (!waits)
+        add(grid, met);
+    else if (grid.parts || met.through != Vec3f(0.0f))
         grid.met_lamps.push_back(met);
-    else
-        add(set, grid, met);
 }
 
 /// Light arrives at each point in the order of its samples, whatever else was met.
-void deliver_met(const LampSet& set, LitGrid& grid) {
+void deliver_met(LitGrid& grid) {
     std::vector<MetLamp>& later = grid.met_lamps;
     const auto pattern = [&](std::uint32_t i) { return later[i].lamp->pattern(); };
     std::vector<std::uint32_t> order;
@@ -37,7 +41,7 @@ void deliver_met(const LampSet& set, LitGrid& grid) {
         }
         pattern(run[0])->color(samples);
     });
-    for (const MetLamp& met : later) add(set, grid, met);
+    for (const MetLamp& met : later) add(grid, met);
     later.clear();
 }
 

@@ -8,7 +8,7 @@ namespace granita {
 
 /// Adds its light to the grid; of lamps with nodes it waits in LitGrid::met_lamps, so that these
 /// are asked about many at once.
-void add_met(const LampSet& set, LitGrid& grid, const MetLamp& met);
-void deliver_met(const LampSet& set, LitGrid& grid);
+void add_met(const LampSet& set, LitGrid& grid, MetLamp met);
+void deliver_met(LitGrid& grid);
 
 }  // namespace granita

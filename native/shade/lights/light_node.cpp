@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the children of a node of the light tree can give to a point, side by side.  Products and
-// sums are rounded alone, whatever the width: the bits are those of every processor.
+// The children of a node of the light tree, side by side.  Products and sums are rounded alone,
+// whatever the width: the bits are those of every processor.
 #include "shade/lights/light_node.h"
 
+#include <limits>
+
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "shade/lights/light_importance.cpp"
+#define HWY_TARGET_INCLUDE "shade/lights/light_node.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -102,6 +104,28 @@ void importances(const LightNode& node, const LightReceiverView& receiver, float
     }
 }
 
+/// Bits of those whose box a line's half passes: slabs.
+std::uint32_t passed(const LightNode& node, const float* p, const float* inverse) {
+    // A few roundings of slab distances.
+    constexpr float kWider = 1.0f + 8.0f * std::numeric_limits<float>::epsilon();
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < LightNode::kWidth; i += hn::Lanes(kTag)) {
+        V enter = hn::Zero(kTag), leave = hn::Inf(kTag);
+        for (int k = 0; k < 3; ++k) {
+            const V a = (hn::Load(kTag, node.lo[k] + i) - set(p[k])) * set(inverse[k]);
+            const V b = (hn::Load(kTag, node.hi[k] + i) - set(p[k])) * set(inverse[k]);
+            // Along a face of the box 0 * inf is no number: it is inside.
+            const auto tells = hn::And(hn::Eq(a, a), hn::Eq(b, b));
+            enter = hn::IfThenElse(tells, hn::Max(enter, hn::Min(a, b)), enter);
+            leave = hn::IfThenElse(tells, hn::Min(leave, hn::Max(a, b)), leave);
+        }
+        std::uint8_t of_lanes[8] = {};
+        hn::StoreMaskBits(kTag, hn::Le(enter, leave * set(kWider)), of_lanes);
+        bits |= static_cast<std::uint32_t>(of_lanes[0]) << i;
+    }
+    return bits & ((1u << node.count) - 1u);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace granita
 HWY_AFTER_NAMESPACE();
@@ -110,6 +134,11 @@ HWY_AFTER_NAMESPACE();
 namespace granita {
 
 HWY_EXPORT(importances);
+HWY_EXPORT(passed);
+
+std::uint32_t light_boxes_passed(const LightNode& node, const Vec3f& p, const Vec3f& inverse) {
+    return HWY_DYNAMIC_DISPATCH(passed)(node, &p.x, &inverse.x);
+}
 
 void light_importances(const LightNode& node, const LightReceiverView& receiver,
                        float (&of_child)[LightNode::kWidth]) {
