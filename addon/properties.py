@@ -156,7 +156,8 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
     )
     light_samples: _whole(
         "Light Samples",
-        "Shadow rays from each shaded point to each light that has a size and to the world",
+        "Shadow rays from each shaded point to each light that has a size and to the world, and ways of bounced light; "
+        "for up to 64 Samples: 128 and more take twice as many, 256 four times, where there is no Noise Threshold",
         16,
         (1, 4096),
         usual=(1, 64),

@@ -8,6 +8,7 @@ import bpy
 from .. import passes
 from ..export import PersistentState
 from ..export.base.report import ExportError, Report
+from ..export.scene.options import light_samples
 from ..export.scene.shutter import is_blurred, scene_shutter
 from ..export.shading.image import PaintedPixels
 from . import scene_reading
@@ -146,7 +147,11 @@ class SceneSnapshots:
             passes.exposure_owner(scene).film_exposure if passes.is_exposed(shown) else 1.0
         )
         options = snapshot["options"]
-        options["samples"] = scene.granita.preview_samples
+        settings = scene.granita
+        options["samples"] = settings.preview_samples
+        options["light_samples"] = light_samples(
+            settings.light_samples, settings.preview_samples, settings.noise_threshold
+        )
         options["depth_pass"] = False
         if shown != COMBINED:
             options.update(passes.requested(scene, scene.view_layers[sight.layer], shown))

@@ -20,7 +20,8 @@ constexpr double kOfRough = 10.0;
 /// Part of the points that is seen above which nothing much hides a grid.
 constexpr double kNearlyAll = 0.9;
 /// Of unit normals, how far those of a micropolygon's two diagonals differ, in the mean.  Of what a
-/// noise displaces (.2 to .5) corners settle a tenth of the micropolygons, of smooth waves (.02) all.
+/// noise displaces (.2 to .5) corners settle a tenth of the micropolygons, of smooth waves (.02)
+/// all.
 constexpr double kRough = 0.15;
 
 /// As thresholds of displayed color fall with samples.
@@ -51,7 +52,8 @@ double ways_of_samples(const Grid& grid, const ShadingPoints& points, double see
     const int each = light.sample_count(grid.point_share * refined_light_share(sampled));
     double ways = 0.0;
     for (std::size_t i = 0; i < points.count; ++i)
-        ways += light.sample_count(points.share * (points.shares.empty() ? 1.0f : points.shares[i]));
+        ways +=
+            light.sample_count(points.share * (points.shares.empty() ? 1.0f : points.shares[i]));
     return seen * area * scene.options.samples * each / ways;
 }
 

@@ -3,7 +3,7 @@
 
 from export.base.report import ExportError, Report
 from export.scene.camera import Frame
-from export.scene.options import border, mixed_seed
+from export.scene.options import border, light_samples, mixed_seed
 
 
 def test_border_truncates():
@@ -24,6 +24,17 @@ def test_mixed_seeds_differ_from_frame_to_frame_and_fit_31_bits():
     seeds = [mixed_seed(seed, frame) for seed in range(20) for frame in range(-50, 50)]
     assert len(set(seeds)) == len(seeds)
     assert all(0 <= seed < 2**31 for seed in seeds)
+
+
+def test_light_samples_grow_with_samples_beyond_64():
+    assert [light_samples(16, samples, 0.0) for samples in (1, 16, 64)] == [16, 16, 16]
+    assert [light_samples(16, samples, 0.0) for samples in (128, 256, 1024)] == [32, 64, 256]
+    # Sequences of light samples are stratified in powers of two.
+    assert [light_samples(3, samples, 0.0) for samples in (90, 91, 181, 182)] == [3, 6, 6, 12]
+
+
+def test_samples_that_are_a_bound_tell_nothing_of_light():
+    assert light_samples(16, 4096, 0.01) == 16
 
 
 def test_report_counts_each_message_once():

@@ -200,7 +200,9 @@ def tilted(angle, size, depth):
     return matrix[None]
 
 
-def sheet_of_waves(modelled, size=48, height=4.0, wave=2 * np.pi / 16.0, tilt=0.0, samples=16, **options):
+def sheet_of_waves(
+    modelled, size=48, height=4.0, wave=2 * np.pi / 16.0, tilt=0.0, samples=16, **options
+):
     """A sheet of waves that a low sun makes shade each other, displaced or modelled five times as finely as pixels."""
     snapshot = s.orthographic((size, size), samples=samples, executor="SIMD", **options)
     sun(snapshot, (1.0, 0.4, -0.6))
@@ -278,9 +280,13 @@ def test_what_is_diced_for_light_is_diced_anew_without():
 
 
 def test_corners_of_what_is_rough_are_not_lit():
-    rough = s.render(sheet_of_waves(False, height=1.0, wave=2 * np.pi / 5.0, samples=64))["statistics"]
+    rough = s.render(sheet_of_waves(False, height=1.0, wave=2 * np.pi / 5.0, samples=64))[
+        "statistics"
+    ]
     assert rough["points_shaded"] == rough["points_refined"] == 48 * 48 * 64
-    smooth = s.render(sheet_of_waves(False, height=0.5, wave=2 * np.pi / 40.0, samples=64))["statistics"]
+    smooth = s.render(sheet_of_waves(False, height=0.5, wave=2 * np.pi / 40.0, samples=64))[
+        "statistics"
+    ]
     assert smooth["points_refined"] == 0
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Render settings -> the snapshot's options: Blender's own properties, then `scene.granita`."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,8 @@ from .light_paths import light_paths
 from .shutter import rolling_shutter, shutter_curve
 
 MOST_SAMPLES = 4096  # as of scene.granita.samples
+_MOST_LIGHT_SAMPLES = 65536
+_LIT_BY_THEIR_OWN = 64  # samples, up to which Light Samples are meant as they are
 
 # Read from the settings under the same name; (name, used where the settings lack it).
 _SETTINGS = (
@@ -102,6 +105,15 @@ def _samples(scene, view_layer, samples):
     return min(own, samples) if use == "BOUNDED" else own
 
 
+def light_samples(own, samples, noise_threshold):
+    """Of a shading point, where the setting is `own`: more Samples than 64 take as many times more, or the noise of
+    light would be what all of them share.  Where a Noise Threshold ends them Samples are a bound, and tell nothing."""
+    if noise_threshold > 0.0:
+        return own
+    doublings = round(math.log2(samples / _LIT_BY_THEIR_OWN))
+    return min(own * 2 ** max(doublings, 0), _MOST_LIGHT_SAMPLES)
+
+
 def render_border(render, frame):
     """Pixels (x0, y0, x1, y1) of the frame that a scene's border encloses; without one, all."""
     if not render.use_border:
@@ -149,6 +161,9 @@ def options_record(scene, view_layer, settings, frame, crop, frame_time, in_view
         threads = render.threads
     record = {name: getattr(settings, name, fallback) for name, fallback in _SETTINGS}
     record["samples"] = _samples(scene, view_layer, record["samples"])
+    record["light_samples"] = light_samples(
+        record["light_samples"], record["samples"], record["noise_threshold"]
+    )
     record.update(
         width=frame.width,
         height=frame.height,
