@@ -37,8 +37,12 @@ constexpr double kMostSpared = 2.0;
 constexpr double kNearby = 0.5;
 
 /// What is rough is shaded sample by sample (shade/left_to_samples.h): the more of these, the less
-/// finer micropolygons cost beside them.
-int rough_levels(int samples) {
+/// finer micropolygons cost beside them.  Samples that a noise threshold ends may be the fewest.
+int rough_levels(const Options& options) {
+    if (!options.refine_samples) return 0;
+    const int samples = options.noise_threshold > 0.0f
+                            ? std::min(options.min_samples, options.samples)
+                            : options.samples;
     return samples >= 192 ? 2 : samples >= 16 ? 1 : 0;
 }
 
@@ -67,7 +71,7 @@ EdgeRate::EdgeRate(const View& view, double longer, bool displaced)
       m_motion_factor(view.scene->options.motion_factor * view.scene->options.row_exposure()),
       m_focus_factor(view.scene->options.focus_factor),
       m_displaced(displaced),
-      m_most_rough(displaced && view.has_light ? rough_levels(view.scene->options.samples) : 0),
+      m_most_rough(displaced && view.has_light ? rough_levels(view.scene->options) : 0),
       m_near(view.projection.perspective ? std::max(view.projection.near_clip, 1e-9)
                                          : view.projection.near_clip),
       m_rounding(static_cast<float>(std::ldexp(

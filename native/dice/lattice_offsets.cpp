@@ -13,6 +13,9 @@ constexpr double kLeastStep = 0.25;
 /// Of the area of a rectangle with such sides.
 constexpr double kLeastArea = 0.1;
 
+/// Of m_site_of: none; and one beside the lattice, not numbered yet.
+constexpr int kNoSite = -1, kBeside = -2;
+
 /// Among the sites of a lattice; -1 and one more than its steps lie around it.
 std::size_t site_at(const ParametricPositions& places, int i, int j) {
     return static_cast<std::size_t>((j + 1) * (places.n_u + 3) + i + 1);
@@ -33,9 +36,12 @@ bool exceeds_rounding(const SurfaceFrames& at, const Vec2d& step) {
 
 void LatticeOffsets::find(const OpenedMesh& mesh, std::span<const Lattice> lattices, Offsets& out) {
     m_sites.clear();
+    m_beside.clear();
     m_site_of.clear();
     for (const Lattice& lattice : lattices) add_sites(mesh, lattice);
     mesh.find_offsets(m_sites, false, m_found);
+    mesh.find_offsets_beside(m_beside, m_found_beside);
+    number_sites_beside();
     for (auto* values : {&out.offset, &out.by_u, &out.by_v}) values->clear();
     m_alone.clear();
     m_alone_sites.clear();
@@ -57,15 +63,31 @@ void LatticeOffsets::add_sites(const OpenedMesh& mesh, const Lattice& lattice) {
         for (int i = -1; i <= places.n_u + 1; ++i) {
             const bool beside_u = i < 0 || i > places.n_u, beside_v = j < 0 || j > places.n_v;
             const Vec2d uv = places.regular(i, j);
-            if ((beside_u && beside_v) ||
-                (ends && (beside_u || beside_v) &&
-                 (std::min(uv.x, uv.y) < 0.0 || std::max(uv.x, uv.y) > 1.0))) {
-                m_site_of.push_back(-1);
+            if (!beside_u && !beside_v) {
+                m_site_of.push_back(static_cast<int>(m_sites.size()));
+                m_sites.push_back({lattice.patch, uv});
                 continue;
             }
-            m_site_of.push_back(static_cast<int>(m_sites.size()));
-            m_sites.push_back({lattice.patch, uv});
+            const bool outside = std::min(uv.x, uv.y) < 0.0 || std::max(uv.x, uv.y) > 1.0;
+            if ((beside_u && beside_v) || (ends && outside)) {
+                m_site_of.push_back(kNoSite);
+                continue;
+            }
+            m_site_of.push_back(kBeside);
+            m_beside.push_back({lattice.patch, uv});
         }
+}
+
+/// They follow the lattices' own; one that is no number is none.
+void LatticeOffsets::number_sites_beside() {
+    const auto own = static_cast<int>(m_sites.size());
+    int next = 0;
+    for (int& site : m_site_of) {
+        if (site != kBeside) continue;
+        site =
+            is_finite(m_found_beside.offset[static_cast<std::size_t>(next)]) ? own + next : kNoSite;
+        ++next;
+    }
 }
 
 void LatticeOffsets::read(const OpenedMesh& mesh, const Lattice& lattice, Offsets& out) {
@@ -83,7 +105,7 @@ void LatticeOffsets::read(const OpenedMesh& mesh, const Lattice& lattice, Offset
         const Vec2d a = places.row_step(j), b = places.column_step(i);
         const double length_a = glm::length(a), length_b = glm::length(b);
         const double area = a.x * b.y - a.y * b.x;
-        out.offset.push_back(m_found.offset[static_cast<std::size_t>(site)]);
+        out.offset.push_back(at(site));
         if (tells && length_a > kLeastStep * glm::length(middle_a) &&
             length_b > kLeastStep * glm::length(middle_b) &&
             std::abs(area) > kLeastArea * length_a * length_b) {
@@ -108,7 +130,7 @@ Vec3f LatticeOffsets::slope(const ParametricPositions& places, int i, int j, boo
         if (std::min(to_i, to_j) < -1 || to_i > places.n_u + 1 || to_j > places.n_v + 1)
             return nullptr;
         const int site = m_site_of[m_first + site_at(places, to_i, to_j)];
-        return site < 0 ? nullptr : &m_found.offset[static_cast<std::size_t>(site)];
+        return site < 0 ? nullptr : &at(site);
     };
     const Vec3f* const before = beside(-1);
     const Vec3f* const after = beside(1);

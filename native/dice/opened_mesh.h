@@ -144,6 +144,10 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
     void find_offsets(std::span<const SurfacePlace> places, bool derivatives, Offsets& out) const {
         m_view->displacement->find(m_instance_index, *m_shared, places, derivatives, out);
     }
+    /// Displacement::find_beside
+    void find_offsets_beside(std::span<const SurfacePlace> places, Offsets& out) const {
+        m_view->displacement->find_beside(m_instance_index, *m_shared, places, out);
+    }
     /// Whether values of an attribute move along: places of the frame and of those around it.
     bool displaces(const AttributeRequest& request) const {
         return m_displaced && request.source != AttributeSource::Generated &&

@@ -18,7 +18,7 @@ double on_edge(const PatchEdge& side, double place) {
 
 /// Places of an edge at which roughness is looked for, and of its length the largest step from one.
 constexpr int kProbes = 6;
-constexpr double kProbeStep = 1.0 / 32.0;
+constexpr double kProbeStep = 1.0 / 16.0;
 /// Sag over length of a micropolygon's side that is rough.
 constexpr double kRoughBend = 0.02;
 /// Levels of a base edge from which it may be diced more finely for that.
@@ -56,10 +56,10 @@ void EdgeWalker::point(const PatchEdge& side, double at, EdgePoint& out) const {
 void EdgeWalker::classify(PatchEdge& side) const {
     int found = levels(side);
     // Faces of a few micropolygons have their vertices from tables (dice/small_faces.h).
-    if (found >= 0 && m_mesh.rate().most_rough_levels() > 0 &&
-        (side.line || side.depth + found >= kLeastRough)) {
+    const bool may_be_rough = found < 0 || side.line || side.depth + found >= kLeastRough;
+    if (may_be_rough && m_mesh.rate().most_rough_levels() > 0) {
         if (side.rough < 0) side.rough = static_cast<std::int8_t>(rough_levels(side));
-        found = std::min(found + side.rough, static_cast<int>(side.budget));
+        if (found >= 0) found = std::min(found + side.rough, static_cast<int>(side.budget));
     }
     side.levels = static_cast<std::int8_t>(found);
 }
@@ -157,6 +157,8 @@ PatchEdge EdgeWalker::draw(const Vec2d& uv0, const Vec2d& uv1, const EdgePoint& 
     PatchEdge side;
     side.line = std::move(line);
     side.most_outside = most_outside;
+    // What stands for a surface is between sides that tell of roughness themselves.
+    if (std::isfinite(most_outside)) side.rough = 0;
     side.budget = static_cast<std::uint8_t>(budget);
     classify(side);
     return side;

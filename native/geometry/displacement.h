@@ -43,6 +43,12 @@ class Displacement {
     virtual void find(std::size_t instance, const SharedGeometry& geometry,
                       std::span<const SurfacePlace> places, bool derivatives,
                       Offsets& out) const = 0;
+    /// At places beside patches, which only tell slopes: nothing is moved there, so that no bound
+    /// holds and nothing is said of them.
+    virtual void find_beside(std::size_t instance, const SharedGeometry& geometry,
+                             std::span<const SurfacePlace> places, Offsets& out) const {
+        find(instance, geometry, places, false, out);
+    }
 };
 
 }  // namespace granita

@@ -19,14 +19,14 @@ constexpr double kOfOthers = 0.5;
 constexpr double kOfRough = 10.0;
 /// Part of the points that is seen above which nothing much hides a grid.
 constexpr double kNearlyAll = 0.9;
-/// Of unit normals, how far those of a micropolygon's two diagonals differ, in the mean.  Of what a
-/// noise displaces (.2 to .5) corners settle a tenth of the micropolygons, of smooth waves (.02)
-/// all.
-constexpr double kRough = 0.15;
+/// Of unit normals, how far those of a micropolygon's two diagonals differ, in the mean, over the
+/// shading threshold (.1).  Of what a noise displaces (.2 to .4) corners settle a tenth of the
+/// micropolygons, of smooth waves (.02) all.
+constexpr double kRough = 1.5;
 
 /// As thresholds of displayed color fall with samples.
-double least_rough(int samples) {
-    return kRough * std::min(1.0, std::sqrt(64.0 / samples));
+double least_rough(const Options& options) {
+    return kRough * options.shading_threshold * std::min(1.0, std::sqrt(64.0 / options.samples));
 }
 
 double roughness(const Grid& grid) {
@@ -59,10 +59,11 @@ double ways_of_samples(const Grid& grid, const ShadingPoints& points, double see
 
 }  // namespace
 
-bool pays_by_samples(const Grid& grid, const ShadingPoints& points, const Scene& scene,
+bool pays_by_samples(const Grid& grid, const ShadingPoints& points, bool looked, const Scene& scene,
                      const DirectLight& light) {
-    if (points.seen.empty())
-        return roughness(grid) > least_rough(scene.options.samples) &&
+    if (looked && points.seen.empty()) return false;
+    if (!looked)
+        return roughness(grid) > least_rough(scene.options) &&
                ways_of_samples(grid, points, 1.0, scene, light) < kOfRough;
     const double seen = static_cast<double>(std::ranges::count(points.seen, 1)) /
                         static_cast<double>(points.seen.size());

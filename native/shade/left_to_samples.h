@@ -15,8 +15,8 @@ namespace granita {
 
 /// Whether no point of a grid of a mesh is to be lit: each sample that sees it sends ways itself.
 /// The same whatever bucket asks.
-/// @param points of the grid, looked at (look_at()) where light bounces.
-bool pays_by_samples(const Grid& grid, const ShadingPoints& points, const Scene& scene,
+/// @param looked whether `points` of the grid were looked at (look_at()); if not, roughness tells.
+bool pays_by_samples(const Grid& grid, const ShadingPoints& points, bool looked, const Scene& scene,
                      const DirectLight& light);
 
 }  // namespace granita

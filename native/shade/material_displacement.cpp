@@ -145,6 +145,11 @@ void MaterialDisplacement::run(std::size_t index, const SharedGeometry& geometry
     }
 }
 
+void MaterialDisplacement::find_beside(std::size_t index, const SharedGeometry& geometry,
+                                       std::span<const SurfacePlace> places, Offsets& out) const {
+    run(index, geometry, places, false, out);
+}
+
 void MaterialDisplacement::find(std::size_t index, const SharedGeometry& geometry,
                                 std::span<const SurfacePlace> places, bool derivatives,
                                 Offsets& out) const {

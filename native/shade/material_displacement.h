@@ -46,6 +46,8 @@ class MaterialDisplacement final : public Displacement {
     std::size_t same_as(std::size_t instance) const override;
     void find(std::size_t instance, const SharedGeometry& geometry,
               std::span<const SurfacePlace> places, bool derivatives, Offsets& out) const override;
+    void find_beside(std::size_t instance, const SharedGeometry& geometry,
+                     std::span<const SurfacePlace> places, Offsets& out) const override;
 
   private:
     struct Target;

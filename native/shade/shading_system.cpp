@@ -214,7 +214,8 @@ struct ShadingSystem::Impl : PointShader {
         points.round = kind_of(grid, scene) == GeometryKind::Curves;
         if (light && lit) light->lift(points, grid.key);
         begun->at = paths_of(grid, points);
-        if (lit && (bounces || (below && moves && scatters(grid.material)))) {
+        const bool looks = lit && (bounces || (below && moves && scatters(grid.material)));
+        if (looks) {
             const std::vector<std::size_t> turned = look(grid, points, begun->at, narrow);
             if (begun->wants_refining && !turned.empty()) {
                 // Else their lobes would gather the light of the inside.
@@ -225,7 +226,7 @@ struct ShadingSystem::Impl : PointShader {
             }
         }
         if (begun->wants_refining && may_leave(grid) && !grid.opacity_varies &&
-            !scatters(grid.material) && pays_by_samples(grid, points, scene, *light)) {
+            !scatters(grid.material) && pays_by_samples(grid, points, looks, scene, *light)) {
             leave_to_samples(grid, channels.vertex_width());
             return nullptr;
         }

@@ -30,7 +30,7 @@ def test_light_samples_grow_with_samples_beyond_64():
     assert [light_samples(16, samples, 0.0) for samples in (1, 16, 64)] == [16, 16, 16]
     assert [light_samples(16, samples, 0.0) for samples in (128, 256, 1024)] == [32, 64, 256]
     # Sequences of light samples are stratified in powers of two.
-    assert [light_samples(3, samples, 0.0) for samples in (90, 91, 181, 182)] == [3, 6, 6, 12]
+    assert [light_samples(3, samples, 0.0) for samples in (100, 127, 200, 300)] == [3, 3, 6, 12]
 
 
 def test_samples_that_are_a_bound_tell_nothing_of_light():

@@ -314,6 +314,30 @@ def test_pictures_do_not_depend_on_buckets_threads_or_crop():
         assert (waves(False, **rough, **change) == whole).all(), change
 
 
+def test_what_lies_beside_a_narrow_face_is_not_said_to_go_too_far():
+    """Slopes across a strip of a pixel are told by places beside it, where its height is more than its bound."""
+    snapshot = s.orthographic((16, 16), samples=16, executor="SIMD")
+    sun(snapshot, (0, 0, -1))
+    nodes = [
+        {"type": "ShaderNodeTexCoord", "inputs": {}},
+        {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": link(0, "Object")}},
+        {
+            "type": "ShaderNodeMath",
+            "inputs": {"Value": link(1, "X"), "Value_001": 2.0},
+            "properties": {"operation": "POWER"},
+        },
+        {
+            "type": "ShaderNodeDisplacement",
+            "inputs": {"Height": link(2, "Value"), "Midlevel": 0.0, "Scale": 1.0},
+        },
+    ]
+    strip = matte(snapshot, nodes, (3, "Displacement"))
+    at = np.eye(4)[None].copy()
+    at[0, :3, 3] = (6.0, 4.0, 40.0)
+    s.quad(snapshot, s.rectangle(0, 0, 1.2, 8.0, 0.0)[::-1], strip, transforms=at)
+    assert s.render(snapshot)["warnings"] == []
+
+
 def test_points_of_a_material_that_displaces_are_named():
     snapshot = s.orthographic((SIZE, SIZE), samples=4, executor="SIMD")
     points = {

@@ -110,7 +110,7 @@ def light_samples(own, samples, noise_threshold):
     light would be what all of them share.  Where a Noise Threshold ends them Samples are a bound, and tell nothing."""
     if noise_threshold > 0.0:
         return own
-    doublings = round(math.log2(samples / _LIT_BY_THEIR_OWN))
+    doublings = math.floor(math.log2(samples / _LIT_BY_THEIR_OWN))
     return min(own * 2 ** max(doublings, 0), _MOST_LIGHT_SAMPLES)
 
 

@@ -19,7 +19,7 @@ void add(LitGrid& grid, const MetLamp& met) {
 /// reaches.  Passes tell of the others too.
 void add_met(const LampSet& set, LitGrid& grid, MetLamp met) {
     const bool waits = met.lamp->pattern() != nullptr;
-    if (!waits && total(met.weight * met.sample.radiance) == Vec3f(0.0f)) return;
+    if (!waits && met.sample.radiance == Vec3f(0.0f)) return;
     met.through = set.passed(grid, *met.point, met.place, *met.lamp, met.sample, met.ray);
     if (!waits)
         add(grid, met);
