@@ -18,7 +18,8 @@ constexpr int kNoSite = -1, kBeside = -2;
 
 /// Among the sites of a lattice; -1 and one more than its steps lie around it.
 std::size_t site_at(const ParametricPositions& places, int i, int j) {
-    return static_cast<std::size_t>((j + 1) * (places.n_u + 3) + i + 1);
+    const int site = (j + 1) * (places.n_u + 3) + i + 1;
+    return static_cast<std::size_t>(site);
 }
 
 std::size_t site_count(const ParametricPositions& places) {
