@@ -279,15 +279,27 @@ def test_what_is_diced_for_light_is_diced_anew_without():
     assert 0 < kept.statistics["points_diced"] < 0.5 * before
 
 
+def test_samples_that_may_not_be_taken_or_shaded_make_nothing_finer():
+    def diced(**options):
+        snapshot = sheet_of_waves(False, height=1.0, wave=2 * np.pi / 5.0, **options)
+        return s.render(snapshot)["statistics"]["points_diced"]
+
+    few = diced(samples=4)
+    assert diced(samples=256, noise_threshold=0.01, min_samples=8) == few
+    assert diced(samples=256, refine_samples=False) == few
+
+
 def test_corners_of_what_is_rough_are_not_lit():
-    rough = s.render(sheet_of_waves(False, height=1.0, wave=2 * np.pi / 5.0, samples=64))[
-        "statistics"
-    ]
-    assert rough["points_shaded"] == rough["points_refined"] == 48 * 48 * 64
-    smooth = s.render(sheet_of_waves(False, height=0.5, wave=2 * np.pi / 40.0, samples=64))[
-        "statistics"
-    ]
-    assert smooth["points_refined"] == 0
+    rough = sheet_of_waves(False, height=1.0, wave=2 * np.pi / 5.0, samples=64)
+    done = s.render(rough)["statistics"]
+    assert done["points_shaded"] == done["points_refined"] == 48 * 48 * 64
+    smooth = sheet_of_waves(False, height=0.5, wave=2 * np.pi / 40.0, samples=64)
+    assert s.render(smooth)["statistics"]["points_refined"] == 0
+    # But where no sample is to be shaded by itself, and where light bounces and all of them are seen.
+    rough["options"]["shading_threshold"] = 1000.0
+    assert s.render(rough)["statistics"]["points_refined"] == 0
+    rough["options"] |= {"shading_threshold": 0.06, "bounces": 1}
+    assert s.render(rough)["statistics"]["grids_shaded"] > 0
 
 
 def test_shadows_are_those_of_the_same_waves_modelled():
