@@ -13,9 +13,6 @@ constexpr double kLeastStep = 0.25;
 /// Of the area of a rectangle with such sides.
 constexpr double kLeastArea = 0.1;
 
-/// Of m_site_of: none; and one beside the lattice, not numbered yet.
-constexpr int kNoSite = -1, kBeside = -2;
-
 /// Among the sites of a lattice; -1 and one more than its steps lie around it.
 std::size_t site_at(const ParametricPositions& places, int i, int j) {
     const int site = (j + 1) * (places.n_u + 3) + i + 1;
@@ -42,7 +39,6 @@ void LatticeOffsets::find(const OpenedMesh& mesh, std::span<const Lattice> latti
     for (const Lattice& lattice : lattices) add_sites(mesh, lattice);
     mesh.find_offsets(m_sites, false, m_found);
     mesh.find_offsets_beside(m_beside, m_found_beside);
-    number_sites_beside();
     for (auto* values : {&out.offset, &out.by_u, &out.by_v}) values->clear();
     m_alone.clear();
     m_alone_sites.clear();
@@ -74,21 +70,9 @@ void LatticeOffsets::add_sites(const OpenedMesh& mesh, const Lattice& lattice) {
                 m_site_of.push_back(kNoSite);
                 continue;
             }
-            m_site_of.push_back(kBeside);
+            m_site_of.push_back(kFirstBeside - static_cast<int>(m_beside.size()));
             m_beside.push_back({lattice.patch, uv});
         }
-}
-
-/// They follow the lattices' own; one that is no number is none.
-void LatticeOffsets::number_sites_beside() {
-    const auto own = static_cast<int>(m_sites.size());
-    int next = 0;
-    for (int& site : m_site_of) {
-        if (site != kBeside) continue;
-        site =
-            is_finite(m_found_beside.offset[static_cast<std::size_t>(next)]) ? own + next : kNoSite;
-        ++next;
-    }
 }
 
 void LatticeOffsets::read(const OpenedMesh& mesh, const Lattice& lattice, Offsets& out) {
@@ -131,7 +115,7 @@ Vec3f LatticeOffsets::slope(const ParametricPositions& places, int i, int j, boo
         if (std::min(to_i, to_j) < -1 || to_i > places.n_u + 1 || to_j > places.n_v + 1)
             return nullptr;
         const int site = m_site_of[m_first + site_at(places, to_i, to_j)];
-        return site < 0 ? nullptr : &at(site);
+        return site == kNoSite || !is_finite(at(site)) ? nullptr : &at(site);
     };
     const Vec3f* const before = beside(-1);
     const Vec3f* const after = beside(1);

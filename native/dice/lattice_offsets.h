@@ -27,20 +27,19 @@ class LatticeOffsets {
 
   private:
     void add_sites(const OpenedMesh& mesh, const Lattice& lattice);
-    void number_sites_beside();
     void read(const OpenedMesh& mesh, const Lattice& lattice, Offsets& out);
     /// Over one step of the lattice from the vertex (i, j).
     Vec3f slope(const ParametricPositions& places, int i, int j, bool along_u) const;
 
-    /// The lattices' own, then those beside.
+    /// Of m_site_of: none, and, downwards, those beside the lattices.
+    static constexpr int kNoSite = -1, kFirstBeside = -2;
     const Vec3f& at(int site) const {
-        const auto own = static_cast<int>(m_sites.size());
-        return site < own ? m_found.offset[static_cast<std::size_t>(site)]
-                          : m_found_beside.offset[static_cast<std::size_t>(site - own)];
+        return site >= 0 ? m_found.offset[static_cast<std::size_t>(site)]
+                         : m_found_beside.offset[static_cast<std::size_t>(kFirstBeside - site)];
     }
 
     std::vector<SurfacePlace> m_sites, m_beside;
-    std::vector<int> m_site_of;        ///< [lattices][row][column]; -1: there is none
+    std::vector<int> m_site_of;        ///< [lattices][row][column]
     std::size_t m_first = 0;           ///< in m_site_of, of the lattice that is read
     std::vector<std::size_t> m_alone;  ///< vertices whose slopes are looked for by themselves
     std::vector<SurfacePlace> m_alone_sites;
