@@ -13,8 +13,9 @@ target_compile_features(granita_flags INTERFACE cxx_std_20)
 target_include_directories(granita_flags INTERFACE ${CMAKE_SOURCE_DIR}/native)
 # -ffp-contract=off: a fused edge function is not antisymmetric, and tilings would leak (docs/decisions/hiding.md).
 # x86-64-v2: what Blender 4 asks for too; wider units are taken at run time by Highway.
+# No errno of roots and no traps: nothing reads them, and loops without branches become vectors; values stay.
 target_compile_options(granita_flags INTERFACE -Wall -Wextra -Werror -march=x86-64-v2
-  -ffp-contract=off -fvisibility=hidden -fvisibility-inlines-hidden)
+  -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden -fvisibility-inlines-hidden)
 if(GRANITA_SANITIZE)
   # Calls of the sanitizer hide from the compiler what sets a variable.
   target_compile_options(granita_flags INTERFACE -fsanitize=${GRANITA_SANITIZE} -fno-omit-frame-pointer -g1

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
 #include "math/luminance.h"
 #include "math/sampling.h"
 #include "shade/lights/light_source.h"
@@ -20,31 +25,45 @@ class SphericalRectangle {
         m_g3 = std::asin(-n3 * n0);
         m_b0 = n0;
         m_b1 = n2;
+        m_k0 = z0 * z0 / (y0 * y0 + z0 * z0);
         m_solid_angle = -(g0 + g1 + m_g2 + m_g3);
     }
 
     double solid_angle() const { return m_solid_angle; }
 
-    /// A point of the rectangle, relative to the origin.
-    Vec3d sample(const Vec2f& u) const {
-        const double au = u.x * m_solid_angle + m_g2 + m_g3;
-        const double fu = (std::cos(au) * m_b0 + m_b1) / std::sin(au);
-        const double cu =
-            std::clamp(std::copysign(1.0 / std::sqrt(fu * fu + m_b0 * m_b0), fu), -1.0, 1.0);
-        const double sine = std::sqrt(std::max(1.0 - cu * cu, 1e-14));
-        const double x = std::clamp(-(cu * m_z0) / sine, m_x0, m_x1);
-        const double d2 = x * x + m_z0 * m_z0;
-        const double h0 = m_y0 / std::sqrt(d2 + m_y0 * m_y0);
-        const double h1 = m_y1 / std::sqrt(d2 + m_y1 * m_y1);
-        const double h = h0 + u.y * (h1 - h0);
-        const double y =
-            h * h < 1.0 - 1e-12 ? std::clamp(h * std::sqrt(d2 / (1.0 - h * h)), m_y0, m_y1) : m_y1;
-        return {x, y, m_z0};
+    static constexpr std::size_t kAtOnce = 16;
+    /// At most kAtOnce points of the rectangle, relative to the origin.  Loops without branches:
+    /// roots and quotients in double precision, two or more at a time (docs/decisions/lighting.md).
+    void sample(std::span<const Vec2f> u, std::array<Vec2f, kAtOnce>& points) const {
+        std::array<double, kAtOnce> sine, over, along;
+        const std::size_t count = u.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            const double au = u[i].x * m_solid_angle + m_g2 + m_g3;
+            sine[i] = std::sin(au);
+            over[i] = std::cos(au) * m_b0 + m_b1;
+            along[i] = u[i].y;
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            // The paper's f_u is over / sine, and the cosine c_u of it a step on the way to x.
+            const double side2 = over[i] * over[i] - m_k0 * (sine[i] * sine[i]);
+            const double signed_sine = over[i] < 0.0 ? -sine[i] : sine[i];
+            const double away = -m_z0 * signed_sine / std::sqrt(std::max(side2, kLeast));
+            const double x = std::min(std::max(away, m_x0), m_x1);
+            const double d2 = x * x + m_z0 * m_z0;
+            const double h0 = m_y0 / std::sqrt(d2 + m_y0 * m_y0);
+            const double h1 = m_y1 / std::sqrt(d2 + m_y1 * m_y1);
+            const double h = h0 + along[i] * (h1 - h0);
+            const double up = h * std::sqrt(d2 / std::max(1.0 - h * h, kLeast));
+            points[i] = Vec2f(x, std::min(std::max(up, m_y0), m_y1));
+        }
     }
 
   private:
+    static constexpr double kLeast = 1e-200;  // divides what is cut to the sides then
+
     double m_x0, m_x1, m_y0, m_y1, m_z0;
     double m_b0 = 0, m_b1 = 0, m_g2 = 0, m_g3 = 0, m_solid_angle = 0;
+    double m_k0 = 0;  ///< 1 - b0^2
 };
 
 class AreaLight : public LightSource {
@@ -98,9 +117,13 @@ class AreaLight : public LightSource {
         }
         // Once a point: its arcsines and roots take longer than a sample.
         const SphericalRectangle rectangle(lo.x, hi.x, lo.y, hi.y, -height);
-        for (std::size_t i = 0; i < u.size(); ++i) {
-            const Vec2f q(rectangle.sample(u[i]));
-            if (is_in_shape(q - center)) finish(q, rectangle.solid_angle(), samples[i]);
+        std::array<Vec2f, SphericalRectangle::kAtOnce> q;
+        for (std::size_t begin = 0; begin < u.size(); begin += q.size()) {
+            const std::size_t count = std::min(q.size(), u.size() - begin);
+            rectangle.sample(u.subspan(begin, count), q);
+            for (std::size_t i = 0; i < count; ++i)
+                if (is_in_shape(q[i] - center))
+                    finish(q[i], rectangle.solid_angle(), samples[begin + i]);
         }
     }
 
