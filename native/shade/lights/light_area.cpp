@@ -44,7 +44,8 @@ class SphericalRectangle {
             along[i] = u[i].y;
         }
         for (std::size_t i = 0; i < count; ++i) {
-            // The paper's f_u is over / sine, and the cosine c_u of it a step on the way to x.
+            // The paper's f_u is over / sine, and x = -z0 c / sqrt(1 - c^2) with the cosine c of
+            // its azimuth, sgn(f_u) / sqrt(f_u^2 + b0^2): both roots are one.
             const double side2 = over[i] * over[i] - m_k0 * (sine[i] * sine[i]);
             const double signed_sine = over[i] < 0.0 ? -sine[i] : sine[i];
             const double away = -m_z0 * signed_sine / std::sqrt(std::max(side2, kLeast));
@@ -59,7 +60,7 @@ class SphericalRectangle {
     }
 
   private:
-    static constexpr double kLeast = 1e-200;  // divides what is cut to the sides then
+    static constexpr double kLeast = 1e-200;  // of what is cut to the sides, or has no solid angle
 
     double m_x0, m_x1, m_y0, m_y1, m_z0;
     double m_b0 = 0, m_b1 = 0, m_g2 = 0, m_g3 = 0, m_solid_angle = 0;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "math/sampling.h"
 #include "shade/lights/light_scene.h"
 
@@ -228,6 +230,29 @@ TEST_P(EveryLight, a_ray_along_a_sample_meets_it_with_the_same_density_and_radia
     }
     EXPECT_GT(sampled, 100);
     EXPECT_GE(met, sampled - 2);
+}
+
+TEST_P(EveryLight, many_samples_at_once_are_those_of_one_at_a_time) {
+    const auto source = source_of(make(GetParam()));
+    const SobolPoints points(5);
+    for (const std::size_t count : {1u, 16u, 17u, 33u}) {
+        std::vector<Vec2f> u;
+        for (std::uint32_t i = 0; i < count; ++i) u.push_back(points(i));
+        for (const Vec3f& p : {Vec3f(0.2f, -0.1f, 1.2f), Vec3f(3.0f, 2.0f, 0.0f)}) {
+            std::vector<LightSample> together(count);
+            source->sample_all(p, u, together);
+            for (std::size_t i = 0; i < count; ++i) {
+                LightSample alone;
+                const bool arrives = source->sample(p, u[i], alone);
+                ASSERT_EQ(together[i].pdf > 0.0f, arrives) << i;
+                if (!arrives) continue;
+                EXPECT_EQ(together[i].direction, alone.direction) << i;
+                EXPECT_EQ(together[i].distance, alone.distance) << i;
+                EXPECT_EQ(together[i].radiance, alone.radiance) << i;
+                EXPECT_EQ(together[i].pdf, alone.pdf) << i;
+            }
+        }
+    }
 }
 
 TEST_P(EveryLight, its_density_integrates_to_one_over_the_directions_that_meet_it) {
