@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The module of the portable zip beside the one that g++ builds here: the same pictures, how much slower.
 
-    ./dev package --portable && ./dev bench portable_module [--runs 3] [--scenes NAME...]
+    ./dev package && ./dev bench portable_module [--runs 3] [--scenes NAME...]
 
 Debian's Blender renders each scene with this tree's add-on and module, and with the add-on of the legacy zip in an empty
 configuration, in turns, one thread each.  Prints the part of the numbers that are equal, the largest difference, the RMSE and the
@@ -97,7 +97,7 @@ def main():
     version = (ROOT / "VERSION").read_text().strip()
     archive = ROOT / f"dist/granita-{version}-linux-x64-legacy.zip"
     if not archive.is_file():
-        print(f"There is no {archive}: not measured (./dev package --portable)")
+        print(f"There is no {archive}: not measured (./dev package)")
         return
     rows = []
     print("| scene | equal | largest | pixels beyond 2e-3 | RMSE | g++, s | zip, s | ratio |")

@@ -40,5 +40,3 @@ target_compile_options(granita_flags INTERFACE -gline-tables-only
   -ffile-prefix-map=${GRANITA_PORTABLE_CACHE}/=portable/ -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=
   -ffile-prefix-map=${source_from_build}/= -ffile-prefix-map=${CMAKE_BINARY_DIR}/=)
 target_compile_definitions(granita_flags INTERFACE GRANITA_PORTABLE=1)
-# zig makes -O2 of -O3, and keeps frame pointers unless it is told not to.
-target_compile_options(granita_flags INTERFACE -fomit-frame-pointer "SHELL:-Xclang -O3")

@@ -16,7 +16,7 @@ configure_portable() {  # OPTION...
     ensure_packages "${PACKAGES[@]}" "${PORTABLE_PACKAGES[@]}"
     local toolchain
     toolchain=$("$PYTHON" "$ROOT/tools/portable/libraries.py" "$CACHE") ||
-        die "the zips for every Linux are not made; ./dev package makes those for Debian 12, out of its own libraries"
+        die "the zips for every Linux are not made; ./dev package --debian12 makes some out of Debian's own libraries"
     # What CMake found of other libraries it would keep.
     grep -qsF "$toolchain" "$BUILD/portable/.configured" || rm -f "$BUILD/portable/CMakeCache.txt"
     configure "$BUILD/portable" -DCMAKE_TOOLCHAIN_FILE="$toolchain" "$@"

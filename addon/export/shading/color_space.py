@@ -21,8 +21,9 @@ from .working_space import scene_from_rec709
 # The native side knows these by their names.
 _PLAIN = {"LINEAR": "scene_linear", "SRGB": "sRGB", "DATA": "Non-Color"}
 _DATA = {"is_data": True, "curve": "LINEAR"}
-# What images are handed over as, whatever a configuration makes of these names.
-_AS_THEY_ARE = {"scene_linear": {"curve": "LINEAR"}, "Non-Color": _DATA}
+# What images are handed over as, whatever a configuration makes of these names.  Those that Blender cannot open (PNM) have no
+# space; Cycles takes their numbers as they are.
+_AS_THEY_ARE = {"scene_linear": {"curve": "LINEAR"}, "Non-Color": _DATA, "": _DATA}
 # A curve is known at so many places, 0 and 1 among them.  Over a camera's 17 stops they are straight within 1e-6 between;
 # files of floats reach beyond 0 and 1.
 _PLACES, _LOW, _HIGH = 10241, -0.5, 2.0

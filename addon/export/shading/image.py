@@ -13,8 +13,10 @@ from ..base.regular_file import is_no_file, open_regular_file
 from .color_space import is_data
 from .working_space import scene_from_rec709
 
-# What files begin with that Blender reads and Granita's readers do not: DPX, Cineon, SGI, Photoshop, DDS.
+# What files begin with that Blender reads and Granita's readers do not: JPEG 2000, DPX, Cineon, SGI, Photoshop, DDS.
 _BLENDERS_OWN = (
+    b"\0\0\0\x0cjP  \r\n\x87\n",
+    b"\xff\x4f\xff\x51",
     b"SDPX",
     b"XPDS",
     b"\x80\x2a\x5f\xd7",
@@ -191,7 +193,7 @@ def _packed_file(image, packed):
 def _is_for_blender(path):
     try:
         with open_regular_file(path, "rb") as file:
-            return file.read(4).startswith(_BLENDERS_OWN)
+            return file.read(12).startswith(_BLENDERS_OWN)
     except OSError:
         return False
 
