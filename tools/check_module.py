@@ -2,11 +2,16 @@
 """What a native module may ask of the system that loads it, and give to others in its process.
 
 check_module.py MODULE...    prints what is broken; exit code 1 if anything is
+
+Instructions are looked at where MODULE.debug, what was stripped off it, lies beside it.
 """
 
+import os
 import re
 import subprocess
 import sys
+from bisect import bisect
+from collections import defaultdict
 from pathlib import Path
 
 # Of glibc, everywhere.
@@ -21,6 +26,20 @@ HARMLESS_WEAK = re.compile(
     r"__gmon_start__|_ITM_(de)?registerTMCloneTable|__cxa_(finalize|thread_atexit_impl)|"
     r"__tls_get_addr|_dl_find_object|gnu_get_libc_version"
 )
+# What x86-64-v3 and later add, as objdump spells it: all of VEX and EVEX (`v`, and `k` for masks), BMI, LZCNT, MOVBE.
+# Not TZCNT: compilers write it for v2 too where it does what BSF does.  Nor XGETBV, by which dispatch asks.
+NEWER = (
+    r"^ *[0-9a-f]+:\t(\{\w+\} )*(v\w+|k(add|and|mov|not|or|shift|test|unpck|xnor|xor)\w*|"
+    r"andn|bextr|blsi|blsmsk|blsr|bzhi|mulx|pdep|pext|rorx|sarx|shlx|shrx|lzcnt|movbe)\b"
+)
+# Functions that are called on a processor that has them alone, by their mangled names.
+DISPATCHED = re.compile(
+    r"N_AVX\d|"  # Highway's targets, Granita's own code among them
+    r"6embree.*?(?<!\d)(3avx|4avx2)|"  # Embree's kernels: its device takes the widest there is
+    r"6embree.*(BVHN|BVHNStatistics|CurveN[iv]\w*)ILi8E|"  # its trees of eight, which AVX alone has
+    r"^jsimd_\w+_avx2\b|"  # libjpeg-turbo's, which asks in jsimd_x86_64.c
+    r"dctInverse8x8_avx|(convertFloatToHalf64|fromHalfZigZag)_f16c"  # OpenEXR's DWA, which asks once
+)
 
 
 def _run(*command: object) -> str:
@@ -29,8 +48,8 @@ def _run(*command: object) -> str:
     ).stdout
 
 
-def broken_rules(module: Path) -> list[str]:
-    """In words, each with what it is about."""
+def broken_rules(module: Path, symbols: Path | None = None) -> list[str]:
+    """In words, each with what it is about.  `symbols`: what was stripped off, for instructions."""
     problems = []
     dynamic = _run("readelf", "-dW", module)
     needed = set(re.findall(r"\(NEEDED\).*\[(.*)\]", dynamic))
@@ -61,7 +80,49 @@ def broken_rules(module: Path) -> list[str]:
     sections = _run("readelf", "-SW", module)
     if re.search(r"\.(symtab|debug_)", sections):
         problems.append("is not stripped")
+    if symbols:
+        problems += _newer_instructions(module, symbols)
     return problems
+
+
+def build_id(file: Path) -> str:
+    """Hexadecimal; "" where there is none."""
+    found = re.search(r"Build ID: (\w+)", _run("readelf", "-n", file))
+    return found[1] if found else ""
+
+
+def _newer_instructions(module: Path, symbols: Path) -> list[str]:
+    """Those that a processor of x86-64-v2 lacks, in functions that any processor may call."""
+    names = {}  # by address
+    for line in _run("nm", "--defined-only", "--numeric-sort", symbols).splitlines():
+        address, kind, name = line.split(maxsplit=2)
+        if kind in "tTwWi":
+            names[int(address, 16)] = name
+    begins, found = list(names), defaultdict(set)
+    # A module has gigabytes of it: never held whole.
+    listing = ["objdump", "-d", "--no-show-raw-insn", str(module)]
+    with (
+        subprocess.Popen(listing, stdout=subprocess.PIPE) as objdump,
+        subprocess.Popen(
+            ["grep", "-P", NEWER],
+            stdin=objdump.stdout,
+            stdout=subprocess.PIPE,
+            env={"LC_ALL": "C", "PATH": os.environ["PATH"]},
+            text=True,
+        ) as grep,
+    ):
+        for line in grep.stdout:
+            address, _, instruction = line.partition(":\t")
+            at = bisect(begins, int(address, 16)) - 1
+            name = names[begins[at]] if at >= 0 else "a function without a name"
+            if not DISPATCHED.search(name):
+                found[name].add(re.sub(r"\{\w+\} ", "", instruction).split()[0])
+    if objdump.returncode:
+        return ["cannot be disassembled"]
+    some = "; ".join(f"{name}: {', '.join(sorted(found[name]))}" for name in sorted(found)[:5])
+    return (
+        [f"has instructions beyond x86-64-v2 in {len(found)} function(s): {some}"] if found else []
+    )
 
 
 def _symbols(module: Path) -> tuple[set[str], set[str], set[str]]:
@@ -84,7 +145,11 @@ def _symbols(module: Path) -> tuple[set[str], set[str], set[str]]:
 def main() -> None:
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    problems = [f"{module}: {p}" for module in sys.argv[1:] for p in broken_rules(Path(module))]
+    problems = []
+    for module in map(Path, sys.argv[1:]):
+        symbols = module.with_name(f"{module.name}.debug")
+        found = broken_rules(module, symbols if symbols.is_file() else None)
+        problems += [f"{module}: {problem}" for problem in found]
     if problems:
         sys.exit("\n".join(problems))
 

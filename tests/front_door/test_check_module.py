@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The rules of a module that any Linux loads: each broken by a small module of its own."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -34,9 +35,10 @@ def problems(tmp_path):
             str(module),
         ]
         subprocess.run([*command, *flags], check=True, capture_output=True)
+        symbols = shutil.copy(module, f"{module}.debug")
         if strip:
             subprocess.run(["strip", str(module)], check=True)
-        return " ".join(broken_rules(module))
+        return " ".join(broken_rules(module, symbols))
 
     return check
 
@@ -81,12 +83,86 @@ def test_a_symbol_of_no_library_is_named(problems):
     assert "needs symbols of no library: rtcNewDevice" in problems(text, MAP)
 
 
-def test_symbols_and_search_paths_are_found(problems):
+def test_symbols_are_found(problems):
     assert "is not stripped" in problems(ENTRY, MAP, strip=False)
-    assert "has RUNPATH" in problems(ENTRY, MAP, "-Wl,-rpath,/home/me")
+
+
+@pytest.mark.parametrize(
+    "tag, new", [("RUNPATH", "--enable-new-dtags"), ("RPATH", "--disable-new-dtags")]
+)
+def test_search_paths_are_found(problems, tag, new):
+    assert problems(ENTRY, MAP, f"-Wl,-rpath,/home/me,{new}") == f"has {tag}"
+
+
+def test_text_relocations_are_found(problems):
+    """An address in code, which the loader would have to write there."""
+    code = 'extern void *PyCode;\n__asm__(".text\\n .quad PyCode");\n'
+    assert problems(code + ENTRY, MAP, "-Wl,-z,notext") == "has TEXTREL"
 
 
 def test_a_path_of_the_machine_is_named(problems):
     text = 'const char *where = "/home/me/granita/thing.hpp";\n'
     text += ENTRY.replace("return 0", "return (void *)where")
     assert "names folders of the machine: /home/me/granita/thing.hpp" in problems(text, MAP)
+
+
+def scale(name):
+    """A function of AVX instructions by that name in the module's symbols."""
+    return f"""
+        __attribute__((noinline)) void scale(float *) __asm__("{name}");
+        void scale(float *values) {{ for (int i = 0; i < 256; i++) values[i] *= 2; }}
+        void *PyInit_granita_core(void) {{ static float v[256]; scale(v); return v; }}
+    """
+
+
+def test_instructions_of_newer_processors_are_named(problems):
+    said = problems(scale("scale"), MAP, "-mavx2")
+    assert said.startswith("has instructions beyond x86-64-v2 in 1 function(s): scale: vaddss")
+    assert problems(scale("scale"), MAP) == ""
+
+
+@pytest.mark.parametrize(
+    "text, flag, instruction",
+    [
+        ("return (void *)(x >> (n & 63));", "-mbmi2", "shrx"),
+        ("return (void *)(long)__builtin_clzl(x);", "-mlzcnt", "lzcnt"),
+        ("return (void *)(~x & n);", "-mbmi", "andn"),
+    ],
+)
+def test_instructions_that_are_no_vectors_are_named_too(problems, text, flag, instruction):
+    text = f"void *PyInit_granita_core(unsigned long x, unsigned long n) {{ {text} }}\n"
+    assert problems(text, MAP, flag).endswith(f"PyInit_granita_core: {instruction}")
+    assert problems(text, MAP, "-march=x86-64-v2") == ""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "_ZN7granita5shade6N_AVX25scaleEPf",
+        "_ZN7granita5shade6N_AVX35scaleEPf",
+        "_ZN6embree3avx5scaleEPf",
+        "_ZN3tbb3runIZN6embree5buildINS_4avx24RaysEEEvvEEvv",
+        "_ZN6embree4BVHNILi8EE5scaleEPf",
+        "jsimd_scale_avx2",
+        "jsimd_scale_avx2.loop",
+        "dctInverse8x8_avx_0",
+        "fromHalfZigZag_f16c",
+    ],
+)
+def test_what_is_chosen_at_run_time_may_have_them(problems, name):
+    assert problems(scale(name), MAP, "-mavx2") == ""
+
+
+@pytest.mark.parametrize(
+    "name", ["_ZN6embree4BVHNILi4EE5scaleEPf", "_ZN6embree5sse425scaleEPf", "_ZN3avx5scaleEPf"]
+)
+def test_what_is_not_chosen_may_not(problems, name):
+    assert f"1 function(s): {name}: " in problems(scale(name), MAP, "-mavx2")
+
+
+def test_tzcnt_may_stand_for_bsf(problems):
+    """As `rep bsf`, which older processors run without the prefix."""
+    text = (
+        "void *PyInit_granita_core(unsigned long x) { return (void *)(long)__builtin_ctzl(x); }\n"
+    )
+    assert problems(text, MAP) == ""

@@ -31,12 +31,17 @@ build_portable() {  # -> $BUILD/portable/delivered
 
 package_portable() {
     build_portable
-    local delivered=$BUILD/portable/delivered name=$ROOT/dist/granita-$VERSION-linux-x64 validators
+    local delivered=$BUILD/portable/delivered name=$ROOT/dist/granita-$VERSION-linux-x64
     "$PYTHON" "$ROOT/tools/package.py" zips "$ROOT" "$ROOT/dist" linux-x64 \
         "$delivered"/*.so "$delivered"/{THIRD-PARTY.txt,bom.cdx.json}
     "$PYTHON" "$ROOT/tools/package.py" files "$name-symbols.zip" "$delivered"/*.debug
+    check_portable
+}
+
+check_portable() {  # the zips in dist/, whenever they were made
+    local name=$ROOT/dist/granita-$VERSION-linux-x64 validators
     mapfile -t validators < <(extension_validators)
-    "$PYTHON" "$ROOT/tools/check_package.py" "$name.zip" "$name-legacy.zip" -- "${validators[@]}" ||
+    nice -n 15 "$PYTHON" "$ROOT/tools/check_package.py" "$name.zip" "$name-legacy.zip" -- "${validators[@]}" ||
         die "the zips break rules of docs/decisions/portable.md"
     say "Checked by the rules of docs/decisions/portable.md and ${#validators[@]} Blenders' own validators"
 }
