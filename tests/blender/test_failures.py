@@ -5,6 +5,7 @@ on when an engine leaves without pixels.
 """
 
 import os
+import shutil
 from dataclasses import dataclass, field
 
 import bpy
@@ -136,6 +137,7 @@ class Case:
     prepare: str = ""
     options: tuple = ()
     env: dict = field(default_factory=dict)
+    modules: str = ""  # a folder of `folder`, in place of the native module
 
 
 CASES = {
@@ -143,15 +145,9 @@ CASES = {
     "no camera": Case(1, "camera", SETTING.format("s.camera = None")),
     "panoramic camera": Case(1, "camera 'Camera'", SETTING.format("s.camera.data.type = 'PANO'")),
     "stereoscopy": Case(1, "stereoscopy", SETTING.format("r.use_multiview = True")),
-    "native module missing": Case(
-        1, "native module granita_core is not installed", env={"PYTHONPATH": "{folder}"}
-    ),
-    "native module of another Python": Case(
-        1, "is not for Python 3.", env={"PYTHONPATH": "{folder}/foreign"}
-    ),
-    "native module broken": Case(
-        1, "granita_core cannot be loaded", env={"PYTHONPATH": "{folder}/broken"}
-    ),
+    "native module missing": Case(1, "native module granita_core is not installed", modules="none"),
+    "native module of another Python": Case(1, "is not for Python 3.", modules="foreign"),
+    "native module broken": Case(1, "granita_core cannot be loaded", modules="broken"),
     "wrong shape in the snapshot": Case(
         1,
         "Square",
@@ -223,6 +219,7 @@ CASES = {
 @pytest.fixture
 def folder(tmp_path):
     """Native modules that cannot be loaded, and half a picture."""
+    (tmp_path / "none").mkdir()
     for name, file in (
         ("foreign", "granita_core.cpython-399-x86_64-linux-gnu.so"),
         ("broken", "granita_core.so"),
@@ -239,11 +236,21 @@ def folder(tmp_path):
     return tmp_path
 
 
+def with_modules(folder, modules):
+    """The environment of a Blender that finds those native modules alone: on Python's path, or in a copy
+    of an installed add-on, which looks at its own first."""
+    if "GRANITA_ADDON" not in os.environ:
+        return {"PYTHONPATH": str(modules)}
+    addon = folder / "scripts/addons/granita"
+    own = shutil.ignore_patterns("granita_core*", "__pycache__")
+    shutil.copytree(os.environ["GRANITA_ADDON"], addon, ignore=own)
+    shutil.copytree(modules, addon, dirs_exist_ok=True)
+    return {"BLENDER_USER_SCRIPTS": str(folder / "scripts"), "PYTHONPATH": ""}
+
+
 @pytest.mark.parametrize("name", CASES)
 def test_exit_code_and_message(name, blend, folder):
     case = CASES[name]
-    if "PYTHONPATH" in case.env and "GRANITA_ADDON" in os.environ:
-        pytest.skip("an installed add-on finds its own module first")
 
     def filled(text):
         return text.replace("{folder}", str(folder))
@@ -253,7 +260,7 @@ def test_exit_code_and_message(name, blend, folder):
         folder / "out",
         filled(case.prepare),
         options=case.options,
-        env={key: filled(value) for key, value in case.env.items()},
+        env=case.env | (with_modules(folder, folder / case.modules) if case.modules else {}),
     )
     assert outcome.code == case.code, outcome.output
     assert case.says in outcome.output
