@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A zip by Blender's own operators in an empty configuration: install, enable, render, upgrade while it is
-loaded, disable, remove.  GRANITA_ZIP names the extension's zip; without it, zips are made of the tree."""
+"""A zip by Blender's own operators in an empty configuration: install, enable, render, upgrade to other
+bytes while it is loaded, disable, remove.  GRANITA_ZIP names the extension's zip; without it, zips are made of the tree."""
 
 import os
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import bpy
@@ -17,16 +18,16 @@ import sys
 from pathlib import Path
 import bpy
 
-archive, picture = {archive!r}, {picture!r}
+archive, newer, picture = {archive!r}, {newer!r}, {picture!r}
 extension = bpy.app.version >= (4, 2, 0)
 module = "bl_ext.user_default.granita" if extension else "granita"
 
-def install():
+def install(file):
     if extension:
         bpy.ops.extensions.package_install_files(
-            filepath=archive, repo="user_default", enable_on_install=True, overwrite=True)
+            filepath=file, repo="user_default", enable_on_install=True, overwrite=True)
     else:
-        bpy.ops.preferences.addon_install(filepath=archive, overwrite=True)
+        bpy.ops.preferences.addon_install(filepath=file, overwrite=True)
         bpy.ops.preferences.addon_enable(module=module)
 
 def render(name):
@@ -39,12 +40,18 @@ def render(name):
     assert Path(scene.render.filepath).stat().st_size > 0
     scene.render.engine = "BLENDER_WORKBENCH"
 
-install()
+def modules():
+    return {{p.name: p.read_bytes()[-len({mark!r}):] for p in folder.glob("granita_core*")}}
+
+install(archive)
 folder = Path(sys.modules[module].__file__).parent
 print("folder", folder)
 assert sys.modules[module + ".bridge"].problem() == "", sys.modules[module + ".bridge"].problem()
 render("first")
-install()  # in place, while the native module is loaded
+installed = modules()
+assert installed
+install(newer)  # in place, while the native module is loaded
+assert {{name: {mark!r} for name in installed}} == modules()
 render("second")
 bpy.ops.preferences.addon_disable(module=module)
 assert not hasattr(bpy.types.Scene, "granita")
@@ -79,8 +86,31 @@ def archive(tmp_path_factory):
     return extension.replace(".zip", "-legacy.zip")
 
 
-def test_the_life_of_an_installed_add_on(archive, tmp_path):
-    code = LIFE.format(archive=archive, picture=str(tmp_path / "picture_"))
+# Of an ELF file: lengths of name and id, the kind, the name; 20 bytes of id follow.
+BUILD_ID = b"\x04\0\0\0\x14\0\0\0\x03\0\0\0GNU\0"
+MARK = b"of another build"
+
+
+def newer(archive, folder):
+    """The same package with modules of other bytes: another build id, and more of them."""
+    target = folder / Path(archive).name
+    with zipfile.ZipFile(archive) as old, zipfile.ZipFile(target, "w") as new:
+        for entry in old.infolist():
+            content = old.read(entry)
+            if entry.filename.endswith(".so"):
+                note = content.index(BUILD_ID) + len(BUILD_ID)
+                content = content[:note] + MARK + content[note + len(MARK) :] + MARK
+            new.writestr(entry, content, compresslevel=1)
+    return str(target)
+
+
+def test_the_life_of_an_installed_add_on(archive, tmp_path, tmp_path_factory):
+    code = LIFE.format(
+        archive=archive,
+        newer=newer(archive, tmp_path_factory.mktemp("newer")),
+        picture=str(tmp_path / "picture_"),
+        mark=MARK,
+    )
     if bpy.app.binary_path:
         words = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1"]
         words += ["--python-expr", code]
