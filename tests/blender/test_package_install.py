@@ -71,7 +71,7 @@ print("ok", flush=True)
 """
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def archive(tmp_path_factory):
     extension = os.environ.get("GRANITA_ZIP")
     if not extension:
@@ -133,3 +133,40 @@ def test_the_life_of_an_installed_add_on(archive, tmp_path, tmp_path_factory):
     assert "\nok" in done.stdout, done.stdout + done.stderr
     left = [p for p in tmp_path.rglob("*") if "granita" in p.name.lower() and p.is_file()]
     assert not left
+
+
+# Blender's own installer on another machine.
+ELSEWHERE = """
+import platform, runpy, sys
+platform.system, platform.machine = (lambda name=name: name for name in sys.argv[1:3])
+del sys.argv[:3]
+runpy.run_path(sys.argv[0], run_name="__main__")
+"""
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 2, 0), reason="has no extensions")
+@pytest.mark.parametrize(
+    "system, machine, refused",
+    [
+        ("Linux", "x86_64", ""),
+        ("Linux", "aarch64", "linux-arm64"),
+        ("Windows", "AMD64", "windows-x64"),
+        ("Darwin", "arm64", "macos-arm64"),
+    ],
+)
+def test_blender_refuses_the_extension_on_other_systems(
+    archive, tmp_path, system, machine, refused
+):
+    scripts = Path(bpy.utils.system_resource("SCRIPTS"))
+    program = scripts / "addons_core/bl_pkg/cli/blender_ext.py"
+    versions = {"blender": bpy.app.version, "python": sys.version_info[:3]}
+    options = [
+        f"--{name}-version={'.'.join(map(str, version))}"
+        for name, version in versions.items()
+        if f"--{name}-version" in program.read_text()
+    ]
+    words = [sys.executable, "-c", ELSEWHERE, system, machine, program, "install-files"]
+    words += [*options, f"--local-dir={tmp_path}", archive]
+    done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
+    assert (tmp_path / "granita").exists() != bool(refused), done.stdout + done.stderr
+    assert f"This platform ({refused}) isn't one of (linux-x64)" in done.stdout or not refused
