@@ -16,6 +16,7 @@
 
 import sys
 from dataclasses import dataclass
+from itertools import pairwise
 
 from .event_log import KINDS as LOG_KINDS
 
@@ -43,24 +44,34 @@ class CommandLine:
 
 def parse(argv=None):
     """Returns the CommandLine of `argv` (default: this process).  Raises CommandLineError."""
-    argv = sys.argv if argv is None else argv
-    words = iter(argv[argv.index("--") + 1 :] if "--" in argv else [])
     values = CommandLine()
-    for word in words:
-        if not word.startswith(PREFIX):
-            continue
-        option, has_value, value = word.partition("=")
+    for option, value in _options(argv):
         reader = _READERS.get(option)
         if reader is None:
             raise CommandLineError(f"unknown option {option} (known: {', '.join(_READERS)})")
-        if not has_value:
-            value = next(words, "")
-        if not value or value.startswith("--"):
+        if not value:
             raise CommandLineError(f"option {option} needs a value")
         setattr(values, option[len(PREFIX) :], reader(option, value))
     if sum(value is not None for value in (values.part, values.cut, values.merge)) > 1:
         raise CommandLineError("--granita-part, -cut and -merge exclude one another")
     return values
+
+
+def log_kind(argv=None):
+    """Of event_log.KINDS, what `--granita-log` asks for, whatever is wrong with other options; None without it."""
+    named = [value for option, value in _options(argv) if option == PREFIX + "log"]
+    return named[-1] if named and named[-1] in LOG_KINDS else None
+
+
+def _options(argv):
+    """(option, value) in turn; a value is empty where there is none."""
+    argv = sys.argv if argv is None else argv
+    words = argv[argv.index("--") + 1 :] if "--" in argv else []
+    for word, after in pairwise([*words, ""]):
+        if word.startswith(PREFIX):
+            option, has_value, value = word.partition("=")
+            value = value if has_value else after
+            yield option, "" if value.startswith("--") else value
 
 
 def _device(option, value):

@@ -103,8 +103,8 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
             if self.is_preview:
                 preview_render.render_preview(self, depsgraph)
                 return
+            self.log = EventLog(command_line.log_kind(), depsgraph.scene.frame_current)
             options = command_line.parse()
-            self.log = EventLog(options.log, depsgraph.scene.frame_current)
             if lost := written_frames.problem():
                 self._fail(lost)
                 return
@@ -116,7 +116,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
                 self.frame_statistics
             )
         except Cancelled:
-            self.frame_statistics.discard()
+            self._give_up()
             if not self.test_break():  # else Blender would keep an empty frame and go on
                 ended = "the add-on was switched off"
                 self._fail(ended if _ends else "the render stopped without being asked to")
@@ -153,8 +153,13 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
             loop.add(self.live_view)
         return self.live_view
 
-    def _fail(self, text):
+    def _give_up(self):
         self.frame_statistics.discard()
+        if not self.is_preview:
+            written_frames.is_given_up()
+
+    def _fail(self, text):
+        self._give_up()
         self.log.error(text)
         self.report({"ERROR"}, escaped(text))
         self.error_set(escaped(text))

@@ -24,7 +24,7 @@ class EventLog:
         self._about = {"frame": int(frame), "view_layer": layer}
 
     def progress(self, fraction, remaining=None):
-        """`remaining` in seconds, None where it is not known yet."""
+        """`fraction` of the frame; `remaining` in seconds of the view layer, None where it is not known yet."""
         if self._kind == "json":
             self._json("progress", fraction=round(fraction, 4), remaining=remaining)
         elif self._kind == "openjd":
@@ -48,7 +48,6 @@ class EventLog:
         if self._kind == "json":
             self._json("layer", seconds={name: round(s, 3) for name, s in seconds.items()})
         elif self._kind == "openjd":
-            _print("openjd_progress: 100.0")
             frame = self._about["frame"]
             _print(f"openjd_status: frame {frame}: {seconds.get('total', 0.0):.1f} s")
 

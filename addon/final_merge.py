@@ -6,6 +6,8 @@ Nothing is exported and nothing rendered; what follows in Blender is what follow
 
 from types import SimpleNamespace
 
+import bpy
+
 from . import passes
 from .event_log import EventLog
 from .export.base.report import Cancelled
@@ -13,6 +15,7 @@ from .export.scene.options import rendered_frame, scene_crop
 from .parts.joined_parts import read_parts
 from .parts.part_output import folder_of
 from .properties import TILE_PIXELS
+from .status_line import StatusLine, layers_done
 
 
 class FinalMerge:
@@ -24,7 +27,8 @@ class FinalMerge:
         self.options = options
         self.scene = depsgraph.scene
         self.layer = depsgraph.view_layer.name
-        self.log = EventLog(options.log, self.scene.frame_current, self.layer)
+        log = EventLog(options.log, self.scene.frame_current, self.layer)
+        self.status = StatusLine(engine, log, *layers_done(depsgraph, bpy.app.background))
         self.passes = passes.wanted(depsgraph.view_layer)
         self.exposure = passes.exposure_owner(depsgraph.scene_eval).film_exposure
 
@@ -46,8 +50,8 @@ class FinalMerge:
             passes.deliver(
                 self.engine, _tile(part), self.passes, self.layer, crop[:2], self.exposure
             )
-            self.engine.update_progress(number / count)
-            self.log.progress(number / count)
+            self.status.joining(number, count)
+        self.status.rendered()
 
 
 def _tile(part):

@@ -19,7 +19,7 @@ from .parts.frame_cut import FrameCut
 from .parts.part_output import folder_of, output_path
 from .parts.picture_digest import file_digest, picture_digest
 from .properties import TILE_PIXELS
-from .status_line import StatusLine
+from .status_line import StatusLine, layers_done
 
 # Seconds between two looks at the cancel flag; well below the .5 s that an artist notices.
 POLL_SECONDS = 0.05
@@ -48,7 +48,7 @@ class FinalRender:
         self.exposure = passes.exposure_owner(depsgraph.scene_eval).film_exposure
         self.frame = depsgraph.scene.frame_current
         self.log = EventLog(options.log, self.frame, self.layer)
-        self.status = StatusLine(engine, self.log)
+        self.status = StatusLine(engine, self.log, *layers_done(depsgraph, bpy.app.background))
         self.report = Report()
         self.seconds = {}
         self.origin = None  # the result's lower-left pixel in the frame
@@ -75,6 +75,7 @@ class FinalRender:
             self.seconds["total"] = perf_counter() - started
             warnings = self.report.entries() + job.warnings()
             statistics.add_layer(self, options, job, warnings)
+            self.status.rendered()
             self.log.layer(self.seconds)
         finally:
             self._tell(self.report.entries())
@@ -147,6 +148,7 @@ class FinalRender:
     def _end_empty(self):
         """A result without pixels still has to be complete: Blender crashes where it saves none."""
         self.engine.end_result(self.engine.begin_result(0, 0, 1, 1, layer=self.layer))
+        self.status.rendered()
 
     def _exporting(self):
         """Called often by the export."""
@@ -177,7 +179,6 @@ class FinalRender:
                     deliver(job.take_tiles(POLL_SECONDS))
                     if self.engine.is_cancelled():
                         raise Cancelled
-                    self.engine.update_progress(job.fraction)
                     self.status.rendering(job)
                 deliver(job.take_tiles(0.0))
         finally:

@@ -32,6 +32,20 @@ def is_whole(path):
     return size > 8  # no picture is smaller
 
 
+def fault(path):
+    """What is wrong with a file that was just written, in words; empty where it is whole and on the disk.
+
+    File systems of networks tell of a full disk, a spent quota or a broken line when they are asked for that alone; an
+    end that was seen may be in this machine's memory only.  Raises OSError where the file cannot be looked at.
+    """
+    with open(path, "r+b", buffering=0) as file:
+        try:
+            os.fsync(file.fileno())
+        except OSError as error:
+            return error.strerror
+    return "" if is_whole(path) else "the disk may be full"
+
+
 def _ends_in(file, size, end):
     file.seek(max(size - len(end), 0))
     return file.read() == end

@@ -3,7 +3,8 @@
 
 On a full disk Blender's own writer of OpenEXR leaves half a file, says "Saved" and ends with exit code 0 (measured in
 3.4, with every engine), and that of PNG leaves half a file beside its error.  Such a file is taken away, and the
-process of a farm ends with 1.  What is whole gets the frame's name (`unfinished_file.py`).
+process of a farm ends with 1.  What is whole gets the frame's name (`unfinished_file.py`).  Where Blender could not even
+open a file it ends with 1 by itself, but tells machines nothing and of PNG a wrong reason: the right one is told here.
 """
 
 import os
@@ -14,11 +15,11 @@ from pathlib import Path
 
 import bpy
 
-from . import leftover_files, unfinished_file
+from . import command_line, leftover_files, unfinished_file
 from .event_log import EventLog
 from .export.base.report import escaped
 from .handlers import registration
-from .whole_file import is_whole
+from .whole_file import fault, is_whole
 
 
 class _Frame:
@@ -27,6 +28,7 @@ class _Frame:
     began = 0.0
     number = 0  # a cancelled animation has gone back to its scene's own
     scene = ""
+    is_given_up = False  # an engine has said why
     problem = ""
     swept = None  # the folder that was looked through last
 
@@ -43,12 +45,17 @@ def _render_begins(*_):
 def _frame_begins(scene, *_):
     unfinished_file.put_back(scene)
     _Frame.began, _Frame.number = time.time(), scene.frame_current
-    _Frame.scene = scene.name
+    _Frame.scene, _Frame.is_given_up = scene.name, False
+
+
+def is_given_up():
+    """Once an engine left a frame undone: Blender saves none."""
+    _Frame.is_given_up = True
 
 
 def is_rendered():
     """Once a frame's engines are done: what is left is the compositor and the saving."""
-    scene = bpy.data.scenes.get(_Frame.scene)
+    scene = None if _Frame.is_given_up else bpy.data.scenes.get(_Frame.scene)
     if scene and scene.render.engine == "GRANITA" and unfinished_file.set_aside(scene):
         _sweep(Path(scene.render.frame_path()).parent)
 
@@ -67,15 +74,18 @@ def _sweep(folder):
 
 def _is_saved(scene, *_):
     """Of what nobody saved there is no file; of other files nothing is known here."""
-    if scene.render.engine == "GRANITA" and (lost := _name_it(scene)):
-        _tell(lost)
+    aside = unfinished_file.put_back(scene)
+    if scene.render.engine != "GRANITA" or not aside or not aside[0].exists():
+        return
+    if lost := _name_it(*aside):
+        _lose(lost)
 
 
 def _look_at_written(scene, *_):
     if scene.render.engine != "GRANITA":
         return
     for path in _take_away(scene):
-        _tell(f"'{path}' was not written whole and is removed: the disk may be full")
+        _lose(f"'{path}' was not written whole and is removed: the disk may be full")
     if _Frame.problem and bpy.app.background and bpy.app.binary_path:
         shutil.rmtree(bpy.app.tempdir, ignore_errors=True)
         sys.stdout.flush()
@@ -85,27 +95,30 @@ def _look_at_written(scene, *_):
 def _look_at_cancelled(scene, *_):
     if scene.render.engine != "GRANITA":
         return
-    if lost := _name_it(scene):
-        print(f"Granita: {escaped(lost)}", flush=True)
+    if aside := unfinished_file.put_back(scene):
+        file, final = aside
+        if lost := _name_it(file, final) if file.exists() else _unopened(file, final):
+            _tell(lost)
     # In a window nothing was begun: what lies there without an end is another's.
     for path in _take_away(scene) if bpy.app.background else ():
         print(f"Granita: removed '{escaped(str(path))}', half of a file", flush=True)
 
 
-def _tell(text):
+def _lose(text):
     _Frame.problem = text
-    EventLog(None, _Frame.number).error(text)
+    _tell(text)
+
+
+def _tell(text):
+    EventLog(command_line.log_kind(), _Frame.number).error(text)
     # A frame that was written is no longer the engine's: it cannot fail any more.
     print(f"Error: Granita: {escaped(text)}", file=sys.stderr, flush=True)
 
 
-def _name_it(scene):
+def _name_it(file, final):
     """Gives a whole file the frame's name; returns what is wrong."""
-    if not (aside := unfinished_file.put_back(scene)) or not aside[0].exists():
-        return ""
-    file, final = aside
     try:
-        if is_whole(file):
+        if not (cause := fault(file)):
             unfinished_file.take_name(file, final)
             print(f"Saved: '{escaped(str(final))}'", flush=True)
             return ""
@@ -113,7 +126,14 @@ def _name_it(scene):
     except OSError as error:
         return f"'{final}' could not be written: {error.strerror}; the frame is in '{file}'"
     left = "; the one that was there before is left" if final.exists() else ""
-    return f"'{final}' was not written whole and is removed: the disk may be full{left}"
+    return f"'{final}' was not written whole and is removed: {cause}{left}"
+
+
+def _unopened(file, final):
+    """Of a frame that was to be saved and of which Blender left nothing."""
+    if cause := unfinished_file.why_not_opened(file):
+        return f"'{final}' could not be written: {cause}"
+    return f"'{final}' was not saved: lines before this one may say why"
 
 
 def _take_away(scene):

@@ -3,7 +3,7 @@
 
 import pytest
 
-from addon.command_line import CommandLine, CommandLineError, parse
+from addon.command_line import CommandLine, CommandLineError, log_kind, parse
 
 BLENDER = ["blender", "-b", "scene.blend", "-E", "GRANITA", "-f", "1"]
 
@@ -62,3 +62,20 @@ def test_refuses(words, message):
     with pytest.raises(CommandLineError) as failure:
         parse([*BLENDER, "--", *words])
     assert message in str(failure.value)
+
+
+@pytest.mark.parametrize(
+    "words, kind",
+    [
+        ([], None),
+        (["--granita-log", "json"], "json"),
+        (["--granita-log=json", "--granita-log", "openjd"], "openjd"),
+        (["--granita-devcie", "cpu", "--granita-log", "json"], "json"),
+        (["--granita-stats", "--granita-log", "json"], "json"),
+        (["--granita-log", "json", "--granita-stats"], "json"),
+        (["--granita-log", "xml"], None),
+        (["--granita-log"], None),
+    ],
+)
+def test_what_is_wrong_with_other_options_can_be_told_to_the_log(words, kind):
+    assert log_kind([*BLENDER, "--", *words]) == kind

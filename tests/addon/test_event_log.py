@@ -30,7 +30,6 @@ def test_open_job_description(capsys):
     assert told(capsys, "openjd") == [
         "openjd_progress: 25.0",
         "openjd_fail: mesh 'two lines' is broken",
-        "openjd_progress: 100.0",
         "openjd_status: frame 7: 12.3 s",
     ]
 
