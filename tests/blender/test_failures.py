@@ -5,6 +5,7 @@ on when an engine leaves without pixels.
 """
 
 import os
+import re
 import shutil
 from dataclasses import dataclass, field
 
@@ -309,6 +310,8 @@ def test_status_lines_end_in_sample_counts(blend, tmp_path):
         pytest.skip("Blender 5 as a module prints no status lines")
     assert lines and all(0 <= done <= total for done, total in counts)
     assert counts == sorted(counts)
+    percentages = [int(p) for line in lines for p in re.findall(r" \| Rendered (\d+)% \| ", line)]
+    assert percentages and percentages == sorted(percentages)
 
 
 def bad_geometry(scene, material):
