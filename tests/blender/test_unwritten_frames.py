@@ -13,6 +13,7 @@ import subprocess
 import bpy
 import pytest
 import render_host
+import window_host
 
 MACHINES = ("--granita-log", "json")
 TO = "import bpy; bpy.context.scene.render.filepath = {!r}"
@@ -220,3 +221,38 @@ def test_a_part_that_was_not_flushed_is_not_there(blend, tmp_path, failing_disk,
     assert outcome.code == 1, outcome.output
     assert "part file" in only_error(outcome) and os.strerror(error) in only_error(outcome)
     assert outcome.files == [] and list(parts.iterdir()) == []
+
+
+# Renders an animation to where nothing can be written, then looks whether the window still answers.
+IN_A_WINDOW = """
+import sys
+import bpy
+
+scene = bpy.context.scene
+scene.render.filepath = sys.argv[-1]
+ended = []
+bpy.app.handlers.render_cancel.append(lambda *_: ended.append(True))
+
+def render():
+    bpy.ops.render.render("INVOKE_DEFAULT", animation=True)
+
+def look():
+    if not ended:
+        return 0.1
+    print("answers still:", scene.render.filepath, flush=True)
+    bpy.ops.wm.quit_blender()
+
+bpy.app.timers.register(render, first_interval=0.5)
+bpy.app.timers.register(look, first_interval=1.0)
+"""
+
+
+@window_host.needed
+def test_a_window_survives_a_folder_that_cannot_be_written(blend, tmp_path):
+    (tmp_path / "file").write_text("")
+    script = tmp_path / "script.py"
+    script.write_text(IN_A_WINDOW)
+    path = f"{tmp_path}/file/frame_####"
+    _, output = window_host.run(script, path, blend=blend)  # its code is that of the last render
+    assert f"answers still: {path}" in output and "Blender quit" in output
+    assert "Error: Granita" not in output  # Blender's own report is in the window
