@@ -3,12 +3,15 @@
 
 import sys
 
+import bounced_parts
 import bpy
 import exr
+import hair_parts
 import numpy as np
 import pytest
 import render_host
 import scene_parts as parts
+from test_volumes import filled
 
 PASSES = (
     "z",
@@ -55,6 +58,23 @@ def rich(scene):
 
 
 @pytest.fixture
+def unruly(scene):
+    """72 x 56 pixels of what reaches over many or stops early: bounces, wax, glass, smoke, hair, a shadow catcher, samples by noise."""
+    bounced_parts.room(scene)
+    bpy.data.objects["Wall 3"].is_shadow_catcher = True
+    bounced_parts.surface(bpy.data.objects["Ball"], "ShaderNodeBsdfGlass", (0.9, 1.0, 0.9))
+    wax = parts.add_square(scene, "Wax", 0.6, (-0.5, -0.5, -0.4))
+    bounced_parts.surface(wax, "ShaderNodeSubsurfaceScattering", (0.8, 0.5, 0.3), Scale=0.2)
+    bpy.ops.mesh.primitive_cube_add(size=0.6, location=(-0.4, 0.2, 0.1))
+    filled(bpy.context.object, "ShaderNodeVolumeScatter", Density=2.0)
+    hair_parts.furry(scene, hair_length=0.3, root_radius=0.01, tip_radius=0.005).location.z = -0.9
+    scene.render.resolution_x, scene.render.resolution_y = 72, 56
+    scene.granita.bounces, scene.granita.samples = "FULL", 16
+    scene.granita.noise_threshold = 0.05
+    return scene
+
+
+@pytest.fixture
 def options(monkeypatch, tmp_path):
     """options("part=1/3", ...): the command line from here on."""
 
@@ -87,6 +107,20 @@ def test_joined_parts_are_the_whole_frame(rich, render, options, tmp_path, count
         assert not (tmp_path / "frame.exr").exists()
     options(f"merge={count}")
     assert_equal(render(rich, "joined"), whole)
+
+
+@pytest.mark.parametrize("count", [2, 5])
+def test_what_reaches_over_many_pixels_is_the_same_in_parts(
+    unruly, render, options, tmp_path, count
+):
+    whole = render(unruly, "whole")
+    for number in range(1, count + 1):
+        options(f"part={number}/{count}")
+        unruly.render.filepath = str(tmp_path / "frame.exr")
+        bpy.ops.render.render(write_still=True)
+    options(f"merge={count}")
+    assert_equal(render(unruly, "joined"), whole)
+    assert whole["ViewLayer.Combined.R"].std() > 0.02
 
 
 def test_parts_of_equal_cost_are_the_whole_frame_too(rich, render, options, tmp_path):

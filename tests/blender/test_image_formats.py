@@ -22,6 +22,7 @@ WRITTEN = {
     "IRIS": "rgb",
 }
 
+
 def bytes_of(image):
     """[height, width, 3] of 0 to 255, the lowest row first."""
     values = np.float32(image.pixels[:]).reshape(image.size[1], image.size[0], 4)
