@@ -160,6 +160,18 @@ def test_a_library_is_built_once(libraries, thing):
     assert (libraries.prefix(thing) / "lib.a").read_text() == "int patched;\n"
 
 
+def test_whether_all_are_built_is_told_by_the_exit_code(libraries, tmp_path, monkeypatch):
+    def code():
+        monkeypatch.setattr(sys, "argv", ["libraries.py", "--are-built", str(tmp_path / "cache")])
+        with pytest.raises(SystemExit) as end:
+            libraries_of.main()
+        return end.value.code
+
+    assert code()
+    libraries.build_all([])
+    assert not code()
+
+
 def test_an_interrupted_library_is_built_again(libraries, thing, monkeypatch):
     libraries.prefix(thing).mkdir(parents=True)
     (libraries.prefix(thing) / "half").write_text("")

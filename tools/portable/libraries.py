@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Build every library of the portable module into the cache, each in a folder of its own.
 
-libraries.py CACHE [NAME...]    prints one line a library, last the path of the toolchain file
+libraries.py CACHE [NAME...]       prints one line a library, last the path of the toolchain file
+libraries.py --are-built CACHE     by its exit code
 
 A folder's name holds a digest of all that went into it (pin, options, recipe, toolchain, what it
 needs), so trees with other pins share the cache, and a finished folder is never written again.  Interrupted, it
@@ -59,6 +60,9 @@ class Libraries:
         zig = self.prefix(self.components["ziglang"])
         return toolchain.Toolchain(zig / "ziglang/zig", self.cache / f"toolchain-{zig.name[-12:]}")
 
+    def is_built(self, component: Component) -> bool:
+        return (self.prefix(component) / DONE).is_file()
+
     def build(self, component: Component) -> None:
         prefix = self.prefix(component)
         work = self.cache / "work" / component.name
@@ -98,7 +102,7 @@ class Libraries:
             fcntl.flock(lock, fcntl.LOCK_EX)
             wanted = [c for c in self.components.values() if not names or c.name in names]
             for number, component in enumerate(wanted, 1):
-                if (self.prefix(component) / DONE).is_file():
+                if self.is_built(component):
                     continue
                 began = time.monotonic()
                 line = f"[{number}/{len(wanted)}] {component.name} {component.version}"
@@ -127,6 +131,9 @@ class Libraries:
 def main() -> None:
     if len(sys.argv) < 2:
         sys.exit(__doc__)
+    if sys.argv[1] == "--are-built":
+        libraries = Libraries(Path(sys.argv[2]))
+        sys.exit(not all(map(libraries.is_built, libraries.components.values())))
     libraries = Libraries(Path(sys.argv[1]))
     # Half an hour of two processors: whoever works on this machine goes first.
     os.nice(max(NICENESS - os.nice(0), 0))

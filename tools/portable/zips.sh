@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The zips for every Linux, for `dev`, which reads this: their module, what is in them, and their native tests.
+# The zips for every Linux, for `dev`, which reads this: their module, what is in them, and their tests.
 
 # What builds the libraries of the packages for every Linux, beside their sources (tools/portable).
 PORTABLE_PACKAGES=(make patch nasm bzip2 xz-utils unzip)
@@ -20,6 +20,12 @@ configure_portable() {  # OPTION...
     # What CMake found of other libraries it would keep.
     grep -qsF "$toolchain" "$BUILD/portable/.configured" || rm -f "$BUILD/portable/CMakeCache.txt"
     configure "$BUILD/portable" -DCMAKE_TOOLCHAIN_FILE="$toolchain" "$@"
+}
+
+# Half an hour of building is spared where nothing asks for it: neither what the zips are made with changed, nor are the libraries there.
+portable_is_due() {
+    "$PYTHON" "$ROOT/tools/portable/libraries.py" --are-built "$CACHE" ||
+        [[ -n $(changed_files tools/portable cmake/GranitaPortable.cmake) ]]
 }
 
 build_portable() {  # -> $BUILD/portable/delivered
@@ -50,4 +56,48 @@ portable_native_tests() {  # built as the zips' module is
     configure_portable -DGRANITA_TESTS=ON
     nice -n 15 ninja -C "$BUILD/portable" -j 2 >&2
     native_tests "$BUILD/portable"
+}
+
+unpack_zips() {  # names them to the suites
+    local zip=$ROOT/dist/granita-$VERSION-linux-x64 scripts=$BUILD/packaged/addons
+    [[ -f $zip-legacy.zip ]] || die "there is no $zip-legacy.zip: ./dev package"
+    rm -rf "$scripts"
+    mkdir -p "$scripts"
+    "$PYTHON" -m zipfile -e "$zip-legacy.zip" "$scripts"
+    export GRANITA_ADDON=$scripts/granita GRANITA_ZIP=$zip.zip
+}
+
+packaged_smoke() {
+    unpack_zips
+    packaged_suite 3.4 -m smoke "$ROOT/tests/blender"
+}
+
+# The suites against the zips of ./dev package, in configurations that hold nothing else.
+packaged_parts() {
+    local version
+    unpack_zips
+    part 'rules of the zips' check_portable
+    part 'native, clang and libc++' portable_native_tests
+    for version in 3.4 4.2 4.5 5.0; do
+        part "package, Blender $version" packaged_suite "$version" "$ROOT/tests/blender"
+    done
+    if python_313 >/dev/null; then
+        part "package, Blender $NEWEST_BPY" packaged_suite "$NEWEST_BPY" "$ROOT/tests/blender"
+    else
+        say "Without CPython 3.13 the module for it is not tested (GRANITA_PYTHON_313 names one)"
+        FAILED=1
+    fi
+}
+
+packaged_suite() {  # VERSION PYTEST-ARG...
+    local version=$1
+    shift
+    [[ $version == 3.4 ]] || ensure_bpy "$version"
+    unset PYTHONPATH
+    if [[ $version == 3.4 ]]; then
+        exec blender -b --factory-startup --python-exit-code 1 \
+            --python "$ROOT/tests/blender/run_in_blender.py" -- -p no:cacheprovider "$(report "packaged-$version")" "$@"
+    fi
+    exec "$CACHE/bpy-$version/bin/python" "$ROOT/tests/blender/run_in_blender.py" -- \
+        -p no:cacheprovider "$(report "packaged-$version")" "$@"
 }
