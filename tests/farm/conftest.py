@@ -22,6 +22,15 @@ def blender(tmp_path_factory):
     return program
 
 
+@pytest.fixture(scope="session")
+def deaf_blender(blender, tmp_path_factory):
+    """One that SIGTERM does not end, as Blender in a library's uninterruptible wait."""
+    program = tmp_path_factory.mktemp("deaf") / "blender"
+    program.write_text(f'#!/bin/sh\ntrap \'\' TERM\nexec "{blender}" "$@"\n')
+    program.chmod(0o755)
+    return program
+
+
 def make_scene(blender, path, samples, width):
     """Three frames."""
     done = subprocess.run(
@@ -42,6 +51,18 @@ def scene(blender, tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def paced_scene(blender, tmp_path_factory):
+    """A frame of some seconds."""
+    return make_scene(blender, tmp_path_factory.mktemp("paced") / "paced.blend", 512, 640)
+
+
+@pytest.fixture(scope="session")
 def slow_scene(blender, tmp_path_factory):
     """A frame of many minutes."""
-    return make_scene(blender, tmp_path_factory.mktemp("slow") / "slow.blend", 4096, 640)
+    return make_scene(blender, tmp_path_factory.mktemp("slow") / "slow.blend", 4096, 2560)
+
+
+def processes_of(file):
+    """Ids of the processes that were given this file."""
+    found = subprocess.run(["pgrep", "-f", f"[b]lender .*{file}"], capture_output=True, text=True)
+    return found.stdout.split()

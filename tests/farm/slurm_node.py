@@ -56,12 +56,13 @@ class SlurmNode:
         self.cpus = os.cpu_count()
         self._daemons = []
 
-    @staticmethod
-    def is_installed():
-        tools = ("slurmctld", "slurmd", "sbatch", "munged")
-        return os.geteuid() == 0 and all(shutil.which(tool) for tool in tools)
-
     def start(self):
+        """Raises RuntimeError where Slurm is not installed, or who runs this is not root."""
+        missing = [t for t in ("slurmctld", "slurmd", "sbatch", "munged") if not shutil.which(t)]
+        if missing:
+            raise RuntimeError(f"Slurm is not installed: there is no {', '.join(missing)}")
+        if os.geteuid() != 0:
+            raise RuntimeError("slurmd and munged want to be started by root")
         for name in ("state", "spool"):
             (self.folder / name).mkdir()
         host = socket.gethostname().split(".")[0]

@@ -105,7 +105,9 @@ def perform(task, blender):
 
 def test_blender_renders_chunks_and_parts_alike_by_the_arguments(blender, scene, tmp_path):
     common = {"frames": "1-2, 3", "blendfile": str(scene), "format": "OPEN_EXR_MULTILAYER"}
-    for task in compiled(chunk_size=2, render_output_path=f"{tmp_path}/whole/####", **common)["tasks"]:
+    for task in compiled(chunk_size=2, render_output_path=f"{tmp_path}/whole/####", **common)[
+        "tasks"
+    ]:
         perform(task, blender)
     done = set()
     for task in compiled(parts=2, render_output_path=f"{tmp_path}/joined/####", **common)["tasks"]:

@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Frames and parts under a real Slurm of one node: arrays, dependencies, time limits, preemption."""
 
-import subprocess
+import os
+import shutil
+import signal
 import time
 from pathlib import Path
 
 import exr
 import numpy as np
 import pytest
+from conftest import processes_of
 from slurm_node import SlurmNode
 
 ROOT = Path(__file__).resolve().parents[2]
 SUBMIT = ROOT / "farm/slurm/submit.sh"
 DONE = ("COMPLETED",)
-
-pytestmark = pytest.mark.skipif(not SlurmNode.is_installed(), reason="no Slurm, or not root")
 
 
 @pytest.fixture(scope="module")
@@ -27,10 +28,10 @@ def slurm(tmp_path_factory):
 
 @pytest.fixture
 def submit(slurm, blender):
-    """submit(scene, output, first, last, parts, option...) -> number of the last job."""
+    """submit(scene, output, first, last, parts, option..., program=blender) -> number of the last job."""
 
-    def send(*arguments):
-        done = slurm.run(SUBMIT, *arguments, GRANITA_BLENDER=str(blender))
+    def send(*arguments, program=blender):
+        done = slurm.run(SUBMIT, *arguments, GRANITA_BLENDER=str(program))
         assert done.returncode == 0, done.stderr
         return done.stdout.split()[-1]
 
@@ -59,7 +60,7 @@ def test_a_missing_file_fails_once_and_says_why(submit, slurm, blender, tmp_path
     (tmp_path / "broken.blend").write_text("no blend")
     job = submit(tmp_path / "broken.blend", tmp_path / "frame_####", 1, 1, 1)
     slurm.wait_until(job, ("FAILED",))
-    assert "Restarts=0" in slurm.run("scontrol", "-o", "show", "job", job).stdout
+    assert restarts(slurm, job) == {0}
     assert not frames_in(tmp_path)
 
 
@@ -78,9 +79,18 @@ def wait_for_samples(slurm, job, count=1):
     raise TimeoutError(path.read_text() if path.exists() else "no log")
 
 
-def rendering(scene):
-    found = subprocess.run(["pgrep", "-f", f"[b]lender .*{scene}"], capture_output=True, text=True)
-    return found.stdout.split()
+@pytest.mark.parametrize("lacking", ["Slurm", "root"])
+def test_without_slurm_or_root_these_tests_fail(lacking, tmp_path, monkeypatch):
+    if lacking == "Slurm":
+        monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(os, "geteuid", lambda: 0 if lacking == "Slurm" else 1000)
+    with pytest.raises(RuntimeError, match=lacking):
+        SlurmNode(tmp_path).start()
+
+
+def restarts(slurm, job):
+    shown = slurm.run("scontrol", "-o", "show", "job", job).stdout.split()
+    return {int(word.partition("=")[2]) for word in shown if word.startswith("Restarts=")}
 
 
 def test_preempted_frames_begin_anew(submit, slurm, slow_scene, scene, tmp_path):
@@ -92,18 +102,47 @@ def test_preempted_frames_begin_anew(submit, slurm, slow_scene, scene, tmp_path)
     slurm.wait_until(high, DONE)
     assert frames_in(tmp_path) == ["high_0001.exr"]
     wait_for_samples(slurm, low, 2)
-    assert "Restarts=1" in slurm.run("scontrol", "-o", "show", "job", low).stdout
+    assert restarts(slurm, low) == {1}
     slurm.run("scancel", low)
     slurm.wait_until(low, ("CANCELLED",))
     assert frames_in(tmp_path) == ["high_0001.exr"]
-    assert not rendering(slow_scene)
+    assert not processes_of(slow_scene)
+
+
+def test_what_outlives_the_grace_time_is_killed_and_the_next_try_gives_the_frame(
+    submit, slurm, deaf_blender, slow_scene, scene, tmp_path
+):
+    everything, shot = f"--cpus-per-task={slurm.cpus}", tmp_path / "shot.blend"
+    shutil.copy(slow_scene, shot)
+    low = submit(shot, tmp_path / "low_####", 1, 1, 1, everything, program=deaf_blender)
+    wait_for_samples(slurm, low)
+    high = submit(scene, tmp_path / "high_####", 1, 1, 1, everything, "--partition=high")
+    shutil.copy(scene, shot)
+    slurm.wait_until(high, DONE)
+    assert frames_in(tmp_path) == ["high_0001.exr"]
+    slurm.wait_until(low, DONE, 180)
+    assert restarts(slurm, low) == {1}
+    np.testing.assert_equal(
+        exr.read(tmp_path / "low_0001.exr"), exr.read(tmp_path / "high_0001.exr")
+    )
+    assert not list(tmp_path.glob(".unfinished-*"))
+
+
+def test_what_dies_each_time_is_tried_three_times_in_all(submit, slurm, scene, tmp_path):
+    program, tries = tmp_path / "blender", tmp_path / "tries"
+    program.write_text(f'#!/bin/sh\necho >>"{tries}"\nkill -KILL $$\n')
+    program.chmod(0o755)
+    job = submit(scene, tmp_path / "frame_####", 1, 1, program=program)
+    slurm.wait_until(job, ("FAILED",), 180)
+    assert restarts(slurm, job) == {2}
+    assert len(tries.read_text().splitlines()) == 3
 
 
 def test_a_killed_task_is_tried_again(submit, slurm, slow_scene, tmp_path):
     job = submit(slow_scene, tmp_path / "frame_####", 1, 1)
     wait_for_samples(slurm, job)
-    for process in rendering(slow_scene):
-        subprocess.run(["kill", "-KILL", process])
+    for process in processes_of(slow_scene):
+        os.kill(int(process), signal.SIGKILL)
     wait_for_samples(slurm, job, 2)
     assert "tried again" in log_of(slurm, job)
     slurm.run("scancel", job)
@@ -116,4 +155,4 @@ def test_a_time_limit_leaves_no_frame(submit, slurm, slow_scene, tmp_path):
     job = submit(slow_scene, tmp_path / "frame_####", 1, 1, 1, "--time=1")
     slurm.wait_until(job, ("TIMEOUT",), 150)
     assert not frames_in(tmp_path)
-    assert not rendering(slow_scene)
+    assert not processes_of(slow_scene)
