@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Frames as jobs of their own beside one job of all of them: what a farm's chunk shares.
 
-    ./dev bench chunks [--runs 3] [--frames 8] [--samples 4] [--size 160 90]
+    ./dev bench chunks [--runs 3] [--frames 8] [--samples 4] [--size 96 54]
 
 The demo and an animated file by others (tests/images/moving_files.py, as it is lit); processor seconds of whole Blenders,
 one thread, in turns, medians.  A job's frame costs more than a further one of a chunk by what a Blender begins with: its start, the
@@ -71,7 +71,7 @@ def main():
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--frames", type=int, default=8)
     parser.add_argument("--samples", type=int, default=4)
-    parser.add_argument("--size", type=int, nargs=2, default=(160, 90))
+    parser.add_argument("--size", type=int, nargs=2, default=(96, 54))
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         shots = {name: Shot(name, Path(folder), options) for name in SCENES}

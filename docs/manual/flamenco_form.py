@@ -4,7 +4,8 @@
     blender -b --factory-startup --addons granita --python docs/manual/flamenco_form.py -- ADDON
 
 ADDON is the folder `flamenco` of that add-on, which https://flamenco.blender.org offers.  Its panel draws
-the form; that it gets the job type from this script instead of from a Manager is all that differs.
+the form; that it gets the job type from this script instead of from a Manager is all that differs.  It asks
+for `requests` and `urllib3`, which Debian's Blender has not: in a folder of PYTHONPATH.
 """
 
 import json
