@@ -4,6 +4,7 @@
 Parts are cut by place, and by what a coarse look at the frame says of their cost.
 
     ./dev bench frame_parts [--counts 1 2 4 8 16 32 64] [--scene demo] [--size 960 540] [--samples 64]
+        [--bounces FULL]
 
 One thread, processor seconds: each part stands for a machine of its own.  What every part does again is what its least one
 takes that sees nothing: the export, the opening, the ray scene.  Prints a Markdown table, writes bench/results/frame_parts.json and
@@ -26,12 +27,12 @@ def main():
     parser.add_argument("--scene", default="demo")
     parser.add_argument("--size", type=int, nargs=2, default=(960, 540))
     parser.add_argument("--samples", type=int, default=64)
+    parser.add_argument("--bounces", default="NONE", choices=["NONE", "FULL"])
     options = parser.parse_args()
     module = "demo" if options.scene == "demo" else "lit_scenes"
     job = {"module": module, "scene": options.scene, "size": options.size}
-    taken = frames.ask(
-        "render_parts.py", {**job, "samples": options.samples, "counts": options.counts}
-    )
+    job |= {"samples": options.samples, "bounces": options.bounces, "counts": options.counts}
+    taken = frames.ask("render_parts.py", job)
     whole = max(taken[str(options.counts[0])]["parts"])
     rows, measured, by_cost, ideal = [], [], [], []
     print(

@@ -3,7 +3,7 @@
 
     blender -b --factory-startup --addons granita --python bench/render_parts.py -- JOB.json
 
-JOB: {"module", "scene", "size" (width, height), "samples", "counts" [N], "folder", "file"}.  The file gets for each N
+JOB: {"module", "scene", "size" (width, height), "samples", "bounces" (of scene.granita), "counts" [N], "folder", "file"}.  The file gets for each N
 {"parts": [processor seconds of each], "merge": processor seconds, "look": processor seconds of a coarse look, "by_cost": as
 "parts", cut by it}.
 """
@@ -40,7 +40,7 @@ def main():
     render.resolution_x, render.resolution_y = job["size"]
     render.resolution_percentage = 100
     render.threads_mode, render.threads = "FIXED", 1
-    scene.granita.samples, scene.granita.bounces = job["samples"], "NONE"
+    scene.granita.samples, scene.granita.bounces = job["samples"], job["bounces"]
     scene.granita.device = "CPU"
     scene.frame_set(int(frame))
     folder = Path(job["folder"])
