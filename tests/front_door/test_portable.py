@@ -136,6 +136,21 @@ def test_an_edit_that_does_not_fit_is_named(thing, tmp_path):
         sources.prepare(spoiled, tmp_path / "downloads", tmp_path / "source")
 
 
+def test_lines_are_dropped_from_every_file_or_it_is_named(thing, tmp_path):
+    def prepared(**edit):
+        folder = tmp_path / f"source{len(list(tmp_path.iterdir()))}"
+        folder.mkdir()
+        sources.prepare(replace(thing, edits=[edit]), tmp_path / "downloads", folder)
+        return [(folder / name).read_text() for name in ("code.c", "other.c")]
+
+    assert prepared(file="*.c", drop="int .*;") == ["", ""]
+    assert prepared(file="code.c", drop="int .*;") == ["", "int no_member;\n"]
+    with pytest.raises(BuildError, match="code.c has no line with member"):
+        prepared(file="*.c", drop="member")
+    with pytest.raises(BuildError, match=r"there is no \*.h"):
+        prepared(file="*.h", drop="int")
+
+
 @pytest.fixture
 def libraries(thing, tmp_path, monkeypatch):
     """The library list with nothing in it but the component, and how often it was built."""

@@ -2,6 +2,7 @@
 """Sources from the archives that this machine's apt and pip are configured for, pinned by SHA-256."""
 
 import hashlib
+import re
 import shutil
 import subprocess
 import sys
@@ -123,8 +124,20 @@ def prepare(component: Component, downloads: Path, folder: Path) -> None:
                     run = ["patch", "-s", "-p1", "--no-backup-if-mismatch"]
                     subprocess.run(run, cwd=folder, stdin=patch, check=True)
     for edit in component.edits:
-        path = folder / edit["file"]
-        text = path.read_text()
-        if text.count(edit["from"]) != 1:
-            raise BuildError(f"{component.name}: {edit['file']} does not hold once: {edit['from']}")
-        path.write_text(text.replace(edit["from"], edit["to"]))
+        paths = sorted(folder.glob(edit["file"]))
+        if not paths:
+            raise BuildError(f"{component.name}: there is no {edit['file']}")
+        for path in paths:
+            path.write_text(edited(path.read_text(), edit, f"{component.name}: {path.name}"))
+
+
+def edited(text: str, edit: dict, name: str) -> str:
+    """Without the lines in which the expression `drop` is found, or with `to` in the place of `from`."""
+    if drop := edit.get("drop"):
+        kept = [line for line in text.splitlines(keepends=True) if not re.search(drop, line)]
+        if "".join(kept) == text:
+            raise BuildError(f"{name} has no line with {drop}")
+        return "".join(kept)
+    if text.count(edit["from"]) != 1:
+        raise BuildError(f"{name} does not hold once: {edit['from']}")
+    return text.replace(edit["from"], edit["to"])
