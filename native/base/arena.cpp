@@ -5,9 +5,7 @@
 #include <cstring>
 #include <new>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
+#include "base/system.h"
 
 namespace granita {
 namespace {
@@ -22,9 +20,7 @@ void Arena::Free::operator()(void* memory) const {
 
 Arena::Slab Arena::make(std::size_t bytes) {
     Slab slab(static_cast<std::byte*>(::operator new (bytes, std::align_val_t{kSlab})));
-#ifdef __linux__
-    madvise(slab.get(), bytes, MADV_HUGEPAGE);
-#endif
+    want_huge_pages(slab.get(), bytes);
     return slab;
 }
 

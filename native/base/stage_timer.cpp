@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/stage_timer.h"
 
-#include <time.h>
-
 #include <algorithm>
+#include <chrono>
 
-#include "base/thread_clock.h"
+#include "base/system.h"
 
 namespace granita {
 namespace {
@@ -15,16 +14,12 @@ thread_local StageTimer* t_timer = nullptr;
 /// Its address names the thread.
 thread_local char t_here = 0;
 
-double seconds(clockid_t clock) {
-    timespec t{};
-    clock_gettime(clock, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 double wall() {
-    return seconds(CLOCK_MONOTONIC);
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    return std::chrono::duration<double>(now).count();
 }
 double beside() {
-    return seconds(CLOCK_PROCESS_CPUTIME_ID) - thread_seconds();
+    return process_seconds() - thread_seconds();
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 
 #include "base/statistics.h"
 

@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gl/egl_display.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <sstream>
 
 #include "base/error.h"
+#include "base/system.h"
 #include "gl/gl_check.h"
 
 namespace granita::gl {
 namespace {
 
-// epoxy ends the process where it cannot open a library, so we look first.  The handle stays open:
-// epoxy opens the same library at the first call.
+// epoxy ends the process where it cannot open a library, so we look first; it opens the same one at
+// the first call.
 void require_library(std::initializer_list<const char*> names) {
     for (const char* name : names)
-        if (dlopen(name, RTLD_LAZY | RTLD_LOCAL) != nullptr) return;
+        if (open_library(name)) return;
     throw GlError(std::string("OpenGL is not installed: no ") + *names.begin());
 }
 

@@ -8,7 +8,7 @@
 #include <tbb/version.h>
 
 #include "base/crash_report.h"
-#include "base/process_memory.h"
+#include "base/system.h"
 #include "gl/gl_thread.h"
 #include "python/snapshot.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "base/process_memory.h"
+#include "base/system.h"
 
 namespace granita {
 namespace {

@@ -16,7 +16,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/stage_timer.h"
-#include "base/thread_clock.h"
+#include "base/system.h"
 #include "base/thread_pool.h"
 #include "render/frame.h"
 #include "render/frame_memory.h"

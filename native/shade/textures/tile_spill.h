@@ -5,16 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <system_error>
+
+#include "base/system.h"
 
 namespace granita {
 
 class TileSpill {
   public:
-    TileSpill() = default;
-    ~TileSpill();
-    TileSpill(const TileSpill&) = delete;
-    TileSpill& operator=(const TileSpill&) = delete;
-
     /// Appends; the file is made by the first call, in the system's folder for temporary files, and
     /// takes at most 9/10 of what is free there.  Not thread-safe.
     /// @param offset  out: where it lies.
@@ -26,9 +24,9 @@ class TileSpill {
     const std::string& error() const { return m_error; }
 
   private:
-    bool open();
+    std::error_code open();
 
-    int m_file = -1;
+    TemporaryFile m_file;
     std::uint64_t m_end = 0, m_most = 0;
     std::string m_error;
 };

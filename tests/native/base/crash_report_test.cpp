@@ -34,6 +34,30 @@ void fault_in_a_thread() {
     }).join();
 }
 
+/// A call within a call, without end for any stack; what comes after each keeps it from being a
+/// loop.
+unsigned call_on(unsigned depth) {
+    volatile unsigned frame[64];
+    frame[0] = depth;
+    return depth + 1 == 0 ? 0 : call_on(depth + 1) + frame[0];
+}
+
+void overflow_where_the_report_was_made() {
+    std::thread([] {
+        const CrashReport report(path_of_report(), "");
+        call_on(0);
+    }).join();
+}
+
+void overflow_in_a_scope() {
+    const CrashReport report(path_of_report(), "");
+    const std::string name = "object 'Cube'";
+    std::thread([&name] {
+        const CrashScope scope("opens", name);
+        call_on(0);
+    }).join();
+}
+
 /// Under a sanitizer the handler of before is its own, and ends otherwise.
 bool ended_badly(int status) {
     return !WIFEXITED(status) || WEXITSTATUS(status) != 0;
@@ -64,6 +88,32 @@ TEST(CrashReportDeathTest, TheHostsHandlerHasTheLastWord) {
             std::abort();
         },
         testing::ExitedWithCode(42), "a report of the crash");
+    std::filesystem::remove(path_of_report());
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SKIP_UNDER_A_SANITIZER() GTEST_SKIP() << "a sanitizer has frames and handlers of its own"
+#else
+#define SKIP_UNDER_A_SANITIZER()
+#endif
+
+TEST(CrashReportDeathTest, AnOverflowOfTheStackLeavesAFile) {
+    SKIP_UNDER_A_SANITIZER();
+    testing::GTEST_FLAG(death_test_style) = "threadsafe";
+    EXPECT_EXIT(overflow_where_the_report_was_made(), testing::KilledBySignal(SIGSEGV),
+                "a report of the crash");
+    std::filesystem::remove(path_of_report());
+}
+
+TEST(CrashReportDeathTest, AnOverflowOfTheStackInAScopeNamesItsWork) {
+    SKIP_UNDER_A_SANITIZER();
+    testing::GTEST_FLAG(death_test_style) = "threadsafe";
+    std::filesystem::remove(path_of_report());
+    EXPECT_EXIT(overflow_in_a_scope(), testing::KilledBySignal(SIGSEGV), "a report of the crash");
+    const std::string text = text_of(path_of_report());
+    EXPECT_NE(text.find("ended by SIGSEGV"), std::string::npos) << text;
+    EXPECT_NE(text.find("The thread opens object 'Cube'"), std::string::npos) << text;
+    EXPECT_NE(text.find("granita_test_base"), std::string::npos) << text;  // the backtrace
     std::filesystem::remove(path_of_report());
 }
 
