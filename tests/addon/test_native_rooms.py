@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The stages of `native`, and the rooms of `shade` and `hider`: what each may include."""
+"""The stages of `native`, the rooms of `shade` and `hider`, the one file that calls the system:
+what each may include."""
 
 import re
 from pathlib import Path
@@ -17,14 +18,33 @@ HIDER = {
     "compute": {"samples", "simd", "resolve"},
     "raster": {"samples"},
 }
+# The one file that calls the system, and what of POSIX the others neither include nor call.
+SYSTEM = Path("base/system_posix.cpp")
+POSIX_HEADERS = (
+    r"(?:unistd|fcntl|dlfcn|execinfo|pthread|poll|signal|sched|dirent|malloc|sys/\w+)\.h"
+)
+POSIX_CALLS = (
+    r"(?<![\w.>:])(?:::)?(?:madvise|mmap|munmap|sysconf|malloc_trim|clock_gettime|mkostemp|mkstemp|unlink"
+    r"|pread|pwrite|dlopen|dlsym|dladdr|sigaction|sigaltstack|sigemptyset|backtrace\w*|pthread_\w+"
+    r"|fork|isatty|getpid|getrusage|setenv)\(|(?<![\w>])::(?:open|close|read|write|raise|poll)\("
+)
+
+
+def sources(folder):
+    return [file for file in sorted(folder.rglob("*")) if file.suffix in {".cpp", ".h", ".inl"}]
+
+
+def posix_of(text):
+    """The headers and calls of POSIX in a source, without what stands in comments."""
+    text = re.sub(r"//.*", "", text)
+    return re.findall(rf"#include <({POSIX_HEADERS})>", text) + re.findall(POSIX_CALLS, text)
 
 
 def includes(folder):
     """(file, what it includes) as paths below `native`."""
-    for file in sorted(folder.rglob("*")):
-        if file.suffix in {".cpp", ".h", ".inl"}:
-            for path in re.findall(r'^#include "(.+)"', file.read_text(encoding="utf-8"), re.M):
-                yield file.relative_to(NATIVE), Path(path)
+    for file in sources(folder):
+        for path in re.findall(r'^#include "(.+)"', file.read_text(encoding="utf-8"), re.M):
+            yield file.relative_to(NATIVE), Path(path)
 
 
 def folders(path):
@@ -66,3 +86,25 @@ def test_a_room_of_the_hider_includes_what_it_may_know(room):
         if path.parts[0] == "hider" and len(path.parts) > 2 and path.parts[1] not in allowed
     ]
     assert others == []
+
+
+def test_one_file_alone_includes_and_calls_posix():
+    found = {
+        f.relative_to(NATIVE): posix_of(f.read_text(encoding="utf-8")) for f in sources(NATIVE)
+    }
+    assert {"dlfcn.h", "sys/mman.h", "madvise(", "sigaction("} <= set(found.pop(SYSTEM))
+    assert {file: posix for file, posix in found.items() if posix} == {}
+
+
+@pytest.mark.parametrize(
+    "line", ["int file = ::open(path);", "if (dlopen(name)) return;", "#include <sys/wait.h>"]
+)
+def test_a_line_of_posix_is_found(line):
+    assert len(posix_of(line)) == 1
+
+
+@pytest.mark.parametrize(
+    "line", ["bool TileSpill::open() {", "m_file.read(offset);", "// dlopen(3)", "gl::close();"]
+)
+def test_a_line_of_granitas_own_is_not_taken_for_posix(line):
+    assert posix_of(line) == []
